@@ -1,0 +1,27 @@
+//! `shotdamp` reproduces a published study of particle impact dampers.
+//!
+//! The way of the data, in the order of use:
+//!
+//! 1. [`spec`] reads an experiment (YAML) into a validated [`spec::Experiment`]: units resolved, defaults filled,
+//!    every mistake of the file reported at once with line and column.
+//! 2. [`scene`] holds what is simulated: a [`scene::Recipe`] in the study's own dimensionless parameters resolves, with
+//!    the [`scene::Assumptions`] for all that the study leaves open, into a [`scene::Scene`] in SI units, which compiles
+//!    into a [`dynamics::HybridSystem`] that carries only the effects the scene names.
+//! 3. [`dynamics`] propagates it: exactly from certified event to certified event, or with the study's fixed step.
+//! 4. [`measure`] turns responses into the numbers that the study plots.
+//! 5. [`study`] plans, runs in parallel and stores one [`table::Table`] per experiment.
+//! 6. [`reference`] holds each published number and claim and gives its verdict; [`figure`] draws; [`report`] writes.
+//!
+//! A table on disk is all that verdicts, figures and reports read.
+
+pub mod dynamics;
+pub mod figure;
+pub mod measure;
+pub mod reference;
+pub mod report;
+pub mod scene;
+pub mod spec;
+pub mod study;
+pub mod table;
+
+pub mod cli;

@@ -1,0 +1,148 @@
+//! Measures: the numbers that the study plots, computed from [`crate::dynamics`] responses.
+//!
+//! The velocity ratio ψ is the RMS velocity of the base without damper over the one with it; the displacement ratio η the
+//! same with the standard deviation of the displacement (s. 3.5 of the study). Both are averaged over the forcing cycles
+//! after the skipped ones.
+
+use serde::{Deserialize, Serialize};
+
+use crate::dynamics::Proof;
+use crate::scene::{Assumptions, Recipe, RecipeError};
+use crate::spec::{Settings, SolverChoice, TraceSpec};
+
+/// What can be measured. The same word in YAML (`velocity_ratio`) and as a table column.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Measure {
+    /// ψ.
+    VelocityRatio,
+    /// η.
+    DisplacementRatio,
+    /// RMS velocity of the base, m/s.
+    RmsVelocity,
+    /// Standard deviation of the base displacement, m.
+    StdDisplacement,
+    /// Mean base displacement, m.
+    MeanDisplacement,
+    /// RMS velocity of the base without damper, m/s.
+    UndampedRmsVelocity,
+    /// Contacts made with the floor, in the averaged window.
+    FloorImpacts,
+    /// Contacts made with the ceiling.
+    CeilingImpacts,
+    /// Impacts on a limit stop.
+    StopImpacts,
+    /// Contacts lost with the floor.
+    Separations,
+    /// Largest compression of the floor in the window, m.
+    FloorCompression,
+    /// Largest compression of the ceiling, m.
+    CeilingCompression,
+    /// Largest base displacement of the last cycle of the trace, m (needs a trace).
+    LastPeak,
+    /// (largest − smallest)/mean of the trace's positive peaks (needs a trace).
+    PeakVariation,
+    /// Largest relative departure of the trace's peaks from the first one times exp(−c′ ωn t) (needs a trace).
+    PeakDecayError,
+    /// |RMS of the first half of the window / RMS of the second half − 1|: zero once transients are gone.
+    Drift,
+    /// Shortest time between an impulse in the trace and a floor contact, s (needs a trace).
+    FloorImpactLag,
+    /// The same to a ceiling contact, s (needs a trace).
+    CeilingImpactLag,
+    /// Highest natural frequency of the scene's contact states, Hz.
+    HighestFrequency,
+    /// Its period, s.
+    ShortestPeriod,
+}
+
+impl Measure {
+    /// Unit symbol, empty when dimensionless.
+    #[must_use]
+    pub fn unit(self) -> &'static str {
+        match self {
+            Self::RmsVelocity | Self::UndampedRmsVelocity => "m/s",
+            Self::StdDisplacement
+            | Self::MeanDisplacement
+            | Self::FloorCompression
+            | Self::CeilingCompression
+            | Self::LastPeak => "m",
+            Self::FloorImpactLag | Self::CeilingImpactLag | Self::ShortestPeriod => "s",
+            Self::HighestFrequency => "Hz",
+            _ => "",
+        }
+    }
+
+    /// Symbol of the field, empty if it has none.
+    #[must_use]
+    pub fn symbol(self) -> &'static str {
+        match self {
+            Self::VelocityRatio => "ψ",
+            Self::DisplacementRatio => "η",
+            _ => "",
+        }
+    }
+}
+
+/// A measured number with its own errors.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Measured {
+    /// The value; the ensemble mean where the motion is chaotic.
+    pub value: f64,
+    /// Numerical uncertainty: from a second accuracy of the same run, or the standard error of the ensemble's mean.
+    pub numerical: f64,
+    /// Standard deviation over the ensemble of perturbed starts; 0 where the motion is not chaotic.
+    pub spread: f64,
+}
+
+/// One case under one solver, evaluated.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Evaluated {
+    /// In the order of the measures asked for.
+    pub measured: Vec<Measured>,
+    /// What proves the run.
+    pub proof: Proof,
+    /// True where a kicked twin of the run ended elsewhere.
+    pub chaotic: bool,
+    /// Runs averaged.
+    pub members: u32,
+    /// Time history, if asked for: column name, unit, samples.
+    pub trace: Vec<TraceColumn>,
+}
+
+/// One column of a time history.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TraceColumn {
+    /// Name as documented at [`TraceSpec`].
+    pub name: &'static str,
+    /// Unit symbol.
+    pub unit: &'static str,
+    /// Samples.
+    pub samples: Vec<f64>,
+}
+
+/// Why a case has no numbers.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum EvaluateError {
+    /// The recipe has no scene.
+    #[error(transparent)]
+    Recipe(#[from] RecipeError),
+    /// The engine gave up, with the reason.
+    #[error("{0}")]
+    Engine(String),
+}
+
+/// Simulates one case and measures it. Sequential and deterministic: the same input gives the same bits on any machine.
+///
+/// # Errors
+/// [`EvaluateError`] with the reason.
+pub fn evaluate(
+    _recipe: &Recipe,
+    _assumptions: &Assumptions,
+    _solver: SolverChoice,
+    _settings: &Settings,
+    _measures: &[Measure],
+    _trace: Option<&TraceSpec>,
+) -> Result<Evaluated, EvaluateError> {
+    Err(EvaluateError::Engine("not built yet".into()))
+}

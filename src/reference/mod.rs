@@ -1,0 +1,5 @@
+//! The published numbers and claims, and what became of each.
+
+mod verdict;
+
+pub use verdict::{Comparison, Judged, Verdict};

@@ -1,0 +1,95 @@
+//! Verdicts.
+
+use serde::{Deserialize, Serialize};
+
+/// What became of an entry.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Verdict {
+    /// Within the tolerance, derived or justified in the entry.
+    Reproduced,
+    /// Agrees, but the entry was used to choose an unstated input: it proves nothing.
+    Fitted,
+    /// Outside, beyond its uncertainty.
+    Differs,
+    /// The published figure lies inside the chaotic spread: no run can confirm or refute it.
+    Undecidable,
+    /// Needs an input that the study does not give.
+    Blocked,
+    /// Absent, NaN, failed, stale or not run: never a pass, never an expected verdict.
+    Missing,
+}
+
+/// A value held against the published one, after ASME V&V 20.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Comparison {
+    /// S, what came out.
+    pub simulated: f64,
+    /// D, what is published.
+    pub published: f64,
+    /// u_num: discretisation error and standard error of an ensemble.
+    pub u_num: f64,
+    /// u_input: from the sensitivity to the unstated inputs.
+    pub u_input: f64,
+    /// u_D: half a unit of the last printed digit.
+    pub u_data: f64,
+    /// Spread of the ensemble at that point (standard deviation).
+    pub spread: f64,
+    /// The tolerance in force, if it was set by hand.
+    pub tolerance_by_hand: Option<f64>,
+}
+
+impl Comparison {
+    /// E = S − D.
+    #[must_use]
+    pub fn error(&self) -> f64 {
+        self.simulated - self.published
+    }
+
+    /// u_val = √(u_num² + u_input² + u_D²).
+    #[must_use]
+    pub fn u_val(&self) -> f64 {
+        (self.u_num * self.u_num + self.u_input * self.u_input + self.u_data * self.u_data).sqrt()
+    }
+
+    /// Digits that agree, −log10(|S − D|/|D|), as NIST StRD tells it.
+    #[must_use]
+    pub fn digits(&self) -> f64 {
+        -(self.error().abs() / self.published.abs()).log10()
+    }
+}
+
+/// An entry with its verdict, ready for a report: plain data, no tables needed.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Judged {
+    /// `ch3-favourable-impact/velocity-ratio`.
+    pub id: String,
+    /// The experiment that it reads.
+    pub experiment: String,
+    /// What the study says, in one line.
+    pub statement: String,
+    /// Where it stands: `s. 3.6.5, Fig. 23`.
+    pub place: String,
+    /// The verdict.
+    pub verdict: Verdict,
+    /// The verdict that the entry expects.
+    pub expected: Verdict,
+    /// What came out, in one line: `1.5603, +2.9 % of 1.516`, `holds: largest step back 0.2 %`.
+    pub found: String,
+    /// For values.
+    pub comparison: Option<Comparison>,
+    /// Why it is expected to differ, to be blocked or undecidable; the entry's own note. Markdown.
+    pub explanation: String,
+    /// Why a tolerance was set by hand, if it was.
+    pub tolerance_reason: Option<String>,
+    /// Of the variants of the assumptions that were run, how many keep the verdict: (kept, run).
+    pub robust: Option<(u32, u32)>,
+}
+
+impl Judged {
+    /// True if the verdict is the expected one; `missing` never is.
+    #[must_use]
+    pub fn as_expected(&self) -> bool {
+        self.verdict == self.expected && self.verdict != Verdict::Missing
+    }
+}

@@ -1,0 +1,180 @@
+//! The validated experiment: meaning only. Comments, order of keys and `5 mm` against `0.005 m` leave it unchanged, so
+//! a hash of its canonical JSON says whether an experiment means something new.
+
+use serde::{Deserialize, Serialize};
+
+use crate::measure::Measure;
+use crate::scene::{Parameter, ParameterValue, Recipe};
+
+/// Id of an experiment: its file name without ending, `ch3-limit-stop`; letters, digits and hyphens.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+pub struct ExperimentId(pub String);
+
+impl std::fmt::Display for ExperimentId {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(&self.0)
+    }
+}
+
+/// One row of the study.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Experiment {
+    /// Id, from the file's name.
+    pub id: ExperimentId,
+    /// Title, as a reader of the study would call it.
+    pub title: String,
+    /// Where it stands in the study.
+    pub source: Source,
+    /// One or two sentences: what is shown and how. Markdown.
+    pub about: String,
+    /// The scene, before the sweep.
+    pub recipe: Recipe,
+    /// The points of the sweep in the order of the table's rows; one empty case when nothing is swept.
+    pub cases: Vec<Case>,
+    /// Parameters in the order of the table's columns.
+    pub swept: Vec<Parameter>,
+    /// Solvers; each case runs under each of them.
+    pub solvers: Vec<SolverChoice>,
+    /// How a case is run and averaged.
+    pub settings: Settings,
+    /// An inner maximisation over one more parameter: the row then holds the maximum and where it lies.
+    pub maximise: Option<Maximise>,
+    /// Measures in the order of the columns.
+    pub measures: Vec<Measure>,
+    /// Time history to keep with each row.
+    pub trace: Option<TraceSpec>,
+    /// The figures; never part of what makes a simulation stale.
+    pub figures: Vec<FigureSpec>,
+}
+
+/// Place in the study.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Source {
+    /// Chapter number.
+    pub chapter: u32,
+    /// `3.6.3`.
+    pub section: String,
+    /// `Fig. 18`, `Figs 20, 21`, `Table 2`; as a reader would cite it.
+    pub shown_in: Vec<String>,
+}
+
+/// One point of the sweep. A parameter that a union of sweeps leaves out of this point is absent.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct Case {
+    /// Values by parameter, in the order of [`Experiment::swept`].
+    pub values: Vec<(Parameter, ParameterValue)>,
+    /// The name of the sweep within a union; empty otherwise.
+    pub sweep: String,
+}
+
+/// Which solver.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum SolverChoice {
+    /// Exact propagation between certified events.
+    EventDriven,
+    /// The study's scheme.
+    FixedStep {
+        /// Δt, s.
+        time_step: f64,
+    },
+}
+
+/// How a case is run.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Settings {
+    /// Forcing cycles left out as transient.
+    pub skip: u32,
+    /// Forcing cycles averaged over.
+    pub average: u32,
+    /// The forcing period is rounded to whole steps of this length in every solver, s (the study's 199 steps of 1 ms).
+    pub round_period_to: Option<f64>,
+    /// Members of the ensemble of perturbed starts that a chaotic point gets; 0 switches ensembles off.
+    pub ensemble: u32,
+}
+
+/// Maximum of a measure over one parameter.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Maximise {
+    /// Of which measure.
+    pub measure: Measure,
+    /// Over which parameter.
+    pub over: Parameter,
+    /// The grid.
+    pub grid: Vec<f64>,
+    /// Points added around the best one, round by round, to sharpen the maximum.
+    pub refine: u32,
+}
+
+/// Which part of the motion to keep as a time history. The list columns are then `time` (s), `base_displacement`,
+/// `base_velocity`, `base_acceleration`, `particle_displacement`, `floor_displacement` and `ceiling_displacement` (the
+/// resilient surfaces where they are), `rigid_floor`, `rigid_ceiling` (where they would be uncompressed),
+/// `contact_damping` (N s/m), `rms_acceleration` (of the last half cycle, in g), `event_time`, `event_kind` (a code).
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct TraceSpec {
+    /// First forcing cycle, counted from 0.
+    pub from_cycle: u32,
+    /// One past the last.
+    pub to_cycle: u32,
+    /// Samples a cycle.
+    pub samples: u32,
+}
+
+/// One PNG.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct FigureSpec {
+    /// File stem after the experiment's id; empty for the first.
+    pub name: String,
+    /// One line under the picture.
+    pub caption: String,
+    /// Panels, top to bottom, sharing the x axis.
+    pub panels: Vec<Panel>,
+}
+
+/// One pair of axes.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Panel {
+    /// x.
+    pub x: Axis,
+    /// y: one or more columns drawn against x.
+    pub y: Vec<Axis>,
+    /// Columns that split the rows into lines, one colour or dash each (`gap_ratio`, `solver`, `stop`).
+    pub by: Vec<String>,
+    /// Draw the ensemble's spread as a band.
+    pub band: bool,
+    /// Levels to draw as thin guides, with their labels.
+    pub guides: Vec<Level>,
+    /// Markers on the points (few points) instead of a line alone.
+    pub markers: bool,
+}
+
+/// A labelled horizontal guide.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Level {
+    /// y value.
+    pub at: f64,
+    /// Label.
+    pub label: String,
+}
+
+/// A column as an axis.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Axis {
+    /// Name of the table's column.
+    pub column: String,
+    /// Axis label without unit, if the column's own name and symbol do not serve.
+    pub label: Option<String>,
+    /// Linear or logarithmic.
+    pub scale: AxisScale,
+}
+
+/// Scale of an axis.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum AxisScale {
+    /// Linear.
+    #[default]
+    Linear,
+    /// Base 10.
+    Log,
+}
