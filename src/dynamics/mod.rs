@@ -1,4 +1,38 @@
 //! The engine: exact motion of a piecewise linear system, from certified event to certified event.
+//!
+//! In the order of use: a [`HybridSystem`] (linear structure, particles, drive) is run by [`event_driven`] under
+//! [`Options`]; the [`Response`] holds the integrals of the averaged window, the counts, and the [`Proof`].
+//!
+//! - `flow`: the exact motion of one contact state, split into 2 × 2 `block`s by `spectral`;
+//! - `search`: the first event, certified by Bernstein enclosures;
+//! - `contact`: what an event leads to; `march`: from event to event;
+//! - `integral`: measures in closed form; `audit`: momentum and energy balanced by other means;
+//! - `fixed`: the study's own scheme, with its step.
+//!
+//! The engine knows no beam, no YAML and no file. Structures of up to a hundred modes or so are its business; large sparse
+//! systems are not.
+
+mod audit;
+mod block;
+mod contact;
+mod elementary;
+mod flow;
+mod integral;
+mod march;
+mod search;
+mod spectral;
+mod spline;
+mod system;
+mod trace;
+
+pub use spline::Spline;
+pub use system::{
+    Contact, Drive, Event, EventKind, Face, HalfCycles, Harmonic, HybridSystem, Law, Matrix, Particle, Stop, Tick,
+};
+pub use trace::{Sample, TraceRequest};
+
+/// Changes whenever the same scene may give other bits. A test holds the bits of fixed scenes against it.
+pub const SOLVER_VERSION: u32 = 1;
 
 /// What proves a run: residuals of the balances, and how clearly its events were decided.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -11,9 +45,213 @@ pub struct Proof {
     pub events: u64,
     /// The smallest distance, in metres, by which a surface would have to be moved for the sequence of events to change.
     pub smallest_margin: f64,
-    /// Simultaneous events that had to be put into an order.
+    /// Decisions within rounding: simultaneous events that had to be put into an order, contacts that graze.
     pub ties: u64,
 }
 
-/// Changes whenever the same scene may give other bits. A test holds the bits of fixed scenes against it.
-pub const SOLVER_VERSION: u32 = 1;
+/// How a system is run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Options {
+    /// Cycles left out as transient.
+    pub skip: u32,
+    /// Cycles averaged over.
+    pub average: u32,
+    /// Where it starts.
+    pub start: StartState,
+    /// Relative change of the first impulse, to see whether neighbouring runs stay neighbours.
+    pub kick: f64,
+    /// Measure displacements too, not velocities alone.
+    pub displacement: bool,
+    /// Balance momentum and energy.
+    pub audit: bool,
+    /// How many events to keep, from the first.
+    pub record_events: usize,
+    /// Time history to keep.
+    pub trace: Option<TraceRequest>,
+    /// Search windows are shorter by this factor; 1 as a rule, less for a second accuracy.
+    pub window_factor: f64,
+}
+
+impl Default for Options {
+    /// The study's averaging: 25 cycles skipped, 100 averaged, from static equilibrium.
+    fn default() -> Self {
+        Self {
+            skip: 25,
+            average: 100,
+            start: StartState::StaticEquilibrium,
+            kick: 0.0,
+            displacement: true,
+            audit: false,
+            record_events: 0,
+            trace: None,
+            window_factor: 1.0,
+        }
+    }
+}
+
+/// Where a run starts.
+#[derive(Debug, Clone, PartialEq)]
+pub enum StartState {
+    /// At rest, every particle on its floor.
+    StaticEquilibrium,
+    /// Anywhere.
+    Given {
+        /// Coordinates of the structure.
+        q: Vec<f64>,
+        /// Their rates.
+        rate: Vec<f64>,
+        /// Contact, gap coordinate and relative rate of each particle; at a ceiling relative to that.
+        particles: Vec<(Contact, f64, f64)>,
+    },
+}
+
+/// Integrals over half of the averaged window.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Sums {
+    /// s.
+    pub duration: f64,
+    /// ∫ x dt.
+    pub displacement: f64,
+    /// ∫ x² dt.
+    pub displacement_square: f64,
+    /// ∫ v² dt.
+    pub velocity_square: f64,
+}
+
+/// Events in the averaged window.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Counts {
+    /// Contacts made with a floor.
+    pub floor_contacts: u64,
+    /// Contacts lost with a floor.
+    pub floor_releases: u64,
+    /// Contacts made with a ceiling.
+    pub ceiling_contacts: u64,
+    /// Impacts on a limit stop.
+    pub stops: u64,
+}
+
+impl Counts {
+    fn add(&mut self, kind: EventKind) {
+        match kind {
+            EventKind::FloorContact => self.floor_contacts += 1,
+            EventKind::FloorRelease => self.floor_releases += 1,
+            EventKind::CeilingContact => self.ceiling_contacts += 1,
+            EventKind::FloorStop | EventKind::CeilingStop => self.stops += 1,
+            EventKind::CeilingRelease | EventKind::StopRelease | EventKind::ChatterEnd => {}
+        }
+    }
+}
+
+/// What a run leaves behind.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Response {
+    /// First and second half of the averaged window.
+    pub sums: [Sums; 2],
+    /// Events in the averaged window.
+    pub counts: Counts,
+    /// What proves the run.
+    pub proof: Proof,
+    /// Events kept.
+    pub events: Vec<Event>,
+    /// Time history.
+    pub trace: Vec<Sample>,
+    /// Observed displacement at the end, m.
+    pub final_displacement: f64,
+    /// Observed velocity at the end, m/s.
+    pub final_velocity: f64,
+    /// y and y′ of each particle at the end.
+    pub final_particles: Vec<[f64; 2]>,
+    /// Highest natural frequency among the contact states visited, rad/s.
+    pub highest_frequency: f64,
+}
+
+impl Response {
+    /// Both halves of the averaged window.
+    #[must_use]
+    pub fn window(&self) -> Sums {
+        let [a, b] = self.sums;
+        Sums {
+            duration: a.duration + b.duration,
+            displacement: a.displacement + b.displacement,
+            displacement_square: a.displacement_square + b.displacement_square,
+            velocity_square: a.velocity_square + b.velocity_square,
+        }
+    }
+}
+
+impl Sums {
+    /// RMS velocity, m/s.
+    #[must_use]
+    pub fn rms_velocity(&self) -> f64 {
+        (self.velocity_square / self.duration).sqrt()
+    }
+
+    /// Mean displacement, m.
+    #[must_use]
+    pub fn mean_displacement(&self) -> f64 {
+        self.displacement / self.duration
+    }
+
+    /// Standard deviation of the displacement, m.
+    #[must_use]
+    pub fn std_displacement(&self) -> f64 {
+        let mean = self.mean_displacement();
+        (self.displacement_square / self.duration - mean * mean).max(0.0).sqrt()
+    }
+}
+
+/// Why the engine gave up.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum EngineError {
+    /// The mass matrix has no Cholesky factor.
+    #[error(
+        "the mass matrix is not positive definite (row {row}); a basis with fewer or better conditioned shapes would be"
+    )]
+    MassNotPositive {
+        /// Where it failed.
+        row: usize,
+    },
+    /// The eigenvalue iteration did not converge.
+    #[error("the real Schur form of a contact state of order {order} did not converge")]
+    NoSchurForm {
+        /// Order of the matrix.
+        order: usize,
+    },
+    /// Blocks that cannot be told apart.
+    #[error(
+        "a contact state has nearly defective modes (condition {condition:.1e}), which would cost more digits than it may"
+    )]
+    NearlyDefective {
+        /// Condition of the splitting.
+        condition: f64,
+    },
+    /// A steady state that does not exist.
+    #[error("a contact state without damping is driven at its own frequency, {omega} rad/s: it has no steady answer")]
+    UndampedResonance {
+        /// rad/s.
+        omega: f64,
+    },
+    /// Too many events at one instant.
+    #[error("the contact does not settle in cycle {cycle} at {time} s: more than 64 events at one instant")]
+    NoProgress {
+        /// Cycle.
+        cycle: u64,
+        /// Time within it.
+        time: f64,
+    },
+    /// Overflow.
+    #[error("the motion leaves the range of numbers in cycle {cycle}")]
+    NotFinite {
+        /// Cycle.
+        cycle: u64,
+    },
+}
+
+/// Runs a system from event to event.
+///
+/// # Errors
+/// [`EngineError`] with the reason.
+pub fn event_driven(system: &HybridSystem, options: &Options) -> Result<Response, EngineError> {
+    march::march(system, options)
+}

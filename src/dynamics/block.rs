@@ -1,0 +1,183 @@
+//! Blocks: the smallest pieces of a linear flow, two real coordinates each.
+//!
+//! A 2 × 2 matrix B with half trace −a and determinant b has (B + aI)² = dI with d = a² − b, so that
+//!
+//! e^(Bt) = e^(−at) [C(t) I + S(t) (B + aI)],   C = cos √(−d) t or cosh √d t,   S = sin √(−d) t/√(−d) or sinh √d t/√d.
+//!
+//! C and S are entire functions of d: nothing happens at critical damping (d = 0), where an eigenbasis would fail.
+
+/// A block's invariants: all that a scalar signal of the flow needs.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Block {
+    /// a: minus half the trace, 1/s.
+    pub(crate) decay: f64,
+    /// b: determinant, 1/s².
+    pub(crate) determinant: f64,
+    /// d = a² − b, 1/s².
+    discriminant: f64,
+    /// √|d|.
+    root: f64,
+    /// Largest modulus of an eigenvalue.
+    pub(crate) radius: f64,
+}
+
+/// e^(−at) C(t) and e^(−at) S(t).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Kernel {
+    pub(crate) c: f64,
+    pub(crate) s: f64,
+}
+
+/// Value and first derivative of a block's share in a signal.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(crate) struct Phase {
+    pub(crate) value: f64,
+    pub(crate) rate: f64,
+}
+
+impl Block {
+    /// The block of the matrix [[p, q], [r, s]].
+    pub(crate) fn new([p, q, r, s]: [f64; 4]) -> Self {
+        let half = 0.5 * (p - s);
+        // d from differences, not from a² − b: near critical damping that would cancel.
+        Self::from_invariants(-0.5 * (p + s), p * s - q * r, half * half + q * r)
+    }
+
+    /// x″ + ω² x = 0.
+    pub(crate) fn harmonic(omega: f64) -> Self {
+        Self::from_invariants(0.0, omega * omega, -omega * omega)
+    }
+
+    fn from_invariants(decay: f64, determinant: f64, discriminant: f64) -> Self {
+        let root = discriminant.abs().sqrt();
+        let radius = if discriminant < 0.0 { determinant.abs().sqrt() } else { decay.abs() + root };
+        Self { decay, determinant, discriminant, root, radius }
+    }
+
+    /// The two eigenvalues sum to nothing: ∫ of the block's signals grows with time.
+    pub(crate) fn is_drift(&self) -> bool {
+        self.radius == 0.0
+    }
+
+    /// True for a pair of complex eigenvalues.
+    pub(crate) fn oscillates(&self) -> bool {
+        self.discriminant < 0.0
+    }
+
+    /// Eigenvalues as (real, imaginary) pairs, for conditioning checks and natural frequencies.
+    pub(crate) fn eigenvalues(&self) -> [[f64; 2]; 2] {
+        if self.oscillates() {
+            [[-self.decay, self.root], [-self.decay, -self.root]]
+        } else {
+            [[-self.decay + self.root, 0.0], [-self.decay - self.root, 0.0]]
+        }
+    }
+
+    /// The kernel after `t` seconds.
+    #[inline]
+    pub(crate) fn kernel(&self, t: f64) -> Kernel {
+        if self.discriminant < 0.0 {
+            let e = if self.decay == 0.0 { 1.0 } else { super::elementary::exp(-self.decay * t) };
+            let (sine, cosine) = super::elementary::sin_cos(self.root * t);
+            Kernel { c: e * cosine, s: e * sine / self.root }
+        } else if self.discriminant == 0.0 {
+            let e = super::elementary::exp(-self.decay * t);
+            Kernel { c: e, s: e * t }
+        } else {
+            // e^(−at) sinh(rt)/r = e^(−(a+r)t) (e^(2rt) − 1)/(2r): no overflow, no cancellation.
+            let fast = super::elementary::exp(-(self.decay + self.root) * t);
+            let slow = super::elementary::exp(-(self.decay - self.root) * t);
+            let two_rt = 2.0 * self.root * t;
+            let s = if two_rt < 0.5 { fast * libm::expm1(two_rt) } else { slow - fast } / (2.0 * self.root);
+            Kernel { c: 0.5 * (slow + fast), s }
+        }
+    }
+
+    /// The kernel after a time so short that radius·t ≪ 1: six terms, no transcendental function.
+    #[inline]
+    pub(crate) fn kernel_near_zero(&self, t: f64) -> Kernel {
+        let x = -self.decay * t;
+        let e = 1.0 + x * (1.0 + x * (0.5 + x * (1.0 / 6.0 + x * (1.0 / 24.0 + x * (1.0 / 120.0)))));
+        let y = self.discriminant * t * t;
+        let c = 1.0 + y * (0.5 + y * (1.0 / 24.0 + y * (1.0 / 720.0)));
+        let s = t * (1.0 + y * (1.0 / 6.0 + y * (1.0 / 120.0 + y * (1.0 / 5040.0))));
+        Kernel { c: e * c, s: e * s }
+    }
+
+    /// e^(B t1) e^(B t2).
+    #[inline]
+    pub(crate) fn compose(&self, first: Kernel, second: Kernel) -> Kernel {
+        Kernel {
+            c: first.c * second.c + self.discriminant * (first.s * second.s),
+            s: first.c * second.s + first.s * second.c,
+        }
+    }
+
+    /// A signal's share after the time of `kernel`.
+    #[inline]
+    pub(crate) fn advance(&self, phase: Phase, kernel: Kernel) -> Phase {
+        let Phase { value, rate } = phase;
+        Phase {
+            value: kernel.c * value + kernel.s * (rate + self.decay * value),
+            rate: kernel.c * rate - kernel.s * (self.decay * rate + self.determinant * value),
+        }
+    }
+
+    /// A bound on |share| from now on, and with radius^j on its derivatives, while time stays within `window` of now.
+    ///
+    /// The share is e^(−at)(value·C + (rate + a·value) S); C's derivatives are bounded by radius^j, those of S by
+    /// radius^j/√|d| or, where that blows up near critical damping, by (j + radius·window) radius^(j−1).
+    #[inline]
+    pub(crate) fn amplitude(&self, phase: Phase, order: f64, window: f64) -> f64 {
+        if self.discriminant < 0.0 && self.root > 0.2 * self.radius {
+            phase.value.abs() + (phase.rate + self.decay * phase.value).abs() / self.root
+        } else {
+            self.amplitude_near_critical(phase, order, window)
+        }
+    }
+
+    #[cold]
+    fn amplitude_near_critical(&self, phase: Phase, order: f64, window: f64) -> f64 {
+        let slope = phase.rate + self.decay * phase.value;
+        if self.is_drift() {
+            return phase.value.abs() + slope.abs() * window;
+        }
+        let divided = (order + self.radius * window) / self.radius;
+        let share = if self.root > 0.0 { divided.min(1.0 / self.root) } else { divided };
+        if self.discriminant < 0.0 {
+            phase.value.abs() + slope.abs() * share
+        } else {
+            // cosh and sinh parts: both exponentials decay while decay ≥ root.
+            phase.value.abs() + slope.abs() * share
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_flow_of_a_block_is_smooth_through_critical_damping() {
+        let at = |a: f64| Block::new([0.0, 1.0, -100.0, -2.0 * a]).kernel(0.3);
+        let critical = at(10.0);
+        for shift in [1e-5, 1e-9, 1e-13] {
+            for near in [at(10.0 - shift), at(10.0 + shift)] {
+                assert!((near.c - critical.c).abs() < 4.0 * shift + 1e-15);
+                assert!((near.s - critical.s).abs() < 4.0 * shift + 1e-15);
+            }
+        }
+    }
+
+    #[test]
+    fn two_short_flows_make_one_long_flow() {
+        for matrix in
+            [[0.0, 1.0, -1000.0, -3.0], [0.0, 1.0, -25.0, -10.0], [0.0, 1.0, -9.0, -40.0], [0.0, 1.0, 0.0, 0.0]]
+        {
+            let block = Block::new(matrix);
+            let joined = block.compose(block.kernel(0.037), block.kernel_near_zero(1e-4));
+            let whole = block.kernel(0.0371);
+            assert!((joined.c - whole.c).abs() < 1e-14 && (joined.s - whole.s).abs() < 1e-14);
+        }
+    }
+}

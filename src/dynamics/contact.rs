@@ -1,0 +1,153 @@
+//! Contact: guards of each contact state, and what follows when one of them is reached.
+//!
+//! | contact | holds while | then |
+//! |---|---|---|
+//! | flight | u > 0 and w < 0 | contact, or a bounce |
+//! | pressed into a resilient face | compressed (or, if it cannot pull, while it pushes), and less than the stop | flight, stop |
+//! | held by a rigid face or a stop | the face can push | flight, or pressed |
+//!
+//! An impact with restitution ε exchanges the impulse P = −(1 + ε) u′/(1/mp + φ·M⁻¹φ).
+
+use super::flow::Cholesky;
+use super::system::{Contact, EventKind, Face, Law, Particle, Stop};
+
+/// Below this relative speed a particle sticks to a rigid face (the study's tolerance); what it would still have bounced is
+/// added to the time at which the chatter ends.
+pub(crate) const STICKING_SPEED: f64 = 1e-9;
+
+/// Where a guard leads.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Crossing {
+    /// Flight ends on the floor.
+    ToFloor,
+    /// Flight ends at the ceiling.
+    ToCeiling,
+    /// A face lets go.
+    Release,
+    /// A compressed face reaches its stop.
+    ToStop,
+    /// A released face is back at its place.
+    Recovered,
+    /// A released face pushes again.
+    Again,
+    /// The observed acceleration changes its sign.
+    HalfCycle,
+}
+
+/// Motion of a particle relative to the face it is at, or to the floor in flight.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(crate) struct Relative {
+    /// u = y − φ_f·q, or w = y − φ_c·q − h at the ceiling, m.
+    pub(crate) gap: f64,
+    /// Its rate, m/s.
+    pub(crate) rate: f64,
+}
+
+/// Which side of the enclosure.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Side {
+    Floor,
+    Ceiling,
+}
+
+impl Side {
+    /// +1 where "away from the face" is upwards.
+    pub(crate) fn away(self) -> f64 {
+        match self {
+            Self::Floor => 1.0,
+            Self::Ceiling => -1.0,
+        }
+    }
+
+    pub(crate) fn pressed(self) -> Contact {
+        match self {
+            Self::Floor => Contact::Floor,
+            Self::Ceiling => Contact::Ceiling,
+        }
+    }
+
+    pub(crate) fn stopped(self) -> Contact {
+        match self {
+            Self::Floor => Contact::FloorStop,
+            Self::Ceiling => Contact::CeilingStop,
+        }
+    }
+
+    pub(crate) fn released(self) -> Contact {
+        match self {
+            Self::Floor => Contact::FloorReleased,
+            Self::Ceiling => Contact::CeilingReleased,
+        }
+    }
+
+    pub(crate) fn made(self) -> EventKind {
+        match self {
+            Self::Floor => EventKind::FloorContact,
+            Self::Ceiling => EventKind::CeilingContact,
+        }
+    }
+
+    pub(crate) fn lost(self) -> EventKind {
+        match self {
+            Self::Floor => EventKind::FloorRelease,
+            Self::Ceiling => EventKind::CeilingRelease,
+        }
+    }
+
+    pub(crate) fn hit(self) -> EventKind {
+        match self {
+            Self::Floor => EventKind::FloorStop,
+            Self::Ceiling => EventKind::CeilingStop,
+        }
+    }
+
+    /// The face; a ceiling that cannot be met is never asked for.
+    pub(crate) fn face(self, particle: &Particle) -> &Face {
+        match self {
+            Self::Floor => &particle.floor,
+            Self::Ceiling => particle.ceiling.as_ref().unwrap_or(&particle.floor),
+        }
+    }
+}
+
+impl Contact {
+    /// The side that a contact refers to; flight refers to the floor.
+    pub(crate) fn side(self) -> Side {
+        match self {
+            Self::Flight | Self::Floor | Self::FloorStop | Self::FloorReleased => Side::Floor,
+            Self::Ceiling | Self::CeilingStop | Self::CeilingReleased => Side::Ceiling,
+        }
+    }
+}
+
+impl Law {
+    pub(crate) fn stop(self) -> Option<Stop> {
+        match self {
+            Self::Resilient { stop, .. } => stop,
+            Self::Rigid { .. } => None,
+        }
+    }
+}
+
+/// An impact: what it does to the structure and to the relative rate.
+pub(crate) struct Impact {
+    /// q′ changes by this.
+    pub(crate) structure: Vec<f64>,
+    /// Relative rate after.
+    pub(crate) departure: f64,
+    /// Energy lost, J.
+    pub(crate) loss: f64,
+}
+
+/// The impact of a particle on a face that moves with `row`, by restitution; `mobility` factors the mass it meets.
+pub(crate) fn impact(mobility: &Cholesky, row: &[f64], mass: f64, restitution: f64, approach: f64) -> Impact {
+    let answer = mobility.solve(row);
+    let mobility = super::system::dot(row, &answer);
+    let effective = mass / (1.0 + mass * mobility);
+    let impulse = -(1.0 + restitution) * approach * effective;
+    Impact {
+        structure: answer.iter().map(|a| -a * impulse).collect(),
+        departure: -restitution * approach,
+        loss: 0.5 * effective * (1.0 - restitution * restitution) * approach * approach,
+    }
+}

@@ -1,0 +1,605 @@
+//! Flows: the exact motion of one contact state.
+//!
+//! With the particles in flight taken out (they fall by themselves) and those held by a rigid face counted as mass, a
+//! contact state is linear: p = (q, w) with w the compression of every resilient face in contact,
+//!
+//! q″ = M⁻¹(−K q − C q′ + b F − Σ φ N),   w″ = N/mp − g − φ·q″,   N = −k w − c w′.
+//!
+//! Its matrix is scaled, split into 2 × 2 blocks ([`super::spectral`]) and never built again: gap, amplitude and time do
+//! not enter, so one flow serves a whole sweep.
+
+use nalgebra::DMatrix;
+
+use super::EngineError;
+use super::block::{Block, Phase};
+use super::spectral::Spectral;
+use super::system::{Contact, Face, HybridSystem, Law, dot};
+
+/// One contact state, ready to be propagated.
+pub(crate) struct Flow {
+    /// Contact of each particle.
+    pub(crate) contacts: Vec<Contact>,
+    /// Contact damping in force, per particle, N s/m.
+    pub(crate) damping: Vec<f64>,
+    /// Blocks of the free motion; the last one is the drive if it is harmonic.
+    pub(crate) blocks: Vec<Block>,
+    /// Blocks without the drive.
+    pub(crate) own: usize,
+    /// Coordinates: those of the structure, then one per resilient contact.
+    pub(crate) order: usize,
+    /// Which particle the coordinate `structure + i` belongs to.
+    pub(crate) attached: Vec<usize>,
+    /// Block coordinates from (p, p′), row by row, 2·order square.
+    to_blocks: Vec<f64>,
+    /// (p, p′) from block coordinates.
+    from_blocks: Vec<f64>,
+    /// Each block's matrix.
+    matrices: Vec<[f64; 4]>,
+    /// Constant load: its static answer where the block has one, and its drift where it has none.
+    gravity: Load,
+    /// The same for a unit force at the forcing point.
+    force: Load,
+    /// Answer to sin ω t at the forcing point: p = cosine·cos ω t + sine·sin ω t.
+    harmonic: Option<Steady>,
+    /// Signals that are watched or measured, as rows over the blocks.
+    pub(crate) rows: Vec<Row>,
+    /// Row of each particle's floor (φ_f·q), and of its ceiling.
+    pub(crate) face_rows: Vec<FaceRows>,
+    /// Row of the observed displacement.
+    pub(crate) observed: usize,
+    /// Closed forms of its integrals, where they keep their digits.
+    pub(crate) forms: Option<super::integral::Forms>,
+}
+
+/// Answer of a contact state to a constant load.
+struct Load {
+    /// Static p (velocities are zero), from the blocks that have one.
+    rest: Vec<f64>,
+    /// Load of the blocks that drift instead, in block coordinates (zero for the others).
+    drift: Vec<[f64; 2]>,
+}
+
+/// Steady answer to a harmonic force.
+struct Steady {
+    omega: f64,
+    cosine: Vec<f64>,
+    sine: Vec<f64>,
+}
+
+/// A signal r·p: its share of each block and its constant.
+pub(crate) struct Row {
+    /// Two weights a block for the value, two for the rate.
+    weights: Vec<[f64; 4]>,
+    /// Rest under gravity and under a unit force.
+    rest_gravity: f64,
+    rest_force: f64,
+    /// Linear and quadratic drift under gravity and under a unit force: coefficients of t and t².
+    drift_gravity: [f64; 2],
+    drift_force: [f64; 2],
+    /// Share of the harmonic drive: cosine and sine.
+    cosine: f64,
+    sine: f64,
+}
+
+/// Rows of the faces of one enclosure.
+#[derive(Clone, Copy)]
+pub(crate) struct FaceRows {
+    pub(crate) floor: usize,
+    pub(crate) ceiling: usize,
+    /// Row of the particle's own coordinate w while it presses into a face.
+    pub(crate) compression: Option<usize>,
+}
+
+/// A polynomial part of a signal: p₀ + p₁ t + p₂ t².
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(crate) struct Parabola {
+    pub(crate) p0: f64,
+    pub(crate) p1: f64,
+    pub(crate) p2: f64,
+}
+
+impl Parabola {
+    pub(crate) fn at(self, t: f64) -> f64 {
+        self.p0 + t * (self.p1 + t * self.p2)
+    }
+
+    pub(crate) fn rate(self, t: f64) -> f64 {
+        self.p1 + 2.0 * self.p2 * t
+    }
+}
+
+impl Contact {
+    /// The face in contact, if any, and whether it holds the particle rigidly.
+    pub(crate) fn face(self, particle: &super::system::Particle) -> Option<&Face> {
+        match self {
+            Self::Floor | Self::FloorStop => Some(&particle.floor),
+            Self::Ceiling | Self::CeilingStop => particle.ceiling.as_ref(),
+            Self::Flight | Self::FloorReleased | Self::CeilingReleased => None,
+        }
+    }
+
+    /// Pressed into a resilient face.
+    pub(crate) fn presses(self, particle: &super::system::Particle) -> bool {
+        matches!(self, Self::Floor | Self::Ceiling)
+            && matches!(self.face(particle).map(|face| face.law), Some(Law::Resilient { .. }))
+    }
+
+    /// Held: moves as one with the face.
+    pub(crate) fn holds(self, particle: &super::system::Particle) -> bool {
+        self.face(particle).is_some() && !self.presses(particle)
+    }
+}
+
+impl Flow {
+    /// Builds the flow of a contact state with the contact damping now in force.
+    pub(crate) fn build(system: &HybridSystem, contacts: &[Contact], damping: &[f64]) -> Result<Self, EngineError> {
+        let n = system.mass.order;
+        let attached: Vec<usize> = (0..contacts.len()).filter(|&j| contacts[j].presses(&system.particles[j])).collect();
+        let order = n + attached.len();
+        let mass = carried_mass(system, contacts);
+        let solve = Cholesky::new(&mass)?;
+        let face_of = |j: usize| contacts[j].face(&system.particles[j]).expect("a pressing particle has a face");
+        let accelerations = accelerations(system, &solve, &attached, &face_of, damping);
+
+        // Scale lengths by frequencies, so that the matrix is of one magnitude: (Ω p, p′).
+        let frequency: Vec<f64> = (0..order).map(|i| scale(accelerations[i][i])).collect();
+        let size = 2 * order;
+        let mut matrix = vec![0.0; size * size];
+        for i in 0..order {
+            matrix[i * size + order + i] = frequency[i];
+            for j in 0..order {
+                matrix[(order + i) * size + j] = accelerations[i][j] / frequency[j];
+                matrix[(order + i) * size + order + j] = accelerations[i][order + j];
+            }
+        }
+        let Spectral { mut from_blocks, mut to_blocks, matrices, blocks } = Spectral::split(size, &matrix)?;
+        for i in 0..order {
+            for k in 0..size {
+                from_blocks[i * size + k] /= frequency[i];
+                to_blocks[k * size + i] *= frequency[i];
+            }
+        }
+
+        let weight: Vec<f64> = {
+            let mut q = vec![0.0; n];
+            for (j, particle) in system.particles.iter().enumerate() {
+                if let (true, Some(face)) = (contacts[j].holds(particle), contacts[j].face(particle)) {
+                    q.iter_mut().zip(&face.row).for_each(|(sum, phi)| *sum -= particle.mass * system.gravity * phi);
+                }
+            }
+            let mut a = solve.solve(&q);
+            for &j in &attached {
+                a.push(-system.gravity - dot(&face_of(j).row, &a[..n]));
+            }
+            a
+        };
+        let push = {
+            let mut a = solve.solve(&system.force_row);
+            for &j in &attached {
+                a.push(-dot(&face_of(j).row, &a[..n]));
+            }
+            a
+        };
+        let gravity = Load::new(&weight, &accelerations, order, &matrices, &blocks, &to_blocks);
+        let force = Load::new(&push, &accelerations, order, &matrices, &blocks, &to_blocks);
+        let own = blocks.len();
+        let mut blocks = blocks;
+        let harmonic = match system.drive.harmonic {
+            None => None,
+            Some(drive) => {
+                blocks.push(Block::harmonic(drive.angular_frequency));
+                Some(Steady::new(drive.angular_frequency, &push, &accelerations, order)?)
+            }
+        };
+        let mut flow = Self {
+            contacts: contacts.to_vec(),
+            damping: damping.to_vec(),
+            blocks,
+            own,
+            order,
+            attached,
+            to_blocks,
+            from_blocks,
+            matrices,
+            gravity,
+            force,
+            harmonic,
+            rows: Vec::new(),
+            face_rows: Vec::new(),
+            observed: 0,
+            forms: None,
+        };
+        flow.watch(system);
+        flow.forms = super::integral::Forms::new(&flow.blocks, flow.harmonic.is_some());
+        Ok(flow)
+    }
+
+    /// Sets up the rows: the observed displacement, the faces of every enclosure, the compressions.
+    fn watch(&mut self, system: &HybridSystem) {
+        let n = system.mass.order;
+        let mut known: Vec<Vec<f64>> = Vec::new();
+        let mut rows = Vec::new();
+        let mut place = |row: &[f64], flow: &Self| -> usize {
+            if let Some(i) = known.iter().position(|other| other == row) {
+                return i;
+            }
+            known.push(row.to_vec());
+            rows.push(flow.row(row));
+            rows.len() - 1
+        };
+        let padded = |row: &[f64]| {
+            let mut padded = row.to_vec();
+            padded.resize(self.order, 0.0);
+            padded
+        };
+        let observed = place(&padded(&system.observed_row), self);
+        let mut faces = Vec::with_capacity(system.particles.len());
+        for (j, particle) in system.particles.iter().enumerate() {
+            let floor = place(&padded(&particle.floor.row), self);
+            let ceiling = particle.ceiling.as_ref().map_or(floor, |face| place(&padded(&face.row), self));
+            let compression = self.attached.iter().position(|&a| a == j).map(|i| {
+                let mut unit = vec![0.0; self.order];
+                unit[n + i] = 1.0;
+                place(&unit, self)
+            });
+            faces.push(FaceRows { floor, ceiling, compression });
+        }
+        self.rows = rows;
+        self.face_rows = faces;
+        self.observed = observed;
+    }
+
+    fn row(&self, row: &[f64]) -> Row {
+        let size = 2 * self.order;
+        let mut weights = Vec::with_capacity(self.own);
+        let mut drift = [[0.0; 2]; 2];
+        for k in 0..self.own {
+            let column = |offset: usize, column: usize| {
+                (0..self.order).fold(0.0, |sum, i| sum + row[i] * self.from_blocks[(offset + i) * size + column])
+            };
+            let weight =
+                [column(0, 2 * k), column(0, 2 * k + 1), column(self.order, 2 * k), column(self.order, 2 * k + 1)];
+            for (load, drift) in [&self.gravity, &self.force].into_iter().zip(&mut drift) {
+                let [r0, r1] = load.drift[k];
+                let [p, q, r, s] = self.matrices[k];
+                drift[0] += weight[0] * r0 + weight[1] * r1;
+                drift[1] += 0.5 * (weight[0] * (p * r0 + q * r1) + weight[1] * (r * r0 + s * r1));
+            }
+            weights.push(weight);
+        }
+        Row {
+            weights,
+            rest_gravity: dot(row, &self.gravity.rest),
+            rest_force: dot(row, &self.force.rest),
+            drift_gravity: drift[0],
+            drift_force: drift[1],
+            cosine: self.harmonic.as_ref().map_or(0.0, |steady| dot(row, &steady.cosine)),
+            sine: self.harmonic.as_ref().map_or(0.0, |steady| dot(row, &steady.sine)),
+        }
+    }
+
+    /// Block coordinates of (p, p′) at the start of a segment; `force` is the constant force in force, `drive` the phase
+    /// of the harmonic one: F sin ω t and F cos ω t.
+    #[inline]
+    pub(crate) fn enter(&self, p: &[f64], rate: &[f64], force: f64, drive: DrivePhase, c: &mut [f64]) {
+        let order = self.order;
+        let size = 2 * order;
+        c[..size].fill(0.0);
+        // Blocks that drift have no rest, so the offset is taken from the positions only.
+        for i in 0..order {
+            let mut position = p[i] - self.gravity.rest[i] - force * self.force.rest[i];
+            let mut velocity = rate[i];
+            if let Some(steady) = &self.harmonic {
+                position -= steady.cosine[i] * drive.cosine + steady.sine[i] * drive.sine;
+                velocity -= steady.omega * (steady.sine[i] * drive.cosine - steady.cosine[i] * drive.sine);
+            }
+            for (k, c) in c[..size].iter_mut().enumerate() {
+                *c += self.to_blocks[k * size + i] * position + self.to_blocks[k * size + order + i] * velocity;
+            }
+        }
+    }
+
+    /// (p, p′) from block coordinates after `t` seconds of the segment, with the drive's phase then.
+    #[inline]
+    pub(crate) fn leave(&self, c: &[f64], t: f64, force: f64, drive: DrivePhase, p: &mut [f64], rate: &mut [f64]) {
+        let order = self.order;
+        let size = 2 * order;
+        for i in 0..order {
+            let mut position = self.gravity.rest[i] + force * self.force.rest[i];
+            let mut velocity = 0.0;
+            for (k, c) in c[..size].iter().enumerate() {
+                position += self.from_blocks[i * size + k] * c;
+                velocity += self.from_blocks[(order + i) * size + k] * c;
+            }
+            if let Some(steady) = &self.harmonic {
+                position += steady.cosine[i] * drive.cosine + steady.sine[i] * drive.sine;
+                velocity += steady.omega * (steady.sine[i] * drive.cosine - steady.cosine[i] * drive.sine);
+            }
+            p[i] = position;
+            rate[i] = velocity;
+        }
+        for k in 0..self.own {
+            if !self.blocks[k].is_drift() {
+                continue;
+            }
+            let [p00, p01, p10, p11] = self.matrices[k];
+            for (load, size_of_load) in [(&self.gravity, 1.0), (&self.force, force)] {
+                let [r0, r1] = load.drift[k];
+                // ∫ e^(Bs) ds r = r t + B r t²/2 for a nilpotent block.
+                let d0 = size_of_load * (r0 * t + (p00 * r0 + p01 * r1) * t * t / 2.0);
+                let d1 = size_of_load * (r1 * t + (p10 * r0 + p11 * r1) * t * t / 2.0);
+                for i in 0..order {
+                    p[i] += self.from_blocks[i * size + 2 * k] * d0 + self.from_blocks[i * size + 2 * k + 1] * d1;
+                    rate[i] += self.from_blocks[(order + i) * size + 2 * k] * d0
+                        + self.from_blocks[(order + i) * size + 2 * k + 1] * d1;
+                }
+            }
+        }
+    }
+
+    /// Propagates block coordinates by the kernels of a time.
+    #[inline]
+    pub(crate) fn advance(&self, kernels: &[super::block::Kernel], start: &[f64], end: &mut [f64]) {
+        for k in 0..self.own {
+            let [p, q, r, s] = self.matrices[k];
+            let kernel = kernels[k];
+            let a = self.blocks[k].decay;
+            let (x, y) = (start[2 * k], start[2 * k + 1]);
+            end[2 * k] = kernel.c * x + kernel.s * ((p + a) * x + q * y);
+            end[2 * k + 1] = kernel.c * y + kernel.s * (r * x + (s + a) * y);
+        }
+    }
+
+    /// Shares of row `i` in every block (the drive's last), and its constant and drifting part.
+    #[inline]
+    pub(crate) fn signal(&self, i: usize, c: &[f64], force: f64, drive: DrivePhase, phases: &mut [Phase]) -> Parabola {
+        let row = &self.rows[i];
+        for (k, [v0, v1, r0, r1]) in row.weights.iter().enumerate() {
+            let (x, y) = (c[2 * k], c[2 * k + 1]);
+            phases[k] = Phase { value: v0 * x + v1 * y, rate: r0 * x + r1 * y };
+        }
+        if let Some(steady) = &self.harmonic {
+            phases[self.own] = Phase {
+                value: row.cosine * drive.cosine + row.sine * drive.sine,
+                rate: steady.omega * (row.sine * drive.cosine - row.cosine * drive.sine),
+            };
+        }
+        Parabola {
+            p0: row.rest_gravity + force * row.rest_force,
+            p1: row.drift_gravity[0] + force * row.drift_force[0],
+            p2: row.drift_gravity[1] + force * row.drift_force[1],
+        }
+    }
+
+    /// Natural frequencies of the contact state, rad/s (moduli of the complex pairs' eigenvalues).
+    pub(crate) fn natural_frequencies(&self) -> impl Iterator<Item = f64> {
+        self.blocks[..self.own].iter().filter(|block| block.oscillates()).map(|block| block.determinant.sqrt())
+    }
+}
+
+/// Phase of the harmonic drive: F cos ω t and F sin ω t.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(crate) struct DrivePhase {
+    pub(crate) cosine: f64,
+    pub(crate) sine: f64,
+}
+
+impl Load {
+    fn new(
+        load: &[f64],
+        accelerations: &[Vec<f64>],
+        order: usize,
+        matrices: &[[f64; 4]],
+        blocks: &[Block],
+        to_blocks: &[f64],
+    ) -> Self {
+        let size = 2 * order;
+        let mut drift = vec![[0.0; 2]; blocks.len()];
+        if blocks.iter().all(|block| !block.is_drift()) {
+            // Static answer: the stiffness part of the accelerations against the load.
+            let k = DMatrix::from_fn(order, order, |i, j| -accelerations[i][j]);
+            if let Some(rest) = k.lu().solve(&nalgebra::DVector::from_column_slice(load)) {
+                return Self { rest: rest.iter().copied().collect(), drift };
+            }
+        }
+        // Block by block: −B⁻¹ r where B has an inverse, drift where it has none.
+        let mut offset = vec![[0.0; 2]; blocks.len()];
+        for (k, block) in blocks.iter().enumerate() {
+            let in_block =
+                |row: usize| (0..order).fold(0.0, |sum, i| sum + to_blocks[row * size + order + i] * load[i]);
+            let r = [in_block(2 * k), in_block(2 * k + 1)];
+            if block.is_drift() {
+                drift[k] = r;
+            } else {
+                let [p, q, s, t] = matrices[k];
+                let determinant = p * t - q * s;
+                offset[k] = [-(t * r[0] - q * r[1]) / determinant, -(p * r[1] - s * r[0]) / determinant];
+            }
+        }
+        let from = invert(size, to_blocks);
+        let rest = (0..order)
+            .map(|i| {
+                (0..blocks.len())
+                    .fold(0.0, |sum, k| sum + from[(i, 2 * k)] * offset[k][0] + from[(i, 2 * k + 1)] * offset[k][1])
+            })
+            .collect();
+        Self { rest, drift }
+    }
+}
+
+fn invert(size: usize, to_blocks: &[f64]) -> DMatrix<f64> {
+    let w = DMatrix::from_row_slice(size, size, to_blocks);
+    w.try_inverse().unwrap_or_else(|| DMatrix::identity(size, size))
+}
+
+impl Steady {
+    /// (−ω² + stiffness) cosine + ω damping sine = 0, … : the complex amplitude as a real system of twice the order.
+    fn new(omega: f64, push: &[f64], accelerations: &[Vec<f64>], order: usize) -> Result<Self, EngineError> {
+        let mut system = DMatrix::zeros(2 * order, 2 * order);
+        let mut load = nalgebra::DVector::zeros(2 * order);
+        for i in 0..order {
+            // p″ = S p + D p′ + push·sin ω t, with p = c cos + s sin.
+            for j in 0..order {
+                let (stiff, damped) = (accelerations[i][j], accelerations[i][order + j]);
+                system[(i, j)] = -stiff;
+                system[(i, order + j)] = -omega * damped;
+                system[(order + i, order + j)] = -stiff;
+                system[(order + i, j)] = omega * damped;
+            }
+            system[(i, i)] -= omega * omega;
+            system[(order + i, order + i)] -= omega * omega;
+            load[order + i] = push[i];
+        }
+        let solution = system.lu().solve(&load).filter(|x| x.iter().all(|v| v.is_finite()));
+        let solution = solution.ok_or(EngineError::UndampedResonance { omega })?;
+        Ok(Self {
+            omega,
+            cosine: solution.iter().take(order).copied().collect(),
+            sine: solution.iter().skip(order).copied().collect(),
+        })
+    }
+}
+
+/// Accelerations of p by (p, p′): order rows of 2·order numbers.
+fn accelerations<'a>(
+    system: &HybridSystem,
+    solve: &Cholesky,
+    attached: &[usize],
+    face_of: &dyn Fn(usize) -> &'a Face,
+    damping: &[f64],
+) -> Vec<Vec<f64>> {
+    let n = system.mass.order;
+    let order = n + attached.len();
+    let mut a = vec![vec![0.0; 2 * order]; order];
+    for j in 0..n {
+        let column = |matrix: &super::system::Matrix| (0..n).map(|i| -matrix.at(i, j)).collect::<Vec<_>>();
+        let (stiff, damped) = (solve.solve(&column(&system.stiffness)), solve.solve(&column(&system.damping)));
+        for i in 0..n {
+            a[i][j] = stiff[i];
+            a[i][order + j] = damped[i];
+        }
+    }
+    for (slot, &particle) in attached.iter().enumerate() {
+        let face = face_of(particle);
+        let Law::Resilient { stiffness, .. } = face.law else { continue };
+        let i = n + slot;
+        // N = −k w − c w′ pushes the structure along −φ.
+        let push = solve.solve(&face.row);
+        for row in 0..n {
+            a[row][i] += stiffness * push[row];
+            a[row][order + i] += damping[particle] * push[row];
+        }
+    }
+    for (slot, &particle) in attached.iter().enumerate() {
+        let face = face_of(particle);
+        let Law::Resilient { stiffness, .. } = face.law else { continue };
+        let i = n + slot;
+        for column in 0..2 * order {
+            let base = (0..n).fold(0.0, |sum, row| sum + face.row[row] * a[row][column]);
+            a[i][column] = -base;
+        }
+        a[i][i] -= stiffness / system.particles[particle].mass;
+        a[i][order + i] -= damping[particle] / system.particles[particle].mass;
+    }
+    a
+}
+
+/// M + Σ mp φ φᵀ over the particles that a face holds.
+pub(crate) fn carried_mass(system: &HybridSystem, contacts: &[Contact]) -> super::system::Matrix {
+    let mut mass = system.mass.clone();
+    let n = mass.order;
+    for (particle, contact) in system.particles.iter().zip(contacts) {
+        if let (true, Some(face)) = (contact.holds(particle), contact.face(particle)) {
+            for i in 0..n {
+                for j in 0..n {
+                    mass.entries[i * n + j] += particle.mass * face.row[i] * face.row[j];
+                }
+            }
+        }
+    }
+    mass
+}
+
+fn scale(acceleration: f64) -> f64 {
+    let omega = acceleration.abs().sqrt();
+    if omega > 0.0 && omega.is_finite() { omega } else { 1.0 }
+}
+
+/// Cholesky factor of a mass matrix; own loops, since its bits reach the results.
+pub(crate) struct Cholesky {
+    order: usize,
+    lower: Vec<f64>,
+}
+
+impl Cholesky {
+    pub(crate) fn new(mass: &super::system::Matrix) -> Result<Self, EngineError> {
+        let n = mass.order;
+        let mut lower = vec![0.0; n * n];
+        for j in 0..n {
+            let pivot = (0..j).fold(mass.at(j, j), |sum, k| sum - lower[j * n + k] * lower[j * n + k]);
+            if !(pivot > 0.0) {
+                return Err(EngineError::MassNotPositive { row: j });
+            }
+            lower[j * n + j] = pivot.sqrt();
+            for i in j + 1..n {
+                let sum = (0..j).fold(mass.at(i, j), |sum, k| sum - lower[i * n + k] * lower[j * n + k]);
+                lower[i * n + j] = sum / lower[j * n + j];
+            }
+        }
+        Ok(Self { order: n, lower })
+    }
+
+    pub(crate) fn solve(&self, b: &[f64]) -> Vec<f64> {
+        let n = self.order;
+        let mut x = b.to_vec();
+        for i in 0..n {
+            x[i] = (0..i).fold(x[i], |sum, k| sum - self.lower[i * n + k] * x[k]) / self.lower[i * n + i];
+        }
+        for i in (0..n).rev() {
+            x[i] = (i + 1..n).fold(x[i], |sum, k| sum - self.lower[k * n + i] * x[k]) / self.lower[i * n + i];
+        }
+        x
+    }
+}
+
+impl Flow {
+    /// The harmonic drive's phase `t` seconds later.
+    pub(crate) fn drive_after(&self, drive: DrivePhase, t: f64) -> DrivePhase {
+        let Some(steady) = &self.harmonic else { return drive };
+        let (sine, cosine) = super::elementary::sin_cos(steady.omega * t);
+        DrivePhase {
+            cosine: drive.cosine * cosine - drive.sine * sine,
+            sine: drive.sine * cosine + drive.cosine * sine,
+        }
+    }
+
+    /// The constant and drifting part of row `i`.
+    pub(crate) fn rest_of(&self, i: usize, force: f64) -> Parabola {
+        let row = &self.rows[i];
+        Parabola {
+            p0: row.rest_gravity + force * row.rest_force,
+            p1: row.drift_gravity[0] + force * row.drift_force[0],
+            p2: row.drift_gravity[1] + force * row.drift_force[1],
+        }
+    }
+
+    /// Length of a quadrature panel from `t` on: short against every block that still moves the velocities visibly.
+    pub(crate) fn panel(&self, start: &[f64], t: f64, scratch: &mut [f64]) -> f64 {
+        let kernels: Vec<_> = self.blocks.iter().map(|block| block.kernel(t)).collect();
+        self.advance(&kernels, start, scratch);
+        let size = 2 * self.order;
+        let share = |k: usize| {
+            (self.order..size).fold(0.0, |sum, i| {
+                sum + (self.from_blocks[i * size + 2 * k] * scratch[2 * k]).abs()
+                    + (self.from_blocks[i * size + 2 * k + 1] * scratch[2 * k + 1]).abs()
+            })
+        };
+        let shares: Vec<f64> = (0..self.own).map(share).collect();
+        let total: f64 = shares.iter().sum();
+        let drive = self.harmonic.as_ref().map_or(0.0, |steady| steady.omega);
+        let fastest = (0..self.own)
+            .filter(|&k| shares[k] > 1e-15 * total)
+            .fold(drive, |fastest, k| fastest.max(self.blocks[k].radius));
+        if fastest > 0.0 { 1.5 / fastest } else { f64::INFINITY }
+    }
+}

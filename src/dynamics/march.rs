@@ -1,0 +1,1101 @@
+//! The event-driven driver: from event to event, cycle by cycle.
+//!
+//! Each segment lies between two instants at which something happens: a jump of the force, or the first event that
+//! [`super::search`] certifies. Its flow is exact, its integrals closed; nothing is sampled unless a time history is asked for.
+
+use super::audit::Audit;
+use super::block::Phase;
+use super::contact::{Crossing, Relative, STICKING_SPEED, Side, impact};
+use super::flow::{Cholesky, DrivePhase, FaceRows, Flow, Parabola, carried_mass};
+use super::integral::{GAUSS, Integrals, panels};
+use super::search::{Clarity, Found, Guard, Search, Start};
+use super::system::{Contact, Event, EventKind, HybridSystem, Law, Tick, dot};
+use super::trace::{Sample, TraceRequest};
+use super::{EngineError, Options, Proof, Response, Sums};
+
+/// Events at one instant beyond which the contact is declared undecidable.
+const MOST_EVENTS_AT_AN_INSTANT: u32 = 64;
+
+/// A run in progress.
+pub(crate) struct March<'a> {
+    system: &'a HybridSystem,
+    options: &'a Options,
+    flows: Vec<Flow>,
+    /// Index of the flow in force.
+    now: usize,
+    // State: structure, particles, contacts.
+    q: Vec<f64>,
+    rate: Vec<f64>,
+    particles: Vec<Relative>,
+    contacts: Vec<Contact>,
+    damping: Vec<f64>,
+    /// A particle just let go smoothly: u = u′ = u″ = 0, it leaves with u‴.
+    smooth: Vec<bool>,
+    // Clock.
+    cycle: u64,
+    time: f64,
+    level: f64,
+    // Half cycles of the observed acceleration.
+    half: Half,
+    // Work space.
+    search: Search,
+    crossings: Vec<(usize, Crossing)>,
+    p: Vec<f64>,
+    p_rate: Vec<f64>,
+    c: Vec<f64>,
+    c_end: Vec<f64>,
+    observed: Vec<Phase>,
+    observed_end: Vec<Phase>,
+    row_phases: Vec<Phase>,
+    // Results.
+    clarity: Clarity,
+    response: Response,
+    audit: Option<Audit>,
+}
+
+/// Bookkeeping of the equivalent viscous damping.
+#[derive(Debug, Clone, Copy, Default)]
+struct Half {
+    /// Sign of the acceleration in the half cycle; 0 before the first.
+    sign: f64,
+    /// ∫ a² dt so far.
+    square: f64,
+    /// Its length so far, s.
+    length: f64,
+    /// RMS of the last complete one, m/s².
+    last: f64,
+    /// The crossing was smooth, so that the guard starts at zero.
+    touching: bool,
+}
+
+impl<'a> March<'a> {
+    pub(crate) fn new(system: &'a HybridSystem, options: &'a Options) -> Result<Self, EngineError> {
+        let n = system.mass.order;
+        let count = system.particles.len();
+        let damping: Vec<f64> = system
+            .particles
+            .iter()
+            .map(|particle| match particle.floor.law {
+                Law::Resilient { damping, .. } => {
+                    system.drive.half_cycles.as_ref().map_or(damping, |half| half.curve.upper_end())
+                }
+                Law::Rigid { .. } => 0.0,
+            })
+            .collect();
+        let most = n + count;
+        let mut march = Self {
+            system,
+            options,
+            flows: Vec::new(),
+            now: 0,
+            q: vec![0.0; n],
+            rate: vec![0.0; n],
+            particles: vec![Relative::default(); count],
+            contacts: vec![Contact::Floor; count],
+            damping,
+            smooth: vec![false; count],
+            cycle: 0,
+            time: 0.0,
+            level: 0.0,
+            half: Half::default(),
+            search: Search::new(options.window_factor),
+            crossings: Vec::new(),
+            p: vec![0.0; most],
+            p_rate: vec![0.0; most],
+            c: vec![0.0; 2 * most],
+            c_end: vec![0.0; 2 * most],
+            observed: Vec::new(),
+            observed_end: Vec::new(),
+            row_phases: Vec::new(),
+            clarity: Clarity { margin: f64::INFINITY, ties: 0 },
+            response: Response::default(),
+            audit: options.audit.then(Audit::default),
+        };
+        march.place(&options.start)?;
+        Ok(march)
+    }
+
+    /// Start: as asked, or static equilibrium with every particle on its floor.
+    fn place(&mut self, start: &super::StartState) -> Result<(), EngineError> {
+        match start {
+            super::StartState::StaticEquilibrium => {
+                self.choose_flow()?;
+                let drive = DrivePhase::default();
+                let flow = &self.flows[self.now];
+                self.c.fill(0.0);
+                flow.leave(&self.c, 0.0, 0.0, drive, &mut self.p, &mut self.p_rate);
+                let n = self.q.len();
+                self.q.copy_from_slice(&self.p[..n]);
+                for (i, &j) in flow.attached.iter().enumerate() {
+                    self.particles[j].gap = self.p[n + i];
+                }
+            }
+            super::StartState::Given { q, rate, particles } => {
+                self.q.copy_from_slice(q);
+                self.rate.copy_from_slice(rate);
+                for (j, (contact, gap, rate)) in particles.iter().enumerate() {
+                    self.contacts[j] = *contact;
+                    self.particles[j] = Relative { gap: *gap, rate: *rate };
+                }
+                self.settle()?;
+            }
+        }
+        Ok(())
+    }
+
+    pub(crate) fn run(mut self) -> Result<Response, EngineError> {
+        let cycles = u64::from(self.options.skip) + u64::from(self.options.average);
+        let period = self.system.drive.period;
+        for cycle in 0..cycles {
+            self.cycle = cycle;
+            self.time = 0.0;
+            if cycle == u64::from(self.options.skip) {
+                self.begin_window();
+            }
+            let single = [Tick { time: 0.0, impulse: 0.0, level: 0.0 }];
+            let ticks: &[Tick] =
+                if cycle == 0 || self.system.drive.repeats { &self.system.drive.ticks } else { &single };
+            for (i, tick) in ticks.iter().enumerate() {
+                if tick.time > self.time {
+                    self.propagate_to(tick.time)?;
+                }
+                let kick = if cycle == 0 && i == 0 { 1.0 + self.options.kick } else { 1.0 };
+                self.tick(*tick, kick)?;
+            }
+            self.propagate_to(period)?;
+        }
+        self.finish()
+    }
+
+    fn begin_window(&mut self) {
+        self.response.sums = [Sums::default(), Sums::default()];
+        if self.audit.is_some() {
+            let state = self.audit_state();
+            if let Some(audit) = &mut self.audit {
+                audit.begin(state);
+            }
+        }
+    }
+
+    fn finish(mut self) -> Result<Response, EngineError> {
+        if let Some(audit) = self.audit.take() {
+            let (momentum, energy) = audit.residuals(self.system, &self.audit_state());
+            self.response.proof.momentum_residual = momentum;
+            self.response.proof.energy_residual = energy;
+        }
+        self.response.proof.smallest_margin = self.clarity.margin;
+        self.response.proof.ties = self.clarity.ties;
+        self.response.final_displacement = dot(&self.system.observed_row, &self.q);
+        self.response.final_velocity = dot(&self.system.observed_row, &self.rate);
+        self.response.final_particles = (0..self.particles.len()).map(|j| self.absolute(j)).collect();
+        let fastest = self.flows.iter().flat_map(Flow::natural_frequencies).fold(0.0_f64, f64::max);
+        self.response.highest_frequency = fastest;
+        if self.response.final_displacement.is_finite() && self.response.final_velocity.is_finite() {
+            Ok(self.response)
+        } else {
+            Err(EngineError::NotFinite { cycle: self.cycle })
+        }
+    }
+
+    /// y and y′ of a particle.
+    fn absolute(&self, j: usize) -> [f64; 2] {
+        let particle = &self.system.particles[j];
+        let side = self.contacts[j].side();
+        let row = &side.face(particle).row;
+        let offset = if side == Side::Ceiling { particle.gap } else { 0.0 };
+        [dot(row, &self.q) + offset + self.particles[j].gap, dot(row, &self.rate) + self.particles[j].rate]
+    }
+
+    fn drive_phase(&self, time: f64) -> DrivePhase {
+        match self.system.drive.harmonic {
+            None => DrivePhase::default(),
+            Some(drive) => {
+                let (sine, cosine) = super::elementary::sin_cos(drive.angular_frequency * time);
+                DrivePhase { cosine: drive.force * cosine, sine: drive.force * sine }
+            }
+        }
+    }
+
+    /// A jump of the force.
+    fn tick(&mut self, tick: Tick, kick: f64) -> Result<(), EngineError> {
+        self.level = tick.level;
+        if tick.impulse == 0.0 {
+            return Ok(());
+        }
+        let impulse = tick.impulse * kick;
+        let before = self.audit.is_some().then(|| super::audit::energy(self.system, &self.audit_state()));
+        // The impulse acts on the structure; a particle that is held receives its share through the face.
+        let bare = Cholesky::new(&self.system.mass)?;
+        let jump = bare.solve(&self.system.force_row);
+        for j in 0..self.particles.len() {
+            let row = &self.contacts[j].side().face(&self.system.particles[j]).row;
+            self.particles[j].rate -= impulse * dot(row, &jump);
+            self.smooth[j] = false;
+        }
+        self.rate.iter_mut().zip(&jump).for_each(|(rate, jump)| *rate += impulse * jump);
+        if let Some(before) = before {
+            let after = super::audit::energy(self.system, &self.audit_state());
+            if let Some(audit) = &mut self.audit {
+                audit.impulse(impulse, after - before);
+            }
+        }
+        self.half.touching = false;
+        self.settle()
+    }
+
+    /// After a jump of velocities: decides every contact that the jump has made untenable.
+    fn settle(&mut self) -> Result<(), EngineError> {
+        for j in 0..self.particles.len() {
+            let particle = &self.system.particles[j];
+            let contact = self.contacts[j];
+            let side = contact.side();
+            let away = side.away() * self.particles[j].rate;
+            match contact {
+                Contact::Flight => {
+                    let floor = self.particles[j];
+                    if floor.gap == 0.0 && floor.rate < 0.0 {
+                        self.meet(j, Side::Floor)?;
+                    } else if let Some(ceiling) = self.ceiling_relative(j)
+                        && ceiling.gap == 0.0
+                        && ceiling.rate > 0.0
+                    {
+                        self.particles[j] = ceiling;
+                        self.meet(j, Side::Ceiling)?;
+                    }
+                }
+                _ if contact.holds(particle) => {
+                    if away < 0.0 {
+                        self.strike(j, side, self.restitution(j, side))?;
+                    } else if away > 0.0 {
+                        self.let_go(j, side);
+                    }
+                }
+                _ if contact.presses(particle) => {
+                    if self.particles[j].gap == 0.0 && away > 0.0 {
+                        self.let_go(j, side);
+                    } else if let Law::Resilient { stiffness, no_tension: true, .. } = side.face(particle).law {
+                        let force = -stiffness * self.particles[j].gap - self.damping[j] * self.particles[j].rate;
+                        if force * side.away() < 0.0 {
+                            self.record(j, side.lost(), self.particles[j].rate, self.particles[j].rate);
+                            self.contacts[j] = side.released();
+                        }
+                    }
+                }
+                _ => {
+                    if let Law::Resilient { stiffness, .. } = side.face(particle).law {
+                        let force = -stiffness * self.particles[j].gap - self.damping[j] * self.particles[j].rate;
+                        if force * side.away() > 0.0 {
+                            self.record(j, side.made(), self.particles[j].rate, self.particles[j].rate);
+                            self.contacts[j] = side.pressed();
+                        }
+                    }
+                }
+            }
+        }
+        self.choose_flow()
+    }
+
+    fn restitution(&self, j: usize, side: Side) -> f64 {
+        match side.face(&self.system.particles[j]).law {
+            Law::Rigid { restitution } => restitution,
+            Law::Resilient { stop, .. } => stop.map_or(0.0, |stop| stop.restitution),
+        }
+    }
+
+    /// Position relative to the ceiling, for a particle whose state refers to the floor.
+    fn ceiling_relative(&self, j: usize) -> Option<Relative> {
+        let particle = &self.system.particles[j];
+        let ceiling = particle.ceiling.as_ref()?;
+        let floor = self.particles[j];
+        if ceiling.row == particle.floor.row {
+            return Some(Relative { gap: floor.gap - particle.gap, rate: floor.rate });
+        }
+        let shift = |x: &[f64]| dot(&ceiling.row, x) - dot(&particle.floor.row, x);
+        Some(Relative { gap: floor.gap - particle.gap - shift(&self.q), rate: floor.rate - shift(&self.rate) })
+    }
+
+    /// Refers a particle that leaves the ceiling to the floor again.
+    fn refer_to_floor(&mut self, j: usize) {
+        let particle = &self.system.particles[j];
+        let Some(ceiling) = particle.ceiling.as_ref() else { return };
+        let here = self.particles[j];
+        self.particles[j] = if ceiling.row == particle.floor.row {
+            Relative { gap: here.gap + particle.gap, rate: here.rate }
+        } else {
+            let shift = |x: &[f64]| dot(&ceiling.row, x) - dot(&particle.floor.row, x);
+            Relative { gap: here.gap + particle.gap + shift(&self.q), rate: here.rate + shift(&self.rate) }
+        };
+    }
+
+    /// A particle in flight reaches a face: its state refers to that face already, with gap 0.
+    fn meet(&mut self, j: usize, side: Side) -> Result<(), EngineError> {
+        match side.face(&self.system.particles[j]).law {
+            Law::Rigid { restitution } => self.strike(j, side, restitution),
+            Law::Resilient { .. } => {
+                let rate = self.particles[j].rate;
+                self.contacts[j] = side.pressed();
+                self.record(j, side.made(), rate, rate);
+                Ok(())
+            }
+        }
+    }
+
+    /// An impact on something rigid: a rigid face, or the stop of a resilient one. Then the particle bounces or is held.
+    fn strike(&mut self, j: usize, side: Side, restitution: f64) -> Result<(), EngineError> {
+        let particle = &self.system.particles[j];
+        let stop = side.face(particle).law.stop();
+        let approach = self.particles[j].rate;
+        self.contacts[j] = Contact::Flight;
+        let mobility = Cholesky::new(&carried_mass(self.system, &self.contacts))?;
+        let row = side.face(particle).row.clone();
+        let impact = impact(&mobility, &row, particle.mass, restitution, approach);
+        for (other, particle) in self.system.particles.iter().enumerate() {
+            // The faces of all other particles move with the structure's jump.
+            if other != j {
+                let row = &self.contacts[other].side().face(particle).row;
+                if !self.contacts[other].holds(particle) {
+                    self.particles[other].rate -= dot(row, &impact.structure);
+                }
+            }
+        }
+        self.rate.iter_mut().zip(&impact.structure).for_each(|(rate, jump)| *rate += jump);
+        self.particles[j].rate = impact.departure;
+        if let Some(audit) = &mut self.audit {
+            audit.loss(impact.loss);
+        }
+        self.record(j, if stop.is_some() { side.hit() } else { side.made() }, approach, impact.departure);
+        self.half.touching = false;
+        let speed = impact.departure.abs();
+        let held = match stop {
+            None => side.pressed(),
+            Some(_) => side.stopped(),
+        };
+        if speed > STICKING_SPEED {
+            self.after_bounce(j, side);
+            return Ok(());
+        }
+        // Slow enough to stay, if the face can push: the relative acceleration decides.
+        self.contacts[j] = held;
+        self.choose_flow()?;
+        let push = self.push(j, side);
+        if push > 0.0 {
+            if speed > 0.0 {
+                // What was left to bounce: a geometric series of flights of 2u′/a, each shorter by ε.
+                let tail = 2.0 * speed / (push * (1.0 - restitution));
+                let mobility = Cholesky::new(&carried_mass(self.system, &self.contacts_without(j)))?;
+                let last = super::contact::impact(&mobility, &row, particle.mass, 0.0, self.particles[j].rate);
+                self.rate.iter_mut().zip(&last.structure).for_each(|(rate, jump)| *rate += jump);
+                if let Some(audit) = &mut self.audit {
+                    audit.loss(last.loss);
+                }
+                self.record_at(j, EventKind::ChatterEnd, self.time + tail, self.particles[j].rate, 0.0);
+            }
+            self.particles[j].rate = 0.0;
+        } else {
+            self.after_bounce(j, side);
+        }
+        Ok(())
+    }
+
+    fn contacts_without(&self, j: usize) -> Vec<Contact> {
+        let mut contacts = self.contacts.clone();
+        contacts[j] = Contact::Flight;
+        contacts
+    }
+
+    /// The particle moves away from what it struck.
+    fn after_bounce(&mut self, j: usize, side: Side) {
+        if side.face(&self.system.particles[j]).law.stop().is_some() {
+            self.contacts[j] = side.pressed();
+        } else {
+            self.contacts[j] = Contact::Flight;
+            if side == Side::Ceiling {
+                self.refer_to_floor(j);
+            }
+        }
+    }
+
+    /// A face loses its particle.
+    fn let_go(&mut self, j: usize, side: Side) {
+        let rate = self.particles[j].rate;
+        let stopped = self.contacts[j] == side.stopped();
+        self.record(j, if stopped { EventKind::StopRelease } else { side.lost() }, rate, rate);
+        if stopped {
+            self.contacts[j] = side.pressed();
+            return;
+        }
+        self.contacts[j] = Contact::Flight;
+        if side == Side::Ceiling {
+            self.refer_to_floor(j);
+        }
+    }
+
+    /// How strongly a face holds particle j, as an acceleration: positive while it can push.
+    fn push(&mut self, j: usize, side: Side) -> f64 {
+        let drive = self.drive_phase(self.time);
+        self.enter_flow(drive);
+        let flow = &self.flows[self.now];
+        let row = match side {
+            Side::Floor => flow.face_rows[j].floor,
+            Side::Ceiling => flow.face_rows[j].ceiling,
+        };
+        self.row_phases.resize(flow.blocks.len(), Phase::default());
+        let parabola = flow.signal(row, &self.c, self.level, drive, &mut self.row_phases);
+        let mut acceleration = 2.0 * parabola.p2;
+        for (block, phase) in flow.blocks.iter().zip(&self.row_phases) {
+            acceleration -= 2.0 * block.decay * phase.rate + block.determinant * phase.value;
+        }
+        side.away() * (acceleration + self.system.gravity) - self.spring_on_stop(j, side)
+    }
+
+    /// kδ/mp: what the spring of a face held on its stop pushes by itself.
+    fn spring_on_stop(&self, j: usize, side: Side) -> f64 {
+        let particle = &self.system.particles[j];
+        match side.face(particle).law {
+            Law::Resilient { stiffness, stop: Some(stop), .. } => stiffness * stop.length / particle.mass,
+            _ => 0.0,
+        }
+    }
+
+    fn record(&mut self, j: usize, kind: EventKind, approach: f64, departure: f64) {
+        self.record_at(j, kind, self.time, approach, departure);
+    }
+
+    fn record_at(&mut self, particle: usize, kind: EventKind, time: f64, approach: f64, departure: f64) {
+        self.response.proof.events += 1;
+        if self.cycle >= u64::from(self.options.skip) {
+            self.response.counts.add(kind);
+        }
+        let wanted = self.response.events.len() < self.options.record_events
+            || self.options.trace.as_ref().is_some_and(|trace| trace.covers(self.cycle));
+        if wanted {
+            self.response.events.push(Event { cycle: self.cycle, time, particle, kind, approach, departure });
+        }
+    }
+
+    /// Makes the flow of the contact state in force current, building it at the first visit.
+    fn choose_flow(&mut self) -> Result<(), EngineError> {
+        let fits = |flow: &Flow| flow.contacts == self.contacts && flow.damping == self.damping;
+        if self.flows.get(self.now).is_some_and(fits) {
+            return Ok(());
+        }
+        if let Some(index) = self.flows.iter().position(fits) {
+            self.now = index;
+            return Ok(());
+        }
+        let flow = Flow::build(self.system, &self.contacts, &self.damping)?;
+        if self.system.drive.half_cycles.is_some() && self.flows.len() >= 64 {
+            self.flows.clear();
+        }
+        self.flows.push(flow);
+        self.now = self.flows.len() - 1;
+        Ok(())
+    }
+
+    /// Block coordinates of the state in the flow in force.
+    fn enter_flow(&mut self, drive: DrivePhase) {
+        let flow = &self.flows[self.now];
+        let n = self.q.len();
+        self.p[..n].copy_from_slice(&self.q);
+        self.p_rate[..n].copy_from_slice(&self.rate);
+        for (i, &j) in flow.attached.iter().enumerate() {
+            self.p[n + i] = self.particles[j].gap;
+            self.p_rate[n + i] = self.particles[j].rate;
+        }
+        flow.enter(&self.p[..flow.order], &self.p_rate[..flow.order], self.level, drive, &mut self.c);
+    }
+
+    /// Propagates to `until` within the cycle, from event to event.
+    fn propagate_to(&mut self, until: f64) -> Result<(), EngineError> {
+        let mut stuck = 0;
+        while self.time < until {
+            let before = self.time;
+            self.segment(until)?;
+            stuck = if self.time > before { 0 } else { stuck + 1 };
+            if stuck > MOST_EVENTS_AT_AN_INSTANT {
+                return Err(EngineError::NoProgress { cycle: self.cycle, time: self.time });
+            }
+        }
+        Ok(())
+    }
+
+    fn segment(&mut self, until: f64) -> Result<(), EngineError> {
+        self.choose_flow()?;
+        let drive = self.drive_phase(self.time);
+        self.enter_flow(drive);
+        let flow = &self.flows[self.now];
+        let width = flow.blocks.len();
+        self.observed.resize(width, Phase::default());
+        self.observed_end.resize(width, Phase::default());
+        let rest = flow.signal(flow.observed, &self.c, self.level, drive, &mut self.observed);
+        self.set_guards(drive, rest);
+        let flow = &self.flows[self.now];
+        let limit = until - self.time;
+        let found = self.search.run(&flow.blocks, limit, &mut self.clarity);
+        let length = match found {
+            Found::Nothing => limit,
+            Found::Event { time, .. } => time.min(limit),
+        };
+        self.sum_up(rest, length, drive);
+        self.sample(length, drive);
+        self.arrive(length, drive);
+        self.time = match found {
+            Found::Nothing => until,
+            Found::Event { .. } => self.time + length,
+        };
+        if let Found::Event { guard, .. } = found {
+            let (j, crossing) = self.crossings[self.search.guards[guard].label];
+            self.cross(j, crossing)?;
+        }
+        Ok(())
+    }
+
+    /// The state at the end of a segment.
+    fn arrive(&mut self, length: f64, drive: DrivePhase) {
+        let end_drive = match self.system.drive.harmonic {
+            None => drive,
+            Some(_) => self.drive_phase(self.time + length),
+        };
+        let n = self.q.len();
+        // Particles in flight: relative to the floor, without the drift of a structure that floats.
+        self.flights(length);
+        let flow = &self.flows[self.now];
+        flow.advance(&self.search.kernels, &self.c, &mut self.c_end);
+        flow.leave(&self.c_end, length, self.level, end_drive, &mut self.p, &mut self.p_rate);
+        self.q.copy_from_slice(&self.p[..n]);
+        self.rate.copy_from_slice(&self.p_rate[..n]);
+        for (i, &j) in flow.attached.iter().enumerate() {
+            self.particles[j] = Relative { gap: self.p[n + i], rate: self.p_rate[n + i] };
+        }
+    }
+
+    /// Gap coordinates of the particles in flight after `length` seconds.
+    fn flights(&mut self, length: f64) {
+        let flow = &self.flows[self.now];
+        let drive = self.drive_phase(self.time);
+        let width = flow.blocks.len();
+        self.row_phases.resize(width, Phase::default());
+        for j in 0..self.particles.len() {
+            let contact = self.contacts[j];
+            if contact.face(&self.system.particles[j]).is_some() {
+                continue;
+            }
+            let row = face_row(flow.face_rows[j], contact.side());
+            let parabola = flow.signal(row, &self.c, self.level, drive, &mut self.row_phases);
+            let path = flight(flow, parabola, &self.row_phases, self.particles[j], self.system.gravity);
+            let mut now = Relative { gap: path.at(length), rate: path.rate(length) };
+            for (k, block) in flow.blocks.iter().enumerate() {
+                if block.is_drift() {
+                    continue;
+                }
+                let share = block.advance(self.row_phases[k], self.search.kernels[k]);
+                now.gap -= share.value;
+                now.rate -= share.rate;
+            }
+            self.particles[j] = now;
+        }
+    }
+
+    /// The guards of the contact state in force.
+    fn set_guards(&mut self, drive: DrivePhase, _rest: Parabola) {
+        self.search.clear();
+        self.crossings.clear();
+        let flow = &self.flows[self.now];
+        let width = flow.blocks.len();
+        self.row_phases.resize(width, Phase::default());
+        let gravity = self.system.gravity;
+        for j in 0..self.particles.len() {
+            let particle = &self.system.particles[j];
+            let contact = self.contacts[j];
+            let here = self.particles[j];
+            let side = contact.side();
+            let away = side.away();
+            let rows = flow.face_rows[j];
+            let order = if self.smooth[j] {
+                3
+            } else if here.rate != 0.0 {
+                1
+            } else {
+                2
+            };
+            match contact {
+                Contact::Flight => {
+                    let parabola = flow.signal(rows.floor, &self.c, self.level, drive, &mut self.row_phases);
+                    let path = flight(flow, parabola, &self.row_phases, here, gravity);
+                    let start =
+                        if here.gap == 0.0 { Start::Touching { order, slope: here.rate.abs() } } else { Start::Apart };
+                    push_guard(
+                        (&mut self.search, &mut self.crossings, flow),
+                        (j, Crossing::ToFloor),
+                        (path, &self.row_phases, -1.0, 1.0),
+                        (start, true),
+                    );
+                    let Some(ceiling) = &particle.ceiling else { continue };
+                    let same = ceiling.row == particle.floor.row;
+                    let (path, relative) = if same {
+                        (
+                            Parabola { p0: path.p0 - particle.gap, ..path },
+                            Relative { gap: here.gap - particle.gap, ..here },
+                        )
+                    } else {
+                        let shift = |x: &[f64]| dot(&ceiling.row, x) - dot(&particle.floor.row, x);
+                        let relative = Relative {
+                            gap: here.gap - particle.gap - shift(&self.q),
+                            rate: here.rate - shift(&self.rate),
+                        };
+                        let parabola = flow.signal(rows.ceiling, &self.c, self.level, drive, &mut self.row_phases);
+                        (flight(flow, parabola, &self.row_phases, relative, gravity), relative)
+                    };
+                    let start = if relative.gap == 0.0 {
+                        Start::Touching { order, slope: relative.rate.abs() }
+                    } else {
+                        Start::Apart
+                    };
+                    push_guard(
+                        (&mut self.search, &mut self.crossings, flow),
+                        (j, Crossing::ToCeiling),
+                        (path, &self.row_phases, -1.0, -1.0),
+                        (start, true),
+                    );
+                }
+                Contact::FloorReleased | Contact::CeilingReleased => {
+                    let row = face_row(rows, side);
+                    let parabola = flow.signal(row, &self.c, self.level, drive, &mut self.row_phases);
+                    let path = flight(flow, parabola, &self.row_phases, here, gravity);
+                    push_guard(
+                        (&mut self.search, &mut self.crossings, flow),
+                        (j, Crossing::Recovered),
+                        (path, &self.row_phases, -1.0, -away),
+                        (Start::Apart, true),
+                    );
+                    let Law::Resilient { stiffness, .. } = side.face(particle).law else { continue };
+                    // The force that would come back, k u + c u′ away from the face, is negative until it does.
+                    let c = self.damping[j];
+                    let force = Parabola {
+                        p0: stiffness * path.p0 + c * path.p1,
+                        p1: stiffness * path.p1 + 2.0 * c * path.p2,
+                        p2: stiffness * path.p2,
+                    };
+                    let mix: Vec<Phase> = flow
+                        .blocks
+                        .iter()
+                        .zip(&self.row_phases)
+                        .map(|(block, phase)| {
+                            let bend = -2.0 * block.decay * phase.rate - block.determinant * phase.value;
+                            Phase {
+                                value: stiffness * phase.value + c * phase.rate,
+                                rate: stiffness * phase.rate + c * bend,
+                            }
+                        })
+                        .collect();
+                    let start =
+                        if self.smooth[j] { Start::Touching { order: 1, slope: f64::NAN } } else { Start::Apart };
+                    push_guard(
+                        (&mut self.search, &mut self.crossings, flow),
+                        (j, Crossing::Again),
+                        (force, &mix, -1.0, away),
+                        (start, false),
+                    );
+                }
+                _ if contact.presses(particle) => {
+                    let Some(row) = rows.compression else { continue };
+                    let parabola = flow.signal(row, &self.c, self.level, drive, &mut self.row_phases);
+                    let Law::Resilient { stiffness, no_tension, stop, .. } = side.face(particle).law else { continue };
+                    if no_tension {
+                        let c = self.damping[j];
+                        let force = Parabola { p0: stiffness * parabola.p0, p1: 0.0, p2: 0.0 };
+                        let mix: Vec<Phase> = flow
+                            .blocks
+                            .iter()
+                            .zip(&self.row_phases)
+                            .map(|(block, phase)| {
+                                let bend = -2.0 * block.decay * phase.rate - block.determinant * phase.value;
+                                Phase {
+                                    value: stiffness * phase.value + c * phase.rate,
+                                    rate: stiffness * phase.rate + c * bend,
+                                }
+                            })
+                            .collect();
+                        let start =
+                            if self.smooth[j] { Start::Touching { order: 1, slope: f64::NAN } } else { Start::Apart };
+                        push_guard(
+                            (&mut self.search, &mut self.crossings, flow),
+                            (j, Crossing::Release),
+                            (force, &mix, 1.0, -away),
+                            (start, false),
+                        );
+                    } else {
+                        let start = if here.gap == 0.0 {
+                            Start::Touching { order, slope: here.rate.abs() }
+                        } else {
+                            Start::Apart
+                        };
+                        push_guard(
+                            (&mut self.search, &mut self.crossings, flow),
+                            (j, Crossing::Release),
+                            (parabola, &self.row_phases, 1.0, -away),
+                            (start, true),
+                        );
+                    }
+                    if let Some(stop) = stop {
+                        // w away from the face plus δ: positive until the stop.
+                        let path = Parabola { p0: parabola.p0 + away * stop.length, ..parabola };
+                        let touching = here.gap == -away * stop.length;
+                        let start =
+                            if touching { Start::Touching { order, slope: here.rate.abs() } } else { Start::Apart };
+                        push_guard(
+                            (&mut self.search, &mut self.crossings, flow),
+                            (j, Crossing::ToStop),
+                            (path, &self.row_phases, 1.0, away),
+                            (start, true),
+                        );
+                    }
+                }
+                _ => {
+                    // Held: the face lets go where it can no longer push.
+                    let parabola = flow.signal(face_row(rows, side), &self.c, self.level, drive, &mut self.row_phases);
+                    let offset = 2.0 * parabola.p2 + gravity - away * self.spring_on_stop(j, side);
+                    let bends: Vec<Phase> = flow
+                        .blocks
+                        .iter()
+                        .zip(&self.row_phases)
+                        .map(|(block, phase)| acceleration(block, *phase))
+                        .collect();
+                    push_guard(
+                        (&mut self.search, &mut self.crossings, flow),
+                        (j, Crossing::Release),
+                        (Parabola { p0: offset, p1: 0.0, p2: 0.0 }, &bends, 1.0, away),
+                        (Start::Apart, false),
+                    );
+                }
+            }
+        }
+        if self.system.drive.half_cycles.is_some() {
+            self.guard_half_cycle();
+        }
+    }
+
+    fn guard_half_cycle(&mut self) {
+        let flow = &self.flows[self.now];
+        let bends: Vec<Phase> =
+            flow.blocks.iter().zip(&self.observed).map(|(block, phase)| acceleration(block, *phase)).collect();
+        let total = bends.iter().fold(0.0, |sum, phase| sum + phase.value);
+        if self.half.sign == 0.0 {
+            self.half.sign = if total < 0.0 { -1.0 } else { 1.0 };
+        }
+        // A contact may have turned the sign at once; then the half cycle ends here, which the search sees as a root at 0.
+        if !self.half.touching && total * self.half.sign < 0.0 {
+            self.half.sign = -self.half.sign;
+            self.close_half_cycle();
+        }
+        let flow = &self.flows[self.now];
+        let start = if self.half.touching { Start::Touching { order: 1, slope: f64::NAN } } else { Start::Apart };
+        push_guard(
+            (&mut self.search, &mut self.crossings, flow),
+            (usize::MAX, Crossing::HalfCycle),
+            (Parabola::default(), &bends, 1.0, self.half.sign),
+            (start, false),
+        );
+    }
+
+    /// The RMS of a finished half cycle sets the damping of the next.
+    fn close_half_cycle(&mut self) {
+        let Some(half_cycles) = &self.system.drive.half_cycles else { return };
+        if self.half.length > 0.0 {
+            self.half.last = (self.half.square / self.half.length).sqrt();
+            let value = half_cycles.curve.at(self.half.last / self.system.gravity);
+            self.damping.fill(value);
+        }
+        self.half.square = 0.0;
+        self.half.length = 0.0;
+    }
+
+    /// What a crossing leads to; the state has arrived there.
+    fn cross(&mut self, j: usize, crossing: Crossing) -> Result<(), EngineError> {
+        if crossing == Crossing::HalfCycle {
+            self.half.sign = -self.half.sign;
+            self.half.touching = true;
+            self.close_half_cycle();
+            return self.choose_flow();
+        }
+        self.half.touching = false;
+        self.smooth[j] = false;
+        let side = self.contacts[j].side();
+        let particle = &self.system.particles[j];
+        match crossing {
+            Crossing::ToFloor => {
+                self.particles[j].gap = 0.0;
+                self.meet(j, Side::Floor)?;
+            }
+            Crossing::ToCeiling => {
+                if let Some(relative) = self.ceiling_relative(j) {
+                    self.particles[j] = Relative { gap: 0.0, rate: relative.rate };
+                    self.meet(j, Side::Ceiling)?;
+                }
+            }
+            Crossing::ToStop => {
+                if let Some(stop) = side.face(particle).law.stop() {
+                    self.particles[j].gap = -side.away() * stop.length;
+                    self.strike(j, side, stop.restitution)?;
+                }
+            }
+            Crossing::Release if self.contacts[j].holds(particle) => {
+                self.particles[j].rate = 0.0;
+                self.let_go(j, side);
+                self.smooth[j] = true;
+            }
+            Crossing::Release => match side.face(particle).law {
+                Law::Resilient { no_tension: true, .. } if self.particles[j].gap != 0.0 => {
+                    let rate = self.particles[j].rate;
+                    self.record(j, side.lost(), rate, rate);
+                    self.contacts[j] = side.released();
+                    self.smooth[j] = true;
+                }
+                _ => {
+                    self.particles[j].gap = 0.0;
+                    self.let_go(j, side);
+                }
+            },
+            Crossing::Recovered => {
+                self.particles[j].gap = 0.0;
+                self.contacts[j] = Contact::Flight;
+                if side == Side::Ceiling {
+                    self.refer_to_floor(j);
+                }
+            }
+            Crossing::Again => {
+                let rate = self.particles[j].rate;
+                self.contacts[j] = side.pressed();
+                self.record(j, side.made(), rate, rate);
+                self.smooth[j] = true;
+            }
+            Crossing::HalfCycle => {}
+        }
+        self.choose_flow()
+    }
+
+    /// Adds the segment to the measures, and to the audit if there is one.
+    fn sum_up(&mut self, rest: Parabola, length: f64, drive: DrivePhase) {
+        let flow = &self.flows[self.now];
+        let half_cycles = self.system.drive.half_cycles.is_some();
+        let inside = self.cycle >= u64::from(self.options.skip);
+        if !inside && !half_cycles && self.audit.is_none() {
+            return;
+        }
+        for (k, block) in flow.blocks.iter().enumerate() {
+            self.observed_end[k] = block.advance(self.observed[k], self.search.kernels[k]);
+        }
+        if inside {
+            let integrals = match &flow.forms {
+                Some(forms) => forms.between(&self.observed, &self.observed_end, length, self.options.displacement),
+                None => quadrature(flow, &self.observed, rest, length),
+            };
+            let second_half = 2 * (self.cycle - u64::from(self.options.skip)) >= u64::from(self.options.average);
+            let sums = &mut self.response.sums[usize::from(second_half)];
+            sums.duration += length;
+            sums.velocity_square += integrals.rate_square;
+            if flow.forms.is_some() {
+                sums.displacement += integrals.value + rest.p0 * length;
+                sums.displacement_square += integrals.square + rest.p0 * (2.0 * integrals.value + rest.p0 * length);
+            } else {
+                sums.displacement += integrals.value;
+                sums.displacement_square += integrals.square;
+            }
+        }
+        if half_cycles {
+            let start: Vec<Phase> =
+                flow.blocks.iter().zip(&self.observed).map(|(block, phase)| acceleration(block, *phase)).collect();
+            self.half.square += quadrature(flow, &start, Parabola::default(), length).square;
+            self.half.length += length;
+        }
+        if let Some(audit) = &mut self.audit
+            && inside
+        {
+            audit.segment(self.system, flow, &self.c, self.level, drive, length);
+        }
+    }
+
+    fn audit_state(&self) -> super::audit::State {
+        super::audit::State {
+            q: self.q.clone(),
+            rate: self.rate.clone(),
+            particles: (0..self.particles.len()).map(|j| self.absolute(j)).collect(),
+            compressions: (0..self.particles.len())
+                .map(|j| match side_stiffness(self.system, &self.contacts, j) {
+                    Some(stiffness) => [stiffness, self.particles[j].gap],
+                    None => [0.0, 0.0],
+                })
+                .collect(),
+        }
+    }
+
+    /// Samples of the time history that fall into the segment.
+    fn sample(&mut self, length: f64, drive: DrivePhase) {
+        let Some(request) = &self.options.trace else { return };
+        if !request.covers(self.cycle) {
+            return;
+        }
+        let request: TraceRequest = *request;
+        let flow = &self.flows[self.now];
+        let period = self.system.drive.period;
+        let first = request.next_sample(self.time, period);
+        let mut kernels = Vec::with_capacity(flow.blocks.len());
+        for i in first.. {
+            let instant = request.instant(i, period);
+            let t = instant - self.time;
+            if t > length || (t >= length && instant >= period) {
+                break;
+            }
+            kernels.clear();
+            kernels.extend(flow.blocks.iter().map(|block| block.kernel(t)));
+            let now = |start: &[Phase]| {
+                flow.blocks.iter().zip(start).zip(&kernels).fold([0.0; 3], |mut sum, ((block, phase), kernel)| {
+                    let here = block.advance(*phase, *kernel);
+                    sum[0] += here.value;
+                    sum[1] += here.rate;
+                    sum[2] += -2.0 * block.decay * here.rate - block.determinant * here.value;
+                    sum
+                })
+            };
+            let rest = flow.rest_of(flow.observed, self.level);
+            let base = now(&self.observed);
+            let mut sample = Sample {
+                time: self.cycle as f64 * period + instant,
+                displacement: base[0] + rest.at(t),
+                velocity: base[1] + rest.rate(t),
+                acceleration: base[2] + 2.0 * rest.p2,
+                damping: self.damping.first().copied().unwrap_or(0.0),
+                half_cycle_rms: self.half.last,
+                ..Sample::default()
+            };
+            if let Some(particle) = self.system.particles.first() {
+                let contact = self.contacts[0];
+                let side = contact.side();
+                let here = self.particles[0];
+                let row = face_row(flow.face_rows[0], side);
+                let mut phases = vec![Phase::default(); flow.blocks.len()];
+                let parabola = flow.signal(row, &self.c, self.level, drive, &mut phases);
+                let face = now(&phases)[0] + parabola.at(t);
+                let gap = if contact.face(particle).is_none() {
+                    flight(flow, parabola, &phases, here, self.system.gravity).at(t)
+                        - without_drift(flow, &phases, &kernels)
+                } else if let Some(compression) = flow.face_rows[0].compression {
+                    let parabola = flow.signal(compression, &self.c, self.level, drive, &mut phases);
+                    now(&phases)[0] + parabola.at(t)
+                } else {
+                    here.gap
+                };
+                sample.set_particle(particle, side, face, gap, contact);
+            }
+            self.response.trace.push(sample);
+        }
+    }
+}
+
+fn face_row(rows: FaceRows, side: Side) -> usize {
+    match side {
+        Side::Floor => rows.floor,
+        Side::Ceiling => rows.ceiling,
+    }
+}
+
+fn side_stiffness(system: &HybridSystem, contacts: &[Contact], j: usize) -> Option<f64> {
+    let contact = contacts[j];
+    let face = contact.face(&system.particles[j])?;
+    match face.law {
+        Law::Resilient { stiffness, .. } => Some(stiffness),
+        Law::Rigid { .. } => None,
+    }
+}
+
+fn without_drift(flow: &Flow, phases: &[Phase], kernels: &[super::block::Kernel]) -> f64 {
+    flow.blocks
+        .iter()
+        .zip(phases)
+        .zip(kernels)
+        .filter(|((block, _), _)| !block.is_drift())
+        .fold(0.0, |sum, ((block, phase), kernel)| sum + block.advance(*phase, *kernel).value)
+}
+
+/// The parabola of a gap in flight: y falls by itself and the face's blocks are taken off it, so that u(0) is kept to the
+/// bit; a face that drifts with its structure takes the particle's frame along, and no digits are lost to the distance.
+fn flight(flow: &Flow, face: Parabola, phases: &[Phase], here: Relative, gravity: f64) -> Parabola {
+    let mut path = Parabola { p0: here.gap, p1: here.rate, p2: -0.5 * gravity - face.p2 };
+    for (block, phase) in flow.blocks.iter().zip(phases) {
+        if !block.is_drift() {
+            path.p0 += phase.value;
+            path.p1 += phase.rate;
+        }
+    }
+    path
+}
+
+/// Second derivative of a block's share, as a share.
+fn acceleration(block: &super::block::Block, phase: Phase) -> Phase {
+    let (trace, determinant) = (-2.0 * block.decay, block.determinant);
+    let value = trace * phase.rate - determinant * phase.value;
+    Phase { value, rate: trace * value - determinant * phase.rate }
+}
+
+type GuardSpace<'a> = (&'a mut Search, &'a mut Vec<(usize, Crossing)>, &'a Flow);
+
+/// Adds the guard sign·(parabola + share·phases).
+fn push_guard(
+    (search, crossings, flow): GuardSpace<'_>,
+    place: (usize, Crossing),
+    (parabola, phases, share, sign): (Parabola, &[Phase], f64, f64),
+    (start, distance): (Start, bool),
+) {
+    let factor = share * sign;
+    for (block, phase) in flow.blocks.iter().zip(phases) {
+        // In flight (share −1) the frame already moves with a drifting structure.
+        let factor = if share < 0.0 && block.is_drift() { 0.0 } else { factor };
+        search.initial.push(Phase { value: factor * phase.value, rate: factor * phase.rate });
+    }
+    let parabola = Parabola { p0: sign * parabola.p0, p1: sign * parabola.p1, p2: sign * parabola.p2 };
+    search.guards.push(Guard { label: crossings.len(), parabola, start, distance });
+    crossings.push(place);
+}
+
+/// Integrals of a signal with its parabola, by panels that are exact to rounding.
+fn quadrature(flow: &Flow, start: &[Phase], rest: Parabola, duration: f64) -> Integrals {
+    let radius = flow.blocks.iter().fold(0.0_f64, |largest, block| largest.max(block.radius));
+    let count = panels(radius, duration);
+    let h = duration / count as f64;
+    let mut sum = Integrals::default();
+    for panel in 0..count {
+        for [x, weight] in GAUSS {
+            let t = (panel as f64 + x) * h;
+            let (mut value, mut rate) = (rest.at(t), rest.rate(t));
+            for (block, phase) in flow.blocks.iter().zip(start) {
+                let now = block.advance(*phase, block.kernel(t));
+                value += now.value;
+                rate += now.rate;
+            }
+            sum.value += weight * h * value;
+            sum.square += weight * h * value * value;
+            sum.rate_square += weight * h * rate * rate;
+        }
+    }
+    sum
+}
+
+/// Runs a system.
+pub(crate) fn march(system: &HybridSystem, options: &Options) -> Result<Response, EngineError> {
+    March::new(system, options)?.run()
+}
+
+/// The proof of a run that was never audited.
+impl Default for Clarity {
+    fn default() -> Self {
+        Self { margin: f64::INFINITY, ties: 0 }
+    }
+}
+
+impl Proof {
+    /// The proof of a run with no event at all.
+    #[must_use]
+    pub fn linear() -> Self {
+        Self { smallest_margin: f64::INFINITY, ..Self::default() }
+    }
+}

@@ -1,0 +1,115 @@
+//! Cubic spline through measured points ("not a knot" ends, as MATLAB's `spline`), end values outside.
+
+/// A curve y(x); constant beyond its first and last point.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Spline {
+    x: Vec<f64>,
+    y: Vec<f64>,
+    /// Second derivatives at the points.
+    curvature: Vec<f64>,
+}
+
+impl Spline {
+    /// The spline through `points`, sorted by strictly increasing x; `None` if they are not, or are none.
+    #[must_use]
+    pub fn through(points: &[[f64; 2]]) -> Option<Self> {
+        let increasing = points.windows(2).all(|pair| pair[0][0] < pair[1][0]);
+        if points.is_empty() || !increasing || points.iter().flatten().any(|v| !v.is_finite()) {
+            return None;
+        }
+        let x: Vec<f64> = points.iter().map(|p| p[0]).collect();
+        let y: Vec<f64> = points.iter().map(|p| p[1]).collect();
+        let curvature = curvature(&x, &y);
+        Some(Self { x, y, curvature })
+    }
+
+    /// y at `x`.
+    #[must_use]
+    pub fn at(&self, x: f64) -> f64 {
+        let last = self.x.len() - 1;
+        if x <= self.x[0] {
+            return self.y[0];
+        }
+        if x >= self.x[last] {
+            return self.y[last];
+        }
+        let right = self.x.partition_point(|knot| *knot <= x);
+        let left = right - 1;
+        let h = self.x[right] - self.x[left];
+        let (a, b) = ((self.x[right] - x) / h, (x - self.x[left]) / h);
+        a * self.y[left]
+            + b * self.y[right]
+            + ((a * a * a - a) * self.curvature[left] + (b * b * b - b) * self.curvature[right]) * h * h / 6.0
+    }
+
+    /// The value beyond the last point.
+    #[must_use]
+    pub fn upper_end(&self) -> f64 {
+        self.y[self.y.len() - 1]
+    }
+}
+
+/// Second derivatives; dense elimination, the curves have a dozen points.
+fn curvature(x: &[f64], y: &[f64]) -> Vec<f64> {
+    let n = x.len();
+    if n < 3 {
+        return vec![0.0; n];
+    }
+    let h: Vec<f64> = x.windows(2).map(|p| p[1] - p[0]).collect();
+    let mut a = vec![vec![0.0; n + 1]; n];
+    if n == 3 {
+        // One parabola.
+        a[0][0] = 1.0;
+        a[0][1] = -1.0;
+        a[2][2] = 1.0;
+        a[2][1] = -1.0;
+    } else {
+        a[0][0] = -h[1];
+        a[0][1] = h[0] + h[1];
+        a[0][2] = -h[0];
+        a[n - 1][n - 3] = -h[n - 2];
+        a[n - 1][n - 2] = h[n - 3] + h[n - 2];
+        a[n - 1][n - 1] = -h[n - 3];
+    }
+    for i in 1..n - 1 {
+        a[i][i - 1] = h[i - 1];
+        a[i][i] = 2.0 * (h[i - 1] + h[i]);
+        a[i][i + 1] = h[i];
+        a[i][n] = 6.0 * ((y[i + 1] - y[i]) / h[i] - (y[i] - y[i - 1]) / h[i - 1]);
+    }
+    for column in 0..n {
+        let pivot = (column..n).max_by(|&i, &j| a[i][column].abs().total_cmp(&a[j][column].abs())).unwrap_or(column);
+        a.swap(column, pivot);
+        let (upper, lower) = a.split_at_mut(column + 1);
+        let pivot_row = &upper[column];
+        for row in lower {
+            let factor = row[column] / pivot_row[column];
+            for (cell, above) in row.iter_mut().zip(pivot_row).skip(column) {
+                *cell -= factor * above;
+            }
+        }
+    }
+    let mut m = vec![0.0; n];
+    for i in (0..n).rev() {
+        let sum = (i + 1..n).fold(a[i][n], |sum, k| sum - a[i][k] * m[k]);
+        m[i] = sum / a[i][i];
+    }
+    m
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_cubic_is_reproduced_and_ends_are_held() {
+        let cubic = |x: f64| 1.0 + x - 2.0 * x * x + 0.5 * x * x * x;
+        let points: Vec<[f64; 2]> = [0.7, 1.5, 2.0, 4.0, 7.6].iter().map(|&x| [x, cubic(x)]).collect();
+        let spline = Spline::through(&points).unwrap();
+        for x in [0.7, 1.1, 3.3, 6.0] {
+            assert!((spline.at(x) - cubic(x)).abs() < 1e-11);
+        }
+        assert_eq!(spline.at(0.1), spline.at(0.7));
+        assert_eq!(spline.at(99.0), spline.upper_end());
+    }
+}

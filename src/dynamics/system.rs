@@ -1,0 +1,227 @@
+//! Hybrid systems: a linear structure, particles that touch it or do not, and what drives it.
+//!
+//! The structure has coordinates q with M q″ + C q′ + K q = b F(t) + contact forces. Particle j is at y_j; a face of its
+//! enclosure moves with the row φ of the structure: the floor lies at φ_f·q, the ceiling at φ_c·q + h. Nothing here knows
+//! whether the structure is one mass, a beam or a plate.
+
+/// A dense matrix, row by row.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Matrix {
+    /// Order.
+    pub order: usize,
+    /// Entries, `order` × `order`, row by row.
+    pub entries: Vec<f64>,
+}
+
+impl Matrix {
+    /// The matrix with the given diagonal.
+    #[must_use]
+    pub fn diagonal(diagonal: &[f64]) -> Self {
+        let order = diagonal.len();
+        let mut entries = vec![0.0; order * order];
+        for (i, value) in diagonal.iter().enumerate() {
+            entries[i * order + i] = *value;
+        }
+        Self { order, entries }
+    }
+
+    /// Entry in row i, column j.
+    #[must_use]
+    pub fn at(&self, i: usize, j: usize) -> f64 {
+        self.entries[i * self.order + j]
+    }
+
+    /// y = A x.
+    #[must_use]
+    pub fn times(&self, x: &[f64]) -> Vec<f64> {
+        self.entries.chunks_exact(self.order).map(|row| dot(row, x)).collect()
+    }
+
+    /// xᵀ A y.
+    #[must_use]
+    pub fn form(&self, x: &[f64], y: &[f64]) -> f64 {
+        dot(x, &self.times(y))
+    }
+}
+
+/// Σ aᵢ bᵢ, in order.
+#[must_use]
+pub fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).fold(0.0, |sum, (x, y)| sum + x * y)
+}
+
+/// A structure with its particles and its drive.
+#[derive(Debug, Clone, PartialEq)]
+pub struct HybridSystem {
+    /// M, C, K of the structure without particles.
+    pub mass: Matrix,
+    /// C.
+    pub damping: Matrix,
+    /// K.
+    pub stiffness: Matrix,
+    /// g, on the particles only.
+    pub gravity: f64,
+    /// The particles.
+    pub particles: Vec<Particle>,
+    /// b: generalised force of a unit force at the forcing point.
+    pub force_row: Vec<f64>,
+    /// What drives it.
+    pub drive: Drive,
+    /// The observed displacement is this row times q.
+    pub observed_row: Vec<f64>,
+    /// Rows ρ along which contact forces are internal (ρ·φ_f = ρ·φ_c for every particle): there the momentum is balanced.
+    pub momentum_rows: Vec<Vec<f64>>,
+}
+
+/// A particle in its enclosure.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Particle {
+    /// mp, kg.
+    pub mass: f64,
+    /// The floor, at u = y − φ_f·q = 0.
+    pub floor: Face,
+    /// The ceiling, at w = y − φ_c·q − h = 0; `None` where it cannot be met.
+    pub ceiling: Option<Face>,
+    /// h, m; any value where there is no ceiling.
+    pub gap: f64,
+}
+
+/// A face of an enclosure.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Face {
+    /// φ.
+    pub row: Vec<f64>,
+    /// How it pushes back.
+    pub law: Law,
+}
+
+/// Contact law of a face.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Law {
+    /// Impulse and momentum; sticks where it can push.
+    Rigid {
+        /// ε.
+        restitution: f64,
+    },
+    /// Spring and dashpot.
+    Resilient {
+        /// N/m.
+        stiffness: f64,
+        /// N s/m; the start value where half cycles renew it.
+        damping: f64,
+        /// True: the contact ends where its force would turn to tension; false: at zero gap.
+        no_tension: bool,
+        /// Where the compression ends.
+        stop: Option<Stop>,
+    },
+}
+
+/// Limit stop of a resilient face.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Stop {
+    /// δ, m.
+    pub length: f64,
+    /// Its restitution.
+    pub restitution: f64,
+}
+
+/// What drives the structure, cycle by cycle. Time is kept as a cycle and a time within it, so that a million cycles cost
+/// no digits.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Drive {
+    /// Length of a cycle, s.
+    pub period: f64,
+    /// Jumps of the force within a cycle, by time; the first at 0.
+    pub ticks: Vec<Tick>,
+    /// False: the ticks belong to the first cycle alone.
+    pub repeats: bool,
+    /// A harmonic force F sin(ω t) beside them: [F, ω], with ω·period a multiple of 2π.
+    pub harmonic: Option<Harmonic>,
+    /// Contact damping renewed at every half cycle of the observed acceleration.
+    pub half_cycles: Option<HalfCycles>,
+}
+
+/// An instant at which the force jumps.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Tick {
+    /// Time within the cycle, s.
+    pub time: f64,
+    /// Impulse given at that instant, N s.
+    pub impulse: f64,
+    /// Constant force from then on, N.
+    pub level: f64,
+}
+
+/// F sin(ω t).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Harmonic {
+    /// F, N.
+    pub force: f64,
+    /// ω, rad/s.
+    pub angular_frequency: f64,
+}
+
+/// Equivalent viscous damping: c = curve(RMS of the observed acceleration over the half cycle before, in g).
+#[derive(Debug, Clone, PartialEq)]
+pub struct HalfCycles {
+    /// The curve, tabulated finely enough to be read linearly: acceleration in g, then N s/m; end values outside.
+    pub curve: super::Spline,
+}
+
+/// What a particle touches.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
+pub enum Contact {
+    /// Nothing: free flight.
+    #[default]
+    Flight,
+    /// Floor: pressed into it, or stuck to it if it is rigid.
+    Floor,
+    /// Ceiling.
+    Ceiling,
+    /// Held on the floor's limit stop.
+    FloorStop,
+    /// Held on the ceiling's limit stop.
+    CeilingStop,
+    /// Let go by a floor that cannot pull, which is still compressed.
+    FloorReleased,
+    /// The same at the ceiling.
+    CeilingReleased,
+}
+
+/// What happened.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum EventKind {
+    /// Contact made with the floor.
+    FloorContact,
+    /// Contact lost with the floor.
+    FloorRelease,
+    /// Contact made with the ceiling.
+    CeilingContact,
+    /// Contact lost with the ceiling.
+    CeilingRelease,
+    /// Impact on the floor's limit stop.
+    FloorStop,
+    /// Impact on the ceiling's limit stop.
+    CeilingStop,
+    /// Let go by a limit stop.
+    StopRelease,
+    /// The last of infinitely many impacts.
+    ChatterEnd,
+}
+
+/// An event in its place.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Event {
+    /// Forcing cycle, from 0.
+    pub cycle: u64,
+    /// Time within the cycle, s.
+    pub time: f64,
+    /// Which particle.
+    pub particle: usize,
+    /// What.
+    pub kind: EventKind,
+    /// Relative velocity just before, m/s.
+    pub approach: f64,
+    /// Relative velocity just after, m/s.
+    pub departure: f64,
+}

@@ -1,0 +1,78 @@
+//! Time histories: the motion at evenly spaced instants of a few cycles, evaluated on the exact flow.
+
+use super::contact::Side;
+use super::system::{Contact, Law, Particle};
+
+/// Which instants to keep.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct TraceRequest {
+    /// First cycle.
+    pub from_cycle: u64,
+    /// One past the last.
+    pub to_cycle: u64,
+    /// Samples a cycle.
+    pub samples: u64,
+}
+
+impl TraceRequest {
+    pub(crate) fn covers(&self, cycle: u64) -> bool {
+        (self.from_cycle..self.to_cycle).contains(&cycle)
+    }
+
+    pub(crate) fn instant(&self, i: u64, period: f64) -> f64 {
+        period * i as f64 / self.samples as f64
+    }
+
+    /// The first sample at or after `time`.
+    pub(crate) fn next_sample(&self, time: f64, period: f64) -> u64 {
+        let guess = (time / period * self.samples as f64).floor().max(0.0) as u64;
+        (guess..).find(|&i| self.instant(i, period) >= time).unwrap_or(guess)
+    }
+}
+
+/// The motion at one instant. The particle is the first one; its faces are where they are, compressed or not.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Sample {
+    /// s.
+    pub time: f64,
+    /// Observed displacement, m.
+    pub displacement: f64,
+    /// m/s.
+    pub velocity: f64,
+    /// m/s².
+    pub acceleration: f64,
+    /// y, m.
+    pub particle: f64,
+    /// Floor and ceiling surface, m.
+    pub floor: f64,
+    /// m.
+    pub ceiling: f64,
+    /// Where they would be if they were rigid.
+    pub rigid_floor: f64,
+    /// m.
+    pub rigid_ceiling: f64,
+    /// Contact damping in force, N s/m.
+    pub damping: f64,
+    /// RMS acceleration of the last complete half cycle, m/s².
+    pub half_cycle_rms: f64,
+}
+
+impl Sample {
+    /// Places particle and faces: `face` is where the rigid face is that `gap` refers to.
+    pub(crate) fn set_particle(&mut self, particle: &Particle, side: Side, face: f64, gap: f64, contact: Contact) {
+        let height = if particle.ceiling.is_some() { particle.gap } else { f64::NAN };
+        (self.rigid_floor, self.rigid_ceiling) = (face, face + height);
+        self.particle = match side {
+            Side::Floor => face + gap,
+            Side::Ceiling => face + particle.gap + gap,
+        };
+        (self.floor, self.ceiling) = (self.rigid_floor, self.rigid_ceiling);
+        let resilient = contact.face(particle).is_some_and(|face| matches!(face.law, Law::Resilient { .. }));
+        if resilient {
+            match side {
+                Side::Floor => self.floor = self.particle,
+                Side::Ceiling => self.ceiling = self.particle,
+            }
+        }
+    }
+}

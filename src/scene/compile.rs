@@ -1,0 +1,154 @@
+//! Scene to hybrid system: only the effects that the scene names.
+//!
+//! One mass: M = m, C = c, K = ks, every face moves with the mass. Soft walls add the ceiling side of the enclosure as a
+//! second coordinate s = x_top − x, so that M = [[m, mt], [mt, mt]] with mt taken off the base, K = diag(ks, kw).
+
+use super::{ContactDamping, ContactEnd, Damper, Excitation, PulseShape, Scene, Structure, Surface};
+use crate::dynamics::{Drive, Face, HalfCycles, Harmonic, HybridSystem, Law, Matrix, Particle, Spline, Stop, Tick};
+
+/// Why a scene does not compile.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum CompileError {
+    /// Soft walls on more than one damper.
+    #[error("soft walls are modelled for a single damper on a single mass; this scene has {dampers} dampers")]
+    WallsOnArray {
+        /// How many.
+        dampers: usize,
+    },
+    /// A resilient face without particle mass.
+    #[error(
+        "a particle without mass cannot press into a resilient floor (the contact is singular): give it a mass, however small"
+    )]
+    MasslessContact,
+    /// Floor and ceiling of different kinds of damping.
+    #[error("equivalent viscous damping holds for floor and ceiling together; state it for both")]
+    MixedDamping,
+    /// The damping curve is no curve.
+    #[error("the equivalent damping curve needs points with increasing accelerations")]
+    DampingCurve,
+}
+
+/// Compiles a scene.
+///
+/// # Errors
+/// [`CompileError`] where the scene asks for what no model covers.
+pub fn compile(scene: &Scene) -> Result<HybridSystem, CompileError> {
+    let Structure::SingleMass { mass, stiffness, damping } = scene.structure;
+    let walls = match scene.dampers.as_slice() {
+        [damper] => damper.walls,
+        dampers if dampers.iter().any(|damper| damper.walls.is_some()) => {
+            return Err(CompileError::WallsOnArray { dampers: dampers.len() });
+        }
+        _ => None,
+    };
+    let (mass, damping, stiffness, base, top) = match walls {
+        None => {
+            let one = |x: f64| Matrix::diagonal(&[x]);
+            (one(mass), one(damping), one(stiffness), vec![1.0], vec![1.0])
+        }
+        Some(walls) => {
+            let top = walls.ceiling_mass;
+            let mass = Matrix { order: 2, entries: vec![mass, top, top, top] };
+            let damping = Matrix::diagonal(&[damping, walls.damping]);
+            (mass, damping, Matrix::diagonal(&[stiffness, walls.stiffness]), vec![1.0, 0.0], vec![1.0, 1.0])
+        }
+    };
+    let particles =
+        scene.dampers.iter().map(|damper| particle(damper, &base, &top)).collect::<Result<Vec<_>, CompileError>>()?;
+    Ok(HybridSystem {
+        mass,
+        damping,
+        stiffness,
+        gravity: scene.gravity,
+        particles,
+        force_row: base.clone(),
+        drive: Drive { half_cycles: half_cycles(scene)?, ..drive(&scene.excitation) },
+        observed_row: base.clone(),
+        momentum_rows: vec![base],
+    })
+}
+
+fn particle(damper: &Damper, base: &[f64], top: &[f64]) -> Result<Particle, CompileError> {
+    let ceiling = if damper.gap.is_finite() { Some(face(damper, &damper.ceiling, top)?) } else { None };
+    let gap = if damper.gap.is_finite() { damper.gap } else { 0.0 };
+    Ok(Particle { mass: damper.particle_mass, floor: face(damper, &damper.floor, base)?, ceiling, gap })
+}
+
+fn face(damper: &Damper, surface: &Surface, row: &[f64]) -> Result<Face, CompileError> {
+    let law = match surface {
+        Surface::Rigid { restitution } => Law::Rigid { restitution: *restitution },
+        Surface::Resilient { stiffness, damping, ends } => {
+            if damper.particle_mass <= 0.0 {
+                return Err(CompileError::MasslessContact);
+            }
+            let damping = match damping {
+                ContactDamping::Constant(value) => *value,
+                // Renewed at every half cycle; the drive holds the curve.
+                ContactDamping::EquivalentViscous(_) => 0.0,
+            };
+            let stop = damper.stop.map(|stop| Stop { length: stop.length, restitution: stop.restitution });
+            Law::Resilient { stiffness: *stiffness, damping, no_tension: *ends == ContactEnd::ZeroForce, stop }
+        }
+    };
+    Ok(Face { row: row.to_vec(), law })
+}
+
+fn half_cycles(scene: &Scene) -> Result<Option<HalfCycles>, CompileError> {
+    let mut curve = None;
+    for damper in &scene.dampers {
+        let kinds = [&damper.floor, &damper.ceiling].map(|surface| match surface {
+            Surface::Resilient { damping: ContactDamping::EquivalentViscous(points), .. } => Some(points),
+            _ => None,
+        });
+        match kinds {
+            [None, None] if curve.is_none() => {}
+            [Some(points), Some(_)] => curve = Some(points),
+            _ => return Err(CompileError::MixedDamping),
+        }
+    }
+    curve
+        .map(|points| Spline::through(points).map(|curve| HalfCycles { curve }).ok_or(CompileError::DampingCurve))
+        .transpose()
+}
+
+fn drive(excitation: &Excitation) -> Drive {
+    let quiet =
+        |period: f64, ticks: Vec<Tick>| Drive { period, ticks, repeats: true, harmonic: None, half_cycles: None };
+    let once = |impulse: f64| vec![Tick { time: 0.0, impulse, level: 0.0 }];
+    match *excitation {
+        Excitation::SingleImpulse { impulse, cycle } => Drive { repeats: false, ..quiet(cycle, once(impulse)) },
+        Excitation::ImpulseTrain { impulse, period } => quiet(period, once(impulse)),
+        Excitation::Harmonic { force, angular_frequency } => {
+            Drive { harmonic: Some(Harmonic { force, angular_frequency }), ..quiet(excitation.period(), once(0.0)) }
+        }
+        Excitation::PulseTrain { impulse, period, duration, shape: PulseShape::Rectangular } => {
+            let mut ticks = vec![Tick { time: 0.0, impulse: 0.0, level: impulse / duration }];
+            if duration < period {
+                ticks.push(Tick { time: duration, impulse: 0.0, level: 0.0 });
+            }
+            quiet(period, ticks)
+        }
+        Excitation::PulseTrain { impulse, period, duration, shape: PulseShape::Binomial { impulses } } => {
+            let weights = binomial(impulses);
+            let spacing = duration / f64::from(impulses.max(1));
+            let tick =
+                |(i, weight): (usize, f64)| Tick { time: i as f64 * spacing, impulse: impulse * weight, level: 0.0 };
+            quiet(period, weights.into_iter().enumerate().map(tick).collect())
+        }
+    }
+}
+
+/// C(n−1, i)/2^(n−1) for i = 0 … n−1: built from the middle outwards by ratios, so that nothing overflows.
+fn binomial(n: u32) -> Vec<f64> {
+    let n = n.max(1) as usize;
+    let mut weights = vec![1.0; n];
+    for i in 1..n {
+        weights[i] = weights[i - 1] * (n - i) as f64 / i as f64;
+        if weights[i] > 1e200 {
+            weights[..=i].iter_mut().for_each(|weight| *weight *= 1e-200);
+        }
+    }
+    let sum: f64 = weights.iter().sum();
+    weights.iter_mut().for_each(|weight| *weight /= sum);
+    weights
+}
