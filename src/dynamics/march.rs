@@ -159,7 +159,7 @@ impl<'a> March<'a> {
                 if tick.time > self.time {
                     self.propagate_to(tick.time)?;
                 }
-                let kick = if cycle == 0 && i == 0 { 1.0 + self.options.kick } else { 1.0 };
+                let kick = if cycle == 0 && i == 0 { self.options.kick * self.system.drive.scale() } else { 0.0 };
                 self.tick(*tick, kick)?;
             }
             self.propagate_to(period)?;
@@ -219,10 +219,10 @@ impl<'a> March<'a> {
     /// A jump of the force.
     fn tick(&mut self, tick: Tick, kick: f64) -> Result<(), EngineError> {
         self.level = tick.level;
-        if tick.impulse == 0.0 {
+        let impulse = tick.impulse + kick;
+        if impulse == 0.0 {
             return Ok(());
         }
-        let impulse = tick.impulse * kick;
         let before = self.audit.is_some().then(|| super::audit::energy(self.system, &self.audit_state()));
         // The impulse acts on the structure; a particle that is held receives its share through the face.
         let bare = Cholesky::new(&self.system.mass)?;

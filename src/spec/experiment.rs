@@ -109,7 +109,7 @@ pub struct Maximise {
 /// Which part of the motion to keep as a time history. The list columns are then `time` (s), `base_displacement`,
 /// `base_velocity`, `base_acceleration`, `particle_displacement`, `floor_displacement` and `ceiling_displacement` (the
 /// resilient surfaces where they are), `rigid_floor`, `rigid_ceiling` (where they would be uncompressed),
-/// `contact_damping` (N s/m), `rms_acceleration` (of the last half cycle, in g), `event_time`, `event_kind` (a code).
+/// `contact_damping` (N s/m) and `rms_acceleration` (of the last complete half cycle, in g).
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct TraceSpec {
     /// First forcing cycle, counted from 0.
