@@ -17,6 +17,7 @@ mod block;
 mod contact;
 mod elementary;
 mod flow;
+mod guards;
 mod integral;
 mod march;
 mod search;
