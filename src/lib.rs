@@ -14,6 +14,7 @@
 //!
 //! A table on disk is all that verdicts, figures and reports read.
 
+pub mod atomic;
 pub mod dynamics;
 pub mod figure;
 pub mod measure;
