@@ -2,49 +2,38 @@
 
 use super::variant::Variant;
 use crate::measure::Measure;
-use crate::scene::Recipe;
 use crate::spec::{Experiment, SolverChoice};
 
-/// Indices of a row's case, solver and variant in its experiment.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+/// A row.
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Job {
+    /// Index of the case.
     pub case: usize,
-    pub solver: usize,
+    pub solver: SolverChoice,
+    /// Index of the variant.
     pub variant: usize,
     /// The row whose numbers this one shares, because its case does not lean on the assumption that the variant moves.
     pub same_as: Option<usize>,
 }
 
 /// The rows of an experiment in the order of its table: baseline first, then each variant; in each the cases in the order
-/// of the sweep, each under every solver. Variants are for sensitivity, and run event-driven only.
+/// of the sweep, each under its solvers. Variants are for sensitivity, and run event-driven only.
 pub(super) fn jobs(experiment: &Experiment, variants: &[Variant]) -> Vec<Job> {
     let mut jobs: Vec<Job> = Vec::new();
-    let solvers = experiment.solvers.len();
-    for (variant, Variant { moved, .. }) in variants.iter().enumerate() {
-        for (case, _) in experiment.cases.iter().enumerate() {
-            for (solver, choice) in experiment.solvers.iter().enumerate() {
-                let same_as = match moved {
-                    None => None,
-                    Some(_) if *choice != SolverChoice::EventDriven => continue,
-                    Some(assumption) => match recipe(experiment, case) {
-                        Ok(recipe) if !recipe.assumptions().contains(assumption) => Some(case * solvers + solver),
-                        _ => None,
-                    },
-                };
-                jobs.push(Job { case, solver, variant, same_as });
-            }
+    for (case, sweep_point) in experiment.cases.iter().enumerate() {
+        jobs.extend(sweep_point.solvers.iter().map(|&solver| Job { case, solver, variant: 0, same_as: None }));
+    }
+    let event_driven: Vec<(usize, Job)> =
+        jobs.iter().copied().enumerate().filter(|(_, job)| job.solver == SolverChoice::EventDriven).collect();
+    for (variant, Variant { moved, .. }) in variants.iter().enumerate().skip(1) {
+        for (row, job) in &event_driven {
+            let leans = experiment
+                .recipe_of(&experiment.cases[job.case])
+                .map_or(true, |recipe| moved.is_none_or(|moved| recipe.assumptions().contains(&moved)));
+            jobs.push(Job { variant, same_as: (!leans).then_some(*row), ..*job });
         }
     }
     jobs
-}
-
-/// The recipe of a case: the experiment's, with the sweep point's values.
-pub(super) fn recipe(experiment: &Experiment, case: usize) -> Result<Recipe, String> {
-    let mut recipe = experiment.recipe.clone();
-    for (parameter, value) in &experiment.cases[case].values {
-        recipe.set(*parameter, *value).map_err(|error| error.to_string())?;
-    }
-    Ok(recipe)
 }
 
 /// Simulations that a row takes at most.
@@ -83,11 +72,12 @@ pub(super) fn measures_need_trace(measures: &[Measure]) -> bool {
 pub(super) fn cost(experiment: &Experiment, variants: &[Variant], job: &Job) -> f64 {
     let settings = &experiment.settings;
     let cycles = f64::from(settings.skip) + f64::from(settings.average);
-    let steps_a_cycle = match experiment.solvers[job.solver] {
+    let steps_a_cycle = match job.solver {
         // An exact step between two events costs as much as some ten fixed steps, and there are a few in a cycle.
         SolverChoice::EventDriven => 50.0,
         SolverChoice::FixedStep { time_step } => {
-            let period = recipe(experiment, job.case)
+            let period = experiment
+                .recipe_of(&experiment.cases[job.case])
                 .ok()
                 .and_then(|recipe| recipe.resolve(&variants[job.variant].assumptions).ok())
                 .map_or(1.0, |scene| scene.excitation.period());

@@ -10,7 +10,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use super::evaluate::{Evaluate, Simulation, evaluate_guarded};
 use super::event::{Event, Listen};
-use super::job::{Job, cost, evaluations, jobs, keeps_trace, measures_need_trace, recipe};
+use super::job::{Job, cost, evaluations, jobs, keeps_trace, measures_need_trace};
 use super::maximise::maximum;
 use super::record::Failures;
 use super::tabulate::{self, Outcome, Row};
@@ -171,12 +171,12 @@ fn simulate(
     evaluate: &impl Evaluate,
     done: &(impl Fn() + Sync),
 ) -> Outcome {
-    let recipe = recipe(experiment, job.case)?;
+    let recipe = experiment.recipe_of(&experiment.cases[job.case]).map_err(|error| error.to_string())?;
     let wanted = keeps_trace(experiment, job) || measures_need_trace(&experiment.measures);
     let simulation = Simulation {
         recipe: &recipe,
         assumptions: &variant.assumptions,
-        solver: experiment.solvers[job.solver],
+        solver: job.solver,
         settings: &experiment.settings,
         measures: &experiment.measures,
         trace: experiment.trace.as_ref().filter(|_| wanted),

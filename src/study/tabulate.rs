@@ -10,7 +10,7 @@ use super::record::Failures;
 use super::variant::Variant;
 use crate::measure::{Evaluated, Measure, TraceColumn};
 use crate::scene::{Parameter, ParameterValue};
-use crate::spec::{Experiment, SolverChoice};
+use crate::spec::Experiment;
 use crate::table::{Column, Data, Table};
 
 /// What came of a row.
@@ -30,14 +30,6 @@ pub(super) fn word(of: &impl Serialize) -> String {
         Ok(serde_json::Value::String(word)) => word,
         // Only enums without fields come here.
         _ => String::new(),
-    }
-}
-
-/// The label of a solver in the `solver` column.
-fn solver_label(solver: SolverChoice) -> String {
-    match solver {
-        SolverChoice::EventDriven => "event_driven".into(),
-        SolverChoice::FixedStep { time_step } => format!("fixed_step_{time_step:e}s"),
     }
 }
 
@@ -89,7 +81,7 @@ pub(super) fn table(
     if experiment.cases.iter().any(|case| !case.sweep.is_empty()) {
         columns.push(Column::new("sweep", texts(&|row| experiment.cases[jobs[row].case].sweep.clone())));
     }
-    columns.push(Column::new("solver", texts(&|row| solver_label(experiment.solvers[jobs[row].solver]))));
+    columns.push(Column::new("solver", texts(&|row| jobs[row].solver.label())));
     columns.push(Column::new("variant", texts(&|row| variants[jobs[row].variant].label.clone())));
 
     let floats = |cell: &dyn Fn(&Row) -> f64| {
@@ -132,8 +124,7 @@ pub(super) fn table(
 
 fn swept_column(experiment: &Experiment, jobs: &[Job], parameter: Parameter) -> Column {
     let value = |job: &Job| {
-        let values = &experiment.cases[job.case].values;
-        values.iter().find(|(swept, _)| *swept == parameter).map(|(_, value)| *value)
+        experiment.cases[job.case].get(parameter)
     };
     let data = if parameter == Parameter::Stop {
         let label = |job: &Job| match value(job) {

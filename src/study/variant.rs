@@ -3,6 +3,8 @@
 //! They say how much a published number depends on what the study leaves unstated (u_input of a comparison).
 
 use crate::scene::{Assumption, Assumptions};
+use crate::spec::{AssumptionSheet, Experiment};
+use crate::table::BASELINE;
 
 /// One set of assumptions under which an experiment runs.
 #[derive(Debug, Clone, PartialEq)]
@@ -15,10 +17,27 @@ pub struct Variant {
     pub assumptions: Assumptions,
 }
 
-impl Variant {
-    /// The assumptions as the file gives them.
-    #[must_use]
-    pub fn baseline(assumptions: Assumptions) -> Self {
-        Self { label: crate::table::BASELINE.into(), moved: None, assumptions }
+/// Whether the ends of the assumptions are run as well.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Sensitivity {
+    /// Yes: a published value is held against the result, and its uncertainty needs them.
+    Wanted,
+    /// No: the baseline says all that is asked.
+    NotWanted,
+}
+
+/// The variants of an experiment, the baseline first.
+#[must_use]
+pub fn variants(experiment: &Experiment, sheet: &AssumptionSheet, sensitivity: Sensitivity) -> Vec<Variant> {
+    let baseline = sheet.assumptions();
+    let mut variants = Vec::new();
+    if sensitivity == Sensitivity::Wanted {
+        for (label, assumptions) in sheet.variants(&experiment.assumptions_used()) {
+            let moved = assumptions.values.iter().find(|(name, value)| baseline.values.get(name) != Some(value));
+            let moved = moved.map(|(name, _)| *name);
+            variants.push(Variant { label, moved, assumptions });
+        }
     }
+    variants.insert(0, Variant { label: BASELINE.into(), moved: None, assumptions: baseline });
+    variants
 }
