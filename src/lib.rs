@@ -24,5 +24,6 @@ pub mod scene;
 pub mod spec;
 pub mod study;
 pub mod table;
+pub mod text;
 
 pub mod cli;

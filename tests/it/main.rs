@@ -1,3 +1,5 @@
 //! One test binary: a module per subject.
 
+mod figure;
+mod made_up;
 mod table;
