@@ -1,9 +1,7 @@
 //! Texts to experiments: everything that can be read is, and everything that cannot is told.
 
 use super::layout::{ASSUMPTIONS, Texts};
-use crate::spec::{
-    AssumptionSheet, Experiment, ExperimentId, IdError, Problems, parse_assumptions, parse_experiment,
-};
+use crate::spec::{AssumptionSheet, Experiment, ExperimentId, IdError, Problems, parse_assumptions, parse_experiment};
 
 /// The experiments of a study with the assumptions that they share.
 #[derive(Debug, Default)]
@@ -81,8 +79,7 @@ impl Loaded {
     pub fn from_texts(texts: &Texts) -> Self {
         let mut loaded = Self::default();
         if let Some(bytes) = texts.files.get(ASSUMPTIONS) {
-            match text(ASSUMPTIONS, bytes)
-                .and_then(|text| parse_assumptions(ASSUMPTIONS, text).map_err(Refused::Text))
+            match text(ASSUMPTIONS, bytes).and_then(|text| parse_assumptions(ASSUMPTIONS, text).map_err(Refused::Text))
             {
                 Ok(sheet) => loaded.sheet = sheet,
                 Err(refused) => {

@@ -9,6 +9,7 @@ use super::evaluate::{Evaluate, Simulation, evaluate_guarded};
 use crate::measure::Evaluated;
 use crate::scene::ParameterValue;
 use crate::spec::Maximise;
+use crate::text::words;
 
 /// Where a maximum lies.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -71,12 +72,12 @@ fn one(
     at: f64,
 ) -> Result<Tried, String> {
     let mut recipe = simulation.recipe.clone();
-    let place = |reason: String| format!("at {} = {at}: {reason}", super::tabulate::word(&maximise.over));
+    let place = |reason: String| format!("at {} = {at}: {reason}", words::of_key(&maximise.over));
     recipe.set(maximise.over, ParameterValue::Number(at)).map_err(|error| place(error.to_string()))?;
     let evaluated = evaluate_guarded(evaluate, &Simulation { recipe: &recipe, ..*simulation }).map_err(place)?;
     match evaluated.measured.get(measure) {
         Some(measured) if !measured.value.is_nan() => Ok(Tried { at, value: measured.value, evaluated }),
-        _ => Err(place(format!("{} has no value", super::tabulate::word(&maximise.measure)))),
+        _ => Err(place(format!("{} has no value", words::of_key(&maximise.measure)))),
     }
 }
 

@@ -28,11 +28,8 @@ pub use meaning::{Change, canonical, changes, fingerprint};
 pub use plan::{Item, State};
 pub use progress::Progress;
 pub use reason::{Reason, differences};
-pub use record::{Failures, FileHash, NoRecord, Publication, RECORD_FORMAT, Record};
+pub use record::{Failures, FileHash, NoRecord, PRESENTATION_VERSION, Publication, RECORD_FORMAT, Record};
 pub use run::{Finished, Task, ThreadError, run};
 pub use snapshot::Snapshot;
 pub use store::{Lock, save};
 pub use variant::{Sensitivity, Variant, variants};
-
-/// Raised when figures or reports of the same tables come out differently, so that they are made again.
-pub const PRESENTATION_VERSION: u32 = 1;

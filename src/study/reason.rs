@@ -60,8 +60,7 @@ pub fn differences(old: &Value, new: &Value, file_of: &dyn Fn(&str) -> String) -
     let mut reasons = Vec::new();
     for (file, list) in by_file {
         let count = list.len().saturating_sub(TOLD);
-        reasons
-            .extend(list.into_iter().take(TOLD).map(|change| Reason::Changed { file: file.clone(), change }));
+        reasons.extend(list.into_iter().take(TOLD).map(|change| Reason::Changed { file: file.clone(), change }));
         if count > 0 {
             reasons.push(Reason::MoreChanged { file, count });
         }

@@ -15,6 +15,9 @@ use crate::spec::ExperimentId;
 /// Raised when a record changes its shape; older ones then count as absent.
 pub const RECORD_FORMAT: u32 = 1;
 
+/// Raised when figures or reports of the same tables come out differently, so that they are made again.
+pub const PRESENTATION_VERSION: u32 = 1;
+
 /// What became of one experiment.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -98,8 +101,7 @@ impl Record {
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Err(NoRecord::Absent),
             Err(error) => return Err(NoRecord::Unreadable(error.to_string())),
         };
-        let record: Self =
-            serde_json::from_slice(&bytes).map_err(|error| NoRecord::Unreadable(error.to_string()))?;
+        let record: Self = serde_json::from_slice(&bytes).map_err(|error| NoRecord::Unreadable(error.to_string()))?;
         if record.format != RECORD_FORMAT {
             return Err(NoRecord::Unreadable(format!("format {} instead of {RECORD_FORMAT}", record.format)));
         }

@@ -17,6 +17,7 @@ use super::tabulate::{self, Outcome, Row};
 use super::variant::Variant;
 use crate::spec::Experiment;
 use crate::table::Table;
+use crate::text::words;
 
 /// An experiment to be run.
 #[derive(Debug, Clone, Copy)]
@@ -97,15 +98,12 @@ pub fn run<T: Send + Sync>(
 fn order<T>(work: &[Work<'_, T>]) -> Vec<(usize, usize)> {
     let mut order: Vec<(f64, f64, usize, usize)> = Vec::new();
     for (index, one) in work.iter().enumerate() {
-        let costs: Vec<f64> =
-            one.jobs.iter().map(|job| cost(one.task.experiment, one.task.variants, job)).collect();
+        let costs: Vec<f64> = one.jobs.iter().map(|job| cost(one.task.experiment, one.task.variants, job)).collect();
         let longest = costs.iter().copied().fold(0.0, f64::max);
         let real = (0..costs.len()).filter(|&row| one.jobs[row].same_as.is_none());
         order.extend(real.map(|row| (longest, costs[row], index, row)));
     }
-    order.sort_by(|a, b| {
-        b.0.total_cmp(&a.0).then(a.2.cmp(&b.2)).then(b.1.total_cmp(&a.1)).then(a.3.cmp(&b.3))
-    });
+    order.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.2.cmp(&b.2)).then(b.1.total_cmp(&a.1)).then(a.3.cmp(&b.3)));
     order.into_iter().map(|(_, _, index, row)| (index, row)).collect()
 }
 
@@ -187,7 +185,7 @@ fn simulate(
         return Ok(Row { evaluated: evaluated?, place: None });
     };
     let measure = tabulate::maximised_index(experiment, maximise.measure)
-        .ok_or_else(|| format!("{} is to be maximised and not measured", tabulate::word(&maximise.measure)))?;
+        .ok_or_else(|| format!("{} is to be maximised and not measured", words::of_key(&maximise.measure)))?;
     // Histories of the points that are not the maximum are not wanted.
     let trace = simulation.trace.filter(|_| measures_need_trace(&experiment.measures));
     let search = Simulation { trace, ..simulation };

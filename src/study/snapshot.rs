@@ -12,7 +12,7 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 
 use super::layout::{Layout, Texts};
-use super::record::RECORD_FORMAT;
+use super::record::{PRESENTATION_VERSION, RECORD_FORMAT};
 use crate::atomic::{self, FileError};
 use crate::dynamics::SOLVER_VERSION;
 
@@ -45,8 +45,7 @@ struct Versions {
 }
 
 impl Versions {
-    const CURRENT: Self =
-        Self { record: RECORD_FORMAT, solver: SOLVER_VERSION, presentation: super::PRESENTATION_VERSION };
+    const CURRENT: Self = Self { record: RECORD_FORMAT, solver: SOLVER_VERSION, presentation: PRESENTATION_VERSION };
 }
 
 /// An output at a glance: enough to see that it was cut, replaced or edited, and bounded in cost.

@@ -2,8 +2,6 @@
 
 use std::collections::BTreeMap;
 
-use serde::Serialize;
-
 use super::job::Job;
 use super::maximise::Place;
 use super::record::Failures;
@@ -12,6 +10,7 @@ use crate::measure::{Evaluated, Measure, TraceColumn};
 use crate::scene::{Parameter, ParameterValue};
 use crate::spec::Experiment;
 use crate::table::{Column, Data, Table};
+use crate::text::words;
 
 /// What came of a row.
 pub(super) type Outcome = Result<Row, String>;
@@ -22,15 +21,6 @@ pub(super) struct Row {
     pub evaluated: Evaluated,
     /// Where the maximum lies, if there was one to look for.
     pub place: Option<Place>,
-}
-
-/// The word for a parameter or a measure, as YAML and tables have it.
-pub(super) fn word(of: &impl Serialize) -> String {
-    match serde_json::to_value(of) {
-        Ok(serde_json::Value::String(word)) => word,
-        // Only enums without fields come here.
-        _ => String::new(),
-    }
 }
 
 /// Unit of a parameter as a sweep gives it.
@@ -92,7 +82,7 @@ pub(super) fn table(
         Data::Int(outcomes.iter().map(count).collect())
     };
     for (index, measure) in experiment.measures.iter().enumerate() {
-        let name = word(measure);
+        let name = words::of_key(measure);
         let of = |part: fn(&crate::measure::Measured) -> f64| {
             floats(&|row| row.evaluated.measured.get(index).map_or(f64::NAN, part))
         };
@@ -101,12 +91,11 @@ pub(super) fn table(
         columns.push(Column::new(format!("{name}_num"), of(|m| m.numerical)).with_unit(unit));
         columns.push(Column::new(format!("{name}_spread"), of(|m| m.spread)).with_unit(unit));
         if let Some(maximise) = experiment.maximise.as_ref().filter(|maximise| maximise.measure == *measure) {
-            let name = format!("{}_at_maximum", word(&maximise.over));
+            let name = format!("{}_at_maximum", words::of_key(&maximise.over));
             let place = |part: fn(&Place) -> f64| floats(&|row| row.place.as_ref().map_or(f64::NAN, part));
             let unit = parameter_unit(maximise.over);
-            columns.push(
-                Column::new(&name, place(|p| p.at)).with_unit(unit).with_symbol(parameter_symbol(maximise.over)),
-            );
+            columns
+                .push(Column::new(&name, place(|p| p.at)).with_unit(unit).with_symbol(parameter_symbol(maximise.over)));
             columns.push(Column::new(format!("{name}_num"), place(|p| p.within)).with_unit(unit));
         }
     }
@@ -123,9 +112,7 @@ pub(super) fn table(
 }
 
 fn swept_column(experiment: &Experiment, jobs: &[Job], parameter: Parameter) -> Column {
-    let value = |job: &Job| {
-        experiment.cases[job.case].get(parameter)
-    };
+    let value = |job: &Job| experiment.cases[job.case].get(parameter);
     let data = if parameter == Parameter::Stop {
         let label = |job: &Job| match value(job) {
             Some(ParameterValue::With) => "with",
@@ -141,7 +128,9 @@ fn swept_column(experiment: &Experiment, jobs: &[Job], parameter: Parameter) -> 
         };
         Data::Float(jobs.iter().map(number).collect())
     };
-    Column::new(word(&parameter), data).with_unit(parameter_unit(parameter)).with_symbol(parameter_symbol(parameter))
+    Column::new(words::of_key(&parameter), data)
+        .with_unit(parameter_unit(parameter))
+        .with_symbol(parameter_symbol(parameter))
 }
 
 /// The list columns: every name that some row has, in the order of the first row that has it; empty where a row has none.
