@@ -33,6 +33,8 @@ pub struct Item {
 pub enum State {
     /// The table of this meaning.
     Current(Record),
+    /// The table of this meaning, but some of its rows failed: it counts, and is tried again.
+    Failed(Record),
     /// Nothing, or the table of another meaning; and why.
     Stale(Vec<Reason>),
 }
@@ -48,12 +50,22 @@ impl Item {
         Self { source, variants, simulation, fingerprint, state }
     }
 
-    /// The record of an up-to-date experiment.
+    /// The record of the table that has this meaning, if there is one.
     #[must_use]
     pub fn record(&self) -> Option<&Record> {
         match &self.state {
-            State::Current(record) => Some(record),
+            State::Current(record) | State::Failed(record) => Some(record),
             State::Stale(_) => None,
+        }
+    }
+
+    /// Why there is something to simulate; empty if there is not.
+    #[must_use]
+    pub fn reasons(&self) -> Vec<Reason> {
+        match &self.state {
+            State::Current(_) => Vec::new(),
+            State::Failed(record) => vec![Reason::Failed(record.failures.clone())],
+            State::Stale(reasons) => reasons.clone(),
         }
     }
 
@@ -117,8 +129,9 @@ fn state(layout: &Layout, source: &Source, simulation: &Value) -> State {
     } else if !record.table.matches(&table) {
         reasons.push(Reason::FileAltered(table_name(id)));
     }
-    if record.failures.rows > 0 {
-        reasons.push(Reason::Failed(record.failures.clone()));
+    match record {
+        _ if !reasons.is_empty() => State::Stale(reasons),
+        record if record.failures.rows > 0 => State::Failed(record),
+        record => State::Current(record),
     }
-    if reasons.is_empty() { State::Current(record) } else { State::Stale(reasons) }
 }

@@ -11,7 +11,7 @@ use shotdamp::scene::{Excitation, Structure};
 use shotdamp::spec::SolverChoice;
 use shotdamp::study::{
     self, Evaluate, Event, Item, Layout, Listen, Loaded, Lock, Reason, Sensitivity, Silence, Simulation, Snapshot,
-    State, Task, Texts,
+    Task, Texts,
 };
 use shotdamp::table::{Table, parquet};
 
@@ -107,7 +107,7 @@ impl Desk {
     /// Runs what is stale and returns the ids.
     fn run(&self, threads: usize, evaluate: &impl Evaluate, listener: &dyn Listen) -> Vec<String> {
         let plan = self.plan();
-        let stale: Vec<&Item> = plan.values().filter(|item| item.record().is_none()).collect();
+        let stale: Vec<&Item> = plan.values().filter(|item| !item.reasons().is_empty()).collect();
         let provenance: Vec<_> = stale.iter().map(|item| item.provenance()).collect();
         let tasks: Vec<Task<'_>> = stale
             .iter()
@@ -124,10 +124,7 @@ impl Desk {
     }
 
     fn why(&self, id: &str) -> Vec<String> {
-        match &self.plan()[id].state {
-            State::Current(_) => Vec::new(),
-            State::Stale(reasons) => reasons.iter().map(Reason::to_string).collect(),
-        }
+        self.plan()[id].reasons().iter().map(Reason::to_string).collect()
     }
 }
 
