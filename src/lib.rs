@@ -18,6 +18,7 @@ pub mod atomic;
 pub mod dynamics;
 pub mod figure;
 pub mod measure;
+pub mod publish;
 pub mod reference;
 pub mod report;
 pub mod scene;

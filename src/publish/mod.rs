@@ -5,9 +5,13 @@
 mod figures;
 mod opened;
 mod pages;
+mod publication;
+mod text;
 mod verdicts;
 
 pub use figures::figure_name;
 pub use opened::{Opened, Unread};
 pub use pages::{Published, publish};
+pub use publication::publication_reasons;
+pub use text::summary;
 pub use verdicts::{Judgement, judge_all, self_test_all};

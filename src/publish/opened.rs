@@ -39,6 +39,17 @@ pub enum Unread {
     },
 }
 
+impl Unread {
+    /// The name of the file.
+    #[must_use]
+    pub fn file(&self) -> &str {
+        match self {
+            Self::Experiment(refused) => refused.file(),
+            Self::Reference { file, .. } => file,
+        }
+    }
+}
+
 impl Opened {
     /// Reads and plans the study that the texts make.
     #[must_use]
@@ -51,11 +62,8 @@ impl Opened {
             .into_iter()
             .map(|source| {
                 let reference = references.get(&source.experiment.id.0);
-                let sensitivity = if reference.is_some_and(has_values) {
-                    Sensitivity::Wanted
-                } else {
-                    Sensitivity::NotWanted
-                };
+                let sensitivity =
+                    if reference.is_some_and(has_values) { Sensitivity::Wanted } else { Sensitivity::NotWanted };
                 Item::new(&layout, source, &loaded.sheet, sensitivity)
             })
             .collect();
@@ -89,7 +97,9 @@ fn references(texts: &Texts, unread: &mut Vec<Unread>) -> BTreeMap<String, Refer
             continue;
         };
         match parse_reference(id, text) {
-            Ok(_) if references.contains_key(id) => refuse("another file holds the reference of this experiment".into()),
+            Ok(_) if references.contains_key(id) => {
+                refuse("another file holds the reference of this experiment".into())
+            }
             Ok(reference) => {
                 references.insert(id.into(), reference);
             }

@@ -32,8 +32,7 @@ pub fn judge_all(opened: &Opened) -> Judgement {
     let states = on_disk(opened);
     let tables = tables(&states);
     let fitted = opened.fitted();
-    let verdicts =
-        opened.references.iter().map(|(id, file)| (id.clone(), judge(file, &tables, &fitted))).collect();
+    let verdicts = opened.references.iter().map(|(id, file)| (id.clone(), judge(file, &tables, &fitted))).collect();
     let tables = states
         .into_iter()
         .filter_map(|(id, state)| match state {

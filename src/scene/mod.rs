@@ -6,6 +6,7 @@
 mod assumption;
 mod effect;
 mod recipe;
+mod told;
 
 pub use assumption::{Assumption, AssumptionValue, Assumptions, Curve};
 pub use effect::{EffectUse, effects};

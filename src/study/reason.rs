@@ -34,6 +34,8 @@ pub enum Reason {
     FileAltered(String),
     /// Rows failed the last time.
     Failed(Failures),
+    /// There is a table and no report of it.
+    NeverPublished,
     /// It was asked for.
     Forced,
 }
@@ -81,6 +83,7 @@ impl fmt::Display for Reason {
             Self::FileMissing(name) => write!(f, "{name} is missing"),
             Self::FileAltered(name) => write!(f, "{name} is not what was written"),
             Self::Failed(Failures { rows, first }) => write!(f, "{rows} rows failed; the first: {first}"),
+            Self::NeverPublished => write!(f, "figures and report have not been made"),
             Self::Forced => write!(f, "asked for"),
         }
     }

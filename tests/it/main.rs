@@ -2,5 +2,6 @@
 
 mod figure;
 mod made_up;
+mod reference;
 mod study;
 mod table;
