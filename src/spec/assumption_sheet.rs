@@ -11,7 +11,7 @@ use crate::scene::{Assumption, AssumptionValue, Assumptions};
 
 use super::diagnostic::{Findings, Problems};
 use super::quantity::Dimension;
-use super::reader::{Fields, above_zero, list, number, ratio, scalar, text, unknown};
+use super::reader::{Fields, above_zero, list, no_such, number, ratio, scalar, text, unknown};
 use super::word::{from_word, word_of, words};
 use super::yaml::{Entry, Node, Value, read_tree};
 
@@ -107,7 +107,7 @@ fn read_sheet(root: &Node, findings: &Findings) -> Option<AssumptionSheet> {
     let mut sheet = AssumptionSheet::default();
     for Entry { key, key_span, node } in entries {
         let Some(name) = from_word::<Assumption>(key) else {
-            unknown::<()>(findings, *key_span, "the vocabulary", "assumption", key, words::<Assumption>());
+            no_such::<()>(findings, *key_span, "assumption", key, words::<Assumption>());
             continue;
         };
         if let Some(entry) = read_entry(node, kind(name), findings) {

@@ -1,6 +1,6 @@
 //! Checks across the parts of an experiment, and of every case against physics, before anything runs.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use crate::measure::Measure;
 use crate::scene::{Assumptions, Parameter, ParameterValue, RecipeError, Scene};
@@ -64,13 +64,19 @@ impl Checks<'_> {
     }
 
     /// `swept` in the scene needs a value from every case; a maximised parameter cannot be swept as well.
-    pub fn coverage(&self, scene: &ReadScene, cases: &[Case], swept: &[Parameter], maximise: Option<&Maximise>) {
+    pub fn coverage(
+        &self,
+        scene: &ReadScene,
+        cases: &[Case],
+        places: &BTreeMap<Parameter, Span>,
+        maximise: Option<&Maximise>,
+    ) {
         for (parameter, span) in &scene.swept {
             if maximise.is_some_and(|maximise| maximise.over == *parameter) {
                 continue;
             }
             let name = word_of(*parameter);
-            if !swept.contains(parameter) {
+            if !places.contains_key(parameter) {
                 let help = format!("add `{name}` to `sweep`, or give it a value here");
                 self.findings.report::<()>(*span, format!("nothing sweeps `{name}`"), Some(help));
             } else if let Some(case) = cases.iter().find(|case| case.get(*parameter).is_none()) {
@@ -79,13 +85,11 @@ impl Checks<'_> {
                 self.findings.report::<()>(*span, message, Some(help));
             }
         }
-        if let Some(maximise) = maximise
-            && swept.contains(&maximise.over)
+        if let Some(over) = maximise.map(|maximise| maximise.over)
+            && let Some(place) = places.get(&over)
         {
-            let at = scene.swept.iter().find(|(parameter, _)| *parameter == maximise.over);
-            let at = at.map_or(Span::default(), |(_, span)| *span);
-            let message = format!("`{}` is swept and maximised over at once", word_of(maximise.over));
-            self.findings.report::<()>(at, message, Some("take it out of `sweep`".into()));
+            let message = format!("`{}` is swept and maximised over at once", word_of(over));
+            self.findings.report::<()>(*place, message, Some("take it out of `sweep`".into()));
         }
     }
 

@@ -140,6 +140,9 @@ impl miette::Diagnostic for Shown<'_> {
     }
 }
 
+/// Most problems of a file that are told: who has more of them has the wrong file.
+const MOST_TOLD: usize = 100;
+
 /// Where readers put what they find, so that one mistake does not hide the next.
 #[derive(Debug, Default)]
 pub(super) struct Findings {
@@ -149,8 +152,16 @@ pub(super) struct Findings {
 impl Findings {
     /// Reports a problem; returns `None` so that a reader can end with it.
     pub fn report<T>(&self, at: Span, message: impl Into<String>, help: Option<String>) -> Option<T> {
-        self.list.borrow_mut().push((at, message.into(), help));
+        if !self.is_full() {
+            let (message, help) = (message.into(), help.as_deref().map(harmless));
+            self.list.borrow_mut().push((at, harmless(&message), help));
+        }
         None
+    }
+
+    /// True when no more will be told.
+    pub fn is_full(&self) -> bool {
+        self.list.borrow().len() >= MOST_TOLD
     }
 
     /// A problem whose message says all.
@@ -175,8 +186,21 @@ impl Findings {
             .into_iter()
             .map(|(span, message, help)| Problem { message, help, place: Some(place(text, span)) })
             .collect();
-        Err(Problems { file: file.into(), list, text: text.into() })
+        Err(Problems { file: file.into(), list, text: harmless(text) })
     }
+}
+
+/// Without characters that would command a terminal; no byte moves.
+fn harmless(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    for c in text.chars() {
+        if c.is_control() && !matches!(c, '\n' | '\t') {
+            out.extend(std::iter::repeat_n('?', c.len_utf8()));
+        } else {
+            out.push(c);
+        }
+    }
+    out
 }
 
 fn place(text: &str, span: Span) -> Place {

@@ -108,7 +108,6 @@ impl<'t> FigureReader<'t> {
     }
 
     /// A column's name, or `{column: …, scale: log, label: …}`.
-    #[expect(clippy::type_complexity, reason = "an axis and what its column holds, for one caller")]
     fn axis(&self, node: &'t Node) -> Option<(Axis, Option<Role>)> {
         if !matches!(node.value, Value::Mapping(_)) {
             let column = scalar(node, self.findings)?;

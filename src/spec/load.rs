@@ -10,9 +10,7 @@ use super::assumption_sheet::{AssumptionSheet, parse_assumptions};
 use super::diagnostic::Problems;
 use super::experiment::{Experiment, ExperimentId};
 use super::validate::parse_experiment;
-
-/// Longest file.
-const LONGEST: u64 = 1 << 20;
+use super::yaml::LONGEST;
 
 /// Reads an experiment; its id is the file's name without ending. Every case is tried against `assumptions`.
 ///
@@ -39,8 +37,8 @@ pub fn load_assumptions(path: &Path) -> Result<AssumptionSheet, Problems> {
 fn read(path: &Path, file: &str) -> Result<String, Problems> {
     let cannot = |error: std::io::Error| Problems::unreadable(file, format!("cannot be read: {error}"), None);
     let mut bytes = Vec::new();
-    File::open(path).map_err(cannot)?.take(LONGEST + 1).read_to_end(&mut bytes).map_err(cannot)?;
-    if bytes.len() as u64 > LONGEST {
+    File::open(path).map_err(cannot)?.take(LONGEST as u64 + 1).read_to_end(&mut bytes).map_err(cannot)?;
+    if bytes.len() > LONGEST {
         return Err(Problems::unreadable(file, format!("is longer than {} KiB", LONGEST >> 10), None));
     }
     String::from_utf8(bytes).map_err(|error| {

@@ -19,7 +19,8 @@ pub(super) struct Fields<'t> {
     what: &'static str,
     span: Span,
     asked: RefCell<Vec<&'static str>>,
-    missing: RefCell<Vec<&'static str>>,
+    /// Of each of these groups one key should have been there.
+    missing: RefCell<Vec<Vec<&'static str>>>,
 }
 
 impl<'t> Fields<'t> {
@@ -56,7 +57,7 @@ impl<'t> Fields<'t> {
         match self.get(key) {
             Some(node) => read(node),
             None => {
-                self.missing.borrow_mut().push(key);
+                self.missing.borrow_mut().push(vec![key]);
                 None
             }
         }
@@ -71,7 +72,8 @@ impl<'t> Fields<'t> {
     /// The one key among `keys` that is given, if any; two are reported.
     #[expect(clippy::option_option, reason = "absent and wrong are two things")]
     pub fn at_most_one(&self, keys: &[&'static str]) -> Option<Option<(&'static str, &'t Node)>> {
-        let given: Vec<_> = keys.iter().filter_map(|key| self.entry(key).map(|entry| (*key, entry))).collect();
+        let mut given: Vec<_> = keys.iter().filter_map(|key| self.entry(key).map(|entry| (*key, entry))).collect();
+        given.sort_by_key(|(_, entry)| entry.key_span.start);
         match given.as_slice() {
             [] => Some(None),
             [(key, entry)] => Some(Some((key, &entry.node))),
@@ -86,18 +88,10 @@ impl<'t> Fields<'t> {
     /// The one key among `keys` that is given; none or two are reported.
     pub fn exactly_one(&self, keys: &[&'static str]) -> Option<(&'static str, &'t Node)> {
         let given = self.at_most_one(keys)?;
-        if given.is_none() && self.meant_for(keys).is_none() {
-            let wanted: Vec<_> = keys.iter().map(|key| format!("`{key}`")).collect();
-            self.findings.wrong::<()>(self.span, format!("{} lacks {}", self.what, wanted.join(" or ")));
+        if given.is_none() {
+            self.missing.borrow_mut().push(keys.to_vec());
         }
         given
-    }
-
-    /// An unknown key that looks like one of `keys`: it will be reported itself.
-    fn meant_for(&self, keys: &[&'static str]) -> Option<&Entry> {
-        self.entries
-            .iter()
-            .find(|entry| !keys.contains(&&*entry.key) && closest(&entry.key, keys.iter().copied()).is_some())
     }
 
     /// The keys that are there and have not been asked for yet.
@@ -109,17 +103,17 @@ impl<'t> Fields<'t> {
     /// Reports what is missing and what was never asked for.
     pub fn close(self) -> Option<()> {
         let asked = self.asked.borrow();
+        let unknown_keys = || self.entries.iter().filter(|entry| !asked.contains(&&*entry.key));
         let mut fine = self.missing.borrow().is_empty();
-        for key in self.missing.borrow().iter() {
-            let misspelt = self
-                .entries
-                .iter()
-                .any(|entry| !asked.contains(&&*entry.key) && closest(&entry.key, asked.iter().copied()) == Some(*key));
-            if !misspelt {
-                self.findings.wrong::<()>(self.span, format!("{} lacks `{key}`", self.what));
+        for group in self.missing.borrow().iter() {
+            // A misspelt key is reported itself, with the right spelling.
+            let meant = |entry: &Entry| closest(&entry.key, asked.iter().copied());
+            if !unknown_keys().filter_map(meant).any(|key| group.contains(&key)) {
+                let wanted: Vec<_> = group.iter().map(|key| format!("`{key}`")).collect();
+                self.findings.wrong::<()>(self.span, format!("{} lacks {}", self.what, wanted.join(" or ")));
             }
         }
-        for entry in self.entries.iter().filter(|entry| !asked.contains(&&*entry.key)) {
+        for entry in unknown_keys() {
             fine = false;
             unknown::<()>(self.findings, entry.key_span, self.what, "key", &entry.key, &asked);
         }
@@ -136,11 +130,23 @@ pub(super) fn unknown<T>(
     given: &str,
     known: &[&str],
 ) -> Option<T> {
-    let help = match closest(given, known.iter().copied()) {
+    findings.report(at, format!("{what} has no {role} `{given}`"), suggestion(findings, given, known))
+}
+
+/// Reports a word that is none of an enum's.
+pub(super) fn no_such<T>(findings: &Findings, at: Span, role: &str, given: &str, known: &[&str]) -> Option<T> {
+    let article = if role.starts_with(['a', 'e', 'i', 'o', 'u']) { "an" } else { "a" };
+    findings.report(at, format!("`{given}` is not {article} {role}"), suggestion(findings, given, known))
+}
+
+fn suggestion(findings: &Findings, given: &str, known: &[&str]) -> Option<String> {
+    if findings.is_full() {
+        return None;
+    }
+    Some(match closest(given, known.iter().copied()) {
         Some(word) => format!("did you mean `{word}`?"),
         None => format!("known are {}", known.iter().map(|word| format!("`{word}`")).collect::<Vec<_>>().join(", ")),
-    };
-    findings.report(at, format!("{what} has no {role} `{given}`"), Some(help))
+    })
 }
 
 /// What a node is, in words.
@@ -161,11 +167,14 @@ pub(super) fn scalar<'t>(node: &'t Node, findings: &Findings) -> Option<&'t str>
     }
 }
 
-/// A line of text, not empty.
+/// A text, not empty.
 pub(super) fn text(node: &Node, findings: &Findings) -> Option<String> {
     let text = scalar(node, findings)?.trim();
     if text.is_empty() {
         return findings.wrong(node.span, "a text is wanted here");
+    }
+    if text.contains(|c: char| c.is_control() && c != '\n') {
+        return findings.wrong(node.span, "control characters are not accepted");
     }
     Some(text.into())
 }
@@ -229,7 +238,7 @@ fn or_things(noun: &str) -> &str {
 /// One of the words of an enum.
 pub(super) fn word<T: DeserializeOwned>(node: &Node, role: &str, findings: &Findings) -> Option<T> {
     let text = scalar(node, findings)?;
-    from_word(text).or_else(|| unknown(findings, node.span, "the vocabulary", role, text, words::<T>()))
+    from_word(text).or_else(|| no_such(findings, node.span, role, text, words::<T>()))
 }
 
 /// Each item of a list.

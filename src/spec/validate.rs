@@ -13,7 +13,7 @@ use super::experiment::{Case, Experiment, ExperimentId, Maximise, Settings, Solv
 use super::figure::FigureReader;
 use super::quantity::Dimension;
 use super::range::numbers;
-use super::reader::{Fields, above_zero, count, one_or_more, text, unknown, word};
+use super::reader::{Fields, above_zero, count, no_such, one_or_more, text, word};
 use super::scene::read_scene;
 use super::solver::read_solver;
 use super::sweep::{ReadSweep, read_sweep};
@@ -86,7 +86,7 @@ impl<'t> ExperimentReader<'t> {
         let (mut scene, sweep) = (scene?, sweep?.unwrap_or_else(ReadSweep::none));
         let places = sweep.places;
         let cases = with_solvers(sweep.cases, &run.solvers);
-        checks.coverage(&scene, &cases, &sweep.swept, maximise.as_ref());
+        checks.coverage(&scene, &cases, &places, maximise.as_ref());
         checks.amount(&cases, maximise.as_ref(), scene_at);
         fill_placeholders(&mut scene.recipe, &cases, &sweep.swept, maximise.as_ref());
         let experiment = Experiment {
@@ -139,9 +139,8 @@ impl<'t> ExperimentReader<'t> {
         let [entry] = entries.as_slice() else {
             return self.findings.wrong(node.span, "one measure is maximised at a time");
         };
-        let measure = from_word::<Measure>(&entry.key).or_else(|| {
-            unknown(self.findings, entry.key_span, "the vocabulary", "measure", &entry.key, words::<Measure>())
-        });
+        let measure = from_word::<Measure>(&entry.key)
+            .or_else(|| no_such(self.findings, entry.key_span, "measure", &entry.key, words::<Measure>()));
         let fields = Fields::open(&entry.node, "a maximisation", self.findings)?;
         let over = fields.required("over", |node| word::<Parameter>(node, "parameter", self.findings));
         let grid = fields.required("in", |node| match over {

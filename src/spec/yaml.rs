@@ -36,10 +36,19 @@ pub(super) struct Entry {
     pub node: Node,
 }
 
+/// Longest text, in bytes.
+pub(super) const LONGEST: usize = 1 << 20;
+
+/// Most keys of one mapping.
+const MOST_KEYS: usize = 1000;
+
 type Located<'t> = (Event<'t>, Span);
 
 /// Reads the one document of `text`; all that is no plain YAML is reported.
 pub(super) fn read_tree(text: &str, findings: &Findings) -> Option<Node> {
+    if text.len() > LONGEST {
+        return findings.wrong(Span::default(), format!("the file is longer than {} KiB", LONGEST >> 10));
+    }
     let options = options! {
         emit_comments: false,
         emit_unresolved_aliases: true,
@@ -159,6 +168,9 @@ where
                     format!("`{key}` is given twice"),
                     Some("keep one of the two".into()),
                 );
+            }
+            if entries.len() == MOST_KEYS {
+                return self.findings.wrong(key_span, format!("more than {MOST_KEYS} keys in one place"));
             }
             let value = self.next()??;
             let node = self.node(value, Some(key_span))?;

@@ -1,7 +1,9 @@
 //! One test binary: a module per subject.
 
+mod cli;
 mod figure;
 mod made_up;
 mod reference;
+mod spec;
 mod study;
 mod table;
