@@ -15,7 +15,7 @@ pub(super) fn check(layout: &Layout, args: &CheckArgs) -> Result<Exit, CliError>
     complain_of(chosen.unread.iter().copied());
     let judgement = judge_all(&opened);
     let mut exit = chosen.exit(&judgement);
-    let mut text = summary(&opened, &judgement, &chosen.ids);
+    let mut text = summary(&judgement, &chosen.ids);
     if args.self_test {
         let ids: Vec<&str> = chosen.ids.iter().copied().collect();
         let failures = self_test_all(&opened, &ids);

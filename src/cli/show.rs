@@ -5,10 +5,11 @@ use super::error::CliError;
 use super::exit::Exit;
 use super::output::{columns, complain_of, print};
 use super::select::{choose, open};
-use crate::publish::Opened;
-use crate::scene::{AssumptionValue, Scene, effects};
+use crate::publish::{Opened, scenes};
+use crate::report::value_in_words;
+use crate::scene::{Scene, effects};
 use crate::study::{Item, Layout, State};
-use crate::text::{number, words};
+use crate::text::words;
 
 /// All that is known of one experiment before it runs.
 pub(super) fn show(layout: &Layout, id: &str) -> Result<Exit, CliError> {
@@ -32,13 +33,7 @@ fn told(opened: &Opened, item: &Item) -> String {
         experiment.about
     );
 
-    let assumptions = opened.sheet.assumptions();
-    // Validation has tried every case; one that does not resolve would fail as a row of the table, with its reason.
-    let scenes: Vec<Scene> = experiment
-        .cases
-        .iter()
-        .filter_map(|case| experiment.recipe_of(case).ok()?.resolve(&assumptions).ok())
-        .collect();
+    let scenes = scenes(opened, experiment);
     let first = experiment.cases.first().map(|case| case.told()).filter(|case| !case.is_empty());
     text += &format!("\nScene{}\n", first.map_or_else(String::new, |case| format!(" of the first case ({case})")));
     for line in scenes.first().map(Scene::told).unwrap_or_default() {
@@ -60,14 +55,13 @@ fn told(opened: &Opened, item: &Item) -> String {
 
     text += "\nAssumptions\n";
     let used = experiment.assumptions_used();
-    let rows: Vec<Vec<String>> = opened
-        .sheet
-        .entries
-        .iter()
-        .filter(|(name, _)| used.contains(name))
-        .map(|(name, entry)| vec![format!("  {}", words::of_key(name)), value(&entry.value), entry.reason.clone()])
-        .collect();
-    text += &if rows.is_empty() { "  none\n".into() } else { columns(&rows) };
+    for (name, entry) in opened.sheet.entries.iter().filter(|(name, _)| used.contains(name)) {
+        text += &format!("  {} = {}\n", words::of_key(name), value_in_words(*name, &entry.value));
+        text += &wrapped(&entry.reason, "      ", 100);
+    }
+    if used.is_empty() {
+        text += "  none\n";
+    }
 
     text += "\nCases\n";
     let mut solvers: Vec<String> = Vec::new();
@@ -92,10 +86,17 @@ fn told(opened: &Opened, item: &Item) -> String {
     text
 }
 
-fn value(value: &AssumptionValue) -> String {
-    match value {
-        AssumptionValue::Number(x) => number::compact(*x, 6),
-        AssumptionValue::Choice(word) => word.clone(),
-        AssumptionValue::Curve(points) => format!("curve of {} points", points.len()),
+/// Lines of at most so many letters, each after a margin.
+fn wrapped(text: &str, margin: &str, width: usize) -> String {
+    let mut lines: Vec<String> = Vec::new();
+    for word in text.split_whitespace() {
+        match lines.last_mut() {
+            Some(line) if line.chars().count() + 1 + word.chars().count() <= width => {
+                line.push(' ');
+                line.push_str(word);
+            }
+            _ => lines.push(word.into()),
+        }
     }
+    lines.into_iter().map(|line| format!("{margin}{line}\n")).collect()
 }

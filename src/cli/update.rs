@@ -18,7 +18,7 @@ pub(super) fn update(layout: &Layout, args: &RunArgs) -> Result<Exit, CliError> 
         // The short way: no lock, no YAML, no table, no thread.
         if let Some(snapshot) = Snapshot::current(layout, &Texts::read(layout)?) {
             if !args.quiet {
-                print(&snapshot.summary)?;
+                print(&format!("Nothing to do.\n{}", snapshot.summary))?;
             }
             return Ok(Exit::from_code(snapshot.exit_code));
         }
@@ -33,7 +33,9 @@ pub(super) fn update(layout: &Layout, args: &RunArgs) -> Result<Exit, CliError> 
     let opened = Opened::new(layout.clone(), Texts::read(layout)?);
     let chosen = choose(&opened, &args.choice)?;
     complain_of(chosen.unread.iter().copied());
-    let unsaved = simulate(layout, &todo(&chosen, args), threads, args.quiet)?;
+    let todo = todo(&chosen, args);
+    let unsaved = simulate(layout, &todo, threads, args.quiet)?;
+    let simulated = todo.len();
 
     // From the texts that were read in the beginning, and the results that are on disk now.
     let texts = opened.texts.clone();
@@ -47,14 +49,20 @@ pub(super) fn update(layout: &Layout, args: &RunArgs) -> Result<Exit, CliError> 
     }
     let whole_work = unsaved.is_empty() && published.problems.is_empty() && !failed;
     let exit = chosen.exit(&judgement).max(if whole_work { Exit::AsExpected } else { Exit::CouldNot });
-    let text = summary(&opened, &judgement, &chosen.ids);
+    let text = summary(&judgement, &chosen.ids);
     if whole && whole_work && chosen.unread.is_empty() {
         Snapshot::take(layout, &opened.texts, published.outputs, &text, exit.code())?;
     }
     if !args.quiet {
-        print(&text)?;
+        print(&format!("{}\n{text}", told(&chosen, simulated, published.written)))?;
     }
     Ok(exit)
+}
+
+/// What was done, in one line.
+fn told(chosen: &Chosen<'_>, simulated: usize, written: usize) -> String {
+    let experiments = chosen.items.len();
+    format!("{experiments} experiments: {simulated} simulated; {written} figures and reports written.")
 }
 
 fn todo<'a>(chosen: &Chosen<'a>, args: &RunArgs) -> Vec<&'a Item> {

@@ -6,12 +6,12 @@ mod figures;
 mod opened;
 mod pages;
 mod publication;
-mod text;
 mod verdicts;
+mod views;
 
 pub use figures::figure_name;
 pub use opened::{Opened, Unread};
 pub use pages::{Published, publish};
 pub use publication::publication_reasons;
-pub use text::summary;
 pub use verdicts::{Judgement, judge_all, self_test_all};
+pub use views::{scenes, summary};

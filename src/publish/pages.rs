@@ -8,8 +8,8 @@ use rayon::prelude::*;
 use super::figures::{figure_name, png};
 use super::opened::Opened;
 use super::publication::{meaning, publication_reasons};
-use super::text;
 use super::verdicts::Judgement;
+use super::views;
 use crate::atomic::{self, FileError};
 use crate::study::{FileHash, Item, Publication, Record, record_name, table_name};
 
@@ -47,7 +47,7 @@ pub fn publish(opened: &Opened, judgement: &Judgement, ids: &BTreeSet<&str>) -> 
         write_page(opened, judgement, page, drawn, &mut published)?;
     }
     let index = opened.layout.path("reports/README.md");
-    published.written += usize::from(atomic::write_if_changed(&index, text::index(opened, judgement).as_bytes())?);
+    published.written += usize::from(atomic::write_if_changed(&index, views::index(opened, judgement).as_bytes())?);
     published.outputs.insert("reports/README.md".into());
     Ok(published)
 }
@@ -113,14 +113,17 @@ fn write_page(
                 }
                 Err(why) => {
                     whole = false;
-                    published.problems.push(format!("{id}: {why}"));
+                    // Where rows have failed, that is the news, and it is told already.
+                    if page.record.failures.rows == 0 {
+                        published.problems.push(format!("{id}: {why}"));
+                    }
                 }
             }
         }
     } else if let Some(old) = old {
         files.extend(old.files.iter().filter(|(name, _)| name.ends_with(".png")).map(|(n, h)| (n.clone(), h.clone())));
     }
-    let text = text::page(opened, judgement, page.item);
+    let text = views::page(opened, judgement, page.item);
     let name = format!("{}/{id}.md", page.folder);
     published.written += usize::from(atomic::write_if_changed(&layout.path(&name), text.as_bytes())?);
     files.insert(name, FileHash::of(text.as_bytes()));

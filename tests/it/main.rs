@@ -1,6 +1,7 @@
 //! One test binary: a module per subject.
 
 mod cli;
+mod desk;
 mod figure;
 mod made_up;
 mod reference;
