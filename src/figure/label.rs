@@ -25,10 +25,10 @@ pub(super) fn of_cell(column: &Column, row: usize) -> Option<String> {
         Data::Int(cells) => cells.get(row)?.to_string(),
         Data::FloatList(_) => return None,
     };
-    Some(if column.symbol.is_empty() {
-        format!("{} {value}", words::of_column(&column.name))
-    } else {
-        format!("{} = {value}", column.symbol)
+    Some(match (column.name.as_str(), column.symbol.as_str()) {
+        ("pulse_duration", _) => format!("{value} pulse"),
+        (name, "") => format!("{} {value}", words::of_column(name)),
+        (_, symbol) => format!("{symbol} = {value}"),
     })
 }
 
