@@ -42,7 +42,9 @@ pub(super) fn places(needs: &[Needs]) -> Vec<Place> {
     let panels = u32::try_from(needs.len().max(1)).map_or(1.0, f64::from);
     let each = ((figure_height(needs.len()) - taken) / panels).max(1.0);
 
-    let y_labels: Vec<_> = needs.iter().map(|need| wrapped(&need.y_label, LABEL_TEXT, each)).collect();
+    // A label may be a little longer than its frame is high.
+    let longest = each + 2.0 * SPACE;
+    let y_labels: Vec<_> = needs.iter().map(|need| wrapped(&need.y_label, LABEL_TEXT, longest)).collect();
     let lines = y_labels.iter().map(|lines| u32::try_from(lines.len()).map_or(1.0, f64::from)).fold(1.0, f64::max);
     let y_numbers = needs.iter().map(|need| need.y_numbers).fold(0.0, f64::max);
     let left = y_numbers + lines * line_height() + 3.0 * SPACE;

@@ -4,7 +4,9 @@ use super::canvas::{Anchor, Drawn, Lettering, Pen, Sheet, text_width};
 use super::geometry::{Point, Rect};
 use super::line::Curve;
 use super::paint;
-use super::style::{BAND_OPACITY, Color, GREY, INK, LEGEND_LINE, LEGEND_ROW, LEGEND_TEXT, Look, PAPER, QUOTED, SPACE};
+use super::style::{
+    BAND_OPACITY, Color, GREY, INK, LEGEND_LINE, LEGEND_ROW, LEGEND_TEXT, Look, Marker, PAPER, QUOTED, SPACE,
+};
 
 /// What is drawn before a legend's text.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -63,7 +65,7 @@ impl Legend {
                 [one] => one.look.color,
                 _ => GREY,
             };
-            entries.push(Entry { sign: Sign::Band(color), text: "ensemble’s standard deviation".into() });
+            entries.push(Entry { sign: Sign::Band(color), text: "± 1 s.d. of the ensemble".into() });
         }
         for &text in quoted {
             if !entries.iter().any(|entry| entry.sign == Sign::Quoted && entry.text == text) {
@@ -168,7 +170,7 @@ fn by_trait(curves: &[Curve], markers: bool) -> Option<Vec<Entry>> {
     let mut dashes: Vec<Entry> = Vec::new();
     for curve in curves {
         let dash = curve.name.dash.as_ref()?;
-        let color = Look { dash: &[], ..curve.look };
+        let color = Look { dash: &[], marker: Marker::Circle, ..curve.look };
         let stroke = Look { color: INK, ..curve.look };
         for (entries, text, look, marker) in
             [(&mut hues, &curve.name.hue, color, false), (&mut dashes, dash, stroke, markers)]
