@@ -4,9 +4,11 @@
 //! into a [`Scene`], all SI, given the [`Assumptions`] for what the study leaves open.
 
 mod assumption;
+mod effect;
 mod recipe;
 
 pub use assumption::{Assumption, AssumptionValue, Assumptions, Curve};
+pub use effect::{EffectUse, effects};
 pub use recipe::{
     ContactDampingRecipe, DamperRecipe, ExcitationRecipe, GapRecipe, Given, MassRecipe, Parameter, ParameterValue,
     PulseShape, Recipe, RecipeError, StiffnessRecipe, StopRecipe, StrengthRecipe, StructureRecipe, SurfaceRecipe,

@@ -2,4 +2,5 @@
 
 mod figure;
 mod made_up;
+mod study;
 mod table;

@@ -1,0 +1,13 @@
+//! From tables to what people read: verdicts, figures, reports.
+//!
+//! Stands above the study and below the command. Nothing here simulates, and all of it can be made again from the tables.
+
+mod figures;
+mod opened;
+mod pages;
+mod verdicts;
+
+pub use figures::figure_name;
+pub use opened::{Opened, Unread};
+pub use pages::{Published, publish};
+pub use verdicts::{Judgement, judge_all, self_test_all};
