@@ -21,17 +21,59 @@ pub struct EffectUse {
 type Effect = (&'static str, fn(&Scene) -> bool, &'static str);
 
 const EFFECTS: [Effect; 11] = [
-    ("structural damping", |scene| matches!(scene.structure, Structure::SingleMass { damping, .. } if damping > 0.0), "the damping ratio of the structure is zero"),
+    (
+        "structural damping",
+        |scene| matches!(scene.structure, Structure::SingleMass { damping, .. } if damping > 0.0),
+        "the damping ratio of the structure is zero",
+    ),
     ("gravity", |scene| scene.gravity > 0.0 && !scene.dampers.is_empty(), "there is no particle that could fall"),
-    ("rigid impact", |scene| surfaces(scene).any(|surface| matches!(surface, Surface::Rigid { .. })), "no surface is rigid"),
-    ("restitution", |scene| surfaces(scene).any(|surface| matches!(surface, Surface::Rigid { restitution } if *restitution > 0.0)), "no rigid surface gives anything back: impacts are plastic, the particle sticks"),
-    ("resilient floor and ceiling", |scene| surfaces(scene).any(|surface| matches!(surface, Surface::Resilient { .. })), "no surface is resilient"),
-    ("equivalent viscous damping", |scene| surfaces(scene).any(|surface| matches!(surface, Surface::Resilient { damping: ContactDamping::EquivalentViscous(_), .. })), "the dashpots of the surfaces are constant"),
-    ("contact without tension", |scene| surfaces(scene).any(|surface| matches!(surface, Surface::Resilient { ends: ContactEnd::ZeroForce, .. })), "contacts end at zero gap, as in the study"),
-    ("ceiling", |scene| scene.dampers.iter().any(|damper| damper.gap.is_finite()), "the gap is infinite: no ceiling can be met"),
+    (
+        "rigid impact",
+        |scene| surfaces(scene).any(|surface| matches!(surface, Surface::Rigid { .. })),
+        "no surface is rigid",
+    ),
+    (
+        "restitution",
+        |scene| surfaces(scene).any(|surface| matches!(surface, Surface::Rigid { restitution } if *restitution > 0.0)),
+        "no rigid surface gives anything back: impacts are plastic, the particle sticks",
+    ),
+    (
+        "resilient floor and ceiling",
+        |scene| surfaces(scene).any(|surface| matches!(surface, Surface::Resilient { .. })),
+        "no surface is resilient",
+    ),
+    (
+        "equivalent viscous damping",
+        |scene| {
+            surfaces(scene).any(|surface| {
+                matches!(surface, Surface::Resilient { damping: ContactDamping::EquivalentViscous(_), .. })
+            })
+        },
+        "the dashpots of the surfaces are constant",
+    ),
+    (
+        "contact without tension",
+        |scene| {
+            surfaces(scene).any(|surface| matches!(surface, Surface::Resilient { ends: ContactEnd::ZeroForce, .. }))
+        },
+        "contacts end at zero gap, as in the study",
+    ),
+    (
+        "ceiling",
+        |scene| scene.dampers.iter().any(|damper| damper.gap.is_finite()),
+        "the gap is infinite: no ceiling can be met",
+    ),
     ("limit stop", |scene| scene.dampers.iter().any(|damper| damper.stop.is_some()), "no limit stop is named"),
-    ("soft walls", |scene| scene.dampers.iter().any(|damper| damper.walls.is_some()), "the walls are rigid: floor and ceiling move with the structure"),
-    ("finite pulse", |scene| matches!(scene.excitation, Excitation::PulseTrain { .. }), "the excitation is not a train of pulses with a duration"),
+    (
+        "soft walls",
+        |scene| scene.dampers.iter().any(|damper| damper.walls.is_some()),
+        "the walls are rigid: floor and ceiling move with the structure",
+    ),
+    (
+        "finite pulse",
+        |scene| matches!(scene.excitation, Excitation::PulseTrain { .. }),
+        "the excitation is not a train of pulses with a duration",
+    ),
 ];
 
 fn surfaces(scene: &Scene) -> impl Iterator<Item = &Surface> {

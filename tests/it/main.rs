@@ -2,5 +2,6 @@
 
 mod figure;
 mod made_up;
+mod report;
 mod study;
 mod table;
