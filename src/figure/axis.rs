@@ -75,7 +75,7 @@ impl Axis {
             Room::Tight => 0.0,
             Room::Airy => 0.06 * span,
         };
-        let near_zero = least >= 0.0 && least < 0.3 * largest && room == Room::Airy && !flat;
+        let near_zero = least >= 0.0 && least < 0.15 * largest && room == Room::Airy && !flat;
         let from = if near_zero { 0.0 } else { least - margin };
         let to = largest + margin;
         let Displayed { factor, unit } = Displayed::choose(from.abs().max(to.abs()), unit);
@@ -138,6 +138,14 @@ impl Axis {
         let decades = self.decades();
         let within = decades.clone().filter(|n| self.holds(f64::from(*n), SLACK)).count();
         let every = within.div_ceil(usize::try_from(most).unwrap_or(1)).max(1);
+        // Short axes carry plain numbers: 1, 2, 5 of each decade, or all digits where that would be too few.
+        let short = within < 2;
+        let sparse = decades
+            .clone()
+            .flat_map(|n| [1_u8, 2, 5].map(|digit| f64::from(n) + libm::log10(f64::from(digit))))
+            .filter(|along| self.holds(*along, SLACK))
+            .count()
+            < 3;
         let mut ticks = Vec::new();
         for exponent in decades {
             for digit in 1..=9_u8 {
@@ -145,12 +153,9 @@ impl Axis {
                 if !self.holds(along, SLACK) {
                     continue;
                 }
-                let label = if within < 2 && matches!(digit, 1 | 2 | 5) {
+                let label = if short && (sparse || matches!(digit, 1 | 2 | 5)) {
                     plain(digit, exponent)
-                } else if within >= 2
-                    && digit == 1
-                    && usize::try_from(exponent.unsigned_abs()).unwrap_or(0) % every == 0
-                {
+                } else if !short && digit == 1 && usize::try_from(exponent.unsigned_abs()).unwrap_or(0) % every == 0 {
                     power_of_ten(exponent)
                 } else {
                     String::new()

@@ -101,6 +101,21 @@ pub(super) fn text_width(text: &str, size: f64) -> f64 {
     f64::from(width) * FONT_HEIGHT / SVG_FONT_SIZE / f64::from(ZOOM)
 }
 
+/// A text broken between words into lines of at most this width; a single word may be wider.
+pub(super) fn wrapped(text: &str, size: f64, width: f64) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for word in text.split(' ') {
+        match lines.last_mut() {
+            Some(line) if text_width(&format!("{line} {word}"), size) <= width => {
+                line.push(' ');
+                line.push_str(word);
+            }
+            _ => lines.push(word.to_owned()),
+        }
+    }
+    lines
+}
+
 impl<'a> Sheet<'a> {
     /// A polyline.
     pub(super) fn line(&self, points: &[Point], pen: Pen) -> Drawn {

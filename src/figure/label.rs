@@ -25,10 +25,10 @@ pub(super) fn of_cell(column: &Column, row: usize) -> Option<String> {
         Data::Int(cells) => cells.get(row)?.to_string(),
         Data::FloatList(_) => return None,
     };
-    Some(if column.symbol.is_empty() {
-        format!("{} {value}", words::of_column(&column.name))
-    } else {
-        format!("{} = {value}", column.symbol)
+    Some(match (column.name.as_str(), column.symbol.as_str()) {
+        ("pulse_duration", _) => format!("{value} pulse"),
+        (name, "") => format!("{} {value}", words::of_column(name)),
+        (_, symbol) => format!("{symbol} = {value}"),
     })
 }
 
@@ -38,13 +38,27 @@ pub(super) fn shared(labels: &[String], unit: &str) -> String {
         [one] => one.clone(),
         [first, rest @ ..] if rest.iter().all(|label| label == first) => first.clone(),
         // Different things of one unit share its word; without a unit only their names tell what they are.
-        _ if unit.is_empty() => labels.join(", "),
+        [first, rest @ ..] if unit.is_empty() => {
+            rest.iter().fold(first.clone(), |joined, label| format!("{joined}, {}", within_sentence(label)))
+        }
         _ => words::of_unit(unit).to_owned(),
+    }
+}
+
+/// First letter in lower case, unless the word is an abbreviation.
+fn within_sentence(label: &str) -> String {
+    let mut letters = label.chars();
+    match (letters.next(), letters.next()) {
+        (Some(first), Some(second)) if second.is_lowercase() => {
+            first.to_lowercase().chain([second]).chain(letters).collect()
+        }
+        _ => label.to_owned(),
     }
 }
 
 /// The label with its unit, first letter in upper case: `Displacement (mm)`.
 pub(super) fn with_unit(label: &str, unit: &str) -> String {
     let label = words::capitalised(label);
-    if unit.is_empty() { label } else { format!("{label} ({})", unit.replace("^2", "²")) }
+    let named = label.ends_with(&format!("({unit})"));
+    if unit.is_empty() || named { label } else { format!("{label} ({})", unit.replace("^2", "²")) }
 }

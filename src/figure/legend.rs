@@ -4,7 +4,9 @@ use super::canvas::{Anchor, Drawn, Lettering, Pen, Sheet, text_width};
 use super::geometry::{Point, Rect};
 use super::line::Curve;
 use super::paint;
-use super::style::{BAND_OPACITY, Color, GREY, INK, LEGEND_LINE, LEGEND_ROW, LEGEND_TEXT, Look, PAPER, QUOTED, SPACE};
+use super::style::{
+    BAND_OPACITY, Color, GREY, INK, LEGEND_LINE, LEGEND_ROW, LEGEND_TEXT, Look, Marker, PAPER, QUOTED, SPACE,
+};
 
 /// What is drawn before a legend's text.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -50,9 +52,12 @@ impl Legend {
     pub(super) fn new(curves: &[Curve], markers: bool, band: bool, quoted: &[&str]) -> Self {
         let mut entries = Vec::new();
         if curves.len() > 1 || band || !quoted.is_empty() {
-            entries.extend(curves.iter().map(|curve| Entry {
-                sign: Sign::Line { look: curve.look, marker: markers },
-                text: curve.label.clone(),
+            entries.extend(by_trait(curves, markers).unwrap_or_else(|| {
+                let line = |curve: &Curve| Entry {
+                    sign: Sign::Line { look: curve.look, marker: markers },
+                    text: curve.name.full(),
+                };
+                curves.iter().map(line).collect()
             }));
         }
         if band {
@@ -60,7 +65,7 @@ impl Legend {
                 [one] => one.look.color,
                 _ => GREY,
             };
-            entries.push(Entry { sign: Sign::Band(color), text: "± standard deviation of the ensemble".into() });
+            entries.push(Entry { sign: Sign::Band(color), text: "± 1 s.d. of the ensemble".into() });
         }
         for &text in quoted {
             if !entries.iter().any(|entry| entry.sign == Sign::Quoted && entry.text == text) {
@@ -116,7 +121,7 @@ impl Legend {
 
     /// Height above a frame of this width, where no place within is free.
     pub(super) fn height_above(&self, width: f64) -> f64 {
-        rows_high(self.rows(width).len())
+        rows_high(self.rows(width).len()) + SPACE
     }
 
     /// Draws the entries one below the other.
@@ -133,7 +138,7 @@ impl Legend {
 
     /// Draws the entries in rows above a frame.
     pub(super) fn draw_above(&self, sheet: &Sheet<'_>, frame: &Rect) -> Drawn {
-        let top = frame.top - self.height_above(frame.width());
+        let top = frame.top - self.height_above(frame.width()) + SPACE;
         for (index, row) in (0_u32..).zip(self.rows(frame.width())) {
             let mut at = Point { x: frame.left, y: top + LEGEND_ROW * (f64::from(index) + 0.5) };
             for entry in row {
@@ -157,6 +162,29 @@ impl Legend {
         rows.push(&self.entries[start..]);
         rows
     }
+}
+
+/// One entry a colour and one a dash, where every curve is a pair of the two and that says it in fewer words.
+fn by_trait(curves: &[Curve], markers: bool) -> Option<Vec<Entry>> {
+    let mut hues: Vec<Entry> = Vec::new();
+    let mut dashes: Vec<Entry> = Vec::new();
+    for curve in curves {
+        let dash = curve.name.dash.as_ref()?;
+        let color = Look { dash: &[], marker: Marker::Circle, ..curve.look };
+        let stroke = Look { color: INK, ..curve.look };
+        for (entries, text, look, marker) in
+            [(&mut hues, &curve.name.hue, color, false), (&mut dashes, dash, stroke, markers)]
+        {
+            let entry = Entry { sign: Sign::Line { look, marker }, text: text.clone() };
+            if !entries.contains(&entry) {
+                entries.push(entry);
+            }
+        }
+    }
+    // Fewer curves than pairs: some pair is missing, and only full names tell which.
+    let complete = hues.len() * dashes.len() == curves.len() && hues.len() > 1 && dashes.len() > 1;
+    hues.extend(dashes);
+    complete.then_some(hues)
 }
 
 fn rows_high(rows: usize) -> f64 {

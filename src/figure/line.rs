@@ -26,11 +26,29 @@ pub(super) struct AtInfinity {
     pub label: String,
 }
 
+/// What a curve is called in the legend.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Name {
+    /// What its colour stands for, or all there is to say where colour and dash stand for the same.
+    pub hue: String,
+    /// What its dash stands for, where that is something else.
+    pub dash: Option<String>,
+}
+
+impl Name {
+    /// In full.
+    pub(super) fn full(&self) -> String {
+        match &self.dash {
+            Some(dash) => format!("{}, {dash}", self.hue),
+            None => self.hue.clone(),
+        }
+    }
+}
+
 /// One line of a panel.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Curve {
-    /// Its name in the legend.
-    pub label: String,
+    pub name: Name,
     pub look: Look,
     /// Sorted by x unless it is a time history.
     pub samples: Vec<Sample>,
@@ -82,15 +100,16 @@ pub(super) fn curves(source: Source<'_>, panel: &Panel) -> Result<Vec<Curve>, Fi
         let spread = source.table.floats(&format!("{}_spread", y.name)).filter(|_| panel.band);
         for group in &groups {
             let traits = Traits::new(index, panel.y.len(), &groups, group);
-            let mut parts = if panel.y.len() > 1 { vec![source.label(axis)?] } else { Vec::new() };
-            parts.extend(group.varying_words(&groups));
-            if parts.is_empty() {
-                parts.push(source.label(axis)?);
-            }
+            let mut words = if panel.y.len() > 1 { vec![source.label(axis)?] } else { Vec::new() };
+            words.extend(group.varying_words(&groups));
+            let name = match words.split_first() {
+                None => Name { hue: source.label(axis)?, dash: None },
+                Some((hue, rest)) => Name { hue: hue.clone(), dash: (!rest.is_empty()).then(|| rest.join(", ")) },
+            };
             let look = Look::of_path(&y.name)
                 .filter(|_| groups.len() == 1)
                 .unwrap_or_else(|| Look::new(traits.hue, traits.hues, traits.dash));
-            let mut curve = Curve { label: parts.join(", "), look, samples: Vec::new(), at_infinity: None };
+            let mut curve = Curve { name, look, samples: Vec::new(), at_infinity: None };
             fill(&mut curve, source.figure, x, y, spread.as_deref(), &group.rows)?;
             if curve.shows() {
                 curves.push(curve);

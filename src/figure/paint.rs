@@ -2,6 +2,7 @@
 
 use super::canvas::{Anchor, Drawn, Lettering, Pen, Sheet, text_width};
 use super::geometry::{Point, Rect};
+use super::layout::{Place, line_height};
 use super::legend::Obstacles;
 use super::panel::Panel;
 use super::style::{
@@ -24,11 +25,12 @@ pub(super) enum LegendPlace {
 pub(super) fn panel(
     sheet: &Sheet<'_>,
     panel: &Panel<'_>,
-    frame: &Rect,
+    place: &Place,
     legend: LegendPlace,
     letter: Option<char>,
     x_labels: bool,
 ) -> Drawn {
+    let frame = &place.frame;
     let mut taken = panel.obstacles(frame);
     if let LegendPlace::Within(place) = legend {
         taken.boxes.push(place);
@@ -50,9 +52,10 @@ pub(super) fn panel(
     curves(sheet, panel, frame)?;
     quoted_points(sheet, panel, frame)?;
     axes(sheet, panel, frame, x_labels)?;
+    y_label(sheet, place)?;
     if let Some(letter) = letter {
-        let at = Point { x: 1.5 * SPACE, y: frame.top + LABEL_TEXT / 2.0 };
-        write(sheet, at, &format!("({letter})"), LABEL_TEXT, Anchor::Left, INK)?;
+        let at = Point { x: frame.left - SPACE, y: frame.top - SPACE - LABEL_TEXT / 2.0 };
+        write(sheet, at, &format!("({letter})"), LABEL_TEXT, Anchor::Right, INK)?;
     }
     match legend {
         LegendPlace::None => Ok(()),
@@ -170,9 +173,17 @@ fn axes(sheet: &Sheet<'_>, panel: &Panel<'_>, frame: &Rect, x_labels: bool) -> D
         let at = Point { y: at.y + 2.0 * SPACE + TICK_TEXT + LABEL_TEXT / 2.0, ..at };
         write(sheet, at, &panel.x_label, LABEL_TEXT, Anchor::Centre, INK)?;
     }
-    let at = Point { x: SPACE + LABEL_TEXT / 2.0, y: frame.at(0.0, 0.5).y };
-    let label = Lettering { text: &panel.y_label, size: LABEL_TEXT, anchor: Anchor::Centre, upright: true, color: INK };
-    sheet.text(at, &label)
+    Ok(())
+}
+
+fn y_label(sheet: &Sheet<'_>, place: &Place) -> Drawn {
+    let mut at = Point { x: SPACE + LABEL_TEXT / 2.0, y: place.frame.at(0.0, 0.5).y };
+    for text in &place.y_label {
+        let line = Lettering { text, size: LABEL_TEXT, anchor: Anchor::Centre, upright: true, color: INK };
+        sheet.text(at, &line)?;
+        at.x += line_height();
+    }
+    Ok(())
 }
 
 /// A curve's marker.

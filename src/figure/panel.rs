@@ -89,7 +89,8 @@ impl<'a> Panel<'a> {
         // A number at the right end of the axis hangs over by half its width.
         let beyond =
             self.x_ticks().iter().filter(|tick| tick.at > 0.95).map(|tick| width(tick) / 2.0).fold(0.0, f64::max);
-        Needs { above, y_labels: self.y_ticks().iter().map(width).fold(0.0, f64::max), x_labels, beyond }
+        let y_numbers = self.y_ticks().iter().map(width).fold(0.0, f64::max);
+        Needs { above, y_numbers, y_label: self.y_label.clone(), x_labels, beyond }
     }
 
     /// Where a sample lies; `None` for a gap.

@@ -5,8 +5,8 @@ use crate::table::Table;
 
 use super::canvas::{ZOOM, svg};
 use super::error::FigureError;
-use super::geometry::Rect;
-use super::layout::{Needs, figure_height, frames};
+
+use super::layout::{Needs, Place, figure_height, places};
 use super::line::Source;
 use super::paint::{self, LegendPlace};
 use super::panel::Panel;
@@ -44,63 +44,57 @@ pub fn draw(
     if panels.is_empty() {
         return Err(FigureError::Nothing { figure: name });
     }
-    let arranged = Arranged::new(&panels);
+    let arranged = arranged(&panels);
     let paint = |sheet: &super::canvas::Sheet<'_>| {
         let letters = ('a'..='z').map(Some).chain(std::iter::repeat(None));
-        for (place, (panel, letter)) in arranged.places.iter().zip(panels.iter().zip(letters)) {
+        for (arranged, (panel, letter)) in arranged.iter().zip(panels.iter().zip(letters)) {
             let letter = letter.filter(|_| panels.len() > 1);
-            paint::panel(sheet, panel, &place.frame, place.legend, letter, place.x_labels)?;
+            paint::panel(sheet, panel, &arranged.place, arranged.legend, letter, arranged.x_labels)?;
         }
         Ok(())
     };
-    svg(WIDTH, arranged.height, paint)
+    svg(WIDTH, figure_height(panels.len()), paint)
         .and_then(|svg| raster::png(&svg, ZOOM))
         .map_err(|reason| FigureError::Drawing { figure: name.clone(), reason })
 }
 
-/// Panels with their places.
+/// What surrounds a panel.
 struct Arranged {
-    height: f64,
-    places: Vec<Place>,
-}
-
-struct Place {
-    frame: Rect,
+    place: Place,
     legend: LegendPlace,
     x_labels: bool,
 }
 
-impl Arranged {
-    /// Legends go inside where the data leave room; those that find none go above, and the frames make way for them.
-    fn new(panels: &[Panel<'_>]) -> Self {
-        let x_labels: Vec<bool> = (0..panels.len())
-            .map(|index| panels.get(index + 1).is_none_or(|below| below.x_label != panels[index].x_label))
-            .collect();
-        let mut above = vec![0.0; panels.len()];
-        // A legend put above makes the other frames lower, so that another one may lose its place; each round moves at
-        // least one up, and then all are settled.
-        loop {
-            let needs: Vec<Needs> =
-                panels.iter().zip(&above).zip(&x_labels).map(|((panel, &above), &x)| panel.needs(above, x)).collect();
-            let mut moved = false;
-            let mut places = Vec::with_capacity(panels.len());
-            for (index, (panel, frame)) in panels.iter().zip(frames(&needs)).enumerate() {
-                let legend = if panel.legend.is_empty() {
-                    LegendPlace::None
-                } else if above[index] > 0.0 {
-                    LegendPlace::Above
-                } else if let Some(place) = panel.legend.place_within(&frame, &panel.obstacles(&frame)) {
-                    LegendPlace::Within(place)
-                } else {
-                    above[index] = panel.legend.height_above(frame.width());
-                    moved = true;
-                    LegendPlace::Above
-                };
-                places.push(Place { frame, legend, x_labels: x_labels[index] });
-            }
-            if !moved {
-                return Self { height: figure_height(&needs), places };
-            }
+/// Legends go inside where the data leave room; those that find none go above, and the frames make way for them.
+fn arranged(panels: &[Panel<'_>]) -> Vec<Arranged> {
+    let x_labels: Vec<bool> = (0..panels.len())
+        .map(|index| panels.get(index + 1).is_none_or(|below| below.x_label != panels[index].x_label))
+        .collect();
+    let mut above = vec![0.0; panels.len()];
+    // A legend put above makes the other frames lower, so that another one may lose its place. Each round but the last
+    // moves one up at least.
+    loop {
+        let needs: Vec<Needs> =
+            panels.iter().zip(&above).zip(&x_labels).map(|((panel, &above), &x)| panel.needs(above, x)).collect();
+        let mut moved = false;
+        let mut arranged = Vec::with_capacity(panels.len());
+        for (index, (panel, place)) in panels.iter().zip(places(&needs)).enumerate() {
+            let frame = place.frame;
+            let legend = if panel.legend.is_empty() {
+                LegendPlace::None
+            } else if above[index] > 0.0 {
+                LegendPlace::Above
+            } else if let Some(within) = panel.legend.place_within(&frame, &panel.obstacles(&frame)) {
+                LegendPlace::Within(within)
+            } else {
+                above[index] = panel.legend.height_above(frame.width());
+                moved = true;
+                LegendPlace::Above
+            };
+            arranged.push(Arranged { place, legend, x_labels: x_labels[index] });
+        }
+        if !moved {
+            return arranged;
         }
     }
 }

@@ -97,7 +97,7 @@ impl Look {
     /// More lines than named colours take a ramp: they are levels of one quantity then.
     pub(super) fn new(hue: usize, hues: usize, dash: usize) -> Self {
         let color = if hues <= OKABE_ITO.len() { OKABE_ITO[hue % OKABE_ITO.len()] } else { ramp(hue, hues) };
-        Self { color, width: CURVE, dash: DASHES[dash % DASHES.len()], marker: MARKERS[dash.max(hue) % MARKERS.len()] }
+        Self { color, width: CURVE, dash: DASHES[dash % DASHES.len()], marker: MARKERS[dash % MARKERS.len()] }
     }
 
     /// The fixed look of a path in a time history: the same in every figure, whichever other paths are drawn.

@@ -62,7 +62,7 @@ impl Prefix {
             Prefix { symbol: "n", factor: 1e-9 },
         ];
         let size = value.abs();
-        if !matches!(unit, "m" | "s") || !size.is_finite() || size >= 1.0 || size < 1e-12 {
+        if !matches!(unit, "m" | "s") || !(1e-12..1.0).contains(&size) {
             return Self::NONE;
         }
         // A hair below the factor still counts, so that 1e-3 s written in binary is 1 ms and not 1000 µs.

@@ -33,7 +33,7 @@ pub fn of_column(name: &str) -> String {
         "rms_velocity" => "RMS velocity",
         "undamped_rms_velocity" => "RMS velocity without damper",
         "std_displacement" => "standard deviation of the displacement",
-        "rms_acceleration" => "RMS acceleration of the last half cycle",
+        "rms_acceleration" => "RMS acceleration",
         "base_displacement" => "base",
         "particle_displacement" => "particle",
         "floor_displacement" => "floor",

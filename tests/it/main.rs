@@ -5,6 +5,7 @@ mod desk;
 mod figure;
 mod made_up;
 mod reference;
+mod report;
 mod spec;
 mod study;
 mod table;
