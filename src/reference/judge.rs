@@ -1,4 +1,8 @@
 //! Entries and tables to verdicts.
+//!
+//! The baseline of the assumptions decides; the variants, each with one assumption moved, give u_input of a value and say
+//! how robust a verdict is: how many of them keep it. A variant that was run and failed leaves the uncertainty unknown, so
+//! the entry is missing; one that was not run for the rows in question is left out.
 
 use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};

@@ -455,6 +455,25 @@ fn an_unsound_reference_file_is_refused_with_every_mistake_and_its_line() {
 }
 
 #[test]
+fn comments_and_the_order_of_keys_mean_nothing() {
+    let meaning = |text: &str| serde_json::to_string(&parse_reference(EXPERIMENT, text).unwrap()).unwrap();
+    let one = "entries:
+  - id: a
+    place: s. 1
+    says: x
+    where: {stop: with, gap_ratio: [10, infinite], force_ratio: {from: 1}}
+    claim: {above: {of: y, level: 1}}
+";
+    let other = "# a comment
+entries:
+  - {claim: {above: {level: 1.0, of: y}}, says: x, id: a, place: s. 1,
+     where: {force_ratio: {from: 1.0}, gap_ratio: [10.0, infinite], stop: with}}
+";
+    assert_eq!(meaning(one), meaning(other));
+    assert_ne!(meaning(one), meaning(&one.replace("level: 1", "level: 2")));
+}
+
+#[test]
 fn every_shipped_reference_file_loads() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("reference/ch3");
     let mut files: Vec<_> = std::fs::read_dir(folder).unwrap().map(|file| file.unwrap().path()).collect();
