@@ -8,7 +8,8 @@
 //! - u_D: half a unit of the last printed digit.
 //!
 //! Agreement must say something. S itself may be uncertain by no more than the publication is loose, or a tenth of the
-//! published value: 2 √(u_num² + u_input²) ≤ W with W = max(2 u_D, |D|/10). A tenth still tells the velocity ratios 0.87
+//! published value (of the time between two of its kind, if it is an instant): 2 √(u_num² + u_input²) ≤ W with
+//! W = max(2 u_D, |D|/10). A tenth still tells the velocity ratios 0.87
 //! and 1.52 from the 1 of a damper that does nothing. Agreement through a wider u_val is not `reproduced`: it is `blocked`
 //! where the unstated inputs make most of the width, `undecidable` where the chaotic spread or the grid does.
 //!
@@ -19,16 +20,17 @@ use super::verdict::{Comparison, Verdict};
 
 /// Coverage factor: about 95 % where errors are normal.
 pub(crate) const COVERAGE: f64 = 2.0;
-/// Widest agreement that says something, as a fraction of the published value.
+/// Widest agreement that says something, as a fraction of the published value or its scale.
 const TELLING: f64 = 0.1;
 
 /// The verdict on a value, and what there is to say beyond the numbers.
-pub(crate) fn verdict(comparison: &Comparison, fitted: bool) -> (Verdict, Option<String>) {
+pub(crate) fn verdict(comparison: &Comparison, scale: Option<f64>, fitted: bool) -> (Verdict, Option<String>) {
     let error = comparison.error().abs();
     if error > tolerance(comparison) {
         return (Verdict::Differs, None);
     }
-    let telling = (COVERAGE * comparison.u_data).max(TELLING * comparison.published.abs());
+    let scale = scale.unwrap_or(comparison.published.abs());
+    let telling = (COVERAGE * comparison.u_data).max(TELLING * scale);
     let simulated = COVERAGE * comparison.u_num.hypot(comparison.u_input);
     let says_something = comparison.tolerance_by_hand.is_some()
         && COVERAGE * comparison.spread <= tolerance(comparison).max(telling)
@@ -42,7 +44,7 @@ pub(crate) fn verdict(comparison: &Comparison, fitted: bool) -> (Verdict, Option
         } else {
             (Verdict::Undecidable, "the sweep's grid and the run's own error are so coarse")
         };
-        let width = super::text::percent(simulated / comparison.published.abs());
+        let width = super::text::percent(simulated / scale);
         return (verdict, Some(format!("agrees, but within ± {width} any value would: {cause}")));
     }
     (if fitted { Verdict::Fitted } else { Verdict::Reproduced }, None)

@@ -20,7 +20,7 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
-use super::extract::Extraction;
+use super::extraction::Extraction;
 use super::predicate::Predicate;
 use super::printed::Printed;
 use super::selection::Selection;

@@ -1,200 +1,11 @@
-//! Numbers out of a table: one word for each way in which a study quotes a number of its curves.
-//!
-//! `{argmax: {of: velocity_ratio, over: force_ratio}}` is the force ratio of the largest velocity ratio. Each comes with
-//! its own error, to which the grid of the sweep belongs: a top is known to lie between its neighbours, no better.
+//! Takes numbers out of tables. Each comes with its own error, to which the grid of the sweep belongs: a top is known to lie
+//! between its neighbours, no better.
 
-use serde::{Deserialize, Serialize};
-
-use super::line::{common, lines};
-use super::selection::{Selection, same};
-use super::text::significant;
-use super::view::{Absence, Cell, Source, View};
-
-/// How a number is taken out of a table.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Extraction {
-    /// A fixed number, to hold others against.
-    Number(f64),
-    /// The measure in the one row that is meant.
-    Cell(Cells),
-    /// Mean of a measure over the rows.
-    Mean(Cells),
-    /// Largest value along a parameter.
-    Maximum(Along),
-    /// Smallest value along a parameter.
-    Minimum(Along),
-    /// The parameter of the largest value.
-    Argmax(Along),
-    /// The parameter of the smallest value.
-    Argmin(Along),
-    /// Another measure where this one is largest.
-    AtMaximum(AtMaximum),
-    /// The measure at the first or last point of a line.
-    End(End),
-    /// The parameter at which a measure first crosses a level.
-    Crossing(Crossing),
-    /// The first parameter value at which a measure exceeds a level.
-    FirstAbove(FirstAbove),
-    /// The first parameter value at which two lines differ by more than a fraction of their mean.
-    Parting(Parting),
-    /// The largest fall of a rising line, or rise of a falling one: how much it deviates from monotone.
-    LargestStepBack(StepBack),
-    /// Of the events of a kind in a time history, the time that lies nearest to a given one.
-    NearestEvent(NearestEvent),
-    /// One number over another.
-    Ratio(Box<Quotient>),
-    /// A number times a factor.
-    Times(Box<Times>),
-}
-
-macro_rules! word {
-    ($(#[$about:meta])* $name:ident { $($(#[$field_about:meta])* $field:ident: $type:ty,)* }) => {
-        $(#[$about])*
-        #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-        #[serde(deny_unknown_fields)]
-        pub struct $name {
-            /// The measure.
-            pub of: String,
-            $($(#[$field_about])* pub $field: $type,)*
-            /// Conditions beyond the entry's own.
-            #[serde(rename = "where", default)]
-            pub rows: Selection,
-            /// Another experiment's table; the entry's conditions do not hold there.
-            #[serde(default)]
-            pub table: Option<String>,
-        }
-
-        impl $name {
-            pub(crate) fn source(&self) -> Source<'_> {
-                Source { table: self.table.as_deref(), rows: &self.rows }
-            }
-        }
-    };
-}
-
-word! {
-    /// A measure in some rows.
-    Cells {}
-}
-word! {
-    /// A measure along a parameter.
-    Along {
-        /// The parameter.
-        over: String,
-    }
-}
-word! {
-    /// Another measure at the top.
-    AtMaximum {
-        /// The parameter.
-        over: String,
-        /// The other measure.
-        read: String,
-    }
-}
-word! {
-    /// One end of a line.
-    End {
-        /// The parameter.
-        over: String,
-        /// Which end.
-        end: Side,
-    }
-}
-word! {
-    /// Crossing of a level.
-    Crossing {
-        /// The parameter.
-        over: String,
-        /// The level.
-        level: f64,
-        /// Upwards (`increasing`) or downwards.
-        direction: Direction,
-    }
-}
-word! {
-    /// Onset.
-    FirstAbove {
-        /// The parameter.
-        over: String,
-        /// The level to be exceeded.
-        above: f64,
-    }
-}
-word! {
-    /// Parting of two lines.
-    Parting {
-        /// The parameter.
-        over: String,
-        /// The column that tells the two lines apart.
-        by: String,
-        /// Of their mean.
-        fraction: f64,
-    }
-}
-word! {
-    /// Deviation from monotone.
-    StepBack {
-        /// The parameter.
-        over: String,
-        /// Which way the line should go.
-        direction: Direction,
-    }
-}
-
-/// A time in the time history of the one row that is meant.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct NearestEvent {
-    /// Code of the kind of event, in the column `event_kind`.
-    pub kind: f64,
-    /// The time to be near to, s.
-    pub to: f64,
-    /// Conditions beyond the entry's own.
-    #[serde(rename = "where", default)]
-    pub rows: Selection,
-}
-
-/// A ratio.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Quotient {
-    /// Above the line.
-    pub of: Extraction,
-    /// Below it.
-    pub to: Extraction,
-}
-
-/// A multiple.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Times {
-    /// The factor.
-    pub factor: f64,
-    /// Of what.
-    pub of: Extraction,
-}
-
-/// End of a line.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Side {
-    /// The smallest parameter.
-    Low,
-    /// The largest parameter.
-    High,
-}
-
-/// Which way.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Direction {
-    /// Upwards.
-    Increasing,
-    /// Downwards.
-    Decreasing,
-}
+use super::extraction::{Along, Direction, Extraction, NearestPassage, Parting, Side};
+use super::line::{Position, common, lines};
+use super::selection::same;
+use super::text::{percent, significant};
+use super::view::{Absence, Cell, Source, View, finite};
 
 /// A number taken out of a table.
 #[derive(Debug, Clone, PartialEq)]
@@ -205,20 +16,29 @@ pub(crate) struct Extracted {
     /// Standard deviation of the ensemble where it was read.
     pub spread: f64,
     pub unit: String,
+    /// What an agreement is measured against where zero is no natural origin, as with an instant: the time between two of
+    /// its kind.
+    pub scale: Option<f64>,
 }
 
 impl Extracted {
     fn cell(cell: Cell, unit: &str) -> Self {
-        Self { value: cell.value, run: cell.run, spread: cell.spread, unit: unit.into() }
+        Self { value: cell.value, run: cell.run, spread: cell.spread, unit: unit.into(), scale: None }
     }
 
-    fn place(position: super::line::Position, unit: String) -> Self {
-        Self { value: position.x, run: position.u, spread: 0.0, unit }
+    fn place(position: Position, unit: String) -> Self {
+        Self { value: position.x, run: position.u, spread: 0.0, unit, scale: None }
     }
 
     fn times(self, factor: f64) -> Self {
         let size = factor.abs();
-        Self { value: self.value * factor, run: self.run * size, spread: self.spread * size, unit: self.unit }
+        Self {
+            value: self.value * factor,
+            run: self.run * size,
+            spread: self.spread * size,
+            unit: self.unit,
+            scale: self.scale.map(|scale| scale * size),
+        }
     }
 }
 
@@ -227,7 +47,7 @@ impl Extraction {
     pub(crate) fn take(&self, view: &View<'_>) -> Result<Extracted, Absence> {
         let line = |along: &Along| view.line(along.source(), &along.of, &along.over, None);
         Ok(match self {
-            Self::Number(x) => Extracted { value: *x, run: 0.0, spread: 0.0, unit: String::new() },
+            Self::Number(x) => Extracted { value: *x, run: 0.0, spread: 0.0, unit: String::new(), scale: None },
             Self::Cell(cells) => {
                 let rows = view.rows(cells.source(), None)?;
                 let all = view.cells(&rows, &cells.of)?;
@@ -250,6 +70,7 @@ impl Extraction {
                     run: quadrature(|cell| cell.run),
                     spread: quadrature(|cell| cell.spread),
                     unit: view.unit(&rows, &cells.of)?.into(),
+                    scale: None,
                 }
             }
             Self::Maximum(along) => {
@@ -302,7 +123,7 @@ impl Extraction {
                 let line = if word.direction == Direction::Increasing { line } else { line.inverted() };
                 Extracted::cell(line.largest_fall(), &line.unit)
             }
-            Self::NearestEvent(word) => word.take(view)?,
+            Self::NearestPassage(word) => word.take(view)?,
             Self::Ratio(quotient) => {
                 let (of, to) = (quotient.of.take(view)?, quotient.to.take(view)?);
                 if of.unit != to.unit {
@@ -313,44 +134,16 @@ impl Extraction {
                     return Err(Absence::Broken("a ratio to zero".into()));
                 }
                 let both = |a: f64, b: f64| a.hypot(value * b) / to.value.abs();
-                Extracted { value, run: both(of.run, to.run), spread: both(of.spread, to.spread), unit: String::new() }
+                Extracted {
+                    value,
+                    run: both(of.run, to.run),
+                    spread: both(of.spread, to.spread),
+                    unit: String::new(),
+                    scale: None,
+                }
             }
             Self::Times(times) => times.of.take(view)?.times(times.factor),
         })
-    }
-
-    /// True if every number written into it is finite.
-    pub(crate) fn is_sound(&self) -> bool {
-        match self {
-            Self::Number(x) => x.is_finite(),
-            Self::Crossing(word) => word.level.is_finite(),
-            Self::FirstAbove(word) => word.above.is_finite(),
-            Self::Parting(word) => word.fraction.is_finite() && word.fraction > 0.0,
-            Self::NearestEvent(word) => word.kind.is_finite() && word.to.is_finite(),
-            Self::Ratio(quotient) => quotient.of.is_sound() && quotient.to.is_sound(),
-            Self::Times(times) => times.factor.is_finite() && times.factor != 0.0 && times.of.is_sound(),
-            _ => true,
-        }
-    }
-
-    /// The other experiments whose tables it reads.
-    pub(crate) fn tables(&self) -> Vec<&str> {
-        let table = match self {
-            Self::Number(_) | Self::NearestEvent(_) => None,
-            Self::Cell(word) | Self::Mean(word) => word.table.as_deref(),
-            Self::Maximum(word) | Self::Minimum(word) | Self::Argmax(word) | Self::Argmin(word) => {
-                word.table.as_deref()
-            }
-            Self::AtMaximum(word) => word.table.as_deref(),
-            Self::End(word) => word.table.as_deref(),
-            Self::Crossing(word) => word.table.as_deref(),
-            Self::FirstAbove(word) => word.table.as_deref(),
-            Self::Parting(word) => word.table.as_deref(),
-            Self::LargestStepBack(word) => word.table.as_deref(),
-            Self::Ratio(quotient) => return [quotient.of.tables(), quotient.to.tables()].concat(),
-            Self::Times(times) => return times.of.tables(),
-        };
-        table.into_iter().collect()
     }
 }
 
@@ -365,7 +158,7 @@ impl Parting {
             let (a, b) = (cells[0].value, cells[1].value);
             (a - b).abs() > self.fraction * (a + b).abs() / 2.0
         };
-        let fraction = super::text::percent(self.fraction);
+        let fraction = percent(self.fraction);
         let unit = both[0].1.over_unit.clone();
         match shared.iter().position(|(_, cells)| apart(cells)) {
             None => Err(Absence::Nowhere(format!("the lines never part by {fraction}"))),
@@ -374,23 +167,34 @@ impl Parting {
             }
             Some(i) => {
                 let (x, before) = (shared[i].0, shared[i - 1].0);
-                Ok(Extracted { value: x, run: (x - before) / 2.0, spread: 0.0, unit })
+                Ok(Extracted { value: x, run: (x - before) / 2.0, spread: 0.0, unit, scale: None })
             }
         }
     }
 }
 
-impl NearestEvent {
+impl NearestPassage {
     fn take(&self, view: &View<'_>) -> Result<Extracted, Absence> {
         let rows = view.rows(Source { table: None, rows: &self.rows }, None)?;
-        let (times, kinds) = (view.path(&rows, "event_time")?, view.path(&rows, "event_kind")?);
-        let nearest = times
-            .iter()
-            .zip(kinds)
-            .filter(|(_, kind)| **kind == self.kind)
-            .map(|(&time, _)| time)
-            .min_by(|a, b| (a - self.to).abs().total_cmp(&(b - self.to).abs()));
-        let value = nearest.ok_or_else(|| Absence::Nowhere("the time history has no event of that kind".into()))?;
-        Ok(Extracted { value, run: 0.0, spread: 0.0, unit: view.unit(&rows, "event_time")?.into() })
+        let times = view.path(&rows, "time")?;
+        let (of, through) = (view.path(&rows, &self.of)?, view.path(&rows, &self.through)?);
+        finite(times, "time")?;
+        finite(of, &self.of)?;
+        finite(through, &self.through)?;
+        let side = self.direction.sign();
+        let apart: Vec<f64> = of.iter().zip(through).map(|(a, b)| side * (a - b)).collect();
+        let passages = apart.windows(2).zip(times.windows(2)).filter(|(apart, _)| apart[0] < 0.0 && apart[1] >= 0.0);
+        let instants: Vec<(f64, f64)> = passages
+            .map(|(apart, time)| {
+                let width = time[1] - time[0];
+                (time[0] + width * apart[0] / (apart[0] - apart[1]), width / 2.0)
+            })
+            .collect();
+        let nearest = instants.iter().min_by(|a, b| (a.0 - self.to).abs().total_cmp(&(b.0 - self.to).abs()));
+        let &(value, run) = nearest
+            .ok_or_else(|| Absence::Nowhere(format!("`{}` never passes `{}` that way", self.of, self.through)))?;
+        let between = instants.windows(2).map(|pair| pair[1].0 - pair[0].0).reduce(f64::min);
+        let scale = between.or(Some(times[times.len() - 1] - times[0]));
+        Ok(Extracted { value, run, spread: 0.0, unit: view.unit(&rows, "time")?.into(), scale })
     }
 }

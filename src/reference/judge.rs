@@ -1,13 +1,19 @@
 //! Entries and tables to verdicts.
+//!
+//! The baseline of the assumptions decides; the variants, each with one assumption moved, give u_input of a value and say
+//! how robust a verdict is: how many of them keep it. A variant that was run and failed leaves the uncertainty unknown, so
+//! the entry is missing; one that was not run for the rows in question is left out.
 
 use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::compare;
-use super::decide::{Outcome, decide};
+use super::decide::decide;
 use super::entry::{Check, Entry, ReferenceFile, Tolerance, ToleranceSize};
-use super::extract::{Extracted, Extraction};
+use super::extract::Extracted;
+use super::extraction::Extraction;
 use super::printed::Printed;
+use super::tally::Outcome;
 use super::text::{percent, significant, with_unit};
 use super::verdict::{Comparison, Judged, Verdict};
 use super::view::{Absence, BASELINE, Reads, Tables, View};
@@ -150,12 +156,12 @@ fn value(
             ToleranceSize::Absolute(distance) => distance * (u_data / published.half_unit()),
         }),
     };
-    let (verdict, remark) = compare::verdict(&comparison, fitted);
+    let (verdict, remark) = compare::verdict(&comparison, simulated.scale, fitted);
     let kept = others
         .iter()
         .filter(|(_, other)| {
             let there = Comparison { simulated: other.value, ..comparison };
-            compare::verdict(&there, fitted).0 == verdict
+            compare::verdict(&there, simulated.scale, fitted).0 == verdict
         })
         .count();
     let mut found = format!(

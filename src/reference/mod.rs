@@ -7,12 +7,15 @@ mod compare;
 mod decide;
 mod entry;
 mod extract;
+mod extraction;
 mod judge;
 mod line;
 mod predicate;
 mod printed;
 mod selection;
 mod self_test;
+mod shape;
+mod tally;
 mod text;
 mod verdict;
 mod view;
@@ -20,7 +23,7 @@ mod view;
 pub use entry::{
     Check, Entry, ReferenceError, ReferenceFile, Tolerance, ToleranceSize, load_reference, parse_reference,
 };
-pub use extract::Extraction;
+pub use extraction::Extraction;
 pub use judge::judge;
 pub use predicate::Predicate;
 pub use printed::{Printed, PrintedError};

@@ -6,8 +6,9 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::extract::{Direction, Extraction, Side};
+use super::extraction::{Direction, Extraction, Side};
 use super::selection::Selection;
+use super::text::{percent, significant};
 use super::view::Source;
 
 /// What a claim says of a table.
@@ -22,6 +23,8 @@ pub enum Predicate {
     GreatestFirst(Vec<Extraction>),
     /// Numbers are equal.
     Equal(Equal),
+    /// Numbers are not equal.
+    Apart(Apart),
     /// A number lies in an interval.
     Between(Between),
     /// A measure stays above a level in every row.
@@ -124,7 +127,17 @@ pub struct Equal {
     pub within: Within,
 }
 
-/// How near two numbers are to be.
+/// Inequality of numbers, whichever is the greater.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Apart {
+    /// The numbers.
+    pub values: Vec<Extraction>,
+    /// How far, at least, any two of them.
+    pub by: Within,
+}
+
+/// A distance between two numbers.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Within {
@@ -273,6 +286,27 @@ claim! {
         /// Step back allowed, as a fraction of its range.
         #[serde(default)]
         slack: f64,
+        /// Looked at from this time on, s; from the first sample if absent.
+        #[serde(default)]
+        after: Option<f64>,
+    }
+}
+
+impl Within {
+    /// The distance that it is for these two numbers.
+    pub(crate) fn allows(self, a: f64, b: f64) -> f64 {
+        match self {
+            Self::Relative(fraction) => fraction * a.abs().max(b.abs()),
+            Self::Absolute(distance) => distance,
+        }
+    }
+
+    /// For a reader.
+    pub(crate) fn words(self) -> String {
+        match self {
+            Self::Relative(fraction) => percent(fraction),
+            Self::Absolute(distance) => significant(distance, 3),
+        }
     }
 }
 
@@ -285,6 +319,7 @@ impl Predicate {
             Self::Above(claim) | Self::Below(claim) => claim.slack > 0.0,
             Self::PathMonotone(claim) => claim.slack > 0.0,
             Self::Equal(_)
+            | Self::Apart(_)
             | Self::Between(_)
             | Self::ColumnsAgree(_)
             | Self::LinesAgree(_)
@@ -309,6 +344,8 @@ impl Predicate {
             Self::GreatestFirst(list) => list.iter().all(Extraction::is_sound),
             Self::Equal(claim) if claim.values.len() < 2 => return Some("equality needs two numbers or more"),
             Self::Equal(claim) => near(claim.within) && claim.values.iter().all(Extraction::is_sound),
+            Self::Apart(claim) if claim.values.len() < 2 => return Some("inequality needs two numbers or more"),
+            Self::Apart(claim) => near(claim.by) && claim.values.iter().all(Extraction::is_sound),
             Self::Between(Between { from: None, to: None, .. }) => return Some("give `from`, `to` or both"),
             Self::Between(claim) => {
                 claim.value.is_sound() && [claim.from, claim.to].iter().flatten().all(|end| end.is_finite())
@@ -327,7 +364,7 @@ impl Predicate {
             Self::Peaks(claim) => fraction(claim.prominence),
             Self::Onsets(claim) if claim.order.len() < 2 => return Some("an order needs two onsets or more"),
             Self::Onsets(claim) => claim.order.iter().all(|onset| onset.above.is_finite()),
-            Self::PathMonotone(claim) => fraction(claim.slack),
+            Self::PathMonotone(claim) => fraction(claim.slack) && claim.after.is_none_or(f64::is_finite),
             Self::GreatestAtEnd(_) | Self::PathsCross(_) => true,
         };
         (!sound).then_some("thresholds are finite; fractions lie between 0 and 1")
@@ -337,7 +374,7 @@ impl Predicate {
     pub(crate) fn tables(&self) -> Vec<&str> {
         match self {
             Self::Trend(claim) => claim.of.tables(),
-            Self::GreatestFirst(values) | Self::Equal(Equal { values, .. }) => {
+            Self::GreatestFirst(values) | Self::Equal(Equal { values, .. }) | Self::Apart(Apart { values, .. }) => {
                 values.iter().flat_map(Extraction::tables).collect()
             }
             Self::Between(claim) => claim.value.tables(),

@@ -8,7 +8,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::compare;
 use super::entry::{Check, Entry, ReferenceFile};
-use super::extract::Extraction;
+use super::extraction::Extraction;
 use super::judge::judge_noting;
 use super::verdict::{Judged, Verdict};
 use super::view::{BASELINE, Read, Reads, Role, TableState, Tables, View};
@@ -158,7 +158,7 @@ impl Bench<'_> {
             Extraction::Crossing(word) => shift(cells(Role::Coordinate, &word.over)),
             Extraction::FirstAbove(word) => shift(cells(Role::Coordinate, &word.over)),
             Extraction::Parting(word) => shift(cells(Role::Coordinate, &word.over)),
-            Extraction::NearestEvent(_) => return self.steer_event(table, now, to, reads),
+            Extraction::NearestPassage(_) => shift(cells(Role::Path, "time")),
             Extraction::LargestStepBack(word) => {
                 let (column, rows) = cells(Role::Value, &word.of);
                 alter(table, column, &rows, |x, _| x * to / now);
@@ -183,19 +183,6 @@ impl Bench<'_> {
                 }
             }
             Extraction::Number(_) => return Err("its value is a fixed number".into()),
-        }
-        Ok(())
-    }
-
-    fn steer_event(&self, table: &mut Table, now: f64, to: f64, reads: &BTreeSet<Read>) -> Result<(), String> {
-        let column = self.table.columns.iter().position(|column| column.name == "event_time");
-        let column = column.ok_or("there is no column `event_time`")?;
-        for read in reads.iter().filter(|read| read.role == Role::Path && read.column == column) {
-            if let Data::FloatList(lists) = &mut table.columns[column].data {
-                for x in &mut lists[read.row] {
-                    *x += to - now;
-                }
-            }
         }
         Ok(())
     }
@@ -239,10 +226,11 @@ enum Damage {
     SpikeFirst,
     SpikeMiddle,
     SpikeLast,
-    Zigzag,
+    Comb,
+    OtherComb,
 }
 
-const DAMAGES: [Damage; 8] = [
+const DAMAGES: [Damage; 9] = [
     Damage::Mirrored,
     Damage::Raised,
     Damage::Lowered,
@@ -250,7 +238,8 @@ const DAMAGES: [Damage; 8] = [
     Damage::SpikeFirst,
     Damage::SpikeMiddle,
     Damage::SpikeLast,
-    Damage::Zigzag,
+    Damage::Comb,
+    Damage::OtherComb,
 ];
 
 impl Damage {
@@ -269,7 +258,8 @@ impl Damage {
             Self::SpikeFirst if i == 0 => x + far,
             Self::SpikeMiddle if i == last / 2 => x + far,
             Self::SpikeLast if i == last => x + far,
-            Self::Zigzag if i % 2 == 1 => x - far,
+            Self::Comb if i % 2 == 1 => x - far,
+            Self::OtherComb if i % 2 == 0 => x - far,
             _ => x,
         });
     }

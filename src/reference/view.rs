@@ -250,7 +250,7 @@ impl<'a> View<'a> {
             .collect())
     }
 
-    /// A time history of the one row that is meant.
+    /// A time history of the one row that is meant; whoever uses its samples asks whether they are [`finite`].
     pub(crate) fn path(&self, rows: &Rows<'a>, of: &str) -> Result<&'a [f64], Absence> {
         let &[row] = rows.indices.as_slice() else {
             return Err(Absence::Broken(format!("{} rows where a time history needs one", rows.indices.len())));
@@ -261,9 +261,11 @@ impl<'a> View<'a> {
             return Err(Absence::Broken(format!("`{of}` is no time history")));
         };
         let path = lists[row].as_slice();
-        if path.is_empty() || path.iter().any(|x| !x.is_finite()) {
-            return Err(Absence::Broken(format!("the time history `{of}` is empty or not finite")));
+        if path.is_empty() {
+            // Variants keep no time history.
+            return Err(Absence::NoRow(format!("the time history `{of}` is empty")));
         }
+
         Ok(path)
     }
 
@@ -327,6 +329,15 @@ impl Line {
             cell.value = -cell.value;
         }
         self
+    }
+}
+
+/// Refuses samples that are no numbers.
+pub(crate) fn finite(samples: &[f64], of: &str) -> Result<(), Absence> {
+    if samples.iter().all(|x| x.is_finite()) {
+        Ok(())
+    } else {
+        Err(Absence::Broken(format!("the time history `{of}` is not finite throughout")))
     }
 }
 

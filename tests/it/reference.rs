@@ -304,6 +304,13 @@ fn claims_hold_fail_and_stay_open_as_their_margins_say() {
             peaked,
             rising,
         ),
+        (
+            format!(
+                "claim: {{apart: {{values: [{{end: {{{line}, end: low}}}}, {{end: {{{line}, end: high}}}}], by: {{relative: 0.01}}}}}}\n{by_hand}"
+            ),
+            rising,
+            peaked,
+        ),
         ("claim: {above: {of: velocity_ratio, level: 0.99}}".to_string(), rising, [1.0, 0.98, 1.0, 1.0, 1.0]),
         ("claim: {below: {of: velocity_ratio, level: 1.9}}".to_string(), rising, peaked),
         (format!("claim: {{linear: {{{line}, within: 0.05}}}}\n{by_hand}"), rising, saturating),
@@ -312,9 +319,7 @@ fn claims_hold_fail_and_stay_open_as_their_margins_say() {
         (format!("claim: {{peaks: {{{line}, prominence: 0.3, at_least: 2}}}}\n{by_hand}"), comb, peaked),
         (format!("claim: {{peaks: {{{line}, prominence: 0.3, at_most: 1}}}}\n{by_hand}"), peaked, comb),
         (
-            format!(
-                "claim: {{onsets: {{over: force_ratio, order: [{{of: velocity_ratio, above: 1}}, {{of: velocity_ratio, above: 1.7}}]}}}}"
-            ),
+            "claim: {onsets: {over: force_ratio, order: [{of: velocity_ratio, above: 1}, {of: velocity_ratio, above: 1.7}]}}".to_string(),
             rising,
             comb,
         ),
@@ -361,11 +366,10 @@ fn time_histories_are_judged_along_their_samples() {
     let mut history = |name: &str, unit: &str, samples: &[f64]| {
         table.columns.push(column(name, unit, Data::FloatList(vec![samples.to_vec()])));
     };
-    history("particle_displacement", "m", &[0.1, -0.1, 0.2]);
-    history("rigid_floor", "m", &[0.0, 0.0, 0.0]);
-    history("rms_acceleration", "", &[3.0, 2.0, 1.0]);
-    history("event_time", "s", &[52.10, 52.306, 52.55]);
-    history("event_kind", "", &[1.0, 1.0, 2.0]);
+    history("time", "s", &[52.302, 52.312, 52.500, 52.510]);
+    history("particle_displacement", "m", &[0.1, -0.1, -0.1, 0.2]);
+    history("rigid_floor", "m", &[0.0, 0.0, 0.0, 0.0]);
+    history("rms_acceleration", "", &[3.0, 2.0, 1.0, 1.0]);
     assert_eq!(
         verdict("claim: {paths_cross: {of: particle_displacement, other: rigid_floor}}", &table),
         Verdict::Reproduced
@@ -373,9 +377,13 @@ fn time_histories_are_judged_along_their_samples() {
     assert_eq!(verdict("claim: {paths_cross: {of: rms_acceleration, other: rigid_floor}}", &table), Verdict::Differs);
     let falls = "claim: {path_monotone: {of: rms_acceleration, direction: decreasing}}";
     assert_eq!(verdict(falls, &table), Verdict::Reproduced);
-    let impact = "value: 52.31 s\nfrom: {nearest_event: {kind: 1, to: 52.31}}";
+    let late =
+        falls.replace("rms_acceleration", "particle_displacement").replace("decreasing", "increasing, after: 52.31");
+    assert_eq!(verdict(&late, &table), Verdict::Reproduced);
+    let impact = "value: 52.31 s
+        from: {nearest_passage: {of: particle_displacement, through: rigid_floor, direction: decreasing, to: 52.31}}";
     assert_eq!(verdict(impact, &table), Verdict::Reproduced);
-    assert_eq!(verdict(&impact.replace("kind: 1", "kind: 2"), &table), Verdict::Differs);
+    assert_eq!(verdict(&impact.replace("decreasing", "increasing"), &table), Verdict::Differs);
     for body in [falls, impact, "claim: {paths_cross: {of: particle_displacement, other: rigid_floor}}"] {
         assert_eq!(broken(body, &table), Vec::<String>::new(), "{body}");
     }
@@ -444,6 +452,25 @@ fn an_unsound_reference_file_is_refused_with_every_mistake_and_its_line() {
             "line {line}: {part}\n{several}"
         );
     }
+}
+
+#[test]
+fn comments_and_the_order_of_keys_mean_nothing() {
+    let meaning = |text: &str| serde_json::to_string(&parse_reference(EXPERIMENT, text).unwrap()).unwrap();
+    let one = "entries:
+  - id: a
+    place: s. 1
+    says: x
+    where: {stop: with, gap_ratio: [10, infinite], force_ratio: {from: 1}}
+    claim: {above: {of: y, level: 1}}
+";
+    let other = "# a comment
+entries:
+  - {claim: {above: {level: 1.0, of: y}}, says: x, id: a, place: s. 1,
+     where: {force_ratio: {from: 1.0}, gap_ratio: [10.0, infinite], stop: with}}
+";
+    assert_eq!(meaning(one), meaning(other));
+    assert_ne!(meaning(one), meaning(&one.replace("level: 1", "level: 2")));
 }
 
 #[test]
