@@ -1,3 +1,11 @@
 //! One test binary: a module per subject.
 
+mod cli;
+mod desk;
+mod figure;
+mod made_up;
+mod reference;
+mod report;
 mod spec;
+mod study;
+mod table;
