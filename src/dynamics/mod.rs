@@ -18,6 +18,7 @@ mod contact;
 mod elementary;
 mod fixed;
 mod flow;
+mod guards;
 mod integral;
 mod march;
 mod search;
