@@ -127,6 +127,14 @@ impl Law {
             Self::Rigid { .. } => None,
         }
     }
+
+    /// Restitution of what holds a particle: a rigid face, or the stop of a resilient one.
+    pub(crate) fn restitution(self) -> f64 {
+        match self {
+            Self::Rigid { restitution } => restitution,
+            Self::Resilient { stop, .. } => stop.map_or(0.0, |stop| stop.restitution),
+        }
+    }
 }
 
 /// An impact: what it does to the structure and to the relative rate.

@@ -272,7 +272,7 @@ impl<'a> March<'a> {
                 }
                 _ if contact.holds(particle) => {
                     if away < 0.0 {
-                        self.strike(j, side, self.restitution(j, side))?;
+                        self.strike(j, side, side.face(particle).law.restitution())?;
                     } else if away > 0.0 {
                         self.let_go(j, side);
                     }
@@ -302,13 +302,6 @@ impl<'a> March<'a> {
             }
         }
         self.choose_flow()
-    }
-
-    fn restitution(&self, j: usize, side: Side) -> f64 {
-        match side.face(&self.system.particles[j]).law {
-            Law::Rigid { restitution } => restitution,
-            Law::Resilient { stop, .. } => stop.map_or(0.0, |stop| stop.restitution),
-        }
     }
 
     /// Position relative to the ceiling, for a particle whose state refers to the floor.

@@ -16,6 +16,7 @@ mod audit;
 mod block;
 mod contact;
 mod elementary;
+mod fixed;
 mod flow;
 mod guards;
 mod integral;
@@ -44,7 +45,8 @@ pub struct Proof {
     pub energy_residual: f64,
     /// Events of the whole run: contacts made and lost, stops hit; impulses not counted.
     pub events: u64,
-    /// The smallest distance, in metres, by which a surface would have to be moved for the sequence of events to change.
+    /// The smallest distance, in metres, by which a surface would have to be moved for the sequence of events to change; NaN
+    /// from the fixed step, which certifies nothing.
     pub smallest_margin: f64,
     /// Decisions within rounding: simultaneous events that had to be put into an order, contacts that graze.
     pub ties: u64,
@@ -241,6 +243,16 @@ pub enum EngineError {
         /// Time within it.
         time: f64,
     },
+    /// A step that is no step of this drive.
+    #[error(
+        "a time step of {time_step} s does not fit a forcing period of {period} s: it must be positive, no longer than the period and longer than a billionth of it"
+    )]
+    TimeStep {
+        /// s.
+        time_step: f64,
+        /// s.
+        period: f64,
+    },
     /// Overflow.
     #[error("the motion leaves the range of numbers in cycle {cycle}")]
     NotFinite {
@@ -257,10 +269,10 @@ pub fn event_driven(system: &HybridSystem, options: &Options) -> Result<Response
     march::march(system, options)
 }
 
-/// Runs a system with the study's scheme: exact propagators of one time step, the contact state checked once a step.
+/// Runs a system with the study's scheme: exact propagators of one time step, s, the contact state checked once a step.
 ///
 /// # Errors
 /// [`EngineError`] with the reason.
-pub fn fixed_step(system: &HybridSystem, options: &Options, _time_step: f64) -> Result<Response, EngineError> {
-    event_driven(system, options)
+pub fn fixed_step(system: &HybridSystem, options: &Options, time_step: f64) -> Result<Response, EngineError> {
+    fixed::run(system, options, time_step)
 }
