@@ -54,9 +54,12 @@ impl<'a> Panel<'a> {
         let scale = spec.y[0].scale;
         let ends = samples().flat_map(|sample| [sample.y, sample.y - sample.spread, sample.y + sample.spread]);
         let limits = curves.iter().filter_map(|curve| curve.at_infinity.as_ref()).map(|limit| limit.y);
-        let guides = spec.guides.iter().map(|guide| guide.at);
+
         let marks = quoted.iter().map(|point| point.y);
-        let y_extent = Extent::of(ends.chain(limits).chain(guides).chain(marks), scale).ok_or_else(nothing)?;
+        let mut y_extent = Extent::of(ends.chain(limits).chain(marks), scale).ok_or_else(nothing)?;
+        for guide in &spec.guides {
+            y_extent = y_extent.with_guide(guide.at, scale);
+        }
         let y = Axis::new(scale, y_extent, Room::Airy, &unit);
 
         let x_name = source.label(&spec.x)?;
