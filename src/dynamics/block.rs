@@ -17,6 +17,8 @@ pub(crate) struct Block {
     discriminant: f64,
     /// √|d|.
     root: f64,
+    /// 1/√|d|; infinite at critical damping.
+    inverse_root: f64,
     /// Largest modulus of an eigenvalue.
     pub(crate) radius: f64,
 }
@@ -51,7 +53,7 @@ impl Block {
     fn from_invariants(decay: f64, determinant: f64, discriminant: f64) -> Self {
         let root = discriminant.abs().sqrt();
         let radius = if discriminant < 0.0 { determinant.abs().sqrt() } else { decay.abs() + root };
-        Self { decay, determinant, discriminant, root, radius }
+        Self { decay, determinant, discriminant, root, inverse_root: 1.0 / root, radius }
     }
 
     /// The two eigenvalues sum to nothing: ∫ of the block's signals grows with time.
@@ -79,7 +81,7 @@ impl Block {
         if self.discriminant < 0.0 {
             let e = if self.decay == 0.0 { 1.0 } else { super::elementary::exp(-self.decay * t) };
             let (sine, cosine) = super::elementary::sin_cos(self.root * t);
-            Kernel { c: e * cosine, s: e * sine / self.root }
+            Kernel { c: e * cosine, s: e * sine * self.inverse_root }
         } else if self.discriminant == 0.0 {
             let e = super::elementary::exp(-self.decay * t);
             Kernel { c: e, s: e * t }
@@ -93,14 +95,18 @@ impl Block {
         }
     }
 
-    /// The kernel after a time so short that radius·t ≪ 1: six terms, no transcendental function.
+    /// The kernel after a time so short that radius·t < 0.03: power series, no transcendental function.
     #[inline]
     pub(crate) fn kernel_near_zero(&self, t: f64) -> Kernel {
         let x = -self.decay * t;
-        let e = 1.0 + x * (1.0 + x * (0.5 + x * (1.0 / 6.0 + x * (1.0 / 24.0 + x * (1.0 / 120.0)))));
+        let x2 = x * x;
+        let e = (1.0 + x)
+            + x2 * ((0.5 + x * (1.0 / 6.0))
+                + x2 * ((1.0 / 24.0 + x * (1.0 / 120.0)) + x2 * (1.0 / 720.0 + x * (1.0 / 5040.0))));
         let y = self.discriminant * t * t;
-        let c = 1.0 + y * (0.5 + y * (1.0 / 24.0 + y * (1.0 / 720.0)));
-        let s = t * (1.0 + y * (1.0 / 6.0 + y * (1.0 / 120.0 + y * (1.0 / 5040.0))));
+        let c = (1.0 + y * 0.5) + y * y * ((1.0 / 24.0 + y * (1.0 / 720.0)) + y * y * (1.0 / 40_320.0));
+        let s =
+            t * ((1.0 + y * (1.0 / 6.0)) + y * y * ((1.0 / 120.0 + y * (1.0 / 5040.0)) + y * y * (1.0 / 362_880.0)));
         Kernel { c: e * c, s: e * s }
     }
 
@@ -123,6 +129,13 @@ impl Block {
         }
     }
 
+    /// The second derivative of a share, as a share.
+    #[inline]
+    pub(crate) fn acceleration(&self, phase: Phase) -> Phase {
+        let value = -2.0 * self.decay * phase.rate - self.determinant * phase.value;
+        Phase { value, rate: -2.0 * self.decay * value - self.determinant * phase.rate }
+    }
+
     /// A bound on |share| from now on, and with radius^j on its derivatives, while time stays within `window` of now.
     ///
     /// The share is e^(−at)(value·C + (rate + a·value) S); C's derivatives are bounded by radius^j, those of S by
@@ -130,7 +143,7 @@ impl Block {
     #[inline]
     pub(crate) fn amplitude(&self, phase: Phase, order: f64, window: f64) -> f64 {
         if self.discriminant < 0.0 && self.root > 0.2 * self.radius {
-            phase.value.abs() + (phase.rate + self.decay * phase.value).abs() / self.root
+            phase.value.abs() + (phase.rate + self.decay * phase.value).abs() * self.inverse_root
         } else {
             self.amplitude_near_critical(phase, order, window)
         }

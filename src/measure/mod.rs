@@ -6,9 +6,13 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::dynamics::Proof;
-use crate::scene::{Assumptions, Recipe, RecipeError};
-use crate::spec::{Settings, SolverChoice, TraceSpec};
+mod evaluate;
+mod history;
+
+pub use evaluate::evaluate;
+
+use crate::dynamics::{EngineError, Proof};
+use crate::scene::{CompileError, RecipeError};
 
 /// What can be measured. The same word in YAML (`velocity_ratio`) and as a table column.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
@@ -113,7 +117,7 @@ pub struct Evaluated {
 /// One column of a time history.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TraceColumn {
-    /// Name as documented at [`TraceSpec`].
+    /// Name as documented at [`crate::spec::TraceSpec`].
     pub name: &'static str,
     /// Unit symbol.
     pub unit: &'static str,
@@ -127,22 +131,13 @@ pub enum EvaluateError {
     /// The recipe has no scene.
     #[error(transparent)]
     Recipe(#[from] RecipeError),
+    /// The scene has no model.
+    #[error(transparent)]
+    Compile(#[from] CompileError),
     /// The engine gave up, with the reason.
-    #[error("{0}")]
-    Engine(String),
-}
-
-/// Simulates one case and measures it. Sequential and deterministic: the same input gives the same bits on any machine.
-///
-/// # Errors
-/// [`EvaluateError`] with the reason.
-pub fn evaluate(
-    _recipe: &Recipe,
-    _assumptions: &Assumptions,
-    _solver: SolverChoice,
-    _settings: &Settings,
-    _measures: &[Measure],
-    _trace: Option<&TraceSpec>,
-) -> Result<Evaluated, EvaluateError> {
-    Err(EvaluateError::Engine("not built yet".into()))
+    #[error(transparent)]
+    Engine(#[from] EngineError),
+    /// A measure of the time history, and none was asked for.
+    #[error("{0:?} is read off a time history: give the experiment a trace")]
+    NeedsTrace(Measure),
 }

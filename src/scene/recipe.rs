@@ -248,7 +248,7 @@ pub enum Parameter {
     FloorStiffnessRatio,
     /// ζf.
     ContactDampingRatio,
-    /// kw/ks.
+    /// kw/ks; `infinite` leaves the soft walls out (Model 2).
     WallStiffnessRatio,
     /// Limit stop `with` or `without`.
     Stop,
@@ -449,7 +449,12 @@ impl DamperRecipe {
                 }
             }
             Parameter::WallStiffnessRatio => {
-                self.walls.as_mut().ok_or_else(|| nothing("no soft walls"))?.stiffness_ratio = number()?;
+                let walls = self.walls.as_mut().ok_or_else(|| nothing("no soft walls"))?;
+                match value {
+                    // Walls that do not give: Model 2.
+                    ParameterValue::Infinite => self.walls = None,
+                    _ => walls.stiffness_ratio = number()?,
+                }
             }
             Parameter::Stop => match value {
                 ParameterValue::Without => self.stop = None,

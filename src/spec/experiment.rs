@@ -1,14 +1,34 @@
 //! The validated experiment: meaning only. Comments, order of keys and `5 mm` against `0.005 m` leave it unchanged, so
 //! a hash of its canonical JSON says whether an experiment means something new.
 
+use std::collections::BTreeSet;
+
 use serde::{Deserialize, Serialize};
 
 use crate::measure::Measure;
-use crate::scene::{Parameter, ParameterValue, Recipe};
+use crate::scene::{Assumption, Parameter, ParameterValue, Recipe, RecipeError};
 
-/// Id of an experiment: its file name without ending, `ch3-limit-stop`; letters, digits and hyphens.
+use super::word::word_of;
+
+/// Id of an experiment: its file name without ending, `ch3-limit-stop`; lower-case letters, digits and hyphens.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub struct ExperimentId(pub String);
+
+/// A text that is no id; nothing else ever becomes part of a path.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("`{0}` is not an id: lower-case letters, digits and hyphens, such as `ch3-limit-stop`")]
+pub struct IdError(pub String);
+
+impl std::str::FromStr for ExperimentId {
+    type Err = IdError;
+
+    fn from_str(text: &str) -> Result<Self, IdError> {
+        let fits = (1..=64).contains(&text.len())
+            && text.bytes().all(|byte| byte.is_ascii_lowercase() || byte.is_ascii_digit() || byte == b'-')
+            && !text.starts_with('-');
+        if fits { Ok(Self(text.into())) } else { Err(IdError(text.into())) }
+    }
+}
 
 impl std::fmt::Display for ExperimentId {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
@@ -33,7 +53,7 @@ pub struct Experiment {
     pub cases: Vec<Case>,
     /// Parameters in the order of the table's columns.
     pub swept: Vec<Parameter>,
-    /// Solvers; each case runs under each of them.
+    /// All solvers that some case runs under; see [`Experiment::runs`].
     pub solvers: Vec<SolverChoice>,
     /// How a case is run and averaged.
     pub settings: Settings,
@@ -45,6 +65,81 @@ pub struct Experiment {
     pub trace: Option<TraceSpec>,
     /// The figures; never part of what makes a simulation stale.
     pub figures: Vec<FigureSpec>,
+}
+
+impl Experiment {
+    /// Every run in the order of the table's rows: cases, and each under its solvers.
+    pub fn runs(&self) -> impl Iterator<Item = (&Case, SolverChoice)> {
+        self.cases.iter().flat_map(|case| case.solvers.iter().map(move |solver| (case, *solver)))
+    }
+
+    /// The scene of one case, still in the study's parameters.
+    ///
+    /// # Errors
+    /// Only for a case that is not this experiment's: validation has tried all of them.
+    pub fn recipe_of(&self, case: &Case) -> Result<Recipe, RecipeError> {
+        let mut recipe = self.recipe.clone();
+        for (parameter, value) in &case.values {
+            recipe.set(*parameter, *value)?;
+        }
+        Ok(recipe)
+    }
+
+    /// The assumptions that a number of this experiment may depend on.
+    #[must_use]
+    pub fn assumptions_used(&self) -> BTreeSet<Assumption> {
+        let mut used = BTreeSet::new();
+        for recipe in self.cases.iter().filter_map(|case| self.recipe_of(case).ok()) {
+            used.extend(recipe.assumptions());
+        }
+        let undamped = [Measure::VelocityRatio, Measure::DisplacementRatio, Measure::UndampedRmsVelocity];
+        if !self.measures.iter().any(|measure| undamped.contains(measure)) {
+            used.remove(&Assumption::UndampedMass);
+        }
+        used
+    }
+
+    /// The whole meaning as JSON; equal meanings give equal JSON. Keys are sorted.
+    #[must_use]
+    pub fn canonical_json(&self) -> serde_json::Value {
+        json(self)
+    }
+
+    /// What a simulation depends on: a changed title, caption or figure is not part of it.
+    #[must_use]
+    pub fn simulation_json(&self) -> serde_json::Value {
+        serde_json::json!({
+            "recipe": json(&self.recipe),
+            "cases": json(&self.cases),
+            "swept": json(&self.swept),
+            "settings": json(&self.settings),
+            "maximise": json(&self.maximise),
+            "measures": json(&self.measures),
+            "trace": json(&self.trace),
+        })
+    }
+
+    /// What the drawings depend on beside the table.
+    #[must_use]
+    pub fn figures_json(&self) -> serde_json::Value {
+        json(&self.figures)
+    }
+}
+
+/// Plain data with text keys always has a JSON form.
+fn json(data: &impl Serialize) -> serde_json::Value {
+    serde_json::to_value(data).unwrap_or_else(|error| unreachable!("plain data has a JSON form: {error}"))
+}
+
+impl SolverChoice {
+    /// The word in the table's column `solver`: `event_driven`, `fixed_step_1e-5s`.
+    #[must_use]
+    pub fn label(&self) -> String {
+        match self {
+            Self::EventDriven => "event_driven".into(),
+            Self::FixedStep { time_step } => format!("fixed_step_{time_step:e}s"),
+        }
+    }
 }
 
 /// Place in the study.
@@ -65,6 +160,29 @@ pub struct Case {
     pub values: Vec<(Parameter, ParameterValue)>,
     /// The name of the sweep within a union; empty otherwise.
     pub sweep: String,
+    /// The solvers it runs under: those of the experiment, unless its named sweep has its own.
+    pub solvers: Vec<SolverChoice>,
+}
+
+impl Case {
+    /// The value that this case gives to `parameter`, if it sets it.
+    #[must_use]
+    pub fn get(&self, parameter: Parameter) -> Option<ParameterValue> {
+        self.values.iter().find(|(name, _)| *name == parameter).map(|(_, value)| *value)
+    }
+
+    /// In words: `gap_ratio = 50, stop = with`; empty when nothing is swept.
+    #[must_use]
+    pub fn told(&self) -> String {
+        let told = self.values.iter().map(|(parameter, value)| {
+            let value = match value {
+                ParameterValue::Number(number) => number.to_string(),
+                other => word_of(*other),
+            };
+            format!("{} = {value}", word_of(*parameter))
+        });
+        told.collect::<Vec<_>>().join(", ")
+    }
 }
 
 /// Which solver.
@@ -109,7 +227,7 @@ pub struct Maximise {
 /// Which part of the motion to keep as a time history. The list columns are then `time` (s), `base_displacement`,
 /// `base_velocity`, `base_acceleration`, `particle_displacement`, `floor_displacement` and `ceiling_displacement` (the
 /// resilient surfaces where they are), `rigid_floor`, `rigid_ceiling` (where they would be uncompressed),
-/// `contact_damping` (N s/m), `rms_acceleration` (of the last half cycle, in g), `event_time`, `event_kind` (a code).
+/// `contact_damping` (N s/m) and `rms_acceleration` (of the last complete half cycle, in g).
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct TraceSpec {
     /// First forcing cycle, counted from 0.

@@ -1,10 +1,31 @@
 //! Experiments: YAML to validated types, with every mistake reported at once, with line and column.
 //!
-//! text → raw types (as written, spans kept) → [`Experiment`] (units resolved, defaults filled, no spans).
+//! text → a tree of nodes that know where they stand → [`Experiment`] (units resolved, defaults filled, no places).
+//! Every reader goes on after a mistake, so a file's problems come together: see [`Problems`].
 
+mod assumption_sheet;
+mod check;
+mod columns;
+mod diagnostic;
 mod experiment;
+mod figure;
+mod load;
+mod quantity;
+mod range;
+mod reader;
+mod scene;
+mod solver;
+mod sweep;
+mod validate;
+mod word;
+mod yaml;
 
+pub use assumption_sheet::{AssumptionEntry, AssumptionSheet, parse_assumptions};
+pub use diagnostic::{Place, Problem, Problems};
 pub use experiment::{
-    Axis, AxisScale, Case, Experiment, ExperimentId, FigureSpec, Level, Maximise, Panel, Settings, SolverChoice,
-    Source, TraceSpec,
+    Axis, AxisScale, Case, Experiment, ExperimentId, FigureSpec, IdError, Level, Maximise, Panel, Settings,
+    SolverChoice, Source, TraceSpec,
 };
+pub use load::{load_assumptions, load_experiment};
+pub use quantity::{Dimension, QuantityError, parse_number, parse_quantity};
+pub use validate::parse_experiment;

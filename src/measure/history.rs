@@ -1,0 +1,111 @@
+//! What is read off a time history: peaks, compressions, lags between impulses and impacts; and its columns.
+
+use super::TraceColumn;
+use super::evaluate::decay;
+use crate::dynamics::{EventKind, Response, Sample};
+use crate::scene::Scene;
+
+/// A response with a trace, and the scene it is of.
+pub(super) struct History<'a> {
+    pub(super) response: &'a Response,
+    pub(super) scene: &'a Scene,
+}
+
+/// A crest of the base displacement.
+#[derive(Debug, Clone, Copy)]
+struct Peak {
+    time: f64,
+    height: f64,
+}
+
+impl History<'_> {
+    /// Crests, from the cubic through displacement and velocity at the two samples around each.
+    fn peaks(&self) -> Vec<Peak> {
+        let rises_then_falls = |pair: &[Sample]| pair[0].velocity > 0.0 && pair[1].velocity <= 0.0;
+        self.response
+            .trace
+            .windows(2)
+            .filter(|pair| rises_then_falls(pair))
+            .map(|pair| crest(pair[0], pair[1]))
+            .collect()
+    }
+
+    pub(super) fn last_peak(&self) -> f64 {
+        self.peaks().last().map_or(f64::NAN, |peak| peak.height)
+    }
+
+    pub(super) fn peak_variation(&self) -> f64 {
+        let peaks = self.peaks();
+        let (low, high, sum) = peaks.iter().fold((f64::INFINITY, f64::NEG_INFINITY, 0.0), |(low, high, sum), peak| {
+            (low.min(peak.height), high.max(peak.height), sum + peak.height)
+        });
+        if peaks.is_empty() { f64::NAN } else { (high - low) / (sum / peaks.len() as f64) }
+    }
+
+    pub(super) fn peak_decay_error(&self) -> f64 {
+        let peaks = self.peaks();
+        let Some(first) = peaks.first() else { return f64::NAN };
+        let rate = decay(self.scene);
+        peaks.iter().fold(0.0, |worst: f64, peak| {
+            let expected = first.height * libm::exp(-rate * (peak.time - first.time));
+            worst.max((peak.height / expected - 1.0).abs())
+        })
+    }
+
+    pub(super) fn floor_compression(&self) -> f64 {
+        self.response.trace.iter().fold(0.0, |deepest, sample| f64::max(deepest, sample.rigid_floor - sample.floor))
+    }
+
+    pub(super) fn ceiling_compression(&self) -> f64 {
+        self.response.trace.iter().fold(0.0, |deepest, sample| f64::max(deepest, sample.ceiling - sample.rigid_ceiling))
+    }
+
+    /// Shortest time between the start of a forcing cycle and an event of this kind, s; NaN if there is none.
+    pub(super) fn lag(&self, kind: EventKind) -> f64 {
+        let period = self.scene.excitation.period();
+        let lags = self.response.events.iter().filter(|event| event.kind == kind);
+        lags.map(|event| event.time.min(period - event.time)).fold(f64::NAN, f64::min)
+    }
+}
+
+fn crest(a: Sample, b: Sample) -> Peak {
+    let h = b.time - a.time;
+    let hermite = |s: f64| {
+        let (p, q) = (1.0 - s, s);
+        (1.0 + 2.0 * s) * p * p * a.displacement + s * p * p * h * a.velocity + q * q * (3.0 - 2.0 * s) * b.displacement
+            - q * q * p * h * b.velocity
+    };
+    let slope = |s: f64| {
+        let rise = (b.displacement - a.displacement) * 6.0 * s * (1.0 - s);
+        rise + h * (a.velocity * (1.0 - 4.0 * s + 3.0 * s * s) + b.velocity * (3.0 * s * s - 2.0 * s))
+    };
+    let (mut low, mut high) = (0.0, 1.0);
+    for _ in 0..52 {
+        let middle = 0.5 * (low + high);
+        if slope(middle) > 0.0 { low = middle } else { high = middle }
+    }
+    Peak { time: a.time + low * h, height: hermite(low) }
+}
+
+/// The trace as columns.
+pub(super) fn columns(history: &History<'_>) -> Vec<TraceColumn> {
+    let gravity = history.scene.gravity;
+    let column = |name, unit, of: &dyn Fn(&Sample) -> f64| TraceColumn {
+        name,
+        unit,
+        samples: history.response.trace.iter().map(of).collect(),
+    };
+    vec![
+        column("time", "s", &|s| s.time),
+        column("base_displacement", "m", &|s| s.displacement),
+        column("base_velocity", "m/s", &|s| s.velocity),
+        column("base_acceleration", "m/s²", &|s| s.acceleration),
+        column("particle_displacement", "m", &|s| s.particle),
+        column("floor_displacement", "m", &|s| s.floor),
+        column("ceiling_displacement", "m", &|s| s.ceiling),
+        column("rigid_floor", "m", &|s| s.rigid_floor),
+        column("rigid_ceiling", "m", &|s| s.rigid_ceiling),
+        column("contact_damping", "N s/m", &|s| s.damping),
+        column("rms_acceleration", "g", &|s| s.half_cycle_rms / gravity),
+    ]
+}

@@ -1,0 +1,188 @@
+//! Checks across the parts of an experiment, and of every case against physics, before anything runs.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use crate::measure::Measure;
+use crate::scene::{Assumptions, Parameter, ParameterValue, RecipeError, Scene};
+
+use super::diagnostic::{Findings, Span};
+use super::experiment::{Case, Experiment, Maximise, Settings, SolverChoice, TraceSpec};
+use super::scene::ReadScene;
+use super::word::word_of;
+
+/// Most runs of a whole experiment, ensembles not counted.
+const MOST_RUNS: usize = 1_000_000;
+/// Most steps of one fixed-step run: some ten minutes.
+const MOST_STEPS: f64 = 1e11;
+/// Kinds of refusal that are told; more of them would hardly help.
+const MOST_TOLD: usize = 5;
+
+/// Looks at parts that were read without a mistake of their own.
+pub(super) struct Checks<'t> {
+    pub findings: &'t Findings,
+    pub assumptions: &'t Assumptions,
+}
+
+impl Checks<'_> {
+    /// Measures that need a time history, or the maximisation, have it.
+    pub fn measures(&self, measures: &[(Measure, Span)], maximise: Option<&Maximise>, trace: Option<&TraceSpec>) {
+        let from_trace = [
+            Measure::LastPeak,
+            Measure::PeakVariation,
+            Measure::PeakDecayError,
+            Measure::FloorImpactLag,
+            Measure::CeilingImpactLag,
+        ];
+        for (measure, span) in measures {
+            if trace.is_none() && from_trace.contains(measure) {
+                self.findings.report::<()>(
+                    *span,
+                    format!("`{}` is read off a time history, and this experiment keeps none", word_of(*measure)),
+                    Some("add `trace: {from: … cycles, to: … cycles, samples_per_cycle: …}`".into()),
+                );
+            }
+        }
+        if let Some(maximise) = maximise
+            && !measures.iter().any(|(measure, _)| *measure == maximise.measure)
+            && let Some((_, span)) = measures.first()
+        {
+            let name = word_of(maximise.measure);
+            let help = format!("add `{name}` to `measure`");
+            self.findings.report::<()>(*span, format!("`{name}` is maximised, but not measured"), Some(help));
+        }
+    }
+
+    /// The trace lies within the run.
+    pub fn trace(&self, trace: Option<&TraceSpec>, settings: &Settings, at: Span) {
+        let last = settings.skip.saturating_add(settings.average);
+        if let Some(trace) = trace
+            && trace.to_cycle > last
+        {
+            let message = format!("the trace ends with cycle {}, the run with cycle {last}", trace.to_cycle);
+            self.findings.wrong::<()>(at, message);
+        }
+    }
+
+    /// `swept` in the scene needs a value from every case; a maximised parameter cannot be swept as well.
+    pub fn coverage(
+        &self,
+        scene: &ReadScene,
+        cases: &[Case],
+        places: &BTreeMap<Parameter, Span>,
+        maximise: Option<&Maximise>,
+    ) {
+        for (parameter, span) in &scene.swept {
+            if maximise.is_some_and(|maximise| maximise.over == *parameter) {
+                continue;
+            }
+            let name = word_of(*parameter);
+            if !places.contains_key(parameter) {
+                let help = format!("add `{name}` to `sweep`, or give it a value here");
+                self.findings.report::<()>(*span, format!("nothing sweeps `{name}`"), Some(help));
+            } else if let Some(case) = cases.iter().find(|case| case.get(*parameter).is_none()) {
+                let help = "give the value here that those cases shall have".to_owned();
+                let message = format!("the sweep `{}` leaves `{name}` out", case.sweep);
+                self.findings.report::<()>(*span, message, Some(help));
+            }
+        }
+        if let Some(over) = maximise.map(|maximise| maximise.over)
+            && let Some(place) = places.get(&over)
+        {
+            let message = format!("`{}` is swept and maximised over at once", word_of(over));
+            self.findings.report::<()>(*place, message, Some("take it out of `sweep`".into()));
+        }
+    }
+
+    /// The number of runs is bounded.
+    pub fn amount(&self, cases: &[Case], maximise: Option<&Maximise>, at: Span) {
+        let runs: usize = cases.iter().map(|case| case.solvers.len()).sum();
+        let each = maximise.map_or(1, |maximise| maximise.grid.len());
+        if runs.saturating_mul(each) > MOST_RUNS {
+            self.findings.wrong::<()>(at, format!("{runs} runs of {each} points are too many: {MOST_RUNS} at most"));
+        }
+    }
+
+    /// Resolves every case; `place` says where a parameter is swept, or else where the scene stands.
+    pub fn scenes(&self, experiment: &Experiment, place: impl Fn(Option<Parameter>) -> Span) {
+        let mut met = BTreeSet::new();
+        for case in &experiment.cases {
+            let Err(refusal) = self.scene(experiment, case) else { continue };
+            if met.insert(refusal.message.clone()) && met.len() <= MOST_TOLD {
+                let told = case.told();
+                let message =
+                    if told.is_empty() { refusal.message } else { format!("{} (at {told})", refusal.message) };
+                let parameter = refusal.parameter.or_else(|| case.values.first().map(|(parameter, _)| *parameter));
+                self.findings.wrong::<()>(place(parameter), message);
+            }
+        }
+    }
+
+    fn scene(&self, experiment: &Experiment, case: &Case) -> Result<(), Refusal> {
+        let recipe = experiment.recipe_of(case)?;
+        // A maximisation is tried at both ends of its grid.
+        let mut recipes = Vec::new();
+        if let Some(maximise) = &experiment.maximise {
+            for end in [maximise.grid.first(), maximise.grid.last()].into_iter().flatten() {
+                let mut recipe = recipe.clone();
+                recipe.set(maximise.over, ParameterValue::Number(*end))?;
+                recipes.push(recipe);
+            }
+        }
+        if recipes.is_empty() {
+            recipes.push(recipe);
+        }
+        for recipe in recipes {
+            steps(&recipe.resolve(self.assumptions)?, case, &experiment.settings)?;
+        }
+        Ok(())
+    }
+}
+
+/// Why a case cannot run.
+struct Refusal {
+    message: String,
+    parameter: Option<Parameter>,
+}
+
+impl From<String> for Refusal {
+    fn from(message: String) -> Self {
+        Self { message, parameter: None }
+    }
+}
+
+impl From<RecipeError> for Refusal {
+    fn from(error: RecipeError) -> Self {
+        match error {
+            RecipeError::NothingToVary { parameter, what } => Self {
+                message: format!("`{}` is swept, but the scene has {what}", word_of(parameter)),
+                parameter: Some(parameter),
+            },
+            RecipeError::Assumption(name, form) => {
+                format!("the assumption `{}` is needed: give it {form} in the assumptions file", word_of(name)).into()
+            }
+            RecipeError::OutOfRange(message) => message.into(),
+        }
+    }
+}
+
+/// What a scene asks of the steps of its run.
+fn steps(scene: &Scene, case: &Case, settings: &Settings) -> Result<(), String> {
+    let period = scene.excitation.period();
+    let in_a_period = |step: f64| (period / step).round();
+    if let Some(step) = settings.round_period_to
+        && in_a_period(step) < 1.0
+    {
+        return Err(format!("a forcing period of {period} s rounds to no step of {step} s at all"));
+    }
+    for solver in &case.solvers {
+        let SolverChoice::FixedStep { time_step } = *solver else { continue };
+        if in_a_period(time_step) < 1.0 {
+            return Err(format!("a time step of {time_step} s is longer than the forcing period of {period} s"));
+        }
+        let cycles = f64::from(settings.skip) + f64::from(settings.average);
+        if in_a_period(time_step) * cycles > MOST_STEPS {
+            return Err(format!("a time step of {time_step} s makes more than {MOST_STEPS:e} steps a run"));
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,90 @@
+//! The columns that an experiment's table will have, known before anything runs.
+
+use crate::measure::Measure;
+use crate::scene::Parameter;
+
+use super::experiment::{Maximise, TraceSpec};
+use super::word::word_of;
+
+/// What a column holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Role {
+    /// A number a row.
+    Number,
+    /// A word a row: splits lines, is no axis.
+    Label,
+    /// A time history a row.
+    History,
+}
+
+/// Names of proof columns.
+const PROOF: [&str; 7] =
+    ["momentum_residual", "energy_residual", "events", "smallest_margin", "ties", "chaotic", "members"];
+
+/// Names of time histories, as documented at [`TraceSpec`].
+const HISTORIES: [&str; 13] = [
+    "time",
+    "base_displacement",
+    "base_velocity",
+    "base_acceleration",
+    "particle_displacement",
+    "floor_displacement",
+    "ceiling_displacement",
+    "rigid_floor",
+    "rigid_ceiling",
+    "contact_damping",
+    "rms_acceleration",
+    "event_time",
+    "event_kind",
+];
+
+/// Columns with what they hold, in the order of the table.
+pub(super) struct Columns {
+    list: Vec<(String, Role)>,
+}
+
+impl Columns {
+    /// The columns of an experiment made of these parts.
+    pub fn of(
+        swept: &[Parameter],
+        union: bool,
+        measures: &[Measure],
+        maximise: Option<&Maximise>,
+        trace: Option<&TraceSpec>,
+    ) -> Self {
+        let mut list: Vec<(String, Role)> = Vec::new();
+        for parameter in swept {
+            let role = if *parameter == Parameter::Stop { Role::Label } else { Role::Number };
+            list.push((word_of(*parameter), role));
+        }
+        let labels = [union.then_some("sweep"), Some("solver"), Some("variant")];
+        list.extend(labels.into_iter().flatten().map(|name| (name.into(), Role::Label)));
+        for measure in measures {
+            let name = word_of(*measure);
+            list.extend(["", "_num", "_spread"].map(|suffix| (format!("{name}{suffix}"), Role::Number)));
+        }
+        if let Some(maximise) = maximise {
+            list.push((format!("{}_at_maximum", word_of(maximise.over)), Role::Number));
+        }
+        list.extend(PROOF.map(|name| (name.into(), Role::Number)));
+        if trace.is_some() {
+            list.extend(HISTORIES.map(|name| (name.into(), Role::History)));
+        }
+        Self { list }
+    }
+
+    /// What the column `name` holds, if there is one.
+    pub fn role(&self, name: &str) -> Option<Role> {
+        self.list.iter().find(|(column, _)| column == name).map(|(_, role)| *role)
+    }
+
+    /// All names.
+    pub fn names(&self) -> Vec<&str> {
+        self.list.iter().map(|(name, _)| name.as_str()).collect()
+    }
+
+    /// True for a name that a kept time history would have.
+    pub fn is_history(name: &str) -> bool {
+        HISTORIES.contains(&name)
+    }
+}

@@ -1,0 +1,318 @@
+//! Typed reading of a node tree: each reader gives its value, or reports what is wrong and gives `None`.
+//!
+//! A reader reads all of its parts before it gives up, so one pass finds every mistake. The keys that a reader asks for
+//! are the keys that exist: all others are reported by [`Fields::close`], with the nearest that was asked for.
+
+use std::cell::RefCell;
+
+use serde::de::DeserializeOwned;
+
+use super::diagnostic::{Findings, Span};
+use super::quantity::{Dimension, QuantityError, parse_number, parse_quantity};
+use super::word::{closest, from_word, words};
+use super::yaml::{Entry, Node, Value};
+
+/// A mapping while it is read.
+pub(super) struct Fields<'t> {
+    findings: &'t Findings,
+    entries: &'t [Entry],
+    what: &'static str,
+    span: Span,
+    asked: RefCell<Vec<&'static str>>,
+    /// Of each of these groups one key should have been there.
+    missing: RefCell<Vec<Vec<&'static str>>>,
+}
+
+impl<'t> Fields<'t> {
+    /// Opens `node` as a mapping; `what` names it in messages (`a damper`).
+    pub fn open(node: &'t Node, what: &'static str, findings: &'t Findings) -> Option<Self> {
+        let Value::Mapping(entries) = &node.value else {
+            return findings.report(
+                node.span,
+                format!("{what} is written as keys with values, not as {}", kind(node)),
+                Some("write `key: value` lines below it, or {key: value, key: value}".into()),
+            );
+        };
+        let span = node.span;
+        Some(Self { findings, entries, what, span, asked: RefCell::default(), missing: RefCell::default() })
+    }
+
+    /// Where the mapping stands.
+    pub fn span(&self) -> Span {
+        self.span
+    }
+
+    /// The node under `key`, if it is there.
+    pub fn get(&self, key: &'static str) -> Option<&'t Node> {
+        self.entry(key).map(|entry| &entry.node)
+    }
+
+    fn entry(&self, key: &'static str) -> Option<&'t Entry> {
+        self.asked.borrow_mut().push(key);
+        self.entries.iter().find(|entry| entry.key == key)
+    }
+
+    /// A part that must be there. `None`: reported.
+    pub fn required<T>(&self, key: &'static str, read: impl FnOnce(&'t Node) -> Option<T>) -> Option<T> {
+        match self.get(key) {
+            Some(node) => read(node),
+            None => {
+                self.missing.borrow_mut().push(vec![key]);
+                None
+            }
+        }
+    }
+
+    /// A part that may be absent. `None`: reported; `Some(None)`: absent.
+    #[expect(clippy::option_option, reason = "absent and wrong are two things")]
+    pub fn optional<T>(&self, key: &'static str, read: impl FnOnce(&'t Node) -> Option<T>) -> Option<Option<T>> {
+        self.get(key).map_or(Some(None), |node| read(node).map(Some))
+    }
+
+    /// The one key among `keys` that is given, if any; two are reported.
+    #[expect(clippy::option_option, reason = "absent and wrong are two things")]
+    pub fn at_most_one(&self, keys: &[&'static str]) -> Option<Option<(&'static str, &'t Node)>> {
+        let mut given: Vec<_> = keys.iter().filter_map(|key| self.entry(key).map(|entry| (*key, entry))).collect();
+        given.sort_by_key(|(_, entry)| entry.key_span.start);
+        match given.as_slice() {
+            [] => Some(None),
+            [(key, entry)] => Some(Some((key, &entry.node))),
+            [(first, _), (second, entry), ..] => self.findings.report(
+                entry.key_span,
+                format!("{} has both `{first}` and `{second}`, which say the same", self.what),
+                Some("keep one of the two".into()),
+            ),
+        }
+    }
+
+    /// The one key among `keys` that is given; none or two are reported.
+    pub fn exactly_one(&self, keys: &[&'static str]) -> Option<(&'static str, &'t Node)> {
+        let given = self.at_most_one(keys)?;
+        if given.is_none() {
+            self.missing.borrow_mut().push(keys.to_vec());
+        }
+        given
+    }
+
+    /// The keys that are there and have not been asked for yet.
+    pub fn others(&self) -> impl Iterator<Item = &'t Entry> {
+        let asked = self.asked.borrow().clone();
+        self.entries.iter().filter(move |entry| !asked.contains(&&*entry.key))
+    }
+
+    /// Reports what is missing and what was never asked for.
+    pub fn close(self) -> Option<()> {
+        let asked = self.asked.borrow();
+        let unknown_keys = || self.entries.iter().filter(|entry| !asked.contains(&&*entry.key));
+        let mut fine = self.missing.borrow().is_empty();
+        for group in self.missing.borrow().iter() {
+            // A misspelt key is reported itself, with the right spelling.
+            let meant = |entry: &Entry| closest(&entry.key, asked.iter().copied());
+            if !unknown_keys().filter_map(meant).any(|key| group.contains(&key)) {
+                let wanted: Vec<_> = group.iter().map(|key| format!("`{key}`")).collect();
+                self.findings.wrong::<()>(self.span, format!("{} lacks {}", self.what, wanted.join(" or ")));
+            }
+        }
+        for entry in unknown_keys() {
+            fine = false;
+            unknown::<()>(self.findings, entry.key_span, self.what, "key", &entry.key, &asked);
+        }
+        fine.then_some(())
+    }
+}
+
+/// Reports a word that is none of the known ones.
+pub(super) fn unknown<T>(
+    findings: &Findings,
+    at: Span,
+    what: &str,
+    role: &str,
+    given: &str,
+    known: &[&str],
+) -> Option<T> {
+    findings.report(at, format!("{what} has no {role} `{given}`"), suggestion(findings, given, known))
+}
+
+/// Reports a word that is none of an enum's.
+pub(super) fn no_such<T>(findings: &Findings, at: Span, role: &str, given: &str, known: &[&str]) -> Option<T> {
+    let article = if role.starts_with(['a', 'e', 'i', 'o', 'u']) { "an" } else { "a" };
+    findings.report(at, format!("`{given}` is not {article} {role}"), suggestion(findings, given, known))
+}
+
+fn suggestion(findings: &Findings, given: &str, known: &[&str]) -> Option<String> {
+    if findings.is_full() {
+        return None;
+    }
+    Some(match closest(given, known.iter().copied()) {
+        Some(word) => format!("did you mean `{word}`?"),
+        None => format!("known are {}", known.iter().map(|word| format!("`{word}`")).collect::<Vec<_>>().join(", ")),
+    })
+}
+
+/// What a node is, in words.
+fn kind(node: &Node) -> &'static str {
+    match node.value {
+        Value::Nothing => "nothing",
+        Value::Scalar(_) => "a single value",
+        Value::Sequence(_) => "a list",
+        Value::Mapping(_) => "keys with values",
+    }
+}
+
+/// The text of a single value.
+pub(super) fn scalar<'t>(node: &'t Node, findings: &Findings) -> Option<&'t str> {
+    match &node.value {
+        Value::Scalar(text) => Some(text),
+        _ => findings.wrong(node.span, format!("a single value is wanted here, not {}", kind(node))),
+    }
+}
+
+/// A text, not empty.
+pub(super) fn text(node: &Node, findings: &Findings) -> Option<String> {
+    let text = scalar(node, findings)?.trim();
+    if text.is_empty() {
+        return findings.wrong(node.span, "a text is wanted here");
+    }
+    if text.contains(|c: char| c.is_control() && c != '\n') {
+        return findings.wrong(node.span, "control characters are not accepted");
+    }
+    Some(text.into())
+}
+
+/// `true` or `false`.
+pub(super) fn boolean(node: &Node, findings: &Findings) -> Option<bool> {
+    match scalar(node, findings)? {
+        "true" => Some(true),
+        "false" => Some(false),
+        other => findings.report(node.span, format!("`{other}` is neither true nor false"), None),
+    }
+}
+
+fn measured(node: &Node, findings: &Findings, parsed: Result<f64, QuantityError>) -> Option<f64> {
+    parsed.map_err(|error| findings.report::<()>(node.span, error.to_string(), error.help())).ok()
+}
+
+/// A quantity in SI.
+pub(super) fn quantity(node: &Node, wanted: Dimension, findings: &Findings) -> Option<f64> {
+    measured(node, findings, parse_quantity(scalar(node, findings)?, wanted))
+}
+
+/// A quantity above zero.
+pub(super) fn above_zero(node: &Node, wanted: Dimension, findings: &Findings) -> Option<f64> {
+    let value = quantity(node, wanted, findings)?;
+    if value > 0.0 { Some(value) } else { findings.wrong(node.span, format!("{} above zero is wanted", wanted.name())) }
+}
+
+/// A dimensionless number.
+pub(super) fn number(node: &Node, findings: &Findings) -> Option<f64> {
+    measured(node, findings, parse_number(scalar(node, findings)?))
+}
+
+/// A dimensionless number that is not negative.
+pub(super) fn ratio(node: &Node, findings: &Findings) -> Option<f64> {
+    let value = number(node, findings)?;
+    if value >= 0.0 { Some(value) } else { findings.wrong(node.span, "this ratio cannot be negative") }
+}
+
+/// A whole number up to `most`, with or without its noun: `25` or `25 cycles`.
+pub(super) fn count(node: &Node, noun: &str, most: u32, findings: &Findings) -> Option<u32> {
+    let text = scalar(node, findings)?.trim();
+    let end = text.find(|c: char| !c.is_ascii_digit()).unwrap_or(text.len());
+    let (digits, rest) = text.split_at(end);
+    let singular = noun.strip_suffix('s').unwrap_or(noun);
+    let rest = rest.trim();
+    if digits.is_empty() || !(rest.is_empty() || rest == noun || rest == singular) {
+        let help = if noun.is_empty() { "write for example 25".into() } else { format!("write for example 25 {noun}") };
+        return findings.report(node.span, format!("`{text}` is not a number of {}", or_things(noun)), Some(help));
+    }
+    match digits.parse::<u32>() {
+        Ok(value) if value <= most => Some(value),
+        _ => findings.wrong(node.span, format!("{digits} is too many: {most} at most")),
+    }
+}
+
+fn or_things(noun: &str) -> &str {
+    if noun.is_empty() { "things" } else { noun }
+}
+
+/// One of the words of an enum.
+pub(super) fn word<T: DeserializeOwned>(node: &Node, role: &str, findings: &Findings) -> Option<T> {
+    let text = scalar(node, findings)?;
+    from_word(text).or_else(|| no_such(findings, node.span, role, text, words::<T>()))
+}
+
+/// Each item of a list.
+pub(super) fn list<'t, T>(node: &'t Node, findings: &Findings, read: impl Fn(&'t Node) -> Option<T>) -> Option<Vec<T>> {
+    match &node.value {
+        Value::Sequence(items) if items.is_empty() => findings.wrong(node.span, "this list is empty"),
+        Value::Sequence(items) => all(items.iter().map(read)),
+        _ => findings.report(
+            node.span,
+            format!("a list is wanted here, not {}", kind(node)),
+            Some("write [one, two] or lines that begin with `- `".into()),
+        ),
+    }
+}
+
+/// A list, or one thing that stands for a list of one.
+pub(super) fn one_or_more<'t, T>(
+    node: &'t Node,
+    findings: &Findings,
+    read: impl Fn(&'t Node) -> Option<T>,
+) -> Option<Vec<T>> {
+    match node.value {
+        Value::Sequence(_) => list(node, findings, read),
+        _ => Some(vec![read(node)?]),
+    }
+}
+
+/// All values, or `None` if one was reported; unlike `collect`, it does not stop at the first.
+pub(super) fn all<T>(values: impl Iterator<Item = Option<T>>) -> Option<Vec<T>> {
+    let values: Vec<_> = values.collect();
+    values.into_iter().collect()
+}
+
+/// What was chosen among named forms: `rigid`, or `resilient: {…}`.
+pub(super) struct Choice<'t> {
+    pub name: &'static str,
+    /// What stands behind the colon.
+    pub content: Option<&'t Node>,
+    pub span: Span,
+}
+
+impl<'t> Choice<'t> {
+    /// Reads `node` as one of `names`.
+    pub fn read(node: &'t Node, what: &'static str, names: &[&'static str], findings: &Findings) -> Option<Self> {
+        let (given, content, span) = match &node.value {
+            Value::Scalar(word) => (word.as_str(), None, node.span),
+            Value::Mapping(entries) => match entries.as_slice() {
+                [entry] => (entry.key.as_str(), Some(&entry.node), entry.key_span),
+                _ => {
+                    let forms: Vec<_> = names.iter().map(|name| format!("`{name}`")).collect();
+                    return findings.wrong(node.span, format!("{what} is exactly one of {}", forms.join(", ")));
+                }
+            },
+            _ => return findings.wrong(node.span, format!("{what} cannot be {}", kind(node))),
+        };
+        match names.iter().find(|name| **name == given) {
+            Some(name) => Some(Self { name, content, span }),
+            None => unknown(findings, span, what, "form", given, names),
+        }
+    }
+
+    /// The name of a form that has no values of its own.
+    pub fn bare(&self, findings: &Findings) -> Option<&'static str> {
+        match self.content {
+            None => Some(self.name),
+            Some(node) => findings.wrong(node.span, format!("`{}` takes no values: write the word alone", self.name)),
+        }
+    }
+
+    /// The mapping behind the colon.
+    pub fn fields(&self, what: &'static str, findings: &'t Findings) -> Option<Fields<'t>> {
+        match self.content {
+            Some(node) => Fields::open(node, what, findings),
+            None => findings.wrong(self.span, format!("`{}` needs its values: {}: {{…}}", self.name, self.name)),
+        }
+    }
+}

@@ -1,0 +1,255 @@
+//! A node tree to a validated [`Experiment`]: each part read by its own file, then checked against one another.
+//!
+//! A check runs as soon as the parts it talks about are sound, so a mistake in a figure is reported beside one in the
+//! scene. The last check resolves every case into its scene: what physics refuses is found before anything runs.
+
+use crate::measure::Measure;
+use crate::scene::{Assumptions, Parameter, ParameterValue, Recipe};
+
+use super::check::Checks;
+use super::columns::Columns;
+use super::diagnostic::{Findings, Problems, Span};
+use super::experiment::{Case, Experiment, ExperimentId, Maximise, Settings, SolverChoice, Source, TraceSpec};
+use super::figure::FigureReader;
+use super::quantity::Dimension;
+use super::range::numbers;
+use super::reader::{Fields, above_zero, count, no_such, one_or_more, text, word};
+use super::scene::read_scene;
+use super::solver::read_solver;
+use super::sweep::{ReadSweep, read_sweep};
+use super::word::{from_word, words};
+use super::yaml::{Node, Value, read_tree};
+
+/// Most forcing cycles of a run.
+const MOST_CYCLES: u32 = 10_000_000;
+/// Most samples of a time history.
+const MOST_SAMPLES: u64 = 1_000_000;
+
+/// Reads an experiment from its text; `file` only names it in messages.
+///
+/// # Errors
+/// Every mistake of the file, with its place.
+pub fn parse_experiment(
+    id: &ExperimentId,
+    file: &str,
+    text: &str,
+    assumptions: &Assumptions,
+) -> Result<Experiment, Problems> {
+    let findings = Findings::default();
+    let experiment = read_tree(text, &findings).and_then(|root| {
+        let reader = ExperimentReader { findings: &findings, assumptions };
+        reader.experiment(id, &root)
+    });
+    findings.finish(file, text, experiment)
+}
+
+struct ExperimentReader<'t> {
+    findings: &'t Findings,
+    assumptions: &'t Assumptions,
+}
+
+struct Run {
+    solvers: Vec<SolverChoice>,
+    settings: Settings,
+}
+
+impl<'t> ExperimentReader<'t> {
+    fn experiment(&self, id: &ExperimentId, root: &'t Node) -> Option<Experiment> {
+        let fields = Fields::open(root, "an experiment", self.findings)?;
+        let title = fields.required("title", |node| text(node, self.findings));
+        let source = fields.required("source", |node| self.source(node));
+        let about = fields.required("about", |node| text(node, self.findings));
+        let scene = fields.required("scene", |node| read_scene(node, self.findings));
+        let sweep = fields.optional("sweep", |node| read_sweep(node, self.findings));
+        let measures = fields.required("measure", |node| self.measures(node));
+        let maximise = fields.optional("maximise", |node| self.maximise(node));
+        let run = fields.optional("run", |node| self.run(node)).map(|run| run.unwrap_or_else(Run::default));
+        let trace = fields.optional("trace", |node| self.trace(node));
+        let place = |key| fields.get(key).map_or(fields.span(), |node| node.span);
+        let (scene_at, trace_at) = (place("scene"), place("trace"));
+
+        let columns = match (&sweep, &measures, &maximise, &trace) {
+            (Some(sweep), Some(measures), Some(maximise), Some(trace)) => {
+                let swept = sweep.as_ref().map_or(&[][..], |sweep| &sweep.swept);
+                let union = sweep.as_ref().is_some_and(|sweep| sweep.cases.iter().any(|case| !case.sweep.is_empty()));
+                Some(Columns::of(swept, union, &words_only(measures), maximise.as_ref(), trace.as_ref()))
+            }
+            _ => None,
+        };
+        let figures = FigureReader { findings: self.findings, columns: columns.as_ref() }.figures(&fields);
+        fields.close();
+
+        let checks = Checks { findings: self.findings, assumptions: self.assumptions };
+        let (measures, maximise, trace, run) = (measures?, maximise?, trace?, run?);
+        checks.measures(&measures, maximise.as_ref(), trace.as_ref());
+        checks.trace(trace.as_ref(), &run.settings, trace_at);
+        let (mut scene, sweep) = (scene?, sweep?.unwrap_or_else(ReadSweep::none));
+        let places = sweep.places;
+        let cases = with_solvers(sweep.cases, &run.solvers);
+        checks.coverage(&scene, &cases, &places, maximise.as_ref());
+        checks.amount(&cases, maximise.as_ref(), scene_at);
+        fill_placeholders(&mut scene.recipe, &cases, &sweep.swept, maximise.as_ref());
+        let experiment = Experiment {
+            id: id.clone(),
+            title: title?,
+            source: source?,
+            about: about?,
+            recipe: scene.recipe,
+            solvers: all_solvers(&cases),
+            cases,
+            swept: sweep.swept,
+            settings: run.settings,
+            maximise,
+            measures: words_only(&measures),
+            trace,
+            figures: figures?,
+        };
+        checks.scenes(&experiment, |parameter| {
+            parameter.and_then(|parameter| places.get(&parameter).copied()).unwrap_or(scene_at)
+        });
+        Some(experiment)
+    }
+
+    fn source(&self, node: &'t Node) -> Option<Source> {
+        let fields = Fields::open(node, "a source", self.findings)?;
+        let chapter = fields.required("chapter", |node| count(node, "", 99, self.findings));
+        let section = fields.required("section", |node| text(node, self.findings));
+        let shown_in =
+            fields.optional("shown_in", |node| one_or_more(node, self.findings, |node| text(node, self.findings)));
+        fields.close()?;
+        Some(Source { chapter: chapter?, section: section?, shown_in: shown_in?.unwrap_or_default() })
+    }
+
+    fn measures(&self, node: &'t Node) -> Option<Vec<(Measure, Span)>> {
+        let measures = one_or_more(node, self.findings, |node| {
+            Some((word::<Measure>(node, "measure", self.findings)?, node.span))
+        })?;
+        for (index, (measure, span)) in measures.iter().enumerate() {
+            if measures[..index].iter().any(|(other, _)| other == measure) {
+                return self.findings.wrong(*span, format!("`{}` is measured twice", super::word::word_of(*measure)));
+            }
+        }
+        Some(measures)
+    }
+
+    fn maximise(&self, node: &'t Node) -> Option<Maximise> {
+        let Value::Mapping(entries) = &node.value else {
+            return self.findings.wrong(node.span, "write `maximise: {velocity_ratio: {over: …, in: …}}`");
+        };
+        let [entry] = entries.as_slice() else {
+            return self.findings.wrong(node.span, "one measure is maximised at a time");
+        };
+        let measure = from_word::<Measure>(&entry.key)
+            .or_else(|| no_such(self.findings, entry.key_span, "measure", &entry.key, words::<Measure>()));
+        let fields = Fields::open(&entry.node, "a maximisation", self.findings)?;
+        let over = fields.required("over", |node| word::<Parameter>(node, "parameter", self.findings));
+        let grid = fields.required("in", |node| match over {
+            Some(over) => numbers(node, over, self.findings).map(|grid| (grid, node.span)),
+            None => None,
+        });
+        let refine = fields.optional("refine", |node| count(node, "rounds", 20, self.findings));
+        fields.close()?;
+        let (grid, grid_at) = grid?;
+        if !grid.is_sorted_by(|a, b| a < b) {
+            return self.findings.wrong(grid_at, "the points of a maximisation increase");
+        }
+        Some(Maximise { measure: measure?, over: over?, grid, refine: refine?.unwrap_or(0) })
+    }
+
+    fn run(&self, node: &'t Node) -> Option<Run> {
+        let fields = Fields::open(node, "a run", self.findings)?;
+        let solvers =
+            fields.optional("solver", |node| one_or_more(node, self.findings, |node| read_solver(node, self.findings)));
+        let cycles = |node: &'t Node| count(node, "cycles", MOST_CYCLES, self.findings);
+        let skip = fields.optional("skip", cycles);
+        let average = fields.optional("average", |node| {
+            let average = cycles(node)?;
+            if average > 0 { Some(average) } else { self.findings.wrong(node.span, "one cycle at least is averaged") }
+        });
+        let round_period_to =
+            fields.optional("round_period_to", |node| above_zero(node, Dimension::Time, self.findings));
+        let ensemble = fields.optional("ensemble", |node| match &node.value {
+            Value::Scalar(word) if word == "none" => Some(0),
+            _ => count(node, "members", 10_000, self.findings),
+        });
+        fields.close()?;
+        let usual = Run::default();
+        Some(Run {
+            solvers: solvers?.unwrap_or(usual.solvers),
+            settings: Settings {
+                skip: skip?.unwrap_or(usual.settings.skip),
+                average: average?.unwrap_or(usual.settings.average),
+                round_period_to: round_period_to?,
+                ensemble: ensemble?.unwrap_or(usual.settings.ensemble),
+            },
+        })
+    }
+
+    fn trace(&self, node: &'t Node) -> Option<TraceSpec> {
+        let fields = Fields::open(node, "a trace", self.findings)?;
+        let cycles = |node: &'t Node| count(node, "cycles", MOST_CYCLES, self.findings);
+        let from = fields.required("from", cycles);
+        let to = fields.required("to", cycles);
+        let samples = fields.required("samples_per_cycle", |node| count(node, "samples", 1_000_000, self.findings));
+        fields.close()?;
+        let (from_cycle, to_cycle, samples) = (from?, to?, samples?);
+        if from_cycle >= to_cycle {
+            return self.findings.wrong(node.span, "a trace ends after the cycle it begins with");
+        }
+        let all = u64::from(to_cycle - from_cycle) * u64::from(samples);
+        if all == 0 || all > MOST_SAMPLES {
+            return self.findings.wrong(node.span, format!("a trace has 1 to {MOST_SAMPLES} samples, not {all}"));
+        }
+        Some(TraceSpec { from_cycle, to_cycle, samples })
+    }
+}
+
+impl Default for Run {
+    /// As the study: 25 cycles skipped, 100 averaged.
+    fn default() -> Self {
+        Self {
+            solvers: vec![SolverChoice::EventDriven],
+            settings: Settings { skip: 25, average: 100, round_period_to: None, ensemble: 32 },
+        }
+    }
+}
+
+fn words_only(measures: &[(Measure, Span)]) -> Vec<Measure> {
+    measures.iter().map(|(measure, _)| *measure).collect()
+}
+
+/// Cases run under the experiment's solvers unless their named sweep has its own.
+fn with_solvers(mut cases: Vec<Case>, usual: &[SolverChoice]) -> Vec<Case> {
+    for case in cases.iter_mut().filter(|case| case.solvers.is_empty()) {
+        case.solvers = usual.to_vec();
+    }
+    cases
+}
+
+fn all_solvers(cases: &[Case]) -> Vec<SolverChoice> {
+    let mut solvers: Vec<SolverChoice> = Vec::new();
+    for solver in cases.iter().flat_map(|case| &case.solvers) {
+        if !solvers.contains(solver) {
+            solvers.push(*solver);
+        }
+    }
+    solvers
+}
+
+/// Parameters that every case sets get the first case's value, so that what the scene says of them has no meaning left.
+fn fill_placeholders(recipe: &mut Recipe, cases: &[Case], swept: &[Parameter], maximise: Option<&Maximise>) {
+    let set = |recipe: &mut Recipe, parameter, value| {
+        // A parameter that the scene lacks is reported when its cases are resolved.
+        let _ = recipe.set(parameter, value);
+    };
+    for parameter in swept.iter().filter(|parameter| **parameter != Parameter::Stop) {
+        if let (Some(first), true) =
+            (cases.first().and_then(|case| case.get(*parameter)), cases.iter().all(|c| c.get(*parameter).is_some()))
+        {
+            set(recipe, *parameter, first);
+        }
+    }
+    if let Some((over, first)) = maximise.and_then(|maximise| Some((maximise.over, *maximise.grid.first()?))) {
+        set(recipe, over, ParameterValue::Number(first));
+    }
+}

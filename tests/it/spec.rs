@@ -1,0 +1,506 @@
+//! What a person meets who writes an experiment.
+
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+
+use shotdamp::scene::{
+    Assumption, AssumptionValue, Assumptions, Excitation, GapRecipe, Parameter, ParameterValue, Surface,
+};
+use shotdamp::spec::{
+    Dimension, Experiment, ExperimentId, Problems, SolverChoice, load_assumptions, load_experiment, parse_assumptions,
+    parse_experiment, parse_number, parse_quantity,
+};
+
+const GOOD: &str = "\
+title: Limit stop
+source: {chapter: 3, section: 3.6.3, shown_in: [Fig. 18]}
+about: With and without a limit stop.
+scene:
+  structure: {single_mass: {mass: 1 kg, stiffness: 1000 N/m, damping_ratio: 0.05}}
+  dampers:
+    - mass_ratio: 0.05
+      gap: 490.5 mm
+      floor: {resilient: {stiffness_ratio: 1, damping_ratio: assumed}}
+      stop: {length: 60 mm}
+  excitation: {impulse_train: {force_ratio: swept, frequency_ratio: 1}}
+sweep:
+  force_ratio: {log: {from: 0.1, to: 100, points: 61}}
+  stop: [with, without]
+run: {solver: event_driven, skip: 25 cycles, average: 100 cycles, round_period_to: 1 ms, ensemble: 32 members}
+measure: [velocity_ratio, ceiling_impacts]
+figure: {x: force_ratio, y: velocity_ratio, by: stop, band: spread, caption: With and without.}
+";
+
+fn folder() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("experiments")
+}
+
+fn assumptions() -> Assumptions {
+    load_assumptions(&folder().join("assumptions.yaml")).unwrap_or_else(|problems| panic!("{problems}")).assumptions()
+}
+
+fn parse(text: &str) -> Result<Experiment, Problems> {
+    parse_experiment(&"ch3-test".parse().unwrap(), "ch3-test.yaml", text, &assumptions())
+}
+
+fn good(text: &str) -> Experiment {
+    parse(text).unwrap_or_else(|problems| panic!("{problems}"))
+}
+
+/// The good experiment with one thing changed.
+fn with(old: &str, new: &str) -> String {
+    assert!(GOOD.contains(old), "{old}");
+    GOOD.replace(old, new)
+}
+
+/// The one problem of a text, as `line:column message | help`.
+fn only_problem(text: &str) -> String {
+    let problems = parse(text).expect_err("a mistake was expected");
+    assert_eq!(problems.list.len(), 1, "{problems}");
+    told(&problems).remove(0)
+}
+
+fn told(problems: &Problems) -> Vec<String> {
+    let told = problems.list.iter().map(|problem| {
+        let place = problem.place.map_or(String::new(), |place| format!("{}:{} ", place.line, place.column));
+        let help = problem.help.as_ref().map_or(String::new(), |help| format!(" | {help}"));
+        format!("{place}{}{help}", problem.message)
+    });
+    told.collect()
+}
+
+#[test]
+fn an_experiment_says_what_its_file_says() {
+    let experiment = good(GOOD);
+    assert_eq!(experiment.source.section, "3.6.3");
+    assert_eq!(experiment.swept, [Parameter::ForceRatio, Parameter::Stop]);
+    assert_eq!(experiment.cases.len(), 122);
+    assert_eq!(experiment.cases[41].get(Parameter::ForceRatio), Some(ParameterValue::Number(1.0)), "decades are exact");
+    assert_eq!(experiment.cases[41].get(Parameter::Stop), Some(ParameterValue::Without));
+    assert_eq!(experiment.recipe.dampers[0].gap, GapRecipe::Gap(0.4905));
+    assert_eq!(experiment.settings.round_period_to, Some(0.001));
+    let used = [
+        Assumption::Gravity,
+        Assumption::ImpulseFactor,
+        Assumption::ImpulseFrequency,
+        Assumption::ContactDampingRatio,
+        Assumption::StopRestitution,
+        Assumption::UndampedMass,
+        Assumption::ImpulseReference,
+    ];
+    assert_eq!(experiment.assumptions_used(), BTreeSet::from(used));
+}
+
+#[test]
+fn comments_order_and_units_do_not_change_the_meaning() {
+    let meaning = |text: &str| good(text).canonical_json().to_string();
+    let same = [
+        with("490.5 mm", "0.4905 m"),
+        with("stop: {length: 60 mm}", "stop: {length: 6e-2 m} # a comment"),
+        with("mass: 1 kg, stiffness: 1000 N/m", "stiffness: 1 kN/m, mass: 1000 g"),
+        with(
+            "  force_ratio: {log: {from: 0.1, to: 100, points: 61}}\n  stop: [with, without]\n",
+            "  stop: [with, without]\n  force_ratio: {log: {points: 61, to: 1e2, from: 0.1}}\n",
+        ),
+        with("force_ratio: swept", "force_ratio: 7"),
+        with("run: {solver: event_driven, skip: 25 cycles, ", "run: {"),
+        with("solver: event_driven", "solver: [event_driven]"),
+    ];
+    for text in &same {
+        assert_eq!(meaning(text), meaning(GOOD), "{text}");
+    }
+    assert_ne!(meaning(&with("60 mm", "61 mm")), meaning(GOOD));
+}
+
+#[test]
+fn a_new_caption_does_not_make_a_simulation_stale() {
+    let (old, new) = (good(GOOD), good(&with("With and without.", "Another caption.")));
+    assert_eq!(old.simulation_json(), new.simulation_json());
+    assert_ne!(old.figures_json(), new.figures_json());
+    assert_ne!(old.simulation_json(), good(&with("skip: 25", "skip: 26")).simulation_json());
+}
+
+#[test]
+fn quantities_are_read_into_si_to_the_last_bit() {
+    let cases = [
+        ("5 mm", Dimension::Length, 0.005),
+        ("4.9mm", Dimension::Length, 0.0049),
+        ("1000 N/m", Dimension::Stiffness, 1000.0),
+        ("4.24 N s/m", Dimension::Damping, 4.24),
+        ("4.24 N*s/m", Dimension::Damping, 4.24),
+        ("0.199 s", Dimension::Time, 0.199),
+        ("1e-5 s", Dimension::Time, 1e-5),
+        ("10 µs", Dimension::Time, 1e-5),
+        ("9.81 m/s^2", Dimension::Acceleration, 9.81),
+        ("9.81 m/s²", Dimension::Acceleration, 9.81),
+        ("31.6 rad/s", Dimension::AngularFrequency, 31.6),
+        ("5.03 Hz", Dimension::AngularFrequency, 5.03 * std::f64::consts::TAU),
+        ("50 g", Dimension::Mass, 0.05),
+        ("2 N s", Dimension::Impulse, 2.0),
+        ("2 kg m/s", Dimension::Impulse, 2.0),
+        ("427.3 mm/s", Dimension::Velocity, 0.4273),
+    ];
+    for (text, dimension, value) in cases {
+        assert_eq!(parse_quantity(text, dimension), Ok(value), "{text}");
+    }
+}
+
+#[test]
+fn a_unit_of_the_wrong_kind_is_told_in_words() {
+    let cases = [
+        ("5 s", Dimension::Length, "`5 s` is not a length", "write for example 5 mm"),
+        ("5", Dimension::Length, "`5` has no unit, but a length is wanted", "write for example 5 mm"),
+        ("5 furlongs", Dimension::Length, "`furlongs` is not a unit that is known here", "write for example 5 mm"),
+        (
+            "3 1/s",
+            Dimension::AngularFrequency,
+            "`1/s` is not a unit that is known here",
+            "write for example 31.6 rad/s or 5.03 Hz",
+        ),
+        ("1 N/m", Dimension::Damping, "`1 N/m` is not a damping constant", "write for example 4.24 N s/m"),
+        ("fast", Dimension::Velocity, "`fast` is not a number", ""),
+        ("nan m", Dimension::Length, "`nan m` is not a number", ""),
+        (".nan", Dimension::Length, "`.nan` is not a finite number", ""),
+        ("1e999 m", Dimension::Length, "`1e999 m` is not a finite number", ""),
+        ("1e99999999999 m", Dimension::Length, "`1e99999999999 m` is not a finite number", ""),
+        ("1e-400 m", Dimension::Length, "`1e-400 m` is not a finite number", ""),
+    ];
+    for (text, dimension, message, help) in cases {
+        let error = parse_quantity(text, dimension).expect_err(text);
+        assert_eq!((error.to_string().as_str(), error.help().unwrap_or_default().as_str()), (message, help), "{text}");
+    }
+    assert_eq!(
+        parse_number("5 mm").expect_err("a unit").to_string(),
+        "`5 mm` has a unit, but a dimensionless number is wanted"
+    );
+    for text in [".inf", "-.inf", "inf", "NaN"] {
+        assert!(parse_number(text).expect_err(text).to_string().ends_with("is not a finite number"), "{text}");
+    }
+}
+
+#[test]
+fn all_mistakes_of_a_file_come_at_once_with_their_places() {
+    let text = GOOD
+        .replace("gap: 490.5 mm", "gap: 5 s")
+        .replace("title: Limit stop\n", "titel: Limit stop\n")
+        .replace("velocity_ratio, ceiling_impacts", "velocity_ratio, ceiling_impact")
+        .replace("points: 61", "points: many")
+        .replace("average: 100 cycles", "average: -1 cycles")
+        .replace("band: spread", "band: wide");
+    let problems = parse(&text).expect_err("six mistakes");
+    assert_eq!(
+        told(&problems),
+        [
+            "1:1 an experiment has no key `titel` | did you mean `title`?",
+            "8:12 `5 s` is not a length | write for example 5 mm",
+            "13:51 `many` is not a number of points | write for example 25 points",
+            "15:55 `-1 cycles` is not a number of cycles | write for example 25 cycles",
+            "16:27 `ceiling_impact` is not a measure | did you mean `ceiling_impacts`?",
+            "17:61 a band has no form `wide` | known are `spread`, `none`",
+        ]
+    );
+    let plain = problems.to_string();
+    let block = "\
+error: `5 s` is not a length
+  --> ch3-test.yaml:8:12
+  |
+8 |       gap: 5 s
+  |            ^^^
+  = write for example 5 mm
+";
+    assert!(plain.contains(block), "{plain}");
+    let fancy = problems.fancy(false);
+    assert!(fancy.contains("ch3-test.yaml:8:12") && !fancy.contains('\u{1b}'), "{fancy}");
+    assert!(problems.fancy(true).contains('\u{1b}'));
+}
+
+#[test]
+fn mistakes_that_a_person_makes_are_told_where_they_stand() {
+    let cases = [
+        (with("mass_ratio:", "mass_ration:"), "7:7 a damper has no key `mass_ration` | did you mean `mass_ratio`?"),
+        (
+            with("      floor", "      cieling: {rigid: {restitution: 0}}\n      floor"),
+            "9:7 a damper has no key `cieling` | did you mean `ceiling`?",
+        ),
+        (with("      gap: 490.5 mm\n", ""), "7:7 a damper lacks `gap_ratio` or `gap`"),
+        (
+            with("gap: 490.5 mm", "gap: 490.5 mm\n      gap_ratio: 50"),
+            "9:7 a damper has both `gap` and `gap_ratio`, which say the same | keep one of the two",
+        ),
+        (with("mass: 1 kg", "mass: -1 kg"), "5:35 a mass above zero is wanted"),
+        (with("mass_ratio: 0.05", "mass_ratio: .nan"), "7:19 `.nan` is not a finite number"),
+        (with("mass_ratio: 0.05", "mass_ratio: -0.05"), "7:19 this ratio cannot be negative"),
+        (
+            with("gap: 490.5 mm", "gap: -1 mm"),
+            "13:3 a gap clearance cannot be -0.001 m (at force_ratio = 0.1, stop = with)",
+        ),
+        (
+            with("damping_ratio: assumed", "damping_ratio: 5 mm"),
+            "9:62 `5 mm` has a unit, but a dimensionless number is wanted | write the number alone",
+        ),
+        (with("mass: 1 kg, ", "mass: 1 kg, mass: 2 kg, "), "5:41 `mass` is given twice | keep one of the two"),
+        (
+            with("resilient: {stiff", "resiliant: {stiff"),
+            "9:15 a surface has no form `resiliant` | did you mean `resilient`?",
+        ),
+        (with("[with, without]", "[with, maybe]"), "14:16 `maybe` is neither `with` nor `without`"),
+        (with("stop: [with", "stp: [with"), "14:3 a sweep has no parameter `stp` | did you mean `stop`?"),
+        (
+            with("  stop: [with, without]", "  wall_stiffness_ratio: [1, 2]").replace("by: stop", "by: solver"),
+            "14:3 `wall_stiffness_ratio` is swept, but the scene has no soft walls (at force_ratio = 0.1, wall_stiffness_ratio = 1)",
+        ),
+        (
+            with("  force_ratio: {log: {from: 0.1, to: 100, points: 61}}\n", "")
+                .replace("x: force_ratio", "x: velocity_ratio"),
+            "11:45 nothing sweeps `force_ratio` | add `force_ratio` to `sweep`, or give it a value here",
+        ),
+        (
+            with("x: force_ratio", "x: force_ratios"),
+            "17:13 the table of this experiment has no column `force_ratios` | did you mean `force_ratio`?",
+        ),
+        (
+            with("y: velocity_ratio", "y: base_velocity"),
+            "17:29 `base_velocity` is a time history, and this experiment keeps none | add `trace: {from: … cycles, to: … cycles, samples_per_cycle: …}`",
+        ),
+        (with("x: force_ratio", "x: stop"), "17:13 `stop` holds words: it cannot be an axis"),
+        (
+            with("measure: [velocity_ratio,", "measure: [last_peak, velocity_ratio,"),
+            "16:11 `last_peak` is read off a time history, and this experiment keeps none | add `trace: {from: … cycles, to: … cycles, samples_per_cycle: …}`",
+        ),
+        (
+            format!("{GOOD}trace: {{from: 124 cycles, to: 126 cycles, samples_per_cycle: 10}}\n"),
+            "18:1 the trace ends with cycle 126, the run with cycle 125",
+        ),
+        (
+            format!("{GOOD}maximise: {{velocity_ratio: {{over: force_ratio, in: [1, 2]}}}}\n"),
+            "13:3 `force_ratio` is swept and maximised over at once | take it out of `sweep`",
+        ),
+        (
+            with("solver: event_driven", "solver: {fixed_step: {time_step: 1 s}}"),
+            "13:3 a time step of 1 s is longer than the forcing period of 0.19869176531592203 s (at force_ratio = 0.1, stop = with)",
+        ),
+        (
+            with("impulse_train: {", "pulse_train: {shape: rectangular, duration: 1 s, "),
+            "13:3 a pulse of 1 s does not fit into a forcing period of 0.19869176531592203 s (at force_ratio = 0.1, stop = with)",
+        ),
+        (with("from: 0.1, to", "from: 0, to"), "13:29 a logarithmic range starts above zero"),
+        (
+            with("force_ratio: {log: {from: 0.1, to: 100, points: 61}}", "force_ratio: []"),
+            "13:3 this sweep is empty: give it at least one value",
+        ),
+        ("title: [\n".into(), "1:8 this is no YAML: unclosed bracket '['"),
+        (String::new(), "1:1 the file is empty"),
+        (
+            "- a list\n".into(),
+            "1:1 an experiment is written as keys with values, not as a list | write `key: value` lines below it, or {key: value, key: value}",
+        ),
+        (
+            format!("{GOOD}---\ntitle: second\n"),
+            "18:1 a second document starts here | one file holds one document: remove the `---`",
+        ),
+    ];
+    for (text, expected) in cases {
+        assert_eq!(only_problem(&text), expected, "\n{text}");
+    }
+}
+
+#[test]
+fn yaml_from_strangers_is_refused_before_anything_grows() {
+    let mut bomb = String::from("a: &a [x, x, x, x, x, x, x, x, x]\n");
+    for (name, before) in ('b'..='z').zip('a'..) {
+        bomb += &format!("{name}: &{name} [{}]\n", vec![format!("*{before}"); 9].join(", "));
+    }
+    let problems = parse(&bomb).expect_err("an alias bomb");
+    assert!(problems.list.iter().any(|problem| problem.message == "aliases (`*name`) are not accepted"), "{problems}");
+
+    for deep in
+        ["[".repeat(100_000), "{a: ".repeat(100_000), (0..5_000).map(|i| format!("{}a:\n", " ".repeat(i))).collect()]
+    {
+        assert!(parse(&deep).is_err());
+    }
+    let escape = parse(&with("title: Limit stop", "title: \"\\e[2J\"\n\"\\e[2K\": 1")).expect_err("terminal commands");
+    assert_eq!(escape.list.len(), 2);
+    assert!(!format!("{escape}{}", escape.fancy(false)).contains('\u{1b}'));
+    let many_mistakes = with("[velocity_ratio, ceiling_impacts]", &format!("[{}]", "velocity, ".repeat(100_000)));
+    assert_eq!(parse(&many_mistakes).expect_err("no measure of that name").list.len(), 100);
+    let keys: String = (0..100_000).map(|i| format!("a{i}: 1\n")).collect();
+    assert_eq!(only_problem(&keys), "1001:1 more than 1000 keys in one place");
+    assert_eq!(only_problem(&"#\n".repeat(1 << 20)), "1:1 the file is longer than 1024 KiB");
+    let sweep = |range: &str| only_problem(&with("{log: {from: 0.1, to: 100, points: 61}}", range));
+    assert_eq!(
+        sweep("{log: {from: 0.1, to: 100, points: 1000000000}}"),
+        "13:51 1000000000 is too many: 100000 at most"
+    );
+    assert_eq!(
+        sweep("{step: {from: 0, to: 1, step: 1e-9}}"),
+        "13:46 1.0e9 points are too many: 100000 at most | widen the step, or split the experiment"
+    );
+    let many = "{linear: {from: 1, to: 2, points: 90000}}";
+    assert_eq!(
+        sweep(many),
+        "12:1 180000 points are too many: 100000 at most | widen the step, or split the experiment"
+    );
+    assert!(sweep(&format!("[{}]", [many; 50].join(", "))).contains("points are too many"));
+
+    for id in ["../etc/passwd", "..", "", "a/b", "a\\b", "Ch3", "a b", "-x", "ch3.yaml", "ä"] {
+        assert!(id.parse::<ExperimentId>().is_err(), "{id}");
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let place = |name: &str| folder.path().join(name);
+    std::fs::write(place("not an id.yaml"), GOOD).unwrap();
+    std::fs::write(place("long.yaml"), "#".repeat(2 << 20)).unwrap();
+    std::fs::write(place("binary.yaml"), b"title: \xff\n").unwrap();
+    for (name, expected) in [
+        (
+            "not an id.yaml",
+            "`not an id` is not an id: lower-case letters, digits and hyphens, such as `ch3-limit-stop` | rename the file",
+        ),
+        ("long.yaml", "is longer than 1024 KiB"),
+        ("binary.yaml", "is not UTF-8 text (line 1) | save it as UTF-8"),
+    ] {
+        assert_eq!(told(&load_experiment(&place(name), &assumptions()).expect_err(name)), [expected]);
+    }
+    assert!(load_experiment(&place("absent.yaml"), &assumptions()).is_err());
+}
+
+#[test]
+fn a_damaged_file_is_told_and_never_a_crash() {
+    let ends: Vec<usize> = GOOD.char_indices().map(|(index, _)| index).collect();
+    let mut told = 0;
+    for end in ends.into_iter().step_by(5) {
+        for damage in ["", "{", "é", "\n", "\u{0}"] {
+            let whole = &GOOD[end + 1..];
+            for rest in [whole, ""] {
+                if let Err(problems) = parse(&format!("{}{damage}{rest}", &GOOD[..end])) {
+                    told += usize::from(!problems.to_string().is_empty() && !problems.fancy(false).is_empty());
+                }
+            }
+        }
+    }
+    assert!(told > 1_000, "{told}");
+}
+
+#[test]
+fn sweeps_are_products_pairs_points_and_unions() {
+    let sweep = "  force_ratio: {log: {from: 0.1, to: 100, points: 61}}\n  stop: [with, without]\n";
+    let cases = |text: &str, by: &str| {
+        let experiment = good(&with(sweep, text).replace("by: stop", by));
+        let told: Vec<_> = experiment.cases.iter().map(|case| format!("{}:{}", case.sweep, case.told())).collect();
+        (experiment, told)
+    };
+    let (_, told) =
+        cases("  paired: {force_ratio: [1, 2], mass_ratio: [0.1, 0.2]}\n  stop: [with, without]\n", "by: stop");
+    assert_eq!(
+        told,
+        [
+            ":force_ratio = 1, mass_ratio = 0.1, stop = with",
+            ":force_ratio = 1, mass_ratio = 0.1, stop = without",
+            ":force_ratio = 2, mass_ratio = 0.2, stop = with",
+            ":force_ratio = 2, mass_ratio = 0.2, stop = without",
+        ]
+    );
+    let (_, told) =
+        cases("  points: [{force_ratio: 1, gap_ratio: infinite}, {force_ratio: 3, gap_ratio: 5}]\n", "by: gap_ratio");
+    assert_eq!(told, [":force_ratio = 1, gap_ratio = infinite", ":force_ratio = 3, gap_ratio = 5"]);
+    let (experiment, told) = cases(
+        "  union:
+    low: {force_ratio: [{linear: {from: 0.1, to: 0.3, points: 3}}, {step: {from: 0.3, to: 0.5, step: 0.1}}]}
+    high: {force_ratio: [7], stop_length: [5 mm], solver: {fixed_step: {time_step: 0.1 ms}}}
+",
+        "by: [sweep, solver]",
+    );
+    let low = ["0.1", "0.2", "0.3", "0.4", "0.5"].map(|x| format!("low:force_ratio = {x}"));
+    assert_eq!(told[0], "high:force_ratio = 7, stop_length = 0.005");
+    assert_eq!(told[1..], low);
+    let labels: Vec<_> = experiment.runs().map(|(_, solver)| solver.label()).collect();
+    assert_eq!(labels[..2], ["fixed_step_1e-4s", "event_driven"]);
+    assert_eq!(experiment.solvers, [SolverChoice::FixedStep { time_step: 1e-4 }, SolverChoice::EventDriven]);
+
+    let union =
+        with(sweep, "  union:\n    a: {force_ratio: [1]}\n    b: {stop: [with]}\n").replace("by: stop", "by: sweep");
+    assert_eq!(
+        only_problem(&union),
+        "11:45 the sweep `b` leaves `force_ratio` out | give the value here that those cases shall have"
+    );
+    let paired = with(sweep, "  paired: {force_ratio: [1, 2], mass_ratio: [1]}\n").replace("by: stop", "by: solver");
+    assert_eq!(only_problem(&paired), "13:33 paired ranges are of equal length: 1 values here, 2 in the first");
+}
+
+#[test]
+fn each_assumption_has_a_reason_and_moves_alone() {
+    let sheet = load_assumptions(&folder().join("assumptions.yaml")).unwrap_or_else(|problems| panic!("{problems}"));
+    for (name, entry) in &sheet.entries {
+        assert!(entry.reason.len() > 20 && !entry.range.is_empty(), "{name:?}");
+    }
+    let variants = sheet.variants(&BTreeSet::from([Assumption::StopLength, Assumption::UndampedMass]));
+    let labels: Vec<_> = variants.iter().map(|(label, _)| label.as_str()).collect();
+    assert_eq!(labels, ["stop_length=0.05", "stop_length=0.07", "undamped_mass=loaded"]);
+    let baseline = sheet.assumptions();
+    for (_, moved) in &variants {
+        let differing = baseline.values.iter().filter(|(name, value)| moved.values[*name] != **value).count();
+        assert_eq!((differing, moved.values.len()), (1, baseline.values.len()));
+    }
+    assert_eq!(variants[0].1.values[&Assumption::StopLength], AssumptionValue::Number(0.05));
+
+    let text = "stop_length: {value: 5 s, reason: none}\nundamped_mass: {value: heavy, reason: none}\nstop_lenght: {value: 1 mm}\n";
+    let problems = parse_assumptions("assumptions.yaml", text).expect_err("three mistakes");
+    assert_eq!(
+        told(&problems),
+        [
+            "1:22 `5 s` is not a length | write for example 5 mm",
+            "2:24 this assumption has no reading `heavy` | known are `base`, `loaded`",
+            "3:1 `stop_lenght` is not an assumption | did you mean `stop_length`?",
+        ]
+    );
+}
+
+#[test]
+fn every_shipped_experiment_loads_and_resolves_under_every_variant() {
+    let sheet = load_assumptions(&folder().join("assumptions.yaml")).unwrap_or_else(|problems| panic!("{problems}"));
+    let mut ids = BTreeSet::new();
+    let mut fixed_steps = 0.0;
+    for file in std::fs::read_dir(folder().join("ch3")).unwrap() {
+        let path = file.unwrap().path();
+        let experiment = load_experiment(&path, &sheet.assumptions()).unwrap_or_else(|problems| panic!("{problems}"));
+        assert!(!experiment.figures.is_empty() && experiment.source.chapter == 3, "{}", experiment.id);
+        for (label, moved) in sheet.variants(&experiment.assumptions_used()) {
+            assert!(load_experiment(&path, &moved).is_ok(), "{} under {label}", experiment.id);
+        }
+        let points = experiment.maximise.as_ref().map_or(1, |maximise| maximise.grid.len());
+        for (case, solver) in experiment.runs() {
+            if let SolverChoice::FixedStep { time_step } = solver {
+                let scene = experiment.recipe_of(case).unwrap().resolve(&sheet.assumptions()).unwrap();
+                let cycles = f64::from(experiment.settings.skip + experiment.settings.average);
+                fixed_steps += scene.excitation.period() / time_step * cycles * points as f64;
+            }
+        }
+        ids.insert(experiment.id.to_string());
+    }
+    assert_eq!(ids.len(), 23, "chapter 3 has 23 rows: {ids:?}");
+    // At some 15 ns a step: half a minute of one core.
+    assert!(fixed_steps < 2e9, "{fixed_steps:e} fixed steps");
+}
+
+#[test]
+fn the_studys_words_become_the_scene_they_mean() {
+    let load = |id: &str| {
+        let path = folder().join("ch3").join(format!("{id}.yaml"));
+        load_experiment(&path, &assumptions()).unwrap_or_else(|problems| panic!("{problems}"))
+    };
+    let scene = |experiment: &Experiment, index: usize| {
+        experiment.recipe_of(&experiment.cases[index]).unwrap().resolve(&assumptions()).unwrap()
+    };
+    let duncan = load("ch3-duncan-gap");
+    let first = scene(&duncan, 0);
+    assert!(matches!(first.dampers[0].floor, Surface::Rigid { restitution: 0.0 }));
+    let Excitation::Harmonic { force, .. } = first.excitation else { panic!("{first:?}") };
+    assert!((force + 0.01 * 9.81).abs() < 1e-15, "F = −m a ω²: {force}");
+    assert!(duncan.cases.iter().enumerate().any(|(i, _)| scene(&duncan, i).dampers[0].gap.is_infinite()));
+
+    let walls = load("ch3-wall-stiffness");
+    let hard = walls.cases.iter().position(|case| case.sweep == "model_2").unwrap();
+    assert!(scene(&walls, hard).dampers[0].walls.is_none(), "walls that do not give are Model 2");
+
+    let favourable = scene(&load("ch3-favourable-impact"), 0);
+    assert!((favourable.excitation.period() - 0.371).abs() < 5e-4, "the impulse of t = 52.31 s is the 141st");
+}
