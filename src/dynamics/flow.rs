@@ -5,7 +5,7 @@
 //!
 //! q″ = M⁻¹(−K q − C q′ + b F − Σ φ N),   w″ = N/mp − g − φ·q″,   N = −k w − c w′.
 //!
-//! Its matrix is scaled, split into 2 × 2 blocks ([`super::spectral`]) and never built again: gap, amplitude and time do
+//! Its matrix is split into 2 × 2 blocks ([`super::modes`]) and never built again: gap, amplitude and time do
 //! not enter, so one flow serves a whole sweep.
 
 use nalgebra::DMatrix;
@@ -13,7 +13,7 @@ use nalgebra::DMatrix;
 use super::EngineError;
 use super::block::{Block, Phase};
 use super::spectral::Spectral;
-use super::system::{Contact, Face, HybridSystem, Law, dot};
+use super::system::{Contact, Face, HybridSystem, Law, Matrix, dot};
 
 /// One contact state, ready to be propagated.
 pub(crate) struct Flow {
@@ -143,26 +143,8 @@ impl Flow {
         let face_of = |j: usize| contacts[j].face(&system.particles[j]).expect("a pressing particle has a face");
         let accelerations = accelerations(system, &solve, &attached, &face_of, damping);
 
-        // Scale lengths by frequencies, so that the matrix is of one magnitude: (Ω p, p′).
-        let frequency: Vec<f64> = (0..order).map(|i| scale(accelerations[i][i])).collect();
-        let size = 2 * order;
-        let mut matrix = vec![0.0; size * size];
-        for i in 0..order {
-            matrix[i * size + order + i] = frequency[i];
-            for j in 0..order {
-                matrix[(order + i) * size + j] = accelerations[i][j] / frequency[j];
-                matrix[(order + i) * size + order + j] = accelerations[i][order + j];
-            }
-        }
-        let Spectral { mut from_blocks, to_blocks: rows, matrices, blocks } = Spectral::split(size, &matrix)?;
-        let mut to_blocks = vec![0.0; size * size];
-        for i in 0..size {
-            for k in 0..size {
-                let unit = if i < order { frequency[i] } else { 1.0 };
-                from_blocks[i * size + k] /= unit;
-                to_blocks[i * size + k] = rows[k * size + i] * unit;
-            }
-        }
+        let Spectral { from_blocks, to_blocks, matrices, blocks } =
+            super::modes::split(&accelerations, &mass_of(system, mass, &attached, &face_of))?;
 
         let weight: Vec<f64> = {
             let mut q = vec![0.0; n];
@@ -573,9 +555,31 @@ pub(crate) fn carried_mass(system: &HybridSystem, contacts: &[Contact]) -> super
     mass
 }
 
-fn scale(acceleration: f64) -> f64 {
-    let omega = acceleration.abs().sqrt();
-    if omega > 0.0 && omega.is_finite() { omega } else { 1.0 }
+/// Mass matrix of p = (q, w): each particle in contact moves with φ·q + w.
+fn mass_of<'a>(
+    system: &HybridSystem,
+    carried: Matrix,
+    attached: &[usize],
+    face_of: &dyn Fn(usize) -> &'a Face,
+) -> Matrix {
+    let n = carried.order;
+    let mut mass = Matrix::diagonal(&vec![0.0; n + attached.len()]);
+    let order = mass.order;
+    for i in 0..n {
+        mass.entries[i * order..][..n].copy_from_slice(&carried.entries[i * n..][..n]);
+    }
+    for (slot, &j) in attached.iter().enumerate() {
+        let particle = system.particles[j].mass;
+        let mut row = face_of(j).row.clone();
+        row.resize(order, 0.0);
+        row[n + slot] = 1.0;
+        for (i, x) in row.iter().enumerate() {
+            for (k, y) in row.iter().enumerate() {
+                mass.entries[i * order + k] += particle * x * y;
+            }
+        }
+    }
+    mass
 }
 
 /// Cholesky factor of a mass matrix; own loops, since its bits reach the results.

@@ -3,7 +3,7 @@
 //! In the order of use: a [`HybridSystem`] (linear structure, particles, drive) is run by [`event_driven`] under
 //! [`Options`]; the [`Response`] holds the integrals of the averaged window, the counts, and the [`Proof`].
 //!
-//! - `flow`: the exact motion of one contact state, split into 2 × 2 `block`s by `spectral`;
+//! - `flow`: the exact motion of one contact state, split into 2 × 2 `block`s by `modes` and `spectral`;
 //! - `search`: the first event, certified by Bernstein enclosures;
 //! - `contact`: what an event leads to; `march`: from event to event;
 //! - `integral`: measures in closed form; `audit`: momentum and energy balanced by other means;
@@ -20,6 +20,7 @@ mod flow;
 mod guards;
 mod integral;
 mod march;
+mod modes;
 mod search;
 mod spectral;
 mod spline;

@@ -10,6 +10,7 @@ use super::EngineError;
 use super::block::Block;
 
 /// A = V diag(Bₖ) W with W = V⁻¹.
+#[derive(Default)]
 pub(crate) struct Spectral {
     /// V, row by row, order × order.
     pub(crate) from_blocks: Vec<f64>,
