@@ -39,7 +39,7 @@ pub const SOLVER_VERSION: u32 = 1;
 /// What proves a run: residuals of the balances, and how clearly its events were decided.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Proof {
-    /// |Σ impulses − momentum gained − impulse of springs, dashpots and gravity| over the impulse that passed, dimensionless.
+    /// |Σ impulses − momentum gained − impulse of springs, dashpots and gravity| over the impulse that passed or was carried, dimensionless.
     pub momentum_residual: f64,
     /// |work of the excitation − energy gained − energy dissipated| over the energy that passed, dimensionless.
     pub energy_residual: f64,

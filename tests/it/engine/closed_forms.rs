@@ -5,12 +5,12 @@
 
 use std::f64::consts::{PI, TAU};
 
-use shotdamp::dynamics::{Contact, Event, EventKind, Options, Response, StartState, event_driven};
+use shotdamp::dynamics::{Contact, Event, EventKind, Options, Response, StartState};
 use shotdamp::scene::{Damper, Excitation, LimitStop, PulseShape, Scene, Walls};
 
 use super::bench::{
-    Case, GRAVITY, balanced, base, cases, close, damper, in_flight, instant, nothing, once, only, resilient,
-    resilient_without_tension, rigid, run, scene, system, within,
+    Case, GRAVITY, base, cases, close, damper, in_flight, instant, nothing, once, only, resilient,
+    resilient_without_tension, rigid, run, scene, within,
 };
 
 fn all() -> Vec<Case> {
@@ -45,9 +45,9 @@ fn chatter_ends_where_the_geometric_series_does() {
     assert_eq!(ends.len(), 1);
     assert_eq!(response.events.last().map(|event| event.kind), Some(EventKind::ChatterEnd));
     close("last impact", ends[0].time, end, 1e-12);
-    close("common velocity", response.final_velocity, velocity, 1e-12);
-    let until_then = floating(&given, GRAVITY, ball(given.number("restitution")), end);
-    close("place", run(&until_then, &once(start.clone())).final_displacement, place, 1e-12);
+    let until_then = run(&floating(&given, GRAVITY, ball(given.number("restitution")), end), &once(start.clone()));
+    close("common velocity", until_then.final_velocity, velocity, 1e-12);
+    close("place", until_then.final_displacement, place, 1e-12);
 
     // The same for a ball that takes twenty thousand bounces to rest: t* = 2 u′/(g (1 − ε)).
     let lively = floating(&given, GRAVITY, ball(0.999), 250.0);
@@ -87,7 +87,7 @@ fn an_accelerated_base_is_a_stronger_gravity() {
     let response = run(&lift, &once(in_flight([0.0, 0.0], [0.0, 0.4])));
     close("last impact", only(&response, EventKind::ChatterEnd)[0].time, value[0], 1e-12);
     // From then on both move as one.
-    close("velocity at 1 s", response.final_velocity, (30.0 - 0.05 * GRAVITY) / 1.05, 1e-12);
+    close("velocity at 1 s", response.final_velocity, (30.0 - 0.05 * GRAVITY + 0.05 * 0.4) / 1.05, 1e-12);
 }
 
 /// The table x = A sin ωt, A = Γg/ω²: an undamped base on its forced orbit, with a particle without mass.
@@ -187,7 +187,7 @@ fn backwards(mass: f64, stiffness: f64, damping: f64, force: f64, omega: f64, ph
     })
 }
 
-/// A steady motion that is known at its floor impact, after it has settled for 600 cycles.
+/// A steady motion that is known at its floor impact.
 struct Steady {
     scene: Scene,
     response: Response,
@@ -197,7 +197,8 @@ struct Steady {
 }
 
 /// Runs a harmonic scene from just before a floor impact at `phase` with the base at `x`, `v` and the particle at rate `y`.
-fn settle(given: &Case, force: f64, gravity: f64, damper: Damper, phase: f64, impact: [f64; 3]) -> Steady {
+fn settle(given: &Case, force: [f64; 2], damper: Damper, phase: f64, impact: [f64; 3], skip: u32) -> Steady {
+    let [force, gravity] = force;
     let (mass, stiffness) = (given.number("base_mass"), given.number("stiffness"));
     let damping = 2.0 * given.number("damping_ratio") * (stiffness * mass).sqrt();
     let ratio: f64 = given.text("frequency_ratio").split(' ').next().and_then(|r| r.parse().ok()).expect("a ratio");
@@ -211,11 +212,12 @@ fn settle(given: &Case, force: f64, gravity: f64, damper: Damper, phase: f64, im
     let scene = scene(base(mass, stiffness, damping), gravity, damper, drive);
     let start = in_flight([x0, v0], [y0 - x0, y0_rate - v0]);
     let options = Options {
-        skip: 500,
+        skip,
         average: 100,
         start,
         record_events: usize::MAX,
-        audit: true,
+        // What a stop of 1e18 kg takes up is beyond rounding.
+        audit: scene.dampers[0].particle_mass < 1e9,
         ..Options::default()
     };
     let response = run(&scene, &options);
@@ -243,7 +245,7 @@ fn a_particle_that_lands_every_other_cycle_moves_as_the_closed_form_says() {
     // Stated after the impact; before it the impulse is still in the particle.
     let impulse = value[2];
     let before = [value[3], 0.360_350_057_062_876_4 + impulse / mass, 1.146_568_363_381_879_4 - impulse / particle];
-    let steady = settle(&given, 30.0, GRAVITY, ball, value[0], before);
+    let steady = settle(&given, [30.0, GRAVITY], ball, value[0], before, 500);
     let last = steady.last();
     close("phase", steady.omega * last.time, value[0], 1e-11);
     close("relative velocity before", last.approach, value[1], 1e-11);
@@ -264,7 +266,7 @@ fn the_impact_damper_of_masri_and_caughey_moves_as_they_say() {
         let damper = damper(particle, given.number("gap"), rigid(given.number("restitution")));
         // Symmetric motion: the particle arrives with −V, and the impact hands the base −2 mp V/m.
         let before = [value[2], velocity + 2.0 * particle * value[1] / mass, -value[1]];
-        let steady = settle(&given, 10.0, 0.0, damper, value[0], before);
+        let steady = settle(&given, [10.0, 0.0], damper, value[0], before, 500);
         let last = steady.last();
         close(&format!("{id}, phase"), steady.omega * last.time, value[0], 1e-11);
         close(&format!("{id}, relative velocity before"), last.approach, value[3], 1e-11);
@@ -283,9 +285,9 @@ fn the_impact_damper_of_masri_and_caughey_moves_as_they_say() {
 fn an_oscillator_that_hits_a_fixed_stop_moves_as_the_closed_form_says() {
     for (id, place) in [("fixed-stop-one-impact-b", 0.01), ("fixed-stop-one-impact-d", 0.0)] {
         let (given, value) = open(id);
-        // A particle too heavy to be moved is the stop.
-        let stop = damper(1e15, f64::INFINITY, rigid(given.number("restitution")));
-        let steady = settle(&given, 20.0, 0.0, stop, value[1], [place, value[0], 0.0]);
+        // A particle too heavy to be moved is the stop; 1e15 kg would recede by 2e-12 m in these hundred impacts.
+        let stop = damper(1e18, f64::INFINITY, rigid(given.number("restitution")));
+        let steady = settle(&given, [20.0, 0.0], stop, value[1], [place, value[0], 0.0], 0);
         let last = steady.last();
         close(&format!("{id}, speed before"), -last.approach, value[0], 1e-11);
         close(&format!("{id}, phase"), steady.omega * last.time, value[1], 1e-11);
