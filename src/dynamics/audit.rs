@@ -144,10 +144,11 @@ impl Audit {
         let residual = energy(system, end) - energy(system, begin) + self.dissipated + self.loss
             - self.impulse_work
             - self.force_work;
-        let fallen = system.particles.iter().zip(&begin.particles).zip(&end.particles).fold(0.0_f64, |sum, ((p, a), b)| {
-            // Two bodies that fall together for long are told apart from what they have fallen.
-            sum + p.mass * system.gravity * (b[0] - a[0]).abs()
-        });
+        let fallen =
+            system.particles.iter().zip(&begin.particles).zip(&end.particles).fold(0.0_f64, |sum, ((p, a), b)| {
+                // Two bodies that fall together for long are told apart from what they have fallen.
+                sum + p.mass * system.gravity * (b[0] - a[0]).abs()
+            });
         let passed = (self.work_passed + self.dissipated + self.loss.abs() + fallen).max(energy(system, begin).abs());
         (momentum, residual.abs() / passed.max(f64::MIN_POSITIVE))
     }

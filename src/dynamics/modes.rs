@@ -57,10 +57,8 @@ pub(crate) fn split(accelerations: &[Vec<f64>], mass: &Matrix) -> Result<Spectra
         entries: rigid.iter().flat_map(|&i| rigid.iter().map(move |&j| mass.at(i, j))).collect(),
     };
     let solve = Cholesky::new(&own)?;
-    let shift: Vec<Vec<f64>> = elastic
-        .iter()
-        .map(|&j| solve.solve(&rigid.iter().map(|&i| mass.at(i, j)).collect::<Vec<_>>()))
-        .collect();
+    let shift: Vec<Vec<f64>> =
+        elastic.iter().map(|&j| solve.solve(&rigid.iter().map(|&i| mass.at(i, j)).collect::<Vec<_>>())).collect();
     for (r, &row) in rigid.iter().enumerate() {
         for half in 0..2 {
             let column = 2 * (count + r) + half;

@@ -2,9 +2,7 @@
 
 use serde_json::Value;
 use shotdamp::dynamics::{Contact, Event, EventKind, HybridSystem, Options, Response, StartState, event_driven};
-use shotdamp::scene::{
-    ContactDamping, ContactEnd, Damper, Excitation, Scene, Structure, Surface, compile,
-};
+use shotdamp::scene::{ContactDamping, ContactEnd, Damper, Excitation, Scene, Structure, Surface, compile};
 
 /// m/s².
 pub const GRAVITY: f64 = 9.81;
@@ -30,7 +28,13 @@ impl Case {
     }
 
     pub fn list(&self, key: &str) -> Vec<Self> {
-        self.0[key].as_array().unwrap_or_else(|| panic!("no list `{key}` in {self:?}")).iter().cloned().map(Self).collect()
+        self.0[key]
+            .as_array()
+            .unwrap_or_else(|| panic!("no list `{key}` in {self:?}"))
+            .iter()
+            .cloned()
+            .map(Self)
+            .collect()
     }
 
     /// A number, or an exact decimal written as text.

@@ -154,11 +154,8 @@ fn an_inelastic_ball_leaves_and_lands_at_the_phases_of_theory() {
     let (given, value) = open("inelastic-ball-first-flight-G3");
     let omega = given.number("angular_frequency");
     let (table, amplitude) = table(&given, given.number("dimensionless_acceleration"));
-    let start = StartState::Given {
-        q: vec![0.0],
-        rate: vec![amplitude * omega],
-        particles: vec![(Contact::Floor, 0.0, 0.0)],
-    };
+    let start =
+        StartState::Given { q: vec![0.0], rate: vec![amplitude * omega], particles: vec![(Contact::Floor, 0.0, 0.0)] };
     let options = Options { skip: 0, average: 2, start, record_events: 2, ..Options::default() };
     let response = run(&table, &options);
     assert_eq!(response.events[0].kind, EventKind::FloorRelease);
@@ -173,9 +170,7 @@ fn an_inelastic_ball_leaves_and_lands_at_the_phases_of_theory() {
 fn backwards(mass: f64, stiffness: f64, damping: f64, force: f64, omega: f64, phase: f64, at: [f64; 2]) -> [f64; 2] {
     let steps = 20_000;
     let h = -phase / omega / f64::from(steps);
-    let rate = |t: f64, z: [f64; 2]| {
-        [z[1], (force * (omega * t).sin() - stiffness * z[0] - damping * z[1]) / mass]
-    };
+    let rate = |t: f64, z: [f64; 2]| [z[1], (force * (omega * t).sin() - stiffness * z[0] - damping * z[1]) / mass];
     let step = |z: [f64; 2], k: [f64; 2], h: f64| [z[0] + h * k[0], z[1] + h * k[1]];
     (0..steps).fold(at, |z, i| {
         let t = phase / omega + f64::from(i) * h;
@@ -317,7 +312,8 @@ fn a_spring_with_a_dashpot_has_its_restitution() {
 
 #[test]
 fn a_floor_that_cannot_pull_has_its_own_restitution() {
-    for id in ["restitution-no-tension-zeta0.5", "restitution-no-tension-zeta0.7071", "restitution-no-tension-zeta0.9"] {
+    for id in ["restitution-no-tension-zeta0.5", "restitution-no-tension-zeta0.7071", "restitution-no-tension-zeta0.9"]
+    {
         let (given, value) = open(id);
         let floor = resilient_without_tension(given.number("floor_stiffness"), given.number("floor_damping"));
         let particle = damper(given.number("particle_mass"), f64::INFINITY, floor);
@@ -349,7 +345,8 @@ fn beyond_critical(zeta: f64) -> f64 {
 #[test]
 fn elastic_bounces_keep_their_period() {
     let (given, value) = open("elastic-bounce-period");
-    let particle = damper(given.number("particle_mass"), f64::INFINITY, resilient(given.number("floor_stiffness"), 0.0));
+    let particle =
+        damper(given.number("particle_mass"), f64::INFINITY, resilient(given.number("floor_stiffness"), 0.0));
     let start = in_flight([0.0, 0.0], [0.0, 0.3]);
     let response = run(&floating(&given, GRAVITY, particle.clone(), 2.0), &once(start.clone()));
     let twentieth = only(&response, EventKind::FloorRelease)[19];
@@ -408,11 +405,7 @@ fn a_ceiling_that_floats_is_a_third_body() {
     let mut damper = damper(particle, given.number("gap"), surface);
     damper.walls = Some(Walls { stiffness: 0.0, damping: 0.0, ceiling_mass: ceiling });
     let collide = scene(base(given.number("base_mass") + ceiling, 0.0, 0.0), 0.0, damper, nothing(0.1));
-    let start = StartState::Given {
-        q: vec![0.0; 2],
-        rate: vec![0.0; 2],
-        particles: vec![(Contact::Flight, 0.0, 1.0)],
-    };
+    let start = StartState::Given { q: vec![0.0; 2], rate: vec![0.0; 2], particles: vec![(Contact::Flight, 0.0, 1.0)] };
     let response = run(&collide, &once(start));
     let [contact, release] = [EventKind::CeilingContact, EventKind::CeilingRelease].map(|k| only(&response, k)[0]);
     close("contact time", release.time - contact.time, value[0], 1e-12);
@@ -546,10 +539,8 @@ fn the_mean_displacement_is_what_momentum_asks_for() {
     // One run ends where the window of the other begins.
     let (begin, response) = (at(0, 25), at(25, 100));
     let time = 100.0 * period;
-    let [moved, gained] = [
-        response.final_displacement - begin.final_displacement,
-        response.final_velocity - begin.final_velocity,
-    ];
+    let [moved, gained] =
+        [response.final_displacement - begin.final_displacement, response.final_velocity - begin.final_velocity];
     let carried = response.final_particles[0][1] - begin.final_particles[0][1];
     let force = 100.0 * impulse - particle * GRAVITY * time - damping * moved - mass * gained - particle * carried;
     within("momentum", stiffness * response.window().mean_displacement() * time, force, 100.0 * 1e-12);
@@ -559,8 +550,7 @@ fn the_mean_displacement_is_what_momentum_asks_for() {
 fn a_stiff_floor_tends_to_the_restitution_of_half_a_cycle() {
     let (given, value) = open("stiff-floor-restitution-kf1e9");
     let error = |softer: f64| {
-        let floor =
-            resilient(given.number("floor_stiffness") / softer, given.number("floor_damping") / softer.sqrt());
+        let floor = resilient(given.number("floor_stiffness") / softer, given.number("floor_damping") / softer.sqrt());
         let drop = scene(
             base(given.number("base_mass"), given.number("stiffness"), 0.0),
             GRAVITY,

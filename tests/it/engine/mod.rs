@@ -4,4 +4,5 @@
 mod bench;
 mod closed_forms;
 mod event_cases;
+mod floating;
 mod reference_cases;

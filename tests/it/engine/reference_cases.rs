@@ -91,7 +91,12 @@ fn every_reference_case_is_met_to_rounding() {
         close(&format!("{name}, deviation of the displacement"), window.std_displacement(), std, 1e-13);
         // The mean is what is left of a motion of ±std: it can be as exact as that, not more.
         let mean = expected.number("mean_displacement_m");
-        within(&format!("{name}, mean displacement"), window.mean_displacement(), mean, 1e-15 * std + 1e-13 * mean.abs());
+        within(
+            &format!("{name}, mean displacement"),
+            window.mean_displacement(),
+            mean,
+            1e-15 * std + 1e-13 * mean.abs(),
+        );
 
         let state = expected.numbers("final_state_x_v_y_vy");
         let [place, rate] = response.final_particles[0];
