@@ -3,7 +3,7 @@
 //! In the order of use: a [`HybridSystem`] (linear structure, particles, drive) is run by [`event_driven`] under
 //! [`Options`]; the [`Response`] holds the integrals of the averaged window, the counts, and the [`Proof`].
 //!
-//! - `flow`: the exact motion of one contact state, split into 2 × 2 `block`s by `spectral`;
+//! - `flow`: the exact motion of one contact state, split into 2 × 2 `block`s by `modes` and `spectral`;
 //! - `search`: the first event, certified by Bernstein enclosures;
 //! - `contact`: what an event leads to; `march`: from event to event;
 //! - `integral`: measures in closed form; `audit`: momentum and energy balanced by other means;
@@ -21,6 +21,7 @@ mod flow;
 mod guards;
 mod integral;
 mod march;
+mod modes;
 mod search;
 mod spectral;
 mod spline;
@@ -39,7 +40,7 @@ pub const SOLVER_VERSION: u32 = 1;
 /// What proves a run: residuals of the balances, and how clearly its events were decided.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Proof {
-    /// |Σ impulses − momentum gained − impulse of springs, dashpots and gravity| over the impulse that passed, dimensionless.
+    /// |Σ impulses − momentum gained − impulse of springs, dashpots and gravity| over the impulse that passed or was carried, dimensionless.
     pub momentum_residual: f64,
     /// |work of the excitation − energy gained − energy dissipated| over the energy that passed, dimensionless.
     pub energy_residual: f64,

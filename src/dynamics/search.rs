@@ -170,7 +170,8 @@ impl Search {
                     bend += amplitude * square;
                     snap += amplitude * square * square;
                 }
-                let clear = clear_until(guard.parabola, t, reach);
+                let margin = if guard.distance { clarity.margin } else { 0.0 };
+                let clear = clear_until(guard.parabola, t, reach, margin);
                 self.clear.push(clear);
                 if clear < skip {
                     skip = clear;
@@ -277,7 +278,8 @@ impl Search {
                     if self.guards[root.guard].distance {
                         // The guard would have to be moved by about g′²/(2|g″|) for this crossing to vanish.
                         let bend = (4.0 * local[2].abs()).max(f64::MIN_POSITIVE);
-                        clarity.margin = clarity.margin.min(local[1] * local[1] / bend);
+                        let slope = local[1] + delta * (2.0 * local[2] + 3.0 * delta * local[3]);
+                        clarity.margin = clarity.margin.min(slope * slope / bend);
                     }
                     return next;
                 }
@@ -346,17 +348,22 @@ impl Search {
     }
 }
 
-/// How long the parabola alone keeps further from zero than `reach`; 0 if it is not so now.
+/// How long the parabola alone keeps further from zero than `reach`; 0 if it is not so now, nor where it may come closer
+/// than `margin`, so that no jump passes over the narrowest place of a run.
 #[inline]
-fn clear_until(parabola: Parabola, t: f64, reach: f64) -> f64 {
-    let c = parabola.at(t) - reach;
+fn clear_until(parabola: Parabola, t: f64, reach: f64, margin: f64) -> f64 {
+    let c = parabola.at(t) - reach - margin.min(reach);
     if !(c > 0.0) {
         return 0.0;
     }
     let (b, a) = (parabola.rate(t), parabola.p2);
-    let discriminant = b * b - 4.0 * a * c;
-    if discriminant < 0.0 || (a >= 0.0 && b >= 0.0) {
+    if a >= 0.0 && b >= 0.0 {
         return f64::INFINITY;
+    }
+    let discriminant = b * b - 4.0 * a * c;
+    if discriminant < 0.0 {
+        // Its lowest point is c − b²/4a.
+        return if -discriminant < 4.0 * a * margin { 0.0 } else { f64::INFINITY };
     }
     // The first positive root of c + b τ + a τ², written without cancellation.
     let root = discriminant.sqrt();

@@ -6,6 +6,7 @@ mod figure;
 mod made_up;
 mod reference;
 mod report;
+mod engine;
 mod spec;
 mod study;
 mod table;
