@@ -540,7 +540,7 @@ impl<'a> March<'a> {
             guards::half_cycle(flow, &self.signals, sign, touching, &mut self.search, &mut self.crossings);
         }
         let limit = until - self.time;
-        let found = self.search.run(&flow.blocks, limit, &mut self.clarity);
+        let found = self.search.run(&flow.blocks, &flow.series, limit, &mut self.clarity);
         let length = match found {
             Found::Nothing => limit,
             Found::Event { time, .. } => time.min(limit),

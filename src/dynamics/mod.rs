@@ -20,11 +20,14 @@ mod flow;
 mod guards;
 mod integral;
 mod march;
+mod polynomial;
 mod search;
+mod series;
 mod spectral;
 mod spline;
 mod system;
 mod trace;
+mod window;
 
 pub use spline::Spline;
 pub use system::{
