@@ -1,21 +1,10 @@
-//! Polynomials of degree twelve on [0, 1]: values, Bernstein coefficients, roots.
+//! Polynomials of degree eleven on [0, 1]: values, Bernstein coefficients, roots.
 
-/// Degree of the window polynomials.
-pub(crate) const DEGREE: usize = 12;
+/// Degree of the window polynomials: twelve coefficients, which fill whole vector registers.
+pub(crate) const DEGREE: usize = 11;
 
 /// Coefficients in powers of σ, or Bernstein coefficients.
 pub(crate) type Coefficients = [f64; DEGREE + 1];
-
-/// Divides a polynomial by σ^ORDER.
-#[inline(always)]
-pub(crate) fn divide<const ORDER: usize>(a: &mut Coefficients) {
-    for j in 0..=DEGREE - ORDER {
-        a[j] = a[j + ORDER];
-    }
-    for j in DEGREE - ORDER + 1..=DEGREE {
-        a[j] = 0.0;
-    }
-}
 
 /// Value and slope at x of Σ aⱼ xʲ, by Estrin's scheme.
 #[inline]
@@ -26,19 +15,19 @@ pub(crate) fn evaluate(a: &Coefficients, x: f64) -> (f64, f64) {
         let k = i as f64;
         ((k + 1.0) * a[i + 1] + (k + 2.0) * a[i + 2] * x) + ((k + 3.0) * a[i + 3] + (k + 4.0) * a[i + 4] * x) * x2
     };
-    let value = four(0) + x4 * (four(4) + x4 * (four(8) + x4 * a[12]));
-    let slope = rate(0) + x4 * (rate(4) + x4 * rate(8));
+    let value = four(0) + x4 * (four(4) + x4 * four(8));
+    let slope = rate(0) + x4 * (rate(4) + x4 * ((9.0 * a[9] + 10.0 * a[10] * x) + 11.0 * a[11] * x2));
     (value, slope)
 }
 
 /// Bernstein coefficients on [0, 1] of Σ aⱼ xʲ: bᵢ = Σ_{j≤i} C(i, j)/C(n, j) aⱼ, by repeated sums.
-#[inline]
+#[inline(always)]
 pub(crate) fn bernstein(a: &Coefficients) -> Coefficients {
     let mut b = [0.0; DEGREE + 1];
-    for j in 0..=DEGREE {
+    for j in 0..DEGREE + 1 {
         b[j] = a[j] * INVERSE_BINOMIAL[j];
     }
-    // Twelve rounds of known length each, so that the compiler keeps them in registers.
+    // Eleven rounds of known length each, so that the compiler keeps them in registers.
     sums::<0>(&mut b);
     sums::<1>(&mut b);
     sums::<2>(&mut b);
@@ -50,7 +39,6 @@ pub(crate) fn bernstein(a: &Coefficients) -> Coefficients {
     sums::<8>(&mut b);
     sums::<9>(&mut b);
     sums::<10>(&mut b);
-    sums::<11>(&mut b);
     b
 }
 
@@ -76,15 +64,36 @@ const INVERSE_BINOMIAL: Coefficients = {
     table
 };
 
-/// The root of smallest modulus of a polynomial whose constant is small: Newton from zero; NaN if that does not settle.
+/// The root of smallest modulus of a polynomial whose constant is small; NaN if that does not settle.
+///
+/// x = −a₀/a₁ − x² (a₂ + a₃ x + …)/a₁ by iteration: one division, and each round gains as many digits as x is small.
 #[inline]
 pub(crate) fn nearest_root(a: &[f64; 8]) -> f64 {
-    let mut x = -a[0] / a[1];
+    let inverse = 1.0 / a[1];
+    let first = -a[0] * inverse;
+    // The reversed series to the fourth power, then as often as it takes.
+    let (u, w) = (a[2] * inverse * first, a[3] * inverse * (first * first));
+    let mut x =
+        first * ((1.0 - u) + (2.0 * u * u - w) + (5.0 * u * (w - u * u) - a[4] * inverse * (first * first * first)));
     for _ in 0..20 {
         let x2 = x * x;
-        let value = (a[0] + a[1] * x) + x2 * ((a[2] + a[3] * x) + x2 * ((a[4] + a[5] * x) + x2 * (a[6] + a[7] * x)));
-        let slope = (a[1] + 2.0 * a[2] * x)
-            + x2 * ((3.0 * a[3] + 4.0 * a[4] * x) + x2 * ((5.0 * a[5] + 6.0 * a[6] * x) + x2 * (7.0 * a[7])));
+        let rest = (a[2] + a[3] * x) + x2 * ((a[4] + a[5] * x) + x2 * (a[6] + a[7] * x));
+        let next = first - x2 * (rest * inverse);
+        let step = (next - x).abs();
+        x = next;
+        if step <= 1e-17 + 4.0 * f64::EPSILON * x.abs() {
+            return x;
+        }
+    }
+    newton_root(a, first)
+}
+
+/// The same by Newton's method, where the curvature is too strong for the iteration.
+#[cold]
+fn newton_root(a: &[f64; 8], guess: f64) -> f64 {
+    let mut x = guess;
+    for _ in 0..20 {
+        let (value, slope) = a.iter().rev().fold((0.0, 0.0), |(value, slope), a| (value * x + a, slope * x + value));
         let step = value / slope;
         x -= step;
         // Quadratic convergence: what is left is the square of this.
@@ -101,7 +110,7 @@ mod tests {
 
     #[test]
     fn bernstein_coefficients_enclose_the_polynomial() {
-        let a = [0.3, -1.2, 0.7, 0.25, -0.1, 0.05, 0.02, -0.01, 0.004, 0.3, -0.2, 0.1, -0.05];
+        let a = [0.3, -1.2, 0.7, 0.25, -0.1, 0.05, 0.02, -0.01, 0.004, 0.3, -0.2, 0.1];
         let b = bernstein(&a);
         assert!((b[0] - a[0]).abs() < 1e-16 && (b[DEGREE] - a.iter().sum::<f64>()).abs() < 1e-15);
         for i in 0..=20 {

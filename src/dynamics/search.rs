@@ -4,7 +4,7 @@
 //! that its Taylor polynomial about any instant is known to every order, and so is a bound on what the polynomial leaves
 //! out. In a window of Δ seconds, with σ = t/Δ,
 //!
-//! g(σ) = Σ aⱼ σʲ + R,   |R| ≤ Σₖ ampₖ (radiusₖ Δ)¹³/13!,
+//! g(σ) = Σ aⱼ σʲ + R,   |R| ≤ Σₖ ampₖ (radiusₖ Δ)¹²/12!,
 //!
 //! the Bernstein coefficients of the polynomial enclose it. They prove that g keeps its sign, or that g, g′ or g″ does and
 //! hence that g has one root and no more; else the window is halved. Where the parabola alone is further from zero than
@@ -17,7 +17,7 @@ use super::series::Series;
 use super::window::{Span, Start, Verdict, Window};
 
 /// radius·Δ of a first window: half a turn and a little, since that is how long a face holds a particle. The remainder is
-/// then 3.7¹³/13! of the amplitude, four thousandths.
+/// then 3.7¹²/12! of the amplitude, about a hundredth.
 const REACH: f64 = 3.7;
 /// radius·t below which a window polynomial leaves out less than rounding.
 const SHORT_HOP: f64 = 0.02;
@@ -66,12 +66,20 @@ pub(crate) struct Search {
     current: Vec<Phase>,
     /// Bounds on them from then on.
     amplitudes: Vec<f64>,
-    /// How long each guard is known to stay positive from the window's start.
-    clear: Vec<f64>,
+    /// Their sums: how far the blocks of each guard can reach.
+    reach: Vec<f64>,
     /// Kernels from the segment's start to the result.
     pub(crate) kernels: Vec<Kernel>,
     /// First windows are shortened by this factor, to have a second accuracy to compare with.
     window_factor: f64,
+}
+
+/// How fast the fastest guard moves: its speed squared is snap/bend.
+struct Pace {
+    bend: f64,
+    snap: f64,
+    /// The parabola of every guard is further from zero than its blocks can reach.
+    all_apart: bool,
 }
 
 /// The one root of a guard in a window.
@@ -92,7 +100,7 @@ impl Search {
             guards: Vec::new(),
             current: Vec::new(),
             amplitudes: Vec::new(),
-            clear: Vec::new(),
+            reach: Vec::new(),
             kernels: Vec::new(),
             window_factor,
         }
@@ -116,7 +124,6 @@ impl Search {
         if self.guards.is_empty() {
             return Found::Nothing;
         }
-        let width = blocks.len();
         self.current.clear();
         self.current.extend_from_slice(&self.initial);
         let mut t = 0.0;
@@ -126,40 +133,20 @@ impl Search {
             if remaining <= 4.0 * f64::EPSILON * limit {
                 return Found::Nothing;
             }
-            let mut skip = remaining;
-            let mut speed = 0.0_f64;
-            self.clear.clear();
-            self.amplitudes.clear();
-            for (guard, shares) in self.guards.iter().zip(self.current.chunks_exact(width)) {
-                let (mut reach, mut bend, mut snap) = (0.0, 0.0, 0.0);
-                for (block, share) in blocks.iter().zip(shares) {
-                    let amplitude = block.amplitude(*share, 0.0, remaining);
-                    self.amplitudes.push(amplitude);
-                    let square = block.radius * block.radius;
-                    reach += amplitude;
-                    bend += amplitude * square;
-                    snap += amplitude * square * square;
+            let pace = self.survey(blocks, t, remaining);
+            if pace.all_apart {
+                let skip = self.until_one_is_near(t, remaining);
+                if skip >= remaining {
+                    return Found::Nothing;
                 }
-                let clear = clear_until(guard.parabola, t, reach);
-                self.clear.push(clear);
-                if clear < skip {
-                    skip = clear;
-                }
-                // snap/bend is the square of the guard's speed: compared without dividing.
-                if snap > speed * bend {
-                    speed = snap / bend;
+                // A jump is worth its kernels only if it saves a good part of a window.
+                if skip * skip * pace.snap > 0.25 * pace.bend {
+                    t += skip;
+                    self.move_to(blocks, t);
+                    continue;
                 }
             }
-            if skip >= remaining {
-                return Found::Nothing;
-            }
-            // A jump is worth its kernels only if it saves a good part of a window.
-            if skip * skip * speed > 0.25 {
-                t += skip;
-                self.move_to(blocks, t);
-                continue;
-            }
-            let mut window = remaining.min(REACH * self.window_factor / speed.sqrt());
+            let mut window = remaining.min(REACH * self.window_factor * (pace.bend / pace.snap).sqrt());
             if let Some(root) = self.search_window(blocks, series, t, &mut window, clarity) {
                 return Found::Event { guard: root.guard, time: self.polish(blocks, series, root, t, window, clarity) };
             }
@@ -171,6 +158,37 @@ impl Search {
         }
     }
 
+    /// Bounds every guard from `t` on, and finds out how fast the fastest of them moves.
+    #[inline(always)]
+    fn survey(&mut self, blocks: &[Block], t: f64, remaining: f64) -> Pace {
+        let mut pace = Pace { bend: 1.0, snap: 0.0, all_apart: true };
+        self.reach.clear();
+        self.amplitudes.clear();
+        for (guard, shares) in self.guards.iter().zip(self.current.chunks_exact(blocks.len())) {
+            let (mut reach, mut bend, mut snap) = (0.0, 0.0, 0.0);
+            for (block, share) in blocks.iter().zip(shares) {
+                let amplitude = block.amplitude(*share, 0.0, remaining);
+                self.amplitudes.push(amplitude);
+                let square = block.radius * block.radius;
+                reach += amplitude;
+                bend += amplitude * square;
+                snap += amplitude * square * square;
+            }
+            self.reach.push(reach);
+            pace.all_apart &= guard.parabola.at(t) > reach;
+            if snap * pace.bend > pace.snap * bend {
+                (pace.bend, pace.snap) = (bend, snap);
+            }
+        }
+        pace
+    }
+
+    /// How long the parabolas alone keep every guard further from zero than its blocks can reach.
+    fn until_one_is_near(&self, t: f64, remaining: f64) -> f64 {
+        let clear = |(guard, reach): (&Guard, &f64)| clear_until(guard.parabola, t, *reach);
+        self.guards.iter().zip(&self.reach).map(clear).fold(remaining, f64::min)
+    }
+
     /// Proves the window clear of roots (`None`) or isolates the first one; shrinks the window until it can.
     fn search_window(
         &mut self,
@@ -180,23 +198,25 @@ impl Search {
         window: &mut f64,
         clarity: &mut Clarity,
     ) -> Option<Root> {
+        let mut piece = Window::new();
         'shrink: loop {
             let mut first: Option<Root> = None;
             let indivisible = *window <= 64.0 * f64::EPSILON * (t + *window) || *window < f64::MIN_POSITIVE;
             let span = Span::new(series, t, *window);
             for index in 0..self.guards.len() {
-                if self.clear[index] >= *window {
+                let guard = self.guards[index];
+                if stays_apart(guard.parabola, t, *window, self.reach[index]) {
                     continue;
                 }
-                let guard = self.guards[index];
                 if series.near_critical {
                     self.bound(blocks, index, *window);
                 }
-                let piece = self.expand(series, index, &span);
-                let verdict = piece.judge(|| {
-                    let parabola = 2.0 * guard.parabola.p2.abs() * (span.length * span.length);
-                    parabola
-                        + series.bend(&self.amplitudes[self.shares(blocks.len(), index)], span.length * series.pace)
+                self.expand(series, index, &span, &mut piece);
+                let verdict = piece.judge(|order| {
+                    let amplitudes = &self.amplitudes[self.shares(blocks.len(), index)];
+                    let parabola =
+                        if order == 0 { 2.0 * guard.parabola.p2.abs() * (span.length * span.length) } else { 0.0 };
+                    parabola + series.bend(amplitudes, span.length * series.pace, order)
                 });
                 match verdict {
                     Verdict::Clear { clearance } => {
@@ -234,12 +254,12 @@ impl Search {
     }
 
     /// A guard over a window that begins with the current shares.
-    #[inline]
-    fn expand(&self, series: &Series, index: usize, span: &Span) -> Window {
+    #[inline(always)]
+    fn expand(&self, series: &Series, index: usize, span: &Span, piece: &mut Window) {
         let guard = &self.guards[index];
         let start = if span.from == 0.0 { guard.start } else { Start::Apart };
         let shares = self.shares(series.len(), index);
-        Window::expand(series, &self.current[shares.clone()], &self.amplitudes[shares], guard.parabola, span, start)
+        piece.expand(series, &self.current[shares.clone()], &self.amplitudes[shares], guard.parabola, span, start);
     }
 
     /// Places of a guard's shares.
@@ -248,14 +268,14 @@ impl Search {
         index * width..(index + 1) * width
     }
 
-    /// Bounds anew the shares of blocks near critical damping, for the thirteenth derivative over one window.
+    /// Bounds anew the shares of blocks near critical damping, for the twelfth derivative over one window.
     #[cold]
     fn bound(&mut self, blocks: &[Block], index: usize, window: f64) {
         let shares = self.shares(blocks.len(), index);
         for ((amplitude, share), block) in
             self.amplitudes[shares.clone()].iter_mut().zip(&self.current[shares]).zip(blocks)
         {
-            *amplitude = block.amplitude(*share, 13.0, window);
+            *amplitude = block.amplitude(*share, 12.0, window);
         }
     }
 
@@ -316,7 +336,8 @@ impl Search {
     /// A hop so short that the window's polynomial is exact, while the difference of parabola and blocks is all rounding.
     #[cold]
     fn polish_short_hop(&mut self, blocks: &[Block], series: &Series, root: Root, window: f64) -> f64 {
-        let piece = self.expand(series, root.guard, &Span::new(series, 0.0, window));
+        let mut piece = Window::new();
+        self.expand(series, root.guard, &Span::new(series, 0.0, window), &mut piece);
         let time = window * piece.refine(root.guess);
         self.kernels.clear();
         self.kernels.extend(blocks.iter().map(|block| block.kernel_near_zero(time)));
@@ -328,7 +349,7 @@ impl Search {
     fn local(&self, blocks: &[Block], series: &Series, guard: usize, parabola: Parabola, time: f64) -> [f64; 8] {
         let initial = &self.initial[self.shares(blocks.len(), guard)];
         let moved = blocks.iter().zip(&self.kernels).zip(initial);
-        let mut a = series.expand(moved.map(|((block, kernel), phase)| block.advance(*phase, *kernel)));
+        let mut a = series.expand::<0, 8>(moved.map(|((block, kernel), phase)| block.advance(*phase, *kernel)));
         let unit = series.unit;
         let rest = [parabola.at(time), parabola.rate(time) * unit, parabola.p2 * (unit * unit)];
         for (a, rest) in a.iter_mut().zip(rest) {
@@ -353,8 +374,14 @@ impl Search {
     }
 }
 
-/// How long the parabola alone keeps further from zero than `reach`; 0 if it is not so now.
+/// Whether the parabola alone keeps further from zero than `reach` for a window; a quick test, sure if it says so.
 #[inline]
+fn stays_apart(parabola: Parabola, t: f64, window: f64, reach: f64) -> bool {
+    let fall = (parabola.rate(t) * window).min(0.0) + (parabola.p2 * (window * window)).min(0.0);
+    parabola.at(t) + fall > reach
+}
+
+/// How long the parabola alone keeps further from zero than `reach`; 0 if it is not so now.
 fn clear_until(parabola: Parabola, t: f64, reach: f64) -> f64 {
     let c = parabola.at(t) - reach;
     if !(c > 0.0) {

@@ -5,10 +5,12 @@
 
 use super::block::{Block, Phase};
 
-/// Coefficients kept: degree twelve.
-pub(crate) const TERMS: usize = 13;
-/// 1/13!.
-const LEFT_OUT: f64 = 1.0 / 6_227_020_800.0;
+/// Coefficients kept: degree eleven.
+const TERMS: usize = 12;
+/// Length of a table: zeros behind, so that a shifted one can be read.
+const PADDED: usize = 16;
+/// 1/12!.
+const LEFT_OUT: f64 = 1.0 / 479_001_600.0;
 
 /// The series of all blocks of a flow.
 #[derive(Debug, Default)]
@@ -26,11 +28,11 @@ pub(crate) struct Series {
 #[derive(Debug)]
 struct Terms {
     /// Coefficients of (ρt)ʲ in A and in B.
-    value: [f64; TERMS],
-    rate: [f64; TERMS],
+    value: [f64; PADDED],
+    rate: [f64; PADDED],
     /// radius/ρ.
     radius: f64,
-    /// (radius/ρ)¹³/13!.
+    /// (radius/ρ)¹²/12!.
     left_out: f64,
 }
 
@@ -48,20 +50,20 @@ impl Series {
         self.terms.len()
     }
 
-    /// The first `N` coefficients of Σ shares, in powers of ρt.
-    #[inline]
-    pub(crate) fn expand<const N: usize>(&self, shares: impl Iterator<Item = Phase>) -> [f64; N] {
+    /// Coefficients `FROM` to `FROM` + N of Σ shares, in powers of ρt.
+    #[inline(always)]
+    pub(crate) fn expand<const FROM: usize, const N: usize>(&self, shares: impl Iterator<Item = Phase>) -> [f64; N] {
         let mut sum = [0.0; N];
         for (terms, share) in self.terms.iter().zip(shares) {
             for j in 0..N {
-                sum[j] += share.value * terms.value[j] + share.rate * terms.rate[j];
+                sum[j] += share.value * terms.value[j + FROM] + share.rate * terms.rate[j + FROM];
             }
         }
         sum
     }
 
     /// Over a window of ρΔ = `length`, with `amplitudes` as in [`Block::amplitude`]: a bound on what is left out of Σ shares
-    /// beyond degree twelve, over (ρΔ)¹³, and one on their values and slopes.
+    /// beyond degree eleven, over (ρΔ)¹², and one on their values and slopes.
     #[inline]
     pub(crate) fn bounds(&self, amplitudes: &[f64], length: f64) -> (f64, f64) {
         let (mut left_out, mut moving) = (0.0, 0.0);
@@ -72,12 +74,18 @@ impl Series {
         (left_out, moving)
     }
 
-    /// A bound on the second derivative in σ = t/Δ of Σ shares, or of Σ shares over σ, σ² or σ³, given ρΔ.
-    pub(crate) fn bend(&self, amplitudes: &[f64], length: f64) -> f64 {
+    /// A bound on the second derivative in σ = t/Δ of Σ shares/σ^`order`, given ρΔ: that of p/σʲ is below 2/(j + 2)! of p's
+    /// derivative of order j + 2.
+    pub(crate) fn bend(&self, amplitudes: &[f64], length: f64, order: usize) -> f64 {
         self.terms.iter().zip(amplitudes).fold(0.0, |sum, (terms, amplitude)| {
             let x = terms.radius * length;
-            // Of p/σ, p/σ², p/σ³ the second derivative is below a 3rd, 12th, 60th of p's third, fourth, fifth.
-            sum + amplitude * (x * x) * ((1.0 + x * (1.0 / 3.0)) + x * x * (1.0 / 12.0 + x * (1.0 / 60.0)))
+            let higher = match order {
+                0 => 1.0,
+                1 => x * (1.0 / 3.0),
+                2 => x * x * (1.0 / 12.0),
+                _ => x * x * x * (1.0 / 60.0),
+            };
+            sum + amplitude * (x * x) * higher
         })
     }
 }
@@ -87,7 +95,7 @@ impl Terms {
     fn new(block: &Block, pace: f64) -> Self {
         let (p, q) = (-2.0 * block.decay / pace, -block.determinant / (pace * pace));
         let series = |value: f64, rate: f64| {
-            let mut s = [0.0; TERMS];
+            let mut s = [0.0; PADDED];
             (s[0], s[1]) = (value, rate);
             for j in 0..TERMS - 2 {
                 s[j + 2] = (p * s[j + 1] + q * s[j] / (j + 1) as f64) / (j + 2) as f64;
@@ -97,16 +105,18 @@ impl Terms {
         let radius = block.radius / pace;
         let r4 = (radius * radius) * (radius * radius);
         let rate = series(0.0, 1.0).map(|s| s / pace);
-        Self { value: series(1.0, 0.0), rate, radius, left_out: r4 * r4 * r4 * radius * LEFT_OUT }
+        Self { value: series(1.0, 0.0), rate, radius, left_out: r4 * r4 * r4 * LEFT_OUT }
     }
 }
 
-/// x⁰ … x¹².
-#[inline]
-pub(crate) fn powers(x: f64) -> [f64; TERMS] {
-    let x2 = x * x;
-    let x3 = x2 * x;
-    let x4 = x2 * x2;
-    let x8 = x4 * x4;
-    [1.0, x, x2, x3, x4, x4 * x, x4 * x2, x4 * x3, x8, x8 * x, x8 * x2, x8 * x3, x8 * x4]
+/// x⁰ … x¹³, and zeros: in pairs, as they are read.
+#[inline(always)]
+pub(crate) fn powers(x: f64) -> [f64; PADDED] {
+    let mut powers = [0.0; PADDED];
+    let (x2, x4) = (x * x, (x * x) * (x * x));
+    let steps = [1.0, x2, x4, x4 * x2, x4 * x4, (x4 * x4) * x2, (x4 * x4) * x4];
+    for (pair, step) in powers.chunks_exact_mut(2).zip(steps) {
+        pair.copy_from_slice(&[step, x * step]);
+    }
+    powers
 }

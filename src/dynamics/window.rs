@@ -2,7 +2,7 @@
 
 use super::block::Phase;
 use super::flow::Parabola;
-use super::polynomial::{Coefficients, DEGREE, bernstein, divide, evaluate};
+use super::polynomial::{Coefficients, DEGREE, bernstein, evaluate};
 use super::series::{Series, powers};
 
 /// How a guard starts.
@@ -36,7 +36,7 @@ pub(crate) struct Span {
     /// Δ, s.
     pub(crate) length: f64,
     /// Powers of ρΔ.
-    powers: Coefficients,
+    powers: [f64; 16],
 }
 
 impl Span {
@@ -58,60 +58,71 @@ pub(crate) struct Window {
 }
 
 impl Window {
-    #[inline]
+    pub(crate) fn new() -> Self {
+        Self { a: [0.0; DEGREE + 1], b: [0.0; DEGREE + 1], remainder: 0.0, start: Start::Apart }
+    }
+
+    /// Expands a guard over a window: its shares and their bounds at the window's start, its parabola from the segment's.
+    #[inline(always)]
     pub(crate) fn expand(
+        &mut self,
         series: &Series,
         shares: &[Phase],
         amplitudes: &[f64],
         parabola: Parabola,
         span: &Span,
         start: Start,
-    ) -> Self {
-        let mut a: Coefficients = series.expand(shares.iter().copied());
-        for (a, power) in a.iter_mut().zip(&span.powers) {
-            *a *= power;
-        }
+    ) {
         let bent = parabola.p2 * span.length;
         let base = [parabola.at(span.from), parabola.rate(span.from) * span.length, bent * span.length];
-        for (a, base) in a.iter_mut().zip(base) {
-            *a += base;
-        }
-        let [_, x, ..] = span.powers;
+        let x = span.powers[1];
         let (left_out, moving) = series.bounds(amplitudes, x);
-        let mut remainder = left_out * (span.powers[DEGREE] * x);
+        self.start = start;
+        self.remainder = left_out * span.powers[DEGREE + 1];
         match start {
-            Start::Apart => remainder += 8.0 * f64::EPSILON * (base[0].abs() + base[1].abs() + moving),
-            Start::Touching { order, slope } => {
-                // The start is known exactly: what rounding left in the coefficients below the first is not there.
-                if order == 1 && !slope.is_nan() {
-                    a[1] = slope * span.length;
-                }
-                match order {
-                    1 => divide::<1>(&mut a),
-                    2 => divide::<2>(&mut a),
-                    _ => divide::<3>(&mut a),
+            Start::Apart => {
+                self.remainder += 8.0 * f64::EPSILON * (base[0].abs() + base[1].abs() + moving);
+                self.fill::<0>(series, shares, &base, span);
+            }
+            // The start is known exactly: what rounding left in the coefficients below the first is not there.
+            Start::Touching { order: 1, slope } => {
+                self.fill::<1>(series, shares, &base, span);
+                if !slope.is_nan() {
+                    self.a[0] = slope * span.length;
                 }
             }
+            Start::Touching { order: 2, .. } => self.fill::<2>(series, shares, &base, span),
+            Start::Touching { .. } => self.fill::<3>(series, shares, &base, span),
         }
-        let b = bernstein(&a);
-        Self { a, b, remainder, start }
+        self.b = bernstein(&self.a);
+    }
+
+    /// The coefficients in σ, divided by σ^`ORDER`.
+    #[inline(always)]
+    fn fill<const ORDER: usize>(&mut self, series: &Series, shares: &[Phase], base: &[f64; 3], span: &Span) {
+        let a: Coefficients = series.expand::<ORDER, _>(shares.iter().copied());
+        for j in 0..DEGREE + 1 {
+            self.a[j] = a[j] * span.powers[j + ORDER];
+        }
+        for j in ORDER..3 {
+            self.a[j - ORDER] += base[j];
+        }
     }
 
     pub(crate) fn end(&self) -> f64 {
         self.a.iter().sum()
     }
 
-    /// What the enclosure proves; `bend` is to bound the second derivative in σ, if that is asked for.
-    #[inline]
-    pub(crate) fn judge(&self, bend: impl FnOnce() -> f64) -> Verdict {
+    /// What the enclosure proves; `bend` is to bound the second derivative in σ of the guard over σ to a power, if that is asked for.
+    #[inline(always)]
+    pub(crate) fn judge(&self, bend: impl FnOnce(usize) -> f64) -> Verdict {
         let b = &self.b;
-        let doubt = self.remainder;
-        let lowest = lowest(b);
-        if lowest > doubt {
+        let signs = Signs::of(b, self.remainder);
+        if signs.positive == Signs::ALL {
             let near_miss = self.start == Start::Apart && b[1] < b[0] && b[DEGREE] > b[DEGREE - 1];
-            return Verdict::Clear { clearance: if near_miss { lowest - doubt } else { f64::INFINITY } };
+            return Verdict::Clear { clearance: if near_miss { lowest(b) - self.remainder } else { f64::INFINITY } };
         }
-        match self.single_crossing(bend) {
+        match self.single_crossing(signs, bend) {
             Some(guess) => Verdict::Root { guess, high: 1.0 },
             None => self.judge_shape(),
         }
@@ -120,20 +131,31 @@ impl Window {
     /// Descartes' rule in Bernstein form: coefficients positive, then doubtful, then negative. The guard is positive before
     /// the band where polynomial and remainder cannot be told apart, negative behind it, and falls all through it, since
     /// its slope there is more than its second derivative can turn. Gives a first guess of the root.
-    #[inline]
-    fn single_crossing(&self, bend: impl FnOnce() -> f64) -> Option<f64> {
+    #[inline(always)]
+    fn single_crossing(&self, signs: Signs, bend: impl FnOnce(usize) -> f64) -> Option<f64> {
         let doubt = self.remainder;
-        let positive = self.b.iter().take_while(|b| **b > doubt).count();
-        let doubtful = self.b[positive..].iter().take_while(|b| **b >= -doubt).count();
-        let negative = &self.b[positive + doubtful..];
-        if positive == 0 || negative.is_empty() || !negative.iter().all(|b| *b < -doubt) {
-            return None;
-        }
-        let (guess, slope, step) = self.root(1.0);
-        let bend = bend();
-        let falls = |slope: f64| slope < 0.0 && slope * slope > 8.0 * doubt * (bend - 16.0 * slope);
+        let first = signs.single_change()?;
+        // Where the control polygon crosses zero.
+        let (before, after) = (self.b[first - 1], self.b[first]);
+        let x = ((first - 1) as f64 + before / (before - after)).min(first as f64) * (1.0 / DEGREE as f64);
+        let (guess, slope, step) = self.root(x, 1.0);
+        let order = match self.start {
+            Start::Apart => 0,
+            Start::Touching { order, .. } => order,
+        };
+        let bend = bend(order);
+        // With slope −s at the root the polynomial passes the band within 2·doubt/s and turns by less than 2·bend·doubt/s on
+        // the way; the remainder's slope is below 12·doubt. Twice that is asked for.
+        let falls = |slope: f64| slope < 0.0 && slope * slope > 4.0 * doubt * (bend - 6.0 * slope);
         // The slope is known one Newton step away from the guess; only if that is too far is it taken at the guess.
-        (falls(slope + bend * step) || falls(evaluate(&self.a, guess).1)).then_some(guess)
+        (falls(slope + 1.5 * bend * step) || falls(self.slope_near(guess, bend * step))).then_some(guess)
+    }
+
+    /// The slope at the root next to `guess`, made shallower by what Newton's next step can change.
+    #[cold]
+    fn slope_near(&self, guess: f64, turn: f64) -> f64 {
+        let slope = evaluate(&self.a, guess).1;
+        slope + turn * turn / slope.abs()
     }
 
     #[cold]
@@ -142,7 +164,7 @@ impl Window {
         let b = &self.b;
         let doubt = self.remainder;
         let end = b[DEGREE];
-        // |R⁽ʲ⁾| ≤ 13!/(13−j)! of R's bound; divided by up to σ³ the first derivative is below 16 R, the second below 250 R.
+        // |R⁽ʲ⁾| ≤ 12!/(12−j)! of R's bound; divided by up to σ³ the first derivative is below 16 R, the second below 250 R.
         let slope_doubt = 16.0 * doubt / DEGREE as f64;
         let bend_doubt = 250.0 * doubt / (DEGREE * (DEGREE - 1)) as f64;
         let (mut falls, mut concave, mut convex) = (true, true, true);
@@ -155,7 +177,7 @@ impl Window {
             convex &= second > bend_doubt;
         }
         let clear = Verdict::Clear { clearance: f64::INFINITY };
-        let root = |high: f64| Verdict::Root { guess: self.root(high).0, high };
+        let root = |high: f64| Verdict::Root { guess: self.root(high, high).0, high };
         if (falls || concave) && end < -doubt {
             return root(1.0);
         }
@@ -200,17 +222,11 @@ impl Window {
         self.a.iter().rev().fold(0.0, |sum, a| sum * x + a)
     }
 
-    /// A first guess of the root below `high`: where the control polygon crosses zero, and Newton steps from there. Gives with
-    /// it the slope before the last step, and that step.
+    /// The root below `high` by Newton steps from `x`, to three digits or so. Gives with it the slope before the last step,
+    /// and that step.
     #[inline]
-    fn root(&self, high: f64) -> (f64, f64, f64) {
+    fn root(&self, mut x: f64, high: f64) -> (f64, f64, f64) {
         let (mut lower, mut upper) = (0.0, high);
-        let mut x = high;
-        if high == 1.0
-            && let Some(i) = (0..DEGREE).find(|&i| self.b[i] > 0.0 && self.b[i + 1] <= 0.0)
-        {
-            x = (i as f64 + self.b[i] / (self.b[i] - self.b[i + 1])) * (1.0 / DEGREE as f64);
-        }
         let mut last = (x, f64::NAN, f64::INFINITY);
         for _ in 0..60 {
             let (value, slope) = evaluate(&self.a, x);
@@ -249,7 +265,36 @@ impl Window {
     }
 }
 
-#[inline]
+/// Which Bernstein coefficients are surely positive, and which surely negative: one bit each, the first the lowest.
+#[derive(Clone, Copy)]
+struct Signs {
+    positive: u32,
+    negative: u32,
+}
+
+impl Signs {
+    const ALL: u32 = (1 << (DEGREE + 1)) - 1;
+
+    #[inline(always)]
+    fn of(b: &Coefficients, doubt: f64) -> Self {
+        let (mut positive, mut negative) = (0, 0);
+        for (i, b) in b.iter().enumerate() {
+            positive |= u32::from(*b > doubt) << i;
+            negative |= u32::from(*b < -doubt) << i;
+        }
+        Self { positive, negative }
+    }
+
+    /// Positive, then doubtful, then negative: where the first that is not positive stands.
+    #[inline(always)]
+    fn single_change(self) -> Option<usize> {
+        let falling = |bits: u32| bits & (bits + 1) == 0;
+        let before = Self::ALL & !self.negative;
+        let once = self.positive != 0 && self.negative != 0 && falling(self.positive) && falling(before);
+        once.then(|| self.positive.trailing_ones() as usize)
+    }
+}
+
 fn lowest(b: &Coefficients) -> f64 {
-    b.iter().fold(f64::INFINITY, |low, x| if *x < low { *x } else { low })
+    b.iter().copied().fold(f64::INFINITY, f64::min)
 }
