@@ -268,19 +268,20 @@ impl Window {
 /// Which Bernstein coefficients are surely positive, and which surely negative: one bit each, the first the lowest.
 #[derive(Clone, Copy)]
 struct Signs {
-    positive: u32,
-    negative: u32,
+    positive: u64,
+    negative: u64,
 }
 
 impl Signs {
-    const ALL: u32 = (1 << (DEGREE + 1)) - 1;
+    const ALL: u64 = (1 << (DEGREE + 1)) - 1;
 
     #[inline(always)]
     fn of(b: &Coefficients, doubt: f64) -> Self {
         let (mut positive, mut negative) = (0, 0);
         for (i, b) in b.iter().enumerate() {
-            positive |= u32::from(*b > doubt) << i;
-            negative |= u32::from(*b < -doubt) << i;
+            // Masks as wide as the numbers, so that two fit a register.
+            positive |= if *b > doubt { 1 << i } else { 0 };
+            negative |= if *b < -doubt { 1 << i } else { 0 };
         }
         Self { positive, negative }
     }
@@ -288,7 +289,7 @@ impl Signs {
     /// Positive, then doubtful, then negative: where the first that is not positive stands.
     #[inline(always)]
     fn single_change(self) -> Option<usize> {
-        let falling = |bits: u32| bits & (bits + 1) == 0;
+        let falling = |bits: u64| bits & (bits + 1) == 0;
         let before = Self::ALL & !self.negative;
         let once = self.positive != 0 && self.negative != 0 && falling(self.positive) && falling(before);
         once.then(|| self.positive.trailing_ones() as usize)
