@@ -24,7 +24,7 @@ pub(crate) struct March<'a> {
     flows: Vec<Flow>,
     /// Index of the flow in force.
     now: usize,
-    // State: structure, particles, contacts.
+    // State: structure (with the compressions of the flow in force behind its coordinates), particles, contacts.
     q: Vec<f64>,
     rate: Vec<f64>,
     particles: Vec<Relative>,
@@ -48,8 +48,6 @@ pub(crate) struct March<'a> {
     answer: Vec<f64>,
     /// The contact state or its damping has changed since the flow was chosen.
     changed: bool,
-    p: Vec<f64>,
-    p_rate: Vec<f64>,
     c: Vec<f64>,
     c_end: Vec<f64>,
     observed_end: Vec<Phase>,
@@ -94,8 +92,8 @@ impl<'a> March<'a> {
             options,
             flows: Vec::new(),
             now: 0,
-            q: vec![0.0; n],
-            rate: vec![0.0; n],
+            q: vec![0.0; most],
+            rate: vec![0.0; most],
             particles: vec![Relative::default(); count],
             contacts: vec![Contact::Floor; count],
             damping,
@@ -110,8 +108,6 @@ impl<'a> March<'a> {
             signals: Signals::default(),
             answer: Cholesky::new(&system.mass)?.solve(&system.force_row),
             changed: true,
-            p: vec![0.0; most],
-            p_rate: vec![0.0; most],
             c: vec![0.0; 2 * most],
             c_end: vec![0.0; 2 * most],
             observed_end: Vec::new(),
@@ -131,16 +127,16 @@ impl<'a> March<'a> {
                 let drive = DrivePhase::default();
                 let flow = &self.flows[self.now];
                 self.c.fill(0.0);
-                flow.leave(&self.c, 0.0, 0.0, drive, &mut self.p, &mut self.p_rate);
-                let n = self.q.len();
-                self.q.copy_from_slice(&self.p[..n]);
+                flow.leave(&self.c, 0.0, 0.0, drive, &mut self.q, &mut self.rate);
+                let n = self.system.mass.order;
+                self.rate.fill(0.0);
                 for (i, &j) in flow.attached.iter().enumerate() {
-                    self.particles[j].gap = self.p[n + i];
+                    self.particles[j].gap = self.q[n + i];
                 }
             }
             super::StartState::Given { q, rate, particles } => {
-                self.q.copy_from_slice(q);
-                self.rate.copy_from_slice(rate);
+                self.q[..q.len()].copy_from_slice(q);
+                self.rate[..rate.len()].copy_from_slice(rate);
                 for (j, (contact, gap, rate)) in particles.iter().enumerate() {
                     self.changed = true;
                     self.contacts[j] = *contact;
@@ -499,14 +495,12 @@ impl<'a> March<'a> {
     /// Block coordinates of the state in the flow in force.
     fn enter_flow(&mut self, drive: DrivePhase) {
         let flow = &self.flows[self.now];
-        let n = self.q.len();
-        self.p[..n].copy_from_slice(&self.q);
-        self.p_rate[..n].copy_from_slice(&self.rate);
+        let n = self.system.mass.order;
         for (i, &j) in flow.attached.iter().enumerate() {
-            self.p[n + i] = self.particles[j].gap;
-            self.p_rate[n + i] = self.particles[j].rate;
+            self.q[n + i] = self.particles[j].gap;
+            self.rate[n + i] = self.particles[j].rate;
         }
-        flow.enter(&self.p[..flow.order], &self.p_rate[..flow.order], self.level, drive, &mut self.c);
+        flow.enter(&self.q[..flow.order], &self.rate[..flow.order], self.level, drive, &mut self.c);
     }
 
     /// Propagates to `until` within the cycle, from event to event.
@@ -545,7 +539,7 @@ impl<'a> March<'a> {
             guards::half_cycle(flow, &self.signals, sign, touching, &mut self.search, &mut self.crossings);
         }
         let limit = until - self.time;
-        let found = self.search.run(&flow.blocks, limit, &mut self.clarity);
+        let found = self.search.run(&flow.blocks, &flow.series, limit, &mut self.clarity);
         let length = match found {
             Found::Nothing => limit,
             Found::Event { time, .. } => time.min(limit),
@@ -570,7 +564,7 @@ impl<'a> March<'a> {
             None => drive,
             Some(_) => self.drive_phase(self.time + length),
         };
-        let n = self.q.len();
+        let n = self.system.mass.order;
         let flow = &self.flows[self.now];
         for (j, particle) in self.system.particles.iter().enumerate() {
             let contact = self.contacts[j];
@@ -584,11 +578,9 @@ impl<'a> March<'a> {
             }
         }
         flow.advance(&self.search.kernels, &self.c, &mut self.c_end);
-        flow.leave(&self.c_end, length, self.level, end_drive, &mut self.p, &mut self.p_rate);
-        self.q.copy_from_slice(&self.p[..n]);
-        self.rate.copy_from_slice(&self.p_rate[..n]);
+        flow.leave(&self.c_end, length, self.level, end_drive, &mut self.q, &mut self.rate);
         for (i, &j) in flow.attached.iter().enumerate() {
-            self.particles[j] = Relative { gap: self.p[n + i], rate: self.p_rate[n + i] };
+            self.particles[j] = Relative { gap: self.q[n + i], rate: self.rate[n + i] };
         }
     }
 
@@ -747,8 +739,8 @@ impl<'a> March<'a> {
 
     fn audit_state(&self) -> super::audit::State {
         super::audit::State {
-            q: self.q.clone(),
-            rate: self.rate.clone(),
+            q: self.q[..self.system.mass.order].to_vec(),
+            rate: self.rate[..self.system.mass.order].to_vec(),
             particles: (0..self.particles.len()).map(|j| self.absolute(j)).collect(),
             compressions: (0..self.particles.len())
                 .map(|j| match side_stiffness(self.system, &self.contacts, j) {

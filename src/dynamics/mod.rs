@@ -22,11 +22,14 @@ mod guards;
 mod integral;
 mod march;
 mod modes;
+mod polynomial;
 mod search;
+mod series;
 mod spectral;
 mod spline;
 mod system;
 mod trace;
+mod window;
 
 pub use spline::Spline;
 pub use system::{
