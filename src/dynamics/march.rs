@@ -14,6 +14,8 @@ use super::system::{Contact, Event, EventKind, HybridSystem, Law, Tick, dot};
 use super::trace::Sample;
 use super::{EngineError, Options, Proof, Response, Sums};
 
+/// An acceleration below this share of its parts is zero: the crossing that ended the half cycle was smooth.
+const SMOOTH: f64 = 1e-9;
 /// Events at one instant beyond which the contact is declared undecidable.
 const MOST_EVENTS_AT_AN_INSTANT: u32 = 64;
 
@@ -149,7 +151,7 @@ impl<'a> March<'a> {
     }
 
     pub(crate) fn run(mut self) -> Result<Response, EngineError> {
-        let cycles = u64::from(self.options.skip) + u64::from(self.options.average);
+        let cycles = self.options.cycles();
         let period = self.system.drive.period;
         for cycle in 0..cycles {
             self.cycle = cycle;
@@ -462,7 +464,7 @@ impl<'a> March<'a> {
 
     fn record_at(&mut self, particle: usize, kind: EventKind, time: f64, approach: f64, departure: f64) {
         self.response.proof.events += 1;
-        if self.cycle >= u64::from(self.options.skip) {
+        if self.options.averages(self.cycle) {
             self.response.counts.add(kind);
         }
         let wanted = self.response.events.len() < self.options.record_events
@@ -592,10 +594,20 @@ impl<'a> March<'a> {
         let flow = &self.flows[self.now];
         let bends = guards::accelerations(&flow.blocks, self.signals.of(flow.observed).0);
         let total = bends.iter().fold(0.0, |sum, phase| sum + phase.value);
+        let scale = bends.iter().fold(0.0, |sum, phase| sum + phase.value.abs());
         if self.half.sign == 0.0 {
             self.half.sign = if total < 0.0 { -1.0 } else { 1.0 };
         }
-        if self.half.touching || total * self.half.sign >= 0.0 {
+        if self.half.touching && total.abs() <= SMOOTH * scale {
+            if bends.iter().fold(0.0, |sum, phase| sum + phase.rate) * self.half.sign < 0.0 {
+                // The new damping turns the acceleration back before it has got anywhere.
+                self.half.sign = -self.half.sign;
+            }
+            return Ok(());
+        }
+        // New damping in a contact makes the acceleration jump: it no longer starts from zero.
+        self.half.touching = false;
+        if total * self.half.sign >= 0.0 {
             return Ok(());
         }
         self.half.sign = -self.half.sign;
@@ -708,7 +720,7 @@ impl<'a> March<'a> {
     fn sum_up(&mut self, length: f64, drive: DrivePhase) {
         let flow = &self.flows[self.now];
         let (observed, rest) = self.signals.of(flow.observed);
-        if self.cycle >= u64::from(self.options.skip) {
+        if self.options.averages(self.cycle) {
             let integrals = match &flow.forms {
                 Some(forms) => {
                     self.observed_end.clear();
@@ -726,9 +738,11 @@ impl<'a> March<'a> {
             sums.velocity_square += integrals.rate_square;
             sums.displacement += integrals.value;
             sums.displacement_square += integrals.square;
-            if let Some(audit) = &mut self.audit {
-                audit.segment(self.system, flow, &self.c, self.level, drive, length);
-            }
+        }
+        if let Some(audit) = &mut self.audit
+            && self.cycle >= u64::from(self.options.skip)
+        {
+            audit.segment(self.system, flow, &self.c, self.level, drive, length);
         }
         if self.system.drive.half_cycles.is_some() {
             let bends = guards::accelerations(&flow.blocks, observed);

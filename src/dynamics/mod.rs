@@ -79,6 +79,20 @@ pub struct Options {
     pub window_factor: f64,
 }
 
+impl Options {
+    /// Cycles to run: the averaged window, and as far as a time history asks for.
+    pub(crate) fn cycles(&self) -> u64 {
+        let window = u64::from(self.skip) + u64::from(self.average);
+        window.max(self.trace.map_or(0, |trace| trace.to_cycle))
+    }
+
+    /// The cycle belongs to the averaged window.
+    pub(crate) fn averages(&self, cycle: u64) -> bool {
+        let first = u64::from(self.skip);
+        (first..first + u64::from(self.average)).contains(&cycle)
+    }
+}
+
 impl Default for Options {
     /// The study's averaging: 25 cycles skipped, 100 averaged, from static equilibrium.
     fn default() -> Self {

@@ -72,6 +72,8 @@ pub(crate) struct Search {
     pub(crate) kernels: Vec<Kernel>,
     /// First windows are shortened by this factor, to have a second accuracy to compare with.
     window_factor: f64,
+    /// Windows below this are not divided any more, s.
+    shortest: f64,
 }
 
 /// How fast the fastest guard moves: its speed squared is snap/bend.
@@ -103,6 +105,7 @@ impl Search {
             reach: Vec::new(),
             kernels: Vec::new(),
             window_factor,
+            shortest: 0.0,
         }
     }
 
@@ -126,6 +129,7 @@ impl Search {
         }
         self.current.clear();
         self.current.extend_from_slice(&self.initial);
+        self.shortest = 1e-4 * f64::EPSILON * limit;
         let mut t = 0.0;
         loop {
             let remaining = limit - t;
@@ -203,7 +207,7 @@ impl Search {
         let mut piece = Window::new();
         'shrink: loop {
             let mut first: Option<Root> = None;
-            let indivisible = *window <= 64.0 * f64::EPSILON * (t + *window) || *window < f64::MIN_POSITIVE;
+            let indivisible = *window <= 64.0 * f64::EPSILON * (t + *window) || *window <= self.shortest;
             let span = Span::new(series, t, *window);
             for index in 0..self.guards.len() {
                 let guard = self.guards[index];
