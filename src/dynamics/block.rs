@@ -61,6 +61,23 @@ impl Block {
         self.radius == 0.0
     }
 
+    /// Answer to a constant load r, offset + slope·t + bend·t²: at rest where the block has an inverse, creeping against a
+    /// dashpot where one eigenvalue is zero, falling where both are.
+    pub(crate) fn answer(&self, [p, q, r, s]: [f64; 4], load: [f64; 2]) -> ([f64; 2], [f64; 2], [f64; 2]) {
+        let [x, y] = load;
+        let times = [p * x + q * y, r * x + s * y];
+        if self.is_drift() {
+            return ([0.0; 2], load, [0.5 * times[0], 0.5 * times[1]]);
+        }
+        if self.determinant == 0.0 {
+            // B² = −2a B: with o = r/2a and n = r + B o, B n = 0 and n = B o + r.
+            let twice = 2.0 * self.decay;
+            return ([x / twice, y / twice], [x + times[0] / twice, y + times[1] / twice], [0.0; 2]);
+        }
+        let inverse = |a: f64, b: f64| -(a - b) / self.determinant;
+        ([inverse(s * x, q * y), inverse(p * y, r * x)], [0.0; 2], [0.0; 2])
+    }
+
     /// True for a pair of complex eigenvalues.
     pub(crate) fn oscillates(&self) -> bool {
         self.discriminant < 0.0

@@ -127,6 +127,14 @@ impl Law {
             Self::Rigid { .. } => None,
         }
     }
+
+    /// Restitution of what holds a particle: a rigid face, or the stop of a resilient one.
+    pub(crate) fn restitution(self) -> f64 {
+        match self {
+            Self::Rigid { restitution } => restitution,
+            Self::Resilient { stop, .. } => stop.map_or(0.0, |stop| stop.restitution),
+        }
+    }
 }
 
 /// An impact: what it does to the structure and to the relative rate.
@@ -137,17 +145,21 @@ pub(crate) struct Impact {
     pub(crate) departure: f64,
     /// Energy lost, J.
     pub(crate) loss: f64,
+    /// 1 + mp φ·M⁻¹φ: relative acceleration in flight over the push per mass that would prevent it.
+    pub(crate) lightening: f64,
 }
 
 /// The impact of a particle on a face that moves with `row`, by restitution; `mobility` factors the mass it meets.
 pub(crate) fn impact(mobility: &Cholesky, row: &[f64], mass: f64, restitution: f64, approach: f64) -> Impact {
     let answer = mobility.solve(row);
     let mobility = super::system::dot(row, &answer);
-    let effective = mass / (1.0 + mass * mobility);
+    let lightening = 1.0 + mass * mobility;
+    let effective = mass / lightening;
     let impulse = -(1.0 + restitution) * approach * effective;
     Impact {
         structure: answer.iter().map(|a| -a * impulse).collect(),
         departure: -restitution * approach,
         loss: 0.5 * effective * (1.0 - restitution * restitution) * approach * approach,
+        lightening,
     }
 }

@@ -268,7 +268,7 @@ impl<'a> March<'a> {
                 }
                 _ if contact.holds(particle) => {
                     if away < 0.0 {
-                        self.strike(j, side, self.restitution(j, side))?;
+                        self.strike(j, side, side.face(particle).law.restitution())?;
                     } else if away > 0.0 {
                         self.let_go(j, side);
                     }
@@ -279,9 +279,7 @@ impl<'a> March<'a> {
                     } else if let Law::Resilient { stiffness, no_tension: true, .. } = side.face(particle).law {
                         let force = -stiffness * self.particles[j].gap - self.damping[j] * self.particles[j].rate;
                         if force * side.away() < 0.0 {
-                            self.record(j, side.lost(), self.particles[j].rate, self.particles[j].rate);
-                            self.changed = true;
-                            self.contacts[j] = side.released();
+                            self.slip(j, side);
                         }
                     }
                 }
@@ -289,22 +287,13 @@ impl<'a> March<'a> {
                     if let Law::Resilient { stiffness, .. } = side.face(particle).law {
                         let force = -stiffness * self.particles[j].gap - self.damping[j] * self.particles[j].rate;
                         if force * side.away() > 0.0 {
-                            self.record(j, side.made(), self.particles[j].rate, self.particles[j].rate);
-                            self.changed = true;
-                            self.contacts[j] = side.pressed();
+                            self.slip(j, side);
                         }
                     }
                 }
             }
         }
         self.choose_flow()
-    }
-
-    fn restitution(&self, j: usize, side: Side) -> f64 {
-        match side.face(&self.system.particles[j]).law {
-            Law::Rigid { restitution } => restitution,
-            Law::Resilient { stop, .. } => stop.map_or(0.0, |stop| stop.restitution),
-        }
     }
 
     /// Position relative to the ceiling, for a particle whose state refers to the floor.
@@ -388,10 +377,11 @@ impl<'a> March<'a> {
         let push = self.push(j, side);
         if push > 0.0 {
             if speed > 0.0 {
-                // What was left to bounce: a geometric series of flights of 2u′/a, each shorter by ε.
-                let tail = 2.0 * speed / (push * (1.0 - restitution));
                 let mobility = Cholesky::new(&carried_mass(self.system, &self.contacts_without(j)))?;
                 let last = super::contact::impact(&mobility, &row, particle.mass, 0.0, self.particles[j].rate);
+                // What was left to bounce: a geometric series of flights of 2u′/a, each shorter by ε. In flight the face no
+                // longer carries the particle, so that a is larger than the push per mass that will hold it.
+                let tail = 2.0 * speed / (push * last.lightening * (1.0 - restitution));
                 self.rate.iter_mut().zip(&last.structure).for_each(|(rate, jump)| *rate += jump);
                 if let Some(audit) = &mut self.audit {
                     audit.loss(last.loss);
@@ -439,6 +429,21 @@ impl<'a> March<'a> {
         self.contacts[j] = Contact::Flight;
         if side == Side::Ceiling {
             self.refer_to_floor(j);
+        }
+    }
+
+    /// A face that cannot pull lets go while compressed, or pushes again: the energy of its spring goes and comes.
+    fn slip(&mut self, j: usize, side: Side) {
+        let rate = self.particles[j].rate;
+        let pressed = self.contacts[j] == side.pressed();
+        self.record(j, if pressed { side.lost() } else { side.made() }, rate, rate);
+        self.changed = true;
+        self.contacts[j] = if pressed { side.released() } else { side.pressed() };
+        if let (Some(audit), Law::Resilient { stiffness, .. }) =
+            (&mut self.audit, side.face(&self.system.particles[j]).law)
+        {
+            let stored = 0.5 * stiffness * self.particles[j].gap * self.particles[j].gap;
+            audit.loss(if pressed { stored } else { -stored });
         }
     }
 
@@ -651,10 +656,7 @@ impl<'a> March<'a> {
             }
             Crossing::Release => match side.face(particle).law {
                 Law::Resilient { no_tension: true, .. } if self.particles[j].gap != 0.0 => {
-                    let rate = self.particles[j].rate;
-                    self.record(j, side.lost(), rate, rate);
-                    self.changed = true;
-                    self.contacts[j] = side.released();
+                    self.slip(j, side);
                     self.smooth[j] = true;
                 }
                 _ => {
@@ -671,15 +673,35 @@ impl<'a> March<'a> {
                 }
             }
             Crossing::Again => {
-                let rate = self.particles[j].rate;
-                self.changed = true;
-                self.contacts[j] = side.pressed();
-                self.record(j, side.made(), rate, rate);
+                self.slip(j, side);
                 self.smooth[j] = true;
             }
             Crossing::HalfCycle => {}
         }
+        self.meet_at_once()?;
         self.choose_flow()
+    }
+
+    /// A particle in flight that is at a face and moves into it has met it: where there is no gap to cross, or where the
+    /// impact of another particle has turned its face.
+    fn meet_at_once(&mut self) -> Result<(), EngineError> {
+        for j in 0..self.particles.len() {
+            if self.contacts[j] != Contact::Flight {
+                continue;
+            }
+            let here = self.particles[j];
+            if here.gap == 0.0 && here.rate < 0.0 {
+                self.meet(j, Side::Floor)?;
+            } else if let Some(above) = self.ceiling_relative(j)
+                && above.gap == 0.0
+            {
+                if above.rate > 0.0 {
+                    self.particles[j] = above;
+                    self.meet(j, Side::Ceiling)?;
+                }
+            }
+        }
+        Ok(())
     }
 
     /// Adds the segment to the measures, and to the audit if there is one.

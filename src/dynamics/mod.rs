@@ -3,7 +3,7 @@
 //! In the order of use: a [`HybridSystem`] (linear structure, particles, drive) is run by [`event_driven`] under
 //! [`Options`]; the [`Response`] holds the integrals of the averaged window, the counts, and the [`Proof`].
 //!
-//! - `flow`: the exact motion of one contact state, split into 2 × 2 `block`s by `spectral`;
+//! - `flow`: the exact motion of one contact state, split into 2 × 2 `block`s by `modes` and `spectral`;
 //! - `search`: the first event, certified by Bernstein enclosures;
 //! - `contact`: what an event leads to; `march`: from event to event;
 //! - `integral`: measures in closed form; `audit`: momentum and energy balanced by other means;
@@ -16,10 +16,12 @@ mod audit;
 mod block;
 mod contact;
 mod elementary;
+mod fixed;
 mod flow;
 mod guards;
 mod integral;
 mod march;
+mod modes;
 mod polynomial;
 mod search;
 mod series;
@@ -41,13 +43,14 @@ pub const SOLVER_VERSION: u32 = 1;
 /// What proves a run: residuals of the balances, and how clearly its events were decided.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Proof {
-    /// |Σ impulses − momentum gained − impulse of springs, dashpots and gravity| over the impulse that passed, dimensionless.
+    /// |Σ impulses − momentum gained − impulse of springs, dashpots and gravity| over the impulse that passed or was carried, dimensionless.
     pub momentum_residual: f64,
     /// |work of the excitation − energy gained − energy dissipated| over the energy that passed, dimensionless.
     pub energy_residual: f64,
     /// Events of the whole run: contacts made and lost, stops hit; impulses not counted.
     pub events: u64,
-    /// The smallest distance, in metres, by which a surface would have to be moved for the sequence of events to change.
+    /// The smallest distance, in metres, by which a surface would have to be moved for the sequence of events to change; NaN
+    /// from the fixed step, which certifies nothing.
     pub smallest_margin: f64,
     /// Decisions within rounding: simultaneous events that had to be put into an order, contacts that graze.
     pub ties: u64,
@@ -244,6 +247,16 @@ pub enum EngineError {
         /// Time within it.
         time: f64,
     },
+    /// A step that is no step of this drive.
+    #[error(
+        "a time step of {time_step} s does not fit a forcing period of {period} s: it must be positive, no longer than the period and longer than a billionth of it"
+    )]
+    TimeStep {
+        /// s.
+        time_step: f64,
+        /// s.
+        period: f64,
+    },
     /// Overflow.
     #[error("the motion leaves the range of numbers in cycle {cycle}")]
     NotFinite {
@@ -260,10 +273,10 @@ pub fn event_driven(system: &HybridSystem, options: &Options) -> Result<Response
     march::march(system, options)
 }
 
-/// Runs a system with the study's scheme: exact propagators of one time step, the contact state checked once a step.
+/// Runs a system with the study's scheme: exact propagators of one time step, s, the contact state checked once a step.
 ///
 /// # Errors
 /// [`EngineError`] with the reason.
-pub fn fixed_step(system: &HybridSystem, options: &Options, _time_step: f64) -> Result<Response, EngineError> {
-    event_driven(system, options)
+pub fn fixed_step(system: &HybridSystem, options: &Options, time_step: f64) -> Result<Response, EngineError> {
+    fixed::run(system, options, time_step)
 }

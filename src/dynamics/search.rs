@@ -137,7 +137,7 @@ impl Search {
             }
             let pace = self.survey(blocks, t, remaining);
             if pace.all_apart {
-                let skip = self.until_one_is_near(t, remaining);
+                let skip = self.until_one_is_near(t, remaining, clarity.margin);
                 if skip >= remaining {
                     return Found::Nothing;
                 }
@@ -186,8 +186,10 @@ impl Search {
     }
 
     /// How long the parabolas alone keep every guard further from zero than its blocks can reach.
-    fn until_one_is_near(&self, t: f64, remaining: f64) -> f64 {
-        let clear = |(guard, reach): (&Guard, &f64)| clear_until(guard.parabola, t, *reach);
+    fn until_one_is_near(&self, t: f64, remaining: f64, margin: f64) -> f64 {
+        let clear = |(guard, reach): (&Guard, &f64)| {
+            clear_until(guard.parabola, t, *reach, if guard.distance { margin } else { 0.0 })
+        };
         self.guards.iter().zip(&self.reach).map(clear).fold(remaining, f64::min)
     }
 
@@ -207,7 +209,9 @@ impl Search {
             let span = Span::new(series, t, *window);
             for index in 0..self.guards.len() {
                 let guard = self.guards[index];
-                if stays_apart(guard.parabola, t, *window, self.reach[index]) {
+                let reach = self.reach[index];
+                let margin = if guard.distance { clarity.margin.min(reach) } else { 0.0 };
+                if stays_apart(guard.parabola, t, *window, reach + margin) {
                     continue;
                 }
                 if series.near_critical {
@@ -317,7 +321,8 @@ impl Search {
                     if self.guards[root.guard].distance {
                         // The guard would have to be moved by about g′²/(2|g″|) for this crossing to vanish.
                         let bend = (4.0 * local[2].abs()).max(f64::MIN_POSITIVE);
-                        clarity.margin = clarity.margin.min(local[1] * local[1] / bend);
+                        let slope = local[1] + delta * (2.0 * local[2] + 3.0 * delta * local[3]);
+                        clarity.margin = clarity.margin.min(slope * slope / bend);
                     }
                     return next;
                 }
@@ -383,16 +388,22 @@ fn stays_apart(parabola: Parabola, t: f64, window: f64, reach: f64) -> bool {
     parabola.at(t) + fall > reach
 }
 
-/// How long the parabola alone keeps further from zero than `reach`; 0 if it is not so now.
-fn clear_until(parabola: Parabola, t: f64, reach: f64) -> f64 {
-    let c = parabola.at(t) - reach;
+/// How long the parabola alone keeps further from zero than `reach`; 0 if it is not so now, nor where it may come closer
+/// than `margin`, so that no jump passes over the narrowest place of a run.
+#[inline]
+fn clear_until(parabola: Parabola, t: f64, reach: f64, margin: f64) -> f64 {
+    let c = parabola.at(t) - reach - margin.min(reach);
     if !(c > 0.0) {
         return 0.0;
     }
     let (b, a) = (parabola.rate(t), parabola.p2);
-    let discriminant = b * b - 4.0 * a * c;
-    if discriminant < 0.0 || (a >= 0.0 && b >= 0.0) {
+    if a >= 0.0 && b >= 0.0 {
         return f64::INFINITY;
+    }
+    let discriminant = b * b - 4.0 * a * c;
+    if discriminant < 0.0 {
+        // Its lowest point is c − b²/4a.
+        return if -discriminant < 4.0 * a * margin { 0.0 } else { f64::INFINITY };
     }
     // The first positive root of c + b τ + a τ², written without cancellation.
     let root = discriminant.sqrt();
