@@ -5,10 +5,11 @@
 
 use super::audit::Audit;
 use super::block::Phase;
-use super::contact::{Crossing, Relative, STICKING_SPEED, Side, impact};
-use super::flow::{Cholesky, DrivePhase, Flow, Parabola, Signals, carried_mass};
+use super::contact::{Crossing, Impact, Relative, STICKING_SPEED, Side};
+use super::flow::{Cholesky, DrivePhase, Flow, Parabola, Signals};
 use super::guards::{self, Contacts, Crossings};
 use super::integral::quadrature;
+use super::mobility::Mobilities;
 use super::search::{Clarity, Found, Search};
 use super::system::{Contact, Event, EventKind, HybridSystem, Law, Tick, dot};
 use super::trace::Sample;
@@ -48,6 +49,7 @@ pub(crate) struct March<'a> {
     answer: Vec<f64>,
     /// The contact state or its damping has changed since the flow was chosen.
     changed: bool,
+    mobilities: Mobilities,
     c: Vec<f64>,
     c_end: Vec<f64>,
     observed_end: Vec<Phase>,
@@ -108,6 +110,7 @@ impl<'a> March<'a> {
             signals: Signals::default(),
             answer: Cholesky::new(&system.mass)?.solve(&system.force_row),
             changed: true,
+            mobilities: Mobilities::default(),
             c: vec![0.0; 2 * most],
             c_end: vec![0.0; 2 * most],
             observed_end: Vec::new(),
@@ -342,19 +345,18 @@ impl<'a> March<'a> {
         let approach = self.particles[j].rate;
         self.changed = true;
         self.contacts[j] = Contact::Flight;
-        let mobility = Cholesky::new(&carried_mass(self.system, &self.contacts))?;
-        let row = side.face(particle).row.clone();
-        let impact = impact(&mobility, &row, particle.mass, restitution, approach);
+        let meets = self.mobilities.of(self.system, &self.contacts, j, side)?;
+        let impact = Impact::new(meets.at_face, particle.mass, restitution, approach);
         for (other, particle) in self.system.particles.iter().enumerate() {
             // The faces of all other particles move with the structure's jump.
             if other != j {
                 let row = &self.contacts[other].side().face(particle).row;
                 if !self.contacts[other].holds(particle) {
-                    self.particles[other].rate -= dot(row, &impact.structure);
+                    self.particles[other].rate += impact.impulse * dot(row, &meets.answer);
                 }
             }
         }
-        self.rate.iter_mut().zip(&impact.structure).for_each(|(rate, jump)| *rate += jump);
+        self.rate.iter_mut().zip(&meets.answer).for_each(|(rate, answer)| *rate -= impact.impulse * answer);
         self.particles[j].rate = impact.departure;
         if let Some(audit) = &mut self.audit {
             audit.loss(impact.loss);
@@ -377,12 +379,14 @@ impl<'a> March<'a> {
         let push = self.push(j, side);
         if push > 0.0 {
             if speed > 0.0 {
-                let mobility = Cholesky::new(&carried_mass(self.system, &self.contacts_without(j)))?;
-                let last = super::contact::impact(&mobility, &row, particle.mass, 0.0, self.particles[j].rate);
+                self.contacts[j] = Contact::Flight;
+                let meets = self.mobilities.of(self.system, &self.contacts, j, side)?;
+                let last = Impact::new(meets.at_face, particle.mass, 0.0, self.particles[j].rate);
+                self.contacts[j] = held;
                 // What was left to bounce: a geometric series of flights of 2u′/a, each shorter by ε. In flight the face no
                 // longer carries the particle, so that a is larger than the push per mass that will hold it.
                 let tail = 2.0 * speed / (push * last.lightening * (1.0 - restitution));
-                self.rate.iter_mut().zip(&last.structure).for_each(|(rate, jump)| *rate += jump);
+                self.rate.iter_mut().zip(&meets.answer).for_each(|(rate, answer)| *rate -= last.impulse * answer);
                 if let Some(audit) = &mut self.audit {
                     audit.loss(last.loss);
                 }
@@ -393,12 +397,6 @@ impl<'a> March<'a> {
             self.after_bounce(j, side);
         }
         Ok(())
-    }
-
-    fn contacts_without(&self, j: usize) -> Vec<Contact> {
-        let mut contacts = self.contacts.clone();
-        contacts[j] = Contact::Flight;
-        contacts
     }
 
     /// The particle moves away from what it struck.

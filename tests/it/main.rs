@@ -2,11 +2,11 @@
 
 mod cli;
 mod desk;
+mod engine;
 mod figure;
 mod made_up;
 mod reference;
 mod report;
-mod engine;
 mod spec;
 mod study;
 mod table;
