@@ -50,6 +50,9 @@ pub(crate) struct March<'a> {
     /// The contact state or its damping has changed since the flow was chosen.
     changed: bool,
     mobilities: Mobilities,
+    /// Phase of the harmonic force, and the time within the cycle that it belongs to.
+    phase: DrivePhase,
+    phase_time: f64,
     c: Vec<f64>,
     c_end: Vec<f64>,
     observed_end: Vec<Phase>,
@@ -111,6 +114,8 @@ impl<'a> March<'a> {
             answer: Cholesky::new(&system.mass)?.solve(&system.force_row),
             changed: true,
             mobilities: Mobilities::default(),
+            phase: DrivePhase::default(),
+            phase_time: f64::NAN,
             c: vec![0.0; 2 * most],
             c_end: vec![0.0; 2 * most],
             observed_end: Vec::new(),
@@ -214,12 +219,16 @@ impl<'a> March<'a> {
         [dot(row, &self.q) + offset + self.particles[j].gap, dot(row, &self.rate) + self.particles[j].rate]
     }
 
-    fn drive_phase(&self, time: f64) -> DrivePhase {
+    /// The harmonic force's phase; a segment begins where another ended, so that the last answer is kept.
+    fn drive_phase(&mut self, time: f64) -> DrivePhase {
         match self.system.drive.harmonic {
             None => DrivePhase::default(),
+            Some(_) if self.phase_time == time => self.phase,
             Some(drive) => {
                 let (sine, cosine) = super::elementary::sin_cos(drive.angular_frequency * time);
-                DrivePhase { cosine: drive.force * cosine, sine: drive.force * sine }
+                self.phase = DrivePhase { cosine: drive.force * cosine, sine: drive.force * sine };
+                self.phase_time = time;
+                self.phase
             }
         }
     }
