@@ -5,10 +5,11 @@
 
 use super::audit::Audit;
 use super::block::Phase;
-use super::contact::{Crossing, Relative, STICKING_SPEED, Side, impact};
-use super::flow::{Cholesky, DrivePhase, Flow, Parabola, Signals, carried_mass};
+use super::contact::{Crossing, Impact, Relative, STICKING_SPEED, Side};
+use super::flow::{Cholesky, DrivePhase, Flow, Parabola, Signals};
 use super::guards::{self, Contacts, Crossings};
 use super::integral::quadrature;
+use super::mobility::Mobilities;
 use super::search::{Clarity, Found, Search};
 use super::system::{Contact, Event, EventKind, HybridSystem, Law, Tick, dot};
 use super::trace::Sample;
@@ -50,6 +51,10 @@ pub(crate) struct March<'a> {
     answer: Vec<f64>,
     /// The contact state or its damping has changed since the flow was chosen.
     changed: bool,
+    mobilities: Mobilities,
+    /// Phase of the harmonic force, and the time within the cycle that it belongs to.
+    phase: DrivePhase,
+    phase_time: f64,
     c: Vec<f64>,
     c_end: Vec<f64>,
     observed_end: Vec<Phase>,
@@ -72,6 +77,8 @@ struct Half {
     last: f64,
     /// The crossing was smooth, so that the guard starts at zero.
     touching: bool,
+    /// Too weak to leave the curve's lower end: not followed.
+    idle: bool,
 }
 
 impl<'a> March<'a> {
@@ -110,6 +117,9 @@ impl<'a> March<'a> {
             signals: Signals::default(),
             answer: Cholesky::new(&system.mass)?.solve(&system.force_row),
             changed: true,
+            mobilities: Mobilities::default(),
+            phase: DrivePhase::default(),
+            phase_time: f64::NAN,
             c: vec![0.0; 2 * most],
             c_end: vec![0.0; 2 * most],
             observed_end: Vec::new(),
@@ -213,12 +223,16 @@ impl<'a> March<'a> {
         [dot(row, &self.q) + offset + self.particles[j].gap, dot(row, &self.rate) + self.particles[j].rate]
     }
 
-    fn drive_phase(&self, time: f64) -> DrivePhase {
+    /// The harmonic force's phase; a segment begins where another ended, so that the last answer is kept.
+    fn drive_phase(&mut self, time: f64) -> DrivePhase {
         match self.system.drive.harmonic {
             None => DrivePhase::default(),
+            Some(_) if self.phase_time == time => self.phase,
             Some(drive) => {
                 let (sine, cosine) = super::elementary::sin_cos(drive.angular_frequency * time);
-                DrivePhase { cosine: drive.force * cosine, sine: drive.force * sine }
+                self.phase = DrivePhase { cosine: drive.force * cosine, sine: drive.force * sine };
+                self.phase_time = time;
+                self.phase
             }
         }
     }
@@ -344,19 +358,18 @@ impl<'a> March<'a> {
         let approach = self.particles[j].rate;
         self.changed = true;
         self.contacts[j] = Contact::Flight;
-        let mobility = Cholesky::new(&carried_mass(self.system, &self.contacts))?;
-        let row = side.face(particle).row.clone();
-        let impact = impact(&mobility, &row, particle.mass, restitution, approach);
+        let meets = self.mobilities.of(self.system, &self.contacts, j, side)?;
+        let impact = Impact::new(meets.at_face, particle.mass, restitution, approach);
         for (other, particle) in self.system.particles.iter().enumerate() {
             // The faces of all other particles move with the structure's jump.
             if other != j {
                 let row = &self.contacts[other].side().face(particle).row;
                 if !self.contacts[other].holds(particle) {
-                    self.particles[other].rate -= dot(row, &impact.structure);
+                    self.particles[other].rate += impact.impulse * dot(row, &meets.answer);
                 }
             }
         }
-        self.rate.iter_mut().zip(&impact.structure).for_each(|(rate, jump)| *rate += jump);
+        self.rate.iter_mut().zip(&meets.answer).for_each(|(rate, answer)| *rate -= impact.impulse * answer);
         self.particles[j].rate = impact.departure;
         if let Some(audit) = &mut self.audit {
             audit.loss(impact.loss);
@@ -379,12 +392,14 @@ impl<'a> March<'a> {
         let push = self.push(j, side);
         if push > 0.0 {
             if speed > 0.0 {
-                let mobility = Cholesky::new(&carried_mass(self.system, &self.contacts_without(j)))?;
-                let last = super::contact::impact(&mobility, &row, particle.mass, 0.0, self.particles[j].rate);
+                self.contacts[j] = Contact::Flight;
+                let meets = self.mobilities.of(self.system, &self.contacts, j, side)?;
+                let last = Impact::new(meets.at_face, particle.mass, 0.0, self.particles[j].rate);
+                self.contacts[j] = held;
                 // What was left to bounce: a geometric series of flights of 2u′/a, each shorter by ε. In flight the face no
                 // longer carries the particle, so that a is larger than the push per mass that will hold it.
                 let tail = 2.0 * speed / (push * last.lightening * (1.0 - restitution));
-                self.rate.iter_mut().zip(&last.structure).for_each(|(rate, jump)| *rate += jump);
+                self.rate.iter_mut().zip(&meets.answer).for_each(|(rate, answer)| *rate -= last.impulse * answer);
                 if let Some(audit) = &mut self.audit {
                     audit.loss(last.loss);
                 }
@@ -395,12 +410,6 @@ impl<'a> March<'a> {
             self.after_bounce(j, side);
         }
         Ok(())
-    }
-
-    fn contacts_without(&self, j: usize) -> Vec<Contact> {
-        let mut contacts = self.contacts.clone();
-        contacts[j] = Contact::Flight;
-        contacts
     }
 
     /// The particle moves away from what it struck.
@@ -536,7 +545,7 @@ impl<'a> March<'a> {
             rate: &self.rate,
         };
         guards::set(state, flow, &self.signals, &mut self.search, &mut self.crossings, &mut self.paths);
-        if self.system.drive.half_cycles.is_some() {
+        if self.system.drive.half_cycles.is_some() && !self.half.idle {
             let Half { sign, touching, .. } = self.half;
             guards::half_cycle(flow, &self.signals, sign, touching, &mut self.search, &mut self.crossings);
         }
@@ -588,11 +597,24 @@ impl<'a> March<'a> {
 
     /// Starts the first half cycle, and ends one whose acceleration a contact has turned at once.
     fn turn_half_cycle(&mut self) -> Result<(), EngineError> {
-        if self.system.drive.half_cycles.is_none() {
-            return Ok(());
-        }
+        let Some(half_cycles) = &self.system.drive.half_cycles else { return Ok(()) };
         let flow = &self.flows[self.now];
         let bends = guards::accelerations(&flow.blocks, self.signals.of(flow.observed).0);
+        // Below the curve's first point every half cycle gives the same damping: no need to follow them until something
+        // happens. The bound holds to the end of the segment, and the half cycle under way is as weak.
+        let [least, damping] = half_cycles.curve.lower_end();
+        let bound = flow
+            .blocks
+            .iter()
+            .zip(&bends)
+            .fold(0.0, |sum, (block, phase)| sum + block.amplitude(*phase, 0.0, self.system.drive.period));
+        let least = least * self.system.gravity;
+        let weak = self.half.square <= least * least * self.half.length;
+        if bound < least && weak && self.damping.iter().all(|now| *now == damping) {
+            self.half = Half { idle: true, last: self.half.last, ..Half::default() };
+            return Ok(());
+        }
+        self.half.idle = false;
         let total = bends.iter().fold(0.0, |sum, phase| sum + phase.value);
         let scale = bends.iter().fold(0.0, |sum, phase| sum + phase.value.abs());
         if self.half.sign == 0.0 {
@@ -744,7 +766,7 @@ impl<'a> March<'a> {
         {
             audit.segment(self.system, flow, &self.c, self.level, drive, length);
         }
-        if self.system.drive.half_cycles.is_some() {
+        if self.system.drive.half_cycles.is_some() && !self.half.idle {
             let bends = guards::accelerations(&flow.blocks, observed);
             self.half.square += quadrature(&flow.blocks, &bends, Parabola::default(), length).square;
             self.half.length += length;

@@ -21,6 +21,7 @@ mod flow;
 mod guards;
 mod integral;
 mod march;
+mod mobility;
 mod modes;
 mod polynomial;
 mod search;

@@ -130,6 +130,8 @@ impl Search {
         self.current.clear();
         self.current.extend_from_slice(&self.initial);
         self.shortest = 1e-4 * f64::EPSILON * limit;
+        self.amplitudes.resize(self.initial.len(), 0.0);
+        self.reach.resize(self.guards.len(), 0.0);
         let mut t = 0.0;
         loop {
             let remaining = limit - t;
@@ -166,19 +168,19 @@ impl Search {
     #[inline(always)]
     fn survey(&mut self, blocks: &[Block], t: f64, remaining: f64) -> Pace {
         let mut pace = Pace { bend: 1.0, snap: 0.0, all_apart: true };
-        self.reach.clear();
-        self.amplitudes.clear();
-        for (guard, shares) in self.guards.iter().zip(self.current.chunks_exact(blocks.len())) {
+        for (index, guard) in self.guards.iter().enumerate() {
+            let shares = index * blocks.len()..(index + 1) * blocks.len();
             let (mut reach, mut bend, mut snap) = (0.0, 0.0, 0.0);
-            for (block, share) in blocks.iter().zip(shares) {
+            let shares = self.current[shares.clone()].iter().zip(&mut self.amplitudes[shares]);
+            for (block, (share, bound)) in blocks.iter().zip(shares) {
                 let amplitude = block.amplitude(*share, 0.0, remaining);
-                self.amplitudes.push(amplitude);
+                *bound = amplitude;
                 let square = block.radius * block.radius;
                 reach += amplitude;
                 bend += amplitude * square;
                 snap += amplitude * square * square;
             }
-            self.reach.push(reach);
+            self.reach[index] = reach;
             pace.all_apart &= guard.parabola.at(t) > reach;
             if snap * pace.bend > pace.snap * bend {
                 (pace.bend, pace.snap) = (bend, snap);
