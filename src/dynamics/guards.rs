@@ -215,7 +215,8 @@ fn pressed(
         let damping = state.damping[j];
         let force = spring_and_dashpot(rest, stiffness, damping);
         let mix = mixed(&flow.blocks, phases, stiffness, damping);
-        let begin = touching_once(state.smooth[j]);
+        // A spring without dashpot begins to push at zero.
+        let begin = touching_once(state.smooth[j] || (here.gap == 0.0 && damping == 0.0));
         push(Crossing::Release, Draft { sign: -away, parabola: force, phases: &mix, start: begin, distance: false });
     } else {
         let begin = start(here.gap == 0.0, here, state.smooth[j]);

@@ -252,6 +252,8 @@ impl<'a> March<'a> {
 
     /// After a jump of velocities: decides every contact that the jump has made untenable.
     fn settle(&mut self) -> Result<(), EngineError> {
+        // A face that the jump drives into its particle carries it only after their impact.
+        let mut struck = Vec::new();
         for j in 0..self.particles.len() {
             let particle = &self.system.particles[j];
             let contact = self.contacts[j];
@@ -272,7 +274,9 @@ impl<'a> March<'a> {
                 }
                 _ if contact.holds(particle) => {
                     if away < 0.0 {
-                        self.strike(j, side, self.restitution(j, side))?;
+                        self.changed = true;
+                        self.contacts[j] = if side.stopped() == contact { side.pressed() } else { Contact::Flight };
+                        struck.push((j, side));
                     } else if away > 0.0 {
                         self.let_go(j, side);
                     }
@@ -295,6 +299,16 @@ impl<'a> March<'a> {
                         }
                     }
                 }
+            }
+        }
+        for (j, side) in struck {
+            if side.away() * self.particles[j].rate < 0.0 {
+                self.strike(j, side, self.restitution(j, side))?;
+            } else {
+                // Another impact has driven the face away in the meantime.
+                let rate = self.particles[j].rate;
+                self.record(j, side.lost(), rate, rate);
+                self.after_bounce(j, side);
             }
         }
         self.choose_flow()
@@ -356,16 +370,7 @@ impl<'a> March<'a> {
         let mobility = Cholesky::new(&carried_mass(self.system, &self.contacts))?;
         let row = side.face(particle).row.clone();
         let impact = impact(&mobility, &row, particle.mass, restitution, approach);
-        for (other, particle) in self.system.particles.iter().enumerate() {
-            // The faces of all other particles move with the structure's jump.
-            if other != j {
-                let row = &self.contacts[other].side().face(particle).row;
-                if !self.contacts[other].holds(particle) {
-                    self.particles[other].rate -= dot(row, &impact.structure);
-                }
-            }
-        }
-        self.rate.iter_mut().zip(&impact.structure).for_each(|(rate, jump)| *rate += jump);
+        self.jump(j, &impact.structure);
         self.particles[j].rate = impact.departure;
         if let Some(audit) = &mut self.audit {
             audit.loss(impact.loss);
@@ -393,7 +398,7 @@ impl<'a> March<'a> {
                 // What was left to bounce: a geometric series of flights of 2u′/a, each shorter by ε. In flight the face no
                 // longer carries the particle, so that a is larger than the push per mass that will hold it.
                 let tail = 2.0 * speed / (push * last.lightening * (1.0 - restitution));
-                self.rate.iter_mut().zip(&last.structure).for_each(|(rate, jump)| *rate += jump);
+                self.jump(j, &last.structure);
                 if let Some(audit) = &mut self.audit {
                     audit.loss(last.loss);
                 }
@@ -404,6 +409,17 @@ impl<'a> March<'a> {
             self.after_bounce(j, side);
         }
         Ok(())
+    }
+
+    /// A jump of the structure in the impact of particle j: the faces of all others move with it.
+    fn jump(&mut self, j: usize, structure: &[f64]) {
+        for (other, particle) in self.system.particles.iter().enumerate() {
+            let contact = self.contacts[other];
+            if other != j && !contact.holds(particle) {
+                self.particles[other].rate -= dot(&contact.side().face(particle).row, structure);
+            }
+        }
+        self.rate.iter_mut().zip(structure).for_each(|(rate, jump)| *rate += jump);
     }
 
     fn contacts_without(&self, j: usize) -> Vec<Contact> {
@@ -582,6 +598,10 @@ impl<'a> March<'a> {
         for (j, particle) in self.system.particles.iter().enumerate() {
             let contact = self.contacts[j];
             if contact.face(particle).is_none() {
+                if self.smooth[j] && self.particles[j] == Relative::default() && flow.is_short(length) {
+                    // Let go at the same instant as another: u = u‴t³/6 is still nothing, and is kept so to the bit.
+                    continue;
+                }
                 let row = match contact.side() {
                     Side::Floor => flow.face_rows[j].floor,
                     Side::Ceiling => flow.face_rows[j].ceiling,
@@ -648,14 +668,21 @@ impl<'a> March<'a> {
         let side = self.contacts[j].side();
         let particle = &self.system.particles[j];
         match crossing {
+            // A particle that a rounding has put behind a face which it is leaving has not met it.
             Crossing::ToFloor => {
                 self.particles[j].gap = 0.0;
-                self.meet(j, Side::Floor)?;
+                if self.particles[j].rate < 0.0 {
+                    self.meet(j, Side::Floor)?;
+                }
             }
             Crossing::ToCeiling => {
-                if let Some(relative) = self.ceiling_relative(j) {
-                    self.particles[j] = Relative { gap: 0.0, rate: relative.rate };
-                    self.meet(j, Side::Ceiling)?;
+                if let Some(Relative { rate, .. }) = self.ceiling_relative(j) {
+                    self.particles[j] = Relative { gap: 0.0, rate };
+                    if rate > 0.0 {
+                        self.meet(j, Side::Ceiling)?;
+                    } else {
+                        self.refer_to_floor(j);
+                    }
                 }
             }
             Crossing::ToStop => {

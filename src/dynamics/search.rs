@@ -152,6 +152,10 @@ impl Search {
         self.current.clear();
         self.current.extend_from_slice(&self.initial);
         let mut t = 0.0;
+        // Windows shorter than this are not divided. It grows from doubt to doubt: a guard that stays within rounding of zero
+        // must not hold up the search.
+        let clock = f64::EPSILON * limit;
+        let mut shortest = clock;
         loop {
             let remaining = limit - t;
             // Below the rounding of the clock nothing can be told apart: what happens at the limit comes first.
@@ -191,9 +195,11 @@ impl Search {
                 continue;
             }
             let mut window = remaining.min(REACH * self.window_factor / speed.sqrt());
-            if let Some(root) = self.search_window(blocks, t, &mut window, clarity) {
+            let ties = clarity.ties;
+            if let Some(root) = self.search_window(blocks, t, &mut window, shortest, clarity) {
                 return Found::Event { guard: root.guard, time: self.polish(blocks, root, t, window, clarity) };
             }
+            shortest = if clarity.ties > ties { 4.0 * shortest } else { clock };
             t += window;
             if limit - t <= 4.0 * f64::EPSILON * limit {
                 return Found::Nothing;
@@ -203,11 +209,18 @@ impl Search {
     }
 
     /// Proves the window clear of roots (`None`) or isolates the first one; shrinks the window until it can.
-    fn search_window(&self, blocks: &[Block], t: f64, window: &mut f64, clarity: &mut Clarity) -> Option<Root> {
+    fn search_window(
+        &self,
+        blocks: &[Block],
+        t: f64,
+        window: &mut f64,
+        shortest: f64,
+        clarity: &mut Clarity,
+    ) -> Option<Root> {
         let width = blocks.len();
         'shrink: loop {
             let mut first: Option<Root> = None;
-            let indivisible = *window <= 64.0 * f64::EPSILON * (t + *window) || *window < f64::MIN_POSITIVE;
+            let indivisible = *window <= shortest.max(64.0 * f64::EPSILON * t);
             for (index, guard) in self.guards.iter().enumerate() {
                 if self.clear[index] >= *window {
                     continue;
@@ -268,7 +281,8 @@ impl Search {
             } else {
                 upper = upper.min(time)
             }
-            let delta = nearest_root(&local);
+            // Rounding may put the root of a guard that starts near zero before the window; time never runs backwards.
+            let delta = nearest_root(&local).max(t - time);
             let next = time + delta;
             if (next >= lower - slack && next <= upper + slack) || delta.abs() <= 8.0 * f64::EPSILON * time {
                 if delta.abs() * radius < NEAR {
@@ -304,7 +318,7 @@ impl Search {
         let guard = self.guards[root.guard];
         let shares = &self.current[root.guard * width..(root.guard + 1) * width];
         let piece = Window::expand(blocks, shares, guard.parabola, 0.0, window, guard.start);
-        let time = window * piece.refine(root.guess);
+        let time = window * piece.refine(root.guess, root.high);
         self.kernels.clear();
         self.kernels.extend(blocks.iter().map(|block| block.kernel_near_zero(time)));
         time
@@ -568,14 +582,24 @@ impl Window {
         x
     }
 
-    /// A root of the polynomial divided by σ^order, from a guess that is near.
-    fn refine(&self, guess: f64) -> f64 {
+    /// The root below `high` of the polynomial divided by σ^order, from a guess that is near.
+    fn refine(&self, guess: f64, high: f64) -> f64 {
+        let (mut lower, mut upper) = (0.0, high);
         let mut x = guess;
-        for _ in 0..30 {
+        for _ in 0..60 {
             let (value, slope) = evaluate(&self.a, x);
-            let step = value / slope;
-            x -= step;
-            if !(step.abs() > 2.0 * f64::EPSILON * x.abs()) {
+            if value > 0.0 {
+                lower = x
+            } else {
+                upper = x
+            }
+            let mut next = x - value / slope;
+            if !(next >= lower && next <= upper) {
+                next = 0.5 * (lower + upper);
+            }
+            let step = (next - x).abs();
+            x = next;
+            if !(step > 2.0 * f64::EPSILON * x) {
                 break;
             }
         }
