@@ -7,7 +7,7 @@ use super::audit::Audit;
 use super::block::Phase;
 use super::contact::{Crossing, Relative, STICKING_SPEED, Side, impact};
 use super::flow::{Cholesky, DrivePhase, Flow, Parabola, Signals, carried_mass};
-use super::guards::{self, Contacts, Crossings};
+use super::guards::{self, Contacts, Crossings, Grip};
 use super::integral::quadrature;
 use super::search::{Clarity, Found, Search};
 use super::system::{Contact, Event, EventKind, HybridSystem, Law, Tick, dot};
@@ -30,7 +30,7 @@ pub(crate) struct March<'a> {
     particles: Vec<Relative>,
     contacts: Vec<Contact>,
     damping: Vec<f64>,
-    /// A particle just let go smoothly: u = u′ = u″ = 0, it leaves with u‴.
+    /// The last contact began or ended smoothly: u = u′ = u″ = 0, it leaves with u‴; or its push grows from zero.
     smooth: Vec<bool>,
     // Clock.
     cycle: u64,
@@ -227,11 +227,17 @@ impl<'a> March<'a> {
 
     /// A jump of the force.
     fn tick(&mut self, tick: Tick, kick: f64) -> Result<(), EngineError> {
+        let stepped = tick.level != self.level;
         self.level = tick.level;
         let impulse = tick.impulse + kick;
-        if impulse == 0.0 {
-            return Ok(());
+        if impulse != 0.0 {
+            self.strike_structure(impulse)?;
         }
+        if stepped { self.regrip() } else { Ok(()) }
+    }
+
+    /// An impulse on the structure.
+    fn strike_structure(&mut self, impulse: f64) -> Result<(), EngineError> {
         let before = self.audit.is_some().then(|| super::audit::energy(self.system, &self.audit_state()));
         // The impulse acts on the structure; a particle that is held receives its share through the face.
         for j in 0..self.particles.len() {
@@ -264,12 +270,18 @@ impl<'a> March<'a> {
                     let floor = self.particles[j];
                     if floor.gap == 0.0 && floor.rate < 0.0 {
                         self.meet(j, Side::Floor)?;
+                    } else if floor.gap == 0.0 && floor.rate == 0.0 {
+                        self.rest(j, Side::Floor)?;
                     } else if let Some(ceiling) = self.ceiling_relative(j)
                         && ceiling.gap == 0.0
-                        && ceiling.rate > 0.0
                     {
-                        self.particles[j] = ceiling;
-                        self.meet(j, Side::Ceiling)?;
+                        if ceiling.rate > 0.0 {
+                            self.particles[j] = ceiling;
+                            self.meet(j, Side::Ceiling)?;
+                        } else if ceiling.rate == 0.0 {
+                            self.particles[j] = ceiling;
+                            self.rest(j, Side::Ceiling)?;
+                        }
                     }
                 }
                 _ if contact.holds(particle) => {
@@ -390,14 +402,15 @@ impl<'a> March<'a> {
         self.changed = true;
         self.contacts[j] = held;
         self.choose_flow()?;
-        let push = self.push(j, side);
-        if push > 0.0 {
+        let grip = self.grip(j, side);
+        if grip.holds() && (speed == 0.0 || !grip.is_nothing()) {
+            self.smooth[j] = grip.is_nothing();
             if speed > 0.0 {
                 let mobility = Cholesky::new(&carried_mass(self.system, &self.contacts_without(j)))?;
                 let last = super::contact::impact(&mobility, &row, particle.mass, 0.0, self.particles[j].rate);
                 // What was left to bounce: a geometric series of flights of 2u′/a, each shorter by ε. In flight the face no
                 // longer carries the particle, so that a is larger than the push per mass that will hold it.
-                let tail = 2.0 * speed / (push * last.lightening * (1.0 - restitution));
+                let tail = 2.0 * speed / (grip.push * last.lightening * (1.0 - restitution));
                 self.jump(j, &last.structure);
                 if let Some(audit) = &mut self.audit {
                     audit.loss(last.loss);
@@ -406,9 +419,42 @@ impl<'a> March<'a> {
             }
             self.particles[j].rate = 0.0;
         } else {
+            self.smooth[j] = speed == 0.0 && grip.is_nothing();
             self.after_bounce(j, side);
         }
         Ok(())
+    }
+
+    /// A particle that lies at a face without moving against it: what brings it there keeps it there.
+    fn rest(&mut self, j: usize, side: Side) -> Result<(), EngineError> {
+        self.choose_flow()?;
+        let grip = self.grip(j, side);
+        self.smooth[j] = grip.is_nothing();
+        if grip.holds() {
+            self.changed = true;
+            self.contacts[j] = side.pressed();
+        } else if side == Side::Ceiling {
+            self.refer_to_floor(j);
+        }
+        Ok(())
+    }
+
+    /// After a jump of the force: lets go what a face can no longer hold.
+    fn regrip(&mut self) -> Result<(), EngineError> {
+        for j in 0..self.particles.len() {
+            let contact = self.contacts[j];
+            if contact.holds(&self.system.particles[j]) {
+                self.choose_flow()?;
+                let grip = self.grip(j, contact.side());
+                self.smooth[j] = grip.is_nothing();
+                if !grip.holds() {
+                    self.let_go(j, contact.side());
+                }
+            } else if contact == Contact::Flight && self.particles[j] == Relative::default() {
+                self.rest(j, Side::Floor)?;
+            }
+        }
+        self.choose_flow()
     }
 
     /// A jump of the structure in the impact of particle j: the faces of all others move with it.
@@ -474,13 +520,13 @@ impl<'a> March<'a> {
         }
     }
 
-    /// How strongly a face holds particle j, as an acceleration: positive while it can push.
-    fn push(&mut self, j: usize, side: Side) -> f64 {
+    /// How a face holds particle j in the flow in force.
+    fn grip(&mut self, j: usize, side: Side) -> Grip {
         let drive = self.drive_phase(self.time);
         self.enter_flow(drive);
         let flow = &self.flows[self.now];
         flow.signals(&self.c, self.level, drive, &mut self.signals);
-        guards::push_per_mass(self.system, flow, &self.signals, j, side)
+        Grip::of(self.system, flow, &self.signals, j, side)
     }
 
     fn record(&mut self, j: usize, kind: EventKind, approach: f64, departure: f64) {
@@ -534,11 +580,16 @@ impl<'a> March<'a> {
 
     /// Propagates to `until` within the cycle, from event to event.
     fn propagate_to(&mut self, until: f64) -> Result<(), EngineError> {
+        // Near the start of a cycle the clock counts finer than its instants can be told apart later.
+        let instant = f64::EPSILON * self.system.drive.period;
         let mut stuck = 0;
+        let mut last = self.time;
         while self.time < until {
-            let before = self.time;
             self.segment(until)?;
-            stuck = if self.time > before { 0 } else { stuck + 1 };
+            if self.time > last + instant {
+                (stuck, last) = (0, self.time);
+            }
+            stuck += 1;
             if stuck > MOST_EVENTS_AT_AN_INSTANT {
                 return Err(EngineError::NoProgress { cycle: self.cycle, time: self.time });
             }

@@ -507,6 +507,10 @@ impl Window {
             convex &= second > bend_doubt;
         }
         let sure = |verdict| (verdict, f64::INFINITY);
+        if doubt == 0.0 && b.iter().all(|x| *x == 0.0) {
+            // Nothing pushes and nothing pulls, for ever.
+            return sure(Verdict::Clear);
+        }
         if (falls || concave) && end < -doubt {
             return sure(Verdict::Root { high: 1.0 });
         }
