@@ -143,7 +143,7 @@ impl<'a, V: Vector> Run<'a, V> {
 
     fn run(mut self) -> Result<Response, EngineError> {
         let skip = u64::from(self.options.skip);
-        for cycle in 0..skip + u64::from(self.options.average) {
+        for cycle in 0..self.options.cycles() {
             self.cycle = cycle;
             if cycle == skip {
                 self.begin_window();
@@ -179,7 +179,7 @@ impl<'a, V: Vector> Run<'a, V> {
     }
 
     fn inside(&self) -> bool {
-        self.cycle >= u64::from(self.options.skip)
+        self.options.averages(self.cycle)
     }
 
     /// An impulse added at the start.

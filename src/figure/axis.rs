@@ -20,6 +20,29 @@ impl Extent {
     }
 }
 
+impl Extent {
+    /// With a guide, and room for its label on the side away from the data.
+    pub(super) fn with_guide(self, at: f64, scale: AxisScale) -> Self {
+        const ROOM: f64 = 0.12;
+        let Self { least, largest } = self;
+        let (low, high) = (least.min(at), largest.max(at));
+        let (below, above) = match scale {
+            AxisScale::Linear => (at - ROOM * (high - low), at + ROOM * (high - low)),
+            AxisScale::Log if at > 0.0 => {
+                let room = libm::pow(high / low, ROOM);
+                (at / room, at * room)
+            }
+            AxisScale::Log => return self,
+        };
+        let (to_least, to_largest) = (at - low, high - at);
+        if to_least <= to_largest {
+            Self { least: low.min(below), largest: high }
+        } else {
+            Self { least: low, largest: high.max(above) }
+        }
+    }
+}
+
 /// How much room an axis leaves beyond the data.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Room {

@@ -5,7 +5,7 @@ use super::geometry::{Point, Rect};
 use super::line::Curve;
 use super::paint;
 use super::style::{
-    BAND_OPACITY, Color, GREY, INK, LEGEND_LINE, LEGEND_ROW, LEGEND_TEXT, Look, Marker, PAPER, QUOTED, SPACE,
+    BAND_OPACITY, CURVE, Color, GREY, INK, LEGEND_LINE, LEGEND_ROW, LEGEND_TEXT, Look, Marker, PAPER, QUOTED, SPACE,
 };
 
 /// What is drawn before a legend's text.
@@ -171,7 +171,7 @@ fn by_trait(curves: &[Curve], markers: bool) -> Option<Vec<Entry>> {
     for curve in curves {
         let dash = curve.name.dash.as_ref()?;
         let color = Look { dash: &[], marker: Marker::Circle, ..curve.look };
-        let stroke = Look { color: INK, ..curve.look };
+        let stroke = Look { color: INK, width: CURVE, ..curve.look };
         for (entries, text, look, marker) in
             [(&mut hues, &curve.name.hue, color, false), (&mut dashes, dash, stroke, markers)]
         {

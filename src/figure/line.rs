@@ -5,6 +5,7 @@
 
 use crate::spec::{Experiment, Panel};
 use crate::table::{Column, Data, Table};
+use crate::text::words;
 
 use super::error::FigureError;
 use super::label;
@@ -106,9 +107,7 @@ pub(super) fn curves(source: Source<'_>, panel: &Panel) -> Result<Vec<Curve>, Fi
                 None => Name { hue: source.label(axis)?, dash: None },
                 Some((hue, rest)) => Name { hue: hue.clone(), dash: (!rest.is_empty()).then(|| rest.join(", ")) },
             };
-            let look = Look::of_path(&y.name)
-                .filter(|_| groups.len() == 1)
-                .unwrap_or_else(|| Look::new(traits.hue, traits.hues, traits.dash));
+            let look = Look::of_path(&y.name).filter(|_| groups.len() == 1).unwrap_or_else(|| traits.look());
             let mut curve = Curve { name, look, samples: Vec::new(), at_infinity: None };
             fill(&mut curve, source.figure, x, y, spread.as_deref(), &group.rows)?;
             if curve.shows() {
@@ -191,6 +190,9 @@ impl Group {
                 None => groups.push(Self { words, rows: vec![row] }),
             }
         }
+        // The exact motion comes first wherever the table has it, so that it looks the same in every figure.
+        let exact = words::of_solver("event_driven");
+        groups.sort_by_key(|group| !group.words.iter().flatten().any(|word| *word == exact));
         groups
     }
 
@@ -222,10 +224,13 @@ struct Level {
 }
 
 /// How a line differs from the others of its panel.
+#[derive(Clone, Copy)]
 struct Traits {
     hue: usize,
     hues: usize,
     dash: usize,
+    /// Two measures may agree to the width of a line: the one below is drawn wide enough to be seen.
+    beneath: bool,
 }
 
 impl Traits {
@@ -235,12 +240,17 @@ impl Traits {
             levels.insert(0, Level { index: y, count: ys });
         }
         match levels.as_slice() {
-            [] => Self { hue: 0, hues: 1, dash: 0 },
-            [only] => Self { hue: only.index, hues: only.count, dash: only.index },
+            [] => Self { hue: 0, hues: 1, dash: 0, beneath: false },
+            [only] => Self { hue: only.index, hues: only.count, dash: only.index, beneath: false },
             [first, rest @ ..] => {
                 let dash = rest.iter().fold(0, |dash, level| dash * level.count + level.index);
-                Self { hue: first.index, hues: first.count, dash }
+                Self { hue: first.index, hues: first.count, dash, beneath: y + 1 < ys }
             }
         }
+    }
+
+    fn look(self) -> Look {
+        let look = Look::new(self.hue, self.hues, self.dash);
+        if self.beneath { Look { width: 2.0 * look.width, ..look } } else { look }
     }
 }

@@ -54,7 +54,7 @@ pub(super) fn panel(
     axes(sheet, panel, frame, x_labels)?;
     y_label(sheet, place)?;
     if let Some(letter) = letter {
-        let at = Point { x: frame.left - SPACE, y: frame.top - SPACE - LABEL_TEXT / 2.0 };
+        let at = Point { x: frame.left - 2.0 * SPACE, y: frame.top - SPACE - LABEL_TEXT / 2.0 };
         write(sheet, at, &format!("({letter})"), LABEL_TEXT, Anchor::Right, INK)?;
     }
     match legend {

@@ -16,6 +16,8 @@ use super::style::{QUOTED, SPACE, TICK_TEXT};
 /// How many numbers an axis carries at most.
 const MOST_X_TICKS: u32 = 8;
 const MOST_Y_TICKS: u32 = 6;
+/// The smallest spread that shows as a band, as a share of the axis: about the width of a curve.
+const VISIBLE_SPREAD: f64 = 0.004;
 
 /// One pair of axes with its curves.
 pub(super) struct Panel<'a> {
@@ -54,14 +56,19 @@ impl<'a> Panel<'a> {
         let scale = spec.y[0].scale;
         let ends = samples().flat_map(|sample| [sample.y, sample.y - sample.spread, sample.y + sample.spread]);
         let limits = curves.iter().filter_map(|curve| curve.at_infinity.as_ref()).map(|limit| limit.y);
-        let guides = spec.guides.iter().map(|guide| guide.at);
+
         let marks = quoted.iter().map(|point| point.y);
-        let y_extent = Extent::of(ends.chain(limits).chain(guides).chain(marks), scale).ok_or_else(nothing)?;
+        let mut y_extent = Extent::of(ends.chain(limits).chain(marks), scale).ok_or_else(nothing)?;
+        for guide in &spec.guides {
+            y_extent = y_extent.with_guide(guide.at, scale);
+        }
         let y = Axis::new(scale, y_extent, Room::Airy, &unit);
 
         let x_name = source.label(&spec.x)?;
         let y_names = spec.y.iter().map(|axis| source.label(axis)).collect::<Result<Vec<_>, _>>()?;
-        let band = samples().any(|sample| sample.spread > 0.0);
+        // A spread that nobody can see needs no word in the legend.
+        let visible = VISIBLE_SPREAD * (y_extent.largest - y_extent.least);
+        let band = samples().any(|sample| sample.spread > visible);
         let quoted_labels: Vec<&str> = quoted.iter().map(|point| point.label.as_str()).collect();
         Ok(Self {
             spec,

@@ -2,7 +2,7 @@
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-use crate::measure::{self, Evaluated, Measure};
+use crate::measure::{self, Evaluated, Measure, Rigour};
 use crate::scene::{Assumptions, Recipe};
 use crate::spec::{Settings, SolverChoice, TraceSpec};
 
@@ -21,6 +21,8 @@ pub struct Simulation<'a> {
     pub measures: &'a [Measure],
     /// Time history to keep.
     pub trace: Option<&'a TraceSpec>,
+    /// Whether it is a result, or a look on the way to one.
+    pub rigour: Rigour,
 }
 
 /// What turns a simulation into numbers: the engine, or a stand-in for it.
@@ -38,7 +40,7 @@ pub struct Engine;
 
 impl Evaluate for Engine {
     fn evaluate(&self, it: &Simulation<'_>) -> Result<Evaluated, String> {
-        measure::evaluate(it.recipe, it.assumptions, it.solver, it.settings, it.measures, it.trace)
+        measure::evaluate(it.recipe, it.assumptions, it.solver, it.settings, it.measures, it.trace, it.rigour)
             .map_err(|error| error.to_string())
     }
 }

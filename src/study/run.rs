@@ -15,6 +15,7 @@ use super::maximise::maximum;
 use super::record::Failures;
 use super::tabulate::{self, Outcome, Row};
 use super::variant::Variant;
+use crate::measure::Rigour;
 use crate::spec::Experiment;
 use crate::table::Table;
 use crate::text::words;
@@ -178,6 +179,7 @@ fn simulate(
         settings: &experiment.settings,
         measures: &experiment.measures,
         trace: experiment.trace.as_ref().filter(|_| wanted),
+        rigour: if job.variant == 0 { Rigour::Result } else { Rigour::Look },
     };
     let Some(maximise) = &experiment.maximise else {
         let evaluated = evaluate_guarded(evaluate, &simulation);
@@ -188,15 +190,16 @@ fn simulate(
         .ok_or_else(|| format!("{} is to be maximised and not measured", words::of_key(&maximise.measure)))?;
     // Histories of the points that are not the maximum are not wanted.
     let trace = simulation.trace.filter(|_| measures_need_trace(&experiment.measures));
-    let search = Simulation { trace, ..simulation };
-    let (mut evaluated, place) = maximum(evaluate, &search, maximise, measure, done)?;
-    if keeps_trace(experiment, job) && trace.is_none() {
-        let mut at_maximum = recipe.clone();
-        at_maximum
-            .set(maximise.over, crate::scene::ParameterValue::Number(place.at))
-            .map_err(|error| error.to_string())?;
-        evaluated = evaluate_guarded(evaluate, &Simulation { recipe: &at_maximum, ..simulation })?;
-        done();
+    let look = Simulation { trace, rigour: Rigour::Look, ..simulation };
+    let (found, place) = maximum(evaluate, &look, maximise, measure, done)?;
+    if job.variant != 0 {
+        return Ok(Row { evaluated: found, place: Some(place) });
     }
+    // The row itself is a result: the maximum once more, with all that proves it.
+    let mut at_maximum = recipe.clone();
+    at_maximum.set(maximise.over, crate::scene::ParameterValue::Number(place.at)).map_err(|error| error.to_string())?;
+    let wanted = simulation.trace.filter(|_| keeps_trace(experiment, job) || trace.is_some());
+    let evaluated = evaluate_guarded(evaluate, &Simulation { recipe: &at_maximum, trace: wanted, ..simulation })?;
+    done();
     Ok(Row { evaluated, place: Some(place) })
 }

@@ -226,3 +226,21 @@ fn a_figure_that_cannot_be_drawn_says_why() {
     let spec = figure(vec![panel("time", AxisScale::Linear, &["velocity_ratio"])]);
     assert!(matches!(draw(&experiment, &spec, &mixed, &[]), Err(FigureError::Mixed { .. })));
 }
+
+#[test]
+fn measures_that_agree_can_both_be_seen() {
+    let amplitudes = log_range(0.1, 100.0, 61);
+    let twice: Vec<f64> = amplitudes.iter().chain(&amplitudes).copied().collect();
+    let ratio: Vec<f64> = twice.iter().map(|a| hump(*a, 2.5, 0.6)).collect();
+    // The fixed step stands first in the table, and yet the exact motion is drawn solid.
+    let solvers = [["fixed_step_1e-5s"; 61], ["event_driven"; 61]].concat();
+    let table = Table::default()
+        .with(numbers("base_amplitude_ratio", "aω²/g", "", twice))
+        .with(texts("solver", solvers))
+        .with(texts("variant", ["baseline"; 122]))
+        .with(numbers("displacement_ratio", "η", "", ratio.clone()))
+        .with(numbers("velocity_ratio", "ψ", "", ratio));
+    let mut one = panel("base_amplitude_ratio", AxisScale::Log, &["displacement_ratio", "velocity_ratio"]);
+    one.by = vec!["solver".into()];
+    picture("agreeing", &limit_stop(), &figure(vec![one]), &table, &[]);
+}

@@ -2,6 +2,7 @@
 
 mod cli;
 mod desk;
+mod engine;
 mod figure;
 mod made_up;
 mod reference;
