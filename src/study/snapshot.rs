@@ -20,7 +20,7 @@ use crate::dynamics::SOLVER_VERSION;
 const NAME: &str = "results/snapshot.json";
 /// Of an output this much is looked at, at its head and at its tail. Most texts are shorter; a Parquet file ends with the
 /// seal over all its bytes, and a PNG with the checksum over all its pixels.
-const LOOK: usize = 8 << 10;
+const LOOK: usize = 4 << 10;
 
 /// The last complete run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
