@@ -82,6 +82,7 @@ impl Audit {
         self.work_passed += work.abs();
     }
 
+    /// Energy that left otherwise: in an impact, or with a spring that lets go while compressed (and takes it back).
     pub(crate) fn loss(&mut self, loss: f64) {
         self.loss += loss;
     }
@@ -160,13 +161,23 @@ impl Audit {
                 let share = dot(row, &particle.floor.row) * particle.mass;
                 residual += share * (b[1] - a[1] + system.gravity * self.duration);
                 passed += share.abs() * system.gravity * self.duration;
+                // What a free particle or structure exchanges without any force: at least what it came with.
+                for (state, [_, rate]) in [(begin, a), (end, b)] {
+                    let face = dot(&particle.floor.row, &state.rate);
+                    passed += share.abs() * (rate.abs() + face.abs());
+                }
             }
             momentum = momentum.max(residual.abs() / passed.max(f64::MIN_POSITIVE));
         }
         let residual = energy(system, end) - energy(system, begin) + self.dissipated + self.loss
             - self.impulse_work
             - self.force_work;
-        let passed = (self.work_passed + self.dissipated + self.loss).max(energy(system, begin).abs());
+        let fallen =
+            system.particles.iter().zip(&begin.particles).zip(&end.particles).fold(0.0_f64, |sum, ((p, a), b)| {
+                // Two bodies that fall together for long are told apart from what they have fallen.
+                sum + p.mass * system.gravity * (b[0] - a[0]).abs()
+            });
+        let passed = (self.work_passed + self.dissipated + self.loss.abs() + fallen).max(energy(system, begin).abs());
         (momentum, residual.abs() / passed.max(f64::MIN_POSITIVE))
     }
 }

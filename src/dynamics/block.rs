@@ -61,6 +61,23 @@ impl Block {
         self.radius == 0.0
     }
 
+    /// Answer to a constant load r, offset + slope·t + bend·t²: at rest where the block has an inverse, creeping against a
+    /// dashpot where one eigenvalue is zero, falling where both are.
+    pub(crate) fn answer(&self, [p, q, r, s]: [f64; 4], load: [f64; 2]) -> ([f64; 2], [f64; 2], [f64; 2]) {
+        let [x, y] = load;
+        let times = [p * x + q * y, r * x + s * y];
+        if self.is_drift() {
+            return ([0.0; 2], load, [0.5 * times[0], 0.5 * times[1]]);
+        }
+        if self.determinant == 0.0 {
+            // B² = −2a B: with o = r/2a and n = r + B o, B n = 0 and n = B o + r.
+            let twice = 2.0 * self.decay;
+            return ([x / twice, y / twice], [x + times[0] / twice, y + times[1] / twice], [0.0; 2]);
+        }
+        let inverse = |a: f64, b: f64| -(a - b) / self.determinant;
+        ([inverse(s * x, q * y), inverse(p * y, r * x)], [0.0; 2], [0.0; 2])
+    }
+
     /// True for a pair of complex eigenvalues.
     pub(crate) fn oscillates(&self) -> bool {
         self.discriminant < 0.0
@@ -136,13 +153,19 @@ impl Block {
         Phase { value, rate: -2.0 * self.decay * value - self.determinant * phase.rate }
     }
 
+    /// Where the bound on a share depends on how long it is to hold.
+    #[inline]
+    pub(crate) fn is_near_critical(&self) -> bool {
+        !(self.discriminant < 0.0 && self.root > 0.2 * self.radius)
+    }
+
     /// A bound on |share| from now on, and with radius^j on its derivatives, while time stays within `window` of now.
     ///
     /// The share is e^(−at)(value·C + (rate + a·value) S); C's derivatives are bounded by radius^j, those of S by
     /// radius^j/√|d| or, where that blows up near critical damping, by (j + radius·window) radius^(j−1).
     #[inline]
     pub(crate) fn amplitude(&self, phase: Phase, order: f64, window: f64) -> f64 {
-        if self.discriminant < 0.0 && self.root > 0.2 * self.radius {
+        if !self.is_near_critical() {
             phase.value.abs() + (phase.rate + self.decay * phase.value).abs() * self.inverse_root
         } else {
             self.amplitude_near_critical(phase, order, window)

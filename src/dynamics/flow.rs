@@ -5,15 +5,16 @@
 //!
 //! q″ = M⁻¹(−K q − C q′ + b F − Σ φ N),   w″ = N/mp − g − φ·q″,   N = −k w − c w′.
 //!
-//! Its matrix is scaled, split into 2 × 2 blocks ([`super::spectral`]) and never built again: gap, amplitude and time do
+//! Its matrix is split into 2 × 2 blocks ([`super::modes`]) and never built again: gap, amplitude and time do
 //! not enter, so one flow serves a whole sweep.
 
 use nalgebra::DMatrix;
 
 use super::EngineError;
 use super::block::{Block, Phase};
+use super::series::Series;
 use super::spectral::Spectral;
-use super::system::{Contact, Face, HybridSystem, Law, dot};
+use super::system::{Contact, Face, HybridSystem, Law, Matrix, dot};
 
 /// One contact state, ready to be propagated.
 pub(crate) struct Flow {
@@ -23,9 +24,11 @@ pub(crate) struct Flow {
     pub(crate) damping: Vec<f64>,
     /// Blocks of the free motion; the last one is the drive if it is harmonic.
     pub(crate) blocks: Vec<Block>,
+    /// Their Taylor series.
+    pub(crate) series: Series,
     /// Blocks without the drive.
     pub(crate) own: usize,
-    /// Some block is a rigid-body motion.
+    /// Some block has an eigenvalue zero, so that a constant load sets it moving.
     drifts: bool,
     /// Coordinates: those of the structure, then one per resilient contact.
     pub(crate) order: usize,
@@ -37,7 +40,7 @@ pub(crate) struct Flow {
     from_blocks: Vec<f64>,
     /// Each block's matrix.
     matrices: Vec<[f64; 4]>,
-    /// Constant load: its static answer where the block has one, and its drift where it has none.
+    /// Answer to gravity.
     gravity: Load,
     /// The same for a unit force at the forcing point.
     force: Load,
@@ -53,12 +56,13 @@ pub(crate) struct Flow {
     pub(crate) forms: Option<super::integral::Forms>,
 }
 
-/// Answer of a contact state to a constant load.
+/// Answer of a contact state to a constant load: p = rest + rest_rate·t, p′ = rest_rate, and slope·t + bend·t² in the
+/// coordinates of the blocks that drift.
 struct Load {
-    /// Static p (velocities are zero), from the blocks that have one.
     rest: Vec<f64>,
-    /// Load of the blocks that drift instead, in block coordinates (zero for the others).
-    drift: Vec<[f64; 2]>,
+    rest_rate: Vec<f64>,
+    slope: Vec<[f64; 2]>,
+    bend: Vec<[f64; 2]>,
 }
 
 /// Steady answer to a harmonic force.
@@ -143,26 +147,7 @@ impl Flow {
         let face_of = |j: usize| contacts[j].face(&system.particles[j]).expect("a pressing particle has a face");
         let accelerations = accelerations(system, &solve, &attached, &face_of, damping);
 
-        // Scale lengths by frequencies, so that the matrix is of one magnitude: (Ω p, p′).
-        let frequency: Vec<f64> = (0..order).map(|i| scale(accelerations[i][i])).collect();
-        let size = 2 * order;
-        let mut matrix = vec![0.0; size * size];
-        for i in 0..order {
-            matrix[i * size + order + i] = frequency[i];
-            for j in 0..order {
-                matrix[(order + i) * size + j] = accelerations[i][j] / frequency[j];
-                matrix[(order + i) * size + order + j] = accelerations[i][order + j];
-            }
-        }
-        let Spectral { mut from_blocks, to_blocks: rows, matrices, blocks } = Spectral::split(size, &matrix)?;
-        let mut to_blocks = vec![0.0; size * size];
-        for i in 0..size {
-            for k in 0..size {
-                let unit = if i < order { frequency[i] } else { 1.0 };
-                from_blocks[i * size + k] /= unit;
-                to_blocks[i * size + k] = rows[k * size + i] * unit;
-            }
-        }
+        let modes = super::modes::split(&accelerations, &mass_of(system, mass, &attached, &face_of))?;
 
         let weight: Vec<f64> = {
             let mut q = vec![0.0; n];
@@ -184,10 +169,11 @@ impl Flow {
             }
             a
         };
-        let gravity = Load::new(&weight, &accelerations, order, &matrices, &blocks, &to_blocks);
-        let force = Load::new(&push, &accelerations, order, &matrices, &blocks, &to_blocks);
+        let gravity = Load::new(&weight, &accelerations, &modes);
+        let force = Load::new(&push, &accelerations, &modes);
+        let Spectral { from_blocks, to_blocks, matrices, blocks } = modes;
         let own = blocks.len();
-        let drifts = blocks.iter().any(Block::is_drift);
+        let drifts = blocks.iter().any(|block| block.determinant == 0.0);
         let mut blocks = blocks;
         let harmonic = match system.drive.harmonic {
             None => None,
@@ -197,6 +183,7 @@ impl Flow {
             }
         };
         let mut flow = Self {
+            series: Series::new(&blocks),
             contacts: contacts.to_vec(),
             damping: damping.to_vec(),
             blocks,
@@ -266,10 +253,9 @@ impl Flow {
             let weight =
                 [column(0, 2 * k), column(0, 2 * k + 1), column(self.order, 2 * k), column(self.order, 2 * k + 1)];
             for (load, drift) in [&self.gravity, &self.force].into_iter().zip(&mut drift) {
-                let [r0, r1] = load.drift[k];
-                let [p, q, r, s] = self.matrices[k];
-                drift[0] += weight[0] * r0 + weight[1] * r1;
-                drift[1] += 0.5 * (weight[0] * (p * r0 + q * r1) + weight[1] * (r * r0 + s * r1));
+                for (coefficient, part) in drift.iter_mut().zip([load.slope[k], load.bend[k]]) {
+                    *coefficient += weight[0] * part[0] + weight[1] * part[1];
+                }
             }
             weights.push(weight);
         }
@@ -291,13 +277,15 @@ impl Flow {
         let order = self.order;
         let size = 2 * order;
         c[..size].fill(0.0);
-        // Blocks that drift have no rest, so the offset is taken from the positions only.
         for i in 0..order {
             let mut position = p[i] - self.gravity.rest[i] - force * self.force.rest[i];
             let mut velocity = rate[i];
             if let Some(steady) = &self.harmonic {
                 position -= steady.cosine[i] * drive.cosine + steady.sine[i] * drive.sine;
                 velocity -= steady.omega * (steady.sine[i] * drive.cosine - steady.cosine[i] * drive.sine);
+            }
+            if self.drifts {
+                velocity -= self.gravity.rest_rate[i] + force * self.force.rest_rate[i];
             }
             let (by_position, by_rate) =
                 (&self.to_blocks[i * size..][..size], &self.to_blocks[(order + i) * size..][..size]);
@@ -329,16 +317,13 @@ impl Flow {
         if !self.drifts {
             return;
         }
-        for k in 0..self.own {
-            if !self.blocks[k].is_drift() {
-                continue;
+        for (load, size_of_load) in [(&self.gravity, 1.0), (&self.force, force)] {
+            for i in 0..order {
+                rate[i] += size_of_load * load.rest_rate[i];
             }
-            let [p00, p01, p10, p11] = self.matrices[k];
-            for (load, size_of_load) in [(&self.gravity, 1.0), (&self.force, force)] {
-                let [r0, r1] = load.drift[k];
-                // ∫ e^(Bs) ds r = r t + B r t²/2 for a nilpotent block.
-                let d0 = size_of_load * (r0 * t + (p00 * r0 + p01 * r1) * t * t / 2.0);
-                let d1 = size_of_load * (r1 * t + (p10 * r0 + p11 * r1) * t * t / 2.0);
+            for k in 0..self.own {
+                let at = |j: usize| size_of_load * t * (load.slope[k][j] + t * load.bend[k][j]);
+                let (d0, d1) = (at(0), at(1));
                 for i in 0..order {
                     p[i] += self.from_blocks[i * size + 2 * k] * d0 + self.from_blocks[i * size + 2 * k + 1] * d1;
                     rate[i] += self.from_blocks[(order + i) * size + 2 * k] * d0
@@ -438,51 +423,41 @@ pub(crate) struct DrivePhase {
 }
 
 impl Load {
-    fn new(
-        load: &[f64],
-        accelerations: &[Vec<f64>],
-        order: usize,
-        matrices: &[[f64; 4]],
-        blocks: &[Block],
-        to_blocks: &[f64],
-    ) -> Self {
+    fn new(load: &[f64], accelerations: &[Vec<f64>], modes: &Spectral) -> Self {
+        let order = load.len();
         let size = 2 * order;
-        let mut drift = vec![[0.0; 2]; blocks.len()];
-        if blocks.iter().all(|block| !block.is_drift()) {
+        let count = modes.blocks.len();
+        let still = |rest: Vec<f64>| Self {
+            rest,
+            rest_rate: vec![0.0; order],
+            slope: vec![[0.0; 2]; count],
+            bend: vec![[0.0; 2]; count],
+        };
+        if modes.blocks.iter().all(|block| block.determinant != 0.0) {
             // Static answer: the stiffness part of the accelerations against the load.
             let k = DMatrix::from_fn(order, order, |i, j| -accelerations[i][j]);
             if let Some(rest) = k.lu().solve(&nalgebra::DVector::from_column_slice(load)) {
-                return Self { rest: rest.iter().copied().collect(), drift };
+                return still(rest.iter().copied().collect());
             }
         }
-        // Block by block: −B⁻¹ r where B has an inverse, drift where it has none.
-        let mut offset = vec![[0.0; 2]; blocks.len()];
-        for (k, block) in blocks.iter().enumerate() {
+        // Block by block.
+        let mut answer = still(vec![0.0; order]);
+        for (k, (block, matrix)) in modes.blocks.iter().zip(&modes.matrices).enumerate() {
             let in_block =
-                |row: usize| (0..order).fold(0.0, |sum, i| sum + to_blocks[(order + i) * size + row] * load[i]);
-            let r = [in_block(2 * k), in_block(2 * k + 1)];
-            if block.is_drift() {
-                drift[k] = r;
-            } else {
-                let [p, q, s, t] = matrices[k];
-                let determinant = p * t - q * s;
-                offset[k] = [-(t * r[0] - q * r[1]) / determinant, -(p * r[1] - s * r[0]) / determinant];
+                |row: usize| (0..order).fold(0.0, |sum, i| sum + modes.to_blocks[(order + i) * size + row] * load[i]);
+            let (offset, slope, bend) = block.answer(*matrix, [in_block(2 * k), in_block(2 * k + 1)]);
+            (answer.slope[k], answer.bend[k]) = (slope, bend);
+            for i in 0..order {
+                let by = |row: usize| {
+                    modes.from_blocks[row * size + 2 * k] * offset[0]
+                        + modes.from_blocks[row * size + 2 * k + 1] * offset[1]
+                };
+                answer.rest[i] += by(i);
+                answer.rest_rate[i] += by(order + i);
             }
         }
-        let from = invert(size, to_blocks);
-        let rest = (0..order)
-            .map(|i| {
-                (0..blocks.len())
-                    .fold(0.0, |sum, k| sum + from[(i, 2 * k)] * offset[k][0] + from[(i, 2 * k + 1)] * offset[k][1])
-            })
-            .collect();
-        Self { rest, drift }
+        answer
     }
-}
-
-fn invert(size: usize, to_blocks: &[f64]) -> DMatrix<f64> {
-    let w = DMatrix::from_column_slice(size, size, to_blocks);
-    w.try_inverse().unwrap_or_else(|| DMatrix::identity(size, size))
 }
 
 impl Steady {
@@ -573,9 +548,31 @@ pub(crate) fn carried_mass(system: &HybridSystem, contacts: &[Contact]) -> super
     mass
 }
 
-fn scale(acceleration: f64) -> f64 {
-    let omega = acceleration.abs().sqrt();
-    if omega > 0.0 && omega.is_finite() { omega } else { 1.0 }
+/// Mass matrix of p = (q, w): each particle in contact moves with φ·q + w.
+fn mass_of<'a>(
+    system: &HybridSystem,
+    carried: Matrix,
+    attached: &[usize],
+    face_of: &dyn Fn(usize) -> &'a Face,
+) -> Matrix {
+    let n = carried.order;
+    let mut mass = Matrix::diagonal(&vec![0.0; n + attached.len()]);
+    let order = mass.order;
+    for i in 0..n {
+        mass.entries[i * order..][..n].copy_from_slice(&carried.entries[i * n..][..n]);
+    }
+    for (slot, &j) in attached.iter().enumerate() {
+        let particle = system.particles[j].mass;
+        let mut row = face_of(j).row.clone();
+        row.resize(order, 0.0);
+        row[n + slot] = 1.0;
+        for (i, x) in row.iter().enumerate() {
+            for (k, y) in row.iter().enumerate() {
+                mass.entries[i * order + k] += particle * x * y;
+            }
+        }
+    }
+    mass
 }
 
 /// Cholesky factor of a mass matrix; own loops, since its bits reach the results.

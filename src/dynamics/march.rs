@@ -5,15 +5,18 @@
 
 use super::audit::Audit;
 use super::block::Phase;
-use super::contact::{Crossing, Relative, STICKING_SPEED, Side, impact};
-use super::flow::{Cholesky, DrivePhase, Flow, Parabola, Signals, carried_mass};
+use super::contact::{Crossing, Impact, Relative, STICKING_SPEED, Side};
+use super::flow::{Cholesky, DrivePhase, Flow, Parabola, Signals};
 use super::guards::{self, Contacts, Crossings};
 use super::integral::quadrature;
+use super::mobility::Mobilities;
 use super::search::{Clarity, Found, Search};
 use super::system::{Contact, Event, EventKind, HybridSystem, Law, Tick, dot};
 use super::trace::Sample;
 use super::{EngineError, Options, Proof, Response, Sums};
 
+/// An acceleration below this share of its parts is zero: the crossing that ended the half cycle was smooth.
+const SMOOTH: f64 = 1e-9;
 /// Events at one instant beyond which the contact is declared undecidable.
 const MOST_EVENTS_AT_AN_INSTANT: u32 = 64;
 
@@ -24,7 +27,7 @@ pub(crate) struct March<'a> {
     flows: Vec<Flow>,
     /// Index of the flow in force.
     now: usize,
-    // State: structure, particles, contacts.
+    // State: structure (with the compressions of the flow in force behind its coordinates), particles, contacts.
     q: Vec<f64>,
     rate: Vec<f64>,
     particles: Vec<Relative>,
@@ -48,8 +51,10 @@ pub(crate) struct March<'a> {
     answer: Vec<f64>,
     /// The contact state or its damping has changed since the flow was chosen.
     changed: bool,
-    p: Vec<f64>,
-    p_rate: Vec<f64>,
+    mobilities: Mobilities,
+    /// Phase of the harmonic force, and the time within the cycle that it belongs to.
+    phase: DrivePhase,
+    phase_time: f64,
     c: Vec<f64>,
     c_end: Vec<f64>,
     observed_end: Vec<Phase>,
@@ -72,6 +77,8 @@ struct Half {
     last: f64,
     /// The crossing was smooth, so that the guard starts at zero.
     touching: bool,
+    /// Too weak to leave the curve's lower end: not followed.
+    idle: bool,
 }
 
 impl<'a> March<'a> {
@@ -94,8 +101,8 @@ impl<'a> March<'a> {
             options,
             flows: Vec::new(),
             now: 0,
-            q: vec![0.0; n],
-            rate: vec![0.0; n],
+            q: vec![0.0; most],
+            rate: vec![0.0; most],
             particles: vec![Relative::default(); count],
             contacts: vec![Contact::Floor; count],
             damping,
@@ -110,8 +117,9 @@ impl<'a> March<'a> {
             signals: Signals::default(),
             answer: Cholesky::new(&system.mass)?.solve(&system.force_row),
             changed: true,
-            p: vec![0.0; most],
-            p_rate: vec![0.0; most],
+            mobilities: Mobilities::default(),
+            phase: DrivePhase::default(),
+            phase_time: f64::NAN,
             c: vec![0.0; 2 * most],
             c_end: vec![0.0; 2 * most],
             observed_end: Vec::new(),
@@ -131,16 +139,16 @@ impl<'a> March<'a> {
                 let drive = DrivePhase::default();
                 let flow = &self.flows[self.now];
                 self.c.fill(0.0);
-                flow.leave(&self.c, 0.0, 0.0, drive, &mut self.p, &mut self.p_rate);
-                let n = self.q.len();
-                self.q.copy_from_slice(&self.p[..n]);
+                flow.leave(&self.c, 0.0, 0.0, drive, &mut self.q, &mut self.rate);
+                let n = self.system.mass.order;
+                self.rate.fill(0.0);
                 for (i, &j) in flow.attached.iter().enumerate() {
-                    self.particles[j].gap = self.p[n + i];
+                    self.particles[j].gap = self.q[n + i];
                 }
             }
             super::StartState::Given { q, rate, particles } => {
-                self.q.copy_from_slice(q);
-                self.rate.copy_from_slice(rate);
+                self.q[..q.len()].copy_from_slice(q);
+                self.rate[..rate.len()].copy_from_slice(rate);
                 for (j, (contact, gap, rate)) in particles.iter().enumerate() {
                     self.changed = true;
                     self.contacts[j] = *contact;
@@ -153,7 +161,7 @@ impl<'a> March<'a> {
     }
 
     pub(crate) fn run(mut self) -> Result<Response, EngineError> {
-        let cycles = u64::from(self.options.skip) + u64::from(self.options.average);
+        let cycles = self.options.cycles();
         let period = self.system.drive.period;
         for cycle in 0..cycles {
             self.cycle = cycle;
@@ -215,12 +223,16 @@ impl<'a> March<'a> {
         [dot(row, &self.q) + offset + self.particles[j].gap, dot(row, &self.rate) + self.particles[j].rate]
     }
 
-    fn drive_phase(&self, time: f64) -> DrivePhase {
+    /// The harmonic force's phase; a segment begins where another ended, so that the last answer is kept.
+    fn drive_phase(&mut self, time: f64) -> DrivePhase {
         match self.system.drive.harmonic {
             None => DrivePhase::default(),
+            Some(_) if self.phase_time == time => self.phase,
             Some(drive) => {
                 let (sine, cosine) = super::elementary::sin_cos(drive.angular_frequency * time);
-                DrivePhase { cosine: drive.force * cosine, sine: drive.force * sine }
+                self.phase = DrivePhase { cosine: drive.force * cosine, sine: drive.force * sine };
+                self.phase_time = time;
+                self.phase
             }
         }
     }
@@ -283,9 +295,7 @@ impl<'a> March<'a> {
                     } else if let Law::Resilient { stiffness, no_tension: true, .. } = side.face(particle).law {
                         let force = -stiffness * self.particles[j].gap - self.damping[j] * self.particles[j].rate;
                         if force * side.away() < 0.0 {
-                            self.record(j, side.lost(), self.particles[j].rate, self.particles[j].rate);
-                            self.changed = true;
-                            self.contacts[j] = side.released();
+                            self.slip(j, side);
                         }
                     }
                 }
@@ -293,9 +303,7 @@ impl<'a> March<'a> {
                     if let Law::Resilient { stiffness, .. } = side.face(particle).law {
                         let force = -stiffness * self.particles[j].gap - self.damping[j] * self.particles[j].rate;
                         if force * side.away() > 0.0 {
-                            self.record(j, side.made(), self.particles[j].rate, self.particles[j].rate);
-                            self.changed = true;
-                            self.contacts[j] = side.pressed();
+                            self.slip(j, side);
                         }
                     }
                 }
@@ -350,19 +358,18 @@ impl<'a> March<'a> {
         let approach = self.particles[j].rate;
         self.changed = true;
         self.contacts[j] = Contact::Flight;
-        let mobility = Cholesky::new(&carried_mass(self.system, &self.contacts))?;
-        let row = side.face(particle).row.clone();
-        let impact = impact(&mobility, &row, particle.mass, restitution, approach);
+        let meets = self.mobilities.of(self.system, &self.contacts, j, side)?;
+        let impact = Impact::new(meets.at_face, particle.mass, restitution, approach);
         for (other, particle) in self.system.particles.iter().enumerate() {
             // The faces of all other particles move with the structure's jump.
             if other != j {
                 let row = &self.contacts[other].side().face(particle).row;
                 if !self.contacts[other].holds(particle) {
-                    self.particles[other].rate -= dot(row, &impact.structure);
+                    self.particles[other].rate += impact.impulse * dot(row, &meets.answer);
                 }
             }
         }
-        self.rate.iter_mut().zip(&impact.structure).for_each(|(rate, jump)| *rate += jump);
+        self.rate.iter_mut().zip(&meets.answer).for_each(|(rate, answer)| *rate -= impact.impulse * answer);
         self.particles[j].rate = impact.departure;
         if let Some(audit) = &mut self.audit {
             audit.loss(impact.loss);
@@ -385,11 +392,14 @@ impl<'a> March<'a> {
         let push = self.push(j, side);
         if push > 0.0 {
             if speed > 0.0 {
-                // What was left to bounce: a geometric series of flights of 2u′/a, each shorter by ε.
-                let tail = 2.0 * speed / (push * (1.0 - restitution));
-                let mobility = Cholesky::new(&carried_mass(self.system, &self.contacts_without(j)))?;
-                let last = super::contact::impact(&mobility, &row, particle.mass, 0.0, self.particles[j].rate);
-                self.rate.iter_mut().zip(&last.structure).for_each(|(rate, jump)| *rate += jump);
+                self.contacts[j] = Contact::Flight;
+                let meets = self.mobilities.of(self.system, &self.contacts, j, side)?;
+                let last = Impact::new(meets.at_face, particle.mass, 0.0, self.particles[j].rate);
+                self.contacts[j] = held;
+                // What was left to bounce: a geometric series of flights of 2u′/a, each shorter by ε. In flight the face no
+                // longer carries the particle, so that a is larger than the push per mass that will hold it.
+                let tail = 2.0 * speed / (push * last.lightening * (1.0 - restitution));
+                self.rate.iter_mut().zip(&meets.answer).for_each(|(rate, answer)| *rate -= last.impulse * answer);
                 if let Some(audit) = &mut self.audit {
                     audit.loss(last.loss);
                 }
@@ -400,12 +410,6 @@ impl<'a> March<'a> {
             self.after_bounce(j, side);
         }
         Ok(())
-    }
-
-    fn contacts_without(&self, j: usize) -> Vec<Contact> {
-        let mut contacts = self.contacts.clone();
-        contacts[j] = Contact::Flight;
-        contacts
     }
 
     /// The particle moves away from what it struck.
@@ -439,6 +443,21 @@ impl<'a> March<'a> {
         }
     }
 
+    /// A face that cannot pull lets go while compressed, or pushes again: the energy of its spring goes and comes.
+    fn slip(&mut self, j: usize, side: Side) {
+        let rate = self.particles[j].rate;
+        let pressed = self.contacts[j] == side.pressed();
+        self.record(j, if pressed { side.lost() } else { side.made() }, rate, rate);
+        self.changed = true;
+        self.contacts[j] = if pressed { side.released() } else { side.pressed() };
+        if let (Some(audit), Law::Resilient { stiffness, .. }) =
+            (&mut self.audit, side.face(&self.system.particles[j]).law)
+        {
+            let stored = 0.5 * stiffness * self.particles[j].gap * self.particles[j].gap;
+            audit.loss(if pressed { stored } else { -stored });
+        }
+    }
+
     /// How strongly a face holds particle j, as an acceleration: positive while it can push.
     fn push(&mut self, j: usize, side: Side) -> f64 {
         let drive = self.drive_phase(self.time);
@@ -454,7 +473,7 @@ impl<'a> March<'a> {
 
     fn record_at(&mut self, particle: usize, kind: EventKind, time: f64, approach: f64, departure: f64) {
         self.response.proof.events += 1;
-        if self.cycle >= u64::from(self.options.skip) {
+        if self.options.averages(self.cycle) {
             self.response.counts.add(kind);
         }
         let wanted = self.response.events.len() < self.options.record_events
@@ -487,14 +506,12 @@ impl<'a> March<'a> {
     /// Block coordinates of the state in the flow in force.
     fn enter_flow(&mut self, drive: DrivePhase) {
         let flow = &self.flows[self.now];
-        let n = self.q.len();
-        self.p[..n].copy_from_slice(&self.q);
-        self.p_rate[..n].copy_from_slice(&self.rate);
+        let n = self.system.mass.order;
         for (i, &j) in flow.attached.iter().enumerate() {
-            self.p[n + i] = self.particles[j].gap;
-            self.p_rate[n + i] = self.particles[j].rate;
+            self.q[n + i] = self.particles[j].gap;
+            self.rate[n + i] = self.particles[j].rate;
         }
-        flow.enter(&self.p[..flow.order], &self.p_rate[..flow.order], self.level, drive, &mut self.c);
+        flow.enter(&self.q[..flow.order], &self.rate[..flow.order], self.level, drive, &mut self.c);
     }
 
     /// Propagates to `until` within the cycle, from event to event.
@@ -528,12 +545,12 @@ impl<'a> March<'a> {
             rate: &self.rate,
         };
         guards::set(state, flow, &self.signals, &mut self.search, &mut self.crossings, &mut self.paths);
-        if self.system.drive.half_cycles.is_some() {
+        if self.system.drive.half_cycles.is_some() && !self.half.idle {
             let Half { sign, touching, .. } = self.half;
             guards::half_cycle(flow, &self.signals, sign, touching, &mut self.search, &mut self.crossings);
         }
         let limit = until - self.time;
-        let found = self.search.run(&flow.blocks, limit, &mut self.clarity);
+        let found = self.search.run(&flow.blocks, &flow.series, limit, &mut self.clarity);
         let length = match found {
             Found::Nothing => limit,
             Found::Event { time, .. } => time.min(limit),
@@ -558,7 +575,7 @@ impl<'a> March<'a> {
             None => drive,
             Some(_) => self.drive_phase(self.time + length),
         };
-        let n = self.q.len();
+        let n = self.system.mass.order;
         let flow = &self.flows[self.now];
         for (j, particle) in self.system.particles.iter().enumerate() {
             let contact = self.contacts[j];
@@ -572,26 +589,47 @@ impl<'a> March<'a> {
             }
         }
         flow.advance(&self.search.kernels, &self.c, &mut self.c_end);
-        flow.leave(&self.c_end, length, self.level, end_drive, &mut self.p, &mut self.p_rate);
-        self.q.copy_from_slice(&self.p[..n]);
-        self.rate.copy_from_slice(&self.p_rate[..n]);
+        flow.leave(&self.c_end, length, self.level, end_drive, &mut self.q, &mut self.rate);
         for (i, &j) in flow.attached.iter().enumerate() {
-            self.particles[j] = Relative { gap: self.p[n + i], rate: self.p_rate[n + i] };
+            self.particles[j] = Relative { gap: self.q[n + i], rate: self.rate[n + i] };
         }
     }
 
     /// Starts the first half cycle, and ends one whose acceleration a contact has turned at once.
     fn turn_half_cycle(&mut self) -> Result<(), EngineError> {
-        if self.system.drive.half_cycles.is_none() {
-            return Ok(());
-        }
+        let Some(half_cycles) = &self.system.drive.half_cycles else { return Ok(()) };
         let flow = &self.flows[self.now];
         let bends = guards::accelerations(&flow.blocks, self.signals.of(flow.observed).0);
+        // Below the curve's first point every half cycle gives the same damping: no need to follow them until something
+        // happens. The bound holds to the end of the segment, and the half cycle under way is as weak.
+        let [least, damping] = half_cycles.curve.lower_end();
+        let bound = flow
+            .blocks
+            .iter()
+            .zip(&bends)
+            .fold(0.0, |sum, (block, phase)| sum + block.amplitude(*phase, 0.0, self.system.drive.period));
+        let least = least * self.system.gravity;
+        let weak = self.half.square <= least * least * self.half.length;
+        if bound < least && weak && self.damping.iter().all(|now| *now == damping) {
+            self.half = Half { idle: true, last: self.half.last, ..Half::default() };
+            return Ok(());
+        }
+        self.half.idle = false;
         let total = bends.iter().fold(0.0, |sum, phase| sum + phase.value);
+        let scale = bends.iter().fold(0.0, |sum, phase| sum + phase.value.abs());
         if self.half.sign == 0.0 {
             self.half.sign = if total < 0.0 { -1.0 } else { 1.0 };
         }
-        if self.half.touching || total * self.half.sign >= 0.0 {
+        if self.half.touching && total.abs() <= SMOOTH * scale {
+            if bends.iter().fold(0.0, |sum, phase| sum + phase.rate) * self.half.sign < 0.0 {
+                // The new damping turns the acceleration back before it has got anywhere.
+                self.half.sign = -self.half.sign;
+            }
+            return Ok(());
+        }
+        // New damping in a contact makes the acceleration jump: it no longer starts from zero.
+        self.half.touching = false;
+        if total * self.half.sign >= 0.0 {
             return Ok(());
         }
         self.half.sign = -self.half.sign;
@@ -652,10 +690,7 @@ impl<'a> March<'a> {
             }
             Crossing::Release => match side.face(particle).law {
                 Law::Resilient { no_tension: true, .. } if self.particles[j].gap != 0.0 => {
-                    let rate = self.particles[j].rate;
-                    self.record(j, side.lost(), rate, rate);
-                    self.changed = true;
-                    self.contacts[j] = side.released();
+                    self.slip(j, side);
                     self.smooth[j] = true;
                 }
                 _ => {
@@ -672,22 +707,42 @@ impl<'a> March<'a> {
                 }
             }
             Crossing::Again => {
-                let rate = self.particles[j].rate;
-                self.changed = true;
-                self.contacts[j] = side.pressed();
-                self.record(j, side.made(), rate, rate);
+                self.slip(j, side);
                 self.smooth[j] = true;
             }
             Crossing::HalfCycle => {}
         }
+        self.meet_at_once()?;
         self.choose_flow()
+    }
+
+    /// A particle in flight that is at a face and moves into it has met it: where there is no gap to cross, or where the
+    /// impact of another particle has turned its face.
+    fn meet_at_once(&mut self) -> Result<(), EngineError> {
+        for j in 0..self.particles.len() {
+            if self.contacts[j] != Contact::Flight {
+                continue;
+            }
+            let here = self.particles[j];
+            if here.gap == 0.0 && here.rate < 0.0 {
+                self.meet(j, Side::Floor)?;
+            } else if let Some(above) = self.ceiling_relative(j)
+                && above.gap == 0.0
+            {
+                if above.rate > 0.0 {
+                    self.particles[j] = above;
+                    self.meet(j, Side::Ceiling)?;
+                }
+            }
+        }
+        Ok(())
     }
 
     /// Adds the segment to the measures, and to the audit if there is one.
     fn sum_up(&mut self, length: f64, drive: DrivePhase) {
         let flow = &self.flows[self.now];
         let (observed, rest) = self.signals.of(flow.observed);
-        if self.cycle >= u64::from(self.options.skip) {
+        if self.options.averages(self.cycle) {
             let integrals = match &flow.forms {
                 Some(forms) => {
                     self.observed_end.clear();
@@ -705,11 +760,13 @@ impl<'a> March<'a> {
             sums.velocity_square += integrals.rate_square;
             sums.displacement += integrals.value;
             sums.displacement_square += integrals.square;
-            if let Some(audit) = &mut self.audit {
-                audit.segment(self.system, flow, &self.c, self.level, drive, length);
-            }
         }
-        if self.system.drive.half_cycles.is_some() {
+        if let Some(audit) = &mut self.audit
+            && self.cycle >= u64::from(self.options.skip)
+        {
+            audit.segment(self.system, flow, &self.c, self.level, drive, length);
+        }
+        if self.system.drive.half_cycles.is_some() && !self.half.idle {
             let bends = guards::accelerations(&flow.blocks, observed);
             self.half.square += quadrature(&flow.blocks, &bends, Parabola::default(), length).square;
             self.half.length += length;
@@ -718,8 +775,8 @@ impl<'a> March<'a> {
 
     fn audit_state(&self) -> super::audit::State {
         super::audit::State {
-            q: self.q.clone(),
-            rate: self.rate.clone(),
+            q: self.q[..self.system.mass.order].to_vec(),
+            rate: self.rate[..self.system.mass.order].to_vec(),
             particles: (0..self.particles.len()).map(|j| self.absolute(j)).collect(),
             compressions: (0..self.particles.len())
                 .map(|j| match side_stiffness(self.system, &self.contacts, j) {

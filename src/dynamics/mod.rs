@@ -3,7 +3,7 @@
 //! In the order of use: a [`HybridSystem`] (linear structure, particles, drive) is run by [`event_driven`] under
 //! [`Options`]; the [`Response`] holds the integrals of the averaged window, the counts, and the [`Proof`].
 //!
-//! - `flow`: the exact motion of one contact state, split into 2 × 2 `block`s by `spectral`;
+//! - `flow`: the exact motion of one contact state, split into 2 × 2 `block`s by `modes` and `spectral`;
 //! - `search`: the first event, certified by Bernstein enclosures;
 //! - `contact`: what an event leads to; `march`: from event to event;
 //! - `integral`: measures in closed form; `audit`: momentum and energy balanced by other means;
@@ -21,11 +21,16 @@ mod flow;
 mod guards;
 mod integral;
 mod march;
+mod mobility;
+mod modes;
+mod polynomial;
 mod search;
+mod series;
 mod spectral;
 mod spline;
 mod system;
 mod trace;
+mod window;
 
 pub use spline::Spline;
 pub use system::{
@@ -39,7 +44,7 @@ pub const SOLVER_VERSION: u32 = 1;
 /// What proves a run: residuals of the balances, and how clearly its events were decided.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Proof {
-    /// |Σ impulses − momentum gained − impulse of springs, dashpots and gravity| over the impulse that passed, dimensionless.
+    /// |Σ impulses − momentum gained − impulse of springs, dashpots and gravity| over the impulse that passed or was carried, dimensionless.
     pub momentum_residual: f64,
     /// |work of the excitation − energy gained − energy dissipated| over the energy that passed, dimensionless.
     pub energy_residual: f64,
@@ -73,6 +78,20 @@ pub struct Options {
     pub trace: Option<TraceRequest>,
     /// Search windows are shorter by this factor; 1 as a rule, less for a second accuracy.
     pub window_factor: f64,
+}
+
+impl Options {
+    /// Cycles to run: the averaged window, and as far as a time history asks for.
+    pub(crate) fn cycles(&self) -> u64 {
+        let window = u64::from(self.skip) + u64::from(self.average);
+        window.max(self.trace.map_or(0, |trace| trace.to_cycle))
+    }
+
+    /// The cycle belongs to the averaged window.
+    pub(crate) fn averages(&self, cycle: u64) -> bool {
+        let first = u64::from(self.skip);
+        (first..first + u64::from(self.average)).contains(&cycle)
+    }
 }
 
 impl Default for Options {

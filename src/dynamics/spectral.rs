@@ -10,6 +10,7 @@ use super::EngineError;
 use super::block::Block;
 
 /// A = V diag(Bₖ) W with W = V⁻¹.
+#[derive(Default)]
 pub(crate) struct Spectral {
     /// V, row by row, order × order.
     pub(crate) from_blocks: Vec<f64>,
@@ -31,39 +32,33 @@ impl Spectral {
             return Ok(Self::single(matrix));
         }
         let a = DMatrix::from_row_slice(order, order, matrix);
+        let creeps = a.column_iter().any(|column| column.iter().all(|entry| *entry == 0.0));
         let norm = a.iter().fold(0.0_f64, |largest, x| largest.max(x.abs()));
         let schur = Schur::try_new(a, f64::EPSILON, 200 * order).ok_or(EngineError::NoSchurForm { order })?;
-        let (q, t) = schur.unpack();
-        let atoms = atoms(&t, norm);
-        let (x, y) = decouple(&t, &atoms);
+        let (mut q, mut t) = schur.unpack();
+        let firsts = gather(&mut q, &mut t);
+        let (x, y) = decouple(&t, &firsts);
         let v = product(&q, &x);
         let w = product(&y, &q.transpose());
         let condition = largest(&x) * largest(&y);
         if !(condition < WORST_CONDITION) {
             return Err(EngineError::NearlyDefective { condition });
         }
-        let pairs = pair(&t, &atoms);
         let mut spectral = Self {
             from_blocks: vec![0.0; order * order],
             to_blocks: vec![0.0; order * order],
             matrices: Vec::with_capacity(order / 2),
             blocks: Vec::with_capacity(order / 2),
         };
-        for (k, [i, j]) in pairs.iter().enumerate() {
-            let coupled = j == &(i + 1) && atoms.iter().any(|atom| atom.first == *i && atom.size == 2);
-            let entries = if coupled {
-                [t[(*i, *i)], t[(*i, *j)], t[(*j, *i)], t[(*j, *j)]]
-            } else {
-                [t[(*i, *i)], 0.0, 0.0, t[(*j, *j)]]
-            };
-            let entries = settle(entries, norm);
+        for i in firsts {
+            let entries = settle([t[(i, i)], t[(i, i + 1)], t[(i + 1, i)], t[(i + 1, i + 1)]], norm, creeps);
             spectral.matrices.push(entries);
             spectral.blocks.push(Block::new(entries));
-            for row in 0..order {
-                spectral.from_blocks[row * order + 2 * k] = v[(row, *i)];
-                spectral.from_blocks[row * order + 2 * k + 1] = v[(row, *j)];
-                spectral.to_blocks[2 * k * order + row] = w[(*i, row)];
-                spectral.to_blocks[(2 * k + 1) * order + row] = w[(*j, row)];
+        }
+        for i in 0..order {
+            for k in 0..order {
+                spectral.from_blocks[i * order + k] = v[(i, k)];
+                spectral.to_blocks[i * order + k] = w[(i, k)];
             }
         }
         Ok(spectral)
@@ -80,77 +75,99 @@ impl Spectral {
     }
 }
 
-/// A diagonal piece of the Schur form: one real eigenvalue, or two eigenvalues that stay together.
-struct Atom {
+/// A diagonal piece of the Schur form.
+struct Piece {
     first: usize,
     size: usize,
 }
 
-fn atoms(t: &DMatrix<f64>, norm: f64) -> Vec<Atom> {
+/// Order of the piece that begins at `i`: two for a complex pair, one for a real eigenvalue.
+fn size_at(t: &DMatrix<f64>, i: usize) -> usize {
+    if i + 1 < t.nrows() && t[(i + 1, i)] != 0.0 { 2 } else { 1 }
+}
+
+/// Moves every second real eigenvalue up behind the one nearest to it, so that they make a block; splitting them would be
+/// ill-conditioned where they are close, and is not needed anywhere. Tells where the blocks begin.
+fn gather(q: &mut DMatrix<f64>, t: &mut DMatrix<f64>) -> Vec<usize> {
     let order = t.nrows();
-    let coupled = |i: usize| i + 1 < order && t[(i + 1, i)] != 0.0;
-    let mut atoms = Vec::new();
-    let mut i = 0;
-    while i < order {
-        if coupled(i) {
-            atoms.push(Atom { first: i, size: 2 });
-            i += 2;
-        } else if i + 1 < order && !coupled(i + 1) && close(t[(i, i)], t[(i + 1, i + 1)], norm) {
-            // Two real eigenvalues near each other: splitting them would be ill-conditioned, and is not needed.
-            atoms.push(Atom { first: i, size: 2 });
-            i += 2;
-        } else {
-            atoms.push(Atom { first: i, size: 1 });
-            i += 1;
+    let firsts: Vec<usize> = (0..order).step_by(2).collect();
+    for &first in &firsts {
+        if size_at(t, first) == 2 {
+            continue;
+        }
+        let mut pieces = Vec::new();
+        let mut i = first + 1;
+        while i < order {
+            pieces.push(i);
+            i += size_at(t, i);
+        }
+        let distance = |&k: &usize| {
+            let (a, b) = (t[(first, first)], t[(pieces[k], pieces[k])]);
+            (a - b).abs() / (a.abs() + b.abs()).max(f64::MIN_POSITIVE)
+        };
+        // The eigenvalues are even in number, and complex ones come in pairs: there is a partner.
+        let partner = (0..pieces.len())
+            .filter(|&k| size_at(t, pieces[k]) == 1)
+            .min_by(|a, b| distance(a).total_cmp(&distance(b)))
+            .unwrap_or(0);
+        for k in (1..=partner).rev() {
+            exchange(q, t, pieces[k - 1], pieces[k] - pieces[k - 1]);
+            pieces[k] = pieces[k - 1] + 1;
         }
     }
-    atoms
+    firsts
 }
 
-fn close(a: f64, b: f64, norm: f64) -> bool {
-    (a - b).abs() <= 0.1 * (a.abs() + b.abs()) + 1e-7 * norm
-}
-
-/// Which two diagonal places of T make each block: the atoms of size two, and the single ones in the order they stand.
-fn pair(t: &DMatrix<f64>, atoms: &[Atom]) -> Vec<[usize; 2]> {
-    let mut pairs = Vec::with_capacity(t.nrows() / 2);
-    let mut waiting = None;
-    for atom in atoms {
-        match (atom.size, waiting) {
-            (2, _) => pairs.push([atom.first, atom.first + 1]),
-            (_, None) => waiting = Some(atom.first),
-            (_, Some(first)) => {
-                pairs.push([first, atom.first]);
-                waiting = None;
-            }
+/// Exchanges the piece of order `size` at `first` with the real eigenvalue behind it (Bai & Demmel, Linear Algebra Appl. 186,
+/// 1993), by an orthogonal transformation that turns the eigenvector of the latter to the front.
+fn exchange(q: &mut DMatrix<f64>, t: &mut DMatrix<f64>, first: usize, size: usize) {
+    let last = first + size;
+    let pieces = [Piece { first, size }, Piece { first: last, size: 1 }];
+    let mut load = [[0.0; 2]; 2];
+    for (a, row) in load.iter_mut().enumerate().take(size) {
+        row[0] = -t[(first + a, last)];
+    }
+    let x = sylvester(t, &pieces, &load);
+    // The eigenvector is (x, 1); a Householder reflection maps it to the first axis.
+    let mut v: Vec<f64> = x.iter().take(size).map(|row| row[0]).chain([1.0]).collect();
+    let length = v.iter().fold(0.0, |sum, x| sum + x * x).sqrt();
+    v[0] += if v[0] < 0.0 { -length } else { length };
+    let square = v.iter().fold(0.0, |sum, x| sum + x * x);
+    if !(square.is_finite() && square > 0.0) {
+        return;
+    }
+    let order = t.nrows();
+    for column in 0..order {
+        let share = (0..=size).fold(0.0, |sum, k| sum + v[k] * t[(first + k, column)]) * 2.0 / square;
+        (0..=size).for_each(|k| t[(first + k, column)] -= share * v[k]);
+    }
+    for row in 0..order {
+        for matrix in [&mut *t, &mut *q] {
+            let share = (0..=size).fold(0.0, |sum, k| sum + v[k] * matrix[(row, first + k)]) * 2.0 / square;
+            (0..=size).for_each(|k| matrix[(row, first + k)] -= share * v[k]);
         }
     }
-    pairs
+    (1..=size).for_each(|k| t[(first + k, first)] = 0.0);
 }
 
-/// X with T X = X diag(atoms), unit upper triangular by atoms, and its inverse.
-fn decouple(t: &DMatrix<f64>, atoms: &[Atom]) -> (DMatrix<f64>, DMatrix<f64>) {
+/// X with T X = X diag(blocks), unit upper triangular by blocks, and its inverse.
+fn decouple(t: &DMatrix<f64>, firsts: &[usize]) -> (DMatrix<f64>, DMatrix<f64>) {
     let order = t.nrows();
     let mut x = DMatrix::identity(order, order);
-    for (j, right) in atoms.iter().enumerate() {
-        for left in atoms[..j].iter().rev() {
-            // T_ll X_lr − X_lr T_rr = −Σ T_lk X_kr over the atoms k between.
-            let from = left.first + left.size;
-            let to = right.first + right.size;
+    for (j, &right) in firsts.iter().enumerate() {
+        for &left in firsts[..j].iter().rev() {
+            // T_ll X_lr − X_lr T_rr = −Σ T_lk X_kr over the blocks k between, and the right one itself.
             let mut load = [[0.0; 2]; 2];
-            for (a, row) in load.iter_mut().enumerate().take(left.size) {
-                for (b, cell) in row.iter_mut().enumerate().take(right.size) {
-                    let mut sum = 0.0;
-                    for k in from..to {
-                        sum -= t[(left.first + a, k)] * x[(k, right.first + b)];
-                    }
-                    *cell = sum;
+            for (a, row) in load.iter_mut().enumerate() {
+                for (b, cell) in row.iter_mut().enumerate() {
+                    *cell = (left + 2..right + 2).fold(0.0, |sum, k| sum - t[(left + a, k)] * x[(k, right + b)]);
                 }
             }
-            let solution = sylvester(t, left, right, &load);
-            for (a, row) in solution.iter().enumerate().take(left.size) {
-                for (b, cell) in row.iter().enumerate().take(right.size) {
-                    x[(left.first + a, right.first + b)] = *cell;
+            let pieces = [left, right].map(|first| Piece { first, size: 2 });
+            let solution = sylvester(t, &pieces, &load);
+            for (a, row) in solution.iter().enumerate() {
+                for (b, cell) in row.iter().enumerate() {
+                    x[(left + a, right + b)] = *cell;
                 }
             }
         }
@@ -169,8 +186,8 @@ fn decouple(t: &DMatrix<f64>, atoms: &[Atom]) -> (DMatrix<f64>, DMatrix<f64>) {
     (x, y)
 }
 
-/// Solves L X − X R = load for blocks of order one or two, as a linear system of up to four unknowns.
-fn sylvester(t: &DMatrix<f64>, left: &Atom, right: &Atom, load: &[[f64; 2]; 2]) -> [[f64; 2]; 2] {
+/// Solves L X − X R = load for diagonal pieces of order one or two, as a linear system of up to four unknowns.
+fn sylvester(t: &DMatrix<f64>, [left, right]: &[Piece; 2], load: &[[f64; 2]; 2]) -> [[f64; 2]; 2] {
     let (rows, columns) = (left.size, right.size);
     let order = rows * columns;
     let mut system = [[0.0; 5]; 4];
@@ -222,9 +239,15 @@ fn solve_small(order: usize, system: &mut [[f64; 5]; 4]) -> [f64; 4] {
     solution
 }
 
-/// A rigid-body mode arrives as a block of the size of the rounding, with one large entry: its exact form is [[0, b], [0, 0]].
-fn settle([p, q, r, s]: [f64; 4], norm: f64) -> [f64; 4] {
+/// Zero eigenvalues arrive as large as the rounding. A coordinate that only a dashpot holds (`creeps`) has one: it is set to
+/// zero. A rigid-body mode has two and one large entry: its exact form is [[0, b], [0, 0]].
+fn settle([p, q, r, s]: [f64; 4], norm: f64, creeps: bool) -> [f64; 4] {
     let rounding = 64.0 * f64::EPSILON * norm;
+    let [no_p, no_q, no_r, no_s] = [p, q, r, s].map(|entry| entry.abs() <= rounding);
+    if creeps && (no_r || no_q) && (no_p || no_s) {
+        let kept = |none: bool, entry: f64| if none { 0.0 } else { entry };
+        return [kept(no_p, p), kept(no_q, q), kept(no_r, r), kept(no_s, s)];
+    }
     if (p + s).abs() > rounding || (p * s - q * r).abs() > rounding * norm {
         return [p, q, r, s];
     }

@@ -6,7 +6,7 @@ use super::stretch::Stretch;
 use super::vector::Vector;
 use crate::dynamics::EngineError;
 use crate::dynamics::audit::energy;
-use crate::dynamics::contact::{Relative, STICKING_SPEED, Side, impact};
+use crate::dynamics::contact::{Impact, Relative, STICKING_SPEED, Side};
 use crate::dynamics::flow::{Cholesky, carried_mass};
 use crate::dynamics::system::{Contact, EventKind, Law, Particle, dot};
 
@@ -112,9 +112,11 @@ impl<V: Vector> Run<'_, V> {
         let stop = face.law.stop();
         let here = self.relative(j, side);
         self.contacts[j] = Contact::Flight;
-        let mobility = Cholesky::new(&carried_mass(self.system, &self.contacts))?;
-        let impact = impact(&mobility, &face.row, self.system.particles[j].mass, restitution, here.rate);
-        self.kick_structure(&impact.structure, |contact, particle| contact.holds(particle));
+        let answer = Cholesky::new(&carried_mass(self.system, &self.contacts))?.solve(&face.row);
+        let mass = self.system.particles[j].mass;
+        let impact = Impact::new(dot(&face.row, &answer), mass, restitution, here.rate);
+        let jump: Vec<f64> = answer.iter().map(|a| -a * impact.impulse).collect();
+        self.kick_structure(&jump, |contact, particle| contact.holds(particle));
         self.place(j, side, Relative { rate: impact.departure, ..here });
         self.lose(impact.loss);
         self.record(j, if stop.is_some() { side.hit() } else { side.made() }, here.rate, impact.departure);

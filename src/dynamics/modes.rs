@@ -1,0 +1,85 @@
+//! Modes of a contact state: rigid-body motions apart, exactly; the rest scaled and split into blocks.
+//!
+//! A coordinate r that no spring and no dashpot feels (its columns of the matrix are zero) makes a rigid-body motion. By
+//! the momentum along it, ρ = r + M_rr⁻¹ M_re e with the other coordinates e obeys ρ″ = load alone, and e never asks for
+//! r. So ρ is split off by the masses, its block is [[0, 1], [0, 0]] to the bit, and the eigenvalue iteration never sees
+//! the defective zeros that it could not tell apart.
+
+use super::EngineError;
+use super::block::Block;
+use super::flow::Cholesky;
+use super::spectral::Spectral;
+use super::system::Matrix;
+
+/// Splits (p, p′) with p″ = (`accelerations`) (p, p′) and the mass matrix `mass` of p into blocks: V, row by row, and
+/// W = V⁻¹, column by column.
+pub(crate) fn split(accelerations: &[Vec<f64>], mass: &Matrix) -> Result<Spectral, EngineError> {
+    let order = accelerations.len();
+    let size = 2 * order;
+    let free = |i: usize| accelerations.iter().all(|row| row[i] == 0.0 && row[order + i] == 0.0);
+    let (rigid, elastic): (Vec<usize>, Vec<usize>) = (0..order).partition(|&i| free(i));
+    let count = elastic.len();
+
+    // Lengths are scaled by frequencies, so that the matrix is of one magnitude: (Ω e, e′).
+    let frequency: Vec<f64> = elastic.iter().map(|&i| scale(accelerations[i][i])).collect();
+    let mut matrix = vec![0.0; 4 * count * count];
+    for (i, &row) in elastic.iter().enumerate() {
+        matrix[i * 2 * count + count + i] = frequency[i];
+        for (j, &column) in elastic.iter().enumerate() {
+            matrix[(count + i) * 2 * count + j] = accelerations[row][column] / frequency[j];
+            matrix[(count + i) * 2 * count + count + j] = accelerations[row][order + column];
+        }
+    }
+    let inner = if count > 0 { Spectral::split(2 * count, &matrix)? } else { Spectral::default() };
+
+    let mut modes = Spectral {
+        from_blocks: vec![0.0; size * size],
+        to_blocks: vec![0.0; size * size],
+        matrices: inner.matrices,
+        blocks: inner.blocks,
+    };
+    for (i, &row) in elastic.iter().enumerate() {
+        for (half, unit) in [(0, frequency[i]), (1, 1.0)] {
+            for k in 0..2 * count {
+                let (inside, outside) = (half * count + i, half * order + row);
+                modes.from_blocks[outside * size + k] = inner.from_blocks[inside * 2 * count + k] / unit;
+                modes.to_blocks[outside * size + k] = inner.to_blocks[k * 2 * count + inside] * unit;
+            }
+        }
+    }
+    if rigid.is_empty() {
+        return Ok(modes);
+    }
+
+    // shift = M_rr⁻¹ M_re, column by column.
+    let own = Matrix {
+        order: rigid.len(),
+        entries: rigid.iter().flat_map(|&i| rigid.iter().map(move |&j| mass.at(i, j))).collect(),
+    };
+    let solve = Cholesky::new(&own)?;
+    let shift: Vec<Vec<f64>> =
+        elastic.iter().map(|&j| solve.solve(&rigid.iter().map(|&i| mass.at(i, j)).collect::<Vec<_>>())).collect();
+    for (r, &row) in rigid.iter().enumerate() {
+        for half in 0..2 {
+            let column = 2 * (count + r) + half;
+            let outside = half * order + row;
+            modes.from_blocks[outside * size + column] = 1.0;
+            modes.to_blocks[outside * size + column] = 1.0;
+            for (e, &other) in elastic.iter().enumerate() {
+                let inside = half * order + other;
+                modes.to_blocks[inside * size + column] = shift[e][r];
+                for k in 0..2 * count {
+                    modes.from_blocks[outside * size + k] -= shift[e][r] * modes.from_blocks[inside * size + k];
+                }
+            }
+        }
+        modes.matrices.push([0.0, 1.0, 0.0, 0.0]);
+        modes.blocks.push(Block::new([0.0, 1.0, 0.0, 0.0]));
+    }
+    Ok(modes)
+}
+
+fn scale(acceleration: f64) -> f64 {
+    let omega = acceleration.abs().sqrt();
+    if omega > 0.0 && omega.is_finite() { omega } else { 1.0 }
+}

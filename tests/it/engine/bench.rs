@@ -1,0 +1,162 @@
+//! The bench on which the engine's tests put a scene: reading a case, building the scene, running it, comparing.
+
+use serde_json::Value;
+use shotdamp::dynamics::{Contact, Event, EventKind, HybridSystem, Options, Response, StartState, event_driven};
+use shotdamp::scene::{ContactDamping, ContactEnd, Damper, Excitation, Scene, Structure, Surface, compile};
+
+/// m/s².
+pub const GRAVITY: f64 = 9.81;
+
+/// One case of a data file.
+#[derive(Debug, Clone)]
+pub struct Case(Value);
+
+/// The cases of a data file.
+pub fn cases(text: &str) -> Vec<Case> {
+    let data: Value = serde_json::from_str(text).expect("the data file is JSON");
+    data["cases"].as_array().expect("it has cases").iter().cloned().map(Case).collect()
+}
+
+impl Case {
+    pub fn text(&self, key: &str) -> &str {
+        self.0[key].as_str().unwrap_or_else(|| panic!("no text `{key}` in {self:?}"))
+    }
+
+    /// A part of the case, a case itself.
+    pub fn part(&self, key: &str) -> Self {
+        Self(self.0[key].clone())
+    }
+
+    pub fn list(&self, key: &str) -> Vec<Self> {
+        self.0[key]
+            .as_array()
+            .unwrap_or_else(|| panic!("no list `{key}` in {self:?}"))
+            .iter()
+            .cloned()
+            .map(Self)
+            .collect()
+    }
+
+    /// A number, or an exact decimal written as text.
+    pub fn number(&self, key: &str) -> f64 {
+        number(&self.0[key]).unwrap_or_else(|| panic!("no number `{key}` in {self:?}"))
+    }
+
+    pub fn optional(&self, key: &str) -> Option<f64> {
+        number(&self.0[key])
+    }
+
+    /// All numbers under a key: one of them, or a list.
+    pub fn numbers(&self, key: &str) -> Vec<f64> {
+        match &self.0[key] {
+            Value::Array(items) => items.iter().filter_map(number).collect(),
+            other => number(other).into_iter().collect(),
+        }
+    }
+
+    /// Entry `i` of a case that is a list.
+    pub fn at(&self, i: usize) -> Self {
+        Self(self.0[i].clone())
+    }
+
+    pub fn value(&self) -> f64 {
+        number(&self.0).expect("a number")
+    }
+
+    pub fn word(&self) -> &str {
+        self.0.as_str().expect("a text")
+    }
+}
+
+fn number(value: &Value) -> Option<f64> {
+    value.as_f64().or_else(|| value.as_str().and_then(|text| text.parse().ok()))
+}
+
+/// m x″ + c x′ + k x = F.
+pub fn base(mass: f64, stiffness: f64, damping: f64) -> Structure {
+    Structure::SingleMass { mass, stiffness, damping }
+}
+
+pub fn rigid(restitution: f64) -> Surface {
+    Surface::Rigid { restitution }
+}
+
+/// A spring and a dashpot that let go at zero gap.
+pub fn resilient(stiffness: f64, damping: f64) -> Surface {
+    Surface::Resilient { stiffness, damping: ContactDamping::Constant(damping), ends: ContactEnd::ZeroGap }
+}
+
+/// The same, but unable to pull.
+pub fn resilient_without_tension(stiffness: f64, damping: f64) -> Surface {
+    Surface::Resilient { stiffness, damping: ContactDamping::Constant(damping), ends: ContactEnd::ZeroForce }
+}
+
+/// A particle between two faces of one kind.
+pub fn damper(particle_mass: f64, gap: f64, surface: Surface) -> Damper {
+    Damper { particle_mass, gap, floor: surface.clone(), ceiling: surface, stop: None, walls: None }
+}
+
+/// No force, for one cycle of `span` seconds.
+pub fn nothing(span: f64) -> Excitation {
+    Excitation::SingleImpulse { impulse: 0.0, cycle: span }
+}
+
+/// One damper on one mass.
+pub fn scene(structure: Structure, gravity: f64, damper: Damper, excitation: Excitation) -> Scene {
+    Scene { structure, gravity, dampers: vec![damper], excitation }
+}
+
+/// A base at x, x′, with the particle in flight at u, u′.
+pub fn in_flight(base: [f64; 2], gap: [f64; 2]) -> StartState {
+    StartState::Given { q: vec![base[0]], rate: vec![base[1]], particles: vec![(Contact::Flight, gap[0], gap[1])] }
+}
+
+/// One cycle from a start, every event kept.
+pub fn once(start: StartState) -> Options {
+    Options { skip: 0, average: 1, start, record_events: usize::MAX, audit: true, ..Options::default() }
+}
+
+pub fn system(scene: &Scene) -> HybridSystem {
+    compile(scene).expect("the scene compiles")
+}
+
+/// Runs a scene; whatever it is, its balances must close.
+pub fn run(scene: &Scene, options: &Options) -> Response {
+    let response = event_driven(&system(scene), options).expect("the engine runs the scene");
+    if options.audit {
+        balanced(&response);
+    }
+    response
+}
+
+/// Momentum and energy close to rounding.
+pub fn balanced(response: &Response) {
+    let proof = response.proof;
+    assert!(proof.momentum_residual < 1e-12, "momentum residual {:e}", proof.momentum_residual);
+    assert!(proof.energy_residual < 1e-12, "energy residual {:e}", proof.energy_residual);
+}
+
+/// The events of one kind.
+pub fn only(response: &Response, kind: EventKind) -> Vec<Event> {
+    response.events.iter().copied().filter(|event| event.kind == kind).collect()
+}
+
+/// Seconds since the start.
+pub fn instant(scene: &Scene, event: &Event) -> f64 {
+    event.cycle as f64 * scene.excitation.period() + event.time
+}
+
+/// |got/want − 1| ≤ tolerance.
+#[track_caller]
+pub fn close(what: &str, got: f64, want: f64, tolerance: f64) {
+    within(what, got, want, tolerance * want.abs());
+}
+
+/// |got − want| ≤ bound.
+#[track_caller]
+pub fn within(what: &str, got: f64, want: f64, bound: f64) {
+    let error = (got - want).abs();
+    // Read with `cargo test -- --nocapture`.
+    println!("{what}: {got} for {want}, error {:.1e} of {:.1e} allowed", error, bound);
+    assert!(error <= bound, "{what}: {got} instead of {want}, off by {error:.2e}, allowed {bound:.2e}");
+}

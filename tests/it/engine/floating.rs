@@ -1,0 +1,117 @@
+//! Structures that nothing brings back: bases and walls without a spring, with and without a dashpot.
+//!
+//! A coordinate without spring has an eigenvalue zero, twice if no dashpot holds it either. A constant load then moves it
+//! for ever, so that "static answer" means a terminal velocity or a fall.
+
+use shotdamp::dynamics::{Contact, EventKind, Options, StartState};
+use shotdamp::scene::{Excitation, PulseShape, Scene, Walls};
+
+use super::bench::{GRAVITY, base, close, damper, nothing, once, only, resilient, rigid, run, scene, within};
+
+#[test]
+fn a_base_on_a_dashpot_stops_where_its_impulse_is_used_up() {
+    let (mass, damping, impulse, cycle) = (2.0, 3.0, 5.0, 0.7);
+    let slide = Scene {
+        structure: base(mass, 0.0, damping),
+        gravity: GRAVITY,
+        dampers: Vec::new(),
+        excitation: Excitation::SingleImpulse { impulse, cycle },
+    };
+    let response = run(&slide, &once(StartState::StaticEquilibrium));
+    let decay = f64::exp(-damping / mass * cycle);
+    close("velocity", response.final_velocity, impulse / mass * decay, 1e-14);
+    close("displacement", response.final_displacement, impulse / damping * (1.0 - decay), 1e-14);
+    let square = (impulse / mass).powi(2) * mass / (2.0 * damping) * (1.0 - decay * decay);
+    close("RMS velocity", response.window().rms_velocity(), (square / cycle).sqrt(), 1e-13);
+}
+
+#[test]
+fn under_a_constant_force_it_creeps_at_its_terminal_velocity() {
+    let (mass, damping, force) = (2.0, 40.0, 7.0);
+    let slide = Scene {
+        structure: base(mass, 0.0, damping),
+        gravity: GRAVITY,
+        dampers: Vec::new(),
+        excitation: Excitation::PulseTrain {
+            impulse: force,
+            period: 1.0,
+            duration: 1.0,
+            shape: PulseShape::Rectangular,
+        },
+    };
+    let response = run(&slide, &Options { skip: 10, average: 10, audit: true, ..Options::default() });
+    let terminal = force / damping;
+    close("RMS velocity", response.window().rms_velocity(), terminal, 1e-13);
+    close("displacement", response.final_displacement, terminal * (20.0 - mass / damping), 1e-13);
+}
+
+#[test]
+fn a_particle_on_it_makes_it_sink() {
+    let (mass, particle, damping) = (1.0, 0.25, 2.0);
+    let terminal = -particle * GRAVITY / damping;
+    let rest = StartState::Given { q: vec![0.0], rate: vec![0.0], particles: vec![(Contact::Floor, 0.0, 0.0)] };
+    let held = scene(base(mass, 0.0, damping), GRAVITY, damper(particle, f64::INFINITY, rigid(0.0)), nothing(0.9));
+    let response = run(&held, &once(rest.clone()));
+    let rate = damping / (mass + particle);
+    let decay = f64::exp(-rate * 0.9);
+    close("velocity", response.final_velocity, terminal * (1.0 - decay), 1e-14);
+    close("displacement", response.final_displacement, terminal * (0.9 - (1.0 - decay) / rate), 1e-14);
+    assert_eq!(response.proof.events, 0);
+
+    // On a spring too, once its swing has died out; the spring then carries the weight.
+    let soft = damper(particle, f64::INFINITY, resilient(500.0, 4.0));
+    let response = run(&scene(base(mass, 0.0, damping), GRAVITY, soft, nothing(60.0)), &once(rest));
+    close("terminal velocity", response.final_velocity, terminal, 1e-13);
+    let compression = response.final_particles[0][0] - response.final_displacement;
+    within("compression", compression, -particle * GRAVITY / 500.0, 1e-13);
+}
+
+#[test]
+fn bounces_on_a_sliding_base_lose_nothing_but_to_its_dashpot() {
+    // No reference but the balances, which `run` asks for, and the second accuracy. A weaker dashpot costs digits: its
+    // terminal velocity, which the flow is written from, grows beyond anything that is reached.
+    for stiffness in [300.0, 1e3, 1e6] {
+        for damping in [0.01, 0.3, 100.0] {
+            let bounce = scene(
+                base(1.0, 0.0, damping),
+                GRAVITY,
+                damper(0.3, 0.4, resilient(stiffness, 0.01 * stiffness.sqrt())),
+                Excitation::ImpulseTrain { impulse: 0.9, period: 0.21 },
+            );
+            let options = Options { skip: 0, average: 20, audit: true, start: on_floor(), ..Options::default() };
+            let response = run(&bounce, &options);
+            assert!(response.proof.events > 5);
+            let again = run(&bounce, &Options { window_factor: 0.4, ..options });
+            close("second accuracy", again.window().rms_velocity(), response.window().rms_velocity(), 1e-10);
+        }
+    }
+}
+
+fn on_floor() -> StartState {
+    StartState::Given { q: vec![0.0], rate: vec![0.0], particles: vec![(Contact::Floor, 0.0, 0.0)] }
+}
+
+#[test]
+fn walls_of_a_dashpot_alone_bring_the_ceiling_to_rest_where_they_hold_it() {
+    // A blow to the base: its spring brings it back, the dashpot of the walls drags the ceiling along.
+    let mut enclosure = damper(0.05, f64::INFINITY, rigid(0.0));
+    enclosure.walls = Some(Walls { stiffness: 0.0, damping: 5.0, ceiling_mass: 0.2 });
+    let swing = scene(base(1.0, 1000.0, 3.0), 0.0, enclosure.clone(), nothing(40.0));
+    let start =
+        StartState::Given { q: vec![0.0, 0.0], rate: vec![1.0, 0.0], particles: vec![(Contact::Flight, 10.0, 0.0)] };
+    let response = run(&swing, &once(start));
+    within("base at rest", response.final_displacement, 0.0, 1e-13);
+    within("and still", response.final_velocity, 0.0, 1e-13);
+
+    // And with a particle between them the balances close.
+    enclosure.gap = 0.3;
+    enclosure.floor = resilient(1000.0, 2.0);
+    enclosure.ceiling = resilient(2000.0, 2.0);
+    let drive = Excitation::Harmonic { force: 30.0, angular_frequency: 30.0 };
+    let shaken = scene(base(1.0, 1000.0, 3.0), GRAVITY, enclosure, drive);
+    let start =
+        StartState::Given { q: vec![0.0, 0.0], rate: vec![0.0, 0.0], particles: vec![(Contact::Flight, 0.1, 0.0)] };
+    let response =
+        run(&shaken, &Options { skip: 5, average: 50, start, audit: true, record_events: 1000, ..Options::default() });
+    assert!(!only(&response, EventKind::CeilingContact).is_empty());
+}
