@@ -91,7 +91,8 @@ fn scenes() -> Vec<(&'static str, HybridSystem)> {
         ("plastic limit stop", system(1.0, vec![Damper { stop: stop(0.0), ..model_2() }], train(20.0))),
         ("elastic limit stop", system(1.0, vec![Damper { stop: stop(0.5), ..model_2() }], train(20.0))),
         ("Model 3", system(1.0, vec![Damper { walls, ..model_2() }], train(10.0))),
-        ("equivalent viscous damping", system(1.0, vec![damper(equivalent)], harmonic(3.0, natural()))),
+        ("equivalent viscous damping, impulses", system(1.0, vec![damper(equivalent.clone())], train(20.0))),
+        ("equivalent viscous damping, harmonic", system(1.0, vec![damper(equivalent)], harmonic(7.0, natural()))),
         ("two dampers", system(1.0, vec![small(0.03, 0.4905), small(0.02, 0.3)], train(7.0))),
         ("three dampers", system(1.0, vec![small(0.02, 0.4905), small(0.02, 0.3), small(0.01, 0.2)], train(7.0))),
     ]
