@@ -109,8 +109,8 @@ fn known(opened: &Opened) -> String {
     let ids: Vec<&str> = opened.items.iter().map(|item| item.source.experiment.id.0.as_str()).collect();
     match ids.as_slice() {
         [] => "none that can be read".into(),
-        [few @ ..] if few.len() <= 8 => few.join(", "),
-        [many @ ..] => format!("{}, … ({} in all; see `shotdamp list`)", many[..4].join(", "), many.len()),
+        few if few.len() <= 8 => few.join(", "),
+        many => format!("{}, … ({} in all; see `shotdamp list`)", many[..4].join(", "), many.len()),
     }
 }
 

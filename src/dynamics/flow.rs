@@ -380,6 +380,11 @@ impl Flow {
         })
     }
 
+    /// So short a time that the cube of what turns in it is below rounding.
+    pub(crate) fn is_short(&self, time: f64) -> bool {
+        self.blocks.iter().all(|block| block.radius * time < 5e-6)
+    }
+
     /// Natural frequencies of the contact state, rad/s (moduli of the complex pairs' eigenvalues).
     pub(crate) fn natural_frequencies(&self) -> impl Iterator<Item = f64> {
         self.blocks[..self.own].iter().filter(|block| block.oscillates()).map(|block| block.determinant.sqrt())

@@ -216,7 +216,8 @@ fn pressed(
         let damping = state.damping[j];
         let force = spring_and_dashpot(rest, stiffness, damping);
         let mix = mixed(&flow.blocks, phases, stiffness, damping);
-        let begin = touching_once(state.smooth[j]);
+        // A spring without dashpot begins to push at zero.
+        let begin = touching_once(state.smooth[j] || (here.gap == 0.0 && damping == 0.0));
         push(Crossing::Release, Draft { sign: -away, parabola: force, phases: &mix, start: begin, distance: false });
     } else {
         let begin = start(here.gap == 0.0, here, state.smooth[j]);
@@ -243,10 +244,8 @@ fn held(
     let bends = accelerations(&flow.blocks, phases);
     let offset = 2.0 * rest.p2 + state.system.gravity - side.away() * spring_on_stop(particle, side);
     let parabola = Parabola { p0: offset, p1: 0.0, p2: 0.0 };
-    push(
-        Crossing::Release,
-        Draft { sign: side.away(), parabola, phases: &bends, start: Start::Apart, distance: false },
-    );
+    let begin = touching_once(state.smooth[j]);
+    push(Crossing::Release, Draft { sign: side.away(), parabola, phases: &bends, start: begin, distance: false });
 }
 
 fn touching_once(touching: bool) -> Start {
@@ -268,11 +267,44 @@ pub(crate) fn spring_on_stop(particle: &Particle, side: Side) -> f64 {
     }
 }
 
-/// How strongly a face holds particle j, as an acceleration: positive while it can push.
-pub(crate) fn push_per_mass(system: &HybridSystem, flow: &Flow, signals: &Signals, j: usize, side: Side) -> f64 {
-    let (phases, rest) = signals.of(face_row(flow, j, side));
-    let bend = accelerations(&flow.blocks, phases).iter().fold(2.0 * rest.p2, |sum, phase| sum + phase.value);
-    side.away() * (bend + system.gravity) - spring_on_stop(&system.particles[j], side)
+/// How a face holds a particle that does not move against it.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Grip {
+    /// What it can push per mass, as an acceleration: it holds while this is positive.
+    pub(crate) push: f64,
+    /// How fast that grows.
+    growth: f64,
+    /// What of it is rounding.
+    noise: f64,
+}
+
+impl Grip {
+    /// The grip of a face on particle j; with the particle in flight, what brings it back to the face.
+    pub(crate) fn of(system: &HybridSystem, flow: &Flow, signals: &Signals, j: usize, side: Side) -> Self {
+        let (phases, rest) = signals.of(face_row(flow, j, side));
+        let spring = spring_on_stop(&system.particles[j], side);
+        let (mut bend, mut growth) = (2.0 * rest.p2, 0.0);
+        let mut size = system.gravity + bend.abs() + spring;
+        for phase in accelerations(&flow.blocks, phases) {
+            bend += phase.value;
+            growth += phase.rate;
+            size += phase.value.abs();
+        }
+        Self {
+            push: side.away() * (bend + system.gravity) - spring,
+            growth: side.away() * growth,
+            noise: 8.0 * f64::EPSILON * size,
+        }
+    }
+
+    /// Whether it holds: where the push is nothing but rounding, by what it becomes.
+    pub(crate) fn holds(self) -> bool {
+        self.push > self.noise || (self.is_nothing() && self.growth >= 0.0)
+    }
+
+    pub(crate) fn is_nothing(self) -> bool {
+        self.push.abs() <= self.noise
+    }
 }
 
 /// k·p + c·p′.

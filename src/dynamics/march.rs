@@ -7,7 +7,7 @@ use super::audit::Audit;
 use super::block::Phase;
 use super::contact::{Crossing, Impact, Relative, STICKING_SPEED, Side};
 use super::flow::{Cholesky, DrivePhase, Flow, Parabola, Signals};
-use super::guards::{self, Contacts, Crossings};
+use super::guards::{self, Contacts, Crossings, Grip};
 use super::integral::quadrature;
 use super::mobility::Mobilities;
 use super::search::{Clarity, Found, Search};
@@ -33,7 +33,7 @@ pub(crate) struct March<'a> {
     particles: Vec<Relative>,
     contacts: Vec<Contact>,
     damping: Vec<f64>,
-    /// A particle just let go smoothly: u = u′ = u″ = 0, it leaves with u‴.
+    /// The last contact began or ended smoothly: u = u′ = u″ = 0, it leaves with u‴; or its push grows from zero.
     smooth: Vec<bool>,
     // Clock.
     cycle: u64,
@@ -239,11 +239,17 @@ impl<'a> March<'a> {
 
     /// A jump of the force.
     fn tick(&mut self, tick: Tick, kick: f64) -> Result<(), EngineError> {
+        let stepped = tick.level != self.level;
         self.level = tick.level;
         let impulse = tick.impulse + kick;
-        if impulse == 0.0 {
-            return Ok(());
+        if impulse != 0.0 {
+            self.strike_structure(impulse)?;
         }
+        if stepped { self.regrip() } else { Ok(()) }
+    }
+
+    /// An impulse on the structure.
+    fn strike_structure(&mut self, impulse: f64) -> Result<(), EngineError> {
         let before = self.audit.is_some().then(|| super::audit::energy(self.system, &self.audit_state()));
         // The impulse acts on the structure; a particle that is held receives its share through the face.
         for j in 0..self.particles.len() {
@@ -264,6 +270,8 @@ impl<'a> March<'a> {
 
     /// After a jump of velocities: decides every contact that the jump has made untenable.
     fn settle(&mut self) -> Result<(), EngineError> {
+        // A face that the jump drives into its particle carries it only after their impact.
+        let mut struck = Vec::new();
         for j in 0..self.particles.len() {
             let particle = &self.system.particles[j];
             let contact = self.contacts[j];
@@ -274,17 +282,25 @@ impl<'a> March<'a> {
                     let floor = self.particles[j];
                     if floor.gap == 0.0 && floor.rate < 0.0 {
                         self.meet(j, Side::Floor)?;
+                    } else if floor.gap == 0.0 && floor.rate == 0.0 {
+                        self.rest(j, Side::Floor)?;
                     } else if let Some(ceiling) = self.ceiling_relative(j)
                         && ceiling.gap == 0.0
-                        && ceiling.rate > 0.0
                     {
-                        self.particles[j] = ceiling;
-                        self.meet(j, Side::Ceiling)?;
+                        if ceiling.rate > 0.0 {
+                            self.particles[j] = ceiling;
+                            self.meet(j, Side::Ceiling)?;
+                        } else if ceiling.rate == 0.0 {
+                            self.particles[j] = ceiling;
+                            self.rest(j, Side::Ceiling)?;
+                        }
                     }
                 }
                 _ if contact.holds(particle) => {
                     if away < 0.0 {
-                        self.strike(j, side, side.face(particle).law.restitution())?;
+                        self.changed = true;
+                        self.contacts[j] = if side.stopped() == contact { side.pressed() } else { Contact::Flight };
+                        struck.push((j, side));
                     } else if away > 0.0 {
                         self.let_go(j, side);
                     }
@@ -307,6 +323,16 @@ impl<'a> March<'a> {
                         }
                     }
                 }
+            }
+        }
+        for (j, side) in struck {
+            if side.away() * self.particles[j].rate < 0.0 {
+                self.strike(j, side, side.face(&self.system.particles[j]).law.restitution())?;
+            } else {
+                // Another impact has driven the face away in the meantime.
+                let rate = self.particles[j].rate;
+                self.record(j, side.lost(), rate, rate);
+                self.after_bounce(j, side);
             }
         }
         self.choose_flow()
@@ -358,22 +384,8 @@ impl<'a> March<'a> {
         let approach = self.particles[j].rate;
         self.changed = true;
         self.contacts[j] = Contact::Flight;
-        let meets = self.mobilities.of(self.system, &self.contacts, j, side)?;
-        let impact = Impact::new(meets.at_face, particle.mass, restitution, approach);
-        for (other, particle) in self.system.particles.iter().enumerate() {
-            // The faces of all other particles move with the structure's jump.
-            if other != j {
-                let row = &self.contacts[other].side().face(particle).row;
-                if !self.contacts[other].holds(particle) {
-                    self.particles[other].rate += impact.impulse * dot(row, &meets.answer);
-                }
-            }
-        }
-        self.rate.iter_mut().zip(&meets.answer).for_each(|(rate, answer)| *rate -= impact.impulse * answer);
+        let impact = self.exchange(j, side, restitution)?;
         self.particles[j].rate = impact.departure;
-        if let Some(audit) = &mut self.audit {
-            audit.loss(impact.loss);
-        }
         self.record(j, if stop.is_some() { side.hit() } else { side.made() }, approach, impact.departure);
         self.half.touching = false;
         let speed = impact.departure.abs();
@@ -389,27 +401,76 @@ impl<'a> March<'a> {
         self.changed = true;
         self.contacts[j] = held;
         self.choose_flow()?;
-        let push = self.push(j, side);
-        if push > 0.0 {
+        let grip = self.grip(j, side);
+        if grip.holds() && (speed == 0.0 || !grip.is_nothing()) {
+            self.smooth[j] = grip.is_nothing();
             if speed > 0.0 {
-                self.contacts[j] = Contact::Flight;
-                let meets = self.mobilities.of(self.system, &self.contacts, j, side)?;
-                let last = Impact::new(meets.at_face, particle.mass, 0.0, self.particles[j].rate);
-                self.contacts[j] = held;
+                let last = self.exchange(j, side, 0.0)?;
                 // What was left to bounce: a geometric series of flights of 2u′/a, each shorter by ε. In flight the face no
                 // longer carries the particle, so that a is larger than the push per mass that will hold it.
-                let tail = 2.0 * speed / (push * last.lightening * (1.0 - restitution));
-                self.rate.iter_mut().zip(&meets.answer).for_each(|(rate, answer)| *rate -= last.impulse * answer);
-                if let Some(audit) = &mut self.audit {
-                    audit.loss(last.loss);
-                }
+                let tail = 2.0 * speed / (grip.push * last.lightening * (1.0 - restitution));
                 self.record_at(j, EventKind::ChatterEnd, self.time + tail, self.particles[j].rate, 0.0);
             }
             self.particles[j].rate = 0.0;
         } else {
+            self.smooth[j] = speed == 0.0 && grip.is_nothing();
             self.after_bounce(j, side);
         }
         Ok(())
+    }
+
+    /// A particle that lies at a face without moving against it: what brings it there keeps it there.
+    fn rest(&mut self, j: usize, side: Side) -> Result<(), EngineError> {
+        self.choose_flow()?;
+        let grip = self.grip(j, side);
+        self.smooth[j] = grip.is_nothing();
+        if grip.holds() {
+            self.changed = true;
+            self.contacts[j] = side.pressed();
+        } else if side == Side::Ceiling {
+            self.refer_to_floor(j);
+        }
+        Ok(())
+    }
+
+    /// After a jump of the force: lets go what a face can no longer hold.
+    fn regrip(&mut self) -> Result<(), EngineError> {
+        for j in 0..self.particles.len() {
+            let contact = self.contacts[j];
+            if contact.holds(&self.system.particles[j]) {
+                self.choose_flow()?;
+                let grip = self.grip(j, contact.side());
+                self.smooth[j] = grip.is_nothing();
+                if !grip.holds() {
+                    self.let_go(j, contact.side());
+                }
+            } else if contact == Contact::Flight && self.particles[j] == Relative::default() {
+                self.rest(j, Side::Floor)?;
+            }
+        }
+        self.choose_flow()
+    }
+
+    /// The exchange of momentum in an impact, with the jump of the structure; the faces of all other particles move with it.
+    /// The particle itself is left to the caller.
+    fn exchange(&mut self, j: usize, side: Side, restitution: f64) -> Result<Impact, EngineError> {
+        let approach = self.particles[j].rate;
+        let contact = std::mem::replace(&mut self.contacts[j], Contact::Flight);
+        let meets = self.mobilities.of(self.system, &self.contacts, j, side)?;
+        self.contacts[j] = contact;
+        let impact = Impact::new(meets.at_face, self.system.particles[j].mass, restitution, approach);
+        for (other, particle) in self.system.particles.iter().enumerate() {
+            let contact = self.contacts[other];
+            if other != j && !contact.holds(particle) {
+                let row = &contact.side().face(particle).row;
+                self.particles[other].rate += impact.impulse * dot(row, &meets.answer);
+            }
+        }
+        self.rate.iter_mut().zip(&meets.answer).for_each(|(rate, answer)| *rate -= impact.impulse * answer);
+        if let Some(audit) = &mut self.audit {
+            audit.loss(impact.loss);
+        }
+        Ok(impact)
     }
 
     /// The particle moves away from what it struck.
@@ -458,13 +519,13 @@ impl<'a> March<'a> {
         }
     }
 
-    /// How strongly a face holds particle j, as an acceleration: positive while it can push.
-    fn push(&mut self, j: usize, side: Side) -> f64 {
+    /// How a face holds particle j in the flow in force.
+    fn grip(&mut self, j: usize, side: Side) -> Grip {
         let drive = self.drive_phase(self.time);
         self.enter_flow(drive);
         let flow = &self.flows[self.now];
         flow.signals(&self.c, self.level, drive, &mut self.signals);
-        guards::push_per_mass(self.system, flow, &self.signals, j, side)
+        Grip::of(self.system, flow, &self.signals, j, side)
     }
 
     fn record(&mut self, j: usize, kind: EventKind, approach: f64, departure: f64) {
@@ -516,11 +577,16 @@ impl<'a> March<'a> {
 
     /// Propagates to `until` within the cycle, from event to event.
     fn propagate_to(&mut self, until: f64) -> Result<(), EngineError> {
+        // Near the start of a cycle the clock counts finer than its instants can be told apart later.
+        let instant = f64::EPSILON * self.system.drive.period;
         let mut stuck = 0;
+        let mut last = self.time;
         while self.time < until {
-            let before = self.time;
             self.segment(until)?;
-            stuck = if self.time > before { 0 } else { stuck + 1 };
+            if self.time > last + instant {
+                (stuck, last) = (0, self.time);
+            }
+            stuck += 1;
             if stuck > MOST_EVENTS_AT_AN_INSTANT {
                 return Err(EngineError::NoProgress { cycle: self.cycle, time: self.time });
             }
@@ -580,6 +646,10 @@ impl<'a> March<'a> {
         for (j, particle) in self.system.particles.iter().enumerate() {
             let contact = self.contacts[j];
             if contact.face(particle).is_none() {
+                if self.smooth[j] && self.particles[j] == Relative::default() && flow.is_short(length) {
+                    // Let go at the same instant as another: u = u‴t³/6 is still nothing, and is kept so to the bit.
+                    continue;
+                }
                 let row = match contact.side() {
                     Side::Floor => flow.face_rows[j].floor,
                     Side::Ceiling => flow.face_rows[j].ceiling,
@@ -676,14 +746,21 @@ impl<'a> March<'a> {
         let side = self.contacts[j].side();
         let particle = &self.system.particles[j];
         match crossing {
+            // A particle that a rounding has put behind a face which it is leaving has not met it.
             Crossing::ToFloor => {
                 self.particles[j].gap = 0.0;
-                self.meet(j, Side::Floor)?;
+                if self.particles[j].rate < 0.0 {
+                    self.meet(j, Side::Floor)?;
+                }
             }
             Crossing::ToCeiling => {
-                if let Some(relative) = self.ceiling_relative(j) {
-                    self.particles[j] = Relative { gap: 0.0, rate: relative.rate };
-                    self.meet(j, Side::Ceiling)?;
+                if let Some(Relative { rate, .. }) = self.ceiling_relative(j) {
+                    self.particles[j] = Relative { gap: 0.0, rate };
+                    if rate > 0.0 {
+                        self.meet(j, Side::Ceiling)?;
+                    } else {
+                        self.refer_to_floor(j);
+                    }
                 }
             }
             Crossing::ToStop => {

@@ -72,7 +72,8 @@ pub(crate) struct Search {
     pub(crate) kernels: Vec<Kernel>,
     /// First windows are shortened by this factor, to have a second accuracy to compare with.
     window_factor: f64,
-    /// Windows below this are not divided any more, s.
+    /// Windows below this are not divided any more, s. It grows from doubt to doubt: a guard that stays within rounding of
+    /// zero must not hold up the search.
     shortest: f64,
 }
 
@@ -129,10 +130,11 @@ impl Search {
         }
         self.current.clear();
         self.current.extend_from_slice(&self.initial);
-        self.shortest = 1e-4 * f64::EPSILON * limit;
         self.amplitudes.resize(self.initial.len(), 0.0);
         self.reach.resize(self.guards.len(), 0.0);
         let mut t = 0.0;
+        let clock = f64::EPSILON * limit;
+        self.shortest = clock;
         loop {
             let remaining = limit - t;
             // Below the rounding of the clock nothing can be told apart: what happens at the limit comes first.
@@ -153,9 +155,11 @@ impl Search {
                 }
             }
             let mut window = remaining.min(REACH * self.window_factor * (pace.bend / pace.snap).sqrt());
+            let ties = clarity.ties;
             if let Some(root) = self.search_window(blocks, series, t, &mut window, clarity) {
                 return Found::Event { guard: root.guard, time: self.polish(blocks, series, root, t, window, clarity) };
             }
+            self.shortest = if clarity.ties > ties { 4.0 * self.shortest } else { clock };
             t += window;
             if limit - t <= 4.0 * f64::EPSILON * limit {
                 return Found::Nothing;
@@ -209,7 +213,7 @@ impl Search {
         let mut piece = Window::new();
         'shrink: loop {
             let mut first: Option<Root> = None;
-            let indivisible = *window <= 64.0 * f64::EPSILON * (t + *window) || *window <= self.shortest;
+            let indivisible = *window <= self.shortest.max(64.0 * f64::EPSILON * t);
             let span = Span::new(series, t, *window);
             for index in 0..self.guards.len() {
                 let guard = self.guards[index];
@@ -314,10 +318,15 @@ impl Search {
             } else {
                 upper = upper.min(time)
             }
-            let scaled = nearest_root(&local);
-            let delta = scaled * series.unit;
-            let next = time + delta;
+            let mut scaled = nearest_root(&local);
+            let mut delta = scaled * series.unit;
+            let mut next = time + delta;
             if (next >= lower - slack && next <= upper + slack) || delta.abs() <= 8.0 * f64::EPSILON * time {
+                if next < t {
+                    // Rounding has put the root of a guard that starts near zero before the window; time never runs backwards.
+                    (next, delta) = (t, t - time);
+                    scaled = delta / series.unit;
+                }
                 if scaled.abs() < NEAR {
                     for (kernel, block) in self.kernels.iter_mut().zip(blocks) {
                         *kernel = block.compose(*kernel, block.kernel_near_zero(delta));
@@ -325,7 +334,7 @@ impl Search {
                     if self.guards[root.guard].distance {
                         // The guard would have to be moved by about g′²/(2|g″|) for this crossing to vanish.
                         let bend = (4.0 * local[2].abs()).max(f64::MIN_POSITIVE);
-                        let slope = local[1] + delta * (2.0 * local[2] + 3.0 * delta * local[3]);
+                        let slope = local[1] + scaled * (2.0 * local[2] + 3.0 * scaled * local[3]);
                         clarity.margin = clarity.margin.min(slope * slope / bend);
                     }
                     return next;
@@ -349,7 +358,7 @@ impl Search {
     fn polish_short_hop(&mut self, blocks: &[Block], series: &Series, root: Root, window: f64) -> f64 {
         let mut piece = Window::new();
         self.expand(series, root.guard, &Span::new(series, 0.0, window), &mut piece);
-        let time = window * piece.refine(root.guess);
+        let time = window * piece.refine(root.guess, root.high);
         self.kernels.clear();
         self.kernels.extend(blocks.iter().map(|block| block.kernel_near_zero(time)));
         time

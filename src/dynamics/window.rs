@@ -177,6 +177,10 @@ impl Window {
             convex &= second > bend_doubt;
         }
         let clear = Verdict::Clear { clearance: f64::INFINITY };
+        if doubt == 0.0 && b.iter().all(|b| *b == 0.0) {
+            // Nothing pushes and nothing pulls, for ever.
+            return clear;
+        }
         let root = |high: f64| Verdict::Root { guess: self.root(high, high).0, high };
         if (falls || concave) && end < -doubt {
             return root(1.0);
@@ -250,14 +254,24 @@ impl Window {
         last
     }
 
-    /// A root of the polynomial divided by σ^order, from a guess that is near.
-    pub(crate) fn refine(&self, guess: f64) -> f64 {
+    /// The root below `high` of the polynomial divided by σ^order, from a guess that is near.
+    pub(crate) fn refine(&self, guess: f64, high: f64) -> f64 {
+        let (mut lower, mut upper) = (0.0, high);
         let mut x = guess;
-        for _ in 0..30 {
+        for _ in 0..60 {
             let (value, slope) = evaluate(&self.a, x);
-            let step = value / slope;
-            x -= step;
-            if !(step.abs() > 2.0 * f64::EPSILON * x.abs()) {
+            if value > 0.0 {
+                lower = x
+            } else {
+                upper = x
+            }
+            let mut next = x - value / slope;
+            if !(next >= lower && next <= upper) {
+                next = 0.5 * (lower + upper);
+            }
+            let step = (next - x).abs();
+            x = next;
+            if !(step > 2.0 * f64::EPSILON * x) {
                 break;
             }
         }

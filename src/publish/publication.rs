@@ -28,11 +28,11 @@ pub fn publication_reasons(opened: &Opened, item: &Item) -> Vec<Reason> {
     let Some(record) = item.record() else { return Vec::new() };
     let Some(publication) = &record.publication else { return vec![Reason::NeverPublished] };
     let id = &item.source.experiment.id;
-    let mut reasons = differences(&publication.meaning, &meaning(opened, item, record), &|key| match key {
-        "experiment" => item.source.file.clone(),
-        "assumptions" => ASSUMPTIONS.into(),
-        "reference" => format!("reference of {id}"),
-        "table" => format!("table of {id}"),
+    let mut reasons = differences(&publication.meaning, &meaning(opened, item, record), &|path| match path {
+        ["experiment", ..] => item.source.file.clone(),
+        ["assumptions", ..] => ASSUMPTIONS.into(),
+        ["reference", ..] => format!("reference of {id}"),
+        ["table"] => format!("table of {id}"),
         _ => "this program".into(),
     });
     for (name, hash) in &publication.files {

@@ -95,11 +95,21 @@ fn equal(claim: &Equal, view: &View<'_>) -> Result<Decision, Absence> {
     for (i, a) in values.iter().enumerate() {
         for b in &values[i + 1..] {
             let apart = (a.value - b.value).abs();
-            tally.require(claim.within.allows(a.value, b.value) - apart, a.run.hypot(b.run), String::new);
+            tally.require(
+                claim.within.allows(a.value, b.value) - apart,
+                joint([a.value, a.run], [b.value, b.run]),
+                String::new,
+            );
         }
     }
     let outcome = tally.decision()?.outcome;
     Ok(Decision { outcome, found: format!("{}, to agree within {}", list(&values, " and "), claim.within.words()) })
+}
+
+/// Error of a difference of two (value, error). Numbers that are equal to the last bit come from the same motion, chaotic or
+/// not (a stop that is never reached, say): their errors are one error.
+fn joint(a: [f64; 2], b: [f64; 2]) -> f64 {
+    if a == b { 0.0 } else { a[1].hypot(b[1]) }
 }
 
 fn apart(claim: &Apart, view: &View<'_>) -> Result<Decision, Absence> {
@@ -179,7 +189,7 @@ fn agree(tally: &mut Tally, cells: &[Cell], within: Within, place: impl FnOnce()
     if let Some((low, high)) = extremes(cells) {
         let apart = high.value - low.value;
         let margin = within.allows(low.value, high.value) - apart;
-        tally.require(margin, low.run.hypot(high.run), || {
+        tally.require(margin, joint([low.value, low.run], [high.value, high.run]), || {
             let shown = match within {
                 Within::Relative(_) => percent(apart / low.value.abs().max(high.value.abs())),
                 Within::Absolute(_) => significant(apart, 3),

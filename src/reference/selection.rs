@@ -78,7 +78,8 @@ impl Allowed {
 
 /// Equal to nine digits: a sweep's points are computed, an entry's are written.
 pub(crate) fn same(a: f64, b: f64) -> bool {
-    a == b || (a - b).abs() <= 1e-9 * a.abs().max(b.abs())
+    // Infinite levels (a gap without ceiling) are equal to themselves only.
+    a == b || (a.is_finite() && b.is_finite() && (a - b).abs() <= 1e-9 * a.abs().max(b.abs()))
 }
 
 fn cell(data: &Data, row: usize) -> Option<f64> {

@@ -119,8 +119,11 @@ impl Texts {
 
 fn read_text(path: &Path) -> Result<Vec<u8>, FileError> {
     let fail = |source| FileError::new("read", path, source);
-    let mut bytes = Vec::new();
-    File::open(path).map_err(fail)?.take(LONGEST_TEXT + 1).read_to_end(&mut bytes).map_err(fail)?;
+    let file = File::open(path).map_err(fail)?;
+    // Room for all of it at once: a run with nothing to do spends its time here.
+    let length = file.metadata().map_err(fail)?.len().min(LONGEST_TEXT);
+    let mut bytes = Vec::with_capacity(usize::try_from(length).unwrap_or(0) + 1);
+    file.take(LONGEST_TEXT + 1).read_to_end(&mut bytes).map_err(fail)?;
     if bytes.len() as u64 > LONGEST_TEXT {
         return Err(fail(std::io::Error::other(format!("it is longer than {} MiB", LONGEST_TEXT >> 20))));
     }

@@ -11,6 +11,7 @@ use super::reason::{Reason, differences};
 use super::record::{NoRecord, Record};
 use super::variant::{Sensitivity, Variant, variants};
 use crate::dynamics::SOLVER_VERSION;
+use crate::scene::AssumptionValue;
 use crate::spec::AssumptionSheet;
 
 /// One experiment as planned.
@@ -97,17 +98,21 @@ fn simulation(source: &Source, sheet: &AssumptionSheet, variants: &[Variant], se
     let used = source.experiment.assumptions_used();
     let assumptions: BTreeMap<_, _> =
         sheet.entries.iter().filter(|(name, _)| used.contains(name)).map(|(name, e)| (name, &e.value)).collect();
-    let ends: BTreeMap<_, _> = variants
-        .iter()
-        .filter_map(|variant| Some((&variant.label, variant.assumptions.values.get(&variant.moved?)?)))
-        .collect();
+    let sensitivity = (sensitivity == Sensitivity::Wanted).then(|| ends(variants));
     json!({
         "experiment": source.experiment.simulation_json(),
         "assumptions": assumptions,
-        "sensitivity": if sensitivity == Sensitivity::Wanted { "wanted" } else { "not wanted" },
-        "ends": ends,
+        "sensitivity": sensitivity,
         "solver_version": SOLVER_VERSION,
     })
+}
+
+/// The value that each variant moves its assumption to.
+fn ends(variants: &[Variant]) -> BTreeMap<&str, &AssumptionValue> {
+    variants
+        .iter()
+        .filter_map(|variant| Some((variant.label.as_str(), variant.assumptions.values.get(&variant.moved?)?)))
+        .collect()
 }
 
 fn state(layout: &Layout, source: &Source, simulation: &Value) -> State {
@@ -118,9 +123,10 @@ fn state(layout: &Layout, source: &Source, simulation: &Value) -> State {
         Err(NoRecord::Unreadable(what)) => return State::Stale(vec![Reason::RecordUnreadable(what)]),
     };
     let mut reasons = differences(&record.simulation, simulation, &|path| match path {
-        "experiment" => source.file.clone(),
-        "assumptions" | "ends" => ASSUMPTIONS.into(),
-        "sensitivity" => format!("reference of {id}"),
+        ["experiment", ..] => source.file.clone(),
+        // There as a whole or not at all, as the reference has numbers or not; its parts are ranges of assumptions.
+        ["sensitivity"] => format!("reference of {id}"),
+        ["assumptions" | "sensitivity", ..] => ASSUMPTIONS.into(),
         _ => "this program".into(),
     });
     let table = layout.path(&table_name(id));

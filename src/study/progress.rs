@@ -39,11 +39,8 @@ impl Listen for Progress {
             }
             Event::Simulated { count, .. } => self.bar.inc(*count),
             Event::Finished { experiment, failures, .. } => {
-                if failures.rows > 0 {
-                    let rows = failures.rows;
-                    self.bar.println(format!("{experiment}: {rows} rows failed; the first: {}", failures.first));
-                }
-                self.bar.set_message(format!("{experiment} done"));
+                let told = if failures.rows == 0 { "done" } else { "done, with failed rows" };
+                self.bar.set_message(format!("{experiment} {told}"));
             }
             Event::Ended => self.bar.finish_and_clear(),
         }

@@ -36,8 +36,6 @@ pub enum Reason {
     Failed(Failures),
     /// There is a table and no report of it.
     NeverPublished,
-    /// It was asked for.
-    Forced,
 }
 
 /// Leaves told one by one before the rest is counted: a longer sweep changes hundreds.
@@ -45,12 +43,12 @@ const TOLD: usize = 3;
 /// Longest value that is told in full.
 const LONGEST: usize = 60;
 
-/// The leaves in which `new` departs from `old`, with the file that the first key of each belongs to.
+/// The leaves in which `new` departs from `old`, each with the file that `file_of` finds for its path.
 #[must_use]
-pub fn differences(old: &Value, new: &Value, file_of: &dyn Fn(&str) -> String) -> Vec<Reason> {
+pub fn differences(old: &Value, new: &Value, file_of: &dyn Fn(&[&str]) -> String) -> Vec<Reason> {
     let mut by_file: Vec<(String, Vec<Change>)> = Vec::new();
     for mut change in changes(old, new) {
-        let file = file_of(change.path.first().map_or("", String::as_str));
+        let file = file_of(&change.path.iter().map(String::as_str).collect::<Vec<_>>());
         if change.path.len() > 1 {
             change.path.remove(0);
         }
@@ -84,7 +82,6 @@ impl fmt::Display for Reason {
             Self::FileAltered(name) => write!(f, "{name} is not what was written"),
             Self::Failed(Failures { rows, first }) => write!(f, "{rows} rows failed; the first: {first}"),
             Self::NeverPublished => write!(f, "figures and report have not been made"),
-            Self::Forced => write!(f, "asked for"),
         }
     }
 }

@@ -18,9 +18,9 @@ use crate::dynamics::SOLVER_VERSION;
 
 /// Name of the file within the study.
 const NAME: &str = "results/snapshot.json";
-/// Of an output this much is looked at, at its head and at its tail. Nearly every file is shorter; the tail of a Parquet
-/// file is where its structure is.
-const LOOK: u64 = 32 << 10;
+/// Of an output this much is looked at, at its head and at its tail. Most texts are shorter; a Parquet file ends with the
+/// seal over all its bytes, and a PNG with the checksum over all its pixels.
+const LOOK: usize = 4 << 10;
 
 /// The last complete run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -60,15 +60,20 @@ impl Glance {
     fn at(path: &Path) -> std::io::Result<Self> {
         let mut file = File::open(path)?;
         let bytes = file.metadata()?.len();
-        let mut seen = Vec::new();
-        if bytes <= 2 * LOOK {
-            file.read_to_end(&mut seen)?;
-        } else {
-            (&mut file).take(LOOK).read_to_end(&mut seen)?;
-            file.seek(SeekFrom::Start(bytes - LOOK))?;
-            file.take(LOOK).read_to_end(&mut seen)?;
-        }
-        Ok(Self { bytes, blake3: blake3::hash(&seen).to_hex().to_string() })
+        let mut seen = [0; 2 * LOOK];
+        let seen = match usize::try_from(bytes) {
+            Ok(all) if all <= seen.len() => {
+                file.read_exact(&mut seen[..all])?;
+                &seen[..all]
+            }
+            _ => {
+                file.read_exact(&mut seen[..LOOK])?;
+                file.seek(SeekFrom::Start(bytes - LOOK as u64))?;
+                file.read_exact(&mut seen[LOOK..])?;
+                &seen[..]
+            }
+        };
+        Ok(Self { bytes, blake3: blake3::hash(seen).to_hex().to_string() })
     }
 }
 

@@ -8,7 +8,7 @@ use shotdamp::measure::Evaluated;
 use shotdamp::scene::Excitation;
 use shotdamp::study::{Evaluate, Event, Listen, Loaded, Lock, Silence, Simulation, Snapshot};
 
-use crate::desk::{ASSUMPTIONS, Desk, GAP, MadeUp, STOP};
+use crate::desk::{ASSUMPTIONS, Desk, GAP, GAP_REFERENCE, MadeUp, STOP};
 
 #[test]
 fn the_bytes_do_not_depend_on_the_number_of_threads() {
@@ -133,6 +133,13 @@ fn a_changed_input_is_named_with_file_key_and_values() {
 
     desk.put("experiments/ch3/ch3-gap.yaml", &GAP.replace("mass: 1 kg", "mass: 2 kg"));
     assert_eq!(desk.why("ch3-gap"), ["experiments/ch3/ch3-gap.yaml: scene.structure.single_mass.mass: 1.0 -> 2.0"]);
+    assert_eq!(desk.run(2, &MadeUp::default(), &Silence), ["ch3-gap"]);
+
+    // Its first published number asks for the ends of the assumptions, which were not run so far.
+    let number = "value: \"1.5\"\n    from: {maximum: {of: velocity_ratio, over: gap_ratio}}";
+    let (before, _) = GAP_REFERENCE.split_once("claim").unwrap();
+    desk.put("reference/ch3/ch3-gap.yaml", &format!("{before}{number}\n"));
+    assert!(desk.why("ch3-gap")[0].starts_with("reference of ch3-gap: sensitivity: null -> "));
     assert_eq!(desk.run(2, &MadeUp::default(), &Silence), ["ch3-gap"]);
 
     let longer =
