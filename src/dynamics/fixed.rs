@@ -3,6 +3,7 @@
 //! s(k+1) = A_d s(k) + a_d + B_d F(k) with the propagators of the contact state in force ([`propagator`]), and at the end
 //! of each step the question whether that state still holds ([`contact`]). Between two checks the motion is exact; a contact
 //! is noticed up to a step late, so that all results are off by the first order in Δt. That error is what this solver is for.
+//! [`schedule`] says which steps impulses and cycles fall on, [`record`] what is kept of a run.
 //!
 //! The study leaves details open. Those chosen here are the simplest that give what it says of its Fig. 14 (Model 1 under
 //! harmonic force, driven at √(ks/(m+mp)), against a run with the particle fixed to the base; 40 amplitudes a decade):
@@ -18,7 +19,8 @@
 //! With them the ratio is 1.0012 at high amplitudes and 0.9988 at 0.106 for Δt = 10 ms, and at Δt = 10 µs 1.000 at both ends
 //! and nowhere lower.
 //!
-//! Beyond the study: a held particle from which an impulse pulls its face away is let go at once (its share of the impulse
+//! A particle that a rigid face cannot hold is let go a step after it struck, and counts as released; exact events let it go
+//! at once. Beyond the study: a held particle from which an impulse pulls its face away is let go at once (its share of the impulse
 //! would not vanish with Δt), and damping, stop and release without tension follow the event-driven driver's rules at the
 //! end of each step. What [`super::Proof`] holds then: the residuals of momentum and energy by trapezoidal sums (they show the
 //! scheme's own error: a spring that is noticed compressed has got that energy from nowhere), no ties, and NaN for the
@@ -26,15 +28,15 @@
 
 mod contact;
 mod propagator;
+mod record;
 mod schedule;
 mod stretch;
 mod vector;
 
-use super::audit::{Audit, Passed, State};
+use super::audit::{Audit, Passed};
 use super::contact::{Relative, Side};
 use super::flow::{Cholesky, Flow};
-use super::system::{Contact, Drive, Event, EventKind, HybridSystem, Law, dot};
-use super::trace::Sample;
+use super::system::{Contact, Drive, HybridSystem, Law, dot};
 use super::{EngineError, Options, Response, StartState};
 use propagator::{Layout, Propagator, lead};
 use schedule::{Oscillator, Schedule, StepTick};
@@ -44,9 +46,9 @@ use vector::Vector;
 /// Propagators kept; equivalent viscous damping makes new ones at every half cycle.
 const MOST_PROPAGATORS: usize = 64;
 
-/// Runs a system with the study's scheme.
+/// Runs a system.
 pub(super) fn run(system: &HybridSystem, options: &Options, time_step: f64) -> Result<Response, EngineError> {
-    // One mass; one mass and a particle or two coordinates; soft walls and a particle, one mass and two particles.
+    // One mass alone, with one particle, with soft walls and a particle or with two particles; anything else.
     match Layout::of(system).size() {
         2 => Run::<[f64; 2]>::new(system, options, time_step)?.run(),
         4 => Run::<[f64; 4]>::new(system, options, time_step)?.run(),
@@ -178,8 +180,9 @@ impl<'a, V: Vector> Run<'a, V> {
         }
     }
 
-    fn inside(&self) -> bool {
-        self.options.averages(self.cycle)
+    /// The balances run from the averaged window on, to the end.
+    fn audited(&self) -> bool {
+        self.audit.is_some() && self.cycle >= u64::from(self.options.skip)
     }
 
     /// An impulse added at the start.
@@ -195,7 +198,7 @@ impl<'a, V: Vector> Run<'a, V> {
 
     /// Steps up to a step, and decides the contacts wherever a guard says so.
     fn advance_to(&mut self, until: u64) -> Result<(), EngineError> {
-        let audited = self.audit.is_some() && self.inside();
+        let audited = self.audited();
         while self.step < until {
             if self.step == self.samples.step {
                 self.sample();
@@ -272,62 +275,6 @@ impl<'a, V: Vector> Run<'a, V> {
         }
     }
 
-    fn record(&mut self, particle: usize, kind: EventKind, approach: f64, departure: f64) {
-        self.response.proof.events += 1;
-        if self.inside() {
-            self.response.counts.add(kind);
-        }
-        let wanted = self.response.events.len() < self.options.record_events
-            || self.options.trace.as_ref().is_some_and(|trace| trace.covers(self.cycle));
-        if wanted {
-            let time = (self.step - self.schedule.cycle(self.cycle)) as f64 * self.time_step;
-            self.response.events.push(Event { cycle: self.cycle, time, particle, kind, approach, departure });
-        }
-    }
-
-    /// Books a cycle's sums.
-    fn end_cycle(&mut self) -> Result<(), EngineError> {
-        let tally = std::mem::replace(&mut self.tally, Tally::new(self.layout.size()));
-        if !tally.velocity_square.is_finite() {
-            return Err(EngineError::NotFinite { cycle: self.cycle });
-        }
-        if !self.inside() {
-            return Ok(());
-        }
-        let second_half = 2 * (self.cycle - u64::from(self.options.skip)) >= u64::from(self.options.average);
-        let sums = &mut self.response.sums[usize::from(second_half)];
-        sums.duration += tally.steps as f64 * self.time_step;
-        sums.velocity_square += tally.velocity_square * self.time_step;
-        if self.options.displacement {
-            sums.displacement += self.watch.displacement.dot(&tally.state) * self.time_step;
-            sums.displacement_square += tally.displacement_square * self.time_step;
-        }
-        let passed = &mut self.passed;
-        passed.duration += tally.steps as f64 * self.time_step;
-        passed.position.iter_mut().zip(tally.state.values()).for_each(|(sum, q)| *sum += q * self.time_step);
-        passed.dissipated += tally.dissipated * self.time_step;
-        let [force, modulus] = tally.force;
-        (passed.force, passed.force_modulus) =
-            (passed.force + force * self.time_step, passed.force_modulus + modulus * self.time_step);
-        let [work, modulus] = tally.work;
-        (passed.work, passed.work_modulus) = (passed.work + work, passed.work_modulus + modulus);
-        Ok(())
-    }
-
-    /// Half a sample at the end of a smooth piece of the motion, added or taken off: sums over steps become trapezoidal.
-    fn seam(&mut self, half: f64) {
-        if self.audit.is_none() || !self.inside() {
-            return;
-        }
-        let state = &self.motion.state;
-        let weight = half * self.time_step;
-        self.passed.position.iter_mut().zip(state.values()).for_each(|(sum, q)| *sum += weight * q);
-        for row in &self.propagators[self.now].dissipation {
-            let rate = row.dot(state);
-            self.passed.dissipated += weight * rate * rate;
-        }
-    }
-
     fn finish(mut self) -> Result<Response, EngineError> {
         self.seam(-0.5);
         if let Some(mut audit) = self.audit.take() {
@@ -362,66 +309,6 @@ impl<'a, V: Vector> Run<'a, V> {
         let (n, positions, gap) = (self.layout.n, self.layout.positions(), self.layout.gap(j));
         let (state, floor) = (self.motion.state.values(), &self.system.particles[j].floor.row);
         [dot(floor, &state[..n]) + state[gap], dot(floor, &state[positions..positions + n]) + state[gap + positions]]
-    }
-
-    fn audit_state(&self) -> State {
-        let (n, positions) = (self.layout.n, self.layout.positions());
-        let state = self.motion.state.values();
-        let compression = |j: usize| {
-            let contact = self.contacts[j];
-            match contact.face(&self.system.particles[j]).map(|face| face.law) {
-                Some(Law::Resilient { stiffness, .. }) => [stiffness, self.relative(j, contact.side()).gap],
-                _ => [0.0, 0.0],
-            }
-        };
-        State {
-            q: state[..n].to_vec(),
-            rate: state[positions..positions + n].to_vec(),
-            particles: (0..self.contacts.len()).map(|j| self.absolute(j)).collect(),
-            compressions: (0..self.contacts.len()).map(compression).collect(),
-        }
-    }
-
-    /// Keeps the motion at this step, and looks for the next step to keep.
-    fn sample(&mut self) {
-        let (n, positions) = (self.layout.n, self.layout.positions());
-        let state = self.motion.state.values();
-        let mut sample = Sample {
-            time: self.step as f64 * self.time_step,
-            displacement: dot(&self.system.observed_row, &state[..n]),
-            velocity: dot(&self.system.observed_row, &state[positions..positions + n]),
-            acceleration: self.propagators[self.now].acceleration.at(&self.motion.state, self.motion.force()),
-            damping: if self.contacts.is_empty() { 0.0 } else { self.damping(0) },
-            half_cycle_rms: self.motion.half.map_or(0.0, |half| half.last),
-            ..Sample::default()
-        };
-        if let Some(particle) = self.system.particles.first() {
-            let side = self.contacts[0].side();
-            let face = dot(&side.face(particle).row, &state[..n]);
-            sample.set_particle(particle, side, face, self.relative(0, side).gap, self.contacts[0]);
-        }
-        self.response.trace.push(sample);
-        self.seek_sample(self.step + 1);
-    }
-
-    /// The first step from `from` on that is nearest to an instant asked for.
-    fn seek_sample(&mut self, from: u64) {
-        let next = &mut self.samples;
-        let Some(request) = self.options.trace.filter(|request| request.samples > 0) else {
-            next.step = u64::MAX;
-            return;
-        };
-        while next.cycle < request.to_cycle {
-            next.step = self.schedule.nearest(next.cycle, next.index as f64 / request.samples as f64);
-            if next.step >= from {
-                return;
-            }
-            next.index += 1;
-            if next.index == request.samples {
-                (next.cycle, next.index) = (next.cycle + 1, 0);
-            }
-        }
-        next.step = u64::MAX;
     }
 }
 

@@ -686,12 +686,21 @@ impl<'a> March<'a> {
         }
         self.half.idle = false;
         let total = bends.iter().fold(0.0, |sum, phase| sum + phase.value);
-        let scale = bends.iter().fold(0.0, |sum, phase| sum + phase.value.abs());
+        let rate = bends.iter().fold(0.0, |sum, phase| sum + phase.rate);
+        // Its parts: with a single block the acceleration itself is what rounding has left of them.
+        let observed = self.signals.of(flow.observed).0;
+        let scale = flow.blocks.iter().zip(observed).fold(0.0, |sum, (block, phase)| {
+            sum + (2.0 * block.decay * phase.rate).abs() + (block.determinant * phase.value).abs()
+        });
+        let smooth = total.abs() <= SMOOTH * scale;
         if self.half.sign == 0.0 {
-            self.half.sign = if total < 0.0 { -1.0 } else { 1.0 };
+            // From rest the first half cycle goes where the acceleration is about to go.
+            self.half.touching = smooth;
+            let first = if smooth { rate } else { total };
+            self.half.sign = if first < 0.0 { -1.0 } else { 1.0 };
         }
-        if self.half.touching && total.abs() <= SMOOTH * scale {
-            if bends.iter().fold(0.0, |sum, phase| sum + phase.rate) * self.half.sign < 0.0 {
+        if self.half.touching && smooth {
+            if rate * self.half.sign < 0.0 {
                 // The new damping turns the acceleration back before it has got anywhere.
                 self.half.sign = -self.half.sign;
             }

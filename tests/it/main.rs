@@ -4,6 +4,7 @@ mod cli;
 mod desk;
 mod engine;
 mod figure;
+mod fixed;
 mod made_up;
 mod reference;
 mod report;

@@ -55,6 +55,7 @@ impl<V: Vector> Run<'_, V> {
                 self.let_go(j, side);
             }
         } else if let Law::Resilient { stiffness, no_tension, stop, .. } = side.face(particle).law {
+            let compressed = 0.5 * stiffness * here.gap * here.gap;
             let pushes = away * (-stiffness * here.gap - self.damping(j) * here.rate) > 0.0;
             if contact.presses(particle) {
                 if away * here.gap > 0.0 {
@@ -62,6 +63,7 @@ impl<V: Vector> Run<'_, V> {
                 } else if no_tension && !pushes {
                     self.record(j, side.lost(), here.rate, here.rate);
                     self.contacts[j] = side.released();
+                    self.lose(compressed);
                 } else if let Some(stop) = stop
                     && away * here.gap < -stop.length
                 {
@@ -75,9 +77,17 @@ impl<V: Vector> Run<'_, V> {
             } else if pushes {
                 self.record(j, side.made(), here.rate, here.rate);
                 self.contacts[j] = side.pressed();
+                self.lose(-compressed);
             }
         }
         Ok(())
+    }
+
+    /// Books energy that an impact takes, or a spring that lets go while compressed.
+    fn lose(&mut self, energy: f64) {
+        if let Some(audit) = &mut self.audit {
+            audit.loss(energy);
+        }
     }
 
     /// A particle in flight is found beyond a face.
@@ -108,9 +118,7 @@ impl<V: Vector> Run<'_, V> {
         let jump: Vec<f64> = answer.iter().map(|a| -a * impact.impulse).collect();
         self.kick_structure(&jump, |contact, particle| contact.holds(particle));
         self.place(j, side, Relative { rate: impact.departure, ..here });
-        if let Some(audit) = &mut self.audit {
-            audit.loss(impact.loss);
-        }
+        self.lose(impact.loss);
         self.record(j, if stop.is_some() { side.hit() } else { side.made() }, here.rate, impact.departure);
         let (n, positions) = (self.layout.n, self.layout.positions());
         let speed = dot(&face.row, &self.motion.state.values()[positions..positions + n]);

@@ -278,7 +278,7 @@ fn dashpots(damping: &Matrix, layout: Layout) -> Vec<Signal> {
     let mut rows = Vec::new();
     for k in 0..n {
         let pivot = rest.at(k, k);
-        if !(pivot > 0.0) {
+        if pivot <= 0.0 {
             continue;
         }
         let factor: Vec<f64> = (0..n).map(|i| rest.at(i, k) / pivot.sqrt()).collect();
@@ -319,27 +319,24 @@ fn exponential(derivative: &[Signal], time_step: f64) -> Vec<Vec<f64>> {
         squarings += 1;
         exponent.iter_mut().for_each(|x| *x *= 0.5);
     }
-    let mut power = identity(whole);
+    // exp − 1, so that slow modes keep their digits through the squarings that fast ones need.
+    let mut rest = vec![0.0; whole * whole];
     for term in (1..=TERMS).rev() {
-        power = product(&exponent, &power, whole);
-        power.iter_mut().for_each(|x| *x /= term as f64);
-        (0..whole).for_each(|i| power[i * whole + i] += 1.0);
+        (0..whole).for_each(|i| rest[i * whole + i] += 1.0);
+        rest = product(&exponent, &rest, whole);
+        rest.iter_mut().for_each(|x| *x /= term as f64);
     }
     for _ in 0..squarings {
-        power = product(&power, &power, whole);
+        let square = product(&rest, &rest, whole);
+        rest.iter_mut().zip(square).for_each(|(x, square)| *x = 2.0 * *x + square);
     }
-    (0..whole).map(|j| (0..size).map(|i| power[i * whole + j] / scales[i] * scales[j]).collect()).collect()
+    (0..whole).for_each(|i| rest[i * whole + i] += 1.0);
+    (0..whole).map(|j| (0..size).map(|i| rest[i * whole + j] / scales[i] * scales[j]).collect()).collect()
 }
 
 fn frequency(acceleration: f64) -> f64 {
     let omega = acceleration.abs().sqrt();
     if omega > 0.0 && omega.is_finite() { omega } else { 1.0 }
-}
-
-fn identity(order: usize) -> Vec<f64> {
-    let mut matrix = vec![0.0; order * order];
-    (0..order).for_each(|i| matrix[i * order + i] = 1.0);
-    matrix
 }
 
 fn product(a: &[f64], b: &[f64], order: usize) -> Vec<f64> {

@@ -122,7 +122,7 @@ impl Oscillator {
     pub(super) fn advance(&mut self) {
         self.step += 1;
         let ((sine, cosine), (s, c)) = (self.rotation, self.now);
-        self.now = if self.step % EXACT_EVERY == 0 {
+        self.now = if self.step.is_multiple_of(EXACT_EVERY) {
             sin_cos(self.angle * self.step as f64)
         } else {
             (s * cosine + c * sine, c * cosine - s * sine)

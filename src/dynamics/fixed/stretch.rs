@@ -44,10 +44,12 @@ pub(super) struct Tally<V> {
     pub(super) velocity_square: f64,
     /// Audit only. Power of the dashpots, W.
     pub(super) dissipated: f64,
-    /// Force and its modulus, N.
-    pub(super) force: [f64; 2],
-    /// Work and its modulus, J.
-    pub(super) work: [f64; 2],
+    /// Force, and its modulus, N.
+    pub(super) force: f64,
+    pub(super) force_modulus: f64,
+    /// Its work, and the sum of the moduli, J.
+    pub(super) work: f64,
+    pub(super) work_modulus: f64,
 }
 
 impl<V: Vector> Tally<V> {
@@ -58,8 +60,10 @@ impl<V: Vector> Tally<V> {
             displacement_square: 0.0,
             velocity_square: 0.0,
             dissipated: 0.0,
-            force: [0.0; 2],
-            work: [0.0; 2],
+            force: 0.0,
+            force_modulus: 0.0,
+            work: 0.0,
+            work_modulus: 0.0,
         }
     }
 }
@@ -128,10 +132,10 @@ impl<V: Vector> Motion<V> {
                     let here = watch.forced.dot(&state);
                     let work = force * (here - place);
                     place = here;
-                    tally.work[0] += work;
-                    tally.work[1] += work.abs();
-                    tally.force[0] += force;
-                    tally.force[1] += force.abs();
+                    tally.work += work;
+                    tally.work_modulus += work.abs();
+                    tally.force += force;
+                    tally.force_modulus += force.abs();
                 }
             }
             if let Some(oscillator) = &mut oscillator {
