@@ -814,11 +814,10 @@ impl<'a> March<'a> {
                 self.meet(j, Side::Floor)?;
             } else if let Some(above) = self.ceiling_relative(j)
                 && above.gap == 0.0
+                && above.rate > 0.0
             {
-                if above.rate > 0.0 {
-                    self.particles[j] = above;
-                    self.meet(j, Side::Ceiling)?;
-                }
+                self.particles[j] = above;
+                self.meet(j, Side::Ceiling)?;
             }
         }
         Ok(())

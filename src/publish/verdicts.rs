@@ -71,11 +71,16 @@ fn on_disk(opened: &Opened) -> BTreeMap<String, OnDisk> {
 }
 
 fn tables(states: &BTreeMap<String, OnDisk>) -> Tables<'_> {
-    let state = |state| match state {
-        &OnDisk::Present(ref table) => TableState::Present(table),
-        OnDisk::Stale => TableState::Stale,
-        OnDisk::NotRun => TableState::NotRun,
-        OnDisk::Failed(reason) => TableState::Failed(reason.clone()),
-    };
-    states.iter().map(|(id, on_disk)| (id.clone(), state(on_disk))).collect()
+    states.iter().map(|(id, on_disk)| (id.clone(), on_disk.state())).collect()
+}
+
+impl OnDisk {
+    fn state(&self) -> TableState<'_> {
+        match self {
+            Self::Present(table) => TableState::Present(table),
+            Self::Stale => TableState::Stale,
+            Self::NotRun => TableState::NotRun,
+            Self::Failed(reason) => TableState::Failed(reason.clone()),
+        }
+    }
 }

@@ -31,7 +31,7 @@ pub(crate) fn verdict(comparison: &Comparison, scale: Option<f64>, fitted: bool)
     }
     let scale = scale.unwrap_or(comparison.published.abs());
     let telling = (COVERAGE * comparison.u_data).max(TELLING * scale);
-    let simulated = COVERAGE * comparison.u_num.hypot(comparison.u_input);
+    let simulated = COVERAGE * libm::hypot(comparison.u_num, comparison.u_input);
     let says_something = comparison.tolerance_by_hand.is_some()
         && COVERAGE * comparison.spread <= tolerance(comparison).max(telling)
         || simulated <= telling

@@ -54,7 +54,8 @@ fn trend(claim: &Trend, view: &View<'_>) -> Result<Decision, Absence> {
         .collect();
     let mut tally = Tally::new();
     for pair in numbers.windows(2) {
-        let (margin, u) = (claim.direction.sign() * (pair[1].value - pair[0].value), pair[0].run.hypot(pair[1].run));
+        let (margin, u) =
+            (claim.direction.sign() * (pair[1].value - pair[0].value), libm::hypot(pair[0].run, pair[1].run));
         if claim.slack > 0.0 {
             tally.require(margin + claim.slack * range, u, String::new);
         } else {
@@ -65,7 +66,7 @@ fn trend(claim: &Trend, view: &View<'_>) -> Result<Decision, Absence> {
         && let (Some(first), Some(last)) = (numbers.first(), numbers.last())
     {
         let margin = claim.direction.sign() * (last.value - first.value);
-        tally.require_strictly(margin, first.run.hypot(last.run), String::new);
+        tally.require_strictly(margin, libm::hypot(first.run, last.run), String::new);
     }
     let outcome = tally.decision()?.outcome;
     Ok(Decision { outcome, found: list.join(", ") })
@@ -78,7 +79,7 @@ fn list(values: &[Extracted], between: &str) -> String {
 fn greatest_first(values: &[Extracted]) -> Decision {
     let mut tally = Tally::new();
     for pair in values.windows(2) {
-        tally.require_strictly(pair[0].value - pair[1].value, pair[0].run.hypot(pair[1].run), String::new);
+        tally.require_strictly(pair[0].value - pair[1].value, libm::hypot(pair[0].run, pair[1].run), String::new);
     }
     let outcome = tally.decision().map_or(Outcome::Fails, |decision| decision.outcome);
     let words = match outcome {
@@ -109,7 +110,7 @@ fn equal(claim: &Equal, view: &View<'_>) -> Result<Decision, Absence> {
 /// Error of a difference of two (value, error). Numbers that are equal to the last bit come from the same motion, chaotic or
 /// not (a stop that is never reached, say): their errors are one error.
 fn joint(a: [f64; 2], b: [f64; 2]) -> f64 {
-    if a == b { 0.0 } else { a[1].hypot(b[1]) }
+    if a == b { 0.0 } else { libm::hypot(a[1], b[1]) }
 }
 
 fn apart(claim: &Apart, view: &View<'_>) -> Result<Decision, Absence> {
@@ -118,7 +119,7 @@ fn apart(claim: &Apart, view: &View<'_>) -> Result<Decision, Absence> {
     for (i, a) in values.iter().enumerate() {
         for b in &values[i + 1..] {
             let apart = (a.value - b.value).abs();
-            tally.require_strictly(apart - claim.by.allows(a.value, b.value), a.run.hypot(b.run), String::new);
+            tally.require_strictly(apart - claim.by.allows(a.value, b.value), libm::hypot(a.run, b.run), String::new);
         }
     }
     let outcome = tally.decision()?.outcome;

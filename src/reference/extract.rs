@@ -64,7 +64,7 @@ impl Extraction {
                 let all = view.cells(&rows, &cells.of)?;
                 #[expect(clippy::cast_precision_loss, reason = "row counts are far below 2^53")]
                 let n = all.len() as f64;
-                let quadrature = |part: fn(&Cell) -> f64| all.iter().map(|c| part(c).powi(2)).sum::<f64>().sqrt() / n;
+                let quadrature = |part: fn(&Cell) -> f64| all.iter().map(|c| part(c) * part(c)).sum::<f64>().sqrt() / n;
                 Extracted {
                     value: all.iter().map(|cell| cell.value).sum::<f64>() / n,
                     run: quadrature(|cell| cell.run),
@@ -133,7 +133,7 @@ impl Extraction {
                 if !value.is_finite() {
                     return Err(Absence::Broken("a ratio to zero".into()));
                 }
-                let both = |a: f64, b: f64| a.hypot(value * b) / to.value.abs();
+                let both = |a: f64, b: f64| libm::hypot(a, value * b) / to.value.abs();
                 Extracted {
                     value,
                     run: both(of.run, to.run),

@@ -147,7 +147,7 @@ fn value(
     let comparison = Comparison {
         simulated: simulated.value,
         published: datum,
-        u_num: simulated.run.hypot(simulated.spread),
+        u_num: libm::hypot(simulated.run, simulated.spread),
         u_input: u_input(simulated.value, &others),
         u_data,
         spread: simulated.spread,
@@ -188,7 +188,7 @@ fn u_input(baseline: f64, others: &[(&str, Extracted)]) -> f64 {
         let range = ranges.entry(assumption).or_insert((baseline, baseline));
         *range = (range.0.min(other.value), range.1.max(other.value));
     }
-    ranges.values().map(|(low, high)| ((high - low) / 2.0).powi(2)).sum::<f64>().sqrt()
+    ranges.values().map(|(low, high)| (high - low) * (high - low) / 4.0).sum::<f64>().sqrt()
 }
 
 /// Judges one entry and tells which cells of its own table decided it.

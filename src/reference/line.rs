@@ -72,7 +72,7 @@ impl Line {
         let best = self.highest();
         let may_be_top = |i: &usize| {
             let (cell, top) = (self.y[*i], self.y[best]);
-            cell.value + 2.0 * cell.run.hypot(top.run) >= top.value
+            cell.value + 2.0 * libm::hypot(cell.run, top.run) >= top.value
         };
         let first = (0..=best).find(may_be_top).unwrap_or(best);
         let final_ = (best..=last).rev().find(may_be_top).unwrap_or(best);
@@ -96,7 +96,7 @@ impl Line {
             let slope = (rise * right + fall * left) / (left + right);
             if curvature < 0.0 { slope * slope / (-4.0 * curvature) } else { 0.0 }
         };
-        Cell { run: cell.run.hypot(overshoot), ..cell }
+        Cell { run: libm::hypot(cell.run, overshoot), ..cell }
     }
 
     /// The largest fall below what was reached before, and its error.
@@ -107,7 +107,8 @@ impl Line {
             if cell.value > reached.value {
                 reached = cell;
             } else if reached.value - cell.value > largest.value {
-                largest = Cell { value: reached.value - cell.value, run: reached.run.hypot(cell.run), spread: 0.0 };
+                largest =
+                    Cell { value: reached.value - cell.value, run: libm::hypot(reached.run, cell.run), spread: 0.0 };
             }
         }
         largest
@@ -152,7 +153,7 @@ impl Line {
                 };
                 let feet = [foot(&mut (0..i).rev()), foot(&mut (end..self.x.len()))];
                 if let Some(foot) = feet.into_iter().flatten().max_by(|&a, &b| value(a).total_cmp(&value(b))) {
-                    let run = self.y[i].run.hypot(self.y[foot].run);
+                    let run = libm::hypot(self.y[i].run, self.y[foot].run);
                     found.push((self.x[i], Cell { value: value(i) - value(foot), run, spread: 0.0 }));
                 }
             }

@@ -22,7 +22,7 @@ pub(crate) fn monotone(claim: &Monotone, view: &View<'_>) -> Result<Decision, Ab
     let line = if claim.direction == Direction::Increasing { line } else { line.inverted() };
     let mut tally = Tally::new();
     let (first, last) = (line.y[0], line.y[line.y.len() - 1]);
-    tally.require_strictly(last.value - first.value, last.run.hypot(first.run), || {
+    tally.require_strictly(last.value - first.value, libm::hypot(last.run, first.run), || {
         format!("from end to end it changes by {}", significant(claim.direction.sign() * (last.value - first.value), 3))
     });
     let mut reached = line.y[0];
@@ -33,7 +33,7 @@ pub(crate) fn monotone(claim: &Monotone, view: &View<'_>) -> Result<Decision, Ab
         if back > largest.0 {
             largest = (back, x);
         }
-        tally.require(allowed - back, cell.run.hypot(reached.run), || {
+        tally.require(allowed - back, libm::hypot(cell.run, reached.run), || {
             format!(
                 "step back of {} of the range at {} = {}",
                 percent(back / range),
@@ -91,7 +91,7 @@ pub(crate) fn levels_off(claim: &LevelsOff, view: &View<'_>) -> Result<Decision,
     let mut tally = Tally::new();
     for (_, cell) in line.x.iter().zip(&line.y).rev().skip(1).filter(|(x, _)| **x >= claim.from) {
         let off = (cell.value - last.value).abs();
-        tally.require(claim.within * line.range() - off, cell.run.hypot(last.run), || {
+        tally.require(claim.within * line.range() - off, libm::hypot(cell.run, last.run), || {
             format!(
                 "from {} = {} on it stays within {} of its range, {} allowed",
                 claim.over,
@@ -110,7 +110,7 @@ pub(crate) fn greatest_at_end(claim: &GreatestAtEnd, view: &View<'_>) -> Result<
     let at_end = line.y[end];
     let mut tally = Tally::new();
     for (i, cell) in line.y.iter().enumerate().filter(|(i, _)| *i != end) {
-        tally.require_strictly(at_end.value - cell.value, at_end.run.hypot(cell.run), || {
+        tally.require_strictly(at_end.value - cell.value, libm::hypot(at_end.run, cell.run), || {
             format!(
                 "{} at the end, {} at {} = {}",
                 with_unit(at_end.value, 4, &line.unit),

@@ -55,7 +55,7 @@ impl Comparison {
     /// Digits that agree, −log10(|S − D|/|D|), as NIST StRD tells it.
     #[must_use]
     pub fn digits(&self) -> f64 {
-        -(self.error().abs() / self.published.abs()).log10()
+        -libm::log10(self.error().abs() / self.published.abs())
     }
 }
 

@@ -160,7 +160,8 @@ impl Evaluate for MadeUp {
         let stop = damper.stop.map_or(0.0, |stop| stop.length);
         let coarse = if it.solver == SolverChoice::EventDriven { 0.0 } else { 0.01 };
         let peak = damper.gap.min(1.0).sqrt();
-        let value = mass + peak / (1.0 + (strength / (2.0 * peak)).ln().powi(2)) + stop + coarse;
+        let octave = libm::log(strength / (2.0 * peak));
+        let value = mass + peak / (1.0 + octave * octave) + stop + coarse;
         Ok(Evaluated {
             measured: it.measures.iter().map(|_| Measured { value, numerical: 1e-12, spread: 0.0 }).collect(),
             proof: Proof { events: 490, smallest_margin: 1e-3, ..Proof::default() },

@@ -176,7 +176,7 @@ mod tests {
         for _ in 0..1000 {
             oscillator.advance();
         }
-        assert!((oscillator.value() - 3.0 * (308.61_f64).sin()).abs() < 1e-12);
+        assert!((oscillator.value() - 3.0 * libm::sin(308.61)).abs() < 1e-12);
     }
 
     #[test]
