@@ -101,15 +101,43 @@ fn flight_path(flow: &Flow, rest: Parabola, phases: &[Phase], here: Relative, gr
     path
 }
 
+/// radius·t below which a flight's fifth derivative moves nothing.
+const SHORT_FLIGHT: f64 = 1e-3;
+
+/// A flight so short that the difference of parabola and blocks would be all rounding: by its derivatives.
+#[cold]
+fn fly_shortly(flow: &Flow, path: Parabola, phases: &[Phase], here: Relative, time: f64) -> Relative {
+    let mut derivatives = [2.0 * path.p2, 0.0, 0.0, 0.0];
+    for (block, phase) in flow.blocks.iter().zip(phases) {
+        if !block.is_drift() {
+            let bend = block.acceleration(*phase);
+            let snap = block.acceleration(bend);
+            for (sum, term) in derivatives.iter_mut().zip([bend.value, bend.rate, snap.value, snap.rate]) {
+                *sum -= term;
+            }
+        }
+    }
+    let [d2, d3, d4, d5] = derivatives;
+    Relative {
+        gap: here.gap
+            + time * (here.rate + time * (d2 / 2.0 + time * (d3 / 6.0 + time * (d4 / 24.0 + time * (d5 / 120.0))))),
+        rate: here.rate + time * (d2 + time * (d3 / 2.0 + time * (d4 / 6.0 + time * (d5 / 24.0)))),
+    }
+}
+
 /// The gap coordinate of a flight after the time of `kernels`.
 #[inline]
 pub(crate) fn fly(
     flow: &Flow,
     path: Parabola,
     phases: &[Phase],
+    here: Relative,
     kernels: &[super::block::Kernel],
     time: f64,
 ) -> Relative {
+    if flow.blocks.iter().all(|block| block.radius * time < SHORT_FLIGHT) {
+        return fly_shortly(flow, path, phases, here, time);
+    }
     let mut now = Relative { gap: path.at(time), rate: path.rate(time) };
     for ((block, phase), kernel) in flow.blocks.iter().zip(phases).zip(kernels) {
         if !block.is_drift() {
@@ -121,12 +149,22 @@ pub(crate) fn fly(
     now
 }
 
-fn start(touching: bool, here: Relative, smooth: bool) -> Start {
-    match (touching, smooth) {
-        (false, _) => Start::Apart,
-        (true, true) => Start::Touching { order: 3, slope: 0.0 },
-        (true, false) if here.rate == 0.0 => Start::Touching { order: 2, slope: 0.0 },
-        (true, false) => Start::Touching { order: 1, slope: here.rate.abs() },
+/// How a distance starts that grows with `rate`: at zero where it is, or where it is nothing but rounding and grows.
+#[inline]
+fn start(distance: f64, rate: f64, smooth: bool, phases: &[Phase]) -> Start {
+    if distance != 0.0 {
+        let noise = 4.0 * f64::EPSILON * phases.iter().fold(0.0, |sum, phase| sum + phase.value.abs());
+        if rate > 0.0 && distance.abs() < noise {
+            return Start::Touching { order: 1, slope: rate };
+        }
+        return Start::Apart;
+    }
+    if smooth {
+        Start::Touching { order: 3, slope: 0.0 }
+    } else if rate == 0.0 {
+        Start::Touching { order: 2, slope: 0.0 }
+    } else {
+        Start::Touching { order: 1, slope: rate.abs() }
     }
 }
 
@@ -145,7 +183,7 @@ fn in_flight(
     let path = flight_path(flow, rest, phases, here, gravity);
     let fixed = flow.without_drift(phases);
     let phases = fixed.as_deref().unwrap_or(phases);
-    let begin = start(here.gap == 0.0, here, state.smooth[j]);
+    let begin = start(here.gap, here.rate, state.smooth[j], phases);
     // u = path − blocks.
     let negative = Parabola { p0: -path.p0, p1: -path.p1, p2: -path.p2 };
     push(Crossing::ToFloor, Draft { sign: -1.0, parabola: negative, phases, start: begin, distance: true });
@@ -153,7 +191,7 @@ fn in_flight(
     if ceiling.row == particle.floor.row {
         let relative = Relative { gap: here.gap - particle.gap, rate: here.rate };
         let below = Parabola { p0: particle.gap - path.p0, p1: -path.p1, p2: -path.p2 };
-        let begin = start(relative.gap == 0.0, relative, state.smooth[j]);
+        let begin = start(-relative.gap, -relative.rate, state.smooth[j], phases);
         push(Crossing::ToCeiling, Draft { sign: 1.0, parabola: below, phases, start: begin, distance: true });
     } else {
         let shift = |x: &[f64]| dot(&ceiling.row, x) - dot(&particle.floor.row, x);
@@ -163,7 +201,7 @@ fn in_flight(
         let fixed = flow.without_drift(phases);
         let phases = fixed.as_deref().unwrap_or(phases);
         let below = Parabola { p0: -above.p0, p1: -above.p1, p2: -above.p2 };
-        let begin = start(relative.gap == 0.0, relative, state.smooth[j]);
+        let begin = start(-relative.gap, -relative.rate, state.smooth[j], phases);
         push(Crossing::ToCeiling, Draft { sign: 1.0, parabola: below, phases, start: begin, distance: true });
     }
     path
@@ -219,13 +257,13 @@ fn pressed(
         let begin = touching_once(state.smooth[j] || (here.gap == 0.0 && damping == 0.0));
         push(Crossing::Release, Draft { sign: -away, parabola: force, phases: &mix, start: begin, distance: false });
     } else {
-        let begin = start(here.gap == 0.0, here, state.smooth[j]);
+        let begin = start(-away * here.gap, -away * here.rate, state.smooth[j], phases);
         push(Crossing::Release, Draft { sign: -away, parabola: rest, phases, start: begin, distance: true });
     }
     if let Some(stop) = stop {
         // Positive until the compression is δ.
         let parabola = Parabola { p0: rest.p0 + away * stop.length, ..rest };
-        let begin = start(here.gap == -away * stop.length, here, state.smooth[j]);
+        let begin = start(away * here.gap + stop.length, away * here.rate, state.smooth[j], phases);
         push(Crossing::ToStop, Draft { sign: away, parabola, phases, start: begin, distance: true });
     }
 }

@@ -658,7 +658,8 @@ impl<'a> March<'a> {
                     Side::Ceiling => flow.face_rows[j].ceiling,
                 };
                 let (phases, _) = self.signals.of(row);
-                self.particles[j] = guards::fly(flow, self.paths[j], phases, &self.search.kernels, length);
+                let here = self.particles[j];
+                self.particles[j] = guards::fly(flow, self.paths[j], phases, here, &self.search.kernels, length);
             }
         }
         flow.advance(&self.search.kernels, &self.c, &mut self.c_end);
@@ -878,7 +879,10 @@ impl<'a> March<'a> {
                 let row = if side == Side::Floor { rows.floor } else { rows.ceiling };
                 let [face, _, _] = self.signals.value(flow, row, &kernels, t);
                 let gap = match (contact.face(particle), rows.compression) {
-                    (None, _) => guards::fly(flow, self.paths[0], self.signals.of(row).0, &kernels, t).gap,
+                    (None, _) => {
+                        let (phases, here) = (self.signals.of(row).0, self.particles[0]);
+                        guards::fly(flow, self.paths[0], phases, here, &kernels, t).gap
+                    }
                     (Some(_), Some(compression)) => self.signals.value(flow, compression, &kernels, t)[0],
                     (Some(_), None) => self.particles[0].gap,
                 };

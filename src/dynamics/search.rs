@@ -78,7 +78,7 @@ pub(crate) struct Search {
     pub(crate) guards: Vec<Guard>,
     /// Shares at the window's start.
     current: Vec<Phase>,
-    /// How long each guard is known to stay positive from the window's start.
+    /// Until when each guard is known to stay positive.
     clear: Vec<f64>,
     /// Kernels from the segment's start to the result.
     pub(crate) kernels: Vec<Kernel>,
@@ -151,6 +151,8 @@ impl Search {
         let width = blocks.len();
         self.current.clear();
         self.current.extend_from_slice(&self.initial);
+        self.clear.clear();
+        self.clear.resize(self.guards.len(), 0.0);
         let mut t = 0.0;
         // Windows shorter than this are not divided. It grows from doubt to doubt: a guard that stays within rounding of zero
         // must not hold up the search.
@@ -164,8 +166,7 @@ impl Search {
             }
             let mut skip = remaining;
             let mut speed = 0.0_f64;
-            self.clear.clear();
-            for (guard, shares) in self.guards.iter().zip(self.current.chunks_exact(width)) {
+            for (index, (guard, shares)) in self.guards.iter().zip(self.current.chunks_exact(width)).enumerate() {
                 let (mut reach, mut bend, mut snap) = (0.0, 0.0, 0.0);
                 for (block, share) in blocks.iter().zip(shares) {
                     let amplitude = block.amplitude(*share, 0.0, remaining);
@@ -175,8 +176,11 @@ impl Search {
                     snap += amplitude * square * square;
                 }
                 let margin = if guard.distance { clarity.margin } else { 0.0 };
-                let clear = clear_until(guard.parabola, t, reach, margin);
-                self.clear.push(clear);
+                let clear = t + clear_until(guard.parabola, t, reach, margin);
+                if clear > self.clear[index] {
+                    self.clear[index] = clear;
+                }
+                let clear = self.clear[index] - t;
                 if clear < skip {
                     skip = clear;
                 }
@@ -210,7 +214,7 @@ impl Search {
 
     /// Proves the window clear of roots (`None`) or isolates the first one; shrinks the window until it can.
     fn search_window(
-        &self,
+        &mut self,
         blocks: &[Block],
         t: f64,
         window: &mut f64,
@@ -218,11 +222,13 @@ impl Search {
         clarity: &mut Clarity,
     ) -> Option<Root> {
         let width = blocks.len();
+        let asked = *window;
         'shrink: loop {
             let mut first: Option<Root> = None;
             let indivisible = *window <= shortest.max(64.0 * f64::EPSILON * t);
-            for (index, guard) in self.guards.iter().enumerate() {
-                if self.clear[index] >= *window {
+            for index in 0..self.guards.len() {
+                let guard = self.guards[index];
+                if self.clear[index] >= t + *window {
                     continue;
                 }
                 let shares = &self.current[index * width..(index + 1) * width];
@@ -233,7 +239,7 @@ impl Search {
                     clarity.margin = clarity.margin.min(clearance);
                 }
                 match verdict {
-                    Verdict::Clear => {}
+                    Verdict::Clear => self.clear[index] = t + *window,
                     Verdict::Root { high } => {
                         let root = Root { guard: index, guess: piece.root(high), high, short: piece.short(start) };
                         match first {
@@ -247,6 +253,9 @@ impl Search {
                         }
                     }
                     Verdict::Unsure if indivisible => {
+                        if t == 0.0 {
+                            self.prove_hops(blocks, asked);
+                        }
                         clarity.ties += 1;
                         clarity.margin = 0.0;
                         if piece.end() < 0.0 && first.is_none() {
@@ -260,6 +269,27 @@ impl Search {
                 }
             }
             return first;
+        }
+    }
+
+    /// Proves each guard that starts at zero clear for as long as its own start tells, before the doubt about another one
+    /// makes the search move on to where that is forgotten.
+    #[cold]
+    fn prove_hops(&mut self, blocks: &[Block], mut window: f64) {
+        let width = blocks.len();
+        for (index, guard) in self.guards.iter().enumerate() {
+            if guard.start == Start::Apart {
+                continue;
+            }
+            let shares = &self.current[index * width..(index + 1) * width];
+            while window > self.clear[index] {
+                let piece = Window::expand(blocks, shares, guard.parabola, 0.0, window, guard.start);
+                if let (Verdict::Clear, _) = piece.judge(guard.start) {
+                    self.clear[index] = window;
+                } else {
+                    window *= 0.5;
+                }
+            }
         }
     }
 
