@@ -646,6 +646,8 @@ impl<'a> March<'a> {
         };
         let n = self.q.len();
         let flow = &self.flows[self.now];
+        // What has begun at zero is there no longer.
+        self.half.touching &= length == 0.0;
         for (j, particle) in self.system.particles.iter().enumerate() {
             let contact = self.contacts[j];
             if contact.face(particle).is_none() {
@@ -661,6 +663,7 @@ impl<'a> March<'a> {
                 let here = self.particles[j];
                 self.particles[j] = guards::fly(flow, self.paths[j], phases, here, &self.search.kernels, length);
             }
+            self.smooth[j] &= length == 0.0;
         }
         flow.advance(&self.search.kernels, &self.c, &mut self.c_end);
         flow.leave(&self.c_end, length, self.level, end_drive, &mut self.p, &mut self.p_rate);
