@@ -253,8 +253,8 @@ fn pressed(
         let damping = state.damping[j];
         let force = spring_and_dashpot(rest, stiffness, damping);
         let mix = mixed(&flow.blocks, phases, stiffness, damping);
-        // A spring without dashpot begins to push at zero.
-        let begin = touching_once(state.smooth[j] || (here.gap == 0.0 && damping == 0.0));
+        // Without dashpot, or at rest, it begins to push at zero.
+        let begin = touching_once(state.smooth[j] || stiffness * here.gap + damping * here.rate == 0.0);
         push(Crossing::Release, Draft { sign: -away, parabola: force, phases: &mix, start: begin, distance: false });
     } else {
         let begin = start(-away * here.gap, -away * here.rate, state.smooth[j], phases);
@@ -276,6 +276,9 @@ fn held(
     signals: &Signals,
     push: &mut impl FnMut(Crossing, Draft<'_>),
 ) {
+    if particle.is_enclosed() {
+        return;
+    }
     let side = state.contacts[j].side();
     let (phases, rest) = signals.of(face_row(flow, j, side));
     let bends = accelerations(&flow.blocks, phases);

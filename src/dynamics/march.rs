@@ -285,7 +285,7 @@ impl<'a> March<'a> {
                     }
                 }
                 _ if contact.holds(particle) => {
-                    if away < 0.0 {
+                    if away < 0.0 || (away > 0.0 && particle.is_enclosed()) {
                         self.changed = true;
                         self.contacts[j] = if side.stopped() == contact { side.pressed() } else { Contact::Flight };
                         struck.push((j, side));
@@ -314,7 +314,7 @@ impl<'a> March<'a> {
             }
         }
         for (j, side) in struck {
-            if side.away() * self.particles[j].rate < 0.0 {
+            if side.away() * self.particles[j].rate < 0.0 || self.system.particles[j].is_enclosed() {
                 self.strike(j, side, self.restitution(j, side))?;
             } else {
                 // Another impact has driven the face away in the meantime.
@@ -327,6 +327,10 @@ impl<'a> March<'a> {
     }
 
     fn restitution(&self, j: usize, side: Side) -> f64 {
+        if self.system.particles[j].is_enclosed() {
+            // All bounces across no gap happen at once.
+            return 0.0;
+        }
         match side.face(&self.system.particles[j]).law {
             Law::Rigid { restitution } => restitution,
             Law::Resilient { stop, .. } => stop.map_or(0.0, |stop| stop.restitution),
@@ -361,7 +365,7 @@ impl<'a> March<'a> {
     /// A particle in flight reaches a face: its state refers to that face already, with gap 0.
     fn meet(&mut self, j: usize, side: Side) -> Result<(), EngineError> {
         match side.face(&self.system.particles[j]).law {
-            Law::Rigid { restitution } => self.strike(j, side, restitution),
+            Law::Rigid { .. } => self.strike(j, side, self.restitution(j, side)),
             Law::Resilient { .. } => {
                 let rate = self.particles[j].rate;
                 self.changed = true;
@@ -403,7 +407,7 @@ impl<'a> March<'a> {
         self.contacts[j] = held;
         self.choose_flow()?;
         let grip = self.grip(j, side);
-        if grip.holds() && (speed == 0.0 || !grip.is_nothing()) {
+        if particle.is_enclosed() || grip.holds() && (speed == 0.0 || !grip.is_nothing()) {
             self.smooth[j] = grip.is_nothing();
             if speed > 0.0 {
                 let mobility = Cholesky::new(&carried_mass(self.system, &self.contacts_without(j)))?;
@@ -430,7 +434,7 @@ impl<'a> March<'a> {
         self.choose_flow()?;
         let grip = self.grip(j, side);
         self.smooth[j] = grip.is_nothing();
-        if grip.holds() {
+        if grip.holds() || self.system.particles[j].is_enclosed() {
             self.changed = true;
             self.contacts[j] = side.pressed();
         } else if side == Side::Ceiling {
@@ -447,7 +451,7 @@ impl<'a> March<'a> {
                 self.choose_flow()?;
                 let grip = self.grip(j, contact.side());
                 self.smooth[j] = grip.is_nothing();
-                if !grip.holds() {
+                if !grip.holds() && !self.system.particles[j].is_enclosed() {
                     self.let_go(j, contact.side());
                 }
             } else if contact == Contact::Flight && self.particles[j] == Relative::default() {
