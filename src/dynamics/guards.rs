@@ -228,7 +228,7 @@ fn released(
         let damping = state.damping[j];
         let force = spring_and_dashpot(negative, stiffness, damping);
         let mix = mixed(&flow.blocks, phases, stiffness, damping);
-        let begin = touching_once(state.smooth[j]);
+        let begin = touching_once(is_nothing(state.particles[j], stiffness, damping, state.smooth[j]));
         push(Crossing::Again, Draft { sign: -away, parabola: force, phases: &mix, start: begin, distance: false });
     }
     path
@@ -253,8 +253,7 @@ fn pressed(
         let damping = state.damping[j];
         let force = spring_and_dashpot(rest, stiffness, damping);
         let mix = mixed(&flow.blocks, phases, stiffness, damping);
-        // Without dashpot, or at rest, it begins to push at zero.
-        let begin = touching_once(state.smooth[j] || stiffness * here.gap + damping * here.rate == 0.0);
+        let begin = touching_once(is_nothing(here, stiffness, damping, state.smooth[j]));
         push(Crossing::Release, Draft { sign: -away, parabola: force, phases: &mix, start: begin, distance: false });
     } else {
         let begin = start(-away * here.gap, -away * here.rate, state.smooth[j], phases);
@@ -286,6 +285,14 @@ fn held(
     let parabola = Parabola { p0: offset, p1: 0.0, p2: 0.0 };
     let begin = touching_once(state.smooth[j]);
     push(Crossing::Release, Draft { sign: side.away(), parabola, phases: &bends, start: begin, distance: false });
+}
+
+/// Whether spring and dashpot together push with nothing: where the contact has just begun or ended smoothly, or begins
+/// without dashpot or at rest.
+fn is_nothing(here: Relative, stiffness: f64, damping: f64, smooth: bool) -> bool {
+    let (spring, dashpot) = (stiffness * here.gap, damping * here.rate);
+    let force = spring + dashpot;
+    force == 0.0 || (smooth && force.abs() < 1e-9 * (spring.abs() + dashpot.abs()))
 }
 
 fn touching_once(touching: bool) -> Start {
