@@ -228,7 +228,7 @@ fn released(
         let damping = state.damping[j];
         let force = spring_and_dashpot(negative, stiffness, damping);
         let mix = mixed(&flow.blocks, phases, stiffness, damping);
-        let begin = touching_once(is_nothing(state.particles[j], stiffness, damping, state.smooth[j]));
+        let begin = force_start(state.particles[j], stiffness, damping, state.smooth[j]);
         push(Crossing::Again, Draft { sign: -away, parabola: force, phases: &mix, start: begin, distance: false });
     }
     path
@@ -253,7 +253,7 @@ fn pressed(
         let damping = state.damping[j];
         let force = spring_and_dashpot(rest, stiffness, damping);
         let mix = mixed(&flow.blocks, phases, stiffness, damping);
-        let begin = touching_once(is_nothing(here, stiffness, damping, state.smooth[j]));
+        let begin = force_start(here, stiffness, damping, state.smooth[j]);
         push(Crossing::Release, Draft { sign: -away, parabola: force, phases: &mix, start: begin, distance: false });
     } else {
         let begin = start(-away * here.gap, -away * here.rate, state.smooth[j], phases);
@@ -287,12 +287,21 @@ fn held(
     push(Crossing::Release, Draft { sign: side.away(), parabola, phases: &bends, start: begin, distance: false });
 }
 
-/// Whether spring and dashpot together push with nothing: where the contact has just begun or ended smoothly, or begins
-/// without dashpot or at rest.
-fn is_nothing(here: Relative, stiffness: f64, damping: f64, smooth: bool) -> bool {
+/// How the force of spring and dashpot starts: at zero where the contact has just begun or ended smoothly, and where it
+/// begins without dashpot or at rest; then with the first derivative that the motion has.
+fn force_start(here: Relative, stiffness: f64, damping: f64, smooth: bool) -> Start {
     let (spring, dashpot) = (stiffness * here.gap, damping * here.rate);
     let force = spring + dashpot;
-    force == 0.0 || (smooth && force.abs() < 1e-9 * (spring.abs() + dashpot.abs()))
+    if force != 0.0 && !(smooth && force.abs() < 1e-9 * (spring.abs() + dashpot.abs())) {
+        return Start::Apart;
+    }
+    // At the face itself u grows with t, t² or t³ (at rest, smoothly), and the force of the dashpot with one less.
+    let motion = match (here == Relative::default(), smooth) {
+        (false, _) => return touching_once(true),
+        (true, false) => 2,
+        (true, true) => 3,
+    };
+    Start::Touching { order: if damping > 0.0 { motion - 1 } else { motion }, slope: f64::NAN }
 }
 
 fn touching_once(touching: bool) -> Start {
@@ -332,15 +341,16 @@ impl Grip {
         let spring = spring_on_stop(&system.particles[j], side);
         let (mut bend, mut growth) = (2.0 * rest.p2, 0.0);
         let mut size = system.gravity + bend.abs() + spring;
-        for phase in accelerations(&flow.blocks, phases) {
-            bend += phase.value;
-            growth += phase.rate;
-            size += phase.value.abs();
+        for (block, phase) in flow.blocks.iter().zip(phases) {
+            let now = block.acceleration(*phase);
+            bend += now.value;
+            growth += now.rate;
+            size += (2.0 * block.decay * phase.rate).abs() + (block.determinant * phase.value).abs();
         }
         Self {
             push: side.away() * (bend + system.gravity) - spring,
             growth: side.away() * growth,
-            noise: 8.0 * f64::EPSILON * size,
+            noise: 64.0 * f64::EPSILON * size,
         }
     }
 

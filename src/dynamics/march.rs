@@ -414,7 +414,8 @@ impl<'a> March<'a> {
                 let last = super::contact::impact(&mobility, &row, particle.mass, 0.0, self.particles[j].rate);
                 // What was left to bounce: a geometric series of flights of 2u′/a, each shorter by ε. In flight the face no
                 // longer carries the particle, so that a is larger than the push per mass that will hold it.
-                let tail = 2.0 * speed / (grip.push * last.lightening * (1.0 - restitution));
+                let series = if restitution < 1.0 { 1.0 / (1.0 - restitution) } else { 0.0 };
+                let tail = 2.0 * speed / (grip.push * last.lightening) * series;
                 self.jump(j, &last.structure);
                 if let Some(audit) = &mut self.audit {
                     audit.loss(last.loss);
@@ -454,8 +455,10 @@ impl<'a> March<'a> {
                 if !grip.holds() && !self.system.particles[j].is_enclosed() {
                     self.let_go(j, contact.side());
                 }
-            } else if contact == Contact::Flight && self.particles[j] == Relative::default() {
-                self.rest(j, Side::Floor)?;
+            } else if self.particles[j] == Relative::default() {
+                self.changed = true;
+                self.contacts[j] = Contact::Flight;
+                self.rest(j, contact.side())?;
             }
         }
         self.choose_flow()
