@@ -338,7 +338,8 @@ impl Grip {
     /// The grip of a face on particle j; with the particle in flight, what brings it back to the face.
     pub(crate) fn of(system: &HybridSystem, flow: &Flow, signals: &Signals, j: usize, side: Side) -> Self {
         let (phases, rest) = signals.of(face_row(flow, j, side));
-        let spring = spring_on_stop(&system.particles[j], side);
+        let on_stop = flow.contacts[j] == side.stopped();
+        let spring = if on_stop { spring_on_stop(&system.particles[j], side) } else { 0.0 };
         let (mut bend, mut growth) = (2.0 * rest.p2, 0.0);
         let mut size = system.gravity + bend.abs() + spring;
         for (block, phase) in flow.blocks.iter().zip(phases) {

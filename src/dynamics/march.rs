@@ -46,6 +46,8 @@ pub(crate) struct March<'a> {
     signals: Signals,
     /// M⁻¹ b: what a unit impulse does to q′.
     answer: Vec<f64>,
+    /// The crossing that is dealt with was due at once, when its segment began.
+    sudden: bool,
     /// The contact state or its damping has changed since the flow was chosen.
     changed: bool,
     p: Vec<f64>,
@@ -109,6 +111,7 @@ impl<'a> March<'a> {
             paths: vec![Parabola::default(); count],
             signals: Signals::default(),
             answer: Cholesky::new(&system.mass)?.solve(&system.force_row),
+            sudden: false,
             changed: true,
             p: vec![0.0; most],
             p_rate: vec![0.0; most],
@@ -323,6 +326,7 @@ impl<'a> March<'a> {
                 self.after_bounce(j, side);
             }
         }
+        self.meet_at_once()?;
         self.choose_flow()
     }
 
@@ -461,6 +465,7 @@ impl<'a> March<'a> {
                 self.rest(j, contact.side())?;
             }
         }
+        self.meet_at_once()?;
         self.choose_flow()
     }
 
@@ -640,6 +645,7 @@ impl<'a> March<'a> {
         };
         if let Found::Event { guard, .. } = found {
             let (j, crossing) = self.crossings[self.search.guards[guard].label];
+            self.sudden = length == 0.0;
             self.cross(j, crossing)?;
         }
         Ok(())
@@ -756,12 +762,12 @@ impl<'a> March<'a> {
             Crossing::Release if self.contacts[j].holds(particle) => {
                 self.particles[j].rate = 0.0;
                 self.let_go(j, side);
-                self.smooth[j] = true;
+                self.smooth[j] = !self.sudden;
             }
             Crossing::Release => match side.face(particle).law {
                 Law::Resilient { no_tension: true, .. } if self.particles[j].gap != 0.0 => {
                     self.slip(j, side);
-                    self.smooth[j] = true;
+                    self.smooth[j] = !self.sudden;
                 }
                 _ => {
                     self.particles[j].gap = 0.0;
@@ -778,7 +784,7 @@ impl<'a> March<'a> {
             }
             Crossing::Again => {
                 self.slip(j, side);
-                self.smooth[j] = true;
+                self.smooth[j] = !self.sudden;
             }
             Crossing::HalfCycle => {}
         }

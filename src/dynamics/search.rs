@@ -201,6 +201,10 @@ impl Search {
             let mut window = remaining.min(REACH * self.window_factor / speed.sqrt());
             let ties = clarity.ties;
             if let Some(root) = self.search_window(blocks, t, &mut window, shortest, clarity) {
+                if root.high == 0.0 {
+                    self.kernels_at(blocks, t);
+                    return Found::Event { guard: root.guard, time: t };
+                }
                 return Found::Event { guard: root.guard, time: self.polish(blocks, root, t, window, clarity) };
             }
             shortest = if clarity.ties > ties { 4.0 * shortest } else { clock };
@@ -242,6 +246,9 @@ impl Search {
                     Verdict::Clear => self.clear[index] = t + *window,
                     Verdict::Root { high } => {
                         let root = Root { guard: index, guess: piece.root(high), high, short: piece.short(start) };
+                        if high == 0.0 {
+                            return Some(root);
+                        }
                         match first {
                             None => first = Some(root),
                             // Two guards in one window: narrow until one of them is clear, or they are one to the rounding.
@@ -537,6 +544,10 @@ impl Window {
             convex &= second > bend_doubt;
         }
         let sure = |verdict| (verdict, f64::INFINITY);
+        if start == Start::Apart && b[0] < -doubt {
+            // A jump has left the contact untenable: it ends at once.
+            return sure(Verdict::Root { high: 0.0 });
+        }
         if doubt == 0.0 && b.iter().all(|x| *x == 0.0) {
             // Nothing pushes and nothing pulls, for ever.
             return sure(Verdict::Clear);
