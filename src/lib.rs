@@ -14,14 +14,17 @@
 //!
 //! A table on disk is all that verdicts, figures and reports read.
 
+pub mod atomic;
 pub mod dynamics;
 pub mod figure;
 pub mod measure;
+pub mod publish;
 pub mod reference;
 pub mod report;
 pub mod scene;
 pub mod spec;
 pub mod study;
 pub mod table;
+pub mod text;
 
 pub mod cli;

@@ -42,6 +42,23 @@ pub(crate) struct Audit {
     position: Vec<f64>,
 }
 
+/// What passed between two instants, as another solver than the exact flow summed it up.
+#[derive(Debug, Default)]
+pub(crate) struct Passed {
+    /// s.
+    pub(crate) duration: f64,
+    /// ∫ q dt.
+    pub(crate) position: Vec<f64>,
+    /// Work of the dashpots, J.
+    pub(crate) dissipated: f64,
+    /// ∫ F dt and ∫ |F| dt of the force beside the impulses, N s.
+    pub(crate) force: f64,
+    pub(crate) force_modulus: f64,
+    /// Its work, and the sum of the moduli of its parts, J.
+    pub(crate) work: f64,
+    pub(crate) work_modulus: f64,
+}
+
 /// Kinetic, gravitational and elastic energy, J.
 pub(crate) fn energy(system: &HybridSystem, state: &State) -> f64 {
     let mut energy = 0.5 * system.mass.form(&state.rate, &state.rate) + 0.5 * system.stiffness.form(&state.q, &state.q);
@@ -68,6 +85,17 @@ impl Audit {
     /// Energy that left otherwise: in an impact, or with a spring that lets go while compressed (and takes it back).
     pub(crate) fn loss(&mut self, loss: f64) {
         self.loss += loss;
+    }
+
+    /// Adds what another solver has summed up.
+    pub(crate) fn add(&mut self, passed: &Passed) {
+        self.duration += passed.duration;
+        self.position.iter_mut().zip(&passed.position).for_each(|(sum, q)| *sum += q);
+        self.dissipated += passed.dissipated;
+        self.force += passed.force;
+        self.impulse_passed += passed.force_modulus;
+        self.force_work += passed.work;
+        self.work_passed += passed.work_modulus;
     }
 
     /// Integrates one segment in physical coordinates.

@@ -153,13 +153,19 @@ impl Block {
         Phase { value, rate: -2.0 * self.decay * value - self.determinant * phase.rate }
     }
 
+    /// Where the bound on a share depends on how long it is to hold.
+    #[inline]
+    pub(crate) fn is_near_critical(&self) -> bool {
+        !(self.discriminant < 0.0 && self.root > 0.2 * self.radius)
+    }
+
     /// A bound on |share| from now on, and with radius^j on its derivatives, while time stays within `window` of now.
     ///
     /// The share is e^(−at)(value·C + (rate + a·value) S); C's derivatives are bounded by radius^j, those of S by
     /// radius^j/√|d| or, where that blows up near critical damping, by (j + radius·window) radius^(j−1).
     #[inline]
     pub(crate) fn amplitude(&self, phase: Phase, order: f64, window: f64) -> f64 {
-        if self.discriminant < 0.0 && self.root > 0.2 * self.radius {
+        if !self.is_near_critical() {
             phase.value.abs() + (phase.rate + self.decay * phase.value).abs() * self.inverse_root
         } else {
             self.amplitude_near_critical(phase, order, window)

@@ -8,7 +8,6 @@
 //!
 //! An impact with restitution ε exchanges the impulse P = −(1 + ε) u′/(1/mp + φ·M⁻¹φ).
 
-use super::flow::Cholesky;
 use super::system::{Contact, EventKind, Face, Law, Particle, Stop};
 
 /// Below this relative speed a particle sticks to a rigid face (the study's tolerance); what it would still have bounced is
@@ -137,12 +136,20 @@ impl Law {
             Self::Rigid { .. } => None,
         }
     }
+
+    /// Restitution of what holds a particle: a rigid face, or the stop of a resilient one.
+    pub(crate) fn restitution(self) -> f64 {
+        match self {
+            Self::Rigid { restitution } => restitution,
+            Self::Resilient { stop, .. } => stop.map_or(0.0, |stop| stop.restitution),
+        }
+    }
 }
 
 /// An impact: what it does to the structure and to the relative rate.
 pub(crate) struct Impact {
-    /// q′ changes by this.
-    pub(crate) structure: Vec<f64>,
+    /// N s, on the particle, away from the face where positive.
+    pub(crate) impulse: f64,
     /// Relative rate after.
     pub(crate) departure: f64,
     /// Energy lost, J.
@@ -151,17 +158,16 @@ pub(crate) struct Impact {
     pub(crate) lightening: f64,
 }
 
-/// The impact of a particle on a face that moves with `row`, by restitution; `mobility` factors the mass it meets.
-pub(crate) fn impact(mobility: &Cholesky, row: &[f64], mass: f64, restitution: f64, approach: f64) -> Impact {
-    let answer = mobility.solve(row);
-    let mobility = super::system::dot(row, &answer);
-    let lightening = 1.0 + mass * mobility;
-    let effective = mass / lightening;
-    let impulse = -(1.0 + restitution) * approach * effective;
-    Impact {
-        structure: answer.iter().map(|a| -a * impulse).collect(),
-        departure: -restitution * approach,
-        loss: 0.5 * effective * (1.0 - restitution * restitution) * approach * approach,
-        lightening,
+impl Impact {
+    /// The impact of a particle on a face with mobility φ·M⁻¹φ, by restitution; q′ changes by −`impulse`·M⁻¹φ.
+    pub(crate) fn new(mobility: f64, mass: f64, restitution: f64, approach: f64) -> Self {
+        let lightening = 1.0 + mass * mobility;
+        let effective = mass / lightening;
+        Self {
+            impulse: -(1.0 + restitution) * approach * effective,
+            departure: -restitution * approach,
+            loss: 0.5 * effective * (1.0 - restitution * restitution) * approach * approach,
+            lightening,
+        }
     }
 }

@@ -12,6 +12,7 @@ use nalgebra::DMatrix;
 
 use super::EngineError;
 use super::block::{Block, Phase};
+use super::series::Series;
 use super::spectral::Spectral;
 use super::system::{Contact, Face, HybridSystem, Law, Matrix, dot};
 
@@ -23,6 +24,8 @@ pub(crate) struct Flow {
     pub(crate) damping: Vec<f64>,
     /// Blocks of the free motion; the last one is the drive if it is harmonic.
     pub(crate) blocks: Vec<Block>,
+    /// Their Taylor series.
+    pub(crate) series: Series,
     /// Blocks without the drive.
     pub(crate) own: usize,
     /// Some block has an eigenvalue zero, so that a constant load sets it moving.
@@ -180,6 +183,7 @@ impl Flow {
             }
         };
         let mut flow = Self {
+            series: Series::new(&blocks),
             contacts: contacts.to_vec(),
             damping: damping.to_vec(),
             blocks,

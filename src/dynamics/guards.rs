@@ -10,8 +10,9 @@
 use super::block::{Block, Phase};
 use super::contact::{Crossing, Relative, Side};
 use super::flow::{Flow, Parabola, Signals};
-use super::search::{Guard, Search, Start};
+use super::search::{Guard, Search};
 use super::system::{Contact, HybridSystem, Law, Particle, dot};
+use super::window::Start;
 
 /// What the guards of one segment lead to, by their labels: particle and crossing.
 pub(crate) type Crossings = Vec<(usize, Crossing)>;

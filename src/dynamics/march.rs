@@ -5,15 +5,18 @@
 
 use super::audit::Audit;
 use super::block::Phase;
-use super::contact::{Crossing, Relative, STICKING_SPEED, Side, impact};
-use super::flow::{Cholesky, DrivePhase, Flow, Parabola, Signals, carried_mass};
+use super::contact::{Crossing, Impact, Relative, STICKING_SPEED, Side};
+use super::flow::{Cholesky, DrivePhase, Flow, Parabola, Signals};
 use super::guards::{self, Contacts, Crossings, Grip};
 use super::integral::quadrature;
+use super::mobility::Mobilities;
 use super::search::{Clarity, Found, Search};
 use super::system::{Contact, Event, EventKind, HybridSystem, Law, Tick, dot};
 use super::trace::Sample;
 use super::{EngineError, Options, Proof, Response, Sums};
 
+/// An acceleration below this share of its parts is zero: the crossing that ended the half cycle was smooth.
+const SMOOTH: f64 = 1e-9;
 /// Events at one instant beyond which the contact is declared undecidable.
 const MOST_EVENTS_AT_AN_INSTANT: u32 = 64;
 
@@ -24,7 +27,7 @@ pub(crate) struct March<'a> {
     flows: Vec<Flow>,
     /// Index of the flow in force.
     now: usize,
-    // State: structure, particles, contacts.
+    // State: structure (with the compressions of the flow in force behind its coordinates), particles, contacts.
     q: Vec<f64>,
     rate: Vec<f64>,
     particles: Vec<Relative>,
@@ -50,8 +53,10 @@ pub(crate) struct March<'a> {
     sudden: bool,
     /// The contact state or its damping has changed since the flow was chosen.
     changed: bool,
-    p: Vec<f64>,
-    p_rate: Vec<f64>,
+    mobilities: Mobilities,
+    /// Phase of the harmonic force, and the time within the cycle that it belongs to.
+    phase: DrivePhase,
+    phase_time: f64,
     c: Vec<f64>,
     c_end: Vec<f64>,
     observed_end: Vec<Phase>,
@@ -74,6 +79,8 @@ struct Half {
     last: f64,
     /// The crossing was smooth, so that the guard starts at zero.
     touching: bool,
+    /// Too weak to leave the curve's lower end: not followed.
+    idle: bool,
 }
 
 impl<'a> March<'a> {
@@ -96,8 +103,8 @@ impl<'a> March<'a> {
             options,
             flows: Vec::new(),
             now: 0,
-            q: vec![0.0; n],
-            rate: vec![0.0; n],
+            q: vec![0.0; most],
+            rate: vec![0.0; most],
             particles: vec![Relative::default(); count],
             contacts: vec![Contact::Floor; count],
             damping,
@@ -113,8 +120,9 @@ impl<'a> March<'a> {
             answer: Cholesky::new(&system.mass)?.solve(&system.force_row),
             sudden: false,
             changed: true,
-            p: vec![0.0; most],
-            p_rate: vec![0.0; most],
+            mobilities: Mobilities::default(),
+            phase: DrivePhase::default(),
+            phase_time: f64::NAN,
             c: vec![0.0; 2 * most],
             c_end: vec![0.0; 2 * most],
             observed_end: Vec::new(),
@@ -134,16 +142,16 @@ impl<'a> March<'a> {
                 let drive = DrivePhase::default();
                 let flow = &self.flows[self.now];
                 self.c.fill(0.0);
-                flow.leave(&self.c, 0.0, 0.0, drive, &mut self.p, &mut self.p_rate);
-                let n = self.q.len();
-                self.q.copy_from_slice(&self.p[..n]);
+                flow.leave(&self.c, 0.0, 0.0, drive, &mut self.q, &mut self.rate);
+                let n = self.system.mass.order;
+                self.rate.fill(0.0);
                 for (i, &j) in flow.attached.iter().enumerate() {
-                    self.particles[j].gap = self.p[n + i];
+                    self.particles[j].gap = self.q[n + i];
                 }
             }
             super::StartState::Given { q, rate, particles } => {
-                self.q.copy_from_slice(q);
-                self.rate.copy_from_slice(rate);
+                self.q[..q.len()].copy_from_slice(q);
+                self.rate[..rate.len()].copy_from_slice(rate);
                 for (j, (contact, gap, rate)) in particles.iter().enumerate() {
                     self.changed = true;
                     self.contacts[j] = *contact;
@@ -156,7 +164,7 @@ impl<'a> March<'a> {
     }
 
     pub(crate) fn run(mut self) -> Result<Response, EngineError> {
-        let cycles = u64::from(self.options.skip) + u64::from(self.options.average);
+        let cycles = self.options.cycles();
         let period = self.system.drive.period;
         for cycle in 0..cycles {
             self.cycle = cycle;
@@ -218,12 +226,16 @@ impl<'a> March<'a> {
         [dot(row, &self.q) + offset + self.particles[j].gap, dot(row, &self.rate) + self.particles[j].rate]
     }
 
-    fn drive_phase(&self, time: f64) -> DrivePhase {
+    /// The harmonic force's phase; a segment begins where another ended, so that the last answer is kept.
+    fn drive_phase(&mut self, time: f64) -> DrivePhase {
         match self.system.drive.harmonic {
             None => DrivePhase::default(),
+            Some(_) if self.phase_time == time => self.phase,
             Some(drive) => {
                 let (sine, cosine) = super::elementary::sin_cos(drive.angular_frequency * time);
-                DrivePhase { cosine: drive.force * cosine, sine: drive.force * sine }
+                self.phase = DrivePhase { cosine: drive.force * cosine, sine: drive.force * sine };
+                self.phase_time = time;
+                self.phase
             }
         }
     }
@@ -331,14 +343,9 @@ impl<'a> March<'a> {
     }
 
     fn restitution(&self, j: usize, side: Side) -> f64 {
-        if self.system.particles[j].is_enclosed() {
-            // All bounces across no gap happen at once.
-            return 0.0;
-        }
-        match side.face(&self.system.particles[j]).law {
-            Law::Rigid { restitution } => restitution,
-            Law::Resilient { stop, .. } => stop.map_or(0.0, |stop| stop.restitution),
-        }
+        let particle = &self.system.particles[j];
+        // All bounces across no gap happen at once.
+        if particle.is_enclosed() { 0.0 } else { side.face(particle).law.restitution() }
     }
 
     /// Position relative to the ceiling, for a particle whose state refers to the floor.
@@ -387,14 +394,8 @@ impl<'a> March<'a> {
         let approach = self.particles[j].rate;
         self.changed = true;
         self.contacts[j] = Contact::Flight;
-        let mobility = Cholesky::new(&carried_mass(self.system, &self.contacts))?;
-        let row = side.face(particle).row.clone();
-        let impact = impact(&mobility, &row, particle.mass, restitution, approach);
-        self.jump(j, &impact.structure);
+        let impact = self.exchange(j, side, restitution)?;
         self.particles[j].rate = impact.departure;
-        if let Some(audit) = &mut self.audit {
-            audit.loss(impact.loss);
-        }
         self.record(j, if stop.is_some() { side.hit() } else { side.made() }, approach, impact.departure);
         self.half.touching = false;
         let speed = impact.departure.abs();
@@ -414,16 +415,11 @@ impl<'a> March<'a> {
         if particle.is_enclosed() || grip.holds() && (speed == 0.0 || !grip.is_nothing()) {
             self.smooth[j] = grip.is_nothing();
             if speed > 0.0 {
-                let mobility = Cholesky::new(&carried_mass(self.system, &self.contacts_without(j)))?;
-                let last = super::contact::impact(&mobility, &row, particle.mass, 0.0, self.particles[j].rate);
+                let last = self.exchange(j, side, 0.0)?;
                 // What was left to bounce: a geometric series of flights of 2u′/a, each shorter by ε. In flight the face no
                 // longer carries the particle, so that a is larger than the push per mass that will hold it.
                 let series = if restitution < 1.0 { 1.0 / (1.0 - restitution) } else { 0.0 };
                 let tail = 2.0 * speed / (grip.push * last.lightening) * series;
-                self.jump(j, &last.structure);
-                if let Some(audit) = &mut self.audit {
-                    audit.loss(last.loss);
-                }
                 self.record_at(j, EventKind::ChatterEnd, self.time + tail, self.particles[j].rate, 0.0);
             }
             self.particles[j].rate = 0.0;
@@ -469,21 +465,26 @@ impl<'a> March<'a> {
         self.choose_flow()
     }
 
-    /// A jump of the structure in the impact of particle j: the faces of all others move with it.
-    fn jump(&mut self, j: usize, structure: &[f64]) {
+    /// The exchange of momentum in an impact, with the jump of the structure; the faces of all other particles move with it.
+    /// The particle itself is left to the caller.
+    fn exchange(&mut self, j: usize, side: Side, restitution: f64) -> Result<Impact, EngineError> {
+        let approach = self.particles[j].rate;
+        let contact = std::mem::replace(&mut self.contacts[j], Contact::Flight);
+        let meets = self.mobilities.of(self.system, &self.contacts, j, side)?;
+        self.contacts[j] = contact;
+        let impact = Impact::new(meets.at_face, self.system.particles[j].mass, restitution, approach);
         for (other, particle) in self.system.particles.iter().enumerate() {
             let contact = self.contacts[other];
             if other != j && !contact.holds(particle) {
-                self.particles[other].rate -= dot(&contact.side().face(particle).row, structure);
+                let row = &contact.side().face(particle).row;
+                self.particles[other].rate += impact.impulse * dot(row, &meets.answer);
             }
         }
-        self.rate.iter_mut().zip(structure).for_each(|(rate, jump)| *rate += jump);
-    }
-
-    fn contacts_without(&self, j: usize) -> Vec<Contact> {
-        let mut contacts = self.contacts.clone();
-        contacts[j] = Contact::Flight;
-        contacts
+        self.rate.iter_mut().zip(&meets.answer).for_each(|(rate, answer)| *rate -= impact.impulse * answer);
+        if let Some(audit) = &mut self.audit {
+            audit.loss(impact.loss);
+        }
+        Ok(impact)
     }
 
     /// The particle moves away from what it struck.
@@ -547,7 +548,7 @@ impl<'a> March<'a> {
 
     fn record_at(&mut self, particle: usize, kind: EventKind, time: f64, approach: f64, departure: f64) {
         self.response.proof.events += 1;
-        if self.cycle >= u64::from(self.options.skip) {
+        if self.options.averages(self.cycle) {
             self.response.counts.add(kind);
         }
         let wanted = self.response.events.len() < self.options.record_events
@@ -580,14 +581,12 @@ impl<'a> March<'a> {
     /// Block coordinates of the state in the flow in force.
     fn enter_flow(&mut self, drive: DrivePhase) {
         let flow = &self.flows[self.now];
-        let n = self.q.len();
-        self.p[..n].copy_from_slice(&self.q);
-        self.p_rate[..n].copy_from_slice(&self.rate);
+        let n = self.system.mass.order;
         for (i, &j) in flow.attached.iter().enumerate() {
-            self.p[n + i] = self.particles[j].gap;
-            self.p_rate[n + i] = self.particles[j].rate;
+            self.q[n + i] = self.particles[j].gap;
+            self.rate[n + i] = self.particles[j].rate;
         }
-        flow.enter(&self.p[..flow.order], &self.p_rate[..flow.order], self.level, drive, &mut self.c);
+        flow.enter(&self.q[..flow.order], &self.rate[..flow.order], self.level, drive, &mut self.c);
     }
 
     /// Propagates to `until` within the cycle, from event to event.
@@ -626,12 +625,12 @@ impl<'a> March<'a> {
             rate: &self.rate,
         };
         guards::set(state, flow, &self.signals, &mut self.search, &mut self.crossings, &mut self.paths);
-        if self.system.drive.half_cycles.is_some() {
+        if self.system.drive.half_cycles.is_some() && !self.half.idle {
             let Half { sign, touching, .. } = self.half;
             guards::half_cycle(flow, &self.signals, sign, touching, &mut self.search, &mut self.crossings);
         }
         let limit = until - self.time;
-        let found = self.search.run(&flow.blocks, limit, &mut self.clarity);
+        let found = self.search.run(&flow.blocks, &flow.series, limit, &mut self.clarity);
         let length = match found {
             Found::Nothing => limit,
             Found::Event { time, .. } => time.min(limit),
@@ -657,10 +656,8 @@ impl<'a> March<'a> {
             None => drive,
             Some(_) => self.drive_phase(self.time + length),
         };
-        let n = self.q.len();
+        let n = self.system.mass.order;
         let flow = &self.flows[self.now];
-        // What has begun at zero is there no longer.
-        self.half.touching &= length == 0.0;
         for (j, particle) in self.system.particles.iter().enumerate() {
             let contact = self.contacts[j];
             if contact.face(particle).is_none() {
@@ -676,29 +673,60 @@ impl<'a> March<'a> {
                 let here = self.particles[j];
                 self.particles[j] = guards::fly(flow, self.paths[j], phases, here, &self.search.kernels, length);
             }
+            // What has begun at zero is there no longer.
             self.smooth[j] &= length == 0.0;
         }
         flow.advance(&self.search.kernels, &self.c, &mut self.c_end);
-        flow.leave(&self.c_end, length, self.level, end_drive, &mut self.p, &mut self.p_rate);
-        self.q.copy_from_slice(&self.p[..n]);
-        self.rate.copy_from_slice(&self.p_rate[..n]);
+        flow.leave(&self.c_end, length, self.level, end_drive, &mut self.q, &mut self.rate);
         for (i, &j) in flow.attached.iter().enumerate() {
-            self.particles[j] = Relative { gap: self.p[n + i], rate: self.p_rate[n + i] };
+            self.particles[j] = Relative { gap: self.q[n + i], rate: self.rate[n + i] };
         }
     }
 
     /// Starts the first half cycle, and ends one whose acceleration a contact has turned at once.
     fn turn_half_cycle(&mut self) -> Result<(), EngineError> {
-        if self.system.drive.half_cycles.is_none() {
-            return Ok(());
-        }
+        let Some(half_cycles) = &self.system.drive.half_cycles else { return Ok(()) };
         let flow = &self.flows[self.now];
         let bends = guards::accelerations(&flow.blocks, self.signals.of(flow.observed).0);
-        let total = bends.iter().fold(0.0, |sum, phase| sum + phase.value);
-        if self.half.sign == 0.0 {
-            self.half.sign = if total < 0.0 { -1.0 } else { 1.0 };
+        // Below the curve's first point every half cycle gives the same damping: no need to follow them until something
+        // happens. The bound holds to the end of the segment, and the half cycle under way is as weak.
+        let [least, damping] = half_cycles.curve.lower_end();
+        let bound = flow
+            .blocks
+            .iter()
+            .zip(&bends)
+            .fold(0.0, |sum, (block, phase)| sum + block.amplitude(*phase, 0.0, self.system.drive.period));
+        let least = least * self.system.gravity;
+        let weak = self.half.square <= least * least * self.half.length;
+        if bound < least && weak && self.damping.iter().all(|now| *now == damping) {
+            self.half = Half { idle: true, last: self.half.last, ..Half::default() };
+            return Ok(());
         }
-        if self.half.touching || total * self.half.sign >= 0.0 {
+        self.half.idle = false;
+        let total = bends.iter().fold(0.0, |sum, phase| sum + phase.value);
+        let rate = bends.iter().fold(0.0, |sum, phase| sum + phase.rate);
+        // Its parts: with a single block the acceleration itself is what rounding has left of them.
+        let observed = self.signals.of(flow.observed).0;
+        let scale = flow.blocks.iter().zip(observed).fold(0.0, |sum, (block, phase)| {
+            sum + (2.0 * block.decay * phase.rate).abs() + (block.determinant * phase.value).abs()
+        });
+        let smooth = total.abs() <= SMOOTH * scale;
+        if self.half.sign == 0.0 {
+            // From rest the first half cycle goes where the acceleration is about to go.
+            self.half.touching = smooth;
+            let first = if smooth { rate } else { total };
+            self.half.sign = if first < 0.0 { -1.0 } else { 1.0 };
+        }
+        if self.half.touching && smooth {
+            if rate * self.half.sign < 0.0 {
+                // The new damping turns the acceleration back before it has got anywhere.
+                self.half.sign = -self.half.sign;
+            }
+            return Ok(());
+        }
+        // New damping in a contact makes the acceleration jump: it no longer starts from zero.
+        self.half.touching = false;
+        if total * self.half.sign >= 0.0 {
             return Ok(());
         }
         self.half.sign = -self.half.sign;
@@ -804,11 +832,10 @@ impl<'a> March<'a> {
                 self.meet(j, Side::Floor)?;
             } else if let Some(above) = self.ceiling_relative(j)
                 && above.gap == 0.0
+                && above.rate > 0.0
             {
-                if above.rate > 0.0 {
-                    self.particles[j] = above;
-                    self.meet(j, Side::Ceiling)?;
-                }
+                self.particles[j] = above;
+                self.meet(j, Side::Ceiling)?;
             }
         }
         Ok(())
@@ -818,7 +845,7 @@ impl<'a> March<'a> {
     fn sum_up(&mut self, length: f64, drive: DrivePhase) {
         let flow = &self.flows[self.now];
         let (observed, rest) = self.signals.of(flow.observed);
-        if self.cycle >= u64::from(self.options.skip) {
+        if self.options.averages(self.cycle) {
             let integrals = match &flow.forms {
                 Some(forms) => {
                     self.observed_end.clear();
@@ -836,11 +863,13 @@ impl<'a> March<'a> {
             sums.velocity_square += integrals.rate_square;
             sums.displacement += integrals.value;
             sums.displacement_square += integrals.square;
-            if let Some(audit) = &mut self.audit {
-                audit.segment(self.system, flow, &self.c, self.level, drive, length);
-            }
         }
-        if self.system.drive.half_cycles.is_some() {
+        if let Some(audit) = &mut self.audit
+            && self.cycle >= u64::from(self.options.skip)
+        {
+            audit.segment(self.system, flow, &self.c, self.level, drive, length);
+        }
+        if self.system.drive.half_cycles.is_some() && !self.half.idle {
             let bends = guards::accelerations(&flow.blocks, observed);
             self.half.square += quadrature(&flow.blocks, &bends, Parabola::default(), length).square;
             self.half.length += length;
@@ -849,8 +878,8 @@ impl<'a> March<'a> {
 
     fn audit_state(&self) -> super::audit::State {
         super::audit::State {
-            q: self.q.clone(),
-            rate: self.rate.clone(),
+            q: self.q[..self.system.mass.order].to_vec(),
+            rate: self.rate[..self.system.mass.order].to_vec(),
             particles: (0..self.particles.len()).map(|j| self.absolute(j)).collect(),
             compressions: (0..self.particles.len())
                 .map(|j| match side_stiffness(self.system, &self.contacts, j) {

@@ -12,20 +12,28 @@
 //! The engine knows no beam, no YAML and no file. Structures of up to a hundred modes or so are its business; large sparse
 //! systems are not.
 
+#![expect(clippy::neg_cmp_op_on_partial_ord, reason = "`!(x > bound)` sends NaN into the branch that refuses")]
+#![expect(clippy::needless_range_loop, reason = "matrix loops run one index over several arrays")]
+
 mod audit;
 mod block;
 mod contact;
 mod elementary;
+mod fixed;
 mod flow;
 mod guards;
 mod integral;
 mod march;
+mod mobility;
 mod modes;
+mod polynomial;
 mod search;
+mod series;
 mod spectral;
 mod spline;
 mod system;
 mod trace;
+mod window;
 
 pub use spline::Spline;
 pub use system::{
@@ -45,7 +53,8 @@ pub struct Proof {
     pub energy_residual: f64,
     /// Events of the whole run: contacts made and lost, stops hit; impulses not counted.
     pub events: u64,
-    /// The smallest distance, in metres, by which a surface would have to be moved for the sequence of events to change.
+    /// The smallest distance, in metres, by which a surface would have to be moved for the sequence of events to change; NaN
+    /// from the fixed step, which certifies nothing.
     pub smallest_margin: f64,
     /// Decisions within rounding: simultaneous events that had to be put into an order, contacts that graze.
     pub ties: u64,
@@ -72,6 +81,20 @@ pub struct Options {
     pub trace: Option<TraceRequest>,
     /// Search windows are shorter by this factor; 1 as a rule, less for a second accuracy.
     pub window_factor: f64,
+}
+
+impl Options {
+    /// Cycles to run: the averaged window, and as far as a time history asks for.
+    pub(crate) fn cycles(&self) -> u64 {
+        let window = u64::from(self.skip) + u64::from(self.average);
+        window.max(self.trace.map_or(0, |trace| trace.to_cycle))
+    }
+
+    /// The cycle belongs to the averaged window.
+    pub(crate) fn averages(&self, cycle: u64) -> bool {
+        let first = u64::from(self.skip);
+        (first..first + u64::from(self.average)).contains(&cycle)
+    }
 }
 
 impl Default for Options {
@@ -244,6 +267,16 @@ pub enum EngineError {
         /// Time within it.
         time: f64,
     },
+    /// A step that is no step of this drive.
+    #[error(
+        "a time step of {time_step} s does not fit a forcing period of {period} s: it must be positive, no longer than the period and longer than a billionth of it"
+    )]
+    TimeStep {
+        /// s.
+        time_step: f64,
+        /// s.
+        period: f64,
+    },
     /// Overflow.
     #[error("the motion leaves the range of numbers in cycle {cycle}")]
     NotFinite {
@@ -260,10 +293,10 @@ pub fn event_driven(system: &HybridSystem, options: &Options) -> Result<Response
     march::march(system, options)
 }
 
-/// Runs a system with the study's scheme: exact propagators of one time step, the contact state checked once a step.
+/// Runs a system with the study's scheme: exact propagators of one time step, s, the contact state checked once a step.
 ///
 /// # Errors
 /// [`EngineError`] with the reason.
-pub fn fixed_step(system: &HybridSystem, options: &Options, _time_step: f64) -> Result<Response, EngineError> {
-    event_driven(system, options)
+pub fn fixed_step(system: &HybridSystem, options: &Options, time_step: f64) -> Result<Response, EngineError> {
+    fixed::run(system, options, time_step)
 }

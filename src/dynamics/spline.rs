@@ -42,6 +42,12 @@ impl Spline {
             + ((a * a * a - a) * self.curvature[left] + (b * b * b - b) * self.curvature[right]) * h * h / 6.0
     }
 
+    /// The first point: below its abscissa the curve is constant.
+    #[must_use]
+    pub fn lower_end(&self) -> [f64; 2] {
+        [self.x[0], self.y[0]]
+    }
+
     /// The value beyond the last point.
     #[must_use]
     pub fn upper_end(&self) -> f64 {

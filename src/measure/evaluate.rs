@@ -8,7 +8,7 @@
 use std::f64::consts::TAU;
 
 use super::history::{History, columns};
-use super::{EvaluateError, Evaluated, Measure, Measured};
+use super::{EvaluateError, Evaluated, Measure, Measured, Rigour};
 use crate::dynamics::{EngineError, HybridSystem, Options, Response, TraceRequest, event_driven};
 use crate::scene::{Assumptions, Excitation, Recipe, Scene, Structure, compile};
 use crate::spec::{Settings, SolverChoice, TraceSpec};
@@ -17,6 +17,8 @@ use crate::spec::{Settings, SolverChoice, TraceSpec};
 const TWIN_KICK: f64 = 1e-9;
 /// How far the twin may end, relative to the RMS velocity, before the motion counts as chaotic.
 const CHAOS: f64 = 1e-6;
+/// Ensemble of a look.
+const MEMBERS_OF_A_LOOK: u32 = 8;
 /// Largest kick of an ensemble member.
 const ENSEMBLE_KICK: f64 = 1e-6;
 
@@ -31,6 +33,7 @@ pub fn evaluate(
     settings: &Settings,
     measures: &[Measure],
     trace: Option<&TraceSpec>,
+    rigour: Rigour,
 ) -> Result<Evaluated, EvaluateError> {
     let scene = rounded(recipe.resolve(assumptions)?, settings);
     let bare = rounded(recipe.resolve_undamped(assumptions)?, settings);
@@ -43,7 +46,7 @@ pub fn evaluate(
         ..Options::default()
     };
     let main = Options {
-        audit: true,
+        audit: rigour == Rigour::Result,
         trace: trace.map(|trace| TraceRequest {
             from_cycle: u64::from(trace.from_cycle),
             to_cycle: u64::from(trace.to_cycle),
@@ -77,15 +80,21 @@ pub fn evaluate(
     let rms = response.window().rms_velocity();
     let twin = event_driven(&system, &Options { kick: TWIN_KICK, ..plain.clone() })?;
     let chaotic = (twin.window().rms_velocity() - rms).abs() > CHAOS * rms;
-    if !chaotic || settings.ensemble < 2 {
+    let members = match rigour {
+        Rigour::Result => settings.ensemble,
+        Rigour::Look => settings.ensemble.min(MEMBERS_OF_A_LOOK),
+    };
+    if !chaotic && rigour == Rigour::Look {
+        return Ok(certain(values.iter().map(|value| 4.0 * f64::EPSILON * value.abs()).collect(), false));
+    }
+    if !chaotic || members < 2 {
         // The same events decided in other windows; measures of the history are as exact as its samples.
-        let second = event_driven(&system, &Options { window_factor: 0.5, ..main.clone() })?;
+        let second = event_driven(&system, &Options { window_factor: 0.5, audit: false, ..main.clone() })?;
         let again = read(&second, history.as_ref().map(|_| History { response: &second, scene: &scene }).as_ref())?;
         let numerical = values.iter().zip(again).map(|(a, b)| (a - b).abs().max(4.0 * f64::EPSILON * a.abs()));
         return Ok(certain(numerical.collect(), chaotic));
     }
 
-    let members = settings.ensemble;
     let mut sums = vec![Welford::default(); measures.len()];
     for member in 0..members {
         let place = (f64::from(member) + 0.5) / f64::from(members) * 2.0 - 1.0;

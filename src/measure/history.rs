@@ -60,11 +60,11 @@ impl History<'_> {
         self.response.trace.iter().fold(0.0, |deepest, sample| f64::max(deepest, sample.ceiling - sample.rigid_ceiling))
     }
 
-    /// Shortest time between the start of a forcing cycle and an event of this kind, s; NaN if there is none.
+    /// Shortest time between the start of a forcing cycle and an event of this kind, s; infinite if there is none.
     pub(super) fn lag(&self, kind: EventKind) -> f64 {
         let period = self.scene.excitation.period();
         let lags = self.response.events.iter().filter(|event| event.kind == kind);
-        lags.map(|event| event.time.min(period - event.time)).fold(f64::NAN, f64::min)
+        lags.map(|event| event.time.min(period - event.time)).fold(f64::INFINITY, f64::min)
     }
 }
 

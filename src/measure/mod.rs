@@ -88,6 +88,16 @@ impl Measure {
     }
 }
 
+/// How much a number has to be worth.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Rigour {
+    /// A result: audited, at a second accuracy, the whole ensemble where the motion is chaotic.
+    #[default]
+    Result,
+    /// A look, to find a maximum or a sensitivity: neither audited nor repeated, ensembles of eight.
+    Look,
+}
+
 /// A measured number with its own errors.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Measured {

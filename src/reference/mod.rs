@@ -1,5 +1,33 @@
 //! The published numbers and claims, and what became of each.
+//!
+//! An [`Entry`] says where a number or claim stands and how it is read from a table. [`judge`] holds it against the tables:
+//! values after ASME V&V 20, claims as predicates. [`self_test`] shows that every entry can fail.
 
+mod compare;
+mod decide;
+mod entry;
+mod extract;
+mod extraction;
+mod judge;
+mod line;
+mod predicate;
+mod printed;
+mod selection;
+mod self_test;
+mod shape;
+mod tally;
+mod text;
 mod verdict;
+mod view;
 
+pub use entry::{
+    Check, Entry, ReferenceError, ReferenceFile, Tolerance, ToleranceSize, load_reference, parse_reference,
+};
+pub use extraction::Extraction;
+pub use judge::judge;
+pub use predicate::Predicate;
+pub use printed::{Printed, PrintedError};
+pub use selection::{Allowed, Selection};
+pub use self_test::{SelfTestFailure, self_test};
 pub use verdict::{Comparison, Judged, Verdict};
+pub use view::{TableState, Tables};

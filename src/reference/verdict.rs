@@ -27,7 +27,7 @@ pub struct Comparison {
     pub simulated: f64,
     /// D, what is published.
     pub published: f64,
-    /// u_num: discretisation error and standard error of an ensemble.
+    /// u_num: the run's own error, the grid's, and the spread of the ensemble, of which the published run is one member.
     pub u_num: f64,
     /// u_input: from the sensitivity to the unstated inputs.
     pub u_input: f64,
@@ -55,7 +55,7 @@ impl Comparison {
     /// Digits that agree, −log10(|S − D|/|D|), as NIST StRD tells it.
     #[must_use]
     pub fn digits(&self) -> f64 {
-        -(self.error().abs() / self.published.abs()).log10()
+        -libm::log10(self.error().abs() / self.published.abs())
     }
 }
 

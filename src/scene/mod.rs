@@ -5,10 +5,13 @@
 
 mod assumption;
 mod compile;
+mod effect;
 mod recipe;
+mod told;
 
 pub use assumption::{Assumption, AssumptionValue, Assumptions, Curve};
 pub use compile::{CompileError, compile};
+pub use effect::{EffectUse, effects};
 pub use recipe::{
     ContactDampingRecipe, DamperRecipe, ExcitationRecipe, GapRecipe, Given, MassRecipe, Parameter, ParameterValue,
     PulseShape, Recipe, RecipeError, StiffnessRecipe, StopRecipe, StrengthRecipe, StructureRecipe, SurfaceRecipe,

@@ -52,17 +52,6 @@ impl Checks<'_> {
         }
     }
 
-    /// The trace lies within the run.
-    pub fn trace(&self, trace: Option<&TraceSpec>, settings: &Settings, at: Span) {
-        let last = settings.skip.saturating_add(settings.average);
-        if let Some(trace) = trace
-            && trace.to_cycle > last
-        {
-            let message = format!("the trace ends with cycle {}, the run with cycle {last}", trace.to_cycle);
-            self.findings.wrong::<()>(at, message);
-        }
-    }
-
     /// `swept` in the scene needs a value from every case; a maximised parameter cannot be swept as well.
     pub fn coverage(
         &self,

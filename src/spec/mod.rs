@@ -16,6 +16,7 @@ mod reader;
 mod scene;
 mod solver;
 mod sweep;
+mod typed;
 mod validate;
 mod word;
 mod yaml;
@@ -28,4 +29,6 @@ pub use experiment::{
 };
 pub use load::{load_assumptions, load_experiment};
 pub use quantity::{Dimension, QuantityError, parse_number, parse_quantity};
+pub use typed::{Located, from_yaml};
+pub(crate) use typed::{Spanned, position};
 pub use validate::parse_experiment;

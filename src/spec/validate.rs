@@ -66,7 +66,7 @@ impl<'t> ExperimentReader<'t> {
         let run = fields.optional("run", |node| self.run(node)).map(|run| run.unwrap_or_else(Run::default));
         let trace = fields.optional("trace", |node| self.trace(node));
         let place = |key| fields.get(key).map_or(fields.span(), |node| node.span);
-        let (scene_at, trace_at) = (place("scene"), place("trace"));
+        let scene_at = place("scene");
 
         let columns = match (&sweep, &measures, &maximise, &trace) {
             (Some(sweep), Some(measures), Some(maximise), Some(trace)) => {
@@ -82,7 +82,6 @@ impl<'t> ExperimentReader<'t> {
         let checks = Checks { findings: self.findings, assumptions: self.assumptions };
         let (measures, maximise, trace, run) = (measures?, maximise?, trace?, run?);
         checks.measures(&measures, maximise.as_ref(), trace.as_ref());
-        checks.trace(trace.as_ref(), &run.settings, trace_at);
         let (mut scene, sweep) = (scene?, sweep?.unwrap_or_else(ReadSweep::none));
         let places = sweep.places;
         let cases = with_solvers(sweep.cases, &run.solvers);

@@ -1,1 +1,35 @@
-//! study
+//! A study: what is planned, what is stale and why, the parallel runner, the tables and records that it leaves.
+//!
+//! texts → experiments → [`Item`]s (what each depends on, what is on disk) → [`run`] → tables and records. Nothing here
+//! draws or judges: verdicts, figures and reports are made from the tables afterwards.
+
+mod evaluate;
+mod event;
+mod job;
+mod layout;
+mod load;
+mod maximise;
+mod meaning;
+mod plan;
+mod progress;
+mod reason;
+mod record;
+mod run;
+mod snapshot;
+mod store;
+mod tabulate;
+mod variant;
+
+pub use evaluate::{Engine, Evaluate, Simulation};
+pub use event::{Event, Listen, Silence};
+pub use layout::{ASSUMPTIONS, Layout, Texts, record_name, table_name};
+pub use load::{Loaded, Refused, Source};
+pub use meaning::{Change, canonical, changes, fingerprint};
+pub use plan::{Item, State};
+pub use progress::Progress;
+pub use reason::{Reason, differences};
+pub use record::{Failures, FileHash, NoRecord, PRESENTATION_VERSION, Publication, RECORD_FORMAT, Record};
+pub use run::{Finished, Task, ThreadError, run};
+pub use snapshot::Snapshot;
+pub use store::{Lock, save};
+pub use variant::{Sensitivity, Variant, variants};

@@ -3,7 +3,16 @@
 //! One row is one case: a sweep point, under one solver, in one variant of the assumptions. Time histories are
 //! list-valued cells of the same row, so that an experiment is one table and one file.
 
+mod access;
+pub mod parquet;
+
 use std::collections::BTreeMap;
+
+pub use access::TableError;
+pub use parquet::ParquetError;
+
+/// The `variant` of a row computed with the assumptions as the file gives them.
+pub const BASELINE: &str = "baseline";
 
 /// A named column with its unit (empty for dimensionless and text).
 #[derive(Debug, Clone, PartialEq)]

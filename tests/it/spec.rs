@@ -268,10 +268,6 @@ fn mistakes_that_a_person_makes_are_told_where_they_stand() {
             "16:11 `last_peak` is read off a time history, and this experiment keeps none | add `trace: {from: … cycles, to: … cycles, samples_per_cycle: …}`",
         ),
         (
-            format!("{GOOD}trace: {{from: 124 cycles, to: 126 cycles, samples_per_cycle: 10}}\n"),
-            "18:1 the trace ends with cycle 126, the run with cycle 125",
-        ),
-        (
             format!("{GOOD}maximise: {{velocity_ratio: {{over: force_ratio, in: [1, 2]}}}}\n"),
             "13:3 `force_ratio` is swept and maximised over at once | take it out of `sweep`",
         ),

@@ -1,0 +1,33 @@
+//! The whole process with nothing to do, over as many experiments as the study will have.
+
+use std::process::Command;
+
+use shotdamp::study::Silence;
+
+#[path = "../tests/it/desk.rs"]
+#[expect(dead_code, reason = "a bench needs only a part of it")]
+mod desk;
+
+use desk::{Desk, GAP, GAP_REFERENCE, MadeUp};
+
+/// Rows of the study's inventory.
+const EXPERIMENTS: usize = 63;
+
+fn main() {
+    divan::main();
+}
+
+#[divan::bench(sample_count = 100)]
+fn nothing_to_do(bencher: divan::Bencher<'_, '_>) {
+    let desk = Desk::new();
+    // Two are there already.
+    for copy in 2..EXPERIMENTS {
+        desk.put(&format!("experiments/ch3/ch3-gap-{copy}.yaml"), GAP);
+        desk.put(&format!("reference/ch3/ch3-gap-{copy}.yaml"), GAP_REFERENCE);
+    }
+    desk.run(2, &MadeUp::default(), &Silence);
+    let mut command = Command::new(env!("CARGO_BIN_EXE_shotdamp"));
+    command.arg("--root").arg(desk.folder.path());
+    assert!(command.output().is_ok_and(|output| output.status.success()), "the first run publishes");
+    bencher.bench_local(|| command.output());
+}

@@ -1,0 +1,77 @@
+//! Writing files so that a reader, or the next run, never meets half of one.
+//!
+//! The bytes go to a hidden neighbour, reach the disk, and take the final name in one step. Whoever is killed in between
+//! leaves the old file as it was, and at most a hidden neighbour, which [`sweep`] removes.
+
+use std::fs::{self, File};
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+/// How a neighbour's name begins.
+const PREFIX: &str = ".shotdamp-";
+
+/// A file that could not be read or written, with its name.
+#[derive(Debug, thiserror::Error)]
+#[error("cannot {action} {}: {source}", path.display())]
+pub struct FileError {
+    /// `read`, `write`, …
+    pub action: &'static str,
+    /// Which file.
+    pub path: PathBuf,
+    /// What the system says.
+    pub source: io::Error,
+}
+
+impl FileError {
+    pub(crate) fn new(action: &'static str, path: &Path, source: io::Error) -> Self {
+        Self { action, path: path.to_path_buf(), source }
+    }
+}
+
+/// Writes the whole file or leaves it as it was; makes the folder if it is not there.
+///
+/// # Errors
+/// [`FileError`] with the system's reason.
+pub fn write(path: &Path, bytes: &[u8]) -> Result<(), FileError> {
+    let fail = |source| FileError::new("write", path, source);
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    fs::create_dir_all(folder).map_err(fail)?;
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(PREFIX);
+    // A temporary file is private by default; results are for all to read, as far as the umask lets them.
+    #[cfg(unix)]
+    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+    let mut file = builder.tempfile_in(folder).map_err(fail)?;
+    file.write_all(bytes).map_err(fail)?;
+    file.as_file().sync_all().map_err(fail)?;
+    file.persist(path).map_err(|error| fail(error.error))?;
+    // The new name itself is on disk only once its folder is; not every system lets a folder be opened.
+    if let Ok(folder) = File::open(folder) {
+        let _ = folder.sync_all();
+    }
+    Ok(())
+}
+
+/// As [`write`], but leaves a file alone that holds these bytes already. Returns whether it wrote.
+///
+/// # Errors
+/// As [`write`].
+pub fn write_if_changed(path: &Path, bytes: &[u8]) -> Result<bool, FileError> {
+    if fs::metadata(path).is_ok_and(|meta| meta.len() == bytes.len() as u64)
+        && fs::read(path).is_ok_and(|old| old == bytes)
+    {
+        return Ok(false);
+    }
+    write(path, bytes).map(|()| true)
+}
+
+/// Removes what killed runs left in a folder. Only for the holder of the study's lock: it would take a neighbour from
+/// under the hands of another run.
+pub fn sweep(folder: &Path) {
+    let Ok(entries) = fs::read_dir(folder) else { return };
+    for entry in entries.flatten() {
+        if entry.file_name().to_str().is_some_and(|name| name.starts_with(PREFIX)) {
+            let _ = fs::remove_file(entry.path());
+        }
+    }
+}

@@ -1,0 +1,102 @@
+//! `shotdamp show ID`.
+
+use super::args::Choice;
+use super::error::CliError;
+use super::exit::Exit;
+use super::output::{columns, complain_of, print};
+use super::select::{choose, open};
+use crate::publish::{Opened, scenes};
+use crate::report::value_in_words;
+use crate::scene::{Scene, effects};
+use crate::study::{Item, Layout, State};
+use crate::text::words;
+
+/// All that is known of one experiment before it runs.
+pub(super) fn show(layout: &Layout, id: &str) -> Result<Exit, CliError> {
+    let opened = open(layout)?;
+    let chosen = choose(&opened, &Choice { patterns: vec![id.into()], chapter: None })?;
+    complain_of(chosen.unread.iter().copied());
+    let texts: Vec<String> = chosen.items.iter().map(|item| told(&opened, item)).collect();
+    print(&texts.join("\n"))?;
+    Ok(if chosen.unread.is_empty() { Exit::AsExpected } else { Exit::CouldNot })
+}
+
+fn told(opened: &Opened, item: &Item) -> String {
+    let experiment = &item.source.experiment;
+    let source = &experiment.source;
+    let mut text = format!("{}: {}\n", experiment.id, experiment.title);
+    text += &format!(
+        "s. {}, {}; {}\n\n{}\n",
+        source.section,
+        source.shown_in.join(", "),
+        item.source.file,
+        experiment.about
+    );
+
+    let scenes = scenes(opened, experiment);
+    let first = experiment.cases.first().map(|case| case.told()).filter(|case| !case.is_empty());
+    text += &format!("\nScene{}\n", first.map_or_else(String::new, |case| format!(" of the first case ({case})")));
+    for line in scenes.first().map(Scene::told).unwrap_or_default() {
+        text += &format!("  {line}\n");
+    }
+    text += "\nEffects\n";
+    let rows: Vec<Vec<String>> = effects(&scenes)
+        .into_iter()
+        .map(|effect| {
+            let state = match effect.in_force {
+                0 => format!("left out: {}", effect.why_not),
+                n if n == effect.cases => "in force".into(),
+                n => format!("in force in {n} of {} cases", effect.cases),
+            };
+            vec![format!("  {}", effect.name), state]
+        })
+        .collect();
+    text += &columns(&rows);
+
+    text += "\nAssumptions\n";
+    let used = experiment.assumptions_used();
+    for (name, entry) in opened.sheet.entries.iter().filter(|(name, _)| used.contains(name)) {
+        text += &format!("  {} = {}\n", words::of_key(name), value_in_words(*name, &entry.value));
+        text += &wrapped(&entry.reason, "      ", 100);
+    }
+    if used.is_empty() {
+        text += "  none\n";
+    }
+
+    text += "\nCases\n";
+    let mut solvers: Vec<String> = Vec::new();
+    for (_, solver) in experiment.runs() {
+        if !solvers.contains(&solver.label()) {
+            solvers.push(solver.label());
+        }
+    }
+    let (rows, simulations) = item.size();
+    text += &format!("  {} cases, under {}\n", experiment.cases.len(), solvers.join(" and "));
+    if item.variants.len() > 1 {
+        let ends: Vec<&str> = item.variants.iter().skip(1).map(|variant| variant.label.as_str()).collect();
+        text += &format!("  and event-driven with each of {}\n", ends.join(", "));
+    }
+    text += &format!("  {rows} rows, {simulations} simulations at most\n");
+    let state = match &item.state {
+        State::Current(_) => "up to date",
+        State::Failed(_) => "computed, with failed rows",
+        State::Stale(_) => "stale",
+    };
+    text += &format!("\nFingerprint {}\n({state})\n", item.fingerprint);
+    text
+}
+
+/// Lines of at most so many letters, each after a margin.
+fn wrapped(text: &str, margin: &str, width: usize) -> String {
+    let mut lines: Vec<String> = Vec::new();
+    for word in text.split_whitespace() {
+        match lines.last_mut() {
+            Some(line) if line.chars().count() + 1 + word.chars().count() <= width => {
+                line.push(' ');
+                line.push_str(word);
+            }
+            _ => lines.push(word.into()),
+        }
+    }
+    lines.into_iter().map(|line| format!("{margin}{line}\n")).collect()
+}

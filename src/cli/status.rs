@@ -1,0 +1,52 @@
+//! `shotdamp status`.
+
+use super::args::StatusArgs;
+use super::error::CliError;
+use super::exit::Exit;
+use super::output::{complain_of, print};
+use super::select::{choose, open};
+use crate::publish::publication_reasons;
+use crate::study::{Layout, State};
+
+/// One line an experiment, and below it why.
+pub(super) fn status(layout: &Layout, args: &StatusArgs) -> Result<Exit, CliError> {
+    let opened = open(layout)?;
+    let chosen = choose(&opened, &args.choice)?;
+    complain_of(chosen.unread.iter().copied());
+    let width = chosen.items.iter().map(|item| item.source.experiment.id.0.len()).max().unwrap_or(0);
+    let mut text = String::new();
+    let (mut simulations, mut reports) = (0, 0);
+    for item in &chosen.items {
+        let mut reasons = item.reasons();
+        let state = match &item.state {
+            State::Stale(_) => "stale",
+            State::Failed(_) => "failed",
+            State::Current(_) => {
+                reasons = publication_reasons(&opened, item);
+                if reasons.is_empty() { "up to date" } else { "report stale" }
+            }
+        };
+        match state {
+            "up to date" => {}
+            "report stale" => reports += 1,
+            _ => simulations += 1,
+        }
+        text += &format!("{:width$}  {state}\n", item.source.experiment.id.0);
+        if args.why {
+            text.extend(reasons.iter().map(|reason| format!("    {reason}\n")));
+        }
+    }
+    let all = chosen.items.len();
+    text += &match (simulations, reports) {
+        (0, 0) => format!("{all} experiments, all up to date\n"),
+        _ => format!("{all} experiments: {simulations} to simulate, {reports} reports to renew\n"),
+    };
+    print(&text)?;
+    Ok(if !chosen.unread.is_empty() {
+        Exit::CouldNot
+    } else if args.exit_code && simulations + reports > 0 {
+        Exit::Unexpected
+    } else {
+        Exit::AsExpected
+    })
+}

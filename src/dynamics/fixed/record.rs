@@ -1,0 +1,128 @@
+//! What a run keeps: events, sums over the averaged window, the balances, the time history.
+
+use super::Run;
+use super::stretch::Tally;
+use super::vector::Vector;
+use crate::dynamics::EngineError;
+use crate::dynamics::audit::State;
+use crate::dynamics::system::{Event, EventKind, Law, dot};
+use crate::dynamics::trace::Sample;
+
+impl<V: Vector> Run<'_, V> {
+    pub(super) fn record(&mut self, particle: usize, kind: EventKind, approach: f64, departure: f64) {
+        self.response.proof.events += 1;
+        if self.options.averages(self.cycle) {
+            self.response.counts.add(kind);
+        }
+        let wanted = self.response.events.len() < self.options.record_events
+            || self.options.trace.as_ref().is_some_and(|trace| trace.covers(self.cycle));
+        if wanted {
+            let time = (self.step - self.schedule.cycle(self.cycle)) as f64 * self.time_step;
+            self.response.events.push(Event { cycle: self.cycle, time, particle, kind, approach, departure });
+        }
+    }
+
+    /// Books a cycle's sums.
+    pub(super) fn end_cycle(&mut self) -> Result<(), EngineError> {
+        let tally = std::mem::replace(&mut self.tally, Tally::new(self.layout.size()));
+        if !tally.velocity_square.is_finite() {
+            return Err(EngineError::NotFinite { cycle: self.cycle });
+        }
+        let weight = self.time_step;
+        if self.options.averages(self.cycle) {
+            let second_half = 2 * (self.cycle - u64::from(self.options.skip)) >= u64::from(self.options.average);
+            let sums = &mut self.response.sums[usize::from(second_half)];
+            sums.duration += tally.steps as f64 * weight;
+            sums.velocity_square += tally.velocity_square * weight;
+            if self.options.displacement {
+                sums.displacement += self.watch.displacement.dot(&tally.state) * weight;
+                sums.displacement_square += tally.displacement_square * weight;
+            }
+        }
+        if self.audited() {
+            let passed = &mut self.passed;
+            passed.duration += tally.steps as f64 * weight;
+            passed.position.iter_mut().zip(tally.state.values()).for_each(|(sum, q)| *sum += q * weight);
+            passed.dissipated += tally.dissipated * weight;
+            passed.force += tally.force * weight;
+            passed.force_modulus += tally.force_modulus * weight;
+            passed.work += tally.work;
+            passed.work_modulus += tally.work_modulus;
+        }
+        Ok(())
+    }
+
+    /// Half a sample at the end of a smooth piece of the motion, added or taken off: sums over steps become trapezoidal.
+    pub(super) fn seam(&mut self, half: f64) {
+        if !self.audited() {
+            return;
+        }
+        let state = &self.motion.state;
+        let weight = half * self.time_step;
+        self.passed.position.iter_mut().zip(state.values()).for_each(|(sum, q)| *sum += weight * q);
+        for row in &self.propagators[self.now].dissipation {
+            let rate = row.dot(state);
+            self.passed.dissipated += weight * rate * rate;
+        }
+    }
+
+    pub(super) fn audit_state(&self) -> State {
+        let (n, positions) = (self.layout.n, self.layout.positions());
+        let state = self.motion.state.values();
+        let compression = |j: usize| {
+            let contact = self.contacts[j];
+            match contact.face(&self.system.particles[j]).map(|face| face.law) {
+                Some(Law::Resilient { stiffness, .. }) => [stiffness, self.relative(j, contact.side()).gap],
+                _ => [0.0, 0.0],
+            }
+        };
+        State {
+            q: state[..n].to_vec(),
+            rate: state[positions..positions + n].to_vec(),
+            particles: (0..self.contacts.len()).map(|j| self.absolute(j)).collect(),
+            compressions: (0..self.contacts.len()).map(compression).collect(),
+        }
+    }
+
+    /// Keeps the motion at this step, and looks for the next step to keep.
+    pub(super) fn sample(&mut self) {
+        let (n, positions) = (self.layout.n, self.layout.positions());
+        let state = self.motion.state.values();
+        let mut sample = Sample {
+            time: self.step as f64 * self.time_step,
+            displacement: dot(&self.system.observed_row, &state[..n]),
+            velocity: dot(&self.system.observed_row, &state[positions..positions + n]),
+            acceleration: self.propagators[self.now].acceleration.at(&self.motion.state, self.motion.force()),
+            damping: if self.contacts.is_empty() { 0.0 } else { self.damping(0) },
+            half_cycle_rms: self.motion.half.map_or(0.0, |half| half.last),
+            ..Sample::default()
+        };
+        if let Some(particle) = self.system.particles.first() {
+            let side = self.contacts[0].side();
+            let face = dot(&side.face(particle).row, &state[..n]);
+            sample.set_particle(particle, side, face, self.relative(0, side).gap, self.contacts[0]);
+        }
+        self.response.trace.push(sample);
+        self.seek_sample(self.step + 1);
+    }
+
+    /// The first step from `from` on that is nearest to an instant asked for.
+    pub(super) fn seek_sample(&mut self, from: u64) {
+        let next = &mut self.samples;
+        let Some(request) = self.options.trace.filter(|request| request.samples > 0) else {
+            next.step = u64::MAX;
+            return;
+        };
+        while next.cycle < request.to_cycle {
+            next.step = self.schedule.nearest(next.cycle, next.index as f64 / request.samples as f64);
+            if next.step >= from {
+                return;
+            }
+            next.index += 1;
+            if next.index == request.samples {
+                (next.cycle, next.index) = (next.cycle + 1, 0);
+            }
+        }
+        next.step = u64::MAX;
+    }
+}

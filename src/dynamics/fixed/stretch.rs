@@ -1,0 +1,174 @@
+//! A stretch: steps of one contact state, until a guard says that it no longer holds. The one loop that takes time.
+
+use super::propagator::Propagator;
+use super::schedule::Oscillator;
+use super::vector::Vector;
+
+/// What moves.
+pub(super) struct Motion<V> {
+    pub(super) state: V,
+    spare: V,
+    /// Constant force, N.
+    pub(super) level: f64,
+    pub(super) oscillator: Option<Oscillator>,
+    pub(super) half: Option<HalfCycle>,
+}
+
+/// The half cycle of the observed acceleration that is under way, from its samples at the end of each step.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct HalfCycle {
+    /// Its sign; 0 before the first sample.
+    pub(super) sign: f64,
+    square: f64,
+    count: f64,
+    /// RMS of the last complete one, m/s².
+    pub(super) last: f64,
+}
+
+/// What is measured: rows over the state.
+pub(super) struct Watch<V> {
+    /// Observed displacement, m, and velocity, m/s.
+    pub(super) displacement: V,
+    pub(super) velocity: V,
+    /// Displacement under the force, and its rate.
+    pub(super) forced: V,
+    pub(super) with_displacement: bool,
+}
+
+/// Sums over the states at the ends of steps.
+#[derive(Debug, Clone)]
+pub(super) struct Tally<V> {
+    pub(super) steps: u64,
+    pub(super) state: V,
+    pub(super) displacement_square: f64,
+    pub(super) velocity_square: f64,
+    /// Audit only. Power of the dashpots, W.
+    pub(super) dissipated: f64,
+    /// Force, and its modulus, N.
+    pub(super) force: f64,
+    pub(super) force_modulus: f64,
+    /// Its work, and the sum of the moduli, J.
+    pub(super) work: f64,
+    pub(super) work_modulus: f64,
+}
+
+impl<V: Vector> Tally<V> {
+    pub(super) fn new(size: usize) -> Self {
+        Self {
+            steps: 0,
+            state: V::of(&vec![0.0; size]),
+            displacement_square: 0.0,
+            velocity_square: 0.0,
+            dissipated: 0.0,
+            force: 0.0,
+            force_modulus: 0.0,
+            work: 0.0,
+            work_modulus: 0.0,
+        }
+    }
+}
+
+impl HalfCycle {
+    /// Takes a sample; true when it is the first of a new half cycle.
+    #[inline(always)]
+    fn take(&mut self, acceleration: f64) -> bool {
+        let turned = acceleration * self.sign < 0.0;
+        if turned {
+            self.last = (self.square / self.count).sqrt();
+            (self.square, self.count) = (0.0, 0.0);
+        }
+        if turned || self.sign == 0.0 {
+            self.sign = if acceleration < 0.0 { -1.0 } else { 1.0 };
+        }
+        self.square += acceleration * acceleration;
+        self.count += 1.0;
+        turned
+    }
+}
+
+impl<V: Vector> Motion<V> {
+    pub(super) fn new(state: &[f64], oscillator: Option<Oscillator>, half: Option<HalfCycle>) -> Self {
+        Self { state: V::of(state), spare: V::of(state), level: 0.0, oscillator, half }
+    }
+
+    /// Force in force from now on, N.
+    pub(super) fn force(&self) -> f64 {
+        self.level + self.oscillator.map_or(0.0, |oscillator| oscillator.value())
+    }
+
+    /// Up to `steps` steps: how many were made, and whether the last one ended where the contact state does not hold, or a
+    /// half cycle turned.
+    pub(super) fn stretch<const AUDIT: bool>(
+        &mut self,
+        propagator: &Propagator<V>,
+        watch: &Watch<V>,
+        steps: u64,
+        tally: &mut Tally<V>,
+    ) -> Stretch {
+        // Worked on in locals: the compiler keeps them in registers.
+        let (mut state, mut next) = (self.state.take(), self.spare.take());
+        let mut oscillator = self.oscillator;
+        let mut force = self.force();
+        let forced = oscillator.is_some() || force != 0.0;
+        let (mut displacement_square, mut velocity_square) = (tally.displacement_square, tally.velocity_square);
+        let mut place = watch.forced.dot(&state);
+        let mut end = Stretch { steps, broken: false, turned: false };
+        for step in 1..=steps {
+            V::advance(&propagator.matrix, &propagator.offset, &propagator.input, force, &state, &mut next);
+            std::mem::swap(&mut state, &mut next);
+            tally.state.add(&state);
+            let velocity = watch.velocity.dot(&state);
+            velocity_square += velocity * velocity;
+            if watch.with_displacement {
+                let displacement = watch.displacement.dot(&state);
+                displacement_square += displacement * displacement;
+            }
+            if AUDIT {
+                for row in &propagator.dissipation {
+                    let rate = row.dot(&state);
+                    tally.dissipated += rate * rate;
+                }
+                if forced {
+                    let here = watch.forced.dot(&state);
+                    let work = force * (here - place);
+                    place = here;
+                    tally.work += work;
+                    tally.work_modulus += work.abs();
+                    tally.force += force;
+                    tally.force_modulus += force.abs();
+                }
+            }
+            if let Some(oscillator) = &mut oscillator {
+                oscillator.advance();
+                force = self.level + oscillator.value();
+            }
+            let mut broken = false;
+            for guard in &propagator.guards {
+                broken |= guard.at(&state, force) < 0.0;
+            }
+            let turned = match &mut self.half {
+                None => false,
+                Some(half) => half.take(propagator.acceleration.at(&state, force)),
+            };
+            if broken || turned {
+                end = Stretch { steps: step, broken, turned };
+                break;
+            }
+        }
+        (self.state, self.spare) = (state, next);
+        self.oscillator = oscillator;
+        (tally.displacement_square, tally.velocity_square) = (displacement_square, velocity_square);
+        tally.steps += end.steps;
+        end
+    }
+}
+
+/// How a stretch ended.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Stretch {
+    pub(super) steps: u64,
+    /// The contact state no longer holds.
+    pub(super) broken: bool,
+    /// A half cycle of the acceleration is over.
+    pub(super) turned: bool,
+}

@@ -1,0 +1,123 @@
+//! Polynomials of degree eleven on [0, 1]: values, Bernstein coefficients, roots.
+
+/// Degree of the window polynomials: twelve coefficients, which fill whole vector registers.
+pub(crate) const DEGREE: usize = 11;
+
+/// Coefficients in powers of σ, or Bernstein coefficients.
+pub(crate) type Coefficients = [f64; DEGREE + 1];
+
+/// Value and slope at x of Σ aⱼ xʲ, by Estrin's scheme.
+#[inline]
+pub(crate) fn evaluate(a: &Coefficients, x: f64) -> (f64, f64) {
+    let (x2, x4) = (x * x, (x * x) * (x * x));
+    let four = |i: usize| (a[i] + a[i + 1] * x) + (a[i + 2] + a[i + 3] * x) * x2;
+    let rate = |i: usize| {
+        let k = i as f64;
+        ((k + 1.0) * a[i + 1] + (k + 2.0) * a[i + 2] * x) + ((k + 3.0) * a[i + 3] + (k + 4.0) * a[i + 4] * x) * x2
+    };
+    let value = four(0) + x4 * (four(4) + x4 * four(8));
+    let slope = rate(0) + x4 * (rate(4) + x4 * ((9.0 * a[9] + 10.0 * a[10] * x) + 11.0 * a[11] * x2));
+    (value, slope)
+}
+
+/// Bernstein coefficients on [0, 1] of Σ aⱼ xʲ: bᵢ = Σ_{j≤i} C(i, j)/C(n, j) aⱼ, by repeated sums.
+#[inline(always)]
+pub(crate) fn bernstein(a: &Coefficients) -> Coefficients {
+    let mut b = [0.0; DEGREE + 1];
+    for j in 0..DEGREE + 1 {
+        b[j] = a[j] * INVERSE_BINOMIAL[j];
+    }
+    // Eleven rounds of known length each, so that the compiler keeps them in registers.
+    sums::<0>(&mut b);
+    sums::<1>(&mut b);
+    sums::<2>(&mut b);
+    sums::<3>(&mut b);
+    sums::<4>(&mut b);
+    sums::<5>(&mut b);
+    sums::<6>(&mut b);
+    sums::<7>(&mut b);
+    sums::<8>(&mut b);
+    sums::<9>(&mut b);
+    sums::<10>(&mut b);
+    b
+}
+
+#[inline(always)]
+fn sums<const ROUND: usize>(b: &mut Coefficients) {
+    let mut i = DEGREE;
+    while i > ROUND {
+        b[i] += b[i - 1];
+        i -= 1;
+    }
+}
+
+/// 1/C(n, j).
+const INVERSE_BINOMIAL: Coefficients = {
+    let mut table = [0.0; DEGREE + 1];
+    let mut binomial = 1.0;
+    let mut j = 0;
+    while j <= DEGREE {
+        table[j] = 1.0 / binomial;
+        binomial = binomial * (DEGREE - j) as f64 / (j + 1) as f64;
+        j += 1;
+    }
+    table
+};
+
+/// The root of smallest modulus of a polynomial whose constant is small; NaN if that does not settle.
+///
+/// x = −a₀/a₁ − x² (a₂ + a₃ x + …)/a₁ by iteration: one division, and each round gains as many digits as x is small.
+#[inline]
+pub(crate) fn nearest_root(a: &[f64; 8]) -> f64 {
+    let inverse = 1.0 / a[1];
+    let first = -a[0] * inverse;
+    // The reversed series to the fourth power, then as often as it takes.
+    let (u, w) = (a[2] * inverse * first, a[3] * inverse * (first * first));
+    let mut x =
+        first * ((1.0 - u) + (2.0 * u * u - w) + (5.0 * u * (w - u * u) - a[4] * inverse * (first * first * first)));
+    for _ in 0..20 {
+        let x2 = x * x;
+        let rest = (a[2] + a[3] * x) + x2 * ((a[4] + a[5] * x) + x2 * (a[6] + a[7] * x));
+        let next = first - x2 * (rest * inverse);
+        let step = (next - x).abs();
+        x = next;
+        if step <= 1e-17 + 4.0 * f64::EPSILON * x.abs() {
+            return x;
+        }
+    }
+    newton_root(a, first)
+}
+
+/// The same by Newton's method, where the curvature is too strong for the iteration.
+#[cold]
+fn newton_root(a: &[f64; 8], guess: f64) -> f64 {
+    let mut x = guess;
+    for _ in 0..20 {
+        let (value, slope) = a.iter().rev().fold((0.0, 0.0), |(value, slope), a| (value * x + a, slope * x + value));
+        let step = value / slope;
+        x -= step;
+        // Quadratic convergence: what is left is the square of this.
+        if step.abs() <= 1e-6 * x.abs() {
+            return x;
+        }
+    }
+    f64::NAN
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bernstein_coefficients_enclose_the_polynomial() {
+        let a = [0.3, -1.2, 0.7, 0.25, -0.1, 0.05, 0.02, -0.01, 0.004, 0.3, -0.2, 0.1];
+        let b = bernstein(&a);
+        assert!((b[0] - a[0]).abs() < 1e-16 && (b[DEGREE] - a.iter().sum::<f64>()).abs() < 1e-15);
+        for i in 0..=20 {
+            let x = f64::from(i) / 20.0;
+            let y = a.iter().rev().fold(0.0, |sum, a| sum * x + a);
+            assert!(y >= b.iter().copied().fold(f64::INFINITY, f64::min) - 1e-15);
+            assert!(y <= b.iter().copied().fold(f64::NEG_INFINITY, f64::max) + 1e-15);
+        }
+    }
+}

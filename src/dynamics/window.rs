@@ -1,0 +1,319 @@
+//! One guard over one window: its polynomial with a bound on what that leaves out, and what the two prove.
+
+use super::block::Phase;
+use super::flow::Parabola;
+use super::polynomial::{Coefficients, DEGREE, bernstein, evaluate};
+use super::series::{Series, powers};
+
+/// How a guard starts.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Start {
+    /// Positive.
+    Apart,
+    /// At zero: it was just left. The first derivative that is not zero, of this order, is positive.
+    Touching {
+        /// 1 to 3.
+        order: usize,
+        /// The first derivative where it is known to the bit, else NaN.
+        slope: f64,
+    },
+}
+
+/// What an enclosure proves.
+pub(crate) enum Verdict {
+    /// No root; the guard turns back at this distance from zero, or does not turn.
+    Clear { clearance: f64 },
+    /// Exactly one root: first guess of its σ, and an upper bound.
+    Root { guess: f64, high: f64 },
+    /// Nothing.
+    Unsure,
+}
+
+/// The stretch of time of a window.
+pub(crate) struct Span {
+    /// Seconds from the segment's start.
+    pub(crate) from: f64,
+    /// Δ, s.
+    pub(crate) length: f64,
+    /// Powers of ρΔ.
+    powers: [f64; 16],
+}
+
+impl Span {
+    #[inline]
+    pub(crate) fn new(series: &Series, from: f64, length: f64) -> Self {
+        Self { from, length, powers: powers(series.pace * length) }
+    }
+}
+
+/// A guard over one window.
+pub(crate) struct Window {
+    /// Taylor coefficients in σ, of the guard divided by σ^order where it starts at zero.
+    a: Coefficients,
+    /// Their Bernstein coefficients.
+    b: Coefficients,
+    /// What the polynomial leaves out, with the rounding.
+    remainder: f64,
+    start: Start,
+}
+
+impl Window {
+    pub(crate) fn new() -> Self {
+        Self { a: [0.0; DEGREE + 1], b: [0.0; DEGREE + 1], remainder: 0.0, start: Start::Apart }
+    }
+
+    /// Expands a guard over a window: its shares and their bounds at the window's start, its parabola from the segment's.
+    #[inline(always)]
+    pub(crate) fn expand(
+        &mut self,
+        series: &Series,
+        shares: &[Phase],
+        amplitudes: &[f64],
+        parabola: Parabola,
+        span: &Span,
+        start: Start,
+    ) {
+        let bent = parabola.p2 * span.length;
+        let base = [parabola.at(span.from), parabola.rate(span.from) * span.length, bent * span.length];
+        let x = span.powers[1];
+        let (left_out, moving) = series.bounds(amplitudes, x);
+        self.start = start;
+        self.remainder = left_out * span.powers[DEGREE + 1];
+        match start {
+            Start::Apart => {
+                self.remainder += 8.0 * f64::EPSILON * (base[0].abs() + base[1].abs() + moving);
+                self.fill::<0>(series, shares, &base, span);
+            }
+            // The start is known exactly: what rounding left in the coefficients below the first is not there.
+            Start::Touching { order: 1, slope } => {
+                self.fill::<1>(series, shares, &base, span);
+                if !slope.is_nan() {
+                    self.a[0] = slope * span.length;
+                }
+            }
+            Start::Touching { order: 2, .. } => self.fill::<2>(series, shares, &base, span),
+            Start::Touching { .. } => self.fill::<3>(series, shares, &base, span),
+        }
+        self.b = bernstein(&self.a);
+    }
+
+    /// The coefficients in σ, divided by σ^`ORDER`.
+    #[inline(always)]
+    fn fill<const ORDER: usize>(&mut self, series: &Series, shares: &[Phase], base: &[f64; 3], span: &Span) {
+        let a: Coefficients = series.expand::<ORDER, _>(shares.iter().copied());
+        for j in 0..DEGREE + 1 {
+            self.a[j] = a[j] * span.powers[j + ORDER];
+        }
+        for j in ORDER..3 {
+            self.a[j - ORDER] += base[j];
+        }
+    }
+
+    pub(crate) fn end(&self) -> f64 {
+        self.a.iter().sum()
+    }
+
+    /// What the enclosure proves; `bend` is to bound the second derivative in σ of the guard over σ to a power, if that is asked for.
+    #[inline(always)]
+    pub(crate) fn judge(&self, bend: impl FnOnce(usize) -> f64) -> Verdict {
+        let b = &self.b;
+        let signs = Signs::of(b, self.remainder);
+        if signs.positive == Signs::ALL {
+            let near_miss = self.start == Start::Apart && b[1] < b[0] && b[DEGREE] > b[DEGREE - 1];
+            return Verdict::Clear { clearance: if near_miss { lowest(b) - self.remainder } else { f64::INFINITY } };
+        }
+        match self.single_crossing(signs, bend) {
+            Some(guess) => Verdict::Root { guess, high: 1.0 },
+            None => self.judge_shape(),
+        }
+    }
+
+    /// Descartes' rule in Bernstein form: coefficients positive, then doubtful, then negative. The guard is positive before
+    /// the band where polynomial and remainder cannot be told apart, negative behind it, and falls all through it, since
+    /// its slope there is more than its second derivative can turn. Gives a first guess of the root.
+    #[inline(always)]
+    fn single_crossing(&self, signs: Signs, bend: impl FnOnce(usize) -> f64) -> Option<f64> {
+        let doubt = self.remainder;
+        let first = signs.single_change()?;
+        // Where the control polygon crosses zero.
+        let (before, after) = (self.b[first - 1], self.b[first]);
+        let x = ((first - 1) as f64 + before / (before - after)).min(first as f64) * (1.0 / DEGREE as f64);
+        let (guess, slope, step) = self.root(x, 1.0);
+        let order = match self.start {
+            Start::Apart => 0,
+            Start::Touching { order, .. } => order,
+        };
+        let bend = bend(order);
+        // With slope −s at the root the polynomial passes the band within 2·doubt/s and turns by less than 2·bend·doubt/s on
+        // the way; the remainder's slope is below 12·doubt. Twice that is asked for.
+        let falls = |slope: f64| slope < 0.0 && slope * slope > 4.0 * doubt * (bend - 6.0 * slope);
+        // The slope is known one Newton step away from the guess; only if that is too far is it taken at the guess.
+        (falls(slope + 1.5 * bend * step) || falls(self.slope_near(guess, bend * step))).then_some(guess)
+    }
+
+    /// The slope at the root next to `guess`, made shallower by what Newton's next step can change.
+    #[cold]
+    fn slope_near(&self, guess: f64, turn: f64) -> f64 {
+        let slope = evaluate(&self.a, guess).1;
+        slope + turn * turn / slope.abs()
+    }
+
+    #[cold]
+    fn judge_shape(&self) -> Verdict {
+        let start = self.start;
+        let b = &self.b;
+        let doubt = self.remainder;
+        let end = b[DEGREE];
+        // |R⁽ʲ⁾| ≤ 12!/(12−j)! of R's bound; divided by up to σ³ the first derivative is below 16 R, the second below 250 R.
+        let slope_doubt = 16.0 * doubt / DEGREE as f64;
+        let bend_doubt = 250.0 * doubt / (DEGREE * (DEGREE - 1)) as f64;
+        let (mut falls, mut concave, mut convex) = (true, true, true);
+        for i in 0..DEGREE {
+            falls &= b[i + 1] - b[i] < -slope_doubt;
+        }
+        for i in 0..DEGREE - 1 {
+            let second = b[i + 2] - 2.0 * b[i + 1] + b[i];
+            concave &= second < -bend_doubt;
+            convex &= second > bend_doubt;
+        }
+        let clear = Verdict::Clear { clearance: f64::INFINITY };
+        if doubt == 0.0 && b.iter().all(|b| *b == 0.0) {
+            // Nothing pushes and nothing pulls, for ever.
+            return clear;
+        }
+        if start == Start::Apart && b[0] < -doubt {
+            // A jump has left the contact untenable: it ends at once.
+            return Verdict::Root { guess: 0.0, high: 0.0 };
+        }
+        let root = |high: f64| Verdict::Root { guess: self.root(high, high).0, high };
+        if (falls || concave) && end < -doubt {
+            return root(1.0);
+        }
+        if concave && end > doubt && (b[0] > doubt || start == Start::Apart) {
+            return clear;
+        }
+        if convex && start == Start::Apart {
+            if b[1] - b[0] > slope_doubt {
+                return clear;
+            }
+            if end < -doubt && b[0] > doubt {
+                // Convex, positive, then negative: one root.
+                return root(1.0);
+            }
+            let bottom = self.bottom();
+            let value = self.value(bottom);
+            if value > doubt {
+                return Verdict::Clear { clearance: value - doubt };
+            }
+            if value < -doubt && b[0] > doubt {
+                return root(bottom);
+            }
+        }
+        Verdict::Unsure
+    }
+
+    /// Where a convex polynomial has its lowest point in [0, 1].
+    fn bottom(&self) -> f64 {
+        let slope = |x: f64| (1..=DEGREE).rev().fold(0.0, |sum, j| sum * x + j as f64 * self.a[j]);
+        let (mut low, mut high) = (0.0, 1.0);
+        if slope(1.0) <= 0.0 {
+            return 1.0;
+        }
+        for _ in 0..60 {
+            let middle = 0.5 * (low + high);
+            if slope(middle) < 0.0 { low = middle } else { high = middle }
+        }
+        0.5 * (low + high)
+    }
+
+    fn value(&self, x: f64) -> f64 {
+        self.a.iter().rev().fold(0.0, |sum, a| sum * x + a)
+    }
+
+    /// The root below `high` by Newton steps from `x`, to three digits or so. Gives with it the slope before the last step,
+    /// and that step.
+    #[inline]
+    fn root(&self, mut x: f64, high: f64) -> (f64, f64, f64) {
+        let (mut lower, mut upper) = (0.0, high);
+        let mut last = (x, f64::NAN, f64::INFINITY);
+        for _ in 0..60 {
+            let (value, slope) = evaluate(&self.a, x);
+            if value > 0.0 {
+                lower = x
+            } else {
+                upper = x
+            }
+            let mut next = x - value / slope;
+            if !(next > lower && next < upper) {
+                next = 0.5 * (lower + upper);
+            }
+            let step = (next - x).abs();
+            x = next;
+            last = (x, slope, step);
+            // Quadratic convergence: the next step would be the square of this.
+            if step < 0.03 * x {
+                break;
+            }
+        }
+        last
+    }
+
+    /// The root below `high` of the polynomial divided by σ^order, from a guess that is near.
+    pub(crate) fn refine(&self, guess: f64, high: f64) -> f64 {
+        let (mut lower, mut upper) = (0.0, high);
+        let mut x = guess;
+        for _ in 0..60 {
+            let (value, slope) = evaluate(&self.a, x);
+            if value > 0.0 {
+                lower = x
+            } else {
+                upper = x
+            }
+            let mut next = x - value / slope;
+            if !(next >= lower && next <= upper) {
+                next = 0.5 * (lower + upper);
+            }
+            let step = (next - x).abs();
+            x = next;
+            if !(step > 2.0 * f64::EPSILON * x) {
+                break;
+            }
+        }
+        x
+    }
+}
+
+/// Which Bernstein coefficients are surely positive, and which surely negative: one bit each, the first the lowest.
+#[derive(Clone, Copy)]
+struct Signs {
+    positive: u64,
+    negative: u64,
+}
+
+impl Signs {
+    const ALL: u64 = (1 << (DEGREE + 1)) - 1;
+
+    #[inline(always)]
+    fn of(b: &Coefficients, doubt: f64) -> Self {
+        let (mut positive, mut negative) = (0, 0);
+        for (i, b) in b.iter().enumerate() {
+            // Masks as wide as the numbers, so that two fit a register.
+            positive |= if *b > doubt { 1 << i } else { 0 };
+            negative |= if *b < -doubt { 1 << i } else { 0 };
+        }
+        Self { positive, negative }
+    }
+
+    /// Positive, then doubtful, then negative: where the first that is not positive stands.
+    #[inline(always)]
+    fn single_change(self) -> Option<usize> {
+        let falling = |bits: u64| bits & (bits + 1) == 0;
+        let before = Self::ALL & !self.negative;
+        let once = self.positive != 0 && self.negative != 0 && falling(self.positive) && falling(before);
+        once.then(|| self.positive.trailing_ones() as usize)
+    }
+}
+
+fn lowest(b: &Coefficients) -> f64 {
+    b.iter().copied().fold(f64::INFINITY, f64::min)
+}

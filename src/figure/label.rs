@@ -1,0 +1,64 @@
+//! What stands at axes and in legends: units and the field's symbols, words instead of column names.
+
+use crate::spec::Experiment;
+use crate::table::{Column, Data};
+use crate::text::{number, words};
+
+/// A column as an axis or a legend names it, without unit: `velocity ratio ψ`, `maximum velocity ratio ψ`.
+pub(super) fn of_column(experiment: &Experiment, column: &Column) -> String {
+    let name = words::of_column(&column.name);
+    let named = if column.symbol.is_empty() { name } else { format!("{name} {}", column.symbol) };
+    let maximised =
+        experiment.maximise.as_ref().is_some_and(|maximise| words::of_key(&maximise.measure) == column.name);
+    if maximised { format!("maximum {named}") } else { named }
+}
+
+/// The cell of a column that splits rows into lines, in words: `h′ = 50`, `without stop`. `None` where the sweep leaves
+/// the column out of this row.
+pub(super) fn of_cell(column: &Column, row: usize) -> Option<String> {
+    let value = match &column.data {
+        Data::Text(cells) => {
+            let level = cells.get(row)?;
+            return (!level.is_empty()).then(|| words::of_level(&column.name, level));
+        }
+        Data::Float(cells) => number::quantity(*cells.get(row).filter(|x| !x.is_nan())?, &column.unit, 4),
+        Data::Int(cells) => cells.get(row)?.to_string(),
+        Data::FloatList(_) => return None,
+    };
+    Some(match (column.name.as_str(), column.symbol.as_str()) {
+        ("pulse_duration", _) => format!("{value} pulse"),
+        (name, "") => format!("{} {value}", words::of_column(name)),
+        (_, symbol) => format!("{symbol} = {value}"),
+    })
+}
+
+/// One label for an axis that several columns share.
+pub(super) fn shared(labels: &[String], unit: &str) -> String {
+    match labels {
+        [one] => one.clone(),
+        [first, rest @ ..] if rest.iter().all(|label| label == first) => first.clone(),
+        // Different things of one unit share its word; without a unit only their names tell what they are.
+        [first, rest @ ..] if unit.is_empty() => {
+            rest.iter().fold(first.clone(), |joined, label| format!("{joined}, {}", within_sentence(label)))
+        }
+        _ => words::of_unit(unit).to_owned(),
+    }
+}
+
+/// First letter in lower case, unless the word is an abbreviation.
+fn within_sentence(label: &str) -> String {
+    let mut letters = label.chars();
+    match (letters.next(), letters.next()) {
+        (Some(first), Some(second)) if second.is_lowercase() => {
+            first.to_lowercase().chain([second]).chain(letters).collect()
+        }
+        _ => label.to_owned(),
+    }
+}
+
+/// The label with its unit, first letter in upper case: `Displacement (mm)`.
+pub(super) fn with_unit(label: &str, unit: &str) -> String {
+    let label = words::capitalised(label);
+    let named = label.ends_with(&format!("({unit})"));
+    if unit.is_empty() || named { label } else { format!("{label} ({})", unit.replace("^2", "²")) }
+}

@@ -1,0 +1,222 @@
+//! Legends: what each line means, at a place where no data lies.
+
+use super::canvas::{Anchor, Drawn, Lettering, Pen, Sheet, text_width};
+use super::geometry::{Point, Rect};
+use super::line::Curve;
+use super::paint;
+use super::style::{
+    BAND_OPACITY, CURVE, Color, GREY, INK, LEGEND_LINE, LEGEND_ROW, LEGEND_TEXT, Look, Marker, PAPER, QUOTED, SPACE,
+};
+
+/// What is drawn before a legend's text.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Sign {
+    Line { look: Look, marker: bool },
+    Band(Color),
+    Quoted,
+}
+
+/// One row of a legend.
+#[derive(Debug, Clone, PartialEq)]
+struct Entry {
+    sign: Sign,
+    text: String,
+}
+
+/// A legend.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(super) struct Legend {
+    entries: Vec<Entry>,
+}
+
+/// What a legend must not cover.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(super) struct Obstacles {
+    pub lines: Vec<Vec<Point>>,
+    pub boxes: Vec<Rect>,
+}
+
+impl Obstacles {
+    /// True if nothing lies in this place.
+    pub(super) fn leave_free(&self, place: &Rect) -> bool {
+        !self.boxes.iter().any(|taken| taken.overlaps(place))
+            && !self.lines.iter().any(|line| {
+                line.windows(2).any(|pair| place.meets(pair[0], pair[1]))
+                    || matches!(line.as_slice(), [one] if place.meets(*one, *one))
+            })
+    }
+}
+
+impl Legend {
+    /// Of these curves; empty where there is nothing to tell apart.
+    pub(super) fn new(curves: &[Curve], markers: bool, band: bool, quoted: &[&str]) -> Self {
+        let mut entries = Vec::new();
+        if curves.len() > 1 || band || !quoted.is_empty() {
+            entries.extend(by_trait(curves, markers).unwrap_or_else(|| {
+                let line = |curve: &Curve| Entry {
+                    sign: Sign::Line { look: curve.look, marker: markers },
+                    text: curve.name.full(),
+                };
+                curves.iter().map(line).collect()
+            }));
+        }
+        if band {
+            let color = match curves {
+                [one] => one.look.color,
+                _ => GREY,
+            };
+            entries.push(Entry { sign: Sign::Band(color), text: "± 1 s.d. of the ensemble".into() });
+        }
+        for &text in quoted {
+            if !entries.iter().any(|entry| entry.sign == Sign::Quoted && entry.text == text) {
+                entries.push(Entry { sign: Sign::Quoted, text: text.to_owned() });
+            }
+        }
+        Self { entries }
+    }
+
+    pub(super) fn is_empty(&self) -> bool {
+        self.entries.is_empty()
+    }
+
+    /// A place inside `frame` that the obstacles leave free: corners first, then along the edges.
+    pub(super) fn place_within(&self, frame: &Rect, obstacles: &Obstacles) -> Option<Rect> {
+        let width = self.entries.iter().map(Entry::width).fold(0.0, f64::max) + 2.0 * SPACE;
+        let height = rows_high(self.entries.len());
+        let inner = frame.grown(-SPACE);
+        let (free_across, free_down) = (inner.width() - width, inner.height() - height);
+        if free_across < 0.0 || free_down < 0.0 {
+            return None;
+        }
+        const PLACES: [(f64, f64); 20] = [
+            (1.0, 0.0),
+            (0.0, 0.0),
+            (1.0, 1.0),
+            (0.0, 1.0),
+            (0.5, 0.0),
+            (0.5, 1.0),
+            (0.25, 0.0),
+            (0.75, 0.0),
+            (0.25, 1.0),
+            (0.75, 1.0),
+            (0.12, 0.0),
+            (0.88, 0.0),
+            (0.12, 1.0),
+            (0.88, 1.0),
+            (1.0, 0.25),
+            (0.0, 0.25),
+            (1.0, 0.5),
+            (0.0, 0.5),
+            (1.0, 0.75),
+            (0.0, 0.75),
+        ];
+        PLACES
+            .into_iter()
+            .map(|(across, down)| {
+                let (left, top) = (inner.left + across * free_across, inner.top + down * free_down);
+                Rect { left, top, right: left + width, bottom: top + height }
+            })
+            .find(|place| obstacles.leave_free(&place.grown(SPACE / 2.0)))
+    }
+
+    /// Height above a frame of this width, where no place within is free.
+    pub(super) fn height_above(&self, width: f64) -> f64 {
+        rows_high(self.rows(width).len()) + SPACE
+    }
+
+    /// Draws the entries one below the other.
+    pub(super) fn draw_column(&self, sheet: &Sheet<'_>, place: &Rect) -> Drawn {
+        let corners = [place.at(0.0, 0.0), place.at(0.0, 1.0), place.at(1.0, 1.0), place.at(1.0, 0.0)];
+        sheet.fill(&corners, PAPER, 0.85)?;
+        let mut middle = Point { x: place.left + SPACE, y: place.top + SPACE / 2.0 + LEGEND_ROW / 2.0 };
+        for entry in &self.entries {
+            entry.draw(sheet, middle)?;
+            middle.y += LEGEND_ROW;
+        }
+        Ok(())
+    }
+
+    /// Draws the entries in rows above a frame.
+    pub(super) fn draw_above(&self, sheet: &Sheet<'_>, frame: &Rect) -> Drawn {
+        let top = frame.top - self.height_above(frame.width()) + SPACE;
+        for (index, row) in (0_u32..).zip(self.rows(frame.width())) {
+            let mut at = Point { x: frame.left, y: top + LEGEND_ROW * (f64::from(index) + 0.5) };
+            for entry in row {
+                entry.draw(sheet, at)?;
+                at.x += entry.width() + 3.0 * SPACE;
+            }
+        }
+        Ok(())
+    }
+
+    fn rows(&self, width: f64) -> Vec<&[Entry]> {
+        let mut rows = Vec::new();
+        let (mut start, mut used) = (0, 0.0);
+        for (index, entry) in self.entries.iter().enumerate() {
+            if index > start && used + entry.width() > width {
+                rows.push(&self.entries[start..index]);
+                (start, used) = (index, 0.0);
+            }
+            used += entry.width() + 3.0 * SPACE;
+        }
+        rows.push(&self.entries[start..]);
+        rows
+    }
+}
+
+/// One entry a colour and one a dash, where every curve is a pair of the two and that says it in fewer words.
+fn by_trait(curves: &[Curve], markers: bool) -> Option<Vec<Entry>> {
+    let mut hues: Vec<Entry> = Vec::new();
+    let mut dashes: Vec<Entry> = Vec::new();
+    for curve in curves {
+        let dash = curve.name.dash.as_ref()?;
+        let color = Look { dash: &[], marker: Marker::Circle, ..curve.look };
+        let stroke = Look { color: INK, width: CURVE, ..curve.look };
+        for (entries, text, look, marker) in
+            [(&mut hues, &curve.name.hue, color, false), (&mut dashes, dash, stroke, markers)]
+        {
+            let entry = Entry { sign: Sign::Line { look, marker }, text: text.clone() };
+            if !entries.contains(&entry) {
+                entries.push(entry);
+            }
+        }
+    }
+    // Fewer curves than pairs: some pair is missing, and only full names tell which.
+    let complete = hues.len() * dashes.len() == curves.len() && hues.len() > 1 && dashes.len() > 1;
+    hues.extend(dashes);
+    complete.then_some(hues)
+}
+
+fn rows_high(rows: usize) -> f64 {
+    LEGEND_ROW * u32::try_from(rows).map_or(0.0, f64::from) + SPACE
+}
+
+impl Entry {
+    fn width(&self) -> f64 {
+        LEGEND_LINE + SPACE + text_width(&self.text, LEGEND_TEXT)
+    }
+
+    fn draw(&self, sheet: &Sheet<'_>, at: Point) -> Drawn {
+        let end = Point { x: at.x + LEGEND_LINE, ..at };
+        let middle = Point { x: at.x + LEGEND_LINE / 2.0, ..at };
+        match self.sign {
+            Sign::Line { look, marker } => {
+                sheet.line(&[at, end], Pen { color: look.color, width: look.width, dash: look.dash })?;
+                if marker {
+                    paint::marker(sheet, middle, look)?;
+                }
+            }
+            Sign::Band(color) => {
+                let half = LEGEND_ROW * 0.3;
+                let place = Rect { left: at.x, top: at.y - half, right: end.x, bottom: at.y + half };
+                let corners = [place.at(0.0, 0.0), place.at(0.0, 1.0), place.at(1.0, 1.0), place.at(1.0, 0.0)];
+                sheet.fill(&corners, color, BAND_OPACITY)?;
+            }
+            Sign::Quoted => paint::quoted(sheet, middle, QUOTED)?,
+        }
+        let at = Point { x: end.x + SPACE, ..at };
+        let lettering =
+            Lettering { text: &self.text, size: LEGEND_TEXT, anchor: Anchor::Left, upright: false, color: INK };
+        sheet.text(at, &lettering)
+    }
+}

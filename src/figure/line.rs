@@ -1,0 +1,256 @@
+//! Curves: the rows of a table split into lines.
+//!
+//! Every combination of the levels of the `by` columns and of the y columns is one line. The first thing that varies
+//! among them shows as colour, the rest as dashes; where only one thing varies it shows as both.
+
+use crate::spec::{Experiment, Panel};
+use crate::table::{Column, Data, Table};
+use crate::text::words;
+
+use super::error::FigureError;
+use super::label;
+use super::style::Look;
+
+/// One point of a curve; NaN in y is a gap.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Sample {
+    pub x: f64,
+    pub y: f64,
+    /// Half width of the band around y; 0 without one.
+    pub spread: f64,
+}
+
+/// The value that a curve takes at infinite x.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct AtInfinity {
+    pub y: f64,
+    pub label: String,
+}
+
+/// What a curve is called in the legend.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Name {
+    /// What its colour stands for, or all there is to say where colour and dash stand for the same.
+    pub hue: String,
+    /// What its dash stands for, where that is something else.
+    pub dash: Option<String>,
+}
+
+impl Name {
+    /// In full.
+    pub(super) fn full(&self) -> String {
+        match &self.dash {
+            Some(dash) => format!("{}, {dash}", self.hue),
+            None => self.hue.clone(),
+        }
+    }
+}
+
+/// One line of a panel.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Curve {
+    pub name: Name,
+    pub look: Look,
+    /// Sorted by x unless it is a time history.
+    pub samples: Vec<Sample>,
+    pub at_infinity: Option<AtInfinity>,
+}
+
+impl Curve {
+    /// True if there is anything to see.
+    fn shows(&self) -> bool {
+        self.at_infinity.is_some() || self.samples.iter().any(|sample| sample.y.is_finite())
+    }
+}
+
+/// The table behind a figure, asked for columns by name.
+#[derive(Clone, Copy)]
+pub(super) struct Source<'a> {
+    pub experiment: &'a Experiment,
+    /// Only the rows to draw.
+    pub table: &'a Table,
+    /// What the figure is called in messages.
+    pub figure: &'a str,
+}
+
+impl<'a> Source<'a> {
+    /// The column of that name.
+    pub(super) fn column(&self, name: &str) -> Result<&'a Column, FigureError> {
+        self.table.column(name).ok_or_else(|| FigureError::UnknownColumn {
+            figure: self.figure.to_owned(),
+            column: name.to_owned(),
+            known: self.table.columns.iter().map(|column| column.name.as_str()).collect::<Vec<_>>().join(", "),
+        })
+    }
+
+    /// The name of a y column in legends and at axes.
+    pub(super) fn label(&self, axis: &crate::spec::Axis) -> Result<String, FigureError> {
+        let column = self.column(&axis.column)?;
+        Ok(axis.label.clone().unwrap_or_else(|| label::of_column(self.experiment, column)))
+    }
+}
+
+/// The curves of a panel in the order of its y columns and of the table's rows; none without a number.
+pub(super) fn curves(source: Source<'_>, panel: &Panel) -> Result<Vec<Curve>, FigureError> {
+    let by = panel.by.iter().map(|name| source.column(name)).collect::<Result<Vec<_>, _>>()?;
+    let groups = Group::split(source.table.rows(), &by);
+    let x = source.column(&panel.x.column)?;
+    let mut curves = Vec::new();
+    for (index, axis) in panel.y.iter().enumerate() {
+        let y = source.column(&axis.column)?;
+        let spread = source.table.floats(&format!("{}_spread", y.name)).filter(|_| panel.band);
+        for group in &groups {
+            let traits = Traits::new(index, panel.y.len(), &groups, group);
+            let mut words = if panel.y.len() > 1 { vec![source.label(axis)?] } else { Vec::new() };
+            words.extend(group.varying_words(&groups));
+            let name = match words.split_first() {
+                None => Name { hue: source.label(axis)?, dash: None },
+                Some((hue, rest)) => Name { hue: hue.clone(), dash: (!rest.is_empty()).then(|| rest.join(", ")) },
+            };
+            let look = Look::of_path(&y.name).filter(|_| groups.len() == 1).unwrap_or_else(|| traits.look());
+            let mut curve = Curve { name, look, samples: Vec::new(), at_infinity: None };
+            fill(&mut curve, source.figure, x, y, spread.as_deref(), &group.rows)?;
+            if curve.shows() {
+                curves.push(curve);
+            }
+        }
+    }
+    if curves.is_empty() {
+        return Err(FigureError::Nothing { figure: source.figure.to_owned() });
+    }
+    Ok(curves)
+}
+
+fn fill(
+    curve: &mut Curve,
+    figure: &str,
+    x: &Column,
+    y: &Column,
+    spread: Option<&[f64]>,
+    rows: &[usize],
+) -> Result<(), FigureError> {
+    match (&x.data, &y.data) {
+        (Data::Text(_), _) | (_, Data::Text(_)) => {
+            let column = if matches!(x.data, Data::Text(_)) { x } else { y };
+            Err(FigureError::Text { figure: figure.to_owned(), column: column.name.clone() })
+        }
+        (Data::FloatList(times), Data::FloatList(values)) => {
+            for (&row, last) in rows.iter().zip((0..rows.len()).rev()) {
+                let history = times.get(row).into_iter().flatten().zip(values.get(row).into_iter().flatten());
+                curve.samples.extend(history.map(|(&x, &y)| Sample { x, y, spread: 0.0 }));
+                if last > 0 {
+                    curve.samples.push(Sample { x: f64::NAN, y: f64::NAN, spread: 0.0 });
+                }
+            }
+            Ok(())
+        }
+        (Data::FloatList(_), _) | (_, Data::FloatList(_)) => {
+            Err(FigureError::Mixed { figure: figure.to_owned(), x: x.name.clone(), y: y.name.clone() })
+        }
+        _ => {
+            for &row in rows {
+                let (Some(at), Some(y)) = (number(x, row), number(y, row)) else { continue };
+                let spread = spread.and_then(|cells| cells.get(row)).copied().filter(|s| s.is_finite()).unwrap_or(0.0);
+                if at.is_finite() {
+                    curve.samples.push(Sample { x: at, y, spread });
+                } else if at == f64::INFINITY && y.is_finite() {
+                    let label = label::of_cell(x, row).unwrap_or_default();
+                    curve.at_infinity = Some(AtInfinity { y, label });
+                }
+            }
+            curve.samples.sort_by(|a, b| a.x.total_cmp(&b.x));
+            Ok(())
+        }
+    }
+}
+
+#[expect(clippy::cast_precision_loss, reason = "counts of events stay far below 2^53")]
+fn number(column: &Column, row: usize) -> Option<f64> {
+    match &column.data {
+        Data::Float(cells) => cells.get(row).copied(),
+        Data::Int(cells) => cells.get(row).map(|&count| count as f64),
+        Data::Text(_) | Data::FloatList(_) => None,
+    }
+}
+
+/// Rows that share their levels of the `by` columns.
+struct Group {
+    /// One word per `by` column; `None` where the sweep leaves the column out.
+    words: Vec<Option<String>>,
+    rows: Vec<usize>,
+}
+
+impl Group {
+    fn split(rows: usize, by: &[&Column]) -> Vec<Self> {
+        let mut groups: Vec<Self> = Vec::new();
+        for row in 0..rows {
+            let words: Vec<_> = by.iter().map(|column| label::of_cell(column, row)).collect();
+            match groups.iter_mut().find(|group| group.words == words) {
+                Some(group) => group.rows.push(row),
+                None => groups.push(Self { words, rows: vec![row] }),
+            }
+        }
+        // The exact motion comes first wherever the table has it, so that it looks the same in every figure.
+        let exact = words::of_solver("event_driven");
+        groups.sort_by_key(|group| !group.words.iter().flatten().any(|word| *word == exact));
+        groups
+    }
+
+    /// The words that tell this group from the others.
+    fn varying_words(&self, groups: &[Self]) -> Vec<String> {
+        let varies = |index: &usize| groups.iter().any(|group| group.words[*index] != self.words[*index]);
+        (0..self.words.len()).filter(varies).filter_map(|index| self.words[index].clone()).collect()
+    }
+
+    /// For each `by` column that varies: which of how many levels this group has.
+    fn levels(&self, groups: &[Self]) -> Vec<Level> {
+        let level = |index: usize| {
+            let mut seen: Vec<&Option<String>> = Vec::new();
+            for group in groups {
+                if !seen.contains(&&group.words[index]) {
+                    seen.push(&group.words[index]);
+                }
+            }
+            Level { index: seen.iter().position(|word| **word == self.words[index]).unwrap_or(0), count: seen.len() }
+        };
+        (0..self.words.len()).map(level).filter(|level| level.count > 1).collect()
+    }
+}
+
+/// One of so many levels.
+struct Level {
+    index: usize,
+    count: usize,
+}
+
+/// How a line differs from the others of its panel.
+#[derive(Clone, Copy)]
+struct Traits {
+    hue: usize,
+    hues: usize,
+    dash: usize,
+    /// Two measures may agree to the width of a line: the one below is drawn wide enough to be seen.
+    beneath: bool,
+}
+
+impl Traits {
+    fn new(y: usize, ys: usize, groups: &[Group], group: &Group) -> Self {
+        let mut levels = group.levels(groups);
+        if ys > 1 {
+            levels.insert(0, Level { index: y, count: ys });
+        }
+        match levels.as_slice() {
+            [] => Self { hue: 0, hues: 1, dash: 0, beneath: false },
+            [only] => Self { hue: only.index, hues: only.count, dash: only.index, beneath: false },
+            [first, rest @ ..] => {
+                let dash = rest.iter().fold(0, |dash, level| dash * level.count + level.index);
+                Self { hue: first.index, hues: first.count, dash, beneath: y + 1 < ys }
+            }
+        }
+    }
+
+    fn look(self) -> Look {
+        let look = Look::new(self.hue, self.hues, self.dash);
+        if self.beneath { Look { width: 2.0 * look.width, ..look } } else { look }
+    }
+}

@@ -1,0 +1,130 @@
+//! How figures look: sizes in pixels of the finished picture, colours, dashes, markers. Nothing else holds a literal
+//! size.
+//!
+//! The picture is 1440 pixels wide. At a journal's column of 88 mm that is 415 dots per inch, and the labels are 7 to 8
+//! points high.
+
+/// Width of a figure.
+pub(super) const WIDTH: f64 = 1440.0;
+pub(super) const TICK_TEXT: f64 = 38.0;
+pub(super) const LABEL_TEXT: f64 = 42.0;
+pub(super) const LEGEND_TEXT: f64 = 36.0;
+pub(super) const NOTE_TEXT: f64 = 32.0;
+
+pub(super) const FRAME: f64 = 2.5;
+pub(super) const GRID: f64 = 1.5;
+pub(super) const GUIDE: f64 = 2.5;
+pub(super) const CURVE: f64 = 5.0;
+pub(super) const THIN_CURVE: f64 = 3.0;
+pub(super) const TICK: f64 = 13.0;
+pub(super) const MINOR_TICK: f64 = 7.0;
+pub(super) const MARKER: f64 = 10.0;
+pub(super) const QUOTED: f64 = 17.0;
+/// Space between neighbours: a tick and its label, a label and the edge.
+pub(super) const SPACE: f64 = 14.0;
+/// Length of the line drawn in a legend.
+pub(super) const LEGEND_LINE: f64 = 84.0;
+/// Height of a legend's row.
+pub(super) const LEGEND_ROW: f64 = 50.0;
+pub(super) const BAND_OPACITY: f64 = 0.22;
+
+/// Height of a figure with so many panels.
+pub(super) fn height(panels: usize) -> f64 {
+    match u32::try_from(panels) {
+        Ok(0 | 1) => 960.0,
+        Ok(more) => 720.0 + 240.0 * f64::from(more),
+        Err(_) => 960.0,
+    }
+}
+
+/// Red, green, blue.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Color(pub u8, pub u8, pub u8);
+
+pub(super) const INK: Color = Color(0x1A, 0x1A, 0x1A);
+pub(super) const GREY: Color = Color(0x70, 0x70, 0x70);
+pub(super) const PALE: Color = Color(0xE4, 0xE4, 0xE4);
+pub(super) const PAPER: Color = Color(0xFF, 0xFF, 0xFF);
+
+/// Okabe and Ito's colours, told apart by readers with any colour vision; without the yellow, which paper swallows.
+const OKABE_ITO: [Color; 7] = [
+    Color(0x00, 0x72, 0xB2),
+    Color(0xD5, 0x5E, 0x00),
+    Color(0x00, 0x9E, 0x73),
+    Color(0xCC, 0x79, 0xA7),
+    Color(0xE6, 0x9F, 0x00),
+    Color(0x56, 0xB4, 0xE9),
+    Color(0x00, 0x00, 0x00),
+];
+
+/// Viridis from its dark end to where paper begins to swallow it.
+const VIRIDIS: [Color; 6] = [
+    Color(0x44, 0x01, 0x54),
+    Color(0x41, 0x44, 0x87),
+    Color(0x2A, 0x78, 0x8E),
+    Color(0x22, 0xA8, 0x84),
+    Color(0x7A, 0xD1, 0x51),
+    Color(0xBB, 0xCC, 0x20),
+];
+
+/// Drawn and left out, by turns; told apart in print without colour.
+const DASHES: [&[f64]; 6] =
+    [&[], &[26.0, 11.0], &[6.0, 9.0], &[30.0, 9.0, 6.0, 9.0], &[14.0, 8.0], &[36.0, 9.0, 6.0, 9.0, 6.0, 9.0]];
+
+/// The shape of a marker; the open diamond belongs to the numbers quoted by the study.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Marker {
+    Circle,
+    Square,
+    Up,
+    Down,
+}
+
+const MARKERS: [Marker; 4] = [Marker::Circle, Marker::Square, Marker::Up, Marker::Down];
+
+/// How one curve is drawn.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Look {
+    pub color: Color,
+    pub width: f64,
+    pub dash: &'static [f64],
+    pub marker: Marker,
+}
+
+impl Look {
+    /// The look of the line that is number `hue` of `hues` by its colour and number `dash` by its dash.
+    ///
+    /// More lines than named colours take a ramp: they are levels of one quantity then.
+    pub(super) fn new(hue: usize, hues: usize, dash: usize) -> Self {
+        let color = if hues <= OKABE_ITO.len() { OKABE_ITO[hue % OKABE_ITO.len()] } else { ramp(hue, hues) };
+        Self { color, width: CURVE, dash: DASHES[dash % DASHES.len()], marker: MARKERS[dash % MARKERS.len()] }
+    }
+
+    /// The fixed look of a path in a time history: the same in every figure, whichever other paths are drawn.
+    pub(super) fn of_path(column: &str) -> Option<Self> {
+        let thin = |color, dash| Self { color, width: THIN_CURVE, dash, marker: Marker::Circle };
+        let thick = |color| Self { color, width: CURVE, dash: &[], marker: Marker::Circle };
+        Some(match column {
+            "base_displacement" => thick(OKABE_ITO[6]),
+            "particle_displacement" => thick(OKABE_ITO[1]),
+            "floor_displacement" => thick(OKABE_ITO[0]),
+            "ceiling_displacement" => thick(OKABE_ITO[2]),
+            "rigid_floor" => thin(OKABE_ITO[0], DASHES[4]),
+            "rigid_ceiling" => thin(OKABE_ITO[2], DASHES[4]),
+            _ => return None,
+        })
+    }
+}
+
+fn ramp(index: usize, count: usize) -> Color {
+    let stops = VIRIDIS.len() - 1;
+    let share = index * stops;
+    let last = (count - 1).max(1);
+    let (stop, rest) = ((share / last).min(stops - 1), share - (share / last).min(stops - 1) * last);
+    let (from, to) = (VIRIDIS[stop], VIRIDIS[stop + 1]);
+    let mix = |a: u8, b: u8| {
+        let mixed = (usize::from(a) * (last - rest) + usize::from(b) * rest) / last;
+        u8::try_from(mixed).unwrap_or(u8::MAX)
+    };
+    Color(mix(from.0, to.0), mix(from.1, to.1), mix(from.2, to.2))
+}

@@ -1,0 +1,50 @@
+//! Figures of one experiment.
+
+use crate::figure::{FigureError, QuotedPoint, draw};
+use crate::reference::{Allowed, Check, Entry, Extraction, ReferenceFile};
+use crate::spec::{Experiment, FigureSpec};
+use crate::table::Table;
+
+/// File name of a figure: the experiment's id, and the figure's own name if it is not the first.
+#[must_use]
+pub fn figure_name(experiment: &Experiment, figure: &FigureSpec) -> String {
+    if figure.name.is_empty() {
+        format!("{}.png", experiment.id)
+    } else {
+        format!("{}-{}.png", experiment.id, figure.name)
+    }
+}
+
+/// The PNG of one figure, with the numbers that the study quotes.
+pub(super) fn png(
+    experiment: &Experiment,
+    figure: &FigureSpec,
+    table: &Table,
+    reference: Option<&ReferenceFile>,
+) -> Result<Vec<u8>, FigureError> {
+    let entries = reference.map_or(&[][..], |reference| &reference.entries);
+    let quoted: Vec<QuotedPoint> = figure
+        .panels
+        .first()
+        .map(|panel| entries.iter().filter_map(|entry| quoted_point(entry, &panel.x.column, table)).collect())
+        .unwrap_or_default();
+    draw(experiment, figure, table, &quoted)
+}
+
+/// What an entry quotes of a curve over `x`: a point, the height of a maximum, or its place. Other numbers (onsets, ratios
+/// of two curves, another experiment's) have no place in the picture.
+fn quoted_point(entry: &Entry, x: &str, table: &Table) -> Option<QuotedPoint> {
+    let Check::Value { published, from, .. } = &entry.check else { return None };
+    let in_unit_of = |column: &str| Some(published.converted_to(&table.column(column)?.unit)?.0);
+    let (column, x, y) = match from {
+        Extraction::Cell(cell) if cell.table.is_none() => {
+            let rows = entry.rows.and(&cell.rows);
+            let Some(Allowed::Number(at)) = rows.0.get(x) else { return None };
+            (&cell.of, *at, in_unit_of(&cell.of)?)
+        }
+        Extraction::Maximum(top) if top.table.is_none() && top.over == x => (&top.of, f64::NAN, in_unit_of(&top.of)?),
+        Extraction::Argmax(top) if top.table.is_none() && top.over == x => (&top.of, in_unit_of(x)?, f64::NAN),
+        _ => return None,
+    };
+    Some(QuotedPoint { column: column.clone(), x, y, label: "study".into() })
+}

@@ -1,0 +1,110 @@
+//! A study as it lies before us: experiments, assumptions and reference read, planned, and held against what is on disk.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use crate::reference::{Check, ReferenceFile, parse_reference};
+use crate::spec::AssumptionSheet;
+use crate::study::{Item, Layout, Loaded, Refused, Sensitivity, Texts};
+
+/// Everything that was read, and the plan.
+#[derive(Debug)]
+pub struct Opened {
+    /// Where it lies.
+    pub layout: Layout,
+    /// The texts that all of this was made from.
+    pub texts: Texts,
+    /// The assumptions.
+    pub sheet: AssumptionSheet,
+    /// The experiments, planned, in the order of their ids.
+    pub items: Vec<Item>,
+    /// The reference by id of the experiment.
+    pub references: BTreeMap<String, ReferenceFile>,
+    /// Files that could not be used.
+    pub unread: Vec<Unread>,
+}
+
+/// A file that could not be used.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum Unread {
+    /// An experiment or the assumptions.
+    #[error(transparent)]
+    Experiment(#[from] Refused),
+    /// A reference file.
+    #[error("{file}: {problem}")]
+    Reference {
+        /// Which.
+        file: String,
+        /// What is wrong with it, with its place.
+        problem: String,
+    },
+}
+
+impl Unread {
+    /// The name of the file.
+    #[must_use]
+    pub fn file(&self) -> &str {
+        match self {
+            Self::Experiment(refused) => refused.file(),
+            Self::Reference { file, .. } => file,
+        }
+    }
+}
+
+impl Opened {
+    /// Reads and plans the study that the texts make.
+    #[must_use]
+    pub fn new(layout: Layout, texts: Texts) -> Self {
+        let loaded = Loaded::from_texts(&texts);
+        let mut unread: Vec<Unread> = loaded.refused.into_iter().map(Unread::from).collect();
+        let references = references(&texts, &mut unread);
+        let mut items: Vec<Item> = loaded
+            .sources
+            .into_iter()
+            .map(|source| {
+                let reference = references.get(&source.experiment.id.0);
+                let sensitivity =
+                    if reference.is_some_and(has_values) { Sensitivity::Wanted } else { Sensitivity::NotWanted };
+                Item::new(&layout, source, &loaded.sheet, sensitivity)
+            })
+            .collect();
+        items.sort_by(|a, b| a.source.experiment.id.cmp(&b.source.experiment.id));
+        Self { layout, texts, sheet: loaded.sheet, items, references, unread }
+    }
+
+    /// The ids of the entries that an assumption was fitted to.
+    #[must_use]
+    pub fn fitted(&self) -> BTreeSet<String> {
+        self.sheet.entries.values().flat_map(|entry| entry.fitted_to.iter().cloned()).collect()
+    }
+}
+
+/// Numbers are held against the result with an uncertainty that needs the ends of the assumptions; claims are not.
+fn has_values(file: &ReferenceFile) -> bool {
+    file.entries.iter().any(|entry| matches!(entry.check, Check::Value { .. }))
+}
+
+fn references(texts: &Texts, unread: &mut Vec<Unread>) -> BTreeMap<String, ReferenceFile> {
+    let mut references = BTreeMap::<String, ReferenceFile>::new();
+    for (file, bytes) in texts.files.iter().filter(|(file, _)| file.starts_with("reference/")) {
+        let mut refuse = |problem: String| unread.push(Unread::Reference { file: file.clone(), problem });
+        let name = file.rsplit('/').next().unwrap_or(file);
+        let Some(id) = name.strip_suffix(".yaml") else {
+            refuse("rename it to end in .yaml".into());
+            continue;
+        };
+        let Ok(text) = std::str::from_utf8(bytes) else {
+            refuse("this is not UTF-8 text".into());
+            continue;
+        };
+        match parse_reference(id, text) {
+            Ok(_) if references.contains_key(id) => {
+                refuse("another file holds the reference of this experiment".into())
+            }
+            Ok(reference) => {
+                references.insert(id.into(), reference);
+            }
+            Err(problems) => problems.into_iter().for_each(refuse),
+        }
+    }
+    references
+}

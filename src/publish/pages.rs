@@ -1,0 +1,146 @@
+//! Figures and reports of a study, written where they are not what they should be.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs;
+
+use rayon::prelude::*;
+
+use super::figures::{figure_name, png};
+use super::opened::Opened;
+use super::publication::{meaning, publication_reasons};
+use super::verdicts::Judgement;
+use super::views;
+use crate::atomic::{self, FileError};
+use crate::study::{FileHash, Item, Publication, Record, record_name, table_name};
+
+/// What publishing did.
+#[derive(Debug, Default)]
+pub struct Published {
+    /// Every file that the study consists of now, by its name within the study.
+    pub outputs: BTreeSet<String>,
+    /// Files that were written.
+    pub written: usize,
+    /// Figures that could not be drawn, in words.
+    pub problems: Vec<String>,
+}
+
+/// An experiment whose table counts, while it is published.
+struct Page<'a> {
+    item: &'a Item,
+    record: &'a Record,
+    folder: String,
+    stale: bool,
+}
+
+/// Draws what is stale, renders every page of the experiments in `ids` and the index, and writes what differs.
+///
+/// # Errors
+/// [`FileError`] if a file cannot be written.
+pub fn publish(opened: &Opened, judgement: &Judgement, ids: &BTreeSet<&str>) -> Result<Published, FileError> {
+    let mut published = Published::default();
+    let pages: Vec<Page<'_>> = opened.items.iter().filter_map(|item| page(opened, item)).collect();
+    let chosen = |page: &&Page<'_>| ids.contains(page.item.source.experiment.id.0.as_str());
+    let mut figures = draw(opened, judgement, pages.iter().filter(chosen).filter(|page| page.stale));
+    for page in pages.iter().filter(chosen) {
+        let id = page.item.source.experiment.id.0.as_str();
+        let drawn = figures.remove(id).unwrap_or_default();
+        write_page(opened, judgement, page, drawn, &mut published)?;
+    }
+    let index = opened.layout.path("reports/README.md");
+    published.written += usize::from(atomic::write_if_changed(&index, views::index(opened, judgement).as_bytes())?);
+    published.outputs.insert("reports/README.md".into());
+    Ok(published)
+}
+
+fn page<'a>(opened: &Opened, item: &'a Item) -> Option<Page<'a>> {
+    let record = item.record()?;
+    let folder = match item.source.folder() {
+        "" => "reports".to_owned(),
+        folder => format!("reports/{folder}"),
+    };
+    Some(Page { item, record, folder, stale: !publication_reasons(opened, item).is_empty() })
+}
+
+/// A figure's file name and its bytes, or why there are none.
+type Drawn = Vec<(String, Result<Vec<u8>, String>)>;
+
+/// Draws side by side; each picture is one thread's work alone.
+fn draw<'a>(
+    opened: &'a Opened,
+    judgement: &'a Judgement,
+    pages: impl Iterator<Item = &'a Page<'a>>,
+) -> BTreeMap<&'a str, Drawn> {
+    let jobs: Vec<_> =
+        pages.flat_map(|page| page.item.source.experiment.figures.iter().map(move |figure| (page, figure))).collect();
+    let drawn: Vec<_> = jobs
+        .par_iter()
+        .map(|(page, figure)| {
+            let experiment = &page.item.source.experiment;
+            let id = experiment.id.0.as_str();
+            let bytes =
+                judgement.tables.get(id).ok_or_else(|| "its table cannot be read".to_owned()).and_then(|table| {
+                    png(experiment, figure, table, opened.references.get(id)).map_err(|error| error.to_string())
+                });
+            (id, figure_name(experiment, figure), bytes)
+        })
+        .collect();
+    let mut by_id = BTreeMap::<&str, Drawn>::new();
+    for (id, name, bytes) in drawn {
+        by_id.entry(id).or_default().push((name, bytes));
+    }
+    by_id
+}
+
+fn write_page(
+    opened: &Opened,
+    judgement: &Judgement,
+    page: &Page<'_>,
+    drawn: Drawn,
+    published: &mut Published,
+) -> Result<(), FileError> {
+    let id = &page.item.source.experiment.id;
+    let layout = &opened.layout;
+    let old = page.record.publication.as_ref();
+    let mut files: BTreeMap<String, FileHash> = BTreeMap::new();
+    let mut whole = true;
+    if page.stale {
+        for (name, bytes) in drawn {
+            let name = format!("{}/{name}", page.folder);
+            match bytes {
+                Ok(bytes) => {
+                    published.written += usize::from(atomic::write_if_changed(&layout.path(&name), &bytes)?);
+                    files.insert(name, FileHash::of(&bytes));
+                }
+                Err(why) => {
+                    whole = false;
+                    // Where rows have failed, that is the news, and it is told already.
+                    if page.record.failures.rows == 0 {
+                        published.problems.push(format!("{id}: {why}"));
+                    }
+                }
+            }
+        }
+    } else if let Some(old) = old {
+        files.extend(old.files.iter().filter(|(name, _)| name.ends_with(".png")).map(|(n, h)| (n.clone(), h.clone())));
+    }
+    let text = views::page(opened, judgement, page.item);
+    let name = format!("{}/{id}.md", page.folder);
+    published.written += usize::from(atomic::write_if_changed(&layout.path(&name), text.as_bytes())?);
+    files.insert(name, FileHash::of(text.as_bytes()));
+    // A figure that was renamed or taken out does not stay behind.
+    for gone in old.iter().flat_map(|old| old.files.keys()).filter(|name| !files.contains_key(*name)) {
+        let path = layout.path(gone);
+        match fs::remove_file(&path) {
+            Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
+                return Err(FileError { action: "remove", path, source: error });
+            }
+            _ => {}
+        }
+    }
+    published.outputs.extend(files.keys().cloned());
+    published.outputs.extend([table_name(id), record_name(id)]);
+    let meaning = meaning(opened, page.item, page.record);
+    let publication = whole.then_some(Publication { meaning, files });
+    let record = Record { publication, ..page.record.clone() };
+    record.write(&layout.path(&record_name(id)))
+}

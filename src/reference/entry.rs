@@ -1,0 +1,293 @@
+//! Entries: one published number or claim each, with its place in the source.
+//!
+//! ```yaml
+//! # reference/ch3/ch3-forcing-amplitude.yaml
+//! entries:
+//!   - id: optimum
+//!     place: s. 3.6.4, Fig. 19
+//!     says: The velocity ratio is largest at f′ = 2.5.
+//!     value: "2.5"                      # digits as printed: half a unit of the last one is its uncertainty
+//!     from: {argmax: {of: velocity_ratio, over: force_ratio}}
+//!   - id: falls-beyond
+//!     place: s. 3.6.4
+//!     says: Beyond the optimum the velocity ratio decreases.
+//!     claim: {monotone: {of: velocity_ratio, over: force_ratio, direction: decreasing, part: after_maximum, slack: 0.02}}
+//!     threshold_reason: Chaotic points scatter by a per cent or two.
+//! ```
+
+use std::collections::BTreeSet;
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+
+use super::extraction::Extraction;
+use super::predicate::Predicate;
+use super::printed::Printed;
+use super::selection::Selection;
+use super::verdict::Verdict;
+use crate::spec::{Spanned, from_yaml, position};
+
+/// The entries of one experiment.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ReferenceFile {
+    /// Id of the experiment whose table they read, from the file's name.
+    pub experiment: String,
+    /// In the order of the file.
+    pub entries: Vec<Entry>,
+}
+
+/// One published number or claim.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Entry {
+    /// `ch3-forcing-amplitude/optimum`.
+    pub id: String,
+    /// Where it stands: `s. 3.6.4, Fig. 19`.
+    pub place: String,
+    /// What the study says, in one line.
+    pub says: String,
+    /// How it is checked.
+    pub check: Check,
+    /// The rows that it speaks of.
+    pub rows: Selection,
+    /// The verdict that is expected, never [`Verdict::Missing`].
+    pub expected: Verdict,
+    /// Why, where that is not [`Verdict::Reproduced`]; otherwise a note, or empty.
+    pub explanation: String,
+    /// Inputs that the study does not give and without which the entry cannot be judged.
+    pub blocked_by: Vec<String>,
+}
+
+/// How an entry is checked.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Check {
+    /// A number.
+    Value {
+        /// As printed.
+        published: Printed,
+        /// Its counterpart in the table.
+        from: Extraction,
+        /// Instead of the derived one.
+        tolerance: Option<Tolerance>,
+    },
+    /// A claim in words.
+    Claim {
+        /// The claim.
+        predicate: Predicate,
+        /// Why its thresholds are what they are; empty if it has none.
+        threshold_reason: String,
+    },
+}
+
+/// A tolerance set by hand.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Tolerance {
+    /// How much.
+    pub size: ToleranceSize,
+    /// Why.
+    pub reason: String,
+}
+
+/// The size of a tolerance.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ToleranceSize {
+    /// Fraction of the published value.
+    Relative(f64),
+    /// In the unit in which the value is printed.
+    Absolute(f64),
+}
+
+impl ReferenceFile {
+    /// The other experiments whose tables the entries read.
+    #[must_use]
+    pub fn other_tables(&self) -> BTreeSet<String> {
+        let tables = |entry: &Entry| -> Vec<String> {
+            let named = match &entry.check {
+                Check::Value { from, .. } => from.tables(),
+                Check::Claim { predicate, .. } => predicate.tables(),
+            };
+            named.into_iter().map(String::from).collect()
+        };
+        self.entries.iter().flat_map(tables).filter(|id| *id != self.experiment).collect()
+    }
+}
+
+/// Why a reference file cannot be used.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{}", .problems.iter().map(|problem| format!("{file}: {problem}")).collect::<Vec<_>>().join("\n"))]
+pub struct ReferenceError {
+    /// The file, as it was named by the caller.
+    pub file: String,
+    /// All that is wrong, in the order of the file, each with line and column.
+    pub problems: Vec<String>,
+}
+
+/// Reads a reference file; its name is the id of its experiment.
+///
+/// # Errors
+/// If it cannot be read or understood: every unsound entry is named.
+pub fn load_reference(path: &Path) -> Result<ReferenceFile, ReferenceError> {
+    let file = path.display().to_string();
+    let fail = |problem: String| ReferenceError { file: file.clone(), problems: vec![problem] };
+    let experiment = path.file_stem().and_then(|stem| stem.to_str()).unwrap_or_default();
+    let text = std::fs::read_to_string(path).map_err(|error| fail(format!("cannot be read: {error}")))?;
+    parse_reference(experiment, &text).map_err(|problems| ReferenceError { file: file.clone(), problems })
+}
+
+/// Reads the text of a reference file.
+///
+/// # Errors
+/// All that is wrong, each with line and column.
+pub fn parse_reference(experiment: &str, text: &str) -> Result<ReferenceFile, Vec<String>> {
+    let raw: RawReference = from_yaml(text).map_err(|mistake| vec![mistake.to_string()])?;
+    let mut problems = Vec::new();
+    let mut ids = BTreeSet::new();
+    let mut entries = Vec::new();
+    for spanned in raw.entries {
+        let (line, column) = position(&spanned);
+        let name = spanned.value.id.clone();
+        let mut found = Vec::new();
+        if !ids.insert(name.clone()) {
+            found.push("has the id of an entry above".to_string());
+        }
+        match spanned.value.validated(experiment) {
+            Ok(entry) => entries.push(entry),
+            Err(more) => found.extend(more),
+        }
+        problems.extend(found.into_iter().map(|what| format!("line {line}, column {column}: entry `{name}` {what}")));
+    }
+    if entries.is_empty() && problems.is_empty() {
+        problems.push("line 1, column 1: there is no entry".into());
+    }
+    if problems.is_empty() { Ok(ReferenceFile { experiment: experiment.into(), entries }) } else { Err(problems) }
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RawReference {
+    entries: Vec<Spanned<RawEntry>>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RawEntry {
+    id: String,
+    place: String,
+    says: String,
+    value: Option<String>,
+    from: Option<Extraction>,
+    tolerance: Option<RawTolerance>,
+    claim: Option<Predicate>,
+    threshold_reason: Option<String>,
+    #[serde(rename = "where", default)]
+    rows: Selection,
+    expected: Option<Verdict>,
+    explanation: Option<String>,
+    #[serde(default)]
+    blocked_by: Vec<String>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RawTolerance {
+    relative: Option<f64>,
+    absolute: Option<f64>,
+    reason: String,
+}
+
+impl RawEntry {
+    fn validated(self, experiment: &str) -> Result<Entry, Vec<String>> {
+        let mut wrong: Vec<String> = Vec::new();
+        let filled = |text: &Option<String>| text.as_ref().is_some_and(|text| !text.trim().is_empty());
+        if self.id.is_empty() || !self.id.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-') {
+            wrong.push("needs an id of small letters, digits and hyphens".into());
+        }
+        if self.place.trim().is_empty() || self.says.trim().is_empty() {
+            wrong.push("needs a `place` in the source and what it `says`".into());
+        }
+        let expected = self.expected.unwrap_or(Verdict::Reproduced);
+        if expected == Verdict::Missing {
+            wrong.push("expects `missing`, which is never an expected verdict".into());
+        }
+        if expected != Verdict::Reproduced && !filled(&self.explanation) {
+            wrong.push("expects another verdict than `reproduced` and needs an `explanation`".into());
+        }
+        if expected == Verdict::Blocked && self.blocked_by.is_empty() {
+            wrong.push("expects `blocked` and needs `blocked_by`: which input the study does not give".into());
+        }
+        let threshold_reason = self.threshold_reason.clone().unwrap_or_default().trim().to_string();
+        let check = match (self.value, self.from, self.claim) {
+            (Some(value), Some(from), None) => {
+                if !threshold_reason.is_empty() {
+                    wrong.push("has a `threshold_reason`, which belongs to claims; a `tolerance` has its own".into());
+                }
+                if !from.is_sound() {
+                    wrong.push("has a number in `from` that is not finite, or zero where it cannot be".into());
+                }
+                let tolerance = self.tolerance.and_then(|raw| raw.validated(&mut wrong));
+                match Printed::parse(&value) {
+                    Ok(published) => Some(Check::Value { published, from, tolerance }),
+                    Err(error) => {
+                        wrong.push(format!("has a `value` that cannot be read: {error}"));
+                        None
+                    }
+                }
+            }
+            (None, None, Some(predicate)) => {
+                if let Some(flaw) = predicate.flaw() {
+                    wrong.push(format!("has an unsound claim: {flaw}"));
+                }
+                if self.tolerance.is_some() {
+                    wrong.push("has a `tolerance`, which belongs to values; a claim has its own thresholds".into());
+                }
+                if predicate.has_threshold() && threshold_reason.is_empty() {
+                    wrong.push("has a threshold set by hand and needs a `threshold_reason`".into());
+                }
+                Some(Check::Claim { predicate, threshold_reason })
+            }
+            (Some(_), None, None) => {
+                wrong.push("has a `value` and needs `from`: where its counterpart stands in the table".into());
+                None
+            }
+            _ => {
+                wrong.push("needs either a `value` with `from`, or a `claim`".into());
+                None
+            }
+        };
+        match check {
+            Some(check) if wrong.is_empty() => Ok(Entry {
+                id: format!("{experiment}/{}", self.id),
+                place: self.place,
+                says: self.says,
+                check,
+                rows: self.rows,
+                expected,
+                explanation: self.explanation.unwrap_or_default().trim().to_string(),
+                blocked_by: self.blocked_by,
+            }),
+            _ => Err(wrong),
+        }
+    }
+}
+
+impl RawTolerance {
+    fn validated(self, wrong: &mut Vec<String>) -> Option<Tolerance> {
+        let size = match (self.relative, self.absolute) {
+            (Some(fraction), None) => ToleranceSize::Relative(fraction),
+            (None, Some(distance)) => ToleranceSize::Absolute(distance),
+            _ => {
+                wrong.push("has a `tolerance` that is neither `relative` nor `absolute`".into());
+                return None;
+            }
+        };
+        let (ToleranceSize::Relative(amount) | ToleranceSize::Absolute(amount)) = size;
+        if !(amount.is_finite() && amount > 0.0) {
+            wrong.push("has a `tolerance` that is not a number above zero".into());
+        }
+        if self.reason.trim().is_empty() {
+            wrong.push("has a `tolerance` set by hand and needs its `reason`".into());
+        }
+        Some(Tolerance { size, reason: self.reason.trim().into() })
+    }
+}

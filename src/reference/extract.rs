@@ -1,0 +1,200 @@
+//! Takes numbers out of tables. Each comes with its own error, to which the grid of the sweep belongs: a top is known to lie
+//! between its neighbours, no better.
+
+use super::extraction::{Along, Direction, Extraction, NearestPassage, Parting, Side};
+use super::line::{Position, common, lines};
+use super::selection::same;
+use super::text::{percent, significant};
+use super::view::{Absence, Cell, Source, View, finite};
+
+/// A number taken out of a table.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Extracted {
+    pub value: f64,
+    /// Error of the run and of the grid.
+    pub run: f64,
+    /// Standard deviation of the ensemble where it was read.
+    pub spread: f64,
+    pub unit: String,
+    /// What an agreement is measured against where zero is no natural origin, as with an instant: the time between two of
+    /// its kind.
+    pub scale: Option<f64>,
+}
+
+impl Extracted {
+    fn cell(cell: Cell, unit: &str) -> Self {
+        Self { value: cell.value, run: cell.run, spread: cell.spread, unit: unit.into(), scale: None }
+    }
+
+    fn place(position: Position, unit: String) -> Self {
+        Self { value: position.x, run: position.u, spread: 0.0, unit, scale: None }
+    }
+
+    fn times(self, factor: f64) -> Self {
+        let size = factor.abs();
+        Self {
+            value: self.value * factor,
+            run: self.run * size,
+            spread: self.spread * size,
+            unit: self.unit,
+            scale: self.scale.map(|scale| scale * size),
+        }
+    }
+}
+
+impl Extraction {
+    /// Takes the number.
+    pub(crate) fn take(&self, view: &View<'_>) -> Result<Extracted, Absence> {
+        let line = |along: &Along| view.line(along.source(), &along.of, &along.over, None);
+        Ok(match self {
+            Self::Number(x) => Extracted { value: *x, run: 0.0, spread: 0.0, unit: String::new(), scale: None },
+            Self::Cell(cells) => {
+                let rows = view.rows(cells.source(), None)?;
+                let all = view.cells(&rows, &cells.of)?;
+                let &[cell] = all.as_slice() else {
+                    return Err(Absence::Broken(format!(
+                        "{} rows where one is meant: `where` must say which",
+                        rows.count()
+                    )));
+                };
+                Extracted::cell(cell, view.unit(&rows, &cells.of)?)
+            }
+            Self::Mean(cells) => {
+                let rows = view.rows(cells.source(), None)?;
+                let all = view.cells(&rows, &cells.of)?;
+                #[expect(clippy::cast_precision_loss, reason = "row counts are far below 2^53")]
+                let n = all.len() as f64;
+                let quadrature = |part: fn(&Cell) -> f64| all.iter().map(|c| part(c) * part(c)).sum::<f64>().sqrt() / n;
+                Extracted {
+                    value: all.iter().map(|cell| cell.value).sum::<f64>() / n,
+                    run: quadrature(|cell| cell.run),
+                    spread: quadrature(|cell| cell.spread),
+                    unit: view.unit(&rows, &cells.of)?.into(),
+                    scale: None,
+                }
+            }
+            Self::Maximum(along) => {
+                let line = line(along)?;
+                Extracted::cell(line.maximum(), &line.unit)
+            }
+            Self::Minimum(along) => {
+                let line = line(along)?.inverted();
+                Extracted::cell(line.maximum(), &line.unit).times(-1.0)
+            }
+            Self::Argmax(along) => {
+                let line = line(along)?;
+                Extracted::place(line.top()?, line.over_unit)
+            }
+            Self::Argmin(along) => {
+                let line = line(along)?.inverted();
+                Extracted::place(line.top()?, line.over_unit)
+            }
+            Self::AtMaximum(word) => {
+                let line = view.line(word.source(), &word.of, &word.over, None)?;
+                let other = view.line(word.source(), &word.read, &word.over, None)?;
+                let top = line.x[line.highest()];
+                let at = other.x.iter().position(|&x| same(x, top));
+                let at = at.ok_or_else(|| Absence::NoRow(format!("no `{}` at the maximum", word.read)))?;
+                Extracted::cell(other.y[at], &other.unit)
+            }
+            Self::End(word) => {
+                let line = view.line(word.source(), &word.of, &word.over, None)?;
+                let at = if word.end == Side::Low { 0 } else { line.x.len() - 1 };
+                Extracted::cell(line.y[at], &line.unit)
+            }
+            Self::Crossing(word) => {
+                let line = view.line(word.source(), &word.of, &word.over, None)?;
+                let (line, level) = match word.direction {
+                    Direction::Increasing => (line, word.level),
+                    Direction::Decreasing => (line.inverted(), -word.level),
+                };
+                let (_, position) = line.crossing_up(level).ok_or_else(|| {
+                    Absence::Nowhere(format!("`{}` does not cross {}", word.of, significant(word.level, 4)))
+                })?;
+                Extracted::place(position, line.over_unit)
+            }
+            Self::FirstAbove(word) => {
+                let line = view.line(word.source(), &word.of, &word.over, None)?;
+                Extracted::place(line.onset(word.above)?.1, line.over_unit)
+            }
+            Self::Parting(word) => word.take(view)?,
+            Self::LargestStepBack(word) => {
+                let line = view.line(word.source(), &word.of, &word.over, None)?;
+                let line = if word.direction == Direction::Increasing { line } else { line.inverted() };
+                Extracted::cell(line.largest_fall(), &line.unit)
+            }
+            Self::NearestPassage(word) => word.take(view)?,
+            Self::Ratio(quotient) => {
+                let (of, to) = (quotient.of.take(view)?, quotient.to.take(view)?);
+                if of.unit != to.unit {
+                    return Err(Absence::Broken(format!("a ratio of `{}` to `{}`", of.unit, to.unit)));
+                }
+                let value = of.value / to.value;
+                if !value.is_finite() {
+                    return Err(Absence::Broken("a ratio to zero".into()));
+                }
+                let both = |a: f64, b: f64| libm::hypot(a, value * b) / to.value.abs();
+                Extracted {
+                    value,
+                    run: both(of.run, to.run),
+                    spread: both(of.spread, to.spread),
+                    unit: String::new(),
+                    scale: None,
+                }
+            }
+            Self::Times(times) => times.of.take(view)?.times(times.factor),
+        })
+    }
+}
+
+impl Parting {
+    fn take(&self, view: &View<'_>) -> Result<Extracted, Absence> {
+        let both = lines(view, self.source(), &self.of, &self.over, &self.by)?;
+        if both.len() != 2 {
+            return Err(Absence::Broken(format!("{} lines by `{}` where two part", both.len(), self.by)));
+        }
+        let shared = common(&both)?;
+        let apart = |cells: &[Cell]| {
+            let (a, b) = (cells[0].value, cells[1].value);
+            (a - b).abs() > self.fraction * (a + b).abs() / 2.0
+        };
+        let fraction = percent(self.fraction);
+        let unit = both[0].1.over_unit.clone();
+        match shared.iter().position(|(_, cells)| apart(cells)) {
+            None => Err(Absence::Nowhere(format!("the lines never part by {fraction}"))),
+            Some(0) => {
+                Err(Absence::Nowhere(format!("the lines are more than {fraction} apart from the first point on")))
+            }
+            Some(i) => {
+                let (x, before) = (shared[i].0, shared[i - 1].0);
+                Ok(Extracted { value: x, run: (x - before) / 2.0, spread: 0.0, unit, scale: None })
+            }
+        }
+    }
+}
+
+impl NearestPassage {
+    fn take(&self, view: &View<'_>) -> Result<Extracted, Absence> {
+        let rows = view.rows(Source { table: None, rows: &self.rows }, None)?;
+        let times = view.path(&rows, "time")?;
+        let (of, through) = (view.path(&rows, &self.of)?, view.path(&rows, &self.through)?);
+        finite(times, "time")?;
+        finite(of, &self.of)?;
+        finite(through, &self.through)?;
+        let side = self.direction.sign();
+        let apart: Vec<f64> = of.iter().zip(through).map(|(a, b)| side * (a - b)).collect();
+        let passages = apart.windows(2).zip(times.windows(2)).filter(|(apart, _)| apart[0] < 0.0 && apart[1] >= 0.0);
+        let instants: Vec<(f64, f64)> = passages
+            .map(|(apart, time)| {
+                let width = time[1] - time[0];
+                (time[0] + width * apart[0] / (apart[0] - apart[1]), width / 2.0)
+            })
+            .collect();
+        let nearest = instants.iter().min_by(|a, b| (a.0 - self.to).abs().total_cmp(&(b.0 - self.to).abs()));
+        let &(value, run) = nearest
+            .ok_or_else(|| Absence::Nowhere(format!("`{}` never passes `{}` that way", self.of, self.through)))?;
+        let between = instants.windows(2).map(|pair| pair[1].0 - pair[0].0).reduce(f64::min);
+        let scale = between.or(Some(times[times.len() - 1] - times[0]));
+        Ok(Extracted { value, run, spread: 0.0, unit: view.unit(&rows, "time")?.into(), scale })
+    }
+}

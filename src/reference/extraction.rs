@@ -1,0 +1,240 @@
+//! The words in which an entry says how a number is taken out of a table: one for each way in which a study quotes a number
+//! of its curves. `{argmax: {of: velocity_ratio, over: force_ratio}}` is the force ratio of the largest velocity ratio.
+
+use serde::{Deserialize, Serialize};
+
+use super::selection::Selection;
+use super::view::Source;
+
+/// How a number is taken out of a table.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Extraction {
+    /// A fixed number, to hold others against.
+    Number(f64),
+    /// The measure in the one row that is meant.
+    Cell(Cells),
+    /// Mean of a measure over the rows.
+    Mean(Cells),
+    /// Largest value along a parameter.
+    Maximum(Along),
+    /// Smallest value along a parameter.
+    Minimum(Along),
+    /// The parameter of the largest value.
+    Argmax(Along),
+    /// The parameter of the smallest value.
+    Argmin(Along),
+    /// Another measure where this one is largest.
+    AtMaximum(AtMaximum),
+    /// The measure at the first or last point of a line.
+    End(End),
+    /// The parameter at which a measure first crosses a level.
+    Crossing(Crossing),
+    /// The first parameter value at which a measure exceeds a level.
+    FirstAbove(FirstAbove),
+    /// The first parameter value at which two lines differ by more than a fraction of their mean.
+    Parting(Parting),
+    /// The largest fall of a rising line, or rise of a falling one: how much it deviates from monotone.
+    LargestStepBack(StepBack),
+    /// Of the instants at which one path of a time history passes another, the one nearest to a given time.
+    NearestPassage(NearestPassage),
+    /// One number over another.
+    Ratio(Box<Quotient>),
+    /// A number times a factor.
+    Times(Box<Times>),
+}
+
+macro_rules! word {
+    ($(#[$about:meta])* $name:ident { $($(#[$field_about:meta])* $field:ident: $type:ty,)* }) => {
+        $(#[$about])*
+        #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+        #[serde(deny_unknown_fields)]
+        pub struct $name {
+            /// The measure.
+            pub of: String,
+            $($(#[$field_about])* pub $field: $type,)*
+            /// Conditions beyond the entry's own.
+            #[serde(rename = "where", default)]
+            pub rows: Selection,
+            /// Another experiment's table; the entry's conditions do not hold there.
+            #[serde(default)]
+            pub table: Option<String>,
+        }
+
+        impl $name {
+            pub(crate) fn source(&self) -> Source<'_> {
+                Source { table: self.table.as_deref(), rows: &self.rows }
+            }
+        }
+    };
+}
+
+word! {
+    /// A measure in some rows.
+    Cells {}
+}
+word! {
+    /// A measure along a parameter.
+    Along {
+        /// The parameter.
+        over: String,
+    }
+}
+word! {
+    /// Another measure at the top.
+    AtMaximum {
+        /// The parameter.
+        over: String,
+        /// The other measure.
+        read: String,
+    }
+}
+word! {
+    /// One end of a line.
+    End {
+        /// The parameter.
+        over: String,
+        /// Which end.
+        end: Side,
+    }
+}
+word! {
+    /// Crossing of a level.
+    Crossing {
+        /// The parameter.
+        over: String,
+        /// The level.
+        level: f64,
+        /// Upwards (`increasing`) or downwards.
+        direction: Direction,
+    }
+}
+word! {
+    /// Onset.
+    FirstAbove {
+        /// The parameter.
+        over: String,
+        /// The level to be exceeded.
+        above: f64,
+    }
+}
+word! {
+    /// Parting of two lines.
+    Parting {
+        /// The parameter.
+        over: String,
+        /// The column that tells the two lines apart.
+        by: String,
+        /// Of their mean.
+        fraction: f64,
+    }
+}
+word! {
+    /// Deviation from monotone.
+    StepBack {
+        /// The parameter.
+        over: String,
+        /// Which way the line should go.
+        direction: Direction,
+    }
+}
+
+/// An instant in the time history of the one row that is meant.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct NearestPassage {
+    /// The path that passes.
+    pub of: String,
+    /// The path that is passed.
+    pub through: String,
+    /// From below (`increasing`) or from above.
+    pub direction: Direction,
+    /// The time to be near to, s.
+    pub to: f64,
+    /// Conditions beyond the entry's own.
+    #[serde(rename = "where", default)]
+    pub rows: Selection,
+}
+
+/// A ratio.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Quotient {
+    /// Above the line.
+    pub of: Extraction,
+    /// Below it.
+    pub to: Extraction,
+}
+
+/// A multiple.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Times {
+    /// The factor.
+    pub factor: f64,
+    /// Of what.
+    pub of: Extraction,
+}
+
+/// End of a line.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Side {
+    /// The smallest parameter.
+    Low,
+    /// The largest parameter.
+    High,
+}
+
+/// Which way.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Direction {
+    /// Upwards.
+    Increasing,
+    /// Downwards.
+    Decreasing,
+}
+
+impl Direction {
+    /// 1 upwards, −1 downwards.
+    pub(crate) fn sign(self) -> f64 {
+        if self == Self::Increasing { 1.0 } else { -1.0 }
+    }
+}
+
+impl Extraction {
+    /// True if every number written into it is finite.
+    pub(crate) fn is_sound(&self) -> bool {
+        match self {
+            Self::Number(x) => x.is_finite(),
+            Self::Crossing(word) => word.level.is_finite(),
+            Self::FirstAbove(word) => word.above.is_finite(),
+            Self::Parting(word) => word.fraction.is_finite() && word.fraction > 0.0,
+            Self::NearestPassage(word) => word.to.is_finite(),
+            Self::Ratio(quotient) => quotient.of.is_sound() && quotient.to.is_sound(),
+            Self::Times(times) => times.factor.is_finite() && times.factor != 0.0 && times.of.is_sound(),
+            _ => true,
+        }
+    }
+
+    /// The other experiments whose tables it reads.
+    pub(crate) fn tables(&self) -> Vec<&str> {
+        let table = match self {
+            Self::Number(_) | Self::NearestPassage(_) => None,
+            Self::Cell(word) | Self::Mean(word) => word.table.as_deref(),
+            Self::Maximum(word) | Self::Minimum(word) | Self::Argmax(word) | Self::Argmin(word) => {
+                word.table.as_deref()
+            }
+            Self::AtMaximum(word) => word.table.as_deref(),
+            Self::End(word) => word.table.as_deref(),
+            Self::Crossing(word) => word.table.as_deref(),
+            Self::FirstAbove(word) => word.table.as_deref(),
+            Self::Parting(word) => word.table.as_deref(),
+            Self::LargestStepBack(word) => word.table.as_deref(),
+            Self::Ratio(quotient) => return [quotient.of.tables(), quotient.to.tables()].concat(),
+            Self::Times(times) => return times.of.tables(),
+        };
+        table.into_iter().collect()
+    }
+}

@@ -1,0 +1,199 @@
+//! Entries and tables to verdicts.
+//!
+//! The baseline of the assumptions decides; the variants, each with one assumption moved, give u_input of a value and say
+//! how robust a verdict is: how many of them keep it. A variant that was run and failed leaves the uncertainty unknown, so
+//! the entry is missing; one that was not run for the rows in question is left out.
+
+use std::cell::RefCell;
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::compare;
+use super::decide::decide;
+use super::entry::{Check, Entry, ReferenceFile, Tolerance, ToleranceSize};
+use super::extract::Extracted;
+use super::extraction::Extraction;
+use super::printed::Printed;
+use super::tally::Outcome;
+use super::text::{percent, significant, with_unit};
+use super::verdict::{Comparison, Judged, Verdict};
+use super::view::{Absence, BASELINE, Reads, Tables, View};
+
+/// Gives every entry of a file its verdict. `fitted` holds the ids of the entries that an assumption was fitted to.
+#[must_use]
+pub fn judge(file: &ReferenceFile, tables: &Tables<'_>, fitted: &BTreeSet<String>) -> Vec<Judged> {
+    let reads = Reads::default();
+    file.entries.iter().map(|entry| judge_entry(entry, &file.experiment, tables, fitted, &reads)).collect()
+}
+
+/// One entry; `reads` gathers the cells that decided it.
+pub(crate) fn judge_entry(
+    entry: &Entry,
+    experiment: &str,
+    tables: &Tables<'_>,
+    fitted: &BTreeSet<String>,
+    reads: &Reads,
+) -> Judged {
+    let view = View { tables, home: experiment, variant: BASELINE, given: entry.rows.clone(), reads };
+    let fitted = fitted.contains(&entry.id);
+    let judgement = match &entry.check {
+        Check::Value { published, from, tolerance } => value(&view, published, from, tolerance.as_ref(), fitted),
+        Check::Claim { predicate, .. } => {
+            let verdict = |outcome| match outcome {
+                Outcome::Holds if fitted => Verdict::Fitted,
+                Outcome::Holds => Verdict::Reproduced,
+                Outcome::Undecided => Verdict::Undecidable,
+                Outcome::Fails => Verdict::Differs,
+            };
+            decide(predicate, &view).and_then(|baseline| {
+                let others = moved(&view, |variant| decide(predicate, variant))?;
+                let kept = others.iter().filter(|(_, other)| other.outcome == baseline.outcome).count();
+                let words = match baseline.outcome {
+                    Outcome::Holds => "holds",
+                    Outcome::Undecided => "too near to tell",
+                    Outcome::Fails => "does not hold",
+                };
+                Ok(Judgement {
+                    verdict: verdict(baseline.outcome),
+                    found: format!("{words}: {}", baseline.found),
+                    comparison: None,
+                    robust: robust(kept, others.len()),
+                })
+            })
+        }
+    };
+    let mut judgement = judgement.unwrap_or_else(|absence| Judgement {
+        verdict: Verdict::Missing,
+        found: absence.reason().to_string(),
+        comparison: None,
+        robust: None,
+    });
+    if !entry.blocked_by.is_empty() && judgement.verdict != Verdict::Missing {
+        judgement.verdict = Verdict::Blocked;
+        judgement.found = format!("not given: {}; here {}", entry.blocked_by.join(", "), judgement.found);
+    }
+    let tolerance_reason = match &entry.check {
+        Check::Value { tolerance, .. } => tolerance.as_ref().map(|tolerance| tolerance.reason.clone()),
+        Check::Claim { threshold_reason, .. } => Some(threshold_reason.clone()).filter(|reason| !reason.is_empty()),
+    };
+    Judged {
+        id: entry.id.clone(),
+        experiment: experiment.into(),
+        statement: entry.says.clone(),
+        place: entry.place.clone(),
+        verdict: judgement.verdict,
+        expected: entry.expected,
+        found: judgement.found,
+        comparison: judgement.comparison,
+        explanation: entry.explanation.clone(),
+        tolerance_reason,
+        robust: judgement.robust,
+    }
+}
+
+struct Judgement {
+    verdict: Verdict,
+    found: String,
+    comparison: Option<Comparison>,
+    robust: Option<(u32, u32)>,
+}
+
+fn robust(kept: usize, run: usize) -> Option<(u32, u32)> {
+    (run > 0).then(|| (u32::try_from(kept).unwrap_or(u32::MAX), u32::try_from(run).unwrap_or(u32::MAX)))
+}
+
+/// The same question put to every variant of the assumptions that was run for the rows in question.
+fn moved<'a, T>(
+    view: &View<'a>,
+    mut ask: impl FnMut(&View<'a>) -> Result<T, Absence>,
+) -> Result<Vec<(&'a str, T)>, Absence> {
+    let mut answers = Vec::new();
+    for variant in view.variants() {
+        match ask(&View { variant, ..view.clone() }) {
+            Ok(answer) => answers.push((variant, answer)),
+            Err(Absence::NoRow(_)) => {}
+            Err(Absence::Broken(reason)) => return Err(Absence::Broken(format!("with {variant}: {reason}"))),
+            Err(Absence::Nowhere(reason)) => return Err(Absence::Nowhere(format!("with {variant}: {reason}"))),
+        }
+    }
+    Ok(answers)
+}
+
+fn value(
+    view: &View<'_>,
+    published: &Printed,
+    from: &Extraction,
+    by_hand: Option<&Tolerance>,
+    fitted: bool,
+) -> Result<Judgement, Absence> {
+    let simulated = match from.take(view) {
+        Ok(simulated) => simulated,
+        Err(Absence::Nowhere(reason)) => {
+            return Ok(Judgement { verdict: Verdict::Differs, found: reason, comparison: None, robust: None });
+        }
+        Err(absence) => return Err(absence),
+    };
+    let (datum, u_data) = published.converted_to(&simulated.unit).ok_or_else(|| {
+        Absence::Broken(format!("`{}` cannot be held against a column in `{}`", published.text(), simulated.unit))
+    })?;
+    // A feature that vanishes when an input is moved has no half range; it counts as a verdict that was not kept.
+    let mut vanished = 0;
+    let others: Vec<(&str, Extracted)> = moved(view, |variant| match from.take(variant) {
+        Err(Absence::Nowhere(_)) => {
+            vanished += 1;
+            Err(Absence::NoRow(String::new()))
+        }
+        other => other,
+    })?;
+    let comparison = Comparison {
+        simulated: simulated.value,
+        published: datum,
+        u_num: libm::hypot(simulated.run, simulated.spread),
+        u_input: u_input(simulated.value, &others),
+        u_data,
+        spread: simulated.spread,
+        tolerance_by_hand: by_hand.map(|tolerance| match tolerance.size {
+            ToleranceSize::Relative(fraction) => fraction * datum.abs(),
+            ToleranceSize::Absolute(distance) => distance * (u_data / published.half_unit()),
+        }),
+    };
+    let (verdict, remark) = compare::verdict(&comparison, simulated.scale, fitted);
+    let kept = others
+        .iter()
+        .filter(|(_, other)| {
+            let there = Comparison { simulated: other.value, ..comparison };
+            compare::verdict(&there, simulated.scale, fitted).0 == verdict
+        })
+        .count();
+    let mut found = format!(
+        "{} ± {}",
+        with_unit(simulated.value, 5, &simulated.unit),
+        significant(compare::COVERAGE * comparison.u_val(), 2)
+    );
+    if datum != 0.0 {
+        let relative = comparison.error() / datum.abs();
+        let sign = if relative < 0.0 { "" } else { "+" };
+        found = format!("{found}, {sign}{} of {}", percent(relative), published.text());
+    }
+    if let Some(remark) = remark {
+        found = format!("{found}; {remark}");
+    }
+    Ok(Judgement { verdict, found, comparison: Some(comparison), robust: robust(kept, others.len() + vanished) })
+}
+
+/// Half the range that each assumption gives the value, root-sum-square. A variant is named `assumption=value`.
+fn u_input(baseline: f64, others: &[(&str, Extracted)]) -> f64 {
+    let mut ranges: BTreeMap<&str, (f64, f64)> = BTreeMap::new();
+    for (variant, other) in others {
+        let assumption = variant.split_once('=').map_or(*variant, |(name, _)| name);
+        let range = ranges.entry(assumption).or_insert((baseline, baseline));
+        *range = (range.0.min(other.value), range.1.max(other.value));
+    }
+    ranges.values().map(|(low, high)| (high - low) * (high - low) / 4.0).sum::<f64>().sqrt()
+}
+
+/// Judges one entry and tells which cells of its own table decided it.
+pub(crate) fn judge_noting(entry: &Entry, experiment: &str, tables: &Tables<'_>) -> (Judged, Reads) {
+    let reads = RefCell::default();
+    let judged = judge_entry(entry, experiment, tables, &BTreeSet::new(), &reads);
+    (judged, reads)
+}

@@ -1,0 +1,83 @@
+//! Assumptions in words.
+
+use crate::scene::{Assumption, AssumptionValue};
+use crate::text::number;
+
+use super::markdown::{Align, MarkdownTable, one_line};
+use super::view::AssumptionView;
+
+/// The value of an assumption with its unit: `60 mm`, `9.81 m/s²`, `loaded`, a curve by its end points.
+#[must_use]
+pub fn value_in_words(name: Assumption, value: &AssumptionValue) -> String {
+    match value {
+        AssumptionValue::Number(value) => number::quantity(*value, unit(name), 6),
+        AssumptionValue::Choice(word) => word.replace('_', " "),
+        AssumptionValue::Curve(points) => match (points.first(), points.last()) {
+            (Some([x0, y0]), Some([x1, y1])) => {
+                let point =
+                    |x: f64, y: f64| format!("{} at {} g", number::quantity(y, unit(name), 4), number::compact(x, 4));
+                format!("a curve through {} points, {} to {}", points.len(), point(*x0, *y0), point(*x1, *y1))
+            }
+            _ => "a curve without points".to_owned(),
+        },
+    }
+}
+
+fn unit(name: Assumption) -> &'static str {
+    match name {
+        Assumption::Gravity => "m/s²",
+        Assumption::StopLength => "m",
+        Assumption::EquivalentDampingCurve => "N s/m",
+        _ => "",
+    }
+}
+
+/// The table of assumptions on an experiment's page.
+pub(super) fn table(assumptions: &[AssumptionView]) -> String {
+    let mut table = MarkdownTable::new(&[("Assumption", Align::Left), ("Value", Align::Left), ("Why", Align::Left)]);
+    for assumption in assumptions {
+        table.row([format!("`{}`", assumption.name), assumption.value.clone(), reason(assumption)]);
+    }
+    table.finish()
+}
+
+/// The table of all assumptions with the entries that depend on them.
+pub(super) fn table_with_entries(assumptions: &[AssumptionView]) -> String {
+    let mut table = MarkdownTable::new(&[
+        ("Assumption", Align::Left),
+        ("Value", Align::Left),
+        ("Why", Align::Left),
+        ("Entries that depend on it", Align::Left),
+    ]);
+    for assumption in assumptions {
+        let used_by = if assumption.used_by.is_empty() { "none".to_owned() } else { entries(&assumption.used_by) };
+        table.row([format!("`{}`", assumption.name), assumption.value.clone(), reason(assumption), used_by]);
+    }
+    table.finish()
+}
+
+fn reason(assumption: &AssumptionView) -> String {
+    let reason = one_line(&assumption.reason);
+    if assumption.fitted_to.is_empty() {
+        reason
+    } else {
+        format!("{reason} Chosen by {}.", entries(&assumption.fitted_to))
+    }
+}
+
+/// Ids grouped by experiment, so that a long list stays readable: `ch3-gap` (maximum, order).
+fn entries(ids: &[String]) -> String {
+    let mut groups: Vec<(&str, Vec<&str>)> = Vec::new();
+    for id in ids {
+        let (experiment, entry) = id.split_once('/').unwrap_or((id, ""));
+        match groups.iter_mut().find(|(name, _)| *name == experiment) {
+            Some((_, entries)) => entries.push(entry),
+            None => groups.push((experiment, vec![entry])),
+        }
+    }
+    let group = |(experiment, entries): &(&str, Vec<&str>)| {
+        let entries: Vec<&str> = entries.iter().copied().filter(|entry| !entry.is_empty()).collect();
+        if entries.is_empty() { format!("`{experiment}`") } else { format!("`{experiment}` ({})", entries.join(", ")) }
+    };
+    groups.iter().map(group).collect::<Vec<_>>().join(", ")
+}

@@ -1,0 +1,152 @@
+//! What the study says beside what came out.
+
+use crate::reference::{Comparison, Judged, Verdict};
+use crate::text::number::{compact, signed, significant};
+
+use super::markdown::{Align, MarkdownTable, one_line};
+use super::tally::{Tally, shown};
+
+/// The section on an experiment's page.
+pub(super) fn section(judged: &[Judged]) -> String {
+    let mut text = String::from("## What the study says, and what came out\n\n");
+    if judged.is_empty() {
+        text += "The study makes no claim and quotes no number here that a run could be held against.\n\n";
+        return text;
+    }
+    text += &format!("{}.\n\n", sentence_of(&Tally::of(judged)));
+    text += &entries(judged);
+    text += &numbers(judged);
+    text += &by_hand(judged);
+    text += &explanations(judged);
+    text
+}
+
+fn sentence_of(tally: &Tally) -> String {
+    let total = tally.total();
+    if total == 1 { format!("One entry: {}", tally.told()) } else { format!("{total} entries: {}", tally.told()) }
+}
+
+fn entries(judged: &[Judged]) -> String {
+    let moved = judged.iter().any(|one| one.robust.is_some());
+    let mut header = vec![
+        ("Entry", Align::Left),
+        ("The study says", Align::Left),
+        ("Where", Align::Left),
+        ("What came out", Align::Left),
+        ("Verdict", Align::Left),
+    ];
+    if moved {
+        header.push(("Same verdict with one assumption moved", Align::Right));
+    }
+    let mut table = MarkdownTable::new(&header);
+    for one in judged {
+        let mut row = vec![entry(one), one.statement.clone(), one.place.clone(), one.found.clone(), shown(one)];
+        if moved {
+            row.push(one.robust.map_or_else(String::new, |(kept, run)| format!("{kept} of {run} runs")));
+        }
+        table.row(row);
+    }
+    table.finish()
+}
+
+/// The numbers with their uncertainties.
+fn numbers(judged: &[Judged]) -> String {
+    let mut table = MarkdownTable::new(&[
+        ("Number", Align::Left),
+        ("Study, D", Align::Right),
+        ("Here, S", Align::Right),
+        ("E = S − D", Align::Right),
+        ("u_num", Align::Right),
+        ("u_input", Align::Right),
+        ("u_D", Align::Right),
+        ("u_val", Align::Right),
+        ("|E|/u_val", Align::Right),
+        ("Digits that agree", Align::Right),
+    ]);
+    for one in judged {
+        let Some(comparison) = &one.comparison else { continue };
+        let ratio = comparison.error().abs() / comparison.u_val();
+        table.row([
+            entry(one),
+            compact(comparison.published, 12),
+            significant(comparison.simulated, 6),
+            signed(comparison.error(), 2),
+            significant(comparison.u_num, 2),
+            significant(comparison.u_input, 2),
+            significant(comparison.u_data, 2),
+            significant(comparison.u_val(), 2),
+            significant(ratio, 2),
+            digits(comparison),
+        ]);
+    }
+    let table = table.finish();
+    if table.is_empty() {
+        return table;
+    }
+    format!(
+        "How far each number is off, and how far it may be (all in the number’s own unit): u_num is what the run \
+         itself may be off, u_input what the unstated inputs may shift, u_D half a unit of the last printed digit, and \
+         u_val = √(u_num² + u_input² + u_D²).\n\n{table}"
+    )
+}
+
+fn digits(comparison: &Comparison) -> String {
+    let digits = comparison.digits();
+    if digits == f64::INFINITY {
+        "all".to_owned()
+    } else if digits.is_finite() {
+        format!("{:.1}", digits.max(0.0))
+    } else {
+        "n/a".to_owned()
+    }
+}
+
+/// Tolerances set by hand; nothing if there are none.
+fn by_hand(judged: &[Judged]) -> String {
+    let mut text = String::new();
+    for one in judged {
+        if let Some(tolerance) = tolerance(one) {
+            text += &format!("- {}: {tolerance}\n", entry(one));
+        }
+    }
+    if text.is_empty() { text } else { format!("**Tolerances set by hand**, not derived from u_val:\n\n{text}\n") }
+}
+
+/// The tolerance that was set by hand, with its reason.
+pub(super) fn tolerance(judged: &Judged) -> Option<String> {
+    let width = judged.comparison.and_then(|comparison| comparison.tolerance_by_hand);
+    if width.is_none() && judged.tolerance_reason.is_none() {
+        return None;
+    }
+    let width = width.map_or_else(String::new, |width| format!("±{}. ", compact(width, 6)));
+    let reason = judged.tolerance_reason.as_deref().map_or_else(|| "No reason is given.".to_owned(), one_line);
+    Some(width + &reason)
+}
+
+/// Why entries are not reproduced, and notes on those that are.
+fn explanations(judged: &[Judged]) -> String {
+    let told = |one: &&Judged| one.verdict != Verdict::Reproduced || !one.explanation.trim().is_empty();
+    let mut text = String::new();
+    for one in judged.iter().filter(told) {
+        text += &format!("- {}: {}. {}\n", entry(one), shown(one), explanation(one));
+    }
+    if text.is_empty() { text } else { format!("### Notes on the verdicts\n\n{text}\n") }
+}
+
+/// The entry's explanation, or a plain word that there is none.
+pub(super) fn explanation(judged: &Judged) -> String {
+    let explanation = one_line(&judged.explanation);
+    if !explanation.is_empty() {
+        explanation
+    } else if judged.verdict == Verdict::Missing {
+        one_line(&judged.found)
+    } else {
+        "The entry gives no explanation.".to_owned()
+    }
+}
+
+/// The entry's name without its experiment's.
+fn entry(judged: &Judged) -> String {
+    let name = judged.id.rsplit('/').next().unwrap_or(&judged.id);
+    format!("`{name}`")
+}

@@ -1,0 +1,86 @@
+//! The summary that a run and `check` print: counts by verdict, and in full what is not as expected. No colour.
+
+use comfy_table::{CellAlignment, LineStyle, Table, TableStyle};
+
+use crate::reference::{Judged, Verdict};
+
+use super::markdown::{counted, one_line};
+use super::tally::{Tally, VERDICTS, word};
+
+/// Counts by experiment, what is known to differ, what is unexpected; ends with a line that says it all.
+///
+/// `experiments` are ids with their entries, in the order to show.
+#[must_use]
+pub fn summary(experiments: &[(&str, &[Judged])]) -> String {
+    let judged = || experiments.iter().flat_map(|(_, judged)| judged.iter());
+    let mut text = format!("{}\n", table(experiments));
+    let known: Vec<&Judged> = judged().filter(|one| one.as_expected() && one.verdict != Verdict::Reproduced).collect();
+    if !known.is_empty() {
+        text += "\nNot reproduced, as expected:\n";
+        for one in known {
+            text += &format!("  {:<11} {}: {}\n", word(one.verdict), one.id, one_line(&one.found));
+        }
+    }
+    let unexpected: Vec<&Judged> = judged().filter(|one| !one.as_expected()).collect();
+    if !unexpected.is_empty() {
+        text += "\nNot as expected:\n";
+        for one in &unexpected {
+            text += &in_full(one);
+        }
+    }
+    let tally = Tally::of(judged());
+    text += &format!(
+        "\n{}: {}; {}.\n",
+        counted(tally.total(), "entry", "entries"),
+        tally.told(),
+        match unexpected.len() {
+            0 => "all as expected".to_owned(),
+            some => format!("{some} not as expected"),
+        }
+    );
+    text
+}
+
+fn table(experiments: &[(&str, &[Judged])]) -> Table {
+    let mut table = Table::new();
+    table.load_style(TableStyle::new().header_separator(LineStyle::none().fill('─').junction('─'))).force_no_tty();
+    let heads = ["experiment".to_owned()].into_iter().chain(VERDICTS.map(|verdict| word(verdict).to_owned()));
+    table.set_header(heads.collect::<Vec<_>>());
+    for (id, judged) in experiments {
+        table.add_row(row(id, &Tally::of(*judged)));
+    }
+    if experiments.len() > 1 {
+        table.add_row(row("all", &Tally::of(experiments.iter().flat_map(|(_, judged)| judged.iter()))));
+    }
+    for column in table.column_iter_mut().skip(1) {
+        column.set_cell_alignment(CellAlignment::Right);
+    }
+    table
+}
+
+fn row(name: &str, tally: &Tally) -> Vec<String> {
+    let counts = tally.each().map(|(_, count)| if count == 0 { "·".to_owned() } else { count.to_string() });
+    [name.to_owned()].into_iter().chain(counts).collect()
+}
+
+fn in_full(one: &Judged) -> String {
+    let mut text = format!("  {}: {}, expected {}\n", one.id, word(one.verdict), word(one.expected));
+    for (label, line) in [("the study", &one.statement), ("where", &one.place), ("found", &one.found)] {
+        if !line.is_empty() {
+            text += &format!("    {label:<10} {}\n", one_line(line));
+        }
+    }
+    if let Some(comparison) = &one.comparison {
+        let number = |x: f64| crate::text::number::significant(x, 3);
+        text += &format!(
+            "    {:<10} E = {}, u_val = {} (u_num {}, u_input {}, u_D {})\n",
+            "comparison",
+            number(comparison.error()),
+            number(comparison.u_val()),
+            number(comparison.u_num),
+            number(comparison.u_input),
+            number(comparison.u_data)
+        );
+    }
+    text
+}

@@ -1,0 +1,58 @@
+//! One experiment's page.
+
+use crate::spec::Source;
+
+use super::markdown::one_line;
+use super::view::{FigureView, PageView};
+use super::{assumption, comparison, proof, run};
+
+/// The page of an experiment, Markdown.
+#[must_use]
+pub fn page(view: &PageView<'_>) -> String {
+    let experiment = view.experiment;
+    let mut text = format!("# {}\n\n", one_line(&experiment.title));
+    text += &format!(
+        "{} of the study · `{}` · [how to read this page]({}#how-to-read-a-page)\n\n",
+        place(&experiment.source),
+        experiment.id,
+        view.index_link
+    );
+    text += &format!("{}\n\n", experiment.about.trim());
+    for one in view.figures {
+        text += &figure(one);
+    }
+    text += &comparison::section(view.judged);
+    if !view.assumptions.is_empty() {
+        text += "## Assumptions in force\n\nThe study does not state these inputs; other values could be defended.\n\n";
+        text += &assumption::table(view.assumptions);
+    }
+    text += &run::effects(view.effects);
+    match view.table {
+        Some(table) => text += &proof::section(table),
+        None => text += "## What proves the runs\n\nThere is no result: the experiment has not been run.\n\n",
+    }
+    text += &run::section(experiment);
+    text +=
+        &format!("All numbers: [the table as Parquet]({}). [All experiments]({}).\n", view.table_link, view.index_link);
+    text
+}
+
+fn figure(figure: &FigureView) -> String {
+    let caption = one_line(&figure.caption);
+    // The picture's text stands in brackets.
+    let spoken = caption.replace(['[', ']'], "");
+    if caption.is_empty() {
+        format!("![]({})\n\n", figure.link)
+    } else {
+        format!("![{spoken}]({})\n\n*{caption}*\n\n", figure.link)
+    }
+}
+
+/// `Chapter 3, section 3.6.3, Fig. 18`.
+pub(super) fn place(source: &Source) -> String {
+    let mut text = format!("Chapter {}, section {}", source.chapter, source.section);
+    for shown in &source.shown_in {
+        text += &format!(", {shown}");
+    }
+    text
+}

@@ -1,0 +1,117 @@
+//! What proves the runs: balances that hold whatever the motion does, and how clearly events were decided.
+
+use crate::table::Table;
+use crate::text::number::{quantity, significant};
+use crate::text::words;
+
+use super::markdown::{Align, MarkdownTable, counted, escaped};
+
+/// The section on an experiment's page.
+pub(super) fn section(table: &Table) -> String {
+    let baseline = table.baseline();
+    let mut text = String::from("## What proves the runs\n\n");
+    let mut rows = MarkdownTable::new(&[
+        ("Solver", Align::Left),
+        ("Runs", Align::Right),
+        ("Worst momentum residual", Align::Right),
+        ("Worst energy residual", Align::Right),
+        ("Events", Align::Right),
+        ("Smallest margin", Align::Right),
+        ("Ties resolved", Align::Right),
+        ("Chaotic", Align::Right),
+        ("Members of an ensemble", Align::Right),
+    ]);
+    for solver in solvers(&baseline) {
+        let of_solver = baseline.select(&baseline.rows_where("solver", &solver));
+        let proof = Proof { table: &of_solver };
+        rows.row([
+            words::of_solver(&solver),
+            of_solver.rows().to_string(),
+            proof.worst("momentum_residual"),
+            proof.worst("energy_residual"),
+            proof.total("events"),
+            proof.smallest_margin(),
+            proof.total("ties"),
+            proof.total("chaotic"),
+            proof.largest("members"),
+        ]);
+    }
+    text += &rows.finish();
+    let variants = table.rows().saturating_sub(baseline.rows());
+    if variants > 0 {
+        let runs = counted(variants, "more run has", "more runs have");
+        text += &format!(
+            "{runs} one assumption moved to an end of its range; only the sensitivity (u_input) uses them.\n\n"
+        );
+    }
+    text += &failures(table);
+    text
+}
+
+/// The solvers of the rows, in their order.
+fn solvers(table: &Table) -> Vec<String> {
+    let mut solvers: Vec<String> = Vec::new();
+    for solver in table.texts("solver").unwrap_or_default() {
+        if !solvers.contains(solver) {
+            solvers.push(solver.clone());
+        }
+    }
+    solvers
+}
+
+/// Runs without a result; nothing if all went well.
+fn failures(table: &Table) -> String {
+    let mut reasons: Vec<(&String, usize)> = Vec::new();
+    for reason in table.texts("failure").unwrap_or_default().iter().filter(|reason| !reason.is_empty()) {
+        match reasons.iter_mut().find(|(known, _)| *known == reason) {
+            Some((_, count)) => *count += 1,
+            None => reasons.push((reason, 1)),
+        }
+    }
+    if reasons.is_empty() {
+        return String::new();
+    }
+    let mut text = String::from("**Runs that failed**\n\n");
+    for (reason, count) in reasons {
+        text += &format!("- {}: {}\n", counted(count, "run", "runs"), escaped(reason));
+    }
+    text + "\n"
+}
+
+/// The proof columns of some rows.
+struct Proof<'a> {
+    table: &'a Table,
+}
+
+impl Proof<'_> {
+    /// The finite numbers of a column.
+    fn finite(&self, column: &str) -> Vec<f64> {
+        self.table.floats(column).unwrap_or_default().into_iter().filter(|x| x.is_finite()).collect()
+    }
+
+    fn worst(&self, column: &str) -> String {
+        let worst = self.finite(column).into_iter().map(f64::abs).reduce(f64::max);
+        worst.map_or_else(|| "n/a".to_owned(), |worst| significant(worst, 2))
+    }
+
+    fn smallest_margin(&self) -> String {
+        let smallest = self.finite("smallest_margin").into_iter().reduce(f64::min);
+        smallest.map_or_else(|| "n/a".to_owned(), |margin| quantity(margin, "m", 2))
+    }
+
+    fn total(&self, column: &str) -> String {
+        // Whole numbers far below 2^53: the sum is exact in any order.
+        let total: f64 = self.finite(column).iter().sum();
+        significant_count(total)
+    }
+
+    fn largest(&self, column: &str) -> String {
+        significant_count(self.finite(column).into_iter().fold(0.0, f64::max))
+    }
+}
+
+/// A count with all its digits, in groups.
+fn significant_count(count: f64) -> String {
+    let digits = format!("{count:.0}").len();
+    if digits > 6 { format!("{count:.0}") } else { significant(count, digits) }
+}

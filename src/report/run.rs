@@ -1,0 +1,110 @@
+//! How an experiment was run, and which effects its scene has.
+
+use crate::scene::EffectUse;
+use crate::spec::{Experiment, SolverChoice};
+use crate::text::number::{compact, quantity};
+use crate::text::words;
+
+use super::markdown::counted;
+
+/// The section on how it was run.
+pub(super) fn section(experiment: &Experiment) -> String {
+    let settings = &experiment.settings;
+    let mut text = String::from("## How it was run\n\n");
+    text += &format!("- {}.\n", cases(experiment));
+    for solver in &experiment.solvers {
+        text += &format!("- {}\n", solver_in_words(*solver));
+    }
+    text += &format!(
+        "- Averages run over {} after {} left out as transient.\n",
+        counted(settings.average as usize, "forcing cycle", "forcing cycles"),
+        settings.skip
+    );
+    if let Some(step) = settings.round_period_to {
+        text += &format!("- The forcing period is rounded to whole steps of {}.\n", quantity(step, "s", 4));
+    }
+    if settings.ensemble > 0 {
+        text += &format!(
+            "- Where the motion is chaotic, the number shown is the mean of {} from minutely perturbed starts, and the band \
+             one standard deviation of them.\n",
+            counted(settings.ensemble as usize, "run", "runs")
+        );
+    }
+    if let Some(trace) = &experiment.trace {
+        text += &format!(
+            "- The time history is kept from cycle {} to {}, {} samples a cycle.\n",
+            trace.from_cycle, trace.to_cycle, trace.samples
+        );
+    }
+    text + "\n"
+}
+
+fn cases(experiment: &Experiment) -> String {
+    let names: Vec<String> =
+        experiment.swept.iter().map(|parameter| words::of_column(&words::of_key(parameter))).collect();
+    let over = if names.is_empty() { String::new() } else { format!(" over {}", joined(&names)) };
+    let cases = counted(experiment.cases.len(), "case", "cases");
+    match &experiment.maximise {
+        None => format!("{cases}{over}"),
+        Some(maximise) => {
+            let ends = match (maximise.grid.first(), maximise.grid.last()) {
+                (Some(first), Some(last)) => format!(" between {} and {}", compact(*first, 4), compact(*last, 4)),
+                _ => String::new(),
+            };
+            format!(
+                "{cases}{over}; in each the {} is maximised over the {}{ends}",
+                words::of_column(&words::of_key(&maximise.measure)),
+                words::of_column(&words::of_key(&maximise.over)),
+            )
+        }
+    }
+}
+
+fn solver_in_words(solver: SolverChoice) -> String {
+    match solver {
+        SolverChoice::EventDriven => {
+            "Solver *event-driven*: the exact motion from one contact event to the next.".to_owned()
+        }
+        SolverChoice::FixedStep { time_step } => format!(
+            "Solver *fixed step {}*: the study’s own scheme, which looks for contacts once a step.",
+            quantity(time_step, "s", 3)
+        ),
+    }
+}
+
+fn joined(names: &[String]) -> String {
+    match names {
+        [] => String::new(),
+        [one] => one.clone(),
+        [rest @ .., last] => format!("{} and {last}", rest.join(", ")),
+    }
+}
+
+/// The section on effects.
+pub(super) fn effects(effects: &[EffectUse]) -> String {
+    if effects.is_empty() {
+        return String::new();
+    }
+    let mut text = String::from("## Effects\n\n");
+    let in_force: Vec<String> = effects.iter().filter(|effect| effect.in_force > 0).map(in_force).collect();
+    if !in_force.is_empty() {
+        text += &format!("In force: {}.\n\n", in_force.join(", "));
+    }
+    let left_out: Vec<&EffectUse> = effects.iter().filter(|effect| effect.in_force == 0).collect();
+    if !left_out.is_empty() {
+        text += "Left out of the simulation, at no cost, because the scene has none of it:\n\n";
+        for effect in left_out {
+            text += &format!("- {}: {}\n", effect.name, effect.why_not);
+        }
+        text += "\n";
+    }
+    text
+}
+
+fn in_force(effect: &EffectUse) -> String {
+    if effect.in_force == effect.cases {
+        effect.name.to_owned()
+    } else {
+        format!("{} (in {} of {} cases)", effect.name, effect.in_force, effect.cases)
+    }
+}

@@ -1,0 +1,64 @@
+//! What reports are written from, gathered by the caller.
+
+use crate::reference::Judged;
+use crate::scene::EffectUse;
+use crate::spec::Experiment;
+use crate::table::Table;
+
+/// An assumption in force, in words.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct AssumptionView {
+    /// `stop_length`.
+    pub name: String,
+    /// `60 mm`; see [`super::value_in_words`].
+    pub value: String,
+    /// Why this value. Markdown.
+    pub reason: String,
+    /// Ids of the entries whose experiments lean on it.
+    pub used_by: Vec<String>,
+    /// Ids of the entries that it was chosen by.
+    pub fitted_to: Vec<String>,
+}
+
+/// A figure as a link.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct FigureView {
+    /// Relative to the text that shows it.
+    pub link: String,
+    /// One line under it.
+    pub caption: String,
+}
+
+/// One experiment with its verdicts, for the index and the console.
+#[derive(Debug, Clone)]
+pub struct ExperimentView<'a> {
+    /// The experiment.
+    pub experiment: &'a Experiment,
+    /// Its entries with their verdicts.
+    pub judged: &'a [Judged],
+    /// Its page, relative to the index.
+    pub page: String,
+    /// Its figures, relative to the index.
+    pub figures: Vec<FigureView>,
+}
+
+/// All that one experiment's page tells.
+#[derive(Debug, Clone)]
+pub struct PageView<'a> {
+    /// The experiment.
+    pub experiment: &'a Experiment,
+    /// Its table; `None` if it has none.
+    pub table: Option<&'a Table>,
+    /// Its entries with their verdicts.
+    pub judged: &'a [Judged],
+    /// The assumptions that it leans on.
+    pub assumptions: &'a [AssumptionView],
+    /// Effects over its cases.
+    pub effects: &'a [EffectUse],
+    /// Its figures, relative to the page.
+    pub figures: &'a [FigureView],
+    /// Its table as a file, relative to the page.
+    pub table_link: &'a str,
+    /// The index, relative to the page.
+    pub index_link: &'a str,
+}

@@ -1,0 +1,101 @@
+//! A scene in words and SI units, for a person who asks what is simulated.
+
+use super::{ContactDamping, ContactEnd, Damper, Excitation, PulseShape, Scene, Structure, Surface};
+use crate::text::number::{compact, quantity};
+
+/// Significant digits.
+const DIGITS: usize = 5;
+
+impl Scene {
+    /// One line a part: structure, gravity, each damper, excitation.
+    #[must_use]
+    pub fn told(&self) -> Vec<String> {
+        let Structure::SingleMass { mass, stiffness, damping } = self.structure;
+        let mut lines =
+            vec![format!("one mass: {}, {}, {}", value(mass, "kg"), value(stiffness, "N/m"), value(damping, "N s/m"))];
+        if self.dampers.is_empty() {
+            lines.push("no damper".into());
+        } else {
+            lines.push(format!("gravity: {}", value(self.gravity, "m/s²")));
+        }
+        lines.extend(self.dampers.iter().map(Damper::told));
+        lines.push(self.excitation.told());
+        lines
+    }
+}
+
+impl Damper {
+    fn told(&self) -> String {
+        let gap =
+            if self.gap.is_finite() { format!("gap {}", value(self.gap, "m")) } else { "no ceiling in reach".into() };
+        let mut parts = vec![format!("damper: particle {}", value(self.particle_mass, "kg")), gap];
+        if self.floor == self.ceiling {
+            parts.push(format!("floor and ceiling {}", self.floor.told()));
+        } else {
+            parts.push(format!("floor {}", self.floor.told()));
+            parts.push(format!("ceiling {}", self.ceiling.told()));
+        }
+        if let Some(stop) = self.stop {
+            let restitution = compact(stop.restitution, DIGITS);
+            parts.push(format!("limit stop at {} with restitution {restitution}", value(stop.length, "m")));
+        }
+        if let Some(walls) = self.walls {
+            parts.push(format!(
+                "soft walls {}, {}, ceiling side {}",
+                value(walls.stiffness, "N/m"),
+                value(walls.damping, "N s/m"),
+                value(walls.ceiling_mass, "kg")
+            ));
+        }
+        parts.join("; ")
+    }
+}
+
+impl Surface {
+    fn told(&self) -> String {
+        match self {
+            Self::Rigid { restitution } => format!("rigid with restitution {}", compact(*restitution, DIGITS)),
+            Self::Resilient { stiffness, damping, ends } => {
+                let damping = match damping {
+                    ContactDamping::Constant(constant) => value(*constant, "N s/m"),
+                    ContactDamping::EquivalentViscous(_) => "equivalent viscous damping by half cycles".into(),
+                };
+                let ends = match ends {
+                    ContactEnd::ZeroGap => "",
+                    ContactEnd::ZeroForce => ", without tension",
+                };
+                format!("resilient {}, {damping}{ends}", value(*stiffness, "N/m"))
+            }
+        }
+    }
+}
+
+impl Excitation {
+    fn told(&self) -> String {
+        match self {
+            Self::SingleImpulse { impulse, .. } => format!("one impulse of {} at t = 0", value(*impulse, "N s")),
+            Self::ImpulseTrain { impulse, period } => {
+                format!("impulses of {} every {}", value(*impulse, "N s"), value(*period, "s"))
+            }
+            Self::Harmonic { force, angular_frequency } => {
+                format!("harmonic force of {} at {}", value(*force, "N"), value(*angular_frequency, "rad/s"))
+            }
+            Self::PulseTrain { impulse, period, duration, shape } => {
+                let shape = match shape {
+                    PulseShape::Rectangular => "rectangular",
+                    PulseShape::Binomial { .. } => "binomial",
+                };
+                format!(
+                    "{shape} pulses of {} and {} every {}",
+                    value(*impulse, "N s"),
+                    value(*duration, "s"),
+                    value(*period, "s")
+                )
+            }
+        }
+    }
+}
+
+fn value(number: f64, unit: &str) -> String {
+    quantity(number, unit, DIGITS)
+}

@@ -1,0 +1,48 @@
+//! What a runner tells while it works. Progress bars and logs listen; the runner knows none of them.
+
+use super::record::Failures;
+use crate::spec::ExperimentId;
+
+/// Something that happened.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Event<'a> {
+    /// The work begins.
+    Begun {
+        /// Experiments to be run.
+        experiments: usize,
+        /// Simulations that they take at most.
+        simulations: u64,
+    },
+    /// Simulations were made, or turned out not to be needed.
+    Simulated {
+        /// For which experiment.
+        experiment: &'a ExperimentId,
+        /// How many.
+        count: u64,
+    },
+    /// An experiment's table is complete and on disk.
+    Finished {
+        /// Which.
+        experiment: &'a ExperimentId,
+        /// Rows of its table.
+        rows: usize,
+        /// Rows among them without numbers.
+        failures: &'a Failures,
+    },
+    /// The work is over.
+    Ended,
+}
+
+/// Who listens. Called from many threads.
+pub trait Listen: Sync {
+    /// Takes note of an event.
+    fn hear(&self, event: &Event<'_>);
+}
+
+/// Nobody listens.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Silence;
+
+impl Listen for Silence {
+    fn hear(&self, _event: &Event<'_>) {}
+}

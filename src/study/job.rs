@@ -1,0 +1,89 @@
+//! Jobs: one row of a table each, a case under one solver in one variant of the assumptions.
+
+use super::variant::Variant;
+use crate::measure::Measure;
+use crate::spec::{Experiment, SolverChoice};
+
+/// A row.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Job {
+    /// Index of the case.
+    pub case: usize,
+    pub solver: SolverChoice,
+    /// Index of the variant.
+    pub variant: usize,
+    /// The row whose numbers this one shares, because its case does not lean on the assumption that the variant moves.
+    pub same_as: Option<usize>,
+}
+
+/// The rows of an experiment in the order of its table: baseline first, then each variant; in each the cases in the order
+/// of the sweep, each under its solvers. Variants are for sensitivity, and run event-driven only.
+pub(super) fn jobs(experiment: &Experiment, variants: &[Variant]) -> Vec<Job> {
+    let mut jobs: Vec<Job> = Vec::new();
+    for (case, sweep_point) in experiment.cases.iter().enumerate() {
+        jobs.extend(sweep_point.solvers.iter().map(|&solver| Job { case, solver, variant: 0, same_as: None }));
+    }
+    let event_driven: Vec<(usize, Job)> =
+        jobs.iter().copied().enumerate().filter(|(_, job)| job.solver == SolverChoice::EventDriven).collect();
+    for (variant, Variant { moved, .. }) in variants.iter().enumerate().skip(1) {
+        for (row, job) in &event_driven {
+            let leans = experiment
+                .recipe_of(&experiment.cases[job.case])
+                .map_or(true, |recipe| moved.is_none_or(|moved| recipe.assumptions().contains(&moved)));
+            jobs.push(Job { variant, same_as: (!leans).then_some(*row), ..*job });
+        }
+    }
+    jobs
+}
+
+/// Simulations that a row takes at most.
+pub(super) fn evaluations(experiment: &Experiment, job: &Job) -> u64 {
+    match (&experiment.maximise, job.same_as) {
+        (_, Some(_)) => 0,
+        (None, None) => 1,
+        (Some(maximise), None) => {
+            let sharpening = 2 * u64::from(maximise.refine);
+            maximise.grid.len() as u64 + sharpening + u64::from(keeps_trace(experiment, job))
+        }
+    }
+}
+
+/// True if the row keeps its time history; variants are compared by their measures alone.
+pub(super) fn keeps_trace(experiment: &Experiment, job: &Job) -> bool {
+    experiment.trace.is_some() && job.variant == 0
+}
+
+/// True if the row's measures cannot be computed without a time history.
+pub(super) fn measures_need_trace(measures: &[Measure]) -> bool {
+    measures.iter().any(|measure| {
+        matches!(
+            measure,
+            Measure::LastPeak
+                | Measure::PeakVariation
+                | Measure::PeakDecayError
+                | Measure::FloorImpactLag
+                | Measure::CeilingImpactLag
+        )
+    })
+}
+
+/// About how long a row takes, in arbitrary units: only the order counts, so that the last thread to finish does not
+/// start on a long row.
+pub(super) fn cost(experiment: &Experiment, variants: &[Variant], job: &Job) -> f64 {
+    let settings = &experiment.settings;
+    let cycles = f64::from(settings.skip) + f64::from(settings.average);
+    let steps_a_cycle = match job.solver {
+        // An exact step between two events costs as much as some ten fixed steps, and there are a few in a cycle.
+        SolverChoice::EventDriven => 50.0,
+        SolverChoice::FixedStep { time_step } => {
+            let period = experiment
+                .recipe_of(&experiment.cases[job.case])
+                .ok()
+                .and_then(|recipe| recipe.resolve(&variants[job.variant].assumptions).ok())
+                .map_or(1.0, |scene| scene.excitation.period());
+            period / time_step
+        }
+    };
+    let evaluations = u32::try_from(evaluations(experiment, job)).unwrap_or(u32::MAX);
+    cycles * steps_a_cycle * f64::from(evaluations)
+}

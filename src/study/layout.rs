@@ -1,0 +1,131 @@
+//! Where a study keeps its files, and what stands in them now.
+
+use std::collections::BTreeMap;
+use std::fs::{self, File};
+use std::io::Read;
+use std::path::{Path, PathBuf};
+
+use crate::atomic::FileError;
+
+/// No experiment of a person is longer; a longer file is refused before it is read.
+const LONGEST_TEXT: u64 = 4 << 20;
+/// Folders in folders below `experiments/`; ends a walk that a link leads in a circle.
+const DEEPEST: u32 = 8;
+
+/// The folders of a study.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Layout {
+    root: PathBuf,
+}
+
+impl Layout {
+    /// The study in this folder.
+    #[must_use]
+    pub fn new(root: impl Into<PathBuf>) -> Self {
+        Self { root: root.into() }
+    }
+
+    /// The study that `folder` lies in: the nearest folder upwards that holds `experiments/`.
+    #[must_use]
+    pub fn find(folder: &Path) -> Option<Self> {
+        folder.ancestors().find(|folder| folder.join("experiments").is_dir()).map(Self::new)
+    }
+
+    /// The folder that holds all the others.
+    #[must_use]
+    pub fn root(&self) -> &Path {
+        &self.root
+    }
+
+    /// A file of the study by its name within it, `experiments/ch3/ch3-gap.yaml`.
+    #[must_use]
+    pub fn path(&self, name: &str) -> PathBuf {
+        self.root.join(name)
+    }
+
+    /// The folder of tables and records.
+    #[must_use]
+    pub fn results(&self) -> PathBuf {
+        self.root.join("results")
+    }
+}
+
+/// The name of the file that holds the assumptions.
+pub const ASSUMPTIONS: &str = "experiments/assumptions.yaml";
+
+/// The table of an experiment, within the study.
+#[must_use]
+pub fn table_name(id: &crate::spec::ExperimentId) -> String {
+    format!("results/{id}.parquet")
+}
+
+/// The record of an experiment, within the study.
+#[must_use]
+pub fn record_name(id: &crate::spec::ExperimentId) -> String {
+    format!("results/{id}.json")
+}
+
+/// Every YAML file under `experiments/` and `reference/` as it stood at one moment, by its name within the study.
+///
+/// All that follows, hashes included, is made from these bytes and never from a second look at the disk: a file that is
+/// edited while a study runs is stale afterwards.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Texts {
+    /// The bytes by name; names use `/` everywhere.
+    pub files: BTreeMap<String, Vec<u8>>,
+}
+
+impl Texts {
+    /// Reads them all.
+    ///
+    /// # Errors
+    /// [`FileError`] if a folder or a file cannot be read, or is far too large.
+    pub fn read(layout: &Layout) -> Result<Self, FileError> {
+        let mut texts = Self::default();
+        for folder in ["experiments", "reference"] {
+            let path = layout.path(folder);
+            if path.is_dir() {
+                texts.walk(&path, folder, DEEPEST)?;
+            }
+        }
+        Ok(texts)
+    }
+
+    fn walk(&mut self, folder: &Path, name: &str, depth: u32) -> Result<(), FileError> {
+        let fail = |source| FileError::new("list", folder, source);
+        for entry in fs::read_dir(folder).map_err(fail)? {
+            let entry = entry.map_err(fail)?;
+            let Ok(file_name) = entry.file_name().into_string() else { continue };
+            if file_name.starts_with('.') {
+                continue;
+            }
+            let path = entry.path();
+            let name = format!("{name}/{file_name}");
+            if file_name.ends_with(".yaml") || file_name.ends_with(".yml") {
+                self.files.insert(name, read_text(&path)?);
+            } else if depth > 0 && path.is_dir() {
+                self.walk(&path, &name, depth - 1)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// The hash of each text, by name.
+    #[must_use]
+    pub fn hashes(&self) -> BTreeMap<String, String> {
+        self.files.iter().map(|(name, bytes)| (name.clone(), blake3::hash(bytes).to_hex().to_string())).collect()
+    }
+}
+
+fn read_text(path: &Path) -> Result<Vec<u8>, FileError> {
+    let fail = |source| FileError::new("read", path, source);
+    let file = File::open(path).map_err(fail)?;
+    // Room for all of it at once: a run with nothing to do spends its time here.
+    let length = file.metadata().map_err(fail)?.len().min(LONGEST_TEXT);
+    let mut bytes = Vec::with_capacity(usize::try_from(length).unwrap_or(0) + 1);
+    file.take(LONGEST_TEXT + 1).read_to_end(&mut bytes).map_err(fail)?;
+    if bytes.len() as u64 > LONGEST_TEXT {
+        return Err(fail(std::io::Error::other(format!("it is longer than {} MiB", LONGEST_TEXT >> 20))));
+    }
+    Ok(bytes)
+}

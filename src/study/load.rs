@@ -1,0 +1,124 @@
+//! Texts to experiments: everything that can be read is, and everything that cannot is told.
+
+use super::layout::{ASSUMPTIONS, Texts};
+use crate::spec::{AssumptionSheet, Experiment, ExperimentId, IdError, Problems, parse_assumptions, parse_experiment};
+
+/// The experiments of a study with the assumptions that they share.
+#[derive(Debug, Default)]
+pub struct Loaded {
+    /// The assumptions; empty if there is no such file.
+    pub sheet: AssumptionSheet,
+    /// What could be read, by name of the file.
+    pub sources: Vec<Source>,
+    /// What could not.
+    pub refused: Vec<Refused>,
+}
+
+/// An experiment and the file that it stands in.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Source {
+    /// The experiment.
+    pub experiment: Experiment,
+    /// Its file within the study, `experiments/ch3/ch3-gap.yaml`.
+    pub file: String,
+}
+
+impl Source {
+    /// The folder of the file below `experiments/`: `ch3`; empty for a file that stands there itself.
+    #[must_use]
+    pub fn folder(&self) -> &str {
+        let below = self.file.strip_prefix("experiments/").unwrap_or(&self.file);
+        below.rsplit_once('/').map_or("", |(folder, _)| folder)
+    }
+}
+
+/// A file that is not what it should be.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum Refused {
+    /// Its text has mistakes.
+    #[error("{0}")]
+    Text(Problems),
+    /// Its name does not make an id.
+    #[error("{file}: {error}")]
+    Name {
+        /// Which file.
+        file: String,
+        /// What is wrong with it.
+        error: IdError,
+    },
+    /// It is not a text.
+    #[error("{0}: this is not UTF-8 text")]
+    Encoding(String),
+    /// Another ending than the one that is looked for would be overlooked in silence.
+    #[error("{0}: rename it to end in .yaml")]
+    Ending(String),
+    /// Two files of one id would write into each other's table.
+    #[error("{file}: {other} has the same id; an id stands for one experiment in the whole study")]
+    Twice {
+        /// Which file.
+        file: String,
+        /// The file that had the id first.
+        other: String,
+    },
+}
+
+impl Refused {
+    /// The name of the file.
+    #[must_use]
+    pub fn file(&self) -> &str {
+        match self {
+            Self::Text(problems) => &problems.file,
+            Self::Name { file, .. } | Self::Encoding(file) | Self::Ending(file) | Self::Twice { file, .. } => file,
+        }
+    }
+}
+
+impl Loaded {
+    /// Reads all experiments among `texts`.
+    #[must_use]
+    pub fn from_texts(texts: &Texts) -> Self {
+        let mut loaded = Self::default();
+        if let Some(bytes) = texts.files.get(ASSUMPTIONS) {
+            match text(ASSUMPTIONS, bytes).and_then(|text| parse_assumptions(ASSUMPTIONS, text).map_err(Refused::Text))
+            {
+                Ok(sheet) => loaded.sheet = sheet,
+                Err(refused) => {
+                    // Without the assumptions every experiment would only repeat that they are absent.
+                    loaded.refused.push(refused);
+                    return loaded;
+                }
+            }
+        }
+        let assumptions = loaded.sheet.assumptions();
+        for (file, bytes) in texts.files.iter().filter(|(file, _)| file.starts_with("experiments/")) {
+            if file == ASSUMPTIONS {
+                continue;
+            }
+            let source = identify(file, &loaded.sources).and_then(|id| {
+                let text = text(file, bytes)?;
+                let experiment = parse_experiment(&id, file, text, &assumptions).map_err(Refused::Text)?;
+                Ok(Source { experiment, file: file.clone() })
+            });
+            match source {
+                Ok(source) => loaded.sources.push(source),
+                Err(refused) => loaded.refused.push(refused),
+            }
+        }
+        loaded
+    }
+}
+
+/// The id that a file's name makes.
+fn identify(file: &str, known: &[Source]) -> Result<ExperimentId, Refused> {
+    let name = file.rsplit('/').next().unwrap_or(file);
+    let stem = name.strip_suffix(".yaml").ok_or_else(|| Refused::Ending(file.into()))?;
+    let id: ExperimentId = stem.parse().map_err(|error| Refused::Name { file: file.into(), error })?;
+    match known.iter().find(|source| source.experiment.id == id) {
+        Some(source) => Err(Refused::Twice { file: file.into(), other: source.file.clone() }),
+        None => Ok(id),
+    }
+}
+
+fn text<'a>(file: &str, bytes: &'a [u8]) -> Result<&'a str, Refused> {
+    std::str::from_utf8(bytes).map_err(|_| Refused::Encoding(file.into()))
+}

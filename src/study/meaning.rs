@@ -1,0 +1,70 @@
+//! Meaning as canonical JSON: equal meaning, equal text, equal hash; and where two meanings differ, leaf by leaf.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use serde_json::Value;
+
+/// blake3 of a canonical JSON text, in hexadecimal.
+#[must_use]
+pub fn fingerprint(meaning: &Value) -> String {
+    blake3::hash(canonical(meaning).as_bytes()).to_hex().to_string()
+}
+
+/// One text for one meaning: keys sorted, no space, shortest digits that read back to the same bits.
+#[must_use]
+pub fn canonical(meaning: &Value) -> String {
+    match meaning {
+        Value::Array(items) => format!("[{}]", items.iter().map(canonical).collect::<Vec<_>>().join(",")),
+        Value::Object(map) => {
+            // Sorted here, whatever map the JSON crate was built with.
+            let sorted: BTreeMap<_, _> = map.iter().collect();
+            let pairs: Vec<_> = sorted
+                .into_iter()
+                .map(|(key, value)| format!("{}:{}", Value::from(key.as_str()), canonical(value)))
+                .collect();
+            format!("{{{}}}", pairs.join(","))
+        }
+        leaf => leaf.to_string(),
+    }
+}
+
+/// A leaf that two meanings do not share.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Change {
+    /// Keys and indices from the root, `["assumptions", "stop_length"]`.
+    pub path: Vec<String>,
+    /// As it was; `None` if it was not there.
+    pub old: Option<Value>,
+    /// As it is; `None` if it has gone.
+    pub new: Option<Value>,
+}
+
+/// Every leaf in which `new` departs from `old`, in the order of the keys.
+#[must_use]
+pub fn changes(old: &Value, new: &Value) -> Vec<Change> {
+    let mut found = Vec::new();
+    compare(&mut Vec::new(), Some(old), Some(new), &mut found);
+    found
+}
+
+fn compare(path: &mut Vec<String>, old: Option<&Value>, new: Option<&Value>, found: &mut Vec<Change>) {
+    let mut descend = |key: String, old: Option<&Value>, new: Option<&Value>| {
+        path.push(key);
+        compare(path, old, new, found);
+        path.pop();
+    };
+    match (old, new) {
+        _ if old == new => {}
+        (Some(Value::Object(old)), Some(Value::Object(new))) => {
+            for key in old.keys().chain(new.keys()).collect::<BTreeSet<_>>() {
+                descend(key.clone(), old.get(key), new.get(key));
+            }
+        }
+        (Some(Value::Array(old)), Some(Value::Array(new))) => {
+            for index in 0..old.len().max(new.len()) {
+                descend(index.to_string(), old.get(index), new.get(index));
+            }
+        }
+        _ => found.push(Change { path: path.clone(), old: old.cloned(), new: new.cloned() }),
+    }
+}

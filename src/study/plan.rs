@@ -1,0 +1,143 @@
+//! The plan: of each experiment what its simulation depends on, and whether the table on disk was made from just that.
+
+use std::collections::BTreeMap;
+
+use serde_json::{Value, json};
+
+use super::layout::{ASSUMPTIONS, Layout, record_name, table_name};
+use super::load::Source;
+use super::meaning::fingerprint;
+use super::reason::{Reason, differences};
+use super::record::{NoRecord, Record};
+use super::variant::{Sensitivity, Variant, variants};
+use crate::dynamics::SOLVER_VERSION;
+use crate::scene::AssumptionValue;
+use crate::spec::AssumptionSheet;
+
+/// One experiment as planned.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Item {
+    /// The experiment and its file.
+    pub source: Source,
+    /// The assumptions under which it runs; the baseline first.
+    pub variants: Vec<Variant>,
+    /// All that its numbers depend on.
+    pub simulation: Value,
+    /// Hash of [`Item::simulation`].
+    pub fingerprint: String,
+    /// Whether there is anything to simulate.
+    pub state: State,
+}
+
+/// What is on disk.
+#[derive(Debug, Clone, PartialEq)]
+pub enum State {
+    /// The table of this meaning.
+    Current(Record),
+    /// The table of this meaning, but some of its rows failed: it counts, and is tried again.
+    Failed(Record),
+    /// Nothing, or the table of another meaning; and why.
+    Stale(Vec<Reason>),
+}
+
+impl Item {
+    /// Plans one experiment, and looks at what is on disk.
+    #[must_use]
+    pub fn new(layout: &Layout, source: Source, sheet: &AssumptionSheet, sensitivity: Sensitivity) -> Self {
+        let variants = variants(&source.experiment, sheet, sensitivity);
+        let simulation = simulation(&source, sheet, &variants, sensitivity);
+        let fingerprint = fingerprint(&simulation);
+        let state = state(layout, &source, &simulation);
+        Self { source, variants, simulation, fingerprint, state }
+    }
+
+    /// The record of the table that has this meaning, if there is one.
+    #[must_use]
+    pub fn record(&self) -> Option<&Record> {
+        match &self.state {
+            State::Current(record) | State::Failed(record) => Some(record),
+            State::Stale(_) => None,
+        }
+    }
+
+    /// Why there is something to simulate; empty if there is not.
+    #[must_use]
+    pub fn reasons(&self) -> Vec<Reason> {
+        match &self.state {
+            State::Current(_) => Vec::new(),
+            State::Failed(record) => vec![Reason::Failed(record.failures.clone())],
+            State::Stale(reasons) => reasons.clone(),
+        }
+    }
+
+    /// What is written into the table's metadata: where the numbers come from, and no time, host or folder.
+    #[must_use]
+    pub fn provenance(&self) -> BTreeMap<String, String> {
+        let experiment = &self.source.experiment;
+        let pairs = [
+            ("experiment", experiment.id.to_string()),
+            ("title", experiment.title.clone()),
+            ("section", experiment.source.section.clone()),
+            ("fingerprint", self.fingerprint.clone()),
+            ("solver_version", SOLVER_VERSION.to_string()),
+            ("program", concat!("shotdamp ", env!("CARGO_PKG_VERSION")).to_owned()),
+        ];
+        pairs.into_iter().map(|(key, value)| (key.to_owned(), value)).collect()
+    }
+
+    /// The number of rows and of simulations at most.
+    #[must_use]
+    pub fn size(&self) -> (usize, u64) {
+        let experiment = &self.source.experiment;
+        let jobs = super::job::jobs(experiment, &self.variants);
+        (jobs.len(), jobs.iter().map(|job| super::job::evaluations(experiment, job)).sum())
+    }
+}
+
+fn simulation(source: &Source, sheet: &AssumptionSheet, variants: &[Variant], sensitivity: Sensitivity) -> Value {
+    let used = source.experiment.assumptions_used();
+    let assumptions: BTreeMap<_, _> =
+        sheet.entries.iter().filter(|(name, _)| used.contains(name)).map(|(name, e)| (name, &e.value)).collect();
+    let sensitivity = (sensitivity == Sensitivity::Wanted).then(|| ends(variants));
+    json!({
+        "experiment": source.experiment.simulation_json(),
+        "assumptions": assumptions,
+        "sensitivity": sensitivity,
+        "solver_version": SOLVER_VERSION,
+    })
+}
+
+/// The value that each variant moves its assumption to.
+fn ends(variants: &[Variant]) -> BTreeMap<&str, &AssumptionValue> {
+    variants
+        .iter()
+        .filter_map(|variant| Some((variant.label.as_str(), variant.assumptions.values.get(&variant.moved?)?)))
+        .collect()
+}
+
+fn state(layout: &Layout, source: &Source, simulation: &Value) -> State {
+    let id = &source.experiment.id;
+    let record = match Record::read(&layout.path(&record_name(id)), id) {
+        Ok(record) => record,
+        Err(NoRecord::Absent) => return State::Stale(vec![Reason::NeverRun]),
+        Err(NoRecord::Unreadable(what)) => return State::Stale(vec![Reason::RecordUnreadable(what)]),
+    };
+    let mut reasons = differences(&record.simulation, simulation, &|path| match path {
+        ["experiment", ..] => source.file.clone(),
+        // There as a whole or not at all, as the reference has numbers or not; its parts are ranges of assumptions.
+        ["sensitivity"] => format!("reference of {id}"),
+        ["assumptions" | "sensitivity", ..] => ASSUMPTIONS.into(),
+        _ => "this program".into(),
+    });
+    let table = layout.path(&table_name(id));
+    if !table.is_file() {
+        reasons.push(Reason::FileMissing(table_name(id)));
+    } else if !record.table.matches(&table) {
+        reasons.push(Reason::FileAltered(table_name(id)));
+    }
+    match record {
+        _ if !reasons.is_empty() => State::Stale(reasons),
+        record if record.failures.rows > 0 => State::Failed(record),
+        record => State::Current(record),
+    }
+}

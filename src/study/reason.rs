@@ -1,0 +1,109 @@
+//! Why something has to be made again, in words that name the file, the key, the old value and the new.
+
+use std::fmt;
+
+use serde_json::Value;
+
+use super::meaning::{Change, canonical, changes};
+use super::record::Failures;
+
+/// One reason.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Reason {
+    /// There is no record.
+    NeverRun,
+    /// There is a record that does not count, with what is wrong with it.
+    RecordUnreadable(String),
+    /// An input means something else.
+    Changed {
+        /// The file that it stands in.
+        file: String,
+        /// The leaf.
+        change: Change,
+    },
+    /// More such leaves in the same file.
+    MoreChanged {
+        /// The file.
+        file: String,
+        /// How many more.
+        count: usize,
+    },
+    /// An output is gone.
+    FileMissing(String),
+    /// An output is not what was written.
+    FileAltered(String),
+    /// Rows failed the last time.
+    Failed(Failures),
+    /// There is a table and no report of it.
+    NeverPublished,
+}
+
+/// Leaves told one by one before the rest is counted: a longer sweep changes hundreds.
+const TOLD: usize = 3;
+/// Longest value that is told in full.
+const LONGEST: usize = 60;
+
+/// The leaves in which `new` departs from `old`, each with the file that `file_of` finds for its path.
+#[must_use]
+pub fn differences(old: &Value, new: &Value, file_of: &dyn Fn(&[&str]) -> String) -> Vec<Reason> {
+    let mut by_file: Vec<(String, Vec<Change>)> = Vec::new();
+    for mut change in changes(old, new) {
+        let file = file_of(&change.path.iter().map(String::as_str).collect::<Vec<_>>());
+        if change.path.len() > 1 {
+            change.path.remove(0);
+        }
+        match by_file.iter_mut().find(|(known, _)| *known == file) {
+            Some((_, list)) => list.push(change),
+            None => by_file.push((file, vec![change])),
+        }
+    }
+    let mut reasons = Vec::new();
+    for (file, list) in by_file {
+        let count = list.len().saturating_sub(TOLD);
+        reasons.extend(list.into_iter().take(TOLD).map(|change| Reason::Changed { file: file.clone(), change }));
+        if count > 0 {
+            reasons.push(Reason::MoreChanged { file, count });
+        }
+    }
+    reasons
+}
+
+impl fmt::Display for Reason {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NeverRun => write!(f, "it has not been run"),
+            Self::RecordUnreadable(what) => write!(f, "its record does not count: {what}"),
+            Self::Changed { file, change } => {
+                let Change { path, old, new } = change;
+                write!(f, "{file}: {}: {} -> {}", key(path), told(old.as_ref()), told(new.as_ref()))
+            }
+            Self::MoreChanged { file, count } => write!(f, "{file}: and {count} more"),
+            Self::FileMissing(name) => write!(f, "{name} is missing"),
+            Self::FileAltered(name) => write!(f, "{name} is not what was written"),
+            Self::Failed(Failures { rows, first }) => write!(f, "{rows} rows failed; the first: {first}"),
+            Self::NeverPublished => write!(f, "figures and report have not been made"),
+        }
+    }
+}
+
+/// The key as a reader of the YAML knows it.
+fn key(path: &[String]) -> String {
+    let mut keys: Vec<&str> = path.iter().map(String::as_str).collect();
+    if keys.first() == Some(&"recipe") {
+        keys[0] = "scene";
+    }
+    // How a value is held inside is not how it is written: `stop_length: 60 mm`, not `stop_length.number`.
+    while keys.len() > 1 && matches!(keys.last(), Some(&("number" | "choice" | "curve" | "stated" | "assumed"))) {
+        keys.pop();
+    }
+    keys.join(".")
+}
+
+fn told(value: Option<&Value>) -> String {
+    let text = match value {
+        None => return "(absent)".into(),
+        Some(Value::String(text)) => text.clone(),
+        Some(value) => canonical(value),
+    };
+    if text.chars().count() <= LONGEST { text } else { text.chars().take(LONGEST - 1).chain(['…']).collect() }
+}

@@ -1,0 +1,124 @@
+//! One record per experiment, beside its table: from which meaning the table, the figures and the report were made.
+//!
+//! The record keeps the meaning itself and not its hash alone, so that `status --why` can name the leaf that changed.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+
+use crate::atomic::{self, FileError};
+use crate::spec::ExperimentId;
+
+/// Raised when a record changes its shape; older ones then count as absent.
+pub const RECORD_FORMAT: u32 = 1;
+
+/// Raised when figures or reports of the same tables come out differently, so that they are made again.
+pub const PRESENTATION_VERSION: u32 = 1;
+
+/// What became of one experiment.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Record {
+    /// [`RECORD_FORMAT`].
+    pub format: u32,
+    /// Whose record.
+    pub experiment: ExperimentId,
+    /// What the table was computed from.
+    pub simulation: Value,
+    /// The table as it was written.
+    pub table: FileHash,
+    /// Rows without numbers, and the first reason.
+    pub failures: Failures,
+    /// What verdicts, figures and report were made from, once they were made.
+    pub publication: Option<Publication>,
+}
+
+/// The rows of a table that could not be computed.
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Failures {
+    /// How many.
+    pub rows: usize,
+    /// The reason of the first.
+    pub first: String,
+}
+
+/// Length and hash of a file.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct FileHash {
+    /// Length in bytes.
+    pub bytes: u64,
+    /// blake3, hexadecimal.
+    pub blake3: String,
+}
+
+impl FileHash {
+    /// Of these bytes.
+    #[must_use]
+    pub fn of(bytes: &[u8]) -> Self {
+        Self { bytes: bytes.len() as u64, blake3: blake3::hash(bytes).to_hex().to_string() }
+    }
+
+    /// True if the file at `path` holds these bytes.
+    #[must_use]
+    pub fn matches(&self, path: &Path) -> bool {
+        fs::metadata(path).is_ok_and(|meta| meta.len() == self.bytes)
+            && fs::read(path).is_ok_and(|bytes| Self::of(&bytes) == *self)
+    }
+}
+
+/// Figures and report of one experiment.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Publication {
+    /// What they were made from.
+    pub meaning: Value,
+    /// The files, by their name within the study.
+    pub files: BTreeMap<String, FileHash>,
+}
+
+/// Why a record is not there.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum NoRecord {
+    /// There is none.
+    Absent,
+    /// There is one that this program cannot read.
+    Unreadable(String),
+}
+
+impl Record {
+    /// Reads one.
+    ///
+    /// # Errors
+    /// [`NoRecord`]: absent, damaged, of another format, or another experiment's.
+    pub fn read(path: &Path, id: &ExperimentId) -> Result<Self, NoRecord> {
+        let bytes = match fs::read(path) {
+            Ok(bytes) => bytes,
+            Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Err(NoRecord::Absent),
+            Err(error) => return Err(NoRecord::Unreadable(error.to_string())),
+        };
+        let record: Self = serde_json::from_slice(&bytes).map_err(|error| NoRecord::Unreadable(error.to_string()))?;
+        if record.format != RECORD_FORMAT {
+            return Err(NoRecord::Unreadable(format!("format {} instead of {RECORD_FORMAT}", record.format)));
+        }
+        if record.experiment != *id {
+            return Err(NoRecord::Unreadable(format!("it belongs to {}", record.experiment)));
+        }
+        Ok(record)
+    }
+
+    /// Writes it, whole or not at all.
+    ///
+    /// # Errors
+    /// [`FileError`] if the file cannot be written.
+    pub fn write(&self, path: &Path) -> Result<(), FileError> {
+        let mut text = serde_json::to_string_pretty(self)
+            .map_err(|error| FileError::new("write", path, std::io::Error::other(error)))?;
+        text.push('\n');
+        atomic::write_if_changed(path, text.as_bytes()).map(|_| ())
+    }
+}

@@ -1,0 +1,117 @@
+//! The short way for a run with nothing to do: one file that remembers every text that went in and every file that came
+//! out of the last complete run, and what it said in the end.
+//!
+//! If all of them are as they were, nothing is parsed, no table opened and no thread started. The snapshot decides
+//! nothing else: when anything differs it is put aside and the plan asks the records, which know the meaning.
+
+use std::collections::BTreeMap;
+use std::fs::File;
+use std::io::{Read, Seek, SeekFrom};
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+
+use super::layout::{Layout, Texts};
+use super::record::{PRESENTATION_VERSION, RECORD_FORMAT};
+use crate::atomic::{self, FileError};
+use crate::dynamics::SOLVER_VERSION;
+
+/// Name of the file within the study.
+const NAME: &str = "results/snapshot.json";
+/// Of an output this much is looked at, at its head and at its tail. Most texts are shorter; a Parquet file ends with the
+/// seal over all its bytes, and a PNG with the checksum over all its pixels.
+const LOOK: usize = 4 << 10;
+
+/// The last complete run.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Snapshot {
+    versions: Versions,
+    inputs: BTreeMap<String, String>,
+    outputs: BTreeMap<String, Glance>,
+    /// What it printed in the end.
+    pub summary: String,
+    /// Its exit code.
+    pub exit_code: u8,
+}
+
+/// What the program itself contributed.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Versions {
+    record: u32,
+    solver: u32,
+    presentation: u32,
+}
+
+impl Versions {
+    const CURRENT: Self = Self { record: RECORD_FORMAT, solver: SOLVER_VERSION, presentation: PRESENTATION_VERSION };
+}
+
+/// An output at a glance: enough to see that it was cut, replaced or edited, and bounded in cost.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Glance {
+    bytes: u64,
+    blake3: String,
+}
+
+impl Glance {
+    fn at(path: &Path) -> std::io::Result<Self> {
+        let mut file = File::open(path)?;
+        let bytes = file.metadata()?.len();
+        let mut seen = [0; 2 * LOOK];
+        let seen = match usize::try_from(bytes) {
+            Ok(all) if all <= seen.len() => {
+                file.read_exact(&mut seen[..all])?;
+                &seen[..all]
+            }
+            _ => {
+                file.read_exact(&mut seen[..LOOK])?;
+                file.seek(SeekFrom::Start(bytes - LOOK as u64))?;
+                file.read_exact(&mut seen[LOOK..])?;
+                &seen[..]
+            }
+        };
+        Ok(Self { bytes, blake3: blake3::hash(seen).to_hex().to_string() })
+    }
+}
+
+impl Snapshot {
+    /// The last complete run, if these texts and all its outputs are still what they were.
+    #[must_use]
+    pub fn current(layout: &Layout, texts: &Texts) -> Option<Self> {
+        let snapshot: Self = serde_json::from_slice(&std::fs::read(layout.path(NAME)).ok()?).ok()?;
+        let same = snapshot.versions == Versions::CURRENT
+            && snapshot.inputs == texts.hashes()
+            && snapshot.outputs.iter().all(|(name, glance)| Glance::at(&layout.path(name)).is_ok_and(|g| g == *glance));
+        same.then_some(snapshot)
+    }
+
+    /// Remembers a complete run over `texts` that left `outputs` (names within the study) and said `summary`.
+    ///
+    /// # Errors
+    /// [`FileError`] if an output cannot be read back or the snapshot not be written.
+    pub fn take(
+        layout: &Layout,
+        texts: &Texts,
+        outputs: impl IntoIterator<Item = String>,
+        summary: &str,
+        exit_code: u8,
+    ) -> Result<(), FileError> {
+        let outputs = outputs
+            .into_iter()
+            .map(|name| {
+                let path = layout.path(&name);
+                let glance = Glance::at(&path).map_err(|source| FileError::new("read", &path, source))?;
+                Ok((name, glance))
+            })
+            .collect::<Result<_, FileError>>()?;
+        let snapshot =
+            Self { versions: Versions::CURRENT, inputs: texts.hashes(), outputs, summary: summary.into(), exit_code };
+        let path = layout.path(NAME);
+        let text = serde_json::to_string_pretty(&snapshot)
+            .map_err(|error| FileError::new("write", &path, std::io::Error::other(error)))?;
+        atomic::write_if_changed(&path, text.as_bytes()).map(|_| ())
+    }
+}

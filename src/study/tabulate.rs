@@ -1,0 +1,161 @@
+//! Rows to a table: which column an experiment's numbers go into, and in which order.
+
+use std::collections::BTreeMap;
+
+use super::job::Job;
+use super::maximise::Place;
+use super::record::Failures;
+use super::variant::Variant;
+use crate::measure::{Evaluated, Measure, TraceColumn};
+use crate::scene::{Parameter, ParameterValue};
+use crate::spec::Experiment;
+use crate::table::{Column, Data, Table};
+use crate::text::words;
+
+/// What came of a row.
+pub(super) type Outcome = Result<Row, String>;
+
+/// A row that could be computed.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Row {
+    pub evaluated: Evaluated,
+    /// Where the maximum lies, if there was one to look for.
+    pub place: Option<Place>,
+}
+
+/// Unit of a parameter as a sweep gives it.
+fn parameter_unit(parameter: Parameter) -> &'static str {
+    match parameter {
+        Parameter::StopLength => "m",
+        Parameter::PulseDuration => "s",
+        _ => "",
+    }
+}
+
+/// Symbol of a parameter in the study.
+fn parameter_symbol(parameter: Parameter) -> &'static str {
+    match parameter {
+        Parameter::ForceRatio => "f′",
+        Parameter::BaseAmplitudeRatio => "aω²/g",
+        Parameter::FrequencyRatio => "ω′",
+        Parameter::MassRatio => "m′",
+        Parameter::GapRatio => "h′",
+        Parameter::DampingRatio => "c′",
+        Parameter::FloorStiffnessRatio => "kf/ks",
+        Parameter::ContactDampingRatio => "ζf",
+        Parameter::WallStiffnessRatio => "kw/ks",
+        Parameter::StopLength => "δ",
+        Parameter::Stop | Parameter::PulseDuration => "",
+    }
+}
+
+/// How many rows have no numbers, and why the first has none.
+pub(super) fn failures(outcomes: &[&Outcome]) -> Failures {
+    let reasons: Vec<&String> = outcomes.iter().filter_map(|outcome| outcome.as_ref().err()).collect();
+    Failures { rows: reasons.len(), first: reasons.first().copied().cloned().unwrap_or_default() }
+}
+
+/// The table of an experiment. `outcomes` stand in the order of `jobs`.
+pub(super) fn table(
+    experiment: &Experiment,
+    variants: &[Variant],
+    jobs: &[Job],
+    outcomes: &[&Outcome],
+    metadata: BTreeMap<String, String>,
+) -> Table {
+    let mut columns = Vec::new();
+    for parameter in &experiment.swept {
+        columns.push(swept_column(experiment, jobs, *parameter));
+    }
+    let texts = |cell: &dyn Fn(usize) -> String| Data::Text((0..jobs.len()).map(cell).collect());
+    if experiment.cases.iter().any(|case| !case.sweep.is_empty()) {
+        columns.push(Column::new("sweep", texts(&|row| experiment.cases[jobs[row].case].sweep.clone())));
+    }
+    columns.push(Column::new("solver", texts(&|row| jobs[row].solver.label())));
+    columns.push(Column::new("variant", texts(&|row| variants[jobs[row].variant].label.clone())));
+
+    let floats = |cell: &dyn Fn(&Row) -> f64| {
+        Data::Float(outcomes.iter().map(|outcome| outcome.as_ref().map_or(f64::NAN, cell)).collect())
+    };
+    let counts = |cell: &dyn Fn(&Row) -> u64| {
+        let count = |outcome: &&Outcome| outcome.as_ref().map_or(0, |row| i64::try_from(cell(row)).unwrap_or(i64::MAX));
+        Data::Int(outcomes.iter().map(count).collect())
+    };
+    for (index, measure) in experiment.measures.iter().enumerate() {
+        let name = words::of_key(measure);
+        let of = |part: fn(&crate::measure::Measured) -> f64| {
+            floats(&|row| row.evaluated.measured.get(index).map_or(f64::NAN, part))
+        };
+        let unit = measure.unit();
+        columns.push(Column::new(&name, of(|m| m.value)).with_unit(unit).with_symbol(measure.symbol()));
+        columns.push(Column::new(format!("{name}_num"), of(|m| m.numerical)).with_unit(unit));
+        columns.push(Column::new(format!("{name}_spread"), of(|m| m.spread)).with_unit(unit));
+        if let Some(maximise) = experiment.maximise.as_ref().filter(|maximise| maximise.measure == *measure) {
+            let name = format!("{}_at_maximum", words::of_key(&maximise.over));
+            let place = |part: fn(&Place) -> f64| floats(&|row| row.place.as_ref().map_or(f64::NAN, part));
+            let unit = parameter_unit(maximise.over);
+            columns
+                .push(Column::new(&name, place(|p| p.at)).with_unit(unit).with_symbol(parameter_symbol(maximise.over)));
+            columns.push(Column::new(format!("{name}_num"), place(|p| p.within)).with_unit(unit));
+        }
+    }
+    columns.push(Column::new("momentum_residual", floats(&|row| row.evaluated.proof.momentum_residual)));
+    columns.push(Column::new("energy_residual", floats(&|row| row.evaluated.proof.energy_residual)));
+    columns.push(Column::new("events", counts(&|row| row.evaluated.proof.events)));
+    columns.push(Column::new("smallest_margin", floats(&|row| row.evaluated.proof.smallest_margin)).with_unit("m"));
+    columns.push(Column::new("ties", counts(&|row| row.evaluated.proof.ties)));
+    columns.push(Column::new("chaotic", counts(&|row| u64::from(row.evaluated.chaotic))));
+    columns.push(Column::new("members", counts(&|row| u64::from(row.evaluated.members))));
+    columns.push(Column::new("failure", texts(&|row| outcomes[row].as_ref().err().cloned().unwrap_or_default())));
+    columns.extend(histories(jobs, outcomes));
+    Table { columns, metadata }
+}
+
+fn swept_column(experiment: &Experiment, jobs: &[Job], parameter: Parameter) -> Column {
+    let value = |job: &Job| experiment.cases[job.case].get(parameter);
+    let data = if parameter == Parameter::Stop {
+        let label = |job: &Job| match value(job) {
+            Some(ParameterValue::With) => "with",
+            Some(ParameterValue::Without) => "without",
+            _ => "",
+        };
+        Data::Text(jobs.iter().map(|job| label(job).to_owned()).collect())
+    } else {
+        let number = |job: &Job| match value(job) {
+            Some(ParameterValue::Number(x)) => x,
+            Some(ParameterValue::Infinite) => f64::INFINITY,
+            _ => f64::NAN,
+        };
+        Data::Float(jobs.iter().map(number).collect())
+    };
+    Column::new(words::of_key(&parameter), data)
+        .with_unit(parameter_unit(parameter))
+        .with_symbol(parameter_symbol(parameter))
+}
+
+/// The list columns: every name that some row has, in the order of the first row that has it; empty where a row has none.
+fn histories(jobs: &[Job], outcomes: &[&Outcome]) -> Vec<Column> {
+    let of_row = |row: usize| -> &[TraceColumn] {
+        let kept = jobs[row].variant == 0;
+        outcomes[row].as_ref().ok().filter(|_| kept).map_or(&[], |row| &row.evaluated.trace)
+    };
+    let mut columns: Vec<Column> = Vec::new();
+    for row in 0..outcomes.len() {
+        for history in of_row(row) {
+            if columns.iter().all(|column| column.name != history.name) {
+                let cell = |row| {
+                    let same = of_row(row).iter().find(|other| other.name == history.name);
+                    same.map_or_else(Vec::new, |other| other.samples.clone())
+                };
+                let cells = Data::FloatList((0..outcomes.len()).map(cell).collect());
+                columns.push(Column::new(history.name, cells).with_unit(history.unit));
+            }
+        }
+    }
+    columns
+}
+
+/// The measures that a row asks for: a maximum's own measure is always among them.
+pub(super) fn maximised_index(experiment: &Experiment, of: Measure) -> Option<usize> {
+    experiment.measures.iter().position(|measure| *measure == of)
+}

@@ -1,0 +1,166 @@
+//! Building a table and reading from it in memory.
+
+use super::{Column, Data, Table};
+
+/// What is wrong with a table as such.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum TableError {
+    /// Columns of different lengths.
+    #[error("column `{column}` has {rows} rows where the columns before it have {expected}")]
+    Ragged {
+        /// Which column.
+        column: String,
+        /// Its rows.
+        rows: usize,
+        /// Rows of the first column.
+        expected: usize,
+    },
+    /// Two columns of one name.
+    #[error("two columns are called `{0}`")]
+    Twice(String),
+}
+
+impl Data {
+    /// Number of cells.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        match self {
+            Self::Float(cells) => cells.len(),
+            Self::Int(cells) => cells.len(),
+            Self::Text(cells) => cells.len(),
+            Self::FloatList(cells) => cells.len(),
+        }
+    }
+
+    /// True without cells.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// The cells of these rows, in this order.
+    fn select(&self, rows: &[usize]) -> Self {
+        fn pick<T: Clone>(cells: &[T], rows: &[usize]) -> Vec<T> {
+            rows.iter().filter_map(|&row| cells.get(row).cloned()).collect()
+        }
+        match self {
+            Self::Float(cells) => Self::Float(pick(cells, rows)),
+            Self::Int(cells) => Self::Int(pick(cells, rows)),
+            Self::Text(cells) => Self::Text(pick(cells, rows)),
+            Self::FloatList(cells) => Self::FloatList(pick(cells, rows)),
+        }
+    }
+}
+
+impl Column {
+    /// A column without unit or symbol.
+    #[must_use]
+    pub fn new(name: impl Into<String>, data: Data) -> Self {
+        Self { name: name.into(), unit: String::new(), symbol: String::new(), data }
+    }
+
+    /// With the symbol of its unit, `m/s`.
+    #[must_use]
+    pub fn with_unit(mut self, unit: impl Into<String>) -> Self {
+        self.unit = unit.into();
+        self
+    }
+
+    /// With the symbol of the field, `ψ`.
+    #[must_use]
+    pub fn with_symbol(mut self, symbol: impl Into<String>) -> Self {
+        self.symbol = symbol.into();
+        self
+    }
+}
+
+impl Table {
+    /// Appends a column.
+    #[must_use]
+    pub fn with(mut self, column: Column) -> Self {
+        self.columns.push(column);
+        self
+    }
+
+    /// Number of rows.
+    #[must_use]
+    pub fn rows(&self) -> usize {
+        self.columns.first().map_or(0, |column| column.data.len())
+    }
+
+    /// The column of that name.
+    #[must_use]
+    pub fn column(&self, name: &str) -> Option<&Column> {
+        self.columns.iter().find(|column| column.name == name)
+    }
+
+    /// The cells of a numeric column; counts come as floats.
+    #[must_use]
+    #[expect(clippy::cast_precision_loss, reason = "counts of events stay far below 2^53")]
+    pub fn floats(&self, name: &str) -> Option<Vec<f64>> {
+        match &self.column(name)?.data {
+            Data::Float(cells) => Some(cells.clone()),
+            Data::Int(cells) => Some(cells.iter().map(|&n| n as f64).collect()),
+            Data::Text(_) | Data::FloatList(_) => None,
+        }
+    }
+
+    /// The cells of a text column.
+    #[must_use]
+    pub fn texts(&self, name: &str) -> Option<&[String]> {
+        match &self.column(name)?.data {
+            Data::Text(cells) => Some(cells),
+            _ => None,
+        }
+    }
+
+    /// The time histories of a list column, one per row.
+    #[must_use]
+    pub fn lists(&self, name: &str) -> Option<&[Vec<f64>]> {
+        match &self.column(name)?.data {
+            Data::FloatList(cells) => Some(cells),
+            _ => None,
+        }
+    }
+
+    /// The rows in which a text column holds `text`; none if there is no such column.
+    #[must_use]
+    pub fn rows_where(&self, name: &str, text: &str) -> Vec<usize> {
+        let cells = self.texts(name).unwrap_or_default();
+        cells.iter().enumerate().filter(|(_, cell)| *cell == text).map(|(row, _)| row).collect()
+    }
+
+    /// These rows, in this order, as a table of their own.
+    #[must_use]
+    pub fn select(&self, rows: &[usize]) -> Self {
+        let columns =
+            self.columns.iter().map(|column| Column { data: column.data.select(rows), ..column.clone() }).collect();
+        Self { columns, metadata: self.metadata.clone() }
+    }
+
+    /// The rows computed with the assumptions as the file gives them (`variant == baseline`).
+    #[must_use]
+    pub fn baseline(&self) -> Self {
+        self.select(&self.rows_where("variant", super::BASELINE))
+    }
+
+    /// Checks that all columns have the same length and each its own name.
+    ///
+    /// # Errors
+    /// [`TableError`] that names the column.
+    pub fn check(&self) -> Result<(), TableError> {
+        for (index, column) in self.columns.iter().enumerate() {
+            if column.data.len() != self.rows() {
+                return Err(TableError::Ragged {
+                    column: column.name.clone(),
+                    rows: column.data.len(),
+                    expected: self.rows(),
+                });
+            }
+            if self.columns[..index].iter().any(|earlier| earlier.name == column.name) {
+                return Err(TableError::Twice(column.name.clone()));
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,214 @@
+//! Tables as Parquet files. The only file that names polars.
+//!
+//! A file carries two keys of its own in its metadata: `shotdamp`, JSON with the units, the symbols and the provenance,
+//! and `shotdamp_seal`, the hash of all the other bytes of the file. A reader checks the seal before it decodes a byte, so
+//! a cut, flipped or foreign file is an error and never a wrong number.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::io::Cursor;
+use std::path::Path;
+
+use polars::prelude as pl;
+use polars::prelude::{ListBuilderTrait, SerReader};
+use serde::{Deserialize, Serialize};
+
+use super::{Column, Data, Table, TableError};
+use crate::atomic::{self, FileError};
+
+/// Raised when the content of the `shotdamp` key changes its meaning.
+const FORMAT: u32 = 1;
+const ABOUT_KEY: &str = "shotdamp";
+const SEAL_KEY: &str = "shotdamp_seal";
+/// Stands before the hash, so that it can be found without decoding the file.
+const SEAL_MARK: &[u8] = b"blake3-of-the-rest:";
+const SEAL_DIGITS: usize = 64;
+
+/// A table file that could not be written or read.
+#[derive(Debug, thiserror::Error)]
+pub enum ParquetError {
+    /// The table itself is malformed.
+    #[error(transparent)]
+    Table(#[from] TableError),
+    /// The file could not be opened, read or written.
+    #[error(transparent)]
+    File(#[from] FileError),
+    /// Not a table of this program, or only a part of one.
+    #[error("{path} is not a whole table of shotdamp: {what}; `shotdamp run --force` makes it again")]
+    Damaged {
+        /// Which file.
+        path: String,
+        /// What is wrong with it.
+        what: String,
+    },
+}
+
+/// What the `shotdamp` key holds.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct About {
+    format: u32,
+    columns: Vec<Label>,
+    provenance: BTreeMap<String, String>,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Label {
+    name: String,
+    unit: String,
+    symbol: String,
+}
+
+/// The bytes of the file that holds `table`; the same table gives the same bytes.
+///
+/// # Errors
+/// [`TableError`] if the columns do not make a table.
+pub fn to_bytes(table: &Table) -> Result<Vec<u8>, ParquetError> {
+    table.check()?;
+    let refuse = |what: String| ParquetError::Damaged { path: "the table in memory".into(), what };
+    let about = About {
+        format: FORMAT,
+        columns: table
+            .columns
+            .iter()
+            .map(|c| Label { name: c.name.clone(), unit: c.unit.clone(), symbol: c.symbol.clone() })
+            .collect(),
+        provenance: table.metadata.clone(),
+    };
+    let about = serde_json::to_string(&about).map_err(|error| refuse(error.to_string()))?;
+    let open_seal = format!("{}{}", String::from_utf8_lossy(SEAL_MARK), "0".repeat(SEAL_DIGITS));
+    let metadata = pl::KeyValueMetadata::from_static(vec![(ABOUT_KEY.into(), about), (SEAL_KEY.into(), open_seal)]);
+    let columns = table.columns.iter().map(|column| to_series(column).into()).collect();
+    let mut frame = pl::DataFrame::new(table.rows(), columns).map_err(|error| refuse(error.to_string()))?;
+    let mut bytes = Vec::new();
+    pl::ParquetWriter::new(&mut bytes)
+        .set_parallel(false)
+        .with_key_value_metadata(Some(metadata))
+        .finish(&mut frame)
+        .map_err(|error| refuse(error.to_string()))?;
+    let hash = hash_around_seal(&mut bytes).ok_or_else(|| refuse("no room for the seal".into()))?;
+    let at = find_seal(&bytes).ok_or_else(|| refuse("no room for the seal".into()))?;
+    bytes[at..at + SEAL_DIGITS].copy_from_slice(hash.to_hex().as_bytes());
+    Ok(bytes)
+}
+
+/// The table that `bytes` hold; `name` is how errors call the file.
+///
+/// # Errors
+/// [`ParquetError::Damaged`] for anything but the whole bytes of [`to_bytes`].
+pub fn from_bytes(mut bytes: Vec<u8>, name: &str) -> Result<Table, ParquetError> {
+    let damaged = |what: &str| ParquetError::Damaged { path: name.into(), what: what.into() };
+    let at = find_seal(&bytes).ok_or_else(|| damaged("it carries no seal"))?;
+    let sealed = bytes[at..at + SEAL_DIGITS].to_vec();
+    let hash = hash_around_seal(&mut bytes).ok_or_else(|| damaged("it carries no seal"))?;
+    if hash.to_hex().as_bytes() != sealed {
+        return Err(damaged("its bytes are not those that were written"));
+    }
+    let wrong = |error: pl::PolarsError| damaged(&error.to_string());
+    let mut reader = pl::ParquetReader::new(Cursor::new(bytes)).read_parallel(pl::ParallelStrategy::None);
+    let about = reader
+        .get_metadata()
+        .map_err(wrong)?
+        .key_value_metadata()
+        .iter()
+        .flatten()
+        .find(|pair| pair.key == ABOUT_KEY)
+        .and_then(|pair| pair.value.clone())
+        .ok_or_else(|| damaged("it does not say what its columns are"))?;
+    let about: About = serde_json::from_str(&about).map_err(|error| damaged(&error.to_string()))?;
+    if about.format != FORMAT {
+        return Err(damaged(&format!("it has format {}, and this program reads format {FORMAT}", about.format)));
+    }
+    let frame = reader.set_rechunk(true).finish().map_err(wrong)?;
+    if frame.width() != about.columns.len() {
+        return Err(damaged("its columns are not those it speaks of"));
+    }
+    let columns = about
+        .columns
+        .into_iter()
+        .zip(frame.columns())
+        .map(|(label, column)| {
+            let data = to_data(column.as_materialized_series()).map_err(wrong)?;
+            Ok(Column { name: label.name, unit: label.unit, symbol: label.symbol, data })
+        })
+        .collect::<Result<_, ParquetError>>()?;
+    let table = Table { columns, metadata: about.provenance };
+    table.check()?;
+    Ok(table)
+}
+
+/// Writes the table, whole or not at all, and returns the bytes that it wrote.
+///
+/// # Errors
+/// [`ParquetError`] if the columns do not make a table or the file cannot be written.
+pub fn write(table: &Table, path: &Path) -> Result<Vec<u8>, ParquetError> {
+    let bytes = to_bytes(table)?;
+    atomic::write(path, &bytes)?;
+    Ok(bytes)
+}
+
+/// Reads a table.
+///
+/// # Errors
+/// [`ParquetError`] if the file is absent, damaged or not a table of this program.
+pub fn read(path: &Path) -> Result<Table, ParquetError> {
+    let bytes = fs::read(path).map_err(|source| FileError::new("read", path, source))?;
+    from_bytes(bytes, &path.display().to_string())
+}
+
+/// Where the digits of the seal begin. The metadata stands at the end, behind all cells, so the last mark is the seal's.
+fn find_seal(bytes: &[u8]) -> Option<usize> {
+    let mark = bytes.windows(SEAL_MARK.len()).rposition(|window| window == SEAL_MARK)?;
+    let at = mark + SEAL_MARK.len();
+    (at + SEAL_DIGITS <= bytes.len()).then_some(at)
+}
+
+/// The hash of the bytes with an open seal, which is how they are left.
+fn hash_around_seal(bytes: &mut [u8]) -> Option<blake3::Hash> {
+    let at = find_seal(bytes)?;
+    bytes[at..at + SEAL_DIGITS].fill(b'0');
+    Some(blake3::hash(bytes))
+}
+
+fn to_series(column: &Column) -> pl::Series {
+    let name: pl::PlSmallStr = column.name.as_str().into();
+    match &column.data {
+        Data::Float(cells) => <pl::Series as pl::NamedFrom<_, _>>::new(name, cells),
+        Data::Int(cells) => <pl::Series as pl::NamedFrom<_, _>>::new(name, cells),
+        Data::Text(cells) => <pl::Series as pl::NamedFrom<_, _>>::new(name, cells),
+        Data::FloatList(cells) => {
+            let samples = cells.iter().map(Vec::len).sum();
+            let mut builder = pl::ListPrimitiveChunkedBuilder::<pl::Float64Type>::new(
+                name,
+                cells.len(),
+                samples,
+                pl::DataType::Float64,
+            );
+            for cell in cells {
+                builder.append_slice(cell);
+            }
+            pl::IntoSeries::into_series(builder.finish())
+        }
+    }
+}
+
+fn to_data(series: &pl::Series) -> pl::PolarsResult<Data> {
+    Ok(match series.dtype() {
+        pl::DataType::Float64 => Data::Float(series.f64()?.iter().map(|x| x.unwrap_or(f64::NAN)).collect()),
+        pl::DataType::Int64 => Data::Int(series.i64()?.iter().map(Option::unwrap_or_default).collect()),
+        pl::DataType::String => {
+            Data::Text(series.str()?.iter().map(|text| text.unwrap_or_default().to_owned()).collect())
+        }
+        _ => Data::FloatList(
+            series
+                .list()?
+                .series_iter()
+                .map(|cell| {
+                    let Some(cell) = cell else { return Ok(Vec::new()) };
+                    Ok(cell.f64()?.iter().map(|x| x.unwrap_or(f64::NAN)).collect())
+                })
+                .collect::<pl::PolarsResult<_>>()?,
+        ),
+    })
+}

@@ -1,0 +1,5 @@
+//! Words and numbers as a reader of the study meets them: the same formatter and the same vocabulary in figures,
+//! reports and on the console.
+
+pub mod number;
+pub mod words;

@@ -1,0 +1,91 @@
+//! Table words to the words and symbols of the study.
+//!
+//! A table column is called as in the YAML (`gap_ratio`); a reader knows it as the dimensionless gap clearance h′. What
+//! is not listed here is its own name with spaces, so that a new column needs no change.
+
+use serde::Serialize;
+
+use super::number;
+
+/// The word that stands for a key in YAML and as a table column: `velocity_ratio` for [`crate::measure::Measure::VelocityRatio`].
+#[must_use]
+pub fn of_key<K: Serialize>(key: &K) -> String {
+    match serde_json::to_value(key) {
+        Ok(serde_json::Value::String(word)) => word,
+        _ => String::new(),
+    }
+}
+
+/// A column's name in words: `velocity ratio`, `dimensionless gap clearance`.
+#[must_use]
+pub fn of_column(name: &str) -> String {
+    if let Some(over) = name.strip_suffix("_at_maximum") {
+        return format!("{} at the maximum", of_column(over));
+    }
+    match name {
+        "force_ratio" => "dimensionless forcing amplitude",
+        "base_amplitude_ratio" => "dimensionless base amplitude",
+        "gap_ratio" => "dimensionless gap clearance",
+        "damping_ratio" => "structural damping ratio",
+        "contact_damping_ratio" => "damping ratio of floor and ceiling",
+        "stop" => "limit stop",
+        "stop_length" => "limit stop length",
+        "rms_velocity" => "RMS velocity",
+        "undamped_rms_velocity" => "RMS velocity without damper",
+        "std_displacement" => "standard deviation of the displacement",
+        "rms_acceleration" => "RMS acceleration",
+        "base_displacement" => "base",
+        "particle_displacement" => "particle",
+        "floor_displacement" => "floor",
+        "ceiling_displacement" => "ceiling",
+        "rigid_floor" => "rigid floor",
+        "rigid_ceiling" => "rigid ceiling",
+        _ => return name.replace('_', " "),
+    }
+    .to_owned()
+}
+
+/// A solver as its label in tables names it: `event-driven`, `fixed step 10 µs`.
+#[must_use]
+pub fn of_solver(label: &str) -> String {
+    let step = label.strip_prefix("fixed_step_").and_then(|rest| rest.strip_suffix('s'));
+    match step.and_then(|seconds| seconds.parse::<f64>().ok()) {
+        Some(seconds) => format!("fixed step {}", number::quantity(seconds, "s", 3)),
+        None => label.replace("event_driven", "event-driven").replace('_', " "),
+    }
+}
+
+/// One level of a text column as a line of a figure is labelled: `without stop`, `event-driven`.
+#[must_use]
+pub fn of_level(column: &str, level: &str) -> String {
+    match column {
+        "solver" => of_solver(level),
+        "stop" => format!("{level} stop"),
+        _ => level.replace('_', " "),
+    }
+}
+
+/// What a number of this unit is, where no better word is at hand: `displacement` for m.
+#[must_use]
+pub fn of_unit(unit: &str) -> &'static str {
+    match unit {
+        "m" => "displacement",
+        "s" => "time",
+        "m/s" => "velocity",
+        "m/s^2" | "m/s²" | "g" => "acceleration",
+        "N s/m" => "damping",
+        "Hz" => "frequency",
+        "N" => "force",
+        _ => "value",
+    }
+}
+
+/// First letter in upper case.
+#[must_use]
+pub fn capitalised(text: &str) -> String {
+    let mut letters = text.chars();
+    match letters.next() {
+        Some(first) => first.to_uppercase().collect::<String>() + letters.as_str(),
+        None => String::new(),
+    }
+}

@@ -1,0 +1,274 @@
+//! The command: what it says, what it leaves on disk, and how it ends.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Stdio};
+
+use assert_cmd::cargo::CommandCargoExt;
+use shotdamp::study::Silence;
+
+use crate::desk::{ASSUMPTIONS, Desk, GAP, GAP_REFERENCE, MadeUp, STOP, STOP_REFERENCE};
+
+/// What a command left: exit code, standard output, standard error.
+struct Said {
+    code: i32,
+    out: String,
+    err: String,
+}
+
+fn shotdamp(desk: &Desk, arguments: &[&str]) -> Said {
+    let mut command = Command::cargo_bin("shotdamp").unwrap();
+    let output = command.arg("--root").arg(desk.folder.path()).args(arguments).output().unwrap();
+    Said {
+        code: output.status.code().unwrap(),
+        out: String::from_utf8(output.stdout).unwrap(),
+        err: String::from_utf8(output.stderr).unwrap(),
+    }
+}
+
+/// A study whose tables are there, made up.
+fn simulated() -> Desk {
+    let desk = Desk::new();
+    desk.run(2, &MadeUp::default(), &Silence);
+    desk
+}
+
+/// Every file below the folder with its bytes.
+fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
+    let mut found = BTreeMap::new();
+    for entry in fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() {
+            found.extend(files(&path));
+        } else {
+            found.insert(path.display().to_string(), fs::read(&path).unwrap());
+        }
+    }
+    found
+}
+
+/// The same with names that do not depend on where the study lies.
+fn relative_files(desk: &Desk) -> BTreeMap<String, Vec<u8>> {
+    let root = desk.folder.path().display().to_string();
+    files(desk.folder.path()).into_iter().map(|(name, bytes)| (name.replace(&root, ""), bytes)).collect()
+}
+
+#[test]
+fn the_first_run_publishes_and_the_second_has_nothing_to_do() {
+    let desk = simulated();
+    let first = shotdamp(&desk, &[]);
+    assert_eq!((first.code, first.err.as_str()), (0, ""), "{}", first.out);
+    for name in ["README.md", "ch3/ch3-stop.md", "ch3/ch3-stop.png", "ch3/ch3-gap.md", "ch3/ch3-gap.png"] {
+        assert!(desk.folder.path().join("reports").join(name).is_file(), "{name}");
+    }
+    let before = files(desk.folder.path());
+    let second = shotdamp(&desk, &[]);
+    assert_eq!((second.code, second.err.as_str()), (0, ""));
+    assert!(second.out.ends_with(&first.out[first.out.find('\n').unwrap()..]), "the same summary");
+    assert!(second.out.starts_with("Nothing to do"));
+    assert_eq!(shotdamp(&desk, &["status", "--exit-code"]).code, 0);
+    assert!(before == files(desk.folder.path()), "nothing was written");
+
+    // No time, host or folder in anything that was written: another folder gives the same bytes.
+    let other = simulated();
+    shotdamp(&other, &["run", "--jobs", "1"]);
+    assert!(relative_files(&desk) == relative_files(&other));
+}
+
+#[test]
+fn a_lost_figure_or_an_edited_report_is_renewed_without_simulating() {
+    let desk = simulated();
+    shotdamp(&desk, &[]);
+    let whole = files(desk.folder.path());
+    fs::remove_file(desk.layout.path("reports/ch3/ch3-gap.png")).unwrap();
+    desk.put("reports/ch3/ch3-stop.md", "edited");
+    let status = shotdamp(&desk, &["status", "--why", "--exit-code"]);
+    assert_eq!(status.code, 1);
+    assert!(status.out.contains("reports/ch3/ch3-gap.png is missing"), "{}", status.out);
+    assert!(status.out.contains("reports/ch3/ch3-stop.md is not what was written"));
+    assert!(status.out.contains("0 to simulate, 2 reports to renew"));
+    assert_eq!(shotdamp(&desk, &[]).code, 0);
+    assert!(whole == files(desk.folder.path()));
+}
+
+#[test]
+fn a_figure_that_is_taken_out_does_not_stay_behind() {
+    let desk = simulated();
+    shotdamp(&desk, &[]);
+    desk.put("experiments/ch3/ch3-gap.yaml", &GAP.replace("figure: {", "figure: {name: by-gap, "));
+    let why = shotdamp(&desk, &["status", "--why", "ch3-gap"]).out;
+    assert!(why.contains("report stale") && why.contains("figures.0.name:  -> by-gap"), "{why}");
+    assert_eq!(shotdamp(&desk, &["run", "ch3-gap"]).code, 0);
+    assert!(desk.layout.path("reports/ch3/ch3-gap-by-gap.png").is_file());
+    assert!(!desk.layout.path("reports/ch3/ch3-gap.png").exists());
+}
+
+#[test]
+fn the_exit_code_tells_unexpected_from_missing() {
+    let desk = simulated();
+    assert_eq!(shotdamp(&desk, &["check"]).code, 0);
+    let tested = shotdamp(&desk, &["check", "--self-test"]);
+    assert_eq!((tested.code, tested.err.as_str()), (0, ""));
+    assert!(tested.out.ends_with("self-test: 2 of 2 entries can fail\n"), "{}", tested.out);
+
+    desk.put("reference/ch3/ch3-gap.yaml", &GAP_REFERENCE.replace("increasing", "decreasing"));
+    let unexpected = shotdamp(&desk, &["check"]);
+    assert_eq!(unexpected.code, 1);
+    assert!(unexpected.out.contains("ch3-gap/grows"), "{}", unexpected.out);
+    assert_eq!(shotdamp(&desk, &["check", "ch3-stop"]).code, 0, "the other experiment is as expected");
+    assert_eq!(shotdamp(&desk, &[]).code, 1);
+    assert_eq!(shotdamp(&desk, &[]).code, 1, "also when there is nothing to do");
+
+    // A stale table is no table: its numbers answer another question.
+    desk.put("experiments/assumptions.yaml", &ASSUMPTIONS.replace("60 mm", "55 mm"));
+    let before = files(desk.folder.path());
+    assert_eq!(shotdamp(&desk, &["check", "ch3-stop"]).code, 2);
+    assert!(before == files(desk.folder.path()), "check writes nothing");
+
+    // Entries of an experiment that is not there are missing, not forgotten.
+    let orphan = simulated();
+    orphan.put("reference/ch3/ch3-lost.yaml", STOP_REFERENCE);
+    assert_eq!(shotdamp(&orphan, &["check"]).code, 2);
+    assert_eq!(shotdamp(&orphan, &["check", "ch3-gap"]).code, 0);
+}
+
+#[test]
+fn status_names_the_input_that_changed() {
+    let desk = simulated();
+    shotdamp(&desk, &[]);
+    desk.put("experiments/assumptions.yaml", &ASSUMPTIONS.replace("60 mm", "55 mm"));
+    let status = shotdamp(&desk, &["status", "--why"]);
+    assert_eq!(
+        status.out,
+        "ch3-gap   up to date\n\
+         ch3-stop  stale\n    \
+             experiments/assumptions.yaml: stop_length: 0.06 -> 0.055\n\
+         2 experiments: 1 to simulate, 0 reports to renew\n"
+    );
+    assert_eq!((status.code, shotdamp(&desk, &["status", "--exit-code"]).code), (0, 1));
+    let dry = shotdamp(&desk, &["run", "--dry-run"]);
+    assert_eq!(dry.out, "ch3-stop: 30 rows, 27 simulations at most\n1 of 2 experiments would be simulated\n");
+}
+
+#[test]
+fn what_nothing_answers_to_is_an_error() {
+    let desk = Desk::new();
+    for arguments in [&["run", "ch3-gpa"][..], &["check", "ch4-*"], &["show", "gap"], &["status", "ch3-gap", "x*"]] {
+        let said = shotdamp(&desk, arguments);
+        assert_eq!(said.code, 2, "{arguments:?}");
+        assert!(said.err.contains("no experiment matches") && said.err.contains("ch3-gap, ch3-stop"), "{}", said.err);
+    }
+    assert_eq!(shotdamp(&desk, &["run", "--chapter", "7"]).code, 2);
+    assert_eq!(shotdamp(&desk, &["run", "--jobs", "0"]).code, 2);
+    assert!(!desk.layout.path("results/ch3-gap.parquet").exists());
+    let nowhere = tempfile::tempdir().unwrap();
+    let said = Command::cargo_bin("shotdamp").unwrap().current_dir(nowhere.path()).output().unwrap();
+    assert_eq!(said.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&said.stderr).contains("--root"));
+}
+
+#[test]
+fn patterns_and_chapters_choose() {
+    let desk = Desk::new();
+    desk.put("experiments/ch4/ch4-gap.yaml", &GAP.replace("chapter: 3", "chapter: 4"));
+    for (arguments, expected) in [
+        (&["status", "*-gap"][..], &["ch3-gap", "ch4-gap"][..]),
+        (&["status", "ch?-stop", "ch4-gap"], &["ch3-stop", "ch4-gap"]),
+        (&["status", "--chapter", "3"], &["ch3-gap", "ch3-stop"]),
+        (&["status", "*gap", "--chapter", "4"], &["ch4-gap"]),
+    ] {
+        let out = shotdamp(&desk, arguments).out;
+        let chosen: Vec<&str> = out.lines().filter_map(|line| line.split("  ").next()).collect();
+        assert_eq!(chosen[..chosen.len() - 1], *expected, "{arguments:?}");
+    }
+}
+
+/// A mistake in one file: told with its place, nothing written for it, all others done, and the exit code says so.
+#[test]
+fn a_bad_experiment_does_not_stop_the_others() {
+    let desk = simulated();
+    desk.put("experiments/ch3/ch3-bad.yaml", &STOP.replace("gap_ratio: 50", "gap: 5 s"));
+    let said = shotdamp(&desk, &[]);
+    assert_eq!(said.code, 2);
+    assert!(said.err.contains("experiments/ch3/ch3-bad.yaml:9:"), "{}", said.err);
+    assert!(desk.layout.path("reports/ch3/ch3-gap.png").is_file());
+    assert!(files(desk.folder.path()).keys().filter(|name| name.contains("bad")).all(|name| name.ends_with(".yaml")));
+    assert_eq!(shotdamp(&desk, &[]).code, 2, "it does not pass for done the second time");
+    assert_eq!(shotdamp(&desk, &["run", "ch3-gap"]).code, 0, "who asks for another one is not bothered");
+    assert_eq!(shotdamp(&desk, &["run", "ch3-bad"]).code, 2);
+
+    desk.put("experiments/ch3/ch3-bad.yaml", STOP);
+    desk.put("reference/ch3/ch3-bad.yaml", "entries: [{id: x}]\n");
+    let said = shotdamp(&desk, &["check"]);
+    assert_eq!(said.code, 2);
+    assert!(said.err.contains("reference/ch3/ch3-bad.yaml: line 1"), "{}", said.err);
+
+    desk.put("experiments/assumptions.yaml", "gravity: {value: 9.81 s, reason: wrong unit}\n");
+    let said = shotdamp(&desk, &["run", "ch3-gap"]);
+    assert_eq!(said.code, 2);
+    assert!(said.err.contains("experiments/assumptions.yaml:1:"), "{}", said.err);
+}
+
+#[test]
+fn a_damaged_table_is_simulated_again() {
+    let desk = simulated();
+    shotdamp(&desk, &[]);
+    let table = desk.layout.path("results/ch3-gap.parquet");
+    let bytes = fs::read(&table).unwrap();
+    fs::write(&table, &bytes[..bytes.len() - 1]).unwrap();
+    assert_eq!(shotdamp(&desk, &["check", "ch3-gap"]).code, 2);
+    let status = shotdamp(&desk, &["status", "--why", "ch3-gap"]);
+    assert!(status.out.contains("results/ch3-gap.parquet is not what was written"), "{}", status.out);
+}
+
+/// Whenever it is killed, nothing half-written counts, and the next run makes of it what an undisturbed one would have.
+#[test]
+fn a_killed_run_resumes() {
+    let undisturbed = Desk::new();
+    shotdamp(&undisturbed, &["run", "--quiet"]);
+    let desk = Desk::new();
+    for milliseconds in [0, 20, 60, 150] {
+        let mut command = Command::cargo_bin("shotdamp").unwrap();
+        command.arg("--root").arg(desk.folder.path()).stdout(Stdio::null()).stderr(Stdio::null());
+        let mut child = command.spawn().unwrap();
+        std::thread::sleep(std::time::Duration::from_millis(milliseconds));
+        child.kill().unwrap();
+        child.wait().unwrap();
+    }
+    shotdamp(&desk, &["run", "--quiet"]);
+    let (resumed, whole) = (relative_files(&desk), relative_files(&undisturbed));
+    assert_eq!(resumed.keys().collect::<Vec<_>>(), whole.keys().collect::<Vec<_>>());
+    assert!(resumed == whole);
+}
+
+#[test]
+fn show_tells_the_scene_the_effects_and_the_assumptions() {
+    let out = shotdamp(&Desk::new(), &["show", "ch3-stop"]).out;
+    for line in [
+        "limit stop at 60 mm with restitution 0",
+        "in force in 3 of 6 cases",
+        "left out: the walls are rigid",
+        "stop_length = 60 mm",
+        "stop_length=0.05",
+        "fixed_step_1e-4s",
+        "30 rows, 27 simulations at most",
+        "Fingerprint ",
+    ] {
+        assert!(out.contains(line), "{line}\n{out}");
+    }
+    assert!(!out.contains("harmonic_reference"), "an assumption it does not use");
+    let list = shotdamp(&Desk::new(), &["list"]).out;
+    assert_eq!(list.lines().next().unwrap(), "ch3-gap   s. 3.6.1  Fig. 16  Gap");
+}
+
+#[test]
+fn whoever_closes_the_pipe_has_read_enough() {
+    let desk = Desk::new();
+    let mut command = Command::cargo_bin("shotdamp").unwrap();
+    command.arg("--root").arg(desk.folder.path()).arg("list").stdout(Stdio::piped()).stderr(Stdio::piped());
+    let mut child = command.spawn().unwrap();
+    drop(child.stdout.take());
+    let output = child.wait_with_output().unwrap();
+    assert_eq!((output.status.code(), output.stderr.as_slice()), (Some(0), &b""[..]));
+}

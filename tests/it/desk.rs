@@ -1,0 +1,176 @@
+//! A study in a folder of its own, and an engine with made-up numbers to fill it.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use shotdamp::dynamics::Proof;
+use shotdamp::measure::{Evaluated, Measured, TraceColumn};
+use shotdamp::publish::Opened;
+use shotdamp::scene::{Excitation, Structure};
+use shotdamp::spec::SolverChoice;
+use shotdamp::study::{self, Evaluate, Item, Layout, Listen, Reason, Simulation, Task, Texts};
+use shotdamp::table::{Table, parquet};
+
+pub const ASSUMPTIONS: &str = "
+gravity: {value: 9.81 m/s^2, reason: usual}
+impulse_factor: {value: 2, range: [1.8, 2.2], reason: half sine}
+impulse_frequency: {value: natural, reason: fixed}
+impulse_reference: {value: base, reason: plain}
+harmonic_reference: {value: base, reason: plain}
+undamped_mass: {value: base, reason: plain}
+contact_damping_ratio: {value: 0.15, reason: fits}
+stop_length: {value: 60 mm, range: [50 mm], reason: fits}
+stop_restitution: {value: 0, reason: plastic}
+";
+
+pub const STOP: &str = "
+title: Limit stop
+source: {chapter: 3, section: '3.6.3', shown_in: [Fig. 18]}
+about: With and without.
+scene:
+  structure: {single_mass: {mass: 1 kg, stiffness: 1000 N/m, damping_ratio: 0.05}}
+  dampers:
+    - mass_ratio: 0.05
+      gap_ratio: 50
+      floor: {resilient: {stiffness_ratio: 1, damping_ratio: assumed}}
+      stop: {length: assumed, restitution: assumed}
+  excitation: {impulse_train: {force_ratio: swept, frequency_ratio: 1}}
+sweep: {force_ratio: [1, 2, 4], stop: [with, without]}
+run: {solver: [event_driven, {fixed_step: {time_step: 0.1 ms}}], skip: 25 cycles, average: 100 cycles}
+measure: [velocity_ratio]
+figure: {x: force_ratio, y: velocity_ratio, by: [stop, solver], caption: Two curves.}
+";
+
+pub const GAP: &str = "
+title: Gap
+source: {chapter: 3, section: '3.6.1', shown_in: [Fig. 16]}
+about: Largest ratio.
+scene:
+  structure: {single_mass: {mass: 1 kg, stiffness: 1000 N/m, damping_ratio: 0.05}}
+  dampers: [{mass_ratio: 0.05, gap_ratio: swept, floor: {rigid: {restitution: 0}}}]
+  excitation: {harmonic: {base_amplitude_ratio: swept, frequency_ratio: 1}}
+sweep: {gap_ratio: [10, 50, infinite]}
+maximise:
+  velocity_ratio: {over: base_amplitude_ratio, in: {log: {from: 0.1, to: 10, points: 5}}, refine: 3}
+run: {solver: event_driven, skip: 25 cycles, average: 100 cycles}
+measure: [velocity_ratio, displacement_ratio]
+figure: {x: gap_ratio, y: velocity_ratio, caption: One curve.}
+";
+
+pub const STOP_REFERENCE: &str = "
+entries:
+  - id: at-two
+    place: s. 3.6.3
+    says: The velocity ratio at f′ = 2 is 1.75.
+    value: \"1.75\"
+    from: {cell: {of: velocity_ratio, where: {force_ratio: 2}}}
+    where: {stop: with}
+";
+
+pub const GAP_REFERENCE: &str = "
+entries:
+  - id: grows
+    place: s. 3.6.1
+    says: The largest ratio grows with the gap.
+    claim: {monotone: {of: velocity_ratio, over: gap_ratio, direction: increasing}}
+";
+
+/// A study in a folder of its own.
+pub struct Desk {
+    pub folder: tempfile::TempDir,
+    pub layout: Layout,
+}
+
+impl Desk {
+    pub fn new() -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        let layout = Layout::new(folder.path());
+        let desk = Self { folder, layout };
+        desk.put("experiments/assumptions.yaml", ASSUMPTIONS);
+        desk.put("experiments/ch3/ch3-stop.yaml", STOP);
+        desk.put("experiments/ch3/ch3-gap.yaml", GAP);
+        desk.put("reference/ch3/ch3-stop.yaml", STOP_REFERENCE);
+        desk.put("reference/ch3/ch3-gap.yaml", GAP_REFERENCE);
+        desk
+    }
+
+    pub fn put(&self, name: &str, text: &str) {
+        let path = self.folder.path().join(name);
+        fs::create_dir_all(path.parent().unwrap()).unwrap();
+        fs::write(path, text).unwrap();
+    }
+
+    pub fn bytes(&self, name: &str) -> Vec<u8> {
+        fs::read(self.folder.path().join(name)).unwrap()
+    }
+
+    pub fn texts(&self) -> Texts {
+        Texts::read(&self.layout).unwrap()
+    }
+
+    /// The plan by id; `ch3-stop` has a value to be held against, `ch3-gap` has a claim.
+    pub fn plan(&self) -> BTreeMap<String, Item> {
+        let opened = Opened::new(self.layout.clone(), self.texts());
+        assert_eq!(opened.unread, []);
+        opened.items.into_iter().map(|item| (item.source.experiment.id.to_string(), item)).collect()
+    }
+
+    /// Runs what is stale and returns the ids.
+    pub fn run(&self, threads: usize, evaluate: &impl Evaluate, listener: &dyn Listen) -> Vec<String> {
+        let plan = self.plan();
+        let stale: Vec<&Item> = plan.values().filter(|item| !item.reasons().is_empty()).collect();
+        let provenance: Vec<_> = stale.iter().map(|item| item.provenance()).collect();
+        let tasks: Vec<Task<'_>> = stale
+            .iter()
+            .zip(&provenance)
+            .map(|(item, metadata)| Task { experiment: &item.source.experiment, variants: &item.variants, metadata })
+            .collect();
+        let save = |index: usize, finished| study::save(&self.layout, stale[index], &finished).unwrap();
+        study::run(&tasks, threads, evaluate, listener, save).unwrap();
+        stale.iter().map(|item| item.source.experiment.id.to_string()).collect()
+    }
+
+    pub fn table(&self, id: &str) -> Table {
+        parquet::read(&self.layout.path(&format!("results/{id}.parquet"))).unwrap()
+    }
+
+    pub fn why(&self, id: &str) -> Vec<String> {
+        self.plan()[id].reasons().iter().map(Reason::to_string).collect()
+    }
+}
+
+/// Stands in for the engine: smooth made-up numbers of the resolved scene, with a maximum over the strength of the forcing.
+#[derive(Default)]
+pub struct MadeUp {
+    pub simulations: AtomicUsize,
+}
+
+impl Evaluate for MadeUp {
+    fn evaluate(&self, it: &Simulation<'_>) -> Result<Evaluated, String> {
+        self.simulations.fetch_add(1, Ordering::Relaxed);
+        let scene = it.recipe.resolve(it.assumptions).map_err(|error| error.to_string())?;
+        let strength = match scene.excitation {
+            Excitation::Harmonic { force, .. } => force.abs() / 9.81,
+            Excitation::ImpulseTrain { impulse, .. } => impulse,
+            _ => return Err("not in this test".into()),
+        };
+        let Structure::SingleMass { mass, .. } = scene.structure;
+        let damper = &scene.dampers[0];
+        let stop = damper.stop.map_or(0.0, |stop| stop.length);
+        let coarse = if it.solver == SolverChoice::EventDriven { 0.0 } else { 0.01 };
+        let peak = damper.gap.min(1.0).sqrt();
+        let octave = libm::log(strength / (2.0 * peak));
+        let value = mass + peak / (1.0 + octave * octave) + stop + coarse;
+        Ok(Evaluated {
+            measured: it.measures.iter().map(|_| Measured { value, numerical: 1e-12, spread: 0.0 }).collect(),
+            proof: Proof { events: 490, smallest_margin: 1e-3, ..Proof::default() },
+            chaotic: false,
+            members: 1,
+            trace: it
+                .trace
+                .map(|_| vec![TraceColumn { name: "time", unit: "s", samples: vec![0.0, 1.0] }])
+                .unwrap_or_default(),
+        })
+    }
+}

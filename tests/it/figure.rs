@@ -1,0 +1,246 @@
+//! Figures. Each test leaves its picture in `target/tmp`, to be looked at.
+
+use shotdamp::figure::{FigureError, QuotedPoint, draw};
+use shotdamp::measure::Measure;
+use shotdamp::scene::Parameter;
+use shotdamp::spec::{AxisScale, Experiment, FigureSpec, Level, Maximise, Panel};
+use shotdamp::table::{Column, Data, Table};
+
+use crate::made_up::{axis, figure, hump, limit_stop, limit_stop_table, log_range, numbers, panel, texts};
+
+/// Draws, keeps the picture and checks what holds for any of them.
+fn picture(name: &str, experiment: &Experiment, spec: &FigureSpec, table: &Table, quoted: &[QuotedPoint]) -> Vec<u8> {
+    let png = draw(experiment, spec, table, quoted).unwrap();
+    std::fs::write(format!("{}/{name}.png", env!("CARGO_TARGET_TMPDIR")), &png).unwrap();
+    assert_eq!(&png[..8], b"\x89PNG\r\n\x1a\n");
+    assert!(png.len() < 250_000, "{name}: {} bytes are too many to commit", png.len());
+    png
+}
+
+fn size(png: &[u8]) -> (u32, u32) {
+    let number = |at: usize| u32::from_be_bytes(png[at..at + 4].try_into().unwrap());
+    (number(16), number(20))
+}
+
+fn amplitude_panel() -> Panel {
+    let by = vec!["stop".into(), "solver".into()];
+    Panel { by, band: true, ..panel("force_ratio", AxisScale::Log, &["velocity_ratio"]) }
+}
+
+fn study(column: &str, x: f64, y: f64) -> QuotedPoint {
+    QuotedPoint { column: column.into(), x, y, label: "study".into() }
+}
+
+#[test]
+fn four_lines_with_the_spread_of_the_ensemble() {
+    let guides = vec![Level { at: 1.0, label: "no effect".into() }];
+    let spec = figure(vec![Panel { guides, ..amplitude_panel() }]);
+    let quoted = [study("velocity_ratio", 2.5, f64::NAN)];
+    let png = picture("amplitude", &limit_stop(), &spec, &limit_stop_table(), &quoted);
+    assert_eq!(size(&png), (1440, 960));
+}
+
+#[test]
+fn the_same_table_gives_the_same_bytes() {
+    let (experiment, spec, table) = (limit_stop(), figure(vec![amplitude_panel()]), limit_stop_table());
+    let first = draw(&experiment, &spec, &table, &[]).unwrap();
+    let threads: Vec<_> = (0..2)
+        .map(|_| {
+            let (experiment, spec, table) = (experiment.clone(), spec.clone(), table.clone());
+            std::thread::spawn(move || draw(&experiment, &spec, &table, &[]).unwrap())
+        })
+        .collect();
+    assert!(threads.into_iter().all(|thread| thread.join().unwrap() == first));
+}
+
+#[test]
+fn runs_with_an_assumption_moved_are_not_drawn() {
+    let spec = figure(vec![amplitude_panel()]);
+    let with_variant = limit_stop_table();
+    let without = with_variant.select(&with_variant.rows_where("variant", "baseline"));
+    assert!(without.rows() < with_variant.rows());
+    let experiment = limit_stop();
+    assert_eq!(draw(&experiment, &spec, &with_variant, &[]), draw(&experiment, &spec, &without, &[]));
+}
+
+/// Base, particle, resilient and rigid surfaces over three forcing cycles.
+fn history() -> Table {
+    let time: Vec<f64> = (0..=600).map(|i| 51.9 + 1e-3 * f64::from(i)).collect();
+    let base: Vec<f64> = time.iter().map(|t| 0.06 * (31.62 * t).sin()).collect();
+    let particle: Vec<f64> = time.iter().map(|t| 0.12 + 0.35 * (16.9 * t).sin().abs()).collect();
+    let rigid_floor = base.clone();
+    let rigid_ceiling: Vec<f64> = base.iter().map(|x| x + 0.49).collect();
+    let floor: Vec<f64> = rigid_floor.iter().zip(&particle).map(|(f, p)| f.min(*p - 0.1)).collect();
+    let ceiling: Vec<f64> = rigid_ceiling.iter().zip(&particle).map(|(c, p)| c.max(*p + 0.01)).collect();
+    let acceleration: Vec<f64> = base.iter().map(|x| -x * 1000.0).collect();
+    let half_cycles: Vec<f64> = (0..=600_u32).map(|i| 4.0 + f64::from(i / 100)).collect();
+    let damping: Vec<f64> = half_cycles.iter().map(|a| 1.2 + 0.3 * a).collect();
+    let list =
+        |name: &str, unit: &str, cells: Vec<f64>| Column::new(name, Data::FloatList(vec![cells])).with_unit(unit);
+    Table::default()
+        .with(texts("variant", ["baseline"]))
+        .with(list("time", "s", time))
+        .with(list("base_displacement", "m", base))
+        .with(list("base_acceleration", "m/s^2", acceleration))
+        .with(list("particle_displacement", "m", particle))
+        .with(list("floor_displacement", "m", floor))
+        .with(list("ceiling_displacement", "m", ceiling))
+        .with(list("rigid_floor", "m", rigid_floor))
+        .with(list("rigid_ceiling", "m", rigid_ceiling))
+        .with(list("rms_acceleration", "g", half_cycles))
+        .with(list("contact_damping", "N s/m", damping))
+}
+
+#[test]
+fn paths_of_particle_and_surfaces_share_a_panel() {
+    let paths = ["rigid_floor", "rigid_ceiling", "floor_displacement", "ceiling_displacement", "particle_displacement"];
+    let spec = figure(vec![panel("time", AxisScale::Linear, &paths)]);
+    picture("paths", &limit_stop(), &spec, &history(), &[]);
+}
+
+#[test]
+fn panels_stand_above_one_x_axis() {
+    let panels = vec![
+        panel("time", AxisScale::Linear, &["base_acceleration"]),
+        panel("time", AxisScale::Linear, &["rms_acceleration"]),
+        panel("time", AxisScale::Linear, &["contact_damping"]),
+    ];
+    let png = picture("half-cycles", &limit_stop(), &figure(panels), &history(), &[]);
+    assert_eq!(size(&png), (1440, 1440));
+
+    let impacts: Vec<i64> = (0..limit_stop_table().rows()).map(|i| i64::try_from(i % 61).unwrap() * 7).collect();
+    let table = limit_stop_table().with(Column::new("ceiling_impacts", Data::Int(impacts)));
+    let lower = Panel { by: vec!["stop".into()], ..panel("force_ratio", AxisScale::Log, &["ceiling_impacts"]) };
+    let table = table.select(&table.rows_where("solver", "event_driven"));
+    let png = picture("two-panels", &limit_stop(), &figure(vec![amplitude_panel(), lower]), &table, &[]);
+    assert_eq!(size(&png), (1440, 1200));
+}
+
+#[test]
+fn few_points_carry_markers() {
+    let mass = [0.01, 0.02, 0.05, 0.1, 0.15, 0.2];
+    let twice: Vec<f64> = mass.iter().chain(&mass).copied().collect();
+    let eta: Vec<f64> =
+        twice.iter().enumerate().map(|(i, m)| 1.0 + 13.0 * m - if i < 6 { 0.0 } else { 0.06 }).collect();
+    let psi: Vec<f64> = twice.iter().map(|m| 1.0 + 12.2 * m).collect();
+    let table = Table::default()
+        .with(numbers("mass_ratio", "m′", "", twice.clone()))
+        .with(texts("solver", [["event_driven"; 6], ["fixed_step_1e-2s"; 6]].concat()))
+        .with(texts("variant", ["baseline"; 12]))
+        .with(numbers("displacement_ratio", "η", "", eta))
+        .with(numbers("velocity_ratio", "ψ", "", psi));
+    let mut experiment = limit_stop();
+    experiment.maximise =
+        Some(Maximise { measure: Measure::VelocityRatio, over: Parameter::ForceRatio, grid: Vec::new(), refine: 3 });
+    let spec = figure(vec![Panel {
+        by: vec!["solver".into()],
+        markers: true,
+        ..panel("mass_ratio", AxisScale::Linear, &["velocity_ratio", "displacement_ratio"])
+    }]);
+    picture("markers", &experiment, &spec, &table, &[study("velocity_ratio", 0.05, 1.516)]);
+}
+
+/// h′ = 10, 50, 90 and infinity against base amplitude.
+#[test]
+fn an_infinite_gap_is_a_line_of_its_own() {
+    let amplitudes = log_range(0.1, 100.0, 80);
+    let gaps = [10.0, 50.0, 90.0, f64::INFINITY];
+    let rows: Vec<(f64, f64)> = gaps.iter().flat_map(|gap| amplitudes.iter().map(|a| (*gap, *a))).collect();
+    let ratio = |(gap, a): &(f64, f64)| {
+        if gap.is_finite() { hump(*a, gap / 20.0, 0.5 + gap / 300.0) } else { hump(a.min(20.0), 20.0, 0.9) }
+    };
+    let table = Table::default()
+        .with(numbers("gap_ratio", "h′", "", rows.iter().map(|row| row.0).collect()))
+        .with(numbers("base_amplitude_ratio", "aω²/g", "", rows.iter().map(|row| row.1).collect()))
+        .with(texts("variant", vec!["baseline"; rows.len()]))
+        .with(numbers("displacement_ratio", "η", "", rows.iter().map(ratio).collect()));
+    let by = vec!["gap_ratio".into()];
+    let spec = figure(vec![Panel { by, ..panel("base_amplitude_ratio", AxisScale::Log, &["displacement_ratio"]) }]);
+    picture("gaps", &limit_stop(), &spec, &table, &[]);
+}
+
+#[test]
+fn infinity_on_the_x_axis_becomes_a_level() {
+    let gaps = [5.0, 10.0, 20.0, 50.0, 90.0, 150.0, f64::INFINITY];
+    let maxima = gaps.iter().map(|gap| 3.6 - 8.0 / gap).collect();
+    let table = Table::default()
+        .with(numbers("gap_ratio", "h′", "", gaps.to_vec()))
+        .with(texts("variant", ["baseline"; 7]))
+        .with(numbers("velocity_ratio", "ψ", "", maxima));
+    let spec = figure(vec![Panel { markers: true, ..panel("gap_ratio", AxisScale::Log, &["velocity_ratio"]) }]);
+    picture("limit", &limit_stop(), &spec, &table, &[]);
+}
+
+/// Ten pulse durations: more lines than named colours, on a logarithmic y axis too.
+#[test]
+fn many_levels_take_a_ramp_of_colours() {
+    let amplitudes = log_range(0.1, 100.0, 40);
+    let durations: Vec<f64> = (1..=10).map(|i| 0.01 * f64::from(i)).collect();
+    let rows: Vec<(f64, f64)> = durations.iter().flat_map(|d| amplitudes.iter().map(|a| (*d, *a))).collect();
+    let table = Table::default()
+        .with(numbers("pulse_duration", "", "s", rows.iter().map(|row| row.0).collect()))
+        .with(numbers("force_ratio", "f′", "", rows.iter().map(|row| row.1).collect()))
+        .with(texts("variant", vec!["baseline"; rows.len()]))
+        .with(numbers(
+            "velocity_ratio",
+            "ψ",
+            "",
+            rows.iter().map(|(d, a)| hump(*a, 2.0 + 60.0 * d, 2.2 - 15.0 * d)).collect(),
+        ));
+    let mut one = panel("force_ratio", AxisScale::Log, &[]);
+    one.by = vec!["pulse_duration".into()];
+    one.y = vec![axis("velocity_ratio", AxisScale::Log)];
+    picture("durations", &limit_stop(), &figure(vec![one]), &table, &[]);
+}
+
+#[test]
+fn a_flat_or_tiny_curve_still_has_an_axis() {
+    let table = Table::default()
+        .with(numbers("force_ratio", "f′", "", vec![1.0, 2.0, 3.0]))
+        .with(texts("variant", ["baseline"; 3]))
+        .with(numbers("velocity_ratio", "ψ", "", vec![1.0; 3]))
+        .with(numbers("energy_residual", "", "", vec![1.2e-14, 3.1e-14, 2.0e-14]));
+    let panels = vec![
+        panel("force_ratio", AxisScale::Linear, &["velocity_ratio"]),
+        panel("force_ratio", AxisScale::Linear, &["energy_residual"]),
+    ];
+    picture("flat", &limit_stop(), &figure(panels), &table, &[]);
+}
+
+#[test]
+fn a_figure_that_cannot_be_drawn_says_why() {
+    let experiment = limit_stop();
+    let table = limit_stop_table();
+    let attempt = |panel: Panel| draw(&experiment, &figure(vec![panel]), &table, &[]).unwrap_err();
+
+    let unknown = attempt(panel("force_ratio", AxisScale::Log, &["velocity"]));
+    assert!(matches!(&unknown, FigureError::UnknownColumn { column, .. } if column == "velocity"));
+    assert!(unknown.to_string().contains("velocity_ratio"), "{unknown} does not tell what there is");
+    assert!(matches!(attempt(panel("force_ratio", AxisScale::Log, &["solver"])), FigureError::Text { .. }));
+
+    let nothing = table.select(&[50]);
+    let spec = figure(vec![amplitude_panel()]);
+    assert!(matches!(draw(&experiment, &spec, &nothing, &[]), Err(FigureError::Nothing { .. })));
+    let lists = history();
+    let mixed = lists.with(numbers("velocity_ratio", "ψ", "", vec![1.0]));
+    let spec = figure(vec![panel("time", AxisScale::Linear, &["velocity_ratio"])]);
+    assert!(matches!(draw(&experiment, &spec, &mixed, &[]), Err(FigureError::Mixed { .. })));
+}
+
+#[test]
+fn measures_that_agree_can_both_be_seen() {
+    let amplitudes = log_range(0.1, 100.0, 61);
+    let twice: Vec<f64> = amplitudes.iter().chain(&amplitudes).copied().collect();
+    let ratio: Vec<f64> = twice.iter().map(|a| hump(*a, 2.5, 0.6)).collect();
+    // The fixed step stands first in the table, and yet the exact motion is drawn solid.
+    let solvers = [["fixed_step_1e-5s"; 61], ["event_driven"; 61]].concat();
+    let table = Table::default()
+        .with(numbers("base_amplitude_ratio", "aω²/g", "", twice))
+        .with(texts("solver", solvers))
+        .with(texts("variant", ["baseline"; 122]))
+        .with(numbers("displacement_ratio", "η", "", ratio.clone()))
+        .with(numbers("velocity_ratio", "ψ", "", ratio));
+    let mut one = panel("base_amplitude_ratio", AxisScale::Log, &["displacement_ratio", "velocity_ratio"]);
+    one.by = vec!["solver".into()];
+    picture("agreeing", &limit_stop(), &figure(vec![one]), &table, &[]);
+}

@@ -1,0 +1,486 @@
+//! Verdicts: what a reader may rely on when the report says `reproduced`, `differs` or `missing`.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
+
+use shotdamp::reference::{
+    Judged, Printed, ReferenceFile, TableState, Tables, Verdict, judge, load_reference, parse_reference, self_test,
+};
+use shotdamp::table::{Column, Data, Table};
+
+const EXPERIMENT: &str = "ch3-example";
+
+fn column(name: &str, unit: &str, data: Data) -> Column {
+    Column { name: name.into(), unit: unit.into(), symbol: String::new(), data }
+}
+
+fn float(name: &str, cells: &[f64]) -> Column {
+    column(name, "", Data::Float(cells.to_vec()))
+}
+
+fn text(name: &str, cells: &[&str]) -> Column {
+    column(name, "", Data::Text(cells.iter().map(ToString::to_string).collect()))
+}
+
+/// A velocity ratio with one peak over 21 force ratios from 1.5 to 3.5, highest at 2.5; nothing is uncertain.
+fn peak() -> Table {
+    let x: Vec<f64> = (0..21).map(|i| 1.5 + 0.1 * f64::from(i)).collect();
+    let y: Vec<f64> = x.iter().map(|x| 3.0 - (x - 2.5) * (x - 2.5)).collect();
+    let zero = vec![0.0; x.len()];
+    Table {
+        columns: vec![
+            float("force_ratio", &x),
+            text("variant", &vec!["baseline"; x.len()]),
+            float("velocity_ratio", &y),
+            float("velocity_ratio_num", &zero),
+            float("velocity_ratio_spread", &zero),
+            text("failure", &vec![""; x.len()]),
+        ],
+        metadata: BTreeMap::new(),
+    }
+}
+
+/// One row a variant, each with a velocity ratio.
+fn variants(rows: &[(&str, f64)], num: f64, spread: f64, members: i64) -> Table {
+    Table {
+        columns: vec![
+            text("variant", &rows.iter().map(|row| row.0).collect::<Vec<_>>()),
+            float("velocity_ratio", &rows.iter().map(|row| row.1).collect::<Vec<_>>()),
+            float("velocity_ratio_num", &vec![num; rows.len()]),
+            float("velocity_ratio_spread", &vec![spread; rows.len()]),
+            column("members", "", Data::Int(vec![members; rows.len()])),
+            text("failure", &vec![""; rows.len()]),
+        ],
+        metadata: BTreeMap::new(),
+    }
+}
+
+fn lines(solvers: &[(&str, [f64; 5])]) -> Table {
+    let mut x = Vec::new();
+    let mut solver = Vec::new();
+    let mut y = Vec::new();
+    for (name, values) in solvers {
+        for (i, value) in (0..5u32).zip(values) {
+            x.push(f64::from(i));
+            solver.push(*name);
+            y.push(*value);
+        }
+    }
+    Table {
+        columns: vec![float("force_ratio", &x), text("solver", &solver), float("velocity_ratio", &y)],
+        metadata: BTreeMap::new(),
+    }
+}
+
+fn entry(body: &str) -> ReferenceFile {
+    let indented: String = body.trim().lines().map(|line| format!("    {}\n", line.trim())).collect();
+    let text = format!("entries:\n  - id: it\n    place: s. 1\n    says: Something.\n{indented}");
+    parse_reference(EXPERIMENT, &text).unwrap_or_else(|problems| panic!("{problems:?}\n{text}"))
+}
+
+fn judged_as(file: &ReferenceFile, state: TableState<'_>, fitted: &[&str]) -> Judged {
+    let tables = Tables::from([(EXPERIMENT.to_string(), state)]);
+    let fitted: BTreeSet<String> = fitted.iter().map(ToString::to_string).collect();
+    judge(file, &tables, &fitted).remove(0)
+}
+
+fn judged(body: &str, table: &Table) -> Judged {
+    judged_as(&entry(body), TableState::Present(table), &[])
+}
+
+fn verdict(body: &str, table: &Table) -> Verdict {
+    judged(body, table).verdict
+}
+
+fn broken(body: &str, table: &Table) -> Vec<String> {
+    let tables = Tables::from([(EXPERIMENT.to_string(), TableState::Present(table))]);
+    self_test(&entry(body), &tables).into_iter().map(|failure| failure.reason).collect()
+}
+
+const CELL: &str = "value: \"1.52\"\nfrom: {cell: {of: velocity_ratio}}";
+const OPTIMUM: &str = "value: \"2.5\"\nfrom: {argmax: {of: velocity_ratio, over: force_ratio}}";
+
+#[test]
+fn half_a_unit_of_the_last_printed_digit_is_the_uncertainty_of_a_datum() {
+    for (printed, value, half_unit) in [
+        ("2.5", 2.5, 0.05),
+        ("2.50", 2.5, 0.005),
+        ("1.99e-1", 0.199, 5e-4),
+        ("149", 149.0, 0.5),
+        ("0.8681", 0.8681, 5e-5),
+        ("5.03 Hz", 5.03, 5e-3),
+        ("427.3 mm/s", 427.3, 0.05),
+    ] {
+        let parsed = Printed::parse(printed).expect(printed);
+        assert_eq!((parsed.value(), parsed.half_unit()), (value, half_unit), "{printed}");
+    }
+    let (value, half_unit) = Printed::parse("427.3 mm/s").unwrap().converted_to("m/s").unwrap();
+    assert!((value - 0.4273).abs() < 1e-15 && (half_unit - 5e-5).abs() < 1e-18);
+    assert_eq!(Printed::parse("427.3 mm/s").unwrap().converted_to("m"), None);
+    for nonsense in ["", "about 2", "NaN", "inf", "1e999", "2,5", "5 parsec", "0x10", "1e-400"] {
+        assert!(Printed::parse(nonsense).is_err(), "{nonsense}");
+    }
+}
+
+#[test]
+fn a_value_is_reproduced_within_twice_the_validation_uncertainty_and_differs_beyond() {
+    assert_eq!(verdict(CELL, &variants(&[("baseline", 1.5299)], 0.0, 0.0, 1)), Verdict::Reproduced);
+    assert_eq!(verdict(CELL, &variants(&[("baseline", 1.5301)], 0.0, 0.0, 1)), Verdict::Differs);
+    // An error of the run of its own widens the tolerance.
+    assert_eq!(verdict(CELL, &variants(&[("baseline", 1.5301)], 0.003, 0.0, 1)), Verdict::Reproduced);
+    let comparison = judged(CELL, &variants(&[("baseline", 1.5301)], 0.0, 0.0, 1)).comparison.unwrap();
+    assert!((comparison.error() - 0.0101).abs() < 1e-12 && (comparison.u_val() - 0.005).abs() < 1e-12);
+    assert!((comparison.digits() - 2.177).abs() < 1e-3);
+}
+
+#[test]
+fn unstated_inputs_widen_the_tolerance_by_half_their_range_each_in_quadrature() {
+    let table = variants(
+        &[("baseline", 1.56), ("delta=1", 1.50), ("delta=2", 1.58), ("gravity=9.80", 1.56), ("gravity=9.82", 1.62)],
+        0.0,
+        0.0,
+        1,
+    );
+    let judged = judged(CELL, &table);
+    let u_input = judged.comparison.unwrap().u_input;
+    assert!((u_input - 0.04f64.hypot(0.03)).abs() < 1e-12, "{u_input}");
+    assert_eq!(judged.verdict, Verdict::Reproduced);
+    assert_eq!(judged.robust, Some((4, 4)));
+}
+
+#[test]
+fn agreement_that_says_nothing_is_no_reproduction() {
+    // The inputs that the study does not state move the value by a third: any value near would agree.
+    let wide = variants(&[("baseline", 1.4), ("delta=1", 1.1), ("delta=2", 2.1)], 0.0, 0.0, 1);
+    assert_eq!(verdict(CELL, &wide), Verdict::Blocked);
+    // The published run is one member of an ensemble that spreads over a fifth.
+    assert_eq!(verdict(CELL, &variants(&[("baseline", 1.4)], 0.0, 0.3, 32)), Verdict::Undecidable);
+    // A spread below a tenth is an uncertainty like any other.
+    assert_eq!(verdict(CELL, &variants(&[("baseline", 1.55)], 0.0, 0.03, 32)), Verdict::Reproduced);
+    // Outside the spread it differs, chaotic or not.
+    assert_eq!(verdict(CELL, &variants(&[("baseline", 2.3)], 0.0, 0.3, 32)), Verdict::Differs);
+}
+
+#[test]
+fn an_entry_that_chose_an_assumption_is_fitted_and_proves_nothing() {
+    let file = entry(CELL);
+    let near = variants(&[("baseline", 1.525), ("delta=1", 1.1), ("delta=2", 2.1)], 0.0, 0.0, 1);
+    let fitted = ["ch3-example/it"];
+    assert_eq!(judged_as(&file, TableState::Present(&near), &fitted).verdict, Verdict::Fitted);
+    let far = variants(&[("baseline", 3.0)], 0.0, 0.0, 1);
+    assert_eq!(judged_as(&file, TableState::Present(&far), &fitted).verdict, Verdict::Differs);
+}
+
+#[test]
+fn a_tolerance_set_by_hand_holds_and_is_shown_with_its_reason() {
+    let body = format!("{CELL}\ntolerance: {{relative: 0.03, reason: read off a plot}}");
+    let judged = judged(&body, &variants(&[("baseline", 1.56)], 0.0, 0.0, 1));
+    assert_eq!(judged.verdict, Verdict::Reproduced);
+    assert_eq!(judged.tolerance_reason.as_deref(), Some("read off a plot"));
+    assert!((judged.comparison.unwrap().tolerance_by_hand.unwrap() - 0.0456).abs() < 1e-12);
+    assert_eq!(verdict(&body, &variants(&[("baseline", 1.57)], 0.0, 0.0, 1)), Verdict::Differs);
+}
+
+#[test]
+fn an_entry_without_a_given_input_is_blocked_and_shows_what_came_out() {
+    let body = format!("{CELL}\nexpected: blocked\nblocked_by: [stop length]\nexplanation: Not stated.");
+    let judged = judged(&body, &variants(&[("baseline", 1.52)], 0.0, 0.0, 1));
+    assert_eq!(judged.verdict, Verdict::Blocked);
+    assert!(judged.as_expected() && judged.found.contains("stop length") && judged.found.contains("1.52"));
+}
+
+#[test]
+fn nothing_that_could_not_be_compared_reads_as_a_pass() {
+    let good = variants(&[("baseline", 1.52), ("delta=1", 1.52)], 0.0, 0.0, 1);
+    let file = entry(CELL);
+    assert_eq!(judged_as(&file, TableState::Present(&good), &[]).verdict, Verdict::Reproduced);
+    let with = |change: &dyn Fn(&mut Table)| {
+        let mut table = good.clone();
+        change(&mut table);
+        table
+    };
+    let damaged = [
+        with(&|table| table.columns.retain(|column| column.name != "velocity_ratio")),
+        with(&|table| table.columns[0] = text("variant", &["delta=2", "delta=1"])),
+        with(&|table| table.columns[1] = float("velocity_ratio", &[f64::NAN, 1.52])),
+        with(&|table| table.columns[1] = float("velocity_ratio", &[1.52, f64::NAN])),
+        with(&|table| table.columns[1] = text("velocity_ratio", &["1.52", "1.52"])),
+        with(&|table| table.columns[2] = float("velocity_ratio_num", &[f64::NAN, 0.0])),
+        with(&|table| table.columns[5] = text("failure", &["too many events", ""])),
+        with(&|table| table.columns[1].unit = "m/s".into()),
+        Table::default(),
+    ];
+    for table in &damaged {
+        let judged = judged_as(&file, TableState::Present(table), &["ch3-example/it"]);
+        assert_eq!(judged.verdict, Verdict::Missing, "{table:?}");
+        assert!(!judged.as_expected() && !judged.found.is_empty());
+    }
+    for state in [TableState::Stale, TableState::NotRun, TableState::Failed("no disk".into())] {
+        assert_eq!(judged_as(&file, state, &[]).verdict, Verdict::Missing);
+    }
+    assert_eq!(judge(&file, &Tables::new(), &BTreeSet::new())[0].verdict, Verdict::Missing);
+}
+
+#[test]
+fn a_maximum_is_known_no_better_than_the_grid_that_found_it() {
+    let comparison = judged(OPTIMUM, &peak()).comparison.unwrap();
+    assert!((comparison.simulated - 2.5).abs() < 1e-12 && (comparison.u_num - 0.05).abs() < 1e-12);
+    // Half of the points: twice the uncertainty, still good; a tenth of them would say nothing.
+    let coarse = |step: usize| {
+        let mut table = peak();
+        for column in &mut table.columns {
+            match &mut column.data {
+                Data::Float(cells) => *cells = cells.iter().copied().step_by(step).collect(),
+                Data::Text(cells) => *cells = cells.iter().cloned().step_by(step).collect(),
+                _ => {}
+            }
+        }
+        table
+    };
+    assert_eq!(verdict(OPTIMUM, &coarse(2)), Verdict::Reproduced);
+    assert_eq!(verdict(OPTIMUM, &coarse(5)), Verdict::Undecidable);
+}
+
+#[test]
+fn the_baseline_and_the_event_driven_solver_are_meant_unless_an_entry_says_otherwise() {
+    let table = lines(&[("event_driven", [1.0, 1.1, 1.5, 1.1, 1.0]), ("fixed_step_1e-2s", [1.0, 1.1, 1.9, 1.1, 1.0])]);
+    let maximum = "value: \"1.5\"\nfrom: {maximum: {of: velocity_ratio, over: force_ratio}}";
+    assert_eq!(verdict(maximum, &table), Verdict::Reproduced);
+    assert_eq!(verdict(&format!("{maximum}\nwhere: {{solver: fixed_step_1e-2s}}"), &table), Verdict::Differs);
+    let ambiguous = format!("{maximum}\nwhere: {{solver: [event_driven, fixed_step_1e-2s]}}");
+    assert_eq!(verdict(&ambiguous, &table), Verdict::Missing);
+}
+
+#[test]
+fn numbers_of_a_curve_are_read_as_a_study_quotes_them() {
+    let table = lines(&[("event_driven", [0.0, 1.0, 2.0, 1.0, 0.5]), ("fixed_step_1e-2s", [0.0, 1.0, 2.0, 1.5, 2.0])]);
+    for (value, from) in [
+        ("0.5", "end: {of: velocity_ratio, over: force_ratio, end: high}"),
+        ("1", "cell: {of: velocity_ratio, where: {force_ratio: 3}}"),
+        ("0.90", "mean: {of: velocity_ratio}"),
+        ("0", "minimum: {of: velocity_ratio, over: force_ratio}"),
+        ("2", "argmax: {of: velocity_ratio, over: force_ratio}"),
+        ("1.0", "crossing: {of: velocity_ratio, over: force_ratio, level: 1, direction: increasing}"),
+        ("2", "first_above: {of: velocity_ratio, over: force_ratio, above: 1}"),
+        ("3", "parting: {of: velocity_ratio, over: force_ratio, by: solver, fraction: 0.1}"),
+        ("1.5", "largest_step_back: {of: velocity_ratio, over: force_ratio, direction: increasing}"),
+        ("2", "at_maximum: {of: velocity_ratio, over: force_ratio, read: force_ratio}"),
+        ("4.0", "ratio: {of: {number: 2}, to: {end: {of: velocity_ratio, over: force_ratio, end: high}}}"),
+        ("0.02", "times: {factor: 0.01, of: {maximum: {of: velocity_ratio, over: force_ratio}}}"),
+    ] {
+        let judged = judged(&format!("value: \"{value}\"\nfrom: {{{from}}}"), &table);
+        let comparison = judged.comparison.unwrap_or_else(|| panic!("{from}: {}", judged.found));
+        assert!(comparison.error().abs() < 1e-12, "{from}: {}", judged.found);
+    }
+    // What does not happen is a difference, not a gap in the data.
+    let never = "value: \"2\"\nfrom: {first_above: {of: velocity_ratio, over: force_ratio, above: 7}}";
+    assert_eq!(verdict(never, &table), Verdict::Differs);
+}
+
+/// Claims over lines of five points, with the verdict on each line.
+#[test]
+fn claims_hold_fail_and_stay_open_as_their_margins_say() {
+    let rising = [1.0, 1.2, 1.4, 1.6, 1.8];
+    let dented = [1.0, 1.2, 1.19, 1.6, 1.8];
+    let peaked = [1.0, 1.5, 2.0, 1.5, 1.0];
+    let comb = [1.0, 2.0, 1.0, 2.0, 1.0];
+    let saturating = [1.0, 1.9, 1.99, 2.0, 2.0];
+    let line = "of: velocity_ratio, over: force_ratio";
+    let by_hand = "threshold_reason: for the test";
+    for (claim, holds, fails) in [
+        (format!("claim: {{monotone: {{{line}, direction: increasing}}}}"), rising, dented),
+        (format!("claim: {{monotone: {{{line}, direction: increasing, slack: 0.05}}}}\n{by_hand}"), dented, peaked),
+        (format!("claim: {{monotone: {{{line}, direction: decreasing, part: after_maximum}}}}"), peaked, rising),
+        (format!("claim: {{between: {{value: {{argmax: {{{line}}}}}, from: 1, to: 3}}}}\n{by_hand}"), peaked, rising),
+        (
+            format!("claim: {{greatest_first: [{{maximum: {{{line}}}}}, {{end: {{{line}, end: high}}}}]}}"),
+            peaked,
+            rising,
+        ),
+        (
+            format!(
+                "claim: {{equal: {{values: [{{end: {{{line}, end: low}}}}, {{end: {{{line}, end: high}}}}], within: {{relative: 0.01}}}}}}\n{by_hand}"
+            ),
+            peaked,
+            rising,
+        ),
+        (
+            format!(
+                "claim: {{apart: {{values: [{{end: {{{line}, end: low}}}}, {{end: {{{line}, end: high}}}}], by: {{relative: 0.01}}}}}}\n{by_hand}"
+            ),
+            rising,
+            peaked,
+        ),
+        ("claim: {above: {of: velocity_ratio, level: 0.99}}".to_string(), rising, [1.0, 0.98, 1.0, 1.0, 1.0]),
+        ("claim: {below: {of: velocity_ratio, level: 1.9}}".to_string(), rising, peaked),
+        (format!("claim: {{linear: {{{line}, within: 0.05}}}}\n{by_hand}"), rising, saturating),
+        (format!("claim: {{levels_off: {{{line}, from: 2, within: 0.05}}}}\n{by_hand}"), saturating, rising),
+        (format!("claim: {{greatest_at_end: {{{line}, end: high}}}}"), rising, peaked),
+        (format!("claim: {{peaks: {{{line}, prominence: 0.3, at_least: 2}}}}\n{by_hand}"), comb, peaked),
+        (format!("claim: {{peaks: {{{line}, prominence: 0.3, at_most: 1}}}}\n{by_hand}"), peaked, comb),
+        (
+            "claim: {onsets: {over: force_ratio, order: [{of: velocity_ratio, above: 1}, {of: velocity_ratio, above: 1.7}]}}".to_string(),
+            rising,
+            comb,
+        ),
+    ] {
+        let (good, bad) = (lines(&[("event_driven", holds)]), lines(&[("event_driven", fails)]));
+        assert_eq!(verdict(&claim, &good), Verdict::Reproduced, "{claim}: {}", judged(&claim, &good).found);
+        assert_eq!(verdict(&claim, &bad), Verdict::Differs, "{claim}: {}", judged(&claim, &bad).found);
+        assert_eq!(broken(&claim, &good), Vec::<String>::new(), "{claim}");
+    }
+    // A step back that the points' own errors cover cannot be told from none.
+    let mut table = lines(&[("event_driven", dented)]);
+    table.columns.push(float("velocity_ratio_num", &[0.01; 5]));
+    assert_eq!(
+        verdict(&format!("claim: {{monotone: {{{line}, direction: increasing}}}}"), &table),
+        Verdict::Undecidable
+    );
+}
+
+#[test]
+fn lines_and_columns_are_compared_with_each_other() {
+    let alike = lines(&[("event_driven", [1.0, 1.2, 1.4, 1.6, 1.8]), ("fixed_step_1e-2s", [1.0, 1.21, 1.4, 1.6, 1.8])]);
+    let apart = lines(&[("event_driven", [1.0, 1.2, 1.4, 1.6, 1.8]), ("fixed_step_1e-2s", [1.0, 1.2, 1.4, 1.6, 2.8])]);
+    let agree = "claim: {lines_agree: {of: velocity_ratio, over: force_ratio, by: solver, within: {relative: 0.02}}}\nthreshold_reason: for the test";
+    assert_eq!(verdict(agree, &alike), Verdict::Reproduced);
+    assert_eq!(verdict(agree, &apart), Verdict::Differs);
+    let trend = "claim: {trend: {of: {maximum: {of: velocity_ratio, over: force_ratio}}, along: solver, direction: increasing}}";
+    assert_eq!(verdict(trend, &alike), Verdict::Differs);
+    assert_eq!(verdict(trend, &apart), Verdict::Reproduced);
+
+    let mut both = lines(&[("event_driven", [1.0, 1.2, 1.4, 1.6, 1.8])]);
+    both.columns.push(float("displacement_ratio", &[1.0, 1.2, 1.4, 1.61, 1.8]));
+    let columns = |within: f64| {
+        format!(
+            "claim: {{columns_agree: {{columns: [velocity_ratio, displacement_ratio], within: {{relative: {within}}}}}}}\nthreshold_reason: for the test"
+        )
+    };
+    assert_eq!(verdict(&columns(0.01), &both), Verdict::Reproduced);
+    assert_eq!(verdict(&columns(0.001), &both), Verdict::Differs);
+}
+
+#[test]
+fn time_histories_are_judged_along_their_samples() {
+    let mut table = variants(&[("baseline", 1.5)], 0.0, 0.0, 1);
+    let mut history = |name: &str, unit: &str, samples: &[f64]| {
+        table.columns.push(column(name, unit, Data::FloatList(vec![samples.to_vec()])));
+    };
+    history("time", "s", &[52.302, 52.312, 52.500, 52.510]);
+    history("particle_displacement", "m", &[0.1, -0.1, -0.1, 0.2]);
+    history("rigid_floor", "m", &[0.0, 0.0, 0.0, 0.0]);
+    history("rms_acceleration", "", &[3.0, 2.0, 1.0, 1.0]);
+    assert_eq!(
+        verdict("claim: {paths_cross: {of: particle_displacement, other: rigid_floor}}", &table),
+        Verdict::Reproduced
+    );
+    assert_eq!(verdict("claim: {paths_cross: {of: rms_acceleration, other: rigid_floor}}", &table), Verdict::Differs);
+    let falls = "claim: {path_monotone: {of: rms_acceleration, direction: decreasing}}";
+    assert_eq!(verdict(falls, &table), Verdict::Reproduced);
+    let late =
+        falls.replace("rms_acceleration", "particle_displacement").replace("decreasing", "increasing, after: 52.31");
+    assert_eq!(verdict(&late, &table), Verdict::Reproduced);
+    let impact = "value: 52.31 s
+        from: {nearest_passage: {of: particle_displacement, through: rigid_floor, direction: decreasing, to: 52.31}}";
+    assert_eq!(verdict(impact, &table), Verdict::Reproduced);
+    assert_eq!(verdict(&impact.replace("decreasing", "increasing"), &table), Verdict::Differs);
+    for body in [falls, impact, "claim: {paths_cross: {of: particle_displacement, other: rigid_floor}}"] {
+        assert_eq!(broken(body, &table), Vec::<String>::new(), "{body}");
+    }
+}
+
+#[test]
+fn another_experiments_table_can_be_part_of_a_claim() {
+    let here = lines(&[("event_driven", [1.0, 1.2, 1.4, 1.6, 1.8])]);
+    let there = lines(&[("event_driven", [1.0, 1.2, 1.4, 1.6, 2.8])]);
+    let file = entry(
+        "claim: {greatest_first: [{maximum: {of: velocity_ratio, over: force_ratio, table: ch3-other}}, {maximum: {of: velocity_ratio, over: force_ratio}}]}",
+    );
+    assert_eq!(file.other_tables(), BTreeSet::from(["ch3-other".to_string()]));
+    let mut tables = Tables::from([(EXPERIMENT.to_string(), TableState::Present(&here))]);
+    assert_eq!(judge(&file, &tables, &BTreeSet::new())[0].verdict, Verdict::Missing);
+    tables.insert("ch3-other".into(), TableState::Present(&there));
+    assert_eq!(judge(&file, &tables, &BTreeSet::new())[0].verdict, Verdict::Reproduced);
+    assert_eq!(self_test(&file, &tables), []);
+}
+
+#[test]
+fn the_self_test_finds_an_entry_that_cannot_fail() {
+    assert_eq!(broken(OPTIMUM, &peak()), Vec::<String>::new());
+    assert_eq!(broken(CELL, &variants(&[("baseline", 1.55), ("delta=1", 1.5)], 0.01, 0.0, 1)), Vec::<String>::new());
+    let idle = "claim: {greatest_first: [{number: 2}, {number: 1}]}";
+    assert!(broken(idle, &peak())[0].contains("reads no measure"));
+    let empty = "claim: {above: {of: velocity_ratio, level: -1e9}}";
+    assert!(broken(empty, &peak())[0].contains("nothing that was done"));
+    let absent = "claim: {above: {of: displacement_ratio, level: 1}}";
+    assert!(broken(absent, &peak())[0].contains("missing already"));
+    // A hand-set tolerance of a mile does turn, outside the mile; what cannot be moved there is found.
+    let loose = "value: \"2\"\nfrom: {number: 2}";
+    assert!(!broken(loose, &peak()).is_empty());
+}
+
+#[test]
+fn an_unsound_reference_file_is_refused_with_every_mistake_and_its_line() {
+    let mistakes = |text: &str| parse_reference(EXPERIMENT, text).unwrap_err();
+    let unknown = mistakes("entries:\n  - id: a\n    plase: s. 1\n");
+    assert!(unknown[0].starts_with("line 3, column") && unknown[0].contains("place"), "{unknown:?}");
+
+    let several = mistakes(
+        "entries:
+  - {id: a, place: s. 1, says: x, value: about 2, from: {number: 1}}
+  - {id: a, place: s. 1, says: x, claim: {above: {of: y, level: 1}}, expected: differs}
+  - {id: b, place: s. 1, says: x, claim: {linear: {of: y, over: x, within: 0.1}}}
+  - {id: c, place: s. 1, says: x, claim: {above: {of: y, level: 1}}, expected: missing, explanation: no}
+  - {id: d, place: s. 1, says: x, value: \"2\"}
+  - {id: e, place: s. 1, says: x, value: \"2\", from: {number: 1}, tolerance: {relative: 0.1, reason: \"\"}}
+  - {id: f, place: s. 1, says: x, claim: {above: {of: y, level: .nan}}}
+",
+    )
+    .join("\n");
+    for (line, part) in [
+        (2, "not a printed number"),
+        (3, "id of an entry above"),
+        (3, "needs an `explanation`"),
+        (4, "threshold_reason"),
+        (5, "never an expected verdict"),
+        (6, "needs `from`"),
+        (7, "needs its `reason`"),
+        (8, "finite"),
+    ] {
+        assert!(
+            several.lines().any(|said| said.starts_with(&format!("line {line},")) && said.contains(part)),
+            "line {line}: {part}\n{several}"
+        );
+    }
+}
+
+#[test]
+fn comments_and_the_order_of_keys_mean_nothing() {
+    let meaning = |text: &str| serde_json::to_string(&parse_reference(EXPERIMENT, text).unwrap()).unwrap();
+    let one = "entries:
+  - id: a
+    place: s. 1
+    says: x
+    where: {stop: with, gap_ratio: [10, infinite], force_ratio: {from: 1}}
+    claim: {above: {of: y, level: 1}}
+";
+    let other = "# a comment
+entries:
+  - {claim: {above: {level: 1.0, of: y}}, says: x, id: a, place: s. 1,
+     where: {force_ratio: {from: 1.0}, gap_ratio: [10.0, infinite], stop: with}}
+";
+    assert_eq!(meaning(one), meaning(other));
+    assert_ne!(meaning(one), meaning(&one.replace("level: 1", "level: 2")));
+}
+
+#[test]
+fn every_shipped_reference_file_loads() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("reference/ch3");
+    let mut files: Vec<_> = std::fs::read_dir(folder).unwrap().map(|file| file.unwrap().path()).collect();
+    files.sort();
+    assert_eq!(files.len(), 23);
+    for path in files {
+        let file = load_reference(&path).unwrap_or_else(|error| panic!("{error}"));
+        assert!(!file.entries.is_empty());
+    }
+}

@@ -1,0 +1,233 @@
+//! Reports: whole pages held against the files in `golden/`, and what must hold for any of them.
+//!
+//! After a wanted change, `GOLDEN=write cargo test` writes the files anew.
+
+use shotdamp::reference::{Comparison, Judged, Verdict};
+use shotdamp::report::{AssumptionView, ExperimentView, FigureView, PageView, index, page, summary, value_in_words};
+use shotdamp::scene::{Assumption, AssumptionValue, EffectUse};
+use shotdamp::table::Table;
+use shotdamp::text::number::{compact, quantity, signed, significant};
+use shotdamp::text::words;
+
+use crate::made_up::{limit_stop, limit_stop_table};
+
+fn golden(name: &str, text: &str) {
+    let path = format!("{}/tests/it/golden/{name}", env!("CARGO_MANIFEST_DIR"));
+    if std::env::var_os("GOLDEN").is_some() {
+        std::fs::write(&path, text).unwrap();
+    }
+    let kept = std::fs::read_to_string(&path).unwrap_or_default();
+    assert!(kept == text, "{name} differs from what the report gives now:\n{text}");
+}
+
+fn entry(id: &str, verdict: Verdict) -> Judged {
+    Judged {
+        id: format!("ch3-limit-stop/{id}"),
+        experiment: "ch3-limit-stop".into(),
+        statement: "Both curves have the same maximum at the same f′".into(),
+        place: "s. 3.6.3, Fig. 18".into(),
+        verdict,
+        expected: verdict,
+        found: "holds: 3.376 at f′ = 2.63 in both".into(),
+        comparison: None,
+        explanation: String::new(),
+        tolerance_reason: None,
+        robust: Some((5, 6)),
+    }
+}
+
+/// One entry of each verdict, one of them a surprise.
+fn judged() -> Vec<Judged> {
+    let parting = Judged {
+        statement: "The curves part near f′ = 2".into(),
+        found: "2.13, +6.5 % of 2".into(),
+        comparison: Some(Comparison {
+            simulated: 2.131_245,
+            published: 2.0,
+            u_num: 0.012,
+            u_input: 0.31,
+            u_data: 0.5,
+            spread: 0.0,
+            tolerance_by_hand: Some(0.3),
+        }),
+        tolerance_reason: Some("\"approximately\": the text rounds to whole numbers | or coarser".into()),
+        explanation: "The stop length was chosen by this number.".into(),
+        ..entry("parting", Verdict::Fitted)
+    };
+    let limit = Judged {
+        statement: "The curve with stop tends to a higher limit".into(),
+        found: "1.004 with, 1.015 without".into(),
+        explanation: "At f′ = 10 it does, s. 3.6.3 says no more. Beyond f′ = 500 the order turns.".into(),
+        ..entry("limit", Verdict::Differs)
+    };
+    let peak = Judged {
+        statement: "ψ is 1.516".into(),
+        found: "1.5603, +2.9 % of 1.516".into(),
+        expected: Verdict::Reproduced,
+        comparison: Some(Comparison {
+            simulated: 1.560_3,
+            published: 1.516,
+            u_num: 1e-13,
+            u_input: 0.004,
+            u_data: 0.0005,
+            spread: 0.0,
+            tolerance_by_hand: None,
+        }),
+        robust: None,
+        ..entry("peak", Verdict::Differs)
+    };
+    vec![entry("same-maximum", Verdict::Reproduced), parting, limit, peak]
+}
+
+fn assumptions() -> Vec<AssumptionView> {
+    vec![
+        AssumptionView {
+            name: "stop_length".into(),
+            value: value_in_words(Assumption::StopLength, &AssumptionValue::Number(0.06)),
+            reason: "With 60 mm the curves part\nwhere the text says.".into(),
+            used_by: vec!["ch3-limit-stop/parting".into(), "ch3-limit-stop/limit".into(), "ch3-gap/order".into()],
+            fitted_to: vec!["ch3-limit-stop/parting".into()],
+        },
+        AssumptionView {
+            name: "gravity".into(),
+            value: value_in_words(Assumption::Gravity, &AssumptionValue::Number(9.81)),
+            reason: "The usual rounding.".into(),
+            used_by: Vec::new(),
+            fitted_to: Vec::new(),
+        },
+    ]
+}
+
+fn effects() -> Vec<EffectUse> {
+    vec![
+        EffectUse { name: "gravity", in_force: 122, cases: 122, why_not: "" },
+        EffectUse { name: "limit stop", in_force: 61, cases: 122, why_not: "no limit stop is named" },
+        EffectUse { name: "soft walls", in_force: 0, cases: 122, why_not: "the walls are rigid" },
+    ]
+}
+
+fn figures(folder: &str) -> Vec<FigureView> {
+    vec![FigureView {
+        link: format!("{folder}ch3-limit-stop.png"),
+        caption: "Velocity ratio ψ against f′, with and without stop.".into(),
+    }]
+}
+
+fn page_of(table: Option<&Table>, judged: &[Judged]) -> String {
+    page(&PageView {
+        experiment: &limit_stop(),
+        table,
+        judged,
+        assumptions: &assumptions(),
+        effects: &effects(),
+        figures: &figures(""),
+        table_link: "../../results/ch3-limit-stop.parquet",
+        index_link: "../README.md",
+    })
+}
+
+#[test]
+fn a_page_tells_a_vibration_engineer_all_about_one_experiment() {
+    golden("page.md", &page_of(Some(&limit_stop_table()), &judged()));
+}
+
+#[test]
+fn the_index_tells_the_whole_study_at_a_glance() {
+    let experiment = limit_stop();
+    let judged = judged();
+    let view = ExperimentView {
+        experiment: &experiment,
+        judged: &judged,
+        page: "ch3/ch3-limit-stop.md".into(),
+        figures: figures("ch3/"),
+    };
+    golden("index.md", &index(&[view], &assumptions()));
+}
+
+#[test]
+fn the_console_shows_what_is_unexpected_in_full() {
+    let (one, other) = (judged(), [entry("same-maximum", Verdict::Reproduced)]);
+    let text = summary(&[("ch3-limit-stop", &one), ("ch3-gap", &other)]);
+    assert!(!text.contains('\u{1b}'), "no colours: {text}");
+    golden("console.txt", &text);
+
+    let calm = summary(&[("ch3-gap", &other)]);
+    assert!(calm.ends_with("1 entry: 1 reproduced; all as expected.\n"), "{calm}");
+}
+
+#[test]
+fn missing_is_never_as_expected() {
+    let missing = [Judged { found: "the table is stale".into(), ..entry("peak", Verdict::Missing) }];
+    assert!(summary(&[("ch3-limit-stop", &missing)]).contains("1 not as expected"));
+    let text = page_of(None, &missing);
+    assert!(text.contains("**missing**") && text.contains("has not been run"), "{text}");
+    assert!(text.contains("the table is stale"), "{text}");
+}
+
+#[test]
+fn a_failed_run_is_told_with_its_reason() {
+    let mut table = limit_stop_table();
+    for column in &mut table.columns {
+        if let (true, shotdamp::table::Data::Text(cells)) = (column.name == "failure", &mut column.data) {
+            cells[3] = "too many events in one cycle".into();
+        }
+    }
+    let text = page_of(Some(&table), &[]);
+    assert!(text.contains("1 run: too many events in one cycle"), "{text}");
+}
+
+#[test]
+fn an_explanation_is_told_by_its_first_sentence_in_the_index() {
+    let experiment = limit_stop();
+    let one = [Judged {
+        explanation: "Only Fig. 18 and s. 3.6 say so. The rest is lost.".into(),
+        ..entry("limit", Verdict::Blocked)
+    }];
+    let view = ExperimentView { experiment: &experiment, judged: &one, page: String::new(), figures: Vec::new() };
+    let text = index(&[view], &[]);
+    assert!(text.contains("Only Fig. 18 and s. 3.6 say so.\n"), "{text}");
+}
+
+#[test]
+fn numbers_keep_their_significant_digits() {
+    for (value, digits, text) in [
+        (1.2e-14, 2, "1.2e-14"),
+        (0.0123, 3, "0.0123"),
+        (1234.0, 4, "1\u{202f}234"),
+        (123_456.7, 3, "123\u{202f}000"),
+        (9.999, 3, "10.0"),
+        (0.000_099_99, 2, "0.00010"),
+        (-0.5, 2, "−0.50"),
+        (1e6, 2, "1.0e6"),
+        (-3.0e300, 1, "−3e300"),
+        (5e-324, 2, "4.9e-324"),
+        (0.0, 3, "0"),
+        (f64::NAN, 3, "n/a"),
+        (f64::NEG_INFINITY, 3, "−∞"),
+    ] {
+        assert_eq!(significant(value, digits), text);
+    }
+    assert_eq!(compact(50.0, 4), "50");
+    assert_eq!(compact(1.516, 12), "1.516");
+    assert_eq!(signed(0.0443, 2), "+0.044");
+    assert_eq!(signed(-0.0443, 2), "−0.044");
+}
+
+#[test]
+fn units_take_the_prefix_an_engineer_would_write() {
+    assert_eq!(quantity(0.06, "m", 3), "60 mm");
+    assert_eq!(quantity(1e-3, "s", 3), "1 ms");
+    assert_eq!(quantity(1e-5, "s", 3), "10 µs");
+    assert_eq!(quantity(3.2e-9, "m", 2), "3.2 nm");
+    assert_eq!(quantity(4.2426, "N s/m", 3), "4.24 N s/m");
+    assert_eq!(quantity(0.05, "", 3), "0.05");
+    assert_eq!(words::of_solver("fixed_step_1e-5s"), "fixed step 10 µs");
+    assert_eq!(words::of_solver("event_driven"), "event-driven");
+}
+
+#[test]
+fn an_assumed_curve_is_told_by_its_ends() {
+    let curve = AssumptionValue::Curve(vec![[0.7, 1.0], [3.0, 4.0], [7.6, 2.0]]);
+    let told = value_in_words(Assumption::EquivalentDampingCurve, &curve);
+    assert_eq!(told, "a curve through 3 points, 1 N s/m at 0.7 g to 2 N s/m at 7.6 g");
+}

@@ -1,0 +1,289 @@
+//! A study runs what is stale, tells why, and leaves the same bytes whoever computes them.
+
+use std::fs;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use shotdamp::measure::Evaluated;
+use shotdamp::scene::Excitation;
+use shotdamp::study::{Evaluate, Event, Listen, Loaded, Lock, Silence, Simulation, Snapshot};
+
+use crate::desk::{ASSUMPTIONS, Desk, GAP, GAP_REFERENCE, MadeUp, STOP};
+
+#[test]
+fn the_bytes_do_not_depend_on_the_number_of_threads() {
+    let tables = [1, 2, 8].map(|threads| {
+        let desk = Desk::new();
+        desk.run(threads, &MadeUp::default(), &Silence);
+        ["ch3-stop", "ch3-gap"]
+            .map(|id| (desk.bytes(&format!("results/{id}.parquet")), desk.bytes(&format!("results/{id}.json"))))
+    });
+    assert!(tables[0] == tables[1] && tables[0] == tables[2]);
+}
+
+#[test]
+fn a_row_is_a_case_under_a_solver_in_a_variant() {
+    let desk = Desk::new();
+    let engine = MadeUp::default();
+    desk.run(2, &engine, &Silence);
+    let table = desk.table("ch3-stop");
+    // 3 amplitudes x with and without x 2 solvers, then each of 3 ends of the assumptions event-driven.
+    assert_eq!(table.rows(), 12 + 3 * 6);
+    assert_eq!(table.texts("variant").unwrap()[12], "impulse_factor=1.8");
+    assert_eq!(table.texts("solver").unwrap()[..2], ["event_driven", "fixed_step_1e-4s"]);
+    assert_eq!(table.floats("force_ratio").unwrap()[..5], [1.0, 1.0, 1.0, 1.0, 2.0]);
+    let order: Vec<&str> = table.columns.iter().take(7).map(|column| column.name.as_str()).collect();
+    let expected = ["force_ratio", "stop", "solver", "variant"];
+    assert_eq!(order[..4], expected);
+    assert_eq!(order[4..], ["velocity_ratio", "velocity_ratio_num", "velocity_ratio_spread"]);
+
+    // Without a stop its length changes nothing: the baseline's numbers stand there, and nobody simulated them again.
+    let ratio = table.floats("velocity_ratio").unwrap();
+    let shorter = table.rows_where("variant", "stop_length=0.05");
+    assert!((ratio[0] - ratio[shorter[0]] - 0.01).abs() < 1e-12);
+    assert_eq!(ratio[2], ratio[shorter[1]]);
+    let grid_and_rounds = 3 * (5 + 3 * 2);
+    assert_eq!(engine.simulations.into_inner(), 12 + 2 * 6 + 3 + grid_and_rounds);
+}
+
+#[test]
+fn a_maximum_is_found_between_the_points_of_the_grid() {
+    let desk = Desk::new();
+    desk.run(2, &MadeUp::default(), &Silence);
+    let table = desk.table("ch3-gap");
+    let at = table.floats("base_amplitude_ratio_at_maximum").unwrap();
+    let within = table.floats("base_amplitude_ratio_at_maximum_num").unwrap();
+    let gap = table.floats("gap_ratio").unwrap();
+    assert_eq!(gap[2], f64::INFINITY);
+    for row in 0..3 {
+        let exact = 2.0 * (gap[row] * 9.81 / 1000.0).min(1.0).sqrt();
+        assert!((at[row] - exact).abs() <= within[row] && within[row] < 0.3 * exact, "{at:?} {within:?}");
+    }
+}
+
+#[test]
+fn one_bad_case_is_a_row_and_a_panic_is_one_too() {
+    struct Bad;
+    impl Evaluate for Bad {
+        fn evaluate(&self, it: &Simulation<'_>) -> Result<Evaluated, String> {
+            let Excitation::ImpulseTrain { impulse, .. } = it.recipe.resolve(it.assumptions).unwrap().excitation else {
+                return MadeUp::default().evaluate(it);
+            };
+            if it.recipe.dampers[0].stop.is_none() {
+                assert!(impulse > 1.0, "made to fail");
+                return Err("too hard".into());
+            }
+            MadeUp::default().evaluate(it)
+        }
+    }
+    let desk = Desk::new();
+    desk.run(2, &Bad, &Silence);
+    let table = desk.table("ch3-stop");
+    let failure = table.texts("failure").unwrap();
+    assert_eq!(failure[0], "");
+    assert!(failure[2].contains("made to fail"), "{}", failure[2]);
+    assert!(failure.contains(&"too hard".to_owned()));
+    assert!(table.floats("velocity_ratio").unwrap()[2].is_nan());
+    assert!(desk.table("ch3-gap").texts("failure").unwrap().iter().all(String::is_empty));
+    // Failed rows are tried again, and the others are not.
+    assert!(desk.why("ch3-stop")[0].contains("rows failed"));
+    assert_eq!(desk.run(1, &MadeUp::default(), &Silence), ["ch3-stop"]);
+    assert_eq!(desk.why("ch3-stop"), [""; 0]);
+}
+
+#[test]
+fn a_maximum_over_a_range_with_a_hole_is_none() {
+    struct Hole;
+    impl Evaluate for Hole {
+        fn evaluate(&self, it: &Simulation<'_>) -> Result<Evaluated, String> {
+            match it.recipe.resolve(it.assumptions).unwrap().excitation {
+                Excitation::Harmonic { force, .. } if force.abs() > 50.0 => Err("did not settle".into()),
+                _ => MadeUp::default().evaluate(it),
+            }
+        }
+    }
+    let desk = Desk::new();
+    desk.run(4, &Hole, &Silence);
+    assert_eq!(desk.table("ch3-gap").texts("failure").unwrap()[0], "at base_amplitude_ratio = 10: did not settle");
+}
+
+#[test]
+fn what_is_up_to_date_does_not_run_and_a_comment_changes_nothing() {
+    let desk = Desk::new();
+    assert_eq!(desk.run(2, &MadeUp::default(), &Silence), ["ch3-gap", "ch3-stop"]);
+    assert_eq!(desk.run(2, &MadeUp::default(), &Silence), [""; 0]);
+    let same_meaning = STOP
+        .replace("mass: 1 kg", "mass: 1000 g")
+        .replace("title: Limit stop", "title: Another title")
+        .replace("by: [stop, solver]", "by: [solver, stop]");
+    desk.put("experiments/ch3/ch3-stop.yaml", &format!("# a comment\n{same_meaning}"));
+    desk.put("experiments/assumptions.yaml", &ASSUMPTIONS.replace("60 mm", "6 cm").replace("fits", "said better"));
+    assert_eq!(desk.run(2, &MadeUp::default(), &Silence), [""; 0]);
+}
+
+#[test]
+fn a_changed_input_is_named_with_file_key_and_values() {
+    let desk = Desk::new();
+    desk.run(2, &MadeUp::default(), &Silence);
+    desk.put("experiments/assumptions.yaml", &ASSUMPTIONS.replace("60 mm", "55 mm"));
+    assert_eq!(desk.why("ch3-gap"), [""; 0], "it has no limit stop");
+    assert_eq!(desk.why("ch3-stop"), ["experiments/assumptions.yaml: stop_length: 0.06 -> 0.055"]);
+    desk.put("experiments/assumptions.yaml", ASSUMPTIONS);
+    assert_eq!(desk.why("ch3-stop"), [""; 0], "back to what it was");
+
+    desk.put("experiments/ch3/ch3-gap.yaml", &GAP.replace("mass: 1 kg", "mass: 2 kg"));
+    assert_eq!(desk.why("ch3-gap"), ["experiments/ch3/ch3-gap.yaml: scene.structure.single_mass.mass: 1.0 -> 2.0"]);
+    assert_eq!(desk.run(2, &MadeUp::default(), &Silence), ["ch3-gap"]);
+
+    // Its first published number asks for the ends of the assumptions, which were not run so far.
+    let number = "value: \"1.5\"\n    from: {maximum: {of: velocity_ratio, over: gap_ratio}}";
+    let (before, _) = GAP_REFERENCE.split_once("claim").unwrap();
+    desk.put("reference/ch3/ch3-gap.yaml", &format!("{before}{number}\n"));
+    assert!(desk.why("ch3-gap")[0].starts_with("reference of ch3-gap: sensitivity: null -> "));
+    assert_eq!(desk.run(2, &MadeUp::default(), &Silence), ["ch3-gap"]);
+
+    let longer =
+        GAP.replace("mass: 1 kg", "mass: 2 kg").replace("[10, 50, infinite]", "[20, 60, 90, 95, 99, infinite]");
+    desk.put("experiments/ch3/ch3-gap.yaml", &longer);
+    let why = desk.why("ch3-gap");
+    assert!(why.len() == 4 && why[3].ends_with("more"), "a long sweep is not told leaf by leaf: {why:?}");
+}
+
+#[test]
+fn damaged_results_are_noticed_and_made_again() {
+    let desk = Desk::new();
+    desk.run(2, &MadeUp::default(), &Silence);
+    let name = desk.layout.path("results/ch3-gap.parquet");
+    let whole = fs::read(&name).unwrap();
+    for damage in [whole[..whole.len() / 2].to_vec(), [&whole[1..], b"!"].concat(), Vec::new()] {
+        fs::write(&name, damage).unwrap();
+        assert_eq!(desk.why("ch3-gap"), ["results/ch3-gap.parquet is not what was written"]);
+        assert_eq!(desk.run(2, &MadeUp::default(), &Silence), ["ch3-gap"]);
+        assert_eq!(fs::read(&name).unwrap(), whole, "the same bytes again");
+    }
+    fs::remove_file(&name).unwrap();
+    assert_eq!(desk.why("ch3-gap"), ["results/ch3-gap.parquet is missing"]);
+    desk.put("results/ch3-stop.json", "{\"format\": 0}");
+    assert!(desk.why("ch3-stop")[0].starts_with("its record does not count"));
+    // A record that was renamed speaks of another experiment.
+    fs::copy(desk.layout.path("results/ch3-gap.json"), desk.layout.path("results/ch3-stop.json")).unwrap();
+    assert!(desk.why("ch3-stop")[0].contains("belongs to ch3-gap"));
+}
+
+/// Between table and record a kill leaves a new table with the record of the old one: that must not pass for done.
+#[test]
+fn a_table_counts_only_with_its_record() {
+    let desk = Desk::new();
+    desk.run(2, &MadeUp::default(), &Silence);
+    let old = desk.bytes("results/ch3-gap.json");
+    desk.put("experiments/ch3/ch3-gap.yaml", &GAP.replace("mass: 1 kg", "mass: 2 kg"));
+    desk.run(2, &MadeUp::default(), &Silence);
+    fs::write(desk.layout.path("results/ch3-gap.json"), old).unwrap();
+    desk.put("experiments/ch3/ch3-gap.yaml", GAP);
+    assert_eq!(desk.why("ch3-gap"), ["results/ch3-gap.parquet is not what was written"]);
+}
+
+#[test]
+fn an_input_edited_during_the_run_is_stale_afterwards() {
+    struct Editor<'a>(&'a Desk, MadeUp);
+    impl Evaluate for Editor<'_> {
+        fn evaluate(&self, it: &Simulation<'_>) -> Result<Evaluated, String> {
+            self.0.put("experiments/ch3/ch3-gap.yaml", &GAP.replace("mass: 1 kg", "mass: 3 kg"));
+            self.1.evaluate(it)
+        }
+    }
+    let desk = Desk::new();
+    let before = desk.texts();
+    desk.run(1, &Editor(&desk, MadeUp::default()), &Silence);
+    assert!(desk.why("ch3-gap")[0].contains("1.0 -> 3.0"));
+    Snapshot::take(&desk.layout, &before, ["results/ch3-gap.parquet".to_owned()], "done", 0).unwrap();
+    assert_eq!(Snapshot::current(&desk.layout, &desk.texts()), None);
+}
+
+#[test]
+fn the_snapshot_holds_until_any_input_or_output_changes() {
+    let desk = Desk::new();
+    desk.run(2, &MadeUp::default(), &Silence);
+    let outputs = || ["results/ch3-gap.parquet", "results/ch3-stop.parquet"].map(str::to_owned);
+    let take = || Snapshot::take(&desk.layout, &desk.texts(), outputs(), "all done", 1).unwrap();
+    let holds = || Snapshot::current(&desk.layout, &desk.texts()).is_some();
+    assert!(!holds(), "none taken");
+    take();
+    let snapshot = Snapshot::current(&desk.layout, &desk.texts()).unwrap();
+    assert_eq!((snapshot.summary.as_str(), snapshot.exit_code), ("all done", 1));
+
+    desk.put("experiments/ch3/ch3-gap.yaml", &format!("{GAP}# comment\n"));
+    assert!(!holds(), "a comment is for the plan to judge");
+    desk.put("experiments/ch3/ch3-gap.yaml", GAP);
+    assert!(holds());
+    desk.put("reference/ch3/ch3-new.yaml", "entries: []\n");
+    assert!(!holds(), "a new file");
+    fs::remove_file(desk.layout.path("reference/ch3/ch3-new.yaml")).unwrap();
+    assert!(holds());
+    let name = "results/ch3-gap.parquet";
+    let mut bytes = desk.bytes(name);
+    bytes[100] ^= 1;
+    fs::write(desk.layout.path(name), &bytes).unwrap();
+    assert!(!holds(), "a flipped bit");
+}
+
+#[test]
+fn listeners_hear_every_simulation_once() {
+    #[derive(Default)]
+    struct Ear(Mutex<Vec<String>>, AtomicUsize);
+    impl Listen for Ear {
+        fn hear(&self, event: &Event<'_>) {
+            match event {
+                Event::Begun { simulations, .. } => self.0.lock().unwrap().push(format!("{simulations} to do")),
+                Event::Simulated { count, .. } => {
+                    self.1.fetch_add(usize::try_from(*count).unwrap(), Ordering::Relaxed);
+                }
+                Event::Finished { experiment, rows, .. } => {
+                    self.0.lock().unwrap().push(format!("{experiment}: {rows} rows"));
+                }
+                Event::Ended => self.0.lock().unwrap().push("ended".into()),
+            }
+        }
+    }
+    let ear = Ear::default();
+    Desk::new().run(2, &MadeUp::default(), &ear);
+    let mut heard = ear.0.into_inner().unwrap();
+    assert_eq!((heard.remove(0).as_str(), heard.pop().unwrap().as_str()), ("60 to do", "ended"));
+    heard.sort();
+    assert_eq!(heard, ["ch3-gap: 3 rows", "ch3-stop: 30 rows"]);
+    assert_eq!(ear.1.into_inner(), 60);
+}
+
+#[test]
+fn files_that_are_no_experiments_are_told_and_the_others_load() {
+    let desk = Desk::new();
+    desk.put("experiments/ch3/ch3-later.yml", STOP);
+    desk.put("experiments/ch4/ch3-stop.yaml", STOP);
+    desk.put("experiments/ch3/not an id.yaml", STOP);
+    desk.put("experiments/ch3/ch3-wrong.yaml", &STOP.replace("1 kg", "1 s"));
+    fs::write(desk.layout.path("experiments/ch3/ch3-latin.yaml"), b"title: \xe9\n").unwrap();
+    let loaded = Loaded::from_texts(&desk.texts());
+    assert_eq!(loaded.sources.len(), 2);
+    let told: Vec<String> = loaded.refused.iter().map(ToString::to_string).collect();
+    assert_eq!(told.len(), 5, "{told:#?}");
+    let says = |words: &[&str]| told.iter().any(|line| words.iter().all(|word| line.contains(word)));
+    assert!(says(&["ch3-later.yml", "rename it"]));
+    assert!(says(&["ch4/ch3-stop.yaml", "same id", "ch3/ch3-stop.yaml"]));
+    assert!(says(&["not an id.yaml"]) && says(&["ch3-latin.yaml", "UTF-8"]));
+    assert!(says(&["ch3-wrong.yaml:6:"]));
+}
+
+#[test]
+fn two_runs_at_once_take_turns() {
+    let desk = Desk::new();
+    let first = Lock::take(&desk.layout, || panic!("nobody else is there")).unwrap();
+    let (tell, told) = std::sync::mpsc::channel();
+    std::thread::scope(|scope| {
+        let layout = &desk.layout;
+        let second = scope.spawn(move || Lock::take(layout, || tell.send(()).unwrap()).unwrap());
+        told.recv().unwrap();
+        assert!(!second.is_finished());
+        drop(first);
+        second.join().unwrap();
+    });
+}
