@@ -119,6 +119,16 @@ impl Contact {
     }
 }
 
+impl Particle {
+    /// Between rigid faces without a gap: a part of the structure, which no face ever loses.
+    pub(crate) fn is_enclosed(&self) -> bool {
+        let rigid = |face: &Face| matches!(face.law, Law::Rigid { .. });
+        self.gap == 0.0
+            && rigid(&self.floor)
+            && self.ceiling.as_ref().is_some_and(|ceiling| rigid(ceiling) && ceiling.row == self.floor.row)
+    }
+}
+
 impl Law {
     pub(crate) fn stop(self) -> Option<Stop> {
         match self {

@@ -49,6 +49,8 @@ pub(crate) struct March<'a> {
     signals: Signals,
     /// M⁻¹ b: what a unit impulse does to q′.
     answer: Vec<f64>,
+    /// The crossing that is dealt with was due at once, when its segment began.
+    sudden: bool,
     /// The contact state or its damping has changed since the flow was chosen.
     changed: bool,
     mobilities: Mobilities,
@@ -116,6 +118,7 @@ impl<'a> March<'a> {
             paths: vec![Parabola::default(); count],
             signals: Signals::default(),
             answer: Cholesky::new(&system.mass)?.solve(&system.force_row),
+            sudden: false,
             changed: true,
             mobilities: Mobilities::default(),
             phase: DrivePhase::default(),
@@ -297,7 +300,7 @@ impl<'a> March<'a> {
                     }
                 }
                 _ if contact.holds(particle) => {
-                    if away < 0.0 {
+                    if away < 0.0 || (away > 0.0 && particle.is_enclosed()) {
                         self.changed = true;
                         self.contacts[j] = if side.stopped() == contact { side.pressed() } else { Contact::Flight };
                         struck.push((j, side));
@@ -326,8 +329,8 @@ impl<'a> March<'a> {
             }
         }
         for (j, side) in struck {
-            if side.away() * self.particles[j].rate < 0.0 {
-                self.strike(j, side, side.face(&self.system.particles[j]).law.restitution())?;
+            if side.away() * self.particles[j].rate < 0.0 || self.system.particles[j].is_enclosed() {
+                self.strike(j, side, self.restitution(j, side))?;
             } else {
                 // Another impact has driven the face away in the meantime.
                 let rate = self.particles[j].rate;
@@ -335,7 +338,14 @@ impl<'a> March<'a> {
                 self.after_bounce(j, side);
             }
         }
+        self.meet_at_once()?;
         self.choose_flow()
+    }
+
+    fn restitution(&self, j: usize, side: Side) -> f64 {
+        let particle = &self.system.particles[j];
+        // All bounces across no gap happen at once.
+        if particle.is_enclosed() { 0.0 } else { side.face(particle).law.restitution() }
     }
 
     /// Position relative to the ceiling, for a particle whose state refers to the floor.
@@ -366,7 +376,7 @@ impl<'a> March<'a> {
     /// A particle in flight reaches a face: its state refers to that face already, with gap 0.
     fn meet(&mut self, j: usize, side: Side) -> Result<(), EngineError> {
         match side.face(&self.system.particles[j]).law {
-            Law::Rigid { restitution } => self.strike(j, side, restitution),
+            Law::Rigid { .. } => self.strike(j, side, self.restitution(j, side)),
             Law::Resilient { .. } => {
                 let rate = self.particles[j].rate;
                 self.changed = true;
@@ -402,13 +412,14 @@ impl<'a> March<'a> {
         self.contacts[j] = held;
         self.choose_flow()?;
         let grip = self.grip(j, side);
-        if grip.holds() && (speed == 0.0 || !grip.is_nothing()) {
+        if particle.is_enclosed() || grip.holds() && (speed == 0.0 || !grip.is_nothing()) {
             self.smooth[j] = grip.is_nothing();
             if speed > 0.0 {
                 let last = self.exchange(j, side, 0.0)?;
                 // What was left to bounce: a geometric series of flights of 2u′/a, each shorter by ε. In flight the face no
                 // longer carries the particle, so that a is larger than the push per mass that will hold it.
-                let tail = 2.0 * speed / (grip.push * last.lightening * (1.0 - restitution));
+                let series = if restitution < 1.0 { 1.0 / (1.0 - restitution) } else { 0.0 };
+                let tail = 2.0 * speed / (grip.push * last.lightening) * series;
                 self.record_at(j, EventKind::ChatterEnd, self.time + tail, self.particles[j].rate, 0.0);
             }
             self.particles[j].rate = 0.0;
@@ -424,7 +435,7 @@ impl<'a> March<'a> {
         self.choose_flow()?;
         let grip = self.grip(j, side);
         self.smooth[j] = grip.is_nothing();
-        if grip.holds() {
+        if grip.holds() || self.system.particles[j].is_enclosed() {
             self.changed = true;
             self.contacts[j] = side.pressed();
         } else if side == Side::Ceiling {
@@ -441,13 +452,16 @@ impl<'a> March<'a> {
                 self.choose_flow()?;
                 let grip = self.grip(j, contact.side());
                 self.smooth[j] = grip.is_nothing();
-                if !grip.holds() {
+                if !grip.holds() && !self.system.particles[j].is_enclosed() {
                     self.let_go(j, contact.side());
                 }
-            } else if contact == Contact::Flight && self.particles[j] == Relative::default() {
-                self.rest(j, Side::Floor)?;
+            } else if self.particles[j] == Relative::default() {
+                self.changed = true;
+                self.contacts[j] = Contact::Flight;
+                self.rest(j, contact.side())?;
             }
         }
+        self.meet_at_once()?;
         self.choose_flow()
     }
 
@@ -630,6 +644,7 @@ impl<'a> March<'a> {
         };
         if let Found::Event { guard, .. } = found {
             let (j, crossing) = self.crossings[self.search.guards[guard].label];
+            self.sudden = length == 0.0;
             self.cross(j, crossing)?;
         }
         Ok(())
@@ -655,8 +670,11 @@ impl<'a> March<'a> {
                     Side::Ceiling => flow.face_rows[j].ceiling,
                 };
                 let (phases, _) = self.signals.of(row);
-                self.particles[j] = guards::fly(flow, self.paths[j], phases, &self.search.kernels, length);
+                let here = self.particles[j];
+                self.particles[j] = guards::fly(flow, self.paths[j], phases, here, &self.search.kernels, length);
             }
+            // What has begun at zero is there no longer.
+            self.smooth[j] &= length == 0.0;
         }
         flow.advance(&self.search.kernels, &self.c, &mut self.c_end);
         flow.leave(&self.c_end, length, self.level, end_drive, &mut self.q, &mut self.rate);
@@ -772,12 +790,12 @@ impl<'a> March<'a> {
             Crossing::Release if self.contacts[j].holds(particle) => {
                 self.particles[j].rate = 0.0;
                 self.let_go(j, side);
-                self.smooth[j] = true;
+                self.smooth[j] = !self.sudden;
             }
             Crossing::Release => match side.face(particle).law {
                 Law::Resilient { no_tension: true, .. } if self.particles[j].gap != 0.0 => {
                     self.slip(j, side);
-                    self.smooth[j] = true;
+                    self.smooth[j] = !self.sudden;
                 }
                 _ => {
                     self.particles[j].gap = 0.0;
@@ -794,7 +812,7 @@ impl<'a> March<'a> {
             }
             Crossing::Again => {
                 self.slip(j, side);
-                self.smooth[j] = true;
+                self.smooth[j] = !self.sudden;
             }
             Crossing::HalfCycle => {}
         }
@@ -906,7 +924,10 @@ impl<'a> March<'a> {
                 let row = if side == Side::Floor { rows.floor } else { rows.ceiling };
                 let [face, _, _] = self.signals.value(flow, row, &kernels, t);
                 let gap = match (contact.face(particle), rows.compression) {
-                    (None, _) => guards::fly(flow, self.paths[0], self.signals.of(row).0, &kernels, t).gap,
+                    (None, _) => {
+                        let (phases, here) = (self.signals.of(row).0, self.particles[0]);
+                        guards::fly(flow, self.paths[0], phases, here, &kernels, t).gap
+                    }
                     (Some(_), Some(compression)) => self.signals.value(flow, compression, &kernels, t)[0],
                     (Some(_), None) => self.particles[0].gap,
                 };
