@@ -58,6 +58,13 @@ impl Side {
         }
     }
 
+    pub(crate) fn opposite(self) -> Self {
+        match self {
+            Self::Floor => Self::Ceiling,
+            Self::Ceiling => Self::Floor,
+        }
+    }
+
     pub(crate) fn pressed(self) -> Contact {
         match self {
             Self::Floor => Contact::Floor,
@@ -123,9 +130,12 @@ impl Particle {
     /// Between rigid faces without a gap: a part of the structure, which no face ever loses.
     pub(crate) fn is_enclosed(&self) -> bool {
         let rigid = |face: &Face| matches!(face.law, Law::Rigid { .. });
-        self.gap == 0.0
-            && rigid(&self.floor)
-            && self.ceiling.as_ref().is_some_and(|ceiling| rigid(ceiling) && ceiling.row == self.floor.row)
+        self.has_no_gap() && rigid(&self.floor) && self.ceiling.as_ref().is_some_and(rigid)
+    }
+
+    /// Between faces that move as one, without a gap: what leaves one of them is at the other.
+    pub(crate) fn has_no_gap(&self) -> bool {
+        self.gap == 0.0 && self.ceiling.as_ref().is_some_and(|ceiling| ceiling.row == self.floor.row)
     }
 }
 

@@ -102,19 +102,25 @@ fn flight_path(flow: &Flow, rest: Parabola, phases: &[Phase], here: Relative, gr
     path
 }
 
-/// radius·t below which a flight's fifth derivative moves nothing.
-const SHORT_FLIGHT: f64 = 1e-3;
+/// radius·t below which the fifth derivative of a gap moves nothing.
+const SHORT: f64 = 1e-3;
 
-/// A flight so short that the difference of parabola and blocks would be all rounding: by its derivatives.
+/// So short a time that a gap is followed by its derivatives: as the sum of its parts it would be all rounding.
+#[inline]
+pub(crate) fn is_short(flow: &Flow, time: f64) -> bool {
+    flow.blocks.iter().all(|block| block.radius * time < SHORT)
+}
+
+/// A gap after a short time, from where it is: its acceleration is `constant` plus `sign` times that of the shares.
 #[cold]
-fn fly_shortly(flow: &Flow, path: Parabola, phases: &[Phase], here: Relative, time: f64) -> Relative {
-    let mut derivatives = [2.0 * path.p2, 0.0, 0.0, 0.0];
+pub(crate) fn creep(flow: &Flow, constant: f64, sign: f64, phases: &[Phase], here: Relative, time: f64) -> Relative {
+    let mut derivatives = [constant, 0.0, 0.0, 0.0];
     for (block, phase) in flow.blocks.iter().zip(phases) {
         if !block.is_drift() {
             let bend = block.acceleration(*phase);
             let snap = block.acceleration(bend);
             for (sum, term) in derivatives.iter_mut().zip([bend.value, bend.rate, snap.value, snap.rate]) {
-                *sum -= term;
+                *sum += sign * term;
             }
         }
     }
@@ -136,8 +142,8 @@ pub(crate) fn fly(
     kernels: &[super::block::Kernel],
     time: f64,
 ) -> Relative {
-    if flow.blocks.iter().all(|block| block.radius * time < SHORT_FLIGHT) {
-        return fly_shortly(flow, path, phases, here, time);
+    if is_short(flow, time) {
+        return creep(flow, 2.0 * path.p2, -1.0, phases, here, time);
     }
     let mut now = Relative { gap: path.at(time), rate: path.rate(time) };
     for ((block, phase), kernel) in flow.blocks.iter().zip(phases).zip(kernels) {
@@ -248,11 +254,20 @@ fn pressed(
     let side = state.contacts[j].side();
     let away = side.away();
     let Some(row) = flow.face_rows[j].compression else { return };
-    let (phases, rest) = signals.of(row);
+    let (phases, mut rest) = signals.of(row);
     let Law::Resilient { stiffness, no_tension, stop, .. } = side.face(particle).law else { return };
+    // The start is known to the bit; what the blocks make of it would hide a contact that lasts a nanosecond.
+    let (value, rate) = phases.iter().fold((0.0, 0.0), |(x, v), phase| (x + phase.value, v + phase.rate));
+    rest.p0 = here.gap - value;
+    if here.gap == 0.0 {
+        rest.p1 = here.rate - rate;
+    }
     if no_tension {
         let damping = state.damping[j];
-        let force = spring_and_dashpot(rest, stiffness, damping);
+        let force = Parabola {
+            p0: stiffness * rest.p0 + damping * (here.rate - rate),
+            ..spring_and_dashpot(rest, stiffness, damping)
+        };
         let mix = mixed(&flow.blocks, phases, stiffness, damping);
         let begin = force_start(here, stiffness, damping, state.smooth[j]);
         push(Crossing::Release, Draft { sign: -away, parabola: force, phases: &mix, start: begin, distance: false });
@@ -293,7 +308,8 @@ fn held(
 fn force_start(here: Relative, stiffness: f64, damping: f64, smooth: bool) -> Start {
     let (spring, dashpot) = (stiffness * here.gap, damping * here.rate);
     let force = spring + dashpot;
-    if force != 0.0 && !(smooth && force.abs() < 1e-9 * (spring.abs() + dashpot.abs())) {
+    // Where it began or ended smoothly the two cancel, as well as the instant of a contact of nanoseconds is known.
+    if force != 0.0 && !(smooth && force.abs() < 1e-3 * (spring.abs() + dashpot.abs())) {
         return Start::Apart;
     }
     // At the face itself u grows with t, t² or t³ (at rest, smoothly), and the force of the dashpot with one less.
@@ -364,7 +380,17 @@ impl Grip {
 
     /// Whether it holds: where the push is nothing but rounding, by what it becomes.
     pub(crate) fn holds(self) -> bool {
-        self.push > self.noise || (self.is_nothing() && self.growth >= 0.0)
+        self.push > self.noise || (self.is_nothing() && self.grows())
+    }
+
+    /// A bounce of this speed is over before the push can be told from nothing: there is none.
+    pub(crate) fn outweighs(self, speed: f64) -> bool {
+        speed == 0.0 || (self.growth != 0.0 && 2.0 * speed * self.growth.abs() <= self.noise * self.noise)
+    }
+
+    /// Where it is nothing: the push sets in.
+    pub(crate) fn grows(self) -> bool {
+        self.growth >= 0.0
     }
 
     pub(crate) fn is_nothing(self) -> bool {

@@ -117,7 +117,7 @@ impl<'a> March<'a> {
     /// Start: as asked, or static equilibrium with every particle on its floor.
     fn place(&mut self, start: &super::StartState) -> Result<(), EngineError> {
         match start {
-            super::StartState::StaticEquilibrium => {
+            super::StartState::StaticEquilibrium => loop {
                 self.choose_flow()?;
                 let drive = DrivePhase::default();
                 let flow = &self.flows[self.now];
@@ -125,10 +125,23 @@ impl<'a> March<'a> {
                 flow.leave(&self.c, 0.0, 0.0, drive, &mut self.q, &mut self.rate);
                 let n = self.system.mass.order;
                 self.rate.fill(0.0);
+                let mut fits = true;
                 for (i, &j) in flow.attached.iter().enumerate() {
                     self.particles[j].gap = self.q[n + i];
+                    if let Some(stop) = self.system.particles[j].floor.law.stop()
+                        && self.particles[j].gap < -stop.length
+                    {
+                        // Its weight alone presses the floor to the stop.
+                        self.particles[j].gap = -stop.length;
+                        self.contacts[j] = Contact::FloorStop;
+                        fits = false;
+                    }
                 }
-            }
+                if fits {
+                    break;
+                }
+                self.changed = true;
+            },
             super::StartState::Given { q, rate, particles } => {
                 self.q[..q.len()].copy_from_slice(q);
                 self.rate[..rate.len()].copy_from_slice(rate);
@@ -378,8 +391,15 @@ impl<'a> March<'a> {
         }
         flow.advance(&self.search.kernels, &self.c, &mut self.c_end);
         flow.leave(&self.c_end, length, self.level, end_drive, &mut self.q, &mut self.rate);
+        let short = guards::is_short(flow, length);
         for (i, &j) in flow.attached.iter().enumerate() {
-            self.particles[j] = Relative { gap: self.q[n + i], rate: self.rate[n + i] };
+            self.particles[j] = match flow.face_rows[j].compression {
+                Some(row) if short => {
+                    let (phases, rest) = self.signals.of(row);
+                    guards::creep(flow, 2.0 * rest.p2, 1.0, phases, self.particles[j], length)
+                }
+                _ => Relative { gap: self.q[n + i], rate: self.rate[n + i] },
+            };
         }
     }
 
@@ -464,7 +484,7 @@ impl<'a> March<'a> {
                 let side = contact.side();
                 let rows = flow.face_rows[0];
                 let row = if side == Side::Floor { rows.floor } else { rows.ceiling };
-                let [face, _, _] = self.signals.value(flow, row, &kernels, t);
+                let faces = [rows.floor, rows.ceiling].map(|row| self.signals.value(flow, row, &kernels, t)[0]);
                 let gap = match (contact.face(particle), rows.compression) {
                     (None, _) => {
                         let (phases, here) = (self.signals.of(row).0, self.particles[0]);
@@ -473,7 +493,7 @@ impl<'a> March<'a> {
                     (Some(_), Some(compression)) => self.signals.value(flow, compression, &kernels, t)[0],
                     (Some(_), None) => self.particles[0].gap,
                 };
-                sample.set_particle(particle, side, face, gap, contact);
+                sample.set_particle(particle, contact, faces, gap);
             }
             self.response.trace.push(sample);
         }

@@ -179,9 +179,9 @@ impl March<'_> {
         let grip = self.grip(j, side, false);
         self.smooth[j] = grip.is_nothing();
         self.particles[j] = Relative::default();
-        if grip.holds() {
+        if grip.holds() || particle.has_no_gap() {
             self.changed = true;
-            self.contacts[j] = side.pressed();
+            self.contacts[j] = if grip.holds() { side.pressed() } else { side.opposite().pressed() };
         } else if side == Side::Ceiling {
             self.refer_to_floor(j);
         }
@@ -226,6 +226,13 @@ impl March<'_> {
         self.changed = true;
         if from_stop {
             self.contacts[j] = side.pressed();
+            return;
+        }
+        let particle = &self.system.particles[j];
+        if particle.has_no_gap() && self.particles[j] == Relative::default() {
+            // It goes from face to face.
+            self.contacts[j] = side.opposite().pressed();
+            self.record(j, side.opposite().made(), 0.0, 0.0);
             return;
         }
         self.contacts[j] = Contact::Flight;

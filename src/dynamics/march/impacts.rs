@@ -270,10 +270,11 @@ impl March<'_> {
         }
         let mut holds = vec![true; candidates.len()];
         let mut grips = vec![Grip::default(); candidates.len()];
+        let mut turns = vec![0; candidates.len()];
         for candidate in &candidates {
             self.fix(candidate, true);
         }
-        for _ in 0..1_usize << candidates.len().min(16) {
+        for _ in 0..1 + 2 * candidates.len() + (1_usize << candidates.len().min(16)) {
             self.choose_flow()?;
             let mut wrong = None;
             for (i, candidate) in candidates.iter().enumerate() {
@@ -281,23 +282,28 @@ impl March<'_> {
                 let grip = grips[i];
                 let enclosed = self.system.particles[candidate.particle].is_enclosed();
                 // A face that pushes with nothing holds what does not move; what still bounces goes on.
-                let fits = match holds[i] {
-                    true => enclosed || grip.holds() && (candidate.speed == 0.0 || !grip.is_nothing()),
-                    false => grip.is_nothing() || !grip.holds(),
-                };
+                let able = grip.holds() && (grip.outweighs(candidate.speed) || !grip.is_nothing());
+                let fits = holds[i] == (enclosed || able);
+                // Neither way: what rounding has left of nothing.
+                let fits = fits || turns[i] > 1;
                 if !fits && wrong.is_none() {
                     wrong = Some(i);
                 }
             }
             let Some(i) = wrong else { break };
-            holds[i] = !holds[i];
+            turns[i] += 1;
+            holds[i] = if turns[i] > 1 { grips[i].grows() } else { !holds[i] };
             self.fix(&candidates[i], holds[i]);
         }
-        for ((candidate, holds), grip) in candidates.iter().zip(&holds).zip(&grips) {
+        for (((candidate, holds), grip), turns) in candidates.iter().zip(&holds).zip(&grips).zip(&turns) {
             let (j, side) = (candidate.particle, candidate.side);
-            self.smooth[j] = candidate.speed == 0.0 && grip.is_nothing();
+            let at_rest = grip.outweighs(candidate.speed);
+            self.smooth[j] = at_rest && (grip.is_nothing() || *turns > 1);
+            if at_rest {
+                self.particles[j].rate = 0.0;
+            }
             if *holds {
-                if candidate.speed > 0.0 {
+                if !at_rest {
                     self.end_chatter(candidate, *grip)?;
                 }
                 self.particles[j].rate = 0.0;
