@@ -174,7 +174,10 @@ impl Measure {
             Self::CeilingImpacts => response.counts.ceiling_contacts as f64,
             Self::StopImpacts => response.counts.stops as f64,
             Self::Separations => response.counts.floor_releases as f64,
-            Self::Drift => (response.sums[0].rms_velocity() / response.sums[1].rms_velocity() - 1.0).abs(),
+            Self::Drift => {
+                let [first, second] = response.observed[0].halves;
+                (first.rms_velocity() / second.rms_velocity() - 1.0).abs()
+            }
             Self::HighestFrequency => response.highest_frequency / TAU,
             Self::ShortestPeriod => TAU / response.highest_frequency,
             Self::FloorCompression => trace()?.floor_compression(),

@@ -63,7 +63,7 @@ pub fn compile(scene: &Scene) -> Result<HybridSystem, CompileError> {
         particles,
         force_row: base.clone(),
         drive: Drive { half_cycles: half_cycles(scene)?, ..drive(&scene.excitation) },
-        observed_row: base.clone(),
+        observed_rows: vec![base.clone()],
         momentum_rows: vec![base],
     })
 }
