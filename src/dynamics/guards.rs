@@ -325,7 +325,7 @@ pub(crate) fn spring_on_stop(particle: &Particle, side: Side) -> f64 {
 }
 
 /// How a face holds a particle that does not move against it.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Grip {
     /// What it can push per mass, as an acceleration: it holds while this is positive.
     pub(crate) push: f64,
@@ -337,9 +337,15 @@ pub(crate) struct Grip {
 
 impl Grip {
     /// The grip of a face on particle j; with the particle in flight, what brings it back to the face.
-    pub(crate) fn of(system: &HybridSystem, flow: &Flow, signals: &Signals, j: usize, side: Side) -> Self {
+    pub(crate) fn of(
+        system: &HybridSystem,
+        flow: &Flow,
+        signals: &Signals,
+        j: usize,
+        side: Side,
+        on_stop: bool,
+    ) -> Self {
         let (phases, rest) = signals.of(face_row(flow, j, side));
-        let on_stop = flow.contacts[j] == side.stopped();
         let spring = if on_stop { spring_on_stop(&system.particles[j], side) } else { 0.0 };
         let (mut bend, mut growth) = (2.0 * rest.p2, 0.0);
         let mut size = system.gravity + bend.abs() + spring;

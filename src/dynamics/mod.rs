@@ -17,6 +17,7 @@
 
 mod audit;
 mod block;
+mod collision;
 mod contact;
 mod elementary;
 mod extremes;
