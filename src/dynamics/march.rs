@@ -11,11 +11,12 @@ use super::audit::Audit;
 use super::block::Phase;
 use super::contact::{Relative, Side};
 use super::extremes;
-use super::flow::{Cholesky, DrivePhase, Flow, Parabola, Signals};
-use super::guards::{self, Contacts, Crossings};
+use super::flow::{Cholesky, DrivePhase, Flow, Parabola};
+use super::guards::{self, Contacts};
 use super::integral::quadrature;
 use super::mobility::Mobilities;
 use super::search::{Clarity, Found, Search};
+use super::signals::{self, Signals};
 use super::system::{Contact, Event, EventKind, HybridSystem, Law, Tick, dot};
 use super::trace::Sample;
 use super::{CycleRates, EngineError, Observed, Options, Proof, Response};
@@ -50,7 +51,6 @@ pub(crate) struct March<'a> {
     half: Half,
     // Work space.
     search: Search,
-    crossings: Crossings,
     /// Gap parabolas of the particles in flight.
     paths: Vec<Parabola>,
     signals: Signals,
@@ -95,7 +95,6 @@ impl<'a> March<'a> {
             level: 0.0,
             half: Half::default(),
             search: Search::new(options.window_factor),
-            crossings: Crossings::new(),
             paths: vec![Parabola::default(); count],
             signals: Signals::default(),
             answer: Cholesky::new(&system.mass)?.solve(&system.force_row),
@@ -104,7 +103,7 @@ impl<'a> March<'a> {
             mobilities: Mobilities::default(),
             phase: DrivePhase::default(),
             phase_time: f64::NAN,
-            c: vec![0.0; 2 * most],
+            c: vec![0.0; 2 * most + 2],
             c_end: vec![0.0; 2 * most],
             observed_end: Vec::new(),
             clarity: Clarity { margin: f64::INFINITY, ties: 0 },
@@ -324,7 +323,7 @@ impl<'a> March<'a> {
         self.choose_flow()?;
         let drive = self.drive_phase(self.time);
         self.enter_flow(drive);
-        self.flows[self.now].signals(&self.c, self.level, drive, &mut self.signals);
+        self.flows[self.now].watch(&self.c, self.level, &mut self.signals);
         self.turn_half_cycle()?;
         let flow = &self.flows[self.now];
         let state = Contacts {
@@ -336,13 +335,12 @@ impl<'a> March<'a> {
             q: &self.q,
             rate: &self.rate,
         };
-        guards::set(state, flow, &self.signals, &mut self.search, &mut self.crossings, &mut self.paths);
-        if self.system.drive.half_cycles.is_some() && !self.half.idle {
-            let Half { sign, touching, .. } = self.half;
-            guards::half_cycle(flow, &self.signals, sign, touching, &mut self.search, &mut self.crossings);
+        guards::set(state, flow, &self.signals, &mut self.search, &mut self.paths);
+        if let (Some(bend), false) = (flow.rows.bend, self.half.idle) {
+            guards::half_cycle(bend, self.half.sign, self.half.touching, &mut self.search);
         }
         let limit = until - self.time;
-        let found = self.search.run(&flow.blocks, &flow.series, limit, &mut self.clarity);
+        let found = self.search.run(flow, &self.signals, limit, &mut self.clarity);
         let length = match found {
             Found::Nothing => limit,
             Found::Event { time, .. } => time.min(limit),
@@ -355,9 +353,9 @@ impl<'a> March<'a> {
             Found::Event { .. } => self.time + length,
         };
         if let Found::Event { guard, .. } = found {
-            let (j, crossing) = self.crossings[self.search.guards[guard].label];
+            let super::search::Guard { particle, crossing, .. } = self.search.guards[guard];
             self.sudden = length == 0.0;
-            self.cross(j, crossing)?;
+            self.cross(particle, crossing)?;
         }
         Ok(())
     }
@@ -377,11 +375,7 @@ impl<'a> March<'a> {
                     // Let go at the same instant as another: u = u‴t³/6 is still nothing, and is kept so to the bit.
                     continue;
                 }
-                let row = match contact.side() {
-                    Side::Floor => flow.face_rows[j].floor,
-                    Side::Ceiling => flow.face_rows[j].ceiling,
-                };
-                let (phases, _) = self.signals.of(row);
+                let (phases, _) = self.signals.of(flow.rows.guards[j].first);
                 let here = self.particles[j];
                 self.particles[j] = guards::fly(flow, self.paths[j], phases, here, &self.search.kernels, length);
             }
@@ -400,7 +394,7 @@ impl<'a> March<'a> {
         let flow = &self.flows[self.now];
         if self.options.averages(self.cycle) {
             let second_half = 2 * (self.cycle - u64::from(self.options.skip)) >= u64::from(self.options.average);
-            for (of, &row) in self.response.observed.iter_mut().zip(&flow.all_observed) {
+            for (of, &row) in self.response.observed.iter_mut().zip(&flow.rows.observed) {
                 let (observed, rest) = self.signals.of(row);
                 let integrals = match &flow.forms {
                     Some(forms) => {
@@ -428,9 +422,9 @@ impl<'a> March<'a> {
         {
             audit.segment(self.system, flow, &self.c, self.level, drive, length);
         }
-        if self.system.drive.half_cycles.is_some() && !self.half.idle {
-            let bends = guards::accelerations(&flow.blocks, self.signals.of(flow.observed).0);
-            self.half.square += quadrature(&flow.blocks, &bends, Parabola::default(), length).square;
+        if let (Some(bend), false) = (flow.rows.bend, self.half.idle) {
+            let bends = self.signals.of(bend).0;
+            self.half.square += quadrature(&flow.blocks, bends, Parabola::default(), length).square;
             self.half.length += length;
         }
     }
@@ -466,7 +460,12 @@ impl<'a> March<'a> {
             }
             kernels.clear();
             kernels.extend(flow.blocks.iter().map(|block| block.kernel(t)));
-            let [displacement, velocity, acceleration] = self.signals.value(flow, flow.observed, &kernels, t);
+            let value = |(phases, rest): (&[Phase], Parabola)| signals::value(&flow.blocks, phases, rest, &kernels, t);
+            let anywhere = |row: usize| {
+                let (phases, rest) = flow.rows.evaluate(row, &self.c, self.level, flow.blocks.len());
+                value((&phases, rest))
+            };
+            let [displacement, velocity, acceleration] = value(self.signals.of(flow.rows.observed[0]));
             let mut sample = Sample {
                 time: self.cycle as f64 * period + instant,
                 displacement,
@@ -479,15 +478,13 @@ impl<'a> March<'a> {
             if let Some(particle) = self.system.particles.first() {
                 let contact = self.contacts[0];
                 let side = contact.side();
-                let rows = flow.face_rows[0];
-                let row = if side == Side::Floor { rows.floor } else { rows.ceiling };
-                let [face, _, _] = self.signals.value(flow, row, &kernels, t);
-                let gap = match (contact.face(particle), rows.compression) {
+                let [face, _, _] = anywhere(flow.rows.face(0, side));
+                let gap = match (contact.face(particle), flow.rows.faces[0].compression) {
                     (None, _) => {
-                        let (phases, here) = (self.signals.of(row).0, self.particles[0]);
+                        let (phases, here) = (self.signals.of(flow.rows.guards[0].first).0, self.particles[0]);
                         guards::fly(flow, self.paths[0], phases, here, &kernels, t).gap
                     }
-                    (Some(_), Some(compression)) => self.signals.value(flow, compression, &kernels, t)[0],
+                    (Some(_), Some(compression)) => anywhere(compression)[0],
                     (Some(_), None) => self.particles[0].gap,
                 };
                 sample.set_particle(particle, side, face, gap, contact);

@@ -31,6 +31,7 @@ mod modes;
 mod polynomial;
 mod search;
 mod series;
+mod signals;
 mod spectral;
 mod spline;
 mod system;
