@@ -364,8 +364,3 @@ impl Grip {
         self.push.abs() <= self.noise
     }
 }
-
-/// Second derivatives of the shares, as shares.
-pub(crate) fn accelerations(blocks: &[Block], phases: &[Phase]) -> Vec<Phase> {
-    blocks.iter().zip(phases).map(|(block, phase)| block.acceleration(*phase)).collect()
-}
