@@ -14,6 +14,7 @@ mod fixed;
 mod made_up;
 mod reference;
 mod report;
+mod solver_version;
 mod spec;
 mod study;
 mod table;
