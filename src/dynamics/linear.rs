@@ -62,7 +62,7 @@ pub(crate) enum Attempt {
     /// It is linear.
     Solved(Box<Response>),
     /// It is not, or it is not proved to be; the flow at rest, where it was built.
-    Open(Option<Flow>),
+    Open(Option<Box<Flow>>),
 }
 
 /// Solves a run in closed form if it is proved to be linear.
@@ -72,10 +72,10 @@ pub(crate) fn attempt(system: &HybridSystem, options: &Options) -> Result<Attemp
     }
     let flow = at_rest(system)?;
     if drifts(&flow) {
-        return Ok(Attempt::Open(Some(flow)));
+        return Ok(Attempt::Open(Some(Box::new(flow))));
     }
     let run = Run::new(system, &flow, options)?;
-    let Some(margin) = run.margin() else { return Ok(Attempt::Open(Some(flow))) };
+    let Some(margin) = run.margin() else { return Ok(Attempt::Open(Some(Box::new(flow)))) };
     Ok(Attempt::Solved(Box::new(run.respond(options, margin)?)))
 }
 

@@ -385,7 +385,7 @@ pub enum EngineError {
 pub fn event_driven(system: &HybridSystem, options: &Options) -> Result<Response, EngineError> {
     match linear::attempt(system, options)? {
         linear::Attempt::Solved(response) => Ok(*response),
-        linear::Attempt::Open(at_rest) => march::march(system, options, at_rest),
+        linear::Attempt::Open(at_rest) => march::march(system, options, at_rest.map(|flow| *flow)),
     }
 }
 
