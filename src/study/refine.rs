@@ -15,9 +15,9 @@ use crate::scene::ParameterValue;
 use crate::spec::{AxisScale, Case, Curve, Experiment, Refinement, curves};
 
 /// Halvings of the first intervals, at most: from 3 rad/s to 0.0002 rad/s.
-const MOST_HALVINGS: i32 = 14;
+const MOST_HALVINGS: u32 = 14;
 /// The same beside a chaotic point.
-const MOST_CHAOTIC_HALVINGS: i32 = 3;
+const MOST_CHAOTIC_HALVINGS: u32 = 3;
 /// Spreads within which a curve may be straight.
 const NOISE: f64 = 2.0;
 
@@ -106,7 +106,7 @@ fn bent(seen: &[Seen], rule: &Refinement, widest: f64) -> Vec<usize> {
         let [low, high] = [&seen[i], &seen[i + 1]];
         let width = high.at - low.at;
         let halvings = if low.chaotic || high.chaotic { MOST_CHAOTIC_HALVINGS } else { MOST_HALVINGS };
-        if !(width > 1.5 * widest * 0.5_f64.powi(halvings)) {
+        if width * f64::from(1_u32 << halvings) <= 1.5 * widest {
             continue;
         }
         let middles = [i, i + 1].into_iter().filter(|&middle| middle > 0 && middle + 1 < seen.len());
