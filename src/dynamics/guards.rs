@@ -7,7 +7,7 @@
 //! | held | push per mass: ±(φ·q″ + g) − kδ/mp |
 //! | released, still compressed | compression, minus the push that would come back |
 
-use super::block::{Block, Phase};
+use super::block::Phase;
 use super::contact::{Crossing, Relative, Side};
 use super::flow::{Flow, Parabola};
 use super::search::{Guard, Search};

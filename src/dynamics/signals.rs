@@ -193,6 +193,11 @@ impl Rows {
         }
     }
 
+    /// A row, watched or not.
+    pub(crate) fn row(&self, index: usize) -> &Row {
+        &self.rows[index]
+    }
+
     /// Row of the face on one side of particle j's enclosure.
     pub(crate) fn face(&self, j: usize, side: Side) -> usize {
         match side {

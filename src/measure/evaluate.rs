@@ -9,7 +9,7 @@ use std::f64::consts::TAU;
 
 use super::history::{History, columns};
 use super::{EvaluateError, Evaluated, Measure, Measured, Rigour};
-use crate::dynamics::{EngineError, HybridSystem, Options, Response, TraceRequest, event_driven};
+use crate::dynamics::{EngineError, HybridSystem, Method, Options, Response, TraceRequest, event_driven};
 use crate::scene::{Assumptions, Excitation, Recipe, Scene, Structure, compile};
 use crate::spec::{Settings, SolverChoice, TraceSpec};
 
@@ -17,6 +17,8 @@ use crate::spec::{Settings, SolverChoice, TraceSpec};
 const TWIN_KICK: f64 = 1e-9;
 /// How far the twin may end, relative to the RMS velocity, before the motion counts as chaotic.
 const CHAOS: f64 = 1e-6;
+/// What rounding leaves of a number in closed form, relative to it.
+const CLOSED_FORM: f64 = 1e-12;
 /// Ensemble of a look.
 const MEMBERS_OF_A_LOOK: u32 = 8;
 /// Largest kick of an ensemble member.
@@ -77,6 +79,10 @@ pub fn evaluate(
         return Ok(certain(vec![0.0; values.len()], false));
     }
 
+    if response.method == Method::ClosedForm {
+        // Linear: neighbouring starts stay neighbours, and there is no window to be halved.
+        return Ok(certain(values.iter().map(|value| CLOSED_FORM * value.abs()).collect(), false));
+    }
     let rms = response.window().rms_velocity();
     let twin = event_driven(&system, &Options { kick: TWIN_KICK, ..plain.clone() })?;
     let chaotic = (twin.window().rms_velocity() - rms).abs() > CHAOS * rms;
