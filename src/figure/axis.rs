@@ -127,6 +127,15 @@ impl Axis {
         share.is_finite().then_some(share)
     }
 
+    /// The number at a share of the axis.
+    pub(super) fn number(&self, share: f64) -> f64 {
+        let along = self.from + share * (self.to - self.from);
+        match self.scale {
+            AxisScale::Linear => along,
+            AxisScale::Log => libm::exp10(along),
+        }
+    }
+
     /// As [`Axis::share`], with what lies outside moved to the nearer end.
     pub(super) fn share_clamped(&self, number: f64) -> f64 {
         self.share(number).unwrap_or(0.0).clamp(0.0, 1.0)

@@ -10,6 +10,7 @@ mod cli;
 mod desk;
 mod engine;
 mod figure;
+mod figure_map;
 mod fixed;
 mod made_up;
 mod reference;
