@@ -5,7 +5,7 @@ use super::extraction::{Along, Direction, Extraction, NearestPassage, Parting, S
 use super::line::{Position, common, lines};
 use super::selection::same;
 use super::text::{percent, significant};
-use super::view::{Absence, Cell, Source, View, finite};
+use super::view::{Absence, Cell, Source, View};
 
 /// A number taken out of a table.
 #[derive(Debug, Clone, PartialEq)]
@@ -178,9 +178,6 @@ impl NearestPassage {
         let rows = view.rows(Source { table: None, rows: &self.rows }, None)?;
         let times = view.path(&rows, "time")?;
         let (of, through) = (view.path(&rows, &self.of)?, view.path(&rows, &self.through)?);
-        finite(times, "time")?;
-        finite(of, &self.of)?;
-        finite(through, &self.through)?;
         let side = self.direction.sign();
         let apart: Vec<f64> = of.iter().zip(through).map(|(a, b)| side * (a - b)).collect();
         let passages = apart.windows(2).zip(times.windows(2)).filter(|(apart, _)| apart[0] < 0.0 && apart[1] >= 0.0);

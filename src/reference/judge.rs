@@ -16,7 +16,8 @@ use super::printed::Printed;
 use super::tally::Outcome;
 use super::text::{percent, significant, with_unit};
 use super::verdict::{Comparison, Judged, Verdict};
-use super::view::{Absence, BASELINE, Reads, Tables, View};
+use super::view::{Absence, Reads, Tables, View};
+use crate::table::BASELINE;
 
 /// Gives every entry of a file its verdict. `fitted` holds the ids of the entries that an assumption was fitted to.
 #[must_use]

@@ -3,7 +3,9 @@
 //! An [`Entry`] says where a number or claim stands and how it is read from a table. [`judge`] holds it against the tables:
 //! values after ASME V&V 20, claims as predicates. [`self_test`] shows that every entry can fail.
 
+mod columns;
 mod compare;
+mod damage;
 mod decide;
 mod entry;
 mod extract;
