@@ -43,6 +43,18 @@ impl Extent {
     }
 }
 
+impl Extent {
+    /// With room above the data, as a share of what the data take.
+    pub(super) fn with_headroom(self, room: f64, scale: AxisScale) -> Self {
+        let Self { least, largest } = self;
+        let largest = match scale {
+            AxisScale::Linear => largest + room * (largest - least),
+            AxisScale::Log => largest * libm::pow(largest / least, room),
+        };
+        Self { least, largest }
+    }
+}
+
 /// How much room an axis leaves beyond the data.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Room {
@@ -134,6 +146,11 @@ impl Axis {
             AxisScale::Linear => along,
             AxisScale::Log => libm::exp10(along),
         }
+    }
+
+    /// A number of the table as this axis displays it.
+    pub(super) fn displayed(&self, number: f64) -> f64 {
+        number / self.factor
     }
 
     /// As [`Axis::share`], with what lies outside moved to the nearer end.

@@ -21,6 +21,7 @@ mod map_layout;
 mod map_paint;
 mod paint;
 mod panel;
+mod peak;
 mod raster;
 mod render;
 mod style;

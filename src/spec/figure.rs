@@ -197,7 +197,9 @@ impl<'t> FigureReader<'t> {
         match columns.role(name) {
             Some(role) if fits(role) => Some(Some(role)),
             Some(Role::Label) => self.findings.wrong(span, format!("`{name}` holds words: it cannot be an axis")),
-            Some(_) => self.findings.wrong(span, format!("`{name}` is a time history: it cannot split lines")),
+            Some(_) => self
+                .findings
+                .wrong(span, format!("`{name}` holds a list a row; a number or a word a row is wanted here")),
             None if Columns::is_history(name) => self.findings.report(
                 span,
                 format!("`{name}` is a time history, and this experiment keeps none"),

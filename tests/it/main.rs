@@ -16,5 +16,6 @@ mod made_up;
 mod reference;
 mod report;
 mod spec;
+mod spec_map;
 mod study;
 mod table;
