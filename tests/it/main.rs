@@ -14,6 +14,7 @@ mod figure_map;
 mod fixed;
 mod made_up;
 mod reference;
+mod reference_kinds;
 mod report;
 mod spec;
 mod spec_map;
