@@ -468,6 +468,9 @@ impl Load {
     }
 }
 
+/// Steady amplitudes above this, in units of F/(m ω²), would cost more digits than they may.
+const LARGEST_RESONANCE: f64 = 1e8;
+
 impl Steady {
     /// (−ω² + stiffness) cosine + ω damping sine = 0, … : the complex amplitude as a real system of twice the order.
     fn new(omega: f64, push: &[f64], accelerations: &[Vec<f64>], order: usize) -> Result<Self, EngineError> {
@@ -487,7 +490,10 @@ impl Steady {
             load[order + i] = push[i];
         }
         let solution = system.lu().solve(&load).filter(|x| x.iter().all(|v| v.is_finite()));
-        let solution = solution.ok_or(EngineError::UndampedResonance { omega })?;
+        // A steady answer far above what the force does in a cycle is taken off again by the free motion, with its digits.
+        let most = push.iter().fold(0.0_f64, |most, a| most.max(a.abs())) / (omega * omega) * LARGEST_RESONANCE;
+        let solution =
+            solution.filter(|x| x.iter().all(|v| v.abs() <= most)).ok_or(EngineError::UndampedResonance { omega })?;
         Ok(Self {
             omega,
             cosine: solution.iter().take(order).copied().collect(),

@@ -102,15 +102,43 @@ fn flight_path(flow: &Flow, rest: Parabola, phases: &[Phase], here: Relative, gr
     path
 }
 
+/// radius·t below which a flight's fifth derivative moves nothing.
+const SHORT_FLIGHT: f64 = 1e-3;
+
+/// A flight so short that the difference of parabola and blocks would be all rounding: by its derivatives.
+#[cold]
+fn fly_shortly(flow: &Flow, path: Parabola, phases: &[Phase], here: Relative, time: f64) -> Relative {
+    let mut derivatives = [2.0 * path.p2, 0.0, 0.0, 0.0];
+    for (block, phase) in flow.blocks.iter().zip(phases) {
+        if !block.is_drift() {
+            let bend = block.acceleration(*phase);
+            let snap = block.acceleration(bend);
+            for (sum, term) in derivatives.iter_mut().zip([bend.value, bend.rate, snap.value, snap.rate]) {
+                *sum -= term;
+            }
+        }
+    }
+    let [d2, d3, d4, d5] = derivatives;
+    Relative {
+        gap: here.gap
+            + time * (here.rate + time * (d2 / 2.0 + time * (d3 / 6.0 + time * (d4 / 24.0 + time * (d5 / 120.0))))),
+        rate: here.rate + time * (d2 + time * (d3 / 2.0 + time * (d4 / 6.0 + time * (d5 / 24.0)))),
+    }
+}
+
 /// The gap coordinate of a flight after the time of `kernels`.
 #[inline]
 pub(crate) fn fly(
     flow: &Flow,
     path: Parabola,
     phases: &[Phase],
+    here: Relative,
     kernels: &[super::block::Kernel],
     time: f64,
 ) -> Relative {
+    if flow.blocks.iter().all(|block| block.radius * time < SHORT_FLIGHT) {
+        return fly_shortly(flow, path, phases, here, time);
+    }
     let mut now = Relative { gap: path.at(time), rate: path.rate(time) };
     for ((block, phase), kernel) in flow.blocks.iter().zip(phases).zip(kernels) {
         if !block.is_drift() {
@@ -122,12 +150,22 @@ pub(crate) fn fly(
     now
 }
 
-fn start(touching: bool, here: Relative, smooth: bool) -> Start {
-    match (touching, smooth) {
-        (false, _) => Start::Apart,
-        (true, true) => Start::Touching { order: 3, slope: 0.0 },
-        (true, false) if here.rate == 0.0 => Start::Touching { order: 2, slope: 0.0 },
-        (true, false) => Start::Touching { order: 1, slope: here.rate.abs() },
+/// How a distance starts that grows with `rate`: at zero where it is, or where it is nothing but rounding and grows.
+#[inline]
+fn start(distance: f64, rate: f64, smooth: bool, phases: &[Phase]) -> Start {
+    if distance != 0.0 {
+        let noise = 4.0 * f64::EPSILON * phases.iter().fold(0.0, |sum, phase| sum + phase.value.abs());
+        if rate > 0.0 && distance.abs() < noise {
+            return Start::Touching { order: 1, slope: rate };
+        }
+        return Start::Apart;
+    }
+    if smooth {
+        Start::Touching { order: 3, slope: 0.0 }
+    } else if rate == 0.0 {
+        Start::Touching { order: 2, slope: 0.0 }
+    } else {
+        Start::Touching { order: 1, slope: rate.abs() }
     }
 }
 
@@ -146,7 +184,7 @@ fn in_flight(
     let path = flight_path(flow, rest, phases, here, gravity);
     let fixed = flow.without_drift(phases);
     let phases = fixed.as_deref().unwrap_or(phases);
-    let begin = start(here.gap == 0.0, here, state.smooth[j]);
+    let begin = start(here.gap, here.rate, state.smooth[j], phases);
     // u = path − blocks.
     let negative = Parabola { p0: -path.p0, p1: -path.p1, p2: -path.p2 };
     push(Crossing::ToFloor, Draft { sign: -1.0, parabola: negative, phases, start: begin, distance: true });
@@ -154,7 +192,7 @@ fn in_flight(
     if ceiling.row == particle.floor.row {
         let relative = Relative { gap: here.gap - particle.gap, rate: here.rate };
         let below = Parabola { p0: particle.gap - path.p0, p1: -path.p1, p2: -path.p2 };
-        let begin = start(relative.gap == 0.0, relative, state.smooth[j]);
+        let begin = start(-relative.gap, -relative.rate, state.smooth[j], phases);
         push(Crossing::ToCeiling, Draft { sign: 1.0, parabola: below, phases, start: begin, distance: true });
     } else {
         let shift = |x: &[f64]| dot(&ceiling.row, x) - dot(&particle.floor.row, x);
@@ -164,7 +202,7 @@ fn in_flight(
         let fixed = flow.without_drift(phases);
         let phases = fixed.as_deref().unwrap_or(phases);
         let below = Parabola { p0: -above.p0, p1: -above.p1, p2: -above.p2 };
-        let begin = start(relative.gap == 0.0, relative, state.smooth[j]);
+        let begin = start(-relative.gap, -relative.rate, state.smooth[j], phases);
         push(Crossing::ToCeiling, Draft { sign: 1.0, parabola: below, phases, start: begin, distance: true });
     }
     path
@@ -191,7 +229,7 @@ fn released(
         let damping = state.damping[j];
         let force = spring_and_dashpot(negative, stiffness, damping);
         let mix = mixed(&flow.blocks, phases, stiffness, damping);
-        let begin = touching_once(state.smooth[j]);
+        let begin = force_start(state.particles[j], stiffness, damping, state.smooth[j]);
         push(Crossing::Again, Draft { sign: -away, parabola: force, phases: &mix, start: begin, distance: false });
     }
     path
@@ -216,17 +254,16 @@ fn pressed(
         let damping = state.damping[j];
         let force = spring_and_dashpot(rest, stiffness, damping);
         let mix = mixed(&flow.blocks, phases, stiffness, damping);
-        // A spring without dashpot begins to push at zero.
-        let begin = touching_once(state.smooth[j] || (here.gap == 0.0 && damping == 0.0));
+        let begin = force_start(here, stiffness, damping, state.smooth[j]);
         push(Crossing::Release, Draft { sign: -away, parabola: force, phases: &mix, start: begin, distance: false });
     } else {
-        let begin = start(here.gap == 0.0, here, state.smooth[j]);
+        let begin = start(-away * here.gap, -away * here.rate, state.smooth[j], phases);
         push(Crossing::Release, Draft { sign: -away, parabola: rest, phases, start: begin, distance: true });
     }
     if let Some(stop) = stop {
         // Positive until the compression is δ.
         let parabola = Parabola { p0: rest.p0 + away * stop.length, ..rest };
-        let begin = start(here.gap == -away * stop.length, here, state.smooth[j]);
+        let begin = start(away * here.gap + stop.length, away * here.rate, state.smooth[j], phases);
         push(Crossing::ToStop, Draft { sign: away, parabola, phases, start: begin, distance: true });
     }
 }
@@ -239,6 +276,9 @@ fn held(
     signals: &Signals,
     push: &mut impl FnMut(Crossing, Draft<'_>),
 ) {
+    if particle.is_enclosed() {
+        return;
+    }
     let side = state.contacts[j].side();
     let (phases, rest) = signals.of(face_row(flow, j, side));
     let bends = accelerations(&flow.blocks, phases);
@@ -246,6 +286,23 @@ fn held(
     let parabola = Parabola { p0: offset, p1: 0.0, p2: 0.0 };
     let begin = touching_once(state.smooth[j]);
     push(Crossing::Release, Draft { sign: side.away(), parabola, phases: &bends, start: begin, distance: false });
+}
+
+/// How the force of spring and dashpot starts: at zero where the contact has just begun or ended smoothly, and where it
+/// begins without dashpot or at rest; then with the first derivative that the motion has.
+fn force_start(here: Relative, stiffness: f64, damping: f64, smooth: bool) -> Start {
+    let (spring, dashpot) = (stiffness * here.gap, damping * here.rate);
+    let force = spring + dashpot;
+    if force != 0.0 && !(smooth && force.abs() < 1e-9 * (spring.abs() + dashpot.abs())) {
+        return Start::Apart;
+    }
+    // At the face itself u grows with t, t² or t³ (at rest, smoothly), and the force of the dashpot with one less.
+    let motion = match (here == Relative::default(), smooth) {
+        (false, _) => return touching_once(true),
+        (true, false) => 2,
+        (true, true) => 3,
+    };
+    Start::Touching { order: if damping > 0.0 { motion - 1 } else { motion }, slope: f64::NAN }
 }
 
 fn touching_once(touching: bool) -> Start {
@@ -268,7 +325,7 @@ pub(crate) fn spring_on_stop(particle: &Particle, side: Side) -> f64 {
 }
 
 /// How a face holds a particle that does not move against it.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Grip {
     /// What it can push per mass, as an acceleration: it holds while this is positive.
     pub(crate) push: f64,
@@ -280,20 +337,28 @@ pub(crate) struct Grip {
 
 impl Grip {
     /// The grip of a face on particle j; with the particle in flight, what brings it back to the face.
-    pub(crate) fn of(system: &HybridSystem, flow: &Flow, signals: &Signals, j: usize, side: Side) -> Self {
+    pub(crate) fn of(
+        system: &HybridSystem,
+        flow: &Flow,
+        signals: &Signals,
+        j: usize,
+        side: Side,
+        on_stop: bool,
+    ) -> Self {
         let (phases, rest) = signals.of(face_row(flow, j, side));
-        let spring = spring_on_stop(&system.particles[j], side);
+        let spring = if on_stop { spring_on_stop(&system.particles[j], side) } else { 0.0 };
         let (mut bend, mut growth) = (2.0 * rest.p2, 0.0);
         let mut size = system.gravity + bend.abs() + spring;
-        for phase in accelerations(&flow.blocks, phases) {
-            bend += phase.value;
-            growth += phase.rate;
-            size += phase.value.abs();
+        for (block, phase) in flow.blocks.iter().zip(phases) {
+            let now = block.acceleration(*phase);
+            bend += now.value;
+            growth += now.rate;
+            size += (2.0 * block.decay * phase.rate).abs() + (block.determinant * phase.value).abs();
         }
         Self {
             push: side.away() * (bend + system.gravity) - spring,
             growth: side.away() * growth,
-            noise: 8.0 * f64::EPSILON * size,
+            noise: 64.0 * f64::EPSILON * size,
         }
     }
 

@@ -17,6 +17,7 @@
 
 mod audit;
 mod block;
+mod collision;
 mod contact;
 mod elementary;
 mod extremes;
@@ -312,7 +313,9 @@ pub enum EngineError {
         condition: f64,
     },
     /// A steady state that does not exist.
-    #[error("a contact state without damping is driven at its own frequency, {omega} rad/s: it has no steady answer")]
+    #[error(
+        "a contact state with next to no damping is driven at its own frequency, {omega} rad/s: it has no steady answer"
+    )]
     UndampedResonance {
         /// rad/s.
         omega: f64,

@@ -68,6 +68,8 @@ pub(crate) struct Search {
     amplitudes: Vec<f64>,
     /// Their sums: how far the blocks of each guard can reach.
     reach: Vec<f64>,
+    /// Until when each guard is known to stay positive; empty unless there was doubt at the segment's start.
+    proven: Vec<f64>,
     /// Kernels from the segment's start to the result.
     pub(crate) kernels: Vec<Kernel>,
     /// First windows are shortened by this factor, to have a second accuracy to compare with.
@@ -104,6 +106,7 @@ impl Search {
             current: Vec::new(),
             amplitudes: Vec::new(),
             reach: Vec::new(),
+            proven: Vec::new(),
             kernels: Vec::new(),
             window_factor,
             shortest: 0.0,
@@ -132,6 +135,7 @@ impl Search {
         self.current.extend_from_slice(&self.initial);
         self.amplitudes.resize(self.initial.len(), 0.0);
         self.reach.resize(self.guards.len(), 0.0);
+        self.proven.clear();
         let mut t = 0.0;
         let clock = f64::EPSILON * limit;
         self.shortest = clock;
@@ -157,6 +161,10 @@ impl Search {
             let mut window = remaining.min(REACH * self.window_factor * (pace.bend / pace.snap).sqrt());
             let ties = clarity.ties;
             if let Some(root) = self.search_window(blocks, series, t, &mut window, clarity) {
+                if root.high == 0.0 {
+                    self.kernels_at(blocks, t);
+                    return Found::Event { guard: root.guard, time: t };
+                }
                 return Found::Event { guard: root.guard, time: self.polish(blocks, series, root, t, window, clarity) };
             }
             self.shortest = if clarity.ties > ties { 4.0 * self.shortest } else { clock };
@@ -211,6 +219,7 @@ impl Search {
         clarity: &mut Clarity,
     ) -> Option<Root> {
         let mut piece = Window::new();
+        let asked = *window;
         'shrink: loop {
             let mut first: Option<Root> = None;
             let indivisible = *window <= self.shortest.max(64.0 * f64::EPSILON * t);
@@ -219,27 +228,27 @@ impl Search {
                 let guard = self.guards[index];
                 let reach = self.reach[index];
                 let margin = if guard.distance { clarity.margin.min(reach) } else { 0.0 };
-                if stays_apart(guard.parabola, t, *window, reach + margin) {
+                let proven = self.proven.get(index).is_some_and(|until| *until >= t + *window);
+                if proven || stays_apart(guard.parabola, t, *window, reach + margin) {
                     continue;
                 }
                 if series.near_critical {
                     self.bound(blocks, index, *window);
                 }
-                self.expand(series, index, &span, &mut piece);
-                let verdict = piece.judge(|order| {
-                    let amplitudes = &self.amplitudes[self.shares(blocks.len(), index)];
-                    let parabola =
-                        if order == 0 { 2.0 * guard.parabola.p2.abs() * (span.length * span.length) } else { 0.0 };
-                    parabola + series.bend(amplitudes, span.length * series.pace, order)
-                });
-                match verdict {
+                match self.judge(series, index, &span, &mut piece) {
                     Verdict::Clear { clearance } => {
+                        if let Some(until) = self.proven.get_mut(index) {
+                            *until = t + *window;
+                        }
                         if guard.distance {
                             clarity.margin = clarity.margin.min(clearance);
                         }
                     }
                     Verdict::Root { guess, high } => {
                         let short = t == 0.0 && guard.start != Start::Apart;
+                        if high == 0.0 {
+                            return Some(Root { guard: index, guess, high, short });
+                        }
                         match first {
                             None => first = Some(Root { guard: index, guess, high, short }),
                             // Two guards in one window: narrow until one of them is clear, or they are one to the rounding.
@@ -251,6 +260,9 @@ impl Search {
                         }
                     }
                     Verdict::Unsure if indivisible => {
+                        if t == 0.0 && self.proven.is_empty() {
+                            self.prove_hops(blocks, series, asked);
+                        }
                         clarity.ties += 1;
                         clarity.margin = 0.0;
                         if piece.end() < 0.0 && first.is_none() {
@@ -265,6 +277,36 @@ impl Search {
             }
             return first;
         }
+    }
+
+    /// Proves each guard that starts at zero clear for as long as its own start tells, before the doubt about another one
+    /// makes the search move on to where that is forgotten.
+    #[cold]
+    fn prove_hops(&mut self, blocks: &[Block], series: &Series, asked: f64) {
+        self.proven.resize(self.guards.len(), 0.0);
+        let mut piece = Window::new();
+        for index in 0..self.guards.len() {
+            let mut window = asked;
+            while self.guards[index].start != Start::Apart && window > self.proven[index] {
+                self.bound(blocks, index, window);
+                match self.judge(series, index, &Span::new(series, 0.0, window), &mut piece) {
+                    Verdict::Clear { .. } => self.proven[index] = window,
+                    _ => window *= 0.5,
+                }
+            }
+        }
+    }
+
+    /// What the enclosure of a guard over a window proves.
+    #[inline(always)]
+    fn judge(&self, series: &Series, index: usize, span: &Span, piece: &mut Window) -> Verdict {
+        self.expand(series, index, span, piece);
+        piece.judge(|order| {
+            let amplitudes = &self.amplitudes[self.shares(series.len(), index)];
+            let bent = self.guards[index].parabola.p2.abs() * (span.length * span.length);
+            let parabola = if order == 0 { 2.0 * bent } else { 0.0 };
+            parabola + series.bend(amplitudes, span.length * series.pace, order)
+        })
     }
 
     /// A guard over a window that begins with the current shares.

@@ -181,6 +181,10 @@ impl Window {
             // Nothing pushes and nothing pulls, for ever.
             return clear;
         }
+        if start == Start::Apart && b[0] < -doubt {
+            // A jump has left the contact untenable: it ends at once.
+            return Verdict::Root { guess: 0.0, high: 0.0 };
+        }
         let root = |high: f64| Verdict::Root { guess: self.root(high, high).0, high };
         if (falls || concave) && end < -doubt {
             return root(1.0);
