@@ -42,7 +42,7 @@ mod window;
 
 pub use spline::Spline;
 pub use system::{
-    Contact, Drive, Event, EventKind, Face, HalfCycles, Harmonic, HybridSystem, Law, Matrix, Particle, Stop, Tick,
+    Contact, Drive, Event, EventKind, Face, HalfCycles, Harmonic, HybridSystem, Law, Matrix, Particle, Stop, Tick, dot,
 };
 pub use trace::{Sample, TraceRequest};
 

@@ -20,5 +20,6 @@ mod report;
 mod solver_version;
 mod spec;
 mod spec_map;
+mod structures;
 mod study;
 mod table;
