@@ -56,9 +56,8 @@ impl Watch<'_> {
     fn guards(&self) -> Vec<Guard> {
         let mut guards = Vec::new();
         for (particle, rows) in self.system.particles.iter().zip(&self.flow.rows.guards) {
-            let guard = |row, sign, constant, is_distance| {
-                Guard { row: Row::new(self.flow, row), sign, constant, is_distance }
-            };
+            let guard =
+                |row, sign, constant, is_distance| Guard { row: Row::new(self.flow, row), sign, constant, is_distance };
             match particle.floor.law {
                 Law::Resilient { no_tension, stop, .. } => {
                     let holds = if no_tension { rows.second } else { rows.first };
