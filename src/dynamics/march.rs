@@ -10,14 +10,16 @@ mod impacts;
 use super::audit::Audit;
 use super::block::Phase;
 use super::contact::{Relative, Side};
-use super::flow::{Cholesky, DrivePhase, Flow, Parabola, Signals};
-use super::guards::{self, Contacts, Crossings};
+use super::extremes;
+use super::flow::{Cholesky, DrivePhase, Flow, Parabola};
+use super::guards::{self, Contacts};
 use super::integral::quadrature;
 use super::mobility::Mobilities;
 use super::search::{Clarity, Found, Search};
+use super::signals::{self, Signals};
 use super::system::{Contact, Event, EventKind, HybridSystem, Law, Tick, dot};
 use super::trace::Sample;
-use super::{EngineError, Options, Proof, Response, Sums};
+use super::{CycleRates, EngineError, Observed, Options, Proof, Response};
 use half_cycles::Half;
 
 /// Events at one instant beyond which the contact is declared undecidable.
@@ -49,7 +51,6 @@ pub(crate) struct March<'a> {
     half: Half,
     // Work space.
     search: Search,
-    crossings: Crossings,
     /// Gap parabolas of the particles in flight.
     paths: Vec<Parabola>,
     signals: Signals,
@@ -73,14 +74,19 @@ pub(crate) struct March<'a> {
 }
 
 impl<'a> March<'a> {
-    pub(crate) fn new(system: &'a HybridSystem, options: &'a Options) -> Result<Self, EngineError> {
+    /// A run at its start; `at_rest` is the flow with every particle on its floor, if it was built already.
+    pub(crate) fn new(
+        system: &'a HybridSystem,
+        options: &'a Options,
+        at_rest: Option<Flow>,
+    ) -> Result<Self, EngineError> {
         let n = system.mass.order;
         let count = system.particles.len();
         let most = n + count;
         let mut march = Self {
             system,
             options,
-            flows: Vec::new(),
+            flows: at_rest.into_iter().collect(),
             now: 0,
             q: vec![0.0; most],
             rate: vec![0.0; most],
@@ -94,7 +100,6 @@ impl<'a> March<'a> {
             level: 0.0,
             half: Half::default(),
             search: Search::new(options.window_factor),
-            crossings: Crossings::new(),
             paths: vec![Parabola::default(); count],
             signals: Signals::default(),
             answer: Cholesky::new(&system.mass)?.solve(&system.force_row),
@@ -103,11 +108,14 @@ impl<'a> March<'a> {
             mobilities: Mobilities::default(),
             phase: DrivePhase::default(),
             phase_time: f64::NAN,
-            c: vec![0.0; 2 * most],
+            c: vec![0.0; 2 * most + 2],
             c_end: vec![0.0; 2 * most],
             observed_end: Vec::new(),
             clarity: Clarity { margin: f64::INFINITY, ties: 0 },
-            response: Response::default(),
+            response: Response {
+                observed: vec![Observed::default(); system.observed_rows.len()],
+                ..Response::default()
+            },
             audit: options.audit.then(Audit::default),
         };
         march.place(&options.start)?;
@@ -174,14 +182,20 @@ impl<'a> March<'a> {
                 }
                 let kick = if cycle == 0 && i == 0 { self.options.kick * self.system.drive.scale() } else { 0.0 };
                 self.tick(*tick, kick)?;
+                if i == 0 && self.options.cycle_rates {
+                    let after = self.rate[..self.system.mass.order].to_vec();
+                    self.response.cycle_rates.push(CycleRates { after, before: Vec::new() });
+                }
             }
             self.propagate_to(period)?;
+            if let Some(cycle) = self.response.cycle_rates.last_mut() {
+                cycle.before.extend_from_slice(&self.rate[..self.system.mass.order]);
+            }
         }
         self.finish()
     }
 
     fn begin_window(&mut self) {
-        self.response.sums = [Sums::default(), Sums::default()];
         if self.audit.is_some() {
             let state = self.audit_state();
             if let Some(audit) = &mut self.audit {
@@ -198,8 +212,10 @@ impl<'a> March<'a> {
         }
         self.response.proof.smallest_margin = self.clarity.margin;
         self.response.proof.ties = self.clarity.ties;
-        self.response.final_displacement = dot(&self.system.observed_row, &self.q);
-        self.response.final_velocity = dot(&self.system.observed_row, &self.rate);
+        if let Some(row) = self.system.observed_rows.first() {
+            self.response.final_displacement = dot(row, &self.q);
+            self.response.final_velocity = dot(row, &self.rate);
+        }
         self.response.final_particles = (0..self.particles.len()).map(|j| self.absolute(j)).collect();
         let fastest = self.flows.iter().flat_map(Flow::natural_frequencies).fold(0.0_f64, f64::max);
         self.response.highest_frequency = fastest;
@@ -325,7 +341,7 @@ impl<'a> March<'a> {
         self.choose_flow()?;
         let drive = self.drive_phase(self.time);
         self.enter_flow(drive);
-        self.flows[self.now].signals(&self.c, self.level, drive, &mut self.signals);
+        self.flows[self.now].watch(&self.c, self.level, &mut self.signals);
         self.turn_half_cycle()?;
         let flow = &self.flows[self.now];
         let state = Contacts {
@@ -337,13 +353,12 @@ impl<'a> March<'a> {
             q: &self.q,
             rate: &self.rate,
         };
-        guards::set(state, flow, &self.signals, &mut self.search, &mut self.crossings, &mut self.paths);
-        if self.system.drive.half_cycles.is_some() && !self.half.idle {
-            let Half { sign, touching, .. } = self.half;
-            guards::half_cycle(flow, &self.signals, sign, touching, &mut self.search, &mut self.crossings);
+        guards::set(state, flow, &self.signals, &mut self.search, &mut self.paths);
+        if let (Some(bend), false) = (flow.rows.bend, self.half.idle) {
+            guards::half_cycle(bend, self.half.sign, self.half.touching, &mut self.search);
         }
         let limit = until - self.time;
-        let found = self.search.run(&flow.blocks, &flow.series, limit, &mut self.clarity);
+        let found = self.search.run(flow, &self.signals, limit, &mut self.clarity);
         let length = match found {
             Found::Nothing => limit,
             Found::Event { time, .. } => time.min(limit),
@@ -356,9 +371,9 @@ impl<'a> March<'a> {
             Found::Event { .. } => self.time + length,
         };
         if let Found::Event { guard, .. } = found {
-            let (j, crossing) = self.crossings[self.search.guards[guard].label];
+            let super::search::Guard { particle, crossing, .. } = self.search.guards[guard];
             self.sudden = length == 0.0;
-            self.cross(j, crossing)?;
+            self.cross(particle, crossing)?;
         }
         Ok(())
     }
@@ -378,11 +393,7 @@ impl<'a> March<'a> {
                     // Let go at the same instant as another: u = u‴t³/6 is still nothing, and is kept so to the bit.
                     continue;
                 }
-                let row = match contact.side() {
-                    Side::Floor => flow.face_rows[j].floor,
-                    Side::Ceiling => flow.face_rows[j].ceiling,
-                };
-                let (phases, _) = self.signals.of(row);
+                let (phases, _) = self.signals.of(flow.rows.guards[j].first);
                 let here = self.particles[j];
                 self.particles[j] = guards::fly(flow, self.paths[j], phases, here, &self.search.kernels, length);
             }
@@ -393,9 +404,9 @@ impl<'a> March<'a> {
         flow.leave(&self.c_end, length, self.level, end_drive, &mut self.q, &mut self.rate);
         let short = guards::is_short(flow, length);
         for (i, &j) in flow.attached.iter().enumerate() {
-            self.particles[j] = match flow.face_rows[j].compression {
-                Some(row) if short => {
-                    let (phases, rest) = self.signals.of(row);
+            self.particles[j] = match flow.rows.faces[j].compression {
+                Some(_) if short => {
+                    let (phases, rest) = self.signals.of(flow.rows.guards[j].first);
                     guards::creep(flow, 2.0 * rest.p2, 1.0, phases, self.particles[j], length)
                 }
                 _ => Relative { gap: self.q[n + i], rate: self.rate[n + i] },
@@ -406,34 +417,39 @@ impl<'a> March<'a> {
     /// Adds the segment to the measures, and to the audit if there is one.
     fn sum_up(&mut self, length: f64, drive: DrivePhase) {
         let flow = &self.flows[self.now];
-        let (observed, rest) = self.signals.of(flow.observed);
         if self.options.averages(self.cycle) {
-            let integrals = match &flow.forms {
-                Some(forms) => {
-                    self.observed_end.clear();
-                    let end = flow.blocks.iter().zip(observed).zip(&self.search.kernels);
-                    self.observed_end.extend(end.map(|((block, phase), kernel)| block.advance(*phase, *kernel)));
-                    forms
-                        .between(observed, &self.observed_end, length, self.options.displacement)
-                        .offset(rest.p0, length)
-                }
-                None => quadrature(&flow.blocks, observed, rest, length),
-            };
             let second_half = 2 * (self.cycle - u64::from(self.options.skip)) >= u64::from(self.options.average);
-            let sums = &mut self.response.sums[usize::from(second_half)];
-            sums.duration += length;
-            sums.velocity_square += integrals.rate_square;
-            sums.displacement += integrals.value;
-            sums.displacement_square += integrals.square;
+            for (of, &row) in self.response.observed.iter_mut().zip(&flow.rows.observed) {
+                let (observed, rest) = self.signals.of(row);
+                let integrals = match &flow.forms {
+                    Some(forms) => {
+                        self.observed_end.clear();
+                        let end = flow.blocks.iter().zip(observed).zip(&self.search.kernels);
+                        self.observed_end.extend(end.map(|((block, phase), kernel)| block.advance(*phase, *kernel)));
+                        forms
+                            .between(observed, &self.observed_end, length, self.options.displacement)
+                            .offset(rest.p0, length)
+                    }
+                    None => quadrature(&flow.blocks, observed, rest, length),
+                };
+                let sums = &mut of.halves[usize::from(second_half)];
+                sums.duration += length;
+                sums.velocity_square += integrals.rate_square;
+                sums.displacement += integrals.value;
+                sums.displacement_square += integrals.square;
+                if self.options.extremes {
+                    extremes::take(&mut of.extremes, &flow.blocks, observed, rest, length);
+                }
+            }
         }
         if let Some(audit) = &mut self.audit
             && self.cycle >= u64::from(self.options.skip)
         {
             audit.segment(self.system, flow, &self.c, self.level, drive, length);
         }
-        if self.system.drive.half_cycles.is_some() && !self.half.idle {
-            let bends = guards::accelerations(&flow.blocks, observed);
-            self.half.square += quadrature(&flow.blocks, &bends, Parabola::default(), length).square;
+        if let (Some(bend), false) = (flow.rows.bend, self.half.idle) {
+            let bends = self.signals.of(bend).0;
+            self.half.square += quadrature(&flow.blocks, bends, Parabola::default(), length).square;
             self.half.length += length;
         }
     }
@@ -469,7 +485,12 @@ impl<'a> March<'a> {
             }
             kernels.clear();
             kernels.extend(flow.blocks.iter().map(|block| block.kernel(t)));
-            let [displacement, velocity, acceleration] = self.signals.value(flow, flow.observed, &kernels, t);
+            let value = |(phases, rest): (&[Phase], Parabola)| signals::value(&flow.blocks, phases, rest, &kernels, t);
+            let anywhere = |row: usize| {
+                let (phases, rest) = flow.rows.evaluate(row, &self.c, self.level, flow.blocks.len());
+                value((&phases, rest))
+            };
+            let [displacement, velocity, acceleration] = value(self.signals.of(flow.rows.observed[0]));
             let mut sample = Sample {
                 time: self.cycle as f64 * period + instant,
                 displacement,
@@ -481,16 +502,13 @@ impl<'a> March<'a> {
             };
             if let Some(particle) = self.system.particles.first() {
                 let contact = self.contacts[0];
-                let side = contact.side();
-                let rows = flow.face_rows[0];
-                let row = if side == Side::Floor { rows.floor } else { rows.ceiling };
-                let faces = [rows.floor, rows.ceiling].map(|row| self.signals.value(flow, row, &kernels, t)[0]);
-                let gap = match (contact.face(particle), rows.compression) {
+                let faces = [Side::Floor, Side::Ceiling].map(|side| anywhere(flow.rows.face(0, side))[0]);
+                let gap = match (contact.face(particle), flow.rows.faces[0].compression) {
                     (None, _) => {
-                        let (phases, here) = (self.signals.of(row).0, self.particles[0]);
+                        let (phases, here) = (self.signals.of(flow.rows.guards[0].first).0, self.particles[0]);
                         guards::fly(flow, self.paths[0], phases, here, &kernels, t).gap
                     }
-                    (Some(_), Some(compression)) => self.signals.value(flow, compression, &kernels, t)[0],
+                    (Some(_), Some(compression)) => anywhere(compression)[0],
                     (Some(_), None) => self.particles[0].gap,
                 };
                 sample.set_particle(particle, contact, faces, gap);
@@ -510,8 +528,8 @@ fn side_stiffness(system: &HybridSystem, contacts: &[Contact], j: usize) -> Opti
 }
 
 /// Runs a system.
-pub(crate) fn march(system: &HybridSystem, options: &Options) -> Result<Response, EngineError> {
-    March::new(system, options)?.run()
+pub(crate) fn march(system: &HybridSystem, options: &Options, at_rest: Option<Flow>) -> Result<Response, EngineError> {
+    March::new(system, options, at_rest)?.run()
 }
 
 /// The proof of a run that was never audited.

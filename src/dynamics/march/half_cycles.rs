@@ -2,7 +2,6 @@
 
 use super::March;
 use crate::dynamics::EngineError;
-use crate::dynamics::guards;
 
 /// An acceleration below this share of its parts is zero: the crossing that ended the half cycle was smooth.
 const SMOOTH: f64 = 1e-9;
@@ -29,14 +28,15 @@ impl March<'_> {
     pub(super) fn turn_half_cycle(&mut self) -> Result<(), EngineError> {
         let Some(half_cycles) = &self.system.drive.half_cycles else { return Ok(()) };
         let flow = &self.flows[self.now];
-        let bends = guards::accelerations(&flow.blocks, self.signals.of(flow.observed).0);
+        let Some(bend) = flow.rows.bend else { return Ok(()) };
+        let bends = self.signals.of(bend).0;
         // Below the curve's first point every half cycle gives the same damping: no need to follow them until something
         // happens. The bound holds to the end of the segment, and the half cycle under way is as weak.
         let [least, damping] = half_cycles.curve.lower_end();
         let bound = flow
             .blocks
             .iter()
-            .zip(&bends)
+            .zip(bends)
             .fold(0.0, |sum, (block, phase)| sum + block.amplitude(*phase, 0.0, self.system.drive.period));
         let least = least * self.system.gravity;
         let weak = self.half.square <= least * least * self.half.length;
@@ -48,7 +48,7 @@ impl March<'_> {
         let total = bends.iter().fold(0.0, |sum, phase| sum + phase.value);
         let rate = bends.iter().fold(0.0, |sum, phase| sum + phase.rate);
         // Its parts: with a single block the acceleration itself is what rounding has left of them.
-        let observed = self.signals.of(flow.observed).0;
+        let observed = self.signals.of(flow.rows.observed[0]).0;
         let scale = flow.blocks.iter().zip(observed).fold(0.0, |sum, (block, phase)| {
             sum + (2.0 * block.decay * phase.rate).abs() + (block.determinant * phase.value).abs()
         });
@@ -76,7 +76,7 @@ impl March<'_> {
         self.hold_on()?;
         let drive = self.drive_phase(self.time);
         self.enter_flow(drive);
-        self.flows[self.now].signals(&self.c, self.level, drive, &mut self.signals);
+        self.flows[self.now].watch(&self.c, self.level, &mut self.signals);
         Ok(())
     }
 

@@ -358,8 +358,9 @@ impl March<'_> {
         let drive = self.drive_phase(self.time);
         self.enter_flow(drive);
         let flow = &self.flows[self.now];
-        flow.signals(&self.c, self.level, drive, &mut self.signals);
-        Grip::of(self.system, flow, &self.signals, j, side, on_stop)
+        let row = flow.rows.face(j, side);
+        let (phases, rest) = flow.rows.evaluate(row, &self.c, self.level, flow.blocks.len());
+        Grip::of(self.system, flow, &phases, rest, j, side, on_stop)
     }
 }
 

@@ -48,7 +48,7 @@ fn chain(masses: &[f64], stiffness: f64, damping: f64) -> HybridSystem {
         particles: Vec::new(),
         force_row: unit(n, n - 1),
         drive: quiet(0.2),
-        observed_row: unit(n, 0),
+        observed_rows: vec![unit(n, 0)],
         momentum_rows: vec![vec![1.0; n]],
     }
 }
@@ -71,7 +71,7 @@ fn beam(n: usize, first: f64, damping: f64) -> HybridSystem {
         particles: Vec::new(),
         force_row: shape(n, 0.41),
         drive: quiet(0.2),
-        observed_row: shape(n, 0.5),
+        observed_rows: vec![shape(n, 0.5)],
         momentum_rows: (0..n).map(|i| unit(n, i)).collect(),
     }
 }
@@ -164,7 +164,7 @@ fn cycles(count: u32) -> Options {
 /// q and q′ at the end of a run; a system shows one displacement at a time.
 fn structure_after(system: &HybridSystem, options: &Options) -> [Vec<f64>; 2] {
     let n = system.mass.order;
-    let seen = |i: usize| go(&HybridSystem { observed_row: unit(n, i), ..system.clone() }, options);
+    let seen = |i: usize| go(&HybridSystem { observed_rows: vec![unit(n, i)], ..system.clone() }, options);
     let ends: Vec<Response> = (0..n).map(seen).collect();
     [ends.iter().map(|end| end.final_displacement).collect(), ends.iter().map(|end| end.final_velocity).collect()]
 }
@@ -284,7 +284,7 @@ fn springs_of_floors_and_ceilings_push_as_a_runge_kutta_integration_says() {
             within(&format!("seed {seed}, y of {j}"), *y, z[n + j], 1e-8);
             within(&format!("seed {seed}, y′ of {j}"), *w, z[2 * n + p + j], 1e-6);
         }
-        within(&format!("seed {seed}, x"), response.final_displacement, dot(&system.observed_row, &z[..n]), 1e-8);
+        within(&format!("seed {seed}, x"), response.final_displacement, dot(&system.observed_rows[0], &z[..n]), 1e-8);
     }
     assert!(events > 60, "{events} events");
 }

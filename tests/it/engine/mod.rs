@@ -6,4 +6,5 @@ mod bench;
 mod closed_forms;
 mod event_cases;
 mod floating;
+mod linear;
 mod reference_cases;
