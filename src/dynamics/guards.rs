@@ -127,22 +127,29 @@ pub(crate) fn fly(
     now
 }
 
+/// What rounding makes of a sum of shares.
+fn noise(phases: &[Phase]) -> f64 {
+    4.0 * f64::EPSILON * phases.iter().fold(0.0, |sum, phase| sum + phase.value.abs())
+}
+
 /// How a distance starts that grows with `rate`: at zero where it is, or where it is nothing but rounding and grows.
 #[inline]
 fn start(distance: f64, rate: f64, smooth: bool, phases: &[Phase]) -> Start {
     if distance != 0.0 {
-        let noise = 4.0 * f64::EPSILON * phases.iter().fold(0.0, |sum, phase| sum + phase.value.abs());
-        if rate > 0.0 && distance.abs() < noise {
+        if rate > 0.0 && distance.abs() < noise(phases) {
             return Start::Touching { order: 1, slope: rate };
         }
         return Start::Apart;
     }
     if smooth {
         Start::Touching { order: 3, slope: 0.0 }
+    } else if rate < 0.0 {
+        // It is due at this instant, like another that came first.
+        Start::Apart
     } else if rate == 0.0 {
         Start::Touching { order: 2, slope: 0.0 }
     } else {
-        Start::Touching { order: 1, slope: rate.abs() }
+        Start::Touching { order: 1, slope: rate }
     }
 }
 
@@ -223,7 +230,7 @@ fn released(
             signal: rows.second,
             sign: -away,
             parabola: spring_and_dashpot(path, stiffness, damping).times(away),
-            start: force_start(state.particles[j], stiffness, damping, state.smooth[j]),
+            start: force_start(state.particles[j], stiffness, damping, state.smooth[j], signals.of(rows.second).0),
             distance: false,
         });
     }
@@ -258,7 +265,7 @@ fn pressed(
         let damping = state.damping[j];
         let (phases, mut force) = signals.of(rows.second);
         force.p0 = stiffness * here.gap + damping * here.rate - sum(phases, |phase| phase.value);
-        (rows.second, force, force_start(here, stiffness, damping, state.smooth[j]))
+        (rows.second, force, force_start(here, stiffness, damping, state.smooth[j], phases))
     } else {
         (rows.first, rest, start(-away * here.gap, -away * here.rate, state.smooth[j], phases))
     };
@@ -305,10 +312,14 @@ fn held(state: Contacts<'_>, j: usize, particle: &Particle, flow: &Flow, signals
 }
 
 /// How the force of spring and dashpot starts: at zero where the contact has just begun or ended smoothly, and where it
-/// begins without dashpot or at rest; then with the first derivative that the motion has.
-fn force_start(here: Relative, stiffness: f64, damping: f64, smooth: bool) -> Start {
+/// begins without dashpot or at rest; then with the first derivative that the motion has. A force that is nothing but rounding
+/// of its shares is zero too: what it does next, its derivative says.
+fn force_start(here: Relative, stiffness: f64, damping: f64, smooth: bool, phases: &[Phase]) -> Start {
     let (spring, dashpot) = (stiffness * here.gap, damping * here.rate);
     let force = spring + dashpot;
+    if force != 0.0 && force.abs() < noise(phases) {
+        return touching_once(true);
+    }
     // Where it began or ended smoothly the two cancel, as well as the instant of a contact of nanoseconds is known.
     if force != 0.0 && !(smooth && force.abs() < 1e-3 * (spring.abs() + dashpot.abs())) {
         return Start::Apart;

@@ -63,7 +63,7 @@ impl March<'_> {
                 self.smooth[j] = true;
             }
             Crossing::Release => match side.face(particle).law {
-                Law::Resilient { no_tension: true, .. } if self.particles[j].gap != 0.0 => {
+                Law::Resilient { no_tension: true, .. } if self.is_compressed(j, side) => {
                     self.slip(j, side);
                     self.smooth[j] = !self.sudden;
                 }
@@ -146,7 +146,12 @@ impl March<'_> {
                 if gap == 0.0 && away * rate > 0.0 {
                     self.let_go(j, side);
                 } else if no_tension && -away * (stiffness * gap + self.damping_at(j) * rate) < 0.0 {
-                    self.slip(j, side);
+                    if self.is_compressed(j, side) {
+                        self.slip(j, side);
+                    } else {
+                        self.particles[j].gap = 0.0;
+                        self.let_go(j, side);
+                    }
                 }
             }
             (Contact::FloorReleased | Contact::CeilingReleased, Law::Resilient { stiffness, .. })
@@ -211,6 +216,12 @@ impl March<'_> {
             let shift = |x: &[f64]| dot(&ceiling.row, x) - dot(&particle.floor.row, x);
             Relative { gap: here.gap + particle.gap + shift(&self.q), rate: here.rate + shift(&self.rate) }
         };
+    }
+
+    /// The face that a particle presses into is compressed by more than rounding.
+    fn is_compressed(&self, j: usize, side: Side) -> bool {
+        let here = self.particles[j];
+        here.gap != 0.0 && here.gap.abs() > self.noise(j, side, here)
     }
 
     /// A face loses its particle.

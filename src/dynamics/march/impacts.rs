@@ -93,7 +93,7 @@ impl March<'_> {
     }
 
     /// What of a gap is rounding, of its own parts and of the instant.
-    fn noise(&self, j: usize, side: Side, here: Relative) -> f64 {
+    pub(super) fn noise(&self, j: usize, side: Side, here: Relative) -> f64 {
         let particle = &self.system.particles[j];
         let parts = |row: &[f64]| row.iter().zip(&self.q).fold(0.0, |sum, (a, b)| sum + (a * b).abs());
         let size = parts(&side.face(particle).row) + if side == Side::Ceiling { particle.gap.abs() } else { 0.0 };
@@ -340,9 +340,19 @@ impl March<'_> {
         let outcome = |(contact, p): (&Closed, &f64)| Outcome { impulse: p * contact.mass, speed: 0.0, pushed: true };
         let outcomes: Vec<Outcome> = closed.iter().zip(&pushes).map(outcome).collect();
         self.exchange(&touches, &outcomes);
-        let own = touches.iter().position(|touch| touch.particle == candidate.particle);
         // In flight the face no longer carries the particle, so that a is larger than the push per mass that will hold it.
-        let lightening = own.map_or(1.0, |own| closed[own].speed / -pushes[own]);
+        let alone: Vec<Closed> = touches
+            .iter()
+            .zip(&closed)
+            .map(|(touch, closed)| Closed {
+                speed: if touch.particle == candidate.particle { 1.0 } else { 0.0 },
+                ..*closed
+            })
+            .collect();
+        let own = touches.iter().position(|touch| touch.particle == candidate.particle);
+        let lightening = own.map_or(1.0, |own| {
+            -1.0 / collision::push(&alone, &self.answers(&touches), &vec![true; alone.len()], &still)[own]
+        });
         let series = if candidate.restitution < 1.0 { 1.0 / (1.0 - candidate.restitution) } else { 0.0 };
         let tail = 2.0 * candidate.speed / (grip.push * lightening) * series;
         let speed = candidate.side.away() * candidate.speed;
