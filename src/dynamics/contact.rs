@@ -23,6 +23,8 @@ pub(crate) enum Crossing {
     ToCeiling,
     /// A face lets go.
     Release,
+    /// The face across, which moves by itself, reaches a particle that is still at this one.
+    Squeezed,
     /// A compressed face reaches its stop.
     ToStop,
     /// A released face is back at its place.

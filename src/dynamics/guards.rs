@@ -43,6 +43,9 @@ pub(crate) fn set(state: Contacts<'_>, flow: &Flow, signals: &Signals, search: &
             _ if contact.presses(particle) => pressed(state, j, particle, flow, signals, guards),
             _ => held(state, j, particle, flow, signals, guards),
         }
+        if let Some(signal) = flow.rows.guards[j].across {
+            across(j, particle, signal, signals, &mut search.guards);
+        }
     }
 }
 
@@ -291,6 +294,21 @@ fn pressed(
             distance: true,
         });
     }
+}
+
+/// The way to the face across, which moves by itself.
+#[cold]
+fn across(j: usize, particle: &Particle, signal: usize, signals: &Signals, guards: &mut Vec<Guard>) {
+    let (_, rest) = signals.of(signal);
+    guards.push(Guard {
+        particle: j,
+        crossing: Crossing::Squeezed,
+        signal,
+        sign: 1.0,
+        parabola: Parabola { p0: rest.p0 + particle.gap, ..rest },
+        start: Start::Apart,
+        distance: true,
+    });
 }
 
 fn held(state: Contacts<'_>, j: usize, particle: &Particle, flow: &Flow, signals: &Signals, guards: &mut Vec<Guard>) {

@@ -331,7 +331,7 @@ impl<'a> March<'a> {
             }
             stuck += 1;
             if stuck > MOST_EVENTS_AT_AN_INSTANT {
-                return Err(EngineError::NoProgress { cycle: self.cycle, time: self.time });
+                return Err(self.no_progress());
             }
         }
         Ok(())

@@ -6,6 +6,9 @@ use crate::dynamics::EngineError;
 use crate::dynamics::contact::{Crossing, Relative, Side};
 use crate::dynamics::system::{Contact, EventKind, Law, dot};
 
+/// Faces closer to each other than this share of their way have met.
+const CLOSED: f64 = 1e-9;
+
 impl March<'_> {
     /// What a crossing leads to; the state has arrived there.
     pub(super) fn cross(&mut self, j: usize, crossing: Crossing) -> Result<(), EngineError> {
@@ -85,10 +88,32 @@ impl March<'_> {
                 self.slip(j, side);
                 self.smooth[j] = !self.sudden;
             }
+            Crossing::Squeezed => {
+                return Err(EngineError::Squeezed { particle: j, cycle: self.cycle, time: self.time });
+            }
             Crossing::HalfCycle => {}
         }
         self.meet_at_once()?;
         if jumps { self.hold_on() } else { self.choose_flow() }
+    }
+
+    /// Why the contact does not settle: faces that move by themselves and have met, or nobody knows.
+    #[cold]
+    pub(super) fn no_progress(&self) -> EngineError {
+        let (cycle, time) = (self.cycle, self.time);
+        let between = |j: &usize| {
+            let particle = &self.system.particles[*j];
+            particle.ceiling.as_ref().is_some_and(|ceiling| {
+                let rows = || ceiling.row.iter().zip(&particle.floor.row).zip(&self.q);
+                let way = rows().fold(particle.gap, |sum, ((above, below), q)| sum + (above - below) * q);
+                let size = rows().fold(particle.gap, |sum, ((above, below), q)| sum + (above * q).abs() + (below * q).abs());
+                ceiling.row != particle.floor.row && way <= CLOSED * size
+            })
+        };
+        match (0..self.particles.len()).find(between) {
+            Some(particle) => EngineError::Squeezed { particle, cycle, time },
+            None => EngineError::NoProgress { cycle, time },
+        }
     }
 
     /// A particle in flight that is at a face and moves into it has met it: where there is no gap to cross.

@@ -13,26 +13,26 @@ use shotdamp::dynamics::{
 use super::bench::{GRAVITY, within};
 
 /// Random numbers, the same in every run.
-struct Dice(u64);
+pub(super) struct Dice(pub(super) u64);
 
 impl Dice {
     /// In [low, high].
-    fn between(&mut self, low: f64, high: f64) -> f64 {
+    pub(super) fn between(&mut self, low: f64, high: f64) -> f64 {
         self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         low + (high - low) * ((self.0 >> 11) as f64 / (1_u64 << 53) as f64)
     }
 
-    fn ratio(&mut self, low: f64, high: f64) -> f64 {
+    pub(super) fn ratio(&mut self, low: f64, high: f64) -> f64 {
         self.between(low.ln(), high.ln()).exp()
     }
 
-    fn chance(&mut self, p: f64) -> bool {
+    pub(super) fn chance(&mut self, p: f64) -> bool {
         self.between(0.0, 1.0) < p
     }
 }
 
 /// Masses in a row between two walls, each tied to the next.
-fn chain(masses: &[f64], stiffness: f64, damping: f64) -> HybridSystem {
+pub(super) fn chain(masses: &[f64], stiffness: f64, damping: f64) -> HybridSystem {
     let n = masses.len();
     let mut springs = Matrix::diagonal(&vec![2.0; n]);
     for i in 1..n {
@@ -80,7 +80,7 @@ fn shape(n: usize, place: f64) -> Vec<f64> {
     (1..=n).map(|i| 2.0_f64.sqrt() * (i as f64 * PI * place).sin()).collect()
 }
 
-fn unit(n: usize, i: usize) -> Vec<f64> {
+pub(super) fn unit(n: usize, i: usize) -> Vec<f64> {
     (0..n).map(|k| if k == i { 1.0 } else { 0.0 }).collect()
 }
 
@@ -89,7 +89,7 @@ fn quiet(period: f64) -> Drive {
     Drive { period, ticks, repeats: true, harmonic: None, half_cycles: None }
 }
 
-fn blows(period: f64, impulse: f64) -> Drive {
+pub(super) fn blows(period: f64, impulse: f64) -> Drive {
     Drive { ticks: vec![Tick { time: 0.0, impulse, level: 0.0 }], ..quiet(period) }
 }
 
@@ -107,7 +107,7 @@ fn rigid(restitution: f64) -> Law {
 }
 
 /// Floor and ceiling of any kind, each with its own numbers.
-fn any_law(dice: &mut Dice) -> Law {
+pub(super) fn any_law(dice: &mut Dice) -> Law {
     if dice.chance(0.5) {
         let restitution = dice.between(0.0, 0.95);
         return rigid(if dice.chance(0.3) { 0.0 } else { restitution });
@@ -158,7 +158,7 @@ fn go(system: &HybridSystem, options: &Options) -> Response {
     response
 }
 
-fn cycles(count: u32) -> Options {
+pub(super) fn cycles(count: u32) -> Options {
     Options { skip: 0, average: count, audit: true, record_events: usize::MAX, ..Options::default() }
 }
 

@@ -8,3 +8,4 @@ mod event_cases;
 mod floating;
 mod linear;
 mod reference_cases;
+mod walls;
