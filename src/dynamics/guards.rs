@@ -130,16 +130,21 @@ pub(crate) fn fly(
     now
 }
 
+/// Σ |φ x|.
+fn magnitude(row: &[f64], x: &[f64]) -> f64 {
+    row.iter().zip(x).fold(0.0, |sum, (phi, x)| sum + (phi * x).abs())
+}
+
 /// What rounding makes of a sum of shares.
 fn noise(phases: &[Phase]) -> f64 {
     4.0 * f64::EPSILON * phases.iter().fold(0.0, |sum, phase| sum + phase.value.abs())
 }
 
-/// How a distance starts that grows with `rate`: at zero where it is, or where it is nothing but rounding and grows.
+/// How a distance starts that grows with `rate`, being the difference of lengths of `size` beside its shares: at zero where it is, or where it is nothing but rounding and grows.
 #[inline]
-fn start(distance: f64, rate: f64, smooth: bool, phases: &[Phase]) -> Start {
+fn start(distance: f64, rate: f64, smooth: bool, phases: &[Phase], size: f64) -> Start {
     if distance != 0.0 {
-        if rate > 0.0 && distance.abs() < noise(phases) {
+        if rate > 0.0 && distance.abs() < noise(phases) + 4.0 * f64::EPSILON * size {
             return Start::Touching { order: 1, slope: rate };
         }
         return Start::Apart;
@@ -177,7 +182,7 @@ fn in_flight(
         signal: rows.first,
         sign: -1.0,
         parabola: path,
-        start: start(here.gap, here.rate, state.smooth[j], phases),
+        start: start(here.gap, here.rate, state.smooth[j], phases, 0.0),
         distance: true,
     });
     let Some(ceiling) = &particle.ceiling else { return path };
@@ -186,7 +191,13 @@ fn in_flight(
         (relative, Parabola { p0: path.p0 - particle.gap, ..path }, phases)
     } else {
         let shift = |x: &[f64]| dot(&ceiling.row, x) - dot(&particle.floor.row, x);
-        let relative = Relative { gap: here.gap - particle.gap - shift(state.q), rate: here.rate - shift(state.rate) };
+        // Referred to the floor, the rest at the ceiling is known to rounding: there it is rest all the same.
+        let size = |x: &[f64]| [&ceiling.row, &particle.floor.row].map(|row| magnitude(row, x)).iter().sum::<f64>();
+        let known = |value: f64, size: f64| if value.abs() <= 4.0 * f64::EPSILON * size { 0.0 } else { value };
+        let relative = Relative {
+            gap: known(here.gap - particle.gap - shift(state.q), particle.gap + size(state.q)),
+            rate: known(here.rate - shift(state.rate), size(state.rate)),
+        };
         let (phases, rest) = signals.of(rows.second);
         (relative, flight_path(flow, rest, phases, relative, gravity), phases)
     };
@@ -196,7 +207,7 @@ fn in_flight(
         signal: rows.second,
         sign: 1.0,
         parabola: above.negative(),
-        start: start(-relative.gap, -relative.rate, state.smooth[j], phases),
+        start: start(-relative.gap, -relative.rate, state.smooth[j], phases, particle.gap),
         distance: true,
     });
     path
@@ -270,7 +281,7 @@ fn pressed(
         force.p0 = stiffness * here.gap + damping * here.rate - sum(phases, |phase| phase.value);
         (rows.second, force, force_start(here, stiffness, damping, state.smooth[j], phases))
     } else {
-        (rows.first, rest, start(-away * here.gap, -away * here.rate, state.smooth[j], phases))
+        (rows.first, rest, start(-away * here.gap, -away * here.rate, state.smooth[j], phases, 0.0))
     };
     let (signal, parabola, begin) = release;
     guards.push(Guard {
@@ -290,7 +301,7 @@ fn pressed(
             signal: rows.first,
             sign: away,
             parabola: Parabola { p0: away * rest.p0 + stop.length, ..rest.times(away) },
-            start: start(away * here.gap + stop.length, away * here.rate, state.smooth[j], phases),
+            start: start(away * here.gap + stop.length, away * here.rate, state.smooth[j], phases, stop.length),
             distance: true,
         });
     }

@@ -106,7 +106,8 @@ impl March<'_> {
             particle.ceiling.as_ref().is_some_and(|ceiling| {
                 let rows = || ceiling.row.iter().zip(&particle.floor.row).zip(&self.q);
                 let way = rows().fold(particle.gap, |sum, ((above, below), q)| sum + (above - below) * q);
-                let size = rows().fold(particle.gap, |sum, ((above, below), q)| sum + (above * q).abs() + (below * q).abs());
+                let size =
+                    rows().fold(particle.gap, |sum, ((above, below), q)| sum + (above * q).abs() + (below * q).abs());
                 ceiling.row != particle.floor.row && way <= CLOSED * size
             })
         };

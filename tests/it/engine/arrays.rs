@@ -84,7 +84,7 @@ pub(super) fn unit(n: usize, i: usize) -> Vec<f64> {
     (0..n).map(|k| if k == i { 1.0 } else { 0.0 }).collect()
 }
 
-fn quiet(period: f64) -> Drive {
+pub(super) fn quiet(period: f64) -> Drive {
     let ticks = vec![Tick { time: 0.0, impulse: 0.0, level: 0.0 }];
     Drive { period, ticks, repeats: true, harmonic: None, half_cycles: None }
 }

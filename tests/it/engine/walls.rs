@@ -3,11 +3,12 @@
 //! Floor and ceiling do not move as one, so that the distance between them changes while the particle is on its way, and
 //! a particle held by one of them may be met by the other.
 
-use shotdamp::dynamics::{Contact, Law, EngineError, Options, StartState, event_driven};
+use shotdamp::dynamics::{
+    Contact, EngineError, Face, HybridSystem, Law, Matrix, Options, Particle, StartState, event_driven,
+};
 
-use super::arrays::{Dice, any_law, blows, chain, cycles, unit};
+use super::arrays::{Dice, any_law, blows, chain, cycles, quiet, unit};
 use super::bench::GRAVITY;
-use shotdamp::dynamics::{Face, HybridSystem, Matrix, Particle};
 
 /// One base, a ceiling on walls, a particle between them.
 fn model_3(walls: [f64; 3], particle: f64, gap: f64, laws: [Law; 2]) -> HybridSystem {
@@ -40,22 +41,37 @@ fn any_model_3(seed: u64) -> HybridSystem {
 }
 
 #[test]
-fn scan() {
-    let from: u64 = std::env::var("FROM").map_or(0, |x| x.parse().unwrap());
-    for seed in from..from + 400 {
+fn between_walls_of_any_kind_momentum_and_energy_close_or_the_squeeze_is_named() {
+    let (mut events, mut squeezed) = (0, 0);
+    // The last four lay at a rigid ceiling on stiff walls, and did not settle there.
+    for seed in (0..60).chain([148, 242, 331, 747]) {
         let system = any_model_3(seed);
-        let begin = std::time::Instant::now();
         match event_driven(&system, &cycles(5)) {
-            Err(EngineError::Squeezed { .. }) => println!("SQ {seed} {}", system.particles[0].gap),
-            Err(error) => println!("BAD {seed}: {error} gap {} laws {:?} {:?} walls {} {} {} mp {} {system:?}", system.particles[0].gap, system.particles[0].floor.law, system.particles[0].ceiling.as_ref().unwrap().law, system.mass.at(1,1), system.stiffness.at(1,1), system.damping.at(1,1), system.particles[0].mass),
-            Ok(r) => {
-                let p = r.proof;
-                if !(p.momentum_residual < 1e-11 && p.energy_residual < 1e-10) || p.events > 20000 || p.ties > 1000 {
-                    println!("ODD {seed}: {p:?} {system:?}");
-                }
-                if begin.elapsed().as_millis() > 200 { println!("SLOW {seed} {:?} {p:?} {system:?}", begin.elapsed()); }
+            Err(EngineError::Squeezed { .. }) => squeezed += 1,
+            Err(error) => panic!("seed {seed}: {error}"),
+            Ok(response) => {
+                let proof = response.proof;
+                // A wall of 1e8 N/m makes forces of rounding.
+                assert!(proof.momentum_residual < 1e-10 && proof.energy_residual < 1e-10, "seed {seed}: {proof:?}");
+                events += proof.events;
             }
         }
     }
-    let _ = (Contact::Flight, Options::default(), StartState::StaticEquilibrium);
+    assert!(events > 10_000 && squeezed > 5 && squeezed < 32, "{events} events, {squeezed} squeezed");
+}
+
+#[test]
+fn a_particle_that_both_faces_meet_is_refused_by_name() {
+    // The ceiling comes down on the particle that lies on the floor.
+    let soft = Law::Resilient { stiffness: 1e4, damping: 1.0, no_tension: false, stop: None };
+    for laws in [[soft, soft], [Law::Rigid { restitution: 0.0 }, soft], [soft, Law::Rigid { restitution: 0.5 }]] {
+        let mut system = model_3([0.2, 100.0, 0.0], 0.05, 0.01, laws);
+        system.drive = quiet(0.4);
+        let start =
+            StartState::Given { q: vec![0.0, 0.0], rate: vec![0.0, -3.0], particles: vec![(Contact::Floor, 0.0, 0.0)] };
+        let refused = event_driven(&system, &Options { start, ..cycles(1) });
+        let Err(EngineError::Squeezed { particle: 0, cycle: 0, time }) = refused else { panic!("{refused:?}") };
+        // 10 mm at 3 m/s, a little slowed down by the walls.
+        assert!((0.003_2..0.003_4).contains(&time), "{time} s");
+    }
 }
