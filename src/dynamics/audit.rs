@@ -157,6 +157,9 @@ impl Audit {
             let mut residual = dot(row, &gained) + dot(row, &held) + dot(row, &damped);
             let mut passed = self.impulse_passed * dot(row, &system.force_row).abs();
             residual -= dot(row, &system.force_row) * (self.impulse + self.force);
+            for state in [begin, end] {
+                passed += dot(row, &system.mass.times(&state.rate)).abs();
+            }
             for ((particle, a), b) in system.particles.iter().zip(&begin.particles).zip(&end.particles) {
                 let share = dot(row, &particle.floor.row) * particle.mass;
                 residual += share * (b[1] - a[1] + system.gravity * self.duration);

@@ -6,6 +6,7 @@
 //! - `flow`: the exact motion of one contact state, split into 2 × 2 `block`s by `modes` and `spectral`;
 //! - `search`: the first event, certified by Bernstein enclosures;
 //! - `contact`: what an event leads to; `march`: from event to event;
+//! - `linear`: a run without any event, in closed form;
 //! - `integral`: measures in closed form; `audit`: momentum and energy balanced by other means;
 //! - `fixed`: the study's own scheme, with its step.
 //!
@@ -17,18 +18,22 @@
 
 mod audit;
 mod block;
+mod collision;
 mod contact;
 mod elementary;
+mod extremes;
 mod fixed;
 mod flow;
 mod guards;
 mod integral;
+mod linear;
 mod march;
 mod mobility;
 mod modes;
 mod polynomial;
 mod search;
 mod series;
+mod signals;
 mod spectral;
 mod spline;
 mod system;
@@ -37,12 +42,12 @@ mod window;
 
 pub use spline::Spline;
 pub use system::{
-    Contact, Drive, Event, EventKind, Face, HalfCycles, Harmonic, HybridSystem, Law, Matrix, Particle, Stop, Tick,
+    Contact, Drive, Event, EventKind, Face, HalfCycles, Harmonic, HybridSystem, Law, Matrix, Particle, Stop, Tick, dot,
 };
 pub use trace::{Sample, TraceRequest};
 
 /// Changes whenever the same scene may give other bits. A test holds the bits of fixed scenes against it.
-pub const SOLVER_VERSION: u32 = 1;
+pub const SOLVER_VERSION: u32 = 2;
 
 /// What proves a run: residuals of the balances, and how clearly its events were decided.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -73,6 +78,10 @@ pub struct Options {
     pub kick: f64,
     /// Measure displacements too, not velocities alone.
     pub displacement: bool,
+    /// Look for the largest and smallest values of the observed motions.
+    pub extremes: bool,
+    /// Keep the structure's velocities at both ends of every cycle.
+    pub cycle_rates: bool,
     /// Balance momentum and energy.
     pub audit: bool,
     /// How many events to keep, from the first.
@@ -106,6 +115,8 @@ impl Default for Options {
             start: StartState::StaticEquilibrium,
             kick: 0.0,
             displacement: true,
+            extremes: false,
+            cycle_rates: false,
             audit: false,
             record_events: 0,
             trace: None,
@@ -168,11 +179,25 @@ impl Counts {
     }
 }
 
+/// How a response came about.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Method {
+    /// From event to event.
+    #[default]
+    Simulated,
+    /// No event can happen: by powers of the map of one cycle.
+    ClosedForm,
+}
+
 /// What a run leaves behind.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Response {
-    /// First and second half of the averaged window.
-    pub sums: [Sums; 2],
+    /// How it came about.
+    pub method: Method,
+    /// What was observed, in the order of [`HybridSystem::observed_rows`].
+    pub observed: Vec<Observed>,
+    /// The structure's velocities at both ends of every cycle, if asked for.
+    pub cycle_rates: Vec<CycleRates>,
     /// Events in the averaged window.
     pub counts: Counts,
     /// What proves the run.
@@ -191,11 +216,62 @@ pub struct Response {
     pub highest_frequency: f64,
 }
 
+/// One observed motion over the averaged window.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Observed {
+    /// Integrals over the first and the second half.
+    pub halves: [Sums; 2],
+    /// Largest and smallest values, if asked for.
+    pub extremes: Extremes,
+}
+
+/// The range of an observed motion; lowest and highest value, NaN where nobody looked.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Extremes {
+    /// m.
+    pub displacement: [f64; 2],
+    /// m/s.
+    pub velocity: [f64; 2],
+}
+
+impl Default for Extremes {
+    fn default() -> Self {
+        Self { displacement: [f64::NAN; 2], velocity: [f64::NAN; 2] }
+    }
+}
+
+impl Extremes {
+    /// Takes an instant into the range.
+    pub(crate) fn take(&mut self, displacement: f64, velocity: f64) {
+        // The smaller of NaN and a number is the number.
+        for (range, value) in [(&mut self.displacement, displacement), (&mut self.velocity, velocity)] {
+            *range = [range[0].min(value), range[1].max(value)];
+        }
+    }
+}
+
+/// The structure's velocities q′ at both ends of a cycle.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct CycleRates {
+    /// Just after the impulse that opens it.
+    pub after: Vec<f64>,
+    /// Just before the impulse that opens the next one.
+    pub before: Vec<f64>,
+}
+
 impl Response {
+    /// The averaged window of the first observed motion.
+    #[must_use]
+    pub fn window(&self) -> Sums {
+        self.observed.first().map(Observed::window).unwrap_or_default()
+    }
+}
+
+impl Observed {
     /// Both halves of the averaged window.
     #[must_use]
     pub fn window(&self) -> Sums {
-        let [a, b] = self.sums;
+        let [a, b] = self.halves;
         Sums {
             duration: a.duration + b.duration,
             displacement: a.displacement + b.displacement,
@@ -226,6 +302,24 @@ impl Sums {
     }
 }
 
+/// The motion that comes again in every cycle.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SteadyState {
+    /// In the order of [`HybridSystem::observed_rows`].
+    pub observed: Vec<SteadyMotion>,
+    /// How far, in metres, every particle stays from leaving its floor; infinite where there is none.
+    pub margin: f64,
+}
+
+/// One observed motion in the steady state.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SteadyMotion {
+    /// Integrals over one cycle.
+    pub cycle: Sums,
+    /// Largest and smallest values.
+    pub extremes: Extremes,
+}
+
 /// Why the engine gave up.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum EngineError {
@@ -252,7 +346,9 @@ pub enum EngineError {
         condition: f64,
     },
     /// A steady state that does not exist.
-    #[error("a contact state without damping is driven at its own frequency, {omega} rad/s: it has no steady answer")]
+    #[error(
+        "a contact state with next to no damping is driven at its own frequency, {omega} rad/s: it has no steady answer"
+    )]
     UndampedResonance {
         /// rad/s.
         omega: f64,
@@ -265,6 +361,9 @@ pub enum EngineError {
         /// Time within it.
         time: f64,
     },
+    /// A system that nobody looks at.
+    #[error("the system has no observed row: there is nothing to measure")]
+    NothingObserved,
     /// A step that is no step of this drive.
     #[error(
         "a time step of {time_step} s does not fit a forcing period of {period} s: it must be positive, no longer than the period and longer than a billionth of it"
@@ -283,12 +382,24 @@ pub enum EngineError {
     },
 }
 
-/// Runs a system from event to event.
+/// Runs a system from event to event; where it is proved that there is none, in closed form.
 ///
 /// # Errors
 /// [`EngineError`] with the reason.
 pub fn event_driven(system: &HybridSystem, options: &Options) -> Result<Response, EngineError> {
-    march::march(system, options)
+    match linear::attempt(system, options)? {
+        linear::Attempt::Solved(response) => Ok(*response),
+        linear::Attempt::Open(at_rest) => march::march(system, options, at_rest.map(|flow| *flow)),
+    }
+}
+
+/// The steady state in closed form: what is left once all transients are gone. `None` unless it is proved that no particle
+/// leaves its floor in it, and where undamped modes never settle.
+///
+/// # Errors
+/// [`EngineError`] with the reason.
+pub fn steady_state(system: &HybridSystem) -> Result<Option<SteadyState>, EngineError> {
+    linear::steady_state(system)
 }
 
 /// Runs a system with the study's scheme: exact propagators of one time step, s, the contact state checked once a step.

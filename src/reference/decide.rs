@@ -2,6 +2,7 @@
 
 use super::extract::Extracted;
 use super::line::{common, lines};
+use super::place::{best_place, grows_towards};
 use super::predicate::{
     Apart, Between, ColumnsAgree, Equal, Level, LinesAgree, PathMonotone, PathsCross, Predicate, Trend, Within,
 };
@@ -34,6 +35,10 @@ pub(crate) fn decide(predicate: &Predicate, view: &View<'_>) -> Result<Decision,
         Predicate::Onsets(claim) => onsets(claim, view),
         Predicate::PathsCross(claim) => paths_cross(claim, view),
         Predicate::PathMonotone(claim) => path_monotone(claim, view),
+        Predicate::BestPlace(claim) => best_place(claim, view),
+        Predicate::GrowsTowards(claim) => grows_towards(claim, view),
+        Predicate::Curve(claim) => claim.decide(view),
+        Predicate::ModeShape(claim) => claim.decide(view),
     };
     match decided {
         // What the claim speaks of does not happen: that is an answer.

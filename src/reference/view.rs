@@ -197,6 +197,17 @@ impl<'a> View<'a> {
             .collect()
     }
 
+    /// A coordinate of each of the rows, finite.
+    pub(crate) fn coordinates(&self, rows: &Rows<'_>, name: &str) -> Result<Vec<f64>, Absence> {
+        let found = parameter(rows.table, name)?;
+        self.note_all(rows, found, Role::Coordinate);
+        let coordinate = |&row: &usize| {
+            let x = number(&found.column.data, row).filter(|x| x.is_finite());
+            x.ok_or_else(|| Absence::Broken(format!("`{name}` is no finite number in row {}", row + 1)))
+        };
+        rows.indices.iter().map(coordinate).collect()
+    }
+
     /// The columns that say how uncertain a measure is. A measure has all of them, the place of a maximum no spread, and a
     /// parameter none; of those that belong together none may be missing.
     fn errors<'t>(&self, rows: &Rows<'t>, of: &str) -> Result<Errors<'t>, Absence> {

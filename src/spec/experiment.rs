@@ -59,10 +59,17 @@ pub struct Experiment {
     pub settings: Settings,
     /// An inner maximisation over one more parameter: the row then holds the maximum and where it lies.
     pub maximise: Option<Maximise>,
+    /// Sweeps whose curves get more points where they bend; the cases hold the points that they start with.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub refined: Vec<Refinement>,
     /// Measures in the order of the columns.
     pub measures: Vec<Measure>,
     /// Time history to keep with each row.
     pub trace: Option<TraceSpec>,
+    /// Kinetic energies to keep with each row.
+    pub energies: Option<EnergySpec>,
+    /// Shape to keep with each row. At most one of the three is kept: the lists of a row are of one length.
+    pub shape: Option<ShapeSpec>,
     /// The figures; never part of what makes a simulation stale.
     pub figures: Vec<FigureSpec>,
 }
@@ -92,9 +99,11 @@ impl Experiment {
         for recipe in self.cases.iter().filter_map(|case| self.recipe_of(case).ok()) {
             used.extend(recipe.assumptions());
         }
-        let undamped = [Measure::VelocityRatio, Measure::DisplacementRatio, Measure::UndampedRmsVelocity];
-        if !self.measures.iter().any(|measure| undamped.contains(measure)) {
+        if !self.measures.iter().any(|measure| measure.needs_undamped()) {
             used.remove(&Assumption::UndampedMass);
+        }
+        if self.energies.is_some() || self.measures.contains(&Measure::MassMeasure) {
+            used.insert(Assumption::MassMeasure);
         }
         used
     }
@@ -114,8 +123,11 @@ impl Experiment {
             "swept": json(&self.swept),
             "settings": json(&self.settings),
             "maximise": json(&self.maximise),
+            "refined": json(&self.refined),
             "measures": json(&self.measures),
             "trace": json(&self.trace),
+            "energies": json(&self.energies),
+            "shape": json(&self.shape),
         })
     }
 
@@ -224,6 +236,25 @@ pub struct Maximise {
     pub refine: u32,
 }
 
+/// Points added to the curves of a sweep, one parameter running, where a straight line between two of them would miss.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Refinement {
+    /// The sweep within a union; empty otherwise.
+    pub sweep: String,
+    /// The parameter that runs along a curve.
+    pub over: Parameter,
+    /// How far a straight line may miss, relative to the local value; on a logarithmic scale in its logarithm.
+    pub tolerance: f64,
+    /// Most points of a curve.
+    pub most: u32,
+    /// The scale on which points are evenly spaced and intervals halved.
+    pub spacing: AxisScale,
+    /// The scale on which lines are straight.
+    pub value_scale: AxisScale,
+    /// The measures that decide; all where none is named.
+    pub measures: Vec<Measure>,
+}
+
 /// Which part of the motion to keep as a time history. The list columns are then `time` (s), `base_displacement`,
 /// `base_velocity`, `base_acceleration`, `particle_displacement`, `floor_displacement` and `ceiling_displacement` (the
 /// resilient surfaces where they are), `rigid_floor`, `rigid_ceiling` (where they would be uncompressed),
@@ -238,6 +269,37 @@ pub struct TraceSpec {
     pub samples: u32,
 }
 
+/// Which cycles' kinetic energies to keep. The list columns are then `cycle`, `kinetic_energy_after` (J, of the structure alone,
+/// just after the impulse that opens the cycle), `kinetic_energy_before` (just before the next one), the same two with
+/// `undamped_` in front, `damping_measure_of_cycle` and `mass_measure_of_cycle`.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct EnergySpec {
+    /// First forcing cycle, counted from 0.
+    pub from_cycle: u32,
+    /// One past the last.
+    pub to_cycle: u32,
+}
+
+/// Which shape to keep. The list columns are then `x` and, with two sides, `y` (shares of the sides; x varies fastest), `shape`
+/// (largest modulus 1), and for a mode `exact_shape`, for a deflection `rms_displacement` (m) and `mode_shape`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ShapeSpec {
+    /// Of what.
+    pub of: ShapeOf,
+    /// Points along each side.
+    pub points: Vec<u32>,
+}
+
+/// What a shape is of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ShapeOf {
+    /// A normal mode.
+    Mode,
+    /// The motion under the excitation.
+    Deflection,
+}
+
 /// One PNG.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct FigureSpec {
@@ -245,8 +307,65 @@ pub struct FigureSpec {
     pub name: String,
     /// One line under the picture.
     pub caption: String,
-    /// Panels, top to bottom, sharing the x axis.
-    pub panels: Vec<Panel>,
+    /// What is drawn.
+    pub drawing: Drawing,
+}
+
+/// What a figure draws.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Drawing {
+    /// Curves in panels, top to bottom, sharing the x axis.
+    Lines(Vec<Panel>),
+    /// A quantity over two others, as colours, in panels of one colour scale.
+    Map(MapSpec),
+}
+
+/// A map. Its three columns hold a number a row (a cell a row, drawn as such) or a list a row (a field a row, drawn with
+/// contours).
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct MapSpec {
+    /// x.
+    pub x: Axis,
+    /// y.
+    pub y: Axis,
+    /// What the colour stands for.
+    pub value: Axis,
+    /// Columns whose levels get a panel each.
+    pub by: Vec<String>,
+    /// A place to mark in each panel: where the force acts.
+    pub mark: Option<Mark>,
+    /// Which place to mark and to name.
+    pub best: Best,
+    /// The number from which colours run apart (0 for a deflection, 1 for a ratio); its contour is drawn.
+    pub centre: Option<f64>,
+    /// Height of a panel over its width; equal units are drawn to scale if absent.
+    pub aspect: Option<f64>,
+    /// Panels side by side; as many as suit their number if absent.
+    pub columns: Option<u32>,
+}
+
+/// A place to mark in a map.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Mark {
+    /// Column of its x.
+    pub x: String,
+    /// Column of its y.
+    pub y: String,
+    /// What it is, for the legend.
+    pub label: String,
+}
+
+/// The place of a map to mark and to name.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Best {
+    /// That of the largest value.
+    Highest,
+    /// That of the smallest value.
+    Lowest,
+    /// None.
+    None,
 }
 
 /// One pair of axes.
@@ -264,6 +383,17 @@ pub struct Panel {
     pub guides: Vec<Level>,
     /// Markers on the points (few points) instead of a line alone.
     pub markers: bool,
+    /// Which peaks of the curves to mark with their place on the x axis.
+    pub peaks: Option<PeakMarks>,
+}
+
+/// Which peaks of a curve to mark.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct PeakMarks {
+    /// How far one has to descend from a peak before the curve rises above it, as a share of the y axis as drawn.
+    pub prominence: f64,
+    /// At most so many of a curve, the most prominent ones.
+    pub most: u32,
 }
 
 /// A labelled horizontal guide.
@@ -284,6 +414,8 @@ pub struct Axis {
     pub label: Option<String>,
     /// Linear or logarithmic.
     pub scale: AxisScale,
+    /// The axis reaches at least from the one to the other, whatever the data.
+    pub reach: Option<[f64; 2]>,
 }
 
 /// Scale of an axis.

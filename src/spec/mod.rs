@@ -7,14 +7,19 @@ mod assumption_sheet;
 mod check;
 mod columns;
 mod diagnostic;
+mod excitation;
 mod experiment;
 mod figure;
 mod load;
+mod map;
+mod place;
 mod quantity;
 mod range;
 mod reader;
+mod refined;
 mod scene;
 mod solver;
+mod structure;
 mod sweep;
 mod typed;
 mod validate;
@@ -24,11 +29,12 @@ mod yaml;
 pub use assumption_sheet::{AssumptionEntry, AssumptionSheet, parse_assumptions};
 pub use diagnostic::{Place, Problem, Problems};
 pub use experiment::{
-    Axis, AxisScale, Case, Experiment, ExperimentId, FigureSpec, IdError, Level, Maximise, Panel, Settings,
-    SolverChoice, Source, TraceSpec,
+    Axis, AxisScale, Best, Case, Drawing, EnergySpec, Experiment, ExperimentId, FigureSpec, IdError, Level, MapSpec,
+    Mark, Maximise, Panel, PeakMarks, Refinement, Settings, ShapeOf, ShapeSpec, SolverChoice, Source, TraceSpec,
 };
 pub use load::{load_assumptions, load_experiment};
 pub use quantity::{Dimension, QuantityError, parse_number, parse_quantity};
+pub(crate) use refined::{Curve, curves};
 pub use typed::{Located, from_yaml};
 pub(crate) use typed::{Spanned, position};
 pub use validate::parse_experiment;

@@ -3,100 +3,157 @@
 use std::cell::RefCell;
 
 use crate::scene::{
-    Assumption, ContactDampingRecipe, DamperRecipe, ExcitationRecipe, GapRecipe, Given, MassRecipe, Parameter,
-    PulseShape, Recipe, StiffnessRecipe, StopRecipe, StrengthRecipe, StructureRecipe, SurfaceRecipe, TimingRecipe,
-    WallRecipe,
+    Assumption, ContactDampingRecipe, DamperRecipe, Family, GapRecipe, Given, KINDS, Kind, MassReading, MassRecipe,
+    Parameter, Part, Recipe, StiffnessRecipe, StopRecipe, SurfaceRecipe, WallRecipe,
 };
 
 use super::diagnostic::{Findings, Span};
 use super::quantity::Dimension;
 use super::reader::{Choice, Fields, above_zero, boolean, list, number, quantity, ratio};
+use super::structure::read_structure;
 use super::yaml::{Node, Value};
 
 /// Stands where the file says `swept` until the sweep's first case takes its place.
 const PLACEHOLDER: f64 = 1.0;
 
 /// Most dampers that a file may name.
-const MOST_DAMPERS: usize = 64;
+pub(super) const MOST_DAMPERS: usize = 64;
 
 /// A scene as read, and where it says `swept`.
 pub(super) struct ReadScene {
     pub recipe: Recipe,
     pub swept: Vec<(Parameter, Span)>,
+    /// Where each part stands.
+    pub parts: Vec<(Part, Span)>,
 }
 
 /// Reads the node under `scene`.
 pub(super) fn read_scene(node: &Node, findings: &Findings) -> Option<ReadScene> {
-    let reader = SceneReader { findings, swept: RefCell::default() };
+    let reader = SceneReader { findings, swept: RefCell::default(), parts: RefCell::default() };
     let recipe = reader.recipe(node)?;
-    Some(ReadScene { recipe, swept: reader.swept.into_inner() })
+    Some(ReadScene { recipe, swept: reader.swept.into_inner(), parts: reader.parts.into_inner() })
 }
 
-struct SceneReader<'t> {
-    findings: &'t Findings,
-    swept: RefCell<Vec<(Parameter, Span)>>,
+pub(super) struct SceneReader<'t> {
+    pub(super) findings: &'t Findings,
+    pub(super) swept: RefCell<Vec<(Parameter, Span)>>,
+    parts: RefCell<Vec<(Part, Span)>>,
 }
 
 impl<'t> SceneReader<'t> {
     fn recipe(&self, node: &'t Node) -> Option<Recipe> {
         let fields = Fields::open(node, "the scene", self.findings)?;
-        let structure = fields.required("structure", |node| self.structure(node));
+        let structure = fields.required("structure", |node| {
+            self.parts.borrow_mut().push((Part::Structure, node.span));
+            read_structure(node, self.findings, &self.swept)
+        });
         let gravity = fields.optional("gravity", |node| {
             self.given(node, Assumption::Gravity, |node| quantity(node, Dimension::Acceleration, self.findings))
         });
-        let dampers = fields.optional("dampers", |node| self.dampers(node));
-        let excitation = fields.required("excitation", |node| self.excitation(node));
+        // What dampers and excitation may say depends on the structure; one that is wrong is taken for a single mass.
+        let kind = structure.as_ref().map_or(KINDS[0], |structure| structure.kind);
+        let dampers = fields.optional("dampers", |node| self.dampers(node, kind));
+        let excitation = fields.required("excitation", |node| {
+            self.parts.borrow_mut().push((Part::Excitation, node.span));
+            self.excitation(node, kind)
+        });
+        let observe = fields.optional("observe", |node| {
+            self.parts.borrow_mut().push((Part::Observe, node.span));
+            self.observe(node, kind)
+        });
         fields.close()?;
         Some(Recipe {
-            structure: structure?,
+            structure: structure?.recipe,
             gravity: gravity?.unwrap_or(Given::Assumed(Assumption::Gravity)),
             dampers: dampers?.unwrap_or_default(),
+            without_dampers: false,
             excitation: excitation?,
+            observe: observe?.unwrap_or_default(),
+            mode: None,
         })
     }
 
-    fn structure(&self, node: &'t Node) -> Option<StructureRecipe> {
-        let choice = Choice::read(node, "the structure", &["single_mass"], self.findings)?;
-        let fields = choice.fields("a single mass", self.findings)?;
-        let mass = fields.required("mass", |node| above_zero(node, Dimension::Mass, self.findings));
-        let stiffness = fields.required("stiffness", |node| above_zero(node, Dimension::Stiffness, self.findings));
-        let damping_ratio = fields.required("damping_ratio", |node| self.sweepable(node, Parameter::DampingRatio));
-        fields.close()?;
-        Some(StructureRecipe::SingleMass { mass: mass?, stiffness: stiffness?, damping_ratio: damping_ratio? })
-    }
-
-    fn dampers(&self, node: &'t Node) -> Option<Vec<DamperRecipe>> {
+    fn dampers(&self, node: &'t Node, kind: &Kind) -> Option<Vec<DamperRecipe>> {
         match &node.value {
             Value::Sequence(items) if items.is_empty() => Some(Vec::new()),
             Value::Sequence(items) if items.len() > MOST_DAMPERS => {
                 self.findings.wrong(node.span, format!("{} dampers: {MOST_DAMPERS} at most", items.len()))
             }
-            _ => list(node, self.findings, |node| self.damper(node)),
+            Value::Sequence(items) => {
+                let mut parts = self.parts.borrow_mut();
+                parts.extend(items.iter().enumerate().map(|(index, item)| (Part::Damper(index), item.span)));
+                drop(parts);
+                list(node, self.findings, |node| self.damper(node, kind))
+            }
+            _ => list(node, self.findings, |node| self.damper(node, kind)),
         }
     }
 
-    fn damper(&self, node: &'t Node) -> Option<DamperRecipe> {
+    fn damper(&self, node: &'t Node, kind: &Kind) -> Option<DamperRecipe> {
         let fields = Fields::open(node, "a damper", self.findings)?;
+        let at = self.at(&fields, kind, [Parameter::DamperX, Parameter::DamperY]);
+        let array =
+            if kind.sides.is_empty() { Some(None) } else { fields.optional("array", |node| self.array(node, kind)) };
         let mass = fields.exactly_one(&["mass_ratio", "mass"]).and_then(|(key, node)| match key {
             "mass" => quantity(node, Dimension::Mass, self.findings).map(MassRecipe::Mass),
             _ => self.sweepable(node, Parameter::MassRatio).map(MassRecipe::Ratio),
         });
+        let share = |node: &'t Node| self.sweepable(node, Parameter::ParticleShare);
+        // On one mass the study has no enclosure; on a beam or plate it always has.
+        let (mass_reading, particle_share) = if kind.family == Family::Mass {
+            (Some(None), fields.optional("particle_share", share).map(|share| share.unwrap_or(1.0)))
+        } else {
+            let reading = fields.optional("mass_reading", |node| self.mass_reading(node));
+            (reading, fields.required("particle_share", share))
+        };
         let gap = fields.exactly_one(&["gap_ratio", "gap"]).and_then(|(key, node)| match key {
             _ if is_word(node, "infinite") => Some(GapRecipe::Infinite),
+            "gap" if matches!(node.value, Value::Sequence(_)) => {
+                list(node, self.findings, |node| quantity(node, Dimension::Length, self.findings)).map(GapRecipe::Gaps)
+            }
+            _ if matches!(node.value, Value::Sequence(_)) => {
+                list(node, self.findings, |node| ratio(node, self.findings)).map(GapRecipe::Ratios)
+            }
             "gap" => quantity(node, Dimension::Length, self.findings).map(GapRecipe::Gap),
             _ => self.sweepable(node, Parameter::GapRatio).map(GapRecipe::Ratio),
         });
-        let floor = fields.required("floor", |node| self.surface(node));
-        let ceiling = fields.optional("ceiling", |node| self.surface(node));
+        let floor = fields.required("floor", |node| self.surface(node, kind));
+        let ceiling = fields.optional("ceiling", |node| self.surface(node, kind));
         let stop = fields.optional("stop", |node| self.stop(node));
         let walls = fields.optional("walls", |node| self.walls(node));
         fields.close()?;
         let floor = floor?;
         let ceiling = ceiling?.unwrap_or_else(|| floor.clone());
-        Some(DamperRecipe { mass: mass?, gap: gap?, floor, ceiling, stop: stop?, walls: walls? })
+        Some(DamperRecipe {
+            at: at?,
+            array: array?,
+            mass: mass?,
+            mass_reading: mass_reading?.unwrap_or(MassReading::Assumed),
+            particle_share: particle_share?,
+            gap: gap?,
+            floor,
+            ceiling,
+            stop: stop?,
+            walls: walls?,
+        })
     }
 
-    fn surface(&self, node: &'t Node) -> Option<SurfaceRecipe> {
+    /// `assumed`, or a reading, which a sweep may vary.
+    fn mass_reading(&self, node: &'t Node) -> Option<MassReading> {
+        let names = ["assumed", "total", "modal", "swept"];
+        let choice = Choice::read(node, "the reading of a mass ratio", &names, self.findings)?;
+        Some(match choice.bare(self.findings)? {
+            "total" => MassReading::Total,
+            "modal" => MassReading::Modal,
+            "swept" => {
+                self.swept.borrow_mut().push((Parameter::MassReading, node.span));
+                MassReading::Total
+            }
+            _ => MassReading::Assumed,
+        })
+    }
+
+    fn surface(&self, node: &'t Node, kind: &Kind) -> Option<SurfaceRecipe> {
         let choice = Choice::read(node, "a surface", &["rigid", "resilient"], self.findings)?;
         if choice.name == "rigid" {
             let fields = choice.fields("a rigid surface", self.findings)?;
@@ -106,6 +163,13 @@ impl<'t> SceneReader<'t> {
         }
         let fields = choice.fields("a resilient surface", self.findings)?;
         let stiffness = fields.exactly_one(&["stiffness_ratio", "stiffness"]).and_then(|(key, node)| match key {
+            "stiffness" if is_word(node, "tuned") => Some(StiffnessRecipe::Tuned),
+            "stiffness" if is_word(node, "untuned") => Some(StiffnessRecipe::Untuned),
+            "stiffness" if is_word(node, "assumed") => Some(StiffnessRecipe::Assumed),
+            "stiffness" if is_word(node, "swept") => {
+                self.swept.borrow_mut().push((Parameter::FloorTuning, node.span));
+                Some(StiffnessRecipe::Tuned)
+            }
             "stiffness" => above_zero(node, Dimension::Stiffness, self.findings).map(StiffnessRecipe::Stiffness),
             _ => self
                 .given(node, Assumption::FloorStiffnessRatio, |node| {
@@ -117,7 +181,7 @@ impl<'t> SceneReader<'t> {
             "damping" if is_word(node, "equivalent_viscous") => Some(ContactDampingRecipe::EquivalentViscous),
             "damping" => quantity(node, Dimension::Damping, self.findings).map(ContactDampingRecipe::Damping),
             _ => self
-                .given(node, Assumption::ContactDampingRatio, |node| {
+                .given(node, kind.family.contact_damping_ratio(), |node| {
                     self.sweepable(node, Parameter::ContactDampingRatio)
                 })
                 .map(ContactDampingRecipe::Ratio),
@@ -177,78 +241,12 @@ impl<'t> SceneReader<'t> {
         })
     }
 
-    fn excitation(&self, node: &'t Node) -> Option<ExcitationRecipe> {
-        let names = ["single_impulse", "impulse_train", "harmonic", "pulse_train"];
-        let choice = Choice::read(node, "the excitation", &names, self.findings)?;
-        let fields = choice.fields("the excitation", self.findings)?;
-        let strength_keys: &[_] = match choice.name {
-            "harmonic" => &["force_ratio", "base_amplitude_ratio", "force"],
-            _ => &["force_ratio", "impulse"],
-        };
-        let strength = fields.exactly_one(strength_keys).and_then(|(key, node)| self.strength(key, node));
-        let timing_keys = ["frequency_ratio", "period", "angular_frequency"];
-        let timing = match choice.name {
-            // Time is counted in natural cycles unless the file says otherwise.
-            "single_impulse" => fields.at_most_one(&timing_keys).and_then(|given| match given {
-                Some((key, node)) => self.timing(key, node),
-                None => Some(TimingRecipe::FrequencyRatio(1.0)),
-            }),
-            _ => fields.exactly_one(&timing_keys).and_then(|(key, node)| self.timing(key, node)),
-        };
-        let pulse = if choice.name == "pulse_train" { Some(self.pulse(&fields)) } else { None };
-        fields.close()?;
-        let (strength, timing) = (strength?, timing?);
-        Some(match pulse {
-            Some(pulse) => {
-                let (duration, shape) = pulse?;
-                ExcitationRecipe::PulseTrain { strength, timing, duration, shape }
-            }
-            None if choice.name == "harmonic" => ExcitationRecipe::Harmonic { strength, timing },
-            None if choice.name == "impulse_train" => ExcitationRecipe::ImpulseTrain { strength, timing },
-            None => ExcitationRecipe::SingleImpulse { strength, timing },
-        })
-    }
-
-    fn strength(&self, key: &str, node: &'t Node) -> Option<StrengthRecipe> {
-        match key {
-            "impulse" => quantity(node, Dimension::Impulse, self.findings).map(StrengthRecipe::Impulse),
-            "force" => quantity(node, Dimension::Force, self.findings).map(StrengthRecipe::Force),
-            "base_amplitude_ratio" => {
-                self.sweepable(node, Parameter::BaseAmplitudeRatio).map(StrengthRecipe::BaseAmplitudeRatio)
-            }
-            _ => self.sweepable(node, Parameter::ForceRatio).map(StrengthRecipe::ForceRatio),
-        }
-    }
-
-    fn timing(&self, key: &str, node: &'t Node) -> Option<TimingRecipe> {
-        match key {
-            "period" => above_zero(node, Dimension::Time, self.findings).map(TimingRecipe::Period),
-            "angular_frequency" => {
-                above_zero(node, Dimension::AngularFrequency, self.findings).map(TimingRecipe::AngularFrequency)
-            }
-            _ => self.sweepable(node, Parameter::FrequencyRatio).map(TimingRecipe::FrequencyRatio),
-        }
-    }
-
-    fn pulse(&self, fields: &Fields<'t>) -> Option<(f64, PulseShape)> {
-        let duration = fields.required("duration", |node| {
-            self.swept_or(node, Parameter::PulseDuration, |node| above_zero(node, Dimension::Time, self.findings))
-        });
-        let shape = fields.required("shape", |node| {
-            Choice::read(node, "a pulse", &["rectangular", "binomial"], self.findings)?.bare(self.findings)
-        });
-        let (duration, shape) = (duration?, shape?);
-        // As the study's figure 31: one impulse a step of 1 ms.
-        let impulses = (duration / 1e-3).round().clamp(1.0, 1e6) as u32;
-        Some((duration, if shape == "binomial" { PulseShape::Binomial { impulses } } else { PulseShape::Rectangular }))
-    }
-
     /// A dimensionless parameter, or `swept`.
-    fn sweepable(&self, node: &'t Node, parameter: Parameter) -> Option<f64> {
+    pub(super) fn sweepable(&self, node: &'t Node, parameter: Parameter) -> Option<f64> {
         self.swept_or(node, parameter, |node| ratio(node, self.findings))
     }
 
-    fn swept_or(
+    pub(super) fn swept_or(
         &self,
         node: &'t Node,
         parameter: Parameter,
@@ -262,7 +260,7 @@ impl<'t> SceneReader<'t> {
     }
 
     /// A value, or `assumed`.
-    fn given(
+    pub(super) fn given(
         &self,
         node: &'t Node,
         assumption: Assumption,
@@ -272,6 +270,6 @@ impl<'t> SceneReader<'t> {
     }
 }
 
-fn is_word(node: &Node, word: &str) -> bool {
+pub(super) fn is_word(node: &Node, word: &str) -> bool {
     matches!(&node.value, Value::Scalar(text) if text == word)
 }
