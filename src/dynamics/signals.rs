@@ -115,12 +115,12 @@ impl Row {
 /// φ_c·q − φ_f·q, and what the compression of the face that particle j is at adds to the way across.
 fn across(flow: &Flow, j: usize, particle: &Particle) -> Option<Row> {
     let ceiling = particle.ceiling.as_ref().filter(|ceiling| ceiling.row != particle.floor.row)?;
-    let contact = flow.contacts[j];
+    let contact = flow.modes.contacts[j];
     contact.face(particle)?;
     let mut row: Vec<f64> = ceiling.row.iter().zip(&particle.floor.row).map(|(above, below)| above - below).collect();
     let structure = row.len();
-    row.resize(flow.order, 0.0);
-    if let Some(slot) = flow.attached.iter().position(|&a| a == j) {
+    row.resize(flow.modes.order, 0.0);
+    if let Some(slot) = flow.modes.attached.iter().position(|&a| a == j) {
         row[structure + slot] = -contact.side().away();
     }
     Some(flow.row(&row))
@@ -154,15 +154,15 @@ impl Rows {
         }
         let compression = |j: usize| {
             let mut unit = vec![0.0; flow.order];
-            unit[system.mass.order + flow.attached.iter().position(|&a| a == j)?] = 1.0;
+            unit[system.mass.order + flow.modes.attached.iter().position(|&a| a == j)?] = 1.0;
             Some(flow.row(&unit))
         };
         for (j, particle) in system.particles.iter().enumerate() {
-            let contact = flow.contacts[j];
+            let contact = flow.modes.contacts[j];
             let side = contact.side();
             let face = padded(&side.face(particle).row);
             let force = |row: &Row| match side.face(particle).law {
-                Law::Resilient { stiffness, .. } => row.mixed(blocks, stiffness, flow.damping[j]),
+                Law::Resilient { stiffness, .. } => row.mixed(blocks, stiffness, flow.modes.damping[j]),
                 Law::Rigid { .. } => row.clone(),
             };
             let (first, second) = match contact {
@@ -198,6 +198,11 @@ impl Rows {
             all.faces.push(FaceRows { floor, ceiling, compression });
         }
         all
+    }
+
+    /// Numbers that it keeps.
+    pub(crate) fn size(&self) -> usize {
+        self.rows.iter().map(|row| 4 * row.weights.len()).sum()
     }
 
     fn place(&mut self, row: Row) -> usize {
