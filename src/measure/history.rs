@@ -60,11 +60,12 @@ impl History<'_> {
         self.response.trace.iter().fold(0.0, |deepest, sample| f64::max(deepest, sample.ceiling - sample.rigid_ceiling))
     }
 
-    /// Shortest time between the start of a forcing cycle and an event of this kind, s; infinite if there is none.
+    /// Shortest time between the start of a forcing cycle and an event of this kind, s; infinite if there is none. A scheme with
+    /// steps ends its cycles up to one step late: what happens there happens with the start of the next.
     pub(super) fn lag(&self, kind: EventKind) -> f64 {
         let period = self.scene.excitation.period();
         let lags = self.response.events.iter().filter(|event| event.kind == kind);
-        lags.map(|event| event.time.min(period - event.time)).fold(f64::INFINITY, f64::min)
+        lags.map(|event| event.time.min(period - event.time).max(0.0)).fold(f64::INFINITY, f64::min)
     }
 }
 
@@ -108,4 +109,34 @@ pub(super) fn columns(history: &History<'_>) -> Vec<TraceColumn> {
         column("contact_damping", "N s/m", &|s| s.damping),
         column("rms_acceleration", "g", &|s| s.half_cycle_rms / gravity),
     ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::dynamics::Event;
+    use crate::scene::{Excitation, SingleMass};
+
+    #[test]
+    fn what_a_step_has_put_behind_the_end_of_its_cycle_comes_with_the_next_impulse() {
+        let mass = SingleMass { mass: 1.0, stiffness: 1000.0, damping: 3.0 };
+        let scene =
+            Scene::on_one_mass(mass, 9.81, Vec::new(), Excitation::ImpulseTrain { impulse: 1.0, period: 0.198_69 });
+        let at = |time| Event {
+            cycle: 3,
+            time,
+            particle: 0,
+            kind: EventKind::FloorContact,
+            approach: -1.0,
+            departure: -1.0,
+        };
+        let lag = |times: &[f64]| {
+            let response = Response { events: times.iter().map(|&time| at(time)).collect(), ..Response::default() };
+            History { response: &response, scene: &scene }.lag(EventKind::FloorContact)
+        };
+        // The study's 199 steps of 1 ms.
+        assert_eq!(lag(&[0.05, 0.198_999]), 0.0);
+        assert_eq!(lag(&[0.05, 0.17]), 0.198_69 - 0.17);
+        assert_eq!(lag(&[]), f64::INFINITY);
+    }
 }
