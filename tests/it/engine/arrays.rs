@@ -93,12 +93,12 @@ pub(super) fn blows(period: f64, impulse: f64) -> Drive {
     Drive { ticks: vec![Tick { time: 0.0, impulse, level: 0.0 }], ..quiet(period) }
 }
 
-fn particle(mass: f64, gap: f64, row: Vec<f64>, laws: [Law; 2]) -> Particle {
+pub(super) fn particle(mass: f64, gap: f64, row: Vec<f64>, laws: [Law; 2]) -> Particle {
     let [floor, ceiling] = laws.map(|law| Face { row: row.clone(), law });
     Particle { mass, floor, ceiling: Some(ceiling), gap }
 }
 
-fn spring(stiffness: f64, damping: f64) -> Law {
+pub(super) fn spring(stiffness: f64, damping: f64) -> Law {
     Law::Resilient { stiffness, damping, no_tension: false, stop: None }
 }
 

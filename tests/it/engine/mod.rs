@@ -4,6 +4,7 @@
 mod arrays;
 mod bench;
 mod closed_forms;
+mod equal_modes;
 mod event_cases;
 mod floating;
 mod linear;
