@@ -2,7 +2,7 @@
 
 use divan::Bencher;
 use shotdamp::dynamics::{HybridSystem, Options, event_driven};
-use shotdamp::scene::{ContactDamping, ContactEnd, Damper, Excitation, Scene, Structure, Surface, compile};
+use shotdamp::scene::{ContactDamping, ContactEnd, Damper, Excitation, Scene, SingleMass, Surface, compile};
 
 fn main() {
     divan::main();
@@ -11,19 +11,12 @@ fn main() {
 /// 1 kg on 1 kN/m; one particle of a twentieth of that in an enclosure of 0.49 m.
 fn scene(surface: &Surface, damping_ratio: f64, excitation: Excitation) -> Scene {
     let damping = 2.0 * damping_ratio * angular_frequency();
-    Scene {
-        structure: Structure::SingleMass { mass: 1.0, stiffness: 1000.0, damping },
-        gravity: 9.81,
-        dampers: vec![Damper {
-            particle_mass: 0.05,
-            gap: 0.4905,
-            floor: surface.clone(),
-            ceiling: surface.clone(),
-            stop: None,
-            walls: None,
-        }],
+    Scene::on_one_mass(
+        SingleMass { mass: 1.0, stiffness: 1000.0, damping },
+        9.81,
+        vec![Damper::between(surface.clone(), 0.05, 0.4905)],
         excitation,
-    }
+    )
 }
 
 fn angular_frequency() -> f64 {

@@ -37,7 +37,7 @@ use super::audit::{Audit, Passed};
 use super::contact::{Relative, Side};
 use super::flow::{Cholesky, Flow};
 use super::system::{Contact, Drive, HybridSystem, Law, dot};
-use super::{EngineError, Options, Response, StartState};
+use super::{EngineError, Observed, Options, Response, StartState};
 use propagator::{Layout, Propagator, lead};
 use schedule::{Oscillator, Schedule, StepTick};
 use stretch::{HalfCycle, Motion, Tally, Watch};
@@ -106,9 +106,11 @@ impl<'a, V: Vector> Run<'a, V> {
             padded[from..from + row.len()].copy_from_slice(row);
             V::of(&padded)
         };
+        let [first, rest @ ..] = system.observed_rows.as_slice() else { return Err(EngineError::NothingObserved) };
         let watch = Watch {
-            displacement: row(0, &system.observed_row),
-            velocity: row(positions, &system.observed_row),
+            displacement: row(0, first),
+            velocity: row(positions, first),
+            more: rest.iter().map(|more| [row(0, more), row(positions, more)]).collect(),
             forced: row(0, &system.force_row),
             with_displacement: options.displacement,
         };
@@ -132,9 +134,12 @@ impl<'a, V: Vector> Run<'a, V> {
             cycle: 0,
             step: 0,
             samples: Samples { cycle: options.trace.map_or(0, |trace| trace.from_cycle), index: 0, step: 0 },
-            tally: Tally::new(size),
+            tally: Tally::new(size, rest.len(), options.extremes),
             visited: Vec::new(),
-            response: Response::default(),
+            response: Response {
+                observed: vec![Observed::default(); system.observed_rows.len()],
+                ..Response::default()
+            },
             audit: options.audit.then(Audit::default),
             passed: Passed { position: vec![0.0; layout.n], ..Passed::default() },
         };
@@ -159,9 +164,13 @@ impl<'a, V: Vector> Run<'a, V> {
                     let tick = self.schedule.ticks[i];
                     self.advance_to(first + tick.step)?;
                     self.tick(tick)?;
+                    if i == 0 {
+                        self.open_cycle();
+                    }
                 }
             } else {
                 self.motion.level = 0.0;
+                self.open_cycle();
             }
             self.advance_to(self.schedule.cycle(cycle + 1))?;
             self.end_cycle()?;
@@ -170,7 +179,7 @@ impl<'a, V: Vector> Run<'a, V> {
     }
 
     fn begin_window(&mut self) {
-        self.tally = Tally::new(self.layout.size());
+        self.tally = self.new_tally();
         if self.audit.is_some() {
             let state = self.audit_state();
             if let Some(audit) = &mut self.audit {
@@ -286,8 +295,9 @@ impl<'a, V: Vector> Run<'a, V> {
         self.response.proof.smallest_margin = f64::NAN;
         let (n, positions) = (self.layout.n, self.layout.positions());
         let state = self.motion.state.values();
-        self.response.final_displacement = dot(&self.system.observed_row, &state[..n]);
-        self.response.final_velocity = dot(&self.system.observed_row, &state[positions..positions + n]);
+        let observed = &self.system.observed_rows[0];
+        self.response.final_displacement = dot(observed, &state[..n]);
+        self.response.final_velocity = dot(observed, &state[positions..positions + n]);
         self.response.final_particles = (0..self.contacts.len()).map(|j| self.absolute(j)).collect();
         let quiet = without_harmonic(self.system);
         for contacts in std::mem::take(&mut self.visited) {

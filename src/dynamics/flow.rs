@@ -50,8 +50,9 @@ pub(crate) struct Flow {
     pub(crate) rows: Vec<Row>,
     /// Row of each particle's floor (φ_f·q), and of its ceiling.
     pub(crate) face_rows: Vec<FaceRows>,
-    /// Row of the observed displacement.
+    /// Row of the first observed displacement, and of all of them.
     pub(crate) observed: usize,
+    pub(crate) all_observed: Vec<usize>,
     /// Closed forms of its integrals, where they keep their digits.
     pub(crate) forms: Option<super::integral::Forms>,
 }
@@ -200,6 +201,7 @@ impl Flow {
             rows: Vec::new(),
             face_rows: Vec::new(),
             observed: 0,
+            all_observed: Vec::new(),
             forms: None,
         };
         flow.watch(system);
@@ -207,7 +209,7 @@ impl Flow {
         Ok(flow)
     }
 
-    /// Sets up the rows: the observed displacement, the faces of every enclosure, the compressions.
+    /// Sets up the rows: the observed displacements, the faces of every enclosure, the compressions.
     fn watch(&mut self, system: &HybridSystem) {
         let n = system.mass.order;
         let mut known: Vec<Vec<f64>> = Vec::new();
@@ -225,7 +227,7 @@ impl Flow {
             padded.resize(self.order, 0.0);
             padded
         };
-        let observed = place(&padded(&system.observed_row), self);
+        let observed: Vec<usize> = system.observed_rows.iter().map(|row| place(&padded(row), self)).collect();
         let mut faces = Vec::with_capacity(system.particles.len());
         for (j, particle) in system.particles.iter().enumerate() {
             let floor = place(&padded(&particle.floor.row), self);
@@ -239,7 +241,8 @@ impl Flow {
         }
         self.rows = rows;
         self.face_rows = faces;
-        self.observed = observed;
+        self.observed = observed.first().copied().unwrap_or(0);
+        self.all_observed = observed;
     }
 
     fn row(&self, row: &[f64]) -> Row {

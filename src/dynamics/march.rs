@@ -6,6 +6,7 @@
 use super::audit::Audit;
 use super::block::Phase;
 use super::contact::{Crossing, Impact, Relative, STICKING_SPEED, Side};
+use super::extremes;
 use super::flow::{Cholesky, DrivePhase, Flow, Parabola, Signals};
 use super::guards::{self, Contacts, Crossings, Grip};
 use super::integral::quadrature;
@@ -13,7 +14,7 @@ use super::mobility::Mobilities;
 use super::search::{Clarity, Found, Search};
 use super::system::{Contact, Event, EventKind, HybridSystem, Law, Tick, dot};
 use super::trace::Sample;
-use super::{EngineError, Options, Proof, Response, Sums};
+use super::{CycleRates, EngineError, Observed, Options, Proof, Response};
 
 /// An acceleration below this share of its parts is zero: the crossing that ended the half cycle was smooth.
 const SMOOTH: f64 = 1e-9;
@@ -127,7 +128,10 @@ impl<'a> March<'a> {
             c_end: vec![0.0; 2 * most],
             observed_end: Vec::new(),
             clarity: Clarity { margin: f64::INFINITY, ties: 0 },
-            response: Response::default(),
+            response: Response {
+                observed: vec![Observed::default(); system.observed_rows.len()],
+                ..Response::default()
+            },
             audit: options.audit.then(Audit::default),
         };
         march.place(&options.start)?;
@@ -181,14 +185,20 @@ impl<'a> March<'a> {
                 }
                 let kick = if cycle == 0 && i == 0 { self.options.kick * self.system.drive.scale() } else { 0.0 };
                 self.tick(*tick, kick)?;
+                if i == 0 && self.options.cycle_rates {
+                    let after = self.rate[..self.system.mass.order].to_vec();
+                    self.response.cycle_rates.push(CycleRates { after, before: Vec::new() });
+                }
             }
             self.propagate_to(period)?;
+            if let Some(cycle) = self.response.cycle_rates.last_mut() {
+                cycle.before.extend_from_slice(&self.rate[..self.system.mass.order]);
+            }
         }
         self.finish()
     }
 
     fn begin_window(&mut self) {
-        self.response.sums = [Sums::default(), Sums::default()];
         if self.audit.is_some() {
             let state = self.audit_state();
             if let Some(audit) = &mut self.audit {
@@ -205,8 +215,10 @@ impl<'a> March<'a> {
         }
         self.response.proof.smallest_margin = self.clarity.margin;
         self.response.proof.ties = self.clarity.ties;
-        self.response.final_displacement = dot(&self.system.observed_row, &self.q);
-        self.response.final_velocity = dot(&self.system.observed_row, &self.rate);
+        if let Some(row) = self.system.observed_rows.first() {
+            self.response.final_displacement = dot(row, &self.q);
+            self.response.final_velocity = dot(row, &self.rate);
+        }
         self.response.final_particles = (0..self.particles.len()).map(|j| self.absolute(j)).collect();
         let fastest = self.flows.iter().flat_map(Flow::natural_frequencies).fold(0.0_f64, f64::max);
         self.response.highest_frequency = fastest;
@@ -844,25 +856,30 @@ impl<'a> March<'a> {
     /// Adds the segment to the measures, and to the audit if there is one.
     fn sum_up(&mut self, length: f64, drive: DrivePhase) {
         let flow = &self.flows[self.now];
-        let (observed, rest) = self.signals.of(flow.observed);
         if self.options.averages(self.cycle) {
-            let integrals = match &flow.forms {
-                Some(forms) => {
-                    self.observed_end.clear();
-                    let end = flow.blocks.iter().zip(observed).zip(&self.search.kernels);
-                    self.observed_end.extend(end.map(|((block, phase), kernel)| block.advance(*phase, *kernel)));
-                    forms
-                        .between(observed, &self.observed_end, length, self.options.displacement)
-                        .offset(rest.p0, length)
-                }
-                None => quadrature(&flow.blocks, observed, rest, length),
-            };
             let second_half = 2 * (self.cycle - u64::from(self.options.skip)) >= u64::from(self.options.average);
-            let sums = &mut self.response.sums[usize::from(second_half)];
-            sums.duration += length;
-            sums.velocity_square += integrals.rate_square;
-            sums.displacement += integrals.value;
-            sums.displacement_square += integrals.square;
+            for (of, &row) in self.response.observed.iter_mut().zip(&flow.all_observed) {
+                let (observed, rest) = self.signals.of(row);
+                let integrals = match &flow.forms {
+                    Some(forms) => {
+                        self.observed_end.clear();
+                        let end = flow.blocks.iter().zip(observed).zip(&self.search.kernels);
+                        self.observed_end.extend(end.map(|((block, phase), kernel)| block.advance(*phase, *kernel)));
+                        forms
+                            .between(observed, &self.observed_end, length, self.options.displacement)
+                            .offset(rest.p0, length)
+                    }
+                    None => quadrature(&flow.blocks, observed, rest, length),
+                };
+                let sums = &mut of.halves[usize::from(second_half)];
+                sums.duration += length;
+                sums.velocity_square += integrals.rate_square;
+                sums.displacement += integrals.value;
+                sums.displacement_square += integrals.square;
+                if self.options.extremes {
+                    extremes::take(&mut of.extremes, &flow.blocks, observed, rest, length);
+                }
+            }
         }
         if let Some(audit) = &mut self.audit
             && self.cycle >= u64::from(self.options.skip)
@@ -870,7 +887,7 @@ impl<'a> March<'a> {
             audit.segment(self.system, flow, &self.c, self.level, drive, length);
         }
         if self.system.drive.half_cycles.is_some() && !self.half.idle {
-            let bends = guards::accelerations(&flow.blocks, observed);
+            let bends = guards::accelerations(&flow.blocks, self.signals.of(flow.observed).0);
             self.half.square += quadrature(&flow.blocks, &bends, Parabola::default(), length).square;
             self.half.length += length;
         }

@@ -19,6 +19,7 @@ mod audit;
 mod block;
 mod contact;
 mod elementary;
+mod extremes;
 mod fixed;
 mod flow;
 mod guards;
@@ -37,7 +38,7 @@ mod window;
 
 pub use spline::Spline;
 pub use system::{
-    Contact, Drive, Event, EventKind, Face, HalfCycles, Harmonic, HybridSystem, Law, Matrix, Particle, Stop, Tick,
+    Contact, Drive, Event, EventKind, Face, HalfCycles, Harmonic, HybridSystem, Law, Matrix, Particle, Stop, Tick, dot,
 };
 pub use trace::{Sample, TraceRequest};
 
@@ -73,6 +74,10 @@ pub struct Options {
     pub kick: f64,
     /// Measure displacements too, not velocities alone.
     pub displacement: bool,
+    /// Look for the largest and smallest values of the observed motions.
+    pub extremes: bool,
+    /// Keep the structure's velocities at both ends of every cycle.
+    pub cycle_rates: bool,
     /// Balance momentum and energy.
     pub audit: bool,
     /// How many events to keep, from the first.
@@ -106,6 +111,8 @@ impl Default for Options {
             start: StartState::StaticEquilibrium,
             kick: 0.0,
             displacement: true,
+            extremes: false,
+            cycle_rates: false,
             audit: false,
             record_events: 0,
             trace: None,
@@ -171,8 +178,10 @@ impl Counts {
 /// What a run leaves behind.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Response {
-    /// First and second half of the averaged window.
-    pub sums: [Sums; 2],
+    /// What was observed, in the order of [`HybridSystem::observed_rows`].
+    pub observed: Vec<Observed>,
+    /// The structure's velocities at both ends of every cycle, if asked for.
+    pub cycle_rates: Vec<CycleRates>,
     /// Events in the averaged window.
     pub counts: Counts,
     /// What proves the run.
@@ -191,11 +200,62 @@ pub struct Response {
     pub highest_frequency: f64,
 }
 
+/// One observed motion over the averaged window.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Observed {
+    /// Integrals over the first and the second half.
+    pub halves: [Sums; 2],
+    /// Largest and smallest values, if asked for.
+    pub extremes: Extremes,
+}
+
+/// The range of an observed motion; lowest and highest value, NaN where nobody looked.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Extremes {
+    /// m.
+    pub displacement: [f64; 2],
+    /// m/s.
+    pub velocity: [f64; 2],
+}
+
+impl Default for Extremes {
+    fn default() -> Self {
+        Self { displacement: [f64::NAN; 2], velocity: [f64::NAN; 2] }
+    }
+}
+
+impl Extremes {
+    /// Takes an instant into the range.
+    pub(crate) fn take(&mut self, displacement: f64, velocity: f64) {
+        // The smaller of NaN and a number is the number.
+        for (range, value) in [(&mut self.displacement, displacement), (&mut self.velocity, velocity)] {
+            *range = [range[0].min(value), range[1].max(value)];
+        }
+    }
+}
+
+/// The structure's velocities q′ at both ends of a cycle.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct CycleRates {
+    /// Just after the impulse that opens it.
+    pub after: Vec<f64>,
+    /// Just before the impulse that opens the next one.
+    pub before: Vec<f64>,
+}
+
 impl Response {
+    /// The averaged window of the first observed motion.
+    #[must_use]
+    pub fn window(&self) -> Sums {
+        self.observed.first().map(Observed::window).unwrap_or_default()
+    }
+}
+
+impl Observed {
     /// Both halves of the averaged window.
     #[must_use]
     pub fn window(&self) -> Sums {
-        let [a, b] = self.sums;
+        let [a, b] = self.halves;
         Sums {
             duration: a.duration + b.duration,
             displacement: a.displacement + b.displacement,
@@ -267,6 +327,9 @@ pub enum EngineError {
         /// Time within it.
         time: f64,
     },
+    /// A system that nobody looks at.
+    #[error("the system has no observed row: there is nothing to measure")]
+    NothingObserved,
     /// A step that is no step of this drive.
     #[error(
         "a time step of {time_step} s does not fit a forcing period of {period} s: it must be positive, no longer than the period and longer than a billionth of it"

@@ -67,8 +67,9 @@ pub struct HybridSystem {
     pub force_row: Vec<f64>,
     /// What drives it.
     pub drive: Drive,
-    /// The observed displacement is this row times q.
-    pub observed_row: Vec<f64>,
+    /// The observed displacements are these rows times q. The first is the one that half cycles, time histories and the
+    /// final state refer to; there is always one.
+    pub observed_rows: Vec<Vec<f64>>,
     /// Rows ρ along which contact forces are internal (ρ·φ_f = ρ·φ_c for every particle): there the momentum is balanced.
     pub momentum_rows: Vec<Vec<f64>>,
 }

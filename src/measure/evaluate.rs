@@ -7,11 +7,14 @@
 
 use std::f64::consts::TAU;
 
+use super::energy::Energies;
 use super::history::{History, columns};
-use super::{EvaluateError, Evaluated, Measure, Measured, Rigour};
-use crate::dynamics::{EngineError, HybridSystem, Options, Response, TraceRequest, event_driven};
-use crate::scene::{Assumptions, Excitation, Recipe, Scene, Structure, compile};
-use crate::spec::{Settings, SolverChoice, TraceSpec};
+use super::reading::Reading;
+use super::shape::{self, Shape};
+use super::{EvaluateError, Evaluated, Measure, Measured, Rigour, TraceColumn};
+use crate::dynamics::{EngineError, HybridSystem, Options, Proof, Response, TraceRequest, event_driven};
+use crate::scene::{Assumptions, Excitation, Recipe, Scene, SingleMass, Structure, compile};
+use crate::spec::{EnergySpec, Settings, ShapeOf, ShapeSpec, SolverChoice, TraceSpec};
 
 /// Kick that tells chaos from order, relative to the drive.
 const TWIN_KICK: f64 = 1e-9;
@@ -22,6 +25,43 @@ const MEMBERS_OF_A_LOOK: u32 = 8;
 /// Largest kick of an ensemble member.
 const ENSEMBLE_KICK: f64 = 1e-6;
 
+/// What is asked of a case.
+#[derive(Debug, Clone, Copy)]
+pub struct Request<'a> {
+    /// What to measure.
+    pub measures: &'a [Measure],
+    /// Time history to keep.
+    pub trace: Option<&'a TraceSpec>,
+    /// Kinetic energies to keep.
+    pub energies: Option<&'a EnergySpec>,
+    /// Shape to keep.
+    pub shape: Option<&'a ShapeSpec>,
+    /// What the numbers have to be worth.
+    pub rigour: Rigour,
+}
+
+impl Request<'_> {
+    fn any(&self, test: impl Fn(Measure) -> bool) -> bool {
+        self.measures.iter().any(|measure| test(*measure))
+    }
+
+    fn deflection(&self) -> Option<&ShapeSpec> {
+        self.shape.filter(|shape| shape.of == ShapeOf::Deflection)
+    }
+
+    /// Something is asked for that only a run can tell.
+    fn needs_run(&self) -> bool {
+        self.any(|measure| !measure.is_modal())
+            || self.trace.is_some()
+            || self.energies.is_some()
+            || self.deflection().is_some()
+    }
+
+    fn needs_undamped(&self) -> bool {
+        self.energies.is_some() || self.any(Measure::needs_undamped)
+    }
+}
+
 /// Simulates one case and measures it. Sequential and deterministic: the same input gives the same bits on any machine.
 ///
 /// # Errors
@@ -31,37 +71,39 @@ pub fn evaluate(
     assumptions: &Assumptions,
     solver: SolverChoice,
     settings: &Settings,
-    measures: &[Measure],
-    trace: Option<&TraceSpec>,
-    rigour: Rigour,
+    request: &Request<'_>,
 ) -> Result<Evaluated, EvaluateError> {
     let scene = rounded(recipe.resolve(assumptions)?, settings);
+    let case = Case { recipe, assumptions, settings, request, scene: &scene };
+    if !request.needs_run() {
+        return case.without_run();
+    }
     let bare = rounded(recipe.resolve_undamped(assumptions)?, settings);
-    let system = compile(&scene)?;
-    let undamped = compile(&bare)?;
+    let mut system = compile(&scene)?;
+    if request.deflection().is_some() {
+        shape::watch_products(&mut system);
+    }
     let plain = Options {
         skip: settings.skip,
         average: settings.average,
-        displacement: measures.iter().any(|measure| measure.needs_displacement()),
+        displacement: request.any(Measure::needs_displacement) || request.deflection().is_some(),
+        extremes: request.any(Measure::needs_extremes),
+        cycle_rates: request.energies.is_some() || request.any(Measure::needs_energies),
         ..Options::default()
     };
     let main = Options {
-        audit: rigour == Rigour::Result,
-        trace: trace.map(|trace| TraceRequest {
+        audit: request.rigour == Rigour::Result,
+        trace: request.trace.map(|trace| TraceRequest {
             from_cycle: u64::from(trace.from_cycle),
             to_cycle: u64::from(trace.to_cycle),
             samples: u64::from(trace.samples),
         }),
         ..plain.clone()
     };
-    let reference = solve(&undamped, &plain, solver)?;
+    let reference = if request.needs_undamped() { Some(solve(&compile(&bare)?, &plain, solver)?) } else { None };
+    let reference = reference.as_ref();
     let response = solve(&system, &main, solver)?;
-    let history = trace.map(|_| History { response: &response, scene: &scene });
-    let read = |response: &Response, history: Option<&History<'_>>| -> Result<Vec<f64>, EvaluateError> {
-        measures.iter().map(|measure| measure.read(response, &reference, history)).collect()
-    };
-    let values = read(&response, history.as_ref())?;
-    let trace = history.as_ref().map(|history| columns(history)).unwrap_or_default();
+    let Read { values, lists } = case.read(&response, reference, true)?;
     let certain = |numerical: Vec<f64>, chaotic: bool| Evaluated {
         measured: values
             .iter()
@@ -71,38 +113,38 @@ pub fn evaluate(
         proof: response.proof,
         chaotic,
         members: 1,
-        trace: trace.clone(),
+        trace: lists.clone(),
     };
     if matches!(solver, SolverChoice::FixedStep { .. }) || system.particles.is_empty() {
         return Ok(certain(vec![0.0; values.len()], false));
     }
 
-    let rms = response.window().rms_velocity();
+    let rms = case.rms_velocity(&response);
     let twin = event_driven(&system, &Options { kick: TWIN_KICK, ..plain.clone() })?;
-    let chaotic = (twin.window().rms_velocity() - rms).abs() > CHAOS * rms;
-    let members = match rigour {
+    let chaotic = (case.rms_velocity(&twin) - rms).abs() > CHAOS * rms;
+    let members = match request.rigour {
         Rigour::Result => settings.ensemble,
         Rigour::Look => settings.ensemble.min(MEMBERS_OF_A_LOOK),
     };
-    if !chaotic && rigour == Rigour::Look {
+    if !chaotic && request.rigour == Rigour::Look {
         return Ok(certain(values.iter().map(|value| 4.0 * f64::EPSILON * value.abs()).collect(), false));
     }
     if !chaotic || members < 2 {
         // The same events decided in other windows; measures of the history are as exact as its samples.
         let second = event_driven(&system, &Options { window_factor: 0.5, audit: false, ..main.clone() })?;
-        let again = read(&second, history.as_ref().map(|_| History { response: &second, scene: &scene }).as_ref())?;
+        let again = case.read(&second, reference, true)?.values;
         let numerical = values.iter().zip(again).map(|(a, b)| (a - b).abs().max(4.0 * f64::EPSILON * a.abs()));
         return Ok(certain(numerical.collect(), chaotic));
     }
 
-    let mut sums = vec![Welford::default(); measures.len()];
+    let mut sums = vec![Welford::default(); request.measures.len()];
     for member in 0..members {
         let place = (f64::from(member) + 0.5) / f64::from(members) * 2.0 - 1.0;
-        // Time histories and their measures stay those of the unkicked run.
+        // Time histories, shapes and their measures stay those of the unkicked run.
         let kicked = event_driven(&system, &Options { kick: ENSEMBLE_KICK * place, ..plain.clone() })?;
-        for ((sum, measure), own) in sums.iter_mut().zip(measures).zip(&values) {
-            let value = if measure.needs_trace() { *own } else { measure.read(&kicked, &reference, None)? };
-            sum.add(value);
+        let of_member = case.read(&kicked, reference, false)?.values;
+        for (((sum, measure), own), value) in sums.iter_mut().zip(request.measures).zip(&values).zip(of_member) {
+            sum.add(if measure.needs_trace() || measure.is_modal() { *own } else { value });
         }
     }
     let measured = sums
@@ -113,7 +155,93 @@ pub fn evaluate(
             spread: sum.deviation(),
         })
         .collect();
-    Ok(Evaluated { measured, proof: response.proof, chaotic, members, trace })
+    Ok(Evaluated { measured, proof: response.proof, chaotic, members, trace: lists })
+}
+
+/// A case while it is evaluated.
+struct Case<'a> {
+    recipe: &'a Recipe,
+    assumptions: &'a Assumptions,
+    settings: &'a Settings,
+    request: &'a Request<'a>,
+    scene: &'a Scene,
+}
+
+/// What was read off a run.
+struct Read {
+    values: Vec<f64>,
+    lists: Vec<TraceColumn>,
+}
+
+impl Case<'_> {
+    /// Natural frequencies and mode shapes.
+    fn without_run(&self) -> Result<Evaluated, EvaluateError> {
+        let shape = self.mode_shape()?;
+        let reading = self.reading(None, None, shape.as_ref().map(|shape| shape.mac));
+        let exact = |value: f64| Measured { value, numerical: 4.0 * f64::EPSILON * value.abs(), spread: 0.0 };
+        let measured = self.request.measures.iter().map(|measure| reading.read(*measure).map(exact));
+        Ok(Evaluated {
+            measured: measured.collect::<Result<_, _>>()?,
+            proof: Proof::linear(),
+            chaotic: false,
+            members: 1,
+            trace: shape.map(|shape| shape.columns).unwrap_or_default(),
+        })
+    }
+
+    fn mode_shape(&self) -> Result<Option<Shape>, EvaluateError> {
+        let wanted = self.request.shape.filter(|shape| shape.of == ShapeOf::Mode);
+        let number = self.recipe.mode_number() as usize;
+        Ok(wanted.map(|spec| shape::of_mode(self.scene, spec, number)).transpose()?)
+    }
+
+    fn reading<'r>(
+        &'r self,
+        response: Option<&'r Response>,
+        undamped: Option<&'r Response>,
+        mac: Option<f64>,
+    ) -> Reading<'r> {
+        Reading { recipe: self.recipe, scene: self.scene, response, undamped, history: None, energies: None, mac }
+    }
+
+    /// All measures, and the lists; of a run of an ensemble (not `whole`) only what is averaged.
+    fn read(&self, response: &Response, undamped: Option<&Response>, whole: bool) -> Result<Read, EvaluateError> {
+        let request = self.request;
+        let wants_energies = request.energies.is_some() || request.any(Measure::needs_energies);
+        let energies = match undamped {
+            Some(clean) if wants_energies => {
+                Some(Energies::of(self.scene, response, clean, self.assumptions, self.settings)?)
+            }
+            _ => None,
+        };
+        let shape = match request.deflection() {
+            _ if !whole => None,
+            Some(spec) => Some(shape::of_deflection(self.scene, response, spec, self.recipe.mode_number() as usize)),
+            None => self.mode_shape()?,
+        };
+        let history = request.trace.filter(|_| whole).map(|_| History { response, scene: self.scene });
+        let mac = shape.as_ref().map(|shape| shape.mac);
+        let mut reading = self.reading(Some(response), undamped, mac);
+        reading.history = history;
+        reading.energies = energies.as_ref();
+        let value = |measure: &Measure| {
+            if !whole && (measure.needs_trace() || measure.is_modal()) { Ok(f64::NAN) } else { reading.read(*measure) }
+        };
+        let values = request.measures.iter().map(value).collect::<Result<Vec<_>, _>>()?;
+        let mut lists = Vec::new();
+        if whole {
+            lists.extend(reading.history.iter().flat_map(columns));
+            if let (Some(energies), Some(spec)) = (&energies, request.energies) {
+                lists.extend(energies.columns(spec));
+            }
+            lists.extend(shape.into_iter().flat_map(|shape| shape.columns));
+        }
+        Ok(Read { values, lists })
+    }
+
+    fn rms_velocity(&self, response: &Response) -> f64 {
+        self.reading(None, None, None).rms_velocity(response)
+    }
 }
 
 fn solve(system: &HybridSystem, options: &Options, solver: SolverChoice) -> Result<Response, EngineError> {
@@ -136,62 +264,12 @@ fn rounded(mut scene: Scene, settings: &Settings) -> Scene {
     scene
 }
 
-impl Measure {
-    /// Read off a time history.
-    pub(crate) fn needs_trace(self) -> bool {
-        matches!(
-            self,
-            Self::LastPeak
-                | Self::PeakVariation
-                | Self::PeakDecayError
-                | Self::FloorImpactLag
-                | Self::CeilingImpactLag
-                | Self::FloorCompression
-                | Self::CeilingCompression
-        )
-    }
-
-    fn needs_displacement(self) -> bool {
-        matches!(self, Self::DisplacementRatio | Self::StdDisplacement | Self::MeanDisplacement)
-    }
-
-    fn read(
-        self,
-        response: &Response,
-        undamped: &Response,
-        history: Option<&History<'_>>,
-    ) -> Result<f64, EvaluateError> {
-        let window = response.window();
-        let trace = || history.ok_or(EvaluateError::NeedsTrace(self));
-        Ok(match self {
-            Self::VelocityRatio => undamped.window().rms_velocity() / window.rms_velocity(),
-            Self::DisplacementRatio => undamped.window().std_displacement() / window.std_displacement(),
-            Self::RmsVelocity => window.rms_velocity(),
-            Self::StdDisplacement => window.std_displacement(),
-            Self::MeanDisplacement => window.mean_displacement(),
-            Self::UndampedRmsVelocity => undamped.window().rms_velocity(),
-            Self::FloorImpacts => response.counts.floor_contacts as f64,
-            Self::CeilingImpacts => response.counts.ceiling_contacts as f64,
-            Self::StopImpacts => response.counts.stops as f64,
-            Self::Separations => response.counts.floor_releases as f64,
-            Self::Drift => (response.sums[0].rms_velocity() / response.sums[1].rms_velocity() - 1.0).abs(),
-            Self::HighestFrequency => response.highest_frequency / TAU,
-            Self::ShortestPeriod => TAU / response.highest_frequency,
-            Self::FloorCompression => trace()?.floor_compression(),
-            Self::CeilingCompression => trace()?.ceiling_compression(),
-            Self::LastPeak => trace()?.last_peak(),
-            Self::PeakVariation => trace()?.peak_variation(),
-            Self::PeakDecayError => trace()?.peak_decay_error(),
-            Self::FloorImpactLag => trace()?.lag(crate::dynamics::EventKind::FloorContact),
-            Self::CeilingImpactLag => trace()?.lag(crate::dynamics::EventKind::CeilingContact),
-        })
-    }
-}
-
-/// Structure's damping: the exponent of its free decay, c/(2m), 1/s.
+/// Damping of one mass: the exponent of its free decay, c/(2m), 1/s; NaN of more than one.
 pub(super) fn decay(scene: &Scene) -> f64 {
-    let Structure::SingleMass { mass, damping, .. } = scene.structure;
-    damping / (2.0 * mass)
+    match scene.structure {
+        Structure::SingleMass(SingleMass { mass, damping, .. }) => damping / (2.0 * mass),
+        _ => f64::NAN,
+    }
 }
 
 /// Running mean and deviation (Welford).

@@ -6,10 +6,13 @@
 
 use serde::{Deserialize, Serialize};
 
+mod energy;
 mod evaluate;
 mod history;
+mod reading;
+mod shape;
 
-pub use evaluate::evaluate;
+pub use evaluate::{Request, evaluate};
 
 use crate::dynamics::{EngineError, Proof};
 use crate::scene::{CompileError, RecipeError};
@@ -58,6 +61,42 @@ pub enum Measure {
     HighestFrequency,
     /// Its period, s.
     ShortestPeriod,
+    /// Half the peak-to-peak of the observed displacement in the window, from the extrema of the exact motion, m.
+    DisplacementAmplitude,
+    /// The same of the velocity, m/s.
+    VelocityAmplitude,
+    /// Displacement amplitude over the amplitude of the harmonic force, m/N.
+    DisplacementPerForce,
+    /// Velocity amplitude over the amplitude of the harmonic force, m/(N s).
+    VelocityPerForce,
+    /// Displacement amplitude over the impulse, m/(N s).
+    DisplacementPerImpulse,
+    /// Velocity amplitude over the impulse, 1/kg.
+    VelocityPerImpulse,
+    /// Displacement amplitude without dampers over the one with them.
+    DisplacementAmplitudeRatio,
+    /// The same of the velocity.
+    VelocityAmplitudeRatio,
+    /// Displacement amplitude without dampers, m.
+    UndampedDisplacementAmplitude,
+    /// The same of the velocity, m/s.
+    UndampedVelocityAmplitude,
+    /// Natural frequency of the scene's `mode`, dampers on board and particles at rest on their floors, rad/s.
+    NaturalFrequency,
+    /// The same of the model without dampers, rad/s.
+    CleanNaturalFrequency,
+    /// The same of the continuous structure, rad/s.
+    ExactNaturalFrequency,
+    /// Modes of the model: what a velocity just after an impulse depends on.
+    ModeCount,
+    /// Modal assurance criterion of the shape that is kept: a mode's against the exact one, a deflection's against the
+    /// forced mode's.
+    Mac,
+    /// Share of the structure's kinetic energy that is lost from just after an impulse to just before the next; mean over the
+    /// averaged cycles.
+    DampingMeasure,
+    /// Kinetic energy at the impulses, compared with that of the clean structure; mean over the averaged cycles.
+    MassMeasure,
 }
 
 impl Measure {
@@ -65,12 +104,21 @@ impl Measure {
     #[must_use]
     pub fn unit(self) -> &'static str {
         match self {
-            Self::RmsVelocity | Self::UndampedRmsVelocity => "m/s",
+            Self::RmsVelocity
+            | Self::UndampedRmsVelocity
+            | Self::VelocityAmplitude
+            | Self::UndampedVelocityAmplitude => "m/s",
+            Self::DisplacementPerForce => "m/N",
+            Self::VelocityPerForce | Self::DisplacementPerImpulse => "m/(N s)",
+            Self::VelocityPerImpulse => "1/kg",
+            Self::NaturalFrequency | Self::CleanNaturalFrequency | Self::ExactNaturalFrequency => "rad/s",
             Self::StdDisplacement
             | Self::MeanDisplacement
             | Self::FloorCompression
             | Self::CeilingCompression
-            | Self::LastPeak => "m",
+            | Self::LastPeak
+            | Self::DisplacementAmplitude
+            | Self::UndampedDisplacementAmplitude => "m",
             Self::FloorImpactLag | Self::CeilingImpactLag | Self::ShortestPeriod => "s",
             Self::HighestFrequency => "Hz",
             _ => "",
@@ -83,6 +131,7 @@ impl Measure {
         match self {
             Self::VelocityRatio => "ψ",
             Self::DisplacementRatio => "η",
+            Self::NaturalFrequency | Self::CleanNaturalFrequency | Self::ExactNaturalFrequency => "ωₙ",
             _ => "",
         }
     }
@@ -150,4 +199,18 @@ pub enum EvaluateError {
     /// A measure of the time history, and none was asked for.
     #[error("{0:?} is read off a time history: give the experiment a trace")]
     NeedsTrace(Measure),
+    /// A measure of a shape, and none is kept.
+    #[error("{0:?} is read off a shape: give the experiment a shape")]
+    NeedsShape(Measure),
+    /// A measure of a run that was not made: a mistake of this program.
+    #[error("{0:?} needs a run that was not made")]
+    NoRun(Measure),
+    /// A measure of another excitation.
+    #[error("{measure:?} is measured under {excitation}")]
+    NotUnder {
+        /// Which measure.
+        measure: Measure,
+        /// Under what it has a meaning.
+        excitation: &'static str,
+    },
 }

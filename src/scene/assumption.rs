@@ -4,6 +4,8 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+use super::recipe::{Given, RecipeError};
+
 /// A curve through measured points (abscissa, ordinate), abscissae increasing; end values outside.
 pub type Curve = Vec<[f64; 2]>;
 
@@ -37,6 +39,36 @@ pub enum Assumption {
     CeilingMassRatio,
     /// The mass ratio that stands for m′ = 0 of a particle on a resilient floor (a contact without mass is singular).
     MasslessRatio,
+    /// Number of modes of a beam.
+    BeamModes,
+    /// Number of modes of a plate along each side.
+    PlateModes,
+    /// What m′ on beams and plates is a share of: the `total` mass, or the `modal` mass at unit largest amplitude.
+    DamperMass,
+    /// ω₁ in h′ = h ω₁²/g on beams and plates: of the `clean` structure or of the `loaded` one.
+    GapFrequency,
+    /// What floors on beams are tuned to, kf = mp ω²: `clean`, `loaded`, or `untuned`.
+    BeamFloorTuning,
+    /// The same on plates.
+    PlateFloorTuning,
+    /// ω/ω₁ of an untuned floor.
+    UntunedFrequencyRatio,
+    /// ζf on beams.
+    BeamContactDampingRatio,
+    /// ζf on plates.
+    PlateContactDampingRatio,
+    /// τ in J = f′ m g τ on beams: s, or `radian`, `half_sine`, `period` of the forcing.
+    BeamImpulseTime,
+    /// The same on plates.
+    PlateImpulseTime,
+    /// F of a harmonic force on beams, N.
+    BeamHarmonicForce,
+    /// The same on plates.
+    PlateHarmonicForce,
+    /// What is made of the velocities of several points: the `largest` or the `mean`.
+    GridVelocity,
+    /// How the mass measure compares kinetic energies with those of the clean structure: `jump`, `after`, `level`.
+    MassMeasure,
 }
 
 /// The value of one assumption, SI.
@@ -56,4 +88,51 @@ pub enum AssumptionValue {
 pub struct Assumptions {
     /// Every assumption that the file names.
     pub values: BTreeMap<Assumption, AssumptionValue>,
+}
+
+impl Assumptions {
+    /// The number that an assumption holds.
+    ///
+    /// # Errors
+    /// If it is absent or not a number.
+    pub fn number(&self, name: Assumption) -> Result<f64, RecipeError> {
+        match self.values.get(&name) {
+            Some(AssumptionValue::Number(x)) => Ok(*x),
+            _ => Err(RecipeError::Assumption(name, "as a number")),
+        }
+    }
+
+    /// The index of the choice that an assumption holds among `choices`.
+    ///
+    /// # Errors
+    /// If it is absent or not one of `choices`.
+    pub fn choice(&self, name: Assumption, choices: &'static [&'static str]) -> Result<usize, RecipeError> {
+        match self.values.get(&name) {
+            Some(AssumptionValue::Choice(word)) => choices.iter().position(|choice| choice == word),
+            _ => None,
+        }
+        .ok_or(RecipeError::Assumption(name, "as one of its named readings"))
+    }
+
+    /// The curve that an assumption holds.
+    ///
+    /// # Errors
+    /// If it is absent or not a curve.
+    pub fn curve(&self, name: Assumption) -> Result<&Curve, RecipeError> {
+        match self.values.get(&name) {
+            Some(AssumptionValue::Curve(curve)) => Ok(curve),
+            _ => Err(RecipeError::Assumption(name, "as a curve")),
+        }
+    }
+
+    /// The number that was stated, or the assumption's.
+    ///
+    /// # Errors
+    /// As [`Assumptions::number`].
+    pub fn given(&self, given: Given) -> Result<f64, RecipeError> {
+        match given {
+            Given::Stated(x) => Ok(x),
+            Given::Assumed(name) => self.number(name),
+        }
+    }
 }

@@ -1,9 +1,13 @@
 //! Scene to hybrid system: only the effects that the scene names.
 //!
-//! One mass: M = m, C = c, K = ks, every face moves with the mass. Soft walls add the ceiling side of the enclosure as a
-//! second coordinate s = x_top − x, so that M = [[m, mt], [mt, mt]] with mt taken off the base, K = diag(ks, kw).
+//! The structure supplies M, C, K and the shape φ at a point. An enclosure adds ms φφᵀ to M, and both faces of it move with φ·q.
+//! Soft walls on one mass add the ceiling side of the enclosure as a second coordinate s = x_top − x, so that
+//! M = [[m, mt], [mt, mt]] with mt taken off the base, K = diag(ks, kw).
 
-use super::{ContactDamping, ContactEnd, Damper, Excitation, PulseShape, Scene, Structure, Surface};
+use super::normal_modes::add_square;
+use super::{
+    ContactDamping, ContactEnd, Damper, Excitation, Matrices, PulseShape, Scene, SingleMass, Structure, Surface, Walls,
+};
 use crate::dynamics::{Drive, Face, HalfCycles, Harmonic, HybridSystem, Law, Matrix, Particle, Spline, Stop, Tick};
 
 /// Why a scene does not compile.
@@ -33,7 +37,6 @@ pub enum CompileError {
 /// # Errors
 /// [`CompileError`] where the scene asks for what no model covers.
 pub fn compile(scene: &Scene) -> Result<HybridSystem, CompileError> {
-    let Structure::SingleMass { mass, stiffness, damping } = scene.structure;
     let walls = match scene.dampers.as_slice() {
         [damper] => damper.walls,
         dampers if dampers.iter().any(|damper| damper.walls.is_some()) => {
@@ -41,29 +44,53 @@ pub fn compile(scene: &Scene) -> Result<HybridSystem, CompileError> {
         }
         _ => None,
     };
-    let (mass, damping, stiffness, base, top) = match walls {
-        None => {
-            let one = |x: f64| Matrix::diagonal(&[x]);
-            (one(mass), one(damping), one(stiffness), vec![1.0], vec![1.0])
+    let drive = Drive { half_cycles: half_cycles(scene)?, ..drive(&scene.excitation) };
+    if let Some(walls) = walls {
+        return with_walls(scene, walls, drive);
+    }
+    let model = scene.structure.model();
+    let Matrices { mut mass, damping, stiffness } = model.matrices();
+    let mut particles = Vec::with_capacity(scene.dampers.len());
+    for damper in &scene.dampers {
+        let row = model.shape(damper.at);
+        if damper.enclosure_mass > 0.0 {
+            add_square(&mut mass, damper.enclosure_mass, &row);
         }
-        Some(walls) => {
-            let top = walls.ceiling_mass;
-            let mass = Matrix { order: 2, entries: vec![mass, top, top, top] };
-            let damping = Matrix::diagonal(&[damping, walls.damping]);
-            (mass, damping, Matrix::diagonal(&[stiffness, walls.stiffness]), vec![1.0, 0.0], vec![1.0, 1.0])
-        }
-    };
-    let particles =
-        scene.dampers.iter().map(|damper| particle(damper, &base, &top)).collect::<Result<Vec<_>, CompileError>>()?;
+        particles.push(particle(damper, &row, &row)?);
+    }
+    let order = mass.order;
+    let unit = |i: usize| (0..order).map(|j| f64::from(u8::from(i == j))).collect();
     Ok(HybridSystem {
         mass,
         damping,
         stiffness,
         gravity: scene.gravity,
         particles,
+        force_row: model.shape(scene.force_at),
+        drive,
+        observed_rows: scene.observed.points.iter().map(|point| model.shape(*point)).collect(),
+        // Contact forces are internal along every coordinate: floor and ceiling move alike.
+        momentum_rows: (0..order).map(unit).collect(),
+    })
+}
+
+/// One mass with a third body.
+fn with_walls(scene: &Scene, walls: Walls, drive: Drive) -> Result<HybridSystem, CompileError> {
+    let Structure::SingleMass(SingleMass { mass, stiffness, damping }) = scene.structure else {
+        return Err(CompileError::WallsOnArray { dampers: scene.dampers.len() });
+    };
+    let (base, top) = (vec![1.0, 0.0], vec![1.0, 1.0]);
+    let third = walls.ceiling_mass;
+    let mass = mass + scene.dampers.iter().map(|damper| damper.enclosure_mass).sum::<f64>();
+    Ok(HybridSystem {
+        mass: Matrix { order: 2, entries: vec![mass, third, third, third] },
+        damping: Matrix::diagonal(&[damping, walls.damping]),
+        stiffness: Matrix::diagonal(&[stiffness, walls.stiffness]),
+        gravity: scene.gravity,
+        particles: scene.dampers.iter().map(|damper| particle(damper, &base, &top)).collect::<Result<_, _>>()?,
         force_row: base.clone(),
-        drive: Drive { half_cycles: half_cycles(scene)?, ..drive(&scene.excitation) },
-        observed_row: base.clone(),
+        drive,
+        observed_rows: vec![base.clone()],
         momentum_rows: vec![base],
     })
 }

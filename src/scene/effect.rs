@@ -2,7 +2,7 @@
 //!
 //! An effect that a scene does not name costs nothing: its events, states and forces are not compiled in.
 
-use super::{ContactDamping, ContactEnd, Excitation, Scene, Structure, Surface};
+use super::{ContactDamping, ContactEnd, Excitation, Scene, Surface};
 
 /// One effect over all cases of an experiment.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -20,11 +20,21 @@ pub struct EffectUse {
 /// Name, test, reason where it is left out.
 type Effect = (&'static str, fn(&Scene) -> bool, &'static str);
 
-const EFFECTS: [Effect; 11] = [
+const EFFECTS: [Effect; 13] = [
     (
         "structural damping",
-        |scene| matches!(scene.structure, Structure::SingleMass { damping, .. } if damping > 0.0),
+        |scene| scene.structure.model().matrices().damping.entries.iter().any(|c| *c > 0.0),
         "the damping ratio of the structure is zero",
+    ),
+    (
+        "further modes",
+        |scene| scene.structure.model().natural_frequencies().len() > 1,
+        "the structure has one degree of freedom",
+    ),
+    (
+        "enclosure mass",
+        |scene| scene.dampers.iter().any(|damper| damper.enclosure_mass > 0.0),
+        "the mass ratio is that of the particle alone",
     ),
     ("gravity", |scene| scene.gravity > 0.0 && !scene.dampers.is_empty(), "there is no particle that could fall"),
     (

@@ -5,17 +5,33 @@
 
 mod assumption;
 mod compile;
+mod drive;
 mod effect;
+mod leaning;
+mod normal_modes;
+mod parameter;
+mod place;
 mod recipe;
+mod resolve;
+mod structure;
 mod told;
+
+use serde::{Deserialize, Serialize};
 
 pub use assumption::{Assumption, AssumptionValue, Assumptions, Curve};
 pub use compile::{CompileError, compile};
 pub use effect::{EffectUse, effects};
+pub use normal_modes::{NormalMode, normal_modes};
+pub use parameter::{Parameter, ParameterValue};
+pub use place::{Coordinate, PlaceRecipe};
 pub use recipe::{
-    ContactDampingRecipe, DamperRecipe, ExcitationRecipe, GapRecipe, Given, MassRecipe, Parameter, ParameterValue,
-    PulseShape, Recipe, RecipeError, StiffnessRecipe, StopRecipe, StrengthRecipe, StructureRecipe, SurfaceRecipe,
-    TimingRecipe, WallRecipe,
+    ArrayRecipe, ContactDampingRecipe, DamperRecipe, ExcitationKind, ExcitationRecipe, GapRecipe, Given, ImpulseTime,
+    MassReading, MassRecipe, ObserveRecipe, Part, PointsRecipe, PulseShape, Recipe, RecipeError, StiffnessRecipe,
+    StopRecipe, StrengthRecipe, SurfaceRecipe, TimingRecipe, WallRecipe,
+};
+pub use structure::{
+    CantileverBeam, ClampedBeam, Family, Field, FieldValue, Form, KINDS, Kind, Matrices, Model, Point, SingleMass,
+    Structure, StructureRecipe, SupportedPlate, Values,
 };
 
 /// A scene in SI units: everything a simulation needs, and only the effects that it names.
@@ -29,27 +45,55 @@ pub struct Scene {
     pub dampers: Vec<Damper>,
     /// What drives it.
     pub excitation: Excitation,
+    /// Where that acts.
+    pub force_at: Point,
+    /// Where the motion is observed.
+    pub observed: Observation,
 }
 
-/// What vibrates.
+impl Scene {
+    /// One mass, which is forced and observed where it is.
+    #[must_use]
+    pub fn on_one_mass(mass: SingleMass, gravity: f64, dampers: Vec<Damper>, excitation: Excitation) -> Self {
+        Self {
+            structure: mass.into(),
+            gravity,
+            dampers,
+            excitation,
+            force_at: Point::default(),
+            observed: Observation { points: vec![Point::default()], take: Take::Largest },
+        }
+    }
+}
+
+/// Where the motion is observed.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Structure {
-    /// One mass on a spring and a dashpot (chapter 3): m x″ + c x′ + k x = F.
-    SingleMass {
-        /// m, kg.
-        mass: f64,
-        /// k, N/m.
-        stiffness: f64,
-        /// c, N s/m.
-        damping: f64,
-    },
+pub struct Observation {
+    /// The points, one at least; time histories are of the first.
+    pub points: Vec<Point>,
+    /// What is made of their numbers.
+    pub take: Take,
+}
+
+/// How one number is taken of several points.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Take {
+    /// The largest.
+    Largest,
+    /// Their mean.
+    Mean,
 }
 
 /// One particle in its enclosure.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Damper {
+    /// Where it sits.
+    pub at: Point,
     /// mp, kg.
     pub particle_mass: f64,
+    /// ms, kg: fixed to the structure there.
+    pub enclosure_mass: f64,
     /// Gap clearance h, m; infinite when no ceiling can be met.
     pub gap: f64,
     /// The floor, at gap coordinate u = 0.
@@ -60,6 +104,23 @@ pub struct Damper {
     pub stop: Option<LimitStop>,
     /// Soft lateral walls (Model 3).
     pub walls: Option<Walls>,
+}
+
+impl Damper {
+    /// A particle alone between two faces of one kind, with neither enclosure mass, stop nor walls.
+    #[must_use]
+    pub fn between(surface: Surface, particle_mass: f64, gap: f64) -> Self {
+        Self {
+            at: Point::default(),
+            particle_mass,
+            enclosure_mass: 0.0,
+            gap,
+            floor: surface.clone(),
+            ceiling: surface,
+            stop: None,
+            walls: None,
+        }
+    }
 }
 
 /// How a surface pushes back.

@@ -1,6 +1,6 @@
 //! A scene in words and SI units, for a person who asks what is simulated.
 
-use super::{ContactDamping, ContactEnd, Damper, Excitation, PulseShape, Scene, Structure, Surface};
+use super::{ContactDamping, ContactEnd, Damper, Excitation, Observation, Point, PulseShape, Scene, Surface, Take};
 use crate::text::number::{compact, quantity};
 
 /// Significant digits.
@@ -10,25 +10,34 @@ impl Scene {
     /// One line a part: structure, gravity, each damper, excitation.
     #[must_use]
     pub fn told(&self) -> Vec<String> {
-        let Structure::SingleMass { mass, stiffness, damping } = self.structure;
-        let mut lines =
-            vec![format!("one mass: {}, {}, {}", value(mass, "kg"), value(stiffness, "N/m"), value(damping, "N s/m"))];
+        let model = self.structure.model();
+        let sides = model.sides();
+        let mut lines = vec![model.told()];
         if self.dampers.is_empty() {
             lines.push("no damper".into());
         } else {
             lines.push(format!("gravity: {}", value(self.gravity, "m/s²")));
         }
-        lines.extend(self.dampers.iter().map(Damper::told));
-        lines.push(self.excitation.told());
+        lines.extend(self.dampers.iter().map(|damper| damper.told(&sides)));
+        lines.push(self.excitation.told() + &place(self.force_at, &sides));
+        if !sides.is_empty() {
+            lines.push(self.observed.told(&sides));
+        }
         lines
     }
 }
 
 impl Damper {
-    fn told(&self) -> String {
+    fn told(&self, sides: &[f64]) -> String {
         let gap =
             if self.gap.is_finite() { format!("gap {}", value(self.gap, "m")) } else { "no ceiling in reach".into() };
-        let mut parts = vec![format!("damper: particle {}", value(self.particle_mass, "kg")), gap];
+        let enclosure = if self.enclosure_mass > 0.0 {
+            format!(", enclosure {}", value(self.enclosure_mass, "kg"))
+        } else {
+            String::new()
+        };
+        let particle = value(self.particle_mass, "kg");
+        let mut parts = vec![format!("damper{}: particle {particle}{enclosure}", place(self.at, sides)), gap];
         if self.floor == self.ceiling {
             parts.push(format!("floor and ceiling {}", self.floor.told()));
         } else {
@@ -67,6 +76,26 @@ impl Surface {
                 format!("resilient {}, {damping}{ends}", value(*stiffness, "N/m"))
             }
         }
+    }
+}
+
+impl Observation {
+    fn told(&self, sides: &[f64]) -> String {
+        match (self.points.as_slice(), self.take) {
+            ([point], _) => format!("observed{}", place(*point, sides)),
+            (points, Take::Largest) => format!("observed at {} points, the largest counts", points.len()),
+            (points, Take::Mean) => format!("observed at {} points, their mean counts", points.len()),
+        }
+    }
+}
+
+/// ` at 0.96 m`, ` at (0.25, 0.5) m`; nothing where there are no sides.
+fn place(at: Point, sides: &[f64]) -> String {
+    let short = |x: f64| compact(x, DIGITS);
+    match sides.len() {
+        0 => String::new(),
+        1 => format!(" at {}", value(at.x, "m")),
+        _ => format!(" at ({}, {}) m", short(at.x), short(at.y)),
     }
 }
 

@@ -7,11 +7,11 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use serde::{Deserialize, Serialize};
 
-use crate::scene::{Assumption, AssumptionValue, Assumptions};
+use crate::scene::{Assumption, AssumptionValue, Assumptions, ImpulseTime};
 
 use super::diagnostic::{Findings, Problems};
 use super::quantity::Dimension;
-use super::reader::{Fields, above_zero, list, no_such, number, ratio, scalar, text, unknown};
+use super::reader::{Fields, above_zero, count, list, no_such, number, ratio, scalar, text, unknown};
 use super::word::{from_word, word_of, words};
 use super::yaml::{Entry, Node, Value, read_tree};
 
@@ -69,8 +69,18 @@ enum Kind {
     Ratio,
     Restitution,
     Choice(&'static [&'static str]),
+    /// A number of modes.
+    Modes,
+    /// A time, or one of these readings.
+    TimeOr(&'static [&'static str]),
     Curve,
 }
+
+/// Readings of the time by which a force ratio becomes an impulse.
+const IMPULSE_TIMES: [&str; ImpulseTime::WORDS.len()] = {
+    let [(a, _), (b, _), (c, _)] = ImpulseTime::WORDS;
+    [a, b, c]
+};
 
 fn kind(name: Assumption) -> Kind {
     match name {
@@ -81,12 +91,23 @@ fn kind(name: Assumption) -> Kind {
         | Assumption::ContactDampingRatio
         | Assumption::FloorStiffnessRatio
         | Assumption::CeilingMassRatio
-        | Assumption::MasslessRatio => Kind::Ratio,
+        | Assumption::MasslessRatio
+        | Assumption::UntunedFrequencyRatio
+        | Assumption::BeamContactDampingRatio
+        | Assumption::PlateContactDampingRatio => Kind::Ratio,
         Assumption::ImpulseFrequency => Kind::Choice(&["forcing", "natural"]),
         Assumption::UndampedMass | Assumption::HarmonicReference | Assumption::ImpulseReference => {
             Kind::Choice(&["base", "loaded"])
         }
         Assumption::EquivalentDampingCurve => Kind::Curve,
+        Assumption::BeamModes | Assumption::PlateModes => Kind::Modes,
+        Assumption::DamperMass => Kind::Choice(&["total", "modal"]),
+        Assumption::GapFrequency => Kind::Choice(&["clean", "loaded"]),
+        Assumption::BeamFloorTuning | Assumption::PlateFloorTuning => Kind::Choice(&["clean", "loaded", "untuned"]),
+        Assumption::BeamImpulseTime | Assumption::PlateImpulseTime => Kind::TimeOr(&IMPULSE_TIMES),
+        Assumption::BeamHarmonicForce | Assumption::PlateHarmonicForce => Kind::Quantity(Dimension::Force),
+        Assumption::GridVelocity => Kind::Choice(&["largest", "mean"]),
+        Assumption::MassMeasure => Kind::Choice(&["jump", "after", "level"]),
     }
 }
 
@@ -147,6 +168,14 @@ fn read_value(node: &Node, kind: Kind, findings: &Findings) -> Option<Assumption
             }
             unknown(findings, node.span, "this assumption", "reading", word, readings)
         }
+        Kind::Modes => match count(node, "modes", 1000, findings)? {
+            0 => findings.wrong(node.span, "a structure without modes does not move: give it one at least"),
+            modes => Some(AssumptionValue::Number(f64::from(modes))),
+        },
+        Kind::TimeOr(readings) => match scalar(node, findings)? {
+            word if readings.contains(&word) => Some(AssumptionValue::Choice(word.into())),
+            _ => above_zero(node, Dimension::Time, findings).map(AssumptionValue::Number),
+        },
         Kind::Curve => read_curve(node, findings),
     }
 }

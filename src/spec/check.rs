@@ -3,10 +3,10 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::measure::Measure;
-use crate::scene::{Assumptions, Parameter, ParameterValue, RecipeError, Scene};
+use crate::scene::{Assumptions, Parameter, ParameterValue, Part, RecipeError, Scene};
 
 use super::diagnostic::{Findings, Span};
-use super::experiment::{Case, Experiment, Maximise, Settings, SolverChoice, TraceSpec};
+use super::experiment::{Case, EnergySpec, Experiment, Maximise, Settings, ShapeSpec, SolverChoice, TraceSpec};
 use super::scene::ReadScene;
 use super::word::word_of;
 
@@ -25,7 +25,13 @@ pub(super) struct Checks<'t> {
 
 impl Checks<'_> {
     /// Measures that need a time history, or the maximisation, have it.
-    pub fn measures(&self, measures: &[(Measure, Span)], maximise: Option<&Maximise>, trace: Option<&TraceSpec>) {
+    pub fn measures(
+        &self,
+        measures: &[(Measure, Span)],
+        maximise: Option<&Maximise>,
+        trace: Option<&TraceSpec>,
+        shape: Option<&ShapeSpec>,
+    ) {
         let from_trace = [
             Measure::LastPeak,
             Measure::PeakVariation,
@@ -34,6 +40,13 @@ impl Checks<'_> {
             Measure::CeilingImpactLag,
         ];
         for (measure, span) in measures {
+            if shape.is_none() && measure.needs_shape() {
+                self.findings.report::<()>(
+                    *span,
+                    format!("`{}` is read off a shape, and this experiment keeps none", word_of(*measure)),
+                    Some("add `shape: {of: mode, points: …}`".into()),
+                );
+            }
             if trace.is_none() && from_trace.contains(measure) {
                 self.findings.report::<()>(
                     *span,
@@ -49,6 +62,14 @@ impl Checks<'_> {
             let name = word_of(maximise.measure);
             let help = format!("add `{name}` to `measure`");
             self.findings.report::<()>(*span, format!("`{name}` is maximised, but not measured"), Some(help));
+        }
+    }
+
+    /// Energies are kept of cycles that are run.
+    pub fn energies(&self, energies: Option<&EnergySpec>, settings: &Settings, at: Span) {
+        let cycles = settings.skip.saturating_add(settings.average);
+        if energies.is_some_and(|energies| energies.to_cycle > cycles) {
+            self.findings.wrong::<()>(at, format!("energies are kept of the {cycles} cycles that are run"));
         }
     }
 
@@ -68,7 +89,7 @@ impl Checks<'_> {
             if !places.contains_key(parameter) {
                 let help = format!("add `{name}` to `sweep`, or give it a value here");
                 self.findings.report::<()>(*span, format!("nothing sweeps `{name}`"), Some(help));
-            } else if let Some(case) = cases.iter().find(|case| case.get(*parameter).is_none()) {
+            } else if let Some(case) = cases.iter().find(|case| !sets_or_leaves_out(case, *parameter)) {
                 let help = "give the value here that those cases shall have".to_owned();
                 let message = format!("the sweep `{}` leaves `{name}` out", case.sweep);
                 self.findings.report::<()>(*span, message, Some(help));
@@ -91,8 +112,8 @@ impl Checks<'_> {
         }
     }
 
-    /// Resolves every case; `place` says where a parameter is swept, or else where the scene stands.
-    pub fn scenes(&self, experiment: &Experiment, place: impl Fn(Option<Parameter>) -> Span) {
+    /// Resolves every case; `place` says where a parameter is swept, or else where a part of the scene stands, or all of it.
+    pub fn scenes(&self, experiment: &Experiment, place: impl Fn(Option<Parameter>, Option<Part>) -> Span) {
         let mut met = BTreeSet::new();
         for case in &experiment.cases {
             let Err(refusal) = self.scene(experiment, case) else { continue };
@@ -100,8 +121,14 @@ impl Checks<'_> {
                 let told = case.told();
                 let message =
                     if told.is_empty() { refusal.message } else { format!("{} (at {told})", refusal.message) };
-                let parameter = refusal.parameter.or_else(|| case.values.first().map(|(parameter, _)| *parameter));
-                self.findings.wrong::<()>(place(parameter), message);
+                // What a sweep has made of a part is at the sweep; what the file says of it, at the part.
+                let swept = case.values.iter().map(|(parameter, _)| *parameter);
+                let of_part = |parameter: &Parameter| {
+                    let same = |part: Part| parameter.part() == Some(part.kind()) && parameter.words().is_empty();
+                    refusal.part.is_none_or(same)
+                };
+                let parameter = refusal.parameter.or_else(|| swept.into_iter().find(of_part));
+                self.findings.wrong::<()>(place(parameter, refusal.part), message);
             }
         }
     }
@@ -127,15 +154,23 @@ impl Checks<'_> {
     }
 }
 
+/// The case gives the parameter a value, or has no damper that could use one.
+fn sets_or_leaves_out(case: &Case, parameter: Parameter) -> bool {
+    let clean = case.get(Parameter::Dampers) == Some(ParameterValue::Without);
+    case.get(parameter).is_some() || (clean && parameter.is_of_dampers())
+}
+
 /// Why a case cannot run.
 struct Refusal {
     message: String,
     parameter: Option<Parameter>,
+    /// The part of the scene that is meant.
+    part: Option<Part>,
 }
 
 impl From<String> for Refusal {
     fn from(message: String) -> Self {
-        Self { message, parameter: None }
+        Self { message, parameter: None, part: None }
     }
 }
 
@@ -145,11 +180,13 @@ impl From<RecipeError> for Refusal {
             RecipeError::NothingToVary { parameter, what } => Self {
                 message: format!("`{}` is swept, but the scene has {what}", word_of(parameter)),
                 parameter: Some(parameter),
+                part: None,
             },
             RecipeError::Assumption(name, form) => {
                 format!("the assumption `{}` is needed: give it {form} in the assumptions file", word_of(name)).into()
             }
             RecipeError::OutOfRange(message) => message.into(),
+            RecipeError::Part { part, message } => Self { message, parameter: None, part: Some(part) },
         }
     }
 }

@@ -3,7 +3,7 @@
 use crate::measure::Measure;
 use crate::scene::Parameter;
 
-use super::experiment::{Maximise, TraceSpec};
+use super::experiment::{Maximise, ShapeOf, ShapeSpec};
 use super::word::word_of;
 
 /// What a column holds.
@@ -21,8 +21,8 @@ pub(super) enum Role {
 const PROOF: [&str; 7] =
     ["momentum_residual", "energy_residual", "events", "smallest_margin", "ties", "chaotic", "members"];
 
-/// Names of time histories, as documented at [`TraceSpec`].
-const HISTORIES: [&str; 13] = [
+/// Names of time histories, as documented at [`super::TraceSpec`].
+pub(super) const HISTORIES: [&str; 13] = [
     "time",
     "base_displacement",
     "base_velocity",
@@ -38,6 +38,27 @@ const HISTORIES: [&str; 13] = [
     "event_kind",
 ];
 
+/// Names of the lists of kinetic energies, as documented at [`super::EnergySpec`].
+pub(super) const ENERGIES: [&str; 7] = [
+    "cycle",
+    "kinetic_energy_after",
+    "kinetic_energy_before",
+    "undamped_kinetic_energy_after",
+    "undamped_kinetic_energy_before",
+    "damping_measure_of_cycle",
+    "mass_measure_of_cycle",
+];
+
+/// Names of the lists of a shape, as documented at [`super::ShapeSpec`].
+pub(super) fn shape_lists(shape: &ShapeSpec) -> Vec<&'static str> {
+    let sides = if shape.points.len() > 1 { &["x", "y"][..] } else { &["x"] };
+    let values = match shape.of {
+        ShapeOf::Mode => &["shape", "exact_shape"][..],
+        ShapeOf::Deflection => &["shape", "rms_displacement", "mode_shape"],
+    };
+    [sides, values].concat()
+}
+
 /// Columns with what they hold, in the order of the table.
 pub(super) struct Columns {
     list: Vec<(String, Role)>,
@@ -50,11 +71,11 @@ impl Columns {
         union: bool,
         measures: &[Measure],
         maximise: Option<&Maximise>,
-        trace: Option<&TraceSpec>,
+        lists: &[&str],
     ) -> Self {
         let mut list: Vec<(String, Role)> = Vec::new();
         for parameter in swept {
-            let role = if *parameter == Parameter::Stop { Role::Label } else { Role::Number };
+            let role = if parameter.words().is_empty() { Role::Number } else { Role::Label };
             list.push((word_of(*parameter), role));
         }
         let labels = [union.then_some("sweep"), Some("solver"), Some("variant")];
@@ -67,9 +88,7 @@ impl Columns {
             list.push((format!("{}_at_maximum", word_of(maximise.over)), Role::Number));
         }
         list.extend(PROOF.map(|name| (name.into(), Role::Number)));
-        if trace.is_some() {
-            list.extend(HISTORIES.map(|name| (name.into(), Role::History)));
-        }
+        list.extend(lists.iter().map(|name| ((*name).into(), Role::History)));
         Self { list }
     }
 

@@ -63,6 +63,10 @@ pub struct Experiment {
     pub measures: Vec<Measure>,
     /// Time history to keep with each row.
     pub trace: Option<TraceSpec>,
+    /// Kinetic energies to keep with each row.
+    pub energies: Option<EnergySpec>,
+    /// Shape to keep with each row. At most one of the three is kept: the lists of a row are of one length.
+    pub shape: Option<ShapeSpec>,
     /// The figures; never part of what makes a simulation stale.
     pub figures: Vec<FigureSpec>,
 }
@@ -92,9 +96,11 @@ impl Experiment {
         for recipe in self.cases.iter().filter_map(|case| self.recipe_of(case).ok()) {
             used.extend(recipe.assumptions());
         }
-        let undamped = [Measure::VelocityRatio, Measure::DisplacementRatio, Measure::UndampedRmsVelocity];
-        if !self.measures.iter().any(|measure| undamped.contains(measure)) {
+        if !self.measures.iter().any(|measure| measure.needs_undamped()) {
             used.remove(&Assumption::UndampedMass);
+        }
+        if self.energies.is_some() || self.measures.contains(&Measure::MassMeasure) {
+            used.insert(Assumption::MassMeasure);
         }
         used
     }
@@ -116,6 +122,8 @@ impl Experiment {
             "maximise": json(&self.maximise),
             "measures": json(&self.measures),
             "trace": json(&self.trace),
+            "energies": json(&self.energies),
+            "shape": json(&self.shape),
         })
     }
 
@@ -236,6 +244,37 @@ pub struct TraceSpec {
     pub to_cycle: u32,
     /// Samples a cycle.
     pub samples: u32,
+}
+
+/// Which cycles' kinetic energies to keep. The list columns are then `cycle`, `kinetic_energy_after` (J, of the structure alone,
+/// just after the impulse that opens the cycle), `kinetic_energy_before` (just before the next one), the same two with
+/// `undamped_` in front, `damping_measure_of_cycle` and `mass_measure_of_cycle`.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct EnergySpec {
+    /// First forcing cycle, counted from 0.
+    pub from_cycle: u32,
+    /// One past the last.
+    pub to_cycle: u32,
+}
+
+/// Which shape to keep. The list columns are then `x` and, with two sides, `y` (shares of the sides; x varies fastest), `shape`
+/// (largest modulus 1), and for a mode `exact_shape`, for a deflection `rms_displacement` (m) and `mode_shape`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ShapeSpec {
+    /// Of what.
+    pub of: ShapeOf,
+    /// Points along each side.
+    pub points: Vec<u32>,
+}
+
+/// What a shape is of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ShapeOf {
+    /// A normal mode.
+    Mode,
+    /// The motion under the excitation.
+    Deflection,
 }
 
 /// One PNG.

@@ -15,6 +15,7 @@ mod range;
 mod reader;
 mod scene;
 mod solver;
+mod structure;
 mod sweep;
 mod typed;
 mod validate;
@@ -24,8 +25,8 @@ mod yaml;
 pub use assumption_sheet::{AssumptionEntry, AssumptionSheet, parse_assumptions};
 pub use diagnostic::{Place, Problem, Problems};
 pub use experiment::{
-    Axis, AxisScale, Case, Experiment, ExperimentId, FigureSpec, IdError, Level, Maximise, Panel, Settings,
-    SolverChoice, Source, TraceSpec,
+    Axis, AxisScale, Case, EnergySpec, Experiment, ExperimentId, FigureSpec, IdError, Level, Maximise, Panel, Settings,
+    ShapeOf, ShapeSpec, SolverChoice, Source, TraceSpec,
 };
 pub use load::{load_assumptions, load_experiment};
 pub use quantity::{Dimension, QuantityError, parse_number, parse_quantity};

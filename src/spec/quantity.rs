@@ -28,6 +28,10 @@ pub enum Dimension {
     Acceleration,
     /// rad/s; `Hz` is 2π rad/s.
     AngularFrequency,
+    /// Pa.
+    Stress,
+    /// kg/m³.
+    Density,
 }
 
 /// Why a text is not the quantity that is wanted. The message says what is wrong, [`QuantityError::help`] what would be
@@ -93,6 +97,8 @@ impl Dimension {
             Self::Velocity => "a velocity",
             Self::Acceleration => "an acceleration",
             Self::AngularFrequency => "an angular frequency",
+            Self::Stress => "a modulus",
+            Self::Density => "a density",
         }
     }
 
@@ -110,6 +116,8 @@ impl Dimension {
             Self::Velocity => "10 mm/s",
             Self::Acceleration => "9.81 m/s^2",
             Self::AngularFrequency => "31.6 rad/s or 5.03 Hz",
+            Self::Stress => "200 GPa",
+            Self::Density => "7800 kg/m^3",
         }
     }
 
@@ -125,6 +133,8 @@ impl Dimension {
             Self::Velocity => [0, 1, -1, 0, 0],
             Self::Acceleration => [0, 1, -2, 0, 0],
             Self::AngularFrequency => [0, 0, -1, 1, 0],
+            Self::Stress => [1, -1, -2, 0, 0],
+            Self::Density => [1, -3, 0, 0, 0],
         };
         Powers { kilogram, metre, second, angle, cycle }
     }
@@ -259,6 +269,7 @@ fn multiply(unit: &mut Unit, factors: &str, sign: i32) -> Result<(), ()> {
         let (symbol, power) = match factor.split_once('^') {
             Some((symbol, power)) => (symbol, power.parse::<i32>().ok().filter(|p| p.abs() <= 4).ok_or(())?),
             None if factor.ends_with('²') => (factor.trim_end_matches('²'), 2),
+            None if factor.ends_with('³') => (factor.trim_end_matches('³'), 3),
             None => (factor, 1),
         };
         let base = symbol_unit(symbol).ok_or(())?;
@@ -282,6 +293,7 @@ fn symbol_unit(symbol: &str) -> Option<Unit> {
             "g" => Unit { powers: Powers { kilogram: 1, ..powers }, ten: -3 },
             "s" => Unit { powers: Powers { second: 1, ..powers }, ten: 0 },
             "N" => Unit { powers: Dimension::Force.powers(), ten: 0 },
+            "Pa" => Unit { powers: Dimension::Stress.powers(), ten: 0 },
             "Hz" => Unit { powers: Powers { second: -1, cycle: 1, ..powers }, ten: 0 },
             "rad" => Unit { powers: Powers { angle: 1, ..powers }, ten: 0 },
             _ => return None,
@@ -298,6 +310,7 @@ fn symbol_unit(symbol: &str) -> Option<Unit> {
         'c' => -2,
         'k' => 3,
         'M' => 6,
+        'G' => 9,
         _ => return None,
     };
     base(&symbol[prefix.len_utf8()..]).map(|unit| Unit { ten: unit.ten + ten, ..unit })

@@ -8,6 +8,7 @@ use crate::scene::{Parameter, ParameterValue};
 use super::diagnostic::{Findings, Span};
 use super::quantity::Dimension;
 use super::reader::{Choice, all, count, quantity, ratio, scalar};
+use super::word::word_of;
 use super::yaml::{Node, Value};
 
 /// Most points of all sweeps of a file together.
@@ -72,10 +73,12 @@ pub(super) fn value(node: &Node, parameter: Parameter, findings: &Findings) -> O
     };
     match (parameter, word) {
         (Parameter::GapRatio | Parameter::WallStiffnessRatio, "infinite") => Some(ParameterValue::Infinite),
-        (Parameter::Stop, "with") => Some(ParameterValue::With),
-        (Parameter::Stop, "without") => Some(ParameterValue::Without),
-        (Parameter::Stop, _) => {
-            findings.wrong(node.span, format!("`{}` is neither `with` nor `without`", scalar(node, findings)?))
+        _ if !parameter.words().is_empty() => {
+            let known = parameter.words().iter().find(|known| word_of(**known) == word);
+            known.copied().or_else(|| {
+                let [one, other] = told(parameter);
+                findings.wrong(node.span, format!("`{}` is neither {one} nor {other}", scalar(node, findings)?))
+            })
         }
         _ => size(node, parameter, findings).map(ParameterValue::Number),
     }
@@ -84,15 +87,27 @@ pub(super) fn value(node: &Node, parameter: Parameter, findings: &Findings) -> O
 /// A value of a parameter that is a number, in SI.
 fn size(node: &Node, parameter: Parameter, findings: &Findings) -> Option<f64> {
     match parameter {
-        Parameter::StopLength => quantity(node, Dimension::Length, findings),
+        Parameter::StopLength | Parameter::Length | Parameter::Width | Parameter::Thickness => {
+            quantity(node, Dimension::Length, findings)
+        }
         Parameter::PulseDuration => quantity(node, Dimension::Time, findings),
+        Parameter::Force => quantity(node, Dimension::Force, findings),
+        Parameter::Impulse => quantity(node, Dimension::Impulse, findings),
+        Parameter::AngularFrequency => quantity(node, Dimension::AngularFrequency, findings),
         _ => ratio(node, findings),
     }
 }
 
+/// The two words of a parameter that takes words.
+fn told(parameter: Parameter) -> [String; 2] {
+    let word = |i: usize| parameter.words().get(i).map_or_else(String::new, |known| format!("`{}`", word_of(*known)));
+    [word(0), word(1)]
+}
+
 fn range(node: &Node, parameter: Parameter, findings: &Findings) -> Option<Vec<ParameterValue>> {
-    if parameter == Parameter::Stop {
-        return findings.wrong(node.span, "`stop` is swept over [with, without]");
+    if !parameter.words().is_empty() {
+        let [one, other] = told(parameter).map(|word| word.replace('`', ""));
+        return findings.wrong(node.span, format!("`{}` is swept over [{one}, {other}]", word_of(parameter)));
     }
     let choice = Choice::read(node, "a range", &["linear", "log", "step"], findings)?;
     let fields = choice.fields("a range", findings)?;

@@ -7,9 +7,11 @@ use crate::measure::Measure;
 use crate::scene::{Assumptions, Parameter, ParameterValue, Recipe};
 
 use super::check::Checks;
-use super::columns::Columns;
+use super::columns::{Columns, ENERGIES, HISTORIES, shape_lists};
 use super::diagnostic::{Findings, Problems, Span};
-use super::experiment::{Case, Experiment, ExperimentId, Maximise, Settings, SolverChoice, Source, TraceSpec};
+use super::experiment::{
+    Case, EnergySpec, Experiment, ExperimentId, Maximise, Settings, ShapeOf, ShapeSpec, SolverChoice, Source, TraceSpec,
+};
 use super::figure::FigureReader;
 use super::quantity::Dimension;
 use super::range::numbers;
@@ -65,14 +67,27 @@ impl<'t> ExperimentReader<'t> {
         let maximise = fields.optional("maximise", |node| self.maximise(node));
         let run = fields.optional("run", |node| self.run(node)).map(|run| run.unwrap_or_else(Run::default));
         let trace = fields.optional("trace", |node| self.trace(node));
+        let energies = fields.optional("energies", |node| self.energies(node));
+        let shape = fields.optional("shape", |node| self.shape(node));
+        let one_list = self.one_list(&fields);
+        let energies_at = fields.get("energies").map_or(fields.span(), |node| node.span);
         let place = |key| fields.get(key).map_or(fields.span(), |node| node.span);
         let scene_at = place("scene");
 
-        let columns = match (&sweep, &measures, &maximise, &trace) {
-            (Some(sweep), Some(measures), Some(maximise), Some(trace)) => {
+        let kept = match (&trace, &energies, &shape) {
+            (Some(trace), Some(energies), Some(shape)) => Some(match (trace, energies, shape) {
+                (Some(_), _, _) => HISTORIES.to_vec(),
+                (_, Some(_), _) => ENERGIES.to_vec(),
+                (_, _, Some(shape)) => shape_lists(shape),
+                _ => Vec::new(),
+            }),
+            _ => None,
+        };
+        let columns = match (&sweep, &measures, &maximise, &kept) {
+            (Some(sweep), Some(measures), Some(maximise), Some(kept)) => {
                 let swept = sweep.as_ref().map_or(&[][..], |sweep| &sweep.swept);
                 let union = sweep.as_ref().is_some_and(|sweep| sweep.cases.iter().any(|case| !case.sweep.is_empty()));
-                Some(Columns::of(swept, union, &words_only(measures), maximise.as_ref(), trace.as_ref()))
+                Some(Columns::of(swept, union, &words_only(measures), maximise.as_ref(), kept))
             }
             _ => None,
         };
@@ -80,8 +95,11 @@ impl<'t> ExperimentReader<'t> {
         fields.close();
 
         let checks = Checks { findings: self.findings, assumptions: self.assumptions };
+        one_list?;
         let (measures, maximise, trace, run) = (measures?, maximise?, trace?, run?);
-        checks.measures(&measures, maximise.as_ref(), trace.as_ref());
+        let (energies, shape) = (energies?, shape?);
+        checks.measures(&measures, maximise.as_ref(), trace.as_ref(), shape.as_ref());
+        checks.energies(energies.as_ref(), &run.settings, energies_at);
         let (mut scene, sweep) = (scene?, sweep?.unwrap_or_else(ReadSweep::none));
         let places = sweep.places;
         let cases = with_solvers(sweep.cases, &run.solvers);
@@ -101,10 +119,15 @@ impl<'t> ExperimentReader<'t> {
             maximise,
             measures: words_only(&measures),
             trace,
+            energies,
+            shape,
             figures: figures?,
         };
-        checks.scenes(&experiment, |parameter| {
-            parameter.and_then(|parameter| places.get(&parameter).copied()).unwrap_or(scene_at)
+        let parts = scene.parts;
+        checks.scenes(&experiment, |parameter, part| {
+            let swept = parameter.and_then(|parameter| places.get(&parameter).copied());
+            let at_part = || parts.iter().find(|(known, _)| Some(*known) == part).map(|(_, span)| *span);
+            swept.or_else(at_part).unwrap_or(scene_at)
         });
         Some(experiment)
     }
@@ -203,6 +226,56 @@ impl<'t> ExperimentReader<'t> {
     }
 }
 
+/// Most points of a shape.
+const MOST_POINTS: u64 = 100_000;
+
+impl<'t> ExperimentReader<'t> {
+    /// All lists of a row are of one length.
+    fn one_list(&self, fields: &Fields<'t>) -> Option<()> {
+        let given: Vec<_> = ["trace", "energies", "shape"].into_iter().filter_map(|key| fields.get(key)).collect();
+        match given.as_slice() {
+            [_, second, ..] => self.findings.report(
+                second.span,
+                "a row keeps lists of one length: one of `trace`, `energies` and `shape`",
+                Some("give the other an experiment of its own".into()),
+            ),
+            _ => Some(()),
+        }
+    }
+
+    fn energies(&self, node: &'t Node) -> Option<EnergySpec> {
+        let fields = Fields::open(node, "a span of cycles", self.findings)?;
+        let cycles = |node: &'t Node| count(node, "cycles", MOST_CYCLES, self.findings);
+        let (from, to) = (fields.required("from", cycles), fields.required("to", cycles));
+        fields.close()?;
+        let (from_cycle, to_cycle) = (from?, to?);
+        if from_cycle >= to_cycle {
+            return self.findings.wrong(node.span, "a span ends after the cycle it begins with");
+        }
+        Some(EnergySpec { from_cycle, to_cycle })
+    }
+
+    fn shape(&self, node: &'t Node) -> Option<ShapeSpec> {
+        let fields = Fields::open(node, "a shape", self.findings)?;
+        let of = fields.required("of", |node| word::<ShapeOf>(node, "shape", self.findings));
+        let points = fields.required("points", |node| {
+            one_or_more(node, self.findings, |node| match count(node, "points", 100_000, self.findings)? {
+                0 | 1 => self.findings.wrong(node.span, "a shape has two points along a side at least"),
+                points => Some(points),
+            })
+        });
+        fields.close()?;
+        let (of, points) = (of?, points?);
+        let all: u64 = points.iter().map(|count| u64::from(*count)).product();
+        if all > MOST_POINTS || points.len() > 2 {
+            return self
+                .findings
+                .wrong(node.span, format!("a shape has {MOST_POINTS} points at most, along two sides"));
+        }
+        Some(ShapeSpec { of, points })
+    }
+}
+
 impl Default for Run {
     /// As the study: 25 cycles skipped, 100 averaged.
     fn default() -> Self {
@@ -241,7 +314,7 @@ fn fill_placeholders(recipe: &mut Recipe, cases: &[Case], swept: &[Parameter], m
         // A parameter that the scene lacks is reported when its cases are resolved.
         let _ = recipe.set(parameter, value);
     };
-    for parameter in swept.iter().filter(|parameter| **parameter != Parameter::Stop) {
+    for parameter in swept.iter().filter(|parameter| parameter.words().is_empty()) {
         if let (Some(first), true) =
             (cases.first().and_then(|case| case.get(*parameter)), cases.iter().all(|c| c.get(*parameter).is_some()))
         {

@@ -2,9 +2,9 @@
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-use crate::measure::{self, Evaluated, Measure, Rigour};
+use crate::measure::{self, Evaluated, Measure, Request, Rigour};
 use crate::scene::{Assumptions, Recipe};
-use crate::spec::{Settings, SolverChoice, TraceSpec};
+use crate::spec::{EnergySpec, Settings, ShapeSpec, SolverChoice, TraceSpec};
 
 /// One simulation to be made.
 #[derive(Debug, Clone, Copy)]
@@ -21,6 +21,10 @@ pub struct Simulation<'a> {
     pub measures: &'a [Measure],
     /// Time history to keep.
     pub trace: Option<&'a TraceSpec>,
+    /// Kinetic energies to keep.
+    pub energies: Option<&'a EnergySpec>,
+    /// Shape to keep.
+    pub shape: Option<&'a ShapeSpec>,
     /// Whether it is a result, or a look on the way to one.
     pub rigour: Rigour,
 }
@@ -40,7 +44,9 @@ pub struct Engine;
 
 impl Evaluate for Engine {
     fn evaluate(&self, it: &Simulation<'_>) -> Result<Evaluated, String> {
-        measure::evaluate(it.recipe, it.assumptions, it.solver, it.settings, it.measures, it.trace, it.rigour)
+        let Simulation { measures, trace, energies, shape, rigour, .. } = *it;
+        let request = Request { measures, trace, energies, shape, rigour };
+        measure::evaluate(it.recipe, it.assumptions, it.solver, it.settings, &request)
             .map_err(|error| error.to_string())
     }
 }

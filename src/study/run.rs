@@ -172,6 +172,7 @@ fn simulate(
 ) -> Outcome {
     let recipe = experiment.recipe_of(&experiment.cases[job.case]).map_err(|error| error.to_string())?;
     let wanted = keeps_trace(experiment, job) || measures_need_trace(&experiment.measures);
+    let needs_shape = experiment.measures.iter().any(|measure| measure.needs_shape());
     let simulation = Simulation {
         recipe: &recipe,
         assumptions: &variant.assumptions,
@@ -179,6 +180,9 @@ fn simulate(
         settings: &experiment.settings,
         measures: &experiment.measures,
         trace: experiment.trace.as_ref().filter(|_| wanted),
+        // Only the baseline keeps its lists; a measure of a shape needs it everywhere.
+        energies: experiment.energies.as_ref().filter(|_| job.variant == 0),
+        shape: experiment.shape.as_ref().filter(|_| job.variant == 0 || needs_shape),
         rigour: if job.variant == 0 { Rigour::Result } else { Rigour::Look },
     };
     let Some(maximise) = &experiment.maximise else {
@@ -190,7 +194,8 @@ fn simulate(
         .ok_or_else(|| format!("{} is to be maximised and not measured", words::of_key(&maximise.measure)))?;
     // Histories of the points that are not the maximum are not wanted.
     let trace = simulation.trace.filter(|_| measures_need_trace(&experiment.measures));
-    let look = Simulation { trace, rigour: Rigour::Look, ..simulation };
+    let shape = simulation.shape.filter(|_| needs_shape);
+    let look = Simulation { trace, energies: None, shape, rigour: Rigour::Look, ..simulation };
     let (found, place) = maximum(evaluate, &look, maximise, measure, done)?;
     if job.variant != 0 {
         return Ok(Row { evaluated: found, place: Some(place) });

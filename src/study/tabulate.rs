@@ -23,32 +23,6 @@ pub(super) struct Row {
     pub place: Option<Place>,
 }
 
-/// Unit of a parameter as a sweep gives it.
-fn parameter_unit(parameter: Parameter) -> &'static str {
-    match parameter {
-        Parameter::StopLength => "m",
-        Parameter::PulseDuration => "s",
-        _ => "",
-    }
-}
-
-/// Symbol of a parameter in the study.
-fn parameter_symbol(parameter: Parameter) -> &'static str {
-    match parameter {
-        Parameter::ForceRatio => "f′",
-        Parameter::BaseAmplitudeRatio => "aω²/g",
-        Parameter::FrequencyRatio => "ω′",
-        Parameter::MassRatio => "m′",
-        Parameter::GapRatio => "h′",
-        Parameter::DampingRatio => "c′",
-        Parameter::FloorStiffnessRatio => "kf/ks",
-        Parameter::ContactDampingRatio => "ζf",
-        Parameter::WallStiffnessRatio => "kw/ks",
-        Parameter::StopLength => "δ",
-        Parameter::Stop | Parameter::PulseDuration => "",
-    }
-}
-
 /// How many rows have no numbers, and why the first has none.
 pub(super) fn failures(outcomes: &[&Outcome]) -> Failures {
     let reasons: Vec<&String> = outcomes.iter().filter_map(|outcome| outcome.as_ref().err()).collect();
@@ -93,9 +67,8 @@ pub(super) fn table(
         if let Some(maximise) = experiment.maximise.as_ref().filter(|maximise| maximise.measure == *measure) {
             let name = format!("{}_at_maximum", words::of_key(&maximise.over));
             let place = |part: fn(&Place) -> f64| floats(&|row| row.place.as_ref().map_or(f64::NAN, part));
-            let unit = parameter_unit(maximise.over);
-            columns
-                .push(Column::new(&name, place(|p| p.at)).with_unit(unit).with_symbol(parameter_symbol(maximise.over)));
+            let unit = maximise.over.unit();
+            columns.push(Column::new(&name, place(|p| p.at)).with_unit(unit).with_symbol(maximise.over.symbol()));
             columns.push(Column::new(format!("{name}_num"), place(|p| p.within)).with_unit(unit));
         }
     }
@@ -113,13 +86,8 @@ pub(super) fn table(
 
 fn swept_column(experiment: &Experiment, jobs: &[Job], parameter: Parameter) -> Column {
     let value = |job: &Job| experiment.cases[job.case].get(parameter);
-    let data = if parameter == Parameter::Stop {
-        let label = |job: &Job| match value(job) {
-            Some(ParameterValue::With) => "with",
-            Some(ParameterValue::Without) => "without",
-            _ => "",
-        };
-        Data::Text(jobs.iter().map(|job| label(job).to_owned()).collect())
+    let data = if !parameter.words().is_empty() {
+        Data::Text(jobs.iter().map(|job| value(job).map_or_else(String::new, |word| words::of_key(&word))).collect())
     } else {
         let number = |job: &Job| match value(job) {
             Some(ParameterValue::Number(x)) => x,
@@ -128,9 +96,7 @@ fn swept_column(experiment: &Experiment, jobs: &[Job], parameter: Parameter) -> 
         };
         Data::Float(jobs.iter().map(number).collect())
     };
-    Column::new(words::of_key(&parameter), data)
-        .with_unit(parameter_unit(parameter))
-        .with_symbol(parameter_symbol(parameter))
+    Column::new(words::of_key(&parameter), data).with_unit(parameter.unit()).with_symbol(parameter.symbol())
 }
 
 /// The list columns: every name that some row has, in the order of the first row that has it; empty where a row has none.

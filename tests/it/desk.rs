@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use shotdamp::dynamics::Proof;
 use shotdamp::measure::{Evaluated, Measured, TraceColumn};
 use shotdamp::publish::Opened;
-use shotdamp::scene::{Excitation, Structure};
+use shotdamp::scene::Excitation;
 use shotdamp::spec::SolverChoice;
 use shotdamp::study::{self, Evaluate, Item, Layout, Listen, Reason, Simulation, Task, Texts};
 use shotdamp::table::{Table, parquet};
@@ -155,7 +155,7 @@ impl Evaluate for MadeUp {
             Excitation::ImpulseTrain { impulse, .. } => impulse,
             _ => return Err("not in this test".into()),
         };
-        let Structure::SingleMass { mass, .. } = scene.structure;
+        let mass = scene.structure.model().total_mass();
         let damper = &scene.dampers[0];
         let stop = damper.stop.map_or(0.0, |stop| stop.length);
         let coarse = if it.solver == SolverChoice::EventDriven { 0.0 } else { 0.01 };

@@ -7,7 +7,7 @@ use std::f64::consts::TAU;
 
 use shotdamp::dynamics::{EngineError, HybridSystem, Options, Response, TraceRequest, event_driven, fixed_step};
 use shotdamp::scene::{
-    ContactDamping, ContactEnd, Damper, Excitation, LimitStop, PulseShape, Scene, Structure, Surface, Walls, compile,
+    ContactDamping, ContactEnd, Damper, Excitation, LimitStop, PulseShape, Scene, SingleMass, Surface, Walls, compile,
 };
 
 const GRAVITY: f64 = 9.81;
@@ -20,8 +20,8 @@ fn natural() -> f64 {
 }
 
 fn system(mass: f64, dampers: Vec<Damper>, excitation: Excitation) -> HybridSystem {
-    let structure = Structure::SingleMass { mass, stiffness: STIFFNESS, damping: 0.1 * natural() };
-    compile(&Scene { structure, gravity: GRAVITY, dampers, excitation }).unwrap()
+    let structure = SingleMass { mass, stiffness: STIFFNESS, damping: 0.1 * natural() };
+    compile(&Scene::on_one_mass(structure, GRAVITY, dampers, excitation)).unwrap()
 }
 
 fn rigid(restitution: f64) -> Surface {
@@ -34,7 +34,7 @@ fn resilient(ends: ContactEnd) -> Surface {
 
 /// m′ = 0.05, h′ = 50.
 fn damper(surface: Surface) -> Damper {
-    Damper { particle_mass: 0.05, gap: 0.4905, floor: surface.clone(), ceiling: surface, stop: None, walls: None }
+    Damper::between(surface, 0.05, 0.4905)
 }
 
 fn model_2() -> Damper {

@@ -2,8 +2,9 @@
 
 use shotdamp::measure::Measure;
 use shotdamp::scene::{
-    Assumption, ContactDampingRecipe, DamperRecipe, ExcitationRecipe, GapRecipe, Given, MassRecipe, Parameter, Recipe,
-    StiffnessRecipe, StopRecipe, StrengthRecipe, StructureRecipe, SurfaceRecipe, TimingRecipe,
+    Assumption, ContactDampingRecipe, DamperRecipe, ExcitationKind, ExcitationRecipe, GapRecipe, Given, ImpulseTime,
+    MassReading, MassRecipe, ObserveRecipe, Parameter, PlaceRecipe, Recipe, StiffnessRecipe, StopRecipe,
+    StrengthRecipe, StructureRecipe, SurfaceRecipe, TimingRecipe,
 };
 use shotdamp::spec::{
     Axis, AxisScale, Case, Experiment, ExperimentId, FigureSpec, Panel, Settings, SolverChoice, Source,
@@ -23,9 +24,13 @@ pub fn limit_stop() -> Experiment {
         source: Source { chapter: 3, section: "3.6.3".into(), shown_in: vec!["Fig. 18".into()] },
         about: "Velocity ratio against the forcing amplitude, with and without a stop.".into(),
         recipe: Recipe {
-            structure: StructureRecipe::SingleMass { mass: 1.0, stiffness: 1000.0, damping_ratio: 0.05 },
+            structure: StructureRecipe::single_mass(1.0, 1000.0, 0.05),
             gravity: Given::Assumed(Assumption::Gravity),
             dampers: vec![DamperRecipe {
+                at: PlaceRecipe::default(),
+                array: None,
+                mass_reading: MassReading::Assumed,
+                particle_share: 1.0,
                 mass: MassRecipe::Ratio(0.05),
                 gap: GapRecipe::Ratio(50.0),
                 floor: floor.clone(),
@@ -36,10 +41,16 @@ pub fn limit_stop() -> Experiment {
                 }),
                 walls: None,
             }],
-            excitation: ExcitationRecipe::ImpulseTrain {
+            without_dampers: false,
+            excitation: ExcitationRecipe {
+                kind: ExcitationKind::ImpulseTrain,
+                at: PlaceRecipe::default(),
                 strength: StrengthRecipe::ForceRatio(1.0),
                 timing: TimingRecipe::FrequencyRatio(1.0),
+                impulse_time: ImpulseTime::Assumed,
             },
+            observe: ObserveRecipe::default(),
+            mode: None,
         },
         cases: vec![Case::default()],
         swept: vec![Parameter::ForceRatio, Parameter::Stop],
@@ -48,6 +59,8 @@ pub fn limit_stop() -> Experiment {
         maximise: None,
         measures: vec![Measure::VelocityRatio],
         trace: None,
+        energies: None,
+        shape: None,
         figures: vec![figure(vec![panel("force_ratio", AxisScale::Log, &["velocity_ratio"])])],
     }
 }

@@ -15,5 +15,6 @@ mod made_up;
 mod reference;
 mod report;
 mod spec;
+mod structures;
 mod study;
 mod table;

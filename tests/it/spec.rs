@@ -232,7 +232,7 @@ fn mistakes_that_a_person_makes_are_told_where_they_stand() {
         (with("mass_ratio: 0.05", "mass_ratio: -0.05"), "7:19 this ratio cannot be negative"),
         (
             with("gap: 490.5 mm", "gap: -1 mm"),
-            "13:3 a gap clearance cannot be -0.001 m (at force_ratio = 0.1, stop = with)",
+            "7:7 a gap clearance cannot be -0.001 m (at force_ratio = 0.1, stop = with)",
         ),
         (
             with("damping_ratio: assumed", "damping_ratio: 5 mm"),

@@ -194,7 +194,7 @@ impl<V: Vector> Propagator<V> {
             input: V::of(&step[size + 1]),
             guards: guards.iter().map(Form::of).collect(),
             holds,
-            acceleration: Form::of(&along(&system.observed_row)),
+            acceleration: Form::of(&along(&system.observed_rows[0])),
             dissipation: dissipation.iter().map(|signal| V::of(&signal.0[..size])).collect(),
         })
     }

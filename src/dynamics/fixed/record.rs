@@ -3,10 +3,10 @@
 use super::Run;
 use super::stretch::Tally;
 use super::vector::Vector;
-use crate::dynamics::EngineError;
 use crate::dynamics::audit::State;
 use crate::dynamics::system::{Event, EventKind, Law, dot};
 use crate::dynamics::trace::Sample;
+use crate::dynamics::{CycleRates, EngineError};
 
 impl<V: Vector> Run<'_, V> {
     pub(super) fn record(&mut self, particle: usize, kind: EventKind, approach: f64, departure: f64) {
@@ -22,16 +22,56 @@ impl<V: Vector> Run<'_, V> {
         }
     }
 
+    pub(super) fn new_tally(&self) -> Tally<V> {
+        Tally::new(self.layout.size(), self.watch.more.len(), self.options.extremes)
+    }
+
+    /// The structure's velocities after the impulse that opens a cycle.
+    pub(super) fn open_cycle(&mut self) {
+        if self.options.cycle_rates {
+            let after = self.structure_rates().to_vec();
+            self.response.cycle_rates.push(CycleRates { after, before: Vec::new() });
+        }
+    }
+
+    fn structure_rates(&self) -> &[f64] {
+        let positions = self.layout.positions();
+        &self.motion.state.values()[positions..positions + self.layout.n]
+    }
+
     /// Books a cycle's sums.
     pub(super) fn end_cycle(&mut self) -> Result<(), EngineError> {
-        let tally = std::mem::replace(&mut self.tally, Tally::new(self.layout.size()));
+        let next = self.new_tally();
+        let tally = std::mem::replace(&mut self.tally, next);
         if !tally.velocity_square.is_finite() {
             return Err(EngineError::NotFinite { cycle: self.cycle });
         }
+        if self.options.cycle_rates {
+            let before = self.structure_rates().to_vec();
+            if let Some(cycle) = self.response.cycle_rates.last_mut() {
+                cycle.before = before;
+            }
+        }
         let weight = self.time_step;
         if self.options.averages(self.cycle) {
+            for (of, range) in self.response.observed.iter_mut().zip(&tally.extremes) {
+                of.extremes.take(range.displacement[0], range.velocity[0]);
+                of.extremes.take(range.displacement[1], range.velocity[1]);
+            }
             let second_half = 2 * (self.cycle - u64::from(self.options.skip)) >= u64::from(self.options.average);
-            let sums = &mut self.response.sums[usize::from(second_half)];
+            let half = usize::from(second_half);
+            for ((of, squares), [displacement, _]) in
+                self.response.observed[1..].iter_mut().zip(&tally.more).zip(&self.watch.more)
+            {
+                let sums = &mut of.halves[half];
+                sums.duration += tally.steps as f64 * weight;
+                sums.velocity_square += squares[1] * weight;
+                if self.options.displacement {
+                    sums.displacement += displacement.dot(&tally.state) * weight;
+                    sums.displacement_square += squares[0] * weight;
+                }
+            }
+            let sums = &mut self.response.observed[0].halves[half];
             sums.duration += tally.steps as f64 * weight;
             sums.velocity_square += tally.velocity_square * weight;
             if self.options.displacement {
@@ -90,8 +130,8 @@ impl<V: Vector> Run<'_, V> {
         let state = self.motion.state.values();
         let mut sample = Sample {
             time: self.step as f64 * self.time_step,
-            displacement: dot(&self.system.observed_row, &state[..n]),
-            velocity: dot(&self.system.observed_row, &state[positions..positions + n]),
+            displacement: dot(&self.system.observed_rows[0], &state[..n]),
+            velocity: dot(&self.system.observed_rows[0], &state[positions..positions + n]),
             acceleration: self.propagators[self.now].acceleration.at(&self.motion.state, self.motion.force()),
             damping: if self.contacts.is_empty() { 0.0 } else { self.damping(0) },
             half_cycle_rms: self.motion.half.map_or(0.0, |half| half.last),

@@ -3,6 +3,7 @@
 use super::propagator::Propagator;
 use super::schedule::Oscillator;
 use super::vector::Vector;
+use crate::dynamics::Extremes;
 
 /// What moves.
 pub(super) struct Motion<V> {
@@ -30,6 +31,8 @@ pub(super) struct Watch<V> {
     /// Observed displacement, m, and velocity, m/s.
     pub(super) displacement: V,
     pub(super) velocity: V,
+    /// The same of all further observed points.
+    pub(super) more: Vec<[V; 2]>,
     /// Displacement under the force, and its rate.
     pub(super) forced: V,
     pub(super) with_displacement: bool,
@@ -42,6 +45,10 @@ pub(super) struct Tally<V> {
     pub(super) state: V,
     pub(super) displacement_square: f64,
     pub(super) velocity_square: f64,
+    /// Squares of displacement and velocity of all further observed points.
+    pub(super) more: Vec<[f64; 2]>,
+    /// Ranges of all observed points; empty unless asked for.
+    pub(super) extremes: Vec<Extremes>,
     /// Audit only. Power of the dashpots, W.
     pub(super) dissipated: f64,
     /// Force, and its modulus, N.
@@ -53,12 +60,14 @@ pub(super) struct Tally<V> {
 }
 
 impl<V: Vector> Tally<V> {
-    pub(super) fn new(size: usize) -> Self {
+    pub(super) fn new(size: usize, more: usize, extremes: bool) -> Self {
         Self {
             steps: 0,
             state: V::of(&vec![0.0; size]),
             displacement_square: 0.0,
             velocity_square: 0.0,
+            more: vec![[0.0; 2]; more],
+            extremes: if extremes { vec![Extremes::default(); 1 + more] } else { Vec::new() },
             dissipated: 0.0,
             force: 0.0,
             force_modulus: 0.0,
@@ -122,6 +131,18 @@ impl<V: Vector> Motion<V> {
             if watch.with_displacement {
                 let displacement = watch.displacement.dot(&state);
                 displacement_square += displacement * displacement;
+            }
+            for (squares, rows) in tally.more.iter_mut().zip(&watch.more) {
+                for (square, row) in squares.iter_mut().zip(rows) {
+                    let value = row.dot(&state);
+                    *square += value * value;
+                }
+            }
+            if let Some((first, more)) = tally.extremes.split_first_mut() {
+                first.take(watch.displacement.dot(&state), velocity);
+                for (extremes, [displacement, velocity]) in more.iter_mut().zip(&watch.more) {
+                    extremes.take(displacement.dot(&state), velocity.dot(&state));
+                }
             }
             if AUDIT {
                 for row in &propagator.dissipation {

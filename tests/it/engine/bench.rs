@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 use shotdamp::dynamics::{Contact, Event, EventKind, HybridSystem, Options, Response, StartState, event_driven};
-use shotdamp::scene::{ContactDamping, ContactEnd, Damper, Excitation, Scene, Structure, Surface, compile};
+use shotdamp::scene::{ContactDamping, ContactEnd, Damper, Excitation, Scene, SingleMass, Surface, compile};
 
 /// m/s².
 pub const GRAVITY: f64 = 9.81;
@@ -73,8 +73,8 @@ fn number(value: &Value) -> Option<f64> {
 }
 
 /// m x″ + c x′ + k x = F.
-pub fn base(mass: f64, stiffness: f64, damping: f64) -> Structure {
-    Structure::SingleMass { mass, stiffness, damping }
+pub fn base(mass: f64, stiffness: f64, damping: f64) -> SingleMass {
+    SingleMass { mass, stiffness, damping }
 }
 
 pub fn rigid(restitution: f64) -> Surface {
@@ -93,7 +93,7 @@ pub fn resilient_without_tension(stiffness: f64, damping: f64) -> Surface {
 
 /// A particle between two faces of one kind.
 pub fn damper(particle_mass: f64, gap: f64, surface: Surface) -> Damper {
-    Damper { particle_mass, gap, floor: surface.clone(), ceiling: surface, stop: None, walls: None }
+    Damper::between(surface, particle_mass, gap)
 }
 
 /// No force, for one cycle of `span` seconds.
@@ -102,8 +102,8 @@ pub fn nothing(span: f64) -> Excitation {
 }
 
 /// One damper on one mass.
-pub fn scene(structure: Structure, gravity: f64, damper: Damper, excitation: Excitation) -> Scene {
-    Scene { structure, gravity, dampers: vec![damper], excitation }
+pub fn scene(mass: SingleMass, gravity: f64, damper: Damper, excitation: Excitation) -> Scene {
+    Scene::on_one_mass(mass, gravity, vec![damper], excitation)
 }
 
 /// A base at x, x′, with the particle in flight at u, u′.

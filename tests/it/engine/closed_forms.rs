@@ -449,11 +449,13 @@ fn impulses_without_a_damper_are_a_geometric_series() {
     let (given, value) = open("impulse-train-bare-T0.05");
     let (mass, stiffness) = (given.number("base_mass"), given.number("stiffness"));
     let damping = 0.1 * (stiffness * mass).sqrt();
-    let train = |impulse, period| Scene {
-        structure: base(mass, stiffness, damping),
-        gravity: GRAVITY,
-        dampers: Vec::new(),
-        excitation: Excitation::ImpulseTrain { impulse, period },
+    let train = |impulse, period| {
+        Scene::on_one_mass(
+            base(mass, stiffness, damping),
+            GRAVITY,
+            Vec::new(),
+            Excitation::ImpulseTrain { impulse, period },
+        )
     };
     let options = Options { skip: 500, audit: true, ..Options::default() };
     let response = run(&train(given.number("impulse_n_s"), given.number("period_s")), &options);

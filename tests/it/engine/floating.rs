@@ -11,12 +11,8 @@ use super::bench::{GRAVITY, base, close, damper, nothing, once, only, resilient,
 #[test]
 fn a_base_on_a_dashpot_stops_where_its_impulse_is_used_up() {
     let (mass, damping, impulse, cycle) = (2.0, 3.0, 5.0, 0.7);
-    let slide = Scene {
-        structure: base(mass, 0.0, damping),
-        gravity: GRAVITY,
-        dampers: Vec::new(),
-        excitation: Excitation::SingleImpulse { impulse, cycle },
-    };
+    let slide =
+        Scene::on_one_mass(base(mass, 0.0, damping), GRAVITY, Vec::new(), Excitation::SingleImpulse { impulse, cycle });
     let response = run(&slide, &once(StartState::StaticEquilibrium));
     let decay = f64::exp(-damping / mass * cycle);
     close("velocity", response.final_velocity, impulse / mass * decay, 1e-14);
@@ -28,17 +24,12 @@ fn a_base_on_a_dashpot_stops_where_its_impulse_is_used_up() {
 #[test]
 fn under_a_constant_force_it_creeps_at_its_terminal_velocity() {
     let (mass, damping, force) = (2.0, 40.0, 7.0);
-    let slide = Scene {
-        structure: base(mass, 0.0, damping),
-        gravity: GRAVITY,
-        dampers: Vec::new(),
-        excitation: Excitation::PulseTrain {
-            impulse: force,
-            period: 1.0,
-            duration: 1.0,
-            shape: PulseShape::Rectangular,
-        },
-    };
+    let slide = Scene::on_one_mass(
+        base(mass, 0.0, damping),
+        GRAVITY,
+        Vec::new(),
+        Excitation::PulseTrain { impulse: force, period: 1.0, duration: 1.0, shape: PulseShape::Rectangular },
+    );
     let response = run(&slide, &Options { skip: 10, average: 10, audit: true, ..Options::default() });
     let terminal = force / damping;
     close("RMS velocity", response.window().rms_velocity(), terminal, 1e-13);

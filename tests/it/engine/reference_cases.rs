@@ -30,19 +30,17 @@ fn scene(case: &Case) -> Scene {
     let stop = case
         .optional("limit_stop_m")
         .map(|length| LimitStop { length, restitution: case.number("limit_stop_restitution") });
-    Scene {
-        structure: base(mass, case.number("stiffness_n_per_m"), case.number("damping_n_s_per_m")),
-        gravity: case.number("gravity_m_per_s2"),
-        dampers: vec![Damper {
-            particle_mass: case.number("particle_mass_kg"),
-            gap: case.number("gap_m"),
-            floor: surface("floor"),
+    Scene::on_one_mass(
+        base(mass, case.number("stiffness_n_per_m"), case.number("damping_n_s_per_m")),
+        case.number("gravity_m_per_s2"),
+        vec![Damper {
             ceiling: surface("ceiling"),
             stop,
             walls,
+            ..Damper::between(surface("floor"), case.number("particle_mass_kg"), case.number("gap_m"))
         }],
-        excitation: excitation(case),
-    }
+        excitation(case),
+    )
 }
 
 fn excitation(case: &Case) -> Excitation {

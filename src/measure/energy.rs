@@ -1,0 +1,127 @@
+//! Kinetic energies of the structure at the impulses, and the two measures made of them (s. 5.2.5 of the study).
+//!
+//! T is the kinetic energy of the structure alone, without enclosures and particles. The damping measure of a cycle is what T has
+//! lost from just after the impulse that opens it to just before the next, relative to the former. The equation of the mass measure
+//! is lost; [`crate::scene::Assumption::MassMeasure`] says how T at the impulse is compared with that of the clean structure:
+//!
+//! - `jump`: the jumps of T at the impulse;
+//! - `after`: T just after it;
+//! - `level`: the jump of T with dampers, over T just before it without.
+//!
+//! A point impulse gives each mode the same share, so that T just after it grows with the number of modes without limit:
+//! these measures mean something together with that number only.
+
+use super::TraceColumn;
+use crate::dynamics::{Matrix, Response};
+use crate::scene::{Assumption, Assumptions, RecipeError, Scene};
+use crate::spec::{EnergySpec, Settings};
+
+/// Kinetic energies of every cycle, J.
+pub(super) struct Energies {
+    with: Vec<Ends>,
+    without: Vec<Ends>,
+    reading: Reading,
+    averaged: std::ops::Range<usize>,
+}
+
+/// Kinetic energy at the ends of a cycle, J.
+#[derive(Debug, Clone, Copy)]
+struct Ends {
+    after: f64,
+    before: f64,
+}
+
+/// How the mass measure compares.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Reading {
+    Jump,
+    After,
+    Level,
+}
+
+impl Energies {
+    pub(super) fn of(
+        scene: &Scene,
+        response: &Response,
+        undamped: &Response,
+        assumptions: &Assumptions,
+        settings: &Settings,
+    ) -> Result<Self, RecipeError> {
+        let reading = match assumptions.choice(Assumption::MassMeasure, &["jump", "after", "level"])? {
+            0 => Reading::Jump,
+            1 => Reading::After,
+            _ => Reading::Level,
+        };
+        let mass = scene.structure.model().matrices().mass;
+        let skip = settings.skip as usize;
+        Ok(Self {
+            with: ends(&mass, response),
+            without: ends(&mass, undamped),
+            reading,
+            averaged: skip..skip + settings.average as usize,
+        })
+    }
+
+    /// Mean over the averaged cycles.
+    pub(super) fn damping_measure(&self) -> f64 {
+        self.mean(|cycle| self.damping_of(cycle))
+    }
+
+    /// Mean over the averaged cycles.
+    pub(super) fn mass_measure(&self) -> f64 {
+        self.mean(|cycle| self.mass_of(cycle))
+    }
+
+    fn mean(&self, of: impl Fn(usize) -> f64) -> f64 {
+        let count = self.averaged.len() as f64;
+        self.averaged.clone().map(of).sum::<f64>() / count
+    }
+
+    fn damping_of(&self, cycle: usize) -> f64 {
+        let Ends { after, before } = self.with[cycle];
+        1.0 - before / after
+    }
+
+    fn mass_of(&self, cycle: usize) -> f64 {
+        // It starts at rest.
+        let before = |cycles: &[Ends]| cycle.checked_sub(1).map_or(0.0, |last| cycles[last].before);
+        let jump = |cycles: &[Ends]| cycles[cycle].after - before(cycles);
+        match self.reading {
+            Reading::Jump => jump(&self.with) / jump(&self.without),
+            Reading::After => self.with[cycle].after / self.without[cycle].after,
+            Reading::Level => jump(&self.with) / before(&self.without),
+        }
+    }
+
+    /// The list columns.
+    pub(super) fn columns(&self, spec: &EnergySpec) -> Vec<TraceColumn> {
+        let cycles = spec.from_cycle as usize..(spec.to_cycle as usize).min(self.with.len());
+        let column = |name, unit, of: &dyn Fn(usize) -> f64| TraceColumn {
+            name,
+            unit,
+            samples: cycles.clone().map(of).collect(),
+        };
+        vec![
+            column("cycle", "", &|cycle| cycle as f64),
+            column("kinetic_energy_after", "J", &|cycle| self.with[cycle].after),
+            column("kinetic_energy_before", "J", &|cycle| self.with[cycle].before),
+            column("undamped_kinetic_energy_after", "J", &|cycle| self.without[cycle].after),
+            column("undamped_kinetic_energy_before", "J", &|cycle| self.without[cycle].before),
+            column("damping_measure_of_cycle", "", &|cycle| self.damping_of(cycle)),
+            column("mass_measure_of_cycle", "", &|cycle| self.mass_of(cycle)),
+        ]
+    }
+}
+
+fn ends(mass: &Matrix, response: &Response) -> Vec<Ends> {
+    let energy = |rate: &[f64]| {
+        // Soft walls have a coordinate of their own behind those of the structure.
+        let rate = &rate[..mass.order];
+        0.5 * mass.form(rate, rate)
+    };
+    response
+        .cycle_rates
+        .iter()
+        .map(|cycle| Ends { after: energy(&cycle.after), before: energy(&cycle.before) })
+        .collect()
+}

@@ -1,0 +1,214 @@
+//! Measures read off responses.
+
+use std::f64::consts::TAU;
+
+use super::energy::Energies;
+use super::history::History;
+use super::{EvaluateError, Measure};
+use crate::dynamics::{EventKind, Observed, Response, Sums};
+use crate::scene::{Excitation, Recipe, Scene, Take};
+
+/// What there is to read measures of one run off.
+pub(super) struct Reading<'a> {
+    pub(super) recipe: &'a Recipe,
+    pub(super) scene: &'a Scene,
+    /// The run, and the one without damper; absent where nothing asks for them.
+    pub(super) response: Option<&'a Response>,
+    pub(super) undamped: Option<&'a Response>,
+    pub(super) history: Option<History<'a>>,
+    pub(super) energies: Option<&'a Energies>,
+    /// Modal assurance criterion of the shape, if there is one.
+    pub(super) mac: Option<f64>,
+}
+
+impl Measure {
+    /// Read off a time history.
+    pub(crate) fn needs_trace(self) -> bool {
+        matches!(
+            self,
+            Self::LastPeak
+                | Self::PeakVariation
+                | Self::PeakDecayError
+                | Self::FloorImpactLag
+                | Self::CeilingImpactLag
+                | Self::FloorCompression
+                | Self::CeilingCompression
+        )
+    }
+
+    pub(super) fn needs_displacement(self) -> bool {
+        matches!(self, Self::DisplacementRatio | Self::StdDisplacement | Self::MeanDisplacement)
+    }
+
+    /// Read off the largest and smallest values of the motion.
+    pub(super) fn needs_extremes(self) -> bool {
+        matches!(
+            self,
+            Self::DisplacementAmplitude
+                | Self::VelocityAmplitude
+                | Self::DisplacementPerForce
+                | Self::VelocityPerForce
+                | Self::DisplacementPerImpulse
+                | Self::VelocityPerImpulse
+                | Self::DisplacementAmplitudeRatio
+                | Self::VelocityAmplitudeRatio
+                | Self::UndampedDisplacementAmplitude
+                | Self::UndampedVelocityAmplitude
+        )
+    }
+
+    /// Read off the velocities at the ends of cycles.
+    pub(super) fn needs_energies(self) -> bool {
+        matches!(self, Self::DampingMeasure | Self::MassMeasure)
+    }
+
+    /// Compares with the run without damper, or is of it.
+    pub(crate) fn needs_undamped(self) -> bool {
+        matches!(
+            self,
+            Self::VelocityRatio
+                | Self::DisplacementRatio
+                | Self::UndampedRmsVelocity
+                | Self::DisplacementAmplitudeRatio
+                | Self::VelocityAmplitudeRatio
+                | Self::UndampedDisplacementAmplitude
+                | Self::UndampedVelocityAmplitude
+        ) || self.needs_energies()
+    }
+
+    /// Known without a run.
+    pub(super) fn is_modal(self) -> bool {
+        matches!(
+            self,
+            Self::NaturalFrequency
+                | Self::CleanNaturalFrequency
+                | Self::ExactNaturalFrequency
+                | Self::ModeCount
+                | Self::Mac
+        )
+    }
+
+    /// Read off the shape that is kept.
+    pub(crate) fn needs_shape(self) -> bool {
+        self == Self::Mac
+    }
+}
+
+impl Reading<'_> {
+    pub(super) fn read(&self, measure: Measure) -> Result<f64, EvaluateError> {
+        if measure.is_modal() {
+            return self.modal(measure);
+        }
+        let response = self.response.ok_or(EvaluateError::NoRun(measure))?;
+        let undamped = || self.undamped.ok_or(EvaluateError::NoRun(measure));
+        let trace = || self.history.as_ref().ok_or(EvaluateError::NeedsTrace(measure));
+        let window = response.window();
+        Ok(match measure {
+            Measure::VelocityRatio => self.rms_velocity(undamped()?) / self.rms_velocity(response),
+            Measure::DisplacementRatio => self.std_displacement(undamped()?) / self.std_displacement(response),
+            Measure::RmsVelocity => self.rms_velocity(response),
+            Measure::StdDisplacement => self.std_displacement(response),
+            Measure::MeanDisplacement => window.mean_displacement(),
+            Measure::UndampedRmsVelocity => self.rms_velocity(undamped()?),
+            Measure::FloorImpacts => response.counts.floor_contacts as f64,
+            Measure::CeilingImpacts => response.counts.ceiling_contacts as f64,
+            Measure::StopImpacts => response.counts.stops as f64,
+            Measure::Separations => response.counts.floor_releases as f64,
+            Measure::Drift => {
+                let half = |i: usize| self.taken(response, |observed| observed.halves[i].rms_velocity());
+                (half(0) / half(1) - 1.0).abs()
+            }
+            Measure::HighestFrequency => response.highest_frequency / TAU,
+            Measure::ShortestPeriod => TAU / response.highest_frequency,
+            Measure::FloorCompression => trace()?.floor_compression(),
+            Measure::CeilingCompression => trace()?.ceiling_compression(),
+            Measure::LastPeak => trace()?.last_peak(),
+            Measure::PeakVariation => trace()?.peak_variation(),
+            Measure::PeakDecayError => trace()?.peak_decay_error(),
+            Measure::FloorImpactLag => trace()?.lag(EventKind::FloorContact),
+            Measure::CeilingImpactLag => trace()?.lag(EventKind::CeilingContact),
+            Measure::DisplacementAmplitude => self.displacement_amplitude(response),
+            Measure::VelocityAmplitude => self.velocity_amplitude(response),
+            Measure::DisplacementPerForce => self.displacement_amplitude(response) / self.force(measure)?,
+            Measure::VelocityPerForce => self.velocity_amplitude(response) / self.force(measure)?,
+            Measure::DisplacementPerImpulse => self.displacement_amplitude(response) / self.impulse(measure)?,
+            Measure::VelocityPerImpulse => self.velocity_amplitude(response) / self.impulse(measure)?,
+            Measure::DisplacementAmplitudeRatio => {
+                self.displacement_amplitude(undamped()?) / self.displacement_amplitude(response)
+            }
+            Measure::VelocityAmplitudeRatio => self.velocity_amplitude(undamped()?) / self.velocity_amplitude(response),
+            Measure::UndampedDisplacementAmplitude => self.displacement_amplitude(undamped()?),
+            Measure::UndampedVelocityAmplitude => self.velocity_amplitude(undamped()?),
+            Measure::DampingMeasure => self.energies.ok_or(EvaluateError::NoRun(measure))?.damping_measure(),
+            Measure::MassMeasure => self.energies.ok_or(EvaluateError::NoRun(measure))?.mass_measure(),
+            Measure::NaturalFrequency
+            | Measure::CleanNaturalFrequency
+            | Measure::ExactNaturalFrequency
+            | Measure::ModeCount
+            | Measure::Mac => unreachable!("modal measures are read above"),
+        })
+    }
+
+    fn modal(&self, measure: Measure) -> Result<f64, EvaluateError> {
+        let model = self.scene.structure.model();
+        let number = self.recipe.mode_number() as usize;
+        let known = |frequencies: &[f64]| frequencies.get(number.wrapping_sub(1)).copied().unwrap_or(f64::NAN);
+        Ok(match measure {
+            Measure::NaturalFrequency => {
+                let modes = self.scene.normal_modes()?;
+                known(&modes.iter().map(|mode| mode.frequency).collect::<Vec<_>>())
+            }
+            Measure::CleanNaturalFrequency => known(&model.natural_frequencies()),
+            Measure::ExactNaturalFrequency => model.exact_frequency(number).unwrap_or(f64::NAN),
+            Measure::ModeCount => model.natural_frequencies().len() as f64,
+            _ => self.mac.ok_or(EvaluateError::NeedsShape(measure))?,
+        })
+    }
+
+    /// RMS velocity that counts among the observed points, m/s.
+    pub(super) fn rms_velocity(&self, response: &Response) -> f64 {
+        self.taken(response, |observed| observed.window().rms_velocity())
+    }
+
+    fn std_displacement(&self, response: &Response) -> f64 {
+        self.taken(response, |observed| Sums::std_displacement(&observed.window()))
+    }
+
+    fn displacement_amplitude(&self, response: &Response) -> f64 {
+        self.taken(response, |observed| half_range(observed.extremes.displacement))
+    }
+
+    fn velocity_amplitude(&self, response: &Response) -> f64 {
+        self.taken(response, |observed| half_range(observed.extremes.velocity))
+    }
+
+    /// One number of all observed points.
+    fn taken(&self, response: &Response, of: impl Fn(&Observed) -> f64) -> f64 {
+        let points = self.scene.observed.points.len();
+        let values = response.observed[..points].iter().map(of);
+        match self.scene.observed.take {
+            Take::Largest => values.reduce(f64::max).unwrap_or(f64::NAN),
+            Take::Mean => values.sum::<f64>() / points as f64,
+        }
+    }
+
+    fn force(&self, measure: Measure) -> Result<f64, EvaluateError> {
+        match self.scene.excitation {
+            Excitation::Harmonic { force, .. } => Ok(force.abs()),
+            _ => Err(EvaluateError::NotUnder { measure, excitation: "a harmonic force" }),
+        }
+    }
+
+    fn impulse(&self, measure: Measure) -> Result<f64, EvaluateError> {
+        match self.scene.excitation {
+            Excitation::Harmonic { .. } => Err(EvaluateError::NotUnder { measure, excitation: "impulses" }),
+            Excitation::SingleImpulse { impulse, .. }
+            | Excitation::ImpulseTrain { impulse, .. }
+            | Excitation::PulseTrain { impulse, .. } => Ok(impulse.abs()),
+        }
+    }
+}
+
+fn half_range([low, high]: [f64; 2]) -> f64 {
+    0.5 * (high - low)
+}

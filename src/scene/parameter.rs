@@ -1,0 +1,313 @@
+//! Parameters: what a sweep may vary, by the same words as YAML keys and as table columns.
+
+use serde::{Deserialize, Serialize};
+
+use super::recipe::{
+    ContactDampingRecipe, DamperRecipe, ExcitationKind, GapRecipe, Given, MassReading, MassRecipe, Part, PulseShape,
+    Recipe, RecipeError, StiffnessRecipe, StrengthRecipe, SurfaceRecipe, TimingRecipe,
+};
+use super::structure::whole;
+
+/// What a sweep may vary. The earlier one varies slower.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Parameter {
+    /// f′.
+    ForceRatio,
+    /// a ω²/g.
+    BaseAmplitudeRatio,
+    /// ω′.
+    FrequencyRatio,
+    /// m′ of every damper.
+    MassRatio,
+    /// h′ of every damper; `infinite` allowed.
+    GapRatio,
+    /// c′.
+    DampingRatio,
+    /// kf/ks = kc/ks.
+    FloorStiffnessRatio,
+    /// ζf.
+    ContactDampingRatio,
+    /// kw/ks; `infinite` leaves the soft walls out (Model 2).
+    WallStiffnessRatio,
+    /// Limit stop `with` or `without`.
+    Stop,
+    /// δ, m.
+    StopLength,
+    /// Duration of a pulse, s.
+    PulseDuration,
+    /// All dampers `with` or `without`: the clean structure.
+    Dampers,
+    /// Floors and ceilings `tuned` to the clean structure's first natural frequency, or `untuned`.
+    FloorTuning,
+    /// Whose mass m′ is a share of: the `total` or the `modal` one.
+    MassReading,
+    /// Which mode a natural frequency or a mode shape is of, from 1.
+    Mode,
+    /// Number of the natural frequency of the clean structure that is forced.
+    ForcedMode,
+    /// Number of modes; along each side of a plate.
+    Modes,
+    /// Length of a beam or plate, m.
+    Length,
+    /// m.
+    Width,
+    /// m.
+    Thickness,
+    /// λ in C = λ (M + K).
+    Rayleigh,
+    /// Dampers of an array.
+    DamperCount,
+    /// mp/(mp + ms).
+    ParticleShare,
+    /// Place of the force, share of the side.
+    ForceX,
+    /// The same along the second side.
+    ForceY,
+    /// Place of the damper, or of the array, share of the side.
+    DamperX,
+    /// The same along the second side.
+    DamperY,
+    /// Amplitude of a harmonic force, N.
+    Force,
+    /// J, N s.
+    Impulse,
+    /// Forcing frequency, rad/s.
+    AngularFrequency,
+}
+
+/// A value that a sweep gives to a parameter.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ParameterValue {
+    /// A number, SI or dimensionless.
+    Number(f64),
+    /// `infinite`.
+    Infinite,
+    /// `with`.
+    With,
+    /// `without`.
+    Without,
+    /// `tuned`.
+    Tuned,
+    /// `untuned`.
+    Untuned,
+    /// `total`.
+    Total,
+    /// `modal`.
+    Modal,
+}
+
+impl Parameter {
+    /// The words that it takes instead of numbers; none as a rule.
+    #[must_use]
+    pub fn words(self) -> &'static [ParameterValue] {
+        use ParameterValue as Value;
+        match self {
+            Self::Stop | Self::Dampers => &[Value::With, Value::Without],
+            Self::FloorTuning => &[Value::Tuned, Value::Untuned],
+            Self::MassReading => &[Value::Total, Value::Modal],
+            _ => &[],
+        }
+    }
+
+    /// Unit symbol of its numbers, empty when dimensionless.
+    #[must_use]
+    pub fn unit(self) -> &'static str {
+        match self {
+            Self::StopLength | Self::Length | Self::Width | Self::Thickness => "m",
+            Self::PulseDuration => "s",
+            Self::Force => "N",
+            Self::Impulse => "N s",
+            Self::AngularFrequency => "rad/s",
+            _ => "",
+        }
+    }
+
+    /// Symbol in the study, empty if it has none.
+    #[must_use]
+    pub fn symbol(self) -> &'static str {
+        match self {
+            Self::ForceRatio => "f′",
+            Self::BaseAmplitudeRatio => "aω²/g",
+            Self::FrequencyRatio => "ω′",
+            Self::MassRatio => "m′",
+            Self::GapRatio => "h′",
+            Self::DampingRatio => "c′",
+            Self::FloorStiffnessRatio => "kf/ks",
+            Self::ContactDampingRatio => "ζf",
+            Self::WallStiffnessRatio => "kw/ks",
+            Self::StopLength => "δ",
+            Self::Rayleigh => "λ",
+            Self::ForceX => "xF/Lx",
+            Self::ForceY => "yF/Ly",
+            Self::DamperX => "x/Lx",
+            Self::DamperY => "y/Ly",
+            Self::Force => "F",
+            Self::Impulse => "J",
+            Self::AngularFrequency => "ω",
+            _ => "",
+        }
+    }
+
+    /// The part of a scene that it belongs to; of dampers the first stands for all.
+    pub(crate) fn part(self) -> Option<Part> {
+        match self {
+            Self::Mode | Self::Dampers => None,
+            Self::DampingRatio | Self::Modes | Self::Length | Self::Width | Self::Thickness | Self::Rayleigh => {
+                Some(Part::Structure)
+            }
+            _ if self.is_of_dampers() => Some(Part::Damper(0)),
+            _ => Some(Part::Excitation),
+        }
+    }
+
+    /// True for what a clean structure has no use for.
+    pub(crate) fn is_of_dampers(self) -> bool {
+        matches!(
+            self,
+            Self::MassRatio
+                | Self::GapRatio
+                | Self::FloorStiffnessRatio
+                | Self::ContactDampingRatio
+                | Self::WallStiffnessRatio
+                | Self::Stop
+                | Self::StopLength
+                | Self::FloorTuning
+                | Self::MassReading
+                | Self::DamperCount
+                | Self::ParticleShare
+                | Self::DamperX
+                | Self::DamperY
+        )
+    }
+}
+
+/// The number that a sweep gives.
+fn number(parameter: Parameter, value: ParameterValue) -> Result<f64, RecipeError> {
+    match value {
+        ParameterValue::Number(x) => Ok(x),
+        _ => Err(RecipeError::OutOfRange(format!("{parameter:?} takes a number here"))),
+    }
+}
+
+impl Recipe {
+    /// Gives `parameter` the value of a sweep point.
+    ///
+    /// # Errors
+    /// [`RecipeError::NothingToVary`] if the scene has no such parameter.
+    pub fn set(&mut self, parameter: Parameter, value: ParameterValue) -> Result<(), RecipeError> {
+        let nothing = |what| RecipeError::NothingToVary { parameter, what };
+        let number = || number(parameter, value);
+        match parameter {
+            Parameter::ForceRatio => self.excitation.strength = StrengthRecipe::ForceRatio(number()?),
+            Parameter::BaseAmplitudeRatio => self.excitation.strength = StrengthRecipe::BaseAmplitudeRatio(number()?),
+            Parameter::Force => self.excitation.strength = StrengthRecipe::Force(Given::Stated(number()?)),
+            Parameter::Impulse => self.excitation.strength = StrengthRecipe::Impulse(number()?),
+            Parameter::FrequencyRatio => self.excitation.timing = TimingRecipe::FrequencyRatio(number()?),
+            Parameter::AngularFrequency => self.excitation.timing = TimingRecipe::AngularFrequency(number()?),
+            Parameter::ForcedMode => self.excitation.timing = TimingRecipe::ForcedMode(whole(number()?)?),
+            Parameter::ForceX | Parameter::ForceY => {
+                let side = usize::from(parameter == Parameter::ForceY);
+                if !self.excitation.at.set_share(side, number()?) {
+                    return Err(nothing("no such side at the force"));
+                }
+            }
+            Parameter::PulseDuration => match &mut self.excitation.kind {
+                ExcitationKind::PulseTrain { duration, shape, .. } => {
+                    *duration = number()?;
+                    if let PulseShape::Binomial { impulses } = shape {
+                        // One impulse a step of 1 ms, as the study's figure 31.
+                        *impulses = (number()? / 1e-3).round().max(1.0) as u32;
+                    }
+                }
+                _ => return Err(nothing("no pulse")),
+            },
+            Parameter::Mode => self.mode = Some(whole(number()?)?),
+            Parameter::Dampers => self.without_dampers = value == ParameterValue::Without,
+            Parameter::DampingRatio
+            | Parameter::Modes
+            | Parameter::Length
+            | Parameter::Width
+            | Parameter::Thickness
+            | Parameter::Rayleigh => {
+                if !self.structure.set(parameter, number()?)? {
+                    return Err(nothing("a structure without it"));
+                }
+            }
+            _ => {
+                if self.dampers.is_empty() {
+                    return Err(nothing("no damper"));
+                }
+                for damper in &mut self.dampers {
+                    damper.set(parameter, value)?;
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+impl DamperRecipe {
+    fn set(&mut self, parameter: Parameter, value: ParameterValue) -> Result<(), RecipeError> {
+        let nothing = |what| RecipeError::NothingToVary { parameter, what };
+        let number = || number(parameter, value);
+        match parameter {
+            Parameter::MassRatio => self.mass = MassRecipe::Ratio(number()?),
+            Parameter::MassReading => {
+                self.mass_reading =
+                    if value == ParameterValue::Modal { MassReading::Modal } else { MassReading::Total };
+            }
+            Parameter::ParticleShare => self.particle_share = number()?,
+            Parameter::DamperX | Parameter::DamperY => {
+                if !self.at.set_share(usize::from(parameter == Parameter::DamperY), number()?) {
+                    return Err(nothing("no such side at the damper"));
+                }
+            }
+            Parameter::DamperCount => {
+                let array = self.array.as_mut().ok_or_else(|| nothing("no array of dampers"))?;
+                array.count = vec![whole(number()?)?];
+            }
+            Parameter::GapRatio => {
+                self.gap = match value {
+                    ParameterValue::Infinite => GapRecipe::Infinite,
+                    _ => GapRecipe::Ratio(number()?),
+                };
+            }
+            Parameter::FloorStiffnessRatio | Parameter::ContactDampingRatio | Parameter::FloorTuning => {
+                for surface in [&mut self.floor, &mut self.ceiling] {
+                    let SurfaceRecipe::Resilient { stiffness, damping, .. } = surface else {
+                        return Err(nothing("a rigid surface"));
+                    };
+                    match parameter {
+                        Parameter::FloorStiffnessRatio => *stiffness = StiffnessRecipe::Ratio(Given::Stated(number()?)),
+                        Parameter::ContactDampingRatio => {
+                            *damping = ContactDampingRecipe::Ratio(Given::Stated(number()?));
+                        }
+                        _ if value == ParameterValue::Untuned => *stiffness = StiffnessRecipe::Untuned,
+                        _ => *stiffness = StiffnessRecipe::Tuned,
+                    }
+                }
+            }
+            Parameter::WallStiffnessRatio => {
+                let walls = self.walls.as_mut().ok_or_else(|| nothing("no soft walls"))?;
+                match value {
+                    // Walls that do not give: Model 2.
+                    ParameterValue::Infinite => self.walls = None,
+                    _ => walls.stiffness_ratio = number()?,
+                }
+            }
+            Parameter::Stop => match value {
+                ParameterValue::Without => self.stop = None,
+                ParameterValue::With if self.stop.is_some() => {}
+                ParameterValue::With => return Err(nothing("no limit stop to take out or leave in")),
+                _ => return Err(RecipeError::OutOfRange("stop takes `with` or `without`".into())),
+            },
+            Parameter::StopLength => {
+                self.stop.as_mut().ok_or_else(|| nothing("no limit stop"))?.length = Given::Stated(number()?);
+            }
+            _ => unreachable!("parameters of structure and excitation are set by Recipe::set"),
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,142 @@
+//! Places on a structure: shares of its sides or lengths along them, and arrays of places.
+
+use serde::{Deserialize, Serialize};
+
+use super::recipe::{ArrayRecipe, Part, RecipeError};
+use super::structure::{Kind, Model, Point};
+
+/// A place, one coordinate a side; none on a single mass.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct PlaceRecipe(pub Vec<Coordinate>);
+
+/// One coordinate of a place.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Coordinate {
+    /// Share of the side, 0 to 1.
+    Share(f64),
+    /// m from the side's start.
+    Length(f64),
+}
+
+impl PlaceRecipe {
+    /// At these shares of the sides.
+    #[must_use]
+    pub fn at_shares(shares: &[f64]) -> Self {
+        Self(shares.iter().map(|share| Coordinate::Share(*share)).collect())
+    }
+
+    /// Moves one coordinate; false if there is none.
+    pub(super) fn set_share(&mut self, side: usize, share: f64) -> bool {
+        let coordinate = self.0.get_mut(side);
+        coordinate.map(|coordinate| *coordinate = Coordinate::Share(share)).is_some()
+    }
+}
+
+/// Turns places into points of one structure.
+pub(super) struct Places<'a> {
+    kind: &'static Kind,
+    sides: Vec<f64>,
+    model: &'a dyn Model,
+}
+
+impl<'a> Places<'a> {
+    pub(super) fn on(kind: &'static Kind, model: &'a dyn Model) -> Self {
+        Self { kind, sides: model.sides(), model }
+    }
+
+    /// The point of a place.
+    pub(super) fn point(&self, place: &PlaceRecipe, part: Part) -> Result<Point, RecipeError> {
+        self.checked(self.coordinates(place, part)?, part)
+    }
+
+    /// Displacement at a point by the coordinates of the structure.
+    pub(super) fn shape(&self, at: Point) -> Vec<f64> {
+        self.model.shape(at)
+    }
+
+    /// The points of an array; of nothing but its place if there is none.
+    pub(super) fn array(
+        &self,
+        place: &PlaceRecipe,
+        array: Option<&ArrayRecipe>,
+        part: Part,
+    ) -> Result<Vec<Point>, RecipeError> {
+        let Some(array) = array else { return Ok(vec![self.point(place, part)?]) };
+        let refuse = |message: String| Err(RecipeError::Part { part, message });
+        let sides = self.sides.len();
+        if sides == 0 {
+            return refuse(format!("an array needs a side to stand along, and {} has none", self.kind.what));
+        }
+        let count = match array.count.as_slice() {
+            [all] if sides == 2 => near_square(*all),
+            counts if counts.len() == sides => counts.to_vec(),
+            counts => {
+                return refuse(format!("an array on {} has {sides} counts, not {}", self.kind.what, counts.len()));
+            }
+        };
+        let spacing = match array.spacing.as_slice() {
+            [one] => vec![*one; sides],
+            each if each.len() == sides => each.to_vec(),
+            each => return refuse(format!("an array on {} has {sides} spacings, not {}", self.kind.what, each.len())),
+        };
+        let start = self.coordinates(place, part)?;
+        let offset = |side: usize, i: u32| {
+            let middle = if array.centred { 0.5 * f64::from(count[side] - 1) } else { 0.0 };
+            start[side] + (f64::from(i) - middle) * spacing[side]
+        };
+        let mut points = Vec::new();
+        for i in 0..count[0] {
+            for j in 0..count.get(1).copied().unwrap_or(1) {
+                let coordinates = (0..sides).map(|side| offset(side, [i, j][side])).collect();
+                points.push(self.checked(coordinates, part)?);
+            }
+        }
+        Ok(points)
+    }
+
+    fn coordinates(&self, place: &PlaceRecipe, part: Part) -> Result<Vec<f64>, RecipeError> {
+        if place.0.len() != self.sides.len() {
+            let message = match self.sides.len() {
+                0 => format!("{} has no places: leave `at` out", self.kind.what),
+                1 => format!("a place on {} is one number: `at: 0.5`, or `at: 20 cm`", self.kind.what),
+                _ => format!("a place on {} is two numbers: `at: [0.25, 0.5]`", self.kind.what),
+            };
+            return Err(RecipeError::Part { part, message });
+        }
+        Ok(place
+            .0
+            .iter()
+            .zip(&self.sides)
+            .map(|(coordinate, side)| match coordinate {
+                Coordinate::Share(share) => share * side,
+                Coordinate::Length(length) => *length,
+            })
+            .collect())
+    }
+
+    fn checked(&self, coordinates: Vec<f64>, part: Part) -> Result<Point, RecipeError> {
+        for ((coordinate, side), word) in coordinates.iter().zip(&self.sides).zip(self.kind.sides) {
+            // What a share or a spacing has rounded beyond the end is at the end.
+            if !(*coordinate >= -1e-12 * side && *coordinate <= side * (1.0 + 1e-12)) {
+                let what = match part {
+                    Part::Damper(_) => "a damper",
+                    Part::Observe => "an observed point",
+                    _ => "a force",
+                };
+                let message =
+                    format!("{what} at {coordinate} m lies outside {}: its {word} is {side} m", self.kind.what);
+                return Err(RecipeError::Part { part, message });
+            }
+        }
+        let at = |i: usize| coordinates.get(i).map_or(0.0, |x| x.clamp(0.0, self.sides[i]));
+        Ok(Point { x: at(0), y: at(1) })
+    }
+}
+
+/// Rows and columns of `all` places as near to a square as they go: 1 × 1, 2 × 2, 2 × 3, 3 × 3.
+fn near_square(all: u32) -> Vec<u32> {
+    let narrow = (1..=all).take_while(|n| u64::from(*n) * u64::from(*n) <= u64::from(all));
+    let narrow = narrow.filter(|n| all % n == 0).last().unwrap_or(1);
+    vec![narrow, all / narrow]
+}

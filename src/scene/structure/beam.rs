@@ -1,0 +1,81 @@
+//! What uniform Euler-Bernoulli beams share: section and material, ρA w″ + EI w⁗ = 0 with ω = β² √(EI/(ρA L⁴)).
+
+use super::kind::{Field, Form, Values};
+use super::model::Matrices;
+use crate::scene::{Assumption, Parameter, RecipeError};
+use crate::text::number::{compact, quantity};
+
+/// Most exact modes: their shapes are right to rounding far beyond, but no motion has ever needed as many.
+pub(super) const MOST_MODES: u32 = 256;
+/// Why not more.
+pub(super) const WHY: &str = "no response on record needs them, and the cost grows with the square";
+
+/// A uniform beam of rectangular section, whatever holds its ends.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Beam {
+    /// L, m.
+    pub length: f64,
+    /// m.
+    pub width: f64,
+    /// m.
+    pub thickness: f64,
+    /// E, Pa.
+    pub youngs_modulus: f64,
+    /// ρ, kg/m³.
+    pub density: f64,
+    /// λ in C = λ (M + K).
+    pub rayleigh: f64,
+}
+
+/// Keys of every beam.
+pub(super) const FIELDS: [Field; 7] = [
+    Field { key: "length", form: Form::Length, parameter: Some(Parameter::Length) },
+    Field { key: "width", form: Form::Length, parameter: Some(Parameter::Width) },
+    Field { key: "thickness", form: Form::Length, parameter: Some(Parameter::Thickness) },
+    Field { key: "youngs_modulus", form: Form::Stress, parameter: None },
+    Field { key: "density", form: Form::Density, parameter: None },
+    Field { key: "rayleigh", form: Form::Ratio, parameter: Some(Parameter::Rayleigh) },
+    Field { key: "modes", form: Form::Modes(Assumption::BeamModes), parameter: Some(Parameter::Modes) },
+];
+
+impl Beam {
+    pub(super) fn read(values: &Values<'_>) -> Result<Self, RecipeError> {
+        Ok(Self {
+            length: values.above_zero("length")?,
+            width: values.above_zero("width")?,
+            thickness: values.above_zero("thickness")?,
+            youngs_modulus: values.above_zero("youngs_modulus")?,
+            density: values.above_zero("density")?,
+            rayleigh: values.ratio("rayleigh")?,
+        })
+    }
+
+    /// ρ A L, kg.
+    pub(super) fn mass(&self) -> f64 {
+        self.density * self.width * self.thickness * self.length
+    }
+
+    /// ω of the wave number β/L, rad/s.
+    pub(super) fn frequency(&self, beta: f64) -> f64 {
+        // I/A of a rectangle: h²/12.
+        let speed = self.thickness * (self.youngs_modulus / (12.0 * self.density)).sqrt();
+        beta * beta * speed / (self.length * self.length)
+    }
+
+    pub(super) fn matrices(&self, natural_frequencies: &[f64]) -> Matrices {
+        Matrices::modal(self.mass(), natural_frequencies, self.rayleigh)
+    }
+
+    pub(super) fn told(&self, what: &str, modes: &str) -> String {
+        let value = |x, unit| quantity(x, unit, 5);
+        format!(
+            "{what}: {} by {} by {}, {}, {}, λ = {}, {modes}",
+            value(self.length, "m"),
+            value(self.width, "m"),
+            value(self.thickness, "m"),
+            value(self.youngs_modulus, "Pa"),
+            value(self.density, "kg/m³"),
+            compact(self.rayleigh, 5),
+        )
+    }
+}

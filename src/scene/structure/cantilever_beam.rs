@@ -1,0 +1,162 @@
+//! Cantilever: clamped at x = 0, free at x = L (chapter 4 of the study).
+//!
+//! Exact modes (Blevins, Formulas for Natural Frequency and Mode Shape): cos β cosh β = −1 and, with ξ = x/L,
+//!
+//! φ = cosh βξ − cos βξ − σ (sinh βξ − sin βξ),   σ = (cosh β + cos β)/(sinh β + sin β),   ∫ φ² dξ = 1.
+//!
+//! The hyperbolic functions are combined into decaying exponentials, so that nothing overflows or cancels, and β is kept as
+//! (n − ½)π + δ. The study's own basis, ξ^(i+1) with i = 1 … N, is [`super::polynomial`].
+
+use std::f64::consts::PI;
+
+use super::beam::{self, Beam};
+use super::kind::{Family, Field, Form, Kind};
+use super::model::{Matrices, Model, Point, unit};
+use super::polynomial;
+
+/// Most polynomials: the frequencies of the highest grow with the fourth power of their number.
+const MOST_POLYNOMIALS: u32 = 60;
+
+const BASES: &[&str] = &["polynomial", "exact"];
+
+/// A cantilever in its own modes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CantileverBeam {
+    beam: Beam,
+    basis: Basis,
+}
+
+/// How its modes are spanned.
+#[derive(Debug, Clone, PartialEq)]
+enum Basis {
+    /// Rayleigh-Ritz in ξ², … ξ^(N+1).
+    Polynomial(Vec<polynomial::Mode>),
+    /// The continuous beam's.
+    Exact(Vec<Exact>),
+}
+
+pub(super) const KIND: Kind = Kind {
+    name: "cantilever_beam",
+    what: "a cantilever beam",
+    family: Family::Beam,
+    fields: &{
+        let [a, b, c, d, e, f, g] = beam::FIELDS;
+        [a, b, c, d, e, f, g, Field { key: "basis", form: Form::Word(BASES), parameter: None }]
+    },
+    sides: &["length"],
+    performance_point: Some(&[1.0]),
+    build: |values| {
+        let beam = Beam::read(values)?;
+        let basis = if values.word("basis", BASES)? == 0 {
+            let why = "the upper third of so many polynomials vibrates far faster than any mode of the beam, and the \
+                       search for events pays for it; `basis: exact` goes on";
+            let [count] = values.modes(MOST_POLYNOMIALS, why)?;
+            Basis::Polynomial(polynomial::modes(count as usize))
+        } else {
+            let [count] = values.modes(beam::MOST_MODES, beam::WHY)?;
+            Basis::Exact((1..=count as usize).map(Exact::new).collect())
+        };
+        Ok(CantileverBeam { beam, basis }.into())
+    },
+};
+
+impl Model for CantileverBeam {
+    fn total_mass(&self) -> f64 {
+        self.beam.mass()
+    }
+
+    /// ∫ φ² dm = m where |φ(L)| = 2.
+    fn modal_mass(&self) -> f64 {
+        0.25 * self.beam.mass()
+    }
+
+    fn matrices(&self) -> Matrices {
+        self.beam.matrices(&self.natural_frequencies())
+    }
+
+    fn shape(&self, at: Point) -> Vec<f64> {
+        let xi = at.x / self.beam.length;
+        match &self.basis {
+            Basis::Polynomial(modes) => polynomial::at(modes, xi),
+            Basis::Exact(modes) => modes.iter().map(|mode| mode.at(xi)).collect(),
+        }
+    }
+
+    fn sides(&self) -> Vec<f64> {
+        vec![self.beam.length]
+    }
+
+    fn natural_frequencies(&self) -> Vec<f64> {
+        match &self.basis {
+            Basis::Polynomial(modes) => modes.iter().map(|mode| self.beam.frequency(mode.beta)).collect(),
+            Basis::Exact(modes) => modes.iter().map(|mode| self.beam.frequency(mode.beta)).collect(),
+        }
+    }
+
+    fn mode(&self, number: usize) -> Vec<f64> {
+        let order = match &self.basis {
+            Basis::Polynomial(modes) => modes.len(),
+            Basis::Exact(modes) => modes.len(),
+        };
+        unit(order, number)
+    }
+
+    fn exact_frequency(&self, number: usize) -> Option<f64> {
+        (number > 0).then(|| self.beam.frequency(Exact::new(number).beta))
+    }
+
+    fn exact_shape(&self, number: usize, at: Point) -> Option<f64> {
+        (number > 0).then(|| Exact::new(number).at(at.x / self.beam.length))
+    }
+
+    fn told(&self) -> String {
+        let modes = match &self.basis {
+            Basis::Polynomial(modes) => format!("{} modes of polynomials", modes.len()),
+            Basis::Exact(modes) => format!("{} exact modes", modes.len()),
+        };
+        self.beam.told("cantilever", &modes)
+    }
+}
+
+/// A mode of the continuous cantilever.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Exact {
+    beta: f64,
+    /// Weight of e^(−βξ), of e^(β(ξ−1)), and σ.
+    near: f64,
+    far: f64,
+    sigma: f64,
+}
+
+impl Exact {
+    /// Mode `n`, from 1.
+    fn new(n: usize) -> Self {
+        // cos((n − ½)π + δ) = −(−1)^(n−1) sin δ, so that sin δ = (−1)^(n−1)/cosh β: a fixed point that contracts by e^(−β).
+        let sign = if n % 2 == 1 { 1.0 } else { -1.0 };
+        let centre = (n as f64 - 0.5) * PI;
+        let mut delta = 0.0;
+        for _ in 0..200 {
+            let next = libm::asin(sign / libm::cosh(centre + delta));
+            if next == delta {
+                break;
+            }
+            delta = next;
+        }
+        let beta = centre + delta;
+        // sin β = (−1)^(n−1) cos δ, cos β = −(−1)^(n−1) sin δ.
+        let (sine, cosine) = (sign * libm::cos(delta), -sign * libm::sin(delta));
+        let small = libm::exp(-beta);
+        let denominator = 1.0 - small * small + 2.0 * small * sine;
+        // ½(1 − σ) e^β and ½(1 + σ), with e^β taken out of σ's quotient.
+        let far = (sine - cosine - small) / denominator;
+        let near = (1.0 + small * (sine + cosine)) / denominator;
+        let sigma = (1.0 + small * small + 2.0 * small * cosine) / denominator;
+        Self { beta, near, far, sigma }
+    }
+
+    fn at(&self, xi: f64) -> f64 {
+        let (sine, cosine) = (libm::sin(self.beta * xi), libm::cos(self.beta * xi));
+        self.near * libm::exp(-self.beta * xi) + self.far * libm::exp(self.beta * (xi - 1.0)) - cosine
+            + self.sigma * sine
+    }
+}
