@@ -57,10 +57,10 @@ impl DamperRecipe {
         let by_ratio = matches!(self.gap, GapRecipe::Ratio(_) | GapRecipe::Ratios(_));
         if family != Family::Mass {
             if by_ratio {
-                set.insert(Assumption::GapFrequency);
+                set.extend(family.gap_frequency());
             }
             if matches!(self.mass, MassRecipe::Ratio(_)) && self.mass_reading == MassReading::Assumed {
-                set.insert(Assumption::DamperMass);
+                set.extend(family.damper_mass());
             }
         }
         for surface in [&self.floor, &self.ceiling] {
@@ -108,6 +108,26 @@ impl Family {
             Self::Mass => None,
             Self::Beam => Some(Assumption::BeamFloorTuning),
             Self::Plate => Some(Assumption::PlateFloorTuning),
+        }
+    }
+
+    /// The assumption on what a mass ratio is a share of.
+    #[must_use]
+    pub fn damper_mass(self) -> Option<Assumption> {
+        match self {
+            Self::Mass => None,
+            Self::Beam => Some(Assumption::BeamDamperMass),
+            Self::Plate => Some(Assumption::PlateDamperMass),
+        }
+    }
+
+    /// The assumption on the frequency in a gap ratio.
+    #[must_use]
+    pub fn gap_frequency(self) -> Option<Assumption> {
+        match self {
+            Self::Mass => None,
+            Self::Beam => Some(Assumption::BeamGapFrequency),
+            Self::Plate => Some(Assumption::PlateGapFrequency),
         }
     }
 
