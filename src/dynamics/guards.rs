@@ -376,7 +376,7 @@ fn spring_and_dashpot(p: Parabola, stiffness: f64, damping: f64) -> Parabola {
 }
 
 /// k·s + c·s′ of every share.
-fn mixed(blocks: &[Block], phases: &[Phase], stiffness: f64, damping: f64) -> Vec<Phase> {
+pub(crate) fn mixed(blocks: &[Block], phases: &[Phase], stiffness: f64, damping: f64) -> Vec<Phase> {
     blocks
         .iter()
         .zip(phases)

@@ -127,6 +127,54 @@ impl Forms {
     }
 }
 
+/// Σ z and Σ zₖ zₗᵀ of a signal's phases over several runs of equal length, for every pair of blocks k ≤ l.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct PhaseMoments {
+    /// Blocks in order: value, rate.
+    pub(crate) first: Vec<[f64; 2]>,
+    /// Pairs in order, row by row.
+    pub(crate) second: Vec<[f64; 4]>,
+}
+
+impl Forms {
+    /// The integrals of a signal summed over several runs, each `duration` long.
+    pub(crate) fn summed(
+        &self,
+        start: &PhaseMoments,
+        end: &PhaseMoments,
+        duration: f64,
+        displacement: bool,
+    ) -> Integrals {
+        let mut sum = Integrals::default();
+        for ((Pair { kind, .. }, m0), m1) in self.pairs.iter().zip(&start.second).zip(&end.second) {
+            match kind {
+                PairKind::Damped { value, rate } => {
+                    sum.rate_square += contract(rate, m1) - contract(rate, m0);
+                    if displacement {
+                        sum.square += contract(value, m1) - contract(value, m0);
+                    }
+                }
+                PairKind::Neutral { square } => {
+                    let energy = (square * m0[0] + m0[3]) * duration;
+                    let swing = m1[1] - m0[1];
+                    sum.rate_square += 0.5 * (energy + swing);
+                    sum.square += 0.5 * (energy - swing) / square;
+                }
+            }
+        }
+        if displacement {
+            for ((x0, x1), [twice, inverse]) in start.first.iter().zip(&end.first).zip(&self.linear) {
+                sum.value -= (x1[1] - x0[1]) * inverse + (x1[0] - x0[0]) * twice;
+            }
+        }
+        sum
+    }
+}
+
+fn contract(p: &[f64; 4], moment: &[f64; 4]) -> f64 {
+    p[0] * moment[0] + p[1] * moment[1] + p[2] * moment[2] + p[3] * moment[3]
+}
+
 impl PairKind {
     fn counted(self, twice: bool) -> Self {
         match self {

@@ -85,7 +85,12 @@ struct Half {
 }
 
 impl<'a> March<'a> {
-    pub(crate) fn new(system: &'a HybridSystem, options: &'a Options) -> Result<Self, EngineError> {
+    /// A run at its start; `at_rest` is the flow with every particle on its floor, if it was built already.
+    pub(crate) fn new(
+        system: &'a HybridSystem,
+        options: &'a Options,
+        at_rest: Option<Flow>,
+    ) -> Result<Self, EngineError> {
         let n = system.mass.order;
         let count = system.particles.len();
         let damping: Vec<f64> = system
@@ -102,7 +107,7 @@ impl<'a> March<'a> {
         let mut march = Self {
             system,
             options,
-            flows: Vec::new(),
+            flows: at_rest.into_iter().collect(),
             now: 0,
             q: vec![0.0; most],
             rate: vec![0.0; most],
@@ -965,8 +970,8 @@ fn side_stiffness(system: &HybridSystem, contacts: &[Contact], j: usize) -> Opti
 }
 
 /// Runs a system.
-pub(crate) fn march(system: &HybridSystem, options: &Options) -> Result<Response, EngineError> {
-    March::new(system, options)?.run()
+pub(crate) fn march(system: &HybridSystem, options: &Options, at_rest: Option<Flow>) -> Result<Response, EngineError> {
+    March::new(system, options, at_rest)?.run()
 }
 
 /// The proof of a run that was never audited.

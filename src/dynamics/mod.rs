@@ -6,6 +6,7 @@
 //! - `flow`: the exact motion of one contact state, split into 2 × 2 `block`s by `modes` and `spectral`;
 //! - `search`: the first event, certified by Bernstein enclosures;
 //! - `contact`: what an event leads to; `march`: from event to event;
+//! - `linear`: a run without any event, in closed form;
 //! - `integral`: measures in closed form; `audit`: momentum and energy balanced by other means;
 //! - `fixed`: the study's own scheme, with its step.
 //!
@@ -24,6 +25,7 @@ mod fixed;
 mod flow;
 mod guards;
 mod integral;
+mod linear;
 mod march;
 mod mobility;
 mod modes;
@@ -43,7 +45,7 @@ pub use system::{
 pub use trace::{Sample, TraceRequest};
 
 /// Changes whenever the same scene may give other bits. A test holds the bits of fixed scenes against it.
-pub const SOLVER_VERSION: u32 = 1;
+pub const SOLVER_VERSION: u32 = 2;
 
 /// What proves a run: residuals of the balances, and how clearly its events were decided.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -175,9 +177,21 @@ impl Counts {
     }
 }
 
+/// How a response came about.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Method {
+    /// From event to event.
+    #[default]
+    Simulated,
+    /// No event can happen: by powers of the map of one cycle.
+    ClosedForm,
+}
+
 /// What a run leaves behind.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Response {
+    /// How it came about.
+    pub method: Method,
     /// What was observed, in the order of [`HybridSystem::observed_rows`].
     pub observed: Vec<Observed>,
     /// The structure's velocities at both ends of every cycle, if asked for.
@@ -286,6 +300,24 @@ impl Sums {
     }
 }
 
+/// The motion that comes again in every cycle.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SteadyState {
+    /// In the order of [`HybridSystem::observed_rows`].
+    pub observed: Vec<SteadyMotion>,
+    /// How far, in metres, every particle stays from leaving its floor; infinite where there is none.
+    pub margin: f64,
+}
+
+/// One observed motion in the steady state.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SteadyMotion {
+    /// Integrals over one cycle.
+    pub cycle: Sums,
+    /// Largest and smallest values.
+    pub extremes: Extremes,
+}
+
 /// Why the engine gave up.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum EngineError {
@@ -348,12 +380,24 @@ pub enum EngineError {
     },
 }
 
-/// Runs a system from event to event.
+/// Runs a system from event to event; where it is proved that there is none, in closed form.
 ///
 /// # Errors
 /// [`EngineError`] with the reason.
 pub fn event_driven(system: &HybridSystem, options: &Options) -> Result<Response, EngineError> {
-    march::march(system, options)
+    match linear::attempt(system, options)? {
+        linear::Attempt::Solved(response) => Ok(*response),
+        linear::Attempt::Open(at_rest) => march::march(system, options, at_rest.map(|flow| *flow)),
+    }
+}
+
+/// The steady state in closed form: what is left once all transients are gone. `None` unless it is proved that no particle
+/// leaves its floor in it, and where undamped modes never settle.
+///
+/// # Errors
+/// [`EngineError`] with the reason.
+pub fn steady_state(system: &HybridSystem) -> Result<Option<SteadyState>, EngineError> {
+    linear::steady_state(system)
 }
 
 /// Runs a system with the study's scheme: exact propagators of one time step, s, the contact state checked once a step.

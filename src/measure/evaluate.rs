@@ -12,7 +12,7 @@ use super::history::{History, columns};
 use super::reading::Reading;
 use super::shape::{self, Shape};
 use super::{EvaluateError, Evaluated, Measure, Measured, Rigour, TraceColumn};
-use crate::dynamics::{EngineError, HybridSystem, Options, Proof, Response, TraceRequest, event_driven};
+use crate::dynamics::{EngineError, HybridSystem, Method, Options, Proof, Response, TraceRequest, event_driven};
 use crate::scene::{Assumptions, Excitation, Recipe, Scene, SingleMass, Structure, compile};
 use crate::spec::{EnergySpec, Settings, ShapeOf, ShapeSpec, SolverChoice, TraceSpec};
 
@@ -20,6 +20,8 @@ use crate::spec::{EnergySpec, Settings, ShapeOf, ShapeSpec, SolverChoice, TraceS
 const TWIN_KICK: f64 = 1e-9;
 /// How far the twin may end, relative to the RMS velocity, before the motion counts as chaotic.
 const CHAOS: f64 = 1e-6;
+/// What rounding leaves of a number in closed form, relative to it.
+const CLOSED_FORM: f64 = 1e-12;
 /// Ensemble of a look.
 const MEMBERS_OF_A_LOOK: u32 = 8;
 /// Largest kick of an ensemble member.
@@ -119,6 +121,10 @@ pub fn evaluate(
         return Ok(certain(vec![0.0; values.len()], false));
     }
 
+    if response.method == Method::ClosedForm {
+        // Linear: neighbouring starts stay neighbours, and there is no window to be halved.
+        return Ok(certain(values.iter().map(|value| CLOSED_FORM * value.abs()).collect(), false));
+    }
     let rms = case.rms_velocity(&response);
     let twin = event_driven(&system, &Options { kick: TWIN_KICK, ..plain.clone() })?;
     let chaotic = (case.rms_velocity(&twin) - rms).abs() > CHAOS * rms;

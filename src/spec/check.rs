@@ -6,7 +6,10 @@ use crate::measure::Measure;
 use crate::scene::{Assumptions, Parameter, ParameterValue, Part, RecipeError, Scene};
 
 use super::diagnostic::{Findings, Span};
-use super::experiment::{Case, EnergySpec, Experiment, Maximise, Settings, ShapeSpec, SolverChoice, TraceSpec};
+use super::experiment::{
+    Case, EnergySpec, Experiment, Maximise, Refinement, Settings, ShapeSpec, SolverChoice, TraceSpec,
+};
+use super::refined::curves;
 use super::scene::ReadScene;
 use super::word::word_of;
 
@@ -103,9 +106,31 @@ impl Checks<'_> {
         }
     }
 
+    /// The measures that a refined range follows are measured, and have curves to be followed.
+    pub fn refined(&self, refined: &[(Refinement, Span)], measures: &[(Measure, Span)]) {
+        for (refinement, span) in refined {
+            for wanted in &refinement.measures {
+                if !measures.iter().any(|(measure, _)| measure == wanted) {
+                    let name = word_of(*wanted);
+                    let help = format!("add `{name}` to `measure`");
+                    self.findings.report::<()>(*span, format!("`{name}` is refined, but not measured"), Some(help));
+                }
+            }
+            if refinement.over == Parameter::Stop {
+                self.findings.wrong::<()>(*span, "only numbers can be refined");
+            }
+        }
+    }
+
     /// The number of runs is bounded.
-    pub fn amount(&self, cases: &[Case], maximise: Option<&Maximise>, at: Span) {
-        let runs: usize = cases.iter().map(|case| case.solvers.len()).sum();
+    pub fn amount(&self, cases: &[Case], refined: &[(Refinement, Span)], maximise: Option<&Maximise>, at: Span) {
+        let of = |case: &Case| case.solvers.len();
+        let plain: usize = cases.iter().map(of).sum();
+        let added = curves(cases, refined.iter().map(|(rule, _)| rule)).into_iter().map(|curve| {
+            let solvers = curve.cases.first().map_or(0, |first| of(&cases[*first]));
+            (curve.rule.most as usize).saturating_sub(curve.cases.len()) * solvers
+        });
+        let runs = plain + added.sum::<usize>();
         let each = maximise.map_or(1, |maximise| maximise.grid.len());
         if runs.saturating_mul(each) > MOST_RUNS {
             self.findings.wrong::<()>(at, format!("{runs} runs of {each} points are too many: {MOST_RUNS} at most"));

@@ -59,6 +59,9 @@ pub struct Experiment {
     pub settings: Settings,
     /// An inner maximisation over one more parameter: the row then holds the maximum and where it lies.
     pub maximise: Option<Maximise>,
+    /// Sweeps whose curves get more points where they bend; the cases hold the points that they start with.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub refined: Vec<Refinement>,
     /// Measures in the order of the columns.
     pub measures: Vec<Measure>,
     /// Time history to keep with each row.
@@ -120,6 +123,7 @@ impl Experiment {
             "swept": json(&self.swept),
             "settings": json(&self.settings),
             "maximise": json(&self.maximise),
+            "refined": json(&self.refined),
             "measures": json(&self.measures),
             "trace": json(&self.trace),
             "energies": json(&self.energies),
@@ -230,6 +234,25 @@ pub struct Maximise {
     pub grid: Vec<f64>,
     /// Points added around the best one, round by round, to sharpen the maximum.
     pub refine: u32,
+}
+
+/// Points added to the curves of a sweep, one parameter running, where a straight line between two of them would miss.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Refinement {
+    /// The sweep within a union; empty otherwise.
+    pub sweep: String,
+    /// The parameter that runs along a curve.
+    pub over: Parameter,
+    /// How far a straight line may miss, relative to the local value; on a logarithmic scale in its logarithm.
+    pub tolerance: f64,
+    /// Most points of a curve.
+    pub most: u32,
+    /// The scale on which points are evenly spaced and intervals halved.
+    pub spacing: AxisScale,
+    /// The scale on which lines are straight.
+    pub value_scale: AxisScale,
+    /// The measures that decide; all where none is named.
+    pub measures: Vec<Measure>,
 }
 
 /// Which part of the motion to keep as a time history. The list columns are then `time` (s), `base_displacement`,

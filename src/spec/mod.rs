@@ -13,6 +13,7 @@ mod load;
 mod quantity;
 mod range;
 mod reader;
+mod refined;
 mod scene;
 mod solver;
 mod structure;
@@ -25,11 +26,12 @@ mod yaml;
 pub use assumption_sheet::{AssumptionEntry, AssumptionSheet, parse_assumptions};
 pub use diagnostic::{Place, Problem, Problems};
 pub use experiment::{
-    Axis, AxisScale, Case, EnergySpec, Experiment, ExperimentId, FigureSpec, IdError, Level, Maximise, Panel, Settings,
-    ShapeOf, ShapeSpec, SolverChoice, Source, TraceSpec,
+    Axis, AxisScale, Case, EnergySpec, Experiment, ExperimentId, FigureSpec, IdError, Level, Maximise, Panel,
+    Refinement, Settings, ShapeOf, ShapeSpec, SolverChoice, Source, TraceSpec,
 };
 pub use load::{load_assumptions, load_experiment};
 pub use quantity::{Dimension, QuantityError, parse_number, parse_quantity};
+pub(crate) use refined::{Curve, curves};
 pub use typed::{Located, from_yaml};
 pub(crate) use typed::{Spanned, position};
 pub use validate::parse_experiment;

@@ -85,7 +85,7 @@ pub(super) fn value(node: &Node, parameter: Parameter, findings: &Findings) -> O
 }
 
 /// A value of a parameter that is a number, in SI.
-fn size(node: &Node, parameter: Parameter, findings: &Findings) -> Option<f64> {
+pub(super) fn size(node: &Node, parameter: Parameter, findings: &Findings) -> Option<f64> {
     match parameter {
         Parameter::StopLength | Parameter::Length | Parameter::Width | Parameter::Thickness => {
             quantity(node, Dimension::Length, findings)
@@ -160,13 +160,13 @@ fn points(node: &Node, log: bool, findings: &Findings) -> Option<Spacing> {
     Some(if log { Spacing::Log(points) } else { Spacing::Linear(points) })
 }
 
-fn between(from: f64, to: f64, points: u32) -> Vec<f64> {
+pub(super) fn between(from: f64, to: f64, points: u32) -> Vec<f64> {
     let last = f64::from(points - 1);
     (0..points).map(|i| from + (to - from) * (f64::from(i) / last)).collect()
 }
 
 /// To 13 significant digits.
-fn rounded(x: f64) -> f64 {
+pub(super) fn rounded(x: f64) -> f64 {
     // The text of a finite number always reads back.
     format!("{x:.12e}").parse().unwrap_or(x)
 }

@@ -9,9 +9,10 @@ use std::collections::{BTreeMap, BTreeSet};
 use crate::scene::{Parameter, ParameterValue};
 
 use super::diagnostic::{Findings, Span};
-use super::experiment::{Case, SolverChoice};
+use super::experiment::{Case, Refinement, SolverChoice};
 use super::range::{MOST_POINTS, too_many, value, values};
 use super::reader::{Fields, all, list, one_or_more, unknown};
+use super::refined::{is_refined, refined};
 use super::solver::read_solver;
 use super::word::{from_word, words};
 use super::yaml::{Entry, Node, Value};
@@ -24,12 +25,14 @@ pub(super) struct ReadSweep {
     pub swept: Vec<Parameter>,
     /// Where each of them stands.
     pub places: BTreeMap<Parameter, Span>,
+    /// Rules of refined ranges, and where they stand.
+    pub refined: Vec<(Refinement, Span)>,
 }
 
 impl ReadSweep {
     /// Where nothing is swept there is one case.
     pub fn none() -> Self {
-        Self { cases: vec![Case::default()], swept: Vec::new(), places: BTreeMap::new() }
+        Self { cases: vec![Case::default()], swept: Vec::new(), places: BTreeMap::new(), refined: Vec::new() }
     }
 }
 
@@ -37,7 +40,7 @@ type Point = BTreeMap<Parameter, ParameterValue>;
 
 /// Reads the node under `sweep`.
 pub(super) fn read_sweep(node: &Node, findings: &Findings) -> Option<ReadSweep> {
-    let mut reader = SweepReader { findings, places: BTreeMap::new() };
+    let mut reader = SweepReader { findings, places: BTreeMap::new(), refined: Vec::new() };
     let mut cases = Vec::new();
     if let Value::Mapping(entries) = &node.value
         && let Some(union) = entries.iter().find(|entry| entry.key == "union")
@@ -58,7 +61,7 @@ pub(super) fn read_sweep(node: &Node, findings: &Findings) -> Option<ReadSweep> 
     }
     let swept: BTreeSet<_> =
         cases.iter().flat_map(|case| case.values.iter().map(|(parameter, _)| *parameter)).collect();
-    Some(ReadSweep { cases, swept: swept.into_iter().collect(), places: reader.places })
+    Some(ReadSweep { cases, swept: swept.into_iter().collect(), places: reader.places, refined: reader.refined })
 }
 
 fn case(point: Point, sweep: &str, solvers: &[SolverChoice]) -> Case {
@@ -68,6 +71,14 @@ fn case(point: Point, sweep: &str, solvers: &[SolverChoice]) -> Case {
 struct SweepReader<'f> {
     findings: &'f Findings,
     places: BTreeMap<Parameter, Span>,
+    refined: Vec<(Refinement, Span)>,
+}
+
+/// What an axis belongs to.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Axis {
+    OfProduct { within_union: bool },
+    OfPair,
 }
 
 type Named = BTreeMap<String, (Vec<Point>, Vec<SolverChoice>)>;
@@ -87,9 +98,13 @@ impl SweepReader<'_> {
                     format!("`{}` cannot name a sweep: use letters, digits, `-` and `_`", entry.key),
                 );
             }
+            let known = self.refined.len();
             match self.product(&entry.node, true) {
                 Some(sweep) => drop(named.insert(entry.key.clone(), sweep)),
                 None => fine = false,
+            }
+            for (refinement, _) in &mut self.refined[known..] {
+                refinement.sweep.clone_from(&entry.key);
             }
         }
         if named.is_empty() && fine {
@@ -108,7 +123,11 @@ impl SweepReader<'_> {
         } else {
             Some(None)
         };
-        let axes = all(fields.others().map(|entry| self.axis(entry, within_union)));
+        let known = self.refined.len();
+        let axes = all(fields.others().map(|entry| self.axis(entry, Axis::OfProduct { within_union })));
+        if let [_, (_, second), ..] = self.refined[known..] {
+            return self.findings.wrong(second, "one parameter of a sweep is refined, not two");
+        }
         let (paired, listed, solvers, axes) = (paired?, listed?, solvers?.unwrap_or_default(), axes?);
         let blocks: Vec<Vec<Point>> = axes
             .into_iter()
@@ -119,21 +138,29 @@ impl SweepReader<'_> {
         Some((self.multiply(node.span, blocks)?, solvers))
     }
 
-    fn axis(&mut self, entry: &Entry, within_union: bool) -> Option<(Parameter, Vec<ParameterValue>)> {
+    fn axis(&mut self, entry: &Entry, axis: Axis) -> Option<(Parameter, Vec<ParameterValue>)> {
         let Some(parameter) = from_word::<Parameter>(&entry.key) else {
             let mut known = words::<Parameter>().to_vec();
             known.extend(["paired", "points", "union"]);
-            known.extend(within_union.then_some("solver"));
+            known.extend((axis == Axis::OfProduct { within_union: true }).then_some("solver"));
             return unknown(self.findings, entry.key_span, "a sweep", "parameter", &entry.key, &known);
         };
         self.places.entry(parameter).or_insert(entry.key_span);
-        Some((parameter, values(&entry.node, parameter, self.findings)?))
+        if !is_refined(&entry.node) {
+            return Some((parameter, values(&entry.node, parameter, self.findings)?));
+        }
+        if axis == Axis::OfPair {
+            return self.findings.wrong(entry.node.span, "paired ranges have fixed points: this one is refined");
+        }
+        let (values, refinement) = refined(&entry.node, parameter, self.findings)?;
+        self.refined.push((refinement, entry.node.span));
+        Some((parameter, values))
     }
 
     /// Ranges of equal length that go in step.
     fn paired(&mut self, node: &Node) -> Option<Vec<Point>> {
         let fields = Fields::open(node, "a paired sweep", self.findings)?;
-        let axes = all(fields.others().map(|entry| self.axis(entry, false).map(|axis| (axis, entry.key_span))))?;
+        let axes = all(fields.others().map(|entry| self.axis(entry, Axis::OfPair).map(|axis| (axis, entry.key_span))))?;
         let Some(((_, first), _)) = axes.first() else {
             return self.findings.wrong(node.span, "this sweep is empty: give it at least one parameter");
         };

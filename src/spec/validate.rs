@@ -103,8 +103,9 @@ impl<'t> ExperimentReader<'t> {
         let (mut scene, sweep) = (scene?, sweep?.unwrap_or_else(ReadSweep::none));
         let places = sweep.places;
         let cases = with_solvers(sweep.cases, &run.solvers);
+        checks.refined(&sweep.refined, &measures);
         checks.coverage(&scene, &cases, &places, maximise.as_ref());
-        checks.amount(&cases, maximise.as_ref(), scene_at);
+        checks.amount(&cases, &sweep.refined, maximise.as_ref(), scene_at);
         fill_placeholders(&mut scene.recipe, &cases, &sweep.swept, maximise.as_ref());
         let experiment = Experiment {
             id: id.clone(),
@@ -117,6 +118,7 @@ impl<'t> ExperimentReader<'t> {
             swept: sweep.swept,
             settings: run.settings,
             maximise,
+            refined: sweep.refined.into_iter().map(|(refinement, _)| refinement).collect(),
             measures: words_only(&measures),
             trace,
             energies,

@@ -2,7 +2,7 @@
 
 use super::variant::Variant;
 use crate::measure::Measure;
-use crate::spec::{Experiment, SolverChoice};
+use crate::spec::{Experiment, SolverChoice, curves};
 
 /// A row.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -47,6 +47,19 @@ pub(super) fn evaluations(experiment: &Experiment, job: &Job) -> u64 {
             maximise.grid.len() as u64 + sharpening + u64::from(job.variant == 0)
         }
     }
+}
+
+/// Simulations that an experiment takes at most, with all the points that its curves may get.
+pub(super) fn simulations(experiment: &Experiment, variants: &[Variant]) -> u64 {
+    let mut of_case = vec![0; experiment.cases.len()];
+    for job in jobs(experiment, variants) {
+        of_case[job.case] += evaluations(experiment, &job);
+    }
+    let added = curves(&experiment.cases, &experiment.refined).into_iter().map(|curve| {
+        let points = u64::from(curve.rule.most).saturating_sub(curve.cases.len() as u64);
+        points * curve.cases.iter().map(|case| of_case[*case]).max().unwrap_or(0)
+    });
+    of_case.iter().sum::<u64>() + added.sum::<u64>()
 }
 
 /// True if the row keeps its time history; variants are compared by their measures alone.

@@ -14,11 +14,13 @@ mod plan;
 mod progress;
 mod reason;
 mod record;
+mod refine;
 mod run;
 mod snapshot;
 mod store;
 mod tabulate;
 mod variant;
+mod work;
 
 pub use evaluate::{Engine, Evaluate, Simulation};
 pub use event::{Event, Listen, Silence};

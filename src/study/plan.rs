@@ -85,12 +85,12 @@ impl Item {
         pairs.into_iter().map(|(key, value)| (key.to_owned(), value)).collect()
     }
 
-    /// The number of rows and of simulations at most.
+    /// The number of rows, those that refined curves will get not counted, and of simulations at most.
     #[must_use]
     pub fn size(&self) -> (usize, u64) {
         let experiment = &self.source.experiment;
         let jobs = super::job::jobs(experiment, &self.variants);
-        (jobs.len(), jobs.iter().map(|job| super::job::evaluations(experiment, job)).sum())
+        (jobs.len(), super::job::simulations(experiment, &self.variants))
     }
 }
 

@@ -57,6 +57,7 @@ pub fn limit_stop() -> Experiment {
         solvers: vec![SolverChoice::EventDriven, SolverChoice::FixedStep { time_step: 1e-4 }],
         settings: Settings { skip: 25, average: 100, round_period_to: None, ensemble: 32 },
         maximise: None,
+        refined: Vec::new(),
         measures: vec![Measure::VelocityRatio],
         trace: None,
         energies: None,

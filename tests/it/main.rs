@@ -13,6 +13,7 @@ mod figure;
 mod fixed;
 mod made_up;
 mod reference;
+mod refined;
 mod report;
 mod spec;
 mod structures;

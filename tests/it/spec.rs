@@ -377,6 +377,30 @@ fn a_damaged_file_is_told_and_never_a_crash() {
 }
 
 #[test]
+fn a_refined_range_starts_evenly_and_says_what_it_lacks() {
+    let range = "{log: {from: 0.1, to: 100, points: 61}}";
+    let refined = |inside: &str| with(range, &format!("{{refined: {{from: 0.1, to: 100{inside}}}}}"));
+    let experiment = good(&refined(", start: 31 points, spacing: log, tolerance: 0.5 %, of: velocity_ratio"));
+    assert_eq!(experiment.cases.len(), 62);
+    let [rule] = experiment.refined.as_slice() else { panic!("{:?}", experiment.refined) };
+    assert_eq!((rule.over, rule.tolerance, rule.most), (Parameter::ForceRatio, 0.005, 600));
+    assert_eq!(experiment.cases[20].get(Parameter::ForceRatio), Some(ParameterValue::Number(1.0)));
+    for (inside, message) in [
+        (", tolerance: 0 %", "a share between nothing and the whole is wanted here | write for example 1 %"),
+        (", start: 3", "five points at least show where a curve bends"),
+        (", of: separations", "`separations` is refined, but not measured | add `separations` to `measure`"),
+        (", most: 1000000", "1000000 is too many: 20000 at most"),
+    ] {
+        let told = only_problem(&refined(inside));
+        assert!(told.ends_with(message) && told.starts_with("13:"), "{told}");
+    }
+    let two = with("  stop: [with, without]\n", "  gap_ratio: {refined: {from: 1, to: 9}}\n")
+        .replace("by: stop", "by: gap_ratio");
+    let two = two.replace(range, "{refined: {from: 1, to: 2}}");
+    assert!(only_problem(&two).ends_with("one parameter of a sweep is refined, not two"));
+}
+
+#[test]
 fn sweeps_are_products_pairs_points_and_unions() {
     let sweep = "  force_ratio: {log: {from: 0.1, to: 100, points: 61}}\n  stop: [with, without]\n";
     let cases = |text: &str, by: &str| {

@@ -5,4 +5,5 @@ mod bench;
 mod closed_forms;
 mod event_cases;
 mod floating;
+mod linear;
 mod reference_cases;

@@ -1,0 +1,305 @@
+//! Linear runs: a run that never changes its contact state is an affine map per forcing cycle.
+//!
+//! Where there is no particle, or where it is proved ([`bound`]) that none ever leaves its floor, nothing has to be
+//! simulated: the state of any cycle is a power of the map of one cycle ([`cycle`]), the integrals over any number of cycles
+//! are linear in the moments of their states ([`moments`], [`signal`]), and the steady state is where the map stays.
+//!
+//! Not linear: half cycles that renew the damping, rigid floors under impulses (every impulse throws the particle off), a
+//! structure that drifts, a given start of the particles. Time histories are kept by the march alone.
+
+mod balance;
+mod bound;
+mod cycle;
+mod moments;
+mod range;
+mod signal;
+
+use self::bound::Watch;
+use self::cycle::{Cycle, drive_at, enter, leave};
+use self::moments::Moments;
+use self::signal::{Row, integrals};
+use super::audit::Audit;
+use super::flow::{Cholesky, DrivePhase, Flow};
+use super::integral::Integrals;
+use super::system::{Contact, HybridSystem, Law, Tick, dot};
+use super::{
+    CycleRates, EngineError, Extremes, Method, Observed, Options, Proof, Response, StartState, SteadyMotion,
+    SteadyState, Sums,
+};
+
+/// A run all of whose particles rest on their floors.
+struct Run<'a> {
+    system: &'a HybridSystem,
+    flow: &'a Flow,
+    /// M⁻¹b.
+    answer: Vec<f64>,
+    /// The cycle that may be kicked.
+    first: Cycle,
+    /// All others.
+    regular: Cycle,
+    /// Block coordinates before the first cycle and before the second.
+    starts: [Vec<f64>; 2],
+}
+
+/// Cycles that are alike.
+struct Stretch<'a> {
+    cycle: &'a Cycle,
+    /// State before the first of them.
+    start: Vec<f64>,
+    /// Moments of the states before each.
+    at: Moments,
+}
+
+impl<'a> Stretch<'a> {
+    fn new(cycle: &'a Cycle, start: Vec<f64>, cycles: u64) -> Self {
+        let at = Moments::over(&cycle.map, &start, cycles);
+        Self { cycle, start, at }
+    }
+}
+
+/// What became of the attempt to solve a run in closed form.
+pub(crate) enum Attempt {
+    /// It is linear.
+    Solved(Box<Response>),
+    /// It is not, or it is not proved to be; the flow at rest, where it was built.
+    Open(Option<Box<Flow>>),
+}
+
+/// Solves a run in closed form if it is proved to be linear.
+pub(crate) fn attempt(system: &HybridSystem, options: &Options) -> Result<Attempt, EngineError> {
+    if options.trace.is_some() || !may_be_linear(system, options) {
+        return Ok(Attempt::Open(None));
+    }
+    let flow = at_rest(system)?;
+    if drifts(&flow) {
+        return Ok(Attempt::Open(Some(Box::new(flow))));
+    }
+    let run = Run::new(system, &flow, options)?;
+    let Some(margin) = run.margin() else { return Ok(Attempt::Open(Some(Box::new(flow)))) };
+    Ok(Attempt::Solved(Box::new(run.respond(options, margin)?)))
+}
+
+/// The motion that comes again in every cycle once all transients are gone, if it is linear: no particle on board, or none
+/// ever leaving its floor. `None` where it is not proved to be, or where there is no such motion.
+pub(crate) fn steady_state(system: &HybridSystem) -> Result<Option<SteadyState>, EngineError> {
+    if !may_be_linear(system, &Options::default()) || !(system.drive.repeats || system.drive.ticks.is_empty()) {
+        return Ok(None);
+    }
+    let flow = at_rest(system)?;
+    if drifts(&flow) {
+        return Ok(None);
+    }
+    let answer = Cholesky::new(&system.mass)?.solve(&system.force_row);
+    let before = system.drive.ticks.last().map_or(0.0, |tick| tick.level);
+    let cycle = regular(system, &flow, before, &answer);
+    let Some(steady) = cycle.map.fixed_point() else { return Ok(None) };
+    // An undamped transient never goes.
+    if flow.blocks[..flow.own].iter().any(|block| !(block.decay > 0.0)) {
+        return Ok(None);
+    }
+    let watch = Watch {
+        system,
+        flow: &flow,
+        first: &cycle,
+        regular: &cycle,
+        start: &steady,
+        steady: &steady,
+        transient: &vec![0.0; steady.len()],
+    };
+    let Some(margin) = watch.margin() else { return Ok(None) };
+    let rows: Vec<Row> = flow.all_observed.iter().map(|&row| Row::new(&flow, row)).collect();
+    let at = Moments::over(&cycle.map, &steady, 1);
+    let (duration, parts) = integrals(system, &flow, &rows, &cycle, &at, true);
+    let motion = |(row, part): (&Row, Integrals)| {
+        let mut extremes = Extremes::default();
+        range::take(system, &flow, row, &cycle, &steady, 1, &mut extremes);
+        let sums = Sums {
+            duration,
+            displacement: part.value,
+            displacement_square: part.square,
+            velocity_square: part.rate_square,
+        };
+        SteadyMotion { cycle: sums, extremes }
+    };
+    Ok(Some(SteadyState { observed: rows.iter().zip(parts).map(motion).collect(), margin }))
+}
+
+/// False where a look at the scene shows that it is not linear.
+fn may_be_linear(system: &HybridSystem, options: &Options) -> bool {
+    let placed = options.start == StartState::StaticEquilibrium;
+    let struck = options.kick != 0.0 || system.drive.ticks.iter().any(|tick| tick.impulse != 0.0);
+    let thrown = struck && system.particles.iter().any(|particle| matches!(particle.floor.law, Law::Rigid { .. }));
+    // A force that stays on when the jumps of the first cycle do not come again makes a cycle like no other.
+    let once = !system.drive.repeats && system.drive.ticks.last().is_some_and(|tick| tick.level != 0.0);
+    !once && (system.particles.is_empty() || (placed && !thrown && system.drive.half_cycles.is_none()))
+}
+
+/// The flow with every particle on its floor.
+fn at_rest(system: &HybridSystem) -> Result<Flow, EngineError> {
+    let damping: Vec<f64> = system
+        .particles
+        .iter()
+        .map(|particle| match particle.floor.law {
+            Law::Resilient { damping, .. } => damping,
+            Law::Rigid { .. } => 0.0,
+        })
+        .collect();
+    Flow::build(system, &vec![Contact::Floor; system.particles.len()], &damping)
+}
+
+/// A block without a place to rest.
+fn drifts(flow: &Flow) -> bool {
+    flow.blocks.iter().any(|block| !(block.determinant > 0.0))
+}
+
+impl<'a> Run<'a> {
+    fn new(system: &'a HybridSystem, flow: &'a Flow, options: &Options) -> Result<Self, EngineError> {
+        let answer = Cholesky::new(&system.mass)?.solve(&system.force_row);
+        let still = [Tick { time: 0.0, impulse: 0.0, level: 0.0 }];
+        let ticks = if system.drive.ticks.is_empty() { &still[..] } else { &system.drive.ticks };
+        let kick = options.kick * system.drive.scale();
+        let first = Cycle::new(system, flow, ticks, 0.0, kick, &answer);
+        let regular = regular(system, flow, first.after(), &answer);
+        let phase = drive_at(system, 0.0);
+        let start = match &options.start {
+            StartState::Given { q, rate, .. } if system.particles.is_empty() => enter(flow, q, rate, 0.0, phase),
+            _ => {
+                let (p, _) = leave(flow, &vec![0.0; 2 * flow.order], 0.0, DrivePhase::default());
+                enter(flow, &p, &vec![0.0; flow.order], 0.0, phase)
+            }
+        };
+        let second = first.map.apply(&start);
+        Ok(Self { system, flow, answer, first, regular, starts: [start, second] })
+    }
+
+    /// How far every particle stays from leaving; `None` if it is not proved that none does.
+    fn margin(&self) -> Option<f64> {
+        if self.system.particles.is_empty() {
+            return Some(f64::INFINITY);
+        }
+        let steady = self.regular.map.fixed_point()?;
+        let transient: Vec<f64> = self.starts[1].iter().zip(&steady).map(|(now, steady)| now - steady).collect();
+        let watch = Watch {
+            system: self.system,
+            flow: self.flow,
+            first: &self.first,
+            regular: &self.regular,
+            start: &self.starts[0],
+            steady: &steady,
+            transient: &transient,
+        };
+        watch.margin()
+    }
+
+    /// Block coordinates before a cycle, and the force in force then.
+    fn before(&self, cycle: u64) -> (Vec<f64>, f64) {
+        match cycle.checked_sub(1) {
+            None => (self.starts[0].clone(), self.first.before),
+            Some(regular) => (self.regular.map.repeat(&self.starts[1], regular), self.regular.before),
+        }
+    }
+
+    /// The cycles of a stretch, alike ones together.
+    fn stretch(&self, from: u64, to: u64) -> Vec<Stretch<'_>> {
+        let mut parts = Vec::new();
+        if from == 0 && to > 0 {
+            parts.push(Stretch::new(&self.first, self.starts[0].clone(), 1));
+        }
+        let from = from.max(1);
+        if from < to {
+            parts.push(Stretch::new(&self.regular, self.before(from).0, to - from));
+        }
+        parts
+    }
+
+    /// The structure's velocities at both ends of every cycle.
+    fn cycle_rates(&self, cycles: u64) -> Vec<CycleRates> {
+        let n = self.system.mass.order;
+        let phase = drive_at(self.system, 0.0);
+        let rates = |c: &[f64], level: f64| {
+            let (_, mut rate) = leave(self.flow, c, level, phase);
+            rate.truncate(n);
+            rate
+        };
+        let mut state = self.starts[0].clone();
+        let mut all = Vec::new();
+        for number in 0..cycles {
+            let cycle = if number == 0 { &self.first } else { &self.regular };
+            let after = cycle.segments.first().map_or_else(|| state.clone(), |segment| segment.jump.apply(&state));
+            state = cycle.map.apply(&state);
+            all.push(CycleRates { after: rates(&after, 0.0), before: rates(&state, 0.0) });
+        }
+        all
+    }
+
+    fn respond(&self, options: &Options, margin: f64) -> Result<Response, EngineError> {
+        let (system, flow) = (self.system, self.flow);
+        let rows: Vec<Row> = flow.all_observed.iter().map(|&row| Row::new(flow, row)).collect();
+        let (skip, average) = (u64::from(options.skip), u64::from(options.average));
+        let bounds = [skip, skip + average.div_ceil(2), skip + average];
+        let mut response = Response {
+            method: Method::ClosedForm,
+            observed: vec![Observed::default(); rows.len()],
+            proof: Proof { smallest_margin: margin, ..Proof::default() },
+            highest_frequency: flow.natural_frequencies().fold(0.0, f64::max),
+            ..Response::default()
+        };
+        for half in 0..2 {
+            for Stretch { cycle, at, .. } in self.stretch(bounds[half], bounds[half + 1]) {
+                let (duration, parts) = integrals(system, flow, &rows, cycle, &at, options.displacement);
+                for (part, of) in parts.into_iter().zip(&mut response.observed) {
+                    let sum = &mut of.halves[half];
+                    sum.duration += duration;
+                    sum.displacement += part.value;
+                    sum.displacement_square += part.square;
+                    sum.velocity_square += part.rate_square;
+                }
+            }
+        }
+        if options.extremes {
+            for (row, of) in rows.iter().zip(&mut response.observed) {
+                for Stretch { cycle, start, at } in self.stretch(skip, skip + average) {
+                    range::take(system, flow, row, cycle, &start, at.count as u64, &mut of.extremes);
+                }
+            }
+        }
+        if options.cycle_rates {
+            response.cycle_rates = self.cycle_rates(options.cycles());
+        }
+        let (end, level) = self.before(options.cycles());
+        let (p, rate) = leave(flow, &end, level, drive_at(system, 0.0));
+        let last = balance::state(system, flow, &p, &rate);
+        if options.audit {
+            let (begin, level) = self.before(skip);
+            let (p, rate) = leave(flow, &begin, level, drive_at(system, 0.0));
+            let mut audit = Audit::default();
+            audit.begin(balance::state(system, flow, &p, &rate));
+            for Stretch { cycle, at, .. } in self.stretch(skip, options.cycles()) {
+                balance::pass(system, flow, &self.answer, cycle, &at, &mut audit);
+            }
+            let (momentum, energy) = audit.residuals(system, &last);
+            response.proof.momentum_residual = momentum;
+            response.proof.energy_residual = energy;
+        }
+        if let Some(row) = system.observed_rows.first() {
+            response.final_displacement = dot(row, &last.q);
+            response.final_velocity = dot(row, &last.rate);
+        }
+        response.final_particles = last.particles;
+        if response.final_displacement.is_finite() && response.final_velocity.is_finite() {
+            Ok(response)
+        } else {
+            Err(EngineError::NotFinite { cycle: options.cycles() })
+        }
+    }
+}
+
+/// The cycle that repeats, after one that ended with the force `before`.
+fn regular(system: &HybridSystem, flow: &Flow, before: f64, answer: &[f64]) -> Cycle {
+    let still = [Tick { time: 0.0, impulse: 0.0, level: 0.0 }];
+    if system.drive.repeats && !system.drive.ticks.is_empty() {
+        Cycle::new(system, flow, &system.drive.ticks, before, 0.0, answer)
+    } else {
+        Cycle::new(system, flow, &still, before, 0.0, answer)
+    }
+}

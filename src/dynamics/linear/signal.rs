@@ -1,0 +1,147 @@
+//! Signals of a flow as rows over its block coordinates, and their integrals over many cycles at once.
+
+use super::cycle::{Affine, Cycle, drive_at, product, times};
+use super::moments::{Moments, outer, pairs, transposed};
+use crate::dynamics::block::Phase;
+use crate::dynamics::flow::{DrivePhase, Flow, Signals};
+use crate::dynamics::integral::{GAUSS, Integrals, PhaseMoments};
+use crate::dynamics::system::HybridSystem;
+
+/// A row of the flow: value and rate of each block's share by its two coordinates.
+pub(super) struct Row {
+    /// Which row of the flow.
+    pub(super) index: usize,
+    /// [[value by x, by y], [rate by x, by y]].
+    pub(super) weights: Vec<[f64; 4]>,
+}
+
+impl Row {
+    pub(super) fn new(flow: &Flow, index: usize) -> Self {
+        let of_unit = |unit: usize| {
+            let c: Vec<f64> = (0..2 * flow.order).map(|i| if i % 2 == unit { 1.0 } else { 0.0 }).collect();
+            let mut signals = Signals::default();
+            flow.signals(&c, 0.0, DrivePhase::default(), &mut signals);
+            signals.of(index).0[..flow.own].to_vec()
+        };
+        let weights = of_unit(0).iter().zip(of_unit(1)).map(|(x, y)| [x.value, y.value, x.rate, y.rate]).collect();
+        Self { index, weights }
+    }
+
+    /// Its share of the harmonic force, if there is one, and its rest under a constant force.
+    pub(super) fn outside(&self, flow: &Flow, level: f64, drive: DrivePhase) -> (Option<Phase>, f64) {
+        let mut signals = Signals::default();
+        flow.signals(&vec![0.0; 2 * flow.order], level, drive, &mut signals);
+        let (phases, rest) = signals.of(self.index);
+        (phases.get(flow.own).copied(), rest.p0)
+    }
+
+    /// Shares of its own blocks in a state.
+    pub(super) fn shares(&self, c: &[f64]) -> Vec<Phase> {
+        let share = |(weights, pair): (&[f64; 4], &[f64])| {
+            let [value, rate] = times(*weights, [pair[0], pair[1]]);
+            Phase { value, rate }
+        };
+        self.weights.iter().zip(c.chunks_exact(2)).map(share).collect()
+    }
+
+    /// The moments of its shares; the harmonic force's own are the same in every cycle.
+    fn moments(&self, of: &Moments, drive: Option<Phase>) -> PhaseMoments {
+        let mut first: Vec<[f64; 2]> = self.weights.iter().zip(&of.first).map(|(w, sum)| times(*w, *sum)).collect();
+        let own = first.len();
+        let drive = drive.map(|phase| [phase.value, phase.rate]);
+        let mut second = Vec::with_capacity((own + 1) * (own + 2) / 2);
+        let mut sums = pairs(own).zip(&of.second);
+        for k in 0..own {
+            for ((_, l), sum) in sums.by_ref().take(own - k) {
+                second.push(product(product(self.weights[k], *sum), transposed(self.weights[l])));
+            }
+            second.extend(drive.map(|drive| outer(first[k], drive)));
+        }
+        if let Some(drive) = drive {
+            second.push(outer(drive, drive).map(|part| of.count * part));
+            first.push(drive.map(|part| of.count * part));
+        }
+        PhaseMoments { first, second }
+    }
+}
+
+/// The integrals of each row over the cycles that `at` are the states of at the beginning; s, and the sums of each row.
+pub(super) fn integrals(
+    system: &HybridSystem,
+    flow: &Flow,
+    rows: &[Row],
+    cycle: &Cycle,
+    at: &Moments,
+    displacement: bool,
+) -> (f64, Vec<Integrals>) {
+    let mut sums = vec![Integrals::default(); rows.len()];
+    let mut duration = 0.0;
+    let mut now = at.clone();
+    for segment in &cycle.segments {
+        let start = now.moved(&segment.jump);
+        let end = start.moved(&segment.flow);
+        duration += at.count * segment.length;
+        let end_drive = drive_at(system, segment.begin + segment.length);
+        for (row, sum) in rows.iter().zip(&mut sums) {
+            let (drive, rest) = row.outside(flow, segment.level, segment.drive);
+            let part = match &flow.forms {
+                Some(forms) => {
+                    let (after, _) = row.outside(flow, segment.level, end_drive);
+                    let (m0, m1) = (row.moments(&start, drive), row.moments(&end, after));
+                    forms.summed(&m0, &m1, segment.length, displacement)
+                }
+                None => quadrature(flow, row, &start, drive, segment.length),
+            };
+            let part = part.offset(rest, at.count * segment.length);
+            sum.value += part.value;
+            sum.square += part.square;
+            sum.rate_square += part.rate_square;
+        }
+        now = end;
+    }
+    (duration, sums)
+}
+
+/// The same by panels that are exact to rounding, where undamped blocks leave no closed form.
+fn quadrature(flow: &Flow, row: &Row, start: &Moments, drive: Option<Phase>, length: f64) -> Integrals {
+    let mut sum = Integrals::default();
+    let mut t0 = 0.0;
+    while t0 < length {
+        let now = row.moments(&start.moved(&Affine::flow(flow, t0)), None);
+        let h = panel(flow, &now, drive).min(length - t0);
+        for [x, weight] in GAUSS {
+            let t = t0 + x * h;
+            let after = drive.map(|phase| {
+                let block = &flow.blocks[flow.own];
+                block.advance(phase, block.kernel(t))
+            });
+            let m = row.moments(&start.moved(&Affine::flow(flow, t)), after);
+            let w = weight * h;
+            sum.value += w * m.first.iter().fold(0.0, |sum, first| sum + first[0]);
+            // Every pair of two blocks counts in both orders.
+            for ((k, l), moment) in pairs(m.first.len()).zip(&m.second) {
+                let times = if k == l { w } else { 2.0 * w };
+                sum.square += times * moment[0];
+                sum.rate_square += times * moment[3];
+            }
+        }
+        t0 += h;
+    }
+    sum
+}
+
+/// Length of a panel: short against every block that still moves the signal visibly.
+fn panel(flow: &Flow, now: &PhaseMoments, drive: Option<Phase>) -> f64 {
+    let own = now.first.len();
+    let mut shares = vec![0.0; own];
+    for ((k, l), moment) in pairs(own).zip(&now.second) {
+        if k == l {
+            shares[k] = moment[3].max(0.0).sqrt() + flow.blocks[k].radius * moment[0].max(0.0).sqrt();
+        }
+    }
+    let total: f64 = shares.iter().sum::<f64>() + drive.map_or(0.0, |phase| phase.rate.abs());
+    let slowest = drive.map_or(0.0, |_| flow.blocks[flow.own].radius);
+    let fastest =
+        (0..own).filter(|&k| shares[k] > 1e-15 * total).fold(slowest, |fastest, k| fastest.max(flow.blocks[k].radius));
+    if fastest > 0.0 { 1.5 / fastest } else { f64::INFINITY }
+}

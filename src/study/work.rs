@@ -1,0 +1,131 @@
+//! An experiment while it runs: its rows, what came of them, and the table in the end.
+
+use std::sync::OnceLock;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use super::evaluate::{Evaluate, Simulation, evaluate_guarded};
+use super::event::{Event, Listen};
+use super::job::{Job, evaluations, jobs, keeps_trace, measures_need_trace};
+use super::maximise::maximum;
+use super::run::{Finished, Task};
+use super::tabulate::{self, Outcome, Row};
+use super::variant::Variant;
+use crate::measure::Rigour;
+use crate::spec::{Case, Experiment};
+use crate::text::words;
+
+/// An experiment while it runs.
+pub(super) struct Work<'a> {
+    pub(super) task: Task<'a>,
+    pub(super) jobs: Vec<Job>,
+    outcomes: Vec<OnceLock<Outcome>>,
+    open: AtomicUsize,
+}
+
+impl<'a> Work<'a> {
+    pub(super) fn new(task: Task<'a>) -> Self {
+        let jobs = jobs(task.experiment, task.variants);
+        let open = AtomicUsize::new(jobs.iter().filter(|job| job.same_as.is_none()).count());
+        let outcomes = jobs.iter().map(|_| OnceLock::new()).collect();
+        Self { task, jobs, outcomes, open }
+    }
+
+    /// The rows that nobody has computed yet and that share no other's numbers.
+    pub(super) fn rows_to_do(&self) -> Vec<usize> {
+        (0..self.jobs.len())
+            .filter(|&row| self.jobs[row].same_as.is_none() && self.outcomes[row].get().is_none())
+            .collect()
+    }
+
+    /// Puts a row into its place; true for the last one.
+    pub(super) fn put(&self, row: usize, outcome: Outcome) -> bool {
+        let _ = self.outcomes[row].set(outcome);
+        self.open.fetch_sub(1, Ordering::AcqRel) == 1
+    }
+
+    pub(super) fn finish(&self) -> Finished {
+        let lost: Outcome = Err("the row was never computed".into());
+        let outcomes: Vec<&Outcome> = self
+            .jobs
+            .iter()
+            .enumerate()
+            .map(|(row, job)| self.outcomes[job.same_as.unwrap_or(row)].get().unwrap_or(&lost))
+            .collect();
+        let Task { experiment, variants, metadata } = self.task;
+        let table = tabulate::table(experiment, variants, &self.jobs, &outcomes, metadata.clone());
+        Finished { table, failures: tabulate::failures(&outcomes) }
+    }
+
+    /// Computes a row.
+    pub(super) fn row(&self, row: usize, evaluate: &impl Evaluate, listener: &dyn Listen) -> Outcome {
+        let job = &self.jobs[row];
+        outcome(self.task, &self.task.experiment.cases[job.case], job, evaluate, listener)
+    }
+}
+
+/// One row, of a case that need not be among the experiment's.
+pub(super) fn outcome(
+    task: Task<'_>,
+    case: &Case,
+    job: &Job,
+    evaluate: &impl Evaluate,
+    listener: &dyn Listen,
+) -> Outcome {
+    let experiment = task.experiment;
+    let told = AtomicUsize::new(0);
+    let done = || {
+        told.fetch_add(1, Ordering::Relaxed);
+        listener.hear(&Event::Simulated { experiment: &experiment.id, count: 1 });
+    };
+    let outcome = simulate(experiment, case, &task.variants[job.variant], job, evaluate, &done);
+    let rest = evaluations(experiment, job).saturating_sub(told.into_inner() as u64);
+    listener.hear(&Event::Simulated { experiment: &experiment.id, count: rest });
+    outcome
+}
+
+fn simulate(
+    experiment: &Experiment,
+    case: &Case,
+    variant: &Variant,
+    job: &Job,
+    evaluate: &impl Evaluate,
+    done: &(impl Fn() + Sync),
+) -> Outcome {
+    let recipe = experiment.recipe_of(case).map_err(|error| error.to_string())?;
+    let wanted = keeps_trace(experiment, job) || measures_need_trace(&experiment.measures);
+    let needs_shape = experiment.measures.iter().any(|measure| measure.needs_shape());
+    let simulation = Simulation {
+        recipe: &recipe,
+        assumptions: &variant.assumptions,
+        solver: job.solver,
+        settings: &experiment.settings,
+        measures: &experiment.measures,
+        trace: experiment.trace.as_ref().filter(|_| wanted),
+        // Only the baseline keeps its lists; a measure of a shape needs it everywhere.
+        energies: experiment.energies.as_ref().filter(|_| job.variant == 0),
+        shape: experiment.shape.as_ref().filter(|_| job.variant == 0 || needs_shape),
+        rigour: if job.variant == 0 { Rigour::Result } else { Rigour::Look },
+    };
+    let Some(maximise) = &experiment.maximise else {
+        let evaluated = evaluate_guarded(evaluate, &simulation);
+        done();
+        return Ok(Row { evaluated: evaluated?, place: None });
+    };
+    let measure = tabulate::maximised_index(experiment, maximise.measure)
+        .ok_or_else(|| format!("{} is to be maximised and not measured", words::of_key(&maximise.measure)))?;
+    // Histories of the points that are not the maximum are not wanted.
+    let trace = simulation.trace.filter(|_| measures_need_trace(&experiment.measures));
+    let shape = simulation.shape.filter(|_| needs_shape);
+    let look = Simulation { trace, energies: None, shape, rigour: Rigour::Look, ..simulation };
+    let (found, place) = maximum(evaluate, &look, maximise, measure, done)?;
+    if job.variant != 0 {
+        return Ok(Row { evaluated: found, place: Some(place) });
+    }
+    // The row itself is a result: the maximum once more, with all that proves it.
+    let mut at_maximum = recipe.clone();
+    at_maximum.set(maximise.over, crate::scene::ParameterValue::Number(place.at)).map_err(|error| error.to_string())?;
+    let wanted = simulation.trace.filter(|_| keeps_trace(experiment, job) || trace.is_some());
+    let evaluated = evaluate_guarded(evaluate, &Simulation { recipe: &at_maximum, trace: wanted, ..simulation })?;
+    done();
+    Ok(Row { evaluated, place: Some(place) })
+}
