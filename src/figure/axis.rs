@@ -43,6 +43,18 @@ impl Extent {
     }
 }
 
+impl Extent {
+    /// With room above the data, as a share of what the data take.
+    pub(super) fn with_headroom(self, room: f64, scale: AxisScale) -> Self {
+        let Self { least, largest } = self;
+        let largest = match scale {
+            AxisScale::Linear => largest + room * (largest - least),
+            AxisScale::Log => largest * libm::pow(largest / least, room),
+        };
+        Self { least, largest }
+    }
+}
+
 /// How much room an axis leaves beyond the data.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Room {
@@ -125,6 +137,20 @@ impl Axis {
         };
         let share = (along - self.from) / (self.to - self.from);
         share.is_finite().then_some(share)
+    }
+
+    /// The number at a share of the axis.
+    pub(super) fn number(&self, share: f64) -> f64 {
+        let along = self.from + share * (self.to - self.from);
+        match self.scale {
+            AxisScale::Linear => along,
+            AxisScale::Log => libm::exp10(along),
+        }
+    }
+
+    /// A number of the table as this axis displays it.
+    pub(super) fn displayed(&self, number: f64) -> f64 {
+        number / self.factor
     }
 
     /// As [`Axis::share`], with what lies outside moved to the nearer end.

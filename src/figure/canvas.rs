@@ -7,14 +7,14 @@ use std::sync::LazyLock;
 
 use plotters::coord::Shift;
 use plotters::drawing::{DrawingArea, DrawingAreaErrorKind, IntoDrawingArea};
-use plotters::element::{Circle, Drawable, PathElement, PointCollection, Polygon, Text};
+use plotters::element::{Circle, Drawable, PathElement, PointCollection, Polygon, Rectangle, Text};
 use plotters::prelude::SVGBackend;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use plotters::style::{
     Color as _, FontDesc, FontFamily, FontStyle, FontTransform, RGBColor, ShapeStyle, register_font,
 };
 
-use super::geometry::{Point, dashed};
+use super::geometry::{Point, Rect, dashed};
 use super::raster::{FAMILY, FONT};
 use super::style::{Color, PAPER};
 
@@ -88,8 +88,10 @@ pub(super) fn svg(width: f64, height: f64, paint: impl FnOnce(&Sheet<'_>) -> Dra
     paint(&sheet)?;
     sheet.area.present().map_err(words)?;
     drop(sheet);
-    // Sharp bends of a curve are rounded, not spiked; plotters has no word for it.
-    Ok(text.replacen("<svg ", "<svg stroke-linejoin=\"round\" ", 1))
+    // Sharp bends of a curve are rounded, not spiked, and neighbouring cells show no seam; plotters has no words for it.
+    Ok(text
+        .replacen("<svg ", "<svg stroke-linejoin=\"round\" ", 1)
+        .replace("<rect ", "<rect shape-rendering=\"crispEdges\" "))
 }
 
 /// Width of a text in pixels of the picture.
@@ -133,6 +135,12 @@ impl<'a> Sheet<'a> {
     /// A filled polygon.
     pub(super) fn fill(&self, corners: &[Point], color: Color, opacity: f64) -> Drawn {
         self.put(&Polygon::new(pixels(corners), rgb(color).mix(opacity).filled()))
+    }
+
+    /// A filled rectangle whose edges meet its neighbours' without a seam.
+    pub(super) fn cell(&self, place: &Rect, color: Color) -> Drawn {
+        let corners = [pixel(place.at(0.0, 1.0)), pixel(place.at(1.0, 0.0))];
+        self.put(&Rectangle::new(corners, rgb(color).filled()))
     }
 
     /// A filled disc.

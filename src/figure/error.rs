@@ -31,9 +31,33 @@ pub enum FigureError {
         /// Column of the y axis.
         y: String,
     },
+    /// Two rows of a map give one place two values.
+    #[error(
+        "figure {figure} draws one value of `{column}` a place, and two rows at ({x}, {y}) differ: split them with `by`"
+    )]
+    Twice {
+        /// Which figure.
+        figure: String,
+        /// The column of the colour.
+        column: String,
+        /// The place's x.
+        x: String,
+        /// The place's y.
+        y: String,
+    },
+    /// A panel of a map of lists has several rows.
+    #[error("figure {figure} draws one list of `{column}` a panel, and {rows} rows share one: split them with `by`")]
+    ManyFields {
+        /// Which figure.
+        figure: String,
+        /// The column of the colour.
+        column: String,
+        /// How many.
+        rows: usize,
+    },
     /// No row has a number to draw.
     #[error(
-        "figure {figure} has nothing to draw: no row under the assumptions in force has a number for both its axes"
+        "figure {figure} has nothing to draw: no row under the assumptions in force has a number for each of its axes"
     )]
     Nothing {
         /// Which figure.

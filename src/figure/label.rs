@@ -58,7 +58,9 @@ fn within_sentence(label: &str) -> String {
 
 /// The label with its unit, first letter in upper case: `Displacement (mm)`.
 pub(super) fn with_unit(label: &str, unit: &str) -> String {
-    let label = words::capitalised(label);
+    // A symbol keeps its case: x/L.
+    let is_word = label.chars().nth(1).is_some_and(char::is_alphabetic);
+    let label = if is_word { words::capitalised(label) } else { label.to_owned() };
     let named = label.ends_with(&format!("({unit})"));
     if unit.is_empty() || named { label } else { format!("{label} ({})", unit.replace("^2", "²")) }
 }

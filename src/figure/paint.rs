@@ -1,10 +1,13 @@
 //! A panel put on the sheet: grid, bands, curves, markers, frame, numbers, legend, in this order.
 
+use crate::text::number::compact;
+
 use super::canvas::{Anchor, Drawn, Lettering, Pen, Sheet, text_width};
 use super::geometry::{Point, Rect};
 use super::layout::{Place, line_height};
 use super::legend::Obstacles;
 use super::panel::Panel;
+use super::peak::peaks;
 use super::style::{
     BAND_OPACITY, CURVE, Color, FRAME, GREY, GRID, GUIDE, INK, LABEL_TEXT, Look, MARKER, MINOR_TICK, Marker, NOTE_TEXT,
     PALE, PAPER, QUOTED, SPACE, TICK, TICK_TEXT,
@@ -50,6 +53,7 @@ pub(super) fn panel(
         }
     }
     curves(sheet, panel, frame)?;
+    peak_marks(sheet, panel, frame, &mut taken)?;
     quoted_points(sheet, panel, frame)?;
     axes(sheet, panel, frame, x_labels)?;
     y_label(sheet, place)?;
@@ -87,6 +91,34 @@ fn curves(sheet: &Sheet<'_>, panel: &Panel<'_>, frame: &Rect) -> Drawn {
                 for &at in &stretch {
                     marker(sheet, at, curve.look)?;
                 }
+            }
+        }
+    }
+    Ok(())
+}
+
+/// A triangle on each peak, with its place on the x axis where there is room for the number.
+fn peak_marks(sheet: &Sheet<'_>, panel: &Panel<'_>, frame: &Rect, taken: &mut Obstacles) -> Drawn {
+    let Some(marks) = panel.spec.peaks else { return Ok(()) };
+    for curve in &panel.curves {
+        for sample in peaks(curve, &panel.y, marks) {
+            let Some(top) = panel.place(frame, sample.x, sample.y) else { continue };
+            let at = Point { y: top.y - 1.4 * MARKER, ..top };
+            marker(sheet, at, Look { marker: Marker::Down, ..curve.look })?;
+            let text = compact(panel.x.displayed(sample.x), 4);
+            let (width, half) = (text_width(&text, NOTE_TEXT), NOTE_TEXT / 2.0);
+            let (up, aside) = (half + MARKER + SPACE / 2.0, width / 2.0 + MARKER + SPACE / 2.0);
+            let places = [(0.0, up), (aside, 0.0), (-aside, 0.0), (aside, up), (-aside, up)];
+            let place = places.map(|(right, up)| {
+                let (x, y) = (at.x + right, at.y - up);
+                Rect { left: x - width / 2.0, top: y - half, right: x + width / 2.0, bottom: y + half }
+            });
+            let within = |place: &Rect| place.left > frame.left && place.right < frame.right && place.top > frame.top;
+            let free = place.into_iter().find(|place| within(place) && taken.leave_free(&place.grown(2.0)));
+            taken.boxes.push(Rect { left: at.x, top: at.y, right: at.x, bottom: at.y }.grown(1.2 * MARKER));
+            if let Some(place) = free {
+                write(sheet, place.at(0.5, 0.5), &text, NOTE_TEXT, Anchor::Centre, curve.look.color)?;
+                taken.boxes.push(place);
             }
         }
     }

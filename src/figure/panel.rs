@@ -19,6 +19,9 @@ const MOST_Y_TICKS: u32 = 6;
 /// The smallest spread that shows as a band, as a share of the axis: about the width of a curve.
 const VISIBLE_SPREAD: f64 = 0.004;
 
+/// Room for the numbers at peaks, as a share of the axis.
+const PEAK_ROOM: f64 = 0.07;
+
 /// One pair of axes with its curves.
 pub(super) struct Panel<'a> {
     pub spec: &'a spec::Panel,
@@ -45,7 +48,8 @@ impl<'a> Panel<'a> {
         let x_column = source.column(&spec.x.column)?;
         let samples = || curves.iter().flat_map(|curve| &curve.samples);
         let seen = samples().filter(|sample| sample.y.is_finite()).map(|sample| sample.x);
-        let x_extent = Extent::of(seen.chain(quoted.iter().map(|point| point.x)), spec.x.scale).ok_or_else(nothing)?;
+        let wanted = quoted.iter().map(|point| point.x).chain(spec.x.reach.into_iter().flatten());
+        let x_extent = Extent::of(seen.chain(wanted), spec.x.scale).ok_or_else(nothing)?;
         let x_room = if spec.markers || !quoted.is_empty() { Room::Airy } else { Room::Tight };
         let x = Axis::new(spec.x.scale, x_extent, x_room, &x_column.unit);
 
@@ -57,10 +61,13 @@ impl<'a> Panel<'a> {
         let ends = samples().flat_map(|sample| [sample.y, sample.y - sample.spread, sample.y + sample.spread]);
         let limits = curves.iter().filter_map(|curve| curve.at_infinity.as_ref()).map(|limit| limit.y);
 
-        let marks = quoted.iter().map(|point| point.y);
+        let marks = quoted.iter().map(|point| point.y).chain(spec.y[0].reach.into_iter().flatten());
         let mut y_extent = Extent::of(ends.chain(limits).chain(marks), scale).ok_or_else(nothing)?;
         for guide in &spec.guides {
             y_extent = y_extent.with_guide(guide.at, scale);
+        }
+        if spec.peaks.is_some() {
+            y_extent = y_extent.with_headroom(PEAK_ROOM, scale);
         }
         let y = Axis::new(scale, y_extent, Room::Airy, &unit);
 

@@ -1,13 +1,15 @@
 //! From an experiment's table to the finished picture.
 
-use crate::spec::{Experiment, FigureSpec};
+use crate::spec::{self, Drawing, Experiment, FigureSpec};
 use crate::table::Table;
 
 use super::canvas::{ZOOM, svg};
 use super::error::FigureError;
-
 use super::layout::{Needs, Place, figure_height, places};
 use super::line::Source;
+use super::map::Map;
+use super::map_layout::MapLayout;
+use super::map_paint;
 use super::paint::{self, LegendPlace};
 use super::panel::Panel;
 use super::raster;
@@ -40,9 +42,26 @@ pub fn draw(
         if figure.name.is_empty() { experiment.id.to_string() } else { format!("{}-{}", experiment.id, figure.name) };
     let baseline = table.baseline();
     let source = Source { experiment, table: &baseline, figure: &name };
-    let panels = figure.panels.iter().map(|spec| Panel::new(source, spec, quoted)).collect::<Result<Vec<_>, _>>()?;
+    let svg = match &figure.drawing {
+        Drawing::Lines(panels) => lines(source, panels, quoted)?,
+        Drawing::Map(spec) => {
+            let map = Map::new(source, spec)?;
+            let layout = MapLayout::new(&map);
+            svg(WIDTH, layout.height, |sheet| map_paint::map(sheet, &map, &layout))
+        }
+    };
+    svg.and_then(|svg| raster::png(&svg, ZOOM)).map_err(|reason| FigureError::Drawing { figure: name.clone(), reason })
+}
+
+/// The panels one above the other, as SVG; the inner error is the drawing's.
+fn lines(
+    source: Source<'_>,
+    panels: &[spec::Panel],
+    quoted: &[QuotedPoint],
+) -> Result<Result<String, String>, FigureError> {
+    let panels = panels.iter().map(|spec| Panel::new(source, spec, quoted)).collect::<Result<Vec<_>, _>>()?;
     if panels.is_empty() {
-        return Err(FigureError::Nothing { figure: name });
+        return Err(FigureError::Nothing { figure: source.figure.to_owned() });
     }
     let arranged = arranged(&panels);
     let paint = |sheet: &super::canvas::Sheet<'_>| {
@@ -53,9 +72,7 @@ pub fn draw(
         }
         Ok(())
     };
-    svg(WIDTH, figure_height(panels.len()), paint)
-        .and_then(|svg| raster::png(&svg, ZOOM))
-        .map_err(|reason| FigureError::Drawing { figure: name.clone(), reason })
+    Ok(svg(WIDTH, figure_height(panels.len()), paint))
 }
 
 /// What surrounds a panel.

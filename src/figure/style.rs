@@ -26,6 +26,14 @@ pub(super) const SPACE: f64 = 14.0;
 pub(super) const LEGEND_LINE: f64 = 84.0;
 /// Height of a legend's row.
 pub(super) const LEGEND_ROW: f64 = 50.0;
+/// Width of a colour bar.
+pub(super) const BAR: f64 = 48.0;
+/// Half the size of the signs in a map.
+pub(super) const MAP_SIGN: f64 = 19.0;
+/// A contour between two bands of colour.
+pub(super) const CONTOUR: f64 = 2.0;
+/// Height that a map does not exceed.
+pub(super) const TALLEST_MAP: f64 = 1500.0;
 pub(super) const BAND_OPACITY: f64 = 0.22;
 
 /// Height of a figure with so many panels.

@@ -2,7 +2,7 @@
 
 use crate::figure::{FigureError, QuotedPoint, draw};
 use crate::reference::{Allowed, Check, Entry, Extraction, ReferenceFile};
-use crate::spec::{Experiment, FigureSpec};
+use crate::spec::{Drawing, Experiment, FigureSpec};
 use crate::table::Table;
 
 /// File name of a figure: the experiment's id, and the figure's own name if it is not the first.
@@ -23,11 +23,14 @@ pub(super) fn png(
     reference: Option<&ReferenceFile>,
 ) -> Result<Vec<u8>, FigureError> {
     let entries = reference.map_or(&[][..], |reference| &reference.entries);
-    let quoted: Vec<QuotedPoint> = figure
-        .panels
-        .first()
-        .map(|panel| entries.iter().filter_map(|entry| quoted_point(entry, &panel.x.column, table)).collect())
-        .unwrap_or_default();
+    let quoted: Vec<QuotedPoint> = match &figure.drawing {
+        Drawing::Lines(panels) => panels
+            .first()
+            .map(|panel| entries.iter().filter_map(|entry| quoted_point(entry, &panel.x.column, table)).collect())
+            .unwrap_or_default(),
+        // A quoted number has no place among colours.
+        Drawing::Map(_) => Vec::new(),
+    };
     draw(experiment, figure, table, &quoted)
 }
 

@@ -80,7 +80,7 @@ impl Opened {
 
 /// Numbers are held against the result with an uncertainty that needs the ends of the assumptions; claims are not.
 fn has_values(file: &ReferenceFile) -> bool {
-    file.entries.iter().any(|entry| matches!(entry.check, Check::Value { .. }))
+    file.entries.iter().any(|entry| matches!(entry.check, Check::Value { .. } | Check::Peak { .. }))
 }
 
 fn references(texts: &Texts, unread: &mut Vec<Unread>) -> BTreeMap<String, ReferenceFile> {

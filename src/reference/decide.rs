@@ -2,22 +2,25 @@
 
 use super::extract::Extracted;
 use super::line::{common, lines};
+use super::place::{best_place, grows_towards};
 use super::predicate::{
     Apart, Between, ColumnsAgree, Equal, Level, LinesAgree, PathMonotone, PathsCross, Predicate, Trend, Within,
 };
 use super::shape::{greatest_at_end, levels_off, linear, monotone, onsets, peaks};
 use super::tally::{Decision, Outcome, Tally};
 use super::text::{percent, significant, with_unit};
-use super::view::{Absence, Cell, Line, View, finite};
+use super::view::{Absence, Cell, Line, View};
 
 /// Decides a claim over the rows that the view means.
 pub(crate) fn decide(predicate: &Predicate, view: &View<'_>) -> Result<Decision, Absence> {
     let decided = match predicate {
         Predicate::Monotone(claim) => monotone(claim, view),
         Predicate::Trend(claim) => trend(claim, view),
-        Predicate::GreatestFirst(list) => {
-            list.iter().map(|one| one.take(view)).collect::<Result<Vec<_>, _>>().map(|values| greatest_first(&values))
-        }
+        Predicate::GreatestFirst(list) => list
+            .iter()
+            .map(|one| one.take(view))
+            .collect::<Result<Vec<_>, _>>()
+            .and_then(|values| greatest_first(&values)),
         Predicate::Equal(claim) => equal(claim, view),
         Predicate::Apart(claim) => apart(claim, view),
         Predicate::Between(claim) => between(claim, view),
@@ -32,10 +35,14 @@ pub(crate) fn decide(predicate: &Predicate, view: &View<'_>) -> Result<Decision,
         Predicate::Onsets(claim) => onsets(claim, view),
         Predicate::PathsCross(claim) => paths_cross(claim, view),
         Predicate::PathMonotone(claim) => path_monotone(claim, view),
+        Predicate::BestPlace(claim) => best_place(claim, view),
+        Predicate::GrowsTowards(claim) => grows_towards(claim, view),
+        Predicate::Curve(claim) => claim.decide(view),
+        Predicate::ModeShape(claim) => claim.decide(view),
     };
     match decided {
         // What the claim speaks of does not happen: that is an answer.
-        Err(Absence::Nowhere(reason)) => Ok(Decision { outcome: Outcome::Fails, found: reason }),
+        Err(Absence::Nowhere(reason)) => Ok(Decision { outcome: Outcome::Fails, found: reason, reach: None }),
         other => other,
     }
 }
@@ -68,26 +75,25 @@ fn trend(claim: &Trend, view: &View<'_>) -> Result<Decision, Absence> {
         let margin = claim.direction.sign() * (last.value - first.value);
         tally.require_strictly(margin, libm::hypot(first.run, last.run), String::new);
     }
-    let outcome = tally.decision()?.outcome;
-    Ok(Decision { outcome, found: list.join(", ") })
+    Ok(Decision { found: list.join(", "), ..tally.decision()? })
 }
 
 fn list(values: &[Extracted], between: &str) -> String {
     values.iter().map(|one| with_unit(one.value, 5, &one.unit)).collect::<Vec<_>>().join(between)
 }
 
-fn greatest_first(values: &[Extracted]) -> Decision {
+fn greatest_first(values: &[Extracted]) -> Result<Decision, Absence> {
     let mut tally = Tally::new();
     for pair in values.windows(2) {
         tally.require_strictly(pair[0].value - pair[1].value, libm::hypot(pair[0].run, pair[1].run), String::new);
     }
-    let outcome = tally.decision().map_or(Outcome::Fails, |decision| decision.outcome);
-    let words = match outcome {
+    let decision = tally.decision()?;
+    let found = match decision.outcome {
         Outcome::Holds => list(values, " > "),
         Outcome::Undecided => format!("{}: too near to tell", list(values, ", ")),
         Outcome::Fails => format!("{}: not in this order", list(values, ", ")),
     };
-    Decision { outcome, found: words }
+    Ok(Decision { found, ..decision })
 }
 
 fn equal(claim: &Equal, view: &View<'_>) -> Result<Decision, Absence> {
@@ -103,8 +109,8 @@ fn equal(claim: &Equal, view: &View<'_>) -> Result<Decision, Absence> {
             );
         }
     }
-    let outcome = tally.decision()?.outcome;
-    Ok(Decision { outcome, found: format!("{}, to agree within {}", list(&values, " and "), claim.within.words()) })
+    let found = format!("{}, to agree within {}", list(&values, " and "), claim.within.words());
+    Ok(Decision { found, ..tally.decision()? })
 }
 
 /// Error of a difference of two (value, error). Numbers that are equal to the last bit come from the same motion, chaotic or
@@ -122,8 +128,8 @@ fn apart(claim: &Apart, view: &View<'_>) -> Result<Decision, Absence> {
             tally.require_strictly(apart - claim.by.allows(a.value, b.value), libm::hypot(a.run, b.run), String::new);
         }
     }
-    let outcome = tally.decision()?.outcome;
-    Ok(Decision { outcome, found: format!("{}, to differ by {}", list(&values, " and "), claim.by.words()) })
+    let found = format!("{}, to differ by {}", list(&values, " and "), claim.by.words());
+    Ok(Decision { found, ..tally.decision()? })
 }
 
 fn between(claim: &Between, view: &View<'_>) -> Result<Decision, Absence> {
@@ -135,7 +141,6 @@ fn between(claim: &Between, view: &View<'_>) -> Result<Decision, Absence> {
     if let Some(to) = claim.to {
         tally.require(to - value.value, value.run, String::new);
     }
-    let outcome = tally.decision()?.outcome;
     let end = |end: Option<f64>| end.map_or_else(|| "…".to_string(), |x| significant(x, 4));
     let found = format!(
         "{} ± {}, to lie in {} to {}",
@@ -144,7 +149,7 @@ fn between(claim: &Between, view: &View<'_>) -> Result<Decision, Absence> {
         end(claim.from),
         end(claim.to)
     );
-    Ok(Decision { outcome, found })
+    Ok(Decision { found, ..tally.decision()? })
 }
 
 fn level(claim: &Level, view: &View<'_>, side: f64) -> Result<Decision, Absence> {
@@ -203,8 +208,6 @@ fn agree(tally: &mut Tally, cells: &[Cell], within: Within, place: impl FnOnce()
 fn paths_cross(claim: &PathsCross, view: &View<'_>) -> Result<Decision, Absence> {
     let rows = view.rows(claim.source(), None)?;
     let (one, other) = (view.path(&rows, &claim.of)?, view.path(&rows, &claim.other)?);
-    finite(one, &claim.of)?;
-    finite(other, &claim.other)?;
     let unit = view.unit(&rows, &claim.of)?;
     let apart = || one.iter().zip(other).map(|(a, b)| a - b);
     let (above, below) = (apart().fold(f64::NEG_INFINITY, f64::max), -apart().fold(f64::INFINITY, f64::min));
@@ -230,7 +233,6 @@ fn path_monotone(claim: &PathMonotone, view: &View<'_>) -> Result<Decision, Abse
     };
     let samples = path.get(first..).filter(|samples| samples.len() > 1);
     let samples = samples.ok_or_else(|| Absence::NoRow("the time history ends before that time".into()))?;
-    finite(samples, &claim.of)?;
     let cell = |&value: &f64| Cell { value: claim.direction.sign() * value, run: 0.0, spread: 0.0 };
     let line = Line {
         over: "time".into(),

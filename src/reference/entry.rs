@@ -13,6 +13,17 @@
 //!     says: Beyond the optimum the velocity ratio decreases.
 //!     claim: {monotone: {of: velocity_ratio, over: force_ratio, direction: decreasing, part: after_maximum, slack: 0.02}}
 //!     threshold_reason: Chaotic points scatter by a per cent or two.
+//!   - id: first-resonance
+//!     place: s. 4.3.1, Fig. 33
+//!     says: The clean beam has a natural frequency at 26 rad/s.
+//!     where: {sweep: clean}
+//!     peak: {of: displacement_per_force, over: angular_frequency, at: 26 rad/s}
+//!   - id: second-mode
+//!     place: s. 4.3.2, Fig. 36
+//!     says: The second mode shape of a cantilever.
+//!     where: {mode: 2}
+//!     mode_shape: {of: shape, over: x, like: {cantilever: 2}, mac: {at_least: 0.999}}
+//!     threshold_reason: Lines that differ by a thirtieth of their size lie on each other.
 //! ```
 
 use std::collections::BTreeSet;
@@ -21,9 +32,12 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 
 use super::extraction::Extraction;
+use super::mode_shape::ModeShape;
 use super::predicate::Predicate;
 use super::printed::Printed;
+use super::resonance::PrintedPeak;
 use super::selection::Selection;
+use super::tube::Curve;
 use super::verdict::Verdict;
 use crate::spec::{Spanned, from_yaml, position};
 
@@ -70,7 +84,14 @@ pub enum Check {
         /// Instead of the derived one.
         tolerance: Option<Tolerance>,
     },
-    /// A claim in words.
+    /// The numbers of a resonance.
+    Peak {
+        /// As printed.
+        peak: PrintedPeak,
+        /// Instead of the derived ones.
+        tolerance: Option<Tolerance>,
+    },
+    /// A claim in words, or a curve or shape.
     Claim {
         /// The claim.
         predicate: Predicate,
@@ -105,6 +126,7 @@ impl ReferenceFile {
         let tables = |entry: &Entry| -> Vec<String> {
             let named = match &entry.check {
                 Check::Value { from, .. } => from.tables(),
+                Check::Peak { .. } => Vec::new(),
                 Check::Claim { predicate, .. } => predicate.tables(),
             };
             named.into_iter().map(String::from).collect()
@@ -179,6 +201,9 @@ struct RawEntry {
     from: Option<Extraction>,
     tolerance: Option<RawTolerance>,
     claim: Option<Predicate>,
+    peak: Option<PrintedPeak>,
+    curve: Option<Curve>,
+    mode_shape: Option<ModeShape>,
     threshold_reason: Option<String>,
     #[serde(rename = "where", default)]
     rows: Selection,
@@ -217,7 +242,19 @@ impl RawEntry {
             wrong.push("expects `blocked` and needs `blocked_by`: which input the study does not give".into());
         }
         let threshold_reason = self.threshold_reason.clone().unwrap_or_default().trim().to_string();
-        let check = match (self.value, self.from, self.claim) {
+        let kinds = [
+            self.value.is_some(),
+            self.claim.is_some(),
+            self.peak.is_some(),
+            self.curve.is_some(),
+            self.mode_shape.is_some(),
+        ];
+        if kinds.iter().filter(|given| **given).count() != 1 {
+            wrong.push("needs exactly one of `value` with `from`, `claim`, `peak`, `curve` or `mode_shape`".into());
+            return Err(wrong);
+        }
+        let claim = self.claim.or(self.curve.map(Predicate::Curve)).or(self.mode_shape.map(Predicate::ModeShape));
+        let check = match (self.value, self.from, claim) {
             (Some(value), Some(from), None) => {
                 if !threshold_reason.is_empty() {
                     wrong.push("has a `threshold_reason`, which belongs to claims; a `tolerance` has its own".into());
@@ -250,8 +287,21 @@ impl RawEntry {
                 wrong.push("has a `value` and needs `from`: where its counterpart stands in the table".into());
                 None
             }
+            (None, None, None) => self.peak.map(|peak| {
+                if !threshold_reason.is_empty() {
+                    wrong.push("has a `threshold_reason`, which belongs to claims; a `tolerance` has its own".into());
+                }
+                wrong.extend(peak.flaw());
+                let tolerance = self.tolerance.and_then(|raw| raw.validated(&mut wrong));
+                if tolerance.as_ref().is_some_and(|given| matches!(given.size, ToleranceSize::Absolute(_))) {
+                    wrong.push(
+                        "has an absolute `tolerance`, and a peak has numbers of several units: make it relative".into(),
+                    );
+                }
+                Check::Peak { peak, tolerance }
+            }),
             _ => {
-                wrong.push("needs either a `value` with `from`, or a `claim`".into());
+                wrong.push("has `from`, which belongs to a `value`".into());
                 None
             }
         };

@@ -1,11 +1,11 @@
 //! Takes numbers out of tables. Each comes with its own error, to which the grid of the sweep belongs: a top is known to lie
 //! between its neighbours, no better.
 
-use super::extraction::{Along, Direction, Extraction, NearestPassage, Parting, Side};
+use super::extraction::{Along, Cells, Direction, Extraction, NearestPassage, Parting, Side};
 use super::line::{Position, common, lines};
 use super::selection::same;
 use super::text::{percent, significant};
-use super::view::{Absence, Cell, Source, View, finite};
+use super::view::{Absence, Cell, Source, View};
 
 /// A number taken out of a table.
 #[derive(Debug, Clone, PartialEq)]
@@ -124,6 +124,12 @@ impl Extraction {
                 Extracted::cell(line.largest_fall(), &line.unit)
             }
             Self::NearestPassage(word) => word.take(view)?,
+            Self::Largest(cells) => extreme(cells, view, 1.0)?,
+            Self::Smallest(cells) => extreme(cells, view, -1.0)?,
+            Self::Interpolated(word) => word.take(view)?,
+            Self::MeanOver(word) => word.mean(view)?,
+            Self::StandardDeviationOver(word) => word.standard_deviation(view)?,
+            Self::Peak(peak) => peak.take(view)?,
             Self::Ratio(quotient) => {
                 let (of, to) = (quotient.of.take(view)?, quotient.to.take(view)?);
                 if of.unit != to.unit {
@@ -145,6 +151,15 @@ impl Extraction {
             Self::Times(times) => times.of.take(view)?.times(times.factor),
         })
     }
+}
+
+/// The largest cell of the rows, or the smallest where `sign` is −1.
+fn extreme(cells: &Cells, view: &View<'_>, sign: f64) -> Result<Extracted, Absence> {
+    let rows = view.rows(cells.source(), None)?;
+    let all = view.cells(&rows, &cells.of)?;
+    let best = all.into_iter().reduce(|a, b| if sign * b.value > sign * a.value { b } else { a });
+    let best = best.ok_or_else(|| Absence::NoRow(format!("no row has a `{}`", cells.of)))?;
+    Ok(Extracted::cell(best, view.unit(&rows, &cells.of)?))
 }
 
 impl Parting {
@@ -178,9 +193,6 @@ impl NearestPassage {
         let rows = view.rows(Source { table: None, rows: &self.rows }, None)?;
         let times = view.path(&rows, "time")?;
         let (of, through) = (view.path(&rows, &self.of)?, view.path(&rows, &self.through)?);
-        finite(times, "time")?;
-        finite(of, &self.of)?;
-        finite(through, &self.through)?;
         let side = self.direction.sign();
         let apart: Vec<f64> = of.iter().zip(through).map(|(a, b)| side * (a - b)).collect();
         let passages = apart.windows(2).zip(times.windows(2)).filter(|(apart, _)| apart[0] < 0.0 && apart[1] >= 0.0);

@@ -3,6 +3,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::average::{Interpolated, Stretch};
+use super::resonance::Peak;
 use super::selection::Selection;
 use super::view::Source;
 
@@ -38,6 +40,18 @@ pub enum Extraction {
     LargestStepBack(StepBack),
     /// Of the instants at which one path of a time history passes another, the one nearest to a given time.
     NearestPassage(NearestPassage),
+    /// Largest value of all rows, whatever they are over.
+    Largest(Cells),
+    /// Smallest value of all rows.
+    Smallest(Cells),
+    /// A measure between two points of a line.
+    Interpolated(Interpolated),
+    /// Mean along a parameter, ∫ y dx over its length.
+    MeanOver(Stretch),
+    /// Standard deviation along a parameter.
+    StandardDeviationOver(Stretch),
+    /// Place, height or half-power width of a resonance.
+    Peak(Peak),
     /// One number over another.
     Ratio(Box<Quotient>),
     /// A number times a factor.
@@ -212,6 +226,8 @@ impl Extraction {
             Self::FirstAbove(word) => word.above.is_finite(),
             Self::Parting(word) => word.fraction.is_finite() && word.fraction > 0.0,
             Self::NearestPassage(word) => word.to.is_finite(),
+            Self::MeanOver(word) | Self::StandardDeviationOver(word) => word.is_sound(),
+            Self::Peak(peak) => peak.is_sound(),
             Self::Ratio(quotient) => quotient.of.is_sound() && quotient.to.is_sound(),
             Self::Times(times) => times.factor.is_finite() && times.factor != 0.0 && times.of.is_sound(),
             _ => true,
@@ -222,7 +238,10 @@ impl Extraction {
     pub(crate) fn tables(&self) -> Vec<&str> {
         let table = match self {
             Self::Number(_) | Self::NearestPassage(_) => None,
-            Self::Cell(word) | Self::Mean(word) => word.table.as_deref(),
+            Self::Cell(word) | Self::Mean(word) | Self::Largest(word) | Self::Smallest(word) => word.table.as_deref(),
+            Self::Interpolated(word) => word.table.as_deref(),
+            Self::MeanOver(word) | Self::StandardDeviationOver(word) => word.table.as_deref(),
+            Self::Peak(peak) => peak.table.as_deref(),
             Self::Maximum(word) | Self::Minimum(word) | Self::Argmax(word) | Self::Argmin(word) => {
                 word.table.as_deref()
             }

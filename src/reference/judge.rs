@@ -12,11 +12,14 @@ use super::decide::decide;
 use super::entry::{Check, Entry, ReferenceFile, Tolerance, ToleranceSize};
 use super::extract::Extracted;
 use super::extraction::Extraction;
+use super::fit::Fit;
 use super::printed::Printed;
+use super::resonance::PrintedPeak;
 use super::tally::Outcome;
 use super::text::{percent, significant, with_unit};
-use super::verdict::{Comparison, Judged, Verdict};
-use super::view::{Absence, BASELINE, Reads, Tables, View};
+use super::verdict::{Comparison, Judged, Part, Verdict};
+use super::view::{Absence, Reads, Tables, View};
+use crate::table::BASELINE;
 
 /// Gives every entry of a file its verdict. `fitted` holds the ids of the entries that an assumption was fitted to.
 #[must_use]
@@ -37,6 +40,7 @@ pub(crate) fn judge_entry(
     let fitted = fitted.contains(&entry.id);
     let judgement = match &entry.check {
         Check::Value { published, from, tolerance } => value(&view, published, from, tolerance.as_ref(), fitted),
+        Check::Peak { peak, tolerance } => Ok(numbers(&view, peak, tolerance.as_ref(), fitted)),
         Check::Claim { predicate, .. } => {
             let verdict = |outcome| match outcome {
                 Outcome::Holds if fitted => Verdict::Fitted,
@@ -53,26 +57,23 @@ pub(crate) fn judge_entry(
                     Outcome::Fails => "does not hold",
                 };
                 Ok(Judgement {
-                    verdict: verdict(baseline.outcome),
                     found: format!("{words}: {}", baseline.found),
-                    comparison: None,
                     robust: robust(kept, others.len()),
+                    fit: predicate.fit(&view),
+                    ..Judgement::of(verdict(baseline.outcome))
                 })
             })
         }
     };
-    let mut judgement = judgement.unwrap_or_else(|absence| Judgement {
-        verdict: Verdict::Missing,
-        found: absence.reason().to_string(),
-        comparison: None,
-        robust: None,
-    });
+    let mut judgement = judgement.unwrap_or_else(|absence| Judgement::missing(&absence));
     if !entry.blocked_by.is_empty() && judgement.verdict != Verdict::Missing {
         judgement.verdict = Verdict::Blocked;
         judgement.found = format!("not given: {}; here {}", entry.blocked_by.join(", "), judgement.found);
     }
     let tolerance_reason = match &entry.check {
-        Check::Value { tolerance, .. } => tolerance.as_ref().map(|tolerance| tolerance.reason.clone()),
+        Check::Value { tolerance, .. } | Check::Peak { tolerance, .. } => {
+            tolerance.as_ref().map(|tolerance| tolerance.reason.clone())
+        }
         Check::Claim { threshold_reason, .. } => Some(threshold_reason.clone()).filter(|reason| !reason.is_empty()),
     };
     Judged {
@@ -84,6 +85,8 @@ pub(crate) fn judge_entry(
         expected: entry.expected,
         found: judgement.found,
         comparison: judgement.comparison,
+        parts: judgement.parts,
+        fit: judgement.fit,
         explanation: entry.explanation.clone(),
         tolerance_reason,
         robust: judgement.robust,
@@ -94,7 +97,57 @@ struct Judgement {
     verdict: Verdict,
     found: String,
     comparison: Option<Comparison>,
+    parts: Vec<Part>,
+    fit: Option<Fit>,
     robust: Option<(u32, u32)>,
+}
+
+impl Judgement {
+    fn of(verdict: Verdict) -> Self {
+        Self { verdict, found: String::new(), comparison: None, parts: Vec::new(), fit: None, robust: None }
+    }
+
+    fn missing(absence: &Absence) -> Self {
+        Self { found: absence.reason().to_string(), ..Self::of(Verdict::Missing) }
+    }
+}
+
+/// Several numbers of one entry: the worst verdict is the entry's.
+fn numbers(view: &View<'_>, peak: &PrintedPeak, by_hand: Option<&Tolerance>, fitted: bool) -> Judgement {
+    let judged: Vec<(&str, Judgement)> = peak
+        .numbers()
+        .into_iter()
+        .map(|number| {
+            let name = number.peak.read.words();
+            let judgement = value(view, number.published, &Extraction::Peak(number.peak), by_hand, fitted);
+            (name, judgement.unwrap_or_else(|absence| Judgement::missing(&absence)))
+        })
+        .collect();
+    let verdict = judged.iter().map(|(_, judgement)| judgement.verdict).max_by_key(|verdict| severity(*verdict));
+    // An assumption moved that turns one of the numbers turns the entry; which ones it turns is not kept, so at best the
+    // smallest count is.
+    let robust = judged.iter().filter_map(|(_, judgement)| judgement.robust).min();
+    let found: Vec<String> = judged.iter().map(|(name, judgement)| format!("{name} {}", judgement.found)).collect();
+    let parts = judged.into_iter().map(|(name, Judgement { verdict, found, comparison, .. })| Part {
+        name: name.into(),
+        verdict,
+        found,
+        comparison,
+    });
+    let parts = parts.collect();
+    Judgement { found: found.join("; "), parts, robust, ..Judgement::of(verdict.unwrap_or(Verdict::Missing)) }
+}
+
+/// How bad a verdict is among several.
+fn severity(verdict: Verdict) -> u8 {
+    match verdict {
+        Verdict::Reproduced => 0,
+        Verdict::Fitted => 1,
+        Verdict::Undecidable => 2,
+        Verdict::Blocked => 3,
+        Verdict::Differs => 4,
+        Verdict::Missing => 5,
+    }
 }
 
 fn robust(kept: usize, run: usize) -> Option<(u32, u32)> {
@@ -128,7 +181,7 @@ fn value(
     let simulated = match from.take(view) {
         Ok(simulated) => simulated,
         Err(Absence::Nowhere(reason)) => {
-            return Ok(Judgement { verdict: Verdict::Differs, found: reason, comparison: None, robust: None });
+            return Ok(Judgement { found: reason, ..Judgement::of(Verdict::Differs) });
         }
         Err(absence) => return Err(absence),
     };
@@ -177,7 +230,8 @@ fn value(
     if let Some(remark) = remark {
         found = format!("{found}; {remark}");
     }
-    Ok(Judgement { verdict, found, comparison: Some(comparison), robust: robust(kept, others.len() + vanished) })
+    let robust = robust(kept, others.len() + vanished);
+    Ok(Judgement { found, comparison: Some(comparison), robust, ..Judgement::of(verdict) })
 }
 
 /// Half the range that each assumption gives the value, root-sum-square. A variant is named `assumption=value`.

@@ -1,22 +1,31 @@
 //! The published numbers and claims, and what became of each.
 //!
 //! An [`Entry`] says where a number or claim stands and how it is read from a table. [`judge`] holds it against the tables:
-//! values after ASME V&V 20, claims as predicates. [`self_test`] shows that every entry can fail.
+//! values and peaks after ASME V&V 20, claims as predicates, curves within a tube, shapes by MAC. [`self_test`] shows that every entry can fail.
 
+mod analytic;
+mod average;
+mod columns;
 mod compare;
+mod damage;
 mod decide;
 mod entry;
 mod extract;
 mod extraction;
+mod fit;
 mod judge;
 mod line;
+mod mode_shape;
+mod place;
 mod predicate;
 mod printed;
+mod resonance;
 mod selection;
 mod self_test;
 mod shape;
 mod tally;
 mod text;
+mod tube;
 mod verdict;
 mod view;
 
@@ -24,10 +33,12 @@ pub use entry::{
     Check, Entry, ReferenceError, ReferenceFile, Tolerance, ToleranceSize, load_reference, parse_reference,
 };
 pub use extraction::Extraction;
+pub use fit::{Fit, FitMeasure};
 pub use judge::judge;
 pub use predicate::Predicate;
 pub use printed::{Printed, PrintedError};
+pub use resonance::{Feature, PrintedPeak, Which};
 pub use selection::{Allowed, Selection};
 pub use self_test::{SelfTestFailure, self_test};
-pub use verdict::{Comparison, Judged, Verdict};
+pub use verdict::{Comparison, Judged, Part, Verdict};
 pub use view::{TableState, Tables};

@@ -7,9 +7,13 @@
 use serde::{Deserialize, Serialize};
 
 use super::extraction::{Direction, Extraction, Side};
+use super::fit::Fit;
+use super::mode_shape::ModeShape;
+use super::place::{BestPlace, GrowsTowards};
 use super::selection::Selection;
 use super::text::{percent, significant};
-use super::view::Source;
+use super::tube::Curve;
+use super::view::{Source, View};
 
 /// What a claim says of a table.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -49,6 +53,16 @@ pub enum Predicate {
     PathsCross(PathsCross),
     /// A time history never rises (or falls).
     PathMonotone(PathMonotone),
+    /// A map has its largest value at a place.
+    BestPlace(BestPlace),
+    /// A map grows towards a place.
+    GrowsTowards(GrowsTowards),
+    /// A line lies in a tube around a published curve; in a file, an entry's `curve`.
+    #[serde(skip_deserializing)]
+    Curve(Curve),
+    /// A shape is an analytic one; in a file, an entry's `mode_shape`.
+    #[serde(skip_deserializing)]
+    ModeShape(ModeShape),
 }
 
 macro_rules! claim {
@@ -318,6 +332,8 @@ impl Predicate {
             Self::Trend(claim) => claim.slack > 0.0,
             Self::Above(claim) | Self::Below(claim) => claim.slack > 0.0,
             Self::PathMonotone(claim) => claim.slack > 0.0,
+            Self::BestPlace(claim) => claim.slack > 0.0 || claim.among > 1,
+            Self::GrowsTowards(claim) => claim.slack > 0.0,
             Self::Equal(_)
             | Self::Apart(_)
             | Self::Between(_)
@@ -325,7 +341,9 @@ impl Predicate {
             | Self::LinesAgree(_)
             | Self::Linear(_)
             | Self::LevelsOff(_)
-            | Self::Peaks(_) => true,
+            | Self::Peaks(_)
+            | Self::Curve(_)
+            | Self::ModeShape(_) => true,
             Self::GreatestFirst(_) | Self::GreatestAtEnd(_) | Self::Onsets(_) | Self::PathsCross(_) => false,
         }
     }
@@ -365,9 +383,23 @@ impl Predicate {
             Self::Onsets(claim) if claim.order.len() < 2 => return Some("an order needs two onsets or more"),
             Self::Onsets(claim) => claim.order.iter().all(|onset| onset.above.is_finite()),
             Self::PathMonotone(claim) => fraction(claim.slack) && claim.after.is_none_or(f64::is_finite),
+            Self::BestPlace(BestPlace { among: 0, .. }) => return Some("a place is among one of the best or more"),
+            Self::BestPlace(claim) => fraction(claim.slack) && claim.at.is_sound(),
+            Self::GrowsTowards(claim) => fraction(claim.slack) && claim.to.is_sound(),
+            Self::Curve(claim) => return claim.flaw(),
+            Self::ModeShape(claim) => return claim.flaw(),
             Self::GreatestAtEnd(_) | Self::PathsCross(_) => true,
         };
         (!sound).then_some("thresholds are finite; fractions lie between 0 and 1")
+    }
+
+    /// How well a whole curve or shape agrees; none for other claims, and where there is nothing to compare.
+    pub(crate) fn fit(&self, view: &View<'_>) -> Option<Fit> {
+        match self {
+            Self::Curve(claim) => claim.fit(view),
+            Self::ModeShape(claim) => claim.fit(view),
+            _ => None,
+        }
     }
 
     /// The other experiments whose tables it reads.

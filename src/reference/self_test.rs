@@ -1,18 +1,23 @@
-//! Shows that every entry can fail: damaged copies of its own table must turn its verdict.
+//! Shows that every entry can fail: damaged copies of the tables that it reads must turn its verdict.
 //!
-//! A comparison that compared nothing reads like a pass. So each column that decided an entry is dropped, a NaN is put
-//! into each measure it read, and its numbers are moved: a value just outside its tolerance must differ, the published
-//! value itself must not, and some change of the numbers must make a claim fail.
+//! A comparison that compared nothing reads like a pass. So each column that an entry read is dropped, a NaN is put among
+//! the numbers of each, and the numbers of its own experiment are moved. A value just outside its tolerance must differ,
+//! and the published value itself must not. A claim must fail under some change of what it read, first of all one that
+//! carries it just past its own margin.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::compare;
+use super::damage::{Damage, alter, extremes, numbers};
+use super::decide::decide;
 use super::entry::{Check, Entry, ReferenceFile};
 use super::extraction::Extraction;
 use super::judge::judge_noting;
+use super::predicate::Predicate;
+use super::resonance::{Feature, Peak};
 use super::verdict::{Judged, Verdict};
-use super::view::{BASELINE, Read, Reads, Role, TableState, Tables, View};
-use crate::table::{Data, Table};
+use super::view::{Read, Reads, Role, TableState, Tables, View};
+use crate::table::{BASELINE, Table};
 
 /// An entry that passed where it had to fail, or that could not be put to the test.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -29,8 +34,12 @@ impl std::fmt::Display for SelfTestFailure {
     }
 }
 
-/// How far outside its tolerance a moved value is put.
+/// How far outside its tolerance, or past its margin, something is put: just outside.
 const JUST_OUTSIDE: f64 = 1.05;
+/// The same for changes of many numbers, of which a claim's margin sees a part.
+const FURTHER_OUTSIDE: [f64; 2] = [2.0, 10.0];
+/// Most numbers of a column that are moved one at a time.
+const SPIKES: usize = 512;
 
 /// Puts every entry of a file to the test, on the table of its own experiment among `tables`.
 #[must_use]
@@ -39,7 +48,9 @@ pub fn self_test(file: &ReferenceFile, tables: &Tables<'_>) -> Vec<SelfTestFailu
     for entry in &file.entries {
         let failed = match tables.get(&file.experiment) {
             Some(TableState::Present(table)) => {
-                Bench { entry, experiment: &file.experiment, tables, table }.run().err()
+                // What an unstated input blocks must be able to fail once it is stated.
+                let entry = Entry { blocked_by: Vec::new(), ..entry.clone() };
+                Bench { entry: &entry, experiment: &file.experiment, tables, table }.run().err()
             }
             _ => Some("its table is missing, so it cannot be put to the test".to_string()),
         };
@@ -52,6 +63,7 @@ struct Bench<'a> {
     entry: &'a Entry,
     experiment: &'a str,
     tables: &'a Tables<'a>,
+    /// Of its own experiment.
     table: &'a Table,
 }
 
@@ -62,52 +74,97 @@ impl Bench<'_> {
             return Err(format!("it is missing already: {}", judged.found));
         }
         let reads = reads.into_inner();
-        if !reads.iter().any(|read| matches!(read.role, Role::Value | Role::Path)) {
+        if self.measures(&reads).is_empty() {
             return Err("it reads no measure of its own table".into());
         }
-        self.dropped_columns(&reads)?;
+        self.without_columns(&reads)?;
         self.not_a_number(&reads)?;
-        if !self.entry.blocked_by.is_empty() {
-            return Ok(());
-        }
         match &self.entry.check {
             Check::Value { from, .. } => self.moved_value(&judged, from, &reads),
-            Check::Claim { .. } => self.broken_claim(&judged, &reads),
+            Check::Peak { peak, tolerance } => {
+                // Each number as if it were an entry of its own.
+                peak.numbers().into_iter().try_for_each(|number| {
+                    let name = number.peak.read.words();
+                    let check = Check::Value {
+                        published: number.published.clone(),
+                        from: Extraction::Peak(number.peak),
+                        tolerance: tolerance.clone(),
+                    };
+                    let entry = Entry { check, ..self.entry.clone() };
+                    Bench { entry: &entry, ..*self }.run().map_err(|reason| format!("{name}: {reason}"))
+                })
+            }
+            Check::Claim { predicate, .. } => self.broken_claim(&judged, predicate, &reads),
         }
     }
 
     fn judge(&self, table: &Table) -> Judged {
+        self.judge_with(self.experiment, table)
+    }
+
+    /// The verdict with another table of that experiment.
+    fn judge_with(&self, experiment: &str, table: &Table) -> Judged {
         let mut tables: Tables<'_> = self.tables.clone();
-        tables.insert(self.experiment.to_string(), TableState::Present(table));
+        tables.insert(experiment.to_string(), TableState::Present(table));
         judge_noting(self.entry, self.experiment, &tables).0
     }
 
-    fn dropped_columns(&self, reads: &BTreeSet<Read>) -> Result<(), String> {
-        let columns: BTreeSet<usize> = reads.iter().map(|read| read.column).collect();
-        for column in columns {
-            let mut table = self.table.clone();
+    fn view<'v>(&'v self, variant: &'v str, reads: &'v Reads) -> View<'v> {
+        View { tables: self.tables, home: self.experiment, variant, given: self.entry.rows.clone(), reads }
+    }
+
+    fn at_home<'r>(&self, reads: &'r BTreeSet<Read>) -> impl Iterator<Item = &'r Read> + use<'r, '_> {
+        reads.iter().filter(|read| read.table == self.experiment)
+    }
+
+    /// The measures and time histories that it read of its own table: their rows by column.
+    fn measures(&self, reads: &BTreeSet<Read>) -> BTreeMap<usize, Vec<usize>> {
+        by_column(self.at_home(reads).filter(|read| matches!(read.role, Role::Value | Role::Path)))
+    }
+
+    /// All that it read, of any table: experiment, its table, column, rows.
+    fn all_reads<'r>(&'r self, reads: &'r BTreeSet<Read>) -> Vec<(&'r str, &'r Table, usize, Vec<usize>)> {
+        let experiments: BTreeSet<&str> = reads.iter().map(|read| read.table.as_str()).collect();
+        let of = |experiment| match self.tables.get(experiment) {
+            Some(TableState::Present(table)) => by_column(reads.iter().filter(|read| read.table == experiment))
+                .into_iter()
+                .map(|(column, rows)| (experiment, *table, column, rows))
+                .collect(),
+            _ => Vec::new(),
+        };
+        experiments.into_iter().flat_map(of).collect()
+    }
+
+    fn without_columns(&self, reads: &BTreeSet<Read>) -> Result<(), String> {
+        for (experiment, table, column, _) in self.all_reads(reads) {
+            let mut table = table.clone();
             let name = table.columns.remove(column).name;
-            let verdict = self.judge(&table).verdict;
+            let verdict = self.judge_with(experiment, &table).verdict;
             if verdict != Verdict::Missing {
-                return Err(format!("without the column `{name}` it is {verdict:?}, not missing"));
+                return Err(format!("without the column `{name}` of `{experiment}` it is {verdict:?}, not missing"));
             }
         }
         Ok(())
     }
 
     fn not_a_number(&self, reads: &BTreeSet<Read>) -> Result<(), String> {
-        let mut cells: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
-        for read in reads.iter().filter(|read| matches!(read.role, Role::Value | Role::Path)) {
-            cells.entry(read.column).or_default().push(read.row);
-        }
-        for (column, rows) in cells {
-            for row in BTreeSet::from([rows[0], rows[rows.len() / 2], rows[rows.len() - 1]]) {
-                let mut table = self.table.clone();
-                alter(&mut table, column, &[row], |_, _| f64::NAN);
-                let verdict = self.judge(&table).verdict;
+        for (experiment, table, column, rows) in self.all_reads(reads) {
+            let count = numbers(table, column, &rows).len();
+            if count == 0 {
+                // Words.
+                continue;
+            }
+            for at in BTreeSet::from([0, count / 2, count - 1]) {
+                let mut damaged = table.clone();
+                alter(&mut damaged, column, &rows, |x, i| if i == at { f64::NAN } else { x });
+                let verdict = self.judge_with(experiment, &damaged).verdict;
                 if verdict != Verdict::Missing {
-                    let name = &self.table.columns[column].name;
-                    return Err(format!("with a NaN in `{name}`, row {}, it is {verdict:?}, not missing", row + 1));
+                    let name = &table.columns[column].name;
+                    return Err(format!(
+                        "with a NaN for number {} of the {count} that it reads in `{name}` of `{experiment}` it is \
+                         {verdict:?}, not missing",
+                        at + 1
+                    ));
                 }
             }
         }
@@ -146,7 +203,8 @@ impl Bench<'_> {
     ) -> Result<(), String> {
         let cells = |role: Role, name: &str| -> (usize, Vec<usize>) {
             let column = self.table.columns.iter().position(|column| column.name == name).unwrap_or(usize::MAX);
-            (column, reads.iter().filter(|read| read.role == role && read.column == column).map(|r| r.row).collect())
+            let read = self.at_home(reads).filter(|read| read.role == role && read.column == column);
+            (column, read.map(|read| read.row).collect())
         };
         let mut shift = |(column, rows): (usize, Vec<usize>)| alter(table, column, &rows, |x, _| x + (to - now));
         match from {
@@ -158,6 +216,27 @@ impl Bench<'_> {
             Extraction::Crossing(word) => shift(cells(Role::Coordinate, &word.over)),
             Extraction::FirstAbove(word) => shift(cells(Role::Coordinate, &word.over)),
             Extraction::Parting(word) => shift(cells(Role::Coordinate, &word.over)),
+            Extraction::Largest(word) | Extraction::Smallest(word) => shift(cells(Role::Value, &word.of)),
+            Extraction::Interpolated(word) => shift(cells(Role::Value, &word.of)),
+            Extraction::MeanOver(word) => shift(cells(Role::Value, &word.of)),
+            Extraction::StandardDeviationOver(word) => {
+                let (column, rows) = cells(Role::Value, &word.of);
+                alter(table, column, &rows, |x, _| x * to / now);
+            }
+            Extraction::Peak(peak) => match peak.read {
+                Feature::Place => shift(cells(Role::Coordinate, &peak.over)),
+                Feature::Height => {
+                    let (column, rows) = cells(Role::Value, &peak.of);
+                    alter(table, column, &rows, |x, _| x * to / now);
+                }
+                Feature::HalfPowerWidth => {
+                    let at = Peak { read: Feature::Place, ..peak.clone() };
+                    let place = at.take(&self.view(BASELINE, &Reads::default()));
+                    let place = place.map_err(|absence| absence.reason().to_string())?.value;
+                    let (column, rows) = cells(Role::Coordinate, &peak.over);
+                    alter(table, column, &rows, |x, _| place + (x - place) * to / now);
+                }
+            },
             Extraction::NearestPassage(_) => shift(cells(Role::Path, "time")),
             Extraction::LargestStepBack(word) => {
                 let (column, rows) = cells(Role::Value, &word.of);
@@ -172,13 +251,7 @@ impl Bench<'_> {
                     // A variant without these rows reads nothing, which is what is wanted of it.
                     let _ = quotient.of.take(&self.view(variant, &above));
                 }
-                for column in above.borrow().iter().map(|read| read.column).collect::<BTreeSet<_>>() {
-                    let rows: Vec<usize> = above
-                        .borrow()
-                        .iter()
-                        .filter(|read| read.column == column && read.role == Role::Value)
-                        .map(|read| read.row)
-                        .collect();
+                for (column, rows) in by_column(self.at_home(&above.borrow()).filter(|read| read.role == Role::Value)) {
                     alter(table, column, &rows, |x, _| x * to / now);
                 }
             }
@@ -187,119 +260,68 @@ impl Bench<'_> {
         Ok(())
     }
 
-    fn view<'v>(&'v self, variant: &'v str, reads: &'v Reads) -> View<'v> {
-        View { tables: self.tables, home: self.experiment, variant, given: self.entry.rows.clone(), reads }
+    /// True if a shape that is said to be different from another fails when it is that very one: no small damage makes two
+    /// shapes alike.
+    fn takes_no_double(&self, predicate: &Predicate, reads: &BTreeSet<Read>) -> Result<bool, String> {
+        let Predicate::ModeShape(claim) = predicate else { return Ok(false) };
+        let double = claim.double(&self.view(BASELINE, &Reads::default()));
+        let double = double.map_err(|absence| absence.reason().to_string())?;
+        let mut table = self.table.clone();
+        for (column, rows) in self.measures(reads) {
+            if self.table.columns[column].name == claim.of {
+                alter(&mut table, column, &rows, |x, i| double.get(i % double.len().max(1)).copied().unwrap_or(x));
+            }
+        }
+        Ok(self.judge(&table).verdict == Verdict::Differs)
     }
 
-    /// Some change of the numbers that it reads must make a claim fail.
-    fn broken_claim(&self, judged: &Judged, reads: &BTreeSet<Read>) -> Result<(), String> {
+    /// Some change of the numbers that it reads must make a claim fail. One that two tops lie apart cannot be refuted on a
+    /// coarse grid; it must at least be left open.
+    fn broken_claim(&self, judged: &Judged, predicate: &Predicate, reads: &BTreeSet<Read>) -> Result<(), String> {
         if judged.verdict == Verdict::Differs {
             return Ok(());
         }
-        let mut cells: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
-        for read in reads.iter().filter(|read| matches!(read.role, Role::Value | Role::Path)) {
-            cells.entry(read.column).or_default().push(read.row);
+        let reach = decide(predicate, &self.view(BASELINE, &Reads::default())).ok().and_then(|decision| decision.reach);
+        if self.takes_no_double(predicate, reads)? {
+            return Ok(());
         }
-        for (column, rows) in cells {
-            let half = rows.len().div_ceil(2);
-            for rows in [&rows[..], &rows[..half], &rows[half..]] {
-                for damage in DAMAGES {
+        let mut left_open = false;
+        for (column, rows) in self.measures(reads) {
+            let (first, second) = rows.split_at(rows.len().div_ceil(2));
+            for (rows, spikes) in [(rows.as_slice(), SPIKES), (first, 0), (second, 0)] {
+                let present = numbers(self.table, column, rows);
+                for (damage, by) in damages(&present, spikes, reach) {
                     let mut table = self.table.clone();
-                    damage.inflict(&mut table, column, rows);
-                    if self.judge(&table).verdict == Verdict::Differs {
-                        return Ok(());
+                    damage.inflict(&mut table, column, rows, by);
+                    match self.judge(&table).verdict {
+                        Verdict::Differs => return Ok(()),
+                        Verdict::Undecidable if judged.verdict != Verdict::Undecidable => left_open = true,
+                        _ => {}
                     }
                 }
             }
         }
-        Err("nothing that was done to the measures it reads made it fail".into())
+        if left_open { Ok(()) } else { Err("nothing that was done to the measures it reads made it fail".into()) }
     }
 }
 
-/// A change of some cells that keeps them finite.
-#[derive(Debug, Clone, Copy)]
-enum Damage {
-    Mirrored,
-    Raised,
-    Lowered,
-    Flattened,
-    SpikeFirst,
-    SpikeMiddle,
-    SpikeLast,
-    Comb,
-    OtherComb,
+/// What is to be tried on these numbers, the smallest changes first: just past the claim's margin, where it has one in their
+/// unit, and as far as the numbers themselves reach.
+fn damages(present: &[f64], spikes: usize, reach: Option<f64>) -> Vec<(Damage, f64)> {
+    let (low, high) = extremes(present);
+    let far = 2.0 * (high - low).max(high.abs()).max(low.abs());
+    let far = if far > 0.0 { far } else { 1.0 };
+    let near = |reach: f64| std::iter::once(JUST_OUTSIDE).chain(FURTHER_OUTSIDE).map(move |times| times * reach);
+    let sizes: Vec<f64> = reach.into_iter().flat_map(near).chain([far]).collect();
+    let sized = |damage| sizes.iter().flat_map(move |&size| [(damage, size), (damage, -size)]);
+    let sizes_of = |damage: Damage| if damage.has_size() { sized(damage).collect() } else { vec![(damage, 0.0)] };
+    Damage::all(present.len(), spikes).into_iter().flat_map(sizes_of).collect()
 }
 
-const DAMAGES: [Damage; 9] = [
-    Damage::Mirrored,
-    Damage::Raised,
-    Damage::Lowered,
-    Damage::Flattened,
-    Damage::SpikeFirst,
-    Damage::SpikeMiddle,
-    Damage::SpikeLast,
-    Damage::Comb,
-    Damage::OtherComb,
-];
-
-impl Damage {
-    fn inflict(self, table: &mut Table, column: usize, rows: &[usize]) {
-        let Some(column_) = table.columns.get(column) else { return };
-        let present: Vec<f64> = rows.iter().flat_map(|&row| numbers(&column_.data, row)).collect();
-        let low = present.iter().copied().fold(f64::INFINITY, f64::min);
-        let high = present.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        let far = 2.0 * (high - low).max(high.abs()).max(low.abs()).max(1e-3);
-        let last = present.len().saturating_sub(1);
-        alter(table, column, rows, |x, i| match self {
-            Self::Mirrored => low + high - x,
-            Self::Raised => x + far,
-            Self::Lowered => x - far,
-            Self::Flattened => low,
-            Self::SpikeFirst if i == 0 => x + far,
-            Self::SpikeMiddle if i == last / 2 => x + far,
-            Self::SpikeLast if i == last => x + far,
-            Self::Comb if i % 2 == 1 => x - far,
-            Self::OtherComb if i % 2 == 0 => x - far,
-            _ => x,
-        });
+fn by_column<'r>(reads: impl Iterator<Item = &'r Read>) -> BTreeMap<usize, Vec<usize>> {
+    let mut columns: BTreeMap<usize, BTreeSet<usize>> = BTreeMap::new();
+    for read in reads {
+        columns.entry(read.column).or_default().insert(read.row);
     }
-}
-
-fn numbers(data: &Data, row: usize) -> Vec<f64> {
-    match data {
-        Data::Float(cells) => cells.get(row).copied().into_iter().collect(),
-        #[expect(clippy::cast_precision_loss, reason = "counts are far below 2^53")]
-        Data::Int(cells) => cells.get(row).map(|&count| count as f64).into_iter().collect(),
-        Data::FloatList(lists) => lists.get(row).cloned().unwrap_or_default(),
-        Data::Text(_) => Vec::new(),
-    }
-}
-
-/// Replaces numbers of a column, counted through the given rows and, in time histories, through their samples. Counts
-/// become plain numbers, so that they can be anything.
-fn alter(table: &mut Table, column: usize, rows: &[usize], change: impl Fn(f64, usize) -> f64) {
-    let Some(column) = table.columns.get_mut(column) else { return };
-    if let Data::Int(counts) = &column.data {
-        #[expect(clippy::cast_precision_loss, reason = "counts are far below 2^53")]
-        let numbers = counts.iter().map(|&count| count as f64).collect();
-        column.data = Data::Float(numbers);
-    }
-    let mut i = 0;
-    let mut next = |x: &mut f64| {
-        *x = change(*x, i);
-        i += 1;
-    };
-    match &mut column.data {
-        Data::Float(cells) => rows.iter().for_each(|&row| {
-            if let Some(x) = cells.get_mut(row) {
-                next(x);
-            }
-        }),
-        Data::FloatList(lists) => rows.iter().for_each(|&row| {
-            if let Some(list) = lists.get_mut(row) {
-                list.iter_mut().for_each(&mut next);
-            }
-        }),
-        Data::Int(_) | Data::Text(_) => {}
-    }
+    columns.into_iter().map(|(column, rows)| (column, rows.into_iter().collect())).collect()
 }

@@ -154,7 +154,7 @@ pub(crate) fn peaks(claim: &Peaks, view: &View<'_>) -> Result<Decision, Absence>
     } else {
         format!("{} peaks: {} = {}", sure.len(), claim.over, places.join(", "))
     };
-    Ok(Decision { outcome: at_least.max(at_most), found })
+    Ok(Decision { outcome: at_least.max(at_most), found, reach: None })
 }
 
 pub(crate) fn onsets(claim: &Onsets, view: &View<'_>) -> Result<Decision, Absence> {
@@ -171,12 +171,11 @@ pub(crate) fn onsets(claim: &Onsets, view: &View<'_>) -> Result<Decision, Absenc
         // On one grid, a later first point is a later onset, however wide the grid's steps are.
         tally.require_strictly(pair[1] - pair[0], 0.0, String::new);
     }
-    let outcome = tally.decision()?.outcome;
     let words: Vec<String> = claim
         .order
         .iter()
         .zip(&found)
         .map(|(onset, x)| format!("{} from {} = {}", onset.of, claim.over, significant(*x, 3)))
         .collect();
-    Ok(Decision { outcome, found: words.join(", ") })
+    Ok(Decision { found: words.join(", "), ..tally.decision()? })
 }

@@ -15,11 +15,21 @@ pub(crate) enum Outcome {
 pub(crate) struct Decision {
     pub outcome: Outcome,
     pub found: String,
+    /// By how much the worst requirement would have to move, in its own unit, for the claim to fail; none where there is no
+    /// such number, and none to be moved where it fails already.
+    pub reach: Option<f64>,
 }
 
 /// Requirements so far: the worst one and its words.
 pub(crate) struct Tally {
-    worst: Option<(Outcome, f64, String)>,
+    worst: Option<Requirement>,
+}
+
+struct Requirement {
+    outcome: Outcome,
+    margin: f64,
+    u: f64,
+    says: String,
 }
 
 impl Tally {
@@ -39,10 +49,10 @@ impl Tally {
         };
         let worse = match &self.worst {
             None => true,
-            Some((worst, smallest, _)) => outcome > *worst || (outcome == *worst && margin < *smallest),
+            Some(worst) => outcome > worst.outcome || (outcome == worst.outcome && margin < worst.margin),
         };
         if worse {
-            self.worst = Some((outcome, margin, says()));
+            self.worst = Some(Requirement { outcome, margin, u, says: says() });
         }
     }
 
@@ -53,8 +63,8 @@ impl Tally {
 
     /// The worst requirement's answer.
     pub(crate) fn decision(self) -> Result<Decision, Absence> {
-        let (outcome, _, found) =
-            self.worst.ok_or_else(|| Absence::NoRow("nothing to compare: too few points".into()))?;
-        Ok(Decision { outcome, found })
+        let worst = self.worst.ok_or_else(|| Absence::NoRow("nothing to compare: too few points".into()))?;
+        let reach = worst.margin + 2.0 * worst.u;
+        Ok(Decision { outcome: worst.outcome, found: worst.says, reach: (reach > 0.0).then_some(reach) })
     }
 }

@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::fit::Fit;
+
 /// What became of an entry.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -59,6 +61,19 @@ impl Comparison {
     }
 }
 
+/// One number of an entry that has several.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Part {
+    /// `half-power width`.
+    pub name: String,
+    /// Its own verdict.
+    pub verdict: Verdict,
+    /// What came out, in one line.
+    pub found: String,
+    /// Against the published number; none where there is nothing to compare.
+    pub comparison: Option<Comparison>,
+}
+
 /// An entry with its verdict, ready for a report: plain data, no tables needed.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Judged {
@@ -78,6 +93,10 @@ pub struct Judged {
     pub found: String,
     /// For values.
     pub comparison: Option<Comparison>,
+    /// For an entry of several numbers: each with its own verdict. The entry's is the worst of them.
+    pub parts: Vec<Part>,
+    /// For curves and shapes.
+    pub fit: Option<Fit>,
     /// Why it is expected to differ, to be blocked or undecidable; the entry's own note. Markdown.
     pub explanation: String,
     /// Why a tolerance was set by hand, if it was.
@@ -87,6 +106,12 @@ pub struct Judged {
 }
 
 impl Judged {
+    /// Its numbers against the published ones, each with the name of its part; empty for the one number of a value.
+    pub fn comparisons(&self) -> impl Iterator<Item = (&str, &Comparison)> {
+        let parts = self.parts.iter().filter_map(|part| Some((part.name.as_str(), part.comparison.as_ref()?)));
+        self.comparison.iter().map(|comparison| ("", comparison)).chain(parts)
+    }
+
     /// True if the verdict is the expected one; `missing` never is.
     #[must_use]
     pub fn as_expected(&self) -> bool {

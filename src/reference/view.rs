@@ -6,12 +6,11 @@
 use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
 
+use super::columns::{Found, find, find_if_any, height, labels, number, parameter};
 use super::selection::{Allowed, Selection, same};
 use super::text::significant;
-use crate::table::{Column, Data, Table};
+use crate::table::{BASELINE, Data, Table};
 
-/// The variant without any assumption moved.
-pub(crate) const BASELINE: &str = "baseline";
 /// The solver that is meant where an entry names none.
 const DEFAULT_SOLVER: &str = "event_driven";
 
@@ -59,13 +58,17 @@ pub(crate) enum Role {
     Coordinate,
     /// A measure.
     Value,
+    /// The uncertainty of a measure.
+    Error,
     /// A time history.
     Path,
 }
 
-/// A cell of the entry's own table that was looked at.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+/// A cell that was looked at.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct Read {
+    /// The experiment whose table it stands in.
+    pub table: String,
     pub column: usize,
     pub role: Role,
     pub row: usize,
@@ -103,8 +106,8 @@ pub(crate) struct Line {
 
 /// The rows that an entry means.
 pub(crate) struct Rows<'a> {
+    id: String,
     table: &'a Table,
-    at_home: bool,
     indices: Vec<usize>,
 }
 
@@ -130,80 +133,107 @@ impl<'a> View<'a> {
         let at_home = id == self.home;
         let table = self.table(id)?;
         let selection = if at_home { self.given.and(source.rows) } else { source.rows.clone() };
-        let mut indices: Vec<usize> = (0..height(table)).collect();
+        let mut rows = Rows { id: id.into(), table, indices: (0..height(table)).collect() };
+        let mut asked = Vec::new();
         for (name, allowed) in &selection.0 {
-            let (column, Column { data, .. }) = find(table, name)?;
-            self.note(at_home, column, Role::Filter, 0);
-            indices.retain(|&row| allowed.admits(data, row));
+            let found = parameter(table, name)?;
+            asked.push(found);
+            rows.indices.retain(|&row| allowed.admits(&found.column.data, row));
         }
-        let mut keep = |name: &str, wanted: &str, or_all: bool| {
-            if let Ok((_, Column { data: Data::Text(cells), .. })) = find(table, name)
-                && (!or_all || indices.iter().any(|&row| cells[row] == wanted))
-            {
-                indices.retain(|&row| cells[row] == wanted);
-            }
-        };
-        if !selection.0.contains_key("variant") && by != Some("variant") {
-            let elsewhere = !at_home && !has_text(table, "variant", self.variant);
-            keep("variant", if elsewhere { BASELINE } else { self.variant }, false);
+        let open = |name: &str| !selection.0.contains_key(name) && by != Some(name);
+        let (variant, variants) = labels(table, "variant")?;
+        asked.push(variant);
+        if open("variant") {
+            let elsewhere = !at_home && !variants.iter().any(|label| label == self.variant);
+            let wanted = if elsewhere { BASELINE } else { self.variant };
+            rows.indices.retain(|&row| variants[row] == wanted);
         }
-        if !selection.0.contains_key("solver") && by != Some("solver") {
-            keep("solver", DEFAULT_SOLVER, true);
+        let (solver, solvers) = labels(table, "solver")?;
+        asked.push(solver);
+        if open("solver") && rows.indices.iter().any(|&row| solvers[row] == DEFAULT_SOLVER) {
+            rows.indices.retain(|&row| solvers[row] == DEFAULT_SOLVER);
         }
-        if indices.is_empty() {
+        let (failure, failures) = labels(table, "failure")?;
+        asked.push(failure);
+        if rows.indices.is_empty() {
             return Err(Absence::NoRow(if selection.0.is_empty() {
                 format!("`{id}` has no row")
             } else {
                 format!("`{id}` has no row with {selection}")
             }));
         }
-        if let Ok((_, Column { data: Data::Text(cells), .. })) = find(table, "failure")
-            && let Some(&row) = indices.iter().find(|&&row| !cells[row].is_empty())
-        {
-            return Err(Absence::Broken(format!("a run failed: {}", cells[row])));
+        for found in asked {
+            self.note_all(&rows, found, Role::Filter);
         }
-        Ok(Rows { table, at_home, indices })
+        if let Some(&row) = rows.indices.iter().find(|&&row| !failures[row].is_empty()) {
+            return Err(Absence::Broken(format!("a run failed: {}", failures[row])));
+        }
+        Ok(rows)
     }
 
     /// A measure in each of the rows.
     pub(crate) fn cells(&self, rows: &Rows<'_>, of: &str) -> Result<Vec<Cell>, Absence> {
-        let (column, found) = find(rows.table, of)?;
-        let companion = |suffix: &str| find(rows.table, &format!("{of}{suffix}")).ok().map(|(_, column)| &column.data);
-        let (own, spreads) = (companion("_num"), companion("_spread"));
-        let members = find(rows.table, "members").ok().map(|(_, column)| &column.data);
+        let found = find(rows.table, of)?;
+        self.note_all(rows, found, Role::Value);
+        let errors = self.errors(rows, of)?;
+        let error = |found: Option<Found<'_>>, none: f64, row: usize| {
+            found.map_or(none, |found| number(&found.column.data, row).unwrap_or(f64::NAN))
+        };
         rows.indices
             .iter()
             .map(|&row| {
-                self.note(rows.at_home, column, Role::Value, row);
                 let broken = |what: &str| Absence::Broken(format!("`{of}` {what} in row {}", row + 1));
-                let value = number(&found.data, row).ok_or_else(|| broken("is no column of numbers"))?;
-                let own = own.map_or(Some(0.0), |data| number(data, row)).unwrap_or(f64::NAN);
-                let spread = spreads.map_or(Some(0.0), |data| number(data, row)).unwrap_or(f64::NAN);
+                let value = number(&found.column.data, row).ok_or_else(|| broken("is no column of numbers"))?;
                 if !value.is_finite() {
                     return Err(broken(&format!("is {}", significant(value, 3))));
                 }
-                if !(own.is_finite() && spread.is_finite() && own >= 0.0 && spread >= 0.0) {
+                let (own, spread) = (error(errors.own, 0.0, row), error(errors.spread, 0.0, row));
+                let members = error(errors.members, 1.0, row);
+                if !(own.is_finite() && spread.is_finite() && own >= 0.0 && spread >= 0.0 && members >= 1.0) {
                     return Err(broken("has no error of its own"));
                 }
-                let members = members.and_then(|data| number(data, row)).unwrap_or(1.0).max(1.0);
                 Ok(Cell { value, run: own.max(spread / members.sqrt()), spread })
             })
             .collect()
+    }
+
+    /// A coordinate of each of the rows, finite.
+    pub(crate) fn coordinates(&self, rows: &Rows<'_>, name: &str) -> Result<Vec<f64>, Absence> {
+        let found = parameter(rows.table, name)?;
+        self.note_all(rows, found, Role::Coordinate);
+        let coordinate = |&row: &usize| {
+            let x = number(&found.column.data, row).filter(|x| x.is_finite());
+            x.ok_or_else(|| Absence::Broken(format!("`{name}` is no finite number in row {}", row + 1)))
+        };
+        rows.indices.iter().map(coordinate).collect()
+    }
+
+    /// The columns that say how uncertain a measure is. A measure has all of them, the place of a maximum no spread, and a
+    /// parameter none; of those that belong together none may be missing.
+    fn errors<'t>(&self, rows: &Rows<'t>, of: &str) -> Result<Errors<'t>, Absence> {
+        let companion = |suffix: &str| find_if_any(rows.table, &format!("{of}{suffix}"));
+        let (own, spread) = (companion("_num"), companion("_spread"));
+        if spread.is_some() != own.is_some() && !of.ends_with("_at_maximum") {
+            return Err(Absence::Broken(format!("`{of}` lacks a part of its error: `{of}_num` or `{of}_spread`")));
+        }
+        let members = if spread.is_some() { Some(find(rows.table, "members")?) } else { None };
+        for found in [own, spread, members].into_iter().flatten() {
+            self.note_all(rows, found, Role::Error);
+        }
+        Ok(Errors { own, spread, members })
     }
 
     /// A measure along a parameter. Rows whose parameter is absent (another part of a union) or infinite are no part of
     /// the line.
     pub(crate) fn line(&self, source: Source<'_>, of: &str, over: &str, by: Option<&str>) -> Result<Line, Absence> {
         let mut rows = self.rows(source, by)?;
-        let (column, along) = find(rows.table, over)?;
-        let abscissa = |row: usize| number(&along.data, row).filter(|x| x.is_finite());
+        let along = parameter(rows.table, over)?;
+        let abscissa = |row: usize| number(&along.column.data, row).filter(|x| x.is_finite());
         rows.indices.retain(|&row| abscissa(row).is_some());
         if rows.indices.is_empty() {
             return Err(Absence::NoRow(format!("no row has a `{over}`")));
         }
-        for &row in &rows.indices {
-            self.note(rows.at_home, column, Role::Coordinate, row);
-        }
+        self.note_all(&rows, along, Role::Coordinate);
         let cells = self.cells(&rows, of)?;
         let mut points: Vec<(f64, Cell)> =
             rows.indices.iter().filter_map(|&row| abscissa(row)).zip(cells.iter().copied()).collect();
@@ -219,9 +249,9 @@ impl<'a> View<'a> {
         let (x, y) = points.into_iter().unzip();
         Ok(Line {
             over: over.into(),
-            over_unit: along.unit.clone(),
+            over_unit: along.column.unit.clone(),
             of: of.into(),
-            unit: find(rows.table, of)?.1.unit.clone(),
+            unit: find(rows.table, of)?.column.unit.clone(),
             x,
             y,
         })
@@ -229,9 +259,10 @@ impl<'a> View<'a> {
 
     /// The values that a column takes in the rows: numbers increasing, ∞ last, words in their order of appearance.
     pub(crate) fn levels(&self, rows: &Rows<'_>, by: &str) -> Result<Vec<Allowed>, Absence> {
-        let (column, found) = find(rows.table, by)?;
-        self.note(rows.at_home, column, Role::Filter, 0);
-        if let Data::Text(cells) = &found.data {
+        let found = parameter(rows.table, by)?;
+        self.note_all(rows, found, Role::Filter);
+        let data = &found.column.data;
+        if let Data::Text(cells) = data {
             let mut words: Vec<&String> = Vec::new();
             for &row in &rows.indices {
                 if !cells[row].is_empty() && !words.contains(&&cells[row]) {
@@ -241,7 +272,7 @@ impl<'a> View<'a> {
             return Ok(words.into_iter().map(|word| Allowed::Text(word.clone())).collect());
         }
         let mut numbers: Vec<f64> =
-            rows.indices.iter().filter_map(|&row| number(&found.data, row)).filter(|x| !x.is_nan()).collect();
+            rows.indices.iter().filter_map(|&row| number(data, row)).filter(|x| !x.is_nan()).collect();
         numbers.sort_by(f64::total_cmp);
         numbers.dedup_by(|a, b| same(*a, *b));
         Ok(numbers
@@ -250,14 +281,13 @@ impl<'a> View<'a> {
             .collect())
     }
 
-    /// A time history of the one row that is meant; whoever uses its samples asks whether they are [`finite`].
+    /// A time history of the one row that is meant, finite throughout.
     pub(crate) fn path(&self, rows: &Rows<'a>, of: &str) -> Result<&'a [f64], Absence> {
         let &[row] = rows.indices.as_slice() else {
             return Err(Absence::Broken(format!("{} rows where a time history needs one", rows.indices.len())));
         };
-        let (column, found) = find(rows.table, of)?;
-        self.note(rows.at_home, column, Role::Path, row);
-        let Data::FloatList(lists) = &found.data else {
+        let found = find(rows.table, of)?;
+        let Data::FloatList(lists) = &found.column.data else {
             return Err(Absence::Broken(format!("`{of}` is no time history")));
         };
         let path = lists[row].as_slice();
@@ -265,24 +295,27 @@ impl<'a> View<'a> {
             // Variants keep no time history.
             return Err(Absence::NoRow(format!("the time history `{of}` is empty")));
         }
-
+        self.note_all(rows, found, Role::Path);
+        if !path.iter().all(|x| x.is_finite()) {
+            return Err(Absence::Broken(format!("the time history `{of}` is not finite throughout")));
+        }
         Ok(path)
     }
 
     /// The unit of a column.
     pub(crate) fn unit(&self, rows: &Rows<'a>, of: &str) -> Result<&'a str, Absence> {
-        find(rows.table, of).map(|(_, column)| column.unit.as_str())
+        find(rows.table, of).map(|found| found.column.unit.as_str())
     }
 
     /// The variants of the assumptions that the entry's own table holds, apart from the baseline.
     pub(crate) fn variants(&self) -> Vec<&'a str> {
         let mut found: Vec<&str> = Vec::new();
         if let Ok(table) = self.table(self.home)
-            && let Ok((_, Column { data: Data::Text(cells), .. })) = find(table, "variant")
+            && let Ok((_, labels)) = labels(table, "variant")
         {
-            for cell in cells {
-                if cell != BASELINE && !found.contains(&cell.as_str()) {
-                    found.push(cell);
+            for label in labels {
+                if label != BASELINE && !found.contains(&label.as_str()) {
+                    found.push(label);
                 }
             }
         }
@@ -298,11 +331,18 @@ impl<'a> View<'a> {
         }
     }
 
-    fn note(&self, at_home: bool, column: usize, role: Role, row: usize) {
-        if at_home {
-            self.reads.borrow_mut().insert(Read { column, role, row });
-        }
+    /// Notes a column in each of the rows.
+    fn note_all(&self, rows: &Rows<'_>, found: Found<'_>, role: Role) {
+        let read = |&row| Read { table: rows.id.clone(), column: found.index, role, row };
+        self.reads.borrow_mut().extend(rows.indices.iter().map(read));
     }
+}
+
+/// Columns of the uncertainty of a measure.
+struct Errors<'t> {
+    own: Option<Found<'t>>,
+    spread: Option<Found<'t>>,
+    members: Option<Found<'t>>,
 }
 
 impl Rows<'_> {
@@ -329,42 +369,5 @@ impl Line {
             cell.value = -cell.value;
         }
         self
-    }
-}
-
-/// Refuses samples that are no numbers.
-pub(crate) fn finite(samples: &[f64], of: &str) -> Result<(), Absence> {
-    if samples.iter().all(|x| x.is_finite()) {
-        Ok(())
-    } else {
-        Err(Absence::Broken(format!("the time history `{of}` is not finite throughout")))
-    }
-}
-
-fn height(table: &Table) -> usize {
-    let length = |data: &Data| match data {
-        Data::Float(cells) => cells.len(),
-        Data::Int(cells) => cells.len(),
-        Data::Text(cells) => cells.len(),
-        Data::FloatList(cells) => cells.len(),
-    };
-    table.columns.iter().map(|column| length(&column.data)).min().unwrap_or(0)
-}
-
-fn find<'t>(table: &'t Table, name: &str) -> Result<(usize, &'t Column), Absence> {
-    let found = table.columns.iter().enumerate().find(|(_, column)| column.name == name);
-    found.ok_or_else(|| Absence::Broken(format!("there is no column `{name}`")))
-}
-
-fn has_text(table: &Table, name: &str, wanted: &str) -> bool {
-    matches!(find(table, name), Ok((_, Column { data: Data::Text(cells), .. })) if cells.iter().any(|cell| cell == wanted))
-}
-
-fn number(data: &Data, row: usize) -> Option<f64> {
-    match data {
-        Data::Float(cells) => cells.get(row).copied(),
-        #[expect(clippy::cast_precision_loss, reason = "counts are far below 2^53")]
-        Data::Int(cells) => cells.get(row).map(|&count| count as f64),
-        Data::Text(_) | Data::FloatList(_) => None,
     }
 }

@@ -307,8 +307,65 @@ pub struct FigureSpec {
     pub name: String,
     /// One line under the picture.
     pub caption: String,
-    /// Panels, top to bottom, sharing the x axis.
-    pub panels: Vec<Panel>,
+    /// What is drawn.
+    pub drawing: Drawing,
+}
+
+/// What a figure draws.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Drawing {
+    /// Curves in panels, top to bottom, sharing the x axis.
+    Lines(Vec<Panel>),
+    /// A quantity over two others, as colours, in panels of one colour scale.
+    Map(MapSpec),
+}
+
+/// A map. Its three columns hold a number a row (a cell a row, drawn as such) or a list a row (a field a row, drawn with
+/// contours).
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct MapSpec {
+    /// x.
+    pub x: Axis,
+    /// y.
+    pub y: Axis,
+    /// What the colour stands for.
+    pub value: Axis,
+    /// Columns whose levels get a panel each.
+    pub by: Vec<String>,
+    /// A place to mark in each panel: where the force acts.
+    pub mark: Option<Mark>,
+    /// Which place to mark and to name.
+    pub best: Best,
+    /// The number from which colours run apart (0 for a deflection, 1 for a ratio); its contour is drawn.
+    pub centre: Option<f64>,
+    /// Height of a panel over its width; equal units are drawn to scale if absent.
+    pub aspect: Option<f64>,
+    /// Panels side by side; as many as suit their number if absent.
+    pub columns: Option<u32>,
+}
+
+/// A place to mark in a map.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Mark {
+    /// Column of its x.
+    pub x: String,
+    /// Column of its y.
+    pub y: String,
+    /// What it is, for the legend.
+    pub label: String,
+}
+
+/// The place of a map to mark and to name.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Best {
+    /// That of the largest value.
+    Highest,
+    /// That of the smallest value.
+    Lowest,
+    /// None.
+    None,
 }
 
 /// One pair of axes.
@@ -326,6 +383,17 @@ pub struct Panel {
     pub guides: Vec<Level>,
     /// Markers on the points (few points) instead of a line alone.
     pub markers: bool,
+    /// Which peaks of the curves to mark with their place on the x axis.
+    pub peaks: Option<PeakMarks>,
+}
+
+/// Which peaks of a curve to mark.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct PeakMarks {
+    /// How far one has to descend from a peak before the curve rises above it, as a share of the y axis as drawn.
+    pub prominence: f64,
+    /// At most so many of a curve, the most prominent ones.
+    pub most: u32,
 }
 
 /// A labelled horizontal guide.
@@ -346,6 +414,8 @@ pub struct Axis {
     pub label: Option<String>,
     /// Linear or logarithmic.
     pub scale: AxisScale,
+    /// The axis reaches at least from the one to the other, whatever the data.
+    pub reach: Option<[f64; 2]>,
 }
 
 /// Scale of an axis.

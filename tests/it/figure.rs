@@ -3,7 +3,7 @@
 use shotdamp::figure::{FigureError, QuotedPoint, draw};
 use shotdamp::measure::Measure;
 use shotdamp::scene::Parameter;
-use shotdamp::spec::{AxisScale, Experiment, FigureSpec, Level, Maximise, Panel};
+use shotdamp::spec::{AxisScale, Experiment, FigureSpec, Level, Maximise, Panel, PeakMarks};
 use shotdamp::table::{Column, Data, Table};
 
 use crate::made_up::{axis, figure, hump, limit_stop, limit_stop_table, log_range, numbers, panel, texts};
@@ -243,4 +243,67 @@ fn measures_that_agree_can_both_be_seen() {
     let mut one = panel("base_amplitude_ratio", AxisScale::Log, &["displacement_ratio", "velocity_ratio"]);
     one.by = vec!["solver".into()];
     picture("agreeing", &limit_stop(), &figure(vec![one]), &table, &[]);
+}
+
+/// Two resonances of a clean beam and of one with a damper, with the peaks at 1/k of them that impulses add.
+#[test]
+fn peaks_of_a_frequency_response_carry_their_places() {
+    let frequencies: Vec<f64> = (0..351).map(|i| 5.0 + 0.5 * f64::from(i)).collect();
+    let response = |resonances: [f64; 2], w: f64| {
+        let one = |w0: f64, height: f64| height / ((1.0 - (w / w0).powi(2)).powi(2) + (0.02 * w / w0).powi(2)).sqrt();
+        (1..=4).map(|k| one(resonances[0] / f64::from(k), 4e-3 / f64::from(k * k * k))).sum::<f64>()
+            + one(resonances[1], 2e-4)
+    };
+    let rows = [("clean", [26.1, 163.7]), ("damper", [22.0, 149.3])];
+    let all = |part: fn(&str, [f64; 2], f64, &dyn Fn([f64; 2], f64) -> f64) -> f64| {
+        rows.iter().flat_map(|(name, w0)| frequencies.iter().map(|w| part(name, *w0, *w, &response))).collect()
+    };
+    let table = Table::default()
+        .with(texts("sweep", [["clean"; 351], ["damper"; 351]].concat()))
+        .with(numbers("angular_frequency", "ω", "rad/s", all(|_, _, w, _| w)))
+        .with(texts("variant", ["baseline"; 702]))
+        .with(numbers("displacement_per_impulse", "", "m/(N s)", all(|_, w0, w, response| response(w0, w))));
+    let mut one = panel("angular_frequency", AxisScale::Linear, &[]);
+    one.by = vec!["sweep".into()];
+    one.y = vec![axis("displacement_per_impulse", AxisScale::Log)];
+    one.peaks = Some(PeakMarks { prominence: 0.03, most: 6 });
+    picture("peaks", &limit_stop(), &figure(vec![one]), &table, &[]);
+}
+
+/// Lists a row: a measure of every cycle, for three plates.
+#[test]
+fn a_measure_of_every_cycle_is_a_curve() {
+    let cycles: Vec<f64> = (0..125).map(f64::from).collect();
+    let measure = |level: f64| cycles.iter().map(|n| level * (1.0 - 0.8 * (-n / 12.0).exp())).collect::<Vec<f64>>();
+    let lists = |name: &str, cells: Vec<Vec<f64>>| Column::new(name, Data::FloatList(cells));
+    let mut mass = vec![measure(1.0), measure(0.7), measure(0.2)];
+    mass[1][0] = f64::NAN;
+    let table = Table::default()
+        .with(texts("sweep", ["clean", "light", "heavy"]))
+        .with(texts("variant", ["baseline"; 3]))
+        .with(lists("cycle", vec![cycles.clone(); 3]))
+        .with(lists("damping_measure_of_cycle", vec![measure(0.06), measure(0.2), measure(0.45)]))
+        .with(lists("mass_measure_of_cycle", mass));
+    let by = || vec!["sweep".into()];
+    let panels = ["damping_measure_of_cycle", "mass_measure_of_cycle"]
+        .map(|column| Panel { by: by(), ..panel("cycle", AxisScale::Linear, &[column]) });
+    picture("cycles", &limit_stop(), &figure(panels.into()), &table, &[]);
+}
+
+/// Shapes of a beam, lists a row, with the line at which they do not move.
+#[test]
+fn shapes_of_a_beam_are_curves_along_it() {
+    let x: Vec<f64> = (0..101).map(|i| f64::from(i) / 100.0).collect();
+    let shape = |n: f64| x.iter().map(|x| (n * 4.7 * x).sin() * (1.0 - (-4.0 * x).exp())).collect::<Vec<f64>>();
+    let lists = |name: &str, cells: Vec<Vec<f64>>| Column::new(name, Data::FloatList(cells));
+    let table = Table::default()
+        .with(numbers("mode", "", "", vec![1.0, 2.0, 3.0, 4.0]))
+        .with(texts("variant", ["baseline"; 4]))
+        .with(lists("x", vec![x.clone(); 4]))
+        .with(lists("shape", [0.4, 1.0, 1.7, 2.4].map(shape).into()));
+    let guides = vec![Level { at: 0.0, label: String::new() }];
+    let mut one = Panel { by: vec!["mode".into()], guides, ..panel("x", AxisScale::Linear, &["shape"]) };
+    one.x.label = Some("x/L".into());
+    one.y[0].label = Some("deflection, largest 1".into());
+    picture("shapes", &limit_stop(), &figure(vec![one]), &table, &[]);
 }

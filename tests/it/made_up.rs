@@ -7,7 +7,7 @@ use shotdamp::scene::{
     StrengthRecipe, StructureRecipe, SurfaceRecipe, TimingRecipe,
 };
 use shotdamp::spec::{
-    Axis, AxisScale, Case, Experiment, ExperimentId, FigureSpec, Panel, Settings, SolverChoice, Source,
+    Axis, AxisScale, Case, Drawing, Experiment, ExperimentId, FigureSpec, Panel, Settings, SolverChoice, Source,
 };
 use shotdamp::table::{Column, Data, Table};
 
@@ -67,11 +67,15 @@ pub fn limit_stop() -> Experiment {
 }
 
 pub fn figure(panels: Vec<Panel>) -> FigureSpec {
-    FigureSpec { name: String::new(), caption: "Effect of the limit stop on the velocity ratio.".into(), panels }
+    drawn(Drawing::Lines(panels))
+}
+
+pub fn drawn(drawing: Drawing) -> FigureSpec {
+    FigureSpec { name: String::new(), caption: "Effect of the limit stop on the velocity ratio.".into(), drawing }
 }
 
 pub fn axis(column: &str, scale: AxisScale) -> Axis {
-    Axis { column: column.into(), label: None, scale }
+    Axis { column: column.into(), label: None, scale, reach: None }
 }
 
 /// A panel of these y columns on a linear axis.
@@ -83,6 +87,7 @@ pub fn panel(x: &str, scale: AxisScale, y: &[&str]) -> Panel {
         band: false,
         guides: Vec::new(),
         markers: false,
+        peaks: None,
     }
 }
 

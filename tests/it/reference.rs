@@ -22,37 +22,44 @@ fn text(name: &str, cells: &[&str]) -> Column {
     column(name, "", Data::Text(cells.iter().map(ToString::to_string).collect()))
 }
 
+/// A table with these columns, and what every table has besides: one run a row, none failed.
+fn complete(columns: Vec<Column>) -> Table {
+    let rows = columns[0].data.len();
+    let mut table = Table { columns, metadata: BTreeMap::new() };
+    for (name, label) in [("solver", "event_driven"), ("variant", "baseline"), ("failure", "")] {
+        if table.column(name).is_none() {
+            table.columns.push(text(name, &vec![label; rows]));
+        }
+    }
+    if table.column("members").is_none() {
+        table.columns.push(column("members", "", Data::Int(vec![1; rows])));
+    }
+    table
+}
+
 /// A velocity ratio with one peak over 21 force ratios from 1.5 to 3.5, highest at 2.5; nothing is uncertain.
 fn peak() -> Table {
     let x: Vec<f64> = (0..21).map(|i| 1.5 + 0.1 * f64::from(i)).collect();
     let y: Vec<f64> = x.iter().map(|x| 3.0 - (x - 2.5) * (x - 2.5)).collect();
     let zero = vec![0.0; x.len()];
-    Table {
-        columns: vec![
-            float("force_ratio", &x),
-            text("variant", &vec!["baseline"; x.len()]),
-            float("velocity_ratio", &y),
-            float("velocity_ratio_num", &zero),
-            float("velocity_ratio_spread", &zero),
-            text("failure", &vec![""; x.len()]),
-        ],
-        metadata: BTreeMap::new(),
-    }
+    complete(vec![
+        float("force_ratio", &x),
+        float("velocity_ratio", &y),
+        float("velocity_ratio_num", &zero),
+        float("velocity_ratio_spread", &zero),
+    ])
 }
 
 /// One row a variant, each with a velocity ratio.
 fn variants(rows: &[(&str, f64)], num: f64, spread: f64, members: i64) -> Table {
-    Table {
-        columns: vec![
-            text("variant", &rows.iter().map(|row| row.0).collect::<Vec<_>>()),
-            float("velocity_ratio", &rows.iter().map(|row| row.1).collect::<Vec<_>>()),
-            float("velocity_ratio_num", &vec![num; rows.len()]),
-            float("velocity_ratio_spread", &vec![spread; rows.len()]),
-            column("members", "", Data::Int(vec![members; rows.len()])),
-            text("failure", &vec![""; rows.len()]),
-        ],
-        metadata: BTreeMap::new(),
-    }
+    complete(vec![
+        text("variant", &rows.iter().map(|row| row.0).collect::<Vec<_>>()),
+        float("velocity_ratio", &rows.iter().map(|row| row.1).collect::<Vec<_>>()),
+        float("velocity_ratio_num", &vec![num; rows.len()]),
+        float("velocity_ratio_spread", &vec![spread; rows.len()]),
+        column("members", "", Data::Int(vec![members; rows.len()])),
+        text("failure", &vec![""; rows.len()]),
+    ])
 }
 
 fn lines(solvers: &[(&str, [f64; 5])]) -> Table {
@@ -66,10 +73,7 @@ fn lines(solvers: &[(&str, [f64; 5])]) -> Table {
             y.push(*value);
         }
     }
-    Table {
-        columns: vec![float("force_ratio", &x), text("solver", &solver), float("velocity_ratio", &y)],
-        metadata: BTreeMap::new(),
-    }
+    complete(vec![float("force_ratio", &x), text("solver", &solver), float("velocity_ratio", &y)])
 }
 
 fn entry(body: &str) -> ReferenceFile {
@@ -221,6 +225,28 @@ fn nothing_that_could_not_be_compared_reads_as_a_pass() {
     assert_eq!(judge(&file, &Tables::new(), &BTreeSet::new())[0].verdict, Verdict::Missing);
 }
 
+/// What an entry reads beside its measure: what chooses the rows, what they stand along, how uncertain they are, when.
+#[test]
+fn a_gap_in_anything_that_an_entry_reads_is_no_smaller_table() {
+    let chosen = format!("{OPTIMUM}\nwhere: {{force_ratio: {{from: 2}}}}");
+    for name in ["variant", "solver", "failure", "members", "velocity_ratio_num", "velocity_ratio_spread"] {
+        let mut table = peak();
+        table.columns.retain(|column| column.name != name);
+        assert_eq!(verdict(&chosen, &table), Verdict::Missing, "without {name}");
+    }
+    let mut table = peak();
+    let Data::Float(cells) = &mut table.columns[0].data else { panic!("force ratios are numbers") };
+    cells[3] = f64::NAN;
+    assert_eq!(verdict(OPTIMUM, &table), Verdict::Missing, "a point without a place");
+    assert_eq!(verdict(&chosen, &table), Verdict::Missing, "a point that may or may not be meant");
+    // A part of a union that sweeps something else has none of these places, which is no gap.
+    let Data::Float(cells) = &mut table.columns[0].data else { panic!("force ratios are numbers") };
+    cells[4..7].fill(f64::NAN);
+    let part = |row| if (3..7).contains(&row) { "other" } else { "this" };
+    table.columns.push(text("sweep", &(0..21).map(part).collect::<Vec<_>>()));
+    assert_eq!(verdict(OPTIMUM, &table), Verdict::Reproduced);
+}
+
 #[test]
 fn a_maximum_is_known_no_better_than_the_grid_that_found_it() {
     let comparison = judged(OPTIMUM, &peak()).comparison.unwrap();
@@ -231,8 +257,9 @@ fn a_maximum_is_known_no_better_than_the_grid_that_found_it() {
         for column in &mut table.columns {
             match &mut column.data {
                 Data::Float(cells) => *cells = cells.iter().copied().step_by(step).collect(),
+                Data::Int(cells) => *cells = cells.iter().copied().step_by(step).collect(),
                 Data::Text(cells) => *cells = cells.iter().cloned().step_by(step).collect(),
-                _ => {}
+                Data::FloatList(_) => {}
             }
         }
         table
@@ -332,6 +359,7 @@ fn claims_hold_fail_and_stay_open_as_their_margins_say() {
     // A step back that the points' own errors cover cannot be told from none.
     let mut table = lines(&[("event_driven", dented)]);
     table.columns.push(float("velocity_ratio_num", &[0.01; 5]));
+    table.columns.push(float("velocity_ratio_spread", &[0.0; 5]));
     assert_eq!(
         verdict(&format!("claim: {{monotone: {{{line}, direction: increasing}}}}"), &table),
         Verdict::Undecidable
@@ -384,8 +412,14 @@ fn time_histories_are_judged_along_their_samples() {
         from: {nearest_passage: {of: particle_displacement, through: rigid_floor, direction: decreasing, to: 52.31}}";
     assert_eq!(verdict(impact, &table), Verdict::Reproduced);
     assert_eq!(verdict(&impact.replace("decreasing", "increasing"), &table), Verdict::Differs);
-    for body in [falls, impact, "claim: {paths_cross: {of: particle_displacement, other: rigid_floor}}"] {
+    for body in [falls, &late, impact, "claim: {paths_cross: {of: particle_displacement, other: rigid_floor}}"] {
         assert_eq!(broken(body, &table), Vec::<String>::new(), "{body}");
+    }
+    for body in [late.as_str(), impact] {
+        let mut table = table.clone();
+        let time = table.columns.iter_mut().find(|column| column.name == "time").unwrap();
+        time.data = Data::FloatList(vec![vec![52.302, f64::NAN, 52.500, 52.510]]);
+        assert_eq!(verdict(body, &table), Verdict::Missing, "{body}");
     }
 }
 
@@ -410,10 +444,25 @@ fn the_self_test_finds_an_entry_that_cannot_fail() {
     assert_eq!(broken(CELL, &variants(&[("baseline", 1.55), ("delta=1", 1.5)], 0.01, 0.0, 1)), Vec::<String>::new());
     let idle = "claim: {greatest_first: [{number: 2}, {number: 1}]}";
     assert!(broken(idle, &peak())[0].contains("reads no measure"));
-    let empty = "claim: {above: {of: velocity_ratio, level: -1e9}}";
-    assert!(broken(empty, &peak())[0].contains("nothing that was done"));
+    let always =
+        "claim: {peaks: {of: velocity_ratio, over: force_ratio, prominence: 0.1, at_least: 0}}\nthreshold_reason: none";
+    assert!(broken(always, &peak())[0].contains("nothing that was done"));
     let absent = "claim: {above: {of: displacement_ratio, level: 1}}";
     assert!(broken(absent, &peak())[0].contains("missing already"));
+    // Margins of any size are reached, also by numbers that are all zero or far from it.
+    let rows = |values: &[f64]| complete(vec![float("separations", values)]);
+    let few = "claim: {below: {of: separations, level: 0.5}}";
+    assert_eq!(broken(few, &rows(&[0.0, 0.0])), Vec::<String>::new());
+    let small = "claim: {between: {value: {mean: {of: separations}}, to: 0.01}}\nthreshold_reason: for the test";
+    assert_eq!(broken(small, &rows(&[1e-12, 1e-13])), Vec::<String>::new());
+    // Places on a coarse grid: that they lie apart can be upheld or left open, but not refuted.
+    let (here, there) = ([1.0, 2.0, 1.0, 1.0, 1.0], [1.0, 1.0, 1.0, 1.0, 2.0]);
+    let both = lines(&[("event_driven", here), ("fixed_step_1e-2s", there)]);
+    let top = "argmax: {of: velocity_ratio, over: force_ratio";
+    let other = format!("{{{top}, where: {{solver: fixed_step_1e-2s}}}}}}");
+    let apart =
+        format!("claim: {{apart: {{values: [{{{top}}}}}, {other}], by: {{relative: 0.05}}}}}}\nthreshold_reason: none");
+    assert_eq!(broken(&apart, &both), Vec::<String>::new());
     // A hand-set tolerance of a mile does turn, outside the mile; what cannot be moved there is found.
     let loose = "value: \"2\"\nfrom: {number: 2}";
     assert!(!broken(loose, &peak()).is_empty());

@@ -30,6 +30,8 @@ fn entry(id: &str, verdict: Verdict) -> Judged {
         expected: verdict,
         found: "holds: 3.376 at f′ = 2.63 in both".into(),
         comparison: None,
+        parts: Vec::new(),
+        fit: None,
         explanation: String::new(),
         tolerance_reason: None,
         robust: Some((5, 6)),

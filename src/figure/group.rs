@@ -1,0 +1,47 @@
+//! Rows that belong together: one combination of the levels of some columns.
+
+use crate::table::{Column, Data};
+use crate::text::words;
+
+use super::label;
+
+/// The number in a cell, if it holds one.
+#[expect(clippy::cast_precision_loss, reason = "counts of events stay far below 2^53")]
+pub(super) fn number(column: &Column, row: usize) -> Option<f64> {
+    match &column.data {
+        Data::Float(cells) => cells.get(row).copied(),
+        Data::Int(cells) => cells.get(row).map(|&count| count as f64),
+        Data::Text(_) | Data::FloatList(_) => None,
+    }
+}
+
+/// Rows that share their levels of the `by` columns.
+pub(super) struct Group {
+    /// One word per `by` column; `None` where the sweep leaves the column out.
+    pub words: Vec<Option<String>>,
+    pub rows: Vec<usize>,
+}
+
+impl Group {
+    /// The rows split by these columns, in the order of the table.
+    pub(super) fn split(rows: usize, by: &[&Column]) -> Vec<Self> {
+        let mut groups: Vec<Self> = Vec::new();
+        for row in 0..rows {
+            let words: Vec<_> = by.iter().map(|column| label::of_cell(column, row)).collect();
+            match groups.iter_mut().find(|group| group.words == words) {
+                Some(group) => group.rows.push(row),
+                None => groups.push(Self { words, rows: vec![row] }),
+            }
+        }
+        // The exact motion comes first wherever the table has it, so that it looks the same in every figure.
+        let exact = words::of_solver("event_driven");
+        groups.sort_by_key(|group| !group.words.iter().flatten().any(|word| *word == exact));
+        groups
+    }
+
+    /// The words that tell this group from the others.
+    pub(super) fn varying_words(&self, groups: &[Self]) -> Vec<String> {
+        let varies = |index: &usize| groups.iter().any(|group| group.words[*index] != self.words[*index]);
+        (0..self.words.len()).filter(varies).filter_map(|index| self.words[index].clone()).collect()
+    }
+}

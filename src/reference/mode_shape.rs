@@ -1,0 +1,272 @@
+//! A shape held against an analytic one by the modal assurance criterion,
+//! MAC = (Σφψ)²/(Σφ² Σψ²): 1 where the shapes are the same up to a factor, 0 where they have nothing in common.
+
+use serde::{Deserialize, Serialize};
+
+use super::analytic;
+use super::fit::{Fit, FitMeasure};
+use super::selection::Selection;
+use super::tally::{Decision, Tally};
+use super::text::significant;
+use super::view::{Absence, Source, View};
+
+/// A shape in the lists of the one row that is meant.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ModeShape {
+    /// List of the deflections.
+    pub of: String,
+    /// Lists of the places, as shares of the sides: `x`, or `[x, y]` on a plate.
+    pub over: Places,
+    /// The shape to hold it against.
+    pub like: Like,
+    /// How alike.
+    pub mac: Mac,
+    /// Conditions beyond the entry's own.
+    #[serde(rename = "where", default)]
+    pub rows: Selection,
+}
+
+/// The lists that say where the deflections are.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(untagged)]
+pub enum Places {
+    /// Along a line.
+    Line(String),
+    /// On a rectangle.
+    Rectangle([String; 2]),
+}
+
+/// The shape to hold it against.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Like {
+    /// A uniform cantilever's n-th mode, clamped at 0.
+    Cantilever(u32),
+    /// A uniform beam's n-th mode, clamped at both ends.
+    Clamped(u32),
+    /// sin nπx: a simply supported beam's n-th mode.
+    Sine(u32),
+    /// sin mπx sin nπy: a mode of a plate that is simply supported all around.
+    SineProduct([u32; 2]),
+    /// Another list of the same row.
+    Column(String),
+    /// Points of a line, x increasing: the shape is read between them.
+    Points(Vec<[f64; 2]>),
+}
+
+/// A limit on the criterion.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Mac {
+    /// The shapes are the same.
+    AtLeast(f64),
+    /// The shapes are different.
+    AtMost(f64),
+}
+
+/// Fewer points tell no shapes apart.
+const FEWEST_POINTS: usize = 5;
+
+/// What came out.
+struct Compared {
+    mac: f64,
+    points: usize,
+    /// Of the same family, the other shape that comes nearest.
+    next: Option<(String, f64)>,
+}
+
+impl ModeShape {
+    /// What makes it no comparison.
+    pub(crate) fn flaw(&self) -> Option<&'static str> {
+        let (Mac::AtLeast(limit) | Mac::AtMost(limit)) = self.mac;
+        let on_rectangle = matches!(self.over, Places::Rectangle(_));
+        match &self.like {
+            Like::Cantilever(0) | Like::Clamped(0) | Like::Sine(0) | Like::SineProduct([0, _] | [_, 0]) => {
+                Some("modes are counted from 1")
+            }
+            Like::SineProduct(_) if !on_rectangle => Some("a plate's shape lies over two lists: `over: [x, y]`"),
+            Like::Cantilever(_) | Like::Clamped(_) | Like::Sine(_) | Like::Points(_) if on_rectangle => {
+                Some("a beam's shape lies over one list: `over: x`")
+            }
+            Like::Points(points) if points.len() < FEWEST_POINTS || !points.is_sorted_by(|a, b| a[0] < b[0]) => {
+                Some("a shape needs five points or more, with x increasing")
+            }
+            Like::Points(points) if !points.iter().flatten().all(|number| number.is_finite()) => {
+                Some("a shape needs finite points")
+            }
+            _ if !(limit > 0.0 && limit < 1.0) => Some("a limit on the criterion lies between 0 and 1"),
+            _ => None,
+        }
+    }
+
+    pub(crate) fn decide(&self, view: &View<'_>) -> Result<Decision, Absence> {
+        let compared = self.compared(view)?;
+        let mut tally = Tally::new();
+        let margin = match self.mac {
+            Mac::AtLeast(limit) => compared.mac - limit,
+            Mac::AtMost(limit) => limit - compared.mac,
+        };
+        tally.require(margin, 0.0, || {
+            let limit = match self.mac {
+                Mac::AtLeast(limit) => format!("{} or more", significant(limit, 6)),
+                Mac::AtMost(limit) => format!("{} or less", significant(limit, 6)),
+            };
+            let next = compared
+                .next
+                .as_ref()
+                .map_or_else(String::new, |(name, mac)| format!("; {} with {name}", significant(*mac, 2)));
+            let mac = significant(compared.mac, 6);
+            format!("MAC {mac} with {} over {} points, {limit} wanted{next}", self.like.words(), compared.points)
+        });
+        tally.decision()
+    }
+
+    /// The criterion, for a report.
+    pub(crate) fn fit(&self, view: &View<'_>) -> Option<Fit> {
+        let compared = self.compared(view).ok()?;
+        let (measure, limit) = match self.mac {
+            Mac::AtLeast(limit) => (FitMeasure::MacAtLeast, limit),
+            Mac::AtMost(limit) => (FitMeasure::MacAtMost, limit),
+        };
+        let remark = compared.next.map_or_else(String::new, |(name, mac)| {
+            format!("the nearest of the others is {name}, MAC {}", significant(mac, 2))
+        });
+        let against = self.like.words();
+        Some(Fit { against, measure, points: compared.points, value: compared.mac, u: 0.0, limit, remark })
+    }
+
+    /// The shape that would satisfy a claim of likeness and break one of difference; for the self-test.
+    pub(crate) fn double(&self, view: &View<'_>) -> Result<Vec<f64>, Absence> {
+        let (places, _) = self.read(view)?;
+        self.like.at(&places, || self.other(view))
+    }
+
+    fn compared(&self, view: &View<'_>) -> Result<Compared, Absence> {
+        let (places, shape) = self.read(view)?;
+        let like = self.like.at(&places, || self.other(view))?;
+        // Points may end before the shape does.
+        let pairs: Vec<(f64, f64)> = shape.iter().copied().zip(like).filter(|(_, like)| like.is_finite()).collect();
+        if pairs.len() < FEWEST_POINTS {
+            return Err(Absence::NoRow(format!("{} points are no shape", pairs.len())));
+        }
+        let mac = criterion(pairs.iter().copied())
+            .ok_or_else(|| Absence::Nowhere(format!("`{}` does not move at all", self.of)))?;
+        let mut next: Option<(String, f64)> = None;
+        for other in self.like.relatives() {
+            let values = other.at(&places, || Ok(Vec::new()))?;
+            if let Some(mac) = criterion(shape.iter().copied().zip(values))
+                && next.as_ref().is_none_or(|(_, largest)| mac > *largest)
+            {
+                next = Some((other.words(), mac));
+            }
+        }
+        Ok(Compared { mac, points: pairs.len(), next })
+    }
+
+    fn read<'v>(&self, view: &View<'v>) -> Result<(Vec<Spot>, &'v [f64]), Absence> {
+        let rows = view.rows(Source { table: None, rows: &self.rows }, None)?;
+        let share = |name: &str| {
+            let unit = view.unit(&rows, name)?;
+            if !unit.is_empty() {
+                return Err(Absence::Broken(format!("`{name}` is in {unit}; shares of the side are wanted")));
+            }
+            view.path(&rows, name)
+        };
+        let shape = view.path(&rows, &self.of)?;
+        let places: Vec<Spot> = match &self.over {
+            Places::Line(x) => share(x)?.iter().map(|&x| Spot { x, y: 0.0 }).collect(),
+            Places::Rectangle([x, y]) => share(x)?.iter().zip(share(y)?).map(|(&x, &y)| Spot { x, y }).collect(),
+        };
+        if places.len() != shape.len() {
+            return Err(Absence::Broken(format!(
+                "`{}` has {} points at {} places",
+                self.of,
+                shape.len(),
+                places.len()
+            )));
+        }
+        Ok((places, shape))
+    }
+
+    fn other(&self, view: &View<'_>) -> Result<Vec<f64>, Absence> {
+        let Like::Column(name) = &self.like else { return Ok(Vec::new()) };
+        let rows = view.rows(Source { table: None, rows: &self.rows }, None)?;
+        Ok(view.path(&rows, name)?.to_vec())
+    }
+}
+
+/// A place on a structure, as shares of its sides.
+#[derive(Debug, Clone, Copy)]
+struct Spot {
+    x: f64,
+    y: f64,
+}
+
+impl Like {
+    /// Its values at the places; NaN where points end.
+    fn at(&self, places: &[Spot], other: impl FnOnce() -> Result<Vec<f64>, Absence>) -> Result<Vec<f64>, Absence> {
+        let each = |value: &dyn Fn(Spot) -> f64| Ok(places.iter().map(|&spot| value(spot)).collect());
+        match self {
+            Self::Cantilever(n) => {
+                let mode = analytic::Mode::cantilever(*n);
+                each(&|spot| mode.at(spot.x))
+            }
+            Self::Clamped(n) => {
+                let mode = analytic::Mode::clamped(*n);
+                each(&|spot| mode.at(spot.x))
+            }
+            Self::Sine(n) => each(&|spot| analytic::sine(*n, spot.x)),
+            Self::SineProduct([m, n]) => each(&|spot| analytic::sine(*m, spot.x) * analytic::sine(*n, spot.y)),
+            Self::Column(_) => other(),
+            Self::Points(points) => each(&|spot| between(points, spot.x)),
+        }
+    }
+
+    /// Shapes of the same family with which this one could be mistaken.
+    fn relatives(&self) -> Vec<Self> {
+        let others = |n: u32| (1..=n + 3).filter(move |other| *other != n);
+        match self {
+            Self::Cantilever(n) => others(*n).map(Self::Cantilever).collect(),
+            Self::Clamped(n) => others(*n).map(Self::Clamped).collect(),
+            Self::Sine(n) => others(*n).map(Self::Sine).collect(),
+            Self::SineProduct([m, n]) => {
+                let all = (1..=m + 2).flat_map(|a| (1..=n + 2).map(move |b| [a, b]));
+                all.filter(|pair| pair != &[*m, *n]).map(Self::SineProduct).collect()
+            }
+            Self::Column(_) | Self::Points(_) => Vec::new(),
+        }
+    }
+
+    fn words(&self) -> String {
+        match self {
+            Self::Cantilever(n) => format!("mode {n} of a cantilever"),
+            Self::Clamped(n) => format!("mode {n} of a clamped beam"),
+            Self::Sine(n) => format!("sin {n}πx"),
+            Self::SineProduct([m, n]) => format!("sin {m}πx sin {n}πy"),
+            Self::Column(name) => format!("`{name}`"),
+            Self::Points(points) => format!("{} points", points.len()),
+        }
+    }
+}
+
+/// On the straight line between two points; NaN outside.
+fn between(points: &[[f64; 2]], x: f64) -> f64 {
+    let i = points.partition_point(|point| point[0] <= x);
+    match (i.checked_sub(1).and_then(|i| points.get(i)), points.get(i)) {
+        (Some([x0, y0]), Some([x1, y1])) => y0 + (x - x0) / (x1 - x0) * (y1 - y0),
+        (Some([x0, y0]), None) if x == *x0 => *y0,
+        _ => f64::NAN,
+    }
+}
+
+/// The criterion; none for a shape that is zero throughout.
+fn criterion(pairs: impl Iterator<Item = (f64, f64)>) -> Option<f64> {
+    let (mut across, mut one, mut other) = (0.0, 0.0, 0.0);
+    for (a, b) in pairs {
+        across += a * b;
+        one += a * a;
+        other += b * b;
+    }
+    (one > 0.0 && other > 0.0).then(|| across * across / (one * other))
+}

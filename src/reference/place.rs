@@ -1,0 +1,356 @@
+//! Claims about maps: where a measure is best, and that it grows towards a place.
+
+use std::collections::BTreeMap;
+use std::fmt;
+
+use serde::{Deserialize, Serialize};
+
+use super::selection::{Allowed, Selection, same};
+use super::tally::{Decision, Outcome, Tally};
+use super::text::{percent, significant, with_unit};
+use super::view::{Absence, Cell, Source, View};
+
+/// A place in a map: a number for each coordinate, or the column that holds it (`damper_x: force_x`).
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(transparent)]
+pub struct Place(pub BTreeMap<String, Coordinate>);
+
+/// A coordinate of a place.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(untagged)]
+pub enum Coordinate {
+    /// In the column's unit.
+    Number(f64),
+    /// The column that holds it, the same in all rows of a map.
+    Column(String),
+}
+
+/// The largest value of a map is at a place.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct BestPlace {
+    /// The measure.
+    pub of: String,
+    /// The place.
+    pub at: Place,
+    /// At that very place, or by it.
+    #[serde(default)]
+    pub position: Position,
+    /// The place is among so many of the best.
+    #[serde(default = "one")]
+    pub among: usize,
+    /// How far short of the best the place may fall, as a fraction of the map's range.
+    #[serde(default)]
+    pub slack: f64,
+    /// A column whose levels are maps of their own, of which each has to satisfy the claim.
+    #[serde(default)]
+    pub each: Option<String>,
+    /// Conditions beyond the entry's own.
+    #[serde(rename = "where", default)]
+    pub rows: Selection,
+}
+
+/// Where, seen from a place.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Position {
+    /// At it.
+    #[default]
+    At,
+    /// At it or at one of its neighbours on the grid.
+    Near,
+    /// At one of its neighbours, not at it.
+    Beside,
+}
+
+/// A measure does not fall on any step towards a place.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct GrowsTowards {
+    /// The measure.
+    pub of: String,
+    /// The place.
+    pub to: Place,
+    /// Step back allowed, as a fraction of the map's range.
+    #[serde(default)]
+    pub slack: f64,
+    /// A column whose levels are maps of their own, of which each has to satisfy the claim.
+    #[serde(default)]
+    pub each: Option<String>,
+    /// Conditions beyond the entry's own.
+    #[serde(rename = "where", default)]
+    pub rows: Selection,
+}
+
+fn one() -> usize {
+    1
+}
+
+impl Place {
+    /// True if it has a coordinate and all numbers are finite.
+    pub(crate) fn is_sound(&self) -> bool {
+        let finite = |coordinate: &Coordinate| match coordinate {
+            Coordinate::Number(x) => x.is_finite(),
+            Coordinate::Column(_) => true,
+        };
+        !self.0.is_empty() && self.0.values().all(finite)
+    }
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (i, (column, coordinate)) in self.0.iter().enumerate() {
+            let join = if i == 0 { "" } else { ", " };
+            match coordinate {
+                Coordinate::Number(x) => write!(f, "{join}{column} = {}", significant(*x, 4))?,
+                Coordinate::Column(other) => write!(f, "{join}{column} = {other}")?,
+            }
+        }
+        Ok(())
+    }
+}
+
+pub(crate) fn best_place(claim: &BestPlace, view: &View<'_>) -> Result<Decision, Absence> {
+    let mut tally = Tally::new();
+    let mut found = Vec::new();
+    for (level, map) in maps(view, &claim.rows, claim.each.as_deref(), &claim.of, &claim.at)? {
+        let target = map.index_of_target(&claim.at)?;
+        let wanted = |distance: usize| match claim.position {
+            Position::At => distance == 0,
+            Position::Near => distance <= 1,
+            Position::Beside => distance == 1,
+        };
+        let (meant, others): (Vec<&Spot>, Vec<&Spot>) =
+            map.spots.iter().partition(|spot| wanted(spot.steps_from(&target)));
+        let highest = |spots: &[&Spot]| {
+            spots.iter().copied().cloned().reduce(|a, b| if b.cell.value > a.cell.value { b } else { a })
+        };
+        let (Some(place), Some(best)) = (highest(&meant), highest(&map.spots.iter().collect::<Vec<_>>())) else {
+            return Err(Absence::NoRow(format!("{level}the map has no row at {}", claim.at)));
+        };
+        if others.len() < claim.among {
+            return Err(Absence::NoRow(format!("{level}a map of {} places has no worse ones", map.spots.len())));
+        }
+        let allowed = claim.slack * map.range();
+        // Places that mirror each other differ by rounding alone.
+        let short = |spot: &Spot| {
+            if same(spot.cell.value, place.cell.value) { 0.0 } else { spot.cell.value - place.cell.value }
+        };
+        let mut rivals = others.clone();
+        rivals.sort_by(|a, b| short(b).total_cmp(&short(a)));
+        let rank = 1 + rivals.iter().filter(|spot| short(spot) > 0.0).count();
+        let rival = rivals[claim.among - 1];
+        let u = if short(rival) == 0.0 { 0.0 } else { libm::hypot(rival.cell.run, place.cell.run) };
+        tally.require(allowed - short(rival), u, || {
+            format!(
+                "{level}{} at {}, number {rank} of {}; best {} at {}",
+                with_unit(place.cell.value, 4, &map.unit),
+                place.words(),
+                map.spots.len(),
+                with_unit(best.cell.value, 4, &map.unit),
+                best.words()
+            )
+        });
+        found.push(format!("{level}{} at {}", with_unit(best.cell.value, 4, &map.unit), best.words()));
+    }
+    let decision = tally.decision()?;
+    if decision.outcome == Outcome::Holds {
+        return Ok(Decision { found: format!("best {}", found.join("; ")), ..decision });
+    }
+    Ok(decision)
+}
+
+pub(crate) fn grows_towards(claim: &GrowsTowards, view: &View<'_>) -> Result<Decision, Absence> {
+    let mut tally = Tally::new();
+    let (mut steps, mut up) = (0_usize, 0_usize);
+    let mut largest = (0.0_f64, String::new());
+    for (level, map) in maps(view, &claim.rows, claim.each.as_deref(), &claim.of, &claim.to)? {
+        let range = map.range();
+        for (from, to) in map.steps_towards_target() {
+            let rise = to.cell.value - from.cell.value;
+            let way = || format!("{level}from {} to {}", from.words(), to.words());
+            steps += 1;
+            up += usize::from(rise > 0.0);
+            if -rise / range > largest.0 {
+                largest = (-rise / range, way());
+            }
+            let u = if same(from.cell.value, to.cell.value) { 0.0 } else { libm::hypot(from.cell.run, to.cell.run) };
+            tally.require(claim.slack * range + rise, u, || {
+                format!("step back of {} of the range {}", percent(-rise / range), way())
+            });
+        }
+        let by_distance = |spot: &&Spot| map.distance_to_target(spot);
+        let nearest = map.spots.iter().min_by(|a, b| by_distance(a).total_cmp(&by_distance(b)));
+        let farthest = map.spots.iter().max_by(|a, b| by_distance(a).total_cmp(&by_distance(b)));
+        if let (Some(nearest), Some(farthest)) = (nearest, farthest) {
+            let rise = nearest.cell.value - farthest.cell.value;
+            tally.require_strictly(rise, libm::hypot(nearest.cell.run, farthest.cell.run), || {
+                format!(
+                    "{level}{} at {}, {} at {}",
+                    with_unit(nearest.cell.value, 4, &map.unit),
+                    nearest.words(),
+                    with_unit(farthest.cell.value, 4, &map.unit),
+                    farthest.words()
+                )
+            });
+        }
+    }
+    let decision = tally.decision()?;
+    if decision.outcome == Outcome::Holds {
+        let (back, way) = largest;
+        let back = if back > 0.0 {
+            format!("; largest step back {} of the range {way}", percent(back))
+        } else {
+            String::new()
+        };
+        let found = format!("grows on {up} of {steps} steps{back}, {} allowed", percent(claim.slack));
+        return Ok(Decision { found, ..decision });
+    }
+    Ok(decision)
+}
+
+/// A measure over a grid of places.
+struct Map {
+    spots: Vec<Spot>,
+    /// Of each coordinate: its values on the grid, increasing.
+    grid: Vec<Vec<f64>>,
+    /// The place that the claim speaks of.
+    target: Vec<f64>,
+    unit: String,
+}
+
+/// A place with its value.
+#[derive(Debug, Clone)]
+struct Spot {
+    at: Vec<f64>,
+    /// On the grid.
+    index: Vec<usize>,
+    cell: Cell,
+}
+
+impl Spot {
+    /// How many steps of the grid, diagonal ones too, it is away.
+    fn steps_from(&self, index: &[usize]) -> usize {
+        self.index.iter().zip(index).map(|(a, b)| a.abs_diff(*b)).max().unwrap_or(0)
+    }
+
+    fn words(&self) -> String {
+        let numbers: Vec<String> = self.at.iter().map(|x| significant(*x, 4)).collect();
+        format!("({})", numbers.join(", "))
+    }
+}
+
+/// The maps that a claim speaks of, each with a prefix that names it.
+fn maps(
+    view: &View<'_>,
+    rows: &Selection,
+    each: Option<&str>,
+    of: &str,
+    place: &Place,
+) -> Result<Vec<(String, Map)>, Absence> {
+    let Some(each) = each else { return Ok(vec![(String::new(), Map::new(view, rows, of, place)?)]) };
+    let levels = view.levels(&view.rows(Source { table: None, rows }, Some(each))?, each)?;
+    let map = |level: &Allowed| {
+        let map = Map::new(&view.narrowed(each, level), rows, of, place)?;
+        Ok((format!("{level}: "), map))
+    };
+    levels.iter().map(map).collect()
+}
+
+impl Map {
+    fn new(view: &View<'_>, rows: &Selection, of: &str, place: &Place) -> Result<Self, Absence> {
+        let rows = view.rows(Source { table: None, rows }, None)?;
+        let columns = place.0.keys().map(|name| view.coordinates(&rows, name)).collect::<Result<Vec<_>, _>>()?;
+        let target = place
+            .0
+            .values()
+            .map(|coordinate| match coordinate {
+                Coordinate::Number(x) => Ok(*x),
+                Coordinate::Column(name) => {
+                    let cells = view.coordinates(&rows, name)?;
+                    let first = cells[0];
+                    if cells.iter().all(|cell| same(*cell, first)) {
+                        Ok(first)
+                    } else {
+                        Err(Absence::Broken(format!("`{name}` changes within the map: split it with `each`")))
+                    }
+                }
+            })
+            .collect::<Result<Vec<_>, _>>()?;
+        let cells = view.cells(&rows, of)?;
+        let grid: Vec<Vec<f64>> = columns
+            .iter()
+            .map(|column| {
+                let mut levels = column.clone();
+                levels.sort_by(f64::total_cmp);
+                levels.dedup_by(|a, b| same(*a, *b));
+                levels
+            })
+            .collect();
+        let mut spots: Vec<Spot> = Vec::with_capacity(cells.len());
+        for (row, cell) in cells.into_iter().enumerate() {
+            let at: Vec<f64> = columns.iter().map(|column| column[row]).collect();
+            let index: Vec<usize> = at.iter().zip(&grid).map(|(x, levels)| level_of(levels, *x)).collect();
+            if let Some(other) = spots.iter().find(|spot| spot.index == index) {
+                if other.cell == cell {
+                    continue;
+                }
+                return Err(Absence::Broken(format!(
+                    "two rows at {} differ: `where` or `each` must part them",
+                    other.words()
+                )));
+            }
+            spots.push(Spot { at, index, cell });
+        }
+        let unit = view.unit(&rows, of)?.to_owned();
+        Ok(Self { spots, grid, target, unit })
+    }
+
+    fn range(&self) -> f64 {
+        let values = || self.spots.iter().map(|spot| spot.cell.value);
+        values().fold(f64::NEG_INFINITY, f64::max) - values().fold(f64::INFINITY, f64::min)
+    }
+
+    fn index_of_target(&self, place: &Place) -> Result<Vec<usize>, Absence> {
+        let index = |(x, levels): (&f64, &Vec<f64>)| {
+            let at = level_of(levels, *x);
+            same(levels[at], *x).then_some(at)
+        };
+        let found: Option<Vec<usize>> = self.target.iter().zip(&self.grid).map(index).collect();
+        found.ok_or_else(|| Absence::NoRow(format!("the grid of the map does not hold {place}")))
+    }
+
+    fn distance_to_target(&self, spot: &Spot) -> f64 {
+        spot.at.iter().zip(&self.target).zip(&self.grid).fold(0.0, |sum, ((x, target), levels)| {
+            let size = (levels[levels.len() - 1] - levels[0]).max(f64::MIN_POSITIVE);
+            sum + (x - target).abs() / size
+        })
+    }
+
+    /// All pairs of neighbours that differ in one coordinate, the farther first.
+    fn steps_towards_target(&self) -> Vec<(&Spot, &Spot)> {
+        let by_index: BTreeMap<&[usize], &Spot> = self.spots.iter().map(|spot| (spot.index.as_slice(), spot)).collect();
+        let mut steps = Vec::new();
+        for spot in &self.spots {
+            for (axis, target) in self.target.iter().enumerate() {
+                let mut next = spot.index.clone();
+                next[axis] += 1;
+                let Some(other) = by_index.get(next.as_slice()) else { continue };
+                let away = |spot: &Spot| spot.at[axis] - target;
+                let (here, there) = (away(spot), away(other));
+                // From one side of the place to the other is no step towards it.
+                if here < 0.0 && there > 0.0 {
+                    continue;
+                }
+                if here.abs() > there.abs() { steps.push((spot, *other)) } else { steps.push((*other, spot)) }
+            }
+        }
+        steps
+    }
+}
+
+/// The level that a number is, to nine digits, or the nearest one.
+fn level_of(levels: &[f64], x: f64) -> usize {
+    let distance = |i: &usize| (levels[*i] - x).abs();
+    (0..levels.len()).min_by(|a, b| distance(a).total_cmp(&distance(b))).unwrap_or(0)
+}

@@ -1,0 +1,320 @@
+//! The peaks of a frequency response between the points of its grid: place, height and half-power width.
+//!
+//! Near a resonance the squared reciprocal of a response is a parabola in the frequency, far better than the response
+//! itself. So the parabola goes through 1/y², on points at any distances; what the next wider points say instead is how
+//! well the grid knows the result. Where the response is not positive, the parabola goes through the response.
+
+use serde::{Deserialize, Serialize};
+
+use super::extract::Extracted;
+use super::printed::Printed;
+use super::selection::Selection;
+use super::text::{significant, with_unit};
+use super::view::{Absence, Line, Source, View};
+
+/// A peak of a response.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Peak {
+    /// The response.
+    pub of: String,
+    /// The frequency.
+    pub over: String,
+    /// Which of its peaks.
+    pub which: Which,
+    /// What counts as a peak: how far the response falls on both sides, as a fraction of the peak's own height.
+    #[serde(default = "usual_prominence")]
+    pub prominence: f64,
+    /// Which number of it.
+    pub read: Feature,
+    /// Conditions beyond the entry's own.
+    #[serde(rename = "where", default)]
+    pub rows: Selection,
+    /// Another experiment's table; the entry's conditions do not hold there.
+    #[serde(default)]
+    pub table: Option<String>,
+}
+
+/// Which of several peaks.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Which {
+    /// The highest.
+    Highest,
+    /// The n-th from the low end, counted from 1.
+    Number(u32),
+    /// The one nearest to a frequency.
+    Nearest(Printed),
+}
+
+/// A number of a peak.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Feature {
+    /// Where it is.
+    Place,
+    /// How high it is.
+    Height,
+    /// How wide it is at 1/√2 of its height.
+    HalfPowerWidth,
+}
+
+impl Feature {
+    /// For a reader.
+    pub(crate) fn words(self) -> &'static str {
+        match self {
+            Self::Place => "place",
+            Self::Height => "height",
+            Self::HalfPowerWidth => "half-power width",
+        }
+    }
+}
+
+/// A twentieth: a ripple on a resonance is none.
+pub(super) fn usual_prominence() -> f64 {
+    0.05
+}
+
+impl Peak {
+    /// True if every number written into it makes sense.
+    pub(crate) fn is_sound(&self) -> bool {
+        (0.0..1.0).contains(&self.prominence) && self.which != Which::Number(0)
+    }
+
+    pub(crate) fn take(&self, view: &View<'_>) -> Result<Extracted, Absence> {
+        let line = view.line(Source { table: self.table.as_deref(), rows: &self.rows }, &self.of, &self.over, None)?;
+        let at = self.choose(&line)?;
+        let extracted = |value: f64, run: f64, spread: f64, unit: &str| Extracted {
+            value,
+            run,
+            spread,
+            unit: unit.into(),
+            scale: None,
+        };
+        Ok(match self.read {
+            Feature::Place => {
+                let (place, u) = with_errors(&line, at, |top| top.x);
+                extracted(place, u, 0.0, &line.over_unit)
+            }
+            Feature::Height => {
+                let (height, u) = with_errors(&line, at, |top| top.y);
+                extracted(height, u, line.y[at].spread, &line.unit)
+            }
+            Feature::HalfPowerWidth => {
+                let (width, u) = half_power_width(&line, at)?;
+                extracted(width, u, 0.0, &line.over_unit)
+            }
+        })
+    }
+
+    /// The highest grid point of the peak that is meant.
+    fn choose(&self, line: &Line) -> Result<usize, Absence> {
+        let stands_out = |&(x, prominence): &(f64, super::view::Cell)| {
+            let at = line.x.partition_point(|&other| other < x);
+            let enough = prominence.value >= self.prominence * line.y[at].value.abs();
+            (enough && prominence.value > 2.0 * prominence.run).then_some(at)
+        };
+        let peaks: Vec<usize> = line.prominences().iter().filter_map(stands_out).collect();
+        let none = || Absence::Nowhere(format!("`{}` has no peak over `{}`", self.of, self.over));
+        match &self.which {
+            Which::Highest => {
+                peaks.into_iter().max_by(|&a, &b| line.y[a].value.total_cmp(&line.y[b].value)).ok_or_else(none)
+            }
+            Which::Number(n) => {
+                let wanted = usize::try_from(*n).unwrap_or(usize::MAX);
+                let found = peaks.len();
+                peaks.into_iter().nth(wanted.saturating_sub(1)).ok_or_else(|| {
+                    Absence::Nowhere(format!("`{}` has {found} peaks over `{}`, not {wanted}", self.of, self.over))
+                })
+            }
+            Which::Nearest(printed) => {
+                let (near, _) = printed.converted_to(&line.over_unit).ok_or_else(|| {
+                    Absence::Broken(format!("`{}` is no `{}` in `{}`", printed.text(), self.over, line.over_unit))
+                })?;
+                let distance = |at: &usize| (line.x[*at] - near).abs();
+                peaks.into_iter().min_by(|a, b| distance(a).total_cmp(&distance(b))).ok_or_else(none)
+            }
+        }
+    }
+}
+
+/// The vertex of a peak.
+#[derive(Debug, Clone, Copy)]
+struct Top {
+    x: f64,
+    y: f64,
+}
+
+/// A point of a response.
+#[derive(Debug, Clone, Copy)]
+struct Point {
+    x: f64,
+    y: f64,
+}
+
+/// The vertex of the parabola through three points of which the middle one is the highest.
+fn vertex(points: [Point; 3]) -> Top {
+    let reciprocal = points.iter().all(|point| point.y > 0.0);
+    let height = |point: Point| if reciprocal { -1.0 / (point.y * point.y) } else { point.y };
+    let [left, middle, right] = points;
+    let (before, after) = (middle.x - left.x, right.x - middle.x);
+    let rise = (height(middle) - height(left)) / before;
+    let fall = (height(right) - height(middle)) / after;
+    let curvature = (fall - rise) / (before + after);
+    let slope = (rise * after + fall * before) / (before + after);
+    let aside = if curvature < 0.0 { (-slope / (2.0 * curvature)).clamp(-before, after) } else { 0.0 };
+    let top = height(middle) + aside * (slope + aside * curvature);
+    let y = if reciprocal && top < 0.0 { 1.0 / (-top).sqrt() } else { middle.y.max(top) };
+    Top { x: middle.x + aside, y }
+}
+
+/// A number of the peak at a grid point, and its uncertainty: what the errors of the three points do to it, and how far it
+/// is from what the next wider points say.
+fn with_errors(line: &Line, at: usize, read: impl Fn(Top) -> f64) -> (f64, f64) {
+    let point = |i: usize| Point { x: line.x[i], y: line.y[i].value };
+    let points = [point(at - 1), point(at), point(at + 1)];
+    let value = read(vertex(points));
+    let wider = if at >= 2 && at + 2 < line.x.len() {
+        [point(at - 2), point(at), point(at + 2)]
+    } else if at >= 2 {
+        [point(at - 2), point(at), point(at + 1)]
+    } else if at + 2 < line.x.len() {
+        [point(at - 1), point(at), point(at + 2)]
+    } else {
+        points
+    };
+    let grid = (read(vertex(wider)) - value).abs();
+    let shifts = (0..3).map(|i| {
+        let mut moved = points;
+        moved[i].y += line.y[at - 1 + i].run;
+        let shift = read(vertex(moved)) - value;
+        shift * shift
+    });
+    (value, libm::hypot(grid, shifts.sum::<f64>().sqrt()))
+}
+
+/// The width at 1/√2 of the height. √(1/y² − 1/height²) is a straight line in the frequency on either side; what a straight
+/// line in y says instead is twice the uncertainty.
+fn half_power_width(line: &Line, at: usize) -> Result<(f64, f64), Absence> {
+    let (height, u_height) = with_errors(line, at, |top| top.y);
+    if height <= 0.0 {
+        return Err(Absence::Nowhere(format!("the peak of `{}` is not above zero", line.of)));
+    }
+    let level = height / std::f64::consts::SQRT_2;
+    let side = |step: isize| -> Result<(f64, f64), Absence> {
+        let mut inner = at;
+        loop {
+            let Some(outer) = inner.checked_add_signed(step).filter(|&i| i < line.x.len()) else {
+                return Err(Absence::Nowhere(format!(
+                    "`{}` ends at {} = {} before it falls to half power",
+                    line.of,
+                    line.over,
+                    with_unit(line.x[inner], 4, &line.over_unit)
+                )));
+            };
+            if line.y[outer].value > height {
+                return Err(Absence::Nowhere(format!(
+                    "`{}` rises above its peak at {} = {} before it falls to half power",
+                    line.of,
+                    line.over,
+                    with_unit(line.x[outer], 4, &line.over_unit)
+                )));
+            }
+            if line.y[outer].value < level {
+                let (a, b) = (line.y[inner].value, line.y[outer].value);
+                let away = |y: f64| (1.0 / (y * y) - 1.0 / (height * height)).max(0.0).sqrt();
+                let width = line.x[outer] - line.x[inner];
+                let straight = line.x[inner] + width * (a - level) / (a - b);
+                let curved = if b > 0.0 {
+                    line.x[inner] + width * (away(level) - away(a)) / (away(b) - away(a))
+                } else {
+                    straight
+                };
+                // The level itself is as uncertain as the height, and the line falls by a − b in `width`.
+                let u_level = u_height / std::f64::consts::SQRT_2 * (width / (a - b)).abs();
+                return Ok((curved, libm::hypot((curved - straight) / 2.0, u_level)));
+            }
+            inner = outer;
+        }
+    };
+    let ((left, u_left), (right, u_right)) = (side(-1)?, side(1)?);
+    Ok((right - left, libm::hypot(u_left, u_right)))
+}
+
+/// A peak as a study prints it: one entry, up to three numbers.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PrintedPeak {
+    /// The response.
+    pub of: String,
+    /// The frequency.
+    pub over: String,
+    /// Which of its peaks; the one nearest to `at` if absent.
+    #[serde(default)]
+    pub which: Option<Which>,
+    /// What counts as a peak: how far the response falls on both sides, as a fraction of the peak's own height.
+    #[serde(default = "usual_prominence")]
+    pub prominence: f64,
+    /// Where it is.
+    #[serde(default)]
+    pub at: Option<Printed>,
+    /// How high it is.
+    #[serde(default)]
+    pub height: Option<Printed>,
+    /// How wide it is at 1/√2 of its height.
+    #[serde(default)]
+    pub half_power_width: Option<Printed>,
+}
+
+/// One printed number of a peak, and how it is read from the table.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct PeakNumber<'a> {
+    pub published: &'a Printed,
+    pub peak: Peak,
+}
+
+impl PrintedPeak {
+    /// What is wrong with it.
+    pub(crate) fn flaw(&self) -> Option<String> {
+        if [&self.at, &self.height, &self.half_power_width].iter().all(|printed| printed.is_none()) {
+            return Some("has a `peak` without a printed number: give `at`, `height` or `half_power_width`".into());
+        }
+        match self.which() {
+            None => Some("has a `peak` that needs `which`: {nearest: 26 rad/s}, {number: 1} or highest".into()),
+            Some(Which::Number(0)) => Some("counts peaks from 1".into()),
+            Some(_) if !(0.0..1.0).contains(&self.prominence) => Some(format!(
+                "has a `prominence` of {}, which is no fraction of the peak's height",
+                significant(self.prominence, 3)
+            )),
+            Some(_) => None,
+        }
+    }
+
+    fn which(&self) -> Option<Which> {
+        self.which.clone().or_else(|| self.at.clone().map(Which::Nearest))
+    }
+
+    /// Its printed numbers.
+    pub(crate) fn numbers(&self) -> Vec<PeakNumber<'_>> {
+        let printed = [
+            (&self.at, Feature::Place),
+            (&self.height, Feature::Height),
+            (&self.half_power_width, Feature::HalfPowerWidth),
+        ];
+        printed
+            .into_iter()
+            .filter_map(|(published, read)| {
+                let peak = Peak {
+                    of: self.of.clone(),
+                    over: self.over.clone(),
+                    which: self.which()?,
+                    prominence: self.prominence,
+                    read,
+                    rows: Selection::default(),
+                    table: None,
+                };
+                Some(PeakNumber { published: published.as_ref()?, peak })
+            })
+            .collect()
+    }
+}

@@ -1,0 +1,162 @@
+//! A curve held against a published or analytic one, point by point within a tube of widths on both axes.
+//!
+//! A curve that is a little shifted is not far off, however steep it is. So the distance of a point to a curve is the
+//! smallest that some place of the curve has in units of the tube, the larger of both axes'. It is taken both ways: each
+//! computed point within the published range to the published curve, and each published point to the computed curve, so
+//! that a peak that is not there shows as one that should not be.
+
+use serde::{Deserialize, Serialize};
+
+use super::fit::{Fit, FitMeasure};
+use super::predicate::Within;
+use super::selection::Selection;
+use super::tally::{Decision, Tally};
+use super::text::{significant, with_unit};
+use super::view::{Absence, Line, Source, View};
+
+/// A published curve.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Curve {
+    /// The measure.
+    pub of: String,
+    /// The parameter.
+    pub over: String,
+    /// Its points, x increasing, in the units of the two columns.
+    pub points: Vec<[f64; 2]>,
+    /// How far a point may lie beside the curve.
+    pub tube: Tube,
+    /// Conditions beyond the entry's own.
+    #[serde(rename = "where", default)]
+    pub rows: Selection,
+}
+
+/// The half widths of a tube.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Tube {
+    /// Along the parameter.
+    pub x: Within,
+    /// Along the measure.
+    pub y: Within,
+}
+
+/// A point of a curve.
+#[derive(Debug, Clone, Copy)]
+struct Point {
+    x: f64,
+    y: f64,
+}
+
+/// How far a point is beside a curve.
+struct Departure {
+    /// In widths of the tube.
+    widths: f64,
+    /// Its uncertainty, of the point's own.
+    u: f64,
+    x: f64,
+}
+
+impl Curve {
+    /// What makes it no curve.
+    pub(crate) fn flaw(&self) -> Option<&'static str> {
+        let wide = |within: Within| match within {
+            Within::Relative(size) | Within::Absolute(size) => size.is_finite() && size > 0.0,
+        };
+        let finite = self.points.iter().flatten().all(|number| number.is_finite());
+        if self.points.len() < 2 || !finite || !self.points.is_sorted_by(|a, b| a[0] < b[0]) {
+            Some("a curve needs two points or more, finite, with x increasing")
+        } else if !wide(self.tube.x) || !wide(self.tube.y) {
+            Some("a tube has a width above zero on both axes")
+        } else {
+            None
+        }
+    }
+
+    pub(crate) fn decide(&self, view: &View<'_>) -> Result<Decision, Absence> {
+        let (line, departures) = self.departures(view)?;
+        let mut tally = Tally::new();
+        for departure in &departures {
+            tally.require(1.0 - departure.widths, departure.u, || self.words(departure, &line));
+        }
+        tally.decision()
+    }
+
+    /// The worst departure, for a report.
+    pub(crate) fn fit(&self, view: &View<'_>) -> Option<Fit> {
+        let (line, departures) = self.departures(view).ok()?;
+        let worst = departures.iter().max_by(|a, b| a.widths.total_cmp(&b.widths))?;
+        Some(Fit {
+            against: format!("{} points of `{}` over `{}`", self.points.len(), self.of, self.over),
+            measure: FitMeasure::TubeWidths,
+            points: departures.len(),
+            value: worst.widths,
+            u: worst.u,
+            limit: 1.0,
+            remark: format!(
+                "at {} = {}; the tube is ±{} wide in x, ±{} in y",
+                self.over,
+                with_unit(worst.x, 4, &line.over_unit),
+                self.tube.x.words(),
+                self.tube.y.words()
+            ),
+        })
+    }
+
+    fn words(&self, departure: &Departure, line: &Line) -> String {
+        let at = with_unit(departure.x, 4, &line.over_unit);
+        format!("largest departure {} of the tube's width, at {} = {at}", significant(departure.widths, 3), self.over)
+    }
+
+    fn departures(&self, view: &View<'_>) -> Result<(Line, Vec<Departure>), Absence> {
+        let line = view.line(Source { table: None, rows: &self.rows }, &self.of, &self.over, None)?;
+        let published: Vec<Point> = self.points.iter().map(|&[x, y]| Point { x, y }).collect();
+        let computed: Vec<Point> = line.x.iter().zip(&line.y).map(|(&x, cell)| Point { x, y: cell.value }).collect();
+        if computed.len() < 2 {
+            return Err(Absence::NoRow(format!("one point of `{}` is no curve", self.of)));
+        }
+        let (first, last) = (published[0].x, published[published.len() - 1].x);
+        let mut departures: Vec<Departure> = Vec::new();
+        for (point, cell) in computed.iter().zip(&line.y) {
+            if (first..=last).contains(&point.x) {
+                let u = cell.run / self.width(self.tube.y, point.y);
+                departures.push(Departure { widths: self.widths_beside(*point, &published), u, x: point.x });
+            }
+        }
+        for point in &published {
+            // The error of the nearest computed point.
+            let near = line.x.partition_point(|x| *x < point.x).min(line.x.len() - 1);
+            let u = line.y[near].run / self.width(self.tube.y, point.y);
+            departures.push(Departure { widths: self.widths_beside(*point, &computed), u, x: point.x });
+        }
+        Ok((line, departures))
+    }
+
+    fn width(&self, within: Within, at: f64) -> f64 {
+        within.allows(at, at).max(f64::MIN_POSITIVE)
+    }
+
+    /// The smallest distance of a point to a polyline, in widths of the tube at the point.
+    fn widths_beside(&self, point: Point, curve: &[Point]) -> f64 {
+        let scaled = |other: Point| Point {
+            x: (other.x - point.x) / self.width(self.tube.x, point.x),
+            y: (other.y - point.y) / self.width(self.tube.y, point.y),
+        };
+        curve.windows(2).map(|pair| from_origin(scaled(pair[0]), scaled(pair[1]))).fold(f64::INFINITY, f64::min)
+    }
+}
+
+/// The smallest max(|x|, |y|) on the straight line between two points: at an end, where a coordinate is zero, or where both
+/// are equally large.
+fn from_origin(a: Point, b: Point) -> f64 {
+    let (dx, dy) = (b.x - a.x, b.y - a.y);
+    let candidates = [0.0, 1.0, -a.x / dx, -a.y / dy, (a.y - a.x) / (dx - dy), -(a.x + a.y) / (dx + dy)];
+    candidates
+        .into_iter()
+        .filter(|share| share.is_finite())
+        .map(|share| {
+            let share = share.clamp(0.0, 1.0);
+            (a.x + share * dx).abs().max((a.y + share * dy).abs())
+        })
+        .fold(f64::INFINITY, f64::min)
+}
