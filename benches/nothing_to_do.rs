@@ -28,6 +28,12 @@ fn nothing_to_do(bencher: divan::Bencher<'_, '_>) {
     desk.run(2, &MadeUp::default(), &Silence);
     let mut command = Command::new(env!("CARGO_BIN_EXE_shotdamp"));
     command.arg("--root").arg(desk.folder.path());
-    assert!(command.output().is_ok_and(|output| output.status.success()), "the first run publishes");
+    let mut said = || {
+        let output = command.output().expect("the program starts");
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        String::from_utf8_lossy(&output.stdout).into_owned()
+    };
+    assert!(said().starts_with(&format!("{EXPERIMENTS} experiments: 0 simulated")), "the first run publishes");
+    assert!(said().starts_with("Nothing to do."), "the second has nothing to do");
     bencher.bench_local(|| command.output());
 }

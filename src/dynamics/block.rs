@@ -37,7 +37,20 @@ pub(crate) struct Phase {
     pub(crate) rate: f64,
 }
 
+impl Kernel {
+    /// After no time.
+    pub(crate) const NONE: Self = Self { c: 1.0, s: 0.0 };
+}
+
 impl Block {
+    /// The kernels of all `blocks` after `t` seconds.
+    #[inline(always)]
+    pub(crate) fn kernels(blocks: &[Self], t: f64, kernels: &mut [Kernel]) {
+        for (kernel, block) in kernels.iter_mut().zip(blocks) {
+            *kernel = block.kernel(t);
+        }
+    }
+
     /// The block of the matrix [[p, q], [r, s]].
     pub(crate) fn new([p, q, r, s]: [f64; 4]) -> Self {
         let half = 0.5 * (p - s);

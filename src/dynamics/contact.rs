@@ -154,20 +154,16 @@ pub(crate) struct Impact {
     pub(crate) departure: f64,
     /// Energy lost, J.
     pub(crate) loss: f64,
-    /// 1 + mp φ·M⁻¹φ: relative acceleration in flight over the push per mass that would prevent it.
-    pub(crate) lightening: f64,
 }
 
 impl Impact {
     /// The impact of a particle on a face with mobility φ·M⁻¹φ, by restitution; q′ changes by −`impulse`·M⁻¹φ.
     pub(crate) fn new(mobility: f64, mass: f64, restitution: f64, approach: f64) -> Self {
-        let lightening = 1.0 + mass * mobility;
-        let effective = mass / lightening;
+        let effective = mass / (1.0 + mass * mobility);
         Self {
             impulse: -(1.0 + restitution) * approach * effective,
             departure: -restitution * approach,
             loss: 0.5 * effective * (1.0 - restitution * restitution) * approach * approach,
-            lightening,
         }
     }
 }

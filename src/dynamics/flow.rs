@@ -11,8 +11,9 @@
 use nalgebra::DMatrix;
 
 use super::EngineError;
-use super::block::{Block, Phase};
+use super::block::Block;
 use super::series::Series;
+use super::signals::{Row, Rows, Signals};
 use super::spectral::Spectral;
 use super::system::{Contact, Face, HybridSystem, Law, Matrix, dot};
 
@@ -46,13 +47,8 @@ pub(crate) struct Flow {
     force: Load,
     /// Answer to sin ω t at the forcing point: p = cosine·cos ω t + sine·sin ω t.
     harmonic: Option<Steady>,
-    /// Signals that are watched or measured, as rows over the blocks.
-    pub(crate) rows: Vec<Row>,
-    /// Row of each particle's floor (φ_f·q), and of its ceiling.
-    pub(crate) face_rows: Vec<FaceRows>,
-    /// Row of the first observed displacement, and of all of them.
-    pub(crate) observed: usize,
-    pub(crate) all_observed: Vec<usize>,
+    /// Signals that are watched or measured.
+    pub(crate) rows: Rows,
     /// Closed forms of its integrals, where they keep their digits.
     pub(crate) forms: Option<super::integral::Forms>,
 }
@@ -73,30 +69,6 @@ struct Steady {
     sine: Vec<f64>,
 }
 
-/// A signal r·p: its share of each block and its constant.
-pub(crate) struct Row {
-    /// Two weights a block for the value, two for the rate.
-    weights: Vec<[f64; 4]>,
-    /// Rest under gravity and under a unit force.
-    rest_gravity: f64,
-    rest_force: f64,
-    /// Linear and quadratic drift under gravity and under a unit force: coefficients of t and t².
-    drift_gravity: [f64; 2],
-    drift_force: [f64; 2],
-    /// Share of the harmonic drive: cosine and sine.
-    cosine: f64,
-    sine: f64,
-}
-
-/// Rows of the faces of one enclosure.
-#[derive(Clone, Copy)]
-pub(crate) struct FaceRows {
-    pub(crate) floor: usize,
-    pub(crate) ceiling: usize,
-    /// Row of the particle's own coordinate w while it presses into a face.
-    pub(crate) compression: Option<usize>,
-}
-
 /// A polynomial part of a signal: p₀ + p₁ t + p₂ t².
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct Parabola {
@@ -112,6 +84,14 @@ impl Parabola {
 
     pub(crate) fn rate(self, t: f64) -> f64 {
         self.p1 + 2.0 * self.p2 * t
+    }
+
+    pub(crate) fn times(self, factor: f64) -> Self {
+        Self { p0: factor * self.p0, p1: factor * self.p1, p2: factor * self.p2 }
+    }
+
+    pub(crate) fn negative(self) -> Self {
+        self.times(-1.0)
     }
 }
 
@@ -198,54 +178,16 @@ impl Flow {
             gravity,
             force,
             harmonic,
-            rows: Vec::new(),
-            face_rows: Vec::new(),
-            observed: 0,
-            all_observed: Vec::new(),
+            rows: Rows::default(),
             forms: None,
         };
-        flow.watch(system);
+        flow.rows = Rows::new(system, &flow);
         flow.forms = super::integral::Forms::new(&flow.blocks, flow.harmonic.is_some());
         Ok(flow)
     }
 
-    /// Sets up the rows: the observed displacements, the faces of every enclosure, the compressions.
-    fn watch(&mut self, system: &HybridSystem) {
-        let n = system.mass.order;
-        let mut known: Vec<Vec<f64>> = Vec::new();
-        let mut rows = Vec::new();
-        let mut place = |row: &[f64], flow: &Self| -> usize {
-            if let Some(i) = known.iter().position(|other| other == row) {
-                return i;
-            }
-            known.push(row.to_vec());
-            rows.push(flow.row(row));
-            rows.len() - 1
-        };
-        let padded = |row: &[f64]| {
-            let mut padded = row.to_vec();
-            padded.resize(self.order, 0.0);
-            padded
-        };
-        let observed: Vec<usize> = system.observed_rows.iter().map(|row| place(&padded(row), self)).collect();
-        let mut faces = Vec::with_capacity(system.particles.len());
-        for (j, particle) in system.particles.iter().enumerate() {
-            let floor = place(&padded(&particle.floor.row), self);
-            let ceiling = particle.ceiling.as_ref().map_or(floor, |face| place(&padded(&face.row), self));
-            let compression = self.attached.iter().position(|&a| a == j).map(|i| {
-                let mut unit = vec![0.0; self.order];
-                unit[n + i] = 1.0;
-                place(&unit, self)
-            });
-            faces.push(FaceRows { floor, ceiling, compression });
-        }
-        self.rows = rows;
-        self.face_rows = faces;
-        self.observed = observed.first().copied().unwrap_or(0);
-        self.all_observed = observed;
-    }
-
-    fn row(&self, row: &[f64]) -> Row {
+    /// The signal r·p.
+    pub(crate) fn row(&self, row: &[f64]) -> Row {
         let size = 2 * self.order;
         let mut weights = Vec::with_capacity(self.own);
         let mut drift = [[0.0; 2]; 2];
@@ -262,19 +204,16 @@ impl Flow {
             }
             weights.push(weight);
         }
-        Row {
-            weights,
-            rest_gravity: dot(row, &self.gravity.rest),
-            rest_force: dot(row, &self.force.rest),
-            drift_gravity: drift[0],
-            drift_force: drift[1],
-            cosine: self.harmonic.as_ref().map_or(0.0, |steady| dot(row, &steady.cosine)),
-            sine: self.harmonic.as_ref().map_or(0.0, |steady| dot(row, &steady.sine)),
+        if let Some(Steady { omega, cosine, sine }) = &self.harmonic {
+            let (cosine, sine) = (dot(row, cosine), dot(row, sine));
+            weights.push([cosine, sine, omega * sine, -omega * cosine]);
         }
+        let load = |load: &Load, [p1, p2]: [f64; 2]| Parabola { p0: dot(row, &load.rest), p1, p2 };
+        Row { weights, gravity: load(&self.gravity, drift[0]), force: load(&self.force, drift[1]) }
     }
 
     /// Block coordinates of (p, p′) at the start of a segment; `force` is the constant force in force, `drive` the phase
-    /// of the harmonic one: F sin ω t and F cos ω t.
+    /// of the harmonic one: F cos ω t and F sin ω t, which are the coordinates of its block.
     #[inline]
     pub(crate) fn enter(&self, p: &[f64], rate: &[f64], force: f64, drive: DrivePhase, c: &mut [f64]) {
         let order = self.order;
@@ -295,6 +234,9 @@ impl Flow {
             for ((c, x), y) in c[..size].iter_mut().zip(by_position).zip(by_rate) {
                 *c += x * position + y * velocity;
             }
+        }
+        if self.harmonic.is_some() {
+            c[size..size + 2].copy_from_slice(&[drive.cosine, drive.sine]);
         }
     }
 
@@ -349,38 +291,10 @@ impl Flow {
         }
     }
 
-    /// Shares of every row in every block (the drive's last), with its constant and drifting part.
+    /// The signals that are watched, at the start of a segment.
     #[inline]
-    pub(crate) fn signals(&self, c: &[f64], force: f64, drive: DrivePhase, signals: &mut Signals) {
-        signals.width = self.blocks.len();
-        signals.phases.clear();
-        signals.rests.clear();
-        for row in &self.rows {
-            for ([v0, v1, r0, r1], pair) in row.weights.iter().zip(c.chunks_exact(2)) {
-                let (x, y) = (pair[0], pair[1]);
-                signals.phases.push(Phase { value: v0 * x + v1 * y, rate: r0 * x + r1 * y });
-            }
-            if let Some(steady) = &self.harmonic {
-                signals.phases.push(Phase {
-                    value: row.cosine * drive.cosine + row.sine * drive.sine,
-                    rate: steady.omega * (row.sine * drive.cosine - row.cosine * drive.sine),
-                });
-            }
-            signals.rests.push(Parabola {
-                p0: row.rest_gravity + force * row.rest_force,
-                p1: row.drift_gravity[0] + force * row.drift_force[0],
-                p2: row.drift_gravity[1] + force * row.drift_force[1],
-            });
-        }
-    }
-
-    /// The shares with those of drifting blocks set to zero; `None` if no block drifts.
-    #[inline]
-    pub(crate) fn without_drift(&self, phases: &[Phase]) -> Option<Vec<Phase>> {
-        self.drifts.then(|| {
-            let fixed = |(block, phase): (&Block, &Phase)| if block.is_drift() { Phase::default() } else { *phase };
-            self.blocks.iter().zip(phases).map(fixed).collect()
-        })
+    pub(crate) fn watch(&self, c: &[f64], force: f64, signals: &mut Signals) {
+        self.rows.watch(c, force, self.blocks.len(), signals);
     }
 
     /// So short a time that the cube of what turns in it is below rounding.
@@ -391,35 +305,6 @@ impl Flow {
     /// Natural frequencies of the contact state, rad/s (moduli of the complex pairs' eigenvalues).
     pub(crate) fn natural_frequencies(&self) -> impl Iterator<Item = f64> {
         self.blocks[..self.own].iter().filter(|block| block.oscillates()).map(|block| block.determinant.sqrt())
-    }
-}
-
-/// All rows of a flow at an instant.
-#[derive(Debug, Clone, Default)]
-pub(crate) struct Signals {
-    width: usize,
-    phases: Vec<Phase>,
-    rests: Vec<Parabola>,
-}
-
-impl Signals {
-    /// Shares and rest of a row.
-    #[inline]
-    pub(crate) fn of(&self, row: usize) -> (&[Phase], Parabola) {
-        (&self.phases[row * self.width..(row + 1) * self.width], self.rests[row])
-    }
-
-    /// Value, rate and acceleration of a row after the time of `kernels`.
-    pub(crate) fn value(&self, flow: &Flow, row: usize, kernels: &[super::block::Kernel], time: f64) -> [f64; 3] {
-        let (phases, rest) = self.of(row);
-        let mut sum = [rest.at(time), rest.rate(time), 2.0 * rest.p2];
-        for ((block, phase), kernel) in flow.blocks.iter().zip(phases).zip(kernels) {
-            let now = block.advance(*phase, *kernel);
-            sum[0] += now.value;
-            sum[1] += now.rate;
-            sum[2] += block.acceleration(now).value;
-        }
-        sum
     }
 }
 

@@ -7,15 +7,13 @@
 //! | held | push per mass: ±(φ·q″ + g) − kδ/mp |
 //! | released, still compressed | compression, minus the push that would come back |
 
-use super::block::{Block, Phase};
+use super::block::Phase;
 use super::contact::{Crossing, Relative, Side};
-use super::flow::{Flow, Parabola, Signals};
+use super::flow::{Flow, Parabola};
 use super::search::{Guard, Search};
+use super::signals::{Signals, spring_and_dashpot};
 use super::system::{Contact, HybridSystem, Law, Particle, dot};
 use super::window::Start;
-
-/// What the guards of one segment lead to, by their labels: particle and crossing.
-pub(crate) type Crossings = Vec<(usize, Crossing)>;
 
 /// State of the particles, as the guards need it.
 #[derive(Clone, Copy)]
@@ -30,62 +28,35 @@ pub(crate) struct Contacts<'a> {
     pub(crate) rate: &'a [f64],
 }
 
-/// A guard under construction: sign × (parabola + phases).
-struct Draft<'a> {
-    sign: f64,
-    parabola: Parabola,
-    phases: &'a [Phase],
-    start: Start,
-    distance: bool,
-}
-
 /// Sets the guards of every particle; remembers the path of those in flight.
-pub(crate) fn set(
-    state: Contacts<'_>,
-    flow: &Flow,
-    signals: &Signals,
-    search: &mut Search,
-    crossings: &mut Crossings,
-    paths: &mut [Parabola],
-) {
-    search.clear();
-    crossings.clear();
+#[inline]
+pub(crate) fn set(state: Contacts<'_>, flow: &Flow, signals: &Signals, search: &mut Search, paths: &mut [Parabola]) {
+    search.guards.clear();
     for (j, particle) in state.system.particles.iter().enumerate() {
         let contact = state.contacts[j];
-        let mut push = |crossing: Crossing, draft: Draft<'_>| add(search, crossings, (j, crossing), &draft);
+        let guards = &mut search.guards;
         match contact {
-            Contact::Flight => paths[j] = in_flight(state, j, particle, flow, signals, &mut push),
+            Contact::Flight => paths[j] = in_flight(state, j, particle, flow, signals, guards),
             Contact::FloorReleased | Contact::CeilingReleased => {
-                paths[j] = released(state, j, particle, flow, signals, &mut push);
+                paths[j] = released(state, j, particle, flow, signals, guards);
             }
-            _ if contact.presses(particle) => pressed(state, j, particle, flow, signals, &mut push),
-            _ => held(state, j, particle, flow, signals, &mut push),
+            _ if contact.presses(particle) => pressed(state, j, particle, flow, signals, guards),
+            _ => held(state, j, particle, flow, signals, guards),
         }
     }
 }
 
 /// Adds one guard of the whole system: positive while the observed acceleration keeps its sign.
-pub(crate) fn half_cycle(
-    flow: &Flow,
-    signals: &Signals,
-    sign: f64,
-    touching: bool,
-    search: &mut Search,
-    crossings: &mut Crossings,
-) {
-    let bends = accelerations(&flow.blocks, signals.of(flow.observed).0);
-    let start = if touching { Start::Touching { order: 1, slope: f64::NAN } } else { Start::Apart };
-    let draft = Draft { sign, parabola: Parabola::default(), phases: &bends, start, distance: false };
-    add(search, crossings, (usize::MAX, Crossing::HalfCycle), &draft);
-}
-
-#[inline]
-fn add(search: &mut Search, crossings: &mut Crossings, place: (usize, Crossing), draft: &Draft<'_>) {
-    let Draft { sign, parabola, phases, start, distance } = *draft;
-    search.initial.extend(phases.iter().map(|phase| Phase { value: sign * phase.value, rate: sign * phase.rate }));
-    let parabola = Parabola { p0: sign * parabola.p0, p1: sign * parabola.p1, p2: sign * parabola.p2 };
-    search.guards.push(Guard { label: crossings.len(), parabola, start, distance });
-    crossings.push(place);
+pub(crate) fn half_cycle(signal: usize, sign: f64, touching: bool, search: &mut Search) {
+    search.guards.push(Guard {
+        particle: usize::MAX,
+        crossing: Crossing::HalfCycle,
+        signal,
+        sign,
+        parabola: Parabola::default(),
+        start: touching_once(touching),
+        distance: false,
+    });
 }
 
 /// The parabola of a gap in flight. The particle falls by itself and the blocks of the face are taken off it, so that the
@@ -176,35 +147,42 @@ fn in_flight(
     particle: &Particle,
     flow: &Flow,
     signals: &Signals,
-    push: &mut impl FnMut(Crossing, Draft<'_>),
+    guards: &mut Vec<Guard>,
 ) -> Parabola {
     let here = state.particles[j];
     let gravity = state.system.gravity;
-    let (phases, rest) = signals.of(flow.face_rows[j].floor);
+    let rows = flow.rows.guards[j];
+    let (phases, rest) = signals.of(rows.first);
     let path = flight_path(flow, rest, phases, here, gravity);
-    let fixed = flow.without_drift(phases);
-    let phases = fixed.as_deref().unwrap_or(phases);
-    let begin = start(here.gap, here.rate, state.smooth[j], phases);
     // u = path − blocks.
-    let negative = Parabola { p0: -path.p0, p1: -path.p1, p2: -path.p2 };
-    push(Crossing::ToFloor, Draft { sign: -1.0, parabola: negative, phases, start: begin, distance: true });
+    guards.push(Guard {
+        particle: j,
+        crossing: Crossing::ToFloor,
+        signal: rows.first,
+        sign: -1.0,
+        parabola: path,
+        start: start(here.gap, here.rate, state.smooth[j], phases),
+        distance: true,
+    });
     let Some(ceiling) = &particle.ceiling else { return path };
-    if ceiling.row == particle.floor.row {
+    let (relative, above, phases) = if ceiling.row == particle.floor.row {
         let relative = Relative { gap: here.gap - particle.gap, rate: here.rate };
-        let below = Parabola { p0: particle.gap - path.p0, p1: -path.p1, p2: -path.p2 };
-        let begin = start(-relative.gap, -relative.rate, state.smooth[j], phases);
-        push(Crossing::ToCeiling, Draft { sign: 1.0, parabola: below, phases, start: begin, distance: true });
+        (relative, Parabola { p0: path.p0 - particle.gap, ..path }, phases)
     } else {
         let shift = |x: &[f64]| dot(&ceiling.row, x) - dot(&particle.floor.row, x);
         let relative = Relative { gap: here.gap - particle.gap - shift(state.q), rate: here.rate - shift(state.rate) };
-        let (phases, rest) = signals.of(flow.face_rows[j].ceiling);
-        let above = flight_path(flow, rest, phases, relative, gravity);
-        let fixed = flow.without_drift(phases);
-        let phases = fixed.as_deref().unwrap_or(phases);
-        let below = Parabola { p0: -above.p0, p1: -above.p1, p2: -above.p2 };
-        let begin = start(-relative.gap, -relative.rate, state.smooth[j], phases);
-        push(Crossing::ToCeiling, Draft { sign: 1.0, parabola: below, phases, start: begin, distance: true });
-    }
+        let (phases, rest) = signals.of(rows.second);
+        (relative, flight_path(flow, rest, phases, relative, gravity), phases)
+    };
+    guards.push(Guard {
+        particle: j,
+        crossing: Crossing::ToCeiling,
+        signal: rows.second,
+        sign: 1.0,
+        parabola: above.negative(),
+        start: start(-relative.gap, -relative.rate, state.smooth[j], phases),
+        distance: true,
+    });
     path
 }
 
@@ -214,23 +192,34 @@ fn released(
     particle: &Particle,
     flow: &Flow,
     signals: &Signals,
-    push: &mut impl FnMut(Crossing, Draft<'_>),
+    guards: &mut Vec<Guard>,
 ) -> Parabola {
     let side = state.contacts[j].side();
     let away = side.away();
-    let (phases, rest) = signals.of(face_row(flow, j, side));
+    let rows = flow.rows.guards[j];
+    let (phases, rest) = signals.of(rows.first);
     let path = flight_path(flow, rest, phases, state.particles[j], state.system.gravity);
-    let fixed = flow.without_drift(phases);
-    let phases = fixed.as_deref().unwrap_or(phases);
     // Compression, −u at the floor; u = path − blocks.
-    let negative = Parabola { p0: -path.p0, p1: -path.p1, p2: -path.p2 };
-    push(Crossing::Recovered, Draft { sign: away, parabola: negative, phases, start: Start::Apart, distance: true });
+    guards.push(Guard {
+        particle: j,
+        crossing: Crossing::Recovered,
+        signal: rows.first,
+        sign: away,
+        parabola: path.times(-away),
+        start: Start::Apart,
+        distance: true,
+    });
     if let Law::Resilient { stiffness, .. } = side.face(particle).law {
         let damping = state.damping[j];
-        let force = spring_and_dashpot(negative, stiffness, damping);
-        let mix = mixed(&flow.blocks, phases, stiffness, damping);
-        let begin = force_start(state.particles[j], stiffness, damping, state.smooth[j]);
-        push(Crossing::Again, Draft { sign: -away, parabola: force, phases: &mix, start: begin, distance: false });
+        guards.push(Guard {
+            particle: j,
+            crossing: Crossing::Again,
+            signal: rows.second,
+            sign: -away,
+            parabola: spring_and_dashpot(path, stiffness, damping).times(away),
+            start: force_start(state.particles[j], stiffness, damping, state.smooth[j]),
+            distance: false,
+        });
     }
     path
 }
@@ -242,50 +231,60 @@ fn pressed(
     particle: &Particle,
     flow: &Flow,
     signals: &Signals,
-    push: &mut impl FnMut(Crossing, Draft<'_>),
+    guards: &mut Vec<Guard>,
 ) {
     let here = state.particles[j];
     let side = state.contacts[j].side();
     let away = side.away();
-    let Some(row) = flow.face_rows[j].compression else { return };
-    let (phases, rest) = signals.of(row);
+    let rows = flow.rows.guards[j];
+    let (phases, rest) = signals.of(rows.first);
     let Law::Resilient { stiffness, no_tension, stop, .. } = side.face(particle).law else { return };
-    if no_tension {
-        let damping = state.damping[j];
-        let force = spring_and_dashpot(rest, stiffness, damping);
-        let mix = mixed(&flow.blocks, phases, stiffness, damping);
-        let begin = force_start(here, stiffness, damping, state.smooth[j]);
-        push(Crossing::Release, Draft { sign: -away, parabola: force, phases: &mix, start: begin, distance: false });
+    let release = if no_tension {
+        let start = force_start(here, stiffness, state.damping[j], state.smooth[j]);
+        (rows.second, signals.of(rows.second).1, start)
     } else {
-        let begin = start(-away * here.gap, -away * here.rate, state.smooth[j], phases);
-        push(Crossing::Release, Draft { sign: -away, parabola: rest, phases, start: begin, distance: true });
-    }
+        (rows.first, rest, start(-away * here.gap, -away * here.rate, state.smooth[j], phases))
+    };
+    let (signal, parabola, begin) = release;
+    guards.push(Guard {
+        particle: j,
+        crossing: Crossing::Release,
+        signal,
+        sign: -away,
+        parabola: parabola.times(-away),
+        start: begin,
+        distance: !no_tension,
+    });
     if let Some(stop) = stop {
         // Positive until the compression is δ.
-        let parabola = Parabola { p0: rest.p0 + away * stop.length, ..rest };
-        let begin = start(away * here.gap + stop.length, away * here.rate, state.smooth[j], phases);
-        push(Crossing::ToStop, Draft { sign: away, parabola, phases, start: begin, distance: true });
+        guards.push(Guard {
+            particle: j,
+            crossing: Crossing::ToStop,
+            signal: rows.first,
+            sign: away,
+            parabola: Parabola { p0: away * rest.p0 + stop.length, ..rest.times(away) },
+            start: start(away * here.gap + stop.length, away * here.rate, state.smooth[j], phases),
+            distance: true,
+        });
     }
 }
 
-fn held(
-    state: Contacts<'_>,
-    j: usize,
-    particle: &Particle,
-    flow: &Flow,
-    signals: &Signals,
-    push: &mut impl FnMut(Crossing, Draft<'_>),
-) {
+fn held(state: Contacts<'_>, j: usize, particle: &Particle, flow: &Flow, signals: &Signals, guards: &mut Vec<Guard>) {
     if particle.is_enclosed() {
         return;
     }
     let side = state.contacts[j].side();
-    let (phases, rest) = signals.of(face_row(flow, j, side));
-    let bends = accelerations(&flow.blocks, phases);
-    let offset = 2.0 * rest.p2 + state.system.gravity - side.away() * spring_on_stop(particle, side);
-    let parabola = Parabola { p0: offset, p1: 0.0, p2: 0.0 };
-    let begin = touching_once(state.smooth[j]);
-    push(Crossing::Release, Draft { sign: side.away(), parabola, phases: &bends, start: begin, distance: false });
+    let signal = flow.rows.guards[j].first;
+    let offset = signals.of(signal).1.p0 + state.system.gravity - side.away() * spring_on_stop(particle, side);
+    guards.push(Guard {
+        particle: j,
+        crossing: Crossing::Release,
+        signal,
+        sign: side.away(),
+        parabola: Parabola { p0: side.away() * offset, p1: 0.0, p2: 0.0 },
+        start: touching_once(state.smooth[j]),
+        distance: false,
+    });
 }
 
 /// How the force of spring and dashpot starts: at zero where the contact has just begun or ended smoothly, and where it
@@ -309,13 +308,6 @@ fn touching_once(touching: bool) -> Start {
     if touching { Start::Touching { order: 1, slope: f64::NAN } } else { Start::Apart }
 }
 
-fn face_row(flow: &Flow, j: usize, side: Side) -> usize {
-    match side {
-        Side::Floor => flow.face_rows[j].floor,
-        Side::Ceiling => flow.face_rows[j].ceiling,
-    }
-}
-
 /// kδ/mp: what the spring of a face held on its stop pushes by itself, per mass.
 pub(crate) fn spring_on_stop(particle: &Particle, side: Side) -> f64 {
     match side.face(particle).law {
@@ -325,7 +317,7 @@ pub(crate) fn spring_on_stop(particle: &Particle, side: Side) -> f64 {
 }
 
 /// How a face holds a particle that does not move against it.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Grip {
     /// What it can push per mass, as an acceleration: it holds while this is positive.
     pub(crate) push: f64,
@@ -336,10 +328,17 @@ pub(crate) struct Grip {
 }
 
 impl Grip {
-    /// The grip of a face on particle j; with the particle in flight, what brings it back to the face.
-    pub(crate) fn of(system: &HybridSystem, flow: &Flow, signals: &Signals, j: usize, side: Side) -> Self {
-        let (phases, rest) = signals.of(face_row(flow, j, side));
-        let on_stop = flow.contacts[j] == side.stopped();
+    /// The grip of a face, whose row has these shares, on particle j; with the particle in flight, what brings it back to
+    /// the face.
+    pub(crate) fn of(
+        system: &HybridSystem,
+        flow: &Flow,
+        phases: &[Phase],
+        rest: Parabola,
+        j: usize,
+        side: Side,
+        on_stop: bool,
+    ) -> Self {
         let spring = if on_stop { spring_on_stop(&system.particles[j], side) } else { 0.0 };
         let (mut bend, mut growth) = (2.0 * rest.p2, 0.0);
         let mut size = system.gravity + bend.abs() + spring;
@@ -364,30 +363,4 @@ impl Grip {
     pub(crate) fn is_nothing(self) -> bool {
         self.push.abs() <= self.noise
     }
-}
-
-/// k·p + c·p′.
-fn spring_and_dashpot(p: Parabola, stiffness: f64, damping: f64) -> Parabola {
-    Parabola {
-        p0: stiffness * p.p0 + damping * p.p1,
-        p1: stiffness * p.p1 + 2.0 * damping * p.p2,
-        p2: stiffness * p.p2,
-    }
-}
-
-/// k·s + c·s′ of every share.
-pub(crate) fn mixed(blocks: &[Block], phases: &[Phase], stiffness: f64, damping: f64) -> Vec<Phase> {
-    blocks
-        .iter()
-        .zip(phases)
-        .map(|(block, phase)| Phase {
-            value: stiffness * phase.value + damping * phase.rate,
-            rate: stiffness * phase.rate + damping * block.acceleration(*phase).value,
-        })
-        .collect()
-}
-
-/// Second derivatives of the shares, as shares.
-pub(crate) fn accelerations(blocks: &[Block], phases: &[Phase]) -> Vec<Phase> {
-    blocks.iter().zip(phases).map(|(block, phase)| block.acceleration(*phase)).collect()
 }

@@ -107,7 +107,7 @@ pub(crate) fn steady_state(system: &HybridSystem) -> Result<Option<SteadyState>,
         transient: &vec![0.0; steady.len()],
     };
     let Some(margin) = watch.margin() else { return Ok(None) };
-    let rows: Vec<Row> = flow.all_observed.iter().map(|&row| Row::new(&flow, row)).collect();
+    let rows: Vec<Row> = flow.rows.observed.iter().map(|&row| Row::new(&flow, row)).collect();
     let at = Moments::over(&cycle.map, &steady, 1);
     let (duration, parts) = integrals(system, &flow, &rows, &cycle, &at, true);
     let motion = |(row, part): (&Row, Integrals)| {
@@ -234,7 +234,7 @@ impl<'a> Run<'a> {
 
     fn respond(&self, options: &Options, margin: f64) -> Result<Response, EngineError> {
         let (system, flow) = (self.system, self.flow);
-        let rows: Vec<Row> = flow.all_observed.iter().map(|&row| Row::new(flow, row)).collect();
+        let rows: Vec<Row> = flow.rows.observed.iter().map(|&row| Row::new(flow, row)).collect();
         let (skip, average) = (u64::from(options.skip), u64::from(options.average));
         let bounds = [skip, skip + average.div_ceil(2), skip + average];
         let mut response = Response {

@@ -1,49 +1,45 @@
-//! What an impact meets: the structure's answer to a unit impulse at a face, with what other faces hold as its mass.
+//! What an impact meets: the structure's answer to a unit impulse at a face.
 //!
-//! It depends on the contact state alone, so it is computed at the first impact in that state and kept.
+//! It depends on the face alone, so it is computed at the first impact there and kept.
 
 use super::EngineError;
 use super::contact::Side;
-use super::flow::{Cholesky, carried_mass};
-use super::system::{Contact, HybridSystem, dot};
+use super::flow::Cholesky;
+use super::system::HybridSystem;
 
 /// The answers found so far.
 #[derive(Default)]
 pub(crate) struct Mobilities {
+    factor: Option<Cholesky>,
     known: Vec<Mobility>,
 }
 
-/// The answer at one face in one contact state.
-pub(crate) struct Mobility {
-    contacts: Vec<Contact>,
+/// The answer at one face.
+struct Mobility {
     particle: usize,
     side: Side,
     /// M⁻¹φ.
-    pub(crate) answer: Vec<f64>,
-    /// φ·M⁻¹φ, 1/kg.
-    pub(crate) at_face: f64,
+    answer: Vec<f64>,
 }
 
 impl Mobilities {
-    /// The answer where particle `j` strikes while `contacts` hold the others; j itself is in flight.
-    pub(crate) fn of(
-        &mut self,
-        system: &HybridSystem,
-        contacts: &[Contact],
-        j: usize,
-        side: Side,
-    ) -> Result<&Mobility, EngineError> {
-        let same = |known: &Mobility| known.particle == j && known.side == side && known.contacts == contacts;
-        let index = match self.known.iter().position(same) {
-            Some(index) => index,
-            None => {
-                let row = &side.face(&system.particles[j]).row;
-                let answer = Cholesky::new(&carried_mass(system, contacts))?.solve(row);
-                let at_face = dot(row, &answer);
-                self.known.push(Mobility { contacts: contacts.to_vec(), particle: j, side, answer, at_face });
-                self.known.len() - 1
-            }
+    /// Finds the answer at a face, to be read with [`Mobilities::answer`].
+    pub(crate) fn find(&mut self, system: &HybridSystem, particle: usize, side: Side) -> Result<usize, EngineError> {
+        if let Some(index) = self.known.iter().position(|known| known.particle == particle && known.side == side) {
+            return Ok(index);
+        }
+        let factor = match self.factor.take() {
+            Some(factor) => factor,
+            None => Cholesky::new(&system.mass)?,
         };
-        Ok(&self.known[index])
+        let answer = factor.solve(&side.face(&system.particles[particle]).row);
+        self.factor = Some(factor);
+        self.known.push(Mobility { particle, side, answer });
+        Ok(self.known.len() - 1)
+    }
+
+    /// M⁻¹φ.
+    pub(crate) fn answer(&self, index: usize) -> &[f64] {
+        &self.known[index].answer
     }
 }

@@ -18,6 +18,7 @@
 
 mod audit;
 mod block;
+mod collision;
 mod contact;
 mod elementary;
 mod extremes;
@@ -32,6 +33,7 @@ mod modes;
 mod polynomial;
 mod search;
 mod series;
+mod signals;
 mod spectral;
 mod spline;
 mod system;

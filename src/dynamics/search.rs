@@ -4,32 +4,52 @@
 //! that its Taylor polynomial about any instant is known to every order, and so is a bound on what the polynomial leaves
 //! out. In a window of Δ seconds, with σ = t/Δ,
 //!
-//! g(σ) = Σ aⱼ σʲ + R,   |R| ≤ Σₖ ampₖ (radiusₖ Δ)¹²/12!,
+//! g(σ) = Σ aⱼ σʲ + R,   |R| ≤ Σₖ ampₖ min(1, (radiusₖ Δ)¹²/12!),
 //!
 //! the Bernstein coefficients of the polynomial enclose it. They prove that g keeps its sign, or that g, g′ or g″ does and
-//! hence that g has one root and no more; else the window is halved. Where the parabola alone is further from zero than
-//! all blocks together can reach, the search jumps there without looking. No window is sampled, no crossing stepped over.
+//! hence that g has one root and no more; else the window is halved. Blocks too fast for the window are left to the bound:
+//! far from zero, a slow window proves more than many fast ones.
+//!
+//! Each guard has its own proof of how long it is clear; the search works on the one whose proof ends first, and no
+//! further than the first root that is known. Most guards are cleared by two bounds that cost no window: their parabola is
+//! further from zero than all blocks together can reach, or value and slope are larger than their curvature can undo. No
+//! window is sampled, no crossing stepped over.
 
 use super::block::{Block, Kernel, Phase};
-use super::flow::Parabola;
+use super::contact::Crossing;
+use super::flow::{Flow, Parabola};
 use super::polynomial::nearest_root;
 use super::series::Series;
+use super::signals::Signals;
 use super::window::{Span, Start, Verdict, Window};
 
 /// radius·Δ of a first window: half a turn and a little, since that is how long a face holds a particle. The remainder is
 /// then 3.7¹²/12! of the amplitude, about a hundredth.
 const REACH: f64 = 3.7;
+/// Share of a window that a proof has to be ahead of it before the next one begins there.
+const WORTH_A_MOVE: f64 = 0.9;
+/// Share of a window that has to be proven for the next one to begin there.
+const WORTH_A_STEP: f64 = 0.1;
+/// Share of a guard's value that blocks too fast for its window may reach together.
+const NOISE: f64 = 0.25;
+/// radius·Δ of the fastest block that a window must not leave out.
+const FASTEST: f64 = 4.8;
 /// radius·t below which a window polynomial leaves out less than rounding.
 const SHORT_HOP: f64 = 0.02;
 /// radius·δ below which the local expansion of a guard, to the seventh, is exact to rounding.
 const NEAR: f64 = 0.03;
 
-/// A guard at the start of a segment, its sign folded in.
+/// A guard at the start of a segment: parabola + sign × signal.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Guard {
-    /// Which crossing it is; the driver's business.
-    pub(crate) label: usize,
-    /// Polynomial part.
+    /// Whose it is.
+    pub(crate) particle: usize,
+    /// Where it leads.
+    pub(crate) crossing: Crossing,
+    /// The watched signal that moves it.
+    pub(crate) signal: usize,
+    pub(crate) sign: f64,
+    /// Polynomial part, the sign folded in.
     pub(crate) parabola: Parabola,
     /// How the guard starts.
     pub(crate) start: Start,
@@ -58,303 +78,423 @@ pub(crate) struct Clarity {
 /// Work space of a search; kept between searches so that nothing is allocated.
 #[derive(Debug)]
 pub(crate) struct Search {
-    /// Shares of each guard at the start, guard by guard.
-    pub(crate) initial: Vec<Phase>,
     /// The guards.
     pub(crate) guards: Vec<Guard>,
-    /// Shares at the window's start.
+    /// Until when each of them is known to stay positive.
+    clear: Vec<f64>,
+    /// Where the last window of each of them began.
+    looked: Vec<f64>,
+    plans: Vec<Plan>,
+    /// The signals as they are at `now`, as far as they have been looked at.
+    surveys: Vec<Survey>,
+    /// Their shares, signal by signal, and bounds on them from then on.
     current: Vec<Phase>,
-    /// Bounds on them from then on.
     amplitudes: Vec<f64>,
-    /// Their sums: how far the blocks of each guard can reach.
-    reach: Vec<f64>,
-    /// Until when each guard is known to stay positive; empty unless there was doubt at the segment's start.
-    proven: Vec<f64>,
+    /// Where windows begin, seconds from the segment's start, and the kernels up to there.
+    now: f64,
+    here: Vec<Kernel>,
     /// Kernels from the segment's start to the result.
     pub(crate) kernels: Vec<Kernel>,
-    /// First windows are shortened by this factor, to have a second accuracy to compare with.
+    trial: Vec<Kernel>,
+    /// Windows are shorter by this factor, to have a second accuracy to compare with.
     window_factor: f64,
     /// Windows below this are not divided any more, s. It grows from doubt to doubt: a guard that stays within rounding of
     /// zero must not hold up the search.
     shortest: f64,
 }
 
-/// How fast the fastest guard moves: its speed squared is snap/bend.
-struct Pace {
+/// A signal at an instant, and what bounds it from then on.
+#[derive(Debug, Clone, Copy)]
+struct Survey {
+    /// NaN until it is looked at.
+    at: f64,
+    value: f64,
+    rate: f64,
+    /// Σ amplitude, Σ amplitude·radius², Σ amplitude·radius⁴.
+    reach: f64,
     bend: f64,
     snap: f64,
-    /// The parabola of every guard is further from zero than its blocks can reach.
-    all_apart: bool,
 }
 
-/// The one root of a guard in a window.
+impl Survey {
+    const NONE: Self = Self { at: f64::NAN, value: 0.0, rate: 0.0, reach: 0.0, bend: 0.0, snap: 0.0 };
+}
+
+/// The one root of a guard in a window that begins now.
 #[derive(Clone, Copy)]
 struct Root {
     guard: usize,
     /// First guess of its σ, and an upper bound.
     guess: f64,
     high: f64,
-    /// The guard starts at zero, so that the root may be a short hop away.
-    short: bool,
+    window: f64,
+}
+
+/// How to go on with a guard.
+#[derive(Debug, Clone, Copy)]
+struct Plan {
+    /// When it was made.
+    at: f64,
+    /// The window that suits it, s.
+    window: f64,
+    /// How long it is clear without one, s.
+    quick: f64,
+}
+
+impl Plan {
+    const NONE: Self = Self { at: f64::NAN, window: 0.0, quick: 0.0 };
+}
+
+/// What a look at a guard has brought.
+enum Look {
+    /// The proof goes as far as it is written down now.
+    Further,
+    /// It has a root.
+    Root(Root),
 }
 
 impl Search {
     pub(crate) fn new(window_factor: f64) -> Self {
         Self {
-            initial: Vec::new(),
             guards: Vec::new(),
+            clear: Vec::new(),
+            looked: Vec::new(),
+            plans: Vec::new(),
+            surveys: Vec::new(),
             current: Vec::new(),
             amplitudes: Vec::new(),
-            reach: Vec::new(),
-            proven: Vec::new(),
+            now: 0.0,
+            here: Vec::new(),
             kernels: Vec::new(),
+            trial: Vec::new(),
             window_factor,
             shortest: 0.0,
         }
     }
 
-    pub(crate) fn clear(&mut self) {
-        self.guards.clear();
-        self.initial.clear();
+    /// Finds the first event before `limit` seconds; leaves the kernels of that time, or of the limit.
+    pub(crate) fn run(&mut self, flow: &Flow, signals: &Signals, limit: f64, clarity: &mut Clarity) -> Found {
+        // The same search three times: with one or two blocks the compiler unrolls every loop over them.
+        let blocks = &flow.blocks[..];
+        match blocks.len() {
+            1 => self.first(&blocks[..1], &flow.series, signals, limit, clarity),
+            2 => self.first(&blocks[..2], &flow.series, signals, limit, clarity),
+            _ => self.first(blocks, &flow.series, signals, limit, clarity),
+        }
     }
 
-    /// Finds the first event before `limit` seconds; leaves the kernels of that time, or of the limit.
-    pub(crate) fn run(&mut self, blocks: &[Block], series: &Series, limit: f64, clarity: &mut Clarity) -> Found {
-        let found = self.first(blocks, series, limit, clarity);
+    #[inline(always)]
+    fn first(
+        &mut self,
+        blocks: &[Block],
+        series: &Series,
+        signals: &Signals,
+        limit: f64,
+        clarity: &mut Clarity,
+    ) -> Found {
+        self.start(blocks, series, signals, limit, clarity);
+        // Below the rounding of the clock nothing can be told apart: what happens at the limit comes first.
+        let instant = 4.0 * f64::EPSILON * limit;
+        let mut found = Found::Nothing;
+        let mut horizon = limit;
+        loop {
+            let (guard, clear) = self.least_clear();
+            if !(clear < horizon - instant) {
+                break;
+            }
+            let Look::Root(root) = self.look(blocks, series, signals, guard, horizon, limit, clarity) else { continue };
+            let time = self.polish(blocks, series, signals, root, clarity);
+            self.clear[guard] = f64::INFINITY;
+            let earlier = match found {
+                Found::Nothing => true,
+                Found::Event { guard: other, time: known } => {
+                    // Two roots that rounding cannot tell apart: the order of the guards decides.
+                    let tie = (time - known).abs() <= 4.0 * f64::EPSILON * known;
+                    clarity.ties += u64::from(tie);
+                    if tie { guard < other } else { time < known }
+                }
+            };
+            if earlier {
+                found = Found::Event { guard, time };
+                horizon = time;
+                std::mem::swap(&mut self.kernels, &mut self.trial);
+            }
+        }
         if found == Found::Nothing {
-            self.kernels_at(blocks, limit);
+            Block::kernels(blocks, limit, &mut self.kernels);
         }
         found
     }
 
-    fn first(&mut self, blocks: &[Block], series: &Series, limit: f64, clarity: &mut Clarity) -> Found {
-        if self.guards.is_empty() {
-            return Found::Nothing;
-        }
-        self.current.clear();
-        self.current.extend_from_slice(&self.initial);
-        self.amplitudes.resize(self.initial.len(), 0.0);
-        self.reach.resize(self.guards.len(), 0.0);
-        self.proven.clear();
-        let mut t = 0.0;
-        let clock = f64::EPSILON * limit;
-        self.shortest = clock;
-        loop {
-            let remaining = limit - t;
-            // Below the rounding of the clock nothing can be told apart: what happens at the limit comes first.
-            if remaining <= 4.0 * f64::EPSILON * limit {
-                return Found::Nothing;
-            }
-            let pace = self.survey(blocks, t, remaining);
-            if pace.all_apart {
-                let skip = self.until_one_is_near(t, remaining, clarity.margin);
-                if skip >= remaining {
-                    return Found::Nothing;
-                }
-                // A jump is worth its kernels only if it saves a good part of a window.
-                if skip * skip * pace.snap > 0.25 * pace.bend {
-                    t += skip;
-                    self.move_to(blocks, t);
-                    continue;
-                }
-            }
-            let mut window = remaining.min(REACH * self.window_factor * (pace.bend / pace.snap).sqrt());
-            let ties = clarity.ties;
-            if let Some(root) = self.search_window(blocks, series, t, &mut window, clarity) {
-                if root.high == 0.0 {
-                    self.kernels_at(blocks, t);
-                    return Found::Event { guard: root.guard, time: t };
-                }
-                return Found::Event { guard: root.guard, time: self.polish(blocks, series, root, t, window, clarity) };
-            }
-            self.shortest = if clarity.ties > ties { 4.0 * self.shortest } else { clock };
-            t += window;
-            if limit - t <= 4.0 * f64::EPSILON * limit {
-                return Found::Nothing;
-            }
-            self.move_to(blocks, t);
-        }
-    }
-
-    /// Bounds every guard from `t` on, and finds out how fast the fastest of them moves.
+    /// Makes room, and looks at every guard for the first time.
     #[inline(always)]
-    fn survey(&mut self, blocks: &[Block], t: f64, remaining: f64) -> Pace {
-        let mut pace = Pace { bend: 1.0, snap: 0.0, all_apart: true };
-        for (index, guard) in self.guards.iter().enumerate() {
-            let shares = index * blocks.len()..(index + 1) * blocks.len();
-            let (mut reach, mut bend, mut snap) = (0.0, 0.0, 0.0);
-            let shares = self.current[shares.clone()].iter().zip(&mut self.amplitudes[shares]);
-            for (block, (share, bound)) in blocks.iter().zip(shares) {
-                let amplitude = block.amplitude(*share, 0.0, remaining);
-                *bound = amplitude;
-                let square = block.radius * block.radius;
-                reach += amplitude;
-                bend += amplitude * square;
-                snap += amplitude * square * square;
-            }
-            self.reach[index] = reach;
-            pace.all_apart &= guard.parabola.at(t) > reach;
-            if snap * pace.bend > pace.snap * bend {
-                (pace.bend, pace.snap) = (bend, snap);
+    fn start(&mut self, blocks: &[Block], series: &Series, signals: &Signals, limit: f64, clarity: &Clarity) {
+        let count = self.guards.len();
+        self.clear.resize(count, 0.0);
+        self.looked.clear();
+        self.looked.resize(count, f64::NAN);
+        self.plans.resize(count, Plan::NONE);
+        self.surveys.clear();
+        self.surveys.resize(signals.len(), Survey::NONE);
+        let size = blocks.len() * signals.len();
+        if self.current.len() < size {
+            self.current.resize(size, Phase::default());
+            self.amplitudes.resize(size, 0.0);
+        }
+        for kernels in [&mut self.here, &mut self.kernels, &mut self.trial] {
+            kernels.resize(blocks.len(), Kernel::NONE);
+        }
+        self.now = 0.0;
+        self.shortest = f64::EPSILON * limit;
+        for index in 0..count {
+            let guard = self.guards[index];
+            self.survey(blocks, signals, guard.signal, limit);
+            self.plans[index] = self.plan(series, &guard, blocks.len(), clarity);
+            self.clear[index] = self.plans[index].quick;
+        }
+    }
+
+    #[inline(always)]
+    fn least_clear(&self) -> (usize, f64) {
+        let mut least = (0, f64::INFINITY);
+        for (guard, clear) in self.clear.iter().enumerate() {
+            if *clear < least.1 {
+                least = (guard, *clear);
             }
         }
-        pace
+        least
     }
 
-    /// How long the parabolas alone keep every guard further from zero than its blocks can reach.
-    fn until_one_is_near(&self, t: f64, remaining: f64, margin: f64) -> f64 {
-        let clear = |(guard, reach): (&Guard, &f64)| {
-            clear_until(guard.parabola, t, *reach, if guard.distance { margin } else { 0.0 })
-        };
-        self.guards.iter().zip(&self.reach).map(clear).fold(remaining, f64::min)
-    }
-
-    /// Proves the window clear of roots (`None`) or isolates the first one; shrinks the window until it can.
-    fn search_window(
+    /// Extends the proof of one guard, or finds its root.
+    #[inline(always)]
+    #[expect(clippy::too_many_arguments, reason = "the flow comes in pieces, so that its size is known")]
+    fn look(
         &mut self,
         blocks: &[Block],
         series: &Series,
-        t: f64,
-        window: &mut f64,
+        signals: &Signals,
+        index: usize,
+        horizon: f64,
+        limit: f64,
         clarity: &mut Clarity,
-    ) -> Option<Root> {
+    ) -> Look {
+        let guard = self.guards[index];
+        if self.plans[index].at != self.now {
+            // Another guard has moved on to here.
+            self.survey(blocks, signals, guard.signal, limit);
+            self.plans[index] = self.plan(series, &guard, blocks.len(), clarity);
+        }
+        let clear = self.clear[index];
+        let ahead = clear - self.now;
+        if ahead > WORTH_A_MOVE * self.plans[index].window || (ahead > 0.0 && self.looked[index] == self.now) {
+            self.move_to(blocks, clear);
+            self.survey(blocks, signals, guard.signal, limit);
+            self.plans[index] = self.plan(series, &guard, blocks.len(), clarity);
+        }
+        let plan = self.plans[index];
+        if self.now + plan.quick > clear {
+            self.clear[index] = self.now + plan.quick;
+            return Look::Further;
+        }
+        // A little beyond the first root that is known, to see one that comes at the same time.
+        let mut window = plan.window.min(1.25 * (horizon - self.now)).min(limit - self.now);
+        self.looked[index] = self.now;
         let mut piece = Window::new();
-        let asked = *window;
-        'shrink: loop {
-            let mut first: Option<Root> = None;
-            let indivisible = *window <= self.shortest.max(64.0 * f64::EPSILON * t);
-            let span = Span::new(series, t, *window);
-            for index in 0..self.guards.len() {
-                let guard = self.guards[index];
-                let reach = self.reach[index];
-                let margin = if guard.distance { clarity.margin.min(reach) } else { 0.0 };
-                let proven = self.proven.get(index).is_some_and(|until| *until >= t + *window);
-                if proven || stays_apart(guard.parabola, t, *window, reach + margin) {
-                    continue;
+        loop {
+            let now = self.now;
+            let start = if now == 0.0 { guard.start } else { Start::Apart };
+            let indivisible = window <= self.shortest.max(64.0 * f64::EPSILON * now);
+            let own = self.own(blocks.len(), guard.signal);
+            if series.near_critical {
+                self.bound(blocks, own.clone(), window);
+            }
+            let span = Span::new(series, now, window);
+            let (shares, amplitudes) = (&self.current[own.clone()], &self.amplitudes[own]);
+            let bounds = series.bounds(amplitudes, &span, start == Start::Apart);
+            let hopeless = bounds.leaves_blocks && {
+                let survey = &self.surveys[guard.signal];
+                guard.parabola.at(now) + guard.sign * survey.value < 2.0 * bounds.left_out
+            };
+            let verdict = if hopeless && !indivisible {
+                Verdict::Unsure
+            } else {
+                piece.expand(series, shares, &bounds, guard.sign, guard.parabola, &span, start);
+                piece.judge(|order| {
+                    let bent = guard.parabola.p2.abs() * (span.length * span.length);
+                    let parabola = if order == 0 { 2.0 * bent } else { 0.0 };
+                    parabola + series.bend(amplitudes, span.length * series.pace, order)
+                })
+            };
+            match verdict {
+                Verdict::Clear { clearance } => {
+                    self.clear[index] = now + window;
+                    self.shortest = f64::EPSILON * limit;
+                    if guard.distance {
+                        clarity.margin = clarity.margin.min(clearance);
+                    }
+                    return Look::Further;
                 }
-                if series.near_critical {
-                    self.bound(blocks, index, *window);
+                Verdict::Root { guess, high } => return Look::Root(Root { guard: index, guess, high, window }),
+                // So far the slow blocks alone prove it; from there on with more of them.
+                Verdict::Until { sigma } if sigma > WORTH_A_STEP => {
+                    self.clear[index] = now + sigma * window;
+                    return Look::Further;
                 }
-                match self.judge(series, index, &span, &mut piece) {
-                    Verdict::Clear { clearance } => {
-                        if let Some(until) = self.proven.get_mut(index) {
-                            *until = t + *window;
-                        }
-                        if guard.distance {
-                            clarity.margin = clarity.margin.min(clearance);
-                        }
+                Verdict::Unsure | Verdict::Until { .. } if indivisible => {
+                    clarity.ties += 1;
+                    clarity.margin = 0.0;
+                    if piece.end() < 0.0 {
+                        return Look::Root(Root { guard: index, guess: 1.0, high: 1.0, window });
                     }
-                    Verdict::Root { guess, high } => {
-                        let short = t == 0.0 && guard.start != Start::Apart;
-                        if high == 0.0 {
-                            return Some(Root { guard: index, guess, high, short });
-                        }
-                        match first {
-                            None => first = Some(Root { guard: index, guess, high, short }),
-                            // Two guards in one window: narrow until one of them is clear, or they are one to the rounding.
-                            Some(_) if !indivisible => {
-                                *window *= 0.5;
-                                continue 'shrink;
-                            }
-                            Some(_) => clarity.ties += 1,
-                        }
-                    }
-                    Verdict::Unsure if indivisible => {
-                        if t == 0.0 && self.proven.is_empty() {
-                            self.prove_hops(blocks, series, asked);
-                        }
-                        clarity.ties += 1;
-                        clarity.margin = 0.0;
-                        if piece.end() < 0.0 && first.is_none() {
-                            first = Some(Root { guard: index, guess: 1.0, high: 1.0, short: false });
-                        }
-                    }
-                    Verdict::Unsure => {
-                        *window *= 0.5;
-                        continue 'shrink;
+                    self.clear[index] = now + window;
+                    self.shortest *= 4.0;
+                    return Look::Further;
+                }
+                Verdict::Unsure | Verdict::Until { .. } => {
+                    window *= match verdict {
+                        Verdict::Until { sigma } => (2.0 * sigma).clamp(0.05, 0.5),
+                        _ => 0.5,
+                    };
+                    let known = self.clear[index] - now;
+                    if window < known {
+                        // Shorter than what is proven already: begin where that ends.
+                        self.move_to(blocks, now + known);
+                        return Look::Further;
                     }
                 }
             }
-            return first;
         }
     }
 
-    /// Proves each guard that starts at zero clear for as long as its own start tells, before the doubt about another one
-    /// makes the search move on to where that is forgotten.
-    #[cold]
-    fn prove_hops(&mut self, blocks: &[Block], series: &Series, asked: f64) {
-        self.proven.resize(self.guards.len(), 0.0);
-        let mut piece = Window::new();
-        for index in 0..self.guards.len() {
-            let mut window = asked;
-            while self.guards[index].start != Start::Apart && window > self.proven[index] {
-                self.bound(blocks, index, window);
-                match self.judge(series, index, &Span::new(series, 0.0, window), &mut piece) {
-                    Verdict::Clear { .. } => self.proven[index] = window,
-                    _ => window *= 0.5,
-                }
+    /// The signal as it is now, with its bounds.
+    #[inline(always)]
+    fn survey(&mut self, blocks: &[Block], signals: &Signals, signal: usize, limit: f64) {
+        if self.surveys[signal].at == self.now {
+            return;
+        }
+        let own = self.own(blocks.len(), signal);
+        let (initial, _) = signals.of(signal);
+        let moved = self.now > 0.0;
+        let remaining = limit - self.now;
+        let mut survey = Survey { at: self.now, ..Survey::NONE };
+        let places = self.current[own.clone()].iter_mut().zip(&mut self.amplitudes[own]);
+        for (((block, start), kernel), (share, bound)) in blocks.iter().zip(initial).zip(&self.here).zip(places) {
+            let now = if moved { block.advance(*start, *kernel) } else { *start };
+            // Good for the second derivative too.
+            let amplitude = block.amplitude(now, 2.0, remaining);
+            (*share, *bound) = (now, amplitude);
+            let square = block.radius * block.radius;
+            survey.value += now.value;
+            survey.rate += now.rate;
+            survey.reach += amplitude;
+            survey.bend += amplitude * square;
+            survey.snap += amplitude * square * square;
+        }
+        self.surveys[signal] = survey;
+    }
+
+    /// Looks at a guard from now on: the window that suits it, and how long two cheap bounds keep it clear, by more than the
+    /// smallest margin so far. The fastest blocks are left out of both while all of them together cannot bring it near zero.
+    #[inline(always)]
+    fn plan(&self, series: &Series, guard: &Guard, width: usize, clarity: &Clarity) -> Plan {
+        let survey = &self.surveys[guard.signal];
+        let (now, parabola) = (self.now, guard.parabola);
+        let here = Parabola { p0: parabola.at(now), p1: parabola.rate(now), p2: parabola.p2 };
+        let margin = if guard.distance { clarity.margin } else { 0.0 };
+        let least = margin.min(survey.reach);
+        let window = |bend: f64, snap: f64, fastest: f64| {
+            let turn = if snap > 0.0 { (bend / snap).sqrt() } else { f64::INFINITY };
+            self.window_factor * (REACH * turn).min(fastest)
+        };
+        if now == 0.0
+            && let Start::Touching { order, slope } = guard.start
+        {
+            // It grows as long as its slope cannot have been turned.
+            let bend = here.p2 - 0.5 * survey.bend;
+            let until = if bend < 0.0 { -0.5 * slope / bend } else { f64::INFINITY };
+            let quick = if order == 1 && until > 0.0 { until } else { 0.0 };
+            return Plan { at: now, window: window(survey.bend, survey.snap, f64::INFINITY), quick };
+        }
+        let apart = clear_until(here, survey.reach + least, margin);
+        let (mut value, mut rate) = (guard.sign * survey.value, guard.sign * survey.rate);
+        let (mut bend, mut snap) = (survey.bend, survey.snap);
+        let mut fastest = f64::INFINITY;
+        let mut noise = 1e-12 * (here.p0.abs() + survey.reach);
+        if width > 2 {
+            let own = self.own(width, guard.signal);
+            let (shares, amplitudes) = (&self.current[own.clone()], &self.amplitudes[own]);
+            let (most, mut slow) = (NOISE * (here.p0 + value - least), &series.by_radius[..]);
+            while let [(block, _), slower @ ..] = slow
+                && !slower.is_empty()
+                && noise + amplitudes[*block] < most
+            {
+                noise += amplitudes[*block];
+                value -= guard.sign * shares[*block].value;
+                rate -= guard.sign * shares[*block].rate;
+                slow = slower;
+            }
+            fastest = FASTEST / slow.first().map_or(0.0, |(_, square)| square.sqrt());
+            (bend, snap) = (0.0, 0.0);
+            for &(block, square) in slow {
+                bend += amplitudes[block] * square;
+                snap += amplitudes[block] * (square * square);
             }
         }
+        let curve = Parabola { p0: here.p0 + value, p1: here.p1 + rate, p2: here.p2 - 0.5 * bend };
+        Plan {
+            at: now,
+            window: window(bend, snap, fastest),
+            quick: apart.max(clear_until(curve, noise + least, margin)),
+        }
     }
 
-    /// What the enclosure of a guard over a window proves.
+    /// Places of a signal's shares.
     #[inline(always)]
-    fn judge(&self, series: &Series, index: usize, span: &Span, piece: &mut Window) -> Verdict {
-        self.expand(series, index, span, piece);
-        piece.judge(|order| {
-            let amplitudes = &self.amplitudes[self.shares(series.len(), index)];
-            let bent = self.guards[index].parabola.p2.abs() * (span.length * span.length);
-            let parabola = if order == 0 { 2.0 * bent } else { 0.0 };
-            parabola + series.bend(amplitudes, span.length * series.pace, order)
-        })
-    }
-
-    /// A guard over a window that begins with the current shares.
-    #[inline(always)]
-    fn expand(&self, series: &Series, index: usize, span: &Span, piece: &mut Window) {
-        let guard = &self.guards[index];
-        let start = if span.from == 0.0 { guard.start } else { Start::Apart };
-        let shares = self.shares(series.len(), index);
-        piece.expand(series, &self.current[shares.clone()], &self.amplitudes[shares], guard.parabola, span, start);
-    }
-
-    /// Places of a guard's shares.
-    #[inline]
-    fn shares(&self, width: usize, index: usize) -> std::ops::Range<usize> {
-        index * width..(index + 1) * width
+    fn own(&self, width: usize, signal: usize) -> std::ops::Range<usize> {
+        signal * width..(signal + 1) * width
     }
 
     /// Bounds anew the shares of blocks near critical damping, for the twelfth derivative over one window.
     #[cold]
-    fn bound(&mut self, blocks: &[Block], index: usize, window: f64) {
-        let shares = self.shares(blocks.len(), index);
-        for ((amplitude, share), block) in
-            self.amplitudes[shares.clone()].iter_mut().zip(&self.current[shares]).zip(blocks)
-        {
+    fn bound(&mut self, blocks: &[Block], own: std::ops::Range<usize>, window: f64) {
+        for ((amplitude, share), block) in self.amplitudes[own.clone()].iter_mut().zip(&self.current[own]).zip(blocks) {
             *amplitude = block.amplitude(*share, 12.0, window);
         }
     }
 
-    /// The time of an isolated root, to the last digit; leaves its kernels.
+    /// Windows begin at `t` from now on.
+    #[inline(always)]
+    fn move_to(&mut self, blocks: &[Block], t: f64) {
+        self.now = t;
+        Block::kernels(blocks, t, &mut self.here);
+    }
+
+    /// The time of an isolated root, to the last digit; leaves its kernels on trial.
+    #[inline(always)]
     fn polish(
         &mut self,
         blocks: &[Block],
         series: &Series,
+        signals: &Signals,
         root: Root,
-        t: f64,
-        window: f64,
         clarity: &mut Clarity,
     ) -> f64 {
-        let parabola = self.guards[root.guard].parabola;
-        if root.short && root.guess * window * series.pace < SHORT_HOP {
-            return self.polish_short_hop(blocks, series, root, window);
+        let guard = self.guards[root.guard];
+        let (t, window) = (self.now, root.window);
+        if root.high == 0.0 {
+            Block::kernels(blocks, t, &mut self.trial);
+            return t;
         }
+        if t == 0.0 && guard.start != Start::Apart && root.guess * window * series.pace < SHORT_HOP {
+            return self.polish_short_hop(blocks, series, root);
+        }
+        let (initial, _) = signals.of(guard.signal);
         let (mut lower, mut upper) = (t, t + root.high * window);
         let slack = 1e-3 * (upper - lower);
         let mut time = t + window * root.guess;
         for _ in 0..60 {
-            self.kernels_at(blocks, time);
-            let local = self.local(blocks, series, root.guard, parabola, time);
+            Block::kernels(blocks, time, &mut self.trial);
+            let local = self.local(blocks, series, initial, &guard, time);
             if local[0] >= 0.0 {
                 lower = lower.max(time)
             } else {
@@ -370,10 +510,10 @@ impl Search {
                     scaled = delta / series.unit;
                 }
                 if scaled.abs() < NEAR {
-                    for (kernel, block) in self.kernels.iter_mut().zip(blocks) {
+                    for (kernel, block) in self.trial.iter_mut().zip(blocks) {
                         *kernel = block.compose(*kernel, block.kernel_near_zero(delta));
                     }
-                    if self.guards[root.guard].distance {
+                    if guard.distance {
                         // The guard would have to be moved by about g′²/(2|g″|) for this crossing to vanish.
                         let bend = (4.0 * local[2].abs()).max(f64::MIN_POSITIVE);
                         let slope = local[1] + scaled * (2.0 * local[2] + 3.0 * scaled * local[3]);
@@ -390,68 +530,53 @@ impl Search {
                 break;
             }
         }
-        self.kernels_at(blocks, time);
+        Block::kernels(blocks, time, &mut self.trial);
         clarity.ties += 1;
         time
     }
 
     /// A hop so short that the window's polynomial is exact, while the difference of parabola and blocks is all rounding.
     #[cold]
-    fn polish_short_hop(&mut self, blocks: &[Block], series: &Series, root: Root, window: f64) -> f64 {
+    fn polish_short_hop(&mut self, blocks: &[Block], series: &Series, root: Root) -> f64 {
+        let guard = self.guards[root.guard];
+        let own = self.own(blocks.len(), guard.signal);
         let mut piece = Window::new();
-        self.expand(series, root.guard, &Span::new(series, 0.0, window), &mut piece);
-        let time = window * piece.refine(root.guess, root.high);
-        self.kernels.clear();
-        self.kernels.extend(blocks.iter().map(|block| block.kernel_near_zero(time)));
+        let span = Span::new(series, 0.0, root.window);
+        let (shares, amplitudes) = (&self.current[own.clone()], &self.amplitudes[own]);
+        let bounds = series.bounds(amplitudes, &span, false);
+        piece.expand(series, shares, &bounds, guard.sign, guard.parabola, &span, guard.start);
+        let time = root.window * piece.refine(root.guess, root.high);
+        for (kernel, block) in self.trial.iter_mut().zip(blocks) {
+            *kernel = block.kernel_near_zero(time);
+        }
         time
     }
 
     /// Taylor coefficients of a guard about `time`, to the seventh, in powers of ρδ.
-    #[inline]
-    fn local(&self, blocks: &[Block], series: &Series, guard: usize, parabola: Parabola, time: f64) -> [f64; 8] {
-        let initial = &self.initial[self.shares(blocks.len(), guard)];
-        let moved = blocks.iter().zip(&self.kernels).zip(initial);
+    #[inline(always)]
+    fn local(&self, blocks: &[Block], series: &Series, initial: &[Phase], guard: &Guard, time: f64) -> [f64; 8] {
+        let moved = blocks.iter().zip(&self.trial).zip(initial);
         let mut a = series.expand::<0, 8>(moved.map(|((block, kernel), phase)| block.advance(*phase, *kernel)));
         let unit = series.unit;
+        let parabola = guard.parabola;
         let rest = [parabola.at(time), parabola.rate(time) * unit, parabola.p2 * (unit * unit)];
+        a.iter_mut().for_each(|a| *a *= guard.sign);
         for (a, rest) in a.iter_mut().zip(rest) {
             *a += rest;
         }
         a
     }
-
-    fn kernels_at(&mut self, blocks: &[Block], t: f64) {
-        self.kernels.clear();
-        self.kernels.extend(blocks.iter().map(|block| block.kernel(t)));
-    }
-
-    fn move_to(&mut self, blocks: &[Block], t: f64) {
-        self.kernels_at(blocks, t);
-        let width = blocks.len();
-        for (current, initial) in self.current.chunks_exact_mut(width).zip(self.initial.chunks_exact(width)) {
-            for k in 0..width {
-                current[k] = blocks[k].advance(initial[k], self.kernels[k]);
-            }
-        }
-    }
 }
 
-/// Whether the parabola alone keeps further from zero than `reach` for a window; a quick test, sure if it says so.
-#[inline]
-fn stays_apart(parabola: Parabola, t: f64, window: f64, reach: f64) -> bool {
-    let fall = (parabola.rate(t) * window).min(0.0) + (parabola.p2 * (window * window)).min(0.0);
-    parabola.at(t) + fall > reach
-}
-
-/// How long the parabola alone keeps further from zero than `reach`; 0 if it is not so now, nor where it may come closer
+/// How long a parabola keeps further from zero than `reach`; 0 if it is not so now, nor where it may come closer to that
 /// than `margin`, so that no jump passes over the narrowest place of a run.
-#[inline]
-fn clear_until(parabola: Parabola, t: f64, reach: f64, margin: f64) -> f64 {
-    let c = parabola.at(t) - reach - margin.min(reach);
+#[inline(always)]
+fn clear_until(parabola: Parabola, reach: f64, margin: f64) -> f64 {
+    let Parabola { p0, p1: b, p2: a } = parabola;
+    let c = p0 - reach;
     if !(c > 0.0) {
         return 0.0;
     }
-    let (b, a) = (parabola.rate(t), parabola.p2);
     if a >= 0.0 && b >= 0.0 {
         return f64::INFINITY;
     }

@@ -4,6 +4,7 @@
 //! in units of the fastest block's time 1/ρ, a signal's series is a product of rows: no recurrence, one pass, any window.
 
 use super::block::{Block, Phase};
+use super::window::Span;
 
 /// Coefficients kept: degree eleven.
 const TERMS: usize = 12;
@@ -21,6 +22,8 @@ pub(crate) struct Series {
     pub(crate) unit: f64,
     /// Some block is near critical damping: its amplitude depends on the window.
     pub(crate) near_critical: bool,
+    /// The blocks, fastest first, with the squares of their radii, 1/s².
+    pub(crate) by_radius: Vec<(usize, f64)>,
     terms: Vec<Terms>,
 }
 
@@ -36,18 +39,28 @@ struct Terms {
     left_out: f64,
 }
 
+/// A block whose Taylor polynomial may leave out this share of its amplitude is left out itself.
+const TOO_FAST: f64 = 0.5;
+
+/// What an expansion leaves out.
+pub(crate) struct Bounds {
+    pub(crate) left_out: f64,
+    /// On values and slopes of what is expanded.
+    pub(crate) moving: f64,
+    /// Whole blocks are left out.
+    pub(crate) leaves_blocks: bool,
+}
+
 impl Series {
     pub(crate) fn new(blocks: &[Block]) -> Self {
         let fastest = blocks.iter().fold(0.0_f64, |fastest, block| fastest.max(block.radius));
         let pace = if fastest > 0.0 { fastest } else { 1.0 };
         let unit = 1.0 / pace;
         let terms = blocks.iter().map(|block| Terms::new(block, pace)).collect();
-        Self { pace, unit, near_critical: blocks.iter().any(Block::is_near_critical), terms }
-    }
-
-    /// How many blocks.
-    pub(crate) fn len(&self) -> usize {
-        self.terms.len()
+        let mut by_radius: Vec<(usize, f64)> =
+            blocks.iter().map(|block| block.radius * block.radius).enumerate().collect();
+        by_radius.sort_by(|a, b| b.1.total_cmp(&a.1));
+        Self { pace, unit, near_critical: blocks.iter().any(Block::is_near_critical), by_radius, terms }
     }
 
     /// Coefficients `FROM` to `FROM` + N of Σ shares, in powers of ρt.
@@ -62,16 +75,38 @@ impl Series {
         sum
     }
 
-    /// Over a window of ρΔ = `length`, with `amplitudes` as in [`Block::amplitude`]: a bound on what is left out of Σ shares
-    /// beyond degree eleven, over (ρΔ)¹², and one on their values and slopes.
-    #[inline]
-    pub(crate) fn bounds(&self, amplitudes: &[f64], length: f64) -> (f64, f64) {
-        let (mut left_out, mut moving) = (0.0, 0.0);
-        for (terms, amplitude) in self.terms.iter().zip(amplitudes) {
-            left_out += amplitude * terms.left_out;
-            moving += amplitude * (1.0 + terms.radius * length);
+    /// The same over a window of ρΔ with `twelfth` = (ρΔ)¹², leaving out the blocks too fast for it.
+    #[inline(always)]
+    pub(crate) fn expand_slow(&self, shares: &[Phase], twelfth: f64) -> [f64; TERMS] {
+        let mut sum = [0.0; TERMS];
+        for (terms, share) in self.terms.iter().zip(shares) {
+            if terms.left_out * twelfth > TOO_FAST {
+                continue;
+            }
+            for j in 0..TERMS {
+                sum[j] += share.value * terms.value[j] + share.rate * terms.rate[j];
+            }
         }
-        (left_out, moving)
+        sum
+    }
+
+    /// Over a window, with `amplitudes` as in [`Block::amplitude`]: what is left out of Σ shares beyond degree eleven, and with
+    /// `leave_fast` the blocks too fast for it; bounds on what is expanded.
+    #[inline(always)]
+    pub(crate) fn bounds(&self, amplitudes: &[f64], span: &Span, leave_fast: bool) -> Bounds {
+        let (length, twelfth) = (span.powers[1], span.powers[TERMS]);
+        let mut bounds = Bounds { left_out: 0.0, moving: 0.0, leaves_blocks: false };
+        for (terms, amplitude) in self.terms.iter().zip(amplitudes) {
+            let share = terms.left_out * twelfth;
+            if leave_fast && share > TOO_FAST {
+                bounds.left_out += amplitude;
+                bounds.leaves_blocks = true;
+            } else {
+                bounds.left_out += amplitude * share;
+                bounds.moving += amplitude * (1.0 + terms.radius * length);
+            }
+        }
+        bounds
     }
 
     /// A bound on the second derivative in σ = t/Δ of Σ shares/σ^`order`, given ρΔ: that of p/σʲ is below 2/(j + 2)! of p's

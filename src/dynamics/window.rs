@@ -3,7 +3,7 @@
 use super::block::Phase;
 use super::flow::Parabola;
 use super::polynomial::{Coefficients, DEGREE, bernstein, evaluate};
-use super::series::{Series, powers};
+use super::series::{Bounds, Series, powers};
 
 /// How a guard starts.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -25,6 +25,8 @@ pub(crate) enum Verdict {
     Clear { clearance: f64 },
     /// Exactly one root: first guess of its σ, and an upper bound.
     Root { guess: f64, high: f64 },
+    /// No root before this σ: there the blocks that were left out might make one.
+    Until { sigma: f64 },
     /// Nothing.
     Unsure,
 }
@@ -36,7 +38,7 @@ pub(crate) struct Span {
     /// Δ, s.
     pub(crate) length: f64,
     /// Powers of ρΔ.
-    powers: [f64; 16],
+    pub(crate) powers: [f64; 16],
 }
 
 impl Span {
@@ -54,55 +56,64 @@ pub(crate) struct Window {
     b: Coefficients,
     /// What the polynomial leaves out, with the rounding.
     remainder: f64,
+    /// Whole blocks are part of that: it may turn as fast as they do.
+    leaves_blocks: bool,
     start: Start,
 }
 
 impl Window {
     pub(crate) fn new() -> Self {
-        Self { a: [0.0; DEGREE + 1], b: [0.0; DEGREE + 1], remainder: 0.0, start: Start::Apart }
+        Self { a: [0.0; DEGREE + 1], b: [0.0; DEGREE + 1], remainder: 0.0, leaves_blocks: false, start: Start::Apart }
     }
 
     /// Expands a guard over a window: its shares and their bounds at the window's start, its parabola from the segment's.
     #[inline(always)]
+    #[expect(clippy::too_many_arguments, reason = "a guard comes in pieces, so that nothing is copied")]
     pub(crate) fn expand(
         &mut self,
         series: &Series,
         shares: &[Phase],
-        amplitudes: &[f64],
+        bounds: &Bounds,
+        sign: f64,
         parabola: Parabola,
         span: &Span,
         start: Start,
     ) {
         let bent = parabola.p2 * span.length;
         let base = [parabola.at(span.from), parabola.rate(span.from) * span.length, bent * span.length];
-        let x = span.powers[1];
-        let (left_out, moving) = series.bounds(amplitudes, x);
         self.start = start;
-        self.remainder = left_out * span.powers[DEGREE + 1];
+        self.remainder = bounds.left_out;
+        self.leaves_blocks = bounds.leaves_blocks;
         match start {
             Start::Apart => {
-                self.remainder += 8.0 * f64::EPSILON * (base[0].abs() + base[1].abs() + moving);
-                self.fill::<0>(series, shares, &base, span);
+                self.remainder += 8.0 * f64::EPSILON * (base[0].abs() + base[1].abs() + bounds.moving);
+                let a = series.expand_slow(shares, span.powers[DEGREE + 1]);
+                for j in 0..DEGREE + 1 {
+                    self.a[j] = a[j] * (sign * span.powers[j]);
+                }
+                for j in 0..3 {
+                    self.a[j] += base[j];
+                }
             }
             // The start is known exactly: what rounding left in the coefficients below the first is not there.
             Start::Touching { order: 1, slope } => {
-                self.fill::<1>(series, shares, &base, span);
+                self.fill::<1>(series, shares, sign, &base, span);
                 if !slope.is_nan() {
                     self.a[0] = slope * span.length;
                 }
             }
-            Start::Touching { order: 2, .. } => self.fill::<2>(series, shares, &base, span),
-            Start::Touching { .. } => self.fill::<3>(series, shares, &base, span),
+            Start::Touching { order: 2, .. } => self.fill::<2>(series, shares, sign, &base, span),
+            Start::Touching { .. } => self.fill::<3>(series, shares, sign, &base, span),
         }
         self.b = bernstein(&self.a);
     }
 
     /// The coefficients in σ, divided by σ^`ORDER`.
     #[inline(always)]
-    fn fill<const ORDER: usize>(&mut self, series: &Series, shares: &[Phase], base: &[f64; 3], span: &Span) {
+    fn fill<const ORDER: usize>(&mut self, series: &Series, shares: &[Phase], sign: f64, base: &[f64; 3], span: &Span) {
         let a: Coefficients = series.expand::<ORDER, _>(shares.iter().copied());
         for j in 0..DEGREE + 1 {
-            self.a[j] = a[j] * span.powers[j + ORDER];
+            self.a[j] = a[j] * (sign * span.powers[j + ORDER]);
         }
         for j in ORDER..3 {
             self.a[j - ORDER] += base[j];
@@ -122,10 +133,26 @@ impl Window {
             let near_miss = self.start == Start::Apart && b[1] < b[0] && b[DEGREE] > b[DEGREE - 1];
             return Verdict::Clear { clearance: if near_miss { lowest(b) - self.remainder } else { f64::INFINITY } };
         }
+        if self.leaves_blocks {
+            return self.clear_prefix(signs);
+        }
         match self.single_crossing(signs, bend) {
             Some(guess) => Verdict::Root { guess, high: 1.0 },
             None => self.judge_shape(),
         }
+    }
+
+    /// How far the polynomial keeps above its remainder: where it falls to that once, by Descartes' rule, and no more.
+    #[cold]
+    fn clear_prefix(&self, signs: Signs) -> Verdict {
+        if signs.positive == 0 || signs.positive & (signs.positive + 1) != 0 {
+            return Verdict::Unsure;
+        }
+        let mut above = Self { a: self.a, b: self.b, remainder: 0.0, leaves_blocks: false, start: self.start };
+        above.a[0] -= self.remainder;
+        // Newton has the root to three digits or so; a little before it the polynomial is still above.
+        let sigma = 0.98 * above.root(0.5, 1.0).0;
+        if above.value(sigma) > 0.0 { Verdict::Until { sigma } } else { Verdict::Unsure }
     }
 
     /// Descartes' rule in Bernstein form: coefficients positive, then doubtful, then negative. The guard is positive before

@@ -6,7 +6,7 @@ use super::energy::Energies;
 use super::history::History;
 use super::{EvaluateError, Measure};
 use crate::dynamics::{EventKind, Observed, Response, Sums};
-use crate::scene::{Excitation, Recipe, Scene, Take};
+use crate::scene::{Excitation, ExcitationKind, Recipe, Scene, Take};
 
 /// What there is to read measures of one run off.
 pub(super) struct Reading<'a> {
@@ -86,6 +86,17 @@ impl Measure {
                 | Self::ModeCount
                 | Self::Mac
         )
+    }
+
+    /// It has a meaning under this excitation.
+    pub(crate) fn suits(self, excitation: &ExcitationKind) -> bool {
+        match self {
+            Self::DisplacementPerForce | Self::VelocityPerForce => *excitation == ExcitationKind::Harmonic,
+            Self::DisplacementPerImpulse | Self::VelocityPerImpulse => {
+                !matches!(excitation, ExcitationKind::Harmonic | ExcitationKind::None)
+            }
+            _ => true,
+        }
     }
 
     /// Read off the shape that is kept.

@@ -27,6 +27,8 @@ fn unit(name: Assumption) -> &'static str {
     match name {
         Assumption::Gravity => "m/s²",
         Assumption::StopLength => "m",
+        Assumption::BeamImpulseTime | Assumption::PlateImpulseTime => "s",
+        Assumption::BeamHarmonicForce | Assumption::PlateHarmonicForce => "N",
         Assumption::EquivalentDampingCurve => "N s/m",
         _ => "",
     }

@@ -36,6 +36,16 @@ pub(super) fn section(experiment: &Experiment) -> String {
             trace.from_cycle, trace.to_cycle, trace.samples
         );
     }
+    if let Some(energies) = &experiment.energies {
+        text += &format!(
+            "- Kinetic energies of the structure are kept from cycle {} to {}.\n",
+            energies.from_cycle, energies.to_cycle
+        );
+    }
+    if let Some(shape) = &experiment.shape {
+        let points: Vec<String> = shape.points.iter().map(u32::to_string).collect();
+        text += &format!("- The shape is kept at {} points.\n", points.join(" by "));
+    }
     text + "\n"
 }
 

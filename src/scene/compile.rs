@@ -58,19 +58,18 @@ pub fn compile(scene: &Scene) -> Result<HybridSystem, CompileError> {
         }
         particles.push(particle(damper, &row, &row)?);
     }
-    let order = mass.order;
-    let unit = |i: usize| (0..order).map(|j| f64::from(u8::from(i == j))).collect();
+    let force_row = model.shape(scene.force_at);
     Ok(HybridSystem {
         mass,
         damping,
         stiffness,
         gravity: scene.gravity,
         particles,
-        force_row: model.shape(scene.force_at),
         drive,
         observed_rows: scene.observed.points.iter().map(|point| model.shape(*point)).collect(),
-        // Contact forces are internal along every coordinate: floor and ceiling move alike.
-        momentum_rows: (0..order).map(unit).collect(),
+        // Contact forces are internal along every row, since floor and ceiling move alike; along this one the force is felt.
+        momentum_rows: vec![force_row.clone()],
+        force_row,
     })
 }
 

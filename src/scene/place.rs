@@ -137,6 +137,6 @@ impl<'a> Places<'a> {
 /// Rows and columns of `all` places as near to a square as they go: 1 × 1, 2 × 2, 2 × 3, 3 × 3.
 fn near_square(all: u32) -> Vec<u32> {
     let narrow = (1..=all).take_while(|n| u64::from(*n) * u64::from(*n) <= u64::from(all));
-    let narrow = narrow.filter(|n| all % n == 0).last().unwrap_or(1);
+    let narrow = narrow.filter(|n| all.is_multiple_of(*n)).last().unwrap_or(1);
     vec![narrow, all / narrow]
 }

@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::measure::Measure;
-use crate::scene::{Assumptions, Parameter, ParameterValue, Part, RecipeError, Scene};
+use crate::scene::{Assumptions, ExcitationKind, Parameter, ParameterValue, Part, RecipeError, Scene};
 
 use super::diagnostic::{Findings, Span};
 use super::experiment::{
@@ -65,6 +65,14 @@ impl Checks<'_> {
             let name = word_of(maximise.measure);
             let help = format!("add `{name}` to `measure`");
             self.findings.report::<()>(*span, format!("`{name}` is maximised, but not measured"), Some(help));
+        }
+    }
+
+    /// Amplitudes are compared with what drives the scene.
+    pub fn excitation(&self, measures: &[(Measure, Span)], excitation: &ExcitationKind) {
+        for (measure, span) in measures.iter().filter(|(measure, _)| !measure.suits(excitation)) {
+            let name = word_of(*measure);
+            self.findings.wrong::<()>(*span, format!("`{name}` is not measured under this excitation"));
         }
     }
 

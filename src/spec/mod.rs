@@ -7,10 +7,12 @@ mod assumption_sheet;
 mod check;
 mod columns;
 mod diagnostic;
+mod excitation;
 mod experiment;
 mod figure;
 mod load;
 mod map;
+mod place;
 mod quantity;
 mod range;
 mod reader;
@@ -27,8 +29,8 @@ mod yaml;
 pub use assumption_sheet::{AssumptionEntry, AssumptionSheet, parse_assumptions};
 pub use diagnostic::{Place, Problem, Problems};
 pub use experiment::{
-    Axis, AxisScale, Best, Case, Drawing, EnergySpec, Experiment, ExperimentId, FigureSpec, IdError, Level, MapSpec, Mark,
-    Maximise, Panel, PeakMarks, Refinement, Settings, ShapeOf, ShapeSpec, SolverChoice, Source, TraceSpec,
+    Axis, AxisScale, Best, Case, Drawing, EnergySpec, Experiment, ExperimentId, FigureSpec, IdError, Level, MapSpec,
+    Mark, Maximise, Panel, PeakMarks, Refinement, Settings, ShapeOf, ShapeSpec, SolverChoice, Source, TraceSpec,
 };
 pub use load::{load_assumptions, load_experiment};
 pub use quantity::{Dimension, QuantityError, parse_number, parse_quantity};

@@ -3,15 +3,13 @@
 use std::cell::RefCell;
 
 use crate::scene::{
-    ArrayRecipe, Assumption, ContactDampingRecipe, Coordinate, DamperRecipe, ExcitationKind, ExcitationRecipe, Family,
-    GapRecipe, Given, ImpulseTime, KINDS, Kind, MassReading, MassRecipe, ObserveRecipe, Parameter, Part, PlaceRecipe,
-    PointsRecipe, PulseShape, Recipe, StiffnessRecipe, StopRecipe, StrengthRecipe, SurfaceRecipe, Take, TimingRecipe,
-    WallRecipe,
+    Assumption, ContactDampingRecipe, DamperRecipe, Family, GapRecipe, Given, KINDS, Kind, MassReading, MassRecipe,
+    Parameter, Part, Recipe, StiffnessRecipe, StopRecipe, SurfaceRecipe, WallRecipe,
 };
 
 use super::diagnostic::{Findings, Span};
 use super::quantity::Dimension;
-use super::reader::{Choice, Fields, above_zero, boolean, count, list, number, one_or_more, quantity, ratio};
+use super::reader::{Choice, Fields, above_zero, boolean, list, number, quantity, ratio};
 use super::structure::read_structure;
 use super::yaml::{Node, Value};
 
@@ -19,7 +17,7 @@ use super::yaml::{Node, Value};
 const PLACEHOLDER: f64 = 1.0;
 
 /// Most dampers that a file may name.
-const MOST_DAMPERS: usize = 64;
+pub(super) const MOST_DAMPERS: usize = 64;
 
 /// A scene as read, and where it says `swept`.
 pub(super) struct ReadScene {
@@ -36,9 +34,9 @@ pub(super) fn read_scene(node: &Node, findings: &Findings) -> Option<ReadScene> 
     Some(ReadScene { recipe, swept: reader.swept.into_inner(), parts: reader.parts.into_inner() })
 }
 
-struct SceneReader<'t> {
-    findings: &'t Findings,
-    swept: RefCell<Vec<(Parameter, Span)>>,
+pub(super) struct SceneReader<'t> {
+    pub(super) findings: &'t Findings,
+    pub(super) swept: RefCell<Vec<(Parameter, Span)>>,
     parts: RefCell<Vec<(Part, Span)>>,
 }
 
@@ -73,116 +71,6 @@ impl<'t> SceneReader<'t> {
             observe: observe?.unwrap_or_default(),
             mode: None,
         })
-    }
-
-    /// One coordinate a side; `along` are the parameters that may stand for them.
-    fn place(&self, node: &'t Node, kind: &Kind, along: [Parameter; 2]) -> Option<PlaceRecipe> {
-        let coordinate = |node: &'t Node, parameter: Parameter| {
-            if is_word(node, "swept") {
-                self.swept.borrow_mut().push((parameter, node.span));
-                return Some(Coordinate::Share(0.5));
-            }
-            self.coordinate(node)
-        };
-        if kind.sides.len() < 2 {
-            return Some(PlaceRecipe(vec![coordinate(node, along[0])?]));
-        }
-        match &node.value {
-            Value::Sequence(items) if items.len() == 2 => {
-                let (x, y) = (coordinate(&items[0], along[0]), coordinate(&items[1], along[1]));
-                Some(PlaceRecipe(vec![x?, y?]))
-            }
-            _ => self.findings.report(
-                node.span,
-                format!("a place on {} is two coordinates", kind.what),
-                Some("write [0.25, 0.5], or lengths with units".into()),
-            ),
-        }
-    }
-
-    /// `0.25`, a share of the side, or `20 cm`.
-    fn coordinate(&self, node: &'t Node) -> Option<Coordinate> {
-        let with_unit =
-            matches!(&node.value, Value::Scalar(text) if text.trim_end().ends_with(|c: char| c.is_alphabetic()));
-        if with_unit {
-            return quantity(node, Dimension::Length, self.findings).map(Coordinate::Length);
-        }
-        let share = number(node, self.findings)?;
-        if (0.0..=1.0).contains(&share) {
-            return Some(Coordinate::Share(share));
-        }
-        self.findings.report(
-            node.span,
-            format!("{share} is a place outside the structure: a number without unit is a share of the side, 0 to 1"),
-            Some("write for example 0.5, or 20 cm".into()),
-        )
-    }
-
-    /// The place under `at`: there must be one, except on a single mass, where there must be none.
-    fn at(&self, fields: &Fields<'t>, kind: &Kind, along: [Parameter; 2]) -> Option<PlaceRecipe> {
-        if kind.sides.is_empty() {
-            return Some(PlaceRecipe::default());
-        }
-        fields.required("at", |node| self.place(node, kind, along))
-    }
-
-    fn observe(&self, node: &'t Node, kind: &Kind) -> Option<ObserveRecipe> {
-        // Observed points are not swept.
-        let point = |node: &'t Node| match node.value {
-            _ if is_word(node, "swept") => self.findings.wrong(node.span, "observed points cannot be swept"),
-            _ => self.place(node, kind, [Parameter::DamperX, Parameter::DamperY]),
-        };
-        let Value::Mapping(entries) = &node.value else {
-            return Some(ObserveRecipe { points: PointsRecipe::Points(vec![point(node)?]), take: Some(Take::Largest) });
-        };
-        if entries.iter().any(|entry| entry.key == "points") {
-            let fields = Fields::open(node, "what is observed", self.findings)?;
-            let points = fields.required("points", |node| list(node, self.findings, point));
-            let take = fields.optional("take", |node| self.take(node));
-            fields.close()?;
-            return Some(ObserveRecipe { points: PointsRecipe::Points(points?), take: take?.flatten() });
-        }
-        let choice = Choice::read(node, "what is observed", &["nine_point_grid"], self.findings)?;
-        let take = match choice.content {
-            Some(node) => self.take(node)?,
-            None => None,
-        };
-        Some(ObserveRecipe { points: PointsRecipe::NinePointGrid, take })
-    }
-
-    /// `largest`, `mean`, or `assumed`.
-    #[expect(clippy::option_option, reason = "assumed and wrong are two things")]
-    fn take(&self, node: &'t Node) -> Option<Option<Take>> {
-        let names = ["largest", "mean", "assumed"];
-        let choice = Choice::read(node, "what is taken of several points", &names, self.findings)?;
-        Some(match choice.bare(self.findings)? {
-            "largest" => Some(Take::Largest),
-            "mean" => Some(Take::Mean),
-            _ => None,
-        })
-    }
-
-    fn array(&self, node: &'t Node, kind: &Kind) -> Option<ArrayRecipe> {
-        let fields = Fields::open(node, "an array of dampers", self.findings)?;
-        let most = MOST_DAMPERS as u32;
-        let count = fields.required("count", |node| {
-            if is_word(node, "swept") {
-                self.swept.borrow_mut().push((Parameter::DamperCount, node.span));
-                return Some(vec![1]);
-            }
-            one_or_more(node, self.findings, |node| match count(node, "dampers", most, self.findings)? {
-                0 => self.findings.wrong(node.span, "an array has one damper at least"),
-                count => Some(count),
-            })
-        });
-        let spacing = fields.required("spacing", |node| {
-            one_or_more(node, self.findings, |node| quantity(node, Dimension::Length, self.findings))
-        });
-        let centred = fields.optional("centred", |node| boolean(node, self.findings));
-        fields.close()?;
-        // A plate's array lies around its place, a beam's begins there.
-        let usual = kind.sides.len() > 1;
-        Some(ArrayRecipe { count: count?, spacing: spacing?, centred: centred?.unwrap_or(usual) })
     }
 
     fn dampers(&self, node: &'t Node, kind: &Kind) -> Option<Vec<DamperRecipe>> {
@@ -353,115 +241,12 @@ impl<'t> SceneReader<'t> {
         })
     }
 
-    fn excitation(&self, node: &'t Node, kind: &Kind) -> Option<ExcitationRecipe> {
-        let names = ["single_impulse", "impulse_train", "harmonic", "pulse_train", "none"];
-        let choice = Choice::read(node, "the excitation", &names, self.findings)?;
-        if choice.name == "none" {
-            return choice.bare(self.findings).map(|_| ExcitationRecipe::silent());
-        }
-        let fields = choice.fields("the excitation", self.findings)?;
-        let at = self.at(&fields, kind, [Parameter::ForceX, Parameter::ForceY]);
-        let strength_keys: &[_] = match choice.name {
-            "harmonic" => &["force_ratio", "base_amplitude_ratio", "force"],
-            _ => &["force_ratio", "impulse"],
-        };
-        let strength = fields.exactly_one(strength_keys).and_then(|(key, node)| self.strength(key, node, kind));
-        let impulse_time = match choice.name {
-            "harmonic" => Some(None),
-            _ => fields.optional("impulse_time", |node| self.impulse_time(node)),
-        };
-        let timing_keys = ["frequency_ratio", "period", "angular_frequency", "forced_mode"];
-        let timing = match choice.name {
-            // Time is counted in natural cycles unless the file says otherwise.
-            "single_impulse" => fields.at_most_one(&timing_keys).and_then(|given| match given {
-                Some((key, node)) => self.timing(key, node),
-                None => Some(TimingRecipe::FrequencyRatio(1.0)),
-            }),
-            _ => fields.exactly_one(&timing_keys).and_then(|(key, node)| self.timing(key, node)),
-        };
-        let pulse = if choice.name == "pulse_train" { Some(self.pulse(&fields)) } else { None };
-        fields.close()?;
-        let (strength, timing) = (strength?, timing?);
-        let kind = match pulse {
-            Some(pulse) => {
-                let (duration, shape) = pulse?;
-                ExcitationKind::PulseTrain { duration, shape }
-            }
-            None if choice.name == "harmonic" => ExcitationKind::Harmonic,
-            None if choice.name == "impulse_train" => ExcitationKind::ImpulseTrain,
-            None => ExcitationKind::SingleImpulse,
-        };
-        let impulse_time = impulse_time?.unwrap_or(ImpulseTime::Assumed);
-        Some(ExcitationRecipe { kind, at: at?, strength, timing, impulse_time })
-    }
-
-    /// `assumed`, a time, or a reading.
-    fn impulse_time(&self, node: &'t Node) -> Option<ImpulseTime> {
-        if is_word(node, "assumed") {
-            return Some(ImpulseTime::Assumed);
-        }
-        match ImpulseTime::WORDS.into_iter().find(|(word, _)| is_word(node, word)) {
-            Some((_, time)) => Some(time),
-            None => above_zero(node, Dimension::Time, self.findings).map(ImpulseTime::Seconds),
-        }
-    }
-
-    fn strength(&self, key: &str, node: &'t Node, kind: &Kind) -> Option<StrengthRecipe> {
-        match key {
-            "impulse" => self
-                .swept_or(node, Parameter::Impulse, |node| quantity(node, Dimension::Impulse, self.findings))
-                .map(StrengthRecipe::Impulse),
-            "force" => {
-                if let (true, Some(name)) = (is_word(node, "assumed"), kind.family.harmonic_force()) {
-                    return Some(StrengthRecipe::Force(Given::Assumed(name)));
-                }
-                let force =
-                    self.swept_or(node, Parameter::Force, |node| quantity(node, Dimension::Force, self.findings));
-                force.map(Given::Stated).map(StrengthRecipe::Force)
-            }
-            "base_amplitude_ratio" => {
-                self.sweepable(node, Parameter::BaseAmplitudeRatio).map(StrengthRecipe::BaseAmplitudeRatio)
-            }
-            _ => self.sweepable(node, Parameter::ForceRatio).map(StrengthRecipe::ForceRatio),
-        }
-    }
-
-    fn timing(&self, key: &str, node: &'t Node) -> Option<TimingRecipe> {
-        match key {
-            "period" => above_zero(node, Dimension::Time, self.findings).map(TimingRecipe::Period),
-            "angular_frequency" => self
-                .swept_or(node, Parameter::AngularFrequency, |node| {
-                    above_zero(node, Dimension::AngularFrequency, self.findings)
-                })
-                .map(TimingRecipe::AngularFrequency),
-            "forced_mode" if is_word(node, "swept") => {
-                self.swept.borrow_mut().push((Parameter::ForcedMode, node.span));
-                Some(TimingRecipe::ForcedMode(1))
-            }
-            "forced_mode" => count(node, "", 100_000, self.findings).map(TimingRecipe::ForcedMode),
-            _ => self.sweepable(node, Parameter::FrequencyRatio).map(TimingRecipe::FrequencyRatio),
-        }
-    }
-
-    fn pulse(&self, fields: &Fields<'t>) -> Option<(f64, PulseShape)> {
-        let duration = fields.required("duration", |node| {
-            self.swept_or(node, Parameter::PulseDuration, |node| above_zero(node, Dimension::Time, self.findings))
-        });
-        let shape = fields.required("shape", |node| {
-            Choice::read(node, "a pulse", &["rectangular", "binomial"], self.findings)?.bare(self.findings)
-        });
-        let (duration, shape) = (duration?, shape?);
-        // As the study's figure 31: one impulse a step of 1 ms.
-        let impulses = (duration / 1e-3).round().clamp(1.0, 1e6) as u32;
-        Some((duration, if shape == "binomial" { PulseShape::Binomial { impulses } } else { PulseShape::Rectangular }))
-    }
-
     /// A dimensionless parameter, or `swept`.
-    fn sweepable(&self, node: &'t Node, parameter: Parameter) -> Option<f64> {
+    pub(super) fn sweepable(&self, node: &'t Node, parameter: Parameter) -> Option<f64> {
         self.swept_or(node, parameter, |node| ratio(node, self.findings))
     }
 
-    fn swept_or(
+    pub(super) fn swept_or(
         &self,
         node: &'t Node,
         parameter: Parameter,
@@ -475,7 +260,7 @@ impl<'t> SceneReader<'t> {
     }
 
     /// A value, or `assumed`.
-    fn given(
+    pub(super) fn given(
         &self,
         node: &'t Node,
         assumption: Assumption,
@@ -485,6 +270,6 @@ impl<'t> SceneReader<'t> {
     }
 }
 
-fn is_word(node: &Node, word: &str) -> bool {
+pub(super) fn is_word(node: &Node, word: &str) -> bool {
     matches!(&node.value, Value::Scalar(text) if text == word)
 }

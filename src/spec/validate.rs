@@ -101,6 +101,7 @@ impl<'t> ExperimentReader<'t> {
         checks.measures(&measures, maximise.as_ref(), trace.as_ref(), shape.as_ref());
         checks.energies(energies.as_ref(), &run.settings, energies_at);
         let (mut scene, sweep) = (scene?, sweep?.unwrap_or_else(ReadSweep::none));
+        checks.excitation(&measures, &scene.recipe.excitation.kind);
         let places = sweep.places;
         let cases = with_solvers(sweep.cases, &run.solvers);
         checks.refined(&sweep.refined, &measures);

@@ -17,6 +17,7 @@ mod reference;
 mod reference_kinds;
 mod refined;
 mod report;
+mod solver_version;
 mod spec;
 mod spec_map;
 mod structures;

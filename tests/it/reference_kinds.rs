@@ -130,8 +130,10 @@ fn a_curve_lies_in_a_tube_of_widths_on_both_axes() {
     let grid = refined();
     let table = response(&grid, 0.0);
     let published = |shift: f64, factor: f64| {
-        let points: Vec<String> =
-            (0..600).map(|i| 10.0 + 0.1 * f64::from(i)).map(|w| format!("[{w}, {}]", factor * amplitude(w - shift))).collect();
+        let points: Vec<String> = (0..600)
+            .map(|i| 10.0 + 0.1 * f64::from(i))
+            .map(|w| format!("[{w}, {}]", factor * amplitude(w - shift)))
+            .collect();
         format!(
             "curve:\n  of: displacement_per_force\n  over: angular_frequency\n  points: [{}]\n  \
              tube: {{x: {{absolute: 1}}, y: {{relative: 0.1}}}}\nthreshold_reason: for the test",

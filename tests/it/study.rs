@@ -205,7 +205,9 @@ fn an_input_edited_during_the_run_is_stale_afterwards() {
 fn the_snapshot_holds_until_any_input_or_output_changes() {
     let desk = Desk::new();
     desk.run(2, &MadeUp::default(), &Silence);
-    let outputs = || ["results/ch3-gap.parquet", "results/ch3-stop.parquet"].map(str::to_owned);
+    let report = |middle| format!("{}{middle}{}", "head\n".repeat(4000), "tail\n".repeat(4000));
+    desk.put("reports/README.md", &report("1.52"));
+    let outputs = || ["results/ch3-gap.parquet", "results/ch3-stop.parquet", "reports/README.md"].map(str::to_owned);
     let take = || Snapshot::take(&desk.layout, &desk.texts(), outputs(), "all done", 1).unwrap();
     let holds = || Snapshot::current(&desk.layout, &desk.texts()).is_some();
     assert!(!holds(), "none taken");
@@ -220,6 +222,10 @@ fn the_snapshot_holds_until_any_input_or_output_changes() {
     desk.put("reference/ch3/ch3-new.yaml", "entries: []\n");
     assert!(!holds(), "a new file");
     fs::remove_file(desk.layout.path("reference/ch3/ch3-new.yaml")).unwrap();
+    assert!(holds());
+    desk.put("reports/README.md", &report("1.53"));
+    assert!(!holds(), "one digit of a long report");
+    desk.put("reports/README.md", &report("1.52"));
     assert!(holds());
     let name = "results/ch3-gap.parquet";
     let mut bytes = desk.bytes(name);

@@ -9,7 +9,6 @@ use super::cycle::Cycle;
 use super::signal::Row;
 use crate::dynamics::block::{Block, Phase};
 use crate::dynamics::flow::Flow;
-use crate::dynamics::guards::{accelerations, mixed};
 use crate::dynamics::system::{HybridSystem, Law};
 
 /// Bisections after which a guard counts as undecided.
@@ -18,21 +17,11 @@ const MOST_PIECES: usize = 400;
 /// What must stay positive: a constant and a signal.
 struct Guard {
     row: Row,
-    kind: Kind,
     sign: f64,
     /// Beside the row's own rest.
     constant: f64,
-}
-
-/// Which signal of the row.
-#[derive(Clone, Copy, PartialEq)]
-enum Kind {
-    /// The row itself, a distance in metres.
-    Distance,
-    /// k·s + c·s′.
-    Push { stiffness: f64, damping: f64 },
-    /// s″.
-    Acceleration,
+    /// A distance, in metres.
+    is_distance: bool,
 }
 
 /// The guards of particles at rest on their floors, held against a run.
@@ -57,7 +46,7 @@ impl Watch<'_> {
             let transient = guard.transient(self.flow, self.transient)?;
             let later = guard.lowest(self.flow, self.regular, self.steady, transient)? - transient;
             let bound = later.min(guard.lowest(self.flow, self.first, self.start, 0.0)?);
-            if guard.kind == Kind::Distance {
+            if guard.is_distance {
                 margin = margin.min(bound);
             }
         }
@@ -66,20 +55,17 @@ impl Watch<'_> {
 
     fn guards(&self) -> Vec<Guard> {
         let mut guards = Vec::new();
-        for (particle, rows) in self.system.particles.iter().zip(&self.flow.face_rows) {
-            match (particle.floor.law, rows.compression) {
-                (Law::Resilient { stiffness, damping, no_tension, stop }, Some(row)) => {
-                    let row = |sign, constant, kind| Guard { row: Row::new(self.flow, row), kind, sign, constant };
-                    let kind = if no_tension { Kind::Push { stiffness, damping } } else { Kind::Distance };
-                    guards.push(row(-1.0, 0.0, kind));
-                    guards.extend(stop.map(|stop| row(1.0, stop.length, Kind::Distance)));
+        for (particle, rows) in self.system.particles.iter().zip(&self.flow.rows.guards) {
+            let guard =
+                |row, sign, constant, is_distance| Guard { row: Row::new(self.flow, row), sign, constant, is_distance };
+            match particle.floor.law {
+                Law::Resilient { no_tension, stop, .. } => {
+                    let holds = if no_tension { rows.second } else { rows.first };
+                    guards.push(guard(holds, -1.0, 0.0, !no_tension));
+                    guards.extend(stop.map(|stop| guard(rows.first, 1.0, stop.length, true)));
                 }
-                _ => guards.push(Guard {
-                    row: Row::new(self.flow, rows.floor),
-                    kind: Kind::Acceleration,
-                    sign: 1.0,
-                    constant: self.system.gravity,
-                }),
+                // What the floor pushes, per mass: its acceleration and gravity.
+                Law::Rigid { .. } => guards.push(guard(rows.first, 1.0, self.system.gravity, false)),
             }
         }
         guards
@@ -88,21 +74,14 @@ impl Watch<'_> {
 
 impl Guard {
     /// Shares of the guard from those of its row.
-    fn shares(&self, blocks: &[Block], phases: &[Phase]) -> Vec<Phase> {
-        let mut shares = match self.kind {
-            Kind::Distance => phases.to_vec(),
-            Kind::Push { stiffness, damping } => mixed(blocks, phases, stiffness, damping),
-            Kind::Acceleration => accelerations(blocks, phases),
-        };
-        for share in &mut shares {
-            *share = Phase { value: self.sign * share.value, rate: self.sign * share.rate };
-        }
-        shares
+    fn shares(&self, phases: Vec<Phase>) -> Vec<Phase> {
+        let signed = |share: Phase| Phase { value: self.sign * share.value, rate: self.sign * share.rate };
+        phases.into_iter().map(signed).collect()
     }
 
     /// Bound on the guard's transient from the state `a` on, for ever.
     fn transient(&self, flow: &Flow, a: &[f64]) -> Option<f64> {
-        let shares = self.shares(&flow.blocks[..flow.own], &self.row.shares(a));
+        let shares = self.shares(self.row.shares(a));
         flow.blocks.iter().zip(shares).try_fold(0.0, |sum, (block, share)| Some(sum + for_ever(block, share)?))
     }
 
@@ -116,12 +95,7 @@ impl Guard {
             let mut phases = self.row.shares(&start);
             let (drive, rest) = self.row.outside(flow, segment.level, segment.drive);
             phases.extend(drive);
-            let shares = self.shares(&flow.blocks, &phases);
-            let rest = match self.kind {
-                Kind::Distance => rest,
-                Kind::Push { stiffness, .. } => stiffness * rest,
-                Kind::Acceleration => 0.0,
-            };
+            let shares = self.shares(phases);
             let signal = Signal { blocks: &flow.blocks, shares, constant: self.constant + self.sign * rest };
             lowest = lowest.min(signal.lowest(segment.length, least)?);
         }

@@ -181,10 +181,11 @@ pub(super) fn leave(flow: &Flow, c: &[f64], level: f64, drive: DrivePhase) -> (V
     (p, rate)
 }
 
-/// Block coordinates of (p, p′).
+/// Block coordinates of (p, p′); those of the drive are its phase.
 pub(super) fn enter(flow: &Flow, p: &[f64], rate: &[f64], level: f64, drive: DrivePhase) -> Vec<f64> {
-    let mut c = vec![0.0; 2 * flow.order];
+    let mut c = vec![0.0; 2 * flow.blocks.len()];
     flow.enter(p, rate, level, drive, &mut c);
+    c.truncate(2 * flow.own);
     c
 }
 

@@ -3,7 +3,7 @@
 use super::cycle::{Affine, Cycle, drive_at, product, times};
 use super::moments::{Moments, outer, pairs, transposed};
 use crate::dynamics::block::Phase;
-use crate::dynamics::flow::{DrivePhase, Flow, Signals};
+use crate::dynamics::flow::{DrivePhase, Flow};
 use crate::dynamics::integral::{GAUSS, Integrals, PhaseMoments};
 use crate::dynamics::system::HybridSystem;
 
@@ -17,22 +17,17 @@ pub(super) struct Row {
 
 impl Row {
     pub(super) fn new(flow: &Flow, index: usize) -> Self {
-        let of_unit = |unit: usize| {
-            let c: Vec<f64> = (0..2 * flow.order).map(|i| if i % 2 == unit { 1.0 } else { 0.0 }).collect();
-            let mut signals = Signals::default();
-            flow.signals(&c, 0.0, DrivePhase::default(), &mut signals);
-            signals.of(index).0[..flow.own].to_vec()
-        };
-        let weights = of_unit(0).iter().zip(of_unit(1)).map(|(x, y)| [x.value, y.value, x.rate, y.rate]).collect();
-        Self { index, weights }
+        Self { index, weights: flow.rows.row(index).weights[..flow.own].to_vec() }
     }
 
     /// Its share of the harmonic force, if there is one, and its rest under a constant force.
     pub(super) fn outside(&self, flow: &Flow, level: f64, drive: DrivePhase) -> (Option<Phase>, f64) {
-        let mut signals = Signals::default();
-        flow.signals(&vec![0.0; 2 * flow.order], level, drive, &mut signals);
-        let (phases, rest) = signals.of(self.index);
-        (phases.get(flow.own).copied(), rest.p0)
+        let row = flow.rows.row(self.index);
+        let share = row.weights.get(flow.own).map(|weights| {
+            let [value, rate] = times(*weights, [drive.cosine, drive.sine]);
+            Phase { value, rate }
+        });
+        (share, row.gravity.p0 + level * row.force.p0)
     }
 
     /// Shares of its own blocks in a state.

@@ -170,7 +170,7 @@ impl StructureRecipe {
 
 /// A whole number above zero, from a sweep.
 pub(in crate::scene) fn whole(value: f64) -> Result<u32, RecipeError> {
-    if value >= 1.0 && value <= 1e6 && value.fract() == 0.0 {
+    if (1.0..=1e6).contains(&value) && value.fract() == 0.0 {
         return Ok(value as u32);
     }
     Err(RecipeError::OutOfRange(format!("a whole number above zero is wanted, not {value}")))

@@ -1,0 +1,251 @@
+//! What a crossing leads to, and what resilient faces do at a jump of the velocities: they push or they do not, and no
+//! velocity jumps for it. Rigid faces are the business of [`super::impacts`].
+
+use super::March;
+use crate::dynamics::EngineError;
+use crate::dynamics::contact::{Crossing, Relative, Side};
+use crate::dynamics::system::{Contact, EventKind, Law, dot};
+
+impl March<'_> {
+    /// What a crossing leads to; the state has arrived there.
+    pub(super) fn cross(&mut self, j: usize, crossing: Crossing) -> Result<(), EngineError> {
+        if crossing == Crossing::HalfCycle {
+            self.half.sign = -self.half.sign;
+            self.half.touching = true;
+            self.close_half_cycle();
+            return self.hold_on();
+        }
+        self.half.touching = false;
+        self.smooth[j] = false;
+        let side = self.contacts[j].side();
+        let particle = &self.system.particles[j];
+        // The push of a dashpot sets in at once, and with it accelerations elsewhere jump.
+        let mut jumps = false;
+        match crossing {
+            // A particle that a rounding has put behind a face which it is leaving has not met it.
+            Crossing::ToFloor => {
+                self.particles[j].gap = 0.0;
+                if self.particles[j].rate < 0.0 {
+                    match particle.floor.law {
+                        Law::Rigid { .. } => return self.strike(j, Side::Floor),
+                        Law::Resilient { .. } => self.press(j, Side::Floor),
+                    }
+                    jumps = true;
+                }
+            }
+            Crossing::ToCeiling => {
+                if let (Some(ceiling), Some(above)) = (&particle.ceiling, self.ceiling_relative(j)) {
+                    match ceiling.law {
+                        _ if !(above.rate > 0.0) => {
+                            self.particles[j] = Relative { gap: 0.0, rate: above.rate };
+                            self.refer_to_floor(j);
+                        }
+                        Law::Rigid { .. } => return self.strike(j, Side::Ceiling),
+                        Law::Resilient { .. } => {
+                            self.press(j, Side::Ceiling);
+                            jumps = true;
+                        }
+                    }
+                }
+            }
+            Crossing::ToStop => {
+                if let Some(stop) = side.face(particle).law.stop() {
+                    self.particles[j].gap = -side.away() * stop.length;
+                    return self.strike(j, side);
+                }
+            }
+            Crossing::Release if self.contacts[j].holds(particle) => {
+                if self.sudden {
+                    return self.hold_on();
+                }
+                self.particles[j].rate = 0.0;
+                self.let_go(j, side);
+                self.smooth[j] = true;
+            }
+            Crossing::Release => match side.face(particle).law {
+                Law::Resilient { no_tension: true, .. } if self.particles[j].gap != 0.0 => {
+                    self.slip(j, side);
+                    self.smooth[j] = !self.sudden;
+                }
+                _ => {
+                    self.particles[j].gap = 0.0;
+                    self.let_go(j, side);
+                    jumps = true;
+                }
+            },
+            Crossing::Recovered => {
+                self.particles[j].gap = 0.0;
+                self.changed = true;
+                self.contacts[j] = Contact::Flight;
+                if side == Side::Ceiling {
+                    self.refer_to_floor(j);
+                }
+            }
+            Crossing::Again => {
+                self.slip(j, side);
+                self.smooth[j] = !self.sudden;
+            }
+            Crossing::HalfCycle => {}
+        }
+        self.meet_at_once()?;
+        if jumps { self.hold_on() } else { self.choose_flow() }
+    }
+
+    /// A particle in flight that is at a face and moves into it has met it: where there is no gap to cross.
+    fn meet_at_once(&mut self) -> Result<(), EngineError> {
+        let mut arrived = Vec::new();
+        for j in 0..self.particles.len() {
+            if let Some(side) = self.meets(j) {
+                match side.face(&self.system.particles[j]).law {
+                    Law::Rigid { .. } => arrived.push((j, side)),
+                    Law::Resilient { .. } => self.press(j, side),
+                }
+            }
+        }
+        if arrived.is_empty() { Ok(()) } else { self.settle(&arrived) }
+    }
+
+    /// The face that a particle in flight is at and moves into.
+    fn meets(&self, j: usize) -> Option<Side> {
+        if self.contacts[j] != Contact::Flight {
+            return None;
+        }
+        let floor = self.particles[j];
+        if floor.gap == 0.0 && floor.rate < 0.0 {
+            return Some(Side::Floor);
+        }
+        self.ceiling_relative(j).filter(|above| above.gap == 0.0 && above.rate > 0.0).map(|_| Side::Ceiling)
+    }
+
+    /// A particle in flight presses into a resilient face from now on; at a ceiling its state refers to that.
+    fn press(&mut self, j: usize, side: Side) {
+        let above = if side == Side::Ceiling { self.ceiling_relative(j) } else { None };
+        let rate = above.unwrap_or(self.particles[j]).rate;
+        self.particles[j] = Relative { gap: 0.0, rate };
+        self.changed = true;
+        self.contacts[j] = side.pressed();
+        self.record(j, side.made(), rate, rate);
+    }
+
+    /// After a jump of velocities: decides the contact of a particle with a resilient face, as far as velocities do.
+    pub(super) fn press_or_part(&mut self, j: usize) {
+        let contact = self.contacts[j];
+        let particle = &self.system.particles[j];
+        let side = contact.side();
+        let Relative { gap, rate } = self.particles[j];
+        let away = side.away();
+        match (contact, side.face(particle).law) {
+            (Contact::Flight, _) => {
+                if let Some(side) = self.meets(j)
+                    && let Law::Resilient { .. } = side.face(particle).law
+                {
+                    self.press(j, side);
+                }
+            }
+            (_, Law::Resilient { stiffness, no_tension, .. }) if contact.presses(particle) => {
+                if gap == 0.0 && away * rate > 0.0 {
+                    self.let_go(j, side);
+                } else if no_tension && -away * (stiffness * gap + self.damping_at(j) * rate) < 0.0 {
+                    self.slip(j, side);
+                }
+            }
+            (Contact::FloorReleased | Contact::CeilingReleased, Law::Resilient { stiffness, .. })
+                if -away * (stiffness * gap + self.damping_at(j) * rate) > 0.0 =>
+            {
+                self.slip(j, side);
+            }
+            _ => {}
+        }
+    }
+
+    /// A particle that lies at a resilient face without moving against it: what brings it there keeps it there.
+    pub(super) fn rest(&mut self, j: usize) -> Result<(), EngineError> {
+        let particle = &self.system.particles[j];
+        let contact = self.contacts[j];
+        let here = self.particles[j];
+        let at_rest = |relative: Relative| relative == Relative::default();
+        let side = match contact {
+            Contact::Flight if at_rest(here) => Side::Floor,
+            Contact::Flight if self.ceiling_relative(j).is_some_and(at_rest) => Side::Ceiling,
+            _ if contact.presses(particle) && at_rest(here) => contact.side(),
+            _ => return Ok(()),
+        };
+        if let Law::Rigid { .. } = side.face(particle).law {
+            return Ok(());
+        }
+        self.changed = true;
+        self.contacts[j] = Contact::Flight;
+        self.choose_flow()?;
+        let grip = self.grip(j, side, false);
+        self.smooth[j] = grip.is_nothing();
+        self.particles[j] = Relative::default();
+        if grip.holds() {
+            self.changed = true;
+            self.contacts[j] = side.pressed();
+        } else if side == Side::Ceiling {
+            self.refer_to_floor(j);
+        }
+        Ok(())
+    }
+
+    /// Position relative to the ceiling, for a particle whose state refers to the floor.
+    pub(super) fn ceiling_relative(&self, j: usize) -> Option<Relative> {
+        let particle = &self.system.particles[j];
+        let ceiling = particle.ceiling.as_ref()?;
+        let floor = self.particles[j];
+        if ceiling.row == particle.floor.row {
+            return Some(Relative { gap: floor.gap - particle.gap, rate: floor.rate });
+        }
+        let shift = |x: &[f64]| dot(&ceiling.row, x) - dot(&particle.floor.row, x);
+        Some(Relative { gap: floor.gap - particle.gap - shift(&self.q), rate: floor.rate - shift(&self.rate) })
+    }
+
+    /// Refers a particle that leaves the ceiling to the floor again.
+    pub(super) fn refer_to_floor(&mut self, j: usize) {
+        let particle = &self.system.particles[j];
+        let Some(ceiling) = particle.ceiling.as_ref() else { return };
+        let here = self.particles[j];
+        self.particles[j] = if ceiling.row == particle.floor.row {
+            Relative { gap: here.gap + particle.gap, rate: here.rate }
+        } else {
+            let shift = |x: &[f64]| dot(&ceiling.row, x) - dot(&particle.floor.row, x);
+            Relative { gap: here.gap + particle.gap + shift(&self.q), rate: here.rate + shift(&self.rate) }
+        };
+    }
+
+    /// A face loses its particle.
+    pub(super) fn let_go(&mut self, j: usize, side: Side) {
+        let rate = self.particles[j].rate;
+        let stopped = self.contacts[j] == side.stopped();
+        self.record(j, if stopped { EventKind::StopRelease } else { side.lost() }, rate, rate);
+        self.part(j, side, stopped);
+    }
+
+    /// Puts a particle off a rigid face or a stop, without an event.
+    pub(super) fn part(&mut self, j: usize, side: Side, from_stop: bool) {
+        self.changed = true;
+        if from_stop {
+            self.contacts[j] = side.pressed();
+            return;
+        }
+        self.contacts[j] = Contact::Flight;
+        if side == Side::Ceiling {
+            self.refer_to_floor(j);
+        }
+    }
+
+    /// A face that cannot pull lets go while compressed, or pushes again: the energy of its spring goes and comes.
+    fn slip(&mut self, j: usize, side: Side) {
+        let rate = self.particles[j].rate;
+        let pressed = self.contacts[j] == side.pressed();
+        self.record(j, if pressed { side.lost() } else { side.made() }, rate, rate);
+        self.changed = true;
+        self.contacts[j] = if pressed { side.released() } else { side.pressed() };
+        if let (Some(audit), Law::Resilient { stiffness, .. }) =
+            (&mut self.audit, side.face(&self.system.particles[j]).law)
+        {
+            let stored = 0.5 * stiffness * self.particles[j].gap * self.particles[j].gap;
+            audit.loss(if pressed { stored } else { -stored });
+        }
+    }
+}

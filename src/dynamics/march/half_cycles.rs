@@ -1,0 +1,95 @@
+//! Equivalent viscous damping: the half cycles of the observed acceleration, each of which sets the next one's dashpots.
+
+use super::March;
+use crate::dynamics::EngineError;
+
+/// An acceleration below this share of its parts is zero: the crossing that ended the half cycle was smooth.
+const SMOOTH: f64 = 1e-9;
+
+/// Bookkeeping of the equivalent viscous damping.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Half {
+    /// Sign of the acceleration in the half cycle; 0 before the first.
+    pub(super) sign: f64,
+    /// ∫ a² dt so far.
+    pub(super) square: f64,
+    /// Its length so far, s.
+    pub(super) length: f64,
+    /// RMS of the last complete one, m/s².
+    pub(super) last: f64,
+    /// The crossing was smooth, so that the guard starts at zero.
+    pub(super) touching: bool,
+    /// Too weak to leave the curve's lower end: not followed.
+    pub(super) idle: bool,
+}
+
+impl March<'_> {
+    /// Starts the first half cycle, and ends one whose acceleration a contact has turned at once.
+    pub(super) fn turn_half_cycle(&mut self) -> Result<(), EngineError> {
+        let Some(half_cycles) = &self.system.drive.half_cycles else { return Ok(()) };
+        let flow = &self.flows[self.now];
+        let Some(bend) = flow.rows.bend else { return Ok(()) };
+        let bends = self.signals.of(bend).0;
+        // Below the curve's first point every half cycle gives the same damping: no need to follow them until something
+        // happens. The bound holds to the end of the segment, and the half cycle under way is as weak.
+        let [least, damping] = half_cycles.curve.lower_end();
+        let bound = flow
+            .blocks
+            .iter()
+            .zip(bends)
+            .fold(0.0, |sum, (block, phase)| sum + block.amplitude(*phase, 0.0, self.system.drive.period));
+        let least = least * self.system.gravity;
+        let weak = self.half.square <= least * least * self.half.length;
+        if bound < least && weak && self.equivalent == Some(damping) {
+            self.half = Half { idle: true, last: self.half.last, ..Half::default() };
+            return Ok(());
+        }
+        self.half.idle = false;
+        let total = bends.iter().fold(0.0, |sum, phase| sum + phase.value);
+        let rate = bends.iter().fold(0.0, |sum, phase| sum + phase.rate);
+        // Its parts: with a single block the acceleration itself is what rounding has left of them.
+        let observed = self.signals.of(flow.rows.observed[0]).0;
+        let scale = flow.blocks.iter().zip(observed).fold(0.0, |sum, (block, phase)| {
+            sum + (2.0 * block.decay * phase.rate).abs() + (block.determinant * phase.value).abs()
+        });
+        let smooth = total.abs() <= SMOOTH * scale;
+        if self.half.sign == 0.0 {
+            // From rest the first half cycle goes where the acceleration is about to go.
+            self.half.touching = smooth;
+            let first = if smooth { rate } else { total };
+            self.half.sign = if first < 0.0 { -1.0 } else { 1.0 };
+        }
+        if self.half.touching && smooth {
+            if rate * self.half.sign < 0.0 {
+                // The new damping turns the acceleration back before it has got anywhere.
+                self.half.sign = -self.half.sign;
+            }
+            return Ok(());
+        }
+        // New damping in a contact makes the acceleration jump: it no longer starts from zero.
+        self.half.touching = false;
+        if total * self.half.sign >= 0.0 {
+            return Ok(());
+        }
+        self.half.sign = -self.half.sign;
+        self.close_half_cycle();
+        self.hold_on()?;
+        let drive = self.drive_phase(self.time);
+        self.enter_flow(drive);
+        self.flows[self.now].watch(&self.c, self.level, &mut self.signals);
+        Ok(())
+    }
+
+    /// The RMS of a finished half cycle sets the damping of the next.
+    pub(super) fn close_half_cycle(&mut self) {
+        let Some(half_cycles) = &self.system.drive.half_cycles else { return };
+        if self.half.length > 0.0 {
+            self.half.last = (self.half.square / self.half.length).sqrt();
+            let value = half_cycles.curve.at(self.half.last / self.system.gravity);
+            self.equivalent = Some(value);
+            self.changed = true;
+        }
+        self.half.square = 0.0;
+        self.half.length = 0.0;
+    }
+}

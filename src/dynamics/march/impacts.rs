@@ -1,0 +1,366 @@
+//! Rigid faces and limit stops: impacts, and whether a face can hold what no longer bounces.
+//!
+//! Velocities first: [`collision`](crate::dynamics::collision) takes all contacts that are closed at the instant together.
+//! Then accelerations: of the particles that are left without relative speed, those are held that their faces have to push.
+
+use super::March;
+use crate::dynamics::EngineError;
+use crate::dynamics::collision::{self, Closed, Outcome};
+use crate::dynamics::contact::{Relative, STICKING_SPEED, Side};
+use crate::dynamics::guards::Grip;
+use crate::dynamics::system::{Contact, EventKind, Law, dot};
+
+/// A rigid contact that is closed.
+struct Touch {
+    particle: usize,
+    side: Side,
+    /// On the stop of a resilient face.
+    on_stop: bool,
+    /// Held until now.
+    held: bool,
+    /// Place of its mobility.
+    mobility: usize,
+    closed: Closed,
+}
+
+/// A particle that its face may hold from now on.
+pub(super) struct Candidate {
+    particle: usize,
+    side: Side,
+    on_stop: bool,
+    /// Held until now, and not struck.
+    held: bool,
+    /// Relative speed that is left: too slow a bounce to be followed.
+    speed: f64,
+    restitution: f64,
+}
+
+impl March<'_> {
+    /// An impulse on the structure: a particle that is held receives its share through the face.
+    pub(super) fn strike_structure(&mut self, impulse: f64) -> Result<(), EngineError> {
+        let before = self.audit.is_some().then(|| crate::dynamics::audit::energy(self.system, &self.audit_state()));
+        for j in 0..self.particles.len() {
+            let row = &self.contacts[j].side().face(&self.system.particles[j]).row;
+            self.particles[j].rate -= impulse * dot(row, &self.answer);
+            self.smooth[j] = false;
+        }
+        self.rate.iter_mut().zip(&self.answer).for_each(|(rate, jump)| *rate += impulse * jump);
+        if let Some(before) = before {
+            let after = crate::dynamics::audit::energy(self.system, &self.audit_state());
+            if let Some(audit) = &mut self.audit {
+                audit.impulse(impulse, after - before);
+            }
+        }
+        self.half.touching = false;
+        self.settle(&[])
+    }
+
+    /// A particle meets a rigid face or a stop, and with it every other one that rounding cannot tell apart from it.
+    pub(super) fn strike(&mut self, j: usize, side: Side) -> Result<(), EngineError> {
+        let mut arrived = vec![(j, side)];
+        if self.particles.len() > 1 {
+            let others = (0..self.particles.len()).filter(|&other| other != j);
+            let tied: Vec<_> = others.filter_map(|other| Some((other, self.arrives(other)?))).collect();
+            for &(other, side) in &tied {
+                if let Some(stop) = side.face(&self.system.particles[other]).law.stop() {
+                    self.particles[other].gap = -side.away() * stop.length;
+                }
+            }
+            self.clarity.ties += tied.len() as u64;
+            arrived.extend(tied);
+        }
+        self.settle(&arrived)
+    }
+
+    /// The rigid face, or the stop, that a particle moves into and has reached, as far as rounding can tell.
+    fn arrives(&self, j: usize) -> Option<Side> {
+        let particle = &self.system.particles[j];
+        let contact = self.contacts[j];
+        let reached =
+            |side: Side, here: Relative| side.away() * here.rate < 0.0 && here.gap.abs() <= self.noise(j, side, here);
+        if contact.presses(particle) {
+            let (side, Relative { gap, rate }) = (contact.side(), self.particles[j]);
+            let stop = side.face(particle).law.stop()?;
+            return reached(side, Relative { gap: gap + side.away() * stop.length, rate }).then_some(side);
+        }
+        let rigid = |side: Side| matches!(side.face(particle).law, Law::Rigid { .. });
+        let flies = |side: Side| contact == Contact::Flight && rigid(side);
+        if flies(Side::Floor) && reached(Side::Floor, self.particles[j]) {
+            return Some(Side::Floor);
+        }
+        let above = self.ceiling_relative(j)?;
+        (flies(Side::Ceiling) && reached(Side::Ceiling, above)).then_some(Side::Ceiling)
+    }
+
+    /// What of a gap is rounding, of its own parts and of the instant.
+    fn noise(&self, j: usize, side: Side, here: Relative) -> f64 {
+        let particle = &self.system.particles[j];
+        let parts = |row: &[f64]| row.iter().zip(&self.q).fold(0.0, |sum, (a, b)| sum + (a * b).abs());
+        let size = parts(&side.face(particle).row) + if side == Side::Ceiling { particle.gap.abs() } else { 0.0 };
+        16.0 * f64::EPSILON * (size + here.rate.abs() * self.system.drive.period)
+    }
+
+    /// After a jump of velocities: decides every contact that the jump has made untenable. `arrived` particles in flight
+    /// are at a rigid face, pressed ones at its stop.
+    pub(super) fn settle(&mut self, arrived: &[(usize, Side)]) -> Result<(), EngineError> {
+        let candidates = self.collide(arrived)?;
+        (0..self.particles.len()).for_each(|j| self.press_or_part(j));
+        self.hold(candidates)?;
+        for j in 0..self.particles.len() {
+            self.rest(j)?;
+        }
+        self.choose_flow()
+    }
+
+    /// After a jump of accelerations: lets go what a face can no longer hold.
+    pub(super) fn hold_on(&mut self) -> Result<(), EngineError> {
+        let candidates: Vec<_> = (0..self.particles.len())
+            .filter(|&j| self.contacts[j].holds(&self.system.particles[j]))
+            .map(|j| self.candidate(j))
+            .collect();
+        self.hold(candidates)?;
+        self.choose_flow()
+    }
+
+    /// After a jump of the force: the same, and what rests at a face without being pressed to it may be so from now on.
+    pub(super) fn regrip(&mut self) -> Result<(), EngineError> {
+        let mut touches = self.touches(&[])?;
+        touches.retain(|touch| touch.closed.speed == 0.0);
+        for touch in touches.iter().filter(|touch| !touch.on_stop) {
+            self.particles[touch.particle] = Relative::default();
+        }
+        self.hold(touches.iter().map(Touch::rests).collect())?;
+        for j in 0..self.particles.len() {
+            self.rest(j)?;
+        }
+        self.choose_flow()
+    }
+
+    fn candidate(&self, j: usize) -> Candidate {
+        let (contact, side) = (self.contacts[j], self.contacts[j].side());
+        let on_stop = contact == side.stopped();
+        Candidate { particle: j, side, on_stop, held: true, speed: 0.0, restitution: 0.0 }
+    }
+
+    /// The rigid contacts that are closed.
+    fn touches(&mut self, arrived: &[(usize, Side)]) -> Result<Vec<Touch>, EngineError> {
+        let mut touches = Vec::new();
+        for (j, particle) in self.system.particles.iter().enumerate() {
+            let contact = self.contacts[j];
+            let here = self.particles[j];
+            let held = contact.holds(particle);
+            let rigid = |side: Side| matches!(side.face(particle).law, Law::Rigid { .. });
+            let above = || self.ceiling_relative(j);
+            let side = if let Some((_, side)) = arrived.iter().find(|(other, _)| *other == j) {
+                *side
+            } else if held {
+                contact.side()
+            } else if contact == Contact::Flight && here.gap == 0.0 && rigid(Side::Floor) {
+                Side::Floor
+            } else if contact == Contact::Flight
+                && above().is_some_and(|above| above.gap == 0.0 && rigid(Side::Ceiling))
+            {
+                Side::Ceiling
+            } else if let (true, Some(stop)) = (contact.presses(particle), contact.side().face(particle).law.stop())
+                && here.gap == -contact.side().away() * stop.length
+            {
+                contact.side()
+            } else {
+                continue;
+            };
+            let rate = match (contact, side) {
+                (Contact::Flight, Side::Ceiling) => above().map_or(here.rate, |above| above.rate),
+                _ => here.rate,
+            };
+            let both_ways = particle.is_enclosed();
+            let law = side.face(particle).law;
+            // All bounces across no gap happen at once.
+            let restitution = if both_ways { 0.0 } else { law.restitution() };
+            touches.push(Touch {
+                particle: j,
+                side,
+                on_stop: law.stop().is_some(),
+                held,
+                mobility: self.mobilities.find(self.system, j, side)?,
+                closed: Closed { mass: particle.mass, speed: side.away() * rate, restitution, both_ways },
+            });
+        }
+        Ok(touches)
+    }
+
+    /// S of the closed contacts, row by row.
+    fn answers(&self, touches: &[Touch]) -> Vec<f64> {
+        let mut answers = Vec::with_capacity(touches.len() * touches.len());
+        for at in touches {
+            let row = &at.side.face(&self.system.particles[at.particle]).row;
+            for from in touches {
+                let answer = dot(row, self.mobilities.answer(from.mobility));
+                answers.push(at.side.away() * from.side.away() * answer);
+            }
+        }
+        answers
+    }
+
+    /// The exchange of momentum among all closed rigid contacts. Gives those that may be held.
+    fn collide(&mut self, arrived: &[(usize, Side)]) -> Result<Vec<Candidate>, EngineError> {
+        let touches = self.touches(arrived)?;
+        if touches.is_empty() {
+            return Ok(Vec::new());
+        }
+        let closed: Vec<Closed> = touches.iter().map(|touch| touch.closed).collect();
+        let outcomes = if closed.iter().any(Closed::is_struck) {
+            let outcomes = collision::collide(&closed, &self.answers(&touches));
+            self.exchange(&touches, &outcomes);
+            self.half.touching = false;
+            outcomes
+        } else {
+            closed.iter().map(|contact| Outcome { speed: contact.speed, ..Outcome::default() }).collect()
+        };
+        let mut candidates = Vec::new();
+        for (touch, outcome) in touches.iter().zip(&outcomes) {
+            let Touch { particle: j, side, on_stop, held, closed, .. } = *touch;
+            let away = side.away();
+            let gap = if on_stop { self.particles[j].gap } else { 0.0 };
+            let struck = outcome.pushed && closed.is_struck();
+            if struck {
+                let kind = if on_stop { side.hit() } else { side.made() };
+                self.record(j, kind, away * closed.speed, away * outcome.speed);
+            }
+            self.changed = true;
+            self.smooth[j] = false;
+            self.particles[j] = Relative { gap, rate: away * outcome.speed };
+            if outcome.speed <= STICKING_SPEED {
+                let (speed, restitution) = (outcome.speed, closed.restitution);
+                candidates.push(Candidate { particle: j, side, on_stop, held: held && !struck, speed, restitution });
+            } else if held && !struck {
+                self.let_go(j, side);
+            } else {
+                self.part(j, side, on_stop);
+            }
+        }
+        Ok(candidates)
+    }
+
+    /// Gives the impulses of a collision to the structure; the faces of all particles that are not part of it move along.
+    fn exchange(&mut self, touches: &[Touch], outcomes: &[Outcome]) {
+        let mut jump = vec![0.0; self.system.mass.order];
+        let mut loss = 0.0;
+        for (touch, outcome) in touches.iter().zip(outcomes) {
+            let impulse = touch.side.away() * outcome.impulse;
+            let answer = self.mobilities.answer(touch.mobility);
+            jump.iter_mut().zip(answer).for_each(|(jump, answer)| *jump -= impulse * answer);
+            loss -= 0.5 * outcome.impulse * (touch.closed.speed + outcome.speed);
+        }
+        for (j, particle) in self.system.particles.iter().enumerate() {
+            if !touches.iter().any(|touch| touch.particle == j) {
+                self.particles[j].rate -= dot(&self.contacts[j].side().face(particle).row, &jump);
+            }
+        }
+        self.rate.iter_mut().zip(&jump).for_each(|(rate, jump)| *rate += jump);
+        if let Some(audit) = &mut self.audit {
+            audit.loss(loss);
+        }
+    }
+
+    /// Decides which of the candidates are held. Whether a face must push one of them depends on which others are held: the
+    /// pushes solve a problem of the same kind as the impulses of a collision, and are found in the same way.
+    fn hold(&mut self, candidates: Vec<Candidate>) -> Result<(), EngineError> {
+        if candidates.is_empty() {
+            return Ok(());
+        }
+        let mut holds = vec![true; candidates.len()];
+        let mut grips = vec![Grip::default(); candidates.len()];
+        for candidate in &candidates {
+            self.fix(candidate, true);
+        }
+        for _ in 0..1_usize << candidates.len().min(16) {
+            self.choose_flow()?;
+            let mut wrong = None;
+            for (i, candidate) in candidates.iter().enumerate() {
+                grips[i] = self.grip(candidate.particle, candidate.side, candidate.on_stop);
+                let grip = grips[i];
+                let enclosed = self.system.particles[candidate.particle].is_enclosed();
+                // A face that pushes with nothing holds what does not move; what still bounces goes on.
+                let fits = match holds[i] {
+                    true => enclosed || grip.holds() && (candidate.speed == 0.0 || !grip.is_nothing()),
+                    false => grip.is_nothing() || !grip.holds(),
+                };
+                if !fits && wrong.is_none() {
+                    wrong = Some(i);
+                }
+            }
+            let Some(i) = wrong else { break };
+            holds[i] = !holds[i];
+            self.fix(&candidates[i], holds[i]);
+        }
+        for ((candidate, holds), grip) in candidates.iter().zip(&holds).zip(&grips) {
+            let (j, side) = (candidate.particle, candidate.side);
+            self.smooth[j] = candidate.speed == 0.0 && grip.is_nothing();
+            if *holds {
+                if candidate.speed > 0.0 {
+                    self.end_chatter(candidate, *grip)?;
+                }
+                self.particles[j].rate = 0.0;
+            } else {
+                if candidate.held {
+                    let kind = if candidate.on_stop { EventKind::StopRelease } else { side.lost() };
+                    self.record(j, kind, 0.0, 0.0);
+                }
+                self.part(j, side, candidate.on_stop);
+            }
+        }
+        self.choose_flow()
+    }
+
+    /// Holds a candidate, or does not; its state goes on referring to the face.
+    fn fix(&mut self, candidate: &Candidate, holds: bool) {
+        let Candidate { particle: j, side, on_stop, .. } = *candidate;
+        self.changed = true;
+        self.contacts[j] = match (on_stop, holds) {
+            (true, true) => side.stopped(),
+            (true, false) | (false, true) => side.pressed(),
+            (false, false) => Contact::Flight,
+        };
+    }
+
+    /// What is left to bounce is a geometric series of flights of 2u′/a, each shorter by ε: its time is added, and its last
+    /// speed goes to the structure with all that it carries.
+    fn end_chatter(&mut self, candidate: &Candidate, grip: Grip) -> Result<(), EngineError> {
+        let touches: Vec<Touch> =
+            self.touches(&[])?.into_iter().filter(|touch| touch.held || touch.particle == candidate.particle).collect();
+        let closed: Vec<Closed> = touches.iter().map(|touch| touch.closed).collect();
+        let still = vec![0.0; closed.len()];
+        let pushes = collision::push(&closed, &self.answers(&touches), &vec![true; closed.len()], &still);
+        let outcome = |(contact, p): (&Closed, &f64)| Outcome { impulse: p * contact.mass, speed: 0.0, pushed: true };
+        let outcomes: Vec<Outcome> = closed.iter().zip(&pushes).map(outcome).collect();
+        self.exchange(&touches, &outcomes);
+        let own = touches.iter().position(|touch| touch.particle == candidate.particle);
+        // In flight the face no longer carries the particle, so that a is larger than the push per mass that will hold it.
+        let lightening = own.map_or(1.0, |own| closed[own].speed / -pushes[own]);
+        let series = if candidate.restitution < 1.0 { 1.0 / (1.0 - candidate.restitution) } else { 0.0 };
+        let tail = 2.0 * candidate.speed / (grip.push * lightening) * series;
+        let speed = candidate.side.away() * candidate.speed;
+        self.record_at(candidate.particle, EventKind::ChatterEnd, self.time + tail, speed, 0.0);
+        for touch in &touches {
+            self.particles[touch.particle].rate = 0.0;
+        }
+        Ok(())
+    }
+
+    /// How a face holds particle j in the flow in force.
+    pub(super) fn grip(&mut self, j: usize, side: Side, on_stop: bool) -> Grip {
+        let drive = self.drive_phase(self.time);
+        self.enter_flow(drive);
+        let flow = &self.flows[self.now];
+        let row = flow.rows.face(j, side);
+        let (phases, rest) = flow.rows.evaluate(row, &self.c, self.level, flow.blocks.len());
+        Grip::of(self.system, flow, &phases, rest, j, side, on_stop)
+    }
+}
+
+impl Touch {
+    fn rests(&self) -> Candidate {
+        let Self { particle, side, on_stop, held, .. } = *self;
+        Candidate { particle, side, on_stop, held, speed: 0.0, restitution: 0.0 }
+    }
+}

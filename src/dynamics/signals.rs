@@ -1,0 +1,252 @@
+//! Signals: what is watched or measured of a flow, as rows over its blocks.
+//!
+//! A row r·p of the coordinates is a share of every block, and so are its second derivative and the force of a spring and a
+//! dashpot along it. What a contact state needs is known when its flow is built, so that a segment evaluates just that.
+
+use super::block::{Block, Kernel, Phase};
+use super::contact::Side;
+use super::flow::{Flow, Parabola};
+use super::system::{Contact, HybridSystem, Law};
+
+/// One signal: two weights of each block's coordinates for its value, two for its rate; then what constant loads add.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Row {
+    pub(crate) weights: Vec<[f64; 4]>,
+    /// Under gravity.
+    pub(crate) gravity: Parabola,
+    /// Under a unit force at the forcing point.
+    pub(crate) force: Parabola,
+}
+
+/// Rows of the faces of one enclosure; not all of them are watched.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct FaceRows {
+    pub(crate) floor: usize,
+    pub(crate) ceiling: usize,
+    /// Row of the particle's own coordinate w while it presses into a face.
+    pub(crate) compression: Option<usize>,
+}
+
+/// Rows that a particle's guards look at.
+///
+/// | contact | first | second |
+/// |---|---|---|
+/// | flight | floor, as far as it does not drift | ceiling, the same |
+/// | pressed | compression | its force, if the face cannot pull |
+/// | held | acceleration of the face | |
+/// | released | the face, as far as it does not drift | its force |
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct GuardRows {
+    pub(crate) first: usize,
+    pub(crate) second: usize,
+}
+
+/// The rows of a flow. Those in front are watched: evaluated in every segment.
+#[derive(Debug, Default)]
+pub(crate) struct Rows {
+    rows: Vec<Row>,
+    watched: usize,
+    /// Observed displacements.
+    pub(crate) observed: Vec<usize>,
+    /// Acceleration of the first of them, where half cycles follow it.
+    pub(crate) bend: Option<usize>,
+    pub(crate) guards: Vec<GuardRows>,
+    pub(crate) faces: Vec<FaceRows>,
+}
+
+/// Watched rows at the start of a segment: shares in every block, and the parabola that constant loads add.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Signals {
+    width: usize,
+    phases: Vec<Phase>,
+    rests: Vec<Parabola>,
+}
+
+impl Row {
+    /// Without the blocks that drift: a frame that moves with them sees the rest.
+    fn fixed(&self, blocks: &[Block]) -> Self {
+        let weights = blocks.iter().zip(&self.weights);
+        Self {
+            weights: weights.map(|(block, row)| if block.is_drift() { [0.0; 4] } else { *row }).collect(),
+            ..self.clone()
+        }
+    }
+
+    /// Its second derivative.
+    fn acceleration(&self, blocks: &[Block]) -> Self {
+        let weights = blocks.iter().zip(&self.weights).map(|(block, &[v0, v1, r0, r1])| {
+            let of = |value, rate| block.acceleration(Phase { value, rate });
+            let (x, y) = (of(v0, r0), of(v1, r1));
+            [x.value, y.value, x.rate, y.rate]
+        });
+        let bend = |load: Parabola| Parabola { p0: 2.0 * load.p2, p1: 0.0, p2: 0.0 };
+        Self { weights: weights.collect(), gravity: bend(self.gravity), force: bend(self.force) }
+    }
+
+    /// k times it, plus c times its rate.
+    fn mixed(&self, blocks: &[Block], stiffness: f64, damping: f64) -> Self {
+        let weights = blocks.iter().zip(&self.weights).map(|(block, &[v0, v1, r0, r1])| {
+            let of = |value, rate| {
+                let bend = block.acceleration(Phase { value, rate }).value;
+                (stiffness * value + damping * rate, stiffness * rate + damping * bend)
+            };
+            let (x, y) = (of(v0, r0), of(v1, r1));
+            [x.0, y.0, x.1, y.1]
+        });
+        let mix = |load: Parabola| spring_and_dashpot(load, stiffness, damping);
+        Self { weights: weights.collect(), gravity: mix(self.gravity), force: mix(self.force) }
+    }
+
+    #[inline(always)]
+    fn evaluate(&self, c: &[f64], force: f64, phases: &mut [Phase]) -> Parabola {
+        for ((&[v0, v1, r0, r1], &[x, y]), phase) in self.weights.iter().zip(c.as_chunks::<2>().0).zip(phases) {
+            *phase = Phase { value: v0 * x + v1 * y, rate: r0 * x + r1 * y };
+        }
+        Parabola {
+            p0: self.gravity.p0 + force * self.force.p0,
+            p1: self.gravity.p1 + force * self.force.p1,
+            p2: self.gravity.p2 + force * self.force.p2,
+        }
+    }
+}
+
+/// k·p + c·p′.
+pub(crate) fn spring_and_dashpot(p: Parabola, stiffness: f64, damping: f64) -> Parabola {
+    Parabola {
+        p0: stiffness * p.p0 + damping * p.p1,
+        p1: stiffness * p.p1 + 2.0 * damping * p.p2,
+        p2: stiffness * p.p2,
+    }
+}
+
+impl Rows {
+    /// What a contact state needs.
+    pub(crate) fn new(system: &HybridSystem, flow: &Flow) -> Self {
+        let mut all = Self::default();
+        let blocks = &flow.blocks;
+        let padded = |row: &[f64]| {
+            let mut padded = row.to_vec();
+            padded.resize(flow.order, 0.0);
+            flow.row(&padded)
+        };
+        for row in &system.observed_rows {
+            let place = all.place(padded(row));
+            all.observed.push(place);
+        }
+        if let (Some(&first), Some(_)) = (all.observed.first(), &system.drive.half_cycles) {
+            all.bend = Some(all.place(all.rows[first].acceleration(blocks)));
+        }
+        let compression = |j: usize| {
+            let mut unit = vec![0.0; flow.order];
+            unit[system.mass.order + flow.attached.iter().position(|&a| a == j)?] = 1.0;
+            Some(flow.row(&unit))
+        };
+        for (j, particle) in system.particles.iter().enumerate() {
+            let contact = flow.contacts[j];
+            let side = contact.side();
+            let face = padded(&side.face(particle).row);
+            let force = |row: &Row| match side.face(particle).law {
+                Law::Resilient { stiffness, .. } => row.mixed(blocks, stiffness, flow.damping[j]),
+                Law::Rigid { .. } => row.clone(),
+            };
+            let (first, second) = match contact {
+                Contact::Flight => {
+                    let ceiling = particle.ceiling.as_ref().map_or(face.clone(), |ceiling| padded(&ceiling.row));
+                    (face.fixed(blocks), ceiling.fixed(blocks))
+                }
+                Contact::FloorReleased | Contact::CeilingReleased => {
+                    let fixed = face.fixed(blocks);
+                    (fixed.clone(), force(&fixed))
+                }
+                _ => match compression(j) {
+                    Some(own) => {
+                        let pulls = !matches!(side.face(particle).law, Law::Resilient { no_tension: true, .. });
+                        let second = if pulls { own.clone() } else { force(&own) };
+                        (own, second)
+                    }
+                    None => {
+                        let bend = face.acceleration(blocks);
+                        (bend.clone(), bend)
+                    }
+                },
+            };
+            let rows = GuardRows { first: all.place(first), second: all.place(second) };
+            all.guards.push(rows);
+        }
+        all.watched = all.rows.len();
+        for (j, particle) in system.particles.iter().enumerate() {
+            let floor = all.place(padded(&particle.floor.row));
+            let ceiling = particle.ceiling.as_ref().map_or(floor, |face| all.place(padded(&face.row)));
+            let compression = compression(j).map(|row| all.place(row));
+            all.faces.push(FaceRows { floor, ceiling, compression });
+        }
+        all
+    }
+
+    fn place(&mut self, row: Row) -> usize {
+        match self.rows.iter().position(|known| *known == row) {
+            Some(place) => place,
+            None => {
+                self.rows.push(row);
+                self.rows.len() - 1
+            }
+        }
+    }
+
+    /// A row, watched or not.
+    pub(crate) fn row(&self, index: usize) -> &Row {
+        &self.rows[index]
+    }
+
+    /// Row of the face on one side of particle j's enclosure.
+    pub(crate) fn face(&self, j: usize, side: Side) -> usize {
+        match side {
+            Side::Floor => self.faces[j].floor,
+            Side::Ceiling => self.faces[j].ceiling,
+        }
+    }
+
+    /// Evaluates the watched rows; `c` holds two coordinates a block, `force` the constant force in force.
+    #[inline]
+    pub(crate) fn watch(&self, c: &[f64], force: f64, width: usize, signals: &mut Signals) {
+        signals.width = width;
+        signals.phases.resize(self.watched * width, Phase::default());
+        signals.rests.resize(self.watched, Parabola::default());
+        let places = signals.phases.chunks_exact_mut(width).zip(&mut signals.rests);
+        for (row, (phases, rest)) in self.rows.iter().zip(places) {
+            *rest = row.evaluate(c, force, phases);
+        }
+    }
+
+    /// Evaluates any row.
+    pub(crate) fn evaluate(&self, row: usize, c: &[f64], force: f64, width: usize) -> (Vec<Phase>, Parabola) {
+        let mut phases = vec![Phase::default(); width];
+        let rest = self.rows[row].evaluate(c, force, &mut phases);
+        (phases, rest)
+    }
+}
+
+impl Signals {
+    /// Shares and rest of a watched row.
+    #[inline]
+    pub(crate) fn of(&self, row: usize) -> (&[Phase], Parabola) {
+        (&self.phases[row * self.width..(row + 1) * self.width], self.rests[row])
+    }
+
+    /// How many are watched.
+    pub(crate) fn len(&self) -> usize {
+        self.rests.len()
+    }
+}
+
+/// Value, rate and acceleration of a signal after the time of `kernels`.
+pub(crate) fn value(blocks: &[Block], phases: &[Phase], rest: Parabola, kernels: &[Kernel], time: f64) -> [f64; 3] {
+    let mut sum = [rest.at(time), rest.rate(time), 2.0 * rest.p2];
+    for ((block, phase), kernel) in blocks.iter().zip(phases).zip(kernels) {
+        let now = block.advance(*phase, *kernel);
+        sum[0] += now.value;
+        sum[1] += now.rate;
+        sum[2] += block.acceleration(now).value;
+    }
+    sum
+}
