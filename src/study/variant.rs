@@ -32,7 +32,7 @@ pub fn variants(experiment: &Experiment, sheet: &AssumptionSheet, sensitivity: S
     let baseline = sheet.assumptions();
     let mut variants = Vec::new();
     if sensitivity == Sensitivity::Wanted {
-        for (label, assumptions) in sheet.variants(&experiment.assumptions_used()) {
+        for (label, assumptions) in sheet.variants(&experiment.assumptions_used(sheet)) {
             let moved = assumptions.values.iter().find(|(name, value)| baseline.values.get(name) != Some(value));
             let moved = moved.map(|(name, _)| *name);
             variants.push(Variant { label, moved, assumptions });
