@@ -63,6 +63,9 @@ pub struct Experiment {
     /// Sweeps whose curves get more points where they bend; the cases hold the points that they start with.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub refined: Vec<Refinement>,
+    /// The assumptions that are moved for the sensitivity; `None` for all that the experiment leans on.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub moved: Option<BTreeSet<Assumption>>,
     /// Measures in the order of the columns.
     pub measures: Vec<Measure>,
     /// Time history to keep with each row.
