@@ -7,8 +7,8 @@ use shotdamp::scene::{
     Assumption, AssumptionValue, Assumptions, Excitation, GapRecipe, Parameter, ParameterValue, Surface,
 };
 use shotdamp::spec::{
-    AssumptionSheet, Dimension, Experiment, ExperimentId, Problems, SolverChoice, load_assumptions, load_experiment, parse_assumptions,
-    parse_experiment, parse_number, parse_quantity,
+    AssumptionSheet, Dimension, Experiment, ExperimentId, Problems, SolverChoice, load_assumptions, load_experiment,
+    parse_assumptions, parse_experiment, parse_number, parse_quantity,
 };
 
 const GOOD: &str = "\
