@@ -27,6 +27,7 @@ fn unit(name: Assumption) -> &'static str {
     match name {
         Assumption::Gravity => "m/s²",
         Assumption::StopLength => "m",
+        Assumption::BeamFloorTuning | Assumption::PlateFloorTuning => "N/m",
         Assumption::BeamImpulseTime | Assumption::PlateImpulseTime => "s",
         Assumption::BeamHarmonicForce | Assumption::PlateHarmonicForce => "N",
         Assumption::EquivalentDampingCurve => "N s/m",

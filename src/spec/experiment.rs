@@ -6,8 +6,9 @@ use std::collections::BTreeSet;
 use serde::{Deserialize, Serialize};
 
 use crate::measure::Measure;
-use crate::scene::{Assumption, Parameter, ParameterValue, Recipe, RecipeError};
+use crate::scene::{Assumption, Assumptions, Parameter, ParameterValue, Recipe, RecipeError};
 
+use super::assumption_sheet::AssumptionSheet;
 use super::word::word_of;
 
 /// Id of an experiment: its file name without ending, `ch3-limit-stop`; lower-case letters, digits and hyphens.
@@ -62,6 +63,9 @@ pub struct Experiment {
     /// Sweeps whose curves get more points where they bend; the cases hold the points that they start with.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub refined: Vec<Refinement>,
+    /// The assumptions that are moved for the sensitivity; `None` for all that the experiment leans on.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub moved: Option<BTreeSet<Assumption>>,
     /// Measures in the order of the columns.
     pub measures: Vec<Measure>,
     /// Time history to keep with each row.
@@ -92,12 +96,20 @@ impl Experiment {
         Ok(recipe)
     }
 
-    /// The assumptions that a number of this experiment may depend on.
+    /// The assumptions that a number of this experiment may depend on, under the values in force or with one of them moved.
     #[must_use]
-    pub fn assumptions_used(&self) -> BTreeSet<Assumption> {
+    pub fn assumptions_used(&self, sheet: &AssumptionSheet) -> BTreeSet<Assumption> {
+        let mut used = self.assumptions_under(&sheet.assumptions());
+        for (_, moved) in sheet.variants(&used) {
+            used.extend(self.assumptions_under(&moved));
+        }
+        used
+    }
+
+    fn assumptions_under(&self, in_force: &Assumptions) -> BTreeSet<Assumption> {
         let mut used = BTreeSet::new();
         for recipe in self.cases.iter().filter_map(|case| self.recipe_of(case).ok()) {
-            used.extend(recipe.assumptions());
+            used.extend(recipe.assumptions(in_force));
         }
         if !self.measures.iter().any(|measure| measure.needs_undamped()) {
             used.remove(&Assumption::UndampedMass);
