@@ -64,12 +64,14 @@ impl Glance {
         let mut file = File::open(path)?;
         let bytes = file.metadata()?.len();
         let short = path.extension().is_some_and(|extension| HEAD_AND_TAIL.iter().any(|one| extension == *one));
-        let mut seen = Vec::with_capacity(2 * LOOK);
-        if short && bytes > 2 * LOOK as u64 {
-            file.by_ref().take(LOOK as u64).read_to_end(&mut seen)?;
+        let length = usize::try_from(bytes).map_err(std::io::Error::other)?;
+        let mut seen = vec![0; if short { length.min(2 * LOOK) } else { length }];
+        let (head, tail) = seen.split_at_mut(length.min(LOOK));
+        file.read_exact(head)?;
+        if short && length > 2 * LOOK {
             file.seek(SeekFrom::Start(bytes - LOOK as u64))?;
         }
-        file.read_to_end(&mut seen)?;
+        file.read_exact(tail)?;
         Ok(Self { bytes, blake3: blake3::hash(&seen).to_hex().to_string() })
     }
 }
