@@ -25,7 +25,7 @@ pub use normal_modes::{NormalMode, normal_modes};
 pub use parameter::{Parameter, ParameterValue};
 pub use place::{Coordinate, PlaceRecipe};
 pub use recipe::{
-    ArrayRecipe, ContactDampingRecipe, DamperRecipe, ExcitationKind, ExcitationRecipe, GapRecipe, Given, ImpulseTime,
+    ArrayRecipe, ContactDampingRecipe, DamperRecipe, ExcitationKind, ExcitationRecipe, Filling, GapRecipe, GapWord, Given, ImpulseTime,
     MassReading, MassRecipe, ObserveRecipe, Part, PointsRecipe, PulseShape, Recipe, RecipeError, StiffnessRecipe,
     StopRecipe, StrengthRecipe, SurfaceRecipe, TimingRecipe, WallRecipe,
 };

@@ -105,6 +105,8 @@ fn kind(name: Assumption) -> Kind {
         Assumption::GapFrequency => Kind::Choice(&["clean", "loaded"]),
         Assumption::BeamFloorTuning | Assumption::PlateFloorTuning => Kind::Choice(&["clean", "loaded", "untuned"]),
         Assumption::BeamImpulseTime | Assumption::PlateImpulseTime => Kind::TimeOr(&IMPULSE_TIMES),
+        Assumption::BeamImpulse | Assumption::PlateImpulse => Kind::Quantity(Dimension::Impulse),
+        Assumption::BeamArrayMargin => Kind::Quantity(Dimension::Length),
         Assumption::BeamHarmonicForce | Assumption::PlateHarmonicForce => Kind::Quantity(Dimension::Force),
         Assumption::GridVelocity => Kind::Choice(&["largest", "mean"]),
         Assumption::MassMeasure => Kind::Choice(&["jump", "after", "level"]),

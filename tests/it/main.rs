@@ -15,6 +15,7 @@ mod fixed;
 mod made_up;
 mod reference;
 mod reference_kinds;
+mod optimise;
 mod refined;
 mod report;
 mod solver_version;
