@@ -72,6 +72,20 @@ pub enum Stopped {
     Exhausted,
 }
 
+impl Stopped {
+    /// In one word.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Generations => "generations",
+            Self::Evaluations => "evaluations",
+            Self::Time => "time",
+            Self::Tolerance => "tolerance",
+            Self::Exhausted => "exhausted",
+        }
+    }
+}
+
 /// Where a search stood after a batch.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Step {

@@ -24,7 +24,6 @@ pub(super) struct ReadOptimise {
     pub bounds_at: Span,
     /// Where each candidate stands.
     pub candidates_at: Vec<Span>,
-    pub measure_at: Span,
     pub span: Span,
 }
 
@@ -38,7 +37,7 @@ impl<'t> OptimiseReader<'t> {
         let fields = Fields::open(node, "an optimisation", findings)?;
         let goal = fields.exactly_one(&["minimise", "maximise"]).and_then(|(key, node)| {
             let goal = if key == "minimise" { Goal::Minimise } else { Goal::Maximise };
-            Some((goal, word::<Measure>(node, "measure", findings)?, node.span))
+            Some((goal, word::<Measure>(node, "measure", findings)?))
         });
         let gaps = fields.exactly_one(&["gaps", "gap_ratios"]).and_then(|(key, node)| {
             let word = if key == "gaps" { GapWord::Gap } else { GapWord::GapRatio };
@@ -55,7 +54,7 @@ impl<'t> OptimiseReader<'t> {
         let stop = fields.optional("stop", |node| self.stop(node));
         let landscape = fields.optional("landscape", |node| self.landscape(node));
         fields.close()?;
-        let ((goal, measure, measure_at), (gaps, bounds, bounds_at)) = (goal?, gaps?);
+        let ((goal, measure), (gaps, bounds, bounds_at)) = (goal?, gaps?);
         let (names, candidates_at): (Vec<Candidate>, Vec<Span>) = candidates?.into_iter().unzip();
         let (genetic, cma_es, dense, stop) = (genetic?, cma_es?, dense?, stop?.unwrap_or_default());
         let two_opt = two_opt?.unwrap_or(false);
@@ -92,7 +91,7 @@ impl<'t> OptimiseReader<'t> {
             stalled: stop.stalled,
             landscape: landscape?,
         };
-        Some(ReadOptimise { optimise, bounds, bounds_at, candidates_at, measure_at, span: node.span })
+        Some(ReadOptimise { optimise, bounds, bounds_at, candidates_at, span: node.span })
     }
 
     fn gap(&self, node: &'t Node, word: GapWord) -> Option<f64> {
