@@ -10,7 +10,9 @@ use super::exit::Exit;
 use super::output::{complain, complain_of, print};
 use super::select::{Chosen, choose};
 use crate::publish::{Opened, judge_all, publish, summary};
-use crate::study::{journal_name, Engine, Item, Layout, Listen, Lock, Progress, Silence, Snapshot, State, Task, Texts, run, save};
+use crate::study::{
+    Engine, Item, Layout, Listen, Lock, Progress, Silence, Snapshot, State, Task, Texts, journal_name, run, save,
+};
 
 /// Brings the chosen experiments up to date.
 pub(super) fn update(layout: &Layout, args: &RunArgs) -> Result<Exit, CliError> {

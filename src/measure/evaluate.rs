@@ -172,75 +172,75 @@ impl Case<'_> {
         solver: SolverChoice,
         plain: &Options,
     ) -> Result<Evaluated, EvaluateError> {
-    let Self { settings, request, .. } = *self;
-    let case = self;
-    let main = Options {
-        audit: request.rigour == Rigour::Result,
-        trace: request.trace.map(|trace| TraceRequest {
-            from_cycle: u64::from(trace.from_cycle),
-            to_cycle: u64::from(trace.to_cycle),
-            samples: u64::from(trace.samples),
-        }),
-        ..plain.clone()
-    };
-    let response = solve(system, &main, solver)?;
-    let Read { values, lists } = case.read(&response, reference, true)?;
-    let certain = |numerical: Vec<f64>, chaotic: bool| Evaluated {
-        measured: values
-            .iter()
-            .zip(numerical)
-            .map(|(value, numerical)| Measured { value: *value, numerical, spread: 0.0 })
-            .collect(),
-        proof: response.proof,
-        chaotic,
-        members: 1,
-        trace: lists.clone(),
-    };
-    if matches!(solver, SolverChoice::FixedStep { .. }) || system.particles.is_empty() {
-        return Ok(certain(vec![0.0; values.len()], false));
-    }
-
-    if response.method == Method::ClosedForm {
-        // Linear: neighbouring starts stay neighbours, and there is no window to be halved.
-        return Ok(certain(values.iter().map(|value| CLOSED_FORM * value.abs()).collect(), false));
-    }
-    let rms = case.rms_velocity(&response);
-    let twin = event_driven(system, &Options { kick: TWIN_KICK, ..plain.clone() })?;
-    let chaotic = (case.rms_velocity(&twin) - rms).abs() > CHAOS * rms;
-    let members = match request.rigour {
-        Rigour::Result => settings.ensemble,
-        Rigour::Look => settings.ensemble.min(MEMBERS_OF_A_LOOK),
-    };
-    if !chaotic && request.rigour == Rigour::Look {
-        return Ok(certain(values.iter().map(|value| 4.0 * f64::EPSILON * value.abs()).collect(), false));
-    }
-    if !chaotic || members < 2 {
-        // The same events decided in other windows; measures of the history are as exact as its samples.
-        let second = event_driven(system, &Options { window_factor: 0.5, audit: false, ..main.clone() })?;
-        let again = case.read(&second, reference, true)?.values;
-        let numerical = values.iter().zip(again).map(|(a, b)| (a - b).abs().max(4.0 * f64::EPSILON * a.abs()));
-        return Ok(certain(numerical.collect(), chaotic));
-    }
-
-    let mut sums = vec![Welford::default(); request.measures.len()];
-    for member in 0..members {
-        let place = (f64::from(member) + 0.5) / f64::from(members) * 2.0 - 1.0;
-        // Time histories, shapes and their measures stay those of the unkicked run.
-        let kicked = event_driven(system, &Options { kick: ENSEMBLE_KICK * place, ..plain.clone() })?;
-        let of_member = case.read(&kicked, reference, false)?.values;
-        for (((sum, measure), own), value) in sums.iter_mut().zip(request.measures).zip(&values).zip(of_member) {
-            sum.add(if measure.needs_trace() || measure.is_modal() { *own } else { value });
+        let Self { settings, request, .. } = *self;
+        let case = self;
+        let main = Options {
+            audit: request.rigour == Rigour::Result,
+            trace: request.trace.map(|trace| TraceRequest {
+                from_cycle: u64::from(trace.from_cycle),
+                to_cycle: u64::from(trace.to_cycle),
+                samples: u64::from(trace.samples),
+            }),
+            ..plain.clone()
+        };
+        let response = solve(system, &main, solver)?;
+        let Read { values, lists } = case.read(&response, reference, true)?;
+        let certain = |numerical: Vec<f64>, chaotic: bool| Evaluated {
+            measured: values
+                .iter()
+                .zip(numerical)
+                .map(|(value, numerical)| Measured { value: *value, numerical, spread: 0.0 })
+                .collect(),
+            proof: response.proof,
+            chaotic,
+            members: 1,
+            trace: lists.clone(),
+        };
+        if matches!(solver, SolverChoice::FixedStep { .. }) || system.particles.is_empty() {
+            return Ok(certain(vec![0.0; values.len()], false));
         }
-    }
-    let measured = sums
-        .iter()
-        .map(|sum| Measured {
-            value: sum.mean,
-            numerical: sum.deviation() / f64::from(members).sqrt(),
-            spread: sum.deviation(),
-        })
-        .collect();
-    Ok(Evaluated { measured, proof: response.proof, chaotic, members, trace: lists })
+
+        if response.method == Method::ClosedForm {
+            // Linear: neighbouring starts stay neighbours, and there is no window to be halved.
+            return Ok(certain(values.iter().map(|value| CLOSED_FORM * value.abs()).collect(), false));
+        }
+        let rms = case.rms_velocity(&response);
+        let twin = event_driven(system, &Options { kick: TWIN_KICK, ..plain.clone() })?;
+        let chaotic = (case.rms_velocity(&twin) - rms).abs() > CHAOS * rms;
+        let members = match request.rigour {
+            Rigour::Result => settings.ensemble,
+            Rigour::Look => settings.ensemble.min(MEMBERS_OF_A_LOOK),
+        };
+        if !chaotic && request.rigour == Rigour::Look {
+            return Ok(certain(values.iter().map(|value| 4.0 * f64::EPSILON * value.abs()).collect(), false));
+        }
+        if !chaotic || members < 2 {
+            // The same events decided in other windows; measures of the history are as exact as its samples.
+            let second = event_driven(system, &Options { window_factor: 0.5, audit: false, ..main.clone() })?;
+            let again = case.read(&second, reference, true)?.values;
+            let numerical = values.iter().zip(again).map(|(a, b)| (a - b).abs().max(4.0 * f64::EPSILON * a.abs()));
+            return Ok(certain(numerical.collect(), chaotic));
+        }
+
+        let mut sums = vec![Welford::default(); request.measures.len()];
+        for member in 0..members {
+            let place = (f64::from(member) + 0.5) / f64::from(members) * 2.0 - 1.0;
+            // Time histories, shapes and their measures stay those of the unkicked run.
+            let kicked = event_driven(system, &Options { kick: ENSEMBLE_KICK * place, ..plain.clone() })?;
+            let of_member = case.read(&kicked, reference, false)?.values;
+            for (((sum, measure), own), value) in sums.iter_mut().zip(request.measures).zip(&values).zip(of_member) {
+                sum.add(if measure.needs_trace() || measure.is_modal() { *own } else { value });
+            }
+        }
+        let measured = sums
+            .iter()
+            .map(|sum| Measured {
+                value: sum.mean,
+                numerical: sum.deviation() / f64::from(members).sqrt(),
+                spread: sum.deviation(),
+            })
+            .collect();
+        Ok(Evaluated { measured, proof: response.proof, chaotic, members, trace: lists })
     }
 }
 

@@ -64,7 +64,11 @@ impl Bounds {
     /// The point at these shares of the sides; shares beyond an end are at that end.
     #[must_use]
     pub fn at(&self, shares: &[f64]) -> Vec<f64> {
-        self.sides.iter().zip(shares).map(|([low, high], share)| (low + share * (high - low)).clamp(*low, *high)).collect()
+        self.sides
+            .iter()
+            .zip(shares)
+            .map(|([low, high], share)| (low + share * (high - low)).clamp(*low, *high))
+            .collect()
     }
 
     /// The shares of the sides at which a point lies.

@@ -69,8 +69,7 @@ impl Constants {
     fn new(n: usize, population: usize) -> Self {
         let size = n as f64;
         let half = population as f64 / 2.0;
-        let raw: Vec<f64> =
-            (1..=population / 2).map(|i| libm::log(half + 0.5) - libm::log(i as f64)).collect();
+        let raw: Vec<f64> = (1..=population / 2).map(|i| libm::log(half + 0.5) - libm::log(i as f64)).collect();
         let sum: f64 = raw.iter().sum();
         let weights: Vec<f64> = raw.iter().map(|weight| weight / sum).collect();
         let effective = 1.0 / weights.iter().map(|weight| weight * weight).sum::<f64>();

@@ -143,7 +143,8 @@ pub fn minimise<E>(
         } else {
             optimiser.tell(&batch.scores);
         }
-        if let Some(stopped) = cut.then_some(Stopped::Evaluations).or_else(|| stopping.met(so_far, generation, seconds)) {
+        if let Some(stopped) = cut.then_some(Stopped::Evaluations).or_else(|| stopping.met(so_far, generation, seconds))
+        {
             so_far.stopped = stopped;
             return Ok(found);
         }
@@ -187,7 +188,8 @@ impl Stopping {
 
 impl Stalled {
     fn met(&self, trail: &[Step]) -> bool {
-        let Some(before) = usize::try_from(self.generations).ok().and_then(|back| trail.len().checked_sub(back + 1)) else {
+        let Some(before) = usize::try_from(self.generations).ok().and_then(|back| trail.len().checked_sub(back + 1))
+        else {
             return false;
         };
         let (old, new) = (trail[before].best, trail[trail.len() - 1].best);

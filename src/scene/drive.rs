@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use super::recipe::{Given, ExcitationKind, ExcitationRecipe, ImpulseTime, RecipeError, StrengthRecipe, TimingRecipe};
+use super::recipe::{ExcitationKind, ExcitationRecipe, Given, ImpulseTime, RecipeError, StrengthRecipe, TimingRecipe};
 use super::resolve::{Base, above};
 use super::structure::{Family, Structure};
 use super::{Assumption, AssumptionValue, Excitation};

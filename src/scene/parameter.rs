@@ -3,8 +3,8 @@
 use serde::{Deserialize, Serialize};
 
 use super::recipe::{
-    ContactDampingRecipe, DamperRecipe, ExcitationKind, Filling, GapRecipe, Given, MassReading, MassRecipe, Part, PulseShape,
-    Recipe, RecipeError, StiffnessRecipe, StrengthRecipe, SurfaceRecipe, TimingRecipe,
+    ContactDampingRecipe, DamperRecipe, ExcitationKind, Filling, GapRecipe, Given, MassReading, MassRecipe, Part,
+    PulseShape, Recipe, RecipeError, StiffnessRecipe, StrengthRecipe, SurfaceRecipe, TimingRecipe,
 };
 use super::structure::whole;
 

@@ -6,8 +6,8 @@
 use super::normal_modes::{add_square, normal_modes};
 use super::place::{PlaceRecipe, Places};
 use super::recipe::{
-    ContactDampingRecipe, DamperRecipe, Filling, GapRecipe, MassReading, MassRecipe, ObserveRecipe, Part, PointsRecipe, Recipe,
-    RecipeError, StiffnessRecipe, SurfaceRecipe, TimingRecipe,
+    ContactDampingRecipe, DamperRecipe, Filling, GapRecipe, MassReading, MassRecipe, ObserveRecipe, Part, PointsRecipe,
+    Recipe, RecipeError, StiffnessRecipe, SurfaceRecipe, TimingRecipe,
 };
 use super::structure::{Family, Kind, Point, Structure};
 use super::{

@@ -122,12 +122,7 @@ impl Checks<'_> {
     }
 
     /// What is averaged over is not swept or maximised over as well.
-    pub fn mean_over(
-        &self,
-        mean_over: &ReadSweep,
-        places: &BTreeMap<Parameter, Span>,
-        maximise: Option<&Maximise>,
-    ) {
+    pub fn mean_over(&self, mean_over: &ReadSweep, places: &BTreeMap<Parameter, Span>, maximise: Option<&Maximise>) {
         for (parameter, span) in &mean_over.places {
             if places.contains_key(parameter) || maximise.is_some_and(|maximise| maximise.over == *parameter) {
                 let message = format!("`{}` is averaged over and varied at once", word_of(*parameter));

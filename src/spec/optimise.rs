@@ -139,7 +139,8 @@ impl Optimise {
             Search::Genetic { population, elites, .. } => Some((u64::from(*population), u64::from(*elites))),
             _ => None,
         })?;
-        let generations = self.generations.map(|count| population + u64::from(count.max(1) - 1) * (population - elites));
+        let generations =
+            self.generations.map(|count| population + u64::from(count.max(1) - 1) * (population - elites));
         let most = self.evaluations.map(u64::from);
         Some(generations.unwrap_or(u64::MAX).min(most.unwrap_or(u64::MAX)))
     }

@@ -143,8 +143,7 @@ impl<'t> OptimiseReader<'t> {
             share if share <= 1.0 => Some(share),
             _ => self.findings.wrong(node.span, "the share of children by crossover lies between 0 and 1"),
         });
-        let start =
-            fields.optional("start", |node| one_or_more(node, self.findings, |node| text(node, self.findings)));
+        let start = fields.optional("start", |node| one_or_more(node, self.findings, |node| text(node, self.findings)));
         fields.close()?;
         let ((population, at), elites) = (population?, elites?);
         if population < 4 {
@@ -155,17 +154,21 @@ impl<'t> OptimiseReader<'t> {
         if elites >= population {
             return self.findings.wrong(elites_at, "fewer individuals live on than there are");
         }
-        Some(Search::Genetic { population, elites, crossover: crossover?.unwrap_or(0.8), start: start?.unwrap_or_default() })
+        Some(Search::Genetic {
+            population,
+            elites,
+            crossover: crossover?.unwrap_or(0.8),
+            start: start?.unwrap_or_default(),
+        })
     }
 
     fn cma_es(&self, node: &'t Node) -> Option<Search> {
         let fields = Fields::open(node, "the peer", self.findings)?;
-        let population = fields.optional("population", |node| {
-            match count(node, "individuals", MOST_INDIVIDUALS, self.findings)? {
+        let population =
+            fields.optional("population", |node| match count(node, "individuals", MOST_INDIVIDUALS, self.findings)? {
                 0..4 => self.findings.wrong(node.span, "a population has four individuals at least"),
                 population => Some(population),
-            }
-        });
+            });
         fields.close()?;
         Some(Search::CmaEs { population: population? })
     }

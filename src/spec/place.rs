@@ -1,6 +1,8 @@
 //! Places in a scene: where dampers sit, where the force acts, where the motion is observed; and arrays of dampers.
 
-use crate::scene::{ArrayRecipe, Assumption, Coordinate, Family, Kind, ObserveRecipe, Parameter, PlaceRecipe, PointsRecipe, Take};
+use crate::scene::{
+    ArrayRecipe, Assumption, Coordinate, Family, Kind, ObserveRecipe, Parameter, PlaceRecipe, PointsRecipe, Take,
+};
 
 use super::quantity::Dimension;
 use super::reader::{Choice, Fields, boolean, count, list, number, one_or_more, quantity};

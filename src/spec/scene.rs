@@ -3,8 +3,8 @@
 use std::cell::RefCell;
 
 use crate::scene::{
-    Assumption, ContactDampingRecipe, DamperRecipe, Family, Filling, GapRecipe, Given, KINDS, Kind, MassReading, MassRecipe,
-    Parameter, Part, Recipe, StiffnessRecipe, StopRecipe, SurfaceRecipe, WallRecipe,
+    Assumption, ContactDampingRecipe, DamperRecipe, Family, Filling, GapRecipe, Given, KINDS, Kind, MassReading,
+    MassRecipe, Parameter, Part, Recipe, StiffnessRecipe, StopRecipe, SurfaceRecipe, WallRecipe,
 };
 
 use super::diagnostic::{Findings, Span};

@@ -68,14 +68,14 @@ impl<'t> ExperimentReader<'t> {
         let mean_over = fields.optional("mean_over", |node| self.mean_over(node));
         let measures = fields.required("measure", |node| self.measures(node));
         let maximise = fields.optional("maximise", |node| self.maximise(node));
-        let optimise =
-            fields.optional("optimise", |node| OptimiseReader { findings: self.findings }.read(node));
+        let optimise = fields.optional("optimise", |node| OptimiseReader { findings: self.findings }.read(node));
         let run = fields.optional("run", |node| self.run(node)).map(|run| run.unwrap_or_else(Run::default));
         let trace = fields.optional("trace", |node| self.trace(node));
         let energies = fields.optional("energies", |node| self.energies(node));
         let shape = fields.optional("shape", |node| self.shape(node));
         let one_list = self.one_list(&fields);
         let alone = self.optimised_alone(&fields);
+        let whole = self.averaged_alone(&fields);
         let energies_at = fields.get("energies").map_or(fields.span(), |node| node.span);
         let place = |key| fields.get(key).map_or(fields.span(), |node| node.span);
         let (scene_at, optimise_at) = (place("scene"), place("optimise"));
@@ -112,6 +112,7 @@ impl<'t> ExperimentReader<'t> {
         let checks = Checks { findings: self.findings, assumptions: self.assumptions };
         one_list?;
         alone?;
+        whole?;
         let (mean_over, optimise) = (mean_over?.unwrap_or_else(ReadSweep::none), optimise?);
         let (measures, maximise, trace, run) = (measures?, maximise?, trace?, run?);
         let (energies, shape) = (energies?, shape?);
@@ -198,6 +199,19 @@ impl<'t> ExperimentReader<'t> {
         Some(sweep)
     }
 
+    /// A mean has no time history.
+    fn averaged_alone(&self, fields: &Fields<'t>) -> Option<()> {
+        let lists = ["trace", "energies", "shape"].into_iter().filter_map(|key| fields.get(key)).next();
+        match (fields.get("mean_over"), lists) {
+            (Some(_), Some(list)) => self.findings.report(
+                list.span,
+                "a mean over several scenes has no list of one of them",
+                Some("give one of the scenes an experiment of its own".into()),
+            ),
+            _ => Some(()),
+        }
+    }
+
     /// An optimisation has rows of its own.
     fn optimised_alone(&self, fields: &Fields<'t>) -> Option<()> {
         if fields.get("optimise").is_none() {
@@ -248,7 +262,9 @@ impl<'t> ExperimentReader<'t> {
             [first, rest @ ..] if rest.iter().all(|other| other == first) => {
                 optimise.spread(*first, self.findings).map(Some)
             }
-            _ => self.findings.wrong(optimise.span, "the number of dampers, and with it of gaps, is not always the same"),
+            _ => {
+                self.findings.wrong(optimise.span, "the number of dampers, and with it of gaps, is not always the same")
+            }
         }
     }
 

@@ -58,16 +58,14 @@ pub(super) fn mean(wanted: &[Measure], measures: &[Measure], each: &[Evaluated])
     };
     let named = |measure| measures.iter().position(|other| *other == measure).map(of);
     let measured = wanted.iter().enumerate().map(|(index, measure)| match measure {
-        Measure::VelocityRatio => {
-            match (named(Measure::UndampedRmsVelocity), named(Measure::RmsVelocity)) {
-                (Some(clean), Some(damped)) => {
-                    let value = clean.value / damped.value;
-                    let relative = |part: f64| part / damped.value * value;
-                    Measured { value, numerical: relative(damped.numerical), spread: relative(damped.spread) }
-                }
-                _ => of(index),
+        Measure::VelocityRatio => match (named(Measure::UndampedRmsVelocity), named(Measure::RmsVelocity)) {
+            (Some(clean), Some(damped)) => {
+                let value = clean.value / damped.value;
+                let relative = |part: f64| part / damped.value * value;
+                Measured { value, numerical: relative(damped.numerical), spread: relative(damped.spread) }
             }
-        }
+            _ => of(index),
+        },
         _ => of(index),
     });
     let worst = |part: fn(&Proof) -> f64| each.iter().map(|one| part(&one.proof)).fold(0.0, f64::max);

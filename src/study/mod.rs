@@ -6,9 +6,9 @@
 mod evaluate;
 mod event;
 mod job;
+mod journal;
 mod layout;
 mod load;
-mod journal;
 mod maximise;
 mod mean;
 mod meaning;

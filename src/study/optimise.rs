@@ -109,10 +109,7 @@ pub(super) fn run_optimisation(task: Task<'_>, evaluate: &impl Evaluate, listene
         let left = evaluations(optimise, variants).saturating_sub(told);
         listener.hear(&Event::Simulated { experiment: &experiment.id, count: left });
     }
-    Finished {
-        table: table(experiment, variants, &evaluated, metadata.clone()),
-        failures: failures(&evaluated),
-    }
+    Finished { table: table(experiment, variants, &evaluated, metadata.clone()), failures: failures(&evaluated) }
 }
 
 /// The candidates of the file, and what the searches find.
@@ -173,8 +170,7 @@ impl Searches<'_> {
                     }
                 }
                 Search::Dense { points, spacing, refine } => {
-                    let settings =
-                        Dense { points: *points as usize, spacing: spaced(*spacing), refine: *refine };
+                    let settings = Dense { points: *points as usize, spacing: spaced(*spacing), refine: *refine };
                     let name = told(SearchKind::Dense, None);
                     let (bounds, mut done) = (self.bounds.clone(), 0);
                     let best = dense(&bounds, settings, &mut |points| {
@@ -195,11 +191,8 @@ impl Searches<'_> {
             return Err("not a genetic algorithm".into());
         };
         let optimise = self.optimise;
-        let settings = GeneticSettings {
-            population: *population as usize,
-            elites: *elites as usize,
-            crossover: *crossover,
-        };
+        let settings =
+            GeneticSettings { population: *population as usize, elites: *elites as usize, crossover: *crossover };
         let named = |name: &String| optimise.candidates.iter().find(|candidate| candidate.name == *name);
         let start: Vec<Vec<f64>> = start.iter().filter_map(named).map(|candidate| candidate.gaps.clone()).collect();
         let mut genetic = Genetic::new(self.bounds.clone(), settings, u64::from(seed), &start);

@@ -87,7 +87,9 @@ pub fn run<T: Send + Sync>(
                 scope.spawn_fifo(move |_| hand_over(index, run_optimisation(tasks[index], evaluate, listener)));
             }
             for index in refined {
-                scope.spawn_fifo(move |_| run_refined(tasks[index], evaluate, listener, |work| hand_over(index, work.finish())));
+                scope.spawn_fifo(move |_| {
+                    run_refined(tasks[index], evaluate, listener, |work| hand_over(index, work.finish()))
+                });
             }
             for (one, row) in order(work) {
                 scope.spawn_fifo(move |_| {

@@ -131,7 +131,11 @@ fn outcome(experiment: &Experiment, optimise: &Optimise, candidates: &[Candidate
         };
         // A candidate is no better than itself, whatever it is worth.
         let same = first.gaps == it.gaps;
-        Some(if same { [0.0, 0.0] } else { [better, (from.numerical * from.numerical + to.numerical * to.numerical).sqrt()] })
+        Some(if same {
+            [0.0, 0.0]
+        } else {
+            [better, (from.numerical * from.numerical + to.numerical * to.numerical).sqrt()]
+        })
     };
     let part = |part: usize| {
         Data::Float(candidates.iter().map(|it| improvement(it).map_or(f64::NAN, |both| both[part])).collect())

@@ -4,8 +4,8 @@ use std::convert::Infallible;
 use std::f64::consts::{E, TAU};
 
 use shotdamp::optimise::{
-    Batch, Bounds, CmaEs, Dense, Found, Genetic, GeneticSettings, Optimiser, Score, Spacing, Stalled, Stopped, Stopping,
-    Stream, dense, minimise, sections, two_opt,
+    Batch, Bounds, CmaEs, Dense, Found, Genetic, GeneticSettings, Optimiser, Score, Spacing, Stalled, Stopped,
+    Stopping, Stream, dense, minimise, sections, two_opt,
 };
 
 type Function = fn(&[f64]) -> f64;
@@ -80,8 +80,9 @@ fn the_genetic_algorithm_finds_published_optima_of_four_variables() {
 fn the_peer_finds_published_optima_of_four_variables() {
     let reached = [1e-12, 1e-12, 1e-6, 1e-6, 0.05];
     for ((name, function, side), reached) in FUNCTIONS.into_iter().zip(reached) {
-        let values: Vec<f64> =
-            (1..=5).map(|seed| search(&mut CmaEs::new(cube(side, 4), None, seed), function, 30_000).score.value).collect();
+        let values: Vec<f64> = (1..=5)
+            .map(|seed| search(&mut CmaEs::new(cube(side, 4), None, seed), function, 30_000).score.value)
+            .collect();
         assert!(values.iter().all(|value| *value < reached), "{name}: {values:?}");
     }
     // One start converges at the rate that the tutorial reports for the sphere: some 250 evaluations a decade and ten variables.
@@ -92,7 +93,8 @@ fn the_peer_finds_published_optima_of_four_variables() {
 #[test]
 fn optima_on_the_bounds_are_found_there() {
     let tilted: Function = |x| x[0] - 2.0 * x[1] + (x[2] - 0.3).powi(2) + x[3];
-    for optimiser in [&mut genetic(cube([0.0, 1.0], 4), 7) as &mut dyn Optimiser, &mut CmaEs::new(cube([0.0, 1.0], 4), None, 7)]
+    for optimiser in
+        [&mut genetic(cube([0.0, 1.0], 4), 7) as &mut dyn Optimiser, &mut CmaEs::new(cube([0.0, 1.0], 4), None, 7)]
     {
         let found = search(optimiser, tilted, 4000);
         assert!((found.score.value + 2.0).abs() < 1e-4, "{found:?}");
