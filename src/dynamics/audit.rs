@@ -127,8 +127,8 @@ impl Audit {
                 let w = weight * h;
                 self.position.iter_mut().zip(&p[..n]).for_each(|(sum, q)| *sum += w * q);
                 self.dissipated += w * system.damping.form(&rate[..n], &rate[..n]);
-                for (i, &j) in flow.attached.iter().enumerate() {
-                    self.dissipated += w * flow.damping[j] * rate[n + i] * rate[n + i];
+                for (i, &j) in flow.modes.attached.iter().enumerate() {
+                    self.dissipated += w * flow.modes.damping[j] * rate[n + i] * rate[n + i];
                 }
                 let force = level + now.sine;
                 self.force += w * force;

@@ -34,8 +34,9 @@ mod stretch;
 mod vector;
 
 use super::audit::{Audit, Passed};
+use super::cholesky::Cholesky;
 use super::contact::{Relative, Side};
-use super::flow::{Cholesky, Flow};
+use super::flow::Flow;
 use super::system::{Contact, Drive, HybridSystem, Law, dot};
 use super::{EngineError, Observed, Options, Response, StartState};
 use propagator::{Layout, Propagator, lead};
@@ -339,7 +340,7 @@ fn start(system: &HybridSystem, options: &Options, layout: Layout) -> Result<(Ve
             let (mut p, mut rate) = (vec![0.0; flow.order], vec![0.0; flow.order]);
             flow.leave(&vec![0.0; 2 * flow.order], 0.0, 0.0, Default::default(), &mut p, &mut rate);
             state[..n].copy_from_slice(&p[..n]);
-            for (i, &j) in flow.attached.iter().enumerate() {
+            for (i, &j) in flow.modes.attached.iter().enumerate() {
                 state[layout.gap(j)] = p[n + i];
             }
             Ok((contacts, state))

@@ -14,13 +14,17 @@ mod moments;
 mod range;
 mod signal;
 
+use std::rc::Rc;
+
 use self::bound::Watch;
 use self::cycle::{Cycle, drive_at, enter, leave};
 use self::moments::Moments;
 use self::signal::{Row, integrals};
 use super::audit::Audit;
-use super::flow::{Cholesky, DrivePhase, Flow};
+use super::cholesky::Cholesky;
+use super::flow::{DrivePhase, Flow};
 use super::integral::Integrals;
+use super::states::States;
 use super::system::{Contact, HybridSystem, Law, Tick, dot};
 use super::{
     CycleRates, EngineError, Extremes, Method, Observed, Options, Proof, Response, StartState, SteadyMotion,
@@ -61,21 +65,21 @@ impl<'a> Stretch<'a> {
 pub(crate) enum Attempt {
     /// It is linear.
     Solved(Box<Response>),
-    /// It is not, or it is not proved to be; the flow at rest, where it was built.
-    Open(Option<Box<Flow>>),
+    /// It is not, or it is not proved to be.
+    Open,
 }
 
 /// Solves a run in closed form if it is proved to be linear.
 pub(crate) fn attempt(system: &HybridSystem, options: &Options) -> Result<Attempt, EngineError> {
     if options.trace.is_some() || !may_be_linear(system, options) {
-        return Ok(Attempt::Open(None));
+        return Ok(Attempt::Open);
     }
     let flow = at_rest(system)?;
     if drifts(&flow) {
-        return Ok(Attempt::Open(Some(Box::new(flow))));
+        return Ok(Attempt::Open);
     }
     let run = Run::new(system, &flow, options)?;
-    let Some(margin) = run.margin() else { return Ok(Attempt::Open(Some(Box::new(flow)))) };
+    let Some(margin) = run.margin() else { return Ok(Attempt::Open) };
     Ok(Attempt::Solved(Box::new(run.respond(options, margin)?)))
 }
 
@@ -135,7 +139,7 @@ fn may_be_linear(system: &HybridSystem, options: &Options) -> bool {
 }
 
 /// The flow with every particle on its floor.
-fn at_rest(system: &HybridSystem) -> Result<Flow, EngineError> {
+fn at_rest(system: &HybridSystem) -> Result<Rc<Flow>, EngineError> {
     let damping: Vec<f64> = system
         .particles
         .iter()
@@ -144,7 +148,7 @@ fn at_rest(system: &HybridSystem) -> Result<Flow, EngineError> {
             Law::Rigid { .. } => 0.0,
         })
         .collect();
-    Flow::build(system, &vec![Contact::Floor; system.particles.len()], &damping)
+    States::of(system).flow(system, &vec![Contact::Floor; system.particles.len()], &damping)
 }
 
 /// A block without a place to rest.

@@ -7,16 +7,20 @@ mod contacts;
 mod half_cycles;
 mod impacts;
 
+use std::rc::Rc;
+
 use super::audit::Audit;
 use super::block::Phase;
+use super::cholesky::Cholesky;
 use super::contact::{Relative, Side};
 use super::extremes;
-use super::flow::{Cholesky, DrivePhase, Flow, Parabola};
+use super::flow::{DrivePhase, Flow, Parabola};
 use super::guards::{self, Contacts};
 use super::integral::quadrature;
 use super::mobility::Mobilities;
 use super::search::{Clarity, Found, Search};
 use super::signals::{self, Signals};
+use super::states::States;
 use super::system::{Contact, Event, EventKind, HybridSystem, Law, Tick, dot};
 use super::trace::Sample;
 use super::{CycleRates, EngineError, Observed, Options, Proof, Response};
@@ -29,9 +33,11 @@ const MOST_EVENTS_AT_AN_INSTANT: u32 = 64;
 pub(crate) struct March<'a> {
     system: &'a HybridSystem,
     options: &'a Options,
-    flows: Vec<Flow>,
-    /// Index of the flow in force.
-    now: usize,
+    states: States,
+    /// The flow in force.
+    flow: Rc<Flow>,
+    /// Natural frequency of the fastest one so far, rad/s.
+    fastest: f64,
     // State: structure (with the compressions of the flow in force behind its coordinates), particles, contacts.
     q: Vec<f64>,
     rate: Vec<f64>,
@@ -74,26 +80,31 @@ pub(crate) struct March<'a> {
 }
 
 impl<'a> March<'a> {
-    /// A run at its start; `at_rest` is the flow with every particle on its floor, if it was built already.
-    pub(crate) fn new(
-        system: &'a HybridSystem,
-        options: &'a Options,
-        at_rest: Option<Flow>,
-    ) -> Result<Self, EngineError> {
+    /// A run at its start.
+    pub(crate) fn new(system: &'a HybridSystem, options: &'a Options) -> Result<Self, EngineError> {
         let n = system.mass.order;
         let count = system.particles.len();
         let most = n + count;
+        let contacts = match &options.start {
+            super::StartState::StaticEquilibrium => vec![Contact::Floor; count],
+            super::StartState::Given { particles, .. } => particles.iter().map(|(contact, ..)| *contact).collect(),
+        };
+        let equivalent = system.drive.half_cycles.as_ref().map(|half| half.curve.upper_end());
+        let damping: Vec<f64> = (0..count).map(|j| contact_damping(system, &contacts, j, equivalent)).collect();
+        let states = States::of(system);
+        let flow = states.flow(system, &contacts, &damping)?;
         let mut march = Self {
             system,
             options,
-            flows: at_rest.into_iter().collect(),
-            now: 0,
+            states,
+            flow,
+            fastest: 0.0,
             q: vec![0.0; most],
             rate: vec![0.0; most],
             particles: vec![Relative::default(); count],
-            contacts: vec![Contact::Floor; count],
-            damping: vec![0.0; count],
-            equivalent: system.drive.half_cycles.as_ref().map(|half| half.curve.upper_end()),
+            contacts,
+            damping,
+            equivalent,
             smooth: vec![false; count],
             cycle: 0,
             time: 0.0,
@@ -128,12 +139,12 @@ impl<'a> March<'a> {
             super::StartState::StaticEquilibrium => {
                 self.choose_flow()?;
                 let drive = DrivePhase::default();
-                let flow = &self.flows[self.now];
+                let flow = &self.flow;
                 self.c.fill(0.0);
                 flow.leave(&self.c, 0.0, 0.0, drive, &mut self.q, &mut self.rate);
                 let n = self.system.mass.order;
                 self.rate.fill(0.0);
-                for (i, &j) in flow.attached.iter().enumerate() {
+                for (i, &j) in flow.modes.attached.iter().enumerate() {
                     self.particles[j].gap = self.q[n + i];
                 }
             }
@@ -204,8 +215,7 @@ impl<'a> March<'a> {
             self.response.final_velocity = dot(row, &self.rate);
         }
         self.response.final_particles = (0..self.particles.len()).map(|j| self.absolute(j)).collect();
-        let fastest = self.flows.iter().flat_map(Flow::natural_frequencies).fold(0.0_f64, f64::max);
-        self.response.highest_frequency = fastest;
+        self.response.highest_frequency = self.fastest;
         if self.response.final_displacement.is_finite() && self.response.final_velocity.is_finite() {
             Ok(self.response)
         } else {
@@ -265,10 +275,7 @@ impl<'a> March<'a> {
 
     /// Damping of the face that particle j's contact refers to, N s/m.
     fn damping_at(&self, j: usize) -> f64 {
-        match self.contacts[j].side().face(&self.system.particles[j]).law {
-            Law::Resilient { damping, .. } => self.equivalent.unwrap_or(damping),
-            Law::Rigid { .. } => 0.0,
-        }
+        contact_damping(self.system, &self.contacts, j, self.equivalent)
     }
 
     /// Makes the flow of the contact state in force current, building it at the first visit.
@@ -280,25 +287,16 @@ impl<'a> March<'a> {
         for j in 0..self.damping.len() {
             self.damping[j] = self.damping_at(j);
         }
-        let fits = |flow: &Flow| flow.contacts == self.contacts && flow.damping == self.damping;
-        if let Some(index) = self.flows.iter().position(fits) {
-            self.now = index;
-            return Ok(());
-        }
-        let flow = Flow::build(self.system, &self.contacts, &self.damping)?;
-        if self.system.drive.half_cycles.is_some() && self.flows.len() >= 64 {
-            self.flows.clear();
-        }
-        self.flows.push(flow);
-        self.now = self.flows.len() - 1;
+        self.flow = self.states.flow(self.system, &self.contacts, &self.damping)?;
+        self.fastest = self.flow.natural_frequencies().fold(self.fastest, f64::max);
         Ok(())
     }
 
     /// Block coordinates of the state in the flow in force.
     fn enter_flow(&mut self, drive: DrivePhase) {
-        let flow = &self.flows[self.now];
+        let flow = &self.flow;
         let n = self.system.mass.order;
-        for (i, &j) in flow.attached.iter().enumerate() {
+        for (i, &j) in flow.modes.attached.iter().enumerate() {
             self.q[n + i] = self.particles[j].gap;
             self.rate[n + i] = self.particles[j].rate;
         }
@@ -328,9 +326,9 @@ impl<'a> March<'a> {
         self.choose_flow()?;
         let drive = self.drive_phase(self.time);
         self.enter_flow(drive);
-        self.flows[self.now].watch(&self.c, self.level, &mut self.signals);
+        self.flow.watch(&self.c, self.level, &mut self.signals);
         self.turn_half_cycle()?;
-        let flow = &self.flows[self.now];
+        let flow = &self.flow;
         let state = Contacts {
             system: self.system,
             contacts: &self.contacts,
@@ -372,7 +370,7 @@ impl<'a> March<'a> {
             Some(_) => self.drive_phase(self.time + length),
         };
         let n = self.system.mass.order;
-        let flow = &self.flows[self.now];
+        let flow = &self.flow;
         for (j, particle) in self.system.particles.iter().enumerate() {
             let contact = self.contacts[j];
             if contact.face(particle).is_none() {
@@ -389,14 +387,14 @@ impl<'a> March<'a> {
         }
         flow.advance(&self.search.kernels, &self.c, &mut self.c_end);
         flow.leave(&self.c_end, length, self.level, end_drive, &mut self.q, &mut self.rate);
-        for (i, &j) in flow.attached.iter().enumerate() {
+        for (i, &j) in flow.modes.attached.iter().enumerate() {
             self.particles[j] = Relative { gap: self.q[n + i], rate: self.rate[n + i] };
         }
     }
 
     /// Adds the segment to the measures, and to the audit if there is one.
     fn sum_up(&mut self, length: f64, drive: DrivePhase) {
-        let flow = &self.flows[self.now];
+        let flow = &self.flow;
         if self.options.averages(self.cycle) {
             let second_half = 2 * (self.cycle - u64::from(self.options.skip)) >= u64::from(self.options.average);
             for (of, &row) in self.response.observed.iter_mut().zip(&flow.rows.observed) {
@@ -454,7 +452,7 @@ impl<'a> March<'a> {
         if !request.covers(self.cycle) {
             return;
         }
-        let flow = &self.flows[self.now];
+        let flow = &self.flow;
         let period = self.system.drive.period;
         let mut kernels = Vec::with_capacity(flow.blocks.len());
         for i in request.next_sample(self.time, period).. {
@@ -499,6 +497,14 @@ impl<'a> March<'a> {
     }
 }
 
+/// Damping of the face that particle j's contact refers to, N s/m; half cycles put another one in its place.
+fn contact_damping(system: &HybridSystem, contacts: &[Contact], j: usize, equivalent: Option<f64>) -> f64 {
+    match contacts[j].side().face(&system.particles[j]).law {
+        Law::Resilient { damping, .. } => equivalent.unwrap_or(damping),
+        Law::Rigid { .. } => 0.0,
+    }
+}
+
 fn side_stiffness(system: &HybridSystem, contacts: &[Contact], j: usize) -> Option<f64> {
     let contact = contacts[j];
     let face = contact.face(&system.particles[j])?;
@@ -509,8 +515,8 @@ fn side_stiffness(system: &HybridSystem, contacts: &[Contact], j: usize) -> Opti
 }
 
 /// Runs a system.
-pub(crate) fn march(system: &HybridSystem, options: &Options, at_rest: Option<Flow>) -> Result<Response, EngineError> {
-    March::new(system, options, at_rest)?.run()
+pub(crate) fn march(system: &HybridSystem, options: &Options) -> Result<Response, EngineError> {
+    March::new(system, options)?.run()
 }
 
 /// The proof of a run that was never audited.

@@ -3,8 +3,8 @@
 //! It depends on the face alone, so it is computed at the first impact there and kept.
 
 use super::EngineError;
+use super::cholesky::Cholesky;
 use super::contact::Side;
-use super::flow::Cholesky;
 use super::system::HybridSystem;
 
 /// The answers found so far.

@@ -18,8 +18,10 @@
 
 mod audit;
 mod block;
+mod cholesky;
 mod collision;
 mod contact;
+mod contact_state;
 mod elementary;
 mod extremes;
 mod fixed;
@@ -36,6 +38,7 @@ mod series;
 mod signals;
 mod spectral;
 mod spline;
+mod states;
 mod system;
 mod trace;
 mod window;
@@ -389,7 +392,7 @@ pub enum EngineError {
 pub fn event_driven(system: &HybridSystem, options: &Options) -> Result<Response, EngineError> {
     match linear::attempt(system, options)? {
         linear::Attempt::Solved(response) => Ok(*response),
-        linear::Attempt::Open(at_rest) => march::march(system, options, at_rest.map(|flow| *flow)),
+        linear::Attempt::Open => march::march(system, options),
     }
 }
 

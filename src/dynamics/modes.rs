@@ -7,7 +7,7 @@
 
 use super::EngineError;
 use super::block::Block;
-use super::flow::Cholesky;
+use super::cholesky::Cholesky;
 use super::spectral::Spectral;
 use super::system::Matrix;
 

@@ -138,15 +138,15 @@ impl Rows {
         }
         let compression = |j: usize| {
             let mut unit = vec![0.0; flow.order];
-            unit[system.mass.order + flow.attached.iter().position(|&a| a == j)?] = 1.0;
+            unit[system.mass.order + flow.modes.attached.iter().position(|&a| a == j)?] = 1.0;
             Some(flow.row(&unit))
         };
         for (j, particle) in system.particles.iter().enumerate() {
-            let contact = flow.contacts[j];
+            let contact = flow.modes.contacts[j];
             let side = contact.side();
             let face = padded(&side.face(particle).row);
             let force = |row: &Row| match side.face(particle).law {
-                Law::Resilient { stiffness, .. } => row.mixed(blocks, stiffness, flow.damping[j]),
+                Law::Resilient { stiffness, .. } => row.mixed(blocks, stiffness, flow.modes.damping[j]),
                 Law::Rigid { .. } => row.clone(),
             };
             let (first, second) = match contact {
@@ -181,6 +181,11 @@ impl Rows {
             all.faces.push(FaceRows { floor, ceiling, compression });
         }
         all
+    }
+
+    /// Numbers that it keeps.
+    pub(crate) fn size(&self) -> usize {
+        self.rows.iter().map(|row| 4 * row.weights.len()).sum()
     }
 
     fn place(&mut self, row: Row) -> usize {

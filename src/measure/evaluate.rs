@@ -228,18 +228,18 @@ impl Case<'_> {
             // Time histories, shapes and their measures stay those of the unkicked run.
             let kicked = event_driven(system, &Options { kick: ENSEMBLE_KICK * place, ..plain.clone() })?;
             let of_member = case.read(&kicked, reference, false)?.values;
-            for (((sum, measure), own), value) in sums.iter_mut().zip(request.measures).zip(&values).zip(of_member) {
-                sum.add(if measure.needs_trace() || measure.is_modal() { *own } else { value });
+            for (sum, value) in sums.iter_mut().zip(of_member) {
+                sum.add(value);
             }
         }
-        let measured = sums
-            .iter()
-            .map(|sum| Measured {
-                value: sum.mean,
-                numerical: sum.deviation() / f64::from(members).sqrt(),
-                spread: sum.deviation(),
-            })
-            .collect();
+        let measured = sums.iter().zip(request.measures).zip(&values).map(|((sum, measure), own)| {
+            if measure.needs_trace() || measure.is_modal() {
+                return Measured { value: *own, numerical: 4.0 * f64::EPSILON * own.abs(), spread: 0.0 };
+            }
+            let spread = sum.deviation();
+            Measured { value: sum.mean, numerical: spread / f64::from(members).sqrt(), spread }
+        });
+        let measured = measured.collect();
         Ok(Evaluated { measured, proof: response.proof, chaotic, members, trace: lists })
     }
 }

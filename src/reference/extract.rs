@@ -162,6 +162,9 @@ fn extreme(cells: &Cells, view: &View<'_>, sign: f64) -> Result<Extracted, Absen
     Ok(Extracted::cell(best, view.unit(&rows, &cells.of)?))
 }
 
+/// Standard errors by which two means have to differ. A sweep compares them at a hundred points: two would not do.
+const CERTAIN: f64 = 3.0;
+
 impl Parting {
     fn take(&self, view: &View<'_>) -> Result<Extracted, Absence> {
         let both = lines(view, self.source(), &self.of, &self.over, &self.by)?;
@@ -170,8 +173,9 @@ impl Parting {
         }
         let shared = common(&both)?;
         let apart = |cells: &[Cell]| {
-            let (a, b) = (cells[0].value, cells[1].value);
-            (a - b).abs() > self.fraction * (a + b).abs() / 2.0
+            let (a, b) = (cells[0], cells[1]);
+            let noise = CERTAIN * a.run.hypot(b.run);
+            (a.value - b.value).abs() - noise > self.fraction * (a.value + b.value).abs() / 2.0
         };
         let fraction = percent(self.fraction);
         let unit = both[0].1.over_unit.clone();

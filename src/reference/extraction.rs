@@ -34,7 +34,7 @@ pub enum Extraction {
     Crossing(Crossing),
     /// The first parameter value at which a measure exceeds a level.
     FirstAbove(FirstAbove),
-    /// The first parameter value at which two lines differ by more than a fraction of their mean.
+    /// The first parameter value at which two lines differ by more than a fraction of their mean, and by more than chance.
     Parting(Parting),
     /// The largest fall of a rising line, or rise of a falling one: how much it deviates from monotone.
     LargestStepBack(StepBack),

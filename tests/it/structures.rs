@@ -472,3 +472,34 @@ fn what_no_structure_can_be_is_refused_where_it_stands() {
         assert!(fits, "{told}\n{expected}\n{text}");
     }
 }
+
+#[test]
+fn what_a_thread_has_run_before_changes_no_bit() {
+    let dampers = |gap: &str, force: &str, extra: &str| {
+        let scene = scene(
+            BEAM,
+            "modes: 4",
+            &format!(
+                "  dampers:\n  - {{at: 1, mass_ratio: 0.05, particle_share: 0.5, gap: {gap}, floor: {{resilient: {{stiffness: 200 N/m, damping_ratio: 0.2}}}}}}\n\
+                 {extra}  excitation: {{impulse_train: {{at: {force}, force_ratio: 11, frequency_ratio: 1}}}}"
+            ),
+        );
+        compile(&scene).unwrap()
+    };
+    let second = "  - {at: 0.5, mass_ratio: 0.05, particle_share: 0.5, gap: 3 mm, floor: {resilient: {stiffness: 200 N/m, damping_ratio: 0.2}}}\n";
+    let systems = [
+        dampers("5 mm", "1", ""),
+        dampers("9 mm", "1", ""),
+        dampers("5 mm", "0.5", ""),
+        dampers("5 mm", "1", second),
+        dampers("5 mm", "1", ""),
+    ];
+    let options = Options { skip: 0, average: 20, ..Options::default() };
+    let run = |system| event_driven(system, &options).unwrap();
+    let one_after_another: Vec<_> = systems.iter().map(run).collect();
+    for (system, known) in systems.iter().zip(&one_after_another) {
+        let new = std::thread::scope(|scope| scope.spawn(|| run(system)).join().unwrap());
+        assert!(known.proof.events > 20);
+        assert_eq!(format!("{known:?}"), format!("{new:?}"));
+    }
+}

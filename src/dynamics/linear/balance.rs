@@ -111,7 +111,7 @@ impl Dissipation {
 fn against(system: &HybridSystem, flow: &Flow, rate: &[f64]) -> Vec<f64> {
     let n = system.mass.order;
     let mut force = system.damping.times(&rate[..n]);
-    force.extend(flow.attached.iter().zip(&rate[n..]).map(|(&j, rate)| flow.damping[j] * rate));
+    force.extend(flow.modes.attached.iter().zip(&rate[n..]).map(|(&j, rate)| flow.modes.damping[j] * rate));
     force
 }
 
@@ -121,7 +121,7 @@ pub(super) fn state(system: &HybridSystem, flow: &Flow, p: &[f64], rate: &[f64])
     let mut state =
         State { q: p[..n].to_vec(), rate: rate[..n].to_vec(), particles: Vec::new(), compressions: Vec::new() };
     for (j, particle) in system.particles.iter().enumerate() {
-        let slot = flow.attached.iter().position(|&other| other == j);
+        let slot = flow.modes.attached.iter().position(|&other| other == j);
         let [gap, speed] = slot.map_or([0.0; 2], |slot| [p[n + slot], rate[n + slot]]);
         let face = &particle.floor.row;
         state.particles.push([dot(face, &state.q) + gap, dot(face, &state.rate) + speed]);

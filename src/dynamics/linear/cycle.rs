@@ -194,7 +194,7 @@ fn jump(system: &HybridSystem, flow: &Flow, impulse: f64, [before, after]: [f64;
     let still = DrivePhase::default();
     let (rest, _) = leave(flow, &vec![0.0; 2 * flow.order], before, still);
     let mut rate: Vec<f64> = answer.iter().map(|jump| impulse * jump).collect();
-    for &j in &flow.attached {
+    for &j in &flow.modes.attached {
         // The particle itself is not struck: its compression changes against the structure.
         let face = crate::dynamics::system::dot(&system.particles[j].floor.row, answer);
         rate.push(-impulse * face);

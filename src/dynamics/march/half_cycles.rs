@@ -27,7 +27,7 @@ impl March<'_> {
     /// Starts the first half cycle, and ends one whose acceleration a contact has turned at once.
     pub(super) fn turn_half_cycle(&mut self) -> Result<(), EngineError> {
         let Some(half_cycles) = &self.system.drive.half_cycles else { return Ok(()) };
-        let flow = &self.flows[self.now];
+        let flow = &self.flow;
         let Some(bend) = flow.rows.bend else { return Ok(()) };
         let bends = self.signals.of(bend).0;
         // Below the curve's first point every half cycle gives the same damping: no need to follow them until something
@@ -76,7 +76,7 @@ impl March<'_> {
         self.hold_on()?;
         let drive = self.drive_phase(self.time);
         self.enter_flow(drive);
-        self.flows[self.now].watch(&self.c, self.level, &mut self.signals);
+        self.flow.watch(&self.c, self.level, &mut self.signals);
         Ok(())
     }
 

@@ -351,7 +351,7 @@ impl March<'_> {
     pub(super) fn grip(&mut self, j: usize, side: Side, on_stop: bool) -> Grip {
         let drive = self.drive_phase(self.time);
         self.enter_flow(drive);
-        let flow = &self.flows[self.now];
+        let flow = &self.flow;
         let row = flow.rows.face(j, side);
         let (phases, rest) = flow.rows.evaluate(row, &self.c, self.level, flow.blocks.len());
         Grip::of(self.system, flow, &phases, rest, j, side, on_stop)

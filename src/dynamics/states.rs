@@ -1,0 +1,149 @@
+//! Contact states that were visited, kept for every run that comes to them again.
+//!
+//! Modes know masses, springs, dashpots and places; gap, amplitude and time do not enter, the forcing point only in a load
+//! ([`super::contact_state`]). So the thread that has run one point of a sweep, of a map or of an ensemble has at hand what
+//! the next one visits. A state is built when it is visited, and the same numbers come out whether it was known or not.
+
+use std::cell::RefCell;
+use std::collections::BTreeMap;
+use std::rc::Rc;
+
+use super::EngineError;
+use super::contact_state::Modes;
+use super::flow::Flow;
+use super::system::{Contact, HybridSystem, Particle};
+
+/// Numbers that a thread keeps, about: 128 MB.
+const MOST_NUMBERS: usize = 1 << 24;
+/// Dampings of one contact state that are kept; half cycles give it another one each time.
+const MOST_DAMPINGS: usize = 64;
+
+thread_local! {
+    static KNOWN: RefCell<Vec<Rc<Driven>>> = const { RefCell::new(Vec::new()) };
+}
+
+type ByContact<T> = RefCell<BTreeMap<Vec<Contact>, Vec<Rc<T>>>>;
+
+/// The contact states of a system: what its gap and the size and timing of its drive do not touch.
+pub(crate) struct States(Rc<Driven>);
+
+/// What all systems of one drive share.
+struct Driven {
+    undriven: Rc<Undriven>,
+    force_row: Vec<f64>,
+    observed_rows: Vec<Vec<f64>>,
+    half_cycles: bool,
+    frequency: Option<f64>,
+    flows: ByContact<Flow>,
+}
+
+/// What systems share that differ in their drive.
+struct Undriven {
+    /// The first of them; nobody looks at its gaps and its drive.
+    system: HybridSystem,
+    modes: ByContact<Modes>,
+}
+
+impl States {
+    /// The states of a system: those of one that was run before, if it differs in nothing that they know.
+    pub(crate) fn of(system: &HybridSystem) -> Self {
+        KNOWN.with_borrow_mut(|known| {
+            if let Some(place) = known.iter().position(|driven| driven.fits(system)) {
+                let driven = known.remove(place);
+                known.push(Rc::clone(&driven));
+                return Self(driven);
+            }
+            let same = known.iter().rev().find(|driven| driven.undriven.fits(system));
+            let undriven = same.map_or_else(|| Rc::new(Undriven::new(system)), |driven| Rc::clone(&driven.undriven));
+            let driven = Rc::new(Driven::new(system, undriven));
+            known.push(Rc::clone(&driven));
+            let mut numbers: usize = known.iter().map(|driven| driven.size()).sum();
+            while numbers > MOST_NUMBERS && known.len() > 1 {
+                numbers -= known.remove(0).size();
+            }
+            Self(driven)
+        })
+    }
+
+    /// The flow of a contact state, built at the first visit.
+    pub(crate) fn flow(
+        &self,
+        system: &HybridSystem,
+        contacts: &[Contact],
+        damping: &[f64],
+    ) -> Result<Rc<Flow>, EngineError> {
+        let build = || {
+            let modes = visit(
+                &self.0.undriven.modes,
+                contacts,
+                |modes| modes.damping == damping,
+                || Modes::new(system, contacts, damping),
+            )?;
+            Flow::driven(system, modes)
+        };
+        visit(&self.0.flows, contacts, |flow| flow.modes.damping == damping, build)
+    }
+}
+
+fn visit<T>(
+    known: &ByContact<T>,
+    contacts: &[Contact],
+    fits: impl Fn(&T) -> bool,
+    build: impl FnOnce() -> Result<T, EngineError>,
+) -> Result<Rc<T>, EngineError> {
+    let old = known.borrow().get(contacts).and_then(|states| states.iter().find(|state| fits(state)).cloned());
+    if let Some(old) = old {
+        return Ok(old);
+    }
+    let new = Rc::new(build()?);
+    let mut known = known.borrow_mut();
+    let states = known.entry(contacts.to_vec()).or_default();
+    if states.len() >= MOST_DAMPINGS {
+        states.clear();
+    }
+    states.push(Rc::clone(&new));
+    Ok(new)
+}
+
+impl Driven {
+    fn new(system: &HybridSystem, undriven: Rc<Undriven>) -> Self {
+        Self {
+            undriven,
+            force_row: system.force_row.clone(),
+            observed_rows: system.observed_rows.clone(),
+            half_cycles: system.drive.half_cycles.is_some(),
+            frequency: system.drive.harmonic.map(|drive| drive.angular_frequency),
+            flows: ByContact::default(),
+        }
+    }
+
+    fn fits(&self, system: &HybridSystem) -> bool {
+        self.force_row == system.force_row
+            && self.observed_rows == system.observed_rows
+            && self.half_cycles == system.drive.half_cycles.is_some()
+            && self.frequency == system.drive.harmonic.map(|drive| drive.angular_frequency)
+            && self.undriven.fits(system)
+    }
+
+    /// Numbers that it keeps, those of the modes among them.
+    fn size(&self) -> usize {
+        self.flows.borrow().values().flatten().map(|flow| flow.size()).sum()
+    }
+}
+
+impl Undriven {
+    fn new(system: &HybridSystem) -> Self {
+        Self { system: system.clone(), modes: ByContact::default() }
+    }
+
+    fn fits(&self, system: &HybridSystem) -> bool {
+        let same = |(a, b): (&Particle, &Particle)| a.mass == b.mass && a.floor == b.floor && a.ceiling == b.ceiling;
+        let own = &self.system;
+        own.gravity == system.gravity
+            && own.particles.len() == system.particles.len()
+            && own.particles.iter().zip(&system.particles).all(same)
+            && own.mass == system.mass
+            && own.damping == system.damping
+            && own.stiffness == system.stiffness
+    }
+}
