@@ -15,7 +15,7 @@ use crate::text::words;
 /// The page of an experiment.
 pub(super) fn page(opened: &Opened, judgement: &Judgement, item: &Item) -> String {
     let experiment = &item.source.experiment;
-    let used = experiment.assumptions_used();
+    let used = experiment.assumptions_used(&opened.sheet);
     let up = to_reports(item);
     report::page(&PageView {
         experiment,
@@ -87,7 +87,7 @@ fn figures(experiment: &Experiment, folder: &str) -> Vec<FigureView> {
 
 fn assumptions(opened: &Opened, wanted: impl Fn(Assumption) -> bool) -> Vec<AssumptionView> {
     let used_by = |name: &Assumption| {
-        let items = opened.items.iter().filter(|item| item.source.experiment.assumptions_used().contains(name));
+        let items = opened.items.iter().filter(|item| item.source.experiment.assumptions_used(&opened.sheet).contains(name));
         let files = items.filter_map(|item| opened.references.get(&item.source.experiment.id.0));
         files.flat_map(|file| file.entries.iter().map(|entry| entry.id.clone())).collect()
     };

@@ -28,6 +28,7 @@ fn unit(name: Assumption) -> &'static str {
         Assumption::Gravity => "m/s²",
         Assumption::StopLength | Assumption::BeamArrayMargin => "m",
         Assumption::BeamImpulse | Assumption::PlateImpulse => "N s",
+        Assumption::BeamFloorTuning | Assumption::PlateFloorTuning => "N/m",
         Assumption::BeamImpulseTime | Assumption::PlateImpulseTime => "s",
         Assumption::BeamHarmonicForce | Assumption::PlateHarmonicForce => "N",
         Assumption::EquivalentDampingCurve => "N s/m",

@@ -37,6 +37,12 @@ pub(super) fn section(experiment: &Experiment) -> String {
             counted(settings.ensemble as usize, "run", "runs")
         );
     }
+    if let Some(moved) = &experiment.moved {
+        text += &match moved.iter().map(|name| format!("`{}`", words::of_key(name))).collect::<Vec<_>>() {
+            names if names.is_empty() => "- No assumption is moved.\n".to_owned(),
+            names => format!("- For the sensitivity only {} is moved, one at a time.\n", names.join(", ")),
+        };
+    }
     if let Some(trace) = &experiment.trace {
         text += &format!(
             "- The time history is kept from cycle {} to {}, {} samples a cycle.\n",

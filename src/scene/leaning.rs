@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use super::Assumption;
+use super::{Assumption, AssumptionValue, Assumptions};
 use super::recipe::{
     ContactDampingRecipe, DamperRecipe, ExcitationKind, GapRecipe, Given, ImpulseTime, MassReading, MassRecipe, Recipe,
     StiffnessRecipe, StrengthRecipe, SurfaceRecipe, TimingRecipe,
@@ -10,9 +10,10 @@ use super::recipe::{
 use super::structure::Family;
 
 impl Recipe {
-    /// The assumptions that this recipe leans on, given that a sweep has been applied.
+    /// The assumptions that this recipe leans on, given that a sweep has been applied. The readings in force matter: only
+    /// an untuned floor asks what untuned means.
     #[must_use]
-    pub fn assumptions(&self) -> BTreeSet<Assumption> {
+    pub fn assumptions(&self, in_force: &Assumptions) -> BTreeSet<Assumption> {
         let mut set = BTreeSet::new();
         let Ok(kind) = self.structure.kind() else { return set };
         set.extend(self.structure.assumed());
@@ -21,7 +22,7 @@ impl Recipe {
         }
         lean(&mut set, &self.gravity);
         for damper in self.dampers_in_place() {
-            damper.lean(&mut set, kind.family);
+            damper.lean(&mut set, kind.family, in_force);
         }
         self.lean_of_excitation(&mut set, kind.family);
         if self.observe.leans_on_grid(kind) {
@@ -56,14 +57,14 @@ impl Recipe {
 }
 
 impl DamperRecipe {
-    fn lean(&self, set: &mut BTreeSet<Assumption>, family: Family) {
+    fn lean(&self, set: &mut BTreeSet<Assumption>, family: Family, in_force: &Assumptions) {
         let by_ratio = matches!(self.gap, GapRecipe::Ratio(_) | GapRecipe::Ratios(_));
         if family != Family::Mass {
             if by_ratio {
-                set.insert(Assumption::GapFrequency);
+                set.extend(family.gap_frequency());
             }
             if matches!(self.mass, MassRecipe::Ratio(_)) && self.mass_reading == MassReading::Assumed {
-                set.insert(Assumption::DamperMass);
+                set.extend(family.damper_mass());
             }
         }
         if let Some(margin) = self.array.as_ref().and_then(|array| array.margin.as_ref()) {
@@ -76,7 +77,10 @@ impl DamperRecipe {
                     StiffnessRecipe::Untuned => drop(set.insert(Assumption::UntunedFrequencyRatio)),
                     StiffnessRecipe::Assumed => {
                         set.extend(family.floor_tuning());
-                        set.insert(Assumption::UntunedFrequencyRatio);
+                        let reading = family.floor_tuning().and_then(|tuning| in_force.values.get(&tuning));
+                        if matches!(reading, Some(AssumptionValue::Choice(word)) if word == "untuned") {
+                            set.insert(Assumption::UntunedFrequencyRatio);
+                        }
                     }
                     StiffnessRecipe::Stiffness(_) | StiffnessRecipe::Tuned => {}
                 }
@@ -114,6 +118,26 @@ impl Family {
             Self::Mass => None,
             Self::Beam => Some(Assumption::BeamFloorTuning),
             Self::Plate => Some(Assumption::PlateFloorTuning),
+        }
+    }
+
+    /// The assumption on what a mass ratio is a share of.
+    #[must_use]
+    pub fn damper_mass(self) -> Option<Assumption> {
+        match self {
+            Self::Mass => None,
+            Self::Beam => Some(Assumption::BeamDamperMass),
+            Self::Plate => Some(Assumption::PlateDamperMass),
+        }
+    }
+
+    /// The assumption on the frequency in a gap ratio.
+    #[must_use]
+    pub fn gap_frequency(self) -> Option<Assumption> {
+        match self {
+            Self::Mass => None,
+            Self::Beam => Some(Assumption::BeamGapFrequency),
+            Self::Plate => Some(Assumption::PlateGapFrequency),
         }
     }
 

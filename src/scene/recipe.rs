@@ -112,7 +112,7 @@ pub enum MassRecipe {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum MassReading {
-    /// By [`Assumption::DamperMass`].
+    /// By [`Assumption::BeamDamperMass`] or [`Assumption::PlateDamperMass`].
     Assumed,
     /// The structure's mass.
     Total,

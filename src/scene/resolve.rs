@@ -130,9 +130,9 @@ impl Base<'_> {
     }
 
     /// The clean frequency, or the loaded one where the assumption says so.
-    fn clean_or_loaded(&self, loaded: Option<f64>, by: Assumption) -> Result<f64, RecipeError> {
-        match loaded {
-            Some(loaded) if self.assumptions.choice(by, &["clean", "loaded"])? == 1 => Ok(loaded),
+    fn clean_or_loaded(&self, loaded: Option<f64>, by: Option<Assumption>) -> Result<f64, RecipeError> {
+        match loaded.zip(by) {
+            Some((loaded, by)) if self.assumptions.choice(by, &["clean", "loaded"])? == 1 => Ok(loaded),
             _ => Ok(self.natural()),
         }
     }
@@ -189,7 +189,10 @@ impl DamperRecipe {
         let modal = match self.mass_reading {
             MassReading::Total => false,
             MassReading::Modal => true,
-            MassReading::Assumed => base.assumptions.choice(Assumption::DamperMass, &["total", "modal"])? == 1,
+            MassReading::Assumed => match base.kind.family.damper_mass() {
+                Some(by) => base.assumptions.choice(by, &["total", "modal"])? == 1,
+                None => false,
+            },
         };
         Ok(if modal { base.structure.model().modal_mass() } else { base.mass })
     }
@@ -215,7 +218,7 @@ impl Placed<'_> {
 
     fn gap(&self, base: &Base<'_>, loaded: Option<f64>) -> Result<f64, RecipeError> {
         let unit = || {
-            let natural = base.clean_or_loaded(loaded, Assumption::GapFrequency)?;
+            let natural = base.clean_or_loaded(loaded, base.kind.family.gap_frequency())?;
             Ok::<_, RecipeError>((base.gravity, natural * natural))
         };
         let by_ratio = |ratio: f64| {
@@ -309,6 +312,9 @@ impl StiffnessRecipe {
                 let Some(by) = base.kind.family.floor_tuning() else {
                     return Err(RecipeError::OutOfRange("on a single mass write `stiffness_ratio: assumed`".into()));
                 };
+                if let Ok(stiffness) = base.assumptions.number(by) {
+                    return Ok(stiffness);
+                }
                 match base.assumptions.choice(by, &["clean", "loaded", "untuned"])? {
                     0 => tuned(base.natural()),
                     1 => tuned(loaded.unwrap_or_else(|| base.natural())),

@@ -6,8 +6,9 @@ use std::collections::BTreeSet;
 use serde::{Deserialize, Serialize};
 
 use crate::measure::Measure;
-use crate::scene::{Assumption, Parameter, ParameterValue, Recipe, RecipeError};
+use crate::scene::{Assumption, Assumptions, Parameter, ParameterValue, Recipe, RecipeError};
 
+use super::assumption_sheet::AssumptionSheet;
 use super::optimise::Optimise;
 use super::word::word_of;
 
@@ -70,6 +71,9 @@ pub struct Experiment {
     /// An optimisation of gaps in the place of a sweep.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub optimise: Option<Optimise>,
+    /// The assumptions that are moved for the sensitivity; `None` for all that the experiment leans on.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub moved: Option<BTreeSet<Assumption>>,
     /// Measures in the order of the columns.
     pub measures: Vec<Measure>,
     /// Time history to keep with each row.
@@ -121,13 +125,21 @@ impl Experiment {
         if self.mean_over.is_empty() { Ok(vec![recipe.clone()]) } else { self.mean_over.iter().map(inner).collect() }
     }
 
-    /// The assumptions that a number of this experiment may depend on.
+    /// The assumptions that a number of this experiment may depend on, under the values in force or with one of them moved.
     #[must_use]
-    pub fn assumptions_used(&self) -> BTreeSet<Assumption> {
+    pub fn assumptions_used(&self, sheet: &AssumptionSheet) -> BTreeSet<Assumption> {
+        let mut used = self.assumptions_under(&sheet.assumptions());
+        for (_, moved) in sheet.variants(&used) {
+            used.extend(self.assumptions_under(&moved));
+        }
+        used
+    }
+
+    fn assumptions_under(&self, in_force: &Assumptions) -> BTreeSet<Assumption> {
         let mut used = BTreeSet::new();
         for case in &self.cases {
             for recipe in self.recipes_of(case).unwrap_or_default() {
-                used.extend(recipe.assumptions());
+                used.extend(recipe.assumptions(in_force));
             }
         }
         if !self.measures.iter().any(|measure| measure.needs_undamped()) {

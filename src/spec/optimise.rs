@@ -24,6 +24,8 @@ pub struct Optimise {
     pub seeds: Vec<u32>,
     /// The genetic algorithm's result is improved by swaps of pairs.
     pub two_opt: bool,
+    /// As are these candidates, by name; the results are called `NAME_two_opt`.
+    pub two_opt_of: Vec<String>,
     /// Most generations of the genetic algorithm.
     pub generations: Option<u32>,
     /// Most evaluations of it; its peers get as many as it made, 2-opt included.
@@ -149,7 +151,8 @@ impl Optimise {
     #[must_use]
     pub fn most_evaluations(&self) -> u64 {
         let gaps = self.bounds.len() as u64;
-        let swaps = if self.two_opt { gaps * (gaps.saturating_sub(1)) / 2 * (gaps + 1) } else { 0 };
+        let swaps_each = gaps * (gaps.saturating_sub(1)) / 2 * (gaps + 1);
+        let swaps = if self.two_opt { swaps_each } else { 0 };
         let genetic = self.genetic_evaluations();
         let own = self.evaluations.map_or(u64::MAX, u64::from);
         let seeds = self.seeds.len() as u64;
@@ -162,6 +165,7 @@ impl Optimise {
             }
         });
         let landscape = self.landscape.map_or(0, |landscape| gaps * (u64::from(landscape.points) + 1));
-        searches.fold(landscape, u64::saturating_add)
+        let own = (swaps_each + 1) * self.two_opt_of.len() as u64;
+        searches.fold(landscape + own, u64::saturating_add)
     }
 }

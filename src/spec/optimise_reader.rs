@@ -46,22 +46,42 @@ impl<'t> OptimiseReader<'t> {
         });
         let words = gaps.as_ref().map(|(word, ..)| *word);
         let candidates = fields.required("candidates", |node| self.candidates(node, words?));
+        let compare_with = fields.optional("compare_with", |node| Some((text(node, findings)?, node.span)));
         let genetic = fields.optional("genetic", |node| self.genetic(node));
         let cma_es = fields.optional("cma_es", |node| self.cma_es(node));
         let dense = fields.optional("dense", |node| self.dense(node));
-        let two_opt = fields.optional("two_opt", |node| boolean(node, findings));
+        let two_opt = fields.optional("two_opt", |node| self.two_opt(node));
         let seeds = fields.optional("seeds", |node| self.seeds(node));
         let stop = fields.optional("stop", |node| self.stop(node));
         let landscape = fields.optional("landscape", |node| self.landscape(node));
         fields.close()?;
         let ((goal, measure), (gaps, bounds, bounds_at)) = (goal?, gaps?);
-        let (names, candidates_at): (Vec<Candidate>, Vec<Span>) = candidates?.into_iter().unzip();
+        let mut candidates = candidates?;
+        // Keys of a mapping have no order.
+        candidates.sort_by(|(a, _), (b, _)| a.name.cmp(&b.name));
+        if let Some((name, at)) = compare_with? {
+            let Some(first) = candidates.iter().position(|(candidate, _)| candidate.name == name) else {
+                return findings.wrong(at, format!("`{name}` is none of the candidates"));
+            };
+            candidates[..=first].rotate_right(1);
+        }
+        let (names, candidates_at): (Vec<Candidate>, Vec<Span>) = candidates.into_iter().unzip();
         let (genetic, cma_es, dense, stop) = (genetic?, cma_es?, dense?, stop?.unwrap_or_default());
-        let two_opt = two_opt?.unwrap_or(false);
+        let (two_opt, two_opt_of) = two_opt?.unwrap_or_default();
         if let Some(Search::Genetic { start, .. }) = &genetic
             && let Some(name) = start.iter().find(|name| names.iter().all(|candidate| candidate.name != **name))
         {
             return findings.wrong(node.span, format!("`start` names `{name}`, which is none of the candidates"));
+        }
+        if let Some(name) = two_opt_of.iter().find(|name| names.iter().all(|candidate| candidate.name != **name)) {
+            return findings.wrong(node.span, format!("`two_opt` names `{name}`, which is none of the candidates"));
+        }
+        if let Some(name) = two_opt_of
+            .iter()
+            .map(|name| format!("{name}_two_opt"))
+            .find(|improved| names.iter().any(|candidate| candidate.name == *improved))
+        {
+            return findings.wrong(node.span, format!("`{name}` is what 2-opt finds: call the candidate otherwise"));
         }
         if genetic.is_none() && two_opt {
             return findings.wrong(node.span, "2-opt improves what the genetic algorithm has found: add `genetic`");
@@ -84,6 +104,7 @@ impl<'t> OptimiseReader<'t> {
             searches: [genetic, cma_es, dense].into_iter().flatten().collect(),
             seeds: seeds?.unwrap_or_else(|| vec![1]),
             two_opt,
+            two_opt_of,
             generations: stop.generations,
             evaluations: stop.evaluations,
             time: stop.time,
@@ -160,6 +181,17 @@ impl<'t> OptimiseReader<'t> {
             crossover: crossover?.unwrap_or(0.8),
             start: start?.unwrap_or_default(),
         })
+    }
+
+    /// `true`, or a list of what is improved: `genetic`, and candidates by name.
+    fn two_opt(&self, node: &'t Node) -> Option<(bool, Vec<String>)> {
+        if let Value::Scalar(_) = node.value {
+            return boolean(node, self.findings).map(|genetic| (genetic, Vec::new()));
+        }
+        let names = list(node, self.findings, |node| text(node, self.findings))?;
+        let genetic = word_of(SearchKind::Genetic);
+        let (found, named): (Vec<String>, Vec<String>) = names.into_iter().partition(|name| *name == genetic);
+        Some((!found.is_empty(), named))
     }
 
     fn cma_es(&self, node: &'t Node) -> Option<Search> {

@@ -3,8 +3,10 @@
 //! A check runs as soon as the parts it talks about are sound, so a mistake in a figure is reported beside one in the
 //! scene. The last check resolves every case into its scene: what physics refuses is found before anything runs.
 
+use std::collections::BTreeSet;
+
 use crate::measure::Measure;
-use crate::scene::{Assumptions, Parameter, ParameterValue, Recipe};
+use crate::scene::{Assumption, Assumptions, Parameter, ParameterValue, Recipe};
 
 use super::check::Checks;
 use super::columns::{Columns, ENERGIES, HISTORIES, shape_lists};
@@ -55,6 +57,7 @@ struct ExperimentReader<'t> {
 struct Run {
     solvers: Vec<SolverChoice>,
     settings: Settings,
+    moved: Option<BTreeSet<Assumption>>,
 }
 
 impl<'t> ExperimentReader<'t> {
@@ -149,6 +152,7 @@ impl<'t> ExperimentReader<'t> {
             cases,
             swept: sweep.swept,
             settings: run.settings,
+            moved: run.moved,
             maximise,
             refined: sweep.refined.into_iter().map(|(refinement, _)| refinement).collect(),
             mean_over: inner,
@@ -308,6 +312,11 @@ impl<'t> ExperimentReader<'t> {
             Value::Scalar(word) if word == "none" => Some(0),
             _ => count(node, "members", 10_000, self.findings),
         });
+        let moved = fields.optional("sensitivity", |node| match &node.value {
+            Value::Scalar(word) if word == "none" => Some(BTreeSet::new()),
+            _ => one_or_more(node, self.findings, |node| word::<Assumption>(node, "assumption", self.findings))
+                .map(|names| names.into_iter().collect()),
+        });
         fields.close()?;
         let usual = Run::default();
         Some(Run {
@@ -318,6 +327,7 @@ impl<'t> ExperimentReader<'t> {
                 round_period_to: round_period_to?,
                 ensemble: ensemble?.unwrap_or(usual.settings.ensemble),
             },
+            moved: moved?,
         })
     }
 
@@ -396,6 +406,7 @@ impl Default for Run {
         Self {
             solvers: vec![SolverChoice::EventDriven],
             settings: Settings { skip: 25, average: 100, round_period_to: None, ensemble: 32 },
+            moved: None,
         }
     }
 }

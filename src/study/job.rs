@@ -25,11 +25,11 @@ pub(super) fn jobs(experiment: &Experiment, variants: &[Variant]) -> Vec<Job> {
     }
     let event_driven: Vec<(usize, Job)> =
         jobs.iter().copied().enumerate().filter(|(_, job)| job.solver == SolverChoice::EventDriven).collect();
-    for (variant, Variant { moved, .. }) in variants.iter().enumerate().skip(1) {
+    for (variant, Variant { moved, assumptions, .. }) in variants.iter().enumerate().skip(1) {
         for (row, job) in &event_driven {
             let leans = experiment
                 .recipe_of(&experiment.cases[job.case])
-                .map_or(true, |recipe| moved.is_none_or(|moved| recipe.assumptions().contains(&moved)));
+                .map_or(true, |recipe| moved.is_none_or(|moved| recipe.assumptions(assumptions).contains(&moved)));
             jobs.push(Job { variant, same_as: (!leans).then_some(*row), ..*job });
         }
     }

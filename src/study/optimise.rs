@@ -34,7 +34,7 @@ fn candidates(optimise: &Optimise) -> usize {
         Search::CmaEs { .. } => seeds,
         Search::Dense { .. } => 1,
     };
-    optimise.candidates.len() + optimise.searches.iter().map(of).sum::<usize>()
+    optimise.candidates.len() + optimise.two_opt_of.len() + optimise.searches.iter().map(of).sum::<usize>()
 }
 
 /// Fitness evaluations that it takes at most.
@@ -140,6 +140,10 @@ impl Searches<'_> {
     fn all(&mut self) -> Result<Vec<Candidate>, String> {
         let mut found: Vec<Candidate> =
             self.optimise.candidates.iter().map(|known| Candidate::named(&known.name, known.gaps.clone())).collect();
+        for name in &self.optimise.two_opt_of {
+            let improved = self.two_opt_of(name)?;
+            found.push(improved);
+        }
         // What the genetic algorithm spends, the peer may spend.
         let mut spent: Vec<Option<u64>> = vec![self.optimise.evaluations.map(u64::from); self.optimise.seeds.len()];
         for search in &self.optimise.searches {
@@ -184,6 +188,17 @@ impl Searches<'_> {
         }
         self.landscape(&mut found)?;
         Ok(found)
+    }
+
+    /// A candidate of the file, improved by swaps.
+    fn two_opt_of(&mut self, name: &str) -> Result<Candidate, String> {
+        let known = self.optimise.candidates.iter().find(|candidate| candidate.name == *name);
+        let gaps = known.ok_or_else(|| format!("{name} is no candidate"))?.gaps.clone();
+        let improved = format!("{name}_two_opt");
+        let told = words::of_level("candidate", &improved);
+        let score = self.batch(std::slice::from_ref(&gaps), &told, 0)?.scores[0];
+        let swapped = two_opt(&gaps, score, &mut |points| self.batch(points, &told, 1))?;
+        Ok(Candidate { name: improved, ..self.candidate(SearchKind::TwoOpt, None, &swapped, 1) })
     }
 
     fn genetic(&mut self, search: &Search, seed: u32) -> Result<Found, String> {

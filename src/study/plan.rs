@@ -98,7 +98,7 @@ impl Item {
 }
 
 fn simulation(source: &Source, sheet: &AssumptionSheet, variants: &[Variant], sensitivity: Sensitivity) -> Value {
-    let used = source.experiment.assumptions_used();
+    let used = source.experiment.assumptions_used(sheet);
     let assumptions: BTreeMap<_, _> =
         sheet.entries.iter().filter(|(name, _)| used.contains(name)).map(|(name, e)| (name, &e.value)).collect();
     let sensitivity = (sensitivity == Sensitivity::Wanted).then(|| ends(variants));

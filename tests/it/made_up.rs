@@ -60,6 +60,7 @@ pub fn limit_stop() -> Experiment {
         refined: Vec::new(),
         mean_over: Vec::new(),
         optimise: None,
+        moved: None,
         measures: vec![Measure::VelocityRatio],
         trace: None,
         energies: None,

@@ -111,7 +111,7 @@ fn every_candidate_is_a_row_with_gaps_fitness_and_what_it_cost() {
     let evaluations = table.floats("evaluations").unwrap();
     assert_eq!(evaluations[2], 20.0 + 11.0 * 19.0);
     assert_eq!(evaluations[6..8], [evaluations[3], evaluations[5]], "the peer's budget is the algorithm's with 2-opt");
-    assert_eq!(evaluations[8], 27.0 + 2.0 * 27.0);
+    assert!(evaluations[8] > 27.0 && evaluations[8] <= 27.0 + 2.0 * 27.0);
     let column = |name: &str| match &table.column(name).unwrap().data {
         shotdamp::table::Data::FloatList(lists) => lists.clone(),
         other => panic!("{other:?}"),
@@ -155,7 +155,7 @@ fn the_bytes_depend_neither_on_threads_nor_on_an_interruption() {
     let engine = Bowl::default();
     resumed.run(2, &engine, &Silence);
     let again = engine.evaluations.into_inner();
-    assert!(again * 2 < all, "{again} of {all} evaluations");
+    assert!(again + all / 3 < all, "{again} of {all} evaluations");
     assert!(bytes == resumed.bytes("results/ch6-gaps.parquet"));
 
     // Of another meaning it counts for nothing.
@@ -232,7 +232,8 @@ fn mistakes_in_an_optimisation_are_told_where_they_stand() {
             "neither a sweep",
         ),
         ("by: varied", "by: ‹sweep›", "no column `sweep`"),
-        ("by: varied", "by: ‹evaluation›", "is a time history"),
+        ("two_opt: true", "compare_with: ‹unknown›", "none of the candidates"),
+        ("by: varied", "by: ‹evaluation›", "holds a list a row"),
     ] {
         let text = GAPS.replace(part, written);
         assert_ne!(text, GAPS, "{part}");

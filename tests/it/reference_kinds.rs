@@ -383,3 +383,28 @@ fn an_unsound_entry_says_what_is_wrong_with_it() {
         assert!(problems.contains(says) && problems.contains("line "), "{body}: {problems}");
     }
 }
+
+#[test]
+fn two_lines_meet_between_the_points_where_they_change_places() {
+    // At the centre 1 + x, at the force 2 x: they meet at x = 1, halfway between two points of the grid.
+    let grid = [0.25, 0.75, 1.25, 1.75];
+    let rows = |of: fn(f64) -> f64| grid.iter().map(move |x| of(*x));
+    let table = |second: fn(f64) -> f64| {
+        let places = [["centre"; 4], ["force"; 4]].concat();
+        let table = Table::default()
+            .with(texts("sweep", places))
+            .with(numbers("mass_ratio", "", "", [grid, grid].concat()))
+            .with(numbers("velocity_ratio", "", "", rows(|x| 1.0 + x).chain(rows(second)).collect()));
+        complete(table, &["velocity_ratio"], 0.0)
+    };
+    let meeting = |value: &str| {
+        format!("value: \"{value}\"\nfrom: {{meeting: {{of: velocity_ratio, over: mass_ratio, by: sweep}}}}")
+    };
+    let it = judged(&meeting("1.00"), &table(|x| 2.0 * x));
+    let comparison = it.comparison.unwrap_or_else(|| panic!("{}", it.found));
+    assert!(comparison.error().abs() < 1e-12 && (comparison.u_num - 0.25).abs() < 1e-12, "{}", it.found);
+    assert_eq!(verdict(&meeting("3.00"), &table(|x| 2.0 * x)), Verdict::Differs);
+    // Lines that never change places contradict a study that says where they do.
+    assert_eq!(verdict(&meeting("1.00"), &table(|x| 0.5 * x)), Verdict::Differs);
+    assert_eq!(cannot_fail(&meeting("1.00"), &table(|x| 2.0 * x)), Vec::<String>::new());
+}

@@ -35,6 +35,7 @@ fn entry(id: &str, verdict: Verdict) -> Judged {
         explanation: String::new(),
         tolerance_reason: None,
         robust: Some((5, 6)),
+        moved: Vec::new(),
     }
 }
 
@@ -76,6 +77,7 @@ fn judged() -> Vec<Judged> {
             tolerance_by_hand: None,
         }),
         robust: None,
+        moved: Vec::new(),
         ..entry("peak", Verdict::Differs)
     };
     vec![entry("same-maximum", Verdict::Reproduced), parting, limit, peak]
