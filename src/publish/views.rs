@@ -87,7 +87,8 @@ fn figures(experiment: &Experiment, folder: &str) -> Vec<FigureView> {
 
 fn assumptions(opened: &Opened, wanted: impl Fn(Assumption) -> bool) -> Vec<AssumptionView> {
     let used_by = |name: &Assumption| {
-        let items = opened.items.iter().filter(|item| item.source.experiment.assumptions_used(&opened.sheet).contains(name));
+        let items =
+            opened.items.iter().filter(|item| item.source.experiment.assumptions_used(&opened.sheet).contains(name));
         let files = items.filter_map(|item| opened.references.get(&item.source.experiment.id.0));
         files.flat_map(|file| file.entries.iter().map(|entry| entry.id.clone())).collect()
     };

@@ -36,6 +36,17 @@ struct Row {
     stopped: String,
 }
 
+impl Row {
+    /// Smaller is better; what has no number is the worst.
+    fn order(&self, goal: Goal) -> f64 {
+        match goal {
+            _ if self.fitness[0].is_nan() => f64::INFINITY,
+            Goal::Minimise => self.fitness[0],
+            Goal::Maximise => -self.fitness[0],
+        }
+    }
+}
+
 struct Rows {
     list: Vec<Row>,
     unit: &'static str,
@@ -74,12 +85,8 @@ impl Rows {
     }
 
     fn best(&self, optimise: &Optimise) -> String {
-        let order = |row: &Row| match optimise.goal {
-            _ if row.fitness[0].is_nan() => f64::INFINITY,
-            Goal::Minimise => row.fitness[0],
-            Goal::Maximise => -row.fitness[0],
-        };
-        let Some(best) = self.list.iter().min_by(|a, b| order(a).total_cmp(&order(b))) else { return String::new() };
+        let order = |row: &Row| row.order(optimise.goal);
+        let Some(best) = self.best_row(optimise) else { return String::new() };
         let measure = words::of_column(&words::of_key(&optimise.measure));
         let mut text = format!(
             "The best {measure} of {} is that of {}, {}: {}.",
@@ -100,6 +107,10 @@ impl Rows {
         text + "\n\n"
     }
 
+    fn best_row(&self, optimise: &Optimise) -> Option<&Row> {
+        self.list.iter().min_by(|a, b| a.order(optimise.goal).total_cmp(&b.order(optimise.goal)))
+    }
+
     fn table(&self, optimise: &Optimise) -> String {
         let measure = words::of_column(&words::of_key(&optimise.measure));
         let mut table = MarkdownTable::new(&[
@@ -108,9 +119,15 @@ impl Rows {
             (&words::capitalised(&measure), Align::Right),
             ("Improvement", Align::Right),
             ("", Align::Left),
+            ("Short of the best", Align::Right),
             ("Evaluations", Align::Right),
             ("Ended by", Align::Left),
         ]);
+        let best = self.best_row(optimise).map_or(f64::NAN, |best| best.fitness[0]);
+        let short = |row: &Row| match 100.0 * (row.fitness[0] / best - 1.0).abs() {
+            share if share.is_nan() => String::new(),
+            share => format!("{} %", compact(share, 2)),
+        };
         for row in &self.list {
             let gaps: Vec<String> = row.gaps.iter().map(|gap| quantity(*gap, self.gap_unit, 3)).collect();
             let evaluations = if row.evaluations > 0.0 { format!("{}", row.evaluations) } else { String::new() };
@@ -124,6 +141,7 @@ impl Rows {
                 self.fitness(row),
                 improvement,
                 verdict,
+                short(row),
                 evaluations,
                 row.stopped.clone(),
             ]);

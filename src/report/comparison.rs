@@ -108,7 +108,10 @@ fn other_readings(judged: &[Judged]) -> String {
         let mut row = vec![format!("`{variant}`")];
         row.extend(told.iter().map(|one| {
             let moved = one.moved.iter().find(|moved| moved.variant == variant);
-            moved.map_or_else(String::new, |Moved { found, kept, .. }| if *kept { found.clone() } else { format!("**{found}**") })
+            moved.map_or_else(
+                String::new,
+                |Moved { found, kept, .. }| if *kept { found.clone() } else { format!("**{found}**") },
+            )
         }));
         table.row(row);
     }

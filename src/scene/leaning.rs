@@ -2,12 +2,12 @@
 
 use std::collections::BTreeSet;
 
-use super::{Assumption, AssumptionValue, Assumptions};
 use super::recipe::{
     ContactDampingRecipe, DamperRecipe, ExcitationKind, GapRecipe, Given, ImpulseTime, MassReading, MassRecipe, Recipe,
     StiffnessRecipe, StrengthRecipe, SurfaceRecipe, TimingRecipe,
 };
 use super::structure::Family;
+use super::{Assumption, AssumptionValue, Assumptions};
 
 impl Recipe {
     /// The assumptions that this recipe leans on, given that a sweep has been applied. The readings in force matter: only

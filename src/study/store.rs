@@ -26,8 +26,10 @@ pub fn save(layout: &Layout, item: &Item, finished: &Finished) -> Result<Record,
         publication: None,
     };
     record.write(&layout.path(&record_name(id)))?;
-    // What it was kept for is done; one that cannot be removed is begun anew by the next optimisation.
-    let _ = fs::remove_file(layout.path(&journal_name(id)));
+    if finished.failures.rows == 0 {
+        // What it was kept for is done; one that cannot be removed is begun anew by the next optimisation.
+        let _ = fs::remove_file(layout.path(&journal_name(id)));
+    }
     Ok(record)
 }
 
