@@ -32,7 +32,9 @@ pub(super) fn page(opened: &Opened, judgement: &Judgement, item: &Item) -> Strin
 /// The index of all pages.
 pub(super) fn index(opened: &Opened, judgement: &Judgement) -> String {
     let views: Vec<ExperimentView<'_>> = opened.items.iter().map(|item| listed(judgement, item)).collect();
-    report::index(&views, &assumptions(opened, |_| true))
+    // Measured times stand on a page of their own, which a benchmark writes.
+    let speed = opened.layout.path("reports/speed.md").exists().then_some("speed.md");
+    report::index(&views, &assumptions(opened, |_| true), speed)
 }
 
 fn listed<'a>(judgement: &'a Judgement, item: &'a Item) -> ExperimentView<'a> {

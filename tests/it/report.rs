@@ -145,7 +145,7 @@ fn the_index_tells_the_whole_study_at_a_glance() {
         page: "ch3/ch3-limit-stop.md".into(),
         figures: figures("ch3/"),
     };
-    golden("index.md", &index(&[view], &assumptions()));
+    golden("index.md", &index(&[view], &assumptions(), Some("speed.md")));
 }
 
 #[test]
@@ -188,7 +188,7 @@ fn an_explanation_is_told_by_its_first_sentence_in_the_index() {
         ..entry("limit", Verdict::Blocked)
     }];
     let view = ExperimentView { experiment: &experiment, judged: &one, page: String::new(), figures: Vec::new() };
-    let text = index(&[view], &[]);
+    let text = index(&[view], &[], None);
     assert!(text.contains("Only Fig. 18 and s. 3.6 say so.\n"), "{text}");
 }
 
