@@ -18,6 +18,8 @@ const CONVERGED: f64 = 1e-9;
 const FLAT: f64 = 1e-13;
 /// Conditions of the covariance beyond this end a start.
 const WORST_CONDITION: f64 = 1e14;
+/// A step beyond this, in sides of the box, has lost its way.
+const WIDEST: f64 = 1e3;
 /// Most doublings of the population.
 const DOUBLINGS: u32 = 9;
 
@@ -212,9 +214,8 @@ impl Run {
         let faded = libm::pow(1.0 - c_step, 2.0 * self.generation as f64);
         let calm = norm / (1.0 - faded).sqrt() < (1.4 + 2.0 / (n as f64 + 1.0)) * length;
         let gain = (c_path * (2.0 - c_path) * effective).sqrt();
-        for i in 0..n {
-            self.path_covariance[i] =
-                (1.0 - c_path) * self.path_covariance[i] + if calm { gain * mean_step[i] } else { 0.0 };
+        for (path, step) in self.path_covariance.iter_mut().zip(&mean_step) {
+            *path = (1.0 - c_path) * *path + if calm { gain * step } else { 0.0 };
         }
         let lost = if calm { 0.0 } else { c_path * (2.0 - c_path) };
         for i in 0..n {
@@ -241,6 +242,9 @@ impl Run {
         let (low, high) = last.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(*x), h.max(*x)));
         let flat = last.len() == late && high - low <= FLAT * low.abs().max(f64::MIN_POSITIVE);
         let condition = (widest / narrowest) * (widest / narrowest);
-        flat || self.step * widest < CONVERGED || !(condition < WORST_CONDITION) || !(self.step < 1e3)
+        flat || self.step * widest < CONVERGED
+            || condition.is_nan()
+            || condition > WORST_CONDITION
+            || self.step > WIDEST
     }
 }

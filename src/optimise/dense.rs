@@ -1,7 +1,7 @@
 //! Dense search: every point of a grid, then finer grids around the best one.
 
 use super::bounds::{Bounds, Spacing};
-use super::search::{Batch, Found, Optimiser, Score, Stopping, minimise};
+use super::search::{Found, Function, Optimiser, Score, Stopping, minimise};
 
 /// Points evaluated at once.
 const BATCH: usize = 256;
@@ -21,11 +21,7 @@ pub struct Dense {
 ///
 /// # Errors
 /// What `evaluate` fails with.
-pub fn dense<E>(
-    bounds: &Bounds,
-    settings: Dense,
-    evaluate: &mut dyn FnMut(&[Vec<f64>]) -> Result<Batch, E>,
-) -> Result<Option<Found>, E> {
+pub fn dense<E>(bounds: &Bounds, settings: Dense, evaluate: &mut Function<'_, E>) -> Result<Option<Found>, E> {
     let sides: Vec<Vec<f64>> =
         (0..bounds.size()).map(|side| bounds.along(side, settings.points, settings.spacing)).collect();
     let mut grid = Grid { sides, next: 0, asked: 0, rounds: settings.refine, best: None, whole: Vec::new() };

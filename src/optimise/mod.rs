@@ -23,6 +23,6 @@ pub use cma_es::CmaEs;
 pub use dense::{Dense, dense};
 pub use genetic::{Genetic, GeneticSettings};
 pub use random::Stream;
-pub use search::{Batch, Found, Optimiser, Score, Stalled, Step, Stopped, Stopping, minimise};
+pub use search::{Batch, Found, Function, Optimiser, Score, Stalled, Step, Stopped, Stopping, minimise};
 pub use section::{Section, sections};
 pub use two_opt::two_opt;

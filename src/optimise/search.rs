@@ -25,6 +25,9 @@ pub struct Batch {
     pub seconds: f64,
 }
 
+/// Evaluates a batch of points, in whatever order and on however many threads.
+pub type Function<'f, E> = dyn FnMut(&[Vec<f64>]) -> Result<Batch, E> + 'f;
+
 /// Something that looks for the smallest value, batch by batch.
 pub trait Optimiser {
     /// The points that it wants to know next; none if it has nothing more to ask.
@@ -117,7 +120,7 @@ pub struct Found {
 pub fn minimise<E>(
     optimiser: &mut dyn Optimiser,
     stopping: &Stopping,
-    evaluate: &mut dyn FnMut(&[Vec<f64>]) -> Result<Batch, E>,
+    evaluate: &mut Function<'_, E>,
 ) -> Result<Option<Found>, E> {
     let mut found: Option<Found> = None;
     let mut seconds = 0.0;

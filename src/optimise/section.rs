@@ -1,7 +1,7 @@
 //! Sections of a function: its values along each coordinate through a point, the others held.
 
 use super::bounds::{Bounds, Spacing};
-use super::search::{Batch, Score};
+use super::search::{Function, Score};
 
 /// A section along one coordinate.
 #[derive(Debug, Clone, PartialEq)]
@@ -21,7 +21,7 @@ pub fn sections<E>(
     centre: &[f64],
     points: usize,
     spacing: Spacing,
-    evaluate: &mut dyn FnMut(&[Vec<f64>]) -> Result<Batch, E>,
+    evaluate: &mut Function<'_, E>,
 ) -> Result<Vec<Section>, E> {
     let mut sections = Vec::with_capacity(centre.len());
     for side in 0..bounds.size() {

@@ -1,16 +1,12 @@
 //! 2-opt: the values of two coordinates change places wherever that is better, until no swap helps.
 
-use super::search::{Batch, Found, Score, Step, Stopped};
+use super::search::{Found, Function, Score, Step, Stopped};
 
 /// Improves `start`, whose score is known. Each pass tries every pair and takes the best swap.
 ///
 /// # Errors
 /// What `evaluate` fails with.
-pub fn two_opt<E>(
-    start: &[f64],
-    score: Score,
-    evaluate: &mut dyn FnMut(&[Vec<f64>]) -> Result<Batch, E>,
-) -> Result<Found, E> {
+pub fn two_opt<E>(start: &[f64], score: Score, evaluate: &mut Function<'_, E>) -> Result<Found, E> {
     let mut found = Found {
         point: start.to_vec(),
         score,

@@ -77,8 +77,8 @@ impl<'a> Fitness<'a> {
     }
 
     fn evaluate(&self, gaps: &[f64], rigour: Rigour) -> Result<Evaluated, String> {
-        let one = |array: &Box<dyn Array + 'a>| guarded(|| array.evaluate(gaps, rigour));
-        let each = self.arrays.iter().map(one).collect::<Result<Vec<_>, _>>()?;
+        let one = |array: &(dyn Array + 'a)| guarded(|| array.evaluate(gaps, rigour));
+        let each = self.arrays.iter().map(|array| one(array.as_ref())).collect::<Result<Vec<_>, _>>()?;
         Ok(mean(self.wanted, self.measures, &each))
     }
 }
