@@ -132,7 +132,10 @@ impl Checks<'_> {
     }
 
     /// The fitness is measured by a run, and the number of runs is bounded.
-    pub fn optimise(&self, optimise: &Optimise, measures: &[(Measure, Span)], at: Span) {
+    pub fn optimise(&self, optimise: &Optimise, measures: &[(Measure, Span)], solvers: &[SolverChoice], at: Span) {
+        if solvers.len() > 1 {
+            self.findings.wrong::<()>(at, "an optimisation runs under one solver");
+        }
         let name = word_of(optimise.measure);
         if !measures.iter().any(|(measure, _)| *measure == optimise.measure)
             && let Some((_, span)) = measures.first()

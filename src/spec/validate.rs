@@ -123,7 +123,7 @@ impl<'t> ExperimentReader<'t> {
         checks.energies(energies.as_ref(), &run.settings, energies_at);
         let (mut scene, sweep) = (scene?, sweep?.unwrap_or_else(ReadSweep::none));
         if let Some(optimise) = &optimise {
-            checks.optimise(optimise, &measures, optimise_at);
+            checks.optimise(optimise, &measures, &run.solvers, optimise_at);
         }
         checks.excitation(&measures, &scene.recipe.excitation.kind);
         let mut places = sweep.places;

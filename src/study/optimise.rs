@@ -95,6 +95,8 @@ struct Searches<'a> {
     journal: Journal,
     /// Evaluations told of so far.
     told: u64,
+    /// The search that was heard of last, and its best value so far.
+    last: (String, f64),
 }
 
 /// Runs it.
@@ -131,6 +133,7 @@ fn found(task: Task<'_>, evaluate: &impl Evaluate, listener: &dyn Listen) -> Res
         measure: measure.ok_or("what is to be optimised is not measured")?,
         journal: Journal::open(task.journal, meaning),
         told: 0,
+        last: (String::new(), f64::INFINITY),
     };
     let candidates = searches.all()?;
     Ok((candidates, searches.told))
@@ -258,7 +261,12 @@ impl Searches<'_> {
         if scores.len() < points.len() {
             return Err("a point has no number that could be kept".into());
         }
-        let best = scores.iter().map(|score| score.value).fold(f64::INFINITY, f64::min);
+        if self.last.0 != search {
+            self.last = (search.to_owned(), f64::INFINITY);
+        }
+        // The smaller of NaN and a number is the number.
+        self.last.1 = scores.iter().map(|score| score.value).fold(self.last.1, f64::min);
+        let best = self.last.1;
         let experiment = &self.experiment.id;
         let (evaluations, best) = (before + points.len() as u64, self.signed(best));
         let unit = self.optimise.measure.unit();

@@ -259,6 +259,8 @@ fn mistakes_in_an_optimisation_are_told_where_they_stand() {
     let cut = GAPS.find("optimise:\n").unwrap();
     let alone = format!("{}measure: rms_velocity\n", &GAPS[..cut]);
     assert_eq!(read(&alone).unwrap_err().to_string().matches("nothing optimises this gap").count(), 3);
+    let twice = format!("{GAPS}run: {{solver: [event_driven, {{fixed_step: {{time_step: 1 ms}}}}]}}\n");
+    assert!(read(&twice).unwrap_err().to_string().contains("under one solver"));
     let huge = GAPS.replace("dense: {points: 3, refine: 2}", "dense: {points: 1000}");
     assert!(read(&huge).unwrap_err().to_string().contains("evaluations are too many"));
     let many = GAPS.replace("to: 100 mm", "to: 0 mm").replace("seeds: [1, 2]", "seeds: [1, 1]").replace("20,", "2,");
