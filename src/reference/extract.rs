@@ -175,7 +175,7 @@ impl Parting {
         let shared = common(&both)?;
         let apart = |cells: &[Cell]| {
             let (a, b) = (cells[0], cells[1]);
-            let noise = CERTAIN * a.run.hypot(b.run);
+            let noise = CERTAIN * libm::hypot(a.run, b.run);
             (a.value - b.value).abs() - noise > self.fraction * (a.value + b.value).abs() / 2.0
         };
         let fraction = percent(self.fraction);

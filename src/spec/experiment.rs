@@ -368,7 +368,7 @@ pub enum Drawing {
     /// Curves in panels, top to bottom, sharing the x axis.
     Lines(Vec<Panel>),
     /// A quantity over two others, as colours, in panels of one colour scale.
-    Map(MapSpec),
+    Map(Box<MapSpec>),
 }
 
 /// A map. Its three columns hold a number a row (a cell a row, drawn as such) or a list a row (a field a row, drawn with

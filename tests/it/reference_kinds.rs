@@ -327,8 +327,8 @@ fn means_and_deviations_count_every_stretch_by_its_length() {
         ("0.3536", format!("standard_deviation_over: {{{over}}}")),
         ("1.500", format!("mean_over: {{{over}, from: 1, to: 7.2831853}}")),
         ("1.708", format!("interpolated: {{{over}, at: 1.00 rad/s}}")),
-        ("2.00", format!("largest: {{of: velocity_amplitude_ratio}}")),
-        ("1.00", format!("smallest: {{of: velocity_amplitude_ratio}}")),
+        ("2.00", "largest: {of: velocity_amplitude_ratio}".to_owned()),
+        ("1.00", "smallest: {of: velocity_amplitude_ratio}".to_owned()),
     ] {
         let body = format!("value: \"{value}\"\nfrom: {{{from}}}");
         assert_eq!(verdict(&body, &table), Verdict::Reproduced, "{body}: {}", judged(&body, &table).found);
