@@ -54,7 +54,7 @@ fn told(opened: &Opened, item: &Item) -> String {
     text += &columns(&rows);
 
     text += "\nAssumptions\n";
-    let used = experiment.assumptions_used();
+    let used = experiment.assumptions_used(&opened.sheet);
     for (name, entry) in opened.sheet.entries.iter().filter(|(name, _)| used.contains(name)) {
         text += &format!("  {} = {}\n", words::of_key(name), value_in_words(*name, &entry.value));
         text += &wrapped(&entry.reason, "      ", 100);

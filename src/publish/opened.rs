@@ -62,8 +62,12 @@ impl Opened {
             .into_iter()
             .map(|source| {
                 let reference = references.get(&source.experiment.id.0);
-                let sensitivity =
-                    if reference.is_some_and(has_values) { Sensitivity::Wanted } else { Sensitivity::NotWanted };
+                let asked = source.experiment.moved.is_some();
+                let sensitivity = if asked || reference.is_some_and(has_values) {
+                    Sensitivity::Wanted
+                } else {
+                    Sensitivity::NotWanted
+                };
                 Item::new(&layout, source, &loaded.sheet, sensitivity)
             })
             .collect();

@@ -11,7 +11,7 @@ use crate::study::{ASSUMPTIONS, Item, PRESENTATION_VERSION, Reason, Record, diff
 /// whenever anything at all has changed.
 pub(super) fn meaning(opened: &Opened, item: &Item, record: &Record) -> Value {
     let experiment = &item.source.experiment;
-    let used = experiment.assumptions_used();
+    let used = experiment.assumptions_used(&opened.sheet);
     let assumptions: BTreeMap<_, _> = opened.sheet.entries.iter().filter(|(name, _)| used.contains(name)).collect();
     json!({
         "experiment": experiment.canonical_json(),

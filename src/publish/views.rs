@@ -15,7 +15,7 @@ use crate::text::words;
 /// The page of an experiment.
 pub(super) fn page(opened: &Opened, judgement: &Judgement, item: &Item) -> String {
     let experiment = &item.source.experiment;
-    let used = experiment.assumptions_used();
+    let used = experiment.assumptions_used(&opened.sheet);
     let up = to_reports(item);
     report::page(&PageView {
         experiment,
@@ -32,7 +32,9 @@ pub(super) fn page(opened: &Opened, judgement: &Judgement, item: &Item) -> Strin
 /// The index of all pages.
 pub(super) fn index(opened: &Opened, judgement: &Judgement) -> String {
     let views: Vec<ExperimentView<'_>> = opened.items.iter().map(|item| listed(judgement, item)).collect();
-    report::index(&views, &assumptions(opened, |_| true))
+    // Measured times stand on a page of their own, which a benchmark writes.
+    let speed = opened.layout.path("reports/speed.md").exists().then_some("speed.md");
+    report::index(&views, &assumptions(opened, |_| true), speed)
 }
 
 fn listed<'a>(judgement: &'a Judgement, item: &'a Item) -> ExperimentView<'a> {
@@ -87,7 +89,8 @@ fn figures(experiment: &Experiment, folder: &str) -> Vec<FigureView> {
 
 fn assumptions(opened: &Opened, wanted: impl Fn(Assumption) -> bool) -> Vec<AssumptionView> {
     let used_by = |name: &Assumption| {
-        let items = opened.items.iter().filter(|item| item.source.experiment.assumptions_used().contains(name));
+        let items =
+            opened.items.iter().filter(|item| item.source.experiment.assumptions_used(&opened.sheet).contains(name));
         let files = items.filter_map(|item| opened.references.get(&item.source.experiment.id.0));
         files.flat_map(|file| file.entries.iter().map(|entry| entry.id.clone())).collect()
     };

@@ -1,7 +1,7 @@
 //! Takes numbers out of tables. Each comes with its own error, to which the grid of the sweep belongs: a top is known to lie
 //! between its neighbours, no better.
 
-use super::extraction::{Along, Cells, Direction, Extraction, NearestPassage, Parting, Side};
+use super::extraction::{Along, Cells, Direction, Extraction, Meeting, NearestPassage, Parting, Side};
 use super::line::{Position, common, lines};
 use super::selection::same;
 use super::text::{percent, significant};
@@ -118,6 +118,7 @@ impl Extraction {
                 Extracted::place(line.onset(word.above)?.1, line.over_unit)
             }
             Self::Parting(word) => word.take(view)?,
+            Self::Meeting(word) => word.take(view)?,
             Self::LargestStepBack(word) => {
                 let line = view.line(word.source(), &word.of, &word.over, None)?;
                 let line = if word.direction == Direction::Increasing { line } else { line.inverted() };
@@ -174,7 +175,7 @@ impl Parting {
         let shared = common(&both)?;
         let apart = |cells: &[Cell]| {
             let (a, b) = (cells[0], cells[1]);
-            let noise = CERTAIN * a.run.hypot(b.run);
+            let noise = CERTAIN * libm::hypot(a.run, b.run);
             (a.value - b.value).abs() - noise > self.fraction * (a.value + b.value).abs() / 2.0
         };
         let fraction = percent(self.fraction);
@@ -189,6 +190,31 @@ impl Parting {
                 Ok(Extracted { value: x, run: (x - before) / 2.0, spread: 0.0, unit, scale: None })
             }
         }
+    }
+}
+
+impl Meeting {
+    fn take(&self, view: &View<'_>) -> Result<Extracted, Absence> {
+        let both = lines(view, self.source(), &self.of, &self.over, &self.by)?;
+        if both.len() != 2 {
+            return Err(Absence::Broken(format!("{} lines by `{}` where two meet", both.len(), self.by)));
+        }
+        let shared = common(&both)?;
+        let lead = |cells: &[Cell]| cells[0].value - cells[1].value;
+        let pair = shared.windows(2).find(|pair| lead(&pair[0].1) * lead(&pair[1].1) <= 0.0);
+        let Some([(before, left), (after, right)]) = pair else {
+            return Err(Absence::Nowhere("the lines never change places".into()));
+        };
+        let (from, to) = (lead(left), lead(right));
+        let share = if from == to { 0.0 } else { from / (from - to) };
+        let value = before + share * (after - before);
+        Ok(Extracted {
+            value,
+            run: (after - before) / 2.0,
+            spread: 0.0,
+            unit: both[0].1.over_unit.clone(),
+            scale: None,
+        })
     }
 }
 

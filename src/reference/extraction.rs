@@ -36,6 +36,8 @@ pub enum Extraction {
     FirstAbove(FirstAbove),
     /// The first parameter value at which two lines differ by more than a fraction of their mean, and by more than chance.
     Parting(Parting),
+    /// The first parameter value at which two lines change places.
+    Meeting(Meeting),
     /// The largest fall of a rising line, or rise of a falling one: how much it deviates from monotone.
     LargestStepBack(StepBack),
     /// Of the instants at which one path of a time history passes another, the one nearest to a given time.
@@ -141,6 +143,15 @@ word! {
         by: String,
         /// Of their mean.
         fraction: f64,
+    }
+}
+word! {
+    /// Two lines that change places.
+    Meeting {
+        /// The parameter.
+        over: String,
+        /// The column that tells the two lines apart.
+        by: String,
     }
 }
 word! {
@@ -250,6 +261,7 @@ impl Extraction {
             Self::Crossing(word) => word.table.as_deref(),
             Self::FirstAbove(word) => word.table.as_deref(),
             Self::Parting(word) => word.table.as_deref(),
+            Self::Meeting(word) => word.table.as_deref(),
             Self::LargestStepBack(word) => word.table.as_deref(),
             Self::Ratio(quotient) => return [quotient.of.tables(), quotient.to.tables()].concat(),
             Self::Times(times) => return times.of.tables(),

@@ -15,9 +15,9 @@ use super::extraction::Extraction;
 use super::fit::Fit;
 use super::printed::Printed;
 use super::resonance::PrintedPeak;
-use super::tally::Outcome;
+use super::tally::{Decision, Outcome};
 use super::text::{percent, significant, with_unit};
-use super::verdict::{Comparison, Judged, Part, Verdict};
+use super::verdict::{Comparison, Judged, Moved, Part, Verdict};
 use super::view::{Absence, Reads, Tables, View};
 use crate::table::BASELINE;
 
@@ -50,15 +50,16 @@ pub(crate) fn judge_entry(
             };
             decide(predicate, &view).and_then(|baseline| {
                 let others = moved(&view, |variant| decide(predicate, variant))?;
-                let kept = others.iter().filter(|(_, other)| other.outcome == baseline.outcome).count();
-                let words = match baseline.outcome {
-                    Outcome::Holds => "holds",
-                    Outcome::Undecided => "too near to tell",
-                    Outcome::Fails => "does not hold",
+                let told = |(variant, other): &(&str, Decision)| Moved {
+                    variant: (*variant).into(),
+                    found: in_words(other.outcome).into(),
+                    kept: other.outcome == baseline.outcome,
                 };
+                let moved: Vec<Moved> = others.iter().map(told).collect();
                 Ok(Judgement {
-                    found: format!("{words}: {}", baseline.found),
-                    robust: robust(kept, others.len()),
+                    found: format!("{}: {}", in_words(baseline.outcome), baseline.found),
+                    robust: robust(&moved),
+                    moved,
                     fit: predicate.fit(&view),
                     ..Judgement::of(verdict(baseline.outcome))
                 })
@@ -90,6 +91,15 @@ pub(crate) fn judge_entry(
         explanation: entry.explanation.clone(),
         tolerance_reason,
         robust: judgement.robust,
+        moved: judgement.moved,
+    }
+}
+
+fn in_words(outcome: Outcome) -> &'static str {
+    match outcome {
+        Outcome::Holds => "holds",
+        Outcome::Undecided => "too near to tell",
+        Outcome::Fails => "does not hold",
     }
 }
 
@@ -100,11 +110,20 @@ struct Judgement {
     parts: Vec<Part>,
     fit: Option<Fit>,
     robust: Option<(u32, u32)>,
+    moved: Vec<Moved>,
 }
 
 impl Judgement {
     fn of(verdict: Verdict) -> Self {
-        Self { verdict, found: String::new(), comparison: None, parts: Vec::new(), fit: None, robust: None }
+        Self {
+            verdict,
+            found: String::new(),
+            comparison: None,
+            parts: Vec::new(),
+            fit: None,
+            robust: None,
+            moved: Vec::new(),
+        }
     }
 
     fn missing(absence: &Absence) -> Self {
@@ -150,7 +169,8 @@ fn severity(verdict: Verdict) -> u8 {
     }
 }
 
-fn robust(kept: usize, run: usize) -> Option<(u32, u32)> {
+fn robust(moved: &[Moved]) -> Option<(u32, u32)> {
+    let (kept, run) = (moved.iter().filter(|one| one.kept).count(), moved.len());
     (run > 0).then(|| (u32::try_from(kept).unwrap_or(u32::MAX), u32::try_from(run).unwrap_or(u32::MAX)))
 }
 
@@ -189,13 +209,9 @@ fn value(
         Absence::Broken(format!("`{}` cannot be held against a column in `{}`", published.text(), simulated.unit))
     })?;
     // A feature that vanishes when an input is moved has no half range; it counts as a verdict that was not kept.
-    let mut vanished = 0;
-    let others: Vec<(&str, Extracted)> = moved(view, |variant| match from.take(variant) {
-        Err(Absence::Nowhere(_)) => {
-            vanished += 1;
-            Err(Absence::NoRow(String::new()))
-        }
-        other => other,
+    let others: Vec<(&str, Option<Extracted>)> = moved(view, |variant| match from.take(variant) {
+        Err(Absence::Nowhere(_)) => Ok(None),
+        other => other.map(Some),
     })?;
     let comparison = Comparison {
         simulated: simulated.value,
@@ -210,13 +226,15 @@ fn value(
         }),
     };
     let (verdict, remark) = compare::verdict(&comparison, simulated.scale, fitted);
-    let kept = others
-        .iter()
-        .filter(|(_, other)| {
+    let told = |(variant, other): &(&str, Option<Extracted>)| {
+        let kept = other.as_ref().is_some_and(|other| {
             let there = Comparison { simulated: other.value, ..comparison };
             compare::verdict(&there, simulated.scale, fitted).0 == verdict
-        })
-        .count();
+        });
+        let found = other.as_ref().map_or_else(|| "none".into(), |other| significant(other.value, 4));
+        Moved { variant: (*variant).into(), found, kept }
+    };
+    let moved: Vec<Moved> = others.iter().map(told).collect();
     let mut found = format!(
         "{} ± {}",
         with_unit(simulated.value, 5, &simulated.unit),
@@ -230,14 +248,14 @@ fn value(
     if let Some(remark) = remark {
         found = format!("{found}; {remark}");
     }
-    let robust = robust(kept, others.len() + vanished);
-    Ok(Judgement { found, comparison: Some(comparison), robust, ..Judgement::of(verdict) })
+    let robust = robust(&moved);
+    Ok(Judgement { found, comparison: Some(comparison), robust, moved, ..Judgement::of(verdict) })
 }
 
 /// Half the range that each assumption gives the value, root-sum-square. A variant is named `assumption=value`.
-fn u_input(baseline: f64, others: &[(&str, Extracted)]) -> f64 {
+fn u_input(baseline: f64, others: &[(&str, Option<Extracted>)]) -> f64 {
     let mut ranges: BTreeMap<&str, (f64, f64)> = BTreeMap::new();
-    for (variant, other) in others {
+    for (variant, other) in others.iter().filter_map(|(variant, other)| Some((variant, other.as_ref()?))) {
         let assumption = variant.split_once('=').map_or(*variant, |(name, _)| name);
         let range = ranges.entry(assumption).or_insert((baseline, baseline));
         *range = (range.0.min(other.value), range.1.max(other.value));

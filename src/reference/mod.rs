@@ -40,5 +40,5 @@ pub use printed::{Printed, PrintedError};
 pub use resonance::{Feature, PrintedPeak, Which};
 pub use selection::{Allowed, Selection};
 pub use self_test::{SelfTestFailure, self_test};
-pub use verdict::{Comparison, Judged, Part, Verdict};
+pub use verdict::{Comparison, Judged, Moved, Part, Verdict};
 pub use view::{TableState, Tables};

@@ -216,6 +216,7 @@ impl Bench<'_> {
             Extraction::Crossing(word) => shift(cells(Role::Coordinate, &word.over)),
             Extraction::FirstAbove(word) => shift(cells(Role::Coordinate, &word.over)),
             Extraction::Parting(word) => shift(cells(Role::Coordinate, &word.over)),
+            Extraction::Meeting(word) => shift(cells(Role::Coordinate, &word.over)),
             Extraction::Largest(word) | Extraction::Smallest(word) => shift(cells(Role::Value, &word.of)),
             Extraction::Interpolated(word) => shift(cells(Role::Value, &word.of)),
             Extraction::MeanOver(word) => shift(cells(Role::Value, &word.of)),

@@ -103,6 +103,19 @@ pub struct Judged {
     pub tolerance_reason: Option<String>,
     /// Of the variants of the assumptions that were run, how many keep the verdict: (kept, run).
     pub robust: Option<(u32, u32)>,
+    /// What each of them gives.
+    pub moved: Vec<Moved>,
+}
+
+/// An entry with one assumption moved.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Moved {
+    /// `stop_length=0.05`.
+    pub variant: String,
+    /// What comes out then, in a word or a number.
+    pub found: String,
+    /// Whether the verdict stays.
+    pub kept: bool,
 }
 
 impl Judged {

@@ -1,6 +1,6 @@
 //! What the study says beside what came out.
 
-use crate::reference::{Comparison, Judged, Verdict};
+use crate::reference::{Comparison, Judged, Moved, Verdict};
 use crate::text::number::{compact, signed, significant};
 
 use super::markdown::{Align, MarkdownTable, one_line};
@@ -16,6 +16,7 @@ pub(super) fn section(judged: &[Judged]) -> String {
     text += &format!("{}.\n\n", sentence_of(&Tally::of(judged)));
     text += &entries(judged);
     text += &numbers(judged);
+    text += &other_readings(judged);
     text += &by_hand(judged);
     text += &explanations(judged);
     text
@@ -87,6 +88,39 @@ fn numbers(judged: &[Judged]) -> String {
         "How far each number is off, and how far it may be (all in the number’s own unit): u_num is what the run \
          itself may be off, u_input what the unstated inputs may shift, u_D half a unit of the last printed digit, and \
          u_val = √(u_num² + u_input² + u_D²).\n\n{table}"
+    )
+}
+
+/// What comes out with each assumption moved: the other readings of the source. Nothing where none was moved.
+fn other_readings(judged: &[Judged]) -> String {
+    let told: Vec<&Judged> = judged.iter().filter(|one| !one.moved.is_empty()).collect();
+    let mut variants: Vec<&str> = Vec::new();
+    for one in told.iter().flat_map(|judged| &judged.moved) {
+        if !variants.contains(&one.variant.as_str()) {
+            variants.push(&one.variant);
+        }
+    }
+    let names: Vec<String> = told.iter().map(|one| entry(one)).collect();
+    let mut header = vec![("Assumption moved", Align::Left)];
+    header.extend(names.iter().map(|name| (name.as_str(), Align::Right)));
+    let mut table = MarkdownTable::new(&header);
+    for variant in variants {
+        let mut row = vec![format!("`{variant}`")];
+        row.extend(told.iter().map(|one| {
+            let moved = one.moved.iter().find(|moved| moved.variant == variant);
+            moved.map_or_else(
+                String::new,
+                |Moved { found, kept, .. }| if *kept { found.clone() } else { format!("**{found}**") },
+            )
+        }));
+        table.row(row);
+    }
+    let table = table.finish();
+    if table.is_empty() {
+        return table;
+    }
+    format!(
+        "What the other values of the assumptions give, one moved at a time; bold where the verdict would be another:\n\n{table}"
     )
 }
 

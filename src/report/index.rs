@@ -47,9 +47,10 @@ have to be moved for the order of contacts to change; *ties* are events at the s
 order.
 ";
 
-/// `reports/README.md`: everything at a glance. `experiments` in the order in which the index lists them.
+/// `reports/README.md`: everything at a glance. `experiments` in the order in which the index lists them; `speed` links to the
+/// page of measured times, if there is one.
 #[must_use]
-pub fn index(experiments: &[ExperimentView<'_>], assumptions: &[AssumptionView]) -> String {
+pub fn index(experiments: &[ExperimentView<'_>], assumptions: &[AssumptionView], speed: Option<&str>) -> String {
     let judged = || experiments.iter().flat_map(|view| view.judged);
     let tally = Tally::of(judged());
     let unexpected = judged().filter(|one| !one.as_expected()).count();
@@ -69,7 +70,11 @@ pub fn index(experiments: &[ExperimentView<'_>], assumptions: &[AssumptionView])
         }
     );
     text += "[How to read a page](#how-to-read-a-page) · [Not reproduced](#not-reproduced) · \
-             [Assumptions](#assumptions) · [Tolerances set by hand](#tolerances-set-by-hand)\n\n";
+             [Assumptions](#assumptions) · [Tolerances set by hand](#tolerances-set-by-hand)";
+    if let Some(page) = speed {
+        text += &format!(" · [Speed]({page})");
+    }
+    text += "\n\n";
     let mut chapters: BTreeMap<u32, Vec<&ExperimentView<'_>>> = BTreeMap::new();
     for view in experiments {
         chapters.entry(view.experiment.source.chapter).or_default().push(view);

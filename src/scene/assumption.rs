@@ -43,11 +43,15 @@ pub enum Assumption {
     BeamModes,
     /// Number of modes of a plate along each side.
     PlateModes,
-    /// What m′ on beams and plates is a share of: the `total` mass, or the `modal` mass at unit largest amplitude.
-    DamperMass,
-    /// ω₁ in h′ = h ω₁²/g on beams and plates: of the `clean` structure or of the `loaded` one.
-    GapFrequency,
-    /// What floors on beams are tuned to, kf = mp ω²: `clean`, `loaded`, or `untuned`.
+    /// What m′ on beams is a share of: the `total` mass, or the `modal` mass at unit largest amplitude.
+    BeamDamperMass,
+    /// The same on plates.
+    PlateDamperMass,
+    /// ω₁ in h′ = h ω₁²/g on beams: of the `clean` structure or of the `loaded` one.
+    BeamGapFrequency,
+    /// The same on plates.
+    PlateGapFrequency,
+    /// Floors on beams: a stiffness, N/m, or what they are tuned to, kf = mp ω²: `clean`, `loaded`, or `untuned`.
     BeamFloorTuning,
     /// The same on plates.
     PlateFloorTuning,
@@ -67,6 +71,12 @@ pub enum Assumption {
     PlateHarmonicForce,
     /// What is made of the velocities of several points: the `largest` or the `mean`.
     GridVelocity,
+    /// J of the impulses on beams where the text gives no amplitude (chapter 6), N s.
+    BeamImpulse,
+    /// The same on plates.
+    PlateImpulse,
+    /// Distance that an array of dampers keeps from the ends of a beam, m.
+    BeamArrayMargin,
     /// How the mass measure compares kinetic energies with those of the clean structure: `jump`, `after`, `level`.
     MassMeasure,
 }

@@ -2,17 +2,18 @@
 
 use std::collections::BTreeSet;
 
-use super::Assumption;
 use super::recipe::{
     ContactDampingRecipe, DamperRecipe, ExcitationKind, GapRecipe, Given, ImpulseTime, MassReading, MassRecipe, Recipe,
     StiffnessRecipe, StrengthRecipe, SurfaceRecipe, TimingRecipe,
 };
 use super::structure::Family;
+use super::{Assumption, AssumptionValue, Assumptions};
 
 impl Recipe {
-    /// The assumptions that this recipe leans on, given that a sweep has been applied.
+    /// The assumptions that this recipe leans on, given that a sweep has been applied. The readings in force matter: only
+    /// an untuned floor asks what untuned means.
     #[must_use]
-    pub fn assumptions(&self) -> BTreeSet<Assumption> {
+    pub fn assumptions(&self, in_force: &Assumptions) -> BTreeSet<Assumption> {
         let mut set = BTreeSet::new();
         let Ok(kind) = self.structure.kind() else { return set };
         set.extend(self.structure.assumed());
@@ -21,7 +22,7 @@ impl Recipe {
         }
         lean(&mut set, &self.gravity);
         for damper in self.dampers_in_place() {
-            damper.lean(&mut set, kind.family);
+            damper.lean(&mut set, kind.family, in_force);
         }
         self.lean_of_excitation(&mut set, kind.family);
         if self.observe.leans_on_grid(kind) {
@@ -35,6 +36,9 @@ impl Recipe {
         let harmonic = excitation.kind == ExcitationKind::Harmonic;
         if let StrengthRecipe::Force(force) = &excitation.strength {
             lean(set, force);
+        }
+        if let StrengthRecipe::Impulse(impulse) = &excitation.strength {
+            lean(set, impulse);
         }
         if matches!(excitation.strength, StrengthRecipe::ForceRatio(_))
             && !harmonic
@@ -53,15 +57,18 @@ impl Recipe {
 }
 
 impl DamperRecipe {
-    fn lean(&self, set: &mut BTreeSet<Assumption>, family: Family) {
+    fn lean(&self, set: &mut BTreeSet<Assumption>, family: Family, in_force: &Assumptions) {
         let by_ratio = matches!(self.gap, GapRecipe::Ratio(_) | GapRecipe::Ratios(_));
         if family != Family::Mass {
             if by_ratio {
-                set.insert(Assumption::GapFrequency);
+                set.extend(family.gap_frequency());
             }
             if matches!(self.mass, MassRecipe::Ratio(_)) && self.mass_reading == MassReading::Assumed {
-                set.insert(Assumption::DamperMass);
+                set.extend(family.damper_mass());
             }
+        }
+        if let Some(margin) = self.array.as_ref().and_then(|array| array.margin.as_ref()) {
+            lean(set, margin);
         }
         for surface in [&self.floor, &self.ceiling] {
             if let SurfaceRecipe::Resilient { stiffness, damping, .. } = surface {
@@ -70,7 +77,10 @@ impl DamperRecipe {
                     StiffnessRecipe::Untuned => drop(set.insert(Assumption::UntunedFrequencyRatio)),
                     StiffnessRecipe::Assumed => {
                         set.extend(family.floor_tuning());
-                        set.insert(Assumption::UntunedFrequencyRatio);
+                        let reading = family.floor_tuning().and_then(|tuning| in_force.values.get(&tuning));
+                        if matches!(reading, Some(AssumptionValue::Choice(word)) if word == "untuned") {
+                            set.insert(Assumption::UntunedFrequencyRatio);
+                        }
                     }
                     StiffnessRecipe::Stiffness(_) | StiffnessRecipe::Tuned => {}
                 }
@@ -111,6 +121,26 @@ impl Family {
         }
     }
 
+    /// The assumption on what a mass ratio is a share of.
+    #[must_use]
+    pub fn damper_mass(self) -> Option<Assumption> {
+        match self {
+            Self::Mass => None,
+            Self::Beam => Some(Assumption::BeamDamperMass),
+            Self::Plate => Some(Assumption::PlateDamperMass),
+        }
+    }
+
+    /// The assumption on the frequency in a gap ratio.
+    #[must_use]
+    pub fn gap_frequency(self) -> Option<Assumption> {
+        match self {
+            Self::Mass => None,
+            Self::Beam => Some(Assumption::BeamGapFrequency),
+            Self::Plate => Some(Assumption::PlateGapFrequency),
+        }
+    }
+
     /// The assumption on the damping ratio of floors and ceilings.
     #[must_use]
     pub fn contact_damping_ratio(self) -> Assumption {
@@ -118,6 +148,16 @@ impl Family {
             Self::Mass => Assumption::ContactDampingRatio,
             Self::Beam => Assumption::BeamContactDampingRatio,
             Self::Plate => Assumption::PlateContactDampingRatio,
+        }
+    }
+
+    /// The assumption on impulses whose size the text does not give, N s.
+    #[must_use]
+    pub fn impulse(self) -> Option<Assumption> {
+        match self {
+            Self::Mass => None,
+            Self::Beam => Some(Assumption::BeamImpulse),
+            Self::Plate => Some(Assumption::PlateImpulse),
         }
     }
 

@@ -6,8 +6,8 @@
 use super::normal_modes::{add_square, normal_modes};
 use super::place::{PlaceRecipe, Places};
 use super::recipe::{
-    ContactDampingRecipe, DamperRecipe, GapRecipe, MassReading, MassRecipe, ObserveRecipe, Part, PointsRecipe, Recipe,
-    RecipeError, StiffnessRecipe, SurfaceRecipe, TimingRecipe,
+    ContactDampingRecipe, DamperRecipe, Filling, GapRecipe, MassReading, MassRecipe, ObserveRecipe, Part, PointsRecipe,
+    Recipe, RecipeError, StiffnessRecipe, SurfaceRecipe, TimingRecipe,
 };
 use super::structure::{Family, Kind, Point, Structure};
 use super::{
@@ -130,9 +130,9 @@ impl Base<'_> {
     }
 
     /// The clean frequency, or the loaded one where the assumption says so.
-    fn clean_or_loaded(&self, loaded: Option<f64>, by: Assumption) -> Result<f64, RecipeError> {
-        match loaded {
-            Some(loaded) if self.assumptions.choice(by, &["clean", "loaded"])? == 1 => Ok(loaded),
+    fn clean_or_loaded(&self, loaded: Option<f64>, by: Option<Assumption>) -> Result<f64, RecipeError> {
+        match loaded.zip(by) {
+            Some((loaded, by)) if self.assumptions.choice(by, &["clean", "loaded"])? == 1 => Ok(loaded),
             _ => Ok(self.natural()),
         }
     }
@@ -141,7 +141,8 @@ impl Base<'_> {
 impl DamperRecipe {
     fn place<'r>(&'r self, base: &Base<'_>, places: &Places<'_>, index: usize) -> Result<Vec<Placed<'r>>, RecipeError> {
         let part = Part::Damper(index);
-        let points = places.array(&self.at, self.array.as_ref(), part)?;
+        let margin = self.array.as_ref().and_then(|array| array.margin).map(|margin| base.assumptions.given(margin));
+        let points = places.array(&self.at, self.array.as_ref(), margin.transpose()?.unwrap_or(0.0), part)?;
         let count = points.len() as f64;
         let whole = self.whole_mass(base).map_err(|error| error.within(part))?;
         if !(self.particle_share > 0.0 && self.particle_share <= 1.0) {
@@ -188,7 +189,10 @@ impl DamperRecipe {
         let modal = match self.mass_reading {
             MassReading::Total => false,
             MassReading::Modal => true,
-            MassReading::Assumed => base.assumptions.choice(Assumption::DamperMass, &["total", "modal"])? == 1,
+            MassReading::Assumed => match base.kind.family.damper_mass() {
+                Some(by) => base.assumptions.choice(by, &["total", "modal"])? == 1,
+                None => false,
+            },
         };
         Ok(if modal { base.structure.model().modal_mass() } else { base.mass })
     }
@@ -214,7 +218,7 @@ impl Placed<'_> {
 
     fn gap(&self, base: &Base<'_>, loaded: Option<f64>) -> Result<f64, RecipeError> {
         let unit = || {
-            let natural = base.clean_or_loaded(loaded, Assumption::GapFrequency)?;
+            let natural = base.clean_or_loaded(loaded, base.kind.family.gap_frequency())?;
             Ok::<_, RecipeError>((base.gravity, natural * natural))
         };
         let by_ratio = |ratio: f64| {
@@ -231,6 +235,8 @@ impl Placed<'_> {
             GapRecipe::Gap(gap) => *gap,
             GapRecipe::Ratios(ratios) => by_ratio(each(ratios)?)?,
             GapRecipe::Gaps(gaps) => each(gaps)?,
+            GapRecipe::Filled { uniform, filling: Filling::Uniform, .. } => *uniform,
+            GapRecipe::Filled { optimised, filling: Filling::Optimised, .. } => each(optimised)?,
             GapRecipe::Infinite => f64::INFINITY,
         };
         if gap.is_nan() || gap < 0.0 {
@@ -306,6 +312,9 @@ impl StiffnessRecipe {
                 let Some(by) = base.kind.family.floor_tuning() else {
                     return Err(RecipeError::OutOfRange("on a single mass write `stiffness_ratio: assumed`".into()));
                 };
+                if let Ok(stiffness) = base.assumptions.number(by) {
+                    return Ok(stiffness);
+                }
                 match base.assumptions.choice(by, &["clean", "loaded", "untuned"])? {
                     0 => tuned(base.natural()),
                     1 => tuned(loaded.unwrap_or_else(|| base.natural())),

@@ -71,8 +71,8 @@ enum Kind {
     Choice(&'static [&'static str]),
     /// A number of modes.
     Modes,
-    /// A time, or one of these readings.
-    TimeOr(&'static [&'static str]),
+    /// A quantity, or one of these readings.
+    QuantityOr(Dimension, &'static [&'static str]),
     Curve,
 }
 
@@ -101,10 +101,14 @@ fn kind(name: Assumption) -> Kind {
         }
         Assumption::EquivalentDampingCurve => Kind::Curve,
         Assumption::BeamModes | Assumption::PlateModes => Kind::Modes,
-        Assumption::DamperMass => Kind::Choice(&["total", "modal"]),
-        Assumption::GapFrequency => Kind::Choice(&["clean", "loaded"]),
-        Assumption::BeamFloorTuning | Assumption::PlateFloorTuning => Kind::Choice(&["clean", "loaded", "untuned"]),
-        Assumption::BeamImpulseTime | Assumption::PlateImpulseTime => Kind::TimeOr(&IMPULSE_TIMES),
+        Assumption::BeamDamperMass | Assumption::PlateDamperMass => Kind::Choice(&["total", "modal"]),
+        Assumption::BeamGapFrequency | Assumption::PlateGapFrequency => Kind::Choice(&["clean", "loaded"]),
+        Assumption::BeamFloorTuning | Assumption::PlateFloorTuning => {
+            Kind::QuantityOr(Dimension::Stiffness, &["clean", "loaded", "untuned"])
+        }
+        Assumption::BeamImpulseTime | Assumption::PlateImpulseTime => Kind::QuantityOr(Dimension::Time, &IMPULSE_TIMES),
+        Assumption::BeamImpulse | Assumption::PlateImpulse => Kind::Quantity(Dimension::Impulse),
+        Assumption::BeamArrayMargin => Kind::Quantity(Dimension::Length),
         Assumption::BeamHarmonicForce | Assumption::PlateHarmonicForce => Kind::Quantity(Dimension::Force),
         Assumption::GridVelocity => Kind::Choice(&["largest", "mean"]),
         Assumption::MassMeasure => Kind::Choice(&["jump", "after", "level"]),
@@ -172,9 +176,9 @@ fn read_value(node: &Node, kind: Kind, findings: &Findings) -> Option<Assumption
             0 => findings.wrong(node.span, "a structure without modes does not move: give it one at least"),
             modes => Some(AssumptionValue::Number(f64::from(modes))),
         },
-        Kind::TimeOr(readings) => match scalar(node, findings)? {
+        Kind::QuantityOr(dimension, readings) => match scalar(node, findings)? {
             word if readings.contains(&word) => Some(AssumptionValue::Choice(word.into())),
-            _ => above_zero(node, Dimension::Time, findings).map(AssumptionValue::Number),
+            _ => above_zero(node, dimension, findings).map(AssumptionValue::Number),
         },
         Kind::Curve => read_curve(node, findings),
     }

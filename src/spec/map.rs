@@ -8,7 +8,7 @@ use super::yaml::Node;
 
 impl<'t> FigureReader<'t> {
     /// `{x: damper_x, y: damper_y, value: velocity_ratio, by: sweep, mark: {x: force_x, y: force_y, label: force}}`.
-    pub(super) fn map(&self, node: &'t Node) -> Option<MapSpec> {
+    pub(super) fn map(&self, node: &'t Node) -> Option<Box<MapSpec>> {
         let fields = Fields::open(node, "a map", self.findings)?;
         let x = fields.required("x", |node| self.axis(node));
         let y = fields.required("y", |node| self.axis(node));
@@ -45,7 +45,7 @@ impl<'t> FigureReader<'t> {
         }
         // A field of lists is a shape: its top is no choice of a place.
         let usual = if lists(x_role) == Some(true) { Best::None } else { Best::Highest };
-        Some(MapSpec {
+        Some(Box::new(MapSpec {
             x,
             y,
             value,
@@ -55,7 +55,7 @@ impl<'t> FigureReader<'t> {
             centre: centre?,
             aspect: aspect?,
             columns: columns?,
-        })
+        }))
     }
 
     fn mark(&self, node: &'t Node) -> Option<Mark> {

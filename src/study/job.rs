@@ -25,11 +25,11 @@ pub(super) fn jobs(experiment: &Experiment, variants: &[Variant]) -> Vec<Job> {
     }
     let event_driven: Vec<(usize, Job)> =
         jobs.iter().copied().enumerate().filter(|(_, job)| job.solver == SolverChoice::EventDriven).collect();
-    for (variant, Variant { moved, .. }) in variants.iter().enumerate().skip(1) {
+    for (variant, Variant { moved, assumptions, .. }) in variants.iter().enumerate().skip(1) {
         for (row, job) in &event_driven {
             let leans = experiment
                 .recipe_of(&experiment.cases[job.case])
-                .map_or(true, |recipe| moved.is_none_or(|moved| recipe.assumptions().contains(&moved)));
+                .map_or(true, |recipe| moved.is_none_or(|moved| recipe.assumptions(assumptions).contains(&moved)));
             jobs.push(Job { variant, same_as: (!leans).then_some(*row), ..*job });
         }
     }
@@ -51,6 +51,9 @@ pub(super) fn evaluations(experiment: &Experiment, job: &Job) -> u64 {
 
 /// Simulations that an experiment takes at most, with all the points that its curves may get.
 pub(super) fn simulations(experiment: &Experiment, variants: &[Variant]) -> u64 {
+    if let Some(optimise) = &experiment.optimise {
+        return super::optimise::evaluations(optimise, variants);
+    }
     let mut of_case = vec![0; experiment.cases.len()];
     for job in jobs(experiment, variants) {
         of_case[job.case] += evaluations(experiment, &job);

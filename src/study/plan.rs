@@ -89,13 +89,16 @@ impl Item {
     #[must_use]
     pub fn size(&self) -> (usize, u64) {
         let experiment = &self.source.experiment;
-        let jobs = super::job::jobs(experiment, &self.variants);
-        (jobs.len(), super::job::simulations(experiment, &self.variants))
+        let rows = match &experiment.optimise {
+            Some(optimise) => super::optimise::rows(optimise, &self.variants),
+            None => super::job::jobs(experiment, &self.variants).len(),
+        };
+        (rows, super::job::simulations(experiment, &self.variants))
     }
 }
 
 fn simulation(source: &Source, sheet: &AssumptionSheet, variants: &[Variant], sensitivity: Sensitivity) -> Value {
-    let used = source.experiment.assumptions_used();
+    let used = source.experiment.assumptions_used(sheet);
     let assumptions: BTreeMap<_, _> =
         sheet.entries.iter().filter(|(name, _)| used.contains(name)).map(|(name, e)| (name, &e.value)).collect();
     let sensitivity = (sensitivity == Sensitivity::Wanted).then(|| ends(variants));

@@ -32,7 +32,11 @@ pub fn variants(experiment: &Experiment, sheet: &AssumptionSheet, sensitivity: S
     let baseline = sheet.assumptions();
     let mut variants = Vec::new();
     if sensitivity == Sensitivity::Wanted {
-        for (label, assumptions) in sheet.variants(&experiment.assumptions_used()) {
+        let mut used = experiment.assumptions_used(sheet);
+        if let Some(wanted) = &experiment.moved {
+            used.retain(|name| wanted.contains(name));
+        }
+        for (label, assumptions) in sheet.variants(&used) {
             let moved = assumptions.values.iter().find(|(name, value)| baseline.values.get(name) != Some(value));
             let moved = moved.map(|(name, _)| *name);
             variants.push(Variant { label, moved, assumptions });

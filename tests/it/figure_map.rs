@@ -22,7 +22,7 @@ fn map(x: &str, y: &str, value: &str) -> MapSpec {
 }
 
 fn picture(name: &str, spec: MapSpec, table: &Table) -> Vec<u8> {
-    let png = draw(&limit_stop(), &drawn(Drawing::Map(spec)), table, &[]).unwrap();
+    let png = draw(&limit_stop(), &drawn(Drawing::Map(spec.into())), table, &[]).unwrap();
     std::fs::write(format!("{}/{name}.png", env!("CARGO_TARGET_TMPDIR")), &png).unwrap();
     assert!(png.len() < 250_000, "{name}: {} bytes are too many to commit", png.len());
     png
@@ -150,7 +150,7 @@ fn shapes_of_a_plate_show_their_nodal_lines() {
 #[test]
 fn a_map_that_cannot_be_drawn_says_why() {
     let attempt =
-        |spec: MapSpec, table: &Table| draw(&limit_stop(), &drawn(Drawing::Map(spec)), table, &[]).unwrap_err();
+        |spec: MapSpec, table: &Table| draw(&limit_stop(), &drawn(Drawing::Map(spec.into())), table, &[]).unwrap_err();
     let plate = plate();
     let overlaid = attempt(map("damper_x", "damper_y", "velocity_ratio"), &plate);
     assert!(matches!(overlaid, FigureError::Twice { .. }) && overlaid.to_string().contains("`by`"), "{overlaid}");

@@ -327,8 +327,8 @@ fn means_and_deviations_count_every_stretch_by_its_length() {
         ("0.3536", format!("standard_deviation_over: {{{over}}}")),
         ("1.500", format!("mean_over: {{{over}, from: 1, to: 7.2831853}}")),
         ("1.708", format!("interpolated: {{{over}, at: 1.00 rad/s}}")),
-        ("2.00", format!("largest: {{of: velocity_amplitude_ratio}}")),
-        ("1.00", format!("smallest: {{of: velocity_amplitude_ratio}}")),
+        ("2.00", "largest: {of: velocity_amplitude_ratio}".to_owned()),
+        ("1.00", "smallest: {of: velocity_amplitude_ratio}".to_owned()),
     ] {
         let body = format!("value: \"{value}\"\nfrom: {{{from}}}");
         assert_eq!(verdict(&body, &table), Verdict::Reproduced, "{body}: {}", judged(&body, &table).found);
@@ -382,4 +382,51 @@ fn an_unsound_entry_says_what_is_wrong_with_it() {
         let problems = refused(body);
         assert!(problems.contains(says) && problems.contains("line "), "{body}: {problems}");
     }
+}
+
+#[test]
+fn two_lines_meet_between_the_points_where_they_change_places() {
+    // At the centre 1 + x, at the force 2 x: they meet at x = 1, halfway between two points of the grid.
+    let grid = [0.25, 0.75, 1.25, 1.75];
+    let rows = |of: fn(f64) -> f64| grid.iter().map(move |x| of(*x));
+    let table = |second: fn(f64) -> f64| {
+        let places = [["centre"; 4], ["force"; 4]].concat();
+        let table = Table::default()
+            .with(texts("sweep", places))
+            .with(numbers("mass_ratio", "", "", [grid, grid].concat()))
+            .with(numbers("velocity_ratio", "", "", rows(|x| 1.0 + x).chain(rows(second)).collect()));
+        complete(table, &["velocity_ratio"], 0.0)
+    };
+    let meeting = |value: &str| {
+        format!("value: \"{value}\"\nfrom: {{meeting: {{of: velocity_ratio, over: mass_ratio, by: sweep}}}}")
+    };
+    let it = judged(&meeting("1.00"), &table(|x| 2.0 * x));
+    let comparison = it.comparison.unwrap_or_else(|| panic!("{}", it.found));
+    assert!(comparison.error().abs() < 1e-12 && (comparison.u_num - 0.25).abs() < 1e-12, "{}", it.found);
+    assert_eq!(verdict(&meeting("3.00"), &table(|x| 2.0 * x)), Verdict::Differs);
+    // Lines that never change places contradict a study that says where they do.
+    assert_eq!(verdict(&meeting("1.00"), &table(|x| 0.5 * x)), Verdict::Differs);
+    assert_eq!(cannot_fail(&meeting("1.00"), &table(|x| 2.0 * x)), Vec::<String>::new());
+}
+
+#[test]
+fn one_line_lies_above_another_at_every_point_or_it_does_not() {
+    let fillings = |lead: f64, run: f64| {
+        let frequency = [20.0, 20.0, 30.0, 30.0, 40.0, 40.0].to_vec();
+        let ratio = [1.0, 1.2, 2.0, 2.4, 1.5, 1.5 + lead].to_vec();
+        let table = Table::default()
+            .with(numbers("angular_frequency", "rad/s", "ω", frequency))
+            .with(texts("filling", ["uniform", "optimised"].repeat(3)))
+            .with(numbers("velocity_ratio", "", "ψ", ratio));
+        complete(table, &["velocity_ratio"], run)
+    };
+    let claim = "claim: {line_above: {of: velocity_ratio, over: angular_frequency, by: filling, above: optimised, below: uniform}}";
+    assert_eq!(verdict(claim, &fillings(0.1, 1e-6)), Verdict::Reproduced);
+    assert_eq!(verdict(claim, &fillings(-0.1, 1e-6)), Verdict::Differs);
+    assert_eq!(verdict(claim, &fillings(0.1, 0.2)), Verdict::Undecidable);
+    assert_eq!(verdict(claim, &fillings(0.0, 1e-6)), Verdict::Undecidable);
+    assert_eq!(cannot_fail(claim, &fillings(0.1, 1e-6)), [""; 0]);
+    assert!(judged(claim, &fillings(0.1, 1e-6)).found.contains("least lead 0.1 at angular_frequency = 40"));
+    let nobody = claim.replace("above: optimised", "above: uniform");
+    assert!(refused(&nobody).contains("not above itself"));
 }

@@ -35,6 +35,7 @@ fn entry(id: &str, verdict: Verdict) -> Judged {
         explanation: String::new(),
         tolerance_reason: None,
         robust: Some((5, 6)),
+        moved: Vec::new(),
     }
 }
 
@@ -76,6 +77,7 @@ fn judged() -> Vec<Judged> {
             tolerance_by_hand: None,
         }),
         robust: None,
+        moved: Vec::new(),
         ..entry("peak", Verdict::Differs)
     };
     vec![entry("same-maximum", Verdict::Reproduced), parting, limit, peak]
@@ -143,7 +145,7 @@ fn the_index_tells_the_whole_study_at_a_glance() {
         page: "ch3/ch3-limit-stop.md".into(),
         figures: figures("ch3/"),
     };
-    golden("index.md", &index(&[view], &assumptions()));
+    golden("index.md", &index(&[view], &assumptions(), Some("speed.md")));
 }
 
 #[test]
@@ -186,7 +188,7 @@ fn an_explanation_is_told_by_its_first_sentence_in_the_index() {
         ..entry("limit", Verdict::Blocked)
     }];
     let view = ExperimentView { experiment: &experiment, judged: &one, page: String::new(), figures: Vec::new() };
-    let text = index(&[view], &[]);
+    let text = index(&[view], &[], None);
     assert!(text.contains("Only Fig. 18 and s. 3.6 say so.\n"), "{text}");
 }
 

@@ -1,0 +1,222 @@
+//! What a run costs, as a page of the report: `cargo bench --bench speed` writes `reports/speed.md` and its figure.
+//!
+//! Each number is the least of many runs in one process, since other programs only add to it; the median stands beside it.
+//! A run that has visited its contact states before finds them built, so a first run in a new thread is timed apart.
+
+use std::collections::BTreeMap;
+use std::collections::BTreeSet;
+use std::fmt::Write as _;
+use std::path::Path;
+use std::time::Instant;
+
+use shotdamp::dynamics::{Contact, EventKind, HybridSystem, Options, Response, event_driven};
+use shotdamp::figure::draw;
+use shotdamp::scene::compile;
+use shotdamp::spec::{Axis, AxisScale, Drawing, Experiment, FigureSpec, Panel, load_assumptions, parse_experiment};
+use shotdamp::table::{Column, Data, Table};
+
+/// The scene of reference: 490 events, not chaotic; its RMS velocity from arithmetic of 128 bits.
+const REFERENCE_SCENE: &str = "structure: {single_mass: {mass: 1 kg, stiffness: 1000 N/m, damping_ratio: 0.05}}
+  dampers: [{mass_ratio: 0.05, gap_ratio: 50, floor: {resilient: {stiffness_ratio: 1, damping_ratio: 0.3}}}]
+  excitation: {impulse_train: {impulse: 2.1715817 N s, frequency_ratio: 1}}";
+const REFERENCE_RMS: f64 = 2.044_410_542_971_8;
+
+/// Four dampers at the free end of a beam.
+const BEAM: &str = "structure: {cantilever_beam: {length: 1 m, width: 30 mm, thickness: 5 mm, youngs_modulus: 200 GPa, density: 7800 kg/m^3, rayleigh: 5e-5, basis: exact, modes: MODES}}
+  dampers:
+    - at: 0.96
+      mass_ratio: 0.1
+      particle_share: 0.5
+      gap: 42 mm
+      floor: {resilient: {stiffness: assumed, damping_ratio: 0.1}}
+      array: {count: 4, spacing: -4 cm}
+  excitation: {impulse_train: {at: 1, impulse: 0.244 N s, frequency_ratio: 1}}";
+
+/// Nine dampers about the centre of a plate of sixteen modes.
+const PLATE: &str = "structure: {supported_plate: {length: 1.3333333333333333 m, width: 1 m, thickness: 7.91 mm, youngs_modulus: 68.9 GPa, poisson_ratio: 0.33, density: 2700 kg/m^3, rayleigh: 5e-5, modes: [4, 4]}}
+  dampers:
+    - at: [0.5, 0.5]
+      mass_ratio: 0.1
+      particle_share: 0.5
+      gap: 20 mm
+      floor: {resilient: {stiffness: assumed, damping_ratio: 0.1}}
+      array: {count: 9, spacing: 2 cm}
+  excitation: {impulse_train: {at: [0.25, 0.375], impulse: 13.2 N s, frequency_ratio: 1}}";
+
+/// Modes of the beam in the curves of cost; with them four compressions, at most.
+const MODES: [u32; 6] = [4, 8, 16, 32, 64, 124];
+
+fn main() {
+    let mut page = String::from(
+        "# Speed\n\n[All experiments](README.md)\n\nWritten by `cargo bench --bench speed`; every time is that of one \
+         run of 125 forcing cycles on one thread, the least and the median of many. On a machine with other work the least is \
+         the one to compare.\n\n",
+    );
+    let _ = writeln!(page, "Processor: {}, portable build ({}).\n", processor(), std::env::consts::ARCH);
+    page += "| Scene | Degrees of freedom | Events | Least | Median | An event | A contact state's first visit |\n";
+    page += "| --- | ---: | ---: | ---: | ---: | ---: | ---: |\n";
+    let reference = Cost::of(&system(REFERENCE_SCENE));
+    page += &reference.row("One mass, one damper");
+    let curve: Vec<(u32, Cost)> =
+        MODES.into_iter().map(|modes| (modes, Cost::of(&system(&BEAM.replace("MODES", &modes.to_string()))))).collect();
+    for (modes, cost) in &curve {
+        page += &cost.row(&format!("Beam, {modes} modes, 4 dampers"));
+    }
+    page += &Cost::of(&system(PLATE)).row("Plate, 16 modes, 9 dampers");
+    let error = (reference.response.window().rms_velocity() / REFERENCE_RMS - 1.0).abs();
+    let _ = writeln!(
+        page,
+        "\nThe RMS velocity of the first scene is within {error:.0e} of that from arithmetic of 128 bits.\n\n\
+         ![Cost against modes](speed.png)\n\nCost on the beam against the number of modes, with four dampers."
+    );
+    let reports = Path::new(env!("CARGO_MANIFEST_DIR")).join("reports");
+    let picture = draw(&picture(), &figure(), &table(&curve), &[]).expect("the table has what the figure names");
+    std::fs::write(reports.join("speed.png"), picture).expect("the folder of reports can be written");
+    std::fs::write(reports.join("speed.md"), &page).expect("the folder of reports can be written");
+    print!("{page}");
+}
+
+/// What a scene costs.
+struct Cost {
+    response: Response,
+    freedom: usize,
+    states: usize,
+    /// s.
+    least: f64,
+    median: f64,
+    first: f64,
+}
+
+impl Cost {
+    fn of(system: &HybridSystem) -> Self {
+        let options = Options { displacement: false, ..Options::default() };
+        let run = || event_driven(std::hint::black_box(system), &options).expect("the scenes above run");
+        let timed = || {
+            let begin = Instant::now();
+            std::hint::black_box(run());
+            begin.elapsed().as_secs_f64()
+        };
+        let new_thread = || std::thread::scope(|scope| scope.spawn(timed).join()).expect("the run does not panic");
+        let first = (0..15).map(|_| new_thread()).fold(f64::INFINITY, f64::min);
+        let mut times: Vec<f64> = Vec::new();
+        let begin = Instant::now();
+        while times.len() < 15 || (begin.elapsed().as_secs_f64() < 1.0 && times.len() < 2000) {
+            times.push(timed());
+        }
+        times.sort_by(f64::total_cmp);
+        let recorded = Options { record_events: usize::MAX, ..options.clone() };
+        let response = event_driven(system, &recorded).expect("the scenes above run");
+        Self {
+            states: visited(system, &response),
+            freedom: system.mass.order + system.particles.len(),
+            least: times[0],
+            median: times[times.len() / 2],
+            first,
+            response,
+        }
+    }
+
+    fn an_event(&self) -> f64 {
+        self.least / self.response.proof.events as f64
+    }
+
+    fn a_state(&self) -> f64 {
+        (self.first - self.least).max(0.0) / self.states as f64
+    }
+
+    fn row(&self, scene: &str) -> String {
+        format!(
+            "| {scene} | {} | {} | {:.3} ms | {:.3} ms | {:.2} µs | {:.0} µs × {} |\n",
+            self.freedom,
+            self.response.proof.events,
+            1e3 * self.least,
+            1e3 * self.median,
+            1e6 * self.an_event(),
+            1e6 * self.a_state(),
+            self.states,
+        )
+    }
+}
+
+/// How many contact states a run has visited.
+fn visited(system: &HybridSystem, response: &Response) -> usize {
+    let mut now = vec![Contact::Floor; system.particles.len()];
+    let mut states = BTreeSet::from([now.clone()]);
+    for event in &response.events {
+        now[event.particle] = match event.kind {
+            EventKind::FloorContact => Contact::Floor,
+            EventKind::CeilingContact => Contact::Ceiling,
+            EventKind::FloorRelease | EventKind::CeilingRelease => Contact::Flight,
+            _ => continue,
+        };
+        states.insert(now.clone());
+    }
+    states.len()
+}
+
+fn experiment(scene: &str) -> Experiment {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("experiments/assumptions.yaml");
+    let assumptions = load_assumptions(&file).unwrap_or_else(|problems| panic!("{problems}")).assumptions();
+    let text = format!(
+        "title: Speed\nsource: {{chapter: 3, section: '3.1'}}\nabout: Cost.\nscene:\n  {scene}\nmeasure: [rms_velocity]\n\
+         figure: {{x: momentum_residual, y: energy_residual, caption: Cost.}}\n"
+    );
+    let id = "speed".parse().expect("an id");
+    parse_experiment(&id, "speed.yaml", &text, &assumptions).unwrap_or_else(|problems| panic!("{problems}"))
+}
+
+fn system(scene: &str) -> HybridSystem {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("experiments/assumptions.yaml");
+    let assumptions = load_assumptions(&file).unwrap_or_else(|problems| panic!("{problems}")).assumptions();
+    let scene = experiment(scene).recipe.resolve(&assumptions).expect("the scenes above resolve");
+    compile(&scene).expect("the scenes above compile")
+}
+
+fn processor() -> String {
+    let known = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
+    let name = known.lines().find_map(|line| line.strip_prefix("model name")?.split_once(':'));
+    name.map_or_else(|| "unknown".into(), |(_, name)| name.trim().into())
+}
+
+fn picture() -> Experiment {
+    experiment(REFERENCE_SCENE)
+}
+
+fn figure() -> FigureSpec {
+    let axis = |column: &str, label: &str| Axis {
+        column: column.into(),
+        label: Some(label.into()),
+        scale: AxisScale::Log,
+        reach: None,
+    };
+    FigureSpec {
+        name: String::new(),
+        caption: "Cost on the beam against the number of modes.".into(),
+        drawing: Drawing::Lines(vec![Panel {
+            x: axis("modes", "Modes"),
+            y: vec![axis("event", "An event"), axis("state", "A contact state's first visit")],
+            by: Vec::new(),
+            band: false,
+            guides: Vec::new(),
+            markers: true,
+            peaks: None,
+        }]),
+    }
+}
+
+fn table(curve: &[(u32, Cost)]) -> Table {
+    let column = |name: &str, unit: &str, of: &dyn Fn(&(u32, Cost)) -> f64| Column {
+        name: name.into(),
+        unit: unit.into(),
+        symbol: String::new(),
+        data: Data::Float(curve.iter().map(of).collect()),
+    };
+    Table {
+        columns: vec![
+            column("modes", "", &|(modes, _)| f64::from(*modes)),
+            column("event", "µs", &|(_, cost)| 1e6 * cost.an_event()),
+            column("state", "µs", &|(_, cost)| 1e6 * cost.a_state()),
+        ],
+        metadata: BTreeMap::new(),
+    }
+}
