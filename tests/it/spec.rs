@@ -464,7 +464,7 @@ fn each_assumption_has_a_reason_and_moves_alone() {
         let differing = baseline.values.iter().filter(|(name, value)| moved.values[*name] != **value).count();
         assert_eq!((differing, moved.values.len()), (1, baseline.values.len()));
     }
-    assert_eq!(variants[0].1.values[&Assumption::StopLength], AssumptionValue::Number(0.065));
+    assert_eq!(variants[0].1.values[&Assumption::StopLength], AssumptionValue::Number(0.045));
 
     let text = "stop_length: {value: 5 s, reason: none}\nundamped_mass: {value: heavy, reason: none}\nstop_lenght: {value: 1 mm}\n";
     let problems = parse_assumptions("assumptions.yaml", text).expect_err("three mistakes");
