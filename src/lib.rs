@@ -9,8 +9,9 @@
 //!    into a [`dynamics::HybridSystem`] that carries only the effects the scene names.
 //! 3. [`dynamics`] propagates it: exactly from certified event to certified event, or with the study's fixed step.
 //! 4. [`measure`] turns responses into the numbers that the study plots.
-//! 5. [`study`] plans, runs in parallel and stores one [`table::Table`] per experiment.
-//! 6. [`reference`] holds each published number and claim and gives its verdict; [`figure`] draws; [`report`] writes.
+//! 5. [`optimise`] looks for the best of a function over a box, and knows nothing of what it stands for.
+//! 6. [`study`] plans, runs in parallel and stores one [`table::Table`] per experiment.
+//! 7. [`reference`] holds each published number and claim and gives its verdict; [`figure`] draws; [`report`] writes.
 //!
 //! A table on disk is all that verdicts, figures and reports read.
 
@@ -18,6 +19,7 @@ pub mod atomic;
 pub mod dynamics;
 pub mod figure;
 pub mod measure;
+pub mod optimise;
 pub mod publish;
 pub mod reference;
 pub mod report;

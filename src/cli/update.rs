@@ -1,6 +1,7 @@
 //! `shotdamp` and `shotdamp run`: simulate what is stale, then judge, draw and write.
 
 use std::collections::BTreeMap;
+use std::path::PathBuf;
 use std::sync::Mutex;
 
 use super::args::RunArgs;
@@ -9,7 +10,9 @@ use super::exit::Exit;
 use super::output::{complain, complain_of, print};
 use super::select::{Chosen, choose};
 use crate::publish::{Opened, judge_all, publish, summary};
-use crate::study::{Engine, Item, Layout, Listen, Lock, Progress, Silence, Snapshot, State, Task, Texts, run, save};
+use crate::study::{
+    Engine, Item, Layout, Listen, Lock, Progress, Silence, Snapshot, State, Task, Texts, journal_name, run, save,
+};
 
 /// Brings the chosen experiments up to date.
 pub(super) fn update(layout: &Layout, args: &RunArgs) -> Result<Exit, CliError> {
@@ -75,10 +78,18 @@ fn simulate(layout: &Layout, items: &[&Item], threads: usize, quiet: bool) -> Re
         return Ok(Vec::new());
     }
     let provenance: Vec<BTreeMap<String, String>> = items.iter().map(|item| item.provenance()).collect();
+    let journals: Vec<PathBuf> =
+        items.iter().map(|item| layout.path(&journal_name(&item.source.experiment.id))).collect();
     let tasks: Vec<Task<'_>> = items
         .iter()
         .zip(&provenance)
-        .map(|(item, metadata)| Task { experiment: &item.source.experiment, variants: &item.variants, metadata })
+        .zip(&journals)
+        .map(|((item, metadata), journal)| Task {
+            experiment: &item.source.experiment,
+            variants: &item.variants,
+            metadata,
+            journal: Some(journal),
+        })
         .collect();
     let progress = Progress::new();
     let listener: &dyn Listen = if quiet { &Silence } else { &progress };

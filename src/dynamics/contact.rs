@@ -23,6 +23,8 @@ pub(crate) enum Crossing {
     ToCeiling,
     /// A face lets go.
     Release,
+    /// The face across, which moves by itself, reaches a particle that is still at this one.
+    Squeezed,
     /// A compressed face reaches its stop.
     ToStop,
     /// A released face is back at its place.
@@ -55,6 +57,13 @@ impl Side {
         match self {
             Self::Floor => 1.0,
             Self::Ceiling => -1.0,
+        }
+    }
+
+    pub(crate) fn opposite(self) -> Self {
+        match self {
+            Self::Floor => Self::Ceiling,
+            Self::Ceiling => Self::Floor,
         }
     }
 
@@ -123,9 +132,12 @@ impl Particle {
     /// Between rigid faces without a gap: a part of the structure, which no face ever loses.
     pub(crate) fn is_enclosed(&self) -> bool {
         let rigid = |face: &Face| matches!(face.law, Law::Rigid { .. });
-        self.gap == 0.0
-            && rigid(&self.floor)
-            && self.ceiling.as_ref().is_some_and(|ceiling| rigid(ceiling) && ceiling.row == self.floor.row)
+        self.has_no_gap() && rigid(&self.floor) && self.ceiling.as_ref().is_some_and(rigid)
+    }
+
+    /// Between faces that move as one, without a gap: what leaves one of them is at the other.
+    pub(crate) fn has_no_gap(&self) -> bool {
+        self.gap == 0.0 && self.ceiling.as_ref().is_some_and(|ceiling| ceiling.row == self.floor.row)
     }
 }
 

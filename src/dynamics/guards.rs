@@ -43,6 +43,9 @@ pub(crate) fn set(state: Contacts<'_>, flow: &Flow, signals: &Signals, search: &
             _ if contact.presses(particle) => pressed(state, j, particle, flow, signals, guards),
             _ => held(state, j, particle, flow, signals, guards),
         }
+        if let Some(signal) = flow.rows.guards[j].across {
+            across(j, particle, signal, signals, &mut search.guards);
+        }
     }
 }
 
@@ -73,19 +76,25 @@ fn flight_path(flow: &Flow, rest: Parabola, phases: &[Phase], here: Relative, gr
     path
 }
 
-/// radius·t below which a flight's fifth derivative moves nothing.
-const SHORT_FLIGHT: f64 = 1e-3;
+/// radius·t below which the fifth derivative of a gap moves nothing.
+const SHORT: f64 = 1e-3;
 
-/// A flight so short that the difference of parabola and blocks would be all rounding: by its derivatives.
+/// So short a time that a gap is followed by its derivatives: as the sum of its parts it would be all rounding.
+#[inline]
+pub(crate) fn is_short(flow: &Flow, time: f64) -> bool {
+    flow.blocks.iter().all(|block| block.radius * time < SHORT)
+}
+
+/// A gap after a short time, from where it is: its acceleration is `constant` plus `sign` times that of the shares.
 #[cold]
-fn fly_shortly(flow: &Flow, path: Parabola, phases: &[Phase], here: Relative, time: f64) -> Relative {
-    let mut derivatives = [2.0 * path.p2, 0.0, 0.0, 0.0];
+pub(crate) fn creep(flow: &Flow, constant: f64, sign: f64, phases: &[Phase], here: Relative, time: f64) -> Relative {
+    let mut derivatives = [constant, 0.0, 0.0, 0.0];
     for (block, phase) in flow.blocks.iter().zip(phases) {
         if !block.is_drift() {
             let bend = block.acceleration(*phase);
             let snap = block.acceleration(bend);
             for (sum, term) in derivatives.iter_mut().zip([bend.value, bend.rate, snap.value, snap.rate]) {
-                *sum -= term;
+                *sum += sign * term;
             }
         }
     }
@@ -107,8 +116,8 @@ pub(crate) fn fly(
     kernels: &[super::block::Kernel],
     time: f64,
 ) -> Relative {
-    if flow.blocks.iter().all(|block| block.radius * time < SHORT_FLIGHT) {
-        return fly_shortly(flow, path, phases, here, time);
+    if is_short(flow, time) {
+        return creep(flow, 2.0 * path.p2, -1.0, phases, here, time);
     }
     let mut now = Relative { gap: path.at(time), rate: path.rate(time) };
     for ((block, phase), kernel) in flow.blocks.iter().zip(phases).zip(kernels) {
@@ -121,22 +130,34 @@ pub(crate) fn fly(
     now
 }
 
-/// How a distance starts that grows with `rate`: at zero where it is, or where it is nothing but rounding and grows.
+/// Σ |φ x|.
+fn magnitude(row: &[f64], x: &[f64]) -> f64 {
+    row.iter().zip(x).fold(0.0, |sum, (phi, x)| sum + (phi * x).abs())
+}
+
+/// What rounding makes of a sum of shares.
+fn noise(phases: &[Phase]) -> f64 {
+    4.0 * f64::EPSILON * phases.iter().fold(0.0, |sum, phase| sum + phase.value.abs())
+}
+
+/// How a distance starts that grows with `rate`, being the difference of lengths of `size` beside its shares: at zero where it is, or where it is nothing but rounding and grows.
 #[inline]
-fn start(distance: f64, rate: f64, smooth: bool, phases: &[Phase]) -> Start {
+fn start(distance: f64, rate: f64, smooth: bool, phases: &[Phase], size: f64) -> Start {
     if distance != 0.0 {
-        let noise = 4.0 * f64::EPSILON * phases.iter().fold(0.0, |sum, phase| sum + phase.value.abs());
-        if rate > 0.0 && distance.abs() < noise {
+        if rate > 0.0 && distance.abs() < noise(phases) + 4.0 * f64::EPSILON * size {
             return Start::Touching { order: 1, slope: rate };
         }
         return Start::Apart;
     }
     if smooth {
         Start::Touching { order: 3, slope: 0.0 }
+    } else if rate < 0.0 {
+        // It is due at this instant, like another that came first.
+        Start::Apart
     } else if rate == 0.0 {
         Start::Touching { order: 2, slope: 0.0 }
     } else {
-        Start::Touching { order: 1, slope: rate.abs() }
+        Start::Touching { order: 1, slope: rate }
     }
 }
 
@@ -161,7 +182,7 @@ fn in_flight(
         signal: rows.first,
         sign: -1.0,
         parabola: path,
-        start: start(here.gap, here.rate, state.smooth[j], phases),
+        start: start(here.gap, here.rate, state.smooth[j], phases, 0.0),
         distance: true,
     });
     let Some(ceiling) = &particle.ceiling else { return path };
@@ -170,7 +191,13 @@ fn in_flight(
         (relative, Parabola { p0: path.p0 - particle.gap, ..path }, phases)
     } else {
         let shift = |x: &[f64]| dot(&ceiling.row, x) - dot(&particle.floor.row, x);
-        let relative = Relative { gap: here.gap - particle.gap - shift(state.q), rate: here.rate - shift(state.rate) };
+        // Referred to the floor, the rest at the ceiling is known to rounding: there it is rest all the same.
+        let size = |x: &[f64]| [&ceiling.row, &particle.floor.row].map(|row| magnitude(row, x)).iter().sum::<f64>();
+        let known = |value: f64, size: f64| if value.abs() <= 4.0 * f64::EPSILON * size { 0.0 } else { value };
+        let relative = Relative {
+            gap: known(here.gap - particle.gap - shift(state.q), particle.gap + size(state.q)),
+            rate: known(here.rate - shift(state.rate), size(state.rate)),
+        };
         let (phases, rest) = signals.of(rows.second);
         (relative, flight_path(flow, rest, phases, relative, gravity), phases)
     };
@@ -180,7 +207,7 @@ fn in_flight(
         signal: rows.second,
         sign: 1.0,
         parabola: above.negative(),
-        start: start(-relative.gap, -relative.rate, state.smooth[j], phases),
+        start: start(-relative.gap, -relative.rate, state.smooth[j], phases, particle.gap),
         distance: true,
     });
     path
@@ -217,11 +244,15 @@ fn released(
             signal: rows.second,
             sign: -away,
             parabola: spring_and_dashpot(path, stiffness, damping).times(away),
-            start: force_start(state.particles[j], stiffness, damping, state.smooth[j]),
+            start: force_start(state.particles[j], stiffness, damping, state.smooth[j], signals.of(rows.second).0),
             distance: false,
         });
     }
     path
+}
+
+fn sum(phases: &[Phase], part: impl Fn(&Phase) -> f64) -> f64 {
+    phases.iter().fold(0.0, |sum, phase| sum + part(phase))
 }
 
 #[inline]
@@ -237,13 +268,20 @@ fn pressed(
     let side = state.contacts[j].side();
     let away = side.away();
     let rows = flow.rows.guards[j];
-    let (phases, rest) = signals.of(rows.first);
+    let (phases, mut rest) = signals.of(rows.first);
     let Law::Resilient { stiffness, no_tension, stop, .. } = side.face(particle).law else { return };
+    // The start is known to the bit; what the blocks make of it would hide a contact that lasts a nanosecond.
+    rest.p0 = here.gap - sum(phases, |phase| phase.value);
+    if here.gap == 0.0 {
+        rest.p1 = here.rate - sum(phases, |phase| phase.rate);
+    }
     let release = if no_tension {
-        let start = force_start(here, stiffness, state.damping[j], state.smooth[j]);
-        (rows.second, signals.of(rows.second).1, start)
+        let damping = state.damping[j];
+        let (phases, mut force) = signals.of(rows.second);
+        force.p0 = stiffness * here.gap + damping * here.rate - sum(phases, |phase| phase.value);
+        (rows.second, force, force_start(here, stiffness, damping, state.smooth[j], phases))
     } else {
-        (rows.first, rest, start(-away * here.gap, -away * here.rate, state.smooth[j], phases))
+        (rows.first, rest, start(-away * here.gap, -away * here.rate, state.smooth[j], phases, 0.0))
     };
     let (signal, parabola, begin) = release;
     guards.push(Guard {
@@ -263,10 +301,25 @@ fn pressed(
             signal: rows.first,
             sign: away,
             parabola: Parabola { p0: away * rest.p0 + stop.length, ..rest.times(away) },
-            start: start(away * here.gap + stop.length, away * here.rate, state.smooth[j], phases),
+            start: start(away * here.gap + stop.length, away * here.rate, state.smooth[j], phases, stop.length),
             distance: true,
         });
     }
+}
+
+/// The way to the face across, which moves by itself.
+#[cold]
+fn across(j: usize, particle: &Particle, signal: usize, signals: &Signals, guards: &mut Vec<Guard>) {
+    let (_, rest) = signals.of(signal);
+    guards.push(Guard {
+        particle: j,
+        crossing: Crossing::Squeezed,
+        signal,
+        sign: 1.0,
+        parabola: Parabola { p0: rest.p0 + particle.gap, ..rest },
+        start: Start::Apart,
+        distance: true,
+    });
 }
 
 fn held(state: Contacts<'_>, j: usize, particle: &Particle, flow: &Flow, signals: &Signals, guards: &mut Vec<Guard>) {
@@ -288,11 +341,16 @@ fn held(state: Contacts<'_>, j: usize, particle: &Particle, flow: &Flow, signals
 }
 
 /// How the force of spring and dashpot starts: at zero where the contact has just begun or ended smoothly, and where it
-/// begins without dashpot or at rest; then with the first derivative that the motion has.
-fn force_start(here: Relative, stiffness: f64, damping: f64, smooth: bool) -> Start {
+/// begins without dashpot or at rest; then with the first derivative that the motion has. A force that is nothing but rounding
+/// of its shares is zero too: what it does next, its derivative says.
+fn force_start(here: Relative, stiffness: f64, damping: f64, smooth: bool, phases: &[Phase]) -> Start {
     let (spring, dashpot) = (stiffness * here.gap, damping * here.rate);
     let force = spring + dashpot;
-    if force != 0.0 && !(smooth && force.abs() < 1e-9 * (spring.abs() + dashpot.abs())) {
+    if force != 0.0 && force.abs() < noise(phases) {
+        return touching_once(true);
+    }
+    // Where it began or ended smoothly the two cancel, as well as the instant of a contact of nanoseconds is known.
+    if force != 0.0 && !(smooth && force.abs() < 1e-3 * (spring.abs() + dashpot.abs())) {
         return Start::Apart;
     }
     // At the face itself u grows with t, t² or t³ (at rest, smoothly), and the force of the dashpot with one less.
@@ -357,7 +415,17 @@ impl Grip {
 
     /// Whether it holds: where the push is nothing but rounding, by what it becomes.
     pub(crate) fn holds(self) -> bool {
-        self.push > self.noise || (self.is_nothing() && self.growth >= 0.0)
+        self.push > self.noise || (self.is_nothing() && self.grows())
+    }
+
+    /// A bounce of this speed is over before the push can be told from nothing: there is none.
+    pub(crate) fn outweighs(self, speed: f64) -> bool {
+        speed == 0.0 || (self.growth != 0.0 && 2.0 * speed * self.growth.abs() <= self.noise * self.noise)
+    }
+
+    /// Where it is nothing: the push sets in.
+    pub(crate) fn grows(self) -> bool {
+        self.growth >= 0.0
     }
 
     pub(crate) fn is_nothing(self) -> bool {

@@ -136,7 +136,7 @@ impl<'a> March<'a> {
     /// Start: as asked, or static equilibrium with every particle on its floor.
     fn place(&mut self, start: &super::StartState) -> Result<(), EngineError> {
         match start {
-            super::StartState::StaticEquilibrium => {
+            super::StartState::StaticEquilibrium => loop {
                 self.choose_flow()?;
                 let drive = DrivePhase::default();
                 let flow = &self.flow;
@@ -144,10 +144,23 @@ impl<'a> March<'a> {
                 flow.leave(&self.c, 0.0, 0.0, drive, &mut self.q, &mut self.rate);
                 let n = self.system.mass.order;
                 self.rate.fill(0.0);
+                let mut fits = true;
                 for (i, &j) in flow.modes.attached.iter().enumerate() {
                     self.particles[j].gap = self.q[n + i];
+                    if let Some(stop) = self.system.particles[j].floor.law.stop()
+                        && self.particles[j].gap < -stop.length
+                    {
+                        // Its weight alone presses the floor to the stop.
+                        self.particles[j].gap = -stop.length;
+                        self.contacts[j] = Contact::FloorStop;
+                        fits = false;
+                    }
                 }
-            }
+                if fits {
+                    break;
+                }
+                self.changed = true;
+            },
             super::StartState::Given { q, rate, particles } => {
                 self.q[..q.len()].copy_from_slice(q);
                 self.rate[..rate.len()].copy_from_slice(rate);
@@ -316,7 +329,7 @@ impl<'a> March<'a> {
             }
             stuck += 1;
             if stuck > MOST_EVENTS_AT_AN_INSTANT {
-                return Err(EngineError::NoProgress { cycle: self.cycle, time: self.time });
+                return Err(self.no_progress());
             }
         }
         Ok(())
@@ -387,8 +400,15 @@ impl<'a> March<'a> {
         }
         flow.advance(&self.search.kernels, &self.c, &mut self.c_end);
         flow.leave(&self.c_end, length, self.level, end_drive, &mut self.q, &mut self.rate);
+        let short = guards::is_short(flow, length);
         for (i, &j) in flow.modes.attached.iter().enumerate() {
-            self.particles[j] = Relative { gap: self.q[n + i], rate: self.rate[n + i] };
+            self.particles[j] = match flow.rows.faces[j].compression {
+                Some(_) if short => {
+                    let (phases, rest) = self.signals.of(flow.rows.guards[j].first);
+                    guards::creep(flow, 2.0 * rest.p2, 1.0, phases, self.particles[j], length)
+                }
+                _ => Relative { gap: self.q[n + i], rate: self.rate[n + i] },
+            };
         }
     }
 
@@ -480,8 +500,7 @@ impl<'a> March<'a> {
             };
             if let Some(particle) = self.system.particles.first() {
                 let contact = self.contacts[0];
-                let side = contact.side();
-                let [face, _, _] = anywhere(flow.rows.face(0, side));
+                let faces = [Side::Floor, Side::Ceiling].map(|side| anywhere(flow.rows.face(0, side))[0]);
                 let gap = match (contact.face(particle), flow.rows.faces[0].compression) {
                     (None, _) => {
                         let (phases, here) = (self.signals.of(flow.rows.guards[0].first).0, self.particles[0]);
@@ -490,7 +509,7 @@ impl<'a> March<'a> {
                     (Some(_), Some(compression)) => anywhere(compression)[0],
                     (Some(_), None) => self.particles[0].gap,
                 };
-                sample.set_particle(particle, side, face, gap, contact);
+                sample.set_particle(particle, contact, faces, gap);
             }
             self.response.trace.push(sample);
         }

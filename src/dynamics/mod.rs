@@ -356,6 +356,18 @@ pub enum EngineError {
         /// rad/s.
         omega: f64,
     },
+    /// Floor and ceiling at once.
+    #[error(
+        "floor and ceiling meet at particle {particle} in cycle {cycle} at {time} s: there is no contact state for a particle between both; a wider gap or stiffer walls would keep them apart"
+    )]
+    Squeezed {
+        /// Which.
+        particle: usize,
+        /// Cycle.
+        cycle: u64,
+        /// Time within it.
+        time: f64,
+    },
     /// Too many events at one instant.
     #[error("the contact does not settle in cycle {cycle} at {time} s: more than 64 events at one instant")]
     NoProgress {

@@ -6,7 +6,7 @@
 use super::block::{Block, Kernel, Phase};
 use super::contact::Side;
 use super::flow::{Flow, Parabola};
-use super::system::{Contact, HybridSystem, Law};
+use super::system::{Contact, HybridSystem, Law, Particle};
 
 /// One signal: two weights of each block's coordinates for its value, two for its rate; then what constant loads add.
 #[derive(Debug, Clone, PartialEq)]
@@ -39,6 +39,8 @@ pub(crate) struct FaceRows {
 pub(crate) struct GuardRows {
     pub(crate) first: usize,
     pub(crate) second: usize,
+    /// How much further away the face across is, where it moves by itself and the particle is at the other one.
+    pub(crate) across: Option<usize>,
 }
 
 /// The rows of a flow. Those in front are watched: evaluated in every segment.
@@ -110,6 +112,20 @@ impl Row {
     }
 }
 
+/// φ_c·q − φ_f·q, and what the compression of the face that particle j is at adds to the way across.
+fn across(flow: &Flow, j: usize, particle: &Particle) -> Option<Row> {
+    let ceiling = particle.ceiling.as_ref().filter(|ceiling| ceiling.row != particle.floor.row)?;
+    let contact = flow.modes.contacts[j];
+    contact.face(particle)?;
+    let mut row: Vec<f64> = ceiling.row.iter().zip(&particle.floor.row).map(|(above, below)| above - below).collect();
+    let structure = row.len();
+    row.resize(flow.modes.order, 0.0);
+    if let Some(slot) = flow.modes.attached.iter().position(|&a| a == j) {
+        row[structure + slot] = -contact.side().away();
+    }
+    Some(flow.row(&row))
+}
+
 /// k·p + c·p′.
 pub(crate) fn spring_and_dashpot(p: Parabola, stiffness: f64, damping: f64) -> Parabola {
     Parabola {
@@ -170,7 +186,8 @@ impl Rows {
                     }
                 },
             };
-            let rows = GuardRows { first: all.place(first), second: all.place(second) };
+            let across = across(flow, j, particle).map(|row| all.place(row));
+            let rows = GuardRows { first: all.place(first), second: all.place(second), across };
             all.guards.push(rows);
         }
         all.watched = all.rows.len();

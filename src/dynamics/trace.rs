@@ -58,13 +58,14 @@ pub struct Sample {
 }
 
 impl Sample {
-    /// Places particle and faces: `face` is where the rigid face is that `gap` refers to.
-    pub(crate) fn set_particle(&mut self, particle: &Particle, side: Side, face: f64, gap: f64, contact: Contact) {
+    /// Places particle and faces: `floor` and `ceiling` are φ·q of each, `gap` is measured from the one the contact refers to.
+    pub(crate) fn set_particle(&mut self, particle: &Particle, contact: Contact, [floor, ceiling]: [f64; 2], gap: f64) {
+        let side = contact.side();
         let height = if particle.ceiling.is_some() { particle.gap } else { f64::NAN };
-        (self.rigid_floor, self.rigid_ceiling) = (face, face + height);
+        (self.rigid_floor, self.rigid_ceiling) = (floor, ceiling + height);
         self.particle = match side {
-            Side::Floor => face + gap,
-            Side::Ceiling => face + particle.gap + gap,
+            Side::Floor => floor + gap,
+            Side::Ceiling => ceiling + particle.gap + gap,
         };
         (self.floor, self.ceiling) = (self.rigid_floor, self.rigid_ceiling);
         let resilient = contact.face(particle).is_some_and(|face| matches!(face.law, Law::Resilient { .. }));

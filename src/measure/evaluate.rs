@@ -13,7 +13,7 @@ use super::reading::Reading;
 use super::shape::{self, Shape};
 use super::{EvaluateError, Evaluated, Measure, Measured, Rigour, TraceColumn};
 use crate::dynamics::{EngineError, HybridSystem, Method, Options, Proof, Response, TraceRequest, event_driven};
-use crate::scene::{Assumptions, Excitation, Recipe, Scene, SingleMass, Structure, compile};
+use crate::scene::{Assumptions, Excitation, GapWord, Recipe, Scene, SingleMass, Structure, compile};
 use crate::spec::{EnergySpec, Settings, ShapeOf, ShapeSpec, SolverChoice, TraceSpec};
 
 /// Kick that tells chaos from order, relative to the drive.
@@ -59,8 +59,81 @@ impl Request<'_> {
             || self.deflection().is_some()
     }
 
+    /// A run without an audit and without a history.
+    fn options(&self, settings: &Settings) -> Options {
+        Options {
+            skip: settings.skip,
+            average: settings.average,
+            displacement: self.any(Measure::needs_displacement) || self.deflection().is_some(),
+            extremes: self.any(Measure::needs_extremes),
+            cycle_rates: self.energies.is_some() || self.any(Measure::needs_energies),
+            ..Options::default()
+        }
+    }
+
     fn needs_undamped(&self) -> bool {
         self.energies.is_some() || self.any(Measure::needs_undamped)
+    }
+}
+
+/// A scene that is ready to be run with other gaps: resolved, compiled and compared with the clean structure once.
+#[derive(Debug)]
+pub struct Prepared<'a> {
+    recipe: Recipe,
+    assumptions: &'a Assumptions,
+    settings: &'a Settings,
+    measures: &'a [Measure],
+    solver: SolverChoice,
+    scene: Scene,
+    system: HybridSystem,
+    reference: Option<Response>,
+    /// The gap of each damper, m, that is one in the recipe's word.
+    units: Vec<f64>,
+}
+
+impl<'a> Prepared<'a> {
+    /// Gets a scene ready; gaps will be told in this `word`.
+    ///
+    /// # Errors
+    /// [`EvaluateError`] with the reason.
+    pub fn new(
+        recipe: &Recipe,
+        word: GapWord,
+        assumptions: &'a Assumptions,
+        solver: SolverChoice,
+        settings: &'a Settings,
+        measures: &'a [Measure],
+    ) -> Result<Self, EvaluateError> {
+        let mut recipe = recipe.clone();
+        let count = recipe.resolve(assumptions)?.dampers.len();
+        recipe.set_gaps(word, &vec![1.0; count])?;
+        let scene = rounded(recipe.resolve(assumptions)?, settings);
+        let system = compile(&scene)?;
+        let request = Request { measures, trace: None, energies: None, shape: None, rigour: Rigour::Look };
+        let reference = if request.needs_undamped() {
+            let bare = rounded(recipe.resolve_undamped(assumptions)?, settings);
+            Some(solve(&compile(&bare)?, &request.options(settings), solver)?)
+        } else {
+            None
+        };
+        let units = scene.dampers.iter().map(|damper| damper.gap).collect();
+        Ok(Self { recipe, assumptions, settings, measures, solver, scene, system, reference, units })
+    }
+
+    /// Runs it with these gaps; sequential and deterministic as [`evaluate`].
+    ///
+    /// # Errors
+    /// [`EvaluateError`] with the reason.
+    pub fn evaluate(&self, gaps: &[f64], rigour: Rigour) -> Result<Evaluated, EvaluateError> {
+        let (mut scene, mut system) = (self.scene.clone(), self.system.clone());
+        for (i, (gap, unit)) in gaps.iter().zip(&self.units).enumerate() {
+            scene.dampers[i].gap = gap * unit;
+            system.particles[i].gap = gap * unit;
+        }
+        let request = Request { measures: self.measures, trace: None, energies: None, shape: None, rigour };
+        let Self { recipe, assumptions, settings, .. } = self;
+        let case = Case { recipe, assumptions, settings, request: &request, scene: &scene };
+        case.run(&system, self.reference.as_ref(), self.solver, &request.options(settings))
     }
 }
 
@@ -85,83 +158,90 @@ pub fn evaluate(
     if request.deflection().is_some() {
         shape::watch_products(&mut system);
     }
-    let plain = Options {
-        skip: settings.skip,
-        average: settings.average,
-        displacement: request.any(Measure::needs_displacement) || request.deflection().is_some(),
-        extremes: request.any(Measure::needs_extremes),
-        cycle_rates: request.energies.is_some() || request.any(Measure::needs_energies),
-        ..Options::default()
-    };
-    let main = Options {
-        audit: request.rigour == Rigour::Result,
-        trace: request.trace.map(|trace| TraceRequest {
-            from_cycle: u64::from(trace.from_cycle),
-            to_cycle: u64::from(trace.to_cycle),
-            samples: u64::from(trace.samples),
-        }),
-        ..plain.clone()
-    };
+    let plain = request.options(settings);
     let reference = if request.needs_undamped() { Some(solve(&compile(&bare)?, &plain, solver)?) } else { None };
-    let reference = reference.as_ref();
-    let response = solve(&system, &main, solver)?;
-    let Read { values, lists } = case.read(&response, reference, true)?;
-    let certain = |numerical: Vec<f64>, chaotic: bool| Evaluated {
-        measured: values
-            .iter()
-            .zip(numerical)
-            .map(|(value, numerical)| Measured { value: *value, numerical, spread: 0.0 })
-            .collect(),
-        proof: response.proof,
-        chaotic,
-        members: 1,
-        trace: lists.clone(),
-    };
-    if matches!(solver, SolverChoice::FixedStep { .. }) || system.particles.is_empty() {
-        return Ok(certain(vec![0.0; values.len()], false));
-    }
+    case.run(&system, reference.as_ref(), solver, &plain)
+}
 
-    if response.method == Method::ClosedForm {
-        // Linear: neighbouring starts stay neighbours, and there is no window to be halved.
-        return Ok(certain(values.iter().map(|value| CLOSED_FORM * value.abs()).collect(), false));
-    }
-    let rms = case.rms_velocity(&response);
-    let twin = event_driven(&system, &Options { kick: TWIN_KICK, ..plain.clone() })?;
-    let chaotic = (case.rms_velocity(&twin) - rms).abs() > CHAOS * rms;
-    let members = match request.rigour {
-        Rigour::Result => settings.ensemble,
-        Rigour::Look => settings.ensemble.min(MEMBERS_OF_A_LOOK),
-    };
-    if !chaotic && request.rigour == Rigour::Look {
-        return Ok(certain(values.iter().map(|value| 4.0 * f64::EPSILON * value.abs()).collect(), false));
-    }
-    if !chaotic || members < 2 {
-        // The same events decided in other windows; measures of the history are as exact as its samples.
-        let second = event_driven(&system, &Options { window_factor: 0.5, audit: false, ..main.clone() })?;
-        let again = case.read(&second, reference, true)?.values;
-        let numerical = values.iter().zip(again).map(|(a, b)| (a - b).abs().max(4.0 * f64::EPSILON * a.abs()));
-        return Ok(certain(numerical.collect(), chaotic));
-    }
+impl Case<'_> {
+    /// Runs the system as often as it takes. `plain` is how a run without an audit and without a history is made.
+    fn run(
+        &self,
+        system: &HybridSystem,
+        reference: Option<&Response>,
+        solver: SolverChoice,
+        plain: &Options,
+    ) -> Result<Evaluated, EvaluateError> {
+        let Self { settings, request, .. } = *self;
+        let case = self;
+        let main = Options {
+            audit: request.rigour == Rigour::Result,
+            trace: request.trace.map(|trace| TraceRequest {
+                from_cycle: u64::from(trace.from_cycle),
+                to_cycle: u64::from(trace.to_cycle),
+                samples: u64::from(trace.samples),
+            }),
+            ..plain.clone()
+        };
+        let response = solve(system, &main, solver)?;
+        let Read { values, lists } = case.read(&response, reference, true)?;
+        let certain = |numerical: Vec<f64>, chaotic: bool| Evaluated {
+            measured: values
+                .iter()
+                .zip(numerical)
+                .map(|(value, numerical)| Measured { value: *value, numerical, spread: 0.0 })
+                .collect(),
+            proof: response.proof,
+            chaotic,
+            members: 1,
+            trace: lists.clone(),
+        };
+        if matches!(solver, SolverChoice::FixedStep { .. }) || system.particles.is_empty() {
+            return Ok(certain(vec![0.0; values.len()], false));
+        }
 
-    let mut sums = vec![Welford::default(); request.measures.len()];
-    for member in 0..members {
-        let place = (f64::from(member) + 0.5) / f64::from(members) * 2.0 - 1.0;
-        // Time histories, shapes and their measures stay those of the unkicked run.
-        let kicked = event_driven(&system, &Options { kick: ENSEMBLE_KICK * place, ..plain.clone() })?;
-        let of_member = case.read(&kicked, reference, false)?.values;
-        for (sum, value) in sums.iter_mut().zip(of_member) {
-            sum.add(value);
+        if response.method == Method::ClosedForm {
+            // Linear: neighbouring starts stay neighbours, and there is no window to be halved.
+            return Ok(certain(values.iter().map(|value| CLOSED_FORM * value.abs()).collect(), false));
         }
+        let rms = case.rms_velocity(&response);
+        let twin = event_driven(system, &Options { kick: TWIN_KICK, ..plain.clone() })?;
+        let chaotic = (case.rms_velocity(&twin) - rms).abs() > CHAOS * rms;
+        let members = match request.rigour {
+            Rigour::Result => settings.ensemble,
+            Rigour::Look => settings.ensemble.min(MEMBERS_OF_A_LOOK),
+        };
+        if !chaotic && request.rigour == Rigour::Look {
+            return Ok(certain(values.iter().map(|value| 4.0 * f64::EPSILON * value.abs()).collect(), false));
+        }
+        if !chaotic || members < 2 {
+            // The same events decided in other windows; measures of the history are as exact as its samples.
+            let second = event_driven(system, &Options { window_factor: 0.5, audit: false, ..main.clone() })?;
+            let again = case.read(&second, reference, true)?.values;
+            let numerical = values.iter().zip(again).map(|(a, b)| (a - b).abs().max(4.0 * f64::EPSILON * a.abs()));
+            return Ok(certain(numerical.collect(), chaotic));
+        }
+
+        let mut sums = vec![Welford::default(); request.measures.len()];
+        for member in 0..members {
+            let place = (f64::from(member) + 0.5) / f64::from(members) * 2.0 - 1.0;
+            // Time histories, shapes and their measures stay those of the unkicked run.
+            let kicked = event_driven(system, &Options { kick: ENSEMBLE_KICK * place, ..plain.clone() })?;
+            let of_member = case.read(&kicked, reference, false)?.values;
+            for (sum, value) in sums.iter_mut().zip(of_member) {
+                sum.add(value);
+            }
+        }
+        let measured = sums.iter().zip(request.measures).zip(&values).map(|((sum, measure), own)| {
+            if measure.needs_trace() || measure.is_modal() {
+                return Measured { value: *own, numerical: 4.0 * f64::EPSILON * own.abs(), spread: 0.0 };
+            }
+            let spread = sum.deviation();
+            Measured { value: sum.mean, numerical: spread / f64::from(members).sqrt(), spread }
+        });
+        let measured = measured.collect();
+        Ok(Evaluated { measured, proof: response.proof, chaotic, members, trace: lists })
     }
-    let measured = sums.iter().zip(request.measures).zip(&values).map(|((sum, measure), own)| {
-        if measure.needs_trace() || measure.is_modal() {
-            return Measured { value: *own, numerical: 4.0 * f64::EPSILON * own.abs(), spread: 0.0 };
-        }
-        let spread = sum.deviation();
-        Measured { value: sum.mean, numerical: spread / f64::from(members).sqrt(), spread }
-    });
-    let measured = measured.collect();
-    Ok(Evaluated { measured, proof: response.proof, chaotic, members, trace: lists })
 }
 
 /// A case while it is evaluated.

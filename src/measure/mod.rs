@@ -12,7 +12,7 @@ mod history;
 mod reading;
 mod shape;
 
-pub use evaluate::{Request, evaluate};
+pub use evaluate::{Prepared, Request, evaluate};
 
 use crate::dynamics::{EngineError, Proof};
 use crate::scene::{CompileError, RecipeError};

@@ -58,7 +58,7 @@ impl Measure {
     }
 
     /// Read off the velocities at the ends of cycles.
-    pub(super) fn needs_energies(self) -> bool {
+    pub(crate) fn needs_energies(self) -> bool {
         matches!(self, Self::DampingMeasure | Self::MassMeasure)
     }
 

@@ -4,8 +4,10 @@ use super::extract::Extracted;
 use super::line::{common, lines};
 use super::place::{best_place, grows_towards};
 use super::predicate::{
-    Apart, Between, ColumnsAgree, Equal, Level, LinesAgree, PathMonotone, PathsCross, Predicate, Trend, Within,
+    Apart, Between, ColumnsAgree, Equal, Level, LineAbove, LinesAgree, PathMonotone, PathsCross, Predicate, Trend,
+    Within,
 };
+use super::selection::Allowed;
 use super::shape::{greatest_at_end, levels_off, linear, monotone, onsets, peaks};
 use super::tally::{Decision, Outcome, Tally};
 use super::text::{percent, significant, with_unit};
@@ -28,6 +30,7 @@ pub(crate) fn decide(predicate: &Predicate, view: &View<'_>) -> Result<Decision,
         Predicate::Below(claim) => level(claim, view, -1.0),
         Predicate::ColumnsAgree(claim) => columns_agree(claim, view),
         Predicate::LinesAgree(claim) => lines_agree(claim, view),
+        Predicate::LineAbove(claim) => line_above(claim, view),
         Predicate::Linear(claim) => linear(claim, view),
         Predicate::LevelsOff(claim) => levels_off(claim, view),
         Predicate::GreatestAtEnd(claim) => greatest_at_end(claim, view),
@@ -187,6 +190,24 @@ fn lines_agree(claim: &LinesAgree, view: &View<'_>) -> Result<Decision, Absence>
     let mut tally = Tally::new();
     for (x, cells) in common(&all)? {
         agree(&mut tally, &cells, claim.within, || format!(" at {} = {}", claim.over, significant(x, 4)));
+    }
+    tally.decision()
+}
+
+fn line_above(claim: &LineAbove, view: &View<'_>) -> Result<Decision, Absence> {
+    let all = lines(view, claim.source(), &claim.of, &claim.over, &claim.by)?;
+    let line = |level: &String| {
+        let found = all.iter().find(|(allowed, _)| *allowed == Allowed::Text(level.clone()));
+        found.cloned().ok_or_else(|| Absence::NoRow(format!("no line with {} = {level}", claim.by)))
+    };
+    let pair = vec![line(&claim.above)?, line(&claim.below)?];
+    let mut tally = Tally::new();
+    for (x, cells) in common(&pair)? {
+        let (above, below) = (cells[0], cells[1]);
+        let margin = above.value - below.value;
+        tally.require_strictly(margin, libm::hypot(above.run, below.run), || {
+            format!("least lead {} at {} = {}", significant(margin, 3), claim.over, significant(x, 4))
+        });
     }
     tally.decision()
 }

@@ -39,6 +39,8 @@ pub enum Predicate {
     ColumnsAgree(ColumnsAgree),
     /// The lines of a measure agree at every parameter value that they share.
     LinesAgree(LinesAgree),
+    /// One line lies above another at every point that they share.
+    LineAbove(LineAbove),
     /// A measure is a straight line along a parameter.
     Linear(Linear),
     /// From some parameter value on, a measure changes no more.
@@ -210,6 +212,21 @@ claim! {
     }
 }
 claim! {
+    /// A line above another.
+    LineAbove {
+        /// The measure.
+        of: String,
+        /// The parameter.
+        over: String,
+        /// The column that tells the lines apart.
+        by: String,
+        /// Its level on the upper line.
+        above: String,
+        /// Its level on the lower line.
+        below: String,
+    }
+}
+claim! {
     /// A straight line.
     Linear {
         /// The measure.
@@ -344,7 +361,11 @@ impl Predicate {
             | Self::Peaks(_)
             | Self::Curve(_)
             | Self::ModeShape(_) => true,
-            Self::GreatestFirst(_) | Self::GreatestAtEnd(_) | Self::Onsets(_) | Self::PathsCross(_) => false,
+            Self::GreatestFirst(_)
+            | Self::GreatestAtEnd(_)
+            | Self::Onsets(_)
+            | Self::PathsCross(_)
+            | Self::LineAbove(_) => false,
         }
     }
 
@@ -374,6 +395,8 @@ impl Predicate {
             Self::ColumnsAgree(claim) if claim.columns.len() < 2 => return Some("agreement needs two columns or more"),
             Self::ColumnsAgree(claim) => near(claim.within),
             Self::LinesAgree(claim) => near(claim.within),
+            Self::LineAbove(claim) if claim.above == claim.below => return Some("a line is not above itself"),
+            Self::LineAbove(_) => true,
             Self::Linear(claim) => fraction(claim.within),
             Self::LevelsOff(claim) => fraction(claim.within) && claim.from.is_finite(),
             Self::Peaks(Peaks { at_least: None, at_most: None, .. }) => {

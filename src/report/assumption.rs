@@ -26,7 +26,8 @@ pub fn value_in_words(name: Assumption, value: &AssumptionValue) -> String {
 fn unit(name: Assumption) -> &'static str {
     match name {
         Assumption::Gravity => "m/s²",
-        Assumption::StopLength => "m",
+        Assumption::StopLength | Assumption::BeamArrayMargin => "m",
+        Assumption::BeamImpulse | Assumption::PlateImpulse => "N s",
         Assumption::BeamFloorTuning | Assumption::PlateFloorTuning => "N/m",
         Assumption::BeamImpulseTime | Assumption::PlateImpulseTime => "s",
         Assumption::BeamHarmonicForce | Assumption::PlateHarmonicForce => "N",

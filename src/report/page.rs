@@ -4,7 +4,7 @@ use crate::spec::Source;
 
 use super::markdown::one_line;
 use super::view::{FigureView, PageView};
-use super::{assumption, comparison, proof, run};
+use super::{assumption, candidate, comparison, proof, run};
 
 /// The page of an experiment, Markdown.
 #[must_use]
@@ -22,6 +22,9 @@ pub fn page(view: &PageView<'_>) -> String {
         text += &figure(one);
     }
     text += &comparison::section(view.judged);
+    if let (Some(optimise), Some(table)) = (&experiment.optimise, view.table) {
+        text += &candidate::section(optimise, table);
+    }
     if !view.assumptions.is_empty() {
         text += "## Assumptions in force\n\nThe study does not state these inputs; other values could be defended.\n\n";
         text += &assumption::table(view.assumptions);

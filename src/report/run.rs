@@ -1,7 +1,8 @@
 //! How an experiment was run, and which effects its scene has.
 
 use crate::scene::EffectUse;
-use crate::spec::{Experiment, SolverChoice};
+use crate::scene::GapWord;
+use crate::spec::{Experiment, Optimise, Search, SolverChoice};
 use crate::text::number::{compact, quantity};
 use crate::text::words;
 
@@ -11,7 +12,13 @@ use super::markdown::counted;
 pub(super) fn section(experiment: &Experiment) -> String {
     let settings = &experiment.settings;
     let mut text = String::from("## How it was run\n\n");
-    text += &format!("- {}.\n", cases(experiment));
+    match &experiment.optimise {
+        Some(optimise) => text += &searches(optimise),
+        None => text += &format!("- {}.\n", cases(experiment)),
+    }
+    if !experiment.mean_over.is_empty() {
+        text += &format!("- {}\n", averaged(experiment));
+    }
     for solver in &experiment.solvers {
         text += &format!("- {}\n", solver_in_words(*solver));
     }
@@ -53,6 +60,72 @@ pub(super) fn section(experiment: &Experiment) -> String {
         text += &format!("- The shape is kept at {} points.\n", points.join(" by "));
     }
     text + "\n"
+}
+
+/// What was varied, and by what.
+fn searches(optimise: &Optimise) -> String {
+    let unit = if optimise.gaps == GapWord::Gap { "m" } else { "" };
+    let mut bounds: Vec<String> = Vec::new();
+    for [low, high] in &optimise.bounds {
+        let told = format!("{} to {}", quantity(*low, unit, 3), quantity(*high, unit, 3));
+        if !bounds.contains(&told) {
+            bounds.push(told);
+        }
+    }
+    let count = counted(optimise.bounds.len(), "gap", "gaps");
+    let mut text = format!("- {count} varied between {}.\n", joined(&bounds));
+    let seeds: Vec<String> = optimise.seeds.iter().map(u32::to_string).collect();
+    for search in &optimise.searches {
+        text += &match search {
+            Search::Genetic { population, elites, crossover, .. } => format!(
+                "- Genetic algorithm: {population} individuals, {elites} of which live on, {} % of the children by crossover; \
+                 seeds {}. It ends {}.{}\n",
+                compact(100.0 * crossover, 3),
+                joined(&seeds),
+                ends(optimise),
+                if optimise.two_opt { " 2-opt then swaps pairs of its gaps." } else { "" }
+            ),
+            Search::CmaEs { .. } => format!("- CMA-ES, on as many evaluations; seeds {}.\n", joined(&seeds)),
+            Search::Dense { points, refine, .. } => format!(
+                "- Dense search: every combination of {points} values a gap, then {} around the best.\n",
+                counted(*refine as usize, "finer grid", "finer grids")
+            ),
+        };
+    }
+    text
+}
+
+/// When the genetic algorithm ends.
+fn ends(optimise: &Optimise) -> String {
+    let mut ends: Vec<String> = Vec::new();
+    ends.extend(
+        optimise.generations.map(|count| format!("after {}", counted(count as usize, "generation", "generations"))),
+    );
+    ends.extend(
+        optimise.evaluations.map(|count| format!("after {}", counted(count as usize, "evaluation", "evaluations"))),
+    );
+    ends.extend(optimise.time.map(|seconds| format!("after {}", quantity(seconds, "s", 3))));
+    ends.extend(optimise.tolerance.map(|tolerance| {
+        let share = compact(tolerance, 3);
+        format!("when the best fitness changes by less than {share} a generation over {} of them", optimise.stalled)
+    }));
+    ends.join(", or ")
+}
+
+/// What the numbers are means over.
+fn averaged(experiment: &Experiment) -> String {
+    let mut names: Vec<String> = Vec::new();
+    for (parameter, _) in experiment.mean_over.iter().flat_map(|case| &case.values) {
+        let name = words::of_column(&words::of_key(parameter));
+        if !names.contains(&name) {
+            names.push(name);
+        }
+    }
+    format!(
+        "Every number is the mean over {} of {}; a velocity ratio is that of the mean RMS velocities.",
+        counted(experiment.mean_over.len(), "setting", "settings"),
+        joined(&names)
+    )
 }
 
 fn cases(experiment: &Experiment) -> String {

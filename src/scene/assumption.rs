@@ -71,6 +71,12 @@ pub enum Assumption {
     PlateHarmonicForce,
     /// What is made of the velocities of several points: the `largest` or the `mean`.
     GridVelocity,
+    /// J of the impulses on beams where the text gives no amplitude (chapter 6), N s.
+    BeamImpulse,
+    /// The same on plates.
+    PlateImpulse,
+    /// Distance that an array of dampers keeps from the ends of a beam, m.
+    BeamArrayMargin,
     /// How the mass measure compares kinetic energies with those of the clean structure: `jump`, `after`, `level`.
     MassMeasure,
 }

@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use super::recipe::{ExcitationKind, ExcitationRecipe, ImpulseTime, RecipeError, StrengthRecipe, TimingRecipe};
+use super::recipe::{ExcitationKind, ExcitationRecipe, Given, ImpulseTime, RecipeError, StrengthRecipe, TimingRecipe};
 use super::resolve::{Base, above};
 use super::structure::{Family, Structure};
 use super::{Assumption, AssumptionValue, Excitation};
@@ -14,7 +14,7 @@ impl ExcitationRecipe {
         Self {
             kind: ExcitationKind::None,
             at: super::PlaceRecipe::default(),
-            strength: StrengthRecipe::Impulse(0.0),
+            strength: StrengthRecipe::Impulse(Given::Stated(0.0)),
             timing: TimingRecipe::FrequencyRatio(1.0),
             impulse_time: ImpulseTime::Assumed,
         }
@@ -83,7 +83,7 @@ impl ExcitationRecipe {
 
     fn impulse(&self, base: &Base<'_>, angular_frequency: f64) -> Result<f64, RecipeError> {
         let ratio = match self.strength {
-            StrengthRecipe::Impulse(impulse) => return Ok(impulse),
+            StrengthRecipe::Impulse(impulse) => return base.assumptions.given(impulse),
             StrengthRecipe::ForceRatio(ratio) => ratio,
             StrengthRecipe::BaseAmplitudeRatio(_) | StrengthRecipe::Force(_) => {
                 return Err(RecipeError::OutOfRange("an impulse takes force_ratio or an impulse in N s".into()));

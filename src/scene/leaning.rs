@@ -37,6 +37,9 @@ impl Recipe {
         if let StrengthRecipe::Force(force) = &excitation.strength {
             lean(set, force);
         }
+        if let StrengthRecipe::Impulse(impulse) = &excitation.strength {
+            lean(set, impulse);
+        }
         if matches!(excitation.strength, StrengthRecipe::ForceRatio(_))
             && !harmonic
             && excitation.impulse_time == ImpulseTime::Assumed
@@ -63,6 +66,9 @@ impl DamperRecipe {
             if matches!(self.mass, MassRecipe::Ratio(_)) && self.mass_reading == MassReading::Assumed {
                 set.extend(family.damper_mass());
             }
+        }
+        if let Some(margin) = self.array.as_ref().and_then(|array| array.margin.as_ref()) {
+            lean(set, margin);
         }
         for surface in [&self.floor, &self.ceiling] {
             if let SurfaceRecipe::Resilient { stiffness, damping, .. } = surface {
@@ -142,6 +148,16 @@ impl Family {
             Self::Mass => Assumption::ContactDampingRatio,
             Self::Beam => Assumption::BeamContactDampingRatio,
             Self::Plate => Assumption::PlateContactDampingRatio,
+        }
+    }
+
+    /// The assumption on impulses whose size the text does not give, N s.
+    #[must_use]
+    pub fn impulse(self) -> Option<Assumption> {
+        match self {
+            Self::Mass => None,
+            Self::Beam => Some(Assumption::BeamImpulse),
+            Self::Plate => Some(Assumption::PlateImpulse),
         }
     }
 

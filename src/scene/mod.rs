@@ -25,9 +25,9 @@ pub use normal_modes::{NormalMode, normal_modes};
 pub use parameter::{Parameter, ParameterValue};
 pub use place::{Coordinate, PlaceRecipe};
 pub use recipe::{
-    ArrayRecipe, ContactDampingRecipe, DamperRecipe, ExcitationKind, ExcitationRecipe, GapRecipe, Given, ImpulseTime,
-    MassReading, MassRecipe, ObserveRecipe, Part, PointsRecipe, PulseShape, Recipe, RecipeError, StiffnessRecipe,
-    StopRecipe, StrengthRecipe, SurfaceRecipe, TimingRecipe, WallRecipe,
+    ArrayRecipe, ContactDampingRecipe, DamperRecipe, ExcitationKind, ExcitationRecipe, Filling, GapRecipe, GapWord,
+    Given, ImpulseTime, MassReading, MassRecipe, ObserveRecipe, Part, PointsRecipe, PulseShape, Recipe, RecipeError,
+    StiffnessRecipe, StopRecipe, StrengthRecipe, SurfaceRecipe, TimingRecipe, WallRecipe,
 };
 pub use structure::{
     CantileverBeam, ClampedBeam, Family, Field, FieldValue, Form, KINDS, Kind, Matrices, Model, Point, SingleMass,

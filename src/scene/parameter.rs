@@ -3,8 +3,8 @@
 use serde::{Deserialize, Serialize};
 
 use super::recipe::{
-    ContactDampingRecipe, DamperRecipe, ExcitationKind, GapRecipe, Given, MassReading, MassRecipe, Part, PulseShape,
-    Recipe, RecipeError, StiffnessRecipe, StrengthRecipe, SurfaceRecipe, TimingRecipe,
+    ContactDampingRecipe, DamperRecipe, ExcitationKind, Filling, GapRecipe, Given, MassReading, MassRecipe, Part,
+    PulseShape, Recipe, RecipeError, StiffnessRecipe, StrengthRecipe, SurfaceRecipe, TimingRecipe,
 };
 use super::structure::whole;
 
@@ -74,6 +74,8 @@ pub enum Parameter {
     Impulse,
     /// Forcing frequency, rad/s.
     AngularFrequency,
+    /// Gaps of an array: `uniform` or `optimised`.
+    Filling,
 }
 
 /// A value that a sweep gives to a parameter.
@@ -96,6 +98,10 @@ pub enum ParameterValue {
     Total,
     /// `modal`.
     Modal,
+    /// `uniform`.
+    Uniform,
+    /// `optimised`.
+    Optimised,
 }
 
 impl Parameter {
@@ -107,6 +113,7 @@ impl Parameter {
             Self::Stop | Self::Dampers => &[Value::With, Value::Without],
             Self::FloorTuning => &[Value::Tuned, Value::Untuned],
             Self::MassReading => &[Value::Total, Value::Modal],
+            Self::Filling => &[Value::Uniform, Value::Optimised],
             _ => &[],
         }
     }
@@ -175,6 +182,7 @@ impl Parameter {
                 | Self::StopLength
                 | Self::FloorTuning
                 | Self::MassReading
+                | Self::Filling
                 | Self::DamperCount
                 | Self::ParticleShare
                 | Self::DamperX
@@ -203,7 +211,7 @@ impl Recipe {
             Parameter::ForceRatio => self.excitation.strength = StrengthRecipe::ForceRatio(number()?),
             Parameter::BaseAmplitudeRatio => self.excitation.strength = StrengthRecipe::BaseAmplitudeRatio(number()?),
             Parameter::Force => self.excitation.strength = StrengthRecipe::Force(Given::Stated(number()?)),
-            Parameter::Impulse => self.excitation.strength = StrengthRecipe::Impulse(number()?),
+            Parameter::Impulse => self.excitation.strength = StrengthRecipe::Impulse(Given::Stated(number()?)),
             Parameter::FrequencyRatio => self.excitation.timing = TimingRecipe::FrequencyRatio(number()?),
             Parameter::AngularFrequency => self.excitation.timing = TimingRecipe::AngularFrequency(number()?),
             Parameter::ForcedMode => self.excitation.timing = TimingRecipe::ForcedMode(whole(number()?)?),
@@ -258,6 +266,12 @@ impl DamperRecipe {
                 self.mass_reading =
                     if value == ParameterValue::Modal { MassReading::Modal } else { MassReading::Total };
             }
+            Parameter::Filling => match &mut self.gap {
+                GapRecipe::Filled { filling, .. } => {
+                    *filling = if value == ParameterValue::Optimised { Filling::Optimised } else { Filling::Uniform };
+                }
+                _ => return Err(nothing("one filling alone: write `gap: {uniform: …, optimised: […]}`")),
+            },
             Parameter::ParticleShare => self.particle_share = number()?,
             Parameter::DamperX | Parameter::DamperY => {
                 if !self.at.set_share(usize::from(parameter == Parameter::DamperY), number()?) {

@@ -60,6 +60,7 @@ impl<'a> Places<'a> {
         &self,
         place: &PlaceRecipe,
         array: Option<&ArrayRecipe>,
+        margin: f64,
         part: Part,
     ) -> Result<Vec<Point>, RecipeError> {
         let Some(array) = array else { return Ok(vec![self.point(place, part)?]) };
@@ -80,11 +81,16 @@ impl<'a> Places<'a> {
             each if each.len() == sides => each.to_vec(),
             each => return refuse(format!("an array on {} has {sides} spacings, not {}", self.kind.what, each.len())),
         };
-        let start = self.coordinates(place, part)?;
-        let offset = |side: usize, i: u32| {
-            let middle = if array.centred { 0.5 * f64::from(count[side] - 1) } else { 0.0 };
-            start[side] + (f64::from(i) - middle) * spacing[side]
-        };
+        let mut start = self.coordinates(place, part)?;
+        for (side, start) in start.iter_mut().enumerate() {
+            let reach = f64::from(count[side] - 1) * spacing[side];
+            *start -= if array.centred { 0.5 * reach } else { 0.0 };
+            if array.margin.is_some() {
+                let (low, high) = (start.min(*start + reach), start.max(*start + reach));
+                *start += (margin - low).max(0.0) - (high + margin - self.sides[side]).max(0.0);
+            }
+        }
+        let offset = |side: usize, i: u32| start[side] + f64::from(i) * spacing[side];
         let mut points = Vec::new();
         for i in 0..count[0] {
             for j in 0..count.get(1).copied().unwrap_or(1) {

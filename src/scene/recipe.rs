@@ -93,6 +93,9 @@ pub struct ArrayRecipe {
     pub spacing: Vec<f64>,
     /// Centred on its place; else it begins there.
     pub centred: bool,
+    /// Distance that it keeps from the ends of the structure, m: one that would come nearer is moved inwards as a whole.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub margin: Option<Given>,
 }
 
 /// Mass of particle and enclosure.
@@ -129,8 +132,63 @@ pub enum GapRecipe {
     Ratios(Vec<f64>),
     /// h of each damper of an array, m.
     Gaps(Vec<f64>),
+    /// h of the dampers of an array, m, filled in one of two ways.
+    Filled {
+        /// The same in all of them.
+        uniform: f64,
+        /// One a damper.
+        optimised: Vec<f64>,
+        /// Which of the two.
+        filling: Filling,
+    },
     /// No ceiling can be met (h′ = ∞).
     Infinite,
+}
+
+/// How an array is filled.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Filling {
+    /// Equal gaps.
+    Uniform,
+    /// Gaps that an optimiser has found.
+    Optimised,
+}
+
+/// In which of the study's words gaps are told.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum GapWord {
+    /// h, m.
+    Gap,
+    /// h′ = h ωn²/g.
+    GapRatio,
+}
+
+impl Recipe {
+    /// Gives every damper its own gap, array by array in the order of the file.
+    ///
+    /// # Errors
+    /// [`RecipeError::OutOfRange`] if there are more or fewer gaps than dampers.
+    pub fn set_gaps(&mut self, word: GapWord, gaps: &[f64]) -> Result<(), RecipeError> {
+        let mut left = gaps;
+        for damper in &mut self.dampers {
+            let count = damper.array.as_ref().map_or(1, |array| array.count.iter().product::<u32>() as usize);
+            let Some((own, rest)) = left.split_at_checked(count) else {
+                return Err(RecipeError::OutOfRange(format!("{} gaps are too few: one for each damper", gaps.len())));
+            };
+            left = rest;
+            damper.gap = match word {
+                GapWord::Gap => GapRecipe::Gaps(own.to_vec()),
+                GapWord::GapRatio => GapRecipe::Ratios(own.to_vec()),
+            };
+        }
+        if left.is_empty() {
+            Ok(())
+        } else {
+            Err(RecipeError::OutOfRange(format!("{} gaps are too many: one for each damper", gaps.len())))
+        }
+    }
 }
 
 /// A surface.
@@ -268,7 +326,7 @@ pub enum StrengthRecipe {
     /// a ω²/g, Duncan's base amplitude: F = −m a ω² (harmonic only).
     BaseAmplitudeRatio(f64),
     /// J, N s (impulses and pulses only).
-    Impulse(f64),
+    Impulse(Given),
     /// F, N (harmonic only).
     Force(Given),
 }

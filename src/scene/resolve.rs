@@ -6,8 +6,8 @@
 use super::normal_modes::{add_square, normal_modes};
 use super::place::{PlaceRecipe, Places};
 use super::recipe::{
-    ContactDampingRecipe, DamperRecipe, GapRecipe, MassReading, MassRecipe, ObserveRecipe, Part, PointsRecipe, Recipe,
-    RecipeError, StiffnessRecipe, SurfaceRecipe, TimingRecipe,
+    ContactDampingRecipe, DamperRecipe, Filling, GapRecipe, MassReading, MassRecipe, ObserveRecipe, Part, PointsRecipe,
+    Recipe, RecipeError, StiffnessRecipe, SurfaceRecipe, TimingRecipe,
 };
 use super::structure::{Family, Kind, Point, Structure};
 use super::{
@@ -141,7 +141,8 @@ impl Base<'_> {
 impl DamperRecipe {
     fn place<'r>(&'r self, base: &Base<'_>, places: &Places<'_>, index: usize) -> Result<Vec<Placed<'r>>, RecipeError> {
         let part = Part::Damper(index);
-        let points = places.array(&self.at, self.array.as_ref(), part)?;
+        let margin = self.array.as_ref().and_then(|array| array.margin).map(|margin| base.assumptions.given(margin));
+        let points = places.array(&self.at, self.array.as_ref(), margin.transpose()?.unwrap_or(0.0), part)?;
         let count = points.len() as f64;
         let whole = self.whole_mass(base).map_err(|error| error.within(part))?;
         if !(self.particle_share > 0.0 && self.particle_share <= 1.0) {
@@ -234,6 +235,8 @@ impl Placed<'_> {
             GapRecipe::Gap(gap) => *gap,
             GapRecipe::Ratios(ratios) => by_ratio(each(ratios)?)?,
             GapRecipe::Gaps(gaps) => each(gaps)?,
+            GapRecipe::Filled { uniform, filling: Filling::Uniform, .. } => *uniform,
+            GapRecipe::Filled { optimised, filling: Filling::Optimised, .. } => each(optimised)?,
             GapRecipe::Infinite => f64::INFINITY,
         };
         if gap.is_nan() || gap < 0.0 {

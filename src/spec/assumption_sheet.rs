@@ -107,6 +107,8 @@ fn kind(name: Assumption) -> Kind {
             Kind::QuantityOr(Dimension::Stiffness, &["clean", "loaded", "untuned"])
         }
         Assumption::BeamImpulseTime | Assumption::PlateImpulseTime => Kind::QuantityOr(Dimension::Time, &IMPULSE_TIMES),
+        Assumption::BeamImpulse | Assumption::PlateImpulse => Kind::Quantity(Dimension::Impulse),
+        Assumption::BeamArrayMargin => Kind::Quantity(Dimension::Length),
         Assumption::BeamHarmonicForce | Assumption::PlateHarmonicForce => Kind::Quantity(Dimension::Force),
         Assumption::GridVelocity => Kind::Choice(&["largest", "mean"]),
         Assumption::MassMeasure => Kind::Choice(&["jump", "after", "level"]),

@@ -9,14 +9,18 @@ use super::diagnostic::{Findings, Span};
 use super::experiment::{
     Case, EnergySpec, Experiment, Maximise, Refinement, Settings, ShapeSpec, SolverChoice, TraceSpec,
 };
+use super::optimise::Optimise;
 use super::refined::curves;
 use super::scene::ReadScene;
+use super::sweep::ReadSweep;
 use super::word::word_of;
 
 /// Most runs of a whole experiment, ensembles not counted.
 const MOST_RUNS: usize = 1_000_000;
 /// Most steps of one fixed-step run: some ten minutes.
 const MOST_STEPS: f64 = 1e11;
+/// Most fitness evaluations of an optimisation.
+const MOST_EVALUATIONS: u64 = 10_000_000;
 /// Kinds of refusal that are told; more of them would hardly help.
 const MOST_TOLD: usize = 5;
 
@@ -90,10 +94,13 @@ impl Checks<'_> {
         scene: &ReadScene,
         cases: &[Case],
         places: &BTreeMap<Parameter, Span>,
+        mean_over: &ReadSweep,
         maximise: Option<&Maximise>,
     ) {
         for (parameter, span) in &scene.swept {
-            if maximise.is_some_and(|maximise| maximise.over == *parameter) {
+            let averaged = mean_over.places.contains_key(parameter)
+                && mean_over.cases.iter().all(|case| case.get(*parameter).is_some());
+            if averaged || maximise.is_some_and(|maximise| maximise.over == *parameter) {
                 continue;
             }
             let name = word_of(*parameter);
@@ -114,6 +121,41 @@ impl Checks<'_> {
         }
     }
 
+    /// What is averaged over is not swept or maximised over as well.
+    pub fn mean_over(&self, mean_over: &ReadSweep, places: &BTreeMap<Parameter, Span>, maximise: Option<&Maximise>) {
+        for (parameter, span) in &mean_over.places {
+            if places.contains_key(parameter) || maximise.is_some_and(|maximise| maximise.over == *parameter) {
+                let message = format!("`{}` is averaged over and varied at once", word_of(*parameter));
+                self.findings.wrong::<()>(*span, message);
+            }
+        }
+    }
+
+    /// The fitness is measured by a run, and the number of runs is bounded.
+    pub fn optimise(&self, optimise: &Optimise, measures: &[(Measure, Span)], solvers: &[SolverChoice], at: Span) {
+        if solvers.len() > 1 {
+            self.findings.wrong::<()>(at, "an optimisation runs under one solver");
+        }
+        let name = word_of(optimise.measure);
+        if !measures.iter().any(|(measure, _)| *measure == optimise.measure)
+            && let Some((_, span)) = measures.first()
+        {
+            let help = format!("add `{name}` to `measure`");
+            self.findings.report::<()>(*span, format!("`{name}` is optimised, but not measured"), Some(help));
+        }
+        for (measure, span) in measures {
+            if measure.needs_trace() || measure.needs_shape() || measure.needs_energies() {
+                let message = format!("`{}` is not measured in an optimisation", word_of(*measure));
+                self.findings.wrong::<()>(*span, message);
+            }
+        }
+        let evaluations = optimise.most_evaluations();
+        if evaluations > MOST_EVALUATIONS {
+            let message = format!("{evaluations} evaluations are too many: {MOST_EVALUATIONS} at most");
+            self.findings.wrong::<()>(at, message);
+        }
+    }
+
     /// The measures that a refined range follows are measured, and have curves to be followed.
     pub fn refined(&self, refined: &[(Refinement, Span)], measures: &[(Measure, Span)]) {
         for (refinement, span) in refined {
@@ -131,7 +173,14 @@ impl Checks<'_> {
     }
 
     /// The number of runs is bounded.
-    pub fn amount(&self, cases: &[Case], refined: &[(Refinement, Span)], maximise: Option<&Maximise>, at: Span) {
+    pub fn amount(
+        &self,
+        cases: &[Case],
+        refined: &[(Refinement, Span)],
+        maximise: Option<&Maximise>,
+        averaged: usize,
+        at: Span,
+    ) {
         let of = |case: &Case| case.solvers.len();
         let plain: usize = cases.iter().map(of).sum();
         let added = curves(cases, refined.iter().map(|(rule, _)| rule)).into_iter().map(|curve| {
@@ -139,7 +188,7 @@ impl Checks<'_> {
             (curve.rule.most as usize).saturating_sub(curve.cases.len()) * solvers
         });
         let runs = plain + added.sum::<usize>();
-        let each = maximise.map_or(1, |maximise| maximise.grid.len());
+        let each = maximise.map_or(1, |maximise| maximise.grid.len()) * averaged.max(1);
         if runs.saturating_mul(each) > MOST_RUNS {
             self.findings.wrong::<()>(at, format!("{runs} runs of {each} points are too many: {MOST_RUNS} at most"));
         }
@@ -180,7 +229,11 @@ impl Checks<'_> {
         if recipes.is_empty() {
             recipes.push(recipe);
         }
-        for recipe in recipes {
+        let mut all = Vec::new();
+        for recipe in &recipes {
+            all.extend(experiment.recipes_in(recipe)?);
+        }
+        for recipe in all {
             steps(&recipe.resolve(self.assumptions)?, case, &experiment.settings)?;
         }
         Ok(())

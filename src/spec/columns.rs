@@ -1,7 +1,7 @@
 //! The columns that an experiment's table will have, known before anything runs.
 
 use crate::measure::Measure;
-use crate::scene::Parameter;
+use crate::scene::{GapWord, Parameter};
 
 use super::experiment::{Maximise, ShapeOf, ShapeSpec};
 use super::word::word_of;
@@ -49,6 +49,12 @@ pub(super) const ENERGIES: [&str; 7] = [
     "mass_measure_of_cycle",
 ];
 
+/// Names of what became of a candidate.
+const OUTCOME: [&str; 4] = ["fitness_in_search", "improvement", "improvement_num", "evaluations"];
+
+/// Names of the lists of an optimisation: the best fitness after so many evaluations, and the fitness along one gap.
+const SEARCHES: [&str; 5] = ["evaluation", "best_so_far", "along_gap", "fitness_along", "fitness_along_num"];
+
 /// Names of the lists of a shape, as documented at [`super::ShapeSpec`].
 pub(super) fn shape_lists(shape: &ShapeSpec) -> Vec<&'static str> {
     let sides = if shape.points.len() > 1 { &["x", "y"][..] } else { &["x"] };
@@ -89,6 +95,23 @@ impl Columns {
         }
         list.extend(PROOF.map(|name| (name.into(), Role::Number)));
         list.extend(lists.iter().map(|name| ((*name).into(), Role::History)));
+        Self { list }
+    }
+
+    /// The columns of an optimisation of so many gaps.
+    pub fn of_candidates(gaps: usize, word: GapWord, measures: &[Measure]) -> Self {
+        let mut list: Vec<(String, Role)> = vec![("candidate".into(), Role::Label)];
+        list.extend(["seed", "varied"].map(|name| (name.into(), Role::Number)));
+        list.extend((1..=gaps).map(|gap| (format!("{}_{gap}", word_of(word)), Role::Number)));
+        list.extend(["solver", "variant"].map(|name| (name.into(), Role::Label)));
+        for measure in measures {
+            let name = word_of(*measure);
+            list.extend(["", "_num", "_spread"].map(|suffix| (format!("{name}{suffix}"), Role::Number)));
+        }
+        list.extend(OUTCOME.map(|name| (name.into(), Role::Number)));
+        list.push(("stopped".into(), Role::Label));
+        list.extend(PROOF.map(|name| (name.into(), Role::Number)));
+        list.extend(SEARCHES.map(|name| (name.into(), Role::History)));
         Self { list }
     }
 

@@ -65,9 +65,14 @@ impl<'t> SceneReader<'t> {
 
     fn strength(&self, key: &str, node: &'t Node, kind: &Kind) -> Option<StrengthRecipe> {
         match key {
-            "impulse" => self
-                .swept_or(node, Parameter::Impulse, |node| quantity(node, Dimension::Impulse, self.findings))
-                .map(StrengthRecipe::Impulse),
+            "impulse" => {
+                if let (true, Some(name)) = (is_word(node, "assumed"), kind.family.impulse()) {
+                    return Some(StrengthRecipe::Impulse(Given::Assumed(name)));
+                }
+                let impulse =
+                    self.swept_or(node, Parameter::Impulse, |node| quantity(node, Dimension::Impulse, self.findings));
+                impulse.map(Given::Stated).map(StrengthRecipe::Impulse)
+            }
             "force" => {
                 if let (true, Some(name)) = (is_word(node, "assumed"), kind.family.harmonic_force()) {
                     return Some(StrengthRecipe::Force(Given::Assumed(name)));

@@ -9,6 +9,7 @@ use crate::measure::Measure;
 use crate::scene::{Assumption, Assumptions, Parameter, ParameterValue, Recipe, RecipeError};
 
 use super::assumption_sheet::AssumptionSheet;
+use super::optimise::Optimise;
 use super::word::word_of;
 
 /// Id of an experiment: its file name without ending, `ch3-limit-stop`; lower-case letters, digits and hyphens.
@@ -63,6 +64,13 @@ pub struct Experiment {
     /// Sweeps whose curves get more points where they bend; the cases hold the points that they start with.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub refined: Vec<Refinement>,
+    /// What every number is a mean over: settings of parameters that no column tells apart, such as force points. Empty as a
+    /// rule. A velocity ratio is then that of the mean RMS velocities.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub mean_over: Vec<Case>,
+    /// An optimisation of gaps in the place of a sweep.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub optimise: Option<Optimise>,
     /// The assumptions that are moved for the sensitivity; `None` for all that the experiment leans on.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub moved: Option<BTreeSet<Assumption>>,
@@ -96,6 +104,27 @@ impl Experiment {
         Ok(recipe)
     }
 
+    /// The scenes of one case that its numbers are means over; one as a rule.
+    ///
+    /// # Errors
+    /// As [`Experiment::recipe_of`].
+    pub fn recipes_of(&self, case: &Case) -> Result<Vec<Recipe>, RecipeError> {
+        self.recipes_in(&self.recipe_of(case)?)
+    }
+
+    /// The same of a scene in which a case has been set already.
+    ///
+    /// # Errors
+    /// As [`Experiment::recipe_of`].
+    pub fn recipes_in(&self, recipe: &Recipe) -> Result<Vec<Recipe>, RecipeError> {
+        let inner = |case: &Case| {
+            let mut recipe = recipe.clone();
+            case.values.iter().try_for_each(|(parameter, value)| recipe.set(*parameter, *value))?;
+            Ok(recipe)
+        };
+        if self.mean_over.is_empty() { Ok(vec![recipe.clone()]) } else { self.mean_over.iter().map(inner).collect() }
+    }
+
     /// The assumptions that a number of this experiment may depend on, under the values in force or with one of them moved.
     #[must_use]
     pub fn assumptions_used(&self, sheet: &AssumptionSheet) -> BTreeSet<Assumption> {
@@ -108,8 +137,10 @@ impl Experiment {
 
     fn assumptions_under(&self, in_force: &Assumptions) -> BTreeSet<Assumption> {
         let mut used = BTreeSet::new();
-        for recipe in self.cases.iter().filter_map(|case| self.recipe_of(case).ok()) {
-            used.extend(recipe.assumptions(in_force));
+        for case in &self.cases {
+            for recipe in self.recipes_of(case).unwrap_or_default() {
+                used.extend(recipe.assumptions(in_force));
+            }
         }
         if !self.measures.iter().any(|measure| measure.needs_undamped()) {
             used.remove(&Assumption::UndampedMass);
@@ -129,7 +160,7 @@ impl Experiment {
     /// What a simulation depends on: a changed title, caption or figure is not part of it.
     #[must_use]
     pub fn simulation_json(&self) -> serde_json::Value {
-        serde_json::json!({
+        let mut meaning = serde_json::json!({
             "recipe": json(&self.recipe),
             "cases": json(&self.cases),
             "swept": json(&self.swept),
@@ -140,7 +171,14 @@ impl Experiment {
             "trace": json(&self.trace),
             "energies": json(&self.energies),
             "shape": json(&self.shape),
-        })
+        });
+        if !self.mean_over.is_empty() {
+            meaning["mean_over"] = json(&self.mean_over);
+        }
+        if let Some(optimise) = &self.optimise {
+            meaning["optimise"] = json(optimise);
+        }
+        meaning
     }
 
     /// What the drawings depend on beside the table.

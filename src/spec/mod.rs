@@ -12,6 +12,8 @@ mod experiment;
 mod figure;
 mod load;
 mod map;
+mod optimise;
+mod optimise_reader;
 mod place;
 mod quantity;
 mod range;
@@ -33,6 +35,7 @@ pub use experiment::{
     Mark, Maximise, Panel, PeakMarks, Refinement, Settings, ShapeOf, ShapeSpec, SolverChoice, Source, TraceSpec,
 };
 pub use load::{load_assumptions, load_experiment};
+pub use optimise::{Candidate, Goal, Landscape, Optimise, Search, SearchKind, SearchSpacing};
 pub use quantity::{Dimension, QuantityError, parse_number, parse_quantity};
 pub(crate) use refined::{Curve, curves};
 pub use typed::{Located, from_yaml};

@@ -1,6 +1,8 @@
 //! Places in a scene: where dampers sit, where the force acts, where the motion is observed; and arrays of dampers.
 
-use crate::scene::{ArrayRecipe, Coordinate, Kind, ObserveRecipe, Parameter, PlaceRecipe, PointsRecipe, Take};
+use crate::scene::{
+    ArrayRecipe, Assumption, Coordinate, Family, Kind, ObserveRecipe, Parameter, PlaceRecipe, PointsRecipe, Take,
+};
 
 use super::quantity::Dimension;
 use super::reader::{Choice, Fields, boolean, count, list, number, one_or_more, quantity};
@@ -112,9 +114,15 @@ impl<'t> SceneReader<'t> {
             one_or_more(node, self.findings, |node| quantity(node, Dimension::Length, self.findings))
         });
         let centred = fields.optional("centred", |node| boolean(node, self.findings));
+        let margin = fields.optional("margin", |node| {
+            if is_word(node, "assumed") && kind.family != Family::Beam {
+                return self.findings.wrong(node.span, "the assumed margin is that of arrays on beams: give a length");
+            }
+            self.given(node, Assumption::BeamArrayMargin, |node| quantity(node, Dimension::Length, self.findings))
+        });
         fields.close()?;
         // A plate's array lies around its place, a beam's begins there.
         let usual = kind.sides.len() > 1;
-        Some(ArrayRecipe { count: count?, spacing: spacing?, centred: centred?.unwrap_or(usual) })
+        Some(ArrayRecipe { count: count?, spacing: spacing?, centred: centred?.unwrap_or(usual), margin: margin? })
     }
 }

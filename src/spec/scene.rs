@@ -3,8 +3,8 @@
 use std::cell::RefCell;
 
 use crate::scene::{
-    Assumption, ContactDampingRecipe, DamperRecipe, Family, GapRecipe, Given, KINDS, Kind, MassReading, MassRecipe,
-    Parameter, Part, Recipe, StiffnessRecipe, StopRecipe, SurfaceRecipe, WallRecipe,
+    Assumption, ContactDampingRecipe, DamperRecipe, Family, Filling, GapRecipe, Given, KINDS, Kind, MassReading,
+    MassRecipe, Parameter, Part, Recipe, StiffnessRecipe, StopRecipe, SurfaceRecipe, WallRecipe,
 };
 
 use super::diagnostic::{Findings, Span};
@@ -23,20 +23,29 @@ pub(super) const MOST_DAMPERS: usize = 64;
 pub(super) struct ReadScene {
     pub recipe: Recipe,
     pub swept: Vec<(Parameter, Span)>,
+    /// Where it says that a gap is optimised.
+    pub optimised: Vec<Span>,
     /// Where each part stands.
     pub parts: Vec<(Part, Span)>,
 }
 
 /// Reads the node under `scene`.
 pub(super) fn read_scene(node: &Node, findings: &Findings) -> Option<ReadScene> {
-    let reader = SceneReader { findings, swept: RefCell::default(), parts: RefCell::default() };
+    let reader =
+        SceneReader { findings, swept: RefCell::default(), optimised: RefCell::default(), parts: RefCell::default() };
     let recipe = reader.recipe(node)?;
-    Some(ReadScene { recipe, swept: reader.swept.into_inner(), parts: reader.parts.into_inner() })
+    Some(ReadScene {
+        recipe,
+        swept: reader.swept.into_inner(),
+        optimised: reader.optimised.into_inner(),
+        parts: reader.parts.into_inner(),
+    })
 }
 
 pub(super) struct SceneReader<'t> {
     pub(super) findings: &'t Findings,
     pub(super) swept: RefCell<Vec<(Parameter, Span)>>,
+    optimised: RefCell<Vec<Span>>,
     parts: RefCell<Vec<(Part, Span)>>,
 }
 
@@ -108,6 +117,11 @@ impl<'t> SceneReader<'t> {
         };
         let gap = fields.exactly_one(&["gap_ratio", "gap"]).and_then(|(key, node)| match key {
             _ if is_word(node, "infinite") => Some(GapRecipe::Infinite),
+            _ if is_word(node, "optimised") => {
+                self.optimised.borrow_mut().push(node.span);
+                Some(GapRecipe::Gap(PLACEHOLDER))
+            }
+            "gap" if matches!(node.value, Value::Mapping(_)) => self.filled(node),
             "gap" if matches!(node.value, Value::Sequence(_)) => {
                 list(node, self.findings, |node| quantity(node, Dimension::Length, self.findings)).map(GapRecipe::Gaps)
             }
@@ -136,6 +150,17 @@ impl<'t> SceneReader<'t> {
             stop: stop?,
             walls: walls?,
         })
+    }
+
+    /// An array filled in one of two ways, which a sweep chooses.
+    fn filled(&self, node: &'t Node) -> Option<GapRecipe> {
+        let fields = Fields::open(node, "a filling", self.findings)?;
+        let length = |node: &'t Node| quantity(node, Dimension::Length, self.findings);
+        let uniform = fields.required("uniform", length);
+        let optimised = fields.required("optimised", |node| list(node, self.findings, length));
+        self.swept.borrow_mut().push((Parameter::Filling, node.span));
+        fields.close()?;
+        Some(GapRecipe::Filled { uniform: uniform?, optimised: optimised?, filling: Filling::Uniform })
     }
 
     /// `assumed`, or a reading, which a sweep may vary.

@@ -15,10 +15,12 @@ use super::experiment::{
     Case, EnergySpec, Experiment, ExperimentId, Maximise, Settings, ShapeOf, ShapeSpec, SolverChoice, Source, TraceSpec,
 };
 use super::figure::FigureReader;
+use super::optimise::Optimise;
+use super::optimise_reader::{OptimiseReader, ReadOptimise};
 use super::quantity::Dimension;
 use super::range::numbers;
 use super::reader::{Fields, above_zero, count, no_such, one_or_more, text, word};
-use super::scene::read_scene;
+use super::scene::{ReadScene, read_scene};
 use super::solver::read_solver;
 use super::sweep::{ReadSweep, read_sweep};
 use super::word::{from_word, words};
@@ -66,16 +68,20 @@ impl<'t> ExperimentReader<'t> {
         let about = fields.required("about", |node| text(node, self.findings));
         let scene = fields.required("scene", |node| read_scene(node, self.findings));
         let sweep = fields.optional("sweep", |node| read_sweep(node, self.findings));
+        let mean_over = fields.optional("mean_over", |node| self.mean_over(node));
         let measures = fields.required("measure", |node| self.measures(node));
         let maximise = fields.optional("maximise", |node| self.maximise(node));
+        let optimise = fields.optional("optimise", |node| OptimiseReader { findings: self.findings }.read(node));
         let run = fields.optional("run", |node| self.run(node)).map(|run| run.unwrap_or_else(Run::default));
         let trace = fields.optional("trace", |node| self.trace(node));
         let energies = fields.optional("energies", |node| self.energies(node));
         let shape = fields.optional("shape", |node| self.shape(node));
         let one_list = self.one_list(&fields);
+        let alone = self.optimised_alone(&fields);
+        let whole = self.averaged_alone(&fields);
         let energies_at = fields.get("energies").map_or(fields.span(), |node| node.span);
         let place = |key| fields.get(key).map_or(fields.span(), |node| node.span);
-        let scene_at = place("scene");
+        let (scene_at, optimise_at) = (place("scene"), place("optimise"));
 
         let kept = match (&trace, &energies, &shape) {
             (Some(trace), Some(energies), Some(shape)) => Some(match (trace, energies, shape) {
@@ -86,7 +92,16 @@ impl<'t> ExperimentReader<'t> {
             }),
             _ => None,
         };
+        let optimise = match (optimise, &scene, &mean_over) {
+            (Some(optimise), Some(scene), Some(inner)) => self.optimise(optimise, scene, inner.as_ref()),
+            _ => None,
+        };
         let columns = match (&sweep, &measures, &maximise, &kept) {
+            _ if alone.is_none() || optimise.is_none() => None,
+            (Some(_), Some(measures), ..) if matches!(optimise, Some(Some(_))) => {
+                let of = |it: &Optimise| Columns::of_candidates(it.bounds.len(), it.gaps, &words_only(measures));
+                optimise.as_ref().and_then(Option::as_ref).map(of)
+            }
             (Some(sweep), Some(measures), Some(maximise), Some(kept)) => {
                 let swept = sweep.as_ref().map_or(&[][..], |sweep| &sweep.swept);
                 let union = sweep.as_ref().is_some_and(|sweep| sweep.cases.iter().any(|case| !case.sweep.is_empty()));
@@ -99,18 +114,34 @@ impl<'t> ExperimentReader<'t> {
 
         let checks = Checks { findings: self.findings, assumptions: self.assumptions };
         one_list?;
+        alone?;
+        whole?;
+        let (mean_over, optimise) = (mean_over?.unwrap_or_else(ReadSweep::none), optimise?);
         let (measures, maximise, trace, run) = (measures?, maximise?, trace?, run?);
         let (energies, shape) = (energies?, shape?);
         checks.measures(&measures, maximise.as_ref(), trace.as_ref(), shape.as_ref());
         checks.energies(energies.as_ref(), &run.settings, energies_at);
         let (mut scene, sweep) = (scene?, sweep?.unwrap_or_else(ReadSweep::none));
+        if let Some(optimise) = &optimise {
+            checks.optimise(optimise, &measures, &run.solvers, optimise_at);
+        }
         checks.excitation(&measures, &scene.recipe.excitation.kind);
-        let places = sweep.places;
+        let mut places = sweep.places;
+        checks.mean_over(&mean_over, &places, maximise.as_ref());
+        let inner = mean_over.cases.first().filter(|case| !case.values.is_empty()).map(|_| mean_over.cases.clone());
+        let inner = inner.unwrap_or_default();
         let cases = with_solvers(sweep.cases, &run.solvers);
         checks.refined(&sweep.refined, &measures);
-        checks.coverage(&scene, &cases, &places, maximise.as_ref());
-        checks.amount(&cases, &sweep.refined, maximise.as_ref(), scene_at);
+        checks.coverage(&scene, &cases, &places, &mean_over, maximise.as_ref());
+        checks.amount(&cases, &sweep.refined, maximise.as_ref(), inner.len(), scene_at);
         fill_placeholders(&mut scene.recipe, &cases, &sweep.swept, maximise.as_ref());
+        fill_placeholders(&mut scene.recipe, &inner, &mean_over.swept, None);
+        if let Some(optimise) = &optimise {
+            let low: Vec<f64> = optimise.bounds.iter().map(|[low, _]| *low).collect();
+            // As many as there are dampers: that was looked at when they were read.
+            let _ = scene.recipe.set_gaps(optimise.gaps, &low);
+        }
+        places.extend(mean_over.places);
         let experiment = Experiment {
             id: id.clone(),
             title: title?,
@@ -124,6 +155,8 @@ impl<'t> ExperimentReader<'t> {
             moved: run.moved,
             maximise,
             refined: sweep.refined.into_iter().map(|(refinement, _)| refinement).collect(),
+            mean_over: inner,
+            optimise,
             measures: words_only(&measures),
             trace,
             energies,
@@ -159,6 +192,84 @@ impl<'t> ExperimentReader<'t> {
             }
         }
         Some(measures)
+    }
+
+    /// Settings to take the mean over: a sweep without names and without refinement.
+    fn mean_over(&self, node: &'t Node) -> Option<ReadSweep> {
+        let sweep = read_sweep(node, self.findings)?;
+        if sweep.cases.iter().any(|case| !case.sweep.is_empty()) || !sweep.refined.is_empty() {
+            return self.findings.wrong(node.span, "a mean is taken over fixed points: neither `union` nor `refined`");
+        }
+        Some(sweep)
+    }
+
+    /// A mean has no time history.
+    fn averaged_alone(&self, fields: &Fields<'t>) -> Option<()> {
+        let lists = ["trace", "energies", "shape"].into_iter().filter_map(|key| fields.get(key)).next();
+        match (fields.get("mean_over"), lists) {
+            (Some(_), Some(list)) => self.findings.report(
+                list.span,
+                "a mean over several scenes has no list of one of them",
+                Some("give one of the scenes an experiment of its own".into()),
+            ),
+            _ => Some(()),
+        }
+    }
+
+    /// An optimisation has rows of its own.
+    fn optimised_alone(&self, fields: &Fields<'t>) -> Option<()> {
+        if fields.get("optimise").is_none() {
+            return Some(());
+        }
+        let others = ["sweep", "maximise", "trace", "energies", "shape"].into_iter().filter_map(|key| fields.get(key));
+        let mut fine = Some(());
+        for other in others {
+            fine = self.findings.report(
+                other.span,
+                "an optimisation has candidates for rows: neither a sweep nor a list of another kind goes with it",
+                Some("what fitness is a mean over stands under `mean_over`".into()),
+            );
+        }
+        fine
+    }
+
+    /// The optimisation, with as many gaps as there are dampers. `Some(None)`: there is none.
+    #[expect(clippy::option_option, reason = "absent and wrong are two things")]
+    fn optimise(
+        &self,
+        optimise: Option<ReadOptimise>,
+        scene: &ReadScene,
+        inner: Option<&ReadSweep>,
+    ) -> Option<Option<Optimise>> {
+        let Some(optimise) = optimise else {
+            for at in &scene.optimised {
+                let help = "add `optimise`, or give the gap a value".to_owned();
+                self.findings.report::<()>(*at, "nothing optimises this gap", Some(help));
+            }
+            return scene.optimised.is_empty().then_some(None);
+        };
+        if scene.optimised.len() != scene.recipe.dampers.len() || scene.optimised.is_empty() {
+            let help = "write `gap: optimised` in every damper of the scene".to_owned();
+            return self.findings.report(optimise.span, "a gap that is not optimised is not varied", Some(help));
+        }
+        let none = ReadSweep::none();
+        let cases = &inner.unwrap_or(&none).cases;
+        let mut counts = Vec::new();
+        for case in cases {
+            let mut recipe = scene.recipe.clone();
+            let set = case.values.iter().try_for_each(|(parameter, value)| recipe.set(*parameter, *value));
+            // What physics refuses is told where all scenes are tried.
+            counts.extend(set.and_then(|()| recipe.resolve(self.assumptions)).map(|scene| scene.dampers.len()));
+        }
+        match counts.as_slice() {
+            [] => optimise.spread(scene.recipe.dampers.len(), self.findings).map(Some),
+            [first, rest @ ..] if rest.iter().all(|other| other == first) => {
+                optimise.spread(*first, self.findings).map(Some)
+            }
+            _ => {
+                self.findings.wrong(optimise.span, "the number of dampers, and with it of gaps, is not always the same")
+            }
+        }
     }
 
     fn maximise(&self, node: &'t Node) -> Option<Maximise> {

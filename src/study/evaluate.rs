@@ -2,8 +2,8 @@
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-use crate::measure::{self, Evaluated, Measure, Request, Rigour};
-use crate::scene::{Assumptions, Recipe};
+use crate::measure::{self, Evaluated, Measure, Prepared, Request, Rigour};
+use crate::scene::{Assumptions, GapWord, Recipe};
 use crate::spec::{EnergySpec, Settings, ShapeSpec, SolverChoice, TraceSpec};
 
 /// One simulation to be made.
@@ -36,6 +36,47 @@ pub trait Evaluate: Sync {
     /// # Errors
     /// The reason, in words for the table's `failure` column.
     fn evaluate(&self, simulation: &Simulation<'_>) -> Result<Evaluated, String>;
+
+    /// Gets ready the array of a simulation, whose gaps, told in `word`, alone will change.
+    ///
+    /// # Errors
+    /// The reason, in words.
+    fn array<'a>(&'a self, simulation: Simulation<'a>, word: GapWord) -> Result<Box<dyn Array + 'a>, String>
+    where
+        Self: Sized,
+    {
+        Ok(Box::new(Unprepared { evaluate: self, simulation, word }))
+    }
+}
+
+/// An array of dampers with gaps to choose.
+pub trait Array: Send + Sync {
+    /// As [`Evaluate::evaluate`], with these gaps, one a damper.
+    ///
+    /// # Errors
+    /// The reason, in words.
+    fn evaluate(&self, gaps: &[f64], rigour: Rigour) -> Result<Evaluated, String>;
+}
+
+/// An array that is built anew for all gaps.
+struct Unprepared<'a, E> {
+    evaluate: &'a E,
+    simulation: Simulation<'a>,
+    word: GapWord,
+}
+
+impl<E: Evaluate> Array for Unprepared<'_, E> {
+    fn evaluate(&self, gaps: &[f64], rigour: Rigour) -> Result<Evaluated, String> {
+        let mut recipe = self.simulation.recipe.clone();
+        recipe.set_gaps(self.word, gaps).map_err(|error| error.to_string())?;
+        self.evaluate.evaluate(&Simulation { recipe: &recipe, rigour, ..self.simulation })
+    }
+}
+
+impl Array for Prepared<'_> {
+    fn evaluate(&self, gaps: &[f64], rigour: Rigour) -> Result<Evaluated, String> {
+        Prepared::evaluate(self, gaps, rigour).map_err(|error| error.to_string())
+    }
 }
 
 /// The engine, [`measure::evaluate`].
@@ -49,12 +90,22 @@ impl Evaluate for Engine {
         measure::evaluate(it.recipe, it.assumptions, it.solver, it.settings, &request)
             .map_err(|error| error.to_string())
     }
+
+    fn array<'a>(&'a self, it: Simulation<'a>, word: GapWord) -> Result<Box<dyn Array + 'a>, String> {
+        let ready = Prepared::new(it.recipe, word, it.assumptions, it.solver, it.settings, it.measures);
+        Ok(Box::new(ready.map_err(|error| error.to_string())?))
+    }
 }
 
 /// As [`Evaluate::evaluate`]; a panic is a failure of this simulation and of no other.
 pub(super) fn evaluate_guarded(evaluate: &impl Evaluate, simulation: &Simulation<'_>) -> Result<Evaluated, String> {
-    // The simulation is only read, and what a panic may have left half done dies with it.
-    catch_unwind(AssertUnwindSafe(|| evaluate.evaluate(simulation))).unwrap_or_else(|panic| {
+    guarded(|| evaluate.evaluate(simulation))
+}
+
+/// A panic is an error of this evaluation and of no other.
+pub(super) fn guarded<T>(evaluate: impl FnOnce() -> Result<T, String>) -> Result<T, String> {
+    // What is evaluated is only read, and what a panic may have left half done dies with it.
+    catch_unwind(AssertUnwindSafe(evaluate)).unwrap_or_else(|panic| {
         let message = panic
             .downcast_ref::<&str>()
             .copied()

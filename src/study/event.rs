@@ -20,6 +20,19 @@ pub enum Event<'a> {
         /// How many.
         count: u64,
     },
+    /// A search has made another step.
+    Searched {
+        /// For which experiment.
+        experiment: &'a ExperimentId,
+        /// Which search.
+        search: &'a str,
+        /// Evaluations of it so far.
+        evaluations: u64,
+        /// Best fitness of it so far.
+        best: f64,
+        /// Its unit.
+        unit: &'a str,
+    },
     /// An experiment's table is complete and on disk.
     Finished {
         /// Which.

@@ -51,6 +51,9 @@ pub(super) fn evaluations(experiment: &Experiment, job: &Job) -> u64 {
 
 /// Simulations that an experiment takes at most, with all the points that its curves may get.
 pub(super) fn simulations(experiment: &Experiment, variants: &[Variant]) -> u64 {
+    if let Some(optimise) = &experiment.optimise {
+        return super::optimise::evaluations(optimise, variants);
+    }
     let mut of_case = vec![0; experiment.cases.len()];
     for job in jobs(experiment, variants) {
         of_case[job.case] += evaluations(experiment, &job);

@@ -65,6 +65,12 @@ pub fn record_name(id: &crate::spec::ExperimentId) -> String {
     format!("results/{id}.json")
 }
 
+/// The journal of an optimisation that is under way, within the study.
+#[must_use]
+pub fn journal_name(id: &crate::spec::ExperimentId) -> String {
+    format!("results/{id}.journal")
+}
+
 /// Every YAML file under `experiments/` and `reference/` as it stood at one moment, by its name within the study.
 ///
 /// All that follows, hashes included, is made from these bytes and never from a second look at the disk: a file that is

@@ -89,8 +89,11 @@ impl Item {
     #[must_use]
     pub fn size(&self) -> (usize, u64) {
         let experiment = &self.source.experiment;
-        let jobs = super::job::jobs(experiment, &self.variants);
-        (jobs.len(), super::job::simulations(experiment, &self.variants))
+        let rows = match &experiment.optimise {
+            Some(optimise) => super::optimise::rows(optimise, &self.variants),
+            None => super::job::jobs(experiment, &self.variants).len(),
+        };
+        (rows, super::job::simulations(experiment, &self.variants))
     }
 }
 

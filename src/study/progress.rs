@@ -3,6 +3,7 @@
 use indicatif::{ProgressBar, ProgressStyle};
 
 use super::event::{Event, Listen};
+use crate::text::number::quantity;
 
 /// Listens to a run and shows how far it is.
 #[derive(Debug)]
@@ -38,6 +39,10 @@ impl Listen for Progress {
                 self.bar.enable_steady_tick(std::time::Duration::from_millis(200));
             }
             Event::Simulated { count, .. } => self.bar.inc(*count),
+            Event::Searched { experiment, search, evaluations, best, unit } => {
+                let best = quantity(*best, unit, 5);
+                self.bar.set_message(format!("{experiment}, {search}: best {best} after {evaluations} evaluations"));
+            }
             Event::Finished { experiment, failures, .. } => {
                 let told = if failures.rows == 0 { "done" } else { "done, with failed rows" };
                 self.bar.set_message(format!("{experiment} {told}"));

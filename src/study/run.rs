@@ -5,6 +5,7 @@
 //! who stops the program loses the experiments under way and no others.
 
 use std::collections::BTreeMap;
+use std::path::Path;
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -13,6 +14,7 @@ use rayon::prelude::*;
 use super::evaluate::Evaluate;
 use super::event::{Event, Listen};
 use super::job::{self, Job, cost};
+use super::optimise::run_optimisation;
 use super::record::Failures;
 use super::refine;
 use super::variant::Variant;
@@ -29,6 +31,8 @@ pub struct Task<'a> {
     pub variants: &'a [Variant],
     /// Provenance for the table's metadata.
     pub metadata: &'a BTreeMap<String, String>,
+    /// Where an optimisation keeps what it has evaluated, so that it can go on after an interruption; `None`: nowhere.
+    pub journal: Option<&'a Path>,
 }
 
 /// An experiment that has been run.
@@ -62,13 +66,14 @@ pub fn run<T: Send + Sync>(
 ) -> Result<Vec<T>, ThreadError> {
     let simulations = tasks.iter().map(|task| job::simulations(task.experiment, task.variants)).sum();
     listener.hear(&Event::Begun { experiments: tasks.len(), simulations });
+    let (optimised, swept): (Vec<usize>, Vec<usize>) =
+        (0..tasks.len()).partition(|&i| tasks[i].experiment.optimise.is_some());
     let (refined, plain): (Vec<usize>, Vec<usize>) =
-        (0..tasks.len()).partition(|&i| !tasks[i].experiment.refined.is_empty());
+        swept.into_iter().partition(|&i| !tasks[i].experiment.refined.is_empty());
     let work: Vec<(usize, Work<'_>)> = plain.into_iter().map(|index| (index, Work::new(tasks[index]))).collect();
     let taken: Vec<OnceLock<T>> = tasks.iter().map(|_| OnceLock::new()).collect();
-    let hand_over = |index: usize, work: &Work<'_>| {
-        let finished = work.finish();
-        let (rows, failures) = (work.jobs.len(), finished.failures.clone());
+    let hand_over = |index: usize, finished: Finished| {
+        let (rows, failures) = (finished.table.rows(), finished.failures.clone());
         // Only the thread that put the last row comes here, once.
         let _ = taken[index].set(take(index, finished));
         listener.hear(&Event::Finished { experiment: &tasks[index].experiment.id, rows, failures: &failures });
@@ -78,14 +83,19 @@ pub fn run<T: Send + Sync>(
         let (work, hand_over) = (&work, &hand_over);
         rayon::scope_fifo(|scope| {
             // Their rounds wait for one another: they begin first.
+            for index in optimised {
+                scope.spawn_fifo(move |_| hand_over(index, run_optimisation(tasks[index], evaluate, listener)));
+            }
             for index in refined {
-                scope.spawn_fifo(move |_| run_refined(tasks[index], evaluate, listener, |work| hand_over(index, work)));
+                scope.spawn_fifo(move |_| {
+                    run_refined(tasks[index], evaluate, listener, |work| hand_over(index, work.finish()))
+                });
             }
             for (one, row) in order(work) {
                 scope.spawn_fifo(move |_| {
                     let (index, one) = &work[one];
                     if one.put(row, one.row(row, evaluate, listener)) {
-                        hand_over(*index, one);
+                        hand_over(*index, one.finish());
                     }
                 });
             }

@@ -3,7 +3,7 @@
 use std::fs::{self, File, TryLockError};
 use std::path::Path;
 
-use super::layout::{Layout, record_name, table_name};
+use super::layout::{Layout, journal_name, record_name, table_name};
 use super::plan::Item;
 use super::record::{FileHash, RECORD_FORMAT, Record};
 use super::run::Finished;
@@ -26,6 +26,10 @@ pub fn save(layout: &Layout, item: &Item, finished: &Finished) -> Result<Record,
         publication: None,
     };
     record.write(&layout.path(&record_name(id)))?;
+    if finished.failures.rows == 0 {
+        // What it was kept for is done; one that cannot be removed is begun anew by the next optimisation.
+        let _ = fs::remove_file(layout.path(&journal_name(id)));
+    }
     Ok(record)
 }
 

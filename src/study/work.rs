@@ -7,6 +7,7 @@ use super::evaluate::{Evaluate, Simulation, evaluate_guarded};
 use super::event::{Event, Listen};
 use super::job::{Job, evaluations, jobs, keeps_trace, measures_need_trace};
 use super::maximise::maximum;
+use super::mean::Averaging;
 use super::run::{Finished, Task};
 use super::tabulate::{self, Outcome, Row};
 use super::variant::Variant;
@@ -51,7 +52,7 @@ impl<'a> Work<'a> {
             .enumerate()
             .map(|(row, job)| self.outcomes[job.same_as.unwrap_or(row)].get().unwrap_or(&lost))
             .collect();
-        let Task { experiment, variants, metadata } = self.task;
+        let Task { experiment, variants, metadata, .. } = self.task;
         let table = tabulate::table(experiment, variants, &self.jobs, &outcomes, metadata.clone());
         Finished { table, failures: tabulate::failures(&outcomes) }
     }
@@ -91,6 +92,7 @@ fn simulate(
     evaluate: &impl Evaluate,
     done: &(impl Fn() + Sync),
 ) -> Outcome {
+    let evaluate = &Averaging { experiment, evaluate };
     let recipe = experiment.recipe_of(case).map_err(|error| error.to_string())?;
     let wanted = keeps_trace(experiment, job) || measures_need_trace(&experiment.measures);
     let needs_shape = experiment.measures.iter().any(|measure| measure.needs_shape());

@@ -40,6 +40,11 @@ pub fn of_column(name: &str) -> String {
         "ceiling_displacement" => "ceiling",
         "rigid_floor" => "rigid floor",
         "rigid_ceiling" => "rigid ceiling",
+        "varied" => "gap",
+        "evaluation" => "evaluations",
+        "best_so_far" => "best fitness so far",
+        "along_gap" => "gap clearance",
+        "fitness_along" => "fitness",
         _ => return name.replace('_', " "),
     }
     .to_owned()
@@ -61,6 +66,17 @@ pub fn of_level(column: &str, level: &str) -> String {
     match column {
         "solver" => of_solver(level),
         "stop" => format!("{level} stop"),
+        "candidate" => match level {
+            "genetic" => "genetic algorithm".into(),
+            "two_opt" => "2-opt".into(),
+            "cma_es" => "CMA-ES".into(),
+            "dense" => "dense search".into(),
+            _ => match level.strip_suffix("_two_opt") {
+                Some(improved) => format!("{} after 2-opt", improved.replace('_', " ")),
+                None => level.replace('_', " "),
+            },
+        },
+        "filling" => format!("{level} gaps"),
         _ => level.replace('_', " "),
     }
 }

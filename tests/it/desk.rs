@@ -121,10 +121,18 @@ impl Desk {
         let plan = self.plan();
         let stale: Vec<&Item> = plan.values().filter(|item| !item.reasons().is_empty()).collect();
         let provenance: Vec<_> = stale.iter().map(|item| item.provenance()).collect();
+        let journal = |item: &&Item| self.layout.path(&study::journal_name(&item.source.experiment.id));
+        let journals: Vec<_> = stale.iter().map(journal).collect();
         let tasks: Vec<Task<'_>> = stale
             .iter()
             .zip(&provenance)
-            .map(|(item, metadata)| Task { experiment: &item.source.experiment, variants: &item.variants, metadata })
+            .zip(&journals)
+            .map(|((item, metadata), journal)| Task {
+                experiment: &item.source.experiment,
+                variants: &item.variants,
+                metadata,
+                journal: Some(journal),
+            })
             .collect();
         let save = |index: usize, finished| study::save(&self.layout, stale[index], &finished).unwrap();
         study::run(&tasks, threads, evaluate, listener, save).unwrap();

@@ -58,6 +58,8 @@ pub fn limit_stop() -> Experiment {
         settings: Settings { skip: 25, average: 100, round_period_to: None, ensemble: 32 },
         maximise: None,
         refined: Vec::new(),
+        mean_over: Vec::new(),
+        optimise: None,
         moved: None,
         measures: vec![Measure::VelocityRatio],
         trace: None,

@@ -13,6 +13,8 @@ mod figure;
 mod figure_map;
 mod fixed;
 mod made_up;
+mod optimise;
+mod optimised;
 mod reference;
 mod reference_kinds;
 mod refined;

@@ -408,3 +408,25 @@ fn two_lines_meet_between_the_points_where_they_change_places() {
     assert_eq!(verdict(&meeting("1.00"), &table(|x| 0.5 * x)), Verdict::Differs);
     assert_eq!(cannot_fail(&meeting("1.00"), &table(|x| 2.0 * x)), Vec::<String>::new());
 }
+
+#[test]
+fn one_line_lies_above_another_at_every_point_or_it_does_not() {
+    let fillings = |lead: f64, run: f64| {
+        let frequency = [20.0, 20.0, 30.0, 30.0, 40.0, 40.0].to_vec();
+        let ratio = [1.0, 1.2, 2.0, 2.4, 1.5, 1.5 + lead].to_vec();
+        let table = Table::default()
+            .with(numbers("angular_frequency", "rad/s", "ω", frequency))
+            .with(texts("filling", ["uniform", "optimised"].repeat(3)))
+            .with(numbers("velocity_ratio", "", "ψ", ratio));
+        complete(table, &["velocity_ratio"], run)
+    };
+    let claim = "claim: {line_above: {of: velocity_ratio, over: angular_frequency, by: filling, above: optimised, below: uniform}}";
+    assert_eq!(verdict(claim, &fillings(0.1, 1e-6)), Verdict::Reproduced);
+    assert_eq!(verdict(claim, &fillings(-0.1, 1e-6)), Verdict::Differs);
+    assert_eq!(verdict(claim, &fillings(0.1, 0.2)), Verdict::Undecidable);
+    assert_eq!(verdict(claim, &fillings(0.0, 1e-6)), Verdict::Undecidable);
+    assert_eq!(cannot_fail(claim, &fillings(0.1, 1e-6)), [""; 0]);
+    assert!(judged(claim, &fillings(0.1, 1e-6)).found.contains("least lead 0.1 at angular_frequency = 40"));
+    let nobody = claim.replace("above: optimised", "above: uniform");
+    assert!(refused(&nobody).contains("not above itself"));
+}

@@ -248,6 +248,7 @@ fn listeners_hear_every_simulation_once() {
                 Event::Finished { experiment, rows, .. } => {
                     self.0.lock().unwrap().push(format!("{experiment}: {rows} rows"));
                 }
+                Event::Searched { .. } => panic!("nothing is searched for here"),
                 Event::Ended => self.0.lock().unwrap().push("ended".into()),
             }
         }

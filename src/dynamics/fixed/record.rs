@@ -4,6 +4,7 @@ use super::Run;
 use super::stretch::Tally;
 use super::vector::Vector;
 use crate::dynamics::audit::State;
+use crate::dynamics::contact::Side;
 use crate::dynamics::system::{Event, EventKind, Law, dot};
 use crate::dynamics::trace::Sample;
 use crate::dynamics::{CycleRates, EngineError};
@@ -139,8 +140,8 @@ impl<V: Vector> Run<'_, V> {
         };
         if let Some(particle) = self.system.particles.first() {
             let side = self.contacts[0].side();
-            let face = dot(&side.face(particle).row, &state[..n]);
-            sample.set_particle(particle, side, face, self.relative(0, side).gap, self.contacts[0]);
+            let faces = [Side::Floor, Side::Ceiling].map(|side| dot(&side.face(particle).row, &state[..n]));
+            sample.set_particle(particle, self.contacts[0], faces, self.relative(0, side).gap);
         }
         self.response.trace.push(sample);
         self.seek_sample(self.step + 1);

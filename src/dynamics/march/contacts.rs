@@ -6,6 +6,9 @@ use crate::dynamics::EngineError;
 use crate::dynamics::contact::{Crossing, Relative, Side};
 use crate::dynamics::system::{Contact, EventKind, Law, dot};
 
+/// Faces closer to each other than this share of their way have met.
+const CLOSED: f64 = 1e-9;
+
 impl March<'_> {
     /// What a crossing leads to; the state has arrived there.
     pub(super) fn cross(&mut self, j: usize, crossing: Crossing) -> Result<(), EngineError> {
@@ -63,7 +66,7 @@ impl March<'_> {
                 self.smooth[j] = true;
             }
             Crossing::Release => match side.face(particle).law {
-                Law::Resilient { no_tension: true, .. } if self.particles[j].gap != 0.0 => {
+                Law::Resilient { no_tension: true, .. } if self.is_compressed(j, side) => {
                     self.slip(j, side);
                     self.smooth[j] = !self.sudden;
                 }
@@ -85,10 +88,33 @@ impl March<'_> {
                 self.slip(j, side);
                 self.smooth[j] = !self.sudden;
             }
+            Crossing::Squeezed => {
+                return Err(EngineError::Squeezed { particle: j, cycle: self.cycle, time: self.time });
+            }
             Crossing::HalfCycle => {}
         }
         self.meet_at_once()?;
         if jumps { self.hold_on() } else { self.choose_flow() }
+    }
+
+    /// Why the contact does not settle: faces that move by themselves and have met, or nobody knows.
+    #[cold]
+    pub(super) fn no_progress(&self) -> EngineError {
+        let (cycle, time) = (self.cycle, self.time);
+        let between = |j: &usize| {
+            let particle = &self.system.particles[*j];
+            particle.ceiling.as_ref().is_some_and(|ceiling| {
+                let rows = || ceiling.row.iter().zip(&particle.floor.row).zip(&self.q);
+                let way = rows().fold(particle.gap, |sum, ((above, below), q)| sum + (above - below) * q);
+                let size =
+                    rows().fold(particle.gap, |sum, ((above, below), q)| sum + (above * q).abs() + (below * q).abs());
+                ceiling.row != particle.floor.row && way <= CLOSED * size
+            })
+        };
+        match (0..self.particles.len()).find(between) {
+            Some(particle) => EngineError::Squeezed { particle, cycle, time },
+            None => EngineError::NoProgress { cycle, time },
+        }
     }
 
     /// A particle in flight that is at a face and moves into it has met it: where there is no gap to cross.
@@ -146,7 +172,12 @@ impl March<'_> {
                 if gap == 0.0 && away * rate > 0.0 {
                     self.let_go(j, side);
                 } else if no_tension && -away * (stiffness * gap + self.damping_at(j) * rate) < 0.0 {
-                    self.slip(j, side);
+                    if self.is_compressed(j, side) {
+                        self.slip(j, side);
+                    } else {
+                        self.particles[j].gap = 0.0;
+                        self.let_go(j, side);
+                    }
                 }
             }
             (Contact::FloorReleased | Contact::CeilingReleased, Law::Resilient { stiffness, .. })
@@ -179,9 +210,9 @@ impl March<'_> {
         let grip = self.grip(j, side, false);
         self.smooth[j] = grip.is_nothing();
         self.particles[j] = Relative::default();
-        if grip.holds() {
+        if grip.holds() || particle.has_no_gap() {
             self.changed = true;
-            self.contacts[j] = side.pressed();
+            self.contacts[j] = if grip.holds() { side.pressed() } else { side.opposite().pressed() };
         } else if side == Side::Ceiling {
             self.refer_to_floor(j);
         }
@@ -213,6 +244,12 @@ impl March<'_> {
         };
     }
 
+    /// The face that a particle presses into is compressed by more than rounding.
+    fn is_compressed(&self, j: usize, side: Side) -> bool {
+        let here = self.particles[j];
+        here.gap != 0.0 && here.gap.abs() > self.noise(j, side, here)
+    }
+
     /// A face loses its particle.
     pub(super) fn let_go(&mut self, j: usize, side: Side) {
         let rate = self.particles[j].rate;
@@ -226,6 +263,13 @@ impl March<'_> {
         self.changed = true;
         if from_stop {
             self.contacts[j] = side.pressed();
+            return;
+        }
+        let particle = &self.system.particles[j];
+        if particle.has_no_gap() && self.particles[j] == Relative::default() {
+            // It goes from face to face.
+            self.contacts[j] = side.opposite().pressed();
+            self.record(j, side.opposite().made(), 0.0, 0.0);
             return;
         }
         self.contacts[j] = Contact::Flight;

@@ -93,7 +93,7 @@ impl March<'_> {
     }
 
     /// What of a gap is rounding, of its own parts and of the instant.
-    fn noise(&self, j: usize, side: Side, here: Relative) -> f64 {
+    pub(super) fn noise(&self, j: usize, side: Side, here: Relative) -> f64 {
         let particle = &self.system.particles[j];
         let parts = |row: &[f64]| row.iter().zip(&self.q).fold(0.0, |sum, (a, b)| sum + (a * b).abs());
         let size = parts(&side.face(particle).row) + if side == Side::Ceiling { particle.gap.abs() } else { 0.0 };
@@ -270,10 +270,11 @@ impl March<'_> {
         }
         let mut holds = vec![true; candidates.len()];
         let mut grips = vec![Grip::default(); candidates.len()];
+        let mut turns = vec![0; candidates.len()];
         for candidate in &candidates {
             self.fix(candidate, true);
         }
-        for _ in 0..1_usize << candidates.len().min(16) {
+        for _ in 0..1 + 2 * candidates.len() + (1_usize << candidates.len().min(16)) {
             self.choose_flow()?;
             let mut wrong = None;
             for (i, candidate) in candidates.iter().enumerate() {
@@ -281,23 +282,28 @@ impl March<'_> {
                 let grip = grips[i];
                 let enclosed = self.system.particles[candidate.particle].is_enclosed();
                 // A face that pushes with nothing holds what does not move; what still bounces goes on.
-                let fits = match holds[i] {
-                    true => enclosed || grip.holds() && (candidate.speed == 0.0 || !grip.is_nothing()),
-                    false => grip.is_nothing() || !grip.holds(),
-                };
+                let able = grip.holds() && (grip.outweighs(candidate.speed) || !grip.is_nothing());
+                let fits = holds[i] == (enclosed || able);
+                // Neither way: what rounding has left of nothing.
+                let fits = fits || turns[i] > 1;
                 if !fits && wrong.is_none() {
                     wrong = Some(i);
                 }
             }
             let Some(i) = wrong else { break };
-            holds[i] = !holds[i];
+            turns[i] += 1;
+            holds[i] = if turns[i] > 1 { grips[i].grows() } else { !holds[i] };
             self.fix(&candidates[i], holds[i]);
         }
-        for ((candidate, holds), grip) in candidates.iter().zip(&holds).zip(&grips) {
+        for (((candidate, holds), grip), turns) in candidates.iter().zip(&holds).zip(&grips).zip(&turns) {
             let (j, side) = (candidate.particle, candidate.side);
-            self.smooth[j] = candidate.speed == 0.0 && grip.is_nothing();
+            let at_rest = grip.outweighs(candidate.speed);
+            self.smooth[j] = at_rest && (grip.is_nothing() || *turns > 1);
+            if at_rest {
+                self.particles[j].rate = 0.0;
+            }
             if *holds {
-                if candidate.speed > 0.0 {
+                if !at_rest {
                     self.end_chatter(candidate, *grip)?;
                 }
                 self.particles[j].rate = 0.0;
@@ -334,9 +340,19 @@ impl March<'_> {
         let outcome = |(contact, p): (&Closed, &f64)| Outcome { impulse: p * contact.mass, speed: 0.0, pushed: true };
         let outcomes: Vec<Outcome> = closed.iter().zip(&pushes).map(outcome).collect();
         self.exchange(&touches, &outcomes);
-        let own = touches.iter().position(|touch| touch.particle == candidate.particle);
         // In flight the face no longer carries the particle, so that a is larger than the push per mass that will hold it.
-        let lightening = own.map_or(1.0, |own| closed[own].speed / -pushes[own]);
+        let alone: Vec<Closed> = touches
+            .iter()
+            .zip(&closed)
+            .map(|(touch, closed)| Closed {
+                speed: if touch.particle == candidate.particle { 1.0 } else { 0.0 },
+                ..*closed
+            })
+            .collect();
+        let own = touches.iter().position(|touch| touch.particle == candidate.particle);
+        let lightening = own.map_or(1.0, |own| {
+            -1.0 / collision::push(&alone, &self.answers(&touches), &vec![true; alone.len()], &still)[own]
+        });
         let series = if candidate.restitution < 1.0 { 1.0 / (1.0 - candidate.restitution) } else { 0.0 };
         let tail = 2.0 * candidate.speed / (grip.push * lightening) * series;
         let speed = candidate.side.away() * candidate.speed;

@@ -1,0 +1,186 @@
+//! What an optimisation found: every candidate beside the first, and which of the differences are none.
+
+use crate::scene::GapWord;
+use crate::spec::{Goal, Optimise};
+use crate::table::Table;
+use crate::text::number::{compact, quantity, significant};
+use crate::text::words;
+
+use super::markdown::{Align, MarkdownTable, counted};
+
+/// The section on an experiment's page.
+pub(super) fn section(optimise: &Optimise, table: &Table) -> String {
+    let table = table.baseline();
+    let rows = Rows::of(optimise, &table);
+    if rows.list.is_empty() {
+        return String::new();
+    }
+    let mut text = String::from("## What the searches found\n\n");
+    text += &rows.best(optimise);
+    text += &rows.table(optimise);
+    text += &format!(
+        "Every candidate is evaluated once more after the search, from other starts than the search has seen: a search \
+         chooses what happened to look good. ± is the standard error. Improvements are measured from {}; one no larger than \
+         its standard error is called noise.\n\n",
+        rows.list[0].name
+    );
+    text
+}
+
+struct Row {
+    name: String,
+    gaps: Vec<f64>,
+    fitness: [f64; 2],
+    improvement: [f64; 2],
+    evaluations: f64,
+    stopped: String,
+}
+
+impl Row {
+    /// Smaller is better; what has no number is the worst.
+    fn order(&self, goal: Goal) -> f64 {
+        match goal {
+            _ if self.fitness[0].is_nan() => f64::INFINITY,
+            Goal::Minimise => self.fitness[0],
+            Goal::Maximise => -self.fitness[0],
+        }
+    }
+}
+
+struct Rows {
+    list: Vec<Row>,
+    unit: &'static str,
+    gap_unit: &'static str,
+}
+
+impl Rows {
+    fn of(optimise: &Optimise, table: &Table) -> Self {
+        let floats = |name: &str| table.floats(name).unwrap_or_default();
+        let (names, stopped) =
+            (table.texts("candidate").unwrap_or_default(), table.texts("stopped").unwrap_or_default());
+        let measure = words::of_key(&optimise.measure);
+        let word = words::of_key(&optimise.gaps);
+        let gaps: Vec<Vec<f64>> = (1..=optimise.bounds.len()).map(|gap| floats(&format!("{word}_{gap}"))).collect();
+        let (value, error) = (floats(&measure), floats(&format!("{measure}_num")));
+        let (better, better_error) = (floats("improvement"), floats("improvement_num"));
+        let (seeds, varied, evaluations) = (floats("seed"), floats("varied"), floats("evaluations"));
+        let at = |column: &[f64], row: usize| column.get(row).copied().unwrap_or(f64::NAN);
+        let list = (0..names.len()).filter(|row| at(&varied, *row).is_nan()).map(|row| {
+            let name = words::of_level("candidate", &names[row]);
+            let seed = at(&seeds, row);
+            Row {
+                name: if seed.is_nan() { name } else { format!("{name}, seed {seed}") },
+                gaps: gaps.iter().map(|gap| at(gap, row)).collect(),
+                fitness: [at(&value, row), at(&error, row)],
+                improvement: [at(&better, row), at(&better_error, row)],
+                evaluations: at(&evaluations, row),
+                stopped: stopped.get(row).cloned().unwrap_or_default(),
+            }
+        });
+        let gap_unit = match optimise.gaps {
+            GapWord::Gap => "m",
+            GapWord::GapRatio => "",
+        };
+        Self { list: list.collect(), unit: optimise.measure.unit(), gap_unit }
+    }
+
+    fn best(&self, optimise: &Optimise) -> String {
+        let order = |row: &Row| row.order(optimise.goal);
+        let Some(best) = self.best_row(optimise) else { return String::new() };
+        let measure = words::of_column(&words::of_key(&optimise.measure));
+        let mut text = format!(
+            "The best {measure} of {} is that of {}, {}: {}.",
+            counted(self.list.len(), "candidate", "candidates"),
+            best.name,
+            self.fitness(best),
+            self.verdict(best)
+        );
+        let tied: Vec<&str> = self
+            .list
+            .iter()
+            .filter(|row| !std::ptr::eq(*row, best) && order(row) - order(best) <= error_of(row, best))
+            .map(|row| row.name.as_str())
+            .collect();
+        if !tied.is_empty() {
+            text += &format!(" No worse than it by more than the standard error: {}.", tied.join("; "));
+        }
+        text + "\n\n"
+    }
+
+    fn best_row(&self, optimise: &Optimise) -> Option<&Row> {
+        self.list.iter().min_by(|a, b| a.order(optimise.goal).total_cmp(&b.order(optimise.goal)))
+    }
+
+    fn table(&self, optimise: &Optimise) -> String {
+        let measure = words::of_column(&words::of_key(&optimise.measure));
+        let mut table = MarkdownTable::new(&[
+            ("Candidate", Align::Left),
+            ("Gaps", Align::Left),
+            (&words::capitalised(&measure), Align::Right),
+            ("Improvement", Align::Right),
+            ("", Align::Left),
+            ("Short of the best", Align::Right),
+            ("Evaluations", Align::Right),
+            ("Ended by", Align::Left),
+        ]);
+        let best = self.best_row(optimise).map_or(f64::NAN, |best| best.fitness[0]);
+        let short = |row: &Row| match 100.0 * (row.fitness[0] / best - 1.0).abs() {
+            share if share.is_nan() => String::new(),
+            share => format!("{} %", compact(share, 2)),
+        };
+        for row in &self.list {
+            let gaps: Vec<String> = row.gaps.iter().map(|gap| quantity(*gap, self.gap_unit, 3)).collect();
+            let evaluations = if row.evaluations > 0.0 { format!("{}", row.evaluations) } else { String::new() };
+            let [improvement, error] = row.improvement;
+            let improvement =
+                if improvement == 0.0 && error == 0.0 { String::new() } else { quantity(improvement, self.unit, 3) };
+            let verdict = self.verdict(row);
+            table.row([
+                row.name.clone(),
+                gaps.join(", "),
+                self.fitness(row),
+                improvement,
+                verdict,
+                short(row),
+                evaluations,
+                row.stopped.clone(),
+            ]);
+        }
+        table.finish()
+    }
+
+    fn fitness(&self, row: &Row) -> String {
+        let [value, error] = row.fitness;
+        // Below a millionth it is rounding and not worth a reader's time.
+        if error.abs() > 1e-6 * value.abs() {
+            format!("{} ± {}", quantity(value, self.unit, 4), quantity(error, self.unit, 2))
+        } else {
+            quantity(value, self.unit, 4)
+        }
+    }
+
+    /// The improvement in words.
+    fn verdict(&self, row: &Row) -> String {
+        let Some(first) = self.list.first() else { return String::new() };
+        let [improvement, error] = row.improvement;
+        if improvement == 0.0 && error == 0.0 {
+            return format!("the same gaps as {}", first.name);
+        }
+        if improvement.is_nan() {
+            return "not evaluated".into();
+        }
+        let percent = significant(100.0 * improvement.abs() / first.fitness[0].abs(), 2);
+        if improvement.abs() <= error {
+            format!("noise: {percent} %, within ±{}", compact(100.0 * error / first.fitness[0].abs(), 2) + " %")
+        } else if improvement > 0.0 {
+            format!("better by {percent} %")
+        } else {
+            format!("worse by {percent} %")
+        }
+    }
+}
+
+/// Standard error of a difference.
+fn error_of(a: &Row, b: &Row) -> f64 {
+    (a.fitness[1] * a.fitness[1] + b.fitness[1] * b.fitness[1]).sqrt()
+}

@@ -1,0 +1,85 @@
+//! Means over settings that no column tells apart: the study's six force points of chapter 6.
+//!
+//! Every measure is the mean of its values. The velocity ratio alone is the ratio of the mean RMS velocities, so that it
+//! belongs to the fitness that the study's optimisation reduces.
+
+use rayon::prelude::*;
+
+use super::evaluate::{Evaluate, Simulation};
+use crate::dynamics::Proof;
+use crate::measure::{Evaluated, Measure, Measured};
+use crate::spec::Experiment;
+
+/// The measures to ask of each setting, so that means can be taken.
+pub(super) fn measures_of_each(measures: &[Measure]) -> Vec<Measure> {
+    let mut all = measures.to_vec();
+    if measures.contains(&Measure::VelocityRatio) {
+        for needed in [Measure::RmsVelocity, Measure::UndampedRmsVelocity] {
+            if !all.contains(&needed) {
+                all.push(needed);
+            }
+        }
+    }
+    all
+}
+
+/// Evaluates all that an experiment takes the mean over in the place of one scene.
+pub(super) struct Averaging<'a, E> {
+    pub experiment: &'a Experiment,
+    pub evaluate: &'a E,
+}
+
+impl<E: Evaluate> Evaluate for Averaging<'_, E> {
+    fn evaluate(&self, simulation: &Simulation<'_>) -> Result<Evaluated, String> {
+        if self.experiment.mean_over.is_empty() {
+            return self.evaluate.evaluate(simulation);
+        }
+        let recipes = self.experiment.recipes_in(simulation.recipe).map_err(|error| error.to_string())?;
+        let measures = measures_of_each(simulation.measures);
+        let one = |recipe| self.evaluate.evaluate(&Simulation { recipe, measures: &measures, ..*simulation });
+        // Through a list, so that of several failures the first in order is told.
+        let each: Vec<Result<Evaluated, String>> = recipes.par_iter().map(one).collect();
+        let each = each.into_iter().collect::<Result<Vec<_>, _>>()?;
+        Ok(mean(simulation.measures, &measures, &each))
+    }
+}
+
+/// The mean of evaluations of `measures`, of which the first ones are `wanted`.
+pub(super) fn mean(wanted: &[Measure], measures: &[Measure], each: &[Evaluated]) -> Evaluated {
+    let count = each.len() as f64;
+    let of = |index: usize| {
+        let sum = |part: fn(&Measured) -> f64| each.iter().map(|one| part(&one.measured[index])).sum::<f64>();
+        Measured {
+            value: sum(|m| m.value) / count,
+            // Independent of each other: their errors add up as squares.
+            numerical: sum(|m| m.numerical * m.numerical).sqrt() / count,
+            spread: sum(|m| m.spread * m.spread).sqrt() / count,
+        }
+    };
+    let named = |measure| measures.iter().position(|other| *other == measure).map(of);
+    let measured = wanted.iter().enumerate().map(|(index, measure)| match measure {
+        Measure::VelocityRatio => match (named(Measure::UndampedRmsVelocity), named(Measure::RmsVelocity)) {
+            (Some(clean), Some(damped)) => {
+                let value = clean.value / damped.value;
+                let relative = |part: f64| part / damped.value * value;
+                Measured { value, numerical: relative(damped.numerical), spread: relative(damped.spread) }
+            }
+            _ => of(index),
+        },
+        _ => of(index),
+    });
+    let worst = |part: fn(&Proof) -> f64| each.iter().map(|one| part(&one.proof)).fold(0.0, f64::max);
+    Evaluated {
+        measured: measured.collect(),
+        proof: Proof {
+            momentum_residual: worst(|proof| proof.momentum_residual),
+            energy_residual: worst(|proof| proof.energy_residual),
+            events: each.iter().map(|one| one.proof.events).sum(),
+            smallest_margin: each.iter().map(|one| one.proof.smallest_margin).fold(f64::INFINITY, f64::min),
+            ties: each.iter().map(|one| one.proof.ties).sum(),
+        },
+        chaotic: each.iter().any(|one| one.chaotic),
+        members: each.iter().map(|one| one.members).max().unwrap_or(1),
+        trace: Vec::new(),
+    }
+}

@@ -1,0 +1,380 @@
+//! An optimisation while it runs: fitness evaluated batch by batch, the searches one after the other, and in the end every
+//! candidate evaluated once more as a result, with other starts of its ensemble than the search has seen.
+
+use std::time::Instant;
+
+use rayon::prelude::*;
+
+use super::evaluate::{Array, Evaluate, Simulation, guarded};
+use super::event::{Event, Listen};
+use super::journal::{Journal, Known};
+use super::mean::{mean, measures_of_each};
+use super::run::{Finished, Task};
+use super::tabulate_candidates::{Candidate, failures, table};
+use super::variant::Variant;
+use crate::measure::{Evaluated, Measure, Rigour};
+use crate::optimise::{
+    Batch, Bounds, CmaEs, Dense, Found, Genetic, GeneticSettings, Optimiser, Score, Spacing, Stalled, Stopping, dense,
+    minimise, sections, two_opt,
+};
+use crate::scene::Recipe;
+use crate::spec::{Experiment, Goal, Optimise, Search, SearchKind, SearchSpacing, SolverChoice};
+use crate::text::words;
+
+/// Rows of an optimisation's table.
+pub(super) fn rows(optimise: &Optimise, variants: &[Variant]) -> usize {
+    let landscape = if optimise.landscape.is_some() { optimise.bounds.len() } else { 0 };
+    candidates(optimise) * variants.len() + landscape
+}
+
+fn candidates(optimise: &Optimise) -> usize {
+    let seeds = optimise.seeds.len();
+    let of = |search: &Search| match search {
+        Search::Genetic { .. } => seeds * if optimise.two_opt { 2 } else { 1 },
+        Search::CmaEs { .. } => seeds,
+        Search::Dense { .. } => 1,
+    };
+    optimise.candidates.len() + optimise.two_opt_of.len() + optimise.searches.iter().map(of).sum::<usize>()
+}
+
+/// Fitness evaluations that it takes at most.
+pub(super) fn evaluations(optimise: &Optimise, variants: &[Variant]) -> u64 {
+    optimise.most_evaluations().saturating_add((candidates(optimise) * variants.len()) as u64)
+}
+
+/// The array under each setting that fitness is a mean over, ready for other gaps.
+struct Fitness<'a> {
+    arrays: Vec<Box<dyn Array + 'a>>,
+    wanted: &'a [Measure],
+    measures: &'a [Measure],
+}
+
+impl<'a> Fitness<'a> {
+    fn new(
+        evaluate: &'a impl Evaluate,
+        experiment: &'a Experiment,
+        optimise: &Optimise,
+        variant: &'a Variant,
+        recipes: &'a [Recipe],
+        measures: &'a [Measure],
+    ) -> Result<Self, String> {
+        let ready = |recipe: &'a Recipe| {
+            let simulation = Simulation {
+                recipe,
+                assumptions: &variant.assumptions,
+                solver: experiment.solvers.first().copied().unwrap_or(SolverChoice::EventDriven),
+                settings: &experiment.settings,
+                measures,
+                trace: None,
+                energies: None,
+                shape: None,
+                rigour: Rigour::Look,
+            };
+            guarded(|| evaluate.array(simulation, optimise.gaps))
+        };
+        let arrays = recipes.iter().map(ready).collect::<Result<_, _>>()?;
+        Ok(Self { arrays, wanted: &experiment.measures, measures })
+    }
+
+    fn evaluate(&self, gaps: &[f64], rigour: Rigour) -> Result<Evaluated, String> {
+        let one = |array: &(dyn Array + 'a)| guarded(|| array.evaluate(gaps, rigour));
+        let each = self.arrays.iter().map(|array| one(array.as_ref())).collect::<Result<Vec<_>, _>>()?;
+        Ok(mean(self.wanted, self.measures, &each))
+    }
+}
+
+/// The searches of one optimisation.
+struct Searches<'a> {
+    experiment: &'a Experiment,
+    optimise: &'a Optimise,
+    listener: &'a dyn Listen,
+    bounds: Bounds,
+    fitness: Fitness<'a>,
+    /// Index of the fitness among the measures.
+    measure: usize,
+    journal: Journal,
+    /// Evaluations told of so far.
+    told: u64,
+    /// The search that was heard of last, and its best value so far.
+    last: (String, f64),
+}
+
+/// Runs it.
+pub(super) fn run_optimisation(task: Task<'_>, evaluate: &impl Evaluate, listener: &dyn Listen) -> Finished {
+    let Task { experiment, variants, metadata, .. } = task;
+    let (candidates, told) = match found(task, evaluate, listener) {
+        Ok(found) => found,
+        Err(reason) => (vec![Candidate::failed(reason)], 0),
+    };
+    let evaluated = evaluate_all(task, evaluate, candidates);
+    if let Some(optimise) = &experiment.optimise {
+        let left = evaluations(optimise, variants).saturating_sub(told);
+        listener.hear(&Event::Simulated { experiment: &experiment.id, count: left });
+    }
+    Finished { table: table(experiment, variants, &evaluated, metadata.clone()), failures: failures(&evaluated) }
+}
+
+/// The candidates of the file, and what the searches find.
+fn found(task: Task<'_>, evaluate: &impl Evaluate, listener: &dyn Listen) -> Result<(Vec<Candidate>, u64), String> {
+    let experiment = task.experiment;
+    let optimise = experiment.optimise.as_ref().ok_or("there is nothing to optimise")?;
+    let baseline = task.variants.first().ok_or("there are no assumptions")?;
+    let recipes = experiment.recipes_in(&experiment.recipe).map_err(|error| error.to_string())?;
+    let measures = measures_of_each(&experiment.measures);
+    let fitness = Fitness::new(evaluate, experiment, optimise, baseline, &recipes, &measures)?;
+    let measure = experiment.measures.iter().position(|measure| *measure == optimise.measure);
+    let meaning = task.metadata.get("fingerprint").map_or("", String::as_str);
+    let mut searches = Searches {
+        experiment,
+        optimise,
+        listener,
+        bounds: Bounds::new(optimise.bounds.clone()).map_err(|error| error.to_string())?,
+        fitness,
+        measure: measure.ok_or("what is to be optimised is not measured")?,
+        journal: Journal::open(task.journal, meaning),
+        told: 0,
+        last: (String::new(), f64::INFINITY),
+    };
+    let candidates = searches.all()?;
+    Ok((candidates, searches.told))
+}
+
+impl Searches<'_> {
+    fn all(&mut self) -> Result<Vec<Candidate>, String> {
+        let mut found: Vec<Candidate> =
+            self.optimise.candidates.iter().map(|known| Candidate::named(&known.name, known.gaps.clone())).collect();
+        for name in &self.optimise.two_opt_of {
+            let improved = self.two_opt_of(name)?;
+            found.push(improved);
+        }
+        // What the genetic algorithm spends, the peer may spend.
+        let mut spent: Vec<Option<u64>> = vec![self.optimise.evaluations.map(u64::from); self.optimise.seeds.len()];
+        for search in &self.optimise.searches {
+            match search {
+                Search::Genetic { .. } => {
+                    for (spent, seed) in spent.iter_mut().zip(&self.optimise.seeds) {
+                        let genetic = self.genetic(search, *seed)?;
+                        let mut total = genetic.evaluations;
+                        found.push(self.candidate(SearchKind::Genetic, Some(*seed), &genetic, 0));
+                        if self.optimise.two_opt {
+                            let name = told(SearchKind::TwoOpt, Some(*seed));
+                            let swapped =
+                                two_opt(&genetic.point, genetic.score, &mut |points| self.batch(points, &name, total))?;
+                            total += swapped.evaluations;
+                            found.push(self.candidate(SearchKind::TwoOpt, Some(*seed), &swapped, genetic.evaluations));
+                        }
+                        *spent = Some(total);
+                    }
+                }
+                Search::CmaEs { population } => {
+                    for (spent, seed) in spent.iter().zip(&self.optimise.seeds) {
+                        let population = population.map(|count| count as usize);
+                        let mut peer = CmaEs::new(self.bounds.clone(), population, u64::from(*seed));
+                        let stopping =
+                            Stopping { evaluations: *spent, seconds: self.optimise.time, ..Stopping::default() };
+                        let best = self.run(&mut peer, &stopping, SearchKind::CmaEs, *seed)?;
+                        found.push(self.candidate(SearchKind::CmaEs, Some(*seed), &best, 0));
+                    }
+                }
+                Search::Dense { points, spacing, refine } => {
+                    let settings = Dense { points: *points as usize, spacing: spaced(*spacing), refine: *refine };
+                    let name = told(SearchKind::Dense, None);
+                    let (bounds, mut done) = (self.bounds.clone(), 0);
+                    let best = dense(&bounds, settings, &mut |points| {
+                        done += points.len() as u64;
+                        self.batch(points, &name, done - points.len() as u64)
+                    })?;
+                    let best = best.ok_or("a grid without points")?;
+                    found.push(self.candidate(SearchKind::Dense, None, &best, 0));
+                }
+            }
+        }
+        self.landscape(&mut found)?;
+        Ok(found)
+    }
+
+    /// A candidate of the file, improved by swaps.
+    fn two_opt_of(&mut self, name: &str) -> Result<Candidate, String> {
+        let known = self.optimise.candidates.iter().find(|candidate| candidate.name == *name);
+        let gaps = known.ok_or_else(|| format!("{name} is no candidate"))?.gaps.clone();
+        let improved = format!("{name}_two_opt");
+        let told = words::of_level("candidate", &improved);
+        let score = self.batch(std::slice::from_ref(&gaps), &told, 0)?.scores[0];
+        let swapped = two_opt(&gaps, score, &mut |points| self.batch(points, &told, 1))?;
+        Ok(Candidate { name: improved, ..self.candidate(SearchKind::TwoOpt, None, &swapped, 1) })
+    }
+
+    fn genetic(&mut self, search: &Search, seed: u32) -> Result<Found, String> {
+        let Search::Genetic { population, elites, crossover, start } = search else {
+            return Err("not a genetic algorithm".into());
+        };
+        let optimise = self.optimise;
+        let settings =
+            GeneticSettings { population: *population as usize, elites: *elites as usize, crossover: *crossover };
+        let named = |name: &String| optimise.candidates.iter().find(|candidate| candidate.name == *name);
+        let start: Vec<Vec<f64>> = start.iter().filter_map(named).map(|candidate| candidate.gaps.clone()).collect();
+        let mut genetic = Genetic::new(self.bounds.clone(), settings, u64::from(seed), &start);
+        let stopping = Stopping {
+            generations: optimise.generations.map(u64::from),
+            evaluations: optimise.evaluations.map(u64::from),
+            seconds: optimise.time,
+            stalled: optimise
+                .tolerance
+                .map(|tolerance| Stalled { tolerance, generations: u64::from(optimise.stalled) }),
+        };
+        self.run(&mut genetic, &stopping, SearchKind::Genetic, seed)
+    }
+
+    fn run(
+        &mut self,
+        optimiser: &mut dyn Optimiser,
+        stopping: &Stopping,
+        kind: SearchKind,
+        seed: u32,
+    ) -> Result<Found, String> {
+        let name = told(kind, Some(seed));
+        let mut done = 0;
+        let found = minimise(optimiser, stopping, &mut |points| {
+            done += points.len() as u64;
+            self.batch(points, &name, done - points.len() as u64)
+        })?;
+        found.ok_or_else(|| format!("{name} has evaluated nothing"))
+    }
+
+    /// Scores of a batch: what the journal does not know is evaluated, side by side.
+    fn batch(&mut self, points: &[Vec<f64>], search: &str, before: u64) -> Result<Batch, String> {
+        let mut new: Vec<&Vec<f64>> = Vec::new();
+        for point in points {
+            if self.journal.get(point).is_none() && !new.contains(&point) {
+                new.push(point);
+            }
+        }
+        let evaluate = |point: &&Vec<f64>| {
+            let begun = Instant::now();
+            let score = self.score(self.fitness.evaluate(point, Rigour::Look));
+            ((*point).clone(), Known { score, seconds: begun.elapsed().as_secs_f64() })
+        };
+        let evaluated: Vec<(Vec<f64>, Known)> = new.par_iter().map(evaluate).collect();
+        self.journal.add(&evaluated);
+        let known: Vec<Known> = points.iter().filter_map(|point| self.journal.get(point)).collect();
+        let scores: Vec<Score> = known.iter().map(|known| known.score).collect();
+        if scores.len() < points.len() {
+            return Err("a point has no number that could be kept".into());
+        }
+        if self.last.0 != search {
+            self.last = (search.to_owned(), f64::INFINITY);
+        }
+        // The smaller of NaN and a number is the number.
+        self.last.1 = scores.iter().map(|score| score.value).fold(self.last.1, f64::min);
+        let best = self.last.1;
+        let experiment = &self.experiment.id;
+        let (evaluations, best) = (before + points.len() as u64, self.signed(best));
+        let unit = self.optimise.measure.unit();
+        self.listener.hear(&Event::Simulated { experiment, count: points.len() as u64 });
+        self.listener.hear(&Event::Searched { experiment, search, evaluations, best, unit });
+        self.told += points.len() as u64;
+        let seconds = known.iter().map(|known| known.seconds).sum::<f64>() / rayon::current_num_threads() as f64;
+        Ok(Batch { scores, seconds })
+    }
+
+    /// Smaller is better to the optimisers; what has no number is the worst.
+    fn score(&self, evaluated: Result<Evaluated, String>) -> Score {
+        match evaluated.ok().and_then(|evaluated| evaluated.measured.get(self.measure).copied()) {
+            Some(fitness) => Score { value: self.signed(fitness.value), standard_error: fitness.numerical },
+            None => Score { value: f64::NAN, standard_error: 0.0 },
+        }
+    }
+
+    fn signed(&self, value: f64) -> f64 {
+        match self.optimise.goal {
+            Goal::Minimise => value,
+            Goal::Maximise => -value,
+        }
+    }
+
+    fn candidate(&self, kind: SearchKind, seed: Option<u32>, found: &Found, before: u64) -> Candidate {
+        let trail = found.trail.iter();
+        Candidate {
+            seed,
+            fitness_in_search: self.signed(found.score.value),
+            evaluations: before + found.evaluations,
+            stopped: found.stopped.word().into(),
+            trail: trail.map(|step| [(before + step.evaluations) as f64, self.signed(step.best)]).collect(),
+            ..Candidate::named(&words::of_key(&kind), found.point.clone())
+        }
+    }
+
+    /// Sections through the best candidate as the searches saw it.
+    fn landscape(&mut self, found: &mut Vec<Candidate>) -> Result<(), String> {
+        let Some(landscape) = self.optimise.landscape else { return Ok(()) };
+        let points: Vec<Vec<f64>> = found.iter().map(|candidate| candidate.gaps.clone()).collect();
+        let name = told(SearchKind::Landscape, None);
+        // The journal knows all but the candidates of the file.
+        let scores = self.batch(&points, &name, 0)?.scores;
+        let order = |i: &usize| if scores[*i].value.is_nan() { f64::INFINITY } else { scores[*i].value };
+        let best = (0..points.len()).min_by(|a, b| order(a).total_cmp(&order(b)));
+        let centre = best.map(|best| points[best].clone()).ok_or("there is no candidate")?;
+        let bounds = self.bounds.clone();
+        let count = landscape.points as usize;
+        let mut done = 0;
+        let cut = sections(&bounds, &centre, count, spaced(landscape.spacing), &mut |points| {
+            done += points.len() as u64;
+            self.batch(points, &name, done - points.len() as u64)
+        })?;
+        for (varied, section) in cut.into_iter().enumerate() {
+            let scores = section.along.iter().zip(&section.scores);
+            found.push(Candidate {
+                varied: Some(varied + 1),
+                section: scores.map(|(x, score)| [*x, self.signed(score.value), score.standard_error]).collect(),
+                ..Candidate::named(&words::of_key(&SearchKind::Landscape), centre.clone())
+            });
+        }
+        Ok(())
+    }
+}
+
+fn spaced(spacing: SearchSpacing) -> Spacing {
+    match spacing {
+        SearchSpacing::Linear => Spacing::Linear,
+        SearchSpacing::Log => Spacing::Log,
+    }
+}
+
+/// A search for a person who waits for it.
+fn told(kind: SearchKind, seed: Option<u32>) -> String {
+    let name = words::of_level("candidate", &words::of_key(&kind));
+    seed.map_or(name.clone(), |seed| format!("{name}, seed {seed}"))
+}
+
+/// Every candidate as a result, and under the variants as a look.
+fn evaluate_all(task: Task<'_>, evaluate: &impl Evaluate, candidates: Vec<Candidate>) -> Vec<Candidate> {
+    let experiment = task.experiment;
+    let Some(optimise) = &experiment.optimise else { return candidates };
+    let mut all: Vec<Candidate> = Vec::new();
+    for variant in 0..task.variants.len() {
+        let kept = candidates.iter().filter(|candidate| variant == 0 || candidate.varied.is_none());
+        all.extend(kept.map(|candidate| Candidate { variant, ..candidate.clone() }));
+    }
+    let recipes = experiment.recipes_in(&experiment.recipe).map_err(|error| error.to_string());
+    let measures = measures_of_each(&experiment.measures);
+    // A variant's scenes are compiled once for all its candidates.
+    let ready: Vec<_> = match &recipes {
+        Ok(recipes) => task
+            .variants
+            .iter()
+            .map(|variant| Fitness::new(evaluate, experiment, optimise, variant, recipes, &measures))
+            .collect(),
+        Err(reason) => task.variants.iter().map(|_| Err(reason.clone())).collect(),
+    };
+    all.par_iter_mut().for_each(|candidate| {
+        if candidate.varied.is_some() || candidate.outcome.as_ref().is_err_and(|reason| !reason.is_empty()) {
+            return;
+        }
+        let rigour = if candidate.variant == 0 { Rigour::Result } else { Rigour::Look };
+        candidate.outcome = match &ready[candidate.variant] {
+            Ok(fitness) => fitness.evaluate(&candidate.gaps, rigour),
+            Err(reason) => Err(reason.clone()),
+        };
+    });
+    all
+}

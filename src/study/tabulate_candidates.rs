@@ -1,0 +1,189 @@
+//! Candidates to a table: a row for each, and one for each gap of the landscape.
+
+use std::collections::BTreeMap;
+
+use super::record::Failures;
+use super::variant::Variant;
+use crate::measure::{Evaluated, Measured};
+use crate::scene::GapWord;
+use crate::spec::{Experiment, Goal, Optimise, SolverChoice};
+use crate::table::{Column, Data, Table};
+use crate::text::words;
+
+/// A candidate, or a section of the landscape through one.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Candidate {
+    pub name: String,
+    pub seed: Option<u32>,
+    /// Of a section: which gap is varied, from 1.
+    pub varied: Option<usize>,
+    pub gaps: Vec<f64>,
+    /// What the search thought of it.
+    pub fitness_in_search: f64,
+    pub evaluations: u64,
+    /// Why the search ended.
+    pub stopped: String,
+    /// Evaluations and best fitness after each batch.
+    pub trail: Vec<[f64; 2]>,
+    /// Gap, fitness and its standard error along a section.
+    pub section: Vec<[f64; 3]>,
+    /// Index of the variant.
+    pub variant: usize,
+    /// What came of it; an empty reason: not evaluated yet, or a section.
+    pub outcome: Result<Evaluated, String>,
+}
+
+impl Candidate {
+    pub(super) fn named(name: &str, gaps: Vec<f64>) -> Self {
+        Self {
+            name: name.into(),
+            seed: None,
+            varied: None,
+            gaps,
+            fitness_in_search: f64::NAN,
+            evaluations: 0,
+            stopped: String::new(),
+            trail: Vec::new(),
+            section: Vec::new(),
+            variant: 0,
+            outcome: Err(String::new()),
+        }
+    }
+
+    /// In the place of all that could not be searched for.
+    pub(super) fn failed(reason: String) -> Self {
+        Self { outcome: Err(reason), ..Self::named("", Vec::new()) }
+    }
+
+    fn measured(&self, index: usize) -> Measured {
+        let none = Measured { value: f64::NAN, numerical: f64::NAN, spread: f64::NAN };
+        self.outcome.as_ref().ok().and_then(|evaluated| evaluated.measured.get(index).copied()).unwrap_or(none)
+    }
+
+    fn failure(&self) -> &str {
+        self.outcome.as_ref().err().map_or("", String::as_str)
+    }
+}
+
+/// Rows without numbers that should have some.
+pub(super) fn failures(candidates: &[Candidate]) -> Failures {
+    let reasons: Vec<&str> = candidates.iter().map(Candidate::failure).filter(|reason| !reason.is_empty()).collect();
+    Failures { rows: reasons.len(), first: reasons.first().map_or_else(String::new, |first| (*first).into()) }
+}
+
+/// The table.
+pub(super) fn table(
+    experiment: &Experiment,
+    variants: &[Variant],
+    candidates: &[Candidate],
+    metadata: BTreeMap<String, String>,
+) -> Table {
+    let Some(optimise) = &experiment.optimise else { return Table::default() };
+    let texts = |name: &str, cell: &dyn Fn(&Candidate) -> String| {
+        Column::new(name, Data::Text(candidates.iter().map(cell).collect()))
+    };
+    let floats = |name: &str, cell: &dyn Fn(&Candidate) -> f64| {
+        Column::new(name, Data::Float(candidates.iter().map(cell).collect()))
+    };
+    let solver = experiment.solvers.first().copied().unwrap_or(SolverChoice::EventDriven);
+    let mut columns = vec![
+        texts("candidate", &|it| it.name.clone()),
+        floats("seed", &|it| it.seed.map_or(f64::NAN, f64::from)),
+        floats("varied", &|it| it.varied.map_or(f64::NAN, |varied| varied as f64)),
+    ];
+    columns.extend((0..optimise.bounds.len()).map(|gap| {
+        let name = format!("{}_{}", words::of_key(&optimise.gaps), gap + 1);
+        floats(&name, &|it| it.gaps.get(gap).copied().unwrap_or(f64::NAN)).with_unit(unit(optimise.gaps))
+    }));
+    columns.push(texts("solver", &|_| solver.label()));
+    columns.push(texts("variant", &|it| variants.get(it.variant).map_or_else(String::new, |one| one.label.clone())));
+    for (index, measure) in experiment.measures.iter().enumerate() {
+        let name = words::of_key(measure);
+        let value = floats(&name, &|it| it.measured(index).value);
+        columns.push(value.with_unit(measure.unit()).with_symbol(measure.symbol()));
+        columns.push(floats(&format!("{name}_num"), &|it| it.measured(index).numerical).with_unit(measure.unit()));
+        columns.push(floats(&format!("{name}_spread"), &|it| it.measured(index).spread).with_unit(measure.unit()));
+    }
+    columns.extend(outcome(experiment, optimise, candidates));
+    columns.push(texts("stopped", &|it| it.stopped.clone()));
+    columns.extend(proof(candidates));
+    columns.push(texts("failure", &|it| it.failure().into()));
+    columns.extend(lists(optimise, candidates));
+    Table { columns, metadata }
+}
+
+fn unit(word: GapWord) -> &'static str {
+    match word {
+        GapWord::Gap => "m",
+        GapWord::GapRatio => "",
+    }
+}
+
+/// What became of each: as its search saw it, and against the first candidate under the same assumptions.
+fn outcome(experiment: &Experiment, optimise: &Optimise, candidates: &[Candidate]) -> Vec<Column> {
+    let index = experiment.measures.iter().position(|measure| *measure == optimise.measure).unwrap_or(0);
+    let improvement = |it: &Candidate| {
+        let first = candidates.iter().find(|other| other.variant == it.variant)?;
+        let (from, to) = (first.measured(index), it.measured(index));
+        let better = match optimise.goal {
+            Goal::Minimise => from.value - to.value,
+            Goal::Maximise => to.value - from.value,
+        };
+        // A candidate is no better than itself, whatever it is worth.
+        let same = first.gaps == it.gaps;
+        Some(if same {
+            [0.0, 0.0]
+        } else {
+            [better, (from.numerical * from.numerical + to.numerical * to.numerical).sqrt()]
+        })
+    };
+    let part = |part: usize| {
+        Data::Float(candidates.iter().map(|it| improvement(it).map_or(f64::NAN, |both| both[part])).collect())
+    };
+    let unit = optimise.measure.unit();
+    let in_search = Data::Float(candidates.iter().map(|it| it.fitness_in_search).collect());
+    let evaluations = candidates.iter().map(|it| i64::try_from(it.evaluations).unwrap_or(i64::MAX)).collect();
+    vec![
+        Column::new("fitness_in_search", in_search).with_unit(unit),
+        Column::new("improvement", part(0)).with_unit(unit),
+        Column::new("improvement_num", part(1)).with_unit(unit),
+        Column::new("evaluations", Data::Int(evaluations)),
+    ]
+}
+
+fn proof(candidates: &[Candidate]) -> Vec<Column> {
+    let floats = |cell: fn(&Evaluated) -> f64| {
+        Data::Float(candidates.iter().map(|it| it.outcome.as_ref().map_or(f64::NAN, cell)).collect())
+    };
+    let counts = |cell: fn(&Evaluated) -> u64| {
+        let count = |it: &Candidate| it.outcome.as_ref().map_or(0, |one| i64::try_from(cell(one)).unwrap_or(i64::MAX));
+        Data::Int(candidates.iter().map(count).collect())
+    };
+    vec![
+        Column::new("momentum_residual", floats(|one| one.proof.momentum_residual)),
+        Column::new("energy_residual", floats(|one| one.proof.energy_residual)),
+        Column::new("events", counts(|one| one.proof.events)),
+        Column::new("smallest_margin", floats(|one| one.proof.smallest_margin)).with_unit("m"),
+        Column::new("ties", counts(|one| one.proof.ties)),
+        Column::new("chaotic", counts(|one| u64::from(one.chaotic))),
+        Column::new("members", counts(|one| u64::from(one.members))),
+    ]
+}
+
+/// Convergence and landscape; of the baseline alone.
+fn lists(optimise: &Optimise, candidates: &[Candidate]) -> Vec<Column> {
+    let lists = |cell: &dyn Fn(&Candidate) -> Vec<f64>| {
+        let of = |it: &Candidate| if it.variant == 0 { cell(it) } else { Vec::new() };
+        Data::FloatList(candidates.iter().map(of).collect())
+    };
+    let trail = |part: usize| lists(&|it| it.trail.iter().map(|step| step[part]).collect());
+    let section = |part: usize| lists(&|it| it.section.iter().map(|point| point[part]).collect());
+    let fitness = optimise.measure.unit();
+    vec![
+        Column::new("evaluation", trail(0)),
+        Column::new("best_so_far", trail(1)).with_unit(fitness),
+        Column::new("along_gap", section(0)).with_unit(unit(optimise.gaps)),
+        Column::new("fitness_along", section(1)).with_unit(fitness),
+        Column::new("fitness_along_num", section(2)).with_unit(fitness),
+    ]
+}
