@@ -177,6 +177,10 @@ impl Bench<'_> {
         let tolerance = compare::tolerance(&comparison);
         for (offset, should_differ) in [(JUST_OUTSIDE, true), (-JUST_OUTSIDE, true), (0.0, false)] {
             let target = comparison.published + offset * tolerance;
+            // No deviation is below zero, however wide its tolerance.
+            if target < 0.0 && matches!(from, Extraction::StandardDeviationOver(_)) {
+                continue;
+            }
             let mut table = self.table.clone();
             self.steer(&mut table, from, comparison.simulated, target, reads)?;
             let moved = self.judge(&table);
@@ -201,8 +205,10 @@ impl Bench<'_> {
         to: f64,
         reads: &BTreeSet<Read>,
     ) -> Result<(), String> {
+        let column_of =
+            |name: &str| self.table.columns.iter().position(|column| column.name == name).unwrap_or(usize::MAX);
         let cells = |role: Role, name: &str| -> (usize, Vec<usize>) {
-            let column = self.table.columns.iter().position(|column| column.name == name).unwrap_or(usize::MAX);
+            let column = column_of(name);
             let read = self.at_home(reads).filter(|read| read.role == role && read.column == column);
             (column, read.map(|read| read.row).collect())
         };
@@ -221,8 +227,18 @@ impl Bench<'_> {
             Extraction::Interpolated(word) => shift(cells(Role::Value, &word.of)),
             Extraction::MeanOver(word) => shift(cells(Role::Value, &word.of)),
             Extraction::StandardDeviationOver(word) => {
-                let (column, rows) = cells(Role::Value, &word.of);
-                alter(table, column, &rows, |x, _| x * to / now);
+                // The deviation of each variant moves as far as the baseline's, so that the sensitivity stays what it is.
+                for variant in std::iter::once(BASELINE).chain(self.view(BASELINE, &Reads::default()).variants()) {
+                    let own = Reads::default();
+                    let Ok(there) = from.take(&self.view(variant, &own)) else { continue };
+                    let own = own.into_inner();
+                    let read = self
+                        .at_home(&own)
+                        .filter(|read| read.role == Role::Value && read.column == column_of(&word.of));
+                    let rows: Vec<usize> = read.map(|read| read.row).collect();
+                    let factor = (there.value + to - now) / there.value;
+                    alter(table, column_of(&word.of), &rows, |x, _| x * factor);
+                }
             }
             Extraction::Peak(peak) => match peak.read {
                 Feature::Place => shift(cells(Role::Coordinate, &peak.over)),
