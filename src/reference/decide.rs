@@ -93,7 +93,7 @@ fn greatest_first(values: &[Extracted]) -> Result<Decision, Absence> {
     let decision = tally.decision()?;
     let found = match decision.outcome {
         Outcome::Holds => list(values, " > "),
-        Outcome::Undecided => format!("{}: too near to tell", list(values, ", ")),
+        Outcome::Undecided => list(values, ", "),
         Outcome::Fails => format!("{}: not in this order", list(values, ", ")),
     };
     Ok(Decision { found, ..decision })
@@ -162,7 +162,8 @@ fn level(claim: &Level, view: &View<'_>, side: f64) -> Result<Decision, Absence>
     let mut tally = Tally::new();
     for cell in &cells {
         tally.require(side * (cell.value - claim.level) + claim.slack, cell.run, || {
-            format!("nearest to the level in {} rows: {}", cells.len(), with_unit(cell.value, 5, unit))
+            let nearest = with_unit(cell.value, 5, unit);
+            if cells.len() == 1 { nearest } else { format!("nearest to the level in {} rows: {nearest}", cells.len()) }
         });
     }
     tally.decision()
