@@ -1,5 +1,7 @@
 //! What uniform Euler-Bernoulli beams share: section and material, ρA w″ + EI w⁗ = 0 with ω = β² √(EI/(ρA L⁴)).
 
+use std::f64::consts::PI;
+
 use super::kind::{Field, Form, Values};
 use super::model::Matrices;
 use crate::scene::{Assumption, Parameter, RecipeError};
@@ -77,5 +79,63 @@ impl Beam {
             value(self.density, "kg/m³"),
             compact(self.rayleigh, 5),
         )
+    }
+}
+
+/// What holds the far end of a beam whose near end is clamped.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum FarEnd {
+    Free,
+    Clamped,
+}
+
+/// A mode of the continuous beam, its hyperbolic functions combined into decaying exponentials: right at any number.
+///
+/// cos β cosh β = e with e = −1 where the far end is free and 1 where it is clamped.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Mode {
+    pub(super) beta: f64,
+    /// Weight of e^(−βξ), of e^(β(ξ−1)), and σ.
+    near: f64,
+    far: f64,
+    sigma: f64,
+}
+
+impl Mode {
+    /// Mode `n`, from 1.
+    pub(super) fn new(n: usize, end: FarEnd) -> Self {
+        let (e, half_turns) = match end {
+            FarEnd::Free => (-1.0, n as f64 - 0.5),
+            FarEnd::Clamped => (1.0, n as f64 + 0.5),
+        };
+        // β = c + δ with cos c = 0, so that sin δ = ±1/cosh β: a fixed point that contracts by e^(−β).
+        let centre = half_turns * PI;
+        let sign = if n % 2 == 1 { 1.0 } else { -1.0 };
+        let mut delta = 0.0;
+        for _ in 0..200 {
+            let next = libm::asin(sign / libm::cosh(centre + delta));
+            if next == delta {
+                break;
+            }
+            delta = next;
+        }
+        let beta = centre + delta;
+        let (sine, cosine) = (-e * sign * libm::cos(delta), e * sign * libm::sin(delta));
+        let small = libm::exp(-beta);
+        let denominator = 1.0 - small * small - e * 2.0 * small * sine;
+        // ½(1 − σ) e^β and ½(1 + σ), with e^β taken out of σ's quotient.
+        Self {
+            beta,
+            near: (1.0 - e * small * (sine + cosine)) / denominator,
+            far: (e * (cosine - sine) - small) / denominator,
+            sigma: (1.0 + small * small - e * 2.0 * small * cosine) / denominator,
+        }
+    }
+
+    /// Its shape at ξ = x/L.
+    pub(super) fn at(&self, xi: f64) -> f64 {
+        let (sine, cosine) = (libm::sin(self.beta * xi), libm::cos(self.beta * xi));
+        self.near * libm::exp(-self.beta * xi) + self.far * libm::exp(self.beta * (xi - 1.0)) - cosine
+            + self.sigma * sine
     }
 }

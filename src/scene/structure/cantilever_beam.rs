@@ -7,9 +7,7 @@
 //! The hyperbolic functions are combined into decaying exponentials, so that nothing overflows or cancels, and β is kept as
 //! (n − ½)π + δ. The study's own basis, ξ^(i+1) with i = 1 … N, is [`super::polynomial`].
 
-use std::f64::consts::PI;
-
-use super::beam::{self, Beam};
+use super::beam::{self, Beam, FarEnd, Mode};
 use super::kind::{Family, Field, Form, Kind};
 use super::model::{Matrices, Model, Point, unit};
 use super::polynomial;
@@ -32,7 +30,7 @@ enum Basis {
     /// Rayleigh-Ritz in ξ², … ξ^(N+1).
     Polynomial(Vec<polynomial::Mode>),
     /// The continuous beam's.
-    Exact(Vec<Exact>),
+    Exact(Vec<Mode>),
 }
 
 pub(super) const KIND: Kind = Kind {
@@ -54,7 +52,7 @@ pub(super) const KIND: Kind = Kind {
             Basis::Polynomial(polynomial::modes(count as usize))
         } else {
             let [count] = values.modes(beam::MOST_MODES, beam::WHY)?;
-            Basis::Exact((1..=count as usize).map(Exact::new).collect())
+            Basis::Exact((1..=count as usize).map(|n| Mode::new(n, FarEnd::Free)).collect())
         };
         Ok(CantileverBeam { beam, basis }.into())
     },
@@ -102,11 +100,11 @@ impl Model for CantileverBeam {
     }
 
     fn exact_frequency(&self, number: usize) -> Option<f64> {
-        (number > 0).then(|| self.beam.frequency(Exact::new(number).beta))
+        (number > 0).then(|| self.beam.frequency(Mode::new(number, FarEnd::Free).beta))
     }
 
     fn exact_shape(&self, number: usize, at: Point) -> Option<f64> {
-        (number > 0).then(|| Exact::new(number).at(at.x / self.beam.length))
+        (number > 0).then(|| Mode::new(number, FarEnd::Free).at(at.x / self.beam.length))
     }
 
     fn told(&self) -> String {
@@ -115,48 +113,5 @@ impl Model for CantileverBeam {
             Basis::Exact(modes) => format!("{} exact modes", modes.len()),
         };
         self.beam.told("cantilever", &modes)
-    }
-}
-
-/// A mode of the continuous cantilever.
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct Exact {
-    beta: f64,
-    /// Weight of e^(−βξ), of e^(β(ξ−1)), and σ.
-    near: f64,
-    far: f64,
-    sigma: f64,
-}
-
-impl Exact {
-    /// Mode `n`, from 1.
-    fn new(n: usize) -> Self {
-        // cos((n − ½)π + δ) = −(−1)^(n−1) sin δ, so that sin δ = (−1)^(n−1)/cosh β: a fixed point that contracts by e^(−β).
-        let sign = if n % 2 == 1 { 1.0 } else { -1.0 };
-        let centre = (n as f64 - 0.5) * PI;
-        let mut delta = 0.0;
-        for _ in 0..200 {
-            let next = libm::asin(sign / libm::cosh(centre + delta));
-            if next == delta {
-                break;
-            }
-            delta = next;
-        }
-        let beta = centre + delta;
-        // sin β = (−1)^(n−1) cos δ, cos β = −(−1)^(n−1) sin δ.
-        let (sine, cosine) = (sign * libm::cos(delta), -sign * libm::sin(delta));
-        let small = libm::exp(-beta);
-        let denominator = 1.0 - small * small + 2.0 * small * sine;
-        // ½(1 − σ) e^β and ½(1 + σ), with e^β taken out of σ's quotient.
-        let far = (sine - cosine - small) / denominator;
-        let near = (1.0 + small * (sine + cosine)) / denominator;
-        let sigma = (1.0 + small * small + 2.0 * small * cosine) / denominator;
-        Self { beta, near, far, sigma }
-    }
-
-    fn at(&self, xi: f64) -> f64 {
-        let (sine, cosine) = (libm::sin(self.beta * xi), libm::cos(self.beta * xi));
-        self.near * libm::exp(-self.beta * xi) + self.far * libm::exp(self.beta * (xi - 1.0)) - cosine
-            + self.sigma * sine
     }
 }
