@@ -11,7 +11,7 @@ use std::time::Instant;
 
 use shotdamp::dynamics::{Contact, EventKind, HybridSystem, Options, Response, event_driven};
 use shotdamp::figure::draw;
-use shotdamp::scene::compile;
+use shotdamp::scene::{Assumptions, compile};
 use shotdamp::spec::{Axis, AxisScale, Drawing, Experiment, FigureSpec, Panel, load_assumptions, parse_experiment};
 use shotdamp::table::{BASELINE, Column, Data, Table};
 
@@ -70,7 +70,8 @@ fn main() {
          ![Cost against modes](speed.png)\n\nCost on the beam against the number of modes, with four dampers."
     );
     let reports = Path::new(env!("CARGO_MANIFEST_DIR")).join("reports");
-    let picture = draw(&picture(), &figure(), &table(&curve), &[]).expect("the table has what the figure names");
+    let picture = draw(&experiment(REFERENCE_SCENE), &figure(), &table(&curve), &[])
+        .expect("the table has what the figure names");
     std::fs::write(reports.join("speed.png"), picture).expect("the folder of reports can be written");
     std::fs::write(reports.join("speed.md"), &page).expect("the folder of reports can be written");
     print!("{page}");
@@ -160,21 +161,22 @@ fn visited(system: &HybridSystem, response: &Response) -> usize {
     states.len()
 }
 
-fn experiment(scene: &str) -> Experiment {
+fn assumptions() -> Assumptions {
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("experiments/assumptions.yaml");
-    let assumptions = load_assumptions(&file).unwrap_or_else(|problems| panic!("{problems}")).assumptions();
+    load_assumptions(&file).unwrap_or_else(|problems| panic!("{problems}")).assumptions()
+}
+
+fn experiment(scene: &str) -> Experiment {
     let text = format!(
         "title: Speed\nsource: {{chapter: 3, section: '3.1'}}\nabout: Cost.\nscene:\n  {scene}\nmeasure: [rms_velocity]\n\
          figure: {{x: momentum_residual, y: energy_residual, caption: Cost.}}\n"
     );
     let id = "speed".parse().expect("an id");
-    parse_experiment(&id, "speed.yaml", &text, &assumptions).unwrap_or_else(|problems| panic!("{problems}"))
+    parse_experiment(&id, "speed.yaml", &text, &assumptions()).unwrap_or_else(|problems| panic!("{problems}"))
 }
 
 fn system(scene: &str) -> HybridSystem {
-    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("experiments/assumptions.yaml");
-    let assumptions = load_assumptions(&file).unwrap_or_else(|problems| panic!("{problems}")).assumptions();
-    let scene = experiment(scene).recipe.resolve(&assumptions).expect("the scenes above resolve");
+    let scene = experiment(scene).recipe.resolve(&assumptions()).expect("the scenes above resolve");
     compile(&scene).expect("the scenes above compile")
 }
 
@@ -182,10 +184,6 @@ fn processor() -> String {
     let known = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
     let name = known.lines().find_map(|line| line.strip_prefix("model name")?.split_once(':'));
     name.map_or_else(|| "unknown".into(), |(_, name)| name.trim().into())
-}
-
-fn picture() -> Experiment {
-    experiment(REFERENCE_SCENE)
 }
 
 fn figure() -> FigureSpec {

@@ -84,12 +84,7 @@ fn simulate(layout: &Layout, items: &[&Item], threads: usize, quiet: bool) -> Re
         .iter()
         .zip(&provenance)
         .zip(&journals)
-        .map(|((item, metadata), journal)| Task {
-            experiment: &item.source.experiment,
-            variants: &item.variants,
-            metadata,
-            journal: Some(journal),
-        })
+        .map(|((item, metadata), journal)| item.task(metadata, journal))
         .collect();
     let progress = Progress::new();
     let listener: &dyn Listen = if quiet { &Silence } else { &progress };

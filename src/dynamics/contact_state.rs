@@ -79,6 +79,14 @@ impl Modes {
     }
 }
 
+/// Damping of the face that particle j's contact refers to, N s/m; half cycles put another one in its place.
+pub(crate) fn contact_damping(system: &HybridSystem, contacts: &[Contact], j: usize, equivalent: Option<f64>) -> f64 {
+    match contacts[j].side().face(&system.particles[j]).law {
+        Law::Resilient { damping, .. } => equivalent.unwrap_or(damping),
+        Law::Rigid { .. } => 0.0,
+    }
+}
+
 /// Accelerations of p by (p, p′): order rows of 2·order numbers.
 fn accelerations<'a>(
     system: &HybridSystem,

@@ -22,6 +22,7 @@ use self::moments::Moments;
 use self::signal::{Row, integrals};
 use super::audit::Audit;
 use super::cholesky::Cholesky;
+use super::contact_state::contact_damping;
 use super::flow::{DrivePhase, Flow};
 use super::integral::Integrals;
 use super::states::States;
@@ -70,11 +71,11 @@ pub(crate) enum Attempt {
 }
 
 /// Solves a run in closed form if it is proved to be linear.
-pub(crate) fn attempt(system: &HybridSystem, options: &Options) -> Result<Attempt, EngineError> {
+pub(crate) fn attempt(system: &HybridSystem, options: &Options, states: &States) -> Result<Attempt, EngineError> {
     if options.trace.is_some() || !may_be_linear(system, options) {
         return Ok(Attempt::Open);
     }
-    let flow = at_rest(system)?;
+    let flow = at_rest(system, states)?;
     if drifts(&flow) {
         return Ok(Attempt::Open);
     }
@@ -89,7 +90,7 @@ pub(crate) fn steady_state(system: &HybridSystem) -> Result<Option<SteadyState>,
     if !may_be_linear(system, &Options::default()) || !(system.drive.repeats || system.drive.ticks.is_empty()) {
         return Ok(None);
     }
-    let flow = at_rest(system)?;
+    let flow = at_rest(system, &States::of(system))?;
     if drifts(&flow) {
         return Ok(None);
     }
@@ -139,16 +140,10 @@ fn may_be_linear(system: &HybridSystem, options: &Options) -> bool {
 }
 
 /// The flow with every particle on its floor.
-fn at_rest(system: &HybridSystem) -> Result<Rc<Flow>, EngineError> {
-    let damping: Vec<f64> = system
-        .particles
-        .iter()
-        .map(|particle| match particle.floor.law {
-            Law::Resilient { damping, .. } => damping,
-            Law::Rigid { .. } => 0.0,
-        })
-        .collect();
-    States::of(system).flow(system, &vec![Contact::Floor; system.particles.len()], &damping)
+fn at_rest(system: &HybridSystem, states: &States) -> Result<Rc<Flow>, EngineError> {
+    let contacts = vec![Contact::Floor; system.particles.len()];
+    let damping: Vec<f64> = (0..contacts.len()).map(|j| contact_damping(system, &contacts, j, None)).collect();
+    states.flow(system, &contacts, &damping)
 }
 
 /// A block without a place to rest.

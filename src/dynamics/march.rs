@@ -13,6 +13,7 @@ use super::audit::Audit;
 use super::block::Phase;
 use super::cholesky::Cholesky;
 use super::contact::{Relative, Side};
+use super::contact_state::contact_damping;
 use super::extremes;
 use super::flow::{DrivePhase, Flow, Parabola};
 use super::guards::{self, Contacts};
@@ -81,7 +82,7 @@ pub(crate) struct March<'a> {
 
 impl<'a> March<'a> {
     /// A run at its start.
-    pub(crate) fn new(system: &'a HybridSystem, options: &'a Options) -> Result<Self, EngineError> {
+    pub(crate) fn new(system: &'a HybridSystem, options: &'a Options, states: States) -> Result<Self, EngineError> {
         let n = system.mass.order;
         let count = system.particles.len();
         let most = n + count;
@@ -91,7 +92,6 @@ impl<'a> March<'a> {
         };
         let equivalent = system.drive.half_cycles.as_ref().map(|half| half.curve.upper_end());
         let damping: Vec<f64> = (0..count).map(|j| contact_damping(system, &contacts, j, equivalent)).collect();
-        let states = States::of(system);
         let flow = states.flow(system, &contacts, &damping)?;
         let mut march = Self {
             system,
@@ -516,14 +516,6 @@ impl<'a> March<'a> {
     }
 }
 
-/// Damping of the face that particle j's contact refers to, N s/m; half cycles put another one in its place.
-fn contact_damping(system: &HybridSystem, contacts: &[Contact], j: usize, equivalent: Option<f64>) -> f64 {
-    match contacts[j].side().face(&system.particles[j]).law {
-        Law::Resilient { damping, .. } => equivalent.unwrap_or(damping),
-        Law::Rigid { .. } => 0.0,
-    }
-}
-
 fn side_stiffness(system: &HybridSystem, contacts: &[Contact], j: usize) -> Option<f64> {
     let contact = contacts[j];
     let face = contact.face(&system.particles[j])?;
@@ -534,8 +526,8 @@ fn side_stiffness(system: &HybridSystem, contacts: &[Contact], j: usize) -> Opti
 }
 
 /// Runs a system.
-pub(crate) fn march(system: &HybridSystem, options: &Options) -> Result<Response, EngineError> {
-    March::new(system, options)?.run()
+pub(crate) fn march(system: &HybridSystem, options: &Options, states: States) -> Result<Response, EngineError> {
+    March::new(system, options, states)?.run()
 }
 
 /// The proof of a run that was never audited.

@@ -402,9 +402,10 @@ pub enum EngineError {
 /// # Errors
 /// [`EngineError`] with the reason.
 pub fn event_driven(system: &HybridSystem, options: &Options) -> Result<Response, EngineError> {
-    match linear::attempt(system, options)? {
+    let states = states::States::of(system);
+    match linear::attempt(system, options, &states)? {
         linear::Attempt::Solved(response) => Ok(*response),
-        linear::Attempt::Open => march::march(system, options),
+        linear::Attempt::Open => march::march(system, options, states),
     }
 }
 

@@ -1,6 +1,7 @@
 //! The plan: of each experiment what its simulation depends on, and whether the table on disk was made from just that.
 
 use std::collections::BTreeMap;
+use std::path::Path;
 
 use serde_json::{Value, json};
 
@@ -9,6 +10,7 @@ use super::load::Source;
 use super::meaning::fingerprint;
 use super::reason::{Reason, differences};
 use super::record::{NoRecord, Record};
+use super::run::Task;
 use super::variant::{Sensitivity, Variant, variants};
 use crate::dynamics::SOLVER_VERSION;
 use crate::scene::AssumptionValue;
@@ -49,6 +51,13 @@ impl Item {
         let fingerprint = fingerprint(&simulation);
         let state = state(layout, &source, &simulation);
         Self { source, variants, simulation, fingerprint, state }
+    }
+
+    /// What the runner is to do for it.
+    #[must_use]
+    pub fn task<'a>(&'a self, metadata: &'a BTreeMap<String, String>, journal: &'a Path) -> Task<'a> {
+        let Self { source, variants, .. } = self;
+        Task { experiment: &source.experiment, variants, metadata, journal: Some(journal) }
     }
 
     /// The record of the table that has this meaning, if there is one.

@@ -127,12 +127,7 @@ impl Desk {
             .iter()
             .zip(&provenance)
             .zip(&journals)
-            .map(|((item, metadata), journal)| Task {
-                experiment: &item.source.experiment,
-                variants: &item.variants,
-                metadata,
-                journal: Some(journal),
-            })
+            .map(|((item, metadata), journal)| item.task(metadata, journal))
             .collect();
         let save = |index: usize, finished| study::save(&self.layout, stale[index], &finished).unwrap();
         study::run(&tasks, threads, evaluate, listener, save).unwrap();
