@@ -8,6 +8,7 @@ use std::rc::Rc;
 use nalgebra::DMatrix;
 
 use super::EngineError;
+use super::bank::Bank;
 use super::block::Block;
 use super::contact_state::Modes;
 use super::series::Series;
@@ -20,6 +21,8 @@ pub(crate) struct Flow {
     pub(crate) modes: Rc<Modes>,
     /// Blocks of the free motion; the last one is the drive if it is harmonic.
     pub(crate) blocks: Vec<Block>,
+    /// The same, side by side for their kernels.
+    pub(crate) bank: Bank,
     /// Their Taylor series.
     pub(crate) series: Series,
     /// Blocks without the drive.
@@ -123,6 +126,7 @@ impl Flow {
             }
         };
         let mut flow = Self {
+            bank: Bank::new(&blocks),
             series: Series::new(&blocks),
             drifts: blocks[..own].iter().any(|block| block.determinant == 0.0),
             blocks,
@@ -210,19 +214,21 @@ impl Flow {
     pub(crate) fn leave(&self, c: &[f64], t: f64, force: f64, drive: DrivePhase, p: &mut [f64], rate: &mut [f64]) {
         let order = self.order;
         let size = 2 * order;
-        for i in 0..order {
-            let mut position = self.modes.gravity.rest[i] + force * self.force.rest[i];
-            let mut velocity = 0.0;
-            for (k, c) in c[..size].iter().enumerate() {
-                position += self.modes.spectral.from_blocks[i * size + k] * c;
-                velocity += self.modes.spectral.from_blocks[(order + i) * size + k] * c;
+        let (p, rate) = (&mut p[..order], &mut rate[..order]);
+        for ((p, by_gravity), by_force) in p.iter_mut().zip(&self.modes.gravity.rest).zip(&self.force.rest) {
+            *p = by_gravity + force * by_force;
+        }
+        rate.fill(0.0);
+        for (c, column) in c[..size].iter().zip(self.modes.columns.chunks_exact(size)) {
+            let (positions, rates) = column.split_at(order);
+            p.iter_mut().zip(positions).for_each(|(p, entry)| *p += entry * c);
+            rate.iter_mut().zip(rates).for_each(|(rate, entry)| *rate += entry * c);
+        }
+        if let Some(steady) = &self.harmonic {
+            for i in 0..order {
+                p[i] += steady.cosine[i] * drive.cosine + steady.sine[i] * drive.sine;
+                rate[i] += steady.omega * (steady.sine[i] * drive.cosine - steady.cosine[i] * drive.sine);
             }
-            if let Some(steady) = &self.harmonic {
-                position += steady.cosine[i] * drive.cosine + steady.sine[i] * drive.sine;
-                velocity += steady.omega * (steady.sine[i] * drive.cosine - steady.cosine[i] * drive.sine);
-            }
-            p[i] = position;
-            rate[i] = velocity;
         }
         if !self.drifts {
             return;

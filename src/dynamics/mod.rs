@@ -17,6 +17,7 @@
 #![expect(clippy::needless_range_loop, reason = "matrix loops run one index over several arrays")]
 
 mod audit;
+mod bank;
 mod block;
 mod cholesky;
 mod collision;
@@ -28,6 +29,7 @@ mod fixed;
 mod flow;
 mod guards;
 mod integral;
+mod lanes;
 mod linear;
 mod march;
 mod mobility;
