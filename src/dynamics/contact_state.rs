@@ -43,8 +43,8 @@ impl Modes {
         let face_of = |j: usize| contacts[j].face(&system.particles[j]).expect("a pressing particle has a face");
         let accelerations = accelerations(system, &carried, &attached, &face_of, damping);
         let spectral = super::modes::split(&accelerations, &mass_of(system, mass, &attached, &face_of))?;
-        let size = 2 * (n + attached.len());
-        let columns = (0..size * size).map(|i| spectral.from_blocks[(i % size) * size + i / size]).collect();
+        let (size, width) = (2 * (n + attached.len()), spectral.width());
+        let columns = (0..size * width).map(|i| spectral.from_blocks[(i % size) * width + i / size]).collect();
         let mut modes = Self {
             contacts: contacts.to_vec(),
             damping: damping.to_vec(),
@@ -80,7 +80,7 @@ impl Modes {
 
     /// Numbers that it keeps.
     pub(crate) fn size(&self) -> usize {
-        14 * self.order * self.order
+        self.accelerations.len() * 2 * self.order + 3 * self.columns.len()
     }
 }
 

@@ -20,6 +20,7 @@ mod audit;
 mod bank;
 mod block;
 mod cholesky;
+mod cluster;
 mod collision;
 mod contact;
 mod contact_state;
@@ -341,14 +342,6 @@ pub enum EngineError {
     NoSchurForm {
         /// Order of the matrix.
         order: usize,
-    },
-    /// Blocks that cannot be told apart.
-    #[error(
-        "a contact state has nearly defective modes (condition {condition:.1e}), which would cost more digits than it may"
-    )]
-    NearlyDefective {
-        /// Condition of the splitting.
-        condition: f64,
     },
     /// A steady state that does not exist.
     #[error(
