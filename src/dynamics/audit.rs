@@ -1,7 +1,7 @@
 //! The audit of a run: momentum and energy balanced over the averaged window, by other means than the run used.
 //!
-//! The run takes its integrals from closed forms of block coordinates; the audit integrates the physical motion by
-//! Gauss-Legendre panels and holds it against the physical state at both ends:
+//! The run takes its integrals from the signals that it observes; the audit sums up what the dashpots take and where the
+//! structure is ([`super::dissipation`]), and holds it against the physical state at both ends:
 //!
 //! ρ·[M q′] + ∫ ρ·(K q + C q′) dt + Σ ρ·φ mp ([y′] + g t) = ρ·b (Σ J + ∫ F dt)
 //!
@@ -70,6 +70,45 @@ pub(crate) fn energy(system: &HybridSystem, state: &State) -> f64 {
     energy
 }
 
+/// The force in force during a segment.
+#[derive(Clone, Copy)]
+pub(crate) struct Force {
+    /// The constant one, N.
+    pub(crate) level: f64,
+    /// The harmonic one at the segment's start.
+    pub(crate) drive: DrivePhase,
+}
+
+/// A node of a panel: seconds from the segment's start, and its weight, s.
+struct Node {
+    time: f64,
+    weight: f64,
+}
+
+/// The kernels of the nodes of a panel; panels of one length share them.
+#[derive(Default)]
+struct Nodes {
+    length: f64,
+    within: Vec<Vec<Kernel>>,
+    end: Vec<Kernel>,
+}
+
+impl Nodes {
+    fn set(&mut self, flow: &Flow, length: f64) {
+        if self.length == length {
+            return;
+        }
+        let kernels = |t: f64| {
+            let mut kernels = vec![Kernel::NONE; flow.bank.places()];
+            flow.bank.kernels(&flow.blocks, t, &mut kernels);
+            kernels
+        };
+        self.within = GAUSS.iter().map(|[x, _]| kernels(x * length)).collect();
+        self.end = kernels(length);
+        self.length = length;
+    }
+}
+
 impl Audit {
     pub(crate) fn begin(&mut self, state: State) {
         *self = Self { position: vec![0.0; state.q.len()], begin: state, ..Self::default() };
@@ -98,47 +137,92 @@ impl Audit {
         self.work_passed += passed.work_modulus;
     }
 
-    /// Integrates one segment in physical coordinates.
+    /// Adds one segment, whose `kernels` are those of its end: in closed form if there is one, else by panels.
     pub(crate) fn segment(
         &mut self,
         system: &HybridSystem,
         flow: &Flow,
         start: &[f64],
-        level: f64,
-        drive: DrivePhase,
+        kernels: &[Kernel],
+        force: Force,
         length: f64,
     ) {
-        let n = system.mass.order;
-        let order = flow.order;
-        let (mut p, mut rate, mut c) = (vec![0.0; order], vec![0.0; order], vec![0.0; 2 * flow.own]);
-        let mut kernels: Vec<Kernel> = Vec::with_capacity(flow.blocks.len());
+        if length == 0.0 {
+            return;
+        }
         self.duration += length;
+        let start = &start[..2 * flow.own];
+        let mut end = vec![0.0; 2 * flow.own];
+        flow.advance(kernels, start, &mut end);
+        if let Some(taken) = flow.dissipation(system).between(start, &end) {
+            self.dissipated += taken;
+            self.moved(system, flow, &flow.integrated(start, &end), force.level, length);
+        } else {
+            self.panels(system, flow, start, force, length);
+        }
+    }
+
+    /// Integrates one segment by panels.
+    fn panels(&mut self, system: &HybridSystem, flow: &Flow, start: &[f64], force: Force, length: f64) {
+        let dissipation = flow.dissipation(system);
+        let mut nodes = Nodes::default();
+        let (mut from, mut c) = (start.to_vec(), vec![0.0; start.len()]);
         let mut t0 = 0.0;
+        // Σ w c over all nodes: where nothing but the blocks moves, their mean is all that positions and rates need.
+        let mut sum = vec![0.0; start.len()];
         while t0 < length {
-            // As long a panel as the blocks that still move allow.
-            let h = flow.panel(start, t0, &mut c).min(length - t0);
-            for [x, weight] in GAUSS {
-                let t = t0 + x * h;
-                kernels.clear();
-                kernels.extend(flow.blocks.iter().map(|block| block.kernel(t)));
-                flow.advance(&kernels, start, &mut c);
-                let now = flow.drive_after(drive, t);
-                flow.leave(&c, t, level, now, &mut p, &mut rate);
+            let h = dissipation.panel(flow, |i| from[i].abs()).min(length - t0);
+            nodes.set(flow, h);
+            for ([x, weight], kernels) in GAUSS.iter().zip(&nodes.within) {
+                flow.advance(kernels, &from, &mut c);
                 let w = weight * h;
-                self.position.iter_mut().zip(&p[..n]).for_each(|(sum, q)| *sum += w * q);
-                self.dissipated += w * system.damping.form(&rate[..n], &rate[..n]);
-                for (i, &j) in flow.modes.attached.iter().enumerate() {
-                    self.dissipated += w * flow.modes.damping[j] * rate[n + i] * rate[n + i];
+                if flow.is_free() {
+                    sum.iter_mut().zip(&c).for_each(|(sum, c)| *sum += w * c);
+                    self.dissipated += w * dissipation.power(&c);
+                } else {
+                    self.node(system, flow, &c, Node { time: t0 + x * h, weight: w }, force);
                 }
-                let force = level + now.sine;
-                self.force += w * force;
-                let power = force * dot(&system.force_row, &rate[..n]);
-                self.force_work += w * power;
-                self.work_passed += w * power.abs();
-                self.impulse_passed += w * force.abs();
             }
+            flow.advance(&nodes.end, &from, &mut c);
+            std::mem::swap(&mut from, &mut c);
             t0 += h;
         }
+        if flow.is_free() {
+            self.moved(system, flow, &sum, force.level, length);
+        }
+    }
+
+    /// One node of a panel, in physical coordinates.
+    fn node(&mut self, system: &HybridSystem, flow: &Flow, c: &[f64], Node { time, weight }: Node, force: Force) {
+        let n = system.mass.order;
+        let (mut p, mut rate) = (vec![0.0; flow.order], vec![0.0; flow.order]);
+        let now = flow.drive_after(force.drive, time);
+        flow.leave(c, time, force.level, now, &mut p, &mut rate);
+        self.position.iter_mut().zip(&p[..n]).for_each(|(sum, q)| *sum += weight * q);
+        self.dissipated += weight * system.damping.form(&rate[..n], &rate[..n]);
+        for (i, &j) in flow.modes.attached.iter().enumerate() {
+            self.dissipated += weight * flow.modes.damping[j] * rate[n + i] * rate[n + i];
+        }
+        let force = force.level + now.sine;
+        self.force += weight * force;
+        let power = force * dot(&system.force_row, &rate[..n]);
+        self.force_work += weight * power;
+        self.work_passed += weight * power.abs();
+        self.impulse_passed += weight * force.abs();
+    }
+
+    /// Positions and work of a whole segment, from ∫ c dt.
+    fn moved(&mut self, system: &HybridSystem, flow: &Flow, sum: &[f64], level: f64, length: f64) {
+        let n = system.mass.order;
+        let (mut p, mut rate) = (vec![0.0; flow.order], vec![0.0; flow.order]);
+        let mean: Vec<f64> = sum.iter().map(|c| c / length).collect();
+        flow.leave(&mean, 0.0, level, DrivePhase::default(), &mut p, &mut rate);
+        self.position.iter_mut().zip(&p[..n]).for_each(|(sum, q)| *sum += length * q);
+        let work = level * length * dot(&system.force_row, &rate[..n]);
+        self.force += level * length;
+        self.impulse_passed += level.abs() * length;
+        self.force_work += work;
+        self.work_passed += work.abs();
     }
 
     /// Momentum and energy residual, relative to what passed through the system.

@@ -97,6 +97,17 @@ impl Block {
         }
     }
 
+    /// No eigenvalue of this block and one of the other sum to less than this share of the larger.
+    pub(crate) fn keeps_apart(&self, other: &Self, share: f64) -> bool {
+        self.eigenvalues().iter().all(|a| {
+            other.eigenvalues().iter().all(|b| {
+                let sum = libm::hypot(a[0] + b[0], a[1] + b[1]);
+                let larger = libm::hypot(a[0], a[1]).max(libm::hypot(b[0], b[1]));
+                sum > share * larger
+            })
+        })
+    }
+
     /// The kernel after `t` seconds.
     #[inline]
     pub(crate) fn kernel(&self, t: f64) -> Kernel {

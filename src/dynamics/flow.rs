@@ -3,6 +3,7 @@
 //! The blocks of its modes ([`super::contact_state`]) move each by itself; a harmonic drive is one more of them. Gap, amplitude
 //! and time do not enter, so one flow serves a whole sweep.
 
+use std::cell::OnceCell;
 use std::rc::Rc;
 
 use nalgebra::DMatrix;
@@ -11,6 +12,7 @@ use super::EngineError;
 use super::bank::Bank;
 use super::block::Block;
 use super::contact_state::Modes;
+use super::dissipation::Dissipation;
 use super::series::Series;
 use super::signals::{Row, Rows, Signals};
 use super::system::{Contact, Face, HybridSystem, Law, dot};
@@ -39,6 +41,7 @@ pub(crate) struct Flow {
     pub(crate) rows: Rows,
     /// Closed forms of its integrals, where they keep their digits.
     pub(crate) forms: Option<super::integral::Forms>,
+    dissipation: OnceCell<Dissipation>,
 }
 
 /// Answer of a contact state to a constant load: p = rest + rest_rate·t, p′ = rest_rate, and slope·t + bend·t² in the
@@ -137,6 +140,7 @@ impl Flow {
             harmonic,
             rows: Rows::default(),
             forms: None,
+            dissipation: OnceCell::new(),
         };
         flow.rows = Rows::new(system, &flow);
         flow.forms = super::integral::Forms::new(&flow.blocks, flow.harmonic.is_some());
@@ -145,7 +149,7 @@ impl Flow {
 
     /// Numbers that it keeps, those of its modes among them.
     pub(crate) fn size(&self) -> usize {
-        self.modes.size() + self.rows.size()
+        self.modes.size() + self.rows.size() + self.dissipation.get().map_or(0, Dissipation::size)
     }
 
     /// The signal r·p.
@@ -377,23 +381,23 @@ impl Flow {
         }
     }
 
-    /// Length of a quadrature panel from `t` on: short against every block that still moves the velocities visibly.
-    pub(crate) fn panel(&self, start: &[f64], t: f64, scratch: &mut [f64]) -> f64 {
-        let kernels: Vec<_> = self.blocks.iter().map(|block| block.kernel(t)).collect();
-        self.advance(&kernels, start, scratch);
-        let size = self.modes.spectral.width();
-        let share = |k: usize| {
-            (self.order..2 * self.order).fold(0.0, |sum, i| {
-                sum + (self.modes.spectral.from_blocks[i * size + 2 * k] * scratch[2 * k]).abs()
-                    + (self.modes.spectral.from_blocks[i * size + 2 * k + 1] * scratch[2 * k + 1]).abs()
-            })
-        };
-        let shares: Vec<f64> = (0..self.own).map(share).collect();
-        let total: f64 = shares.iter().sum();
-        let drive = self.harmonic.as_ref().map_or(0.0, |steady| steady.omega);
-        let fastest = (0..self.own)
-            .filter(|&k| shares[k] > 1e-15 * total)
-            .fold(drive, |fastest, k| fastest.max(self.blocks[k].radius));
-        if fastest > 0.0 { 1.5 / fastest } else { f64::INFINITY }
+    /// ∫ c dt between two states of free motion, from c′ = B c; every block has a place to rest.
+    pub(crate) fn integrated(&self, start: &[f64], end: &[f64]) -> Vec<f64> {
+        let mut integral = Vec::with_capacity(end.len());
+        for ((block, [p, q, r, s]), i) in self.blocks.iter().zip(&self.modes.spectral.matrices).zip((0..).step_by(2)) {
+            let (x, y) = (end[i] - start[i], end[i + 1] - start[i + 1]);
+            integral.extend([(s * x - q * y) / block.determinant, (p * y - r * x) / block.determinant]);
+        }
+        integral
+    }
+
+    /// Nothing moves but its blocks: no drive, and every load has a place to rest.
+    pub(crate) fn is_free(&self) -> bool {
+        self.harmonic.is_none() && !self.drifts
+    }
+
+    /// What its dashpots take; worked out at the first audit.
+    pub(crate) fn dissipation(&self, system: &HybridSystem) -> &Dissipation {
+        self.dissipation.get_or_init(|| Dissipation::new(system, self))
     }
 }

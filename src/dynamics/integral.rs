@@ -76,7 +76,7 @@ pub(crate) fn quadrature(blocks: &[Block], start: &[Phase], rest: Parabola, dura
 }
 
 /// Where |λₖ + λₗ| is below this share of the faster one, the closed form would lose more than three digits.
-const NEARLY_NEUTRAL: f64 = 4e-4;
+pub(crate) const NEARLY_NEUTRAL: f64 = 4e-4;
 
 impl Forms {
     /// The closed forms, or `None` where one of them would lose its digits.
@@ -193,14 +193,8 @@ fn form(p: &[f64; 4], x: Phase, y: Phase) -> f64 {
 
 /// Solves CₖᵀP + P Cₗ = e₁e₁ᵀ (values) and = e₂e₂ᵀ (rates).
 fn pair(k: &Block, l: &Block) -> Option<PairKind> {
-    for a in k.eigenvalues() {
-        for b in l.eigenvalues() {
-            let sum = libm::hypot(a[0] + b[0], a[1] + b[1]);
-            let larger = libm::hypot(a[0], a[1]).max(libm::hypot(b[0], b[1]));
-            if !(sum > NEARLY_NEUTRAL * larger) {
-                return None;
-            }
-        }
+    if !k.keeps_apart(l, NEARLY_NEUTRAL) {
+        return None;
     }
     // C = [[0, 1], [−b, −2a]]; unknowns p00, p01, p10, p11.
     let (ak, bk, al, bl) = (2.0 * k.decay, k.determinant, 2.0 * l.decay, l.determinant);

@@ -9,7 +9,7 @@ mod impacts;
 
 use std::rc::Rc;
 
-use super::audit::Audit;
+use super::audit::{Audit, Force};
 use super::block::Phase;
 use super::cholesky::Cholesky;
 use super::contact::{Relative, Side};
@@ -449,7 +449,7 @@ impl<'a> March<'a> {
         if let Some(audit) = &mut self.audit
             && self.cycle >= u64::from(self.options.skip)
         {
-            audit.segment(self.system, flow, &self.c, self.level, drive, length);
+            audit.segment(self.system, flow, &self.c, &self.search.kernels, Force { level: self.level, drive }, length);
         }
         if let (Some(bend), false) = (flow.rows.bend, self.half.idle) {
             let bends = self.signals.of(bend).0;

@@ -24,6 +24,7 @@ mod cluster;
 mod collision;
 mod contact;
 mod contact_state;
+mod dissipation;
 mod elementary;
 mod extremes;
 mod fixed;
@@ -53,7 +54,7 @@ pub use system::{
 pub use trace::{Sample, TraceRequest};
 
 /// Changes whenever the same scene may give other bits. A test holds the bits of fixed scenes against it.
-pub const SOLVER_VERSION: u32 = 2;
+pub const SOLVER_VERSION: u32 = 3;
 
 /// What proves a run: residuals of the balances, and how clearly its events were decided.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]

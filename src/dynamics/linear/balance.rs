@@ -4,14 +4,14 @@
 use super::cycle::{Affine, Cycle, leave};
 use super::moments::{Moments, pairs};
 use crate::dynamics::audit::{Audit, Passed, State};
-use crate::dynamics::flow::{DrivePhase, Flow};
+use crate::dynamics::flow::Flow;
 use crate::dynamics::integral::GAUSS;
 use crate::dynamics::system::{HybridSystem, Law, dot};
 
 /// Adds the cycles that `at` are the states of at the beginning.
 pub(super) fn pass(system: &HybridSystem, flow: &Flow, answer: &[f64], cycle: &Cycle, at: &Moments, audit: &mut Audit) {
     let n = system.mass.order;
-    let dissipation = Dissipation::new(system, flow);
+    let dissipation = flow.dissipation(system);
     let push = dot(&system.force_row, answer);
     let mut now = at.clone();
     for segment in &cycle.segments {
@@ -25,7 +25,11 @@ pub(super) fn pass(system: &HybridSystem, flow: &Flow, answer: &[f64], cycle: &C
         let mut passed = Passed { position: vec![0.0; n], duration: at.count * segment.length, ..Passed::default() };
         let mut t0 = 0.0;
         while t0 < segment.length {
-            let h = dissipation.panel(flow, &start.moved(&Affine::flow(flow, t0))).min(segment.length - t0);
+            let there = start.moved(&Affine::flow(flow, t0));
+            let squares: Vec<[f64; 4]> =
+                pairs(flow.own).zip(&there.second).filter(|((k, l), _)| k == l).map(|(_, moment)| *moment).collect();
+            let size = |i: usize| squares[i / 2][3 * (i % 2)].max(0.0).sqrt();
+            let h = dissipation.panel(flow, size).min(segment.length - t0);
             for [x, weight] in GAUSS {
                 let t = t0 + x * h;
                 let moments = start.moved(&Affine::flow(flow, t));
@@ -39,80 +43,17 @@ pub(super) fn pass(system: &HybridSystem, flow: &Flow, answer: &[f64], cycle: &C
                 passed.force_modulus += w * force.abs();
                 passed.work += w * power;
                 passed.work_modulus += w * power.abs();
-                passed.dissipated += weight * h * dissipation.of(system, flow, &moments, drive);
+                let mut dissipated = dissipation.of_moments(&moments.second);
+                if system.drive.harmonic.is_some() {
+                    let (_, driven) = leave(flow, &vec![0.0; 2 * flow.order], 0.0, drive);
+                    dissipated += dissipation.beside(system, flow, &driven, &moments.first, moments.count);
+                }
+                passed.dissipated += weight * h * dissipated;
             }
             t0 += h;
         }
         audit.add(&passed);
     }
-}
-
-/// q′ᵀ C q′ + Σ c w′² as a form of the block coordinates.
-struct Dissipation {
-    /// p′ of each unit of them.
-    columns: Vec<Vec<f64>>,
-    /// The form, pair of blocks by pair of blocks.
-    pairs: Vec<[f64; 4]>,
-}
-
-impl Dissipation {
-    fn new(system: &HybridSystem, flow: &Flow) -> Self {
-        let still = DrivePhase::default();
-        let column = |i: usize| {
-            let mut c = vec![0.0; 2 * flow.order];
-            c[i] = 1.0;
-            leave(flow, &c, 0.0, still).1
-        };
-        let columns: Vec<Vec<f64>> = (0..2 * flow.order).map(column).collect();
-        let damped: Vec<Vec<f64>> = columns.iter().map(|rate| against(system, flow, rate)).collect();
-        let form = |(k, l): (usize, usize)| {
-            let twice = if k == l { 1.0 } else { 2.0 };
-            [(0, 0), (0, 1), (1, 0), (1, 1)].map(|(a, b)| twice * dot(&columns[2 * k + a], &damped[2 * l + b]))
-        };
-        let pairs = pairs(flow.own).map(form).collect();
-        Self { columns, pairs }
-    }
-
-    /// Length of a panel: short against the force, and against every block that still moves visibly.
-    fn panel(&self, flow: &Flow, now: &Moments) -> f64 {
-        let size = |column: usize, square: f64| {
-            self.columns[column].iter().fold(0.0_f64, |largest, x| largest.max(x.abs())) * square.max(0.0).sqrt()
-        };
-        let own = pairs(flow.own).zip(&now.second).filter(|((k, l), _)| k == l);
-        let sizes: Vec<f64> = own.map(|((k, _), moment)| size(2 * k, moment[0]) + size(2 * k + 1, moment[3])).collect();
-        let total: f64 = sizes.iter().sum();
-        let driven = flow.blocks.get(flow.own).map_or(0.0, |block| block.radius);
-        let fastest = (0..flow.own)
-            .filter(|&k| sizes[k] > 1e-15 * total)
-            .fold(driven, |fastest, k| fastest.max(flow.blocks[k].radius));
-        if fastest > 0.0 { 1.5 / fastest } else { f64::INFINITY }
-    }
-
-    /// Summed over the cycles of the moments.
-    fn of(&self, system: &HybridSystem, flow: &Flow, moments: &Moments, drive: DrivePhase) -> f64 {
-        let mut sum = self
-            .pairs
-            .iter()
-            .zip(&moments.second)
-            .fold(0.0, |sum, (form, moment)| sum + form.iter().zip(moment).fold(0.0, |sum, (a, b)| sum + a * b));
-        if system.drive.harmonic.is_some() {
-            let (_, driven) = leave(flow, &vec![0.0; 2 * flow.order], 0.0, drive);
-            let damped = against(system, flow, &driven);
-            sum += moments.count * dot(&driven, &damped);
-            for (column, first) in self.columns.iter().zip(moments.first.iter().flatten()) {
-                sum += 2.0 * first * dot(column, &damped);
-            }
-        }
-        sum
-    }
-}
-
-/// What the dashpots push against rates p′.
-fn against(system: &HybridSystem, flow: &Flow, rate: &[f64]) -> Vec<f64> {
-    let n = system.mass.order;
-    let mut force = system.damping.times(&rate[..n]);
-    force.extend(flow.modes.attached.iter().zip(&rate[n..]).map(|(&j, rate)| flow.modes.damping[j] * rate));
-    force
 }
 
 /// The physical state, every particle on its floor.

@@ -1,0 +1,138 @@
+//! What the dashpots of a contact state take, q′·C q′ + Σ c w′², as a form zᵀQz of its block coordinates.
+//!
+//! Between two instants they take [zᵀPz] with BᵀP + PB = Q, block by block. Where two eigenvalues nearly cancel (next to no
+//! damping) that P loses digits, and the motion itself is integrated, by Gauss-Legendre panels.
+
+use super::flow::Flow;
+use super::integral::NEARLY_NEUTRAL;
+use super::system::{HybridSystem, dot};
+
+/// radius·h of a panel of the ten-point Gauss-Legendre rule: a squared signal turns twice as fast, and what the rule leaves
+/// out of it is below 5²¹ (10!)⁴/(21 (20!)³) = 3e-16.
+const TURN: f64 = 2.5;
+/// Share of all motion below which a block is not seen.
+const UNSEEN: f64 = 1e-15;
+
+/// The form, and the rates that it is made of.
+pub(crate) struct Dissipation {
+    /// p′ of each unit of the block coordinates, and its largest entry.
+    columns: Vec<Vec<f64>>,
+    largest: Vec<f64>,
+    /// Q: pairs of blocks k ≤ l, row by row; those off the diagonal count for both.
+    power: Vec<[f64; 4]>,
+    /// P, where it keeps its digits.
+    taken: Option<Vec<[f64; 4]>>,
+}
+
+impl Dissipation {
+    pub(crate) fn new(system: &HybridSystem, flow: &Flow) -> Self {
+        let columns: Vec<Vec<f64>> =
+            flow.modes.columns.chunks_exact(2 * flow.order).map(|c| c[flow.order..].to_vec()).collect();
+        let damped: Vec<Vec<f64>> = columns.iter().map(|rate| against(system, flow, rate)).collect();
+        let largest = columns.iter().map(|rate| rate.iter().fold(0.0_f64, |most, x| most.max(x.abs()))).collect();
+        let form = |(k, l): (usize, usize)| {
+            let twice = if k == l { 1.0 } else { 2.0 };
+            [(0, 0), (0, 1), (1, 0), (1, 1)].map(|(a, b)| twice * dot(&columns[2 * k + a], &damped[2 * l + b]))
+        };
+        let pairs = || (0..flow.own).flat_map(|k| (k..flow.own).map(move |l| (k, l)));
+        let power: Vec<[f64; 4]> = pairs().map(form).collect();
+        let solved = |((k, l), q): ((usize, usize), &[f64; 4])| solve(flow, k, l, *q);
+        let taken = flow.is_free().then(|| pairs().zip(&power).map(solved).collect()).flatten();
+        Self { columns, largest, power, taken }
+    }
+
+    /// Numbers that it keeps.
+    pub(crate) fn size(&self) -> usize {
+        self.columns.iter().map(Vec::len).sum::<usize>() + 8 * self.power.len()
+    }
+
+    /// What is taken between two states of free motion, if there is a closed form.
+    pub(crate) fn between(&self, start: &[f64], end: &[f64]) -> Option<f64> {
+        let taken = self.taken.as_ref()?;
+        Some(form(taken, end) - form(taken, start))
+    }
+
+    /// The power in a state, W.
+    pub(crate) fn power(&self, c: &[f64]) -> f64 {
+        form(&self.power, c)
+    }
+
+    /// The same of sums over several states, Σ zₖ zₗᵀ for the pairs of blocks.
+    pub(crate) fn of_moments(&self, second: &[[f64; 4]]) -> f64 {
+        let each =
+            |(form, moment): (&[f64; 4], &[f64; 4])| form.iter().zip(moment).fold(0.0, |sum, (a, b)| sum + a * b);
+        self.power.iter().zip(second).map(each).sum()
+    }
+
+    /// Length of a quadrature panel: short against the force, and against every block that still moves visibly; `size` is
+    /// the modulus of a coordinate.
+    pub(crate) fn panel(&self, flow: &Flow, size: impl Fn(usize) -> f64) -> f64 {
+        let of = |k: usize| self.largest[2 * k] * size(2 * k) + self.largest[2 * k + 1] * size(2 * k + 1);
+        let total: f64 = (0..flow.own).map(of).sum();
+        let driven = flow.blocks.get(flow.own).map_or(0.0, |block| block.radius);
+        let fastest = (0..flow.own)
+            .filter(|&k| of(k) > UNSEEN * total)
+            .fold(driven, |fastest, k| fastest.max(flow.blocks[k].radius));
+        if fastest > 0.0 { TURN / fastest } else { f64::INFINITY }
+    }
+
+    /// What rates beside those of the blocks, in all of `count` states, add to such a sum; `first` is the sum of the states.
+    pub(crate) fn beside(
+        &self,
+        system: &HybridSystem,
+        flow: &Flow,
+        rate: &[f64],
+        first: &[[f64; 2]],
+        count: f64,
+    ) -> f64 {
+        let damped = against(system, flow, rate);
+        let each = |(column, first): (&Vec<f64>, &f64)| first * dot(column, &damped);
+        count * dot(rate, &damped) + 2.0 * self.columns.iter().zip(first.as_flattened()).map(each).sum::<f64>()
+    }
+}
+
+/// zᵀ F z.
+fn form(pairs: &[[f64; 4]], z: &[f64]) -> f64 {
+    let mut pairs = pairs.iter();
+    let blocks = z.as_chunks::<2>().0;
+    let mut sum = 0.0;
+    for (k, [x, y]) in blocks.iter().enumerate() {
+        let (mut by_x, mut by_y) = (0.0, 0.0);
+        for ([u, v], [xu, xv, yu, yv]) in blocks[k..].iter().zip(pairs.by_ref()) {
+            by_x += xu * u + xv * v;
+            by_y += yu * u + yv * v;
+        }
+        sum += x * by_x + y * by_y;
+    }
+    sum
+}
+
+/// P of BₖᵀP + P Bₗ = Q.
+fn solve(flow: &Flow, k: usize, l: usize, q: [f64; 4]) -> Option<[f64; 4]> {
+    if q == [0.0; 4] {
+        return Some(q);
+    }
+    let (one, other) = (&flow.blocks[k], &flow.blocks[l]);
+    if !one.keeps_apart(other, NEARLY_NEUTRAL) {
+        return None;
+    }
+    let matrices = &flow.modes.spectral.matrices;
+    let ([a, b, c, d], [e, f, g, h]) = (matrices[k], matrices[l]);
+    // Unknowns p00, p01, p10, p11.
+    #[rustfmt::skip]
+    let system = nalgebra::Matrix4::new(
+        a + e, g, c, 0.0,
+        f, a + h, 0.0, c,
+        b, 0.0, d + e, g,
+        0.0, b, f, d + h,
+    );
+    system.lu().solve(&nalgebra::Vector4::from(q)).map(|p| [p[0], p[1], p[2], p[3]])
+}
+
+/// What the dashpots push against rates p′.
+fn against(system: &HybridSystem, flow: &Flow, rate: &[f64]) -> Vec<f64> {
+    let n = system.mass.order;
+    let mut force = system.damping.times(&rate[..n]);
+    force.extend(flow.modes.attached.iter().zip(&rate[n..]).map(|(&j, rate)| flow.modes.damping[j] * rate));
+    force
+}
