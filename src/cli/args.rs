@@ -37,6 +37,8 @@ pub(super) enum Command {
     Status(StatusArgs),
     /// Give the verdicts over the tables on disk; simulates and writes nothing
     Check(CheckArgs),
+    /// Tell which numbers moved between two runs, beyond their uncertainty or within it
+    Diff(DiffArgs),
 }
 
 /// Which experiments.
@@ -63,6 +65,9 @@ pub(super) struct RunArgs {
     /// Only say what would be simulated
     #[arg(long)]
     pub dry_run: bool,
+    /// Only simulate; leave figures and reports as they are, for `check --reports`
+    #[arg(long)]
+    pub tables: bool,
     /// Go on after an experiment that fails; this is what happens anyway
     #[arg(long)]
     pub keep_going: bool,
@@ -84,10 +89,57 @@ pub(super) struct StatusArgs {
 }
 
 #[derive(Debug, clap::Args)]
+#[command(after_help = "\
+Examples:
+  shotdamp check                              all verdicts; what is not as expected in full
+  shotdamp check 'ch3-*' --junit verdicts.xml
+  shotdamp check --github                     in a workflow: annotations, and a summary of the step
+  shotdamp check --reports                    are the committed reports those of these results?
+  shotdamp check --accept ch3-limit-stop/same-below --reason \"Within the noise since the finer sweep.\"")]
 pub(super) struct CheckArgs {
     #[command(flatten)]
     pub choice: Choice,
     /// Show of each entry that it can fail
     #[arg(long)]
     pub self_test: bool,
+    /// Also write the verdicts as JUnit XML
+    #[arg(long, value_name = "FILE")]
+    pub junit: Option<PathBuf>,
+    /// Print the worst as annotations for GitHub, and append to the summary of the step ($GITHUB_STEP_SUMMARY)
+    #[arg(long)]
+    pub github: bool,
+    /// Print the verdicts as JSON instead
+    #[arg(long, conflicts_with = "github")]
+    pub json: bool,
+    /// Also compare what stands under reports/ with what would be generated
+    #[arg(long)]
+    pub reports: bool,
+    /// Change the verdict that this entry expects (experiment/entry) to the one that it got, in its file
+    #[arg(long, value_name = "ID", requires = "reason", conflicts_with_all = ["patterns", "chapter"])]
+    pub accept: Option<String>,
+    /// Why it is accepted; becomes the explanation of the entry
+    #[arg(long, value_name = "TEXT", requires = "accept")]
+    pub reason: Option<String>,
+}
+
+#[derive(Debug, clap::Args)]
+#[command(after_help = "\
+Each side is a folder of tables (results/), or of reports (reports/, or a verdicts.json).
+Two folders of tables are compared row by row; otherwise verdict by verdict, tables judged by this study's reference.
+Exit code 1 if anything moved beyond its uncertainty.
+
+Examples:
+  shotdamp diff                               what the reports say against what the tables give now
+  shotdamp diff before/results results
+  shotdamp diff before/results --all")]
+pub(super) struct DiffArgs {
+    /// The first; by default the reports of this study
+    #[arg(value_name = "A")]
+    pub a: Option<PathBuf>,
+    /// The second; by default the tables of this study
+    #[arg(value_name = "B")]
+    pub b: Option<PathBuf>,
+    /// Tell all that moved, not the farthest few of each experiment
+    #[arg(long)]
+    pub all: bool,
 }

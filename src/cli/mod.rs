@@ -2,6 +2,7 @@
 
 mod args;
 mod check;
+mod diff;
 mod error;
 mod exit;
 mod list;
@@ -43,5 +44,6 @@ fn dispatch(args: &Args) -> Result<Exit, CliError> {
         Some(Command::Show { id }) => show::show(&layout, id),
         Some(Command::Status(status)) => status::status(&layout, status),
         Some(Command::Check(check)) => check::check(&layout, check),
+        Some(Command::Diff(diff)) => diff::diff(&layout, diff),
     }
 }

@@ -9,7 +9,7 @@ use super::error::CliError;
 use super::exit::Exit;
 use super::output::{complain, complain_of, print};
 use super::select::{Chosen, choose};
-use crate::publish::{Opened, judge_all, publish, summary};
+use crate::publish::{Opened, Published, judge_all, publish, summary};
 use crate::study::{
     Engine, Item, Layout, Listen, Lock, Progress, Silence, Snapshot, State, Task, Texts, journal_name, run, save,
 };
@@ -17,7 +17,7 @@ use crate::study::{
 /// Brings the chosen experiments up to date.
 pub(super) fn update(layout: &Layout, args: &RunArgs) -> Result<Exit, CliError> {
     let whole = args.choice.is_all();
-    if whole && !args.force {
+    if whole && !args.force && !args.tables {
         // The short way: no lock, no YAML, no table, no thread.
         if let Some(snapshot) = Snapshot::current(layout, &Texts::read(layout)?) {
             if !args.quiet {
@@ -45,7 +45,7 @@ pub(super) fn update(layout: &Layout, args: &RunArgs) -> Result<Exit, CliError> 
     let opened = Opened::new(layout.clone(), texts);
     let chosen = choose(&opened, &args.choice)?;
     let judgement = judge_all(&opened);
-    let published = publish(&opened, &judgement, &chosen.ids)?;
+    let published = if args.tables { Published::default() } else { publish(&opened, &judgement, &chosen.ids)? };
     let failed = tell_failures(&chosen);
     for problem in unsaved.iter().chain(&published.problems) {
         complain(&format!("error: {problem}\n"));
@@ -53,7 +53,7 @@ pub(super) fn update(layout: &Layout, args: &RunArgs) -> Result<Exit, CliError> 
     let whole_work = unsaved.is_empty() && published.problems.is_empty() && !failed;
     let exit = chosen.exit(&judgement).max(if whole_work { Exit::AsExpected } else { Exit::CouldNot });
     let text = summary(&judgement, &chosen.ids);
-    if whole && whole_work && chosen.unread.is_empty() {
+    if whole && whole_work && !args.tables && chosen.unread.is_empty() {
         Snapshot::take(layout, &opened.texts, published.outputs, &text, exit.code())?;
     }
     if !args.quiet {

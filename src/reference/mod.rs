@@ -3,6 +3,7 @@
 //! An [`Entry`] says where a number or claim stands and how it is read from a table. [`judge`] holds it against the tables:
 //! values and peaks after ASME V&V 20, claims as predicates, curves within a tube, shapes by MAC. [`self_test`] shows that every entry can fail.
 
+mod accept;
 mod analytic;
 mod average;
 mod columns;
@@ -29,6 +30,7 @@ mod tube;
 mod verdict;
 mod view;
 
+pub use accept::{AcceptError, accept};
 pub use entry::{
     Check, Entry, ReferenceError, ReferenceFile, Tolerance, ToleranceSize, load_reference, parse_reference,
 };

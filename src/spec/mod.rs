@@ -7,6 +7,7 @@ mod assumption_sheet;
 mod check;
 mod columns;
 mod diagnostic;
+mod edit;
 mod excitation;
 mod experiment;
 mod figure;
@@ -30,6 +31,7 @@ mod yaml;
 
 pub use assumption_sheet::{AssumptionEntry, AssumptionSheet, parse_assumptions};
 pub use diagnostic::{Place, Problem, Problems};
+pub(crate) use edit::{Written, set_keys};
 pub use experiment::{
     Axis, AxisScale, Best, Case, Drawing, EnergySpec, Experiment, ExperimentId, FigureSpec, IdError, Level, MapSpec,
     Mark, Maximise, Panel, PeakMarks, Refinement, Settings, ShapeOf, ShapeSpec, SolverChoice, Source, TraceSpec,

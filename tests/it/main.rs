@@ -6,8 +6,10 @@
 )]
 #![expect(clippy::excessive_precision, reason = "published numbers stand as published")]
 
+mod check;
 mod cli;
 mod desk;
+mod diff;
 mod engine;
 mod figure;
 mod figure_map;
