@@ -11,6 +11,7 @@ mod console;
 mod diff;
 mod finding;
 mod github;
+mod glance;
 mod index;
 mod json;
 mod junit;

@@ -75,7 +75,7 @@ impl Movement {
         if a.0.to_bits() == b.0.to_bits() || a.0.is_nan() && b.0.is_nan() {
             self.same += 1;
         } else {
-            let u = a.1.hypot(b.1);
+            let u = libm::hypot(a.1, b.1);
             self.moved.push(Moved { name: name.into(), unit: unit.into(), from: a.0, to: b.0, u });
         }
     }
