@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use super::args::CheckArgs;
 use super::error::CliError;
 use super::exit::Exit;
-use super::output::{complain, complain_of, print};
+use super::output::{complain, complain_of, print, print_document};
 use super::select::{Chosen, choose, open};
 use crate::atomic::{self, FileError};
 use crate::publish::{Judgement, Opened, check_view, departures, judge_all, self_test_all, summary};
@@ -34,7 +34,11 @@ pub(super) fn check(layout: &Layout, args: &CheckArgs) -> Result<Exit, CliError>
         // Standard output is the document's alone.
         if args.json { complain(&told) } else { text += &told }
     }
-    print(&text)?;
+    if args.json {
+        print_document(&text)?
+    } else {
+        print(&text)?
+    }
     if args.reports {
         exit = exit.max(compare_reports(&opened, &judgement, args)?);
     }
@@ -71,7 +75,7 @@ fn compare_reports(opened: &Opened, judgement: &Judgement, args: &CheckArgs) -> 
 }
 
 fn github(view: &CheckView<'_>) -> Result<(), CliError> {
-    print(&report::annotations(view))?;
+    print_document(&report::annotations(view))?;
     let Some(file) = std::env::var_os(STEP_SUMMARY).filter(|file| !file.is_empty()).map(PathBuf::from) else {
         return Ok(());
     };

@@ -25,6 +25,12 @@ pub(super) enum CliError {
     NoResults(PathBuf),
     #[error("cannot compare {}: {problem}", .path.display())]
     Unreadable { path: PathBuf, problem: String },
+    #[error("{0}")]
+    Id(String),
+    #[error("there is an experiment `{0}` already")]
+    Exists(String),
+    #[error("there is no structure `{given}`; known are {known}")]
+    NoStructure { given: String, known: String },
     #[error(transparent)]
     Accept(#[from] AcceptError),
     #[error(transparent)]

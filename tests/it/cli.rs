@@ -118,7 +118,8 @@ fn status_names_the_input_that_changed() {
         status.out,
         "ch3-gap   up to date\n\
          ch3-stop  stale\n    \
-             experiments/assumptions.yaml: stop_length: 0.06 -> 0.055\n\
+             experiments/assumptions.yaml:9: stop_length: 0.06 -> 0.055\n    \
+             touches 15 of 30 rows\n\
          2 experiments: 1 to simulate, 0 reports to renew\n"
     );
     assert_eq!((status.code, shotdamp(&desk, &["status", "--exit-code"]).code), (0, 1));

@@ -8,6 +8,7 @@
 
 mod check;
 mod cli;
+mod daily;
 mod desk;
 mod diff;
 mod engine;
@@ -21,6 +22,7 @@ mod reference;
 mod reference_kinds;
 mod refined;
 mod report;
+mod schema;
 mod solver_version;
 mod spec;
 mod spec_map;
