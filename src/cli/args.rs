@@ -11,15 +11,40 @@ use clap::{Parser, Subcommand};
 #[derive(Debug, Parser)]
 #[command(
     version,
-    after_help = "Exit code: 0 every verdict is the expected one; 1 some verdict is not; \
-                  2 something could not run, is missing, or was asked for wrongly."
+    after_help = "\
+Examples:
+  shotdamp                                    bring everything up to date, print the verdicts
+  shotdamp run ch3-limit-stop                 one experiment
+  shotdamp status --why                       what is stale, and which input changed
+  shotdamp check --junit verdicts.xml         verdicts over the tables on disk, for a CI
+  shotdamp new ch3-my-idea                    an experiment to begin with
+
+Exit code: 0 every verdict is the expected one; 1 some verdict is not;
+2 something could not run, is missing, or was asked for wrongly."
 )]
 pub(super) struct Args {
     /// Folder of the study; by default the nearest one upwards that holds `experiments`
     #[arg(long, global = true, value_name = "DIR")]
     pub root: Option<PathBuf>,
+    /// Threads; by default one a processor. The results do not depend on it
+    #[arg(long, short, global = true, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    pub jobs: Option<u16>,
+    /// Print errors only
+    #[arg(long, short, global = true)]
+    pub quiet: bool,
+    /// Colours; `auto` has them on a terminal, unless NO_COLOR is set
+    #[arg(long, global = true, value_name = "WHEN", value_enum, default_value_t = Colour::Auto)]
+    pub color: Colour,
     #[command(subcommand)]
     pub command: Option<Command>,
+}
+
+/// When to use colours.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub(super) enum Colour {
+    Auto,
+    Always,
+    Never,
 }
 
 #[derive(Debug, Subcommand)]
@@ -27,8 +52,16 @@ pub(super) enum Command {
     /// Bring experiments up to date
     Run(RunArgs),
     /// List the experiments
+    #[command(after_help = "\
+Examples:
+  shotdamp list
+  shotdamp list | grep Fig. 18                the experiment that draws a figure of the study")]
     List,
     /// Show one experiment: its scene in words, the effects in force, the assumptions it uses, its cases
+    #[command(after_help = "\
+Examples:
+  shotdamp show ch3-limit-stop
+  shotdamp show 'ch5-*'")]
     Show {
         /// Id of the experiment
         id: String,
@@ -37,6 +70,23 @@ pub(super) enum Command {
     Status(StatusArgs),
     /// Give the verdicts over the tables on disk; simulates and writes nothing
     Check(CheckArgs),
+    /// Tell which numbers moved between two runs, beyond their uncertainty or within it
+    Diff(DiffArgs),
+    /// Remove what experiments that are gone have left
+    Clean(CleanArgs),
+    /// Write an experiment to begin with
+    New(NewArgs),
+    /// Write the JSON Schemas by which editors complete and check the files of a study
+    Schema(SchemaArgs),
+    /// Print the completions of a shell
+    #[command(after_help = "\
+Examples:
+  shotdamp completions bash > ~/.local/share/bash-completion/completions/shotdamp
+  shotdamp completions fish > ~/.config/fish/completions/shotdamp.fish")]
+    Completions {
+        /// Which shell
+        shell: clap_complete::Shell,
+    },
 }
 
 /// Which experiments.
@@ -51,27 +101,34 @@ pub(super) struct Choice {
 }
 
 #[derive(Debug, Default, clap::Args)]
+#[command(after_help = "\
+Examples:
+  shotdamp run                                all that is stale
+  shotdamp run ch3-limit-stop                 one experiment; --force to simulate it again
+  shotdamp run 'ch3-gap*' --dry-run           what a pattern would simulate
+  shotdamp run --chapter 4 --jobs 1")]
 pub(super) struct RunArgs {
     #[command(flatten)]
     pub choice: Choice,
     /// Simulate also what is up to date
     #[arg(long)]
     pub force: bool,
-    /// Threads; by default one a processor. The results do not depend on it
-    #[arg(long, short, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
-    pub jobs: Option<u16>,
     /// Only say what would be simulated
     #[arg(long)]
     pub dry_run: bool,
+    /// Only simulate; leave figures and reports as they are, for `check --reports`
+    #[arg(long)]
+    pub tables: bool,
     /// Go on after an experiment that fails; this is what happens anyway
     #[arg(long)]
     pub keep_going: bool,
-    /// Print errors only
-    #[arg(long, short)]
-    pub quiet: bool,
 }
 
 #[derive(Debug, clap::Args)]
+#[command(after_help = "\
+Examples:
+  shotdamp status --why
+  shotdamp status --exit-code --quiet || shotdamp run")]
 pub(super) struct StatusArgs {
     #[command(flatten)]
     pub choice: Choice,
@@ -84,10 +141,111 @@ pub(super) struct StatusArgs {
 }
 
 #[derive(Debug, clap::Args)]
+#[command(after_help = "\
+Examples:
+  shotdamp check                              all verdicts; what is not as expected in full
+  shotdamp check 'ch3-*' --junit verdicts.xml
+  shotdamp check --github                     in a workflow: annotations, and a summary of the step
+  shotdamp check --reports                    are the committed reports those of these results?
+  shotdamp check --accept ch3-limit-stop/same-below --reason \"Within the noise since the finer sweep.\"")]
 pub(super) struct CheckArgs {
     #[command(flatten)]
     pub choice: Choice,
     /// Show of each entry that it can fail
     #[arg(long)]
     pub self_test: bool,
+    /// Also write the verdicts as JUnit XML
+    #[arg(long, value_name = "FILE")]
+    pub junit: Option<PathBuf>,
+    /// Print the worst as annotations for GitHub, and append to the summary of the step ($GITHUB_STEP_SUMMARY)
+    #[arg(long)]
+    pub github: bool,
+    /// Print the verdicts as JSON instead
+    #[arg(long, conflicts_with = "github")]
+    pub json: bool,
+    /// Also compare what stands under reports/ with what would be generated
+    #[arg(long)]
+    pub reports: bool,
+    /// Change the verdict that this entry expects (experiment/entry) to the one that it got, in its file
+    #[arg(long, value_name = "ID", requires = "reason", conflicts_with_all = ["patterns", "chapter"])]
+    pub accept: Option<String>,
+    /// Why it is accepted; becomes the explanation of the entry
+    #[arg(long, value_name = "TEXT", requires = "accept")]
+    pub reason: Option<String>,
+}
+
+#[derive(Debug, clap::Args)]
+#[command(after_help = "\
+Each side is a folder of tables (results/), or of reports (reports/, or a verdicts.json).
+Two folders of tables are compared row by row; otherwise verdict by verdict, tables judged by this study's reference.
+Exit code 1 if anything moved beyond its uncertainty.
+
+Examples:
+  shotdamp diff                               what the reports say against what the tables give now
+  shotdamp diff before/results results
+  shotdamp diff before/results --all")]
+pub(super) struct DiffArgs {
+    /// The first; by default the reports of this study
+    #[arg(value_name = "A")]
+    pub a: Option<PathBuf>,
+    /// The second; by default the tables of this study
+    #[arg(value_name = "B")]
+    pub b: Option<PathBuf>,
+    /// Tell all that moved, not the farthest few of each experiment
+    #[arg(long)]
+    pub all: bool,
+}
+
+#[derive(Debug, clap::Args)]
+#[command(after_help = "\
+The file validates as it is; change it while `shotdamp show` and your editor look on.
+
+Examples:
+  shotdamp new ch3-my-idea
+  shotdamp new ch5-thin-plate --structure supported_plate")]
+pub(super) struct NewArgs {
+    /// Its id: small letters, digits and hyphens; `ch3-…` puts it into chapter 3
+    pub id: String,
+    /// Chapter of the study; by default the one that the id names
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..100))]
+    pub chapter: Option<u32>,
+    /// What vibrates
+    #[arg(long, value_name = "KIND", default_value = "single_mass")]
+    pub structure: String,
+}
+
+#[derive(Debug, clap::Args)]
+#[command(after_help = "\
+An editor with a YAML language server uses them where a file begins with
+  # yaml-language-server: $schema=../../schema/experiment.json
+
+Examples:
+  shotdamp schema                             writes schema/*.json into the study
+  shotdamp schema experiment                  prints one")]
+pub(super) struct SchemaArgs {
+    /// Print this one instead of writing all
+    #[arg(value_enum)]
+    pub of: Option<SchemaOf>,
+}
+
+/// The kinds of file that have a schema.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub(super) enum SchemaOf {
+    Experiment,
+    Assumptions,
+    Reference,
+}
+
+#[derive(Debug, clap::Args)]
+#[command(after_help = "\
+Examples:
+  shotdamp clean --orphans --dry-run
+  shotdamp clean --orphans")]
+pub(super) struct CleanArgs {
+    /// Tables, records, figures and pages of experiments whose files are gone
+    #[arg(long, required = true)]
+    pub orphans: bool,
+    /// Only say what would be removed
+    #[arg(long)]
+    pub dry_run: bool,
 }

@@ -1,12 +1,20 @@
 //! `shotdamp check`.
 
+use std::path::{Path, PathBuf};
+
 use super::args::CheckArgs;
 use super::error::CliError;
 use super::exit::Exit;
-use super::output::{complain, complain_of, print};
-use super::select::{choose, open};
-use crate::publish::{judge_all, self_test_all, summary};
+use super::output::{complain, complain_of, print, print_document};
+use super::select::{Chosen, choose, open};
+use crate::atomic::{self, FileError};
+use crate::publish::{Judgement, Opened, check_view, departures, judge_all, self_test_all, summary};
+use crate::reference;
+use crate::report::{self, CheckView};
 use crate::study::Layout;
+
+/// Where GitHub wants the summary of a step.
+const STEP_SUMMARY: &str = "GITHUB_STEP_SUMMARY";
 
 /// The verdicts, from the tables on disk.
 pub(super) fn check(layout: &Layout, args: &CheckArgs) -> Result<Exit, CliError> {
@@ -14,19 +22,86 @@ pub(super) fn check(layout: &Layout, args: &CheckArgs) -> Result<Exit, CliError>
     let chosen = choose(&opened, &args.choice)?;
     complain_of(chosen.unread.iter().copied());
     let judgement = judge_all(&opened);
-    let mut exit = chosen.exit(&judgement);
-    let mut text = summary(&judgement, &chosen.ids);
-    if args.self_test {
-        let ids: Vec<&str> = chosen.ids.iter().copied().collect();
-        let failures = self_test_all(&opened, &ids);
-        for failure in &failures {
-            exit = exit.max(Exit::Unexpected);
-            complain(&format!("error: {} cannot fail: {}\n", failure.id, failure.reason));
-        }
-        let entries: usize =
-            ids.iter().filter_map(|id| opened.references.get(*id)).map(|file| file.entries.len()).sum();
-        text += &format!("self-test: {} of {entries} entries can fail\n", entries - failures.len());
+    if let (Some(id), Some(reason)) = (&args.accept, &args.reason) {
+        return accept(&opened, &judgement, id, reason);
     }
-    print(&text)?;
+    let mut exit = chosen.exit(&judgement);
+    let view = check_view(&opened, &judgement, &chosen.ids, &chosen.unread);
+    let mut text = if args.json { report::json(&view) } else { summary(&judgement, &chosen.ids) };
+    if args.self_test {
+        let (told, worst) = self_test(&opened, &chosen);
+        exit = exit.max(worst);
+        // Standard output is the document's alone.
+        if args.json { complain(&told) } else { text += &told }
+    }
+    if args.json {
+        print_document(&text)?
+    } else {
+        print(&text)?
+    }
+    if args.reports {
+        exit = exit.max(compare_reports(&opened, &judgement, args)?);
+    }
+    if let Some(file) = &args.junit {
+        atomic::write(file, report::junit(&view).as_bytes())?;
+    }
+    if args.github {
+        github(&view)?;
+    }
     Ok(exit)
+}
+
+/// What could not be made to fail, and how many could.
+fn self_test(opened: &Opened, chosen: &Chosen<'_>) -> (String, Exit) {
+    let ids: Vec<&str> = chosen.ids.iter().copied().collect();
+    let failures = self_test_all(opened, &ids);
+    for failure in &failures {
+        complain(&format!("error: {} cannot fail: {}\n", failure.id, failure.reason));
+    }
+    let entries: usize = ids.iter().filter_map(|id| opened.references.get(*id)).map(|file| file.entries.len()).sum();
+    let told = format!("self-test: {} of {entries} entries can fail\n", entries - failures.len());
+    (told, if failures.is_empty() { Exit::AsExpected } else { Exit::Unexpected })
+}
+
+fn compare_reports(opened: &Opened, judgement: &Judgement, args: &CheckArgs) -> Result<Exit, CliError> {
+    let departures = departures(opened, judgement);
+    for departure in &departures {
+        complain(&format!("error: {departure}\n"));
+    }
+    if departures.is_empty() && !args.json {
+        print("reports: what is there is what would be generated\n")?;
+    }
+    Ok(if departures.is_empty() { Exit::AsExpected } else { Exit::Unexpected })
+}
+
+fn github(view: &CheckView<'_>) -> Result<(), CliError> {
+    print_document(&report::annotations(view))?;
+    let Some(file) = std::env::var_os(STEP_SUMMARY).filter(|file| !file.is_empty()).map(PathBuf::from) else {
+        return Ok(());
+    };
+    append_summary(&file, view).map_err(|source| FileError::new("write", &file, source))?;
+    Ok(())
+}
+
+/// Behind what the step has written already, and with it no longer than is allowed.
+fn append_summary(file: &Path, view: &CheckView<'_>) -> std::io::Result<()> {
+    use std::io::Write;
+    let mut file = std::fs::File::options().create(true).append(true).open(file)?;
+    let written = usize::try_from(file.metadata()?.len()).unwrap_or(usize::MAX);
+    file.write_all(report::step_summary(view, report::SUMMARY_LIMIT.saturating_sub(written)).as_bytes())
+}
+
+fn accept(opened: &Opened, judgement: &Judgement, id: &str, reason: &str) -> Result<Exit, CliError> {
+    let unknown = || CliError::NoEntry(id.into());
+    let (experiment, _) = id.split_once('/').ok_or_else(unknown)?;
+    let judged =
+        judgement.verdicts.get(experiment).into_iter().flatten().find(|one| one.id == id).ok_or_else(unknown)?;
+    let name = opened.reference_name(experiment).ok_or_else(unknown)?;
+    let (reference, bytes) = opened.references.get(experiment).zip(opened.texts.files.get(name)).ok_or_else(unknown)?;
+    let text = String::from_utf8_lossy(bytes);
+    let changed = reference::accept(reference, &text, judged, reason)?;
+    atomic::write(&opened.layout.path(name), changed.as_bytes())?;
+    let verdict = |verdict| crate::text::words::of_key(verdict);
+    print(&format!("{name}: {id} expects {} now, was {}\n", verdict(&judged.verdict), verdict(&judged.expected)))?;
+    Ok(Exit::AsExpected)
 }

@@ -4,6 +4,7 @@ use std::io;
 use std::path::PathBuf;
 
 use crate::atomic::FileError;
+use crate::reference::AcceptError;
 use crate::study::ThreadError;
 
 #[derive(Debug, thiserror::Error)]
@@ -18,6 +19,20 @@ pub(super) enum CliError {
     NoMatch { pattern: String, known: String },
     #[error("no experiment belongs to chapter {0}")]
     NoChapter(u32),
+    #[error("there is no entry `{0}`; entries are named experiment/entry, as `shotdamp check` shows them")]
+    NoEntry(String),
+    #[error("{} holds neither tables (*.parquet) nor verdicts (verdicts.json)", .0.display())]
+    NoResults(PathBuf),
+    #[error("cannot compare {}: {problem}", .path.display())]
+    Unreadable { path: PathBuf, problem: String },
+    #[error("{0}")]
+    Id(String),
+    #[error("there is an experiment `{0}` already")]
+    Exists(String),
+    #[error("there is no structure `{given}`; known are {known}")]
+    NoStructure { given: String, known: String },
+    #[error(transparent)]
+    Accept(#[from] AcceptError),
     #[error(transparent)]
     File(#[from] FileError),
     #[error(transparent)]

@@ -2,10 +2,14 @@
 
 mod args;
 mod check;
+mod clean;
+mod diff;
 mod error;
 mod exit;
 mod list;
+mod new;
 mod output;
+mod schema;
 mod select;
 mod show;
 mod status;
@@ -13,7 +17,7 @@ mod update;
 
 use std::process::ExitCode;
 
-use clap::Parser;
+use clap::{CommandFactory, Parser};
 
 use args::{Args, Command};
 use error::CliError;
@@ -23,7 +27,9 @@ use exit::Exit;
 /// could not run, is missing, or was asked for wrongly.
 #[must_use]
 pub fn main() -> ExitCode {
-    match dispatch(&Args::parse()) {
+    let args = Args::parse();
+    output::speak(args.quiet, args.color);
+    match dispatch(&args) {
         Ok(exit) => exit.into(),
         // Whoever closed the pipe has read enough.
         Err(error) if error.is_broken_pipe() => ExitCode::SUCCESS,
@@ -35,13 +41,39 @@ pub fn main() -> ExitCode {
 }
 
 fn dispatch(args: &Args) -> Result<Exit, CliError> {
+    match &args.command {
+        // What needs no study.
+        Some(Command::Completions { shell }) => return completions(*shell),
+        Some(Command::Schema(args::SchemaArgs { of: Some(of) })) => return schema::print_one(*of),
+        _ => {}
+    }
     let layout = select::layout(args.root.as_deref())?;
     match &args.command {
-        None => update::update(&layout, &args::RunArgs::default()),
-        Some(Command::Run(run)) => update::update(&layout, run),
+        None => update::update(&layout, &args::RunArgs::default(), args),
+        Some(Command::Run(run)) => update::update(&layout, run, args),
         Some(Command::List) => list::list(&layout),
         Some(Command::Show { id }) => show::show(&layout, id),
         Some(Command::Status(status)) => status::status(&layout, status),
-        Some(Command::Check(check)) => check::check(&layout, check),
+        Some(Command::Check(check)) => {
+            threads(args.jobs);
+            check::check(&layout, check)
+        }
+        Some(Command::Diff(diff)) => diff::diff(&layout, diff),
+        Some(Command::Clean(clean)) => clean::clean(&layout, clean),
+        Some(Command::New(new)) => new::new(&layout, new),
+        Some(Command::Schema(schema)) => schema::schema(&layout, schema),
+        Some(Command::Completions { shell }) => completions(*shell),
     }
+}
+
+/// The shared pool has so many threads; if somebody has started it already, it stays as it is.
+fn threads(jobs: Option<u16>) {
+    let _ = rayon::ThreadPoolBuilder::new().num_threads(jobs.map_or(0, usize::from)).build_global();
+}
+
+fn completions(shell: clap_complete::Shell) -> Result<Exit, CliError> {
+    let mut text = Vec::new();
+    clap_complete::generate(shell, &mut Args::command(), "shotdamp", &mut text);
+    output::print_document(&String::from_utf8_lossy(&text))?;
+    Ok(Exit::AsExpected)
 }

@@ -1,12 +1,50 @@
-//! What a command says, and where.
+//! What a command says, where, and in which colours.
 
 use std::io::{self, IsTerminal, Write};
+use std::sync::OnceLock;
 
+use super::args::Colour;
 use crate::publish::Unread;
 use crate::study::Refused;
 
-/// Prints the answer.
+/// How this process speaks; decided once, by its arguments.
+#[derive(Debug, Clone, Copy)]
+struct Manner {
+    quiet: bool,
+    /// On standard error.
+    colour: bool,
+}
+
+static MANNER: OnceLock<Manner> = OnceLock::new();
+
+/// Decides how this process speaks, before it says anything.
+pub(super) fn speak(quiet: bool, colour: Colour) {
+    let _ = MANNER.set(Manner { quiet, colour: wants_colour(colour) });
+}
+
+fn manner() -> Manner {
+    *MANNER.get_or_init(|| Manner { quiet: false, colour: wants_colour(Colour::Auto) })
+}
+
+/// True if errors are to be coloured: as asked for, or on a terminal that can, unless `NO_COLOR` is set.
+fn wants_colour(colour: Colour) -> bool {
+    let set = |name: &str| std::env::var_os(name).filter(|value| !value.is_empty());
+    match colour {
+        Colour::Always => true,
+        Colour::Never => false,
+        Colour::Auto => {
+            io::stderr().is_terminal() && set("NO_COLOR").is_none() && set("TERM").is_none_or(|term| term != "dumb")
+        }
+    }
+}
+
+/// Prints the answer, unless nothing but errors is wanted.
 pub(super) fn print(text: &str) -> io::Result<()> {
+    if manner().quiet { Ok(()) } else { print_document(text) }
+}
+
+/// Prints a document that was asked for by name, which is never left out.
+pub(super) fn print_document(text: &str) -> io::Result<()> {
     let mut out = io::stdout().lock();
     out.write_all(text.as_bytes())?;
     out.flush()
@@ -14,15 +52,20 @@ pub(super) fn print(text: &str) -> io::Result<()> {
 
 /// Tells of something wrong. Nobody is left to tell if that fails.
 pub(super) fn complain(text: &str) {
+    let text = match text.strip_prefix("error:") {
+        Some(rest) if manner().colour => format!("\u{1b}[1;31merror:\u{1b}[0m{rest}"),
+        _ => text.to_owned(),
+    };
     let _ = io::stderr().lock().write_all(text.as_bytes());
 }
 
 /// Tells of files that could not be used, with their places; framed for a person at a terminal.
 pub(super) fn complain_of<'a>(unread: impl IntoIterator<Item = &'a Unread>) {
+    let colour = manner().colour;
     for one in unread {
         match one {
-            Unread::Experiment(Refused::Text(problems)) if io::stderr().is_terminal() => {
-                complain(&problems.fancy(true));
+            Unread::Experiment(Refused::Text(problems)) if colour || io::stderr().is_terminal() => {
+                complain(&problems.fancy(colour));
             }
             Unread::Experiment(Refused::Text(problems)) => complain(&problems.to_string()),
             other => complain(&format!("error: {other}\n")),

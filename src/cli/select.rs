@@ -121,7 +121,7 @@ fn stem(file: &str) -> &str {
 }
 
 /// The chapter that a name speaks of, `ch3-gap` or `experiments/ch3/…`; 0 if none.
-fn chapter_of(name: &str) -> u32 {
+pub(super) fn chapter_of(name: &str) -> u32 {
     let chapter = |part: &str| -> Option<u32> {
         let digits: String = part.strip_prefix("ch")?.chars().take_while(char::is_ascii_digit).collect();
         digits.parse().ok()

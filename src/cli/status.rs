@@ -6,7 +6,13 @@ use super::exit::Exit;
 use super::output::{complain_of, print};
 use super::select::{choose, open};
 use crate::publish::publication_reasons;
-use crate::study::{Layout, State};
+use crate::spec::line_of;
+use crate::study::{Layout, State, Texts};
+
+/// Where in a file of the study a part of its meaning is written.
+fn line_in(texts: &Texts, file: &str, path: &[String]) -> Option<usize> {
+    line_of(std::str::from_utf8(texts.files.get(file)?).ok()?, path)
+}
 
 /// One line an experiment, and below it why.
 pub(super) fn status(layout: &Layout, args: &StatusArgs) -> Result<Exit, CliError> {
@@ -33,7 +39,13 @@ pub(super) fn status(layout: &Layout, args: &StatusArgs) -> Result<Exit, CliErro
         }
         text += &format!("{:width$}  {state}\n", item.source.experiment.id.0);
         if args.why {
-            text.extend(reasons.iter().map(|reason| format!("    {reason}\n")));
+            for reason in &reasons {
+                text += &format!("    {}\n", reason.told(|file, path| line_in(&opened.texts, file, path)));
+            }
+            if let State::Stale(_) = &item.state {
+                let extent = item.extent(layout);
+                text += &format!("    touches {} of {} rows\n", extent.touched, extent.rows);
+            }
         }
     }
     let all = chosen.items.len();

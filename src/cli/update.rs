@@ -4,40 +4,38 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::Mutex;
 
-use super::args::RunArgs;
+use super::args::{Args, RunArgs};
 use super::error::CliError;
 use super::exit::Exit;
 use super::output::{complain, complain_of, print};
 use super::select::{Chosen, choose};
-use crate::publish::{Opened, judge_all, publish, summary};
+use crate::publish::{Opened, Published, judge_all, publish, summary};
 use crate::study::{
     Engine, Item, Layout, Listen, Lock, Progress, Silence, Snapshot, State, Task, Texts, journal_name, run, save,
 };
 
 /// Brings the chosen experiments up to date.
-pub(super) fn update(layout: &Layout, args: &RunArgs) -> Result<Exit, CliError> {
+pub(super) fn update(layout: &Layout, args: &RunArgs, common: &Args) -> Result<Exit, CliError> {
     let whole = args.choice.is_all();
-    if whole && !args.force {
+    if whole && !args.force && !args.tables {
         // The short way: no lock, no YAML, no table, no thread.
         if let Some(snapshot) = Snapshot::current(layout, &Texts::read(layout)?) {
-            if !args.quiet {
-                print(&format!("Nothing to do.\n{}", snapshot.summary))?;
-            }
+            print(&format!("Nothing to do.\n{}", snapshot.summary))?;
             return Ok(Exit::from_code(snapshot.exit_code));
         }
     }
     if args.dry_run {
         return dry_run(layout, args);
     }
-    let threads = args.jobs.map_or(0, usize::from);
-    // Figures are drawn on the shared pool; if somebody has started it already, it stays as it is.
-    let _ = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
+    // Figures are drawn on the shared pool.
+    super::threads(common.jobs);
+    let threads = common.jobs.map_or(0, usize::from);
     let _lock = Lock::take(layout, || complain("waiting for another run in this study\n"))?;
     let opened = Opened::new(layout.clone(), Texts::read(layout)?);
     let chosen = choose(&opened, &args.choice)?;
     complain_of(chosen.unread.iter().copied());
     let todo = todo(&chosen, args);
-    let unsaved = simulate(layout, &todo, threads, args.quiet)?;
+    let unsaved = simulate(layout, &todo, threads, common.quiet)?;
     let simulated = todo.len();
 
     // From the texts that were read in the beginning, and the results that are on disk now.
@@ -45,7 +43,7 @@ pub(super) fn update(layout: &Layout, args: &RunArgs) -> Result<Exit, CliError> 
     let opened = Opened::new(layout.clone(), texts);
     let chosen = choose(&opened, &args.choice)?;
     let judgement = judge_all(&opened);
-    let published = publish(&opened, &judgement, &chosen.ids)?;
+    let published = if args.tables { Published::default() } else { publish(&opened, &judgement, &chosen.ids)? };
     let failed = tell_failures(&chosen);
     for problem in unsaved.iter().chain(&published.problems) {
         complain(&format!("error: {problem}\n"));
@@ -53,12 +51,10 @@ pub(super) fn update(layout: &Layout, args: &RunArgs) -> Result<Exit, CliError> 
     let whole_work = unsaved.is_empty() && published.problems.is_empty() && !failed;
     let exit = chosen.exit(&judgement).max(if whole_work { Exit::AsExpected } else { Exit::CouldNot });
     let text = summary(&judgement, &chosen.ids);
-    if whole && whole_work && chosen.unread.is_empty() {
+    if whole && whole_work && !args.tables && chosen.unread.is_empty() {
         Snapshot::take(layout, &opened.texts, published.outputs, &text, exit.code())?;
     }
-    if !args.quiet {
-        print(&format!("{}\n{text}", told(&chosen, simulated, published.written)))?;
-    }
+    print(&format!("{}\n{text}", told(&chosen, simulated, published.written)))?;
     Ok(exit)
 }
 

@@ -2,6 +2,7 @@
 //!
 //! Stands above the study and below the command. Nothing here simulates, and all of it can be made again from the tables.
 
+mod committed;
 mod figures;
 mod opened;
 mod pages;
@@ -9,9 +10,10 @@ mod publication;
 mod verdicts;
 mod views;
 
+pub use committed::{Departure, How, departures};
 pub use figures::figure_name;
 pub use opened::{Opened, Unread};
-pub use pages::{Published, publish};
+pub use pages::{Published, VERDICTS, publish};
 pub use publication::publication_reasons;
-pub use verdicts::{Judgement, judge_all, self_test_all};
-pub use views::{scenes, summary};
+pub use verdicts::{Judgement, judge_all, judge_tables, self_test_all};
+pub use views::{check_view, scenes, summary};

@@ -40,6 +40,21 @@ pub enum Unread {
 }
 
 impl Unread {
+    /// The line of the first mistake, if it has a place.
+    #[must_use]
+    pub fn line(&self) -> Option<u64> {
+        match self {
+            Self::Experiment(Refused::Text(problems)) => {
+                problems.list.iter().find_map(|problem| problem.place).and_then(|place| u64::try_from(place.line).ok())
+            }
+            Self::Experiment(_) => None,
+            Self::Reference { problem, .. } => {
+                let digits: String = problem.strip_prefix("line ")?.chars().take_while(char::is_ascii_digit).collect();
+                digits.parse().ok()
+            }
+        }
+    }
+
     /// The name of the file.
     #[must_use]
     pub fn file(&self) -> &str {
@@ -75,11 +90,23 @@ impl Opened {
         Self { layout, texts, sheet: loaded.sheet, items, references, unread }
     }
 
+    /// The name within the study of the reference file of an experiment.
+    #[must_use]
+    pub fn reference_name(&self, id: &str) -> Option<&str> {
+        let named = |name: &&String| name.strip_prefix("reference/").is_some_and(|rest| stem(rest) == id);
+        self.texts.files.keys().find(named).map(String::as_str)
+    }
+
     /// The ids of the entries that an assumption was fitted to.
     #[must_use]
     pub fn fitted(&self) -> BTreeSet<String> {
         self.sheet.entries.values().flat_map(|entry| entry.fitted_to.iter().cloned()).collect()
     }
+}
+
+fn stem(name: &str) -> &str {
+    let name = name.rsplit('/').next().unwrap_or(name);
+    name.strip_suffix(".yaml").unwrap_or(name)
 }
 
 /// Numbers are held against the result with an uncertainty that needs the ends of the assumptions; claims are not.

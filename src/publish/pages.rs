@@ -13,6 +13,11 @@ use super::views;
 use crate::atomic::{self, FileError};
 use crate::study::{FileHash, Item, Publication, Record, record_name, table_name};
 
+/// The index of all pages.
+const INDEX: &str = "reports/README.md";
+/// The verdicts for programs, within the study.
+pub const VERDICTS: &str = "reports/verdicts.json";
+
 /// What publishing did.
 #[derive(Debug, Default)]
 pub struct Published {
@@ -46,10 +51,33 @@ pub fn publish(opened: &Opened, judgement: &Judgement, ids: &BTreeSet<&str>) -> 
         let drawn = figures.remove(id).unwrap_or_default();
         write_page(opened, judgement, page, drawn, &mut published)?;
     }
-    let index = opened.layout.path("reports/README.md");
-    published.written += usize::from(atomic::write_if_changed(&index, views::index(opened, judgement).as_bytes())?);
-    published.outputs.insert("reports/README.md".into());
+    for (name, text) in of_the_study(opened, judgement) {
+        published.written += usize::from(atomic::write_if_changed(&opened.layout.path(name), text.as_bytes())?);
+        published.outputs.insert(name.into());
+    }
     Ok(published)
+}
+
+/// What is written of the study as a whole.
+fn of_the_study(opened: &Opened, judgement: &Judgement) -> [(&'static str, String); 2] {
+    [(INDEX, views::index(opened, judgement)), (VERDICTS, views::verdicts(opened, judgement))]
+}
+
+/// Everything that a run would write under `reports/`, by name within the study; or in words why it cannot be made.
+pub(super) fn render(opened: &Opened, judgement: &Judgement) -> BTreeMap<String, Result<Vec<u8>, String>> {
+    let pages: Vec<Page<'_>> = opened.items.iter().filter_map(|item| page(opened, item)).collect();
+    let mut figures = draw(opened, judgement, pages.iter());
+    let mut files = BTreeMap::new();
+    for page in &pages {
+        let id = &page.item.source.experiment.id;
+        for (name, bytes) in figures.remove(id.0.as_str()).unwrap_or_default() {
+            files.insert(format!("{}/{name}", page.folder), bytes);
+        }
+        let text = views::page(opened, judgement, page.item);
+        files.insert(format!("{}/{id}.md", page.folder), Ok(text.into_bytes()));
+    }
+    files.extend(of_the_study(opened, judgement).map(|(name, text)| (name.to_owned(), Ok(text.into_bytes()))));
+    files
 }
 
 fn page<'a>(opened: &Opened, item: &'a Item) -> Option<Page<'a>> {

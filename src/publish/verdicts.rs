@@ -43,6 +43,14 @@ pub fn judge_all(opened: &Opened) -> Judgement {
     Judgement { tables, verdicts }
 }
 
+/// The verdicts that these tables give, whatever they were computed from.
+#[must_use]
+pub fn judge_tables(opened: &Opened, tables: &BTreeMap<String, Table>) -> Vec<Judged> {
+    let states: Tables<'_> = tables.iter().map(|(id, table)| (id.clone(), TableState::Present(table))).collect();
+    let fitted = opened.fitted();
+    opened.references.values().flat_map(|file| judge(file, &states, &fitted)).collect()
+}
+
 /// Shows of each entry of these experiments that it can fail; returns those that cannot.
 #[must_use]
 pub fn self_test_all(opened: &Opened, ids: &[&str]) -> Vec<SelfTestFailure> {

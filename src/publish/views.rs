@@ -3,10 +3,12 @@
 use std::collections::BTreeSet;
 
 use super::figures::figure_name;
-use super::opened::Opened;
+use super::opened::{Opened, Unread};
 use super::verdicts::Judgement;
 use crate::reference::Judged;
-use crate::report::{self, AssumptionView, ExperimentView, FigureView, PageView, value_in_words};
+use crate::report::{
+    self, AssumptionView, CheckView, CheckedEntry, ExperimentView, FigureView, PageView, Trouble, value_in_words,
+};
 use crate::scene::{Assumption, Scene, effects};
 use crate::spec::{Experiment, FigureSpec};
 use crate::study::{Item, table_name};
@@ -58,6 +60,31 @@ fn listed<'a>(judgement: &'a Judgement, item: &'a Item) -> ExperimentView<'a> {
 pub fn summary(judgement: &Judgement, ids: &BTreeSet<&str>) -> String {
     let judged: Vec<(&str, &[Judged])> = ids.iter().map(|id| (*id, judged(judgement, id))).collect();
     report::summary(&judged)
+}
+
+/// All entries of the experiments and reference files in `ids`, with the files that could not be used.
+#[must_use]
+pub fn check_view<'a>(
+    opened: &'a Opened,
+    judgement: &'a Judgement,
+    ids: &BTreeSet<&'a str>,
+    unread: &[&Unread],
+) -> CheckView<'a> {
+    let mut entries = Vec::new();
+    for id in ids {
+        let file = opened.reference_name(id).unwrap_or_default();
+        let lines = opened.references.get(*id).into_iter().flat_map(|file| &file.entries).map(|entry| entry.line);
+        let judged = judged(judgement, id).iter().zip(lines);
+        entries.extend(judged.map(|(judged, line)| CheckedEntry { judged, file, line }));
+    }
+    let trouble = |one: &&Unread| Trouble { file: one.file().into(), line: one.line(), message: one.to_string() };
+    CheckView { entries, troubles: unread.iter().map(trouble).collect() }
+}
+
+/// The verdicts of the whole study for programs.
+pub(super) fn verdicts(opened: &Opened, judgement: &Judgement) -> String {
+    let ids = judgement.verdicts.keys().map(String::as_str).collect();
+    report::json(&check_view(opened, judgement, &ids, &[]))
 }
 
 /// The scenes of the cases, under the assumptions in force.

@@ -26,14 +26,14 @@ const TELLING: f64 = 0.1;
 /// The verdict on a value, and what there is to say beyond the numbers.
 pub(crate) fn verdict(comparison: &Comparison, scale: Option<f64>, fitted: bool) -> (Verdict, Option<String>) {
     let error = comparison.error().abs();
-    if error > tolerance(comparison) {
+    if error > comparison.tolerance() {
         return (Verdict::Differs, None);
     }
     let scale = scale.unwrap_or(comparison.published.abs());
     let telling = (COVERAGE * comparison.u_data).max(TELLING * scale);
     let simulated = COVERAGE * libm::hypot(comparison.u_num, comparison.u_input);
     let says_something = comparison.tolerance_by_hand.is_some()
-        && COVERAGE * comparison.spread <= tolerance(comparison).max(telling)
+        && COVERAGE * comparison.spread <= comparison.tolerance().max(telling)
         || simulated <= telling
         || fitted && error <= telling;
     if !says_something {
@@ -48,9 +48,4 @@ pub(crate) fn verdict(comparison: &Comparison, scale: Option<f64>, fitted: bool)
         return (verdict, Some(format!("agrees, but within ± {width} any value would: {cause}")));
     }
     (if fitted { Verdict::Fitted } else { Verdict::Reproduced }, None)
-}
-
-/// The tolerance in force, in the unit of the comparison.
-pub(crate) fn tolerance(comparison: &Comparison) -> f64 {
-    comparison.tolerance_by_hand.unwrap_or(COVERAGE * comparison.u_val())
 }

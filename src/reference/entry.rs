@@ -69,6 +69,9 @@ pub struct Entry {
     pub explanation: String,
     /// Inputs that the study does not give and without which the entry cannot be judged.
     pub blocked_by: Vec<String>,
+    /// The line of the file on which it starts, counted from 1; no part of what it means.
+    #[serde(skip)]
+    pub line: u64,
 }
 
 /// How an entry is checked.
@@ -174,7 +177,7 @@ pub fn parse_reference(experiment: &str, text: &str) -> Result<ReferenceFile, Ve
             found.push("has the id of an entry above".to_string());
         }
         match spanned.value.validated(experiment) {
-            Ok(entry) => entries.push(entry),
+            Ok(entry) => entries.push(Entry { line, ..entry }),
             Err(more) => found.extend(more),
         }
         problems.extend(found.into_iter().map(|what| format!("line {line}, column {column}: entry `{name}` {what}")));
@@ -315,6 +318,7 @@ impl RawEntry {
                 expected,
                 explanation: self.explanation.unwrap_or_default().trim().to_string(),
                 blocked_by: self.blocked_by,
+                line: 0,
             }),
             _ => Err(wrong),
         }

@@ -3,6 +3,7 @@
 //! An [`Entry`] says where a number or claim stands and how it is read from a table. [`judge`] holds it against the tables:
 //! values and peaks after ASME V&V 20, claims as predicates, curves within a tube, shapes by MAC. [`self_test`] shows that every entry can fail.
 
+mod accept;
 mod analytic;
 mod average;
 mod columns;
@@ -20,6 +21,7 @@ mod place;
 mod predicate;
 mod printed;
 mod resonance;
+mod schema;
 mod selection;
 mod self_test;
 mod shape;
@@ -29,6 +31,7 @@ mod tube;
 mod verdict;
 mod view;
 
+pub use accept::{AcceptError, accept};
 pub use entry::{
     Check, Entry, ReferenceError, ReferenceFile, Tolerance, ToleranceSize, load_reference, parse_reference,
 };
@@ -38,6 +41,7 @@ pub use judge::judge;
 pub use predicate::Predicate;
 pub use printed::{Printed, PrintedError};
 pub use resonance::{Feature, PrintedPeak, Which};
+pub use schema::reference_schema;
 pub use selection::{Allowed, Selection};
 pub use self_test::{SelfTestFailure, self_test};
 pub use verdict::{Comparison, Judged, Moved, Part, Verdict};

@@ -7,7 +7,6 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::compare;
 use super::damage::{Damage, alter, extremes, numbers};
 use super::decide::decide;
 use super::entry::{Check, Entry, ReferenceFile};
@@ -174,7 +173,7 @@ impl Bench<'_> {
     fn moved_value(&self, judged: &Judged, from: &Extraction, reads: &BTreeSet<Read>) -> Result<(), String> {
         // A feature that does not occur cannot be moved; it differs already.
         let Some(comparison) = judged.comparison else { return Ok(()) };
-        let tolerance = compare::tolerance(&comparison);
+        let tolerance = comparison.tolerance();
         for (offset, should_differ) in [(JUST_OUTSIDE, true), (-JUST_OUTSIDE, true), (0.0, false)] {
             let target = comparison.published + offset * tolerance;
             // No deviation is below zero, however wide its tolerance.

@@ -54,6 +54,24 @@ impl Comparison {
         (self.u_num * self.u_num + self.u_input * self.u_input + self.u_data * self.u_data).sqrt()
     }
 
+    /// 2 u_val: the tolerance that follows from the uncertainties (coverage factor 2).
+    #[must_use]
+    pub fn derived_tolerance(&self) -> f64 {
+        super::compare::COVERAGE * self.u_val()
+    }
+
+    /// The tolerance in force, in the unit of the comparison.
+    #[must_use]
+    pub fn tolerance(&self) -> f64 {
+        self.tolerance_by_hand.unwrap_or(self.derived_tolerance())
+    }
+
+    /// |E|/u_val: how far it is off in units of its uncertainty.
+    #[must_use]
+    pub fn deviation(&self) -> f64 {
+        self.error().abs() / self.u_val()
+    }
+
     /// Digits that agree, −log10(|S − D|/|D|), as NIST StRD tells it.
     #[must_use]
     pub fn digits(&self) -> f64 {

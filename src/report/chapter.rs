@@ -36,7 +36,7 @@ pub(super) fn section(chapter: u32, experiments: &[&ExperimentView<'_>]) -> Stri
 }
 
 /// The name of a chapter.
-fn title(chapter: u32) -> String {
+pub(super) fn title(chapter: u32) -> String {
     let subject = match chapter {
         3 => ": one mass, one damper",
         4 => ": cantilever beam",

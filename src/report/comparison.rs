@@ -66,7 +66,6 @@ fn numbers(judged: &[Judged]) -> String {
     ]);
     for one in judged {
         let Some(comparison) = &one.comparison else { continue };
-        let ratio = comparison.error().abs() / comparison.u_val();
         table.row([
             entry(one),
             compact(comparison.published, 12),
@@ -76,7 +75,7 @@ fn numbers(judged: &[Judged]) -> String {
             significant(comparison.u_input, 2),
             significant(comparison.u_data, 2),
             significant(comparison.u_val(), 2),
-            significant(ratio, 2),
+            significant(comparison.deviation(), 2),
             digits(comparison),
         ]);
     }
@@ -146,15 +145,23 @@ fn by_hand(judged: &[Judged]) -> String {
     if text.is_empty() { text } else { format!("**Tolerances set by hand**, not derived from u_val:\n\n{text}\n") }
 }
 
-/// The tolerance that was set by hand, with its reason.
+/// The tolerance that was set by hand, with its reason, and whether it is looser than the one that it replaces.
 pub(super) fn tolerance(judged: &Judged) -> Option<String> {
-    let width = judged.comparison.and_then(|comparison| comparison.tolerance_by_hand);
-    if width.is_none() && judged.tolerance_reason.is_none() {
+    let widths: Vec<String> = judged.comparisons().filter_map(|(name, comparison)| width(name, comparison)).collect();
+    if widths.is_empty() && judged.tolerance_reason.is_none() {
         return None;
     }
-    let width = width.map_or_else(String::new, |width| format!("±{}. ", compact(width, 6)));
+    let widths = if widths.is_empty() { String::new() } else { format!("{}. ", widths.join("; ")) };
     let reason = judged.tolerance_reason.as_deref().map_or_else(|| "No reason is given.".to_owned(), one_line);
-    Some(width + &reason)
+    Some(widths + &reason)
+}
+
+fn width(name: &str, comparison: &Comparison) -> Option<String> {
+    let width = comparison.tolerance_by_hand?;
+    let derived = comparison.derived_tolerance();
+    let beside = if width > derived { "**loosened** from" } else { "narrower than" };
+    let name = if name.is_empty() { String::new() } else { format!("{name} ") };
+    Some(format!("{name}±{}, {beside} the derived ±{}", compact(width, 6), significant(derived, 2)))
 }
 
 /// Why entries are not reproduced, and notes on those that are.

@@ -4,6 +4,7 @@ use comfy_table::{CellAlignment, LineStyle, Table, TableStyle};
 
 use crate::reference::{Judged, Verdict};
 
+use super::finding;
 use super::markdown::{counted, one_line};
 use super::tally::{Tally, VERDICTS, word};
 
@@ -65,22 +66,8 @@ fn row(name: &str, tally: &Tally) -> Vec<String> {
 
 fn in_full(one: &Judged) -> String {
     let mut text = format!("  {}: {}, expected {}\n", one.id, word(one.verdict), word(one.expected));
-    for (label, line) in [("the study", &one.statement), ("where", &one.place), ("found", &one.found)] {
-        if !line.is_empty() {
-            text += &format!("    {label:<10} {}\n", one_line(line));
-        }
-    }
-    if let Some(comparison) = &one.comparison {
-        let number = |x: f64| crate::text::number::significant(x, 3);
-        text += &format!(
-            "    {:<10} E = {}, u_val = {} (u_num {}, u_input {}, u_D {})\n",
-            "comparison",
-            number(comparison.error()),
-            number(comparison.u_val()),
-            number(comparison.u_num),
-            number(comparison.u_input),
-            number(comparison.u_data)
-        );
+    for (label, line) in finding::lines(one) {
+        text += &format!("    {label:<10} {line}\n");
     }
     text
 }

@@ -7,7 +7,7 @@ use crate::reference::{Judged, Verdict};
 use super::markdown::{counted, first_sentence, one_line};
 use super::tally::{Tally, VERDICTS, meaning, shown, word};
 use super::view::{AssumptionView, ExperimentView};
-use super::{assumption, chapter, comparison};
+use super::{assumption, chapter, comparison, glance};
 
 /// What the words mean, once for all pages.
 const SYMBOLS: &str = "\
@@ -69,16 +69,21 @@ pub fn index(experiments: &[ExperimentView<'_>], assumptions: &[AssumptionView],
             more => format!("**{more} verdicts are not the expected ones.**"),
         }
     );
-    text += "[How to read a page](#how-to-read-a-page) · [Not reproduced](#not-reproduced) · \
-             [Assumptions](#assumptions) · [Tolerances set by hand](#tolerances-set-by-hand)";
-    if let Some(page) = speed {
-        text += &format!(" · [Speed]({page})");
-    }
-    text += "\n\n";
     let mut chapters: BTreeMap<u32, Vec<&ExperimentView<'_>>> = BTreeMap::new();
     for view in experiments {
         chapters.entry(view.experiment.source.chapter).or_default().push(view);
     }
+    text += &glance::table(&chapters);
+    // The same results give the same bytes, and measured times are never the same.
+    text += &match speed {
+        Some(page) => {
+            format!("Times differ from run to run and are not in here; measured ones have [a page]({page}).\n\n")
+        }
+        None => "Times differ from run to run and are not in here.\n\n".to_owned(),
+    };
+    text += "[How to read a page](#how-to-read-a-page) · [Not reproduced](#not-reproduced) · \
+             [Assumptions](#assumptions) · [Tolerances set by hand](#tolerances-set-by-hand)";
+    text += "\n\n";
     for (number, views) in &chapters {
         text += &chapter::section(*number, views);
     }

@@ -64,7 +64,7 @@ impl AssumptionSheet {
 
 /// What values an assumption takes.
 #[derive(Clone, Copy)]
-enum Kind {
+pub(super) enum Kind {
     Quantity(Dimension),
     Ratio,
     Restitution,
@@ -82,7 +82,7 @@ const IMPULSE_TIMES: [&str; ImpulseTime::WORDS.len()] = {
     [a, b, c]
 };
 
-fn kind(name: Assumption) -> Kind {
+pub(super) fn kind(name: Assumption) -> Kind {
     match name {
         Assumption::Gravity => Kind::Quantity(Dimension::Acceleration),
         Assumption::StopLength => Kind::Quantity(Dimension::Length),

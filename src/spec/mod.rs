@@ -7,9 +7,11 @@ mod assumption_sheet;
 mod check;
 mod columns;
 mod diagnostic;
+mod edit;
 mod excitation;
 mod experiment;
 mod figure;
+mod line;
 mod load;
 mod map;
 mod optimise;
@@ -19,7 +21,9 @@ mod quantity;
 mod range;
 mod reader;
 mod refined;
+mod scaffold;
 mod scene;
+mod schema;
 mod solver;
 mod structure;
 mod sweep;
@@ -30,14 +34,19 @@ mod yaml;
 
 pub use assumption_sheet::{AssumptionEntry, AssumptionSheet, parse_assumptions};
 pub use diagnostic::{Place, Problem, Problems};
+pub(crate) use edit::{Written, set_keys};
 pub use experiment::{
     Axis, AxisScale, Best, Case, Drawing, EnergySpec, Experiment, ExperimentId, FigureSpec, IdError, Level, MapSpec,
     Mark, Maximise, Panel, PeakMarks, Refinement, Settings, ShapeOf, ShapeSpec, SolverChoice, Source, TraceSpec,
 };
+pub use line::line_of;
 pub use load::{load_assumptions, load_experiment};
 pub use optimise::{Candidate, Goal, Landscape, Optimise, Search, SearchKind, SearchSpacing};
 pub use quantity::{Dimension, QuantityError, parse_number, parse_quantity};
 pub(crate) use refined::{Curve, curves};
+pub use scaffold::{scaffold, structures};
+pub(crate) use schema::{Object, list, text, words_of};
+pub use schema::{assumptions_schema, experiment_schema};
 pub use typed::{Located, from_yaml};
 pub(crate) use typed::{Spanned, position};
 pub use validate::parse_experiment;

@@ -12,9 +12,9 @@ use super::word::word_of;
 use super::yaml::{Node, Value};
 
 /// Most individuals of a population.
-const MOST_INDIVIDUALS: u32 = 100_000;
+pub(super) const MOST_INDIVIDUALS: u32 = 100_000;
 /// Most generations, and evaluations.
-const MOST: u32 = 1_000_000_000;
+pub(super) const MOST: u32 = 1_000_000_000;
 
 /// An optimisation as read: what belongs to each damper still is one value for all, or a list.
 pub(super) struct ReadOptimise {

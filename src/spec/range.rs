@@ -86,15 +86,21 @@ pub(super) fn value(node: &Node, parameter: Parameter, findings: &Findings) -> O
 
 /// A value of a parameter that is a number, in SI.
 pub(super) fn size(node: &Node, parameter: Parameter, findings: &Findings) -> Option<f64> {
+    match dimension(parameter) {
+        Some(dimension) => quantity(node, dimension, findings),
+        None => ratio(node, findings),
+    }
+}
+
+/// What the numbers of a parameter are; `None` where they have no unit.
+pub(super) fn dimension(parameter: Parameter) -> Option<Dimension> {
     match parameter {
-        Parameter::StopLength | Parameter::Length | Parameter::Width | Parameter::Thickness => {
-            quantity(node, Dimension::Length, findings)
-        }
-        Parameter::PulseDuration => quantity(node, Dimension::Time, findings),
-        Parameter::Force => quantity(node, Dimension::Force, findings),
-        Parameter::Impulse => quantity(node, Dimension::Impulse, findings),
-        Parameter::AngularFrequency => quantity(node, Dimension::AngularFrequency, findings),
-        _ => ratio(node, findings),
+        Parameter::StopLength | Parameter::Length | Parameter::Width | Parameter::Thickness => Some(Dimension::Length),
+        Parameter::PulseDuration => Some(Dimension::Time),
+        Parameter::Force => Some(Dimension::Force),
+        Parameter::Impulse => Some(Dimension::Impulse),
+        Parameter::AngularFrequency => Some(Dimension::AngularFrequency),
+        _ => None,
     }
 }
 

@@ -10,7 +10,7 @@ use super::reader::{Choice, count, number, one_or_more, scalar, word};
 use super::yaml::{Node, Value};
 
 /// Most points of a curve.
-const MOST_POINTS: u32 = 20_000;
+pub(super) const MOST_POINTS: u32 = 20_000;
 
 /// Whether a range is refined.
 pub(super) fn is_refined(node: &Node) -> bool {

@@ -11,7 +11,7 @@ use super::reader::{Choice, above_zero, count, list, ratio, scalar, unknown};
 use super::yaml::{Node, Value};
 
 /// Most modes that are read at all; how many a structure carries is its own affair.
-const MOST_MODES: u32 = 100_000;
+pub(super) const MOST_MODES: u32 = 100_000;
 /// Stands where the file says `swept`.
 const PLACEHOLDER: f64 = 1.0;
 

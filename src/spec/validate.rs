@@ -27,7 +27,7 @@ use super::word::{from_word, words};
 use super::yaml::{Node, Value, read_tree};
 
 /// Most forcing cycles of a run.
-const MOST_CYCLES: u32 = 10_000_000;
+pub(super) const MOST_CYCLES: u32 = 10_000_000;
 /// Most samples of a time history.
 const MOST_SAMPLES: u64 = 1_000_000;
 

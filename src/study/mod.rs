@@ -5,6 +5,7 @@
 
 mod evaluate;
 mod event;
+mod extent;
 mod job;
 mod journal;
 mod layout;
@@ -13,6 +14,7 @@ mod maximise;
 mod mean;
 mod meaning;
 mod optimise;
+mod orphan;
 mod plan;
 mod progress;
 mod reason;
@@ -28,9 +30,11 @@ mod work;
 
 pub use evaluate::{Array, Engine, Evaluate, Simulation};
 pub use event::{Event, Listen, Silence};
+pub use extent::Extent;
 pub use layout::{ASSUMPTIONS, Layout, Texts, journal_name, record_name, table_name};
 pub use load::{Loaded, Refused, Source};
 pub use meaning::{Change, canonical, changes, fingerprint};
+pub use orphan::orphans;
 pub use plan::{Item, State};
 pub use progress::Progress;
 pub use reason::{Reason, differences};

@@ -68,6 +68,22 @@ pub fn differences(old: &Value, new: &Value, file_of: &dyn Fn(&[&str]) -> String
     reasons
 }
 
+impl Reason {
+    /// As [`fmt::Display`] has it, with the line that `line_of` finds for the file and the path of what changed.
+    #[must_use]
+    pub fn told(&self, line_of: impl Fn(&str, &[String]) -> Option<usize>) -> String {
+        let line = match self {
+            Self::Changed { file, change } => line_of(file, &change.path).map(|line| (file, line)),
+            _ => None,
+        };
+        let text = self.to_string();
+        match line.and_then(|(file, line)| Some((file, line, text.strip_prefix(file.as_str())?))) {
+            Some((file, line, rest)) => format!("{file}:{line}{rest}"),
+            None => text,
+        }
+    }
+}
+
 impl fmt::Display for Reason {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {

@@ -6,33 +6,8 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 
 use assert_cmd::cargo::CommandCargoExt;
-use shotdamp::study::Silence;
 
-use crate::desk::{ASSUMPTIONS, Desk, GAP, GAP_REFERENCE, MadeUp, STOP, STOP_REFERENCE};
-
-/// What a command left: exit code, standard output, standard error.
-struct Said {
-    code: i32,
-    out: String,
-    err: String,
-}
-
-fn shotdamp(desk: &Desk, arguments: &[&str]) -> Said {
-    let mut command = Command::cargo_bin("shotdamp").unwrap();
-    let output = command.arg("--root").arg(desk.folder.path()).args(arguments).output().unwrap();
-    Said {
-        code: output.status.code().unwrap(),
-        out: String::from_utf8(output.stdout).unwrap(),
-        err: String::from_utf8(output.stderr).unwrap(),
-    }
-}
-
-/// A study whose tables are there, made up.
-fn simulated() -> Desk {
-    let desk = Desk::new();
-    desk.run(2, &MadeUp::default(), &Silence);
-    desk
-}
+use crate::desk::{ASSUMPTIONS, Desk, GAP, GAP_REFERENCE, STOP, STOP_REFERENCE, shotdamp, simulated};
 
 /// Every file below the folder with its bytes.
 fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
@@ -143,7 +118,8 @@ fn status_names_the_input_that_changed() {
         status.out,
         "ch3-gap   up to date\n\
          ch3-stop  stale\n    \
-             experiments/assumptions.yaml: stop_length: 0.06 -> 0.055\n\
+             experiments/assumptions.yaml:9: stop_length: 0.06 -> 0.055\n    \
+             touches 15 of 30 rows\n\
          2 experiments: 1 to simulate, 0 reports to renew\n"
     );
     assert_eq!((status.code, shotdamp(&desk, &["status", "--exit-code"]).code), (0, 1));

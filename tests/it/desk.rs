@@ -2,14 +2,16 @@
 
 use std::collections::BTreeMap;
 use std::fs;
+use std::process::Command;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
+use assert_cmd::cargo::CommandCargoExt;
 use shotdamp::dynamics::Proof;
 use shotdamp::measure::{Evaluated, Measured, TraceColumn};
 use shotdamp::publish::Opened;
 use shotdamp::scene::Excitation;
 use shotdamp::spec::SolverChoice;
-use shotdamp::study::{self, Evaluate, Item, Layout, Listen, Reason, Simulation, Task, Texts};
+use shotdamp::study::{self, Evaluate, Item, Layout, Listen, Reason, Silence, Simulation, Task, Texts};
 use shotdamp::table::{Table, parquet};
 
 pub const ASSUMPTIONS: &str = "
@@ -141,6 +143,40 @@ impl Desk {
     pub fn why(&self, id: &str) -> Vec<String> {
         self.plan()[id].reasons().iter().map(Reason::to_string).collect()
     }
+}
+
+/// A study whose tables are there, made up.
+pub fn simulated() -> Desk {
+    let desk = Desk::new();
+    desk.run(2, &MadeUp::default(), &Silence);
+    desk
+}
+
+/// What a command left: exit code, standard output, standard error.
+pub struct Said {
+    pub code: i32,
+    pub out: String,
+    pub err: String,
+}
+
+/// The command with these arguments, in the study.
+pub fn command(desk: &Desk, arguments: &[&str]) -> Command {
+    let mut command = Command::cargo_bin("shotdamp").unwrap();
+    command.arg("--root").arg(desk.folder.path()).args(arguments).env_remove("GITHUB_STEP_SUMMARY");
+    command
+}
+
+pub fn said(mut command: Command) -> Said {
+    let output = command.output().unwrap();
+    Said {
+        code: output.status.code().unwrap(),
+        out: String::from_utf8(output.stdout).unwrap(),
+        err: String::from_utf8(output.stderr).unwrap(),
+    }
+}
+
+pub fn shotdamp(desk: &Desk, arguments: &[&str]) -> Said {
+    said(command(desk, arguments))
 }
 
 /// Stands in for the engine: smooth made-up numbers of the resolved scene, with a maximum over the strength of the forcing.

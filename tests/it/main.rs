@@ -6,8 +6,11 @@
 )]
 #![expect(clippy::excessive_precision, reason = "published numbers stand as published")]
 
+mod check;
 mod cli;
+mod daily;
 mod desk;
+mod diff;
 mod engine;
 mod figure;
 mod figure_map;
@@ -19,6 +22,7 @@ mod reference;
 mod reference_kinds;
 mod refined;
 mod report;
+mod schema;
 mod solver_version;
 mod spec;
 mod spec_map;

@@ -1,0 +1,95 @@
+//! `shotdamp diff`.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use super::args::DiffArgs;
+use super::error::CliError;
+use super::exit::Exit;
+use super::output::print;
+use super::select::open;
+use crate::publish::{VERDICTS, judge_tables};
+use crate::report::{self, Detail, Movement, Standing};
+use crate::study::Layout;
+use crate::table::{Table, parquet};
+
+/// One of the two.
+enum Side {
+    Tables(BTreeMap<String, Table>),
+    Verdicts(Vec<Standing>),
+}
+
+/// Tells what moved between two runs.
+pub(super) fn diff(layout: &Layout, args: &DiffArgs) -> Result<Exit, CliError> {
+    let a = args.a.clone().unwrap_or_else(|| layout.path(VERDICTS));
+    let b = args.b.clone().unwrap_or_else(|| layout.results());
+    let (movements, whole) = match (Side::read(&a)?, Side::read(&b)?) {
+        (Side::Tables(a), Side::Tables(b)) => of_tables(&a, &b),
+        (a, b) => {
+            let movement = report::between_verdicts(&a.verdicts(layout)?, &b.verdicts(layout)?);
+            (vec![("verdicts".to_owned(), movement)], Vec::new())
+        }
+    };
+    let detail = if args.all { Detail::All } else { Detail::Farthest };
+    print(&report::diff(&movements, &whole, detail))?;
+    let beyond = !whole.is_empty() || movements.iter().any(|(_, movement)| movement.is_beyond());
+    Ok(if beyond { Exit::Unexpected } else { Exit::AsExpected })
+}
+
+/// Experiment by experiment, and those that only one of them has.
+fn of_tables(a: &BTreeMap<String, Table>, b: &BTreeMap<String, Table>) -> (Vec<(String, Movement)>, Vec<String>) {
+    let mut movements = Vec::new();
+    let mut whole = Vec::new();
+    for id in a.keys().chain(b.keys()).collect::<BTreeSet<_>>() {
+        match (a.get(id), b.get(id)) {
+            (Some(a), Some(b)) => movements.push((id.clone(), report::between_tables(a, b))),
+            (Some(_), None) => whole.push(format!("{id}: only in the first")),
+            _ => whole.push(format!("{id}: only in the second")),
+        }
+    }
+    (movements, whole)
+}
+
+impl Side {
+    fn read(path: &Path) -> Result<Self, CliError> {
+        let unreadable = |path: &Path, problem: String| CliError::Unreadable { path: path.to_path_buf(), problem };
+        let verdicts = if path.is_dir() { path.join("verdicts.json") } else { path.to_path_buf() };
+        if verdicts.is_file() {
+            let text = fs::read_to_string(&verdicts).map_err(|error| unreadable(&verdicts, error.to_string()))?;
+            return report::read_json(&text).map(Self::Verdicts).map_err(|error| unreadable(&verdicts, error));
+        }
+        let files = tables_in(path).map_err(|error| unreadable(path, error.to_string()))?;
+        if files.is_empty() {
+            return Err(CliError::NoResults(path.to_path_buf()));
+        }
+        let read = |(id, file): (String, PathBuf)| {
+            let table = parquet::read(&file).map_err(|error| unreadable(&file, error.to_string()))?;
+            Ok((id, table))
+        };
+        files.into_iter().map(read).collect::<Result<_, CliError>>().map(Self::Tables)
+    }
+
+    /// Judged by the reference of this study, if it has not been.
+    fn verdicts(self, layout: &Layout) -> Result<Vec<Standing>, CliError> {
+        Ok(match self {
+            Self::Verdicts(verdicts) => verdicts,
+            Self::Tables(tables) => judge_tables(&open(layout)?, &tables).iter().map(report::standing).collect(),
+        })
+    }
+}
+
+/// The tables in a folder, or in its `results/`, by experiment.
+fn tables_in(folder: &Path) -> std::io::Result<BTreeMap<String, PathBuf>> {
+    let results = folder.join("results");
+    let folder = if results.is_dir() { &results } else { folder };
+    let mut found = BTreeMap::new();
+    for entry in fs::read_dir(folder)? {
+        let path = entry?.path();
+        let stem = path.file_stem().and_then(|stem| stem.to_str());
+        if let (Some(stem), Some("parquet")) = (stem, path.extension().and_then(|extension| extension.to_str())) {
+            found.insert(stem.to_owned(), path.clone());
+        }
+    }
+    Ok(found)
+}

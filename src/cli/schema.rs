@@ -1,0 +1,57 @@
+//! `shotdamp schema`.
+
+use super::args::{SchemaArgs, SchemaOf};
+use super::error::CliError;
+use super::exit::Exit;
+use super::output::{print, print_document};
+use crate::atomic::{self, FileError};
+use crate::reference::reference_schema;
+use crate::spec::{assumptions_schema, experiment_schema};
+use crate::study::Layout;
+
+impl SchemaOf {
+    pub const ALL: [Self; 3] = [Self::Experiment, Self::Assumptions, Self::Reference];
+
+    /// Where it stands within the study.
+    pub fn file(self) -> &'static str {
+        match self {
+            Self::Experiment => "schema/experiment.json",
+            Self::Assumptions => "schema/assumptions.json",
+            Self::Reference => "schema/reference.json",
+        }
+    }
+
+    fn text(self) -> String {
+        let schema = match self {
+            Self::Experiment => experiment_schema(),
+            Self::Assumptions => assumptions_schema(),
+            Self::Reference => reference_schema(),
+        };
+        format!("{schema:#}\n")
+    }
+}
+
+/// Prints one schema; needs no study.
+pub(super) fn print_one(of: SchemaOf) -> Result<Exit, CliError> {
+    print_document(&of.text())?;
+    Ok(Exit::AsExpected)
+}
+
+/// Writes all of them.
+pub(super) fn schema(layout: &Layout, args: &SchemaArgs) -> Result<Exit, CliError> {
+    if let Some(of) = args.of {
+        return print_one(of);
+    }
+    write_all(layout)?;
+    let told: Vec<String> = SchemaOf::ALL.iter().map(|of| format!("{}\n", of.file())).collect();
+    print(&told.concat())?;
+    Ok(Exit::AsExpected)
+}
+
+/// Writes those that are not what they should be.
+pub(super) fn write_all(layout: &Layout) -> Result<(), FileError> {
+    for of in SchemaOf::ALL {
+        atomic::write_if_changed(&layout.path(of.file()), of.text().as_bytes())?;
+    }
+    Ok(())
+}

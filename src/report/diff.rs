@@ -1,0 +1,71 @@
+//! Two runs side by side: which numbers moved, and whether by more than they are uncertain.
+
+use super::markdown::counted;
+use super::movement::{Moved, Movement};
+use crate::text::number::{quantity, significant};
+
+/// Told of each kind in each experiment; the rest is counted.
+const TOLD: usize = 5;
+
+/// How much is told.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Detail {
+    /// The farthest few of each experiment.
+    Farthest,
+    /// Everything.
+    All,
+}
+
+/// For the console: what moved in each experiment (or file), then a line that says it all. `whole` names experiments that only one of the two has, with what is the matter.
+#[must_use]
+pub fn diff(movements: &[(String, Movement)], whole: &[String], detail: Detail) -> String {
+    let told = if detail == Detail::All { usize::MAX } else { TOLD };
+    let mut text = String::new();
+    for (name, movement) in movements.iter().filter(|(_, movement)| !movement.is_none()) {
+        text += &format!("{name}\n");
+        let (beyond, within): (Vec<&Moved>, Vec<&Moved>) = movement.moved.iter().partition(|moved| moved.is_beyond());
+        text += &list("only in the first", &movement.gone, told, |name| name.clone());
+        text += &list("only in the second", &movement.new, told, |name| name.clone());
+        text += &list("told otherwise", &movement.told_otherwise, told, |(name, a, b)| format!("{name}: {a} -> {b}"));
+        text += &list("beyond their uncertainty", &beyond, told, |moved| line(moved));
+        text += &list("within their uncertainty", &within, told, |moved| line(moved));
+    }
+    text.extend(whole.iter().map(|line| format!("{line}\n")));
+    let count = |what: fn(&Movement) -> usize| movements.iter().map(|(_, movement)| what(movement)).sum::<usize>();
+    let beyond = count(|movement| movement.moved.iter().filter(|moved| moved.is_beyond()).count());
+    let moved = count(|movement| movement.moved.len());
+    let others = count(|movement| movement.gone.len() + movement.new.len() + movement.told_otherwise.len());
+    text += &format!(
+        "{}: {} the same to the bit, {} moved within their uncertainty, {beyond} beyond it; {} otherwise.\n",
+        counted(count(|movement| movement.same) + moved, "number", "numbers"),
+        count(|movement| movement.same),
+        moved - beyond,
+        counted(others + whole.len(), "difference", "differences"),
+    );
+    text
+}
+
+fn list<T>(heading: &str, all: &[T], told: usize, line: impl Fn(&T) -> String) -> String {
+    if all.is_empty() {
+        return String::new();
+    }
+    let mut text = format!("  {heading}: {}\n", all.len());
+    text.extend(all.iter().take(told).map(|one| format!("    {}\n", line(one))));
+    if all.len() > told {
+        text += &format!("    and {} more\n", all.len() - told);
+    }
+    text
+}
+
+fn line(moved: &Moved) -> String {
+    let Moved { name, unit, from, to, u } = moved;
+    let number = |x: f64| if x.is_nan() { "nothing".into() } else { quantity(x, unit, 6) };
+    let by = if (to - from).is_nan() {
+        String::new()
+    } else if *u > 0.0 {
+        format!(", by {} of its uncertainty {}", significant(moved.deviation(), 2), significant(*u, 2))
+    } else {
+        ", and no uncertainty is known".into()
+    };
+    format!("{name}: {} -> {}{by}", number(*from), number(*to))
+}

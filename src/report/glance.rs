@@ -1,0 +1,36 @@
+//! The whole study in one table: a row a chapter.
+
+use std::collections::BTreeMap;
+
+use super::chapter::title;
+use super::markdown::{Align, MarkdownTable};
+use super::tally::{Tally, VERDICTS, word};
+use super::view::ExperimentView;
+
+/// Experiments and entries by verdict, chapter by chapter and in all.
+pub(super) fn table(chapters: &BTreeMap<u32, Vec<&ExperimentView<'_>>>) -> String {
+    let mut header = vec![("Chapter", Align::Left), ("Experiments", Align::Right), ("Entries", Align::Right)];
+    header.extend(VERDICTS.map(|verdict| (word(verdict), Align::Right)));
+    let mut table = MarkdownTable::new(&header);
+    for (number, views) in chapters {
+        let title = title(*number);
+        table.row(row(format!("[{title}](#{})", anchor(&title)), views));
+    }
+    if chapters.len() > 1 {
+        let all: Vec<&ExperimentView<'_>> = chapters.values().flatten().copied().collect();
+        table.row(row("**All**".into(), &all));
+    }
+    table.finish()
+}
+
+fn row(name: String, views: &[&ExperimentView<'_>]) -> Vec<String> {
+    let tally = Tally::of(views.iter().flat_map(|view| view.judged));
+    let counts = tally.each().map(|(_, count)| if count == 0 { String::new() } else { count.to_string() });
+    [name, views.len().to_string(), tally.total().to_string()].into_iter().chain(counts).collect()
+}
+
+/// The name of a heading as a link knows it.
+fn anchor(heading: &str) -> String {
+    let kept = heading.chars().filter(|letter| letter.is_alphanumeric() || matches!(letter, ' ' | '-'));
+    kept.map(|letter| if letter == ' ' { '-' } else { letter.to_ascii_lowercase() }).collect()
+}

@@ -1,0 +1,150 @@
+//! Verdicts as JSON, for programs: the same facts as the console, none rounded.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+
+use super::finding::{self, CheckView};
+use crate::reference::{Comparison, Judged};
+
+/// Raised when a key changes its meaning.
+const FORMAT: u32 = 1;
+
+/// One document, indented, keys in a fixed order. A number that is not finite is `null`.
+#[must_use]
+pub fn json(view: &CheckView<'_>) -> String {
+    let document = Document {
+        format: FORMAT,
+        entries: view.entries.iter().map(|entry| Entry::of(entry.judged, entry.file)).collect(),
+        unusable: view.troubles.iter().map(|one| Unusable { file: &one.file, message: &one.message }).collect(),
+    };
+    // Plain data of strings and numbers: there is nothing that could not be written.
+    serde_json::to_string_pretty(&document).unwrap_or_default() + "\n"
+}
+
+#[derive(Serialize)]
+struct Document<'a> {
+    format: u32,
+    entries: Vec<Entry<'a>>,
+    unusable: Vec<Unusable<'a>>,
+}
+
+#[derive(Serialize)]
+struct Unusable<'a> {
+    file: &'a str,
+    message: &'a str,
+}
+
+#[derive(Serialize)]
+struct Entry<'a> {
+    #[serde(flatten)]
+    judged: &'a Judged,
+    as_expected: bool,
+    /// The numbers, each with E, u_val and |E|/u_val.
+    deviations: Vec<Deviation<'a>>,
+    file: &'a str,
+    rerun: String,
+}
+
+#[derive(Serialize)]
+struct Deviation<'a> {
+    name: &'a str,
+    error: f64,
+    u_val: f64,
+    in_u_val: f64,
+    tolerance: f64,
+}
+
+impl<'a> Entry<'a> {
+    fn of(judged: &'a Judged, file: &'a str) -> Self {
+        let deviation = |(name, comparison): (&'a str, &Comparison)| Deviation {
+            name,
+            error: comparison.error(),
+            u_val: comparison.u_val(),
+            in_u_val: comparison.deviation(),
+            tolerance: comparison.tolerance(),
+        };
+        Self {
+            judged,
+            as_expected: judged.as_expected(),
+            deviations: judged.comparisons().map(deviation).collect(),
+            file,
+            rerun: finding::rerun(judged),
+        }
+    }
+}
+
+/// How an entry stands in such a document.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Standing {
+    /// `ch3-favourable-impact/velocity-ratio`.
+    pub id: String,
+    /// The verdict's word.
+    pub verdict: String,
+    /// What came out, in words.
+    pub found: String,
+    /// Its numbers by the names of its parts.
+    pub numbers: BTreeMap<String, Number>,
+}
+
+/// A number that came out.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Number {
+    /// S.
+    pub value: f64,
+    /// u_num.
+    pub u: f64,
+}
+
+/// Reads such a document again.
+///
+/// # Errors
+/// In words what is wrong with it.
+pub fn read_json(text: &str) -> Result<Vec<Standing>, String> {
+    let document: Written = serde_json::from_str(text).map_err(|error| error.to_string())?;
+    if document.format != FORMAT {
+        return Err(format!("it has the format {} instead of {FORMAT}", document.format));
+    }
+    Ok(document.entries.into_iter().map(WrittenEntry::standing).collect())
+}
+
+#[derive(Deserialize)]
+struct Written {
+    format: u32,
+    entries: Vec<WrittenEntry>,
+}
+
+#[derive(Deserialize)]
+struct WrittenEntry {
+    id: String,
+    verdict: String,
+    found: String,
+    comparison: Option<WrittenNumber>,
+    parts: Vec<WrittenPart>,
+}
+
+#[derive(Deserialize)]
+struct WrittenPart {
+    name: String,
+    comparison: Option<WrittenNumber>,
+}
+
+/// `null` is what JSON has for a number that is none.
+#[derive(Deserialize)]
+struct WrittenNumber {
+    simulated: Option<f64>,
+    u_num: Option<f64>,
+}
+
+impl WrittenEntry {
+    fn standing(self) -> Standing {
+        let number = |written: &WrittenNumber| Number {
+            value: written.simulated.unwrap_or(f64::NAN),
+            u: written.u_num.unwrap_or(f64::NAN),
+        };
+        let own = self.comparison.iter().map(|written| (String::new(), number(written)));
+        let parts = self.parts.iter().filter_map(|part| Some((part.name.clone(), number(part.comparison.as_ref()?))));
+        let numbers = own.chain(parts).collect();
+        Standing { id: self.id, verdict: self.verdict, found: self.found, numbers }
+    }
+}

@@ -1,0 +1,42 @@
+//! Results of experiments that are gone.
+
+use std::collections::BTreeSet;
+use std::fs;
+
+use super::layout::{ASSUMPTIONS, Layout, Texts};
+use super::record::Record;
+use crate::spec::ExperimentId;
+
+/// What an experiment leaves in `results/`.
+const ENDINGS: [&str; 3] = ["parquet", "json", "journal"];
+
+/// Tables, records and journals of experiments that no file has the name of, and the figures and pages that their records
+/// tell of; by their names within the study. A file that cannot be understood still counts as an experiment: what it meant may
+/// come back.
+#[must_use]
+pub fn orphans(layout: &Layout, texts: &Texts) -> BTreeSet<String> {
+    let names = texts.files.keys().filter(|file| file.starts_with("experiments/") && *file != ASSUMPTIONS);
+    let known: BTreeSet<&str> = names.map(|file| stem(file)).collect();
+    let mut found = BTreeSet::new();
+    let Ok(entries) = fs::read_dir(layout.results()) else { return found };
+    for entry in entries.flatten() {
+        let Ok(name) = entry.file_name().into_string() else { continue };
+        let ours = name.rsplit_once('.').is_some_and(|(_, ending)| ENDINGS.contains(&ending));
+        // Whatever else lies there has no experiment's name, the snapshot least of all.
+        let Ok(id) = stem(&name).parse::<ExperimentId>() else { continue };
+        if !ours || known.contains(id.0.as_str()) || name == "snapshot.json" {
+            continue;
+        }
+        found.insert(format!("results/{name}"));
+        if let Ok(record) = Record::read(&entry.path(), &id) {
+            let files = record.publication.into_iter().flat_map(|publication| publication.files.into_keys());
+            found.extend(files.filter(|file| file.starts_with("reports/") && layout.path(file).is_file()));
+        }
+    }
+    found
+}
+
+fn stem(name: &str) -> &str {
+    let name = name.rsplit('/').next().unwrap_or(name);
+    name.rsplit_once('.').map_or(name, |(stem, _)| stem)
+}

@@ -1,0 +1,196 @@
+//! The command from day to day: a new experiment, completions, help, colours, quiet.
+
+use std::fs;
+
+use crate::desk::{Desk, STOP, command, said, shotdamp, simulated};
+
+#[test]
+fn a_new_experiment_runs_as_it_is() {
+    let desk = Desk::new();
+    let new = shotdamp(&desk, &["new", "ch3-my-idea"]);
+    assert_eq!(
+        (new.code, new.out.as_str()),
+        (0, "experiments/ch3/ch3-my-idea.yaml\nNext: shotdamp show ch3-my-idea; shotdamp run ch3-my-idea\n"),
+        "{}",
+        new.err
+    );
+    let text = fs::read_to_string(desk.layout.path("experiments/ch3/ch3-my-idea.yaml")).unwrap();
+    let line = text.lines().next().unwrap();
+    let schema = line.strip_prefix("# yaml-language-server: $schema=").unwrap();
+    assert!(desk.layout.path("experiments/ch3").join(schema).is_file(), "the schema line leads to the schema");
+    let shown = shotdamp(&desk, &["show", "ch3-my-idea"]);
+    assert!(shown.code == 0 && shown.out.contains("31 cases"), "{}{}", shown.out, shown.err);
+
+    assert_eq!(shotdamp(&desk, &["new", "ch3-my-idea"]).code, 2, "it would overwrite");
+    assert_eq!(shotdamp(&desk, &["new", "ch3-gap", "--chapter", "4"]).code, 2, "an id is taken once");
+    assert_eq!(shotdamp(&desk, &["new", "My idea"]).code, 2);
+    let typo = shotdamp(&desk, &["new", "ch4-x", "--structure", "beam"]);
+    assert!(typo.code == 2 && typo.err.contains("cantilever_beam"), "{}", typo.err);
+    assert_eq!(fs::read_to_string(desk.layout.path("experiments/ch3/ch3-my-idea.yaml")).unwrap(), text);
+}
+
+#[test]
+fn help_has_examples_for_every_command() {
+    let desk = Desk::new();
+    let help = shotdamp(&desk, &["--help"]).out;
+    let commands = help.split("Commands:\n").nth(1).unwrap().split("\n\n").next().unwrap();
+    let names = commands.lines().filter(|line| line.starts_with("  ") && !line.starts_with("   "));
+    let names: Vec<&str> = names.filter_map(|line| line.split_whitespace().next()).filter(|n| *n != "help").collect();
+    assert!(names.len() >= 9, "{commands}");
+    for name in names {
+        let help = shotdamp(&desk, &[name, "--help"]);
+        assert!(help.code == 0 && help.out.contains(&format!("\n  shotdamp {name}")), "{name}:\n{}", help.out);
+    }
+}
+
+#[test]
+fn shells_complete_commands_and_options() {
+    let desk = Desk::new();
+    for shell in ["bash", "zsh", "fish", "elvish", "powershell"] {
+        let script = shotdamp(&desk, &["completions", shell]);
+        assert_eq!(script.code, 0);
+        for word in ["status", "junit", "self-test"] {
+            assert!(script.out.contains(word), "{shell}: {word}");
+        }
+    }
+}
+
+#[test]
+fn quiet_leaves_the_errors() {
+    let desk = simulated();
+    for arguments in [&["run", "-q"][..], &["--quiet"], &["check", "--quiet"], &["status", "--quiet"]] {
+        let quiet = shotdamp(&desk, arguments);
+        assert_eq!((quiet.code, quiet.out.as_str(), quiet.err.as_str()), (0, "", ""), "{arguments:?}");
+    }
+    desk.put("experiments/ch3/ch3-bad.yaml", &STOP.replace("gap_ratio: 50", "gap: 5 s"));
+    let quiet = shotdamp(&desk, &["--quiet"]);
+    assert_eq!((quiet.code, quiet.out.as_str()), (2, ""));
+    assert!(quiet.err.contains("ch3-bad.yaml:9:"), "{}", quiet.err);
+    assert!(shotdamp(&desk, &["check", "--quiet", "--json"]).out.starts_with('{'), "a document is what was asked for");
+}
+
+#[test]
+fn colours_are_for_terminals_and_for_who_asks() {
+    let desk = Desk::new();
+    desk.put("experiments/ch3/ch3-bad.yaml", &STOP.replace("gap_ratio: 50", "gap: 5 s"));
+    let err = |arguments: &[&str], variables: &[(&str, &str)]| {
+        let mut command = command(&desk, arguments);
+        command.env_remove("NO_COLOR").env_remove("CLICOLOR_FORCE").envs(variables.iter().copied());
+        said(command).err
+    };
+    assert!(!err(&["status"], &[]).contains('\u{1b}'), "not a terminal");
+    assert!(err(&["status", "--color", "always"], &[]).contains("\u{1b}["));
+    assert!(err(&["status", "--color", "always"], &[("NO_COLOR", "1")]).contains("\u{1b}["), "asked for by name");
+    assert!(!err(&["status", "--color", "never"], &[]).contains('\u{1b}'));
+    assert!(
+        err(&["status", "nothing", "--color", "always"], &[]).contains("\u{1b}[1;31merror:\u{1b}[0m no experiment")
+    );
+    assert!(!err(&["run", "--color", "auto", "ch3-gap"], &[]).contains('\u{1b}'), "and no bars");
+}
+
+/// One mistake in every part of a file.
+const MISTAKEN: &str = "
+title: ''
+source: {chapter: x, section: '3', shown: Fig. 18}
+about: Many mistakes.
+scene:
+  structure: {single_mass: {mass: 1 m, stiffness: soft, damping_ratio: -1}}
+  dampers:
+    - mass_ratio: heavy
+      gap_ratio: 50
+      gap: 5 mm
+      floor: {resilient: {stiffness_ratio: x, damping: 1 N}}
+      ceiling: {rigid: {restitution: 2}}
+      stop: {length: 60, restitution: -1}
+      walls: {stiffness_ratio: 1, damping: 1}
+  excitation: {impulse_train: {force_ratio: big, frequency_ratio: 1, period: 1 s}}
+  gravitation: 9.81 m/s^2
+sweep: {force_ratio: [1, two, 4], stop: [with, perhaps], speed: [1], gap_ratio: {log: {from: 0, to: 1, points: 1}}}
+maximise: {velocity: {over: strength, in: [1, 2], refine: many}}
+run: {solver: [exact, {fixed_step: {time_step: 1}}], skip: some, average: 0, ensemble: all, speed: high}
+measure: [velocity_ratio, velocity]
+trace: {from: 3 cycles, to: x, samples_per_cycle: 1 m}
+shape: {of: something, points: 1}
+figure: {x: force_ratio, y: velocity_ratio, band: wide, guides: [{at: x}], peaks: {prominence: 2}, markers: maybe}
+";
+
+#[test]
+fn all_mistakes_of_a_file_are_told_at_once() {
+    let desk = Desk::new();
+    desk.put("experiments/ch3/ch3-bad.yaml", MISTAKEN);
+    let told = shotdamp(&desk, &["status"]).err;
+    let places: Vec<&str> = told.lines().filter(|line| line.contains("ch3-bad.yaml:")).collect();
+    for (line, mistakes) in [
+        (2, 1),
+        (3, 2),
+        (6, 3),
+        (8, 1),
+        (10, 1),
+        (11, 2),
+        (12, 1),
+        (13, 2),
+        (14, 1),
+        (15, 2),
+        (16, 1),
+        (17, 4),
+        (18, 3),
+        (19, 6),
+        (20, 1),
+        (21, 2),
+        (22, 3),
+        (23, 5),
+    ] {
+        let found = places.iter().filter(|place| place.contains(&format!("ch3-bad.yaml:{line}:"))).count();
+        assert_eq!(found, mistakes, "line {line}:\n{told}");
+    }
+}
+
+/// The files below a folder.
+fn names(desk: &Desk, folder: &str) -> Vec<String> {
+    let mut names: Vec<String> = fs::read_dir(desk.layout.path(folder))
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .filter(|name| !name.starts_with('.'))
+        .collect();
+    names.sort();
+    names
+}
+
+#[test]
+fn what_a_deleted_experiment_left_is_removed() {
+    let desk = simulated();
+    assert_eq!(shotdamp(&desk, &[]).code, 0);
+    let before = (names(&desk, "results"), names(&desk, "reports/ch3"));
+    assert_eq!(shotdamp(&desk, &["clean", "--orphans"]).out, "0 files removed\n");
+    fs::remove_file(desk.layout.path("experiments/ch3/ch3-gap.yaml")).unwrap();
+    fs::remove_file(desk.layout.path("reference/ch3/ch3-gap.yaml")).unwrap();
+    // One that cannot be read just now is not gone.
+    desk.put("experiments/ch3/ch3-stop.yaml", "title: half wri");
+    let dry = shotdamp(&desk, &["clean", "--orphans", "--dry-run"]);
+    assert_eq!(
+        dry.out,
+        "reports/ch3/ch3-gap.md\nreports/ch3/ch3-gap.png\nresults/ch3-gap.json\nresults/ch3-gap.parquet\n\
+         4 files would be removed\n"
+    );
+    assert_eq!((names(&desk, "results"), names(&desk, "reports/ch3")), before);
+    assert_eq!(shotdamp(&desk, &["clean", "--orphans"]).code, 0);
+    assert_eq!(names(&desk, "results"), ["ch3-stop.json", "ch3-stop.parquet", "snapshot.json"]);
+    assert_eq!(names(&desk, "reports/ch3"), ["ch3-stop.md", "ch3-stop.png"]);
+}
+
+#[test]
+fn status_points_at_the_line_that_changed_and_counts_the_rows() {
+    let desk = simulated();
+    for (right, wrong, told) in [
+        ("mass: 1 kg", "mass: 2 kg", "experiments/ch3/ch3-stop.yaml:6: scene.structure.single_mass.mass: 1.0 -> 2.0"),
+        ("gap_ratio: 50", "gap_ratio: 60", "experiments/ch3/ch3-stop.yaml:9: scene.dampers.0.gap.ratio: 50.0 -> 60.0"),
+        ("skip: 25", "skip: 30", "experiments/ch3/ch3-stop.yaml:14: settings.skip: 25 -> 30"),
+        ("force_ratio: [1, 2, 4]", "force_ratio: [1, 2, 8]", "experiments/ch3/ch3-stop.yaml:13: cases."),
+    ] {
+        desk.put("experiments/ch3/ch3-stop.yaml", &STOP.replace(right, wrong));
+        let status = shotdamp(&desk, &["status", "--why", "ch3-stop"]).out;
+        assert!(status.contains(&format!("    {told}")), "{told}\n{status}");
+        let touched = if right.starts_with("force") { 10 } else { 30 };
+        assert!(status.contains(&format!("\n    touches {touched} of 30 rows\n")), "{status}");
+    }
+}

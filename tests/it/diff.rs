@@ -1,0 +1,99 @@
+//! `diff`: what moved between two runs, and whether by more than it is uncertain.
+
+use std::fs;
+
+use shotdamp::table::{Data, Table, parquet};
+
+use crate::desk::{Desk, shotdamp, simulated};
+
+/// A study with its results copied to `before/`.
+fn with_a_run_before() -> Desk {
+    let desk = simulated();
+    fs::create_dir(desk.layout.path("before")).unwrap();
+    for id in ["ch3-gap", "ch3-stop"] {
+        let name = format!("{id}.parquet");
+        fs::copy(desk.layout.results().join(&name), desk.layout.path("before").join(&name)).unwrap();
+    }
+    desk
+}
+
+fn change(desk: &Desk, id: &str, change: impl FnOnce(&mut Table)) {
+    let mut table = desk.table(id);
+    change(&mut table);
+    parquet::write(&table, &desk.layout.path(&format!("results/{id}.parquet"))).unwrap();
+}
+
+fn floats<'t>(table: &'t mut Table, name: &str) -> &'t mut Vec<f64> {
+    let column = table.columns.iter_mut().find(|column| column.name == name).unwrap();
+    let Data::Float(cells) = &mut column.data else { panic!("{name} is no column of numbers") };
+    cells
+}
+
+fn diff(desk: &Desk) -> crate::desk::Said {
+    let path = |name: &str| desk.layout.path(name).display().to_string();
+    shotdamp(desk, &["diff", &path("before"), &path("results")])
+}
+
+#[test]
+fn the_same_run_twice_differs_in_nothing() {
+    let told = diff(&with_a_run_before());
+    assert_eq!(told.code, 0, "{}", told.err);
+    assert_eq!(
+        told.out,
+        "39 numbers: 39 the same to the bit, 0 moved within their uncertainty, 0 beyond it; 0 differences otherwise.\n"
+    );
+}
+
+#[test]
+fn a_number_that_moved_is_held_against_its_uncertainty() {
+    let desk = with_a_run_before();
+    change(&desk, "ch3-gap", |table| {
+        floats(table, "velocity_ratio_num")[1] = 0.1;
+        floats(table, "velocity_ratio")[1] += 0.05;
+    });
+    let within = diff(&desk);
+    assert_eq!(within.code, 0, "{}", within.out);
+    assert!(within.out.contains("within their uncertainty: 1\n    velocity_ratio at gap_ratio 50, "), "{}", within.out);
+
+    change(&desk, "ch3-gap", |table| floats(table, "displacement_ratio")[2] += 0.05);
+    let beyond = diff(&desk);
+    assert_eq!(beyond.code, 1);
+    assert!(
+        beyond.out.contains("beyond their uncertainty: 1\n    displacement_ratio at gap_ratio ∞"),
+        "{}",
+        beyond.out
+    );
+
+    // A number that became none has moved, however uncertain it was.
+    change(&desk, "ch3-gap", |table| floats(table, "velocity_ratio")[1] = f64::NAN);
+    assert!(diff(&desk).out.contains("-> nothing"));
+}
+
+#[test]
+fn rows_and_experiments_that_only_one_has_are_named() {
+    let desk = with_a_run_before();
+    fs::remove_file(desk.layout.path("results/ch3-stop.parquet")).unwrap();
+    change(&desk, "ch3-gap", |table| floats(table, "gap_ratio")[0] = 12.0);
+    let told = diff(&desk);
+    assert_eq!(told.code, 1);
+    assert!(told.out.contains("only in the first: 1\n    gap_ratio 10, solver event_driven, variant baseline\n"));
+    assert!(told.out.contains("only in the second: 1\n    gap_ratio 12"), "{}", told.out);
+    assert!(told.out.contains("\nch3-stop: only in the first\n"), "{}", told.out);
+    let nothing = shotdamp(&desk, &["diff", &desk.layout.path("experiments").display().to_string()]);
+    assert_eq!(nothing.code, 2);
+    assert!(nothing.err.contains("neither tables"), "{}", nothing.err);
+}
+
+#[test]
+fn a_run_is_held_against_the_committed_report() {
+    let desk = simulated();
+    assert_eq!(shotdamp(&desk, &[]).code, 0);
+    let same = shotdamp(&desk, &["diff"]);
+    assert_eq!(same.code, 0, "{}{}", same.out, same.err);
+    change(&desk, "ch3-stop", |table| floats(table, "velocity_ratio").iter_mut().for_each(|value| *value += 1.0));
+    change(&desk, "ch3-gap", |table| floats(table, "velocity_ratio").reverse());
+    let told = shotdamp(&desk, &["diff"]);
+    assert_eq!(told.code, 1);
+    assert!(told.out.contains("told otherwise: 2\n    ch3-gap/grows: reproduced -> differs\n"), "{}", told.out);
+    assert!(told.out.contains("beyond their uncertainty: 1\n    ch3-stop/at-two: "), "{}", told.out);
+}
