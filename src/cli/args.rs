@@ -4,6 +4,8 @@ use std::path::PathBuf;
 
 use clap::{Parser, Subcommand};
 
+use crate::study::Shard;
+
 /// Reproduces a published study of particle impact dampers.
 ///
 /// Without a command: brings everything up to date (simulates only what is stale), renews figures and reports, and prints
@@ -26,6 +28,8 @@ pub(super) struct Args {
 pub(super) enum Command {
     /// Bring experiments up to date
     Run(RunArgs),
+    /// Join the tables of all shards, after checking that no row is missing or there twice; then as `run`
+    Gather(GatherArgs),
     /// List the experiments
     List,
     /// Show one experiment: its scene in words, the effects in force, the assumptions it uses, its cases
@@ -69,6 +73,30 @@ pub(super) struct RunArgs {
     /// Print errors only
     #[arg(long, short)]
     pub quiet: bool,
+    /// Only the third of eight parts of the work, into tables of its own; `gather` joins them
+    #[arg(long, value_name = "3/8", conflicts_with = "dry_run")]
+    pub shard: Option<Shard>,
+    /// Fail if another run is at work here, instead of waiting for it
+    #[arg(long)]
+    pub no_wait: bool,
+}
+
+#[derive(Debug, clap::Args)]
+pub(super) struct GatherArgs {
+    #[command(flatten)]
+    pub choice: Choice,
+    /// The number of shards; needed only if there are tables of several divisions
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    pub of: Option<u32>,
+    /// Gather also what is up to date
+    #[arg(long)]
+    pub force: bool,
+    /// Print errors only
+    #[arg(long, short)]
+    pub quiet: bool,
+    /// Fail if another run is at work here, instead of waiting for it
+    #[arg(long)]
+    pub no_wait: bool,
 }
 
 #[derive(Debug, clap::Args)]

@@ -4,10 +4,13 @@ mod args;
 mod check;
 mod error;
 mod exit;
+mod gather;
 mod list;
 mod output;
 mod select;
+mod shard;
 mod show;
+mod simulate;
 mod status;
 mod update;
 
@@ -38,7 +41,11 @@ fn dispatch(args: &Args) -> Result<Exit, CliError> {
     let layout = select::layout(args.root.as_deref())?;
     match &args.command {
         None => update::update(&layout, &args::RunArgs::default()),
-        Some(Command::Run(run)) => update::update(&layout, run),
+        Some(Command::Run(run)) => match run.shard {
+            Some(shard) => shard::run_shard(&layout, run, shard),
+            None => update::update(&layout, run),
+        },
+        Some(Command::Gather(args)) => gather::gather_all(&layout, args),
         Some(Command::List) => list::list(&layout),
         Some(Command::Show { id }) => show::show(&layout, id),
         Some(Command::Status(status)) => status::status(&layout, status),

@@ -1,23 +1,17 @@
 //! `shotdamp` and `shotdamp run`: simulate what is stale, then judge, draw and write.
 
-use std::collections::BTreeMap;
-use std::path::PathBuf;
-use std::sync::Mutex;
-
-use super::args::RunArgs;
+use super::args::{Choice, RunArgs};
 use super::error::CliError;
 use super::exit::Exit;
 use super::output::{complain, complain_of, print};
 use super::select::{Chosen, choose};
+use super::simulate::{How, held, simulate, tell_failures};
 use crate::publish::{Opened, judge_all, publish, summary};
-use crate::study::{
-    Engine, Item, Layout, Listen, Lock, Progress, Silence, Snapshot, State, Task, Texts, journal_name, run, save,
-};
+use crate::study::{Item, Layout, Lock, Snapshot, State, Texts, save};
 
 /// Brings the chosen experiments up to date.
 pub(super) fn update(layout: &Layout, args: &RunArgs) -> Result<Exit, CliError> {
-    let whole = args.choice.is_all();
-    if whole && !args.force {
+    if args.choice.is_all() && !args.force {
         // The short way: no lock, no YAML, no table, no thread.
         if let Some(snapshot) = Snapshot::current(layout, &Texts::read(layout)?) {
             if !args.quiet {
@@ -32,85 +26,63 @@ pub(super) fn update(layout: &Layout, args: &RunArgs) -> Result<Exit, CliError> 
     let threads = args.jobs.map_or(0, usize::from);
     // Figures are drawn on the shared pool; if somebody has started it already, it stays as it is.
     let _ = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
-    let _lock = Lock::take(layout, || complain("waiting for another run in this study\n"))?;
+    let _lock = Lock::of_study(layout, held(args.no_wait))?;
     let opened = Opened::new(layout.clone(), Texts::read(layout)?);
     let chosen = choose(&opened, &args.choice)?;
     complain_of(chosen.unread.iter().copied());
     let todo = todo(&chosen, args);
-    let unsaved = simulate(layout, &todo, threads, args.quiet)?;
-    let simulated = todo.len();
+    let how = How { threads, quiet: args.quiet, shard: None };
+    let problems = simulate(layout, &todo, how, |item, finished| save(layout, item, finished).map(|_| ()))?;
+    let done = Done { verb: "simulated", experiments: todo.len(), problems };
+    conclude(layout, opened.texts.clone(), &args.choice, args.quiet, done)
+}
 
-    // From the texts that were read in the beginning, and the results that are on disk now.
-    let texts = opened.texts.clone();
+/// What was done before the verdicts.
+pub(super) struct Done {
+    /// What, in a word.
+    pub verb: &'static str,
+    /// To how many experiments.
+    pub experiments: usize,
+    /// What went wrong, in words.
+    pub problems: Vec<String>,
+}
+
+/// Judges, draws, writes and tells; from the texts that were read in the beginning, and the results that are on disk now.
+pub(super) fn conclude(
+    layout: &Layout,
+    texts: Texts,
+    choice: &Choice,
+    quiet: bool,
+    done: Done,
+) -> Result<Exit, CliError> {
     let opened = Opened::new(layout.clone(), texts);
-    let chosen = choose(&opened, &args.choice)?;
+    let chosen = choose(&opened, choice)?;
     let judgement = judge_all(&opened);
-    let published = publish(&opened, &judgement, &chosen.ids)?;
-    let failed = tell_failures(&chosen);
-    for problem in unsaved.iter().chain(&published.problems) {
+    // First what went wrong: that nothing can be published may be for the same reason.
+    for problem in &done.problems {
         complain(&format!("error: {problem}\n"));
     }
-    let whole_work = unsaved.is_empty() && published.problems.is_empty() && !failed;
+    let failed = tell_failures(&chosen);
+    let published = publish(&opened, &judgement, &chosen.ids)?;
+    for problem in &published.problems {
+        complain(&format!("error: {problem}\n"));
+    }
+    let whole_work = done.problems.is_empty() && published.problems.is_empty() && !failed;
     let exit = chosen.exit(&judgement).max(if whole_work { Exit::AsExpected } else { Exit::CouldNot });
     let text = summary(&judgement, &chosen.ids);
-    if whole && whole_work && chosen.unread.is_empty() {
+    if choice.is_all() && whole_work && chosen.unread.is_empty() {
         Snapshot::take(layout, &opened.texts, published.outputs, &text, exit.code())?;
     }
-    if !args.quiet {
-        print(&format!("{}\n{text}", told(&chosen, simulated, published.written)))?;
+    if !quiet {
+        let (all, Done { verb, experiments, .. }) = (chosen.items.len(), done);
+        let written = published.written;
+        print(&format!("{all} experiments: {experiments} {verb}; {written} figures and reports written.\n{text}"))?;
     }
     Ok(exit)
 }
 
-/// What was done, in one line.
-fn told(chosen: &Chosen<'_>, simulated: usize, written: usize) -> String {
-    let experiments = chosen.items.len();
-    format!("{experiments} experiments: {simulated} simulated; {written} figures and reports written.")
-}
-
 fn todo<'a>(chosen: &Chosen<'a>, args: &RunArgs) -> Vec<&'a Item> {
     chosen.items.iter().copied().filter(|item| args.force || !matches!(item.state, State::Current(_))).collect()
-}
-
-/// Runs and saves; returns in words what could not be saved.
-fn simulate(layout: &Layout, items: &[&Item], threads: usize, quiet: bool) -> Result<Vec<String>, CliError> {
-    if items.is_empty() {
-        return Ok(Vec::new());
-    }
-    let provenance: Vec<BTreeMap<String, String>> = items.iter().map(|item| item.provenance()).collect();
-    let journals: Vec<PathBuf> =
-        items.iter().map(|item| layout.path(&journal_name(&item.source.experiment.id))).collect();
-    let tasks: Vec<Task<'_>> = items
-        .iter()
-        .zip(&provenance)
-        .zip(&journals)
-        .map(|((item, metadata), journal)| item.task(metadata, journal))
-        .collect();
-    let progress = Progress::new();
-    let listener: &dyn Listen = if quiet { &Silence } else { &progress };
-    let unsaved = Mutex::new(BTreeMap::new());
-    run(&tasks, threads, &Engine, listener, |index, finished| {
-        if let Err(error) = save(layout, items[index], &finished)
-            && let Ok(mut unsaved) = unsaved.lock()
-        {
-            unsaved.insert(index, format!("{}: {error}", items[index].source.experiment.id));
-        }
-    })?;
-    Ok(unsaved.into_inner().unwrap_or_default().into_values().collect())
-}
-
-/// True if rows of the chosen experiments have no numbers.
-fn tell_failures(chosen: &Chosen<'_>) -> bool {
-    let mut failed = false;
-    for item in &chosen.items {
-        if let State::Failed(record) = &item.state {
-            failed = true;
-            let failures = &record.failures;
-            let id = &item.source.experiment.id;
-            complain(&format!("error: {id}: {} rows failed; the first: {}\n", failures.rows, failures.first));
-        }
-    }
-    failed
 }
 
 fn dry_run(layout: &Layout, args: &RunArgs) -> Result<Exit, CliError> {

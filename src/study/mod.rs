@@ -5,6 +5,7 @@
 
 mod evaluate;
 mod event;
+mod gather;
 mod job;
 mod journal;
 mod layout;
@@ -19,6 +20,7 @@ mod reason;
 mod record;
 mod refine;
 mod run;
+mod shard;
 mod snapshot;
 mod store;
 mod tabulate;
@@ -28,6 +30,7 @@ mod work;
 
 pub use evaluate::{Array, Engine, Evaluate, Simulation};
 pub use event::{Event, Listen, Silence};
+pub use gather::{GatherError, gather};
 pub use layout::{ASSUMPTIONS, Layout, Texts, journal_name, record_name, table_name};
 pub use load::{Loaded, Refused, Source};
 pub use meaning::{Change, canonical, changes, fingerprint};
@@ -36,6 +39,7 @@ pub use progress::Progress;
 pub use reason::{Reason, differences};
 pub use record::{Failures, FileHash, NoRecord, PRESENTATION_VERSION, Publication, RECORD_FORMAT, Record};
 pub use run::{Finished, Task, ThreadError, run};
+pub use shard::{Shard, ShardError};
 pub use snapshot::Snapshot;
-pub use store::{Lock, save};
+pub use store::{Held, Lock, LockError, save};
 pub use variant::{Sensitivity, Variant, variants};

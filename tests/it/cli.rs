@@ -11,13 +11,13 @@ use shotdamp::study::Silence;
 use crate::desk::{ASSUMPTIONS, Desk, GAP, GAP_REFERENCE, MadeUp, STOP, STOP_REFERENCE};
 
 /// What a command left: exit code, standard output, standard error.
-struct Said {
-    code: i32,
-    out: String,
-    err: String,
+pub struct Said {
+    pub code: i32,
+    pub out: String,
+    pub err: String,
 }
 
-fn shotdamp(desk: &Desk, arguments: &[&str]) -> Said {
+pub fn shotdamp(desk: &Desk, arguments: &[&str]) -> Said {
     let mut command = Command::cargo_bin("shotdamp").unwrap();
     let output = command.arg("--root").arg(desk.folder.path()).args(arguments).output().unwrap();
     Said {
@@ -35,7 +35,7 @@ fn simulated() -> Desk {
 }
 
 /// Every file below the folder with its bytes.
-fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
+pub fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     let mut found = BTreeMap::new();
     for entry in fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();

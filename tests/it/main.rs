@@ -19,6 +19,7 @@ mod reference;
 mod reference_kinds;
 mod refined;
 mod report;
+mod shard;
 mod solver_version;
 mod spec;
 mod spec_map;
