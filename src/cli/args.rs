@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Parser, Subcommand};
 
+use crate::publish::RELEASED;
 use crate::study::Shard;
 
 /// Reproduces a published study of particle impact dampers.
@@ -30,6 +31,8 @@ pub(super) enum Command {
     Run(RunArgs),
     /// Join the tables of all shards, after checking that no row is missing or there twice; then as `run`
     Gather(GatherArgs),
+    /// Hand the study on: experiments, reference, tables, figures and pages in one described folder
+    Export(ExportArgs),
     /// List the experiments
     List,
     /// Show one experiment: its scene in words, the effects in force, the assumptions it uses, its cases
@@ -97,6 +100,27 @@ pub(super) struct GatherArgs {
     /// Fail if another run is at work here, instead of waiting for it
     #[arg(long)]
     pub no_wait: bool,
+}
+
+#[derive(Debug, clap::Args)]
+pub(super) struct ExportArgs {
+    #[command(flatten)]
+    pub choice: Choice,
+    /// Write an RO-Crate into this folder, which must not exist yet
+    #[arg(long, value_name = "DIR")]
+    pub ro_crate: PathBuf,
+    /// When it is published, for its description; by default when this version of the program was
+    #[arg(long, value_name = "YYYY-MM-DD", value_parser = date, default_value = RELEASED)]
+    pub published: String,
+}
+
+fn date(text: &str) -> Result<String, String> {
+    let parts: Vec<Option<u32>> = text.split('-').map(|part| part.parse().ok()).collect();
+    let lengths = text.split('-').map(str::len);
+    match parts.as_slice() {
+        [Some(_), Some(1..=12), Some(1..=31)] if lengths.eq([4, 2, 2]) => Ok(text.into()),
+        _ => Err("a date is written 2026-11-21".into()),
+    }
 }
 
 #[derive(Debug, clap::Args)]

@@ -4,6 +4,7 @@ use std::io;
 use std::path::PathBuf;
 
 use crate::atomic::FileError;
+use crate::publish::CrateError;
 use crate::study::{LockError, ThreadError};
 
 #[derive(Debug, thiserror::Error)]
@@ -26,6 +27,8 @@ pub(super) enum CliError {
     NoShards,
     #[error("there are tables of {} shards; say which with --of", .0.iter().map(u32::to_string).collect::<Vec<_>>().join(" and of "))]
     Divisions(Vec<u32>),
+    #[error(transparent)]
+    Crate(#[from] CrateError),
     #[error(transparent)]
     Threads(#[from] ThreadError),
     #[error("{0}")]

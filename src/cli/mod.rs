@@ -4,6 +4,7 @@ mod args;
 mod check;
 mod error;
 mod exit;
+mod export;
 mod gather;
 mod list;
 mod output;
@@ -45,6 +46,7 @@ fn dispatch(args: &Args) -> Result<Exit, CliError> {
             Some(shard) => shard::run_shard(&layout, run, shard),
             None => update::update(&layout, run),
         },
+        Some(Command::Export(args)) => export::export(&layout, args),
         Some(Command::Gather(args)) => gather::gather_all(&layout, args),
         Some(Command::List) => list::list(&layout),
         Some(Command::Show { id }) => show::show(&layout, id),

@@ -6,6 +6,7 @@ mod figures;
 mod opened;
 mod pages;
 mod publication;
+mod ro_crate;
 mod verdicts;
 mod views;
 
@@ -13,5 +14,6 @@ pub use figures::figure_name;
 pub use opened::{Opened, Unread};
 pub use pages::{Published, publish};
 pub use publication::publication_reasons;
+pub use ro_crate::{CrateError, RELEASED, export_crate};
 pub use verdicts::{Judgement, judge_all, self_test_all};
 pub use views::{scenes, summary};

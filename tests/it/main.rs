@@ -6,12 +6,15 @@
 )]
 #![expect(clippy::excessive_precision, reason = "published numbers stand as published")]
 
+mod clean;
 mod cli;
 mod desk;
 mod engine;
+mod faults;
 mod figure;
 mod figure_map;
 mod fixed;
+mod guide;
 mod made_up;
 mod optimise;
 mod optimised;

@@ -24,7 +24,7 @@ measure: [rms_velocity]
 figure: {x: frequency_ratio, y: rms_velocity, caption: A curve.}
 ";
 
-const OPTIMISED: &str = "
+pub const OPTIMISED: &str = "
 title: Gap of one damper
 source: {chapter: 6, section: '6.3.1'}
 about: A search.
