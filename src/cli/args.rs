@@ -4,6 +4,9 @@ use std::path::PathBuf;
 
 use clap::{Parser, Subcommand};
 
+use crate::publish::RELEASED;
+use crate::study::Shard;
+
 /// Reproduces a published study of particle impact dampers.
 ///
 /// Without a command: brings everything up to date (simulates only what is stale), renews figures and reports, and prints
@@ -51,6 +54,10 @@ pub(super) enum Colour {
 pub(super) enum Command {
     /// Bring experiments up to date
     Run(RunArgs),
+    /// Join the tables of all shards, after checking that no row is missing or there twice; then as `run`
+    Gather(GatherArgs),
+    /// Hand the study on: experiments, reference, tables, figures and pages in one described folder
+    Export(ExportArgs),
     /// List the experiments
     #[command(after_help = "\
 Examples:
@@ -122,6 +129,56 @@ pub(super) struct RunArgs {
     /// Go on after an experiment that fails; this is what happens anyway
     #[arg(long)]
     pub keep_going: bool,
+    /// Only the third of eight parts of the work, into tables of its own; `gather` joins them
+    #[arg(long, value_name = "3/8", conflicts_with = "dry_run")]
+    pub shard: Option<Shard>,
+    /// Fail if another run is at work here, instead of waiting for it
+    #[arg(long)]
+    pub no_wait: bool,
+}
+
+#[derive(Debug, clap::Args)]
+#[command(after_help = "\
+Examples:
+  shotdamp gather                             after the last shard
+  shotdamp gather --of 64                     if there are tables of several divisions")]
+pub(super) struct GatherArgs {
+    #[command(flatten)]
+    pub choice: Choice,
+    /// The number of shards; needed only if there are tables of several divisions
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    pub of: Option<u32>,
+    /// Gather also what is up to date
+    #[arg(long)]
+    pub force: bool,
+    /// Fail if another run is at work here, instead of waiting for it
+    #[arg(long)]
+    pub no_wait: bool,
+}
+
+#[derive(Debug, clap::Args)]
+#[command(after_help = "\
+Examples:
+  shotdamp export --ro-crate study-crate
+  shotdamp export --ro-crate chapter-3 --chapter 3")]
+pub(super) struct ExportArgs {
+    #[command(flatten)]
+    pub choice: Choice,
+    /// Write an RO-Crate into this folder, which must not exist yet
+    #[arg(long, value_name = "DIR")]
+    pub ro_crate: PathBuf,
+    /// When it is published, for its description; by default when this version of the program was
+    #[arg(long, value_name = "YYYY-MM-DD", value_parser = date, default_value = RELEASED)]
+    pub published: String,
+}
+
+fn date(text: &str) -> Result<String, String> {
+    let parts: Vec<Option<u32>> = text.split('-').map(|part| part.parse().ok()).collect();
+    let lengths = text.split('-').map(str::len);
+    match parts.as_slice() {
+        [Some(_), Some(1..=12), Some(1..=31)] if lengths.eq([4, 2, 2]) => Ok(text.into()),
+        _ => Err("a date is written 2026-11-21".into()),
+    }
 }
 
 #[derive(Debug, clap::Args)]

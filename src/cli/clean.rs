@@ -5,13 +5,14 @@ use std::fs;
 use super::args::CleanArgs;
 use super::error::CliError;
 use super::exit::Exit;
-use super::output::{complain, print};
+use super::output::print;
+use super::simulate::held;
 use crate::atomic::FileError;
 use crate::study::{Layout, Lock, Texts, orphans};
 
 /// Removes what experiments that are gone have left.
 pub(super) fn clean(layout: &Layout, args: &CleanArgs) -> Result<Exit, CliError> {
-    let _lock = Lock::take(layout, || complain("waiting for another run in this study\n"))?;
+    let _lock = Lock::of_study(layout, held(false))?;
     let orphans = orphans(layout, &Texts::read(layout)?);
     let mut text = String::new();
     for name in &orphans {

@@ -4,8 +4,9 @@ use std::io;
 use std::path::PathBuf;
 
 use crate::atomic::FileError;
+use crate::publish::CrateError;
 use crate::reference::AcceptError;
-use crate::study::ThreadError;
+use crate::study::{LockError, ThreadError};
 
 #[derive(Debug, thiserror::Error)]
 pub(super) enum CliError {
@@ -35,6 +36,14 @@ pub(super) enum CliError {
     Accept(#[from] AcceptError),
     #[error(transparent)]
     File(#[from] FileError),
+    #[error(transparent)]
+    Lock(#[from] LockError),
+    #[error("there are no tables of shards; `shotdamp run --shard 1/8` makes those of the first of eight")]
+    NoShards,
+    #[error("there are tables of {} shards; say which with --of", .0.iter().map(u32::to_string).collect::<Vec<_>>().join(" and of "))]
+    Divisions(Vec<u32>),
+    #[error(transparent)]
+    Crate(#[from] CrateError),
     #[error(transparent)]
     Threads(#[from] ThreadError),
     #[error("{0}")]

@@ -6,12 +6,16 @@ mod clean;
 mod diff;
 mod error;
 mod exit;
+mod export;
+mod gather;
 mod list;
 mod new;
 mod output;
 mod schema;
 mod select;
+mod shard;
 mod show;
+mod simulate;
 mod status;
 mod update;
 
@@ -50,7 +54,15 @@ fn dispatch(args: &Args) -> Result<Exit, CliError> {
     let layout = select::layout(args.root.as_deref())?;
     match &args.command {
         None => update::update(&layout, &args::RunArgs::default(), args),
-        Some(Command::Run(run)) => update::update(&layout, run, args),
+        Some(Command::Run(run)) => match run.shard {
+            Some(shard) => shard::run_shard(&layout, run, shard, args),
+            None => update::update(&layout, run, args),
+        },
+        Some(Command::Export(export)) => export::export(&layout, export),
+        Some(Command::Gather(gather)) => {
+            threads(args.jobs);
+            gather::gather_all(&layout, gather)
+        }
         Some(Command::List) => list::list(&layout),
         Some(Command::Show { id }) => show::show(&layout, id),
         Some(Command::Status(status)) => status::status(&layout, status),

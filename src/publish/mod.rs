@@ -7,6 +7,7 @@ mod figures;
 mod opened;
 mod pages;
 mod publication;
+mod ro_crate;
 mod verdicts;
 mod views;
 
@@ -15,5 +16,6 @@ pub use figures::figure_name;
 pub use opened::{Opened, Unread};
 pub use pages::{Published, VERDICTS, publish};
 pub use publication::publication_reasons;
+pub use ro_crate::{CrateError, RELEASED, export_crate};
 pub use verdicts::{Judgement, judge_all, judge_tables, self_test_all};
 pub use views::{check_view, scenes, summary};

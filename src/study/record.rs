@@ -13,7 +13,7 @@ use crate::atomic::{self, FileError};
 use crate::spec::ExperimentId;
 
 /// Raised when a record changes its shape; older ones then count as absent.
-pub const RECORD_FORMAT: u32 = 1;
+pub const RECORD_FORMAT: u32 = 2;
 
 /// Raised when figures or reports of the same tables come out differently, so that they are made again.
 pub const PRESENTATION_VERSION: u32 = 2;

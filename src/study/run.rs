@@ -17,6 +17,7 @@ use super::job::{self, Job, cost};
 use super::optimise::run_optimisation;
 use super::record::Failures;
 use super::refine;
+use super::shard::Shard;
 use super::variant::Variant;
 use super::work::{Work, outcome};
 use crate::spec::{Case, Experiment, SolverChoice};
@@ -33,6 +34,8 @@ pub struct Task<'a> {
     pub metadata: &'a BTreeMap<String, String>,
     /// Where an optimisation keeps what it has evaluated, so that it can go on after an interruption; `None`: nowhere.
     pub journal: Option<&'a Path>,
+    /// The shard to which to keep; `None`: all of it. Of an experiment that is not divided the shard does all.
+    pub shard: Option<Shard>,
 }
 
 /// An experiment that has been run.
@@ -64,13 +67,14 @@ pub fn run<T: Send + Sync>(
     listener: &dyn Listen,
     take: impl Fn(usize, Finished) -> T + Sync,
 ) -> Result<Vec<T>, ThreadError> {
-    let simulations = tasks.iter().map(|task| job::simulations(task.experiment, task.variants)).sum();
-    listener.hear(&Event::Begun { experiments: tasks.len(), simulations });
     let (optimised, swept): (Vec<usize>, Vec<usize>) =
         (0..tasks.len()).partition(|&i| tasks[i].experiment.optimise.is_some());
     let (refined, plain): (Vec<usize>, Vec<usize>) =
         swept.into_iter().partition(|&i| !tasks[i].experiment.refined.is_empty());
     let work: Vec<(usize, Work<'_>)> = plain.into_iter().map(|index| (index, Work::new(tasks[index]))).collect();
+    let of_divided: u64 = work.iter().map(|(_, one)| one.simulations()).sum();
+    let of_others = optimised.iter().chain(&refined).map(|&i| job::simulations(tasks[i].experiment, tasks[i].variants));
+    listener.hear(&Event::Begun { experiments: tasks.len(), simulations: of_divided + of_others.sum::<u64>() });
     let taken: Vec<OnceLock<T>> = tasks.iter().map(|_| OnceLock::new()).collect();
     let hand_over = |index: usize, finished: Finished| {
         let (rows, failures) = (finished.table.rows(), finished.failures.clone());
@@ -84,11 +88,15 @@ pub fn run<T: Send + Sync>(
         rayon::scope_fifo(|scope| {
             // Their rounds wait for one another: they begin first.
             for index in optimised {
-                scope.spawn_fifo(move |_| hand_over(index, run_optimisation(tasks[index], evaluate, listener)));
+                scope.spawn_fifo(move |_| {
+                    let finished = run_optimisation(tasks[index], evaluate, listener);
+                    hand_over(index, undivided(tasks[index], finished));
+                });
             }
             for index in refined {
                 scope.spawn_fifo(move |_| {
-                    run_refined(tasks[index], evaluate, listener, |work| hand_over(index, work.finish()))
+                    let take = |work: &Work<'_>| hand_over(index, undivided(tasks[index], work.finish()));
+                    run_refined(tasks[index], evaluate, listener, take);
                 });
             }
             for (one, row) in order(work) {
@@ -113,6 +121,15 @@ pub fn run<T: Send + Sync>(
         .collect())
 }
 
+/// A shard's table of an experiment that it has as a whole.
+fn undivided(task: Task<'_>, mut finished: Finished) -> Finished {
+    if let Some(shard) = task.shard {
+        let places: Vec<usize> = (0..finished.table.rows()).collect();
+        shard.mark(&mut finished.table, &places);
+    }
+    finished
+}
+
 /// Runs an experiment whose curves get more points where they bend: first the curves, then all else at their points.
 fn run_refined(task: Task<'_>, evaluate: &impl Evaluate, listener: &dyn Listen, hand_over: impl Fn(&Work<'_>)) {
     let ear = Counting { listener, told: AtomicU64::new(0) };
@@ -123,7 +140,7 @@ fn run_refined(task: Task<'_>, evaluate: &impl Evaluate, listener: &dyn Listen, 
     let points = refine::points(task.experiment, &look);
     let cases = points.iter().map(|point| point.case.clone()).collect();
     let experiment = Experiment { cases, ..task.experiment.clone() };
-    let work = Work::new(Task { experiment: &experiment, ..task });
+    let work = Work::new(Task { experiment: &experiment, shard: None, ..task });
     let mut first_rows = vec![None; experiment.cases.len()];
     for (row, job) in work.jobs.iter().enumerate().filter(|(_, job)| job.variant == 0) {
         first_rows[job.case].get_or_insert(row);

@@ -8,6 +8,7 @@ use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};
 use std::path::Path;
+use std::time::SystemTime;
 
 use serde::{Deserialize, Serialize};
 
@@ -19,8 +20,8 @@ use crate::dynamics::SOLVER_VERSION;
 /// Name of the file within the study.
 const NAME: &str = "results/snapshot.json";
 /// Outputs of which the head and the tail say enough: a Parquet file ends with the seal over all its bytes and a PNG with the
-/// checksum over all its pixels, and a record only repeats what the inputs mean, which are looked at themselves. Reports
-/// are read whole.
+/// checksum over all its pixels, and a record only repeats what the inputs mean, which are looked at themselves. Whoever
+/// edits the middle leaves a later time. Reports are read whole.
 const HEAD_AND_TAIL: [&str; 3] = ["parquet", "png", "json"];
 /// How much of each.
 const LOOK: usize = 4 << 10;
@@ -60,6 +61,12 @@ struct Glance {
 }
 
 impl Glance {
+    /// True if the file is still what was seen, and nobody has written to it after `taken`.
+    fn holds(&self, path: &Path, taken: Option<SystemTime>) -> bool {
+        let later = || Some(std::fs::metadata(path).ok()?.modified().ok()? > taken?);
+        later() != Some(true) && Self::at(path).is_ok_and(|glance| glance == *self)
+    }
+
     fn at(path: &Path) -> std::io::Result<Self> {
         let mut file = File::open(path)?;
         let bytes = file.metadata()?.len();
@@ -80,10 +87,12 @@ impl Snapshot {
     /// The last complete run, if these texts and all its outputs are still what they were.
     #[must_use]
     pub fn current(layout: &Layout, texts: &Texts) -> Option<Self> {
-        let snapshot: Self = serde_json::from_slice(&std::fs::read(layout.path(NAME)).ok()?).ok()?;
+        let path = layout.path(NAME);
+        let snapshot: Self = serde_json::from_slice(&std::fs::read(&path).ok()?).ok()?;
+        let taken = std::fs::metadata(&path).and_then(|meta| meta.modified()).ok();
         let same = snapshot.versions == Versions::CURRENT
             && snapshot.inputs == texts.hashes()
-            && snapshot.outputs.iter().all(|(name, glance)| Glance::at(&layout.path(name)).is_ok_and(|g| g == *glance));
+            && snapshot.outputs.iter().all(|(name, glance)| glance.holds(&layout.path(name), taken));
         same.then_some(snapshot)
     }
 
@@ -111,6 +120,7 @@ impl Snapshot {
         let path = layout.path(NAME);
         let text = serde_json::to_string_pretty(&snapshot)
             .map_err(|error| FileError::new("write", &path, std::io::Error::other(error)))?;
-        atomic::write_if_changed(&path, text.as_bytes()).map(|_| ())
+        // Also where it says the same as before: its own time tells which outputs were written later.
+        atomic::write(&path, text.as_bytes())
     }
 }

@@ -1,12 +1,14 @@
 //! Results on disk: tables and records, and the lock that keeps two runs apart.
 
 use std::fs::{self, File, TryLockError};
+use std::io::Write;
 use std::path::Path;
 
 use super::layout::{Layout, journal_name, record_name, table_name};
 use super::plan::Item;
 use super::record::{FileHash, RECORD_FORMAT, Record};
 use super::run::Finished;
+use super::shard::Shard;
 use crate::atomic::{self, FileError};
 use crate::table::{ParquetError, parquet};
 
@@ -33,35 +35,95 @@ pub fn save(layout: &Layout, item: &Item, finished: &Finished) -> Result<Record,
     Ok(record)
 }
 
-/// Held while files of the study are written; other runs wait.
+/// Held while files are written; other runs wait. The system gives it back when the process ends, however it ends.
 #[derive(Debug)]
 pub struct Lock {
-    _file: File,
+    file: File,
+}
+
+/// What to do about a lock that another run holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Held {
+    /// Wait until it is free.
+    Wait,
+    /// Do without.
+    GiveUp,
+}
+
+/// Why there is no lock.
+#[derive(Debug, thiserror::Error)]
+pub enum LockError {
+    /// Another run holds it, and this one was not to wait.
+    #[error("another run is at work here: {holder}")]
+    Held {
+        /// Which, in words.
+        holder: String,
+    },
+    /// The folder cannot be made or locked.
+    #[error(transparent)]
+    File(#[from] FileError),
 }
 
 impl Lock {
-    /// Takes the lock; calls `waiting` first if another run holds it. Removes what killed runs left behind.
+    /// The lock of the study. Removes what killed runs left behind. If another run holds it, `held` hears which.
     ///
     /// # Errors
-    /// [`FileError`] if the folder cannot be made or locked.
-    pub fn take(layout: &Layout, waiting: impl FnOnce()) -> Result<Self, FileError> {
+    /// [`LockError`] if another run holds it and `held` gives up, or if the folder cannot be made or locked.
+    pub fn of_study(layout: &Layout, held: impl FnOnce(&str) -> Held) -> Result<Self, LockError> {
         let results = layout.results();
-        let path = results.join(".lock");
-        let fail = |source| FileError::new("lock", &path, source);
-        fs::create_dir_all(&results).map_err(fail)?;
-        let file = File::options().create(true).truncate(false).write(true).open(&path).map_err(fail)?;
+        let lock = Self::take(&results, held)?;
+        atomic::sweep(&results);
+        sweep_below(&layout.path("reports"), 4);
+        Ok(lock)
+    }
+
+    /// The lock of a shard's folder: shards do not keep each other from their work.
+    ///
+    /// # Errors
+    /// As [`Lock::of_study`].
+    pub fn of_shard(layout: &Layout, shard: Shard, held: impl FnOnce(&str) -> Held) -> Result<Self, LockError> {
+        let folder = layout.path(&shard.folder());
+        let lock = Self::take(&folder, held)?;
+        atomic::sweep(&folder);
+        Ok(lock)
+    }
+
+    fn take(folder: &Path, held: impl FnOnce(&str) -> Held) -> Result<Self, LockError> {
+        let path = folder.join(".lock");
+        let fail = |source| LockError::File(FileError::new("lock", &path, source));
+        fs::create_dir_all(folder).map_err(fail)?;
+        let mut file = File::options().create(true).truncate(false).read(true).write(true).open(&path).map_err(fail)?;
         match file.try_lock() {
             Ok(()) => {}
             Err(TryLockError::WouldBlock) => {
-                waiting();
+                // Whoever has only just taken it has not signed it yet.
+                let signed = fs::read_to_string(&path).ok().filter(|text| !text.is_empty());
+                let holder = signed.unwrap_or_else(|| "it has not told its number".into());
+                if held(&holder) == Held::GiveUp {
+                    return Err(LockError::Held { holder });
+                }
                 file.lock().map_err(fail)?;
             }
             Err(TryLockError::Error(source)) => return Err(fail(source)),
         }
-        atomic::sweep(&results);
-        sweep_below(&layout.path("reports"), 4);
-        Ok(Self { _file: file })
+        // It tells others who is at work, and decides nothing: on a full disk it stays empty.
+        let _ = file.set_len(0).and_then(|()| file.write_all(signature().as_bytes()));
+        Ok(Self { file })
     }
+}
+
+impl Drop for Lock {
+    fn drop(&mut self) {
+        let _ = self.file.set_len(0);
+    }
+}
+
+/// Who this is, for a person who waits.
+fn signature() -> String {
+    let arguments: Vec<String> = std::env::args_os().skip(1).map(|word| word.to_string_lossy().into_owned()).collect();
+    let host = fs::read_to_string("/proc/sys/kernel/hostname").unwrap_or_default();
+    let host = if host.trim().is_empty() { String::new() } else { format!(" on {}", host.trim()) };
+    format!("process {}{host}, `{}`", std::process::id(), ["shotdamp".to_owned(), arguments.join(" ")].join(" ").trim())
 }
 
 fn sweep_below(folder: &Path, depth: u32) {

@@ -99,7 +99,7 @@ fn swept_column(experiment: &Experiment, jobs: &[Job], parameter: Parameter) -> 
     Column::new(words::of_key(&parameter), data).with_unit(parameter.unit()).with_symbol(parameter.symbol())
 }
 
-/// The list columns: every name that some row has, in the order of the first row that has it; empty where a row has none.
+/// The list columns: every name that some row has samples of, in the order of the first that has; empty where a row has none.
 fn histories(jobs: &[Job], outcomes: &[&Outcome]) -> Vec<Column> {
     let of_row = |row: usize| -> &[TraceColumn] {
         let kept = jobs[row].variant == 0;
@@ -107,7 +107,7 @@ fn histories(jobs: &[Job], outcomes: &[&Outcome]) -> Vec<Column> {
     };
     let mut columns: Vec<Column> = Vec::new();
     for row in 0..outcomes.len() {
-        for history in of_row(row) {
+        for history in of_row(row).iter().filter(|history| !history.samples.is_empty()) {
             if columns.iter().all(|column| column.name != history.name) {
                 let cell = |row| {
                     let same = of_row(row).iter().find(|other| other.name == history.name);

@@ -9,6 +9,7 @@ use super::job::{Job, evaluations, jobs, keeps_trace, measures_need_trace};
 use super::maximise::maximum;
 use super::mean::Averaging;
 use super::run::{Finished, Task};
+use super::shard::{Shard, part};
 use super::tabulate::{self, Outcome, Row};
 use super::variant::Variant;
 use crate::measure::Rigour;
@@ -19,16 +20,28 @@ use crate::text::words;
 pub(super) struct Work<'a> {
     pub(super) task: Task<'a>,
     pub(super) jobs: Vec<Job>,
+    /// The shard, and the place of each of its rows in the whole table; `None` if this is the whole.
+    part: Option<(Shard, Vec<usize>)>,
     outcomes: Vec<OnceLock<Outcome>>,
     open: AtomicUsize,
 }
 
 impl<'a> Work<'a> {
     pub(super) fn new(task: Task<'a>) -> Self {
-        let jobs = jobs(task.experiment, task.variants);
+        let mut jobs = jobs(task.experiment, task.variants);
+        let part = task.shard.map(|shard| {
+            let (places, own) = part(shard, task.experiment, task.variants, &jobs);
+            jobs = own;
+            (shard, places)
+        });
         let open = AtomicUsize::new(jobs.iter().filter(|job| job.same_as.is_none()).count());
         let outcomes = jobs.iter().map(|_| OnceLock::new()).collect();
-        Self { task, jobs, outcomes, open }
+        Self { task, jobs, part, outcomes, open }
+    }
+
+    /// Simulations that it takes at most.
+    pub(super) fn simulations(&self) -> u64 {
+        self.jobs.iter().map(|job| evaluations(self.task.experiment, job)).sum()
     }
 
     /// The rows that nobody has computed yet and that share no other's numbers.
@@ -53,7 +66,10 @@ impl<'a> Work<'a> {
             .map(|(row, job)| self.outcomes[job.same_as.unwrap_or(row)].get().unwrap_or(&lost))
             .collect();
         let Task { experiment, variants, metadata, .. } = self.task;
-        let table = tabulate::table(experiment, variants, &self.jobs, &outcomes, metadata.clone());
+        let mut table = tabulate::table(experiment, variants, &self.jobs, &outcomes, metadata.clone());
+        if let Some((shard, places)) = &self.part {
+            shard.mark(&mut table, places);
+        }
         Finished { table, failures: tabulate::failures(&outcomes) }
     }
 

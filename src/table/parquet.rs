@@ -3,14 +3,19 @@
 //! A file carries two keys of its own in its metadata: `shotdamp`, JSON with the units, the symbols and the provenance,
 //! and `shotdamp_seal`, the hash of all the other bytes of the file. A reader checks the seal before it decodes a byte, so
 //! a cut, flipped or foreign file is an error and never a wrong number.
+//!
+//! For others who open the file, each field's own metadata repeats unit and symbol, and `PANDAS_ATTRS` holds units, symbols
+//! and provenance as pandas takes them for the attributes of a data frame.
 
 use std::collections::BTreeMap;
 use std::fs;
 use std::io::Cursor;
 use std::path::Path;
 
+use base64::Engine;
 use polars::prelude as pl;
 use polars::prelude::{ListBuilderTrait, SerReader};
+use polars_arrow::io::ipc::write::{default_ipc_fields, schema_to_bytes};
 use serde::{Deserialize, Serialize};
 
 use super::{Column, Data, Table, TableError};
@@ -19,6 +24,8 @@ use crate::atomic::{self, FileError};
 /// Raised when the content of the `shotdamp` key changes its meaning.
 const FORMAT: u32 = 1;
 const ABOUT_KEY: &str = "shotdamp";
+const SCHEMA_KEY: &str = "ARROW:schema";
+const PANDAS_KEY: &str = "PANDAS_ATTRS";
 const SEAL_KEY: &str = "shotdamp_seal";
 /// Stands before the hash, so that it can be found without decoding the file.
 const SEAL_MARK: &[u8] = b"blake3-of-the-rest:";
@@ -60,6 +67,44 @@ struct Label {
     symbol: String,
 }
 
+/// What the `PANDAS_ATTRS` key holds.
+#[derive(Serialize)]
+struct Attributes<'a> {
+    #[serde(flatten)]
+    provenance: &'a BTreeMap<String, String>,
+    units: BTreeMap<&'a str, &'a str>,
+    symbols: BTreeMap<&'a str, &'a str>,
+}
+
+impl<'a> Attributes<'a> {
+    fn of(table: &'a Table) -> Self {
+        let told = |text: fn(&Column) -> &str| {
+            let pairs = table.columns.iter().map(|column| (column.name.as_str(), text(column)));
+            pairs.filter(|(_, text)| !text.is_empty()).collect()
+        };
+        Self { provenance: &table.metadata, units: told(|c| &c.unit), symbols: told(|c| &c.symbol) }
+    }
+}
+
+/// The Arrow schema, as readers built on Arrow look for it in the file's metadata: with unit and symbol in the metadata of
+/// each field. Such readers take the keys of the file from here too, and overlook those that stand beside it.
+fn arrow_schema(frame: &pl::DataFrame, table: &Table, keys: &[(String, String)]) -> String {
+    // The oldest types for text and lists: every reader knows them.
+    let plain = pl::SchemaExt::to_arrow(&**frame.schema(), pl::CompatLevel::oldest());
+    let fields = plain.iter_values().zip(&table.columns).map(|(field, column)| {
+        let told = [("unit", &column.unit), ("symbol", &column.symbol)];
+        let told = told.into_iter().filter(|(_, text)| !text.is_empty());
+        let metadata = told.map(|(key, text)| (key.into(), text.as_str().into())).collect();
+        (field.name.clone(), field.clone().with_metadata(metadata))
+    });
+    let schema: pl::ArrowSchema = fields.collect();
+    let keys = keys.iter().map(|(key, text)| (key.as_str().into(), text.as_str().into())).collect();
+    let message = schema_to_bytes(&schema, &default_ipc_fields(schema.iter_values()), Some(&keys));
+    // A message of Arrow's stream format: a mark, the length, the bytes.
+    let length = u32::try_from(message.len()).unwrap_or(u32::MAX).to_le_bytes();
+    base64::engine::general_purpose::STANDARD.encode([&[0xff; 4][..], &length, &message].concat())
+}
+
 /// The bytes of the file that holds `table`; the same table gives the same bytes.
 ///
 /// # Errors
@@ -77,10 +122,14 @@ pub fn to_bytes(table: &Table) -> Result<Vec<u8>, ParquetError> {
         provenance: table.metadata.clone(),
     };
     let about = serde_json::to_string(&about).map_err(|error| refuse(error.to_string()))?;
+    let attributes = serde_json::to_string(&Attributes::of(table)).map_err(|error| refuse(error.to_string()))?;
     let open_seal = format!("{}{}", String::from_utf8_lossy(SEAL_MARK), "0".repeat(SEAL_DIGITS));
-    let metadata = pl::KeyValueMetadata::from_static(vec![(ABOUT_KEY.into(), about), (SEAL_KEY.into(), open_seal)]);
     let columns = table.columns.iter().map(|column| to_series(column).into()).collect();
     let mut frame = pl::DataFrame::new(table.rows(), columns).map_err(|error| refuse(error.to_string()))?;
+    let mut keys = vec![(ABOUT_KEY.to_owned(), about), (PANDAS_KEY.to_owned(), attributes)];
+    keys.insert(0, (SCHEMA_KEY.to_owned(), arrow_schema(&frame, table, &keys)));
+    keys.push((SEAL_KEY.to_owned(), open_seal));
+    let metadata = pl::KeyValueMetadata::from_static(keys);
     let mut bytes = Vec::new();
     pl::ParquetWriter::new(&mut bytes)
         .set_parallel(false)

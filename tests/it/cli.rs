@@ -10,7 +10,7 @@ use assert_cmd::cargo::CommandCargoExt;
 use crate::desk::{ASSUMPTIONS, Desk, GAP, GAP_REFERENCE, STOP, STOP_REFERENCE, shotdamp, simulated};
 
 /// Every file below the folder with its bytes.
-fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
+pub fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     let mut found = BTreeMap::new();
     for entry in fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
@@ -24,7 +24,7 @@ fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
 }
 
 /// The same with names that do not depend on where the study lies.
-fn relative_files(desk: &Desk) -> BTreeMap<String, Vec<u8>> {
+pub fn relative_files(desk: &Desk) -> BTreeMap<String, Vec<u8>> {
     let root = desk.folder.path().display().to_string();
     files(desk.folder.path()).into_iter().map(|(name, bytes)| (name.replace(&root, ""), bytes)).collect()
 }
@@ -196,26 +196,6 @@ fn a_damaged_table_is_simulated_again() {
     assert_eq!(shotdamp(&desk, &["check", "ch3-gap"]).code, 2);
     let status = shotdamp(&desk, &["status", "--why", "ch3-gap"]);
     assert!(status.out.contains("results/ch3-gap.parquet is not what was written"), "{}", status.out);
-}
-
-/// Whenever it is killed, nothing half-written counts, and the next run makes of it what an undisturbed one would have.
-#[test]
-fn a_killed_run_resumes() {
-    let undisturbed = Desk::new();
-    shotdamp(&undisturbed, &["run", "--quiet"]);
-    let desk = Desk::new();
-    for milliseconds in [0, 20, 60, 150] {
-        let mut command = Command::cargo_bin("shotdamp").unwrap();
-        command.arg("--root").arg(desk.folder.path()).stdout(Stdio::null()).stderr(Stdio::null());
-        let mut child = command.spawn().unwrap();
-        std::thread::sleep(std::time::Duration::from_millis(milliseconds));
-        child.kill().unwrap();
-        child.wait().unwrap();
-    }
-    shotdamp(&desk, &["run", "--quiet"]);
-    let (resumed, whole) = (relative_files(&desk), relative_files(&undisturbed));
-    assert_eq!(resumed.keys().collect::<Vec<_>>(), whole.keys().collect::<Vec<_>>());
-    assert!(resumed == whole);
 }
 
 #[test]

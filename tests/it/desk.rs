@@ -86,7 +86,15 @@ pub struct Desk {
 
 impl Desk {
     pub fn new() -> Self {
-        let folder = tempfile::tempdir().unwrap();
+        Self::in_folder(tempfile::tempdir().unwrap())
+    }
+
+    /// In memory where the system has a folder there: for tests of many runs that would wait for the disk.
+    pub fn in_memory() -> Self {
+        Self::in_folder(tempfile::tempdir_in("/dev/shm").or_else(|_| tempfile::tempdir()).unwrap())
+    }
+
+    fn in_folder(folder: tempfile::TempDir) -> Self {
         let layout = Layout::new(folder.path());
         let desk = Self { folder, layout };
         desk.put("experiments/assumptions.yaml", ASSUMPTIONS);

@@ -7,14 +7,17 @@
 #![expect(clippy::excessive_precision, reason = "published numbers stand as published")]
 
 mod check;
+mod clean;
 mod cli;
 mod daily;
 mod desk;
 mod diff;
 mod engine;
+mod faults;
 mod figure;
 mod figure_map;
 mod fixed;
+mod guide;
 mod made_up;
 mod optimise;
 mod optimised;
@@ -23,6 +26,7 @@ mod reference_kinds;
 mod refined;
 mod report;
 mod schema;
+mod shard;
 mod solver_version;
 mod spec;
 mod spec_map;

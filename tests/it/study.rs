@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use shotdamp::measure::Evaluated;
 use shotdamp::scene::Excitation;
-use shotdamp::study::{Evaluate, Event, Listen, Loaded, Lock, Silence, Simulation, Snapshot};
+use shotdamp::study::{Evaluate, Event, Held, Listen, Loaded, Lock, Silence, Simulation, Snapshot};
 
 use crate::desk::{ASSUMPTIONS, Desk, GAP, GAP_REFERENCE, MadeUp, STOP};
 
@@ -226,6 +226,8 @@ fn the_snapshot_holds_until_any_input_or_output_changes() {
     desk.put("reports/README.md", &report("1.53"));
     assert!(!holds(), "one digit of a long report");
     desk.put("reports/README.md", &report("1.52"));
+    assert!(!holds(), "written to since then: the plan is to look at it");
+    take();
     assert!(holds());
     let name = "results/ch3-gap.parquet";
     let mut bytes = desk.bytes(name);
@@ -284,12 +286,18 @@ fn files_that_are_no_experiments_are_told_and_the_others_load() {
 #[test]
 fn two_runs_at_once_take_turns() {
     let desk = Desk::new();
-    let first = Lock::take(&desk.layout, || panic!("nobody else is there")).unwrap();
+    let first = Lock::of_study(&desk.layout, |_| panic!("nobody else is there")).unwrap();
+    let held = Lock::of_study(&desk.layout, |_| Held::GiveUp).unwrap_err().to_string();
+    assert!(held.contains(&format!("process {}", std::process::id())), "{held}");
     let (tell, told) = std::sync::mpsc::channel();
     std::thread::scope(|scope| {
         let layout = &desk.layout;
-        let second = scope.spawn(move || Lock::take(layout, || tell.send(()).unwrap()).unwrap());
-        told.recv().unwrap();
+        let wait = move |holder: &str| {
+            tell.send(holder.to_owned()).unwrap();
+            Held::Wait
+        };
+        let second = scope.spawn(move || Lock::of_study(layout, wait).unwrap());
+        assert!(told.recv().unwrap().contains("process "));
         assert!(!second.is_finished());
         drop(first);
         second.join().unwrap();

@@ -1,0 +1,31 @@
+//! `shotdamp run --shard 3/8`: one part of the work, for one task of a cluster's scheduler.
+
+use super::args::{Args, RunArgs};
+use super::error::CliError;
+use super::exit::Exit;
+use super::output::{complain, complain_of, print};
+use super::select::{choose, open};
+use super::simulate::{How, held, simulate};
+use crate::study::{Item, Layout, Lock, Shard, State};
+
+/// Simulates the shard's part of what is stale, and writes nothing but its own tables: no verdicts, figures or reports.
+///
+/// A row without numbers is a result like any other; `gather` tells of it.
+pub(super) fn run_shard(layout: &Layout, args: &RunArgs, shard: Shard, common: &Args) -> Result<Exit, CliError> {
+    let threads = common.jobs.map_or(0, usize::from);
+    let _lock = Lock::of_shard(layout, shard, held(args.no_wait))?;
+    let opened = open(layout)?;
+    let chosen = choose(&opened, &args.choice)?;
+    complain_of(chosen.unread.iter().copied());
+    let stale = |item: &&Item| args.force || !matches!(item.state, State::Current(_));
+    let part: Vec<&Item> = chosen.items.iter().copied().filter(stale).filter(|item| shard.has_part_of(item)).collect();
+    let todo: Vec<&Item> = part.iter().copied().filter(|item| args.force || !shard.has_done(layout, item)).collect();
+    let how = How { threads, quiet: common.quiet, shard: Some(shard) };
+    let unsaved = simulate(layout, &todo, how, |item, finished| shard.save(layout, item, finished))?;
+    for problem in &unsaved {
+        complain(&format!("error: {problem}\n"));
+    }
+    let (parts, done) = (part.len(), todo.len() - unsaved.len());
+    print(&format!("shard {shard}: has a part in {parts} stale experiments; {done} simulated now.\n"))?;
+    Ok(if unsaved.is_empty() && chosen.unread.is_empty() { Exit::AsExpected } else { Exit::CouldNot })
+}

@@ -1,0 +1,82 @@
+//! What commands that simulate share: the lock, threads and progress, and a word about what failed.
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+use std::sync::Mutex;
+
+use super::error::CliError;
+use super::output::complain;
+use super::select::Chosen;
+use crate::study::{
+    Engine, Finished, Held, Item, Layout, Listen, Progress, Shard, Silence, State, Task, journal_name, run,
+};
+use crate::table::ParquetError;
+
+/// Tells who is at work, and what becomes of us.
+pub(super) fn held(no_wait: bool) -> impl FnOnce(&str) -> Held {
+    move |holder| {
+        if no_wait {
+            return Held::GiveUp;
+        }
+        complain(&format!("waiting for another run here: {holder}\n"));
+        Held::Wait
+    }
+}
+
+/// How to run.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct How {
+    /// 0: one a processor.
+    pub threads: usize,
+    pub quiet: bool,
+    pub shard: Option<Shard>,
+}
+
+/// Runs the items and has each saved as soon as it is finished; returns in words what could not be saved.
+pub(super) fn simulate(
+    layout: &Layout,
+    items: &[&Item],
+    how: How,
+    save: impl Fn(&Item, &Finished) -> Result<(), ParquetError> + Sync,
+) -> Result<Vec<String>, CliError> {
+    if items.is_empty() {
+        return Ok(Vec::new());
+    }
+    let provenance: Vec<BTreeMap<String, String>> = items.iter().map(|item| item.provenance()).collect();
+    let journal = |item: &&Item| {
+        let id = &item.source.experiment.id;
+        layout.path(&how.shard.map_or_else(|| journal_name(id), |shard| shard.journal_name(id)))
+    };
+    let journals: Vec<PathBuf> = items.iter().map(journal).collect();
+    let tasks: Vec<Task<'_>> = items
+        .iter()
+        .zip(&provenance)
+        .zip(&journals)
+        .map(|((item, metadata), journal)| Task { shard: how.shard, ..item.task(metadata, journal) })
+        .collect();
+    let progress = Progress::new();
+    let listener: &dyn Listen = if how.quiet { &Silence } else { &progress };
+    let unsaved = Mutex::new(BTreeMap::new());
+    run(&tasks, how.threads, &Engine, listener, |index, finished| {
+        if let Err(error) = save(items[index], &finished)
+            && let Ok(mut unsaved) = unsaved.lock()
+        {
+            unsaved.insert(index, format!("{}: {error}", items[index].source.experiment.id));
+        }
+    })?;
+    Ok(unsaved.into_inner().unwrap_or_default().into_values().collect())
+}
+
+/// True if rows of the chosen experiments have no numbers.
+pub(super) fn tell_failures(chosen: &Chosen<'_>) -> bool {
+    let mut failed = false;
+    for item in &chosen.items {
+        if let State::Failed(record) = &item.state {
+            failed = true;
+            let failures = &record.failures;
+            let id = &item.source.experiment.id;
+            complain(&format!("error: {id}: {} rows failed; the first: {}\n", failures.rows, failures.first));
+        }
+    }
+    failed
+}

@@ -1,0 +1,187 @@
+//! Gathering: the tables of all shards of an experiment joined into the one that a single run would have written.
+//!
+//! Nothing is taken on trust: each table has to be whole (its seal), of its shard and of today's inputs, and every row of
+//! the plan has to come exactly once. Then the join is a matter of order, and the bytes are those of a single run.
+
+use super::job::jobs;
+use super::layout::Layout;
+use super::plan::Item;
+use super::record::Failures;
+use super::run::Finished;
+use super::shard::{ROW, Shard, divisible, owner, owners};
+use crate::spec::ExperimentId;
+use crate::table::{Column, Data, ParquetError, Table, parquet};
+
+/// Why the tables of the shards do not make a whole.
+#[derive(Debug, thiserror::Error)]
+pub enum GatherError {
+    /// Rows that no shard has.
+    #[error("{id}: {rows} rows are missing; first do {}", commands(.shards))]
+    Missing {
+        /// Of which experiment.
+        id: ExperimentId,
+        /// How many.
+        rows: usize,
+        /// Whose they are.
+        shards: Vec<Shard>,
+    },
+    /// A row that two shards have.
+    #[error(
+        "{id}: row {row} comes from shard {first} and again from {second}; remove the tables of both and run both again"
+    )]
+    Twice {
+        /// Of which experiment.
+        id: ExperimentId,
+        /// Its place in the whole table.
+        row: usize,
+        /// The shard that had it first.
+        first: Shard,
+        /// The other.
+        second: Shard,
+    },
+    /// A table that is not what its name says.
+    #[error("{name}: {what}; `shotdamp run --shard {shard}` makes it again")]
+    NotThePart {
+        /// Its name within the study.
+        name: String,
+        /// What is wrong with it.
+        what: String,
+        /// Whose it should be.
+        shard: Shard,
+    },
+}
+
+fn commands(shards: &[Shard]) -> String {
+    const TOLD: usize = 4;
+    let told: Vec<String> = shards.iter().take(TOLD).map(|shard| format!("`shotdamp run --shard {shard}`")).collect();
+    match shards.len().saturating_sub(TOLD) {
+        0 => told.join(", "),
+        more => format!("{} and {more} more", told.join(", ")),
+    }
+}
+
+/// The whole table of an experiment from the tables of so many shards.
+///
+/// # Errors
+/// [`GatherError`] that names the table or the shard at fault, and the command that mends it.
+pub fn gather(layout: &Layout, item: &Item, of: u32) -> Result<Finished, GatherError> {
+    let experiment = &item.source.experiment;
+    let id = &experiment.id;
+    let mut parts: Vec<(Shard, Table, Vec<usize>)> = Vec::new();
+    for shard in Shard::all(of) {
+        let path = shard.path(layout, item);
+        if path.exists() {
+            let wrong = |what| GatherError::NotThePart { name: shard.table_name(id), what, shard };
+            let mut table = parquet::read(&path).map_err(|error| wrong(in_words(error)))?;
+            shard.check(&table, item).map_err(wrong)?;
+            let places = take_places(&mut table).ok_or_else(|| wrong("its rows have no places".into()))?;
+            parts.push((shard, table, places));
+        }
+    }
+    let owners = if divisible(experiment) {
+        owners(of, experiment, &item.variants, &jobs(experiment, &item.variants))
+    } else {
+        // How many rows it has is known once they are there; there is at least one.
+        let rows = parts.iter().flat_map(|(_, _, places)| places).max().map_or(1, |last| last + 1);
+        vec![owner(of, experiment); rows]
+    };
+    let mut found: Vec<Option<(usize, usize)>> = vec![None; owners.len()];
+    for (part, (shard, _, places)) in parts.iter().enumerate() {
+        for (at, &row) in places.iter().enumerate() {
+            let what = || format!("its row {row} is not a row of the experiment");
+            let wrong = || GatherError::NotThePart { name: shard.table_name(id), what: what(), shard: *shard };
+            match found.get_mut(row).ok_or_else(wrong)? {
+                Some((first, _)) => {
+                    return Err(GatherError::Twice { id: id.clone(), row, first: parts[*first].0, second: *shard });
+                }
+                empty => *empty = Some((part, at)),
+            }
+        }
+    }
+    let rows: Vec<(usize, usize)> = found.iter().copied().flatten().collect();
+    if rows.len() < owners.len() {
+        let mut shards: Vec<Shard> =
+            owners.iter().zip(&found).filter(|(_, found)| found.is_none()).map(|(owner, _)| *owner).collect();
+        shards.sort_unstable();
+        shards.dedup();
+        return Err(GatherError::Missing { id: id.clone(), rows: owners.len() - rows.len(), shards });
+    }
+    let tables: Vec<Table> = parts.into_iter().map(|(_, table, _)| table).collect();
+    let table = Table { metadata: item.provenance(), ..join(&tables, &rows) };
+    let failures = failures(&table);
+    Ok(Finished { table, failures })
+}
+
+fn in_words(error: ParquetError) -> String {
+    match error {
+        ParquetError::Damaged { what, .. } => what,
+        other => other.to_string(),
+    }
+}
+
+fn take_places(table: &mut Table) -> Option<Vec<usize>> {
+    let Some(Column { name, data: Data::Int(places), .. }) = table.columns.first() else { return None };
+    let places = places.iter().map(|&place| usize::try_from(place).ok()).collect::<Option<Vec<_>>>()?;
+    if name != ROW {
+        return None;
+    }
+    table.columns.remove(0);
+    Some(places)
+}
+
+/// The rows, each told by its table and its place in it, as one table.
+fn join(tables: &[Table], rows: &[(usize, usize)]) -> Table {
+    let mut table = Table::default();
+    let Some(first) = tables.first() else { return table };
+    if tables.len() == 1 {
+        return first.select(&rows.iter().map(|&(_, at)| at).collect::<Vec<_>>());
+    }
+    for column in first.columns.iter().filter(|column| !is_list(column)) {
+        table.columns.push(joined(column, tables, rows));
+    }
+    // Time histories that a table's rows lack it does not name; the first row that has one tells its place.
+    for &(of, at) in rows {
+        for column in tables[of].columns.iter().filter(|column| has_samples(column, at)) {
+            if table.column(&column.name).is_none() {
+                table.columns.push(joined(column, tables, rows));
+            }
+        }
+    }
+    table
+}
+
+fn is_list(column: &Column) -> bool {
+    matches!(column.data, Data::FloatList(_))
+}
+
+fn has_samples(column: &Column, row: usize) -> bool {
+    matches!(&column.data, Data::FloatList(cells) if cells.get(row).is_some_and(|cell| !cell.is_empty()))
+}
+
+/// The column of that name from all tables.
+fn joined(column: &Column, tables: &[Table], rows: &[(usize, usize)]) -> Column {
+    let sources: Vec<Option<&Data>> =
+        tables.iter().map(|table| table.column(&column.name).map(|column| &column.data)).collect();
+    macro_rules! cells {
+        ($kind:path, $absent:expr) => {{
+            let cell = |&(table, row): &(usize, usize)| match sources[table] {
+                Some($kind(cells)) => cells.get(row).cloned().unwrap_or($absent),
+                _ => $absent,
+            };
+            $kind(rows.iter().map(cell).collect())
+        }};
+    }
+    let data = match &column.data {
+        Data::Float(_) => cells!(Data::Float, f64::NAN),
+        Data::Int(_) => cells!(Data::Int, 0),
+        Data::Text(_) => cells!(Data::Text, String::new()),
+        Data::FloatList(_) => cells!(Data::FloatList, Vec::new()),
+    };
+    Column { data, ..column.clone() }
+}
+
+fn failures(table: &Table) -> Failures {
+    let mut reasons = table.texts("failure").unwrap_or_default().iter().filter(|reason| !reason.is_empty());
+    let first = reasons.next().cloned().unwrap_or_default();
+    Failures { rows: usize::from(!first.is_empty()) + reasons.count(), first }
+}
