@@ -184,7 +184,7 @@ impl Crate {
             self.entities.insert(id.clone(), entity);
             columns.push(json!({"@id": id}));
         }
-        Value::Array(columns)
+        single_or_all(columns)
     }
 
     fn description(&self, published: &str) -> Value {
@@ -209,7 +209,7 @@ impl Crate {
                 "publisher": {"@id": "#authors"},
                 "citation": {"@id": "#study"},
                 "hasPart": parts,
-                "mentions": self.actions,
+                "mentions": single_or_all(self.actions.clone()),
             }),
             json!({"@id": "#authors", "@type": "Organization", "name": "The shotdamp authors"}),
             json!({
@@ -232,6 +232,11 @@ impl Crate {
         graph.extend(self.entities.values().cloned());
         json!({"@context": CONTEXT, "@graph": graph})
     }
+}
+
+/// A list of one is written as the one.
+fn single_or_all(mut values: Vec<Value>) -> Value {
+    if values.len() == 1 { values.remove(0) } else { Value::Array(values) }
 }
 
 /// The bytes of an output, if they are those that were recorded.
