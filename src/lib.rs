@@ -20,6 +20,7 @@ pub mod dynamics;
 pub mod figure;
 pub mod measure;
 pub mod optimise;
+pub mod precise;
 pub mod publish;
 pub mod reference;
 pub mod report;

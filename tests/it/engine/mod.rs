@@ -8,5 +8,6 @@ mod equal_modes;
 mod event_cases;
 mod floating;
 mod linear;
+mod precise;
 mod reference_cases;
 mod walls;

@@ -10,7 +10,7 @@ use shotdamp::scene::{Damper, Excitation, LimitStop, PulseShape, Scene, Surface,
 
 use super::bench::{Case, balanced, base, cases, close, instant, resilient, rigid, run, system, within};
 
-fn scene(case: &Case) -> Scene {
+pub(super) fn scene(case: &Case) -> Scene {
     let surface = |side: &str| -> Surface {
         match case.optional("restitution") {
             Some(restitution) => rigid(restitution),
@@ -60,7 +60,7 @@ fn excitation(case: &Case) -> Excitation {
     }
 }
 
-fn kind(words: &str) -> EventKind {
+pub(super) fn kind(words: &str) -> EventKind {
     match words {
         "leave floor / pulled off by impulse" | "release from floor (stuck)" => EventKind::FloorRelease,
         "floor contact" => EventKind::FloorContact,
