@@ -37,6 +37,8 @@ pub(super) enum Command {
     Status(StatusArgs),
     /// Give the verdicts over the tables on disk; simulates and writes nothing
     Check(CheckArgs),
+    /// Measure what accuracy costs: error against wall time of both solvers; writes reports/accuracy
+    Accuracy(AccuracyArgs),
 }
 
 /// Which experiments.
@@ -69,6 +71,19 @@ pub(super) struct RunArgs {
     /// Print errors only
     #[arg(long, short)]
     pub quiet: bool,
+}
+
+#[derive(Debug, clap::Args)]
+pub(super) struct AccuracyArgs {
+    /// Ids, or patterns with * and ?
+    #[arg(value_name = "PATTERN", conflicts_with = "all")]
+    pub patterns: Vec<String>,
+    /// All experiments, and the summary
+    #[arg(long)]
+    pub all: bool,
+    /// Longest run in seconds; smaller steps are left out
+    #[arg(long, value_name = "SECONDS", default_value_t = 5.0)]
+    pub longest: f64,
 }
 
 #[derive(Debug, clap::Args)]

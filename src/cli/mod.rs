@@ -1,5 +1,6 @@
 //! The command. One thin file a subcommand; what they share is how a study is found, chosen from and reported on.
 
+mod accuracy;
 mod args;
 mod check;
 mod error;
@@ -42,6 +43,7 @@ fn dispatch(args: &Args) -> Result<Exit, CliError> {
         Some(Command::List) => list::list(&layout),
         Some(Command::Show { id }) => show::show(&layout, id),
         Some(Command::Status(status)) => status::status(&layout, status),
+        Some(Command::Accuracy(args)) => accuracy::measure(&layout, args),
         Some(Command::Check(check)) => check::check(&layout, check),
     }
 }

@@ -7,8 +7,10 @@
 //! It knows resilient faces with constant dashpots, plastic rigid faces, limit stops, walls, pulses and harmonic forces. The
 //! rest it refuses by name.
 
+mod contact;
 mod double;
 mod matrix;
+mod power;
 mod root;
 mod run;
 mod series;

@@ -2,6 +2,7 @@
 //!
 //! Stands above the study and below the command. Nothing here simulates, and all of it can be made again from the tables.
 
+mod accuracy;
 mod figures;
 mod opened;
 mod pages;
@@ -9,6 +10,7 @@ mod publication;
 mod verdicts;
 mod views;
 
+pub use accuracy::{publish_accuracy, publish_accuracy_summary};
 pub use figures::figure_name;
 pub use opened::{Opened, Unread};
 pub use pages::{Published, publish};

@@ -3,6 +3,7 @@
 //! Tables and verdicts go in, text comes out; nothing here simulates, draws or touches the disk. No output holds a time,
 //! a host or a path beyond the links that the caller passes in.
 
+mod accuracy;
 mod assumption;
 mod candidate;
 mod chapter;
@@ -16,6 +17,7 @@ mod run;
 mod tally;
 mod view;
 
+pub use accuracy::{AccuracyView, accuracy_page, accuracy_summary};
 pub use assumption::value_in_words;
 pub use console::summary;
 pub use index::index;

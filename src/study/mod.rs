@@ -3,6 +3,7 @@
 //! texts → experiments → [`Item`]s (what each depends on, what is on disk) → [`run`] → tables and records. Nothing here
 //! draws or judges: verdicts, figures and reports are made from the tables afterwards.
 
+mod accuracy;
 mod evaluate;
 mod event;
 mod job;
@@ -23,9 +24,13 @@ mod snapshot;
 mod store;
 mod tabulate;
 mod tabulate_candidates;
+mod timing;
 mod variant;
 mod work;
 
+pub use accuracy::{
+    Accuracy, CaseAccuracy, Contender, EventTimes, NoAccuracy, Origin, Point, Skipped, accuracy, representative,
+};
 pub use evaluate::{Array, Engine, Evaluate, Simulation};
 pub use event::{Event, Listen, Silence};
 pub use layout::{ASSUMPTIONS, Layout, Texts, journal_name, record_name, table_name};
@@ -38,4 +43,5 @@ pub use record::{Failures, FileHash, NoRecord, PRESENTATION_VERSION, Publication
 pub use run::{Finished, Task, ThreadError, run};
 pub use snapshot::Snapshot;
 pub use store::{Lock, save};
+pub use timing::{Machine, Times};
 pub use variant::{Sensitivity, Variant, variants};
