@@ -11,7 +11,7 @@ use super::reference_cases::{kind, scene};
 const PATIENCE: Duration = Duration::from_secs(120);
 
 #[test]
-fn it_meets_the_reference_cases_to_all_digits_of_a_double() {
+pub(super) fn it_meets_the_reference_cases_to_all_digits_of_a_double() {
     let mut refused = Vec::new();
     let cases = cases(include_str!("../data/reference-cases.json"));
     for case in &cases {
