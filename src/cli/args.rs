@@ -37,6 +37,11 @@ pub(super) enum Command {
     Status(StatusArgs),
     /// Give the verdicts over the tables on disk; simulates and writes nothing
     Check(CheckArgs),
+    /// Switch each effect of an experiment on or off: what it changes in the result, in events and in time; writes nothing
+    Effects {
+        /// Id of the experiment, or a pattern with * and ?
+        id: String,
+    },
     /// Measure what accuracy costs: error against wall time of both solvers; writes reports/accuracy
     Accuracy(AccuracyArgs),
 }

@@ -3,6 +3,7 @@
 mod accuracy;
 mod args;
 mod check;
+mod effects;
 mod error;
 mod exit;
 mod list;
@@ -42,6 +43,7 @@ fn dispatch(args: &Args) -> Result<Exit, CliError> {
         Some(Command::Run(run)) => update::update(&layout, run),
         Some(Command::List) => list::list(&layout),
         Some(Command::Show { id }) => show::show(&layout, id),
+        Some(Command::Effects { id }) => effects::effects(&layout, id),
         Some(Command::Status(status)) => status::status(&layout, status),
         Some(Command::Accuracy(args)) => accuracy::measure(&layout, args),
         Some(Command::Check(check)) => check::check(&layout, check),

@@ -150,8 +150,8 @@ impl Phase {
         let mut at = [vec![Double::ZERO; n], vec![Double::ZERO; n]];
         for k in 0..TERMS - 2 {
             let up = Double::from((k + 1) as f64);
-            for i in 0..n {
-                (at[0][i], at[1][i]) = (series.q[i][k], series.q[i][k + 1] * up);
+            for (i, terms) in series.q.iter().enumerate() {
+                (at[0][i], at[1][i]) = (terms[k], terms[k + 1] * up);
             }
             let mut force = Double::from(if k == 0 { state.level } else { 0.0 });
             if let Some(drive) = system.drive.harmonic {
@@ -190,8 +190,8 @@ impl Phase {
                 }
                 series.q[i][k + 2] = sum * factor;
             }
-            for j in 0..count {
-                let mut fall = pushes[j] / Double::from(system.particles[j].mass);
+            for (j, push) in pushes.iter().enumerate() {
+                let mut fall = *push / Double::from(system.particles[j].mass);
                 if k == 0 {
                     fall = fall - Double::from(system.gravity);
                 }

@@ -30,6 +30,8 @@ const TWIN: [f64; 2] = [1e-9, 1e-6];
 /// Perturbed starts, and the largest kick, that the floor of a chaotic case is taken from.
 const MEMBERS: u32 = 8;
 const KICK: f64 = 1e-6;
+/// How long the reference may take at least.
+const MOST_PATIENCE: Duration = Duration::from_secs(100);
 /// How long the median of a run may take to settle.
 const PATIENCE: Duration = Duration::from_secs(1);
 
@@ -182,7 +184,7 @@ fn ready(experiment: &Experiment, case: &Case, assumptions: &Assumptions) -> Opt
 }
 
 /// Runs the contenders on representative cases. No run takes much longer than `longest`: steps that would are left out, and a
-/// reference that needs twenty times that is given up.
+/// reference that needs twenty times that, and more than a hundred seconds, is given up.
 ///
 /// # Errors
 /// [`NoAccuracy`] with the reason.
@@ -274,7 +276,7 @@ fn reference(
     longest: Duration,
 ) -> Result<(Response, Response, Origin), NoAccuracy> {
     let begun = Instant::now();
-    let patience = 20 * longest;
+    let patience = MOST_PATIENCE.max(20 * longest);
     let both = precise(&trial.system, recorded, patience).and_then(|with| {
         let left = patience.saturating_sub(begun.elapsed());
         Ok((with, precise(&trial.undamped, &trial.options, left)?))
@@ -292,7 +294,7 @@ fn reference(
 }
 
 /// The largest relative error and its measure.
-fn worst(measures: &[Measure], values: &[f64], truth: &[f64]) -> (Measure, f64) {
+pub(super) fn worst(measures: &[Measure], values: &[f64], truth: &[f64]) -> (Measure, f64) {
     let errors = measures.iter().zip(values).zip(truth).map(|((measure, value), truth)| {
         let scale = if *truth == 0.0 { 1.0 } else { truth.abs() };
         let error = (value - truth).abs() / scale;
@@ -302,14 +304,14 @@ fn worst(measures: &[Measure], values: &[f64], truth: &[f64]) -> (Measure, f64) 
 }
 
 /// A twin that was kicked a little ends elsewhere.
-fn is_chaotic(trial: &Trial<'_>, own: &Response) -> Result<bool, NoAccuracy> {
+pub(super) fn is_chaotic(trial: &Trial<'_>, own: &Response) -> Result<bool, NoAccuracy> {
     if own.method == Method::ClosedForm {
         return Ok(false);
     }
     let bare = event_driven(&trial.undamped, &trial.options)?;
     let twin = event_driven(&trial.system, &Options { kick: TWIN[0], ..trial.options.clone() })?;
     let (_, moved) = worst(&trial.measures, &trial.read(&twin, &bare)?, &trial.read(own, &bare)?);
-    Ok(!(moved < TWIN[1]))
+    Ok(moved.is_nan() || moved >= TWIN[1])
 }
 
 /// Spread over perturbed starts, where the motion is chaotic.

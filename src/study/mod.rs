@@ -3,6 +3,7 @@
 //! texts → experiments → [`Item`]s (what each depends on, what is on disk) → [`run`] → tables and records. Nothing here
 //! draws or judges: verdicts, figures and reports are made from the tables afterwards.
 
+mod ablation;
 mod accuracy;
 mod evaluate;
 mod event;
@@ -28,6 +29,7 @@ mod timing;
 mod variant;
 mod work;
 
+pub use ablation::{Ablation, Outcome, Switched, ablation, idle_cases};
 pub use accuracy::{
     Accuracy, CaseAccuracy, Contender, EventTimes, NoAccuracy, Origin, Point, Skipped, accuracy, representative,
 };

@@ -3,10 +3,10 @@
 use std::path::Path;
 use std::time::Duration;
 
-use shotdamp::report::{AccuracyView, accuracy_page, accuracy_summary};
+use shotdamp::report::{AccuracyView, ablation as told, accuracy_page, accuracy_summary};
 use shotdamp::scene::Assumptions;
 use shotdamp::spec::{Experiment, load_assumptions, parse_experiment};
-use shotdamp::study::{Accuracy, Contender, Machine, Origin, accuracy};
+use shotdamp::study::{Ablation, Accuracy, Contender, Machine, Origin, Outcome, ablation, accuracy};
 
 fn assumptions() -> Assumptions {
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("experiments/assumptions.yaml");
@@ -64,4 +64,26 @@ fn a_reference_that_is_none_says_so() {
     assert!(page.contains("does not know rigid faces that give something back"), "{page}");
     let summary = accuracy_summary(&[view]);
     assert!(summary.contains("1 experiment without an independent reference"), "{summary}");
+}
+
+#[test]
+fn each_effect_is_switched_and_what_is_idle_is_left_alone() {
+    let stopped = "floor: {resilient: {stiffness_ratio: 1, damping_ratio: 0.3}}, stop: {length: 1 mm, restitution: 0}";
+    let cases = ablation(&experiment(stopped, "[20]"), &assumptions()).expect("it can be switched");
+    let of = |cases: &[Ablation], name: &str| -> Outcome {
+        let found = cases[0].switched.iter().find(|one| one.effect == name);
+        found.unwrap_or_else(|| panic!("no effect `{name}`")).outcome.clone()
+    };
+    for name in ["limit stop", "ceiling", "gravity", "structural damping"] {
+        assert!(matches!(of(&cases, name), Outcome::Changed { change, .. } if change > 1e-6), "{name}: {cases:?}");
+    }
+    let text = told(&cases);
+    assert!(text.contains("| limit stop | in force | off |"), "{text}");
+    assert!(text.contains("| soft walls | left out | no:"), "{text}");
+    // Too weak to lift the particle: stop and ceiling are named, and provably idle.
+    let cases = ablation(&experiment(stopped, "[0.001]"), &assumptions()).expect("it can be switched");
+    assert!(cases[0].closed_form);
+    for name in ["limit stop", "ceiling"] {
+        assert_eq!(of(&cases, name), Outcome::Idle, "{name}");
+    }
 }

@@ -64,7 +64,7 @@ fn values(evaluated: &Evaluated) -> Vec<f64> {
 
 #[track_caller]
 fn close(got: f64, want: f64, tolerance: f64) {
-    crate::engine::note((got / want - 1.0).abs(), tolerance);
+    crate::engine::note("relative", (got / want - 1.0).abs(), tolerance);
     assert!((got - want).abs() <= tolerance * want.abs(), "{got:e} instead of {want:e}, off by {:e}", got / want - 1.0);
 }
 
@@ -99,7 +99,7 @@ pub(crate) fn a_cantilever_has_the_exact_frequencies_and_stays_right_to_sixty_mo
     let tip = model.shape(Point { x: 1.0, y: 0.0 });
     for (i, tip) in tip.iter().enumerate() {
         let sign = if i % 2 == 0 { 2.0 } else { -2.0 };
-        crate::engine::note((tip - sign).abs(), 1e-12);
+        crate::engine::note("tip value", (tip - sign).abs(), 1e-12);
         assert!((tip - sign).abs() < 1e-12, "mode {}: {tip}", i + 1);
     }
     for (i, j) in [(0, 0), (0, 59), (58, 59), (59, 59), (29, 31)] {
@@ -108,7 +108,7 @@ pub(crate) fn a_cantilever_has_the_exact_frequencies_and_stays_right_to_sixty_mo
             shape[i] * shape[j]
         });
         let want = if i == j { 1.0 } else { 0.0 };
-        crate::engine::note((product - want).abs(), 1e-9);
+        crate::engine::note("orthogonality", (product - want).abs(), 1e-9);
         assert!((product - want).abs() < 1e-9, "modes {} and {}: {product}", i + 1, j + 1);
     }
 }

@@ -151,8 +151,8 @@ pub(super) fn go(system: &HybridSystem, options: &Options) -> Response {
     let response = event_driven(system, options).unwrap_or_else(|error| panic!("{error}: {system:?}"));
     if options.audit {
         assert!(response.events.iter().all(|event| event.time.is_finite()));
-        note(response.proof.momentum_residual, 1e-11);
-        note(response.proof.energy_residual, 1e-10);
+        note("momentum residual", response.proof.momentum_residual, 1e-11);
+        note("energy residual", response.proof.energy_residual, 1e-10);
         // Thousands of impacts pass at a millionth of the speed that the energy came with.
         assert!(response.proof.momentum_residual < 1e-11, "momentum residual {:e}", response.proof.momentum_residual);
         assert!(response.proof.energy_residual < 1e-10, "energy residual {:e}", response.proof.energy_residual);

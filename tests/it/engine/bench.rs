@@ -139,20 +139,23 @@ thread_local! {
 }
 
 /// What the comparisons of a test came to.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Default)]
 pub struct Ledger {
     /// How many there were.
     pub comparisons: usize,
     /// Error and bound of the one that came closest to its bound.
     pub worst: [f64; 2],
+    /// What it compared.
+    pub what: String,
 }
 
 /// Enters a comparison.
-pub fn note(error: f64, bound: f64) {
+pub fn note(what: &str, error: f64, bound: f64) {
     LEDGER.with_borrow_mut(|ledger| {
         let share = |[error, bound]: [f64; 2]| if error == 0.0 { 0.0 } else { error / bound };
         if ledger.comparisons == 0 || share([error, bound]) > share(ledger.worst) {
             ledger.worst = [error, bound];
+            ledger.what = what.into();
         }
         ledger.comparisons += 1;
     });
@@ -168,8 +171,8 @@ pub fn listened(tests: &[fn()]) -> Ledger {
 /// Momentum and energy close to rounding.
 pub fn balanced(response: &Response) {
     let proof = response.proof;
-    note(proof.momentum_residual, 1e-12);
-    note(proof.energy_residual, 1e-12);
+    note("momentum residual", proof.momentum_residual, 1e-12);
+    note("energy residual", proof.energy_residual, 1e-12);
     assert!(proof.momentum_residual < 1e-12, "momentum residual {:e}", proof.momentum_residual);
     assert!(proof.energy_residual < 1e-12, "energy residual {:e}", proof.energy_residual);
 }
@@ -196,7 +199,7 @@ pub fn within(what: &str, got: f64, want: f64, bound: f64) {
     let error = (got - want).abs();
     // Read with `cargo test -- --nocapture`.
     println!("{what}: {got} for {want}, error {:.1e} of {:.1e} allowed", error, bound);
-    note(error, bound);
+    note(what, error, bound);
     assert!(error <= bound, "{what}: {got} instead of {want}, off by {error:.2e}, allowed {bound:.2e}");
 }
 

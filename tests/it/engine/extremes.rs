@@ -44,9 +44,8 @@ pub(super) fn a_floor_swept_through_critical_damping_has_no_seam() {
         .collect();
     // Smooth: the halves of the sweep meet.
     for i in 1..5 {
-        for k in 0..2 {
-            let middle = 0.5 * (ends[i][k] + ends[10 - i][k]);
-            within("the middle of both sides", middle, ends[5][k], 1e-9);
+        for ((below, above), at) in ends[i].iter().zip(&ends[10 - i]).zip(&ends[5]) {
+            within("the middle of both sides", 0.5 * (below + above), *at, 1e-9);
         }
     }
     // The same for two degrees of freedom, whose floor becomes critical somewhere on the way.

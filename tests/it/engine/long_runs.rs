@@ -84,7 +84,7 @@ pub(super) fn a_chaotic_mean_is_known_to_its_standard_error() {
     let beaten = scene(
         base(1.0, 1000.0, 0.1 * 1000.0_f64.sqrt()),
         GRAVITY,
-        damper(0.05, 0.4905, resilient(1000.0, 1.414_213_562_373_095_1)),
+        damper(0.05, 0.4905, resilient(1000.0, std::f64::consts::SQRT_2)),
         Excitation::ImpulseTrain { impulse: GRAVITY / 1000.0_f64.sqrt(), period: 0.199 },
     );
     let beaten = system(&beaten);

@@ -200,7 +200,7 @@ pub(super) fn disagreement(system: &HybridSystem, options: &Options) -> Option<[
 pub(super) fn random_scenes_end_where_many_digits_say() {
     tried(40, |seed| {
         let Some([error, bound]) = disagreement(&known_to_both(seed), &cycles(4)) else { return };
-        note(error, bound);
+        note(&format!("seed {seed}, end"), error, bound);
         assert!(error <= bound, "seed {seed}: {error:e} of {bound:e}");
     });
 }

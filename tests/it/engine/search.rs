@@ -1,8 +1,8 @@
 //! A search for scenes that break the engine: chance first, then small steps from the worst scene so far.
 //!
 //! `cargo test --test it search -- --ignored --nocapture` looks for `SHOTDAMP_SEARCH_SECONDS` (60) and prints what it finds. A
-//! scene is bad if a balance does not close, if the engine gives up, or if it ends elsewhere than the solver of many digits.
-//! What it has found stands below, as tests.
+//! scene is bad if a balance does not close, if the engine gives up, or if it ends elsewhere than the solver of many digits. What it finds
+//! is to stand below, as tests.
 
 use std::time::{Duration, Instant};
 
@@ -73,12 +73,14 @@ fn badness(genes: &Genes) -> (f64, String) {
             Law::Resilient { no_tension, stiffness, .. } => !no_tension && stiffness < 1e7,
         })
     };
-    if balance < 1.0 && proof.events < 2000 && system.particles.iter().all(is_known) {
-        if let Some([error, bound]) = super::properties::disagreement(&system, &Options { average: 2, ..options }) {
-            let share = 0.1 * error / bound;
-            if share > worst.0 {
-                worst = (share, format!("ends {error:e} off, {bound:e} allowed"));
-            }
+    if balance < 1.0
+        && proof.events < 2000
+        && system.particles.iter().all(is_known)
+        && let Some([error, bound]) = super::properties::disagreement(&system, &Options { average: 2, ..options })
+    {
+        let share = 0.1 * error / bound;
+        if share > worst.0 {
+            worst = (share, format!("ends {error:e} off, {bound:e} allowed"));
         }
     }
     worst
