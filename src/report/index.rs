@@ -47,10 +47,10 @@ have to be moved for the order of contacts to change; *ties* are events at the s
 order.
 ";
 
-/// `reports/README.md`: everything at a glance. `experiments` in the order in which the index lists them; `speed` links to the
-/// page of measured times, if there is one.
+/// `reports/README.md`: everything at a glance. `experiments` in the order in which the index lists them; `measured` are
+/// the pages that other commands have written: title and link.
 #[must_use]
-pub fn index(experiments: &[ExperimentView<'_>], assumptions: &[AssumptionView], speed: Option<&str>) -> String {
+pub fn index(experiments: &[ExperimentView<'_>], assumptions: &[AssumptionView], measured: &[(&str, &str)]) -> String {
     let judged = || experiments.iter().flat_map(|view| view.judged);
     let tally = Tally::of(judged());
     let unexpected = judged().filter(|one| !one.as_expected()).count();
@@ -71,8 +71,8 @@ pub fn index(experiments: &[ExperimentView<'_>], assumptions: &[AssumptionView],
     );
     text += "[How to read a page](#how-to-read-a-page) · [Not reproduced](#not-reproduced) · \
              [Assumptions](#assumptions) · [Tolerances set by hand](#tolerances-set-by-hand)";
-    if let Some(page) = speed {
-        text += &format!(" · [Speed]({page})");
+    for (title, link) in measured {
+        text += &format!(" · [{title}]({link})");
     }
     text += "\n\n";
     let mut chapters: BTreeMap<u32, Vec<&ExperimentView<'_>>> = BTreeMap::new();

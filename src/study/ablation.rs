@@ -104,11 +104,12 @@ fn case(
     let bare = event_driven(&trial.undamped, &trial.options)?;
     let base = Base { values: trial.read(&own, &bare)?, trial: &trial, bare: &bare };
     let closed_form = own.method == Method::ClosedForm;
-    let outcome = |EffectUse { name, in_force, .. }: &EffectUse| match *name {
+    let outcome = |EffectUse { name, in_force, why_not, .. }: &EffectUse| match *name {
         name if *in_force > 0 && closed_form && OF_FLIGHT.contains(&name) => Outcome::Idle,
         "structural damping" if *in_force > 0 => base.undamped(),
         "further modes" if *in_force > 0 => base.one_mode(recipe, experiment, assumptions),
         name => match switched(&trial.scene, name, assumptions) {
+            Switching::Not(_) if *in_force == 0 => Outcome::Not((*why_not).into()),
             Switching::Not(why) => Outcome::Not(why.into()),
             Switching::Off(scene) | Switching::On(scene) => match compile(&scene) {
                 Ok(system) => base.with(&system, &bare),

@@ -156,7 +156,8 @@ pub fn representative(experiment: &Experiment, assumptions: &Assumptions) -> Res
         let part = &damped[ends[0]..ends[1]];
         let mut wanted = part.get(part.len() / 2);
         for eighth in [4, 2, 6, 3, 5, 1, 7] {
-            let Some(candidate) = part.get(eighth * part.len() / 8) else { continue };
+            // One further in each third, so that what changes from row to row does not always stand the same way.
+            let Some(candidate) = part.get(eighth * part.len() / 8 + third) else { continue };
             let trial = Trial::new(&candidate.1, assumptions, &experiment.settings, &experiment.measures)?;
             let own = event_driven(&trial.system, &trial.options)?;
             if own.proof.events > 0 && !is_chaotic(&trial, &own)? {

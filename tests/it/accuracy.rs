@@ -79,7 +79,7 @@ fn each_effect_is_switched_and_what_is_idle_is_left_alone() {
     }
     let text = told(&cases);
     assert!(text.contains("| limit stop | in force | off |"), "{text}");
-    assert!(text.contains("| soft walls | left out | no:"), "{text}");
+    assert!(text.contains("| soft walls | left out | no: the walls are rigid"), "{text}");
     // Too weak to lift the particle: stop and ceiling are named, and provably idle.
     let cases = ablation(&experiment(stopped, "[0.001]"), &assumptions()).expect("it can be switched");
     assert!(cases[0].closed_form);
