@@ -7,7 +7,8 @@
 //! 2. [`scene`] holds what is simulated: a [`scene::Recipe`] in the study's own dimensionless parameters resolves, with
 //!    the [`scene::Assumptions`] for all that the study leaves open, into a [`scene::Scene`] in SI units, which compiles
 //!    into a [`dynamics::HybridSystem`] that carries only the effects the scene names.
-//! 3. [`dynamics`] propagates it: exactly from certified event to certified event, or with the study's fixed step.
+//! 3. [`dynamics`] propagates it: exactly from certified event to certified event, or with the study's fixed step; [`precise`] does
+//!    it again with 32 digits, for those who want to know how exact that is.
 //! 4. [`measure`] turns responses into the numbers that the study plots.
 //! 5. [`optimise`] looks for the best of a function over a box, and knows nothing of what it stands for.
 //! 6. [`study`] plans, runs in parallel and stores one [`table::Table`] per experiment.
@@ -20,6 +21,7 @@ pub mod dynamics;
 pub mod figure;
 pub mod measure;
 pub mod optimise;
+pub mod precise;
 pub mod publish;
 pub mod reference;
 pub mod report;

@@ -94,6 +94,13 @@ Examples:
         /// Which shell
         shell: clap_complete::Shell,
     },
+    /// Switch each effect of an experiment on or off: what it changes in the result, in events and in time; writes nothing
+    Effects {
+        /// Id of the experiment, or a pattern with * and ?
+        id: String,
+    },
+    /// Measure what accuracy costs: error against wall time of both solvers; writes reports/accuracy
+    Accuracy(AccuracyArgs),
 }
 
 /// Which experiments.
@@ -179,6 +186,23 @@ fn date(text: &str) -> Result<String, String> {
         [Some(_), Some(1..=12), Some(1..=31)] if lengths.eq([4, 2, 2]) => Ok(text.into()),
         _ => Err("a date is written 2026-11-21".into()),
     }
+}
+
+#[derive(Debug, clap::Args)]
+#[command(after_help = "\
+Examples:
+  shotdamp accuracy ch3-limit-stop
+  shotdamp accuracy --all --longest 2")]
+pub(super) struct AccuracyArgs {
+    /// Ids, or patterns with * and ?
+    #[arg(value_name = "PATTERN", conflicts_with = "all")]
+    pub patterns: Vec<String>,
+    /// All experiments, and the summary
+    #[arg(long)]
+    pub all: bool,
+    /// Longest run in seconds; smaller steps are left out
+    #[arg(long, value_name = "SECONDS", default_value_t = 5.0)]
+    pub longest: f64,
 }
 
 #[derive(Debug, clap::Args)]

@@ -18,6 +18,8 @@ pub(super) enum CliError {
     NoExperiments,
     #[error("no experiment matches `{pattern}`; there are {known}")]
     NoMatch { pattern: String, known: String },
+    #[error("`shotdamp {0}` needs the id of an experiment, or --all")]
+    NothingChosen(&'static str),
     #[error("no experiment belongs to chapter {0}")]
     NoChapter(u32),
     #[error("there is no entry `{0}`; entries are named experiment/entry, as `shotdamp check` shows them")]

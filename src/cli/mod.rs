@@ -1,9 +1,11 @@
 //! The command. One thin file a subcommand; what they share is how a study is found, chosen from and reported on.
 
+mod accuracy;
 mod args;
 mod check;
 mod clean;
 mod diff;
+mod effects;
 mod error;
 mod exit;
 mod export;
@@ -65,6 +67,7 @@ fn dispatch(args: &Args) -> Result<Exit, CliError> {
         }
         Some(Command::List) => list::list(&layout),
         Some(Command::Show { id }) => show::show(&layout, id),
+        Some(Command::Effects { id }) => effects::effects(&layout, id),
         Some(Command::Status(status)) => status::status(&layout, status),
         Some(Command::Check(check)) => {
             threads(args.jobs);
@@ -75,6 +78,7 @@ fn dispatch(args: &Args) -> Result<Exit, CliError> {
         Some(Command::New(new)) => new::new(&layout, new),
         Some(Command::Schema(schema)) => schema::schema(&layout, schema),
         Some(Command::Completions { shell }) => completions(*shell),
+        Some(Command::Accuracy(args)) => accuracy::measure(&layout, args),
     }
 }
 

@@ -8,7 +8,8 @@ use super::select::{choose, open};
 use crate::publish::{Opened, scenes};
 use crate::report::value_in_words;
 use crate::scene::{Scene, effects};
-use crate::study::{Item, Layout, State};
+use crate::spec::Experiment;
+use crate::study::{Item, Layout, State, idle_cases};
 use crate::text::words;
 
 /// All that is known of one experiment before it runs.
@@ -52,6 +53,7 @@ fn told(opened: &Opened, item: &Item) -> String {
         })
         .collect();
     text += &columns(&rows);
+    text += &idle(experiment, &scenes);
 
     text += "\nAssumptions\n";
     let used = experiment.assumptions_used(&opened.sheet);
@@ -84,6 +86,18 @@ fn told(opened: &Opened, item: &Item) -> String {
     };
     text += &format!("\nFingerprint {}\n({state})\n", item.fingerprint);
     text
+}
+
+/// Cases in which what only a particle in flight can meet is named and provably never met.
+fn idle(experiment: &Experiment, scenes: &[Scene]) -> String {
+    match idle_cases(experiment, scenes) {
+        0 => String::new(),
+        count => format!(
+            "  In {count} of {} cases it is proved that no particle leaves its floor: ceilings, stops and impacts are idle \
+             there and skipped.\n",
+            scenes.len()
+        ),
+    }
 }
 
 /// Lines of at most so many letters, each after a margin.

@@ -405,6 +405,16 @@ pub fn event_driven(system: &HybridSystem, options: &Options) -> Result<Response
     }
 }
 
+/// True where it is proved, without a simulation, that no particle leaves its floor in the run: it is then in closed form, and
+/// what only a particle in flight can meet is skipped.
+///
+/// # Errors
+/// [`EngineError`] with the reason.
+pub fn is_linear(system: &HybridSystem, options: &Options) -> Result<bool, EngineError> {
+    let attempt = linear::attempt(system, options, &states::States::of(system))?;
+    Ok(matches!(attempt, linear::Attempt::Solved(_)))
+}
+
 /// The steady state in closed form: what is left once all transients are gone. `None` unless it is proved that no particle
 /// leaves its floor in it, and where undamped modes never settle.
 ///

@@ -25,6 +25,8 @@ mod peak;
 mod raster;
 mod render;
 mod style;
+mod work_precision;
 
 pub use error::FigureError;
 pub use render::{QuotedPoint, draw};
+pub use work_precision::work_precision;

@@ -60,7 +60,7 @@ impl Request<'_> {
     }
 
     /// A run without an audit and without a history.
-    fn options(&self, settings: &Settings) -> Options {
+    pub(super) fn options(&self, settings: &Settings) -> Options {
         Options {
             skip: settings.skip,
             average: settings.average,
@@ -338,7 +338,7 @@ fn solve(system: &HybridSystem, options: &Options, solver: SolverChoice) -> Resu
 }
 
 /// The forcing period rounded to whole steps, if the experiment asks for it: the study's 199 steps of 1 ms.
-fn rounded(mut scene: Scene, settings: &Settings) -> Scene {
+pub(super) fn rounded(mut scene: Scene, settings: &Settings) -> Scene {
     let Some(step) = settings.round_period_to else { return scene };
     let round = |period: f64| (period / step).round().max(1.0) * step;
     match &mut scene.excitation {

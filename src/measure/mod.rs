@@ -11,8 +11,10 @@ mod evaluate;
 mod history;
 mod reading;
 mod shape;
+mod trial;
 
 pub use evaluate::{Prepared, Request, evaluate};
+pub use trial::Trial;
 
 use crate::dynamics::{EngineError, Proof};
 use crate::scene::{CompileError, RecipeError};

@@ -2,6 +2,7 @@
 //!
 //! Stands above the study and below the command. Nothing here simulates, and all of it can be made again from the tables.
 
+mod accuracy;
 mod committed;
 mod figures;
 mod opened;
@@ -11,6 +12,7 @@ mod ro_crate;
 mod verdicts;
 mod views;
 
+pub use accuracy::{publish_accuracy, publish_accuracy_summary};
 pub use committed::{Departure, How, departures};
 pub use figures::figure_name;
 pub use opened::{Opened, Unread};

@@ -14,11 +14,22 @@ use crate::spec::{Experiment, FigureSpec};
 use crate::study::{Item, table_name};
 use crate::text::words;
 
+/// Measured times stand on pages of their own, which benchmarks and other commands write.
+const MEASURED: [(&str, &str); 4] = [
+    ("Speed", "speed.md"),
+    ("What accuracy costs", "accuracy.md"),
+    ("Peers", "accuracy/peers.md"),
+    ("Hard cases", "hard-cases.md"),
+];
+
 /// The page of an experiment.
 pub(super) fn page(opened: &Opened, judgement: &Judgement, item: &Item) -> String {
     let experiment = &item.source.experiment;
     let used = experiment.assumptions_used(&opened.sheet);
     let up = to_reports(item);
+    let accuracy = format!("accuracy/{}.md", experiment.id);
+    let is_measured = opened.layout.path(&format!("reports/{accuracy}")).exists();
+    let accuracy = format!("{up}{accuracy}");
     report::page(&PageView {
         experiment,
         table: judgement.tables.get(&experiment.id.0),
@@ -27,6 +38,7 @@ pub(super) fn page(opened: &Opened, judgement: &Judgement, item: &Item) -> Strin
         effects: &effects(&scenes(opened, experiment)),
         figures: &figures(experiment, ""),
         table_link: &format!("{up}../{}", table_name(&experiment.id)),
+        accuracy_link: is_measured.then_some(accuracy.as_str()),
         index_link: &format!("{up}README.md"),
     })
 }
@@ -34,9 +46,9 @@ pub(super) fn page(opened: &Opened, judgement: &Judgement, item: &Item) -> Strin
 /// The index of all pages.
 pub(super) fn index(opened: &Opened, judgement: &Judgement) -> String {
     let views: Vec<ExperimentView<'_>> = opened.items.iter().map(|item| listed(judgement, item)).collect();
-    // Measured times stand on a page of their own, which a benchmark writes.
-    let speed = opened.layout.path("reports/speed.md").exists().then_some("speed.md");
-    report::index(&views, &assumptions(opened, |_| true), speed)
+    let measured: Vec<(&str, &str)> =
+        MEASURED.into_iter().filter(|(_, page)| opened.layout.path(&format!("reports/{page}")).exists()).collect();
+    report::index(&views, &assumptions(opened, |_| true), &measured)
 }
 
 fn listed<'a>(judgement: &'a Judgement, item: &'a Item) -> ExperimentView<'a> {

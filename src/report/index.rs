@@ -47,10 +47,10 @@ have to be moved for the order of contacts to change; *ties* are events at the s
 order.
 ";
 
-/// `reports/README.md`: everything at a glance. `experiments` in the order in which the index lists them; `speed` links to the
-/// page of measured times, if there is one.
+/// `reports/README.md`: everything at a glance. `experiments` in the order in which the index lists them; `measured` are
+/// the pages that other commands have written: title and link.
 #[must_use]
-pub fn index(experiments: &[ExperimentView<'_>], assumptions: &[AssumptionView], speed: Option<&str>) -> String {
+pub fn index(experiments: &[ExperimentView<'_>], assumptions: &[AssumptionView], measured: &[(&str, &str)]) -> String {
     let judged = || experiments.iter().flat_map(|view| view.judged);
     let tally = Tally::of(judged());
     let unexpected = judged().filter(|one| !one.as_expected()).count();
@@ -75,14 +75,12 @@ pub fn index(experiments: &[ExperimentView<'_>], assumptions: &[AssumptionView],
     }
     text += &glance::table(&chapters);
     // The same results give the same bytes, and measured times are never the same.
-    text += &match speed {
-        Some(page) => {
-            format!("Times differ from run to run and are not in here; measured ones have [a page]({page}).\n\n")
-        }
-        None => "Times differ from run to run and are not in here.\n\n".to_owned(),
-    };
+    text += "Times differ from run to run and are not in here; measured ones have pages of their own.\n\n";
     text += "[How to read a page](#how-to-read-a-page) · [Not reproduced](#not-reproduced) · \
              [Assumptions](#assumptions) · [Tolerances set by hand](#tolerances-set-by-hand)";
+    for (title, link) in measured {
+        text += &format!(" · [{title}]({link})");
+    }
     text += "\n\n";
     for (number, views) in &chapters {
         text += &chapter::section(*number, views);

@@ -3,6 +3,8 @@
 //! Tables and verdicts go in, text comes out; nothing here simulates, draws or touches the disk. No output holds a time,
 //! a host or a path beyond the links that the caller passes in.
 
+mod ablation;
+mod accuracy;
 mod assumption;
 mod candidate;
 mod chapter;
@@ -23,6 +25,8 @@ mod run;
 mod tally;
 mod view;
 
+pub use ablation::ablation;
+pub use accuracy::{AccuracyView, accuracy_page, accuracy_summary};
 pub use assumption::value_in_words;
 pub use console::summary;
 pub use diff::{Detail, diff};

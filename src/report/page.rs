@@ -35,6 +35,11 @@ pub fn page(view: &PageView<'_>) -> String {
         None => text += "## What proves the runs\n\nThere is no result: the experiment has not been run.\n\n",
     }
     text += &run::section(experiment);
+    if let Some(link) = view.accuracy_link {
+        text += &format!(
+            "[What its accuracy costs]({link}): error against time, of both solvers, on some of these cases. "
+        );
+    }
     text +=
         &format!("All numbers: [the table as Parquet]({}). [All experiments]({}).\n", view.table_link, view.index_link);
     text

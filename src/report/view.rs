@@ -59,6 +59,8 @@ pub struct PageView<'a> {
     pub figures: &'a [FigureView],
     /// Its table as a file, relative to the page.
     pub table_link: &'a str,
+    /// The page of what its accuracy costs, relative to the page, if there is one.
+    pub accuracy_link: Option<&'a str>,
     /// The index, relative to the page.
     pub index_link: &'a str,
 }

@@ -14,6 +14,7 @@ mod place;
 mod recipe;
 mod resolve;
 mod structure;
+mod switch;
 mod told;
 
 use serde::{Deserialize, Serialize};
@@ -33,6 +34,7 @@ pub use structure::{
     CantileverBeam, ClampedBeam, Family, Field, FieldValue, Form, KINDS, Kind, Matrices, Model, Point, SingleMass,
     Structure, StructureRecipe, SupportedPlate, Values,
 };
+pub use switch::{Switching, switched};
 
 /// A scene in SI units: everything a simulation needs, and only the effects that it names.
 #[derive(Debug, Clone, PartialEq)]

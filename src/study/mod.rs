@@ -3,6 +3,8 @@
 //! texts → experiments → [`Item`]s (what each depends on, what is on disk) → [`run`] → tables and records. Nothing here
 //! draws or judges: verdicts, figures and reports are made from the tables afterwards.
 
+mod ablation;
+mod accuracy;
 mod evaluate;
 mod event;
 mod extent;
@@ -27,9 +29,14 @@ mod snapshot;
 mod store;
 mod tabulate;
 mod tabulate_candidates;
+mod timing;
 mod variant;
 mod work;
 
+pub use ablation::{Ablation, Outcome, Switched, ablation, idle_cases};
+pub use accuracy::{
+    Accuracy, CaseAccuracy, Contender, EventTimes, NoAccuracy, Origin, Point, Skipped, accuracy, representative,
+};
 pub use evaluate::{Array, Engine, Evaluate, Simulation};
 pub use event::{Event, Listen, Silence};
 pub use extent::Extent;
@@ -46,4 +53,5 @@ pub use run::{Finished, Task, ThreadError, run};
 pub use shard::{Shard, ShardError};
 pub use snapshot::Snapshot;
 pub use store::{Held, Lock, LockError, save};
+pub use timing::{Machine, Times};
 pub use variant::{Sensitivity, Variant, variants};

@@ -6,6 +6,7 @@
 )]
 #![expect(clippy::excessive_precision, reason = "published numbers stand as published")]
 
+mod accuracy;
 mod check;
 mod clean;
 mod cli;

@@ -126,6 +126,7 @@ fn page_of(table: Option<&Table>, judged: &[Judged]) -> String {
         effects: &effects(),
         figures: &figures(""),
         table_link: "../../results/ch3-limit-stop.parquet",
+        accuracy_link: None,
         index_link: "../README.md",
     })
 }
@@ -145,7 +146,7 @@ fn the_index_tells_the_whole_study_at_a_glance() {
         page: "ch3/ch3-limit-stop.md".into(),
         figures: figures("ch3/"),
     };
-    golden("index.md", &index(&[view], &assumptions(), Some("speed.md")));
+    golden("index.md", &index(&[view], &assumptions(), &[("Speed", "speed.md")]));
 }
 
 #[test]
@@ -188,7 +189,7 @@ fn an_explanation_is_told_by_its_first_sentence_in_the_index() {
         ..entry("limit", Verdict::Blocked)
     }];
     let view = ExperimentView { experiment: &experiment, judged: &one, page: String::new(), figures: Vec::new() };
-    let text = index(&[view], &[], None);
+    let text = index(&[view], &[], &[]);
     assert!(text.contains("Only Fig. 18 and s. 3.6 say so.\n"), "{text}");
 }
 

@@ -74,7 +74,7 @@ fn told(problems: &Problems) -> Vec<String> {
 }
 
 #[test]
-fn an_experiment_says_what_its_file_says() {
+pub(crate) fn an_experiment_says_what_its_file_says() {
     let experiment = good(GOOD);
     assert_eq!(experiment.source.section, "3.6.3");
     assert_eq!(experiment.swept, [Parameter::ForceRatio, Parameter::Stop]);
@@ -96,7 +96,7 @@ fn an_experiment_says_what_its_file_says() {
 }
 
 #[test]
-fn comments_order_and_units_do_not_change_the_meaning() {
+pub(crate) fn comments_order_and_units_do_not_change_the_meaning() {
     let meaning = |text: &str| good(text).canonical_json().to_string();
     let same = [
         with("490.5 mm", "0.4905 m"),
@@ -117,7 +117,7 @@ fn comments_order_and_units_do_not_change_the_meaning() {
 }
 
 #[test]
-fn a_new_caption_does_not_make_a_simulation_stale() {
+pub(crate) fn a_new_caption_does_not_make_a_simulation_stale() {
     let (old, new) = (good(GOOD), good(&with("With and without.", "Another caption.")));
     assert_eq!(old.simulation_json(), new.simulation_json());
     assert_ne!(old.figures_json(), new.figures_json());
@@ -125,7 +125,7 @@ fn a_new_caption_does_not_make_a_simulation_stale() {
 }
 
 #[test]
-fn quantities_are_read_into_si_to_the_last_bit() {
+pub(crate) fn quantities_are_read_into_si_to_the_last_bit() {
     let cases = [
         ("5 mm", Dimension::Length, 0.005),
         ("4.9mm", Dimension::Length, 0.0049),
@@ -150,7 +150,7 @@ fn quantities_are_read_into_si_to_the_last_bit() {
 }
 
 #[test]
-fn a_unit_of_the_wrong_kind_is_told_in_words() {
+pub(crate) fn a_unit_of_the_wrong_kind_is_told_in_words() {
     let cases = [
         ("5 s", Dimension::Length, "`5 s` is not a length", "write for example 5 mm"),
         ("5", Dimension::Length, "`5` has no unit, but a length is wanted", "write for example 5 mm"),
@@ -183,7 +183,7 @@ fn a_unit_of_the_wrong_kind_is_told_in_words() {
 }
 
 #[test]
-fn all_mistakes_of_a_file_come_at_once_with_their_places() {
+pub(crate) fn all_mistakes_of_a_file_come_at_once_with_their_places() {
     let text = GOOD
         .replace("gap: 490.5 mm", "gap: 5 s")
         .replace("title: Limit stop\n", "titel: Limit stop\n")
@@ -219,7 +219,7 @@ error: `5 s` is not a length
 }
 
 #[test]
-fn mistakes_that_a_person_makes_are_told_where_they_stand() {
+pub(crate) fn mistakes_that_a_person_makes_are_told_where_they_stand() {
     let cases = [
         (with("mass_ratio:", "mass_ration:"), "7:7 a damper has no key `mass_ration` | did you mean `mass_ratio`?"),
         (
@@ -309,7 +309,7 @@ fn mistakes_that_a_person_makes_are_told_where_they_stand() {
 }
 
 #[test]
-fn yaml_from_strangers_is_refused_before_anything_grows() {
+pub(crate) fn yaml_from_strangers_is_refused_before_anything_grows() {
     let mut bomb = String::from("a: &a [x, x, x, x, x, x, x, x, x]\n");
     for (name, before) in ('b'..='z').zip('a'..) {
         bomb += &format!("{name}: &{name} [{}]\n", vec![format!("*{before}"); 9].join(", "));
@@ -368,7 +368,7 @@ fn yaml_from_strangers_is_refused_before_anything_grows() {
 }
 
 #[test]
-fn a_damaged_file_is_told_and_never_a_crash() {
+pub(crate) fn a_damaged_file_is_told_and_never_a_crash() {
     let ends: Vec<usize> = GOOD.char_indices().map(|(index, _)| index).collect();
     let mut told = 0;
     for end in ends.into_iter().step_by(5) {
@@ -385,7 +385,7 @@ fn a_damaged_file_is_told_and_never_a_crash() {
 }
 
 #[test]
-fn a_refined_range_starts_evenly_and_says_what_it_lacks() {
+pub(crate) fn a_refined_range_starts_evenly_and_says_what_it_lacks() {
     let range = "{log: {from: 0.1, to: 100, points: 61}}";
     let refined = |inside: &str| with(range, &format!("{{refined: {{from: 0.1, to: 100{inside}}}}}"));
     let experiment = good(&refined(", start: 31 points, spacing: log, tolerance: 0.5 %, of: velocity_ratio"));
@@ -409,7 +409,7 @@ fn a_refined_range_starts_evenly_and_says_what_it_lacks() {
 }
 
 #[test]
-fn sweeps_are_products_pairs_points_and_unions() {
+pub(crate) fn sweeps_are_products_pairs_points_and_unions() {
     let sweep = "  force_ratio: {log: {from: 0.1, to: 100, points: 61}}\n  stop: [with, without]\n";
     let cases = |text: &str, by: &str| {
         let experiment = good(&with(sweep, text).replace("by: stop", by));
@@ -455,7 +455,7 @@ fn sweeps_are_products_pairs_points_and_unions() {
 }
 
 #[test]
-fn each_assumption_has_a_reason_and_moves_alone() {
+pub(crate) fn each_assumption_has_a_reason_and_moves_alone() {
     let sheet = load_assumptions(&folder().join("assumptions.yaml")).unwrap_or_else(|problems| panic!("{problems}"));
     for (name, entry) in &sheet.entries {
         assert!(entry.reason.len() > 20, "{name:?}");
@@ -483,7 +483,7 @@ fn each_assumption_has_a_reason_and_moves_alone() {
 }
 
 #[test]
-fn every_shipped_experiment_loads_and_resolves_under_every_variant() {
+pub(crate) fn every_shipped_experiment_loads_and_resolves_under_every_variant() {
     let sheet = sheet();
     let mut ids = BTreeSet::new();
     let mut fixed_steps = 0.0;
@@ -510,7 +510,7 @@ fn every_shipped_experiment_loads_and_resolves_under_every_variant() {
 }
 
 #[test]
-fn the_studys_words_become_the_scene_they_mean() {
+pub(crate) fn the_studys_words_become_the_scene_they_mean() {
     let load = |id: &str| {
         let path = folder().join("ch3").join(format!("{id}.yaml"));
         load_experiment(&path, &assumptions()).unwrap_or_else(|problems| panic!("{problems}"))

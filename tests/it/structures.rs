@@ -64,6 +64,7 @@ fn values(evaluated: &Evaluated) -> Vec<f64> {
 
 #[track_caller]
 fn close(got: f64, want: f64, tolerance: f64) {
+    crate::engine::note("relative", (got / want - 1.0).abs(), tolerance);
     assert!((got - want).abs() <= tolerance * want.abs(), "{got:e} instead of {want:e}, off by {:e}", got / want - 1.0);
 }
 
@@ -80,7 +81,7 @@ fn integral(of: impl Fn(f64) -> f64) -> f64 {
 }
 
 #[test]
-fn a_cantilever_has_the_exact_frequencies_and_stays_right_to_sixty_modes() {
+pub(crate) fn a_cantilever_has_the_exact_frequencies_and_stays_right_to_sixty_modes() {
     let beam = structure(BEAM, "basis: exact, modes: 60");
     let model = beam.model();
     let frequencies = model.natural_frequencies();
@@ -98,6 +99,7 @@ fn a_cantilever_has_the_exact_frequencies_and_stays_right_to_sixty_modes() {
     let tip = model.shape(Point { x: 1.0, y: 0.0 });
     for (i, tip) in tip.iter().enumerate() {
         let sign = if i % 2 == 0 { 2.0 } else { -2.0 };
+        crate::engine::note("tip value", (tip - sign).abs(), 1e-12);
         assert!((tip - sign).abs() < 1e-12, "mode {}: {tip}", i + 1);
     }
     for (i, j) in [(0, 0), (0, 59), (58, 59), (59, 59), (29, 31)] {
@@ -106,12 +108,13 @@ fn a_cantilever_has_the_exact_frequencies_and_stays_right_to_sixty_modes() {
             shape[i] * shape[j]
         });
         let want = if i == j { 1.0 } else { 0.0 };
+        crate::engine::note("orthogonality", (product - want).abs(), 1e-9);
         assert!((product - want).abs() < 1e-9, "modes {} and {}: {product}", i + 1, j + 1);
     }
 }
 
 #[test]
-fn the_studys_polynomials_give_its_frequencies_and_converge_from_above_however_many() {
+pub(crate) fn the_studys_polynomials_give_its_frequencies_and_converge_from_above_however_many() {
     let frequencies = |count: usize| structure(BEAM, &format!("modes: {count}")).model().natural_frequencies();
     let (three, four) = (frequencies(3), frequencies(4));
     for (got, printed) in [(three[0], 25.706), (four[0], 25.698)] {
@@ -138,7 +141,7 @@ fn the_studys_polynomials_give_its_frequencies_and_converge_from_above_however_m
 }
 
 #[test]
-fn both_bases_have_the_same_low_modes_with_the_same_signs() {
+pub(crate) fn both_bases_have_the_same_low_modes_with_the_same_signs() {
     let (polynomial, exact) = (structure(BEAM, "modes: 30"), structure(BEAM, "basis: exact, modes: 30"));
     for x in [0.01, 0.3, 0.5, 0.96, 1.0] {
         let at = Point { x, y: 0.0 };
@@ -150,7 +153,7 @@ fn both_bases_have_the_same_low_modes_with_the_same_signs() {
 }
 
 #[test]
-fn a_clamped_beam_is_one_file_and_has_the_textbooks_frequencies() {
+pub(crate) fn a_clamped_beam_is_one_file_and_has_the_textbooks_frequencies() {
     let beam = structure(CLAMPED, "modes: 60");
     let model = beam.model();
     let frequencies = model.natural_frequencies();
@@ -169,7 +172,7 @@ fn a_clamped_beam_is_one_file_and_has_the_textbooks_frequencies() {
 }
 
 #[test]
-fn a_plate_has_the_frequencies_of_leissa() {
+pub(crate) fn a_plate_has_the_frequencies_of_leissa() {
     let plate = structure(PLATE, "modes: 4");
     let model = plate.model();
     let want = [
@@ -196,7 +199,7 @@ fn carried(at: &str, share: f64) -> String {
 }
 
 #[test]
-fn a_mass_on_a_beam_and_on_a_plate_lowers_their_frequencies_as_in_closed_form() {
+pub(crate) fn a_mass_on_a_beam_and_on_a_plate_lowers_their_frequencies_as_in_closed_form() {
     let beam = scene(BEAM, "basis: exact, modes: 60", &carried("1", 0.1));
     let frequencies =
         |scene: &Scene| -> Vec<f64> { scene.normal_modes().unwrap().iter().map(|mode| mode.frequency).collect() };
@@ -221,7 +224,7 @@ fn a_mass_on_a_beam_and_on_a_plate_lowers_their_frequencies_as_in_closed_form() 
 }
 
 #[test]
-fn the_two_readings_of_a_mass_ratio_differ_by_the_quarter() {
+pub(crate) fn the_two_readings_of_a_mass_ratio_differ_by_the_quarter() {
     let sweep = "sweep: {mass_reading: [total, modal]}\nmeasure: [natural_frequency]";
     let floor = "{rigid: {restitution: 0}}";
     let dampers = format!(
@@ -235,7 +238,7 @@ fn the_two_readings_of_a_mass_ratio_differ_by_the_quarter() {
 }
 
 #[test]
-fn impulses_on_the_clean_cantilever_are_the_sum_of_their_modes() {
+pub(crate) fn impulses_on_the_clean_cantilever_are_the_sum_of_their_modes() {
     let train = "  excitation: {impulse_train: {at: 1, impulse: 0.02 N s, period: 0.29 s}}";
     let scene = scene(BEAM, "basis: exact, modes: 3", train);
     let system = compile(&scene).unwrap();
@@ -249,7 +252,7 @@ fn impulses_on_the_clean_cantilever_are_the_sum_of_their_modes() {
 }
 
 #[test]
-fn a_harmonic_force_at_the_tip_gives_the_receptance_of_the_damped_beam() {
+pub(crate) fn a_harmonic_force_at_the_tip_gives_the_receptance_of_the_damped_beam() {
     let rest = "run: {skip: 30000 cycles, average: 4 cycles}\nmeasure: [displacement_per_force, displacement_amplitude, rms_velocity]";
     let force = "  excitation: {harmonic: {at: 1, force: 1 N, angular_frequency: 25.7 rad/s}}";
     let values = values(&measured(&experiment(BEAM, "basis: exact, modes: 5", force, rest))[0]);
@@ -262,7 +265,7 @@ fn a_harmonic_force_at_the_tip_gives_the_receptance_of_the_damped_beam() {
 const DAMPER: &str = "floor: {resilient: {stiffness: tuned, damping_ratio: 0.1}}";
 
 #[test]
-fn an_array_shares_its_mass_and_stands_where_its_spacing_says() {
+pub(crate) fn an_array_shares_its_mass_and_stands_where_its_spacing_says() {
     let array = |count: &str, at: &str, spacing: &str| {
         format!(
             "  dampers: [{{at: {at}, mass_ratio: 0.1, mass_reading: total, particle_share: 0.25, gap_ratio: 2, array: {{count: {count}, spacing: {spacing}}}, {DAMPER}}}]\n  excitation: none"
@@ -286,7 +289,7 @@ fn an_array_shares_its_mass_and_stands_where_its_spacing_says() {
 }
 
 #[test]
-fn two_dampers_at_one_place_are_two_dampers() {
+pub(crate) fn two_dampers_at_one_place_are_two_dampers() {
     let at = "{at: 1, mass_ratio: 0.05, mass_reading: total, particle_share: 0.5, gap_ratio: 2, floor: {resilient: {stiffness: tuned, damping_ratio: 0.1}}}";
     let beam = scene(
         BEAM,
@@ -304,7 +307,7 @@ fn two_dampers_at_one_place_are_two_dampers() {
 }
 
 #[test]
-fn a_beam_in_one_mode_is_a_single_mass() {
+pub(crate) fn a_beam_in_one_mode_is_a_single_mass() {
     // A one-mode cantilever forced and observed at its tip is a mass of a quarter on a spring: the same motion to rounding.
     let beam = scene(
         BEAM,
@@ -332,7 +335,7 @@ fn a_beam_in_one_mode_is_a_single_mass() {
 }
 
 #[test]
-fn modes_and_deflections_come_as_shapes() {
+pub(crate) fn modes_and_deflections_come_as_shapes() {
     let modes = "sweep: {mode: [1, 2, 3, 4]}\nmeasure: [natural_frequency, exact_natural_frequency, mac]\nshape: {of: mode, points: 51}";
     let rows = measured(&experiment(BEAM, "basis: exact, modes: 8", "  excitation: none", modes));
     for row in &rows {
@@ -359,7 +362,7 @@ fn modes_and_deflections_come_as_shapes() {
 }
 
 #[test]
-fn kinetic_energies_are_kept_cycle_by_cycle() {
+pub(crate) fn kinetic_energies_are_kept_cycle_by_cycle() {
     let rest = "sweep: {union: {clean: {dampers: without}, light: {mass_ratio: 0.1}}}\nmeasure: [damping_measure, mass_measure, mode_count]\n\
                 energies: {from: 0 cycles, to: 30 cycles}\nrun: {skip: 10 cycles, average: 20 cycles, ensemble: none}";
     let dampers = format!(
@@ -388,7 +391,7 @@ fn kinetic_energies_are_kept_cycle_by_cycle() {
 }
 
 #[test]
-fn a_grid_of_points_is_taken_by_its_largest_or_by_its_mean() {
+pub(crate) fn a_grid_of_points_is_taken_by_its_largest_or_by_its_mean() {
     let at = |observe: &str| {
         let scene = format!(
             "  observe: {observe}\n  excitation: {{impulse_train: {{at: [0.25, 0.375], impulse: 0.1 N s, frequency_ratio: 1}}}}"
@@ -405,7 +408,7 @@ fn a_grid_of_points_is_taken_by_its_largest_or_by_its_mean() {
 }
 
 #[test]
-fn what_no_structure_can_be_is_refused_where_it_stands() {
+pub(crate) fn what_no_structure_can_be_is_refused_where_it_stands() {
     let damper = |at: &str| {
         format!("  dampers:\n    - {{at: {at}, mass_ratio: 0.1, particle_share: 0.5, gap_ratio: 2, {DAMPER}}}")
     };
@@ -474,7 +477,7 @@ fn what_no_structure_can_be_is_refused_where_it_stands() {
 }
 
 #[test]
-fn what_a_thread_has_run_before_changes_no_bit() {
+pub(crate) fn what_a_thread_has_run_before_changes_no_bit() {
     let dampers = |gap: &str, force: &str, extra: &str| {
         let scene = scene(
             BEAM,

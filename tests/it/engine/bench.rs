@@ -1,7 +1,11 @@
 //! The bench on which the engine's tests put a scene: reading a case, building the scene, running it, comparing.
 
+use std::cell::RefCell;
+use std::time::Duration;
+
 use serde_json::Value;
 use shotdamp::dynamics::{Contact, Event, EventKind, HybridSystem, Options, Response, StartState, event_driven};
+use shotdamp::precise::precise;
 use shotdamp::scene::{ContactDamping, ContactEnd, Damper, Excitation, Scene, SingleMass, Surface, compile};
 
 /// m/s².
@@ -129,9 +133,46 @@ pub fn run(scene: &Scene, options: &Options) -> Response {
     response
 }
 
+thread_local! {
+    /// Comparisons of a test while somebody listens.
+    static LEDGER: RefCell<Ledger> = RefCell::default();
+}
+
+/// What the comparisons of a test came to.
+#[derive(Debug, Clone, Default)]
+pub struct Ledger {
+    /// How many there were.
+    pub comparisons: usize,
+    /// Error and bound of the one that came closest to its bound.
+    pub worst: [f64; 2],
+    /// What it compared.
+    pub what: String,
+}
+
+/// Enters a comparison.
+pub fn note(what: &str, error: f64, bound: f64) {
+    LEDGER.with_borrow_mut(|ledger| {
+        let share = |[error, bound]: [f64; 2]| if error == 0.0 { 0.0 } else { error / bound };
+        if ledger.comparisons == 0 || share([error, bound]) > share(ledger.worst) {
+            ledger.worst = [error, bound];
+            ledger.what = what.into();
+        }
+        ledger.comparisons += 1;
+    });
+}
+
+/// What the comparisons of some tests come to.
+pub fn listened(tests: &[fn()]) -> Ledger {
+    LEDGER.take();
+    tests.iter().for_each(|test| test());
+    LEDGER.take()
+}
+
 /// Momentum and energy close to rounding.
 pub fn balanced(response: &Response) {
     let proof = response.proof;
+    note("momentum residual", proof.momentum_residual, 1e-12);
+    note("energy residual", proof.energy_residual, 1e-12);
     assert!(proof.momentum_residual < 1e-12, "momentum residual {:e}", proof.momentum_residual);
     assert!(proof.energy_residual < 1e-12, "energy residual {:e}", proof.energy_residual);
 }
@@ -158,5 +199,37 @@ pub fn within(what: &str, got: f64, want: f64, bound: f64) {
     let error = (got - want).abs();
     // Read with `cargo test -- --nocapture`.
     println!("{what}: {got} for {want}, error {:.1e} of {:.1e} allowed", error, bound);
+    note(what, error, bound);
     assert!(error <= bound, "{what}: {got} instead of {want}, off by {error:.2e}, allowed {bound:.2e}");
+}
+
+/// How long the solver of many digits may take.
+const PATIENCE: Duration = Duration::from_secs(100);
+
+/// The engine and the solver of many digits end at the same state, as far as `tolerance` (relative to the places and speeds of
+/// the run) and a drive known to twelve digits let them.
+pub fn agree(what: &str, system: &HybridSystem, options: &Options, tolerance: f64) -> Response {
+    let response = event_driven(system, options).unwrap_or_else(|error| panic!("{what}: {error}"));
+    let many = precise(system, options, PATIENCE).unwrap_or_else(|error| panic!("{what}: {error}"));
+    let kicked = event_driven(system, &Options { kick: 1e-12, ..options.clone() }).expect("it runs kicked");
+    let ends = |end: &Response| {
+        let places = [end.final_displacement].into_iter().chain(end.final_particles.iter().map(|[y, _]| *y));
+        let speeds = [end.final_velocity].into_iter().chain(end.final_particles.iter().map(|[_, w]| *w));
+        [places.collect::<Vec<_>>(), speeds.collect()]
+    };
+    let rms = many.window().rms_velocity();
+    let window = many.window();
+    let places = (window.displacement_square / window.duration).sqrt();
+    // Places round where they are, however little they move; a mode turns that into speeds.
+    let rounding = 8.0 * f64::EPSILON * places;
+    let rounding = [rounding, rounding * response.highest_frequency];
+    for (i, scale) in [places, rms].into_iter().enumerate() {
+        let [got, want, moved] = [&response, &many, &kicked].map(|end| ends(end)[i].clone());
+        for ((got, want), moved) in got.iter().zip(&want).zip(&moved) {
+            let bound = tolerance * scale.max(want.abs()) + rounding[i] + 3.0 * (moved - got).abs();
+            within(&format!("{what}, end"), *got, *want, bound);
+        }
+    }
+    assert_eq!(response.proof.events, many.proof.events, "{what}");
+    response
 }

@@ -34,7 +34,7 @@ fn floating(given: &Case, gravity: f64, damper: Damper, span: f64) -> Scene {
 }
 
 #[test]
-fn chatter_ends_where_the_geometric_series_does() {
+pub(super) fn chatter_ends_where_the_geometric_series_does() {
     let (given, value) = open("chatter-free-base-e0.5");
     let [end, velocity, place] = [value[0], value[1], value[2]];
     let ball = |restitution| damper(given.number("particle_mass"), f64::INFINITY, rigid(restitution));
@@ -57,7 +57,7 @@ fn chatter_ends_where_the_geometric_series_does() {
 }
 
 #[test]
-fn a_particle_that_grazes_the_ceiling_is_met_on_both_sides() {
+pub(super) fn a_particle_that_grazes_the_ceiling_is_met_on_both_sides() {
     let (given, value) = open("graze-ceiling-plus-1e-12");
     let particle = damper(given.number("particle_mass"), given.number("gap"), rigid(given.number("restitution")));
     let toss = floating(&given, GRAVITY, particle, 0.45);
@@ -79,7 +79,7 @@ fn a_particle_that_grazes_the_ceiling_is_met_on_both_sides() {
 }
 
 #[test]
-fn an_accelerated_base_is_a_stronger_gravity() {
+pub(super) fn an_accelerated_base_is_a_stronger_gravity() {
     let (given, value) = open("chatter-accelerated-base");
     let particle = damper(given.number("particle_mass"), given.number("gap"), rigid(given.number("restitution")));
     let push = Excitation::PulseTrain { impulse: 30.0, period: 1.0, duration: 1.0, shape: PulseShape::Rectangular };
@@ -109,7 +109,7 @@ fn bounce(table: &Scene, start: [f64; 2], amplitude: f64, omega: f64, cycles: u3
 }
 
 #[test]
-fn a_ball_on_a_vibrating_table_keeps_its_phase() {
+pub(super) fn a_ball_on_a_vibrating_table_keeps_its_phase() {
     let ids = [
         ("table-period1-phase-e0.5-G1.2", 1, [0.005_609_621_849_637_127_4, -0.430_238_648_865_100_86]),
         ("table-period2-phase-e0.5-G2.3", 2, [0.009_637_520_453_925_995, -0.957_642_126_053_008_6]),
@@ -129,7 +129,7 @@ fn a_ball_on_a_vibrating_table_keeps_its_phase() {
 }
 
 #[test]
-fn just_below_period_doubling_every_flight_is_alike() {
+pub(super) fn just_below_period_doubling_every_flight_is_alike() {
     let (given, _) = open("table-below-doubling");
     let e = given.number("restitution");
     // Doubling where the trace of the impact map is −(1 + ε²).
@@ -150,7 +150,7 @@ fn just_below_period_doubling_every_flight_is_alike() {
 }
 
 #[test]
-fn an_inelastic_ball_leaves_and_lands_at_the_phases_of_theory() {
+pub(super) fn an_inelastic_ball_leaves_and_lands_at_the_phases_of_theory() {
     let (given, value) = open("inelastic-ball-first-flight-G3");
     let omega = given.number("angular_frequency");
     let (table, amplitude) = table(&given, given.number("dimensionless_acceleration"));
@@ -233,7 +233,7 @@ impl Steady {
 }
 
 #[test]
-fn a_particle_that_lands_every_other_cycle_moves_as_the_closed_form_says() {
+pub(super) fn a_particle_that_lands_every_other_cycle_moves_as_the_closed_form_says() {
     let (given, value) = open("one-floor-impact-per-2-period-b");
     let (mass, particle, e) = (given.number("base_mass"), given.number("particle_mass"), given.number("restitution"));
     let ball = damper(particle, f64::INFINITY, rigid(e));
@@ -251,7 +251,7 @@ fn a_particle_that_lands_every_other_cycle_moves_as_the_closed_form_says() {
 }
 
 #[test]
-fn the_impact_damper_of_masri_and_caughey_moves_as_they_say() {
+pub(super) fn the_impact_damper_of_masri_and_caughey_moves_as_they_say() {
     for (id, velocity) in [
         ("masri-caughey-two-impacts-a", 1.030_216_589_546_725_5),
         ("masri-caughey-two-impacts-b", 0.246_499_927_843_622_73),
@@ -277,7 +277,7 @@ fn the_impact_damper_of_masri_and_caughey_moves_as_they_say() {
 }
 
 #[test]
-fn an_oscillator_that_hits_a_fixed_stop_moves_as_the_closed_form_says() {
+pub(super) fn an_oscillator_that_hits_a_fixed_stop_moves_as_the_closed_form_says() {
     for (id, place) in [("fixed-stop-one-impact-b", 0.01), ("fixed-stop-one-impact-d", 0.0)] {
         let (given, value) = open(id);
         // A particle too heavy to be moved is the stop; 1e15 kg would recede by 2e-12 m in these hundred impacts.
@@ -291,7 +291,7 @@ fn an_oscillator_that_hits_a_fixed_stop_moves_as_the_closed_form_says() {
 }
 
 #[test]
-fn a_spring_with_a_dashpot_has_its_restitution() {
+pub(super) fn a_spring_with_a_dashpot_has_its_restitution() {
     let (given, value) = open("restitution-spring-dashpot-zeta0.5");
     let floor = resilient(given.number("floor_stiffness"), given.number("floor_damping"));
     let particle = damper(given.number("particle_mass"), f64::INFINITY, floor);
@@ -311,7 +311,7 @@ fn a_spring_with_a_dashpot_has_its_restitution() {
 }
 
 #[test]
-fn a_floor_that_cannot_pull_has_its_own_restitution() {
+pub(super) fn a_floor_that_cannot_pull_has_its_own_restitution() {
     for id in ["restitution-no-tension-zeta0.5", "restitution-no-tension-zeta0.7071", "restitution-no-tension-zeta0.9"]
     {
         let (given, value) = open(id);
@@ -343,7 +343,7 @@ fn beyond_critical(zeta: f64) -> f64 {
 }
 
 #[test]
-fn elastic_bounces_keep_their_period() {
+pub(super) fn elastic_bounces_keep_their_period() {
     let (given, value) = open("elastic-bounce-period");
     let particle =
         damper(given.number("particle_mass"), f64::INFINITY, resilient(given.number("floor_stiffness"), 0.0));
@@ -361,7 +361,7 @@ fn elastic_bounces_keep_their_period() {
 }
 
 #[test]
-fn a_gap_of_nothing_makes_a_bilinear_oscillator() {
+pub(super) fn a_gap_of_nothing_makes_a_bilinear_oscillator() {
     let (given, value) = open("bilinear-oscillator-frequency");
     let mut particle = damper(given.number("particle_mass"), 0.0, resilient(given.number("floor_stiffness"), 0.0));
     particle.ceiling = resilient(given.number("ceiling_stiffness"), 0.0);
@@ -375,7 +375,7 @@ fn a_gap_of_nothing_makes_a_bilinear_oscillator() {
 }
 
 #[test]
-fn a_limit_stop_takes_what_its_restitution_leaves() {
+pub(super) fn a_limit_stop_takes_what_its_restitution_leaves() {
     let (given, value) = open("limit-stop-eps0");
     let mut particle =
         damper(given.number("particle_mass"), f64::INFINITY, resilient(given.number("floor_stiffness"), 0.0));
@@ -398,7 +398,7 @@ fn a_limit_stop_takes_what_its_restitution_leaves() {
 }
 
 #[test]
-fn a_ceiling_that_floats_is_a_third_body() {
+pub(super) fn a_ceiling_that_floats_is_a_third_body() {
     let (given, value) = open("model3-free-ceiling-zeta0.3");
     let (ceiling, particle) = (given.number("ceiling_mass"), given.number("particle_mass"));
     let surface = resilient(given.number("ceiling_stiffness"), given.number("ceiling_damping"));
@@ -415,7 +415,7 @@ fn a_ceiling_that_floats_is_a_third_body() {
 }
 
 #[test]
-fn a_particle_rests_until_the_base_falls_faster_than_it() {
+pub(super) fn a_particle_rests_until_the_base_falls_faster_than_it() {
     let (given, value) = open("harmonic-resting-particle-w1");
     let (mass, stiffness, particle) =
         (given.number("base_mass"), given.number("stiffness"), given.number("particle_mass"));
@@ -445,7 +445,7 @@ fn a_particle_rests_until_the_base_falls_faster_than_it() {
 }
 
 #[test]
-fn impulses_without_a_damper_are_a_geometric_series() {
+pub(super) fn impulses_without_a_damper_are_a_geometric_series() {
     let (given, value) = open("impulse-train-bare-T0.05");
     let (mass, stiffness) = (given.number("base_mass"), given.number("stiffness"));
     let damping = 0.1 * (stiffness * mass).sqrt();
@@ -472,7 +472,7 @@ fn impulses_without_a_damper_are_a_geometric_series() {
 }
 
 #[test]
-fn an_impulse_downwards_leaves_the_particle_behind() {
+pub(super) fn an_impulse_downwards_leaves_the_particle_behind() {
     let (given, value) = open("impulse-downwards-leaves-at-once");
     let ball = damper(given.number("particle_mass"), f64::INFINITY, rigid(given.number("restitution")));
     let pull = scene(
@@ -490,7 +490,7 @@ fn an_impulse_downwards_leaves_the_particle_behind() {
 }
 
 #[test]
-fn a_resting_particle_and_its_floor_have_their_two_frequencies() {
+pub(super) fn a_resting_particle_and_its_floor_have_their_two_frequencies() {
     let (given, value) = open("model2-resting-frequencies");
     let (mass, stiffness, particle, floor) = (
         given.number("base_mass"),
@@ -525,7 +525,7 @@ fn a_resting_particle_and_its_floor_have_their_two_frequencies() {
 }
 
 #[test]
-fn the_mean_displacement_is_what_momentum_asks_for() {
+pub(super) fn the_mean_displacement_is_what_momentum_asks_for() {
     let (given, _) = open("momentum-balance-model1-restitution");
     let (mass, particle, stiffness) =
         (given.number("base_mass"), given.number("particle_mass"), given.number("stiffness"));
@@ -549,7 +549,7 @@ fn the_mean_displacement_is_what_momentum_asks_for() {
 }
 
 #[test]
-fn a_stiff_floor_tends_to_the_restitution_of_half_a_cycle() {
+pub(super) fn a_stiff_floor_tends_to_the_restitution_of_half_a_cycle() {
     let (given, value) = open("stiff-floor-restitution-kf1e9");
     let error = |softer: f64| {
         let floor = resilient(given.number("floor_stiffness") / softer, given.number("floor_damping") / softer.sqrt());
@@ -567,7 +567,7 @@ fn a_stiff_floor_tends_to_the_restitution_of_half_a_cycle() {
 }
 
 #[test]
-fn the_ball_of_the_sensitivity_suites_is_met_to_all_printed_digits() {
+pub(super) fn the_ball_of_the_sensitivity_suites_is_met_to_all_printed_digits() {
     let (given, value) = open("sciml-bouncing-ball");
     let gravity = given.number("gravity");
     let ball = damper(0.05, f64::INFINITY, rigid(given.number("restitution")));
@@ -596,7 +596,7 @@ const ELSEWHERE: [&str; 10] = [
 ];
 
 #[test]
-fn no_case_is_forgotten() {
+pub(super) fn no_case_is_forgotten() {
     let source = include_str!("closed_forms.rs");
     for case in all() {
         let id = case.text("id");

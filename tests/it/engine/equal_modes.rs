@@ -27,7 +27,7 @@ fn with_values(turned: &[Vec<f64>], values: &[f64]) -> Matrix {
 }
 
 #[test]
-fn modes_of_equal_frequency_swing_as_if_they_were_alone() {
+pub(super) fn modes_of_equal_frequency_swing_as_if_they_were_alone() {
     let mut dice = Dice(5);
     for frequencies in [vec![30.0; 2], vec![30.0, 30.0, 70.0], vec![30.0, 50.0, 50.0, 50.0], vec![20.0; 5]] {
         let n = frequencies.len();
@@ -55,7 +55,7 @@ fn modes_of_equal_frequency_swing_as_if_they_were_alone() {
 }
 
 #[test]
-fn dampers_that_are_alike_on_masses_that_are_alike_do_not_disturb_each_other() {
+pub(super) fn dampers_that_are_alike_on_masses_that_are_alike_do_not_disturb_each_other() {
     // Two scenes side by side in one system, each as it is by itself.
     let one = |count: usize| {
         let mut system = chain(&vec![1.0; count], 0.0, 0.0);

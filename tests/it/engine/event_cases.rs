@@ -29,7 +29,7 @@ fn kind(word: &str) -> EventKind {
 }
 
 #[test]
-fn no_event_is_lost_or_doubled() {
+pub(super) fn no_event_is_lost_or_doubled() {
     let cases = cases(include_str!("../data/event-cases.json"));
     assert_eq!(cases.len(), 25);
     for (i, case) in cases.iter().enumerate() {

@@ -9,7 +9,7 @@ use shotdamp::scene::{Excitation, PulseShape, Scene, Walls};
 use super::bench::{GRAVITY, base, close, damper, nothing, once, only, resilient, rigid, run, scene, within};
 
 #[test]
-fn a_base_on_a_dashpot_stops_where_its_impulse_is_used_up() {
+pub(super) fn a_base_on_a_dashpot_stops_where_its_impulse_is_used_up() {
     let (mass, damping, impulse, cycle) = (2.0, 3.0, 5.0, 0.7);
     let slide =
         Scene::on_one_mass(base(mass, 0.0, damping), GRAVITY, Vec::new(), Excitation::SingleImpulse { impulse, cycle });
@@ -22,7 +22,7 @@ fn a_base_on_a_dashpot_stops_where_its_impulse_is_used_up() {
 }
 
 #[test]
-fn under_a_constant_force_it_creeps_at_its_terminal_velocity() {
+pub(super) fn under_a_constant_force_it_creeps_at_its_terminal_velocity() {
     let (mass, damping, force) = (2.0, 40.0, 7.0);
     let slide = Scene::on_one_mass(
         base(mass, 0.0, damping),
@@ -37,7 +37,7 @@ fn under_a_constant_force_it_creeps_at_its_terminal_velocity() {
 }
 
 #[test]
-fn a_particle_on_it_makes_it_sink() {
+pub(super) fn a_particle_on_it_makes_it_sink() {
     let (mass, particle, damping) = (1.0, 0.25, 2.0);
     let terminal = -particle * GRAVITY / damping;
     let rest = StartState::Given { q: vec![0.0], rate: vec![0.0], particles: vec![(Contact::Floor, 0.0, 0.0)] };
@@ -58,7 +58,7 @@ fn a_particle_on_it_makes_it_sink() {
 }
 
 #[test]
-fn bounces_on_a_sliding_base_lose_nothing_but_to_its_dashpot() {
+pub(super) fn bounces_on_a_sliding_base_lose_nothing_but_to_its_dashpot() {
     // No reference but the balances, which `run` asks for, and the second accuracy. A weaker dashpot costs digits: its
     // terminal velocity, which the flow is written from, grows beyond anything that is reached.
     for stiffness in [300.0, 1e3, 1e6] {
@@ -83,7 +83,7 @@ fn on_floor() -> StartState {
 }
 
 #[test]
-fn walls_of_a_dashpot_alone_bring_the_ceiling_to_rest_where_they_hold_it() {
+pub(super) fn walls_of_a_dashpot_alone_bring_the_ceiling_to_rest_where_they_hold_it() {
     // A blow to the base: its spring brings it back, the dashpot of the walls drags the ceiling along.
     let mut enclosure = damper(0.05, f64::INFINITY, rigid(0.0));
     enclosure.walls = Some(Walls { stiffness: 0.0, damping: 5.0, ceiling_mass: 0.2 });

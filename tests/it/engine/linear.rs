@@ -133,7 +133,7 @@ fn difference(a: &Response, b: &Response) -> f64 {
 }
 
 #[test]
-fn a_clean_structure_is_what_its_simulation_says() {
+pub(super) fn a_clean_structure_is_what_its_simulation_says() {
     let mut dice = Dice(9);
     for trial in 0..40 {
         let period = dice.between(0.05, 0.4);
@@ -154,7 +154,7 @@ fn a_clean_structure_is_what_its_simulation_says() {
 }
 
 #[test]
-fn particles_that_never_leave_need_no_simulation() {
+pub(super) fn particles_that_never_leave_need_no_simulation() {
     let mut dice = Dice(4);
     let (mut linear, mut worst) = (0, 0.0_f64);
     for trial in 0..60 {
@@ -189,7 +189,7 @@ fn particles_that_never_leave_need_no_simulation() {
 
 /// The lift-off force of a particle on a rigid floor is where the loaded base reaches g.
 #[test]
-fn a_particle_on_a_rigid_floor_rests_while_the_base_stays_below_g() {
+pub(super) fn a_particle_on_a_rigid_floor_rests_while_the_base_stays_below_g() {
     let (mass, stiffness, particle) = (1.0, 1000.0, 0.05);
     let damping = 2.0 * 0.05 * f64::sqrt(stiffness * mass);
     let omega = f64::sqrt(stiffness / mass);
@@ -224,7 +224,7 @@ fn a_particle_on_a_rigid_floor_rests_while_the_base_stays_below_g() {
 }
 
 #[test]
-fn a_train_of_impulses_is_a_geometric_series() {
+pub(super) fn a_train_of_impulses_is_a_geometric_series() {
     let one = |period: f64, impulse: f64| HybridSystem {
         mass: Matrix::diagonal(&[1.0]),
         damping: Matrix::diagonal(&[2.0 * 0.05 * f64::sqrt(1000.0)]),
@@ -257,7 +257,7 @@ fn a_train_of_impulses_is_a_geometric_series() {
 }
 
 #[test]
-fn an_undamped_structure_at_its_own_frequency_swings_up_without_bound() {
+pub(super) fn an_undamped_structure_at_its_own_frequency_swings_up_without_bound() {
     let omega = 20.0;
     let system = HybridSystem {
         mass: Matrix::diagonal(&[1.0]),
@@ -279,7 +279,7 @@ fn an_undamped_structure_at_its_own_frequency_swings_up_without_bound() {
 }
 
 #[test]
-fn a_harmonic_response_is_the_inverse_of_the_dynamic_stiffness() {
+pub(super) fn a_harmonic_response_is_the_inverse_of_the_dynamic_stiffness() {
     let mut dice = Dice(31);
     for _ in 0..20 {
         let omega = dice.between(10.0, 300.0);

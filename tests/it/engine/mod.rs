@@ -6,7 +6,15 @@ mod bench;
 mod closed_forms;
 mod equal_modes;
 mod event_cases;
+mod extremes;
 mod floating;
+mod hard_cases;
 mod linear;
+mod long_runs;
+mod precise;
+mod properties;
 mod reference_cases;
+mod search;
 mod walls;
+
+pub use bench::note;

@@ -10,7 +10,7 @@ use shotdamp::scene::{Damper, Excitation, LimitStop, PulseShape, Scene, Surface,
 
 use super::bench::{Case, balanced, base, cases, close, instant, resilient, rigid, run, system, within};
 
-fn scene(case: &Case) -> Scene {
+pub(super) fn scene(case: &Case) -> Scene {
     let surface = |side: &str| -> Surface {
         match case.optional("restitution") {
             Some(restitution) => rigid(restitution),
@@ -60,7 +60,7 @@ fn excitation(case: &Case) -> Excitation {
     }
 }
 
-fn kind(words: &str) -> EventKind {
+pub(super) fn kind(words: &str) -> EventKind {
     match words {
         "leave floor / pulled off by impulse" | "release from floor (stuck)" => EventKind::FloorRelease,
         "floor contact" => EventKind::FloorContact,
@@ -73,7 +73,7 @@ fn kind(words: &str) -> EventKind {
 }
 
 #[test]
-fn every_reference_case_is_met_to_rounding() {
+pub(super) fn every_reference_case_is_met_to_rounding() {
     let cases = cases(include_str!("../data/reference-cases.json"));
     assert_eq!(cases.len(), 29);
     for case in &cases {
@@ -118,7 +118,7 @@ fn every_reference_case_is_met_to_rounding() {
 }
 
 #[test]
-fn without_its_damper_the_base_alone_is_met() {
+pub(super) fn without_its_damper_the_base_alone_is_met() {
     for case in &cases(include_str!("../data/reference-cases.json")) {
         // The particle is taken out; in Model 3 the ceiling body stays on its walls.
         let mut system = system(&scene(case));

@@ -41,7 +41,7 @@ fn any_model_3(seed: u64) -> HybridSystem {
 }
 
 #[test]
-fn between_walls_of_any_kind_momentum_and_energy_close_or_the_squeeze_is_named() {
+pub(super) fn between_walls_of_any_kind_momentum_and_energy_close_or_the_squeeze_is_named() {
     let (mut events, mut squeezed) = (0, 0);
     // The last four lay at a rigid ceiling on stiff walls, and did not settle there.
     for seed in (0..60).chain([148, 242, 331, 747]) {
@@ -61,7 +61,7 @@ fn between_walls_of_any_kind_momentum_and_energy_close_or_the_squeeze_is_named()
 }
 
 #[test]
-fn a_particle_that_both_faces_meet_is_refused_by_name() {
+pub(super) fn a_particle_that_both_faces_meet_is_refused_by_name() {
     // The ceiling comes down on the particle that lies on the floor.
     let soft = Law::Resilient { stiffness: 1e4, damping: 1.0, no_tension: false, stop: None };
     for laws in [[soft, soft], [Law::Rigid { restitution: 0.0 }, soft], [soft, Law::Rigid { restitution: 0.5 }]] {

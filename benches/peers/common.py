@@ -1,0 +1,137 @@
+"""What the peers share: a scene from JSON, its equations in each contact state, timing, and the answer as JSON."""
+
+import json
+import sys
+import time
+
+import numpy as np
+
+FLIGHT, FLOOR, CEILING = 0, 1, 2
+
+
+class Scene:
+    """M q'' + C q' + K q = forces, particles between resilient faces that move with a row of the structure.
+
+    State: q, y, q', y', and the integral of the squared observed velocity over the window.
+    """
+
+    def __init__(self, path):
+        with open(path) as file:
+            data = json.load(file)
+        n = self.n = len(data["force_row"])
+        inverse = np.linalg.inv(np.array(data["mass"]).reshape(n, n))
+        self.damping = inverse @ np.array(data["damping"]).reshape(n, n)
+        self.stiffness = inverse @ np.array(data["stiffness"]).reshape(n, n)
+        self.gravity = data["gravity"]
+        self.particles = data["particles"]
+        self.p = len(self.particles)
+        self.rows = np.array([particle["row"] for particle in self.particles]).reshape(self.p, n)
+        self.answers = (inverse @ self.rows.T).T
+        self.jump = inverse @ np.array(data["force_row"]) * data["impulse"]
+        self.observed = np.array(data["observed_row"])
+        self.period, self.skip, self.cycles = data["period"], data["skip"], data["cycles"]
+        self.start = np.array(data["start"] + [0.0])
+        self.size = len(self.start)
+
+    def matrix(self, contacts):
+        """A and b of z' = A z + b, without the integral."""
+        n, p = self.n, self.p
+        order = 2 * (n + p)
+        a, b = np.zeros((order, order)), np.zeros(order)
+        v = n + p
+        a[:v, v:] = np.eye(v)
+        a[v : v + n, :n] = -self.stiffness
+        a[v : v + n, v : v + n] = -self.damping
+        b[v + n :] = -self.gravity
+        for j, particle in enumerate(self.particles):
+            if contacts[j] == FLIGHT:
+                continue
+            face = particle["floor" if contacts[j] == FLOOR else "ceiling"]
+            offset = 0.0 if contacts[j] == FLOOR else particle["gap"]
+            k, c = face["stiffness"], face["damping"]
+            # u and u' as rows; the push on the particle is -k u - c u'.
+            u = np.zeros(order)
+            u[:n], u[n + j] = -self.rows[j], 1.0
+            push = -k * u - c * np.roll(u, v)
+            for row, factor in [(v + n + j, 1.0 / particle["mass"])]:
+                a[row] += factor * push
+                b[row] += factor * k * offset
+            a[v : v + n] -= np.outer(self.answers[j], push)
+            b[v : v + n] -= self.answers[j] * k * offset
+        return a, b
+
+    def guards(self, contacts):
+        """(row, offset, direction, particle, next contact, word) of each surface that ends a contact state."""
+        guards = []
+        for j, particle in enumerate(self.particles):
+            row = np.zeros(self.size)
+            row[: self.n], row[self.n + j] = -self.rows[j], 1.0
+            gap = particle["gap"]
+            if contacts[j] == FLIGHT:
+                guards.append((row, 0.0, -1, j, FLOOR, "floor_contact"))
+                guards.append((row, gap, 1, j, CEILING, "ceiling_contact"))
+            elif contacts[j] == FLOOR:
+                guards.append((row, 0.0, 1, j, FLIGHT, "floor_release"))
+            else:
+                guards.append((row, gap, -1, j, FLIGHT, "ceiling_release"))
+        return guards
+
+    def slope(self, contacts, averaged):
+        a, b = self.matrix(contacts)
+        n, v = self.n, self.n + self.p
+        observed, size = self.observed, self.size
+
+        def slope(_, z):
+            out = np.empty(size)
+            out[:-1] = a @ z[:-1] + b
+            out[-1] = (observed @ z[v : v + n]) ** 2 if averaged else 0.0
+            return out
+
+        return slope
+
+    def strike(self, z):
+        z[self.n + self.p : 2 * self.n + self.p] += self.jump
+
+    def rms(self, z):
+        return float(np.sqrt(z[-1] / ((self.cycles - self.skip) * self.period)))
+
+
+def run(scene, segment):
+    """From impulse to impulse and event to event; `segment` goes to the first event or to the end: (t, z, guard or None)."""
+    z, events = scene.start.copy(), []
+    contacts = [FLOOR] * scene.p
+    for cycle in range(scene.cycles):
+        scene.strike(z)
+        t, last = 0.0, 0
+        while t < scene.period:
+            before = t
+            slope = scene.slope(contacts, cycle >= scene.skip)
+            t, z, guard = segment(slope, scene.guards(contacts), t, scene.period, z)
+            if guard is not None:
+                _, _, _, j, contact, word = guard
+                contacts[j] = contact
+                events.append([cycle * scene.period + t, j, word])
+            last = last + 1 if t == before else 0
+            if last > 64:
+                raise RuntimeError(f"no progress in cycle {cycle} at {t} s")
+    return scene.rms(z), events
+
+
+def answer(setting, once, patience=1.0):
+    """Prints one line of JSON: result, events, times of repeated runs."""
+    try:
+        rms, events = once()
+        times, begun = [], time.perf_counter()
+        while len(times) < 3 or (time.perf_counter() - begun < patience and len(times) < 200):
+            begin = time.perf_counter()
+            once()
+            times.append(time.perf_counter() - begin)
+            if times[0] > 3.0:
+                break
+        print(json.dumps({"setting": setting, "rms": rms, "events": events, "times": times}), flush=True)
+    except Exception as error:  # A peer that fails is a result too.
+        print(json.dumps({"setting": setting, "failure": f"{type(error).__name__}: {error}"}), flush=True)
+
+
+def scene():
+    return Scene(sys.argv[1])

@@ -1,0 +1,46 @@
+//! `shotdamp accuracy`.
+
+use std::time::Duration;
+
+use super::args::{AccuracyArgs, Choice};
+use super::error::CliError;
+use super::exit::Exit;
+use super::output::{complain, complain_of, print};
+use super::select::{choose, open};
+use crate::publish::{publish_accuracy, publish_accuracy_summary};
+use crate::study::{Layout, accuracy};
+
+/// Error against time of the chosen experiments; of all of them, and of what was measured before, the summary.
+pub(super) fn measure(layout: &Layout, args: &AccuracyArgs) -> Result<Exit, CliError> {
+    if !args.all && args.patterns.is_empty() {
+        return Err(CliError::NothingChosen("accuracy"));
+    }
+    let opened = open(layout)?;
+    let patterns = if args.all { Vec::new() } else { args.patterns.clone() };
+    let chosen = choose(&opened, &Choice { patterns, chapter: None })?;
+    complain_of(chosen.unread.iter().copied());
+    let assumptions = opened.sheet.assumptions();
+    let longest = Duration::try_from_secs_f64(args.longest).unwrap_or(Duration::MAX / 32);
+    let mut exit = if chosen.unread.is_empty() { Exit::AsExpected } else { Exit::CouldNot };
+    for item in &chosen.items {
+        let experiment = &item.source.experiment;
+        match accuracy(experiment, &assumptions, longest) {
+            Ok(accuracy) => {
+                let page = publish_accuracy(layout, experiment, accuracy)?;
+                print(&if args.all { format!("{}\n", experiment.id) } else { page })?;
+            }
+            // An experiment without a run has no price.
+            Err(error) => {
+                complain(&format!("{}: {error}\n", experiment.id));
+                if !args.all {
+                    exit = Exit::CouldNot;
+                }
+            }
+        }
+    }
+    let summary = publish_accuracy_summary(layout)?;
+    if args.all {
+        print(&summary)?;
+    }
+    Ok(exit)
+}

@@ -1,0 +1,30 @@
+//! Work-precision diagrams: error against wall time, both logarithmic.
+
+use crate::spec::{Axis, AxisScale, Drawing, FigureSpec, Level, Panel};
+
+/// The figure of a table with the columns `solver`, `case`, `time` (s), `error` and `event_error`; all panels show the `times` from the
+/// first to the second; `floor` is the error below which chaos leaves no meaning.
+#[must_use]
+pub fn work_precision(times: [f64; 2], floor: Option<f64>, events: bool) -> FigureSpec {
+    let axis = |column: &str, label: &str, reach| Axis {
+        column: column.into(),
+        label: Some(label.into()),
+        scale: AxisScale::Log,
+        reach,
+    };
+    let panel = |column: &str, label: &str, guides: Vec<Level>| Panel {
+        x: axis("time", "Wall time of a run", Some(times)),
+        y: vec![axis(column, label, None)],
+        by: vec!["solver".into(), "case".into()],
+        band: false,
+        guides,
+        markers: true,
+        peaks: None,
+    };
+    let guide = floor.map(|at| Level { at, label: "spread of the chaotic motion".into() });
+    let mut panels = vec![panel("error", "Relative error", guide.into_iter().collect())];
+    if events {
+        panels.push(panel("event_error", "Error of event times / T", Vec::new()));
+    }
+    FigureSpec { name: String::new(), caption: "Error against wall time.".into(), drawing: Drawing::Lines(panels) }
+}

@@ -1,0 +1,82 @@
+//! Times of runs, and the machine that they were taken on.
+
+use std::time::{Duration, Instant};
+
+use serde::{Deserialize, Serialize};
+
+/// Fewest runs.
+const FEWEST: usize = 3;
+/// Runs between two looks at the median.
+const BETWEEN: usize = 8;
+/// Most runs.
+const MOST: usize = 512;
+/// How little the median may move before it counts as settled.
+const SETTLED: f64 = 0.01;
+
+/// Wall time of repeated runs, s.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Times {
+    /// The shortest: other programs only add to it.
+    pub least: f64,
+    /// The median.
+    pub median: f64,
+    /// How many runs.
+    pub runs: usize,
+    /// The median moved by less than one per cent when the last quarter of the runs was added; otherwise time was up.
+    pub settled: bool,
+}
+
+impl Times {
+    /// Repeats a run until its median settles, or for `patience` but three times at least.
+    pub fn of(mut run: impl FnMut(), patience: Duration) -> Self {
+        let begun = Instant::now();
+        let mut times: Vec<f64> = Vec::new();
+        let mut settled = false;
+        while times.len() < FEWEST || (!settled && times.len() < MOST && begun.elapsed() < patience) {
+            let begin = Instant::now();
+            run();
+            times.push(begin.elapsed().as_secs_f64());
+            if times.len().is_multiple_of(BETWEEN) {
+                let before = median(&times[..times.len() * 3 / 4]);
+                settled = (median(&times) / before - 1.0).abs() < SETTLED;
+            }
+        }
+        let least = times.iter().copied().fold(f64::INFINITY, f64::min);
+        Self { least, median: median(&times), runs: times.len(), settled }
+    }
+}
+
+fn median(times: &[f64]) -> f64 {
+    let mut sorted = times.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    sorted.get(sorted.len() / 2).copied().unwrap_or(f64::NAN)
+}
+
+/// What times were measured on.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+pub struct Machine {
+    /// Its processor, as it calls itself.
+    pub processor: String,
+    /// Threads that it runs at once.
+    pub threads: usize,
+    /// `linux, x86_64`.
+    pub system: String,
+    /// How the program was built.
+    pub build: String,
+}
+
+impl Machine {
+    /// This one.
+    #[must_use]
+    pub fn here() -> Self {
+        let known = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
+        let name = known.lines().find_map(|line| line.strip_prefix("model name")?.split_once(':'));
+        let build = if cfg!(debug_assertions) { "development build" } else { "release build" };
+        Self {
+            processor: name.map_or_else(|| "unknown".into(), |(_, name)| name.trim().into()),
+            threads: std::thread::available_parallelism().map_or(1, usize::from),
+            system: format!("{}, {}", std::env::consts::OS, std::env::consts::ARCH),
+            build: build.into(),
+        }
+    }
+}

@@ -1,0 +1,89 @@
+//! What accuracy costs: errors against a reference of many digits, and what is said of them.
+
+use std::path::Path;
+use std::time::Duration;
+
+use shotdamp::report::{AccuracyView, ablation as told, accuracy_page, accuracy_summary};
+use shotdamp::scene::Assumptions;
+use shotdamp::spec::{Experiment, load_assumptions, parse_experiment};
+use shotdamp::study::{Ablation, Accuracy, Contender, Machine, Origin, Outcome, ablation, accuracy};
+
+fn assumptions() -> Assumptions {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("experiments/assumptions.yaml");
+    load_assumptions(&file).expect("the assumptions can be read").assumptions()
+}
+
+fn experiment(damper: &str, forces: &str) -> Experiment {
+    let text = format!(
+        "title: A damper\nsource: {{chapter: 3, section: '3.1'}}\nabout: Price.\nscene:\n  \
+         structure: {{single_mass: {{mass: 1 kg, stiffness: 1000 N/m, damping_ratio: 0.05}}}}\n  \
+         dampers: [{{mass_ratio: 0.05, gap_ratio: 50, {damper}}}]\n  \
+         excitation: {{impulse_train: {{force_ratio: swept, frequency_ratio: 1}}}}\n\
+         sweep: {{force_ratio: {forces}}}\nrun: {{skip: 5 cycles, average: 10 cycles, round_period_to: 1 ms}}\n\
+         measure: [velocity_ratio, std_displacement, floor_impacts]\n\
+         figure: {{x: force_ratio, y: velocity_ratio, caption: Price.}}\n"
+    );
+    let id = "a-damper".parse().expect("an id");
+    parse_experiment(&id, "a-damper.yaml", &text, &assumptions()).unwrap_or_else(|problems| panic!("{problems}"))
+}
+
+fn measured(damper: &str, forces: &str) -> Accuracy {
+    accuracy(&experiment(damper, forces), &assumptions(), Duration::from_millis(2)).expect("it can be measured")
+}
+
+#[test]
+fn certified_events_cost_no_digit_and_a_step_costs_most_of_them() {
+    let measured = measured("floor: {resilient: {stiffness_ratio: 1, damping_ratio: 0.3}}", "[7, 20]");
+    for case in measured.cases.iter().filter(|case| case.floor.is_none()) {
+        assert_eq!(case.origin, Origin::ManyDigits);
+        for point in &case.points {
+            let events = point.events;
+            match point.contender {
+                Contender::EventDriven { .. } => {
+                    assert!(point.error < 1e-12, "{point:?}");
+                    assert!(events.right == events.of && events.of > 20, "{point:?}");
+                    assert!(events.error.is_some_and(|error| error < 1e-12), "{point:?}");
+                }
+                Contender::FixedStep { .. } => assert!(point.error > 1e-6, "{point:?}"),
+            }
+        }
+        let finest = case.skipped.last().expect("steps of a microsecond take more than two milliseconds");
+        assert!(finest.reason.contains("would take about"), "{}", finest.reason);
+    }
+}
+
+#[test]
+fn a_reference_that_is_none_says_so() {
+    let view = AccuracyView {
+        id: "a-damper".into(),
+        title: "A damper".into(),
+        machine: Machine::here(),
+        accuracy: measured("floor: {rigid: {restitution: 0.5}}", "[7]"),
+    };
+    let page = accuracy_page(&view, "a-damper.png");
+    assert!(page.contains("does not know rigid faces that give something back"), "{page}");
+    let summary = accuracy_summary(&[view]);
+    assert!(summary.contains("1 experiment without an independent reference"), "{summary}");
+}
+
+#[test]
+fn each_effect_is_switched_and_what_is_idle_is_left_alone() {
+    let stopped = "floor: {resilient: {stiffness_ratio: 1, damping_ratio: 0.3}}, stop: {length: 1 mm, restitution: 0}";
+    let cases = ablation(&experiment(stopped, "[20]"), &assumptions()).expect("it can be switched");
+    let of = |cases: &[Ablation], name: &str| -> Outcome {
+        let found = cases[0].switched.iter().find(|one| one.effect == name);
+        found.unwrap_or_else(|| panic!("no effect `{name}`")).outcome.clone()
+    };
+    for name in ["limit stop", "ceiling", "gravity", "structural damping"] {
+        assert!(matches!(of(&cases, name), Outcome::Changed { change, .. } if change > 1e-6), "{name}: {cases:?}");
+    }
+    let text = told(&cases);
+    assert!(text.contains("| limit stop | in force | off |"), "{text}");
+    assert!(text.contains("| soft walls | left out | no: the walls are rigid"), "{text}");
+    // Too weak to lift the particle: stop and ceiling are named, and provably idle.
+    let cases = ablation(&experiment(stopped, "[0.001]"), &assumptions()).expect("it can be switched");
+    assert!(cases[0].closed_form);
+    for name in ["limit stop", "ceiling"] {
+        assert_eq!(of(&cases, name), Outcome::Idle, "{name}");
+    }
+}

@@ -1,0 +1,51 @@
+//! The solver of many digits, which is a reference for the others, against references that were there before it.
+
+use std::time::Duration;
+
+use shotdamp::dynamics::{Options, Response};
+use shotdamp::precise::{PreciseError, precise};
+
+use super::bench::{cases, close, instant, system, within};
+use super::reference_cases::{kind, scene};
+
+const PATIENCE: Duration = Duration::from_secs(120);
+
+#[test]
+pub(super) fn it_meets_the_reference_cases_to_all_digits_of_a_double() {
+    let mut refused = Vec::new();
+    let cases = cases(include_str!("../data/reference-cases.json"));
+    for case in &cases {
+        let name = case.text("name");
+        let scene = scene(case);
+        let options = Options { record_events: 50, ..Options::default() };
+        let begun = std::time::Instant::now();
+        let response: Response = match precise(&system(&scene), &options, PATIENCE) {
+            Ok(response) => response,
+            Err(PreciseError::Unknown(what)) => {
+                refused.push((name, what));
+                continue;
+            }
+            Err(error) => panic!("{name}: {error}"),
+        };
+        println!("{name}: {:?}", begun.elapsed());
+        let expected = case.part("expect");
+        let window = response.window();
+        let rms = expected.number("rms_velocity_m_per_s");
+        let std = expected.number("std_displacement_m");
+        close(&format!("{name}, RMS velocity"), window.rms_velocity(), rms, 4e-16);
+        close(&format!("{name}, deviation of the displacement"), window.std_displacement(), std, 1e-15);
+        let state = expected.numbers("final_state_x_v_y_vy");
+        let [place, rate] = response.final_particles[0];
+        let got = [response.final_displacement, response.final_velocity, place, rate];
+        // The clock of a harmonic case is set by a period rounded to a double.
+        for (got, (want, scale)) in got.iter().zip(state.iter().zip([std, rms, std + case.number("gap_m"), rms])) {
+            within(&format!("{name}, final state"), *got, *want, 2e-14 * scale.max(want.abs()));
+        }
+        for (event, want) in response.events.iter().zip(&expected.list("first_events")) {
+            assert_eq!(event.kind, kind(want.text("kind")), "{name} at {} s", want.number("t_s"));
+            let instant = instant(&scene, event);
+            within(&format!("{name}, {:?}", event.kind), instant, want.number("t_s"), 1e-15 * instant);
+        }
+    }
+    assert_eq!(refused, [("M1_harm_eps0.3_g10", "rigid faces that give something back")]);
+}
