@@ -95,6 +95,10 @@ Examples:
         shell: clap_complete::Shell,
     },
     /// Switch each effect of an experiment on or off: what it changes in the result, in events and in time; writes nothing
+    #[command(after_help = "\
+Examples:
+  shotdamp effects ch3-limit-stop
+  shotdamp effects 'ch5-measures-*'")]
     Effects {
         /// Id of the experiment, or a pattern with * and ?
         id: String,

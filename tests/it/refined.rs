@@ -157,7 +157,9 @@ fn progress_ends_where_it_was_said_to_end() {
 
 #[test]
 fn other_solvers_run_at_the_same_points_and_the_range_is_what_makes_stale() {
-    let both = RESPONSE.replace("event_driven}", "[event_driven, {fixed_step: {time_step: 0.1 ms}}]}");
+    let both = RESPONSE
+        .replace("event_driven}", "[event_driven, {fixed_step: {time_step: 0.1 ms}}]}")
+        .replace("by: gap_ratio", "by: [gap_ratio, solver]");
     let engine = Curve(|ratio, gap| (beam(ratio, gap), 0.0, false));
     let (desk, table) = run(&engine, 2, &both, &Silence);
     let of = |solver: &str| {

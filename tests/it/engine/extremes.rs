@@ -58,6 +58,29 @@ pub(super) fn a_floor_swept_through_critical_damping_has_no_seam() {
 }
 
 #[test]
+pub(super) fn modes_that_coalesce_are_no_special_case() {
+    // On a base without damping, with kf = mp (ω/(1 + μ))² and ζf² = μ/(1 + μ), the two pairs of eigenvalues of the pressed
+    // state are one (Krenk, J. Appl. Mech. 72, 2005): it has no eigenbasis.
+    let mass = 0.05_f64;
+    let omega = STIFFNESS.sqrt() / (1.0 + mass);
+    let (stiffness, damping) = (mass * omega * omega, 2.0 * (mass / (1.0 + mass)).sqrt() * mass * omega);
+    let ends: Vec<[f64; 2]> = [-1e-2, -1e-4, -1e-8, -1e-12, 0.0, 1e-12, 1e-8, 1e-4, 1e-2]
+        .into_iter()
+        .map(|off| {
+            let surface = resilient(stiffness, damping * (1.0 + off));
+            let struck = scene(base(1.0, STIFFNESS, 0.0), GRAVITY, damper(mass, 0.05, surface), train(0.3, 0.21));
+            let end = agree(&format!("cf {off:e} off coalescence"), &system(&struck), &short(6), 1e-10);
+            end.final_particles[0]
+        })
+        .collect();
+    for i in 1..4 {
+        for ((below, above), at) in ends[i].iter().zip(&ends[8 - i]).zip(&ends[4]) {
+            within("the middle of both sides", 0.5 * (below + above), *at, 1e-6);
+        }
+    }
+}
+
+#[test]
 pub(super) fn stiff_walls_make_model_3_model_2() {
     // Under a smooth force: an impulse would leave the ceiling ringing however stiff its walls.
     let omega = 25.0;

@@ -85,6 +85,12 @@ const HARD_CASES: &[HardCase] = &[
         tests: &[extremes::a_floor_swept_through_critical_damping_has_no_seam],
     },
     HardCase {
+        name: "Modes that coalesce, and within 1e-12 of it: no eigenbasis",
+        checks: "end of the run, smoothness in cf",
+        reference: "arithmetic of 32 digits; both sides of the sweep",
+        tests: &[extremes::modes_that_coalesce_are_no_special_case],
+    },
+    HardCase {
         name: "Equal frequencies",
         checks: "motion in turned axes, dampers that are alike",
         reference: "modes that swing alone",
