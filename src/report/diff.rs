@@ -2,7 +2,7 @@
 
 use super::markdown::counted;
 use super::movement::{Moved, Movement};
-use crate::text::number::{quantity, significant};
+use crate::text::number::{quantity, signed, significant};
 
 /// Told of each kind in each experiment; the rest is counted.
 const TOLD: usize = 5;
@@ -60,12 +60,14 @@ fn list<T>(heading: &str, all: &[T], told: usize, line: impl Fn(&T) -> String) -
 fn line(moved: &Moved) -> String {
     let Moved { name, unit, from, to, u } = moved;
     let number = |x: f64| if x.is_nan() { "nothing".into() } else { quantity(x, unit, 6) };
-    let by = if (to - from).is_nan() {
+    let change = to - from;
+    let by = if change.is_nan() {
         String::new()
     } else if *u > 0.0 {
-        format!(", by {} of its uncertainty {}", significant(moved.deviation(), 2), significant(*u, 2))
+        let (times, u) = (significant(moved.deviation(), 2), significant(*u, 2));
+        format!(", {}: {times} times its uncertainty of {u}", signed(change, 2))
     } else {
-        ", and no uncertainty is known".into()
+        format!(", {}; no uncertainty is known", signed(change, 2))
     };
     format!("{name}: {} -> {}{by}", number(*from), number(*to))
 }

@@ -87,13 +87,22 @@ pub struct Standing {
     pub numbers: BTreeMap<String, Number>,
 }
 
-/// A number that came out.
+/// A number that came out, to 15 significant digits: what every reader of JSON gives back, and this one.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Number {
     /// S.
     pub value: f64,
     /// u_num.
     pub u: f64,
+}
+
+impl Number {
+    /// Rounds both.
+    pub(super) fn of(value: f64, u: f64) -> Self {
+        // The text of a number always reads back.
+        let rounded = |x: f64| format!("{x:.14e}").parse().unwrap_or(x);
+        Self { value: rounded(value), u: rounded(u) }
+    }
 }
 
 /// Reads such a document again.
@@ -138,9 +147,8 @@ struct WrittenNumber {
 
 impl WrittenEntry {
     fn standing(self) -> Standing {
-        let number = |written: &WrittenNumber| Number {
-            value: written.simulated.unwrap_or(f64::NAN),
-            u: written.u_num.unwrap_or(f64::NAN),
+        let number = |written: &WrittenNumber| {
+            Number::of(written.simulated.unwrap_or(f64::NAN), written.u_num.unwrap_or(f64::NAN))
         };
         let own = self.comparison.iter().map(|written| (String::new(), number(written)));
         let parts = self.parts.iter().filter_map(|part| Some((part.name.clone(), number(part.comparison.as_ref()?))));

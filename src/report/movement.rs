@@ -7,7 +7,7 @@ use crate::table::{Data, Table};
 use crate::text::number::compact;
 use crate::text::words;
 
-use super::json::Standing;
+use super::json::{Number, Standing};
 
 /// Coverage factor, as in a comparison with the study.
 const COVERAGE: f64 = 2.0;
@@ -134,9 +134,9 @@ pub fn between_verdicts(a: &[Standing], b: &[Standing]) -> Movement {
 /// How an entry stands, from its verdict.
 #[must_use]
 pub fn standing(judged: &Judged) -> Standing {
-    let numbers = judged.comparisons().map(|(name, comparison)| {
-        (name.to_owned(), super::json::Number { value: comparison.simulated, u: comparison.u_num })
-    });
+    let numbers = judged
+        .comparisons()
+        .map(|(name, comparison)| (name.to_owned(), Number::of(comparison.simulated, comparison.u_num)));
     Standing {
         id: judged.id.clone(),
         verdict: words::of_key(&judged.verdict),
