@@ -10,6 +10,7 @@ mod clean;
 mod cli;
 mod desk;
 mod engine;
+mod export;
 mod faults;
 mod figure;
 mod figure_map;
