@@ -14,6 +14,7 @@ mod daily;
 mod desk;
 mod diff;
 mod engine;
+mod export;
 mod faults;
 mod figure;
 mod figure_map;

@@ -109,3 +109,24 @@ fn a_file_is_written_whole_or_not_at_all() {
     assert!(!atomic::write_if_changed(&path, b"old").unwrap());
     assert!(atomic::write_if_changed(&path, b"new").unwrap());
 }
+
+/// For pandas, DuckDB and all that is built on Arrow: a script under `tests/interop` opens real tables with them.
+#[test]
+fn units_symbols_and_provenance_stand_where_other_readers_look_for_them() {
+    let bytes = parquet::to_bytes(&table()).unwrap();
+    let text = String::from_utf8_lossy(&bytes);
+    let attributes = "{\"experiment\":\"ch3-gap\",\"units\":{\"rms_velocity\":\"m/s\",\"time\":\"s\"},\"symbols\":{\"gap_ratio\":\"h′\"}}";
+    assert!(text.contains("PANDAS_ATTRS") && text.contains(attributes));
+    // Readers built on Arrow see only what stands in its schema, which is in base64.
+    let encoded = text.split("ARROW:schema").nth(1).unwrap();
+    let encoded: String = encoded
+        .chars()
+        .skip_while(|c| *c != '/')
+        .take_while(|c| c.is_ascii_alphanumeric() || "+/=".contains(*c))
+        .collect();
+    let schema = base64::Engine::decode(&base64::engine::general_purpose::STANDARD, encoded).unwrap();
+    let schema = String::from_utf8_lossy(&schema);
+    for told in ["PANDAS_ATTRS", attributes, "unit", "m/s", "symbol", "h′"] {
+        assert!(schema.contains(told), "{told}");
+    }
+}

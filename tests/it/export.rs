@@ -1,0 +1,77 @@
+//! A study handed on: whole and up to date, or not at all.
+
+use std::collections::BTreeSet;
+use std::fs;
+
+use serde_json::Value;
+
+use crate::cli::{relative_files, shotdamp};
+use crate::desk::{Desk, STOP};
+
+/// A study that has been run, without numbers to hold it against.
+fn finished() -> Desk {
+    let desk = Desk::new();
+    fs::remove_file(desk.layout.path("reference/ch3/ch3-stop.yaml")).unwrap();
+    assert_eq!(shotdamp(&desk, &["run", "--quiet"]).err, "");
+    desk
+}
+
+#[test]
+fn a_crate_holds_and_describes_every_file_and_the_unit_of_every_column() {
+    let desk = finished();
+    let crated = tempfile::tempdir().unwrap();
+    let folder = crated.path().join("deep/crate");
+    let said = shotdamp(&desk, &["export", "--ro-crate", folder.to_str().unwrap(), "--published", "2024-02-29"]);
+    assert_eq!((said.code, said.err.as_str()), (0, ""));
+    let text = fs::read_to_string(folder.join("ro-crate-metadata.json")).unwrap();
+    let description: Value = serde_json::from_str(&text).unwrap();
+    let graph = description["@graph"].as_array().unwrap();
+    let ids: BTreeSet<&str> = graph.iter().map(|entity| entity["@id"].as_str().unwrap()).collect();
+    assert_eq!(ids.len(), graph.len(), "each once");
+    let root = graph.iter().find(|entity| entity["@id"] == "./").unwrap();
+    assert_eq!(root["datePublished"], "2024-02-29");
+    for name in [
+        "experiments/ch3/ch3-gap.yaml",
+        "reference/ch3/ch3-gap.yaml",
+        "results/ch3-stop.parquet",
+        "reports/ch3/ch3-gap.png",
+    ] {
+        let held = fs::read(folder.join(name)).unwrap();
+        assert!(held == desk.bytes(name) && ids.contains(name), "{name}");
+        assert!(root["hasPart"].as_array().unwrap().iter().any(|part| part["@id"] == name), "{name}");
+    }
+    let at = graph.iter().find(|entity| entity["name"] == "velocity_ratio (ψ)").unwrap();
+    assert_eq!(at["unitText"], "1");
+    // Every reference within the crate leads somewhere.
+    for entity in graph {
+        for value in entity.as_object().unwrap().values() {
+            for one in value.as_array().unwrap_or(&vec![value.clone()]) {
+                let Some(id) = one["@id"].as_str() else { continue };
+                assert!(ids.contains(id) || id.starts_with("https://w3id.org/ro/crate/"), "{id} is described");
+            }
+        }
+    }
+    // The same study gives the same crate.
+    let again = crated.path().join("again");
+    shotdamp(&desk, &["export", "--ro-crate", again.to_str().unwrap(), "--published", "2024-02-29"]);
+    assert_eq!(fs::read_to_string(again.join("ro-crate-metadata.json")).unwrap(), text);
+}
+
+#[test]
+fn what_is_not_up_to_date_or_in_the_way_is_told_and_nothing_is_written() {
+    let desk = finished();
+    let folder = desk.layout.path("crate");
+    let export = || shotdamp(&desk, &["export", "--ro-crate", folder.to_str().unwrap()]);
+    desk.put("experiments/ch3/ch3-stop.yaml", &STOP.replace("mass: 1 kg", "mass: 2 kg"));
+    let before = relative_files(&desk);
+    let said = export();
+    assert_eq!(said.code, 2);
+    assert!(said.err.contains("not up to date: ch3-stop; `shotdamp run`"), "{}", said.err);
+    assert!(relative_files(&desk) == before);
+    desk.put("crate", "something");
+    desk.put("experiments/ch3/ch3-stop.yaml", STOP);
+    assert!(export().err.contains("is there already"));
+    assert_eq!(desk.bytes("crate"), b"something");
+    let wrong = shotdamp(&desk, &["export", "--ro-crate", "x", "--published", "29.2.2024"]);
+    assert!(wrong.code == 2 && wrong.err.contains("a date is written 2026-11-21"), "{}", wrong.err);
+}
