@@ -18,7 +18,7 @@ from collections import defaultdict
 EFFECTS = {
     "limit stop": re.compile(r"stop", re.I),
     "contact without tension": re.compile(r"no_tension|released|recovered|again", re.I),
-    "equivalent viscous damping": re.compile(r"half|equivalent", re.I),
+    "equivalent viscous damping": re.compile(r"half_cycle|self\.half|rows\.bend|equivalent"),
     "soft walls": re.compile(r"squeez|wall|across|opposite", re.I),
 }
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))

@@ -51,5 +51,5 @@ def segment(method, rtol, scale):
 if __name__ == "__main__":
     problem = scene()
     for method in ["Adams", "BDF"]:
-        for rtol in [1e-4, 1e-6, 1e-8, 1e-10, 1e-12]:
+        for rtol in [1e-4, 1e-6, 1e-9, 1e-12]:
             answer(f"CVODE {method}, rtol {rtol:.0e}", lambda: run(problem, segment(method, rtol, 1e-2)))

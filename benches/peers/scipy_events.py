@@ -26,6 +26,6 @@ def segment(method, rtol, scale):
 
 if __name__ == "__main__":
     problem = scene()
-    for method in ["DOP853", "RK45", "LSODA"]:
-        for rtol in [1e-4, 1e-6, 1e-8, 1e-10, 1e-12]:
+    for method in ["DOP853", "LSODA"]:
+        for rtol in [1e-4, 1e-6, 1e-9, 1e-12]:
             answer(f"SciPy {method}, rtol {rtol:.0e}", lambda: run(problem, segment(method, rtol, 1e-2)))

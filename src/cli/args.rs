@@ -205,7 +205,7 @@ pub(super) struct AccuracyArgs {
     #[arg(long)]
     pub all: bool,
     /// Longest run in seconds; smaller steps are left out
-    #[arg(long, value_name = "SECONDS", default_value_t = 5.0)]
+    #[arg(long, value_name = "SECONDS", default_value_t = 2.0)]
     pub longest: f64,
 }
 

@@ -31,9 +31,9 @@ const TWIN: [f64; 2] = [1e-9, 1e-6];
 const MEMBERS: u32 = 8;
 const KICK: f64 = 1e-6;
 /// How long the reference may take at least.
-const MOST_PATIENCE: Duration = Duration::from_secs(100);
+const MOST_PATIENCE: Duration = Duration::from_secs(40);
 /// How long the median of a run may take to settle.
-const PATIENCE: Duration = Duration::from_secs(1);
+const PATIENCE: Duration = Duration::from_millis(600);
 
 /// A solver in one of its settings.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -185,7 +185,7 @@ fn ready(experiment: &Experiment, case: &Case, assumptions: &Assumptions) -> Opt
 }
 
 /// Runs the contenders on representative cases. No run takes much longer than `longest`: steps that would are left out, and a
-/// reference that needs twenty times that, and more than a hundred seconds, is given up.
+/// reference that needs twenty times that, and more than forty seconds, is given up.
 ///
 /// # Errors
 /// [`NoAccuracy`] with the reason.
