@@ -26,9 +26,12 @@ pub fn value_in_words(name: Assumption, value: &AssumptionValue) -> String {
 fn unit(name: Assumption) -> &'static str {
     match name {
         Assumption::Gravity => "m/s²",
-        Assumption::StopLength | Assumption::BeamArrayMargin => "m",
+        Assumption::StopLength | Assumption::BeamArrayMargin | Assumption::CentredArrayMargin => "m",
         Assumption::BeamImpulse | Assumption::PlateImpulse => "N s",
-        Assumption::BeamFloorTuning | Assumption::PlateFloorTuning => "N/m",
+        Assumption::BeamFloorTuning
+        | Assumption::PlateFloorTuning
+        | Assumption::BeamArrayFloorTuning
+        | Assumption::PlateArrayFloorTuning => "N/m",
         Assumption::BeamImpulseTime | Assumption::PlateImpulseTime => "s",
         Assumption::BeamHarmonicForce | Assumption::PlateHarmonicForce => "N",
         Assumption::EquivalentDampingCurve => "N s/m",
