@@ -37,6 +37,11 @@ pub(super) enum Command {
     Status(StatusArgs),
     /// Give the verdicts over the tables on disk; simulates and writes nothing
     Check(CheckArgs),
+    /// Say how an entry hangs on each assumption, and which change of one would reproduce it; simulates nothing
+    Explain {
+        /// Id of the entry, `ch3-limit-stop/parting`, or a pattern with * and ?
+        entry: String,
+    },
 }
 
 /// Which experiments.

@@ -16,6 +16,10 @@ pub(super) enum CliError {
     NoExperiments,
     #[error("no experiment matches `{pattern}`; there are {known}")]
     NoMatch { pattern: String, known: String },
+    #[error(
+        "no entry of the reference matches `{0}`; `shotdamp check` and the reports name them, as in ch3-limit-stop/parting"
+    )]
+    NoEntry(String),
     #[error("no experiment belongs to chapter {0}")]
     NoChapter(u32),
     #[error(transparent)]

@@ -4,6 +4,7 @@ mod args;
 mod check;
 mod error;
 mod exit;
+mod explain;
 mod list;
 mod output;
 mod select;
@@ -43,5 +44,6 @@ fn dispatch(args: &Args) -> Result<Exit, CliError> {
         Some(Command::Show { id }) => show::show(&layout, id),
         Some(Command::Status(status)) => status::status(&layout, status),
         Some(Command::Check(check)) => check::check(&layout, check),
+        Some(Command::Explain { entry }) => explain::explain(&layout, entry),
     }
 }

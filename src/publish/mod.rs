@@ -2,6 +2,7 @@
 //!
 //! Stands above the study and below the command. Nothing here simulates, and all of it can be made again from the tables.
 
+mod explain;
 mod figures;
 mod opened;
 mod pages;
@@ -9,6 +10,7 @@ mod publication;
 mod verdicts;
 mod views;
 
+pub use explain::explanations;
 pub use figures::figure_name;
 pub use opened::{Opened, Unread};
 pub use pages::{Published, publish};

@@ -8,6 +8,7 @@ mod candidate;
 mod chapter;
 mod comparison;
 mod console;
+mod explain;
 mod index;
 mod markdown;
 mod page;
@@ -18,6 +19,7 @@ mod view;
 
 pub use assumption::value_in_words;
 pub use console::summary;
+pub use explain::{EntryView, MoveView, explain};
 pub use index::index;
 pub use page::page;
 pub use view::{AssumptionView, ExperimentView, FigureView, PageView};
