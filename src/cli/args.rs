@@ -37,6 +37,8 @@ pub(super) enum Command {
     Status(StatusArgs),
     /// Give the verdicts over the tables on disk; simulates and writes nothing
     Check(CheckArgs),
+    /// Look for the values of unstated inputs that bring chosen entries nearest, and see what becomes of others
+    Calibrate(CalibrateArgs),
     /// Say how an entry hangs on each assumption, and which change of one would reproduce it; simulates nothing
     Explain {
         /// Id of the entry, `ch3-limit-stop/parting`, or a pattern with * and ?
@@ -74,6 +76,15 @@ pub(super) struct RunArgs {
     /// Print errors only
     #[arg(long, short)]
     pub quiet: bool,
+}
+
+#[derive(Debug, clap::Args)]
+pub(super) struct CalibrateArgs {
+    /// Name of a file in `calibrations/`, without ending
+    pub id: String,
+    /// Threads; by default one a processor. The results do not depend on it
+    #[arg(long, short, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    pub jobs: Option<u16>,
 }
 
 #[derive(Debug, clap::Args)]

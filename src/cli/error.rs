@@ -4,6 +4,8 @@ use std::io;
 use std::path::PathBuf;
 
 use crate::atomic::FileError;
+use crate::calibrate::CalibrationError;
+use crate::spec::{IdError, Problems};
 use crate::study::ThreadError;
 
 #[derive(Debug, thiserror::Error)]
@@ -22,6 +24,12 @@ pub(super) enum CliError {
     NoEntry(String),
     #[error("no experiment belongs to chapter {0}")]
     NoChapter(u32),
+    #[error(transparent)]
+    Name(#[from] IdError),
+    #[error(transparent)]
+    Calibration(#[from] CalibrationError),
+    #[error(transparent)]
+    Text(#[from] Problems),
     #[error(transparent)]
     File(#[from] FileError),
     #[error(transparent)]

@@ -1,6 +1,7 @@
 //! The command. One thin file a subcommand; what they share is how a study is found, chosen from and reported on.
 
 mod args;
+mod calibrate;
 mod check;
 mod error;
 mod exit;
@@ -44,6 +45,7 @@ fn dispatch(args: &Args) -> Result<Exit, CliError> {
         Some(Command::Show { id }) => show::show(&layout, id),
         Some(Command::Status(status)) => status::status(&layout, status),
         Some(Command::Check(check)) => check::check(&layout, check),
+        Some(Command::Calibrate(args)) => calibrate::calibrate(&layout, args),
         Some(Command::Explain { entry }) => explain::explain(&layout, entry),
     }
 }

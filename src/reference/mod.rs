@@ -13,6 +13,7 @@ mod entry;
 mod extract;
 mod extraction;
 mod fit;
+mod found;
 mod judge;
 mod line;
 mod mode_shape;
@@ -34,6 +35,7 @@ pub use entry::{
 };
 pub use extraction::Extraction;
 pub use fit::{Fit, FitMeasure};
+pub use found::Found;
 pub use judge::judge;
 pub use predicate::Predicate;
 pub use printed::{Printed, PrintedError};

@@ -5,7 +5,6 @@ use crate::scene::{Assumption, AssumptionValue};
 use crate::text::{number, words};
 
 use super::assumption::{number_in_words, value_in_words};
-use super::comparison::explanation;
 use super::markdown::one_line;
 use super::tally::{shown, word};
 
@@ -40,9 +39,12 @@ pub struct MoveView<'a> {
 pub fn explain(view: &EntryView<'_>) -> String {
     let judged = view.judged;
     let mut text = format!("{}: {}\n", judged.id, shown(judged).replace('*', ""));
-    let notes = explanation(judged);
-    let lines =
-        [("the study", &judged.statement), ("where", &judged.place), ("found", &judged.found), ("note", &notes)];
+    let lines = [
+        ("the study", &judged.statement),
+        ("where", &judged.place),
+        ("found", &judged.found),
+        ("note", &judged.explanation),
+    ];
     for (label, line) in lines.into_iter().filter(|(_, line)| !line.is_empty()) {
         text += &format!("  {label:<10} {}\n", one_line(line));
     }
@@ -80,25 +82,31 @@ fn rows(view: &EntryView<'_>) -> String {
     // A claim has no size: those that turn it come first.
     let weight = |one: &MoveView<'_>| shift(view, one).map_or(f64::from(u8::from(!one.moved.kept)), f64::abs);
     moves.sort_by(|a, b| weight(b).total_cmp(&weight(a)));
-    let mut rows: Vec<[String; 4]> = Vec::new();
+    let mut rows: Vec<[String; 5]> = Vec::new();
     for one in moves {
         let (from, to) = (value_in_words(one.name, one.from), value_in_words(one.name, one.to));
         let shifted =
             shift(view, one).map_or_else(String::new, |shift| format!("{} %", number::signed(100.0 * shift, 2)));
+        let off =
+            one.moved.value.zip(view.judged.comparison.as_ref()).map_or_else(String::new, |(value, comparison)| {
+                let off = (value - comparison.published) / comparison.published.abs();
+                format!("{} % off", number::signed(100.0 * off, 2))
+            });
         rows.push([
             format!("{}: {from} → {to}", words::of_key(&one.name)),
             one.moved.found.clone(),
             shifted,
+            off,
             word(one.moved.verdict).into(),
         ]);
     }
     let width = |column: usize| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0);
-    let widths: Vec<usize> = (0..4).map(width).collect();
+    let widths: Vec<usize> = (0..5).map(width).collect();
     let mut text = String::new();
     for row in &rows {
         let cell =
             |column: usize| format!("{}{}", row[column], " ".repeat(widths[column] - row[column].chars().count()));
-        text += &format!("  {}\n", (0..4).map(cell).collect::<Vec<_>>().join("  ").trim_end());
+        text += &format!("  {}\n", (0..5).map(cell).collect::<Vec<_>>().join("  ").trim_end());
     }
     text
 }

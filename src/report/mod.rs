@@ -4,6 +4,7 @@
 //! a host or a path beyond the links that the caller passes in.
 
 mod assumption;
+mod calibration;
 mod candidate;
 mod chapter;
 mod comparison;
@@ -18,6 +19,7 @@ mod tally;
 mod view;
 
 pub use assumption::value_in_words;
+pub use calibration::calibration;
 pub use console::summary;
 pub use explain::{EntryView, MoveView, explain};
 pub use index::index;

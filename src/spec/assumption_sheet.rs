@@ -162,6 +162,11 @@ fn read_entry(node: &Node, kind: Kind, findings: &Findings) -> Option<Assumption
     })
 }
 
+/// A value of this assumption.
+pub(super) fn read_value_of(name: Assumption, node: &Node, findings: &Findings) -> Option<AssumptionValue> {
+    read_value(node, kind(name), findings)
+}
+
 fn read_value(node: &Node, kind: Kind, findings: &Findings) -> Option<AssumptionValue> {
     match kind {
         Kind::Quantity(dimension) => above_zero(node, dimension, findings).map(AssumptionValue::Number),

@@ -4,6 +4,7 @@
 //! Every reader goes on after a mistake, so a file's problems come together: see [`Problems`].
 
 mod assumption_sheet;
+mod calibration;
 mod check;
 mod columns;
 mod diagnostic;
@@ -29,6 +30,7 @@ mod word;
 mod yaml;
 
 pub use assumption_sheet::{AssumptionEntry, AssumptionSheet, parse_assumptions};
+pub use calibration::{Calibration, CalibrationInput, load_calibration, parse_calibration};
 pub use diagnostic::{Place, Problem, Problems};
 pub use experiment::{
     Axis, AxisScale, Best, Case, Drawing, EnergySpec, Experiment, ExperimentId, FigureSpec, IdError, Level, MapSpec,

@@ -364,7 +364,7 @@ fn evaluate_all(task: Task<'_>, evaluate: &impl Evaluate, candidates: Vec<Candid
     let ready: Vec<_> = match &recipes {
         Ok(recipes) => task
             .variants
-            .iter()
+            .par_iter()
             .map(|variant| Fitness::new(evaluate, experiment, optimise, variant, recipes, &measures))
             .collect(),
         Err(reason) => task.variants.iter().map(|_| Err(reason.clone())).collect(),
