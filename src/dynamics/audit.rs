@@ -110,7 +110,7 @@ impl Audit {
     ) {
         let n = system.mass.order;
         let order = flow.order;
-        let (mut p, mut rate, mut c) = (vec![0.0; order], vec![0.0; order], vec![0.0; 2 * order]);
+        let (mut p, mut rate, mut c) = (vec![0.0; order], vec![0.0; order], vec![0.0; 2 * flow.own]);
         let mut kernels: Vec<Kernel> = Vec::with_capacity(flow.blocks.len());
         self.duration += length;
         let mut t0 = 0.0;

@@ -16,9 +16,9 @@ pub(crate) struct Block {
     /// d = a² − b, 1/s².
     discriminant: f64,
     /// √|d|.
-    root: f64,
+    pub(super) root: f64,
     /// 1/√|d|; infinite at critical damping.
-    inverse_root: f64,
+    pub(super) inverse_root: f64,
     /// Largest modulus of an eigenvalue.
     pub(crate) radius: f64,
 }
@@ -43,14 +43,6 @@ impl Kernel {
 }
 
 impl Block {
-    /// The kernels of all `blocks` after `t` seconds.
-    #[inline(always)]
-    pub(crate) fn kernels(blocks: &[Self], t: f64, kernels: &mut [Kernel]) {
-        for (kernel, block) in kernels.iter_mut().zip(blocks) {
-            *kernel = block.kernel(t);
-        }
-    }
-
     /// The block of the matrix [[p, q], [r, s]].
     pub(crate) fn new([p, q, r, s]: [f64; 4]) -> Self {
         let half = 0.5 * (p - s);

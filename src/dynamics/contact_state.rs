@@ -27,6 +27,8 @@ pub(crate) struct Modes {
     pub(crate) accelerations: Vec<Vec<f64>>,
     /// Block coordinates from (p, p′) and back, column by column and row by row.
     pub(crate) spectral: Spectral,
+    /// The way back once more, column by column: as a segment ends with it.
+    pub(crate) columns: Vec<f64>,
     /// Answer to gravity.
     pub(crate) gravity: Load,
     carried: Cholesky,
@@ -41,6 +43,8 @@ impl Modes {
         let face_of = |j: usize| contacts[j].face(&system.particles[j]).expect("a pressing particle has a face");
         let accelerations = accelerations(system, &carried, &attached, &face_of, damping);
         let spectral = super::modes::split(&accelerations, &mass_of(system, mass, &attached, &face_of))?;
+        let (size, width) = (2 * (n + attached.len()), spectral.width());
+        let columns = (0..size * width).map(|i| spectral.from_blocks[(i % size) * width + i / size]).collect();
         let mut modes = Self {
             contacts: contacts.to_vec(),
             damping: damping.to_vec(),
@@ -48,6 +52,7 @@ impl Modes {
             attached,
             accelerations,
             spectral,
+            columns,
             gravity: Load::default(),
             carried,
         };
@@ -75,7 +80,7 @@ impl Modes {
 
     /// Numbers that it keeps.
     pub(crate) fn size(&self) -> usize {
-        10 * self.order * self.order
+        self.accelerations.len() * 2 * self.order + 3 * self.columns.len()
     }
 }
 

@@ -5,16 +5,31 @@
 //! two-part ln 2); the polynomials of sin and cos are fdlibm's. Error below 1.5 units in the last place against the `libm`
 //! crate, which takes over for arguments beyond the reduction's range.
 
+use super::lanes::Lanes;
+
 /// 1.5·2⁵²: adding and subtracting it rounds to the nearest integer.
 const ROUND: f64 = 6_755_399_441_055_744.0;
 
 /// eˣ.
 #[inline]
 pub(crate) fn exp(x: f64) -> f64 {
+    exp_lanes(Lanes([x])).0[0]
+}
+
+/// sin x and cos x.
+#[inline]
+pub(crate) fn sin_cos(x: f64) -> (f64, f64) {
+    let (sine, cosine) = sin_cos_lanes(Lanes([x]));
+    (sine.0[0], cosine.0[0])
+}
+
+/// eˣ of each.
+#[inline(always)]
+pub(crate) fn exp_lanes<const N: usize>(x: Lanes<N>) -> Lanes<N> {
     const LN2_HIGH: f64 = 6.931_471_803_691_238e-1;
     const LN2_LOW: f64 = 1.908_214_929_270_587_7e-10;
-    if !(x.abs() < 700.0) {
-        return libm::exp(x);
+    if !x.all_below(700.0) {
+        return x.map(exp_beyond);
     }
     let shifted = x * std::f64::consts::LOG2_E + ROUND;
     let k = shifted - ROUND;
@@ -28,22 +43,21 @@ pub(crate) fn exp(x: f64) -> f64 {
         (1.0 / 3_628_800.0 + r * (1.0 / 39_916_800.0)) + r2 * (1.0 / 479_001_600.0 + r * (1.0 / 6_227_020_800.0));
     let tail = r + r2 * (low + r4 * (middle + r4 * high));
     // 2ᵏ from the integer that sits in the low bits of the shifted sum.
-    let power = f64::from_bits(((shifted.to_bits() as i64) << 52).wrapping_add(1023 << 52) as u64);
+    let power = shifted.map(|s| f64::from_bits((s.to_bits() << 52).wrapping_add(1023 << 52)));
     power + power * tail
 }
 
-/// sin x and cos x.
-#[inline]
-pub(crate) fn sin_cos(x: f64) -> (f64, f64) {
+/// sin and cos of each.
+#[inline(always)]
+pub(crate) fn sin_cos_lanes<const N: usize>(x: Lanes<N>) -> (Lanes<N>, Lanes<N>) {
     const PIO2_1: f64 = 1.570_796_326_734_125_6;
     const PIO2_2: f64 = 6.077_100_506_303_966e-11;
     const PIO2_3: f64 = 2.022_266_248_711_166_5e-21;
-    if !(x.abs() < 1e5) {
-        return libm::sincos(x);
+    if !x.all_below(1e5) {
+        return (x.map(|x| sin_cos_beyond(x).0), x.map(|x| sin_cos_beyond(x).1));
     }
     let shifted = x * std::f64::consts::FRAC_2_PI + ROUND;
     let k = shifted - ROUND;
-    let quadrant = shifted.to_bits();
     // Products with the first two parts are exact; the sum is carried in two numbers, r + tail.
     let first = x - k * PIO2_1;
     let second = k * PIO2_2;
@@ -63,10 +77,27 @@ pub(crate) fn sin_cos(x: f64) -> (f64, f64) {
     let half = 0.5 * z;
     let w = 1.0 - half;
     let cosine = w + (((1.0 - w) - half) + (z2 * c - r * tail));
-    let (sine, cosine) = if quadrant & 1 == 0 { (sine, cosine) } else { (cosine, sine) };
-    let sine = f64::from_bits(sine.to_bits() ^ ((quadrant & 2) << 62));
-    let cosine = f64::from_bits(cosine.to_bits() ^ (((quadrant + 1) & 2) << 62));
-    (sine, cosine)
+    let (mut sines, mut cosines) = (sine, cosine);
+    for lane in 0..N {
+        // By the quadrant, in the low bits: exchanged if it is odd, and negated.
+        let quadrant = shifted.0[lane].to_bits();
+        let (sine, cosine) = (sine.0[lane].to_bits(), cosine.0[lane].to_bits());
+        let other = (sine ^ cosine) & (quadrant & 1).wrapping_neg();
+        sines.0[lane] = f64::from_bits((sine ^ other) ^ ((quadrant & 2) << 62));
+        cosines.0[lane] = f64::from_bits((cosine ^ other) ^ ((quadrant.wrapping_add(1) & 2) << 62));
+    }
+    (sines, cosines)
+}
+
+/// Where some lane is out of range, each by itself.
+#[cold]
+fn exp_beyond(x: f64) -> f64 {
+    if x.abs() < 700.0 { exp(x) } else { libm::exp(x) }
+}
+
+#[cold]
+fn sin_cos_beyond(x: f64) -> (f64, f64) {
+    if x.abs() < 1e5 { sin_cos(x) } else { libm::sincos(x) }
 }
 
 #[cfg(test)]

@@ -8,6 +8,7 @@ use std::rc::Rc;
 use nalgebra::DMatrix;
 
 use super::EngineError;
+use super::bank::Bank;
 use super::block::Block;
 use super::contact_state::Modes;
 use super::series::Series;
@@ -20,6 +21,8 @@ pub(crate) struct Flow {
     pub(crate) modes: Rc<Modes>,
     /// Blocks of the free motion; the last one is the drive if it is harmonic.
     pub(crate) blocks: Vec<Block>,
+    /// The same, side by side for their kernels.
+    pub(crate) bank: Bank,
     /// Their Taylor series.
     pub(crate) series: Series,
     /// Blocks without the drive.
@@ -123,6 +126,7 @@ impl Flow {
             }
         };
         let mut flow = Self {
+            bank: Bank::new(&blocks),
             series: Series::new(&blocks),
             drifts: blocks[..own].iter().any(|block| block.determinant == 0.0),
             blocks,
@@ -146,7 +150,7 @@ impl Flow {
 
     /// The signal r·p.
     pub(crate) fn row(&self, row: &[f64]) -> Row {
-        let size = 2 * self.order;
+        let size = self.modes.spectral.width();
         // By values and by rates: r·V, column by column of V.
         let mut by = [vec![0.0; size], vec![0.0; size]];
         for (half, by) in by.iter_mut().enumerate() {
@@ -180,7 +184,7 @@ impl Flow {
     #[inline]
     pub(crate) fn enter(&self, p: &[f64], rate: &[f64], force: f64, drive: DrivePhase, c: &mut [f64]) {
         let order = self.order;
-        let size = 2 * order;
+        let size = self.modes.spectral.width();
         c[..size].fill(0.0);
         for i in 0..order {
             let mut position = p[i] - self.modes.gravity.rest[i] - force * self.force.rest[i];
@@ -209,20 +213,22 @@ impl Flow {
     #[inline]
     pub(crate) fn leave(&self, c: &[f64], t: f64, force: f64, drive: DrivePhase, p: &mut [f64], rate: &mut [f64]) {
         let order = self.order;
-        let size = 2 * order;
-        for i in 0..order {
-            let mut position = self.modes.gravity.rest[i] + force * self.force.rest[i];
-            let mut velocity = 0.0;
-            for (k, c) in c[..size].iter().enumerate() {
-                position += self.modes.spectral.from_blocks[i * size + k] * c;
-                velocity += self.modes.spectral.from_blocks[(order + i) * size + k] * c;
+        let (size, width) = (2 * order, self.modes.spectral.width());
+        let (p, rate) = (&mut p[..order], &mut rate[..order]);
+        for ((p, by_gravity), by_force) in p.iter_mut().zip(&self.modes.gravity.rest).zip(&self.force.rest) {
+            *p = by_gravity + force * by_force;
+        }
+        rate.fill(0.0);
+        for (c, column) in c[..width].iter().zip(self.modes.columns.chunks_exact(size)) {
+            let (positions, rates) = column.split_at(order);
+            p.iter_mut().zip(positions).for_each(|(p, entry)| *p += entry * c);
+            rate.iter_mut().zip(rates).for_each(|(rate, entry)| *rate += entry * c);
+        }
+        if let Some(steady) = &self.harmonic {
+            for i in 0..order {
+                p[i] += steady.cosine[i] * drive.cosine + steady.sine[i] * drive.sine;
+                rate[i] += steady.omega * (steady.sine[i] * drive.cosine - steady.cosine[i] * drive.sine);
             }
-            if let Some(steady) = &self.harmonic {
-                position += steady.cosine[i] * drive.cosine + steady.sine[i] * drive.sine;
-                velocity += steady.omega * (steady.sine[i] * drive.cosine - steady.cosine[i] * drive.sine);
-            }
-            p[i] = position;
-            rate[i] = velocity;
         }
         if !self.drifts {
             return;
@@ -235,10 +241,10 @@ impl Flow {
                 let at = |j: usize| size_of_load * t * (load.slope[k][j] + t * load.bend[k][j]);
                 let (d0, d1) = (at(0), at(1));
                 for i in 0..order {
-                    p[i] += self.modes.spectral.from_blocks[i * size + 2 * k] * d0
-                        + self.modes.spectral.from_blocks[i * size + 2 * k + 1] * d1;
-                    rate[i] += self.modes.spectral.from_blocks[(order + i) * size + 2 * k] * d0
-                        + self.modes.spectral.from_blocks[(order + i) * size + 2 * k + 1] * d1;
+                    p[i] += self.modes.spectral.from_blocks[i * width + 2 * k] * d0
+                        + self.modes.spectral.from_blocks[i * width + 2 * k + 1] * d1;
+                    rate[i] += self.modes.spectral.from_blocks[(order + i) * width + 2 * k] * d0
+                        + self.modes.spectral.from_blocks[(order + i) * width + 2 * k + 1] * d1;
                 }
             }
         }
@@ -268,6 +274,11 @@ impl Flow {
         self.blocks.iter().all(|block| block.radius * time < 5e-6)
     }
 
+    /// Seconds for which it may be followed without a new start.
+    pub(crate) fn lasts(&self) -> f64 {
+        self.modes.spectral.lasts
+    }
+
     /// Natural frequencies of the contact state, rad/s (moduli of the complex pairs' eigenvalues).
     pub(crate) fn natural_frequencies(&self) -> impl Iterator<Item = f64> {
         self.blocks[..self.own].iter().filter(|block| block.oscillates()).map(|block| block.determinant.sqrt())
@@ -284,8 +295,8 @@ pub(crate) struct DrivePhase {
 impl Load {
     pub(crate) fn new(load: &[f64], modes: &Modes) -> Self {
         let order = load.len();
-        let size = 2 * order;
         let spectral = &modes.spectral;
+        let size = spectral.width();
         let count = spectral.blocks.len();
         let still = |rest: Vec<f64>| Self {
             rest,
@@ -370,9 +381,9 @@ impl Flow {
     pub(crate) fn panel(&self, start: &[f64], t: f64, scratch: &mut [f64]) -> f64 {
         let kernels: Vec<_> = self.blocks.iter().map(|block| block.kernel(t)).collect();
         self.advance(&kernels, start, scratch);
-        let size = 2 * self.order;
+        let size = self.modes.spectral.width();
         let share = |k: usize| {
-            (self.order..size).fold(0.0, |sum, i| {
+            (self.order..2 * self.order).fold(0.0, |sum, i| {
                 sum + (self.modes.spectral.from_blocks[i * size + 2 * k] * scratch[2 * k]).abs()
                     + (self.modes.spectral.from_blocks[i * size + 2 * k + 1] * scratch[2 * k + 1]).abs()
             })

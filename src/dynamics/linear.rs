@@ -76,7 +76,7 @@ pub(crate) fn attempt(system: &HybridSystem, options: &Options, states: &States)
         return Ok(Attempt::Open);
     }
     let flow = at_rest(system, states)?;
-    if drifts(&flow) {
+    if !is_closed(&flow) {
         return Ok(Attempt::Open);
     }
     let run = Run::new(system, &flow, options)?;
@@ -91,7 +91,7 @@ pub(crate) fn steady_state(system: &HybridSystem) -> Result<Option<SteadyState>,
         return Ok(None);
     }
     let flow = at_rest(system, &States::of(system))?;
-    if drifts(&flow) {
+    if !is_closed(&flow) {
         return Ok(None);
     }
     let answer = Cholesky::new(&system.mass)?.solve(&system.force_row);
@@ -146,9 +146,9 @@ fn at_rest(system: &HybridSystem, states: &States) -> Result<Rc<Flow>, EngineErr
     states.flow(system, &contacts, &damping)
 }
 
-/// A block without a place to rest.
-fn drifts(flow: &Flow) -> bool {
-    flow.blocks.iter().any(|block| !(block.determinant > 0.0))
+/// Its cycles can be summed: each block has a place to rest, and holds for any number of them.
+fn is_closed(flow: &Flow) -> bool {
+    flow.lasts() == f64::INFINITY && flow.blocks.iter().all(|block| block.determinant > 0.0)
 }
 
 impl<'a> Run<'a> {

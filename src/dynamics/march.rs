@@ -120,7 +120,7 @@ impl<'a> March<'a> {
             phase: DrivePhase::default(),
             phase_time: f64::NAN,
             c: vec![0.0; 2 * most + 2],
-            c_end: vec![0.0; 2 * most],
+            c_end: vec![0.0; 2 * most + 2],
             observed_end: Vec::new(),
             clarity: Clarity { margin: f64::INFINITY, ties: 0 },
             response: Response {
@@ -301,6 +301,11 @@ impl<'a> March<'a> {
             self.damping[j] = self.damping_at(j);
         }
         self.flow = self.states.flow(self.system, &self.contacts, &self.damping)?;
+        let width = 2 * self.flow.blocks.len();
+        if self.c.len() < width {
+            self.c.resize(width, 0.0);
+            self.c_end.resize(width, 0.0);
+        }
         self.fastest = self.flow.natural_frequencies().fold(self.fastest, f64::max);
         Ok(())
     }
@@ -355,7 +360,7 @@ impl<'a> March<'a> {
         if let (Some(bend), false) = (flow.rows.bend, self.half.idle) {
             guards::half_cycle(bend, self.half.sign, self.half.touching, &mut self.search);
         }
-        let limit = until - self.time;
+        let limit = (until - self.time).min(flow.lasts());
         let found = self.search.run(flow, &self.signals, limit, &mut self.clarity);
         let length = match found {
             Found::Nothing => limit,
@@ -365,6 +370,7 @@ impl<'a> March<'a> {
         self.sample(length);
         self.arrive(length, drive);
         self.time = match found {
+            Found::Nothing if limit < until - self.time => self.time + limit,
             Found::Nothing => until,
             Found::Event { .. } => self.time + length,
         };

@@ -17,8 +17,10 @@
 #![expect(clippy::needless_range_loop, reason = "matrix loops run one index over several arrays")]
 
 mod audit;
+mod bank;
 mod block;
 mod cholesky;
+mod cluster;
 mod collision;
 mod contact;
 mod contact_state;
@@ -28,6 +30,7 @@ mod fixed;
 mod flow;
 mod guards;
 mod integral;
+mod lanes;
 mod linear;
 mod march;
 mod mobility;
@@ -339,14 +342,6 @@ pub enum EngineError {
     NoSchurForm {
         /// Order of the matrix.
         order: usize,
-    },
-    /// Blocks that cannot be told apart.
-    #[error(
-        "a contact state has nearly defective modes (condition {condition:.1e}), which would cost more digits than it may"
-    )]
-    NearlyDefective {
-        /// Condition of the splitting.
-        condition: f64,
     },
     /// A steady state that does not exist.
     #[error(

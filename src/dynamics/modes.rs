@@ -32,18 +32,20 @@ pub(crate) fn split(accelerations: &[Vec<f64>], mass: &Matrix) -> Result<Spectra
     }
     let inner = if count > 0 { Spectral::split(2 * count, &matrix)? } else { Spectral::default() };
 
+    let (within, width) = (inner.width(), inner.width() + 2 * rigid.len());
     let mut modes = Spectral {
-        from_blocks: vec![0.0; size * size],
-        to_blocks: vec![0.0; size * size],
+        from_blocks: vec![0.0; size * width],
+        to_blocks: vec![0.0; size * width],
         matrices: inner.matrices,
         blocks: inner.blocks,
+        lasts: inner.lasts,
     };
     for (i, &row) in elastic.iter().enumerate() {
         for (half, unit) in [(0, frequency[i]), (1, 1.0)] {
-            for k in 0..2 * count {
+            for k in 0..within {
                 let (inside, outside) = (half * count + i, half * order + row);
-                modes.from_blocks[outside * size + k] = inner.from_blocks[inside * 2 * count + k] / unit;
-                modes.to_blocks[outside * size + k] = inner.to_blocks[k * 2 * count + inside] * unit;
+                modes.from_blocks[outside * width + k] = inner.from_blocks[inside * within + k] / unit;
+                modes.to_blocks[outside * width + k] = inner.to_blocks[k * 2 * count + inside] * unit;
             }
         }
     }
@@ -61,15 +63,15 @@ pub(crate) fn split(accelerations: &[Vec<f64>], mass: &Matrix) -> Result<Spectra
         elastic.iter().map(|&j| solve.solve(&rigid.iter().map(|&i| mass.at(i, j)).collect::<Vec<_>>())).collect();
     for (r, &row) in rigid.iter().enumerate() {
         for half in 0..2 {
-            let column = 2 * (count + r) + half;
+            let column = within + 2 * r + half;
             let outside = half * order + row;
-            modes.from_blocks[outside * size + column] = 1.0;
-            modes.to_blocks[outside * size + column] = 1.0;
+            modes.from_blocks[outside * width + column] = 1.0;
+            modes.to_blocks[outside * width + column] = 1.0;
             for (e, &other) in elastic.iter().enumerate() {
                 let inside = half * order + other;
-                modes.to_blocks[inside * size + column] = shift[e][r];
-                for k in 0..2 * count {
-                    modes.from_blocks[outside * size + k] -= shift[e][r] * modes.from_blocks[inside * size + k];
+                modes.to_blocks[inside * width + column] = shift[e][r];
+                for k in 0..within {
+                    modes.from_blocks[outside * width + k] -= shift[e][r] * modes.from_blocks[inside * width + k];
                 }
             }
         }

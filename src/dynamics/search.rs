@@ -15,6 +15,7 @@
 //! further from zero than all blocks together can reach, or value and slope are larger than their curvature can undo. No
 //! window is sampled, no crossing stepped over.
 
+use super::bank::Bank;
 use super::block::{Block, Kernel, Phase};
 use super::contact::Crossing;
 use super::flow::{Flow, Parabola};
@@ -38,6 +39,21 @@ const FASTEST: f64 = 4.8;
 const SHORT_HOP: f64 = 0.02;
 /// radius·δ below which the local expansion of a guard, to the seventh, is exact to rounding.
 const NEAR: f64 = 0.03;
+
+/// What a search knows of a flow.
+#[derive(Clone, Copy)]
+struct Motion<'a> {
+    blocks: &'a [Block],
+    bank: &'a Bank,
+    series: &'a Series,
+}
+
+impl Motion<'_> {
+    #[inline]
+    fn kernels(self, t: f64, kernels: &mut [Kernel]) {
+        self.bank.kernels(self.blocks, t, kernels);
+    }
+}
 
 /// A guard at the start of a segment: parabola + sign × signal.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -175,24 +191,17 @@ impl Search {
     /// Finds the first event before `limit` seconds; leaves the kernels of that time, or of the limit.
     pub(crate) fn run(&mut self, flow: &Flow, signals: &Signals, limit: f64, clarity: &mut Clarity) -> Found {
         // The same search three times: with one or two blocks the compiler unrolls every loop over them.
-        let blocks = &flow.blocks[..];
-        match blocks.len() {
-            1 => self.first(&blocks[..1], &flow.series, signals, limit, clarity),
-            2 => self.first(&blocks[..2], &flow.series, signals, limit, clarity),
-            _ => self.first(blocks, &flow.series, signals, limit, clarity),
+        let motion = |blocks| Motion { blocks, bank: &flow.bank, series: &flow.series };
+        match &flow.blocks[..] {
+            one @ [_] => self.first(motion(one), signals, limit, clarity),
+            two @ [_, _] => self.first(motion(two), signals, limit, clarity),
+            many => self.first(motion(many), signals, limit, clarity),
         }
     }
 
     #[inline(always)]
-    fn first(
-        &mut self,
-        blocks: &[Block],
-        series: &Series,
-        signals: &Signals,
-        limit: f64,
-        clarity: &mut Clarity,
-    ) -> Found {
-        self.start(blocks, series, signals, limit, clarity);
+    fn first(&mut self, motion: Motion<'_>, signals: &Signals, limit: f64, clarity: &mut Clarity) -> Found {
+        self.start(motion, signals, limit, clarity);
         // Below the rounding of the clock nothing can be told apart: what happens at the limit comes first.
         let instant = 4.0 * f64::EPSILON * limit;
         let mut found = Found::Nothing;
@@ -202,8 +211,8 @@ impl Search {
             if !(clear < horizon - instant) {
                 break;
             }
-            let Look::Root(root) = self.look(blocks, series, signals, guard, horizon, limit, clarity) else { continue };
-            let time = self.polish(blocks, series, signals, root, clarity);
+            let Look::Root(root) = self.look(motion, signals, guard, horizon, limit, clarity) else { continue };
+            let time = self.polish(motion, signals, root, clarity);
             self.clear[guard] = f64::INFINITY;
             let earlier = match found {
                 Found::Nothing => true,
@@ -221,14 +230,14 @@ impl Search {
             }
         }
         if found == Found::Nothing {
-            Block::kernels(blocks, limit, &mut self.kernels);
+            motion.kernels(limit, &mut self.kernels);
         }
         found
     }
 
     /// Makes room, and looks at every guard for the first time.
     #[inline(always)]
-    fn start(&mut self, blocks: &[Block], series: &Series, signals: &Signals, limit: f64, clarity: &Clarity) {
+    fn start(&mut self, motion: Motion<'_>, signals: &Signals, limit: f64, clarity: &Clarity) {
         let count = self.guards.len();
         self.clear.resize(count, 0.0);
         self.looked.clear();
@@ -236,20 +245,21 @@ impl Search {
         self.plans.resize(count, Plan::NONE);
         self.surveys.clear();
         self.surveys.resize(signals.len(), Survey::NONE);
-        let size = blocks.len() * signals.len();
+        let width = motion.blocks.len();
+        let size = width * signals.len();
         if self.current.len() < size {
             self.current.resize(size, Phase::default());
             self.amplitudes.resize(size, 0.0);
         }
         for kernels in [&mut self.here, &mut self.kernels, &mut self.trial] {
-            kernels.resize(blocks.len(), Kernel::NONE);
+            kernels.resize(motion.bank.places(), Kernel::NONE);
         }
         self.now = 0.0;
         self.shortest = f64::EPSILON * limit;
         for index in 0..count {
             let guard = self.guards[index];
-            self.survey(blocks, signals, guard.signal, limit);
-            self.plans[index] = self.plan(series, &guard, blocks.len(), clarity);
+            self.survey(motion, signals, guard.signal, limit);
+            self.plans[index] = self.plan(motion, &guard, clarity);
             self.clear[index] = self.plans[index].quick;
         }
     }
@@ -267,11 +277,9 @@ impl Search {
 
     /// Extends the proof of one guard, or finds its root.
     #[inline(always)]
-    #[expect(clippy::too_many_arguments, reason = "the flow comes in pieces, so that its size is known")]
     fn look(
         &mut self,
-        blocks: &[Block],
-        series: &Series,
+        motion: Motion<'_>,
         signals: &Signals,
         index: usize,
         horizon: f64,
@@ -281,15 +289,15 @@ impl Search {
         let guard = self.guards[index];
         if self.plans[index].at != self.now {
             // Another guard has moved on to here.
-            self.survey(blocks, signals, guard.signal, limit);
-            self.plans[index] = self.plan(series, &guard, blocks.len(), clarity);
+            self.survey(motion, signals, guard.signal, limit);
+            self.plans[index] = self.plan(motion, &guard, clarity);
         }
         let clear = self.clear[index];
         let ahead = clear - self.now;
         if ahead > WORTH_A_MOVE * self.plans[index].window || (ahead > 0.0 && self.looked[index] == self.now) {
-            self.move_to(blocks, clear);
-            self.survey(blocks, signals, guard.signal, limit);
-            self.plans[index] = self.plan(series, &guard, blocks.len(), clarity);
+            self.move_to(motion, clear);
+            self.survey(motion, signals, guard.signal, limit);
+            self.plans[index] = self.plan(motion, &guard, clarity);
         }
         let plan = self.plans[index];
         if self.now + plan.quick > clear {
@@ -304,13 +312,13 @@ impl Search {
             let now = self.now;
             let start = if now == 0.0 { guard.start } else { Start::Apart };
             let indivisible = window <= self.shortest.max(64.0 * f64::EPSILON * now);
-            let own = self.own(blocks.len(), guard.signal);
-            if series.near_critical {
-                self.bound(blocks, own.clone(), window);
+            let own = self.own(motion.blocks.len(), guard.signal);
+            if motion.series.near_critical {
+                self.bound(motion.blocks, own.clone(), window);
             }
-            let span = Span::new(series, now, window);
+            let span = Span::new(motion.series, now, window);
             let (shares, amplitudes) = (&self.current[own.clone()], &self.amplitudes[own]);
-            let bounds = series.bounds(amplitudes, &span, start == Start::Apart);
+            let bounds = motion.series.bounds(amplitudes, &span, start == Start::Apart);
             let hopeless = bounds.leaves_blocks && {
                 let survey = &self.surveys[guard.signal];
                 guard.parabola.at(now) + guard.sign * survey.value < 2.0 * bounds.left_out
@@ -318,11 +326,11 @@ impl Search {
             let verdict = if hopeless && !indivisible {
                 Verdict::Unsure
             } else {
-                piece.expand(series, shares, &bounds, guard.sign, guard.parabola, &span, start);
+                piece.expand(motion.series, shares, &bounds, guard.sign, guard.parabola, &span, start);
                 piece.judge(|order| {
                     let bent = guard.parabola.p2.abs() * (span.length * span.length);
                     let parabola = if order == 0 { 2.0 * bent } else { 0.0 };
-                    parabola + series.bend(amplitudes, span.length * series.pace, order)
+                    parabola + motion.series.bend(amplitudes, span.length * motion.series.pace, order)
                 })
             };
             match verdict {
@@ -358,7 +366,7 @@ impl Search {
                     let known = self.clear[index] - now;
                     if window < known {
                         // Shorter than what is proven already: begin where that ends.
-                        self.move_to(blocks, now + known);
+                        self.move_to(motion, now + known);
                         return Look::Further;
                     }
                 }
@@ -368,17 +376,18 @@ impl Search {
 
     /// The signal as it is now, with its bounds.
     #[inline(always)]
-    fn survey(&mut self, blocks: &[Block], signals: &Signals, signal: usize, limit: f64) {
+    fn survey(&mut self, motion: Motion<'_>, signals: &Signals, signal: usize, limit: f64) {
         if self.surveys[signal].at == self.now {
             return;
         }
-        let own = self.own(blocks.len(), signal);
+        let own = self.own(motion.blocks.len(), signal);
         let (initial, _) = signals.of(signal);
         let moved = self.now > 0.0;
         let remaining = limit - self.now;
         let mut survey = Survey { at: self.now, ..Survey::NONE };
         let places = self.current[own.clone()].iter_mut().zip(&mut self.amplitudes[own]);
-        for (((block, start), kernel), (share, bound)) in blocks.iter().zip(initial).zip(&self.here).zip(places) {
+        for (((block, start), kernel), (share, bound)) in motion.blocks.iter().zip(initial).zip(&self.here).zip(places)
+        {
             let now = if moved { block.advance(*start, *kernel) } else { *start };
             // Good for the second derivative too.
             let amplitude = block.amplitude(now, 2.0, remaining);
@@ -396,8 +405,8 @@ impl Search {
     /// Looks at a guard from now on: the window that suits it, and how long two cheap bounds keep it clear, by more than the
     /// smallest margin so far. The fastest blocks are left out of both while all of them together cannot bring it near zero.
     #[inline(always)]
-    fn plan(&self, series: &Series, guard: &Guard, width: usize, clarity: &Clarity) -> Plan {
-        let survey = &self.surveys[guard.signal];
+    fn plan(&self, motion: Motion<'_>, guard: &Guard, clarity: &Clarity) -> Plan {
+        let (survey, width) = (&self.surveys[guard.signal], motion.blocks.len());
         let (now, parabola) = (self.now, guard.parabola);
         let here = Parabola { p0: parabola.at(now), p1: parabola.rate(now), p2: parabola.p2 };
         let margin = if guard.distance { clarity.margin } else { 0.0 };
@@ -423,7 +432,7 @@ impl Search {
         if width > 2 {
             let own = self.own(width, guard.signal);
             let (shares, amplitudes) = (&self.current[own.clone()], &self.amplitudes[own]);
-            let (most, mut slow) = (NOISE * (here.p0 + value - least), &series.by_radius[..]);
+            let (most, mut slow) = (NOISE * (here.p0 + value - least), &motion.series.by_radius[..]);
             while let [(block, _), slower @ ..] = slow
                 && !slower.is_empty()
                 && noise + amplitudes[*block] < most
@@ -464,53 +473,46 @@ impl Search {
 
     /// Windows begin at `t` from now on.
     #[inline(always)]
-    fn move_to(&mut self, blocks: &[Block], t: f64) {
+    fn move_to(&mut self, motion: Motion<'_>, t: f64) {
         self.now = t;
-        Block::kernels(blocks, t, &mut self.here);
+        motion.kernels(t, &mut self.here);
     }
 
     /// The time of an isolated root, to the last digit; leaves its kernels on trial.
     #[inline(always)]
-    fn polish(
-        &mut self,
-        blocks: &[Block],
-        series: &Series,
-        signals: &Signals,
-        root: Root,
-        clarity: &mut Clarity,
-    ) -> f64 {
+    fn polish(&mut self, motion: Motion<'_>, signals: &Signals, root: Root, clarity: &mut Clarity) -> f64 {
         let guard = self.guards[root.guard];
         let (t, window) = (self.now, root.window);
         if root.high == 0.0 {
-            Block::kernels(blocks, t, &mut self.trial);
+            motion.kernels(t, &mut self.trial);
             return t;
         }
-        if t == 0.0 && guard.start != Start::Apart && root.guess * window * series.pace < SHORT_HOP {
-            return self.polish_short_hop(blocks, series, root);
+        if t == 0.0 && guard.start != Start::Apart && root.guess * window * motion.series.pace < SHORT_HOP {
+            return self.polish_short_hop(motion, root);
         }
         let (initial, _) = signals.of(guard.signal);
         let (mut lower, mut upper) = (t, t + root.high * window);
         let slack = 1e-3 * (upper - lower);
         let mut time = t + window * root.guess;
         for _ in 0..60 {
-            Block::kernels(blocks, time, &mut self.trial);
-            let local = self.local(blocks, series, initial, &guard, time);
+            motion.kernels(time, &mut self.trial);
+            let local = self.local(motion, initial, &guard, time);
             if local[0] >= 0.0 {
                 lower = lower.max(time)
             } else {
                 upper = upper.min(time)
             }
             let mut scaled = nearest_root(&local);
-            let mut delta = scaled * series.unit;
+            let mut delta = scaled * motion.series.unit;
             let mut next = time + delta;
             if (next >= lower - slack && next <= upper + slack) || delta.abs() <= 8.0 * f64::EPSILON * time {
                 if next < t {
                     // Rounding has put the root of a guard that starts near zero before the window; time never runs backwards.
                     (next, delta) = (t, t - time);
-                    scaled = delta / series.unit;
+                    scaled = delta / motion.series.unit;
                 }
                 if scaled.abs() < NEAR {
-                    for (kernel, block) in self.trial.iter_mut().zip(blocks) {
+                    for (kernel, block) in self.trial.iter_mut().zip(motion.blocks) {
                         *kernel = block.compose(*kernel, block.kernel_near_zero(delta));
                     }
                     if guard.distance {
@@ -530,23 +532,23 @@ impl Search {
                 break;
             }
         }
-        Block::kernels(blocks, time, &mut self.trial);
+        motion.kernels(time, &mut self.trial);
         clarity.ties += 1;
         time
     }
 
     /// A hop so short that the window's polynomial is exact, while the difference of parabola and blocks is all rounding.
     #[cold]
-    fn polish_short_hop(&mut self, blocks: &[Block], series: &Series, root: Root) -> f64 {
+    fn polish_short_hop(&mut self, motion: Motion<'_>, root: Root) -> f64 {
         let guard = self.guards[root.guard];
-        let own = self.own(blocks.len(), guard.signal);
+        let own = self.own(motion.blocks.len(), guard.signal);
         let mut piece = Window::new();
-        let span = Span::new(series, 0.0, root.window);
+        let span = Span::new(motion.series, 0.0, root.window);
         let (shares, amplitudes) = (&self.current[own.clone()], &self.amplitudes[own]);
-        let bounds = series.bounds(amplitudes, &span, false);
-        piece.expand(series, shares, &bounds, guard.sign, guard.parabola, &span, guard.start);
+        let bounds = motion.series.bounds(amplitudes, &span, false);
+        piece.expand(motion.series, shares, &bounds, guard.sign, guard.parabola, &span, guard.start);
         let time = root.window * piece.refine(root.guess, root.high);
-        for (kernel, block) in self.trial.iter_mut().zip(blocks) {
+        for (kernel, block) in self.trial.iter_mut().zip(motion.blocks) {
             *kernel = block.kernel_near_zero(time);
         }
         time
@@ -554,10 +556,10 @@ impl Search {
 
     /// Taylor coefficients of a guard about `time`, to the seventh, in powers of ρδ.
     #[inline(always)]
-    fn local(&self, blocks: &[Block], series: &Series, initial: &[Phase], guard: &Guard, time: f64) -> [f64; 8] {
-        let moved = blocks.iter().zip(&self.trial).zip(initial);
-        let mut a = series.expand::<0, 8>(moved.map(|((block, kernel), phase)| block.advance(*phase, *kernel)));
-        let unit = series.unit;
+    fn local(&self, motion: Motion<'_>, initial: &[Phase], guard: &Guard, time: f64) -> [f64; 8] {
+        let moved = motion.blocks.iter().zip(&self.trial).zip(initial);
+        let mut a = motion.series.expand::<0, 8>(moved.map(|((block, kernel), phase)| block.advance(*phase, *kernel)));
+        let unit = motion.series.unit;
         let parabola = guard.parabola;
         let rest = [parabola.at(time), parabola.rate(time) * unit, parabola.p2 * (unit * unit)];
         a.iter_mut().for_each(|a| *a *= guard.sign);

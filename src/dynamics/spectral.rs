@@ -9,28 +9,47 @@ use nalgebra::{DMatrix, Schur};
 use super::EngineError;
 use super::block::Block;
 
-/// A = V diag(Bₖ) W with W = V⁻¹.
-#[derive(Default)]
+/// e^(At) = V diag(e^(Bₖt)) W, with W = V⁻¹ where there are as many blocks as coordinates ask for.
 pub(crate) struct Spectral {
-    /// V, row by row, order × order.
+    /// V, row by row, order × 2·blocks.
     pub(crate) from_blocks: Vec<f64>,
-    /// W.
+    /// W, row by row, 2·blocks × order.
     pub(crate) to_blocks: Vec<f64>,
     /// Entries of each block, [[p, q], [r, s]] flattened.
     pub(crate) matrices: Vec<[f64; 4]>,
     /// Their invariants.
     pub(crate) blocks: Vec<Block>,
+    /// Seconds for which it holds; infinite unless some eigenvalues nearly coalesce.
+    pub(crate) lasts: f64,
 }
 
-/// Above this the blocks are too nearly dependent to be worth their digits.
-const WORST_CONDITION: f64 = 1e7;
+/// Above this the blocks are too nearly dependent to be split from each other: four digits.
+const WORST_CONDITION: f64 = 1e4;
 
 /// Rates this far apart cost the slow blocks two digits.
 const WIDE: f64 = 100.0;
 /// A Newton step larger than this is no correction.
 const LARGEST_STEP: f64 = 1e-6;
 
+impl Default for Spectral {
+    /// Of no coordinates.
+    fn default() -> Self {
+        Self {
+            from_blocks: Vec::new(),
+            to_blocks: Vec::new(),
+            matrices: Vec::new(),
+            blocks: Vec::new(),
+            lasts: f64::INFINITY,
+        }
+    }
+}
+
 impl Spectral {
+    /// Block coordinates: two a block.
+    pub(crate) fn width(&self) -> usize {
+        2 * self.blocks.len()
+    }
+
     /// Splits `matrix` (row by row, of even `order`).
     pub(crate) fn split(order: usize, matrix: &[f64]) -> Result<Self, EngineError> {
         if order == 2 {
@@ -43,12 +62,11 @@ impl Spectral {
         let (mut q, mut t) = schur.unpack();
         let firsts = gather(&mut q, &mut t);
         let (x, y) = decouple(&t, &firsts);
+        if !(largest(&x) * largest(&y) < WORST_CONDITION) {
+            return Ok(super::cluster::split(&q, &t));
+        }
         let mut v = product(&q, &x);
         let mut w = product(&y, &q.transpose());
-        let condition = largest(&x) * largest(&y);
-        if !(condition < WORST_CONDITION) {
-            return Err(EngineError::NearlyDefective { condition });
-        }
         let slowest = firsts.iter().map(|&i| radius(&t, i)).fold(f64::INFINITY, f64::min);
         if norm > WIDE * slowest {
             let a = DMatrix::from_row_slice(order, order, matrix);
@@ -59,6 +77,7 @@ impl Spectral {
             to_blocks: vec![0.0; order * order],
             matrices: Vec::with_capacity(order / 2),
             blocks: Vec::with_capacity(order / 2),
+            lasts: f64::INFINITY,
         };
         for i in firsts {
             let entries = settle([t[(i, i)], t[(i, i + 1)], t[(i + 1, i)], t[(i + 1, i + 1)]], norm, creeps);
@@ -81,6 +100,7 @@ impl Spectral {
             to_blocks: vec![1.0, 0.0, 0.0, 1.0],
             matrices: vec![entries],
             blocks: vec![Block::new(entries)],
+            lasts: f64::INFINITY,
         }
     }
 }
