@@ -6,6 +6,7 @@
 )]
 #![expect(clippy::excessive_precision, reason = "published numbers stand as published")]
 
+mod calibrate;
 mod cli;
 mod desk;
 mod engine;
