@@ -4,8 +4,8 @@ use super::extract::Extracted;
 use super::line::{common, lines};
 use super::place::{best_place, grows_towards};
 use super::predicate::{
-    Apart, Between, ColumnsAgree, Equal, Level, LineAbove, LinesAgree, PathMonotone, PathsCross, Predicate, Trend,
-    Within,
+    Apart, Between, ColumnsAgree, Equal, GreatestPoint, Level, LineAbove, LinesAgree, PathMonotone, PathsCross,
+    Predicate, Trend, Within,
 };
 use super::selection::Allowed;
 use super::shape::{greatest_at_end, levels_off, linear, monotone, onsets, peaks};
@@ -38,6 +38,7 @@ pub(crate) fn decide(predicate: &Predicate, view: &View<'_>) -> Result<Decision,
         Predicate::Onsets(claim) => onsets(claim, view),
         Predicate::PathsCross(claim) => paths_cross(claim, view),
         Predicate::PathMonotone(claim) => path_monotone(claim, view),
+        Predicate::GreatestPoint(claim) => greatest_point(claim, view),
         Predicate::BestPlace(claim) => best_place(claim, view),
         Predicate::GrowsTowards(claim) => grows_towards(claim, view),
         Predicate::Curve(claim) => claim.decide(view),
@@ -241,6 +242,33 @@ fn paths_cross(claim: &PathsCross, view: &View<'_>) -> Result<Decision, Absence>
             claim.other,
             with_unit(above, 3, unit),
             with_unit(below, 3, unit)
+        )
+    });
+    tally.decision()
+}
+
+fn greatest_point(claim: &GreatestPoint, view: &View<'_>) -> Result<Decision, Absence> {
+    let rows = view.rows(claim.source(), None)?;
+    let (points, values) = (view.path(&rows, &claim.over)?, view.path(&rows, &claim.of)?);
+    let distance = |&(point, _): &(&f64, &f64)| (point - claim.at).abs();
+    let all = || points.iter().zip(values);
+    let Some((&here, &value)) = all().min_by(|a, b| distance(a).total_cmp(&distance(b))) else {
+        return Err(Absence::NoRow(format!("the list `{}` is empty", claim.over)));
+    };
+    let elsewhere = all().filter(|(point, _)| **point != here).max_by(|a, b| a.1.total_cmp(b.1));
+    let Some((&other, &most)) = elsewhere else {
+        return Err(Absence::NoRow(format!("the list `{}` has one point alone", claim.over)));
+    };
+    let unit = view.unit(&rows, &claim.of)?;
+    let mut tally = Tally::new();
+    tally.require_strictly(value - most, 0.0, || {
+        format!(
+            "{} at {} = {}; elsewhere at most {}, at {}",
+            with_unit(value, 4, unit),
+            claim.over,
+            significant(here, 4),
+            with_unit(most, 4, unit),
+            significant(other, 4)
         )
     });
     tally.decision()

@@ -55,6 +55,8 @@ pub enum Predicate {
     PathsCross(PathsCross),
     /// A time history never rises (or falls).
     PathMonotone(PathMonotone),
+    /// A shape or time history is largest at one of its points.
+    GreatestPoint(GreatestPoint),
     /// A map has its largest value at a place.
     BestPlace(BestPlace),
     /// A map grows towards a place.
@@ -323,6 +325,18 @@ claim! {
     }
 }
 
+claim! {
+    /// The largest value of a list of numbers, and where it lies.
+    GreatestPoint {
+        /// The list: a shape, a time history.
+        of: String,
+        /// The list of its points: `x`, `time`.
+        over: String,
+        /// The point that is largest: of the list's points the nearest to here.
+        at: f64,
+    }
+}
+
 impl Within {
     /// The distance that it is for these two numbers.
     pub(crate) fn allows(self, a: f64, b: f64) -> f64 {
@@ -365,6 +379,7 @@ impl Predicate {
             | Self::GreatestAtEnd(_)
             | Self::Onsets(_)
             | Self::PathsCross(_)
+            | Self::GreatestPoint(_)
             | Self::LineAbove(_) => false,
         }
     }
@@ -406,6 +421,7 @@ impl Predicate {
             Self::Onsets(claim) if claim.order.len() < 2 => return Some("an order needs two onsets or more"),
             Self::Onsets(claim) => claim.order.iter().all(|onset| onset.above.is_finite()),
             Self::PathMonotone(claim) => fraction(claim.slack) && claim.after.is_none_or(f64::is_finite),
+            Self::GreatestPoint(claim) => claim.at.is_finite(),
             Self::BestPlace(BestPlace { among: 0, .. }) => return Some("a place is among one of the best or more"),
             Self::BestPlace(claim) => fraction(claim.slack) && claim.at.is_sound(),
             Self::GrowsTowards(claim) => fraction(claim.slack) && claim.to.is_sound(),

@@ -7,7 +7,8 @@ use crate::scene::{Assumptions, ExcitationKind, Parameter, ParameterValue, Part,
 
 use super::diagnostic::{Findings, Span};
 use super::experiment::{
-    Case, EnergySpec, Experiment, Maximise, Refinement, Settings, ShapeSpec, SolverChoice, TraceSpec,
+    Case, Drawing, EnergySpec, Experiment, FigureSpec, Maximise, Panel, Refinement, Settings, ShapeSpec, SolverChoice,
+    TraceSpec,
 };
 use super::optimise::Optimise;
 use super::refined::curves;
@@ -128,6 +129,17 @@ impl Checks<'_> {
                 let message = format!("`{}` is averaged over and varied at once", word_of(*parameter));
                 self.findings.wrong::<()>(*span, message);
             }
+        }
+    }
+
+    /// A line runs through points of one solver.
+    pub fn lines(&self, figures: &[FigureSpec], cases: &[Case], at: Span) {
+        let joined = |panel: &Panel| !panel.by.iter().any(|column| column == "solver");
+        let drawn =
+            |figure: &FigureSpec| matches!(&figure.drawing, Drawing::Lines(panels) if panels.iter().any(joined));
+        if cases.iter().any(|case| case.solvers.len() > 1) && figures.iter().any(drawn) {
+            let message = "a line would run through the points of several solvers";
+            self.findings.report::<()>(at, String::from(message), Some("add `solver` to `by`".into()));
         }
     }
 

@@ -82,6 +82,7 @@ impl<'t> ExperimentReader<'t> {
         let energies_at = fields.get("energies").map_or(fields.span(), |node| node.span);
         let place = |key| fields.get(key).map_or(fields.span(), |node| node.span);
         let (scene_at, optimise_at) = (place("scene"), place("optimise"));
+        let figures_at = if fields.get("figure").is_some() { place("figure") } else { place("figures") };
 
         let kept = match (&trace, &energies, &shape) {
             (Some(trace), Some(energies), Some(shape)) => Some(match (trace, energies, shape) {
@@ -142,6 +143,8 @@ impl<'t> ExperimentReader<'t> {
             let _ = scene.recipe.set_gaps(optimise.gaps, &low);
         }
         places.extend(mean_over.places);
+        let figures = figures?;
+        checks.lines(&figures, &cases, figures_at);
         let experiment = Experiment {
             id: id.clone(),
             title: title?,
@@ -161,7 +164,7 @@ impl<'t> ExperimentReader<'t> {
             trace,
             energies,
             shape,
-            figures: figures?,
+            figures,
         };
         let parts = scene.parts;
         checks.scenes(&experiment, |parameter, part| {

@@ -430,3 +430,17 @@ fn one_line_lies_above_another_at_every_point_or_it_does_not() {
     let nobody = claim.replace("above: optimised", "above: uniform");
     assert!(refused(&nobody).contains("not above itself"));
 }
+
+#[test]
+fn a_shape_is_largest_at_a_point_or_elsewhere() {
+    let lists = |name: &str, list: &[f64]| Column::new(name, Data::FloatList(vec![list.to_vec()]));
+    let shape = |values: &[f64]| {
+        complete(Table::default().with(lists("x", &[0.0, 0.5, 1.0])).with(lists("rms_displacement", values)), &[], 0.0)
+    };
+    let free_end = "claim: {greatest_point: {of: rms_displacement, over: x, at: 0.98}}";
+    assert_eq!(verdict(free_end, &shape(&[0.0, 0.3, 0.8])), Verdict::Reproduced);
+    assert_eq!(verdict(free_end, &shape(&[0.0, 0.9, 0.8])), Verdict::Differs);
+    assert_eq!(verdict(&free_end.replace("0.98", "0.4"), &shape(&[0.0, 0.9, 0.8])), Verdict::Reproduced);
+    assert_eq!(verdict(free_end, &shape(&[0.0, f64::NAN, 0.8])), Verdict::Missing);
+    assert_eq!(cannot_fail(free_end, &shape(&[0.0, 0.3, 0.8])), Vec::<String>::new());
+}

@@ -232,6 +232,10 @@ fn mistakes_that_a_person_makes_are_told_where_they_stand() {
             "9:7 a damper has both `gap` and `gap_ratio`, which say the same | keep one of the two",
         ),
         (with("mass: 1 kg", "mass: -1 kg"), "5:35 a mass above zero is wanted"),
+        (
+            with("solver: event_driven", "solver: [event_driven, {fixed_step: {time_step: 1 ms}}]"),
+            "17:1 a line would run through the points of several solvers | add `solver` to `by`",
+        ),
         (with("mass_ratio: 0.05", "mass_ratio: .nan"), "7:19 `.nan` is not a finite number"),
         (with("mass_ratio: 0.05", "mass_ratio: -0.05"), "7:19 this ratio cannot be negative"),
         (
