@@ -14,9 +14,12 @@
 //! 6. [`study`] plans, runs in parallel and stores one [`table::Table`] per experiment.
 //! 7. [`reference`] holds each published number and claim and gives its verdict; [`figure`] draws; [`report`] writes.
 //!
+//! [`calibrate`] runs experiments under many combinations of the assumptions and looks for the best of them.
+//!
 //! A table on disk is all that verdicts, figures and reports read.
 
 pub mod atomic;
+pub mod calibrate;
 pub mod dynamics;
 pub mod figure;
 pub mod measure;

@@ -105,6 +105,17 @@ Examples:
     },
     /// Measure what accuracy costs: error against wall time of both solvers; writes reports/accuracy
     Accuracy(AccuracyArgs),
+    /// Look for the values of unstated inputs that bring chosen entries nearest, and see what becomes of others
+    Calibrate(CalibrateArgs),
+    /// Say how an entry hangs on each assumption, and which change of one would reproduce it; simulates nothing
+    #[command(after_help = "\
+Examples:
+  shotdamp explain ch3-limit-stop/parting
+  shotdamp explain 'ch6-beam-b1-heavy/*'")]
+    Explain {
+        /// Id of the entry, `ch3-limit-stop/parting`, or a pattern with * and ?
+        entry: String,
+    },
 }
 
 /// Which experiments.
@@ -207,6 +218,16 @@ pub(super) struct AccuracyArgs {
     /// Longest run in seconds; smaller steps are left out
     #[arg(long, value_name = "SECONDS", default_value_t = 2.0)]
     pub longest: f64,
+}
+
+#[derive(Debug, clap::Args)]
+#[command(after_help = "\
+Examples:
+  shotdamp calibrate beam-arrays
+  shotdamp calibrate all-chapters --jobs 2")]
+pub(super) struct CalibrateArgs {
+    /// Name of a file in `calibrations/`, without ending
+    pub id: String,
 }
 
 #[derive(Debug, clap::Args)]

@@ -4,8 +4,10 @@ use std::io;
 use std::path::PathBuf;
 
 use crate::atomic::FileError;
+use crate::calibrate::CalibrationError;
 use crate::publish::CrateError;
 use crate::reference::AcceptError;
+use crate::spec::{IdError, Problems};
 use crate::study::{LockError, ThreadError};
 
 #[derive(Debug, thiserror::Error)]
@@ -36,6 +38,12 @@ pub(super) enum CliError {
     NoStructure { given: String, known: String },
     #[error(transparent)]
     Accept(#[from] AcceptError),
+    #[error(transparent)]
+    Name(#[from] IdError),
+    #[error(transparent)]
+    Calibration(#[from] CalibrationError),
+    #[error(transparent)]
+    Text(#[from] Problems),
     #[error(transparent)]
     File(#[from] FileError),
     #[error(transparent)]

@@ -2,12 +2,14 @@
 
 mod accuracy;
 mod args;
+mod calibrate;
 mod check;
 mod clean;
 mod diff;
 mod effects;
 mod error;
 mod exit;
+mod explain;
 mod export;
 mod gather;
 mod list;
@@ -79,6 +81,8 @@ fn dispatch(args: &Args) -> Result<Exit, CliError> {
         Some(Command::Schema(schema)) => schema::schema(&layout, schema),
         Some(Command::Completions { shell }) => completions(*shell),
         Some(Command::Accuracy(args)) => accuracy::measure(&layout, args),
+        Some(Command::Calibrate(calibrate)) => calibrate::calibrate(&layout, calibrate, args.jobs),
+        Some(Command::Explain { entry }) => explain::explain(&layout, entry),
     }
 }
 

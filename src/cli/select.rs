@@ -130,7 +130,7 @@ pub(super) fn chapter_of(name: &str) -> u32 {
 }
 
 /// `*` stands for any letters, `?` for one.
-fn matches(pattern: &str, id: &str) -> bool {
+pub(super) fn matches(pattern: &str, id: &str) -> bool {
     let (pattern, id): (Vec<char>, Vec<char>) = (pattern.chars().collect(), id.chars().collect());
     let (mut p, mut i) = (0, 0);
     // Where the last star stood, and how many letters it has taken so far.

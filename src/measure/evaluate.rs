@@ -2,7 +2,8 @@
 //!
 //! Every event-driven case is run three times: as it is, with search windows half as long (the difference is its numerical
 //! uncertainty), and with a kicked start. If the kick of a billionth has grown beyond a millionth, the motion is chaotic and
-//! no single run is a result: an ensemble of kicked starts gives mean and spread. The fixed step is run once, as the study
+//! no single run is a result: an ensemble of kicked starts gives mean and spread. A search makes one run a step, and what it
+//! finds is evaluated as a result afterwards. The fixed step is run once, as the study
 //! ran it: what its step does to the numbers is the result that it is there for.
 
 use std::f64::consts::TAU;
@@ -204,15 +205,19 @@ impl Case<'_> {
             // Linear: neighbouring starts stay neighbours, and there is no window to be halved.
             return Ok(certain(values.iter().map(|value| CLOSED_FORM * value.abs()).collect(), false));
         }
+        let exact = || values.iter().map(|value| 4.0 * f64::EPSILON * value.abs()).collect();
+        if request.rigour == Rigour::Step {
+            return Ok(certain(exact(), false));
+        }
         let rms = case.rms_velocity(&response);
         let twin = event_driven(system, &Options { kick: TWIN_KICK, ..plain.clone() })?;
         let chaotic = (case.rms_velocity(&twin) - rms).abs() > CHAOS * rms;
         let members = match request.rigour {
             Rigour::Result => settings.ensemble,
-            Rigour::Look => settings.ensemble.min(MEMBERS_OF_A_LOOK),
+            Rigour::Look | Rigour::Step => settings.ensemble.min(MEMBERS_OF_A_LOOK),
         };
         if !chaotic && request.rigour == Rigour::Look {
-            return Ok(certain(values.iter().map(|value| 4.0 * f64::EPSILON * value.abs()).collect(), false));
+            return Ok(certain(exact(), false));
         }
         if !chaotic || members < 2 {
             // The same events decided in other windows; measures of the history are as exact as its samples.

@@ -147,6 +147,8 @@ pub enum Rigour {
     Result,
     /// A look, to find a maximum or a sensitivity: neither audited nor repeated, ensembles of eight.
     Look,
+    /// One step of a search: a single run, and nobody asks whether a neighbouring start would end elsewhere.
+    Step,
 }
 
 /// A measured number with its own errors.

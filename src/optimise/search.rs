@@ -5,8 +5,6 @@
 pub struct Score {
     /// The value; smaller is better.
     pub value: f64,
-    /// Standard error of the value, where it is the mean of a sample; else 0.
-    pub standard_error: f64,
 }
 
 impl Score {

@@ -4,6 +4,7 @@
 
 mod accuracy;
 mod committed;
+mod explain;
 mod figures;
 mod opened;
 mod pages;
@@ -14,6 +15,7 @@ mod views;
 
 pub use accuracy::{publish_accuracy, publish_accuracy_summary};
 pub use committed::{Departure, How, departures};
+pub use explain::explanations;
 pub use figures::figure_name;
 pub use opened::{Opened, Unread};
 pub use pages::{Published, VERDICTS, publish};

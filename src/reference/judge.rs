@@ -53,6 +53,8 @@ pub(crate) fn judge_entry(
                 let told = |(variant, other): &(&str, Decision)| Moved {
                     variant: (*variant).into(),
                     found: in_words(other.outcome).into(),
+                    value: None,
+                    verdict: verdict(other.outcome),
                     kept: other.outcome == baseline.outcome,
                 };
                 let moved: Vec<Moved> = others.iter().map(told).collect();
@@ -227,12 +229,17 @@ fn value(
     };
     let (verdict, remark) = compare::verdict(&comparison, simulated.scale, fitted);
     let told = |(variant, other): &(&str, Option<Extracted>)| {
-        let kept = other.as_ref().is_some_and(|other| {
-            let there = Comparison { simulated: other.value, ..comparison };
-            compare::verdict(&there, simulated.scale, fitted).0 == verdict
+        let there = other.as_ref().map_or(Verdict::Differs, |other| {
+            compare::verdict(&Comparison { simulated: other.value, ..comparison }, simulated.scale, fitted).0
         });
         let found = other.as_ref().map_or_else(|| "none".into(), |other| significant(other.value, 4));
-        Moved { variant: (*variant).into(), found, kept }
+        Moved {
+            variant: (*variant).into(),
+            found,
+            value: other.as_ref().map(|other| other.value),
+            verdict: there,
+            kept: other.is_some() && there == verdict,
+        }
     };
     let moved: Vec<Moved> = others.iter().map(told).collect();
     let mut found = format!(

@@ -14,6 +14,7 @@ mod entry;
 mod extract;
 mod extraction;
 mod fit;
+mod found;
 mod judge;
 mod line;
 mod mode_shape;
@@ -37,6 +38,7 @@ pub use entry::{
 };
 pub use extraction::Extraction;
 pub use fit::{Fit, FitMeasure};
+pub use found::Found;
 pub use judge::judge;
 pub use predicate::Predicate;
 pub use printed::{Printed, PrintedError};

@@ -126,12 +126,16 @@ pub struct Judged {
 }
 
 /// An entry with one assumption moved.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Moved {
     /// `stop_length=0.05`.
     pub variant: String,
     /// What comes out then, in a word or a number.
     pub found: String,
+    /// The number, where the entry is one and there is one.
+    pub value: Option<f64>,
+    /// The verdict that it would have.
+    pub verdict: Verdict,
     /// Whether the verdict stays.
     pub kept: bool,
 }

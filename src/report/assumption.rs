@@ -10,7 +10,7 @@ use super::view::AssumptionView;
 #[must_use]
 pub fn value_in_words(name: Assumption, value: &AssumptionValue) -> String {
     match value {
-        AssumptionValue::Number(value) => number::quantity(*value, unit(name), 6),
+        AssumptionValue::Number(value) => number_in_words(name, *value, 6),
         AssumptionValue::Choice(word) => word.replace('_', " "),
         AssumptionValue::Curve(points) => match (points.first(), points.last()) {
             (Some([x0, y0]), Some([x1, y1])) => {
@@ -23,12 +23,20 @@ pub fn value_in_words(name: Assumption, value: &AssumptionValue) -> String {
     }
 }
 
+/// A number of that assumption's kind, to so many digits.
+pub(super) fn number_in_words(name: Assumption, value: f64, digits: usize) -> String {
+    number::quantity(value, unit(name), digits)
+}
+
 fn unit(name: Assumption) -> &'static str {
     match name {
         Assumption::Gravity => "m/s²",
-        Assumption::StopLength | Assumption::BeamArrayMargin => "m",
+        Assumption::StopLength | Assumption::BeamArrayMargin | Assumption::CentredArrayMargin => "m",
         Assumption::BeamImpulse | Assumption::PlateImpulse => "N s",
-        Assumption::BeamFloorTuning | Assumption::PlateFloorTuning => "N/m",
+        Assumption::BeamFloorTuning
+        | Assumption::PlateFloorTuning
+        | Assumption::BeamArrayFloorTuning
+        | Assumption::PlateArrayFloorTuning => "N/m",
         Assumption::BeamImpulseTime | Assumption::PlateImpulseTime => "s",
         Assumption::BeamHarmonicForce | Assumption::PlateHarmonicForce => "N",
         Assumption::EquivalentDampingCurve => "N s/m",

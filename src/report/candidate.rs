@@ -19,8 +19,8 @@ pub(super) fn section(optimise: &Optimise, table: &Table) -> String {
     text += &rows.best(optimise);
     text += &rows.table(optimise);
     text += &format!(
-        "Every candidate is evaluated once more after the search, from other starts than the search has seen: a search \
-         chooses what happened to look good. ± is the standard error. Improvements are measured from {}; one no larger than \
+        "A search sees one run for each setting. Every candidate is evaluated once more afterwards, as the mean over an \
+         ensemble where the motion is chaotic: a search chooses what happened to look good. ± is the standard error. Improvements are measured from {}; one no larger than \
          its standard error is called noise.\n\n",
         rows.list[0].name
     );

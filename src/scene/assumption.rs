@@ -77,6 +77,19 @@ pub enum Assumption {
     PlateImpulse,
     /// Distance that an array of dampers keeps from the ends of a beam, m.
     BeamArrayMargin,
+    /// The same of an array that is centred on a force, m.
+    CentredArrayMargin,
+    /// What m′ of an optimised array is a share of (chapter 6): the `total` mass, or the `modal` mass at unit largest
+    /// amplitude.
+    ArrayDamperMass,
+    /// Floors of an optimised array on a beam: a stiffness, N/m, or what they are tuned to, as in [`Self::BeamFloorTuning`].
+    BeamArrayFloorTuning,
+    /// The same on a plate.
+    PlateArrayFloorTuning,
+    /// ζf of an optimised array on a beam.
+    BeamArrayDampingRatio,
+    /// The same on a plate.
+    PlateArrayDampingRatio,
     /// How the mass measure compares kinetic energies with those of the clean structure: `jump`, `after`, `level`.
     MassMeasure,
 }

@@ -63,8 +63,12 @@ impl DamperRecipe {
             if by_ratio {
                 set.extend(family.gap_frequency());
             }
-            if matches!(self.mass, MassRecipe::Ratio(_)) && self.mass_reading == MassReading::Assumed {
-                set.extend(family.damper_mass());
+            if matches!(self.mass, MassRecipe::Ratio(_)) {
+                match self.mass_reading {
+                    MassReading::Assumed => set.extend(family.damper_mass()),
+                    MassReading::By(name) => drop(set.insert(name)),
+                    MassReading::Total | MassReading::Modal => {}
+                }
             }
         }
         if let Some(margin) = self.array.as_ref().and_then(|array| array.margin.as_ref()) {
@@ -75,9 +79,11 @@ impl DamperRecipe {
                 match stiffness {
                     StiffnessRecipe::Ratio(given) => lean(set, given),
                     StiffnessRecipe::Untuned => drop(set.insert(Assumption::UntunedFrequencyRatio)),
-                    StiffnessRecipe::Assumed => {
-                        set.extend(family.floor_tuning());
-                        let reading = family.floor_tuning().and_then(|tuning| in_force.values.get(&tuning));
+                    StiffnessRecipe::Assumed | StiffnessRecipe::By(_) => {
+                        let named =
+                            if let StiffnessRecipe::By(by) = stiffness { Some(*by) } else { family.floor_tuning() };
+                        set.extend(named);
+                        let reading = named.and_then(|tuning| in_force.values.get(&tuning));
                         if matches!(reading, Some(AssumptionValue::Choice(word)) if word == "untuned") {
                             set.insert(Assumption::UntunedFrequencyRatio);
                         }
@@ -148,6 +154,26 @@ impl Family {
             Self::Mass => Assumption::ContactDampingRatio,
             Self::Beam => Assumption::BeamContactDampingRatio,
             Self::Plate => Assumption::PlateContactDampingRatio,
+        }
+    }
+
+    /// The assumption on the floors of optimised arrays.
+    #[must_use]
+    pub fn array_floor_tuning(self) -> Option<Assumption> {
+        match self {
+            Self::Mass => None,
+            Self::Beam => Some(Assumption::BeamArrayFloorTuning),
+            Self::Plate => Some(Assumption::PlateArrayFloorTuning),
+        }
+    }
+
+    /// The assumption on their damping ratio.
+    #[must_use]
+    pub fn array_damping_ratio(self) -> Option<Assumption> {
+        match self {
+            Self::Mass => None,
+            Self::Beam => Some(Assumption::BeamArrayDampingRatio),
+            Self::Plate => Some(Assumption::PlateArrayDampingRatio),
         }
     }
 

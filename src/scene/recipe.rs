@@ -114,6 +114,8 @@ pub enum MassRecipe {
 pub enum MassReading {
     /// By [`Assumption::BeamDamperMass`] or [`Assumption::PlateDamperMass`].
     Assumed,
+    /// By this assumption, which is of their kind.
+    By(Assumption),
     /// The structure's mass.
     Total,
     /// Its first modal mass where the largest amplitude is one.
@@ -225,6 +227,8 @@ pub enum StiffnessRecipe {
     Untuned,
     /// By the assumption on floors of beams or of plates.
     Assumed,
+    /// By this assumption, which is of their kind.
+    By(Assumption),
 }
 
 /// Damping of a resilient surface.

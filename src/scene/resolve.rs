@@ -186,11 +186,13 @@ impl DamperRecipe {
     }
 
     fn reference_mass(&self, base: &Base<'_>) -> Result<f64, RecipeError> {
+        const READINGS: &[&str] = &["total", "modal"];
         let modal = match self.mass_reading {
             MassReading::Total => false,
             MassReading::Modal => true,
+            MassReading::By(by) => base.assumptions.choice(by, READINGS)? == 1,
             MassReading::Assumed => match base.kind.family.damper_mass() {
-                Some(by) => base.assumptions.choice(by, &["total", "modal"])? == 1,
+                Some(by) => base.assumptions.choice(by, READINGS)? == 1,
                 None => false,
             },
         };
@@ -308,8 +310,9 @@ impl StiffnessRecipe {
             (Self::Stiffness(value), _) => Ok(value),
             (Self::Tuned, _) => tuned(base.natural()),
             (Self::Untuned, _) => untuned(),
-            (Self::Assumed, _) => {
-                let Some(by) = base.kind.family.floor_tuning() else {
+            (Self::Assumed | Self::By(_), _) => {
+                let named = if let Self::By(by) = self { Some(by) } else { base.kind.family.floor_tuning() };
+                let Some(by) = named else {
                     return Err(RecipeError::OutOfRange("on a single mass write `stiffness_ratio: assumed`".into()));
                 };
                 if let Ok(stiffness) = base.assumptions.number(by) {

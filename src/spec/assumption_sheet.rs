@@ -94,6 +94,8 @@ pub(super) fn kind(name: Assumption) -> Kind {
         | Assumption::MasslessRatio
         | Assumption::UntunedFrequencyRatio
         | Assumption::BeamContactDampingRatio
+        | Assumption::BeamArrayDampingRatio
+        | Assumption::PlateArrayDampingRatio
         | Assumption::PlateContactDampingRatio => Kind::Ratio,
         Assumption::ImpulseFrequency => Kind::Choice(&["forcing", "natural"]),
         Assumption::UndampedMass | Assumption::HarmonicReference | Assumption::ImpulseReference => {
@@ -101,14 +103,17 @@ pub(super) fn kind(name: Assumption) -> Kind {
         }
         Assumption::EquivalentDampingCurve => Kind::Curve,
         Assumption::BeamModes | Assumption::PlateModes => Kind::Modes,
-        Assumption::BeamDamperMass | Assumption::PlateDamperMass => Kind::Choice(&["total", "modal"]),
-        Assumption::BeamGapFrequency | Assumption::PlateGapFrequency => Kind::Choice(&["clean", "loaded"]),
-        Assumption::BeamFloorTuning | Assumption::PlateFloorTuning => {
-            Kind::QuantityOr(Dimension::Stiffness, &["clean", "loaded", "untuned"])
+        Assumption::BeamDamperMass | Assumption::PlateDamperMass | Assumption::ArrayDamperMass => {
+            Kind::Choice(&["total", "modal"])
         }
+        Assumption::BeamGapFrequency | Assumption::PlateGapFrequency => Kind::Choice(&["clean", "loaded"]),
+        Assumption::BeamFloorTuning
+        | Assumption::PlateFloorTuning
+        | Assumption::BeamArrayFloorTuning
+        | Assumption::PlateArrayFloorTuning => Kind::QuantityOr(Dimension::Stiffness, &["clean", "loaded", "untuned"]),
         Assumption::BeamImpulseTime | Assumption::PlateImpulseTime => Kind::QuantityOr(Dimension::Time, &IMPULSE_TIMES),
         Assumption::BeamImpulse | Assumption::PlateImpulse => Kind::Quantity(Dimension::Impulse),
-        Assumption::BeamArrayMargin => Kind::Quantity(Dimension::Length),
+        Assumption::BeamArrayMargin | Assumption::CentredArrayMargin => Kind::Quantity(Dimension::Length),
         Assumption::BeamHarmonicForce | Assumption::PlateHarmonicForce => Kind::Quantity(Dimension::Force),
         Assumption::GridVelocity => Kind::Choice(&["largest", "mean"]),
         Assumption::MassMeasure => Kind::Choice(&["jump", "after", "level"]),
@@ -155,6 +160,11 @@ fn read_entry(node: &Node, kind: Kind, findings: &Findings) -> Option<Assumption
         range: range?.unwrap_or_default(),
         fitted_to: fitted_to?.unwrap_or_default(),
     })
+}
+
+/// A value of this assumption.
+pub(super) fn read_value_of(name: Assumption, node: &Node, findings: &Findings) -> Option<AssumptionValue> {
+    read_value(node, kind(name), findings)
 }
 
 fn read_value(node: &Node, kind: Kind, findings: &Findings) -> Option<AssumptionValue> {

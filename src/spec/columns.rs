@@ -53,7 +53,7 @@ pub(super) const ENERGIES: [&str; 7] = [
 const OUTCOME: [&str; 4] = ["fitness_in_search", "improvement", "improvement_num", "evaluations"];
 
 /// Names of the lists of an optimisation: the best fitness after so many evaluations, and the fitness along one gap.
-const SEARCHES: [&str; 5] = ["evaluation", "best_so_far", "along_gap", "fitness_along", "fitness_along_num"];
+const SEARCHES: [&str; 4] = ["evaluation", "best_so_far", "along_gap", "fitness_along"];
 
 /// Names of the lists of a shape, as documented at [`super::ShapeSpec`].
 pub(super) fn shape_lists(shape: &ShapeSpec) -> Vec<&'static str> {

@@ -34,7 +34,7 @@ pub fn load_assumptions(path: &Path) -> Result<AssumptionSheet, Problems> {
     parse_assumptions(&file, &read(path, &file)?)
 }
 
-fn read(path: &Path, file: &str) -> Result<String, Problems> {
+pub(super) fn read(path: &Path, file: &str) -> Result<String, Problems> {
     let cannot = |error: std::io::Error| Problems::unreadable(file, format!("cannot be read: {error}"), None);
     let mut bytes = Vec::new();
     File::open(path).map_err(cannot)?.take(LONGEST as u64 + 1).read_to_end(&mut bytes).map_err(cannot)?;

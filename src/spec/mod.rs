@@ -4,6 +4,7 @@
 //! Every reader goes on after a mistake, so a file's problems come together: see [`Problems`].
 
 mod assumption_sheet;
+mod calibration;
 mod check;
 mod columns;
 mod diagnostic;
@@ -33,6 +34,7 @@ mod word;
 mod yaml;
 
 pub use assumption_sheet::{AssumptionEntry, AssumptionSheet, parse_assumptions};
+pub use calibration::{Calibration, CalibrationInput, load_calibration, parse_calibration};
 pub use diagnostic::{Place, Problem, Problems};
 pub(crate) use edit::{Written, set_keys};
 pub use experiment::{

@@ -1,7 +1,7 @@
 //! Places in a scene: where dampers sit, where the force acts, where the motion is observed; and arrays of dampers.
 
 use crate::scene::{
-    ArrayRecipe, Assumption, Coordinate, Family, Kind, ObserveRecipe, Parameter, PlaceRecipe, PointsRecipe, Take,
+    ArrayRecipe, Assumption, Coordinate, Family, Given, Kind, ObserveRecipe, Parameter, PlaceRecipe, PointsRecipe, Take,
 };
 
 use super::quantity::Dimension;
@@ -117,6 +117,9 @@ impl<'t> SceneReader<'t> {
         let margin = fields.optional("margin", |node| {
             if is_word(node, "assumed") && kind.family != Family::Beam {
                 return self.findings.wrong(node.span, "the assumed margin is that of arrays on beams: give a length");
+            }
+            if let Some(named) = self.named(node, &[Assumption::BeamArrayMargin, Assumption::CentredArrayMargin]) {
+                return named.map(Given::Assumed);
             }
             self.given(node, Assumption::BeamArrayMargin, |node| quantity(node, Dimension::Length, self.findings))
         });

@@ -9,8 +9,9 @@ use crate::scene::{
 
 use super::diagnostic::{Findings, Span};
 use super::quantity::Dimension;
-use super::reader::{Choice, Fields, above_zero, boolean, list, number, quantity, ratio};
+use super::reader::{Choice, Fields, above_zero, boolean, list, no_such, number, quantity, ratio, scalar};
 use super::structure::read_structure;
+use super::word::word_of;
 use super::yaml::{Node, Value};
 
 /// Stands where the file says `swept` until the sweep's first case takes its place.
@@ -165,6 +166,9 @@ impl<'t> SceneReader<'t> {
 
     /// `assumed`, or a reading, which a sweep may vary.
     fn mass_reading(&self, node: &'t Node) -> Option<MassReading> {
+        if let Some(named) = self.named(node, &[Assumption::ArrayDamperMass]) {
+            return named.map(MassReading::By);
+        }
         let names = ["assumed", "total", "modal", "swept"];
         let choice = Choice::read(node, "the reading of a mass ratio", &names, self.findings)?;
         Some(match choice.bare(self.findings)? {
@@ -191,6 +195,9 @@ impl<'t> SceneReader<'t> {
             "stiffness" if is_word(node, "tuned") => Some(StiffnessRecipe::Tuned),
             "stiffness" if is_word(node, "untuned") => Some(StiffnessRecipe::Untuned),
             "stiffness" if is_word(node, "assumed") => Some(StiffnessRecipe::Assumed),
+            "stiffness" if names_assumption(node) => {
+                self.named(node, kind.family.array_floor_tuning().as_slice())?.map(StiffnessRecipe::By)
+            }
             "stiffness" if is_word(node, "swept") => {
                 self.swept.borrow_mut().push((Parameter::FloorTuning, node.span));
                 Some(StiffnessRecipe::Tuned)
@@ -205,6 +212,10 @@ impl<'t> SceneReader<'t> {
         let damping = fields.exactly_one(&["damping_ratio", "damping"]).and_then(|(key, node)| match key {
             "damping" if is_word(node, "equivalent_viscous") => Some(ContactDampingRecipe::EquivalentViscous),
             "damping" => quantity(node, Dimension::Damping, self.findings).map(ContactDampingRecipe::Damping),
+            _ if names_assumption(node) => {
+                let named = self.named(node, kind.family.array_damping_ratio().as_slice())?;
+                named.map(Given::Assumed).map(ContactDampingRecipe::Ratio)
+            }
             _ => self
                 .given(node, kind.family.contact_damping_ratio(), |node| {
                     self.sweepable(node, Parameter::ContactDampingRatio)
@@ -284,6 +295,24 @@ impl<'t> SceneReader<'t> {
         read(node)
     }
 
+    /// The assumption that `{assumed: NAME}` names in the place of the usual one; `None` where the file says something else.
+    pub(super) fn named(&self, node: &'t Node, offered: &[Assumption]) -> Option<Option<Assumption>> {
+        let Value::Mapping(entries) = &node.value else { return None };
+        let [entry] = entries.as_slice() else { return None };
+        if !names_assumption(node) {
+            return None;
+        }
+        let named = scalar(&entry.node, self.findings).and_then(|word| {
+            let known = offered.iter().find(|name| word_of(**name) == word);
+            known.copied().or_else(|| {
+                let words: Vec<String> = offered.iter().map(word_of).collect();
+                let words: Vec<&str> = words.iter().map(String::as_str).collect();
+                no_such(self.findings, entry.node.span, "assumption for this key", word, &words)
+            })
+        });
+        Some(named)
+    }
+
     /// A value, or `assumed`.
     pub(super) fn given(
         &self,
@@ -293,6 +322,11 @@ impl<'t> SceneReader<'t> {
     ) -> Option<Given> {
         if is_word(node, "assumed") { Some(Given::Assumed(assumption)) } else { read(node).map(Given::Stated) }
     }
+}
+
+/// It says `{assumed: …}`.
+fn names_assumption(node: &Node) -> bool {
+    matches!(&node.value, Value::Mapping(entries) if matches!(entries.as_slice(), [entry] if entry.key == "assumed"))
 }
 
 pub(super) fn is_word(node: &Node, word: &str) -> bool {

@@ -29,7 +29,7 @@ impl Journal {
     /// The journal at `path`, if it is of the same `meaning`; else a new one. One that cannot be read or written is done
     /// without: it saves time and decides nothing.
     pub(super) fn open(path: Option<&Path>, meaning: &str) -> Self {
-        let header = format!("shotdamp journal 1 {meaning}\n");
+        let header = format!("shotdamp journal 2 {meaning}\n");
         let Some(path) = path else { return Self { known: BTreeMap::new(), file: None } };
         let text = fs::read_to_string(path).unwrap_or_default();
         let mut known = BTreeMap::new();
@@ -80,7 +80,7 @@ fn key(point: &[f64]) -> Vec<u64> {
 }
 
 fn line(point: &[f64], known: &Known) -> String {
-    let numbers = point.iter().copied().chain([known.score.value, known.score.standard_error, known.seconds]);
+    let numbers = point.iter().copied().chain([known.score.value, known.seconds]);
     let words: Vec<String> = numbers.map(|x| format!("{:016x}", x.to_bits())).collect();
     words.join(" ") + "\n"
 }
@@ -88,7 +88,7 @@ fn line(point: &[f64], known: &Known) -> String {
 fn read_line(line: &str) -> Option<(Vec<u64>, Known)> {
     let word = |word: &str| (word.len() == 16).then(|| u64::from_str_radix(word, 16).ok()).flatten();
     let bits = line.split(' ').map(word).collect::<Option<Vec<_>>>()?;
-    let (point, rest) = bits.split_at_checked(bits.len().checked_sub(3)?)?;
-    let [value, standard_error, seconds] = [rest[0], rest[1], rest[2]].map(f64::from_bits);
-    Some((point.to_vec(), Known { score: Score { value, standard_error }, seconds }))
+    let (point, rest) = bits.split_at_checked(bits.len().checked_sub(2)?)?;
+    let [value, seconds] = [rest[0], rest[1]].map(f64::from_bits);
+    Some((point.to_vec(), Known { score: Score { value }, seconds }))
 }

@@ -1,5 +1,8 @@
 //! An optimisation while it runs: fitness evaluated batch by batch, the searches one after the other, and in the end every
-//! candidate evaluated once more as a result, with other starts of its ensemble than the search has seen.
+//! candidate evaluated once more as a result.
+//!
+//! A search sees one run for each setting, as the study's did: ten times as many evaluations are worth more to it than the
+//! mean of an ensemble. Where the motion is chaotic it may so find luck, and the ensemble of the result says whether it did.
 
 use std::time::Instant;
 
@@ -68,7 +71,7 @@ impl<'a> Fitness<'a> {
                 trace: None,
                 energies: None,
                 shape: None,
-                rigour: Rigour::Look,
+                rigour: Rigour::Step,
             };
             guarded(|| evaluate.array(simulation, optimise.gaps))
         };
@@ -251,7 +254,7 @@ impl Searches<'_> {
         }
         let evaluate = |point: &&Vec<f64>| {
             let begun = Instant::now();
-            let score = self.score(self.fitness.evaluate(point, Rigour::Look));
+            let score = self.score(self.fitness.evaluate(point, Rigour::Step));
             ((*point).clone(), Known { score, seconds: begun.elapsed().as_secs_f64() })
         };
         let evaluated: Vec<(Vec<f64>, Known)> = new.par_iter().map(evaluate).collect();
@@ -280,8 +283,8 @@ impl Searches<'_> {
     /// Smaller is better to the optimisers; what has no number is the worst.
     fn score(&self, evaluated: Result<Evaluated, String>) -> Score {
         match evaluated.ok().and_then(|evaluated| evaluated.measured.get(self.measure).copied()) {
-            Some(fitness) => Score { value: self.signed(fitness.value), standard_error: fitness.numerical },
-            None => Score { value: f64::NAN, standard_error: 0.0 },
+            Some(fitness) => Score { value: self.signed(fitness.value) },
+            None => Score { value: f64::NAN },
         }
     }
 
@@ -325,7 +328,7 @@ impl Searches<'_> {
             let scores = section.along.iter().zip(&section.scores);
             found.push(Candidate {
                 varied: Some(varied + 1),
-                section: scores.map(|(x, score)| [*x, self.signed(score.value), score.standard_error]).collect(),
+                section: scores.map(|(x, score)| [*x, self.signed(score.value)]).collect(),
                 ..Candidate::named(&words::of_key(&SearchKind::Landscape), centre.clone())
             });
         }
@@ -361,20 +364,32 @@ fn evaluate_all(task: Task<'_>, evaluate: &impl Evaluate, candidates: Vec<Candid
     let ready: Vec<_> = match &recipes {
         Ok(recipes) => task
             .variants
-            .iter()
+            .par_iter()
             .map(|variant| Fitness::new(evaluate, experiment, optimise, variant, recipes, &measures))
             .collect(),
         Err(reason) => task.variants.iter().map(|_| Err(reason.clone())).collect(),
     };
-    all.par_iter_mut().for_each(|candidate| {
-        if candidate.varied.is_some() || candidate.outcome.as_ref().is_err_and(|reason| !reason.is_empty()) {
-            return;
+    // Several searches may have found the same gaps.
+    let open = |candidate: &Candidate| {
+        candidate.varied.is_none() && candidate.outcome.as_ref().is_err_and(|reason| reason.is_empty())
+    };
+    let mut places: Vec<(usize, Vec<f64>)> = Vec::new();
+    for candidate in all.iter().filter(|candidate| open(candidate)) {
+        let place = (candidate.variant, candidate.gaps.clone());
+        if !places.contains(&place) {
+            places.push(place);
         }
-        let rigour = if candidate.variant == 0 { Rigour::Result } else { Rigour::Look };
-        candidate.outcome = match &ready[candidate.variant] {
-            Ok(fitness) => fitness.evaluate(&candidate.gaps, rigour),
-            Err(reason) => Err(reason.clone()),
-        };
-    });
+    }
+    let evaluated = |(variant, gaps): &(usize, Vec<f64>)| {
+        let rigour = if *variant == 0 { Rigour::Result } else { Rigour::Look };
+        ready[*variant].as_ref().map_err(String::clone)?.evaluate(gaps, rigour)
+    };
+    let outcomes: Vec<Result<Evaluated, String>> = places.par_iter().map(evaluated).collect();
+    for candidate in all.iter_mut().filter(|candidate| open(candidate)) {
+        let at = places.iter().position(|(variant, gaps)| *variant == candidate.variant && *gaps == candidate.gaps);
+        if let Some(at) = at {
+            candidate.outcome.clone_from(&outcomes[at]);
+        }
+    }
     all
 }

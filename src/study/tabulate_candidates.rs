@@ -25,8 +25,8 @@ pub(super) struct Candidate {
     pub stopped: String,
     /// Evaluations and best fitness after each batch.
     pub trail: Vec<[f64; 2]>,
-    /// Gap, fitness and its standard error along a section.
-    pub section: Vec<[f64; 3]>,
+    /// Gap and fitness along a section.
+    pub section: Vec<[f64; 2]>,
     /// Index of the variant.
     pub variant: usize,
     /// What came of it; an empty reason: not evaluated yet, or a section.
@@ -184,6 +184,5 @@ fn lists(optimise: &Optimise, candidates: &[Candidate]) -> Vec<Column> {
         Column::new("best_so_far", trail(1)).with_unit(fitness),
         Column::new("along_gap", section(0)).with_unit(unit(optimise.gaps)),
         Column::new("fitness_along", section(1)).with_unit(fitness),
-        Column::new("fitness_along_num", section(2)).with_unit(fitness),
     ]
 }

@@ -228,3 +228,19 @@ fn whoever_closes_the_pipe_has_read_enough() {
     let output = child.wait_with_output().unwrap();
     assert_eq!((output.status.code(), output.stderr.as_slice()), (Some(0), &b""[..]));
 }
+
+#[test]
+fn explain_tells_what_an_entry_hangs_on_and_simulates_nothing() {
+    let desk = simulated();
+    let before = files(desk.folder.path());
+    let said = shotdamp(&desk, &["explain", "ch3-stop/at-two"]);
+    assert_eq!((said.code, said.err.as_str()), (0, ""));
+    for part in
+        ["ch3-stop/at-two: ", "stop_length: 60 mm → 50 mm", "impulse_factor: 2 → 1.8", "% off", "contact_damping_ratio"]
+    {
+        assert!(said.out.contains(part), "{part}: {}", said.out);
+    }
+    assert!(before == files(desk.folder.path()), "nothing was written");
+    let unknown = shotdamp(&desk, &["explain", "ch3-stop/at-three"]);
+    assert!(unknown.code == 2 && unknown.err.contains("no entry of the reference matches"), "{}", unknown.err);
+}

@@ -5,8 +5,8 @@ use std::fs;
 
 use serde_json::Value;
 
-use crate::cli::{relative_files, shotdamp};
-use crate::desk::{Desk, STOP};
+use crate::cli::relative_files;
+use crate::desk::{Desk, STOP, shotdamp};
 
 /// A study that has been run, without numbers to hold it against.
 fn finished() -> Desk {

@@ -51,7 +51,7 @@ fn cube([low, high]: [f64; 2], size: usize) -> Bounds {
 /// Evaluates one after the other, without noise.
 fn exact(function: Function) -> impl FnMut(&[Vec<f64>]) -> Result<Batch, Infallible> {
     move |points| {
-        let score = |point: &Vec<f64>| Score { value: function(point), standard_error: 0.0 };
+        let score = |point: &Vec<f64>| Score { value: function(point) };
         Ok(Batch { scores: points.iter().map(score).collect(), seconds: 0.25 })
     }
 }
@@ -170,12 +170,12 @@ fn two_opt_sorts_by_swaps_and_stops_where_none_helps() {
     // The sum of i x_i is smallest where the values decrease.
     let weighted: Function = |x| x.iter().enumerate().map(|(i, x)| i as f64 * x).sum();
     let start = [1.0, 4.0, 2.0, 3.0];
-    let score = Score { value: weighted(&start), standard_error: 0.0 };
+    let score = Score { value: weighted(&start) };
     let found = two_opt(&start, score, &mut exact(weighted)).unwrap();
     assert_eq!(found.point, [4.0, 3.0, 2.0, 1.0]);
     let again = two_opt(&found.point, found.score, &mut exact(weighted)).unwrap();
     assert_eq!((again.point, again.evaluations), (found.point, 6));
-    let uniform = two_opt(&[2.0; 4], Score { value: 1.0, standard_error: 0.0 }, &mut exact(weighted)).unwrap();
+    let uniform = two_opt(&[2.0; 4], Score { value: 1.0 }, &mut exact(weighted)).unwrap();
     assert_eq!(uniform.evaluations, 0, "equal values have nothing to swap");
 }
 

@@ -1,0 +1,151 @@
+//! What an entry hangs on: how far each assumption, moved alone, shifts what came out, and which move would change its verdict.
+
+use crate::reference::{Judged, Moved, Verdict};
+use crate::scene::{Assumption, AssumptionValue};
+use crate::text::{number, words};
+
+use super::assumption::{number_in_words, value_in_words};
+use super::markdown::one_line;
+use super::tally::{shown, word};
+
+/// An entry with what was tried.
+#[derive(Debug)]
+pub struct EntryView<'a> {
+    /// The entry and its verdict.
+    pub judged: &'a Judged,
+    /// The moves that were run.
+    pub moves: Vec<MoveView<'a>>,
+    /// Assumptions that its experiment leans on and that were not moved.
+    pub unmoved: Vec<Assumption>,
+    /// Assumptions that were chosen by it.
+    pub chosen_by: Vec<Assumption>,
+}
+
+/// One assumption moved.
+#[derive(Debug)]
+pub struct MoveView<'a> {
+    /// Which.
+    pub name: Assumption,
+    /// The value in force.
+    pub from: &'a AssumptionValue,
+    /// The other one.
+    pub to: &'a AssumptionValue,
+    /// What came out then.
+    pub moved: &'a Moved,
+}
+
+/// The explanation, for a console.
+#[must_use]
+pub fn explain(view: &EntryView<'_>) -> String {
+    let judged = view.judged;
+    let mut text = format!("{}: {}\n", judged.id, shown(judged).replace('*', ""));
+    let lines = [
+        ("the study", &judged.statement),
+        ("where", &judged.place),
+        ("found", &judged.found),
+        ("note", &judged.explanation),
+    ];
+    for (label, line) in lines.into_iter().filter(|(_, line)| !line.is_empty()) {
+        text += &format!("  {label:<10} {}\n", one_line(line));
+    }
+    if !view.chosen_by.is_empty() {
+        text += &format!("  {:<10} {} chosen by it\n", "fitted", names(&view.chosen_by));
+    }
+    if view.moves.is_empty() {
+        text += "\nNo assumption was moved for it.\n";
+    } else {
+        text += "\nOne assumption moved at a time, the most telling first\n";
+        text += &rows(view);
+        text += &format!("\n{}", turns(view));
+    }
+    if !view.unmoved.is_empty() {
+        text += &format!(
+            "\nIts experiment leans on these too, and was not run with another value of them: {}.\n",
+            names(&view.unmoved)
+        );
+    }
+    text
+}
+
+fn names(names: &[Assumption]) -> String {
+    names.iter().map(words::of_key).collect::<Vec<_>>().join(", ")
+}
+
+/// How far a move shifts the number, relative to the published one.
+fn shift(view: &EntryView<'_>, one: &MoveView<'_>) -> Option<f64> {
+    let comparison = view.judged.comparison.as_ref()?;
+    Some((one.moved.value? - comparison.simulated) / comparison.published.abs())
+}
+
+fn rows(view: &EntryView<'_>) -> String {
+    let mut moves: Vec<&MoveView<'_>> = view.moves.iter().collect();
+    // A claim has no size: those that turn it come first.
+    let weight = |one: &MoveView<'_>| shift(view, one).map_or(f64::from(u8::from(!one.moved.kept)), f64::abs);
+    moves.sort_by(|a, b| weight(b).total_cmp(&weight(a)));
+    let mut rows: Vec<[String; 5]> = Vec::new();
+    for one in moves {
+        let (from, to) = (value_in_words(one.name, one.from), value_in_words(one.name, one.to));
+        let shifted =
+            shift(view, one).map_or_else(String::new, |shift| format!("{} %", number::signed(100.0 * shift, 2)));
+        let off =
+            one.moved.value.zip(view.judged.comparison.as_ref()).map_or_else(String::new, |(value, comparison)| {
+                let off = (value - comparison.published) / comparison.published.abs();
+                format!("{} % off", number::signed(100.0 * off, 2))
+            });
+        rows.push([
+            format!("{}: {from} → {to}", words::of_key(&one.name)),
+            one.moved.found.clone(),
+            shifted,
+            off,
+            word(one.moved.verdict).into(),
+        ]);
+    }
+    let width = |column: usize| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0);
+    let widths: Vec<usize> = (0..5).map(width).collect();
+    let mut text = String::new();
+    for row in &rows {
+        let cell =
+            |column: usize| format!("{}{}", row[column], " ".repeat(widths[column] - row[column].chars().count()));
+        text += &format!("  {}\n", (0..5).map(cell).collect::<Vec<_>>().join("  ").trim_end());
+    }
+    text
+}
+
+/// Which single change would reproduce it.
+fn turns(view: &EntryView<'_>) -> String {
+    let agrees = |verdict: Verdict| matches!(verdict, Verdict::Reproduced | Verdict::Fitted);
+    let now = view.judged.verdict;
+    let told = |one: &MoveView<'_>| {
+        format!("  {} = {}: {}\n", words::of_key(&one.name), value_in_words(one.name, one.to), word(one.moved.verdict))
+    };
+    if agrees(now) {
+        let lost: String = view.moves.iter().filter(|one| !agrees(one.moved.verdict)).map(told).collect();
+        return match lost.as_str() {
+            "" => "It agrees whichever of them is moved.\n".into(),
+            lost => format!("It agrees no more with\n{lost}"),
+        };
+    }
+    let mut text: String = view.moves.iter().filter(|one| agrees(one.moved.verdict)).map(told).collect();
+    if text.is_empty() {
+        text = "No single one of these changes reproduces it.\n".into();
+    } else {
+        text = format!("It would agree with\n{text}");
+    }
+    let meets: String = view.moves.iter().filter_map(|one| meeting(view, one)).collect();
+    if !meets.is_empty() {
+        text += &format!("On a straight line through the two runs the published number is met at about\n{meets}");
+    }
+    text
+}
+
+/// Where between its two values an assumption would give the published number.
+fn meeting(view: &EntryView<'_>, one: &MoveView<'_>) -> Option<String> {
+    let comparison = view.judged.comparison.as_ref()?;
+    let (AssumptionValue::Number(from), AssumptionValue::Number(to)) = (one.from, one.to) else { return None };
+    let share = -comparison.error() / (one.moved.value? - comparison.simulated);
+    if !(0.0..=1.0).contains(&share) {
+        return None;
+    }
+    let at = number_in_words(one.name, from + share * (to - from), 3);
+    Some(format!("  {} = {at}\n", words::of_key(&one.name)))
+}
