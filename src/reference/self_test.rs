@@ -173,23 +173,30 @@ impl Bench<'_> {
     fn moved_value(&self, judged: &Judged, from: &Extraction, reads: &BTreeSet<Read>) -> Result<(), String> {
         // A feature that does not occur cannot be moved; it differs already.
         let Some(comparison) = judged.comparison else { return Ok(()) };
-        let tolerance = comparison.tolerance();
         for (offset, should_differ) in [(JUST_OUTSIDE, true), (-JUST_OUTSIDE, true), (0.0, false)] {
-            let target = comparison.published + offset * tolerance;
-            // No deviation is below zero, however wide its tolerance.
-            if target < 0.0 && matches!(from, Extraction::StandardDeviationOver(_)) {
-                continue;
-            }
-            let mut table = self.table.clone();
-            self.steer(&mut table, from, comparison.simulated, target, reads)?;
-            let moved = self.judge(&table);
-            let reached = moved.comparison.map_or(f64::NAN, |comparison| comparison.simulated);
-            // A scaled number's own error scales with it; a moved one is exact to rounding.
-            if (reached - target).abs() > 0.01 * tolerance {
-                return Err(format!("moved to {target}, it reads {reached}: {}", moved.found));
-            }
-            if (moved.verdict == Verdict::Differs) != should_differ {
-                return Err(format!("moved to {target}, it is {:?}", moved.verdict));
+            let mut tolerance = comparison.tolerance();
+            // The uncertainty of a scaled number scales with it, and its tolerance: it is moved outside of that one too.
+            for last in [false, false, true] {
+                let target = comparison.published + offset * tolerance;
+                // No deviation is below zero, however wide its tolerance.
+                if target < 0.0 && matches!(from, Extraction::StandardDeviationOver(_)) {
+                    break;
+                }
+                let mut table = self.table.clone();
+                self.steer(&mut table, from, comparison.simulated, target, reads)?;
+                let moved = self.judge(&table);
+                let reached = moved.comparison.map_or(f64::NAN, |comparison| comparison.simulated);
+                // A scaled number's own error scales with it; a moved one is exact to rounding.
+                if (reached - target).abs() > 0.01 * tolerance {
+                    return Err(format!("moved to {target}, it reads {reached}: {}", moved.found));
+                }
+                if (moved.verdict == Verdict::Differs) == should_differ {
+                    break;
+                }
+                if last || !should_differ {
+                    return Err(format!("moved to {target}, it is {:?}", moved.verdict));
+                }
+                tolerance = moved.comparison.map_or(tolerance, |comparison| comparison.tolerance());
             }
         }
         Ok(())

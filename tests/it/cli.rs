@@ -242,5 +242,5 @@ fn explain_tells_what_an_entry_hangs_on_and_simulates_nothing() {
     }
     assert!(before == files(desk.folder.path()), "nothing was written");
     let unknown = shotdamp(&desk, &["explain", "ch3-stop/at-three"]);
-    assert!(unknown.code == 2 && unknown.err.contains("no entry of the reference matches"), "{}", unknown.err);
+    assert!(unknown.code == 2 && unknown.err.contains("there is no entry `ch3-stop/at-three`"), "{}", unknown.err);
 }

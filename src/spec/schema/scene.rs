@@ -4,8 +4,9 @@ use serde_json::{Value, json};
 
 use super::parts::{
     Object, any_of, between, boolean, count, form, list, one_of_words, one_or_more, quantity, ratio, reference, word,
+    words_of,
 };
-use crate::scene::{Form, ImpulseTime, KINDS, Kind};
+use crate::scene::{Assumption, Form, ImpulseTime, KINDS, Kind};
 use crate::spec::quantity::Dimension;
 use crate::spec::scene::MOST_DAMPERS;
 use crate::spec::structure::MOST_MODES;
@@ -25,6 +26,12 @@ fn swept_or(value: Value) -> Value {
 fn assumed_or(value: Value) -> Value {
     let about = value["description"].clone();
     json!({"description": about, "anyOf": [value, word("assumed")]})
+}
+
+/// A value, or that it is an assumption of this name.
+fn named_or(value: Value) -> Value {
+    let about = value["description"].clone();
+    json!({"description": about, "anyOf": [value, form("assumed", "By this name", words_of::<Assumption>("An assumption"))]})
 }
 
 pub(super) fn scene() -> Value {
@@ -118,7 +125,10 @@ fn damper() -> Value {
             ("mass_ratio", swept_or(ratio("m′: mass of the damper over that of the structure"))),
             ("mass", quantity("Mass of the damper", Dimension::Mass)),
         ])
-        .optional("mass_reading", one_of_words("Whose mass m′ is a share of", &["assumed", "total", "modal", "swept"]))
+        .optional(
+            "mass_reading",
+            named_or(one_of_words("Whose mass m′ is a share of", &["assumed", "total", "modal", "swept"])),
+        )
         .optional("particle_share", share)
         .exactly_one(vec![
             ("gap_ratio", any_of("h′: dimensionless gap clearance", ratios)),
@@ -137,7 +147,7 @@ fn array() -> Value {
         .required("count", swept_or(one_or_more("Number of dampers, or one number a side", dampers)))
         .required("spacing", one_or_more("From one to the next", quantity("Spacing", Dimension::Length)))
         .optional("centred", boolean("Around the place, rather than from there on"))
-        .optional("margin", assumed_or(quantity("Kept free at the edge", Dimension::Length)))
+        .optional("margin", named_or(assumed_or(quantity("Kept free at the edge", Dimension::Length))))
         .schema()
 }
 
@@ -155,10 +165,10 @@ fn surface() -> Value {
     let resilient = Object::new("A resilient surface")
         .exactly_one(vec![
             ("stiffness_ratio", assumed_or(swept_or(ratio("kf/ks: stiffness over that of the structure")))),
-            ("stiffness", any_of("Stiffness", stiffness)),
+            ("stiffness", named_or(any_of("Stiffness", stiffness))),
         ])
         .exactly_one(vec![
-            ("damping_ratio", assumed_or(swept_or(ratio("Damping ratio under the particle")))),
+            ("damping_ratio", named_or(assumed_or(swept_or(ratio("Damping ratio under the particle"))))),
             ("damping", any_of("Damping", damping)),
         ])
         .optional("no_tension", boolean("The surface does not pull at a particle that leaves it"))
