@@ -9,8 +9,9 @@ use super::opened::Opened;
 use super::pages::render;
 use super::verdicts::Judgement;
 
-/// Files below `reports/` that a benchmark writes and no run: measured times differ from machine to machine.
-const MEASURED: [&str; 2] = ["reports/speed.md", "reports/speed.png"];
+/// What benchmarks, tests and other commands write below `reports/`, and no run: files that begin so.
+const WRITTEN_OTHERWISE: [&str; 5] =
+    ["reports/speed.", "reports/accuracy.", "reports/accuracy/", "reports/calibrations/", "reports/hard-cases."];
 /// Folders in folders below `reports/`; ends a walk that a link leads in a circle.
 const DEEPEST: u32 = 8;
 /// Longest part of a line that is told.
@@ -70,7 +71,7 @@ pub fn departures(opened: &Opened, judgement: &Judgement) -> Vec<Departure> {
         file: format!("reports of {}", item.source.experiment.id),
         how: How::CannotBeMade("there is no table that is up to date; `shotdamp run` makes it".into()),
     }));
-    let known: BTreeSet<&str> = expected.keys().map(String::as_str).chain(MEASURED).collect();
+    let known: BTreeSet<&str> = expected.keys().map(String::as_str).collect();
     let mut present = BTreeSet::new();
     walk(&opened.layout.path("reports"), "reports", DEEPEST, &mut present);
     // Whose table is out of date has pages that cannot be told from those of an experiment that is gone.
@@ -81,7 +82,8 @@ pub fn departures(opened: &Opened, judgement: &Judgement) -> Vec<Departure> {
             .iter()
             .any(|item| item.record().is_none() && stem.starts_with(item.source.experiment.id.0.as_str()))
     };
-    let extra = present.into_iter().filter(|file| !known.contains(file.as_str()) && !unmade(file));
+    let otherwise = |file: &str| WRITTEN_OTHERWISE.iter().any(|start| file.starts_with(start));
+    let extra = present.into_iter().filter(|file| !known.contains(file.as_str()) && !unmade(file) && !otherwise(file));
     found.extend(extra.map(|file| Departure { file, how: How::Extra }));
     found.sort_by(|a, b| a.file.cmp(&b.file));
     found
