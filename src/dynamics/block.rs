@@ -30,6 +30,11 @@ pub(crate) struct Kernel {
     pub(crate) s: f64,
 }
 
+/// The pairs k ≤ l of so many blocks, row by row: the order of every form over them.
+pub(crate) fn pairs(blocks: usize) -> impl Iterator<Item = (usize, usize)> {
+    (0..blocks).flat_map(move |k| (k..blocks).map(move |l| (k, l)))
+}
+
 /// Value and first derivative of a block's share in a signal.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct Phase {

@@ -13,7 +13,7 @@
 use nalgebra::{Complex, DMatrix};
 
 use super::block::Block;
-use super::spectral::Spectral;
+use super::spectral::{Spectral, inverse_of_unit_upper, product};
 
 type C = Complex<f64>;
 
@@ -137,12 +137,7 @@ impl Triangular {
                 }
             }
         }
-        let mut y = DMatrix::<C>::identity(order, order);
-        for j in 0..order {
-            for i in (0..j).rev() {
-                y[(i, j)] = (i + 1..=j).fold(C::default(), |sum, k| sum - x[(i, k)] * y[(k, j)]);
-            }
-        }
+        let y = inverse_of_unit_upper(&x);
         (x, y)
     }
 }
@@ -252,13 +247,6 @@ impl Parts {
             lasts,
         }
     }
-}
-
-/// Own loops: the library's product picks its kernel, and with it the last bit, by processor.
-fn product(a: &DMatrix<C>, b: &DMatrix<C>) -> DMatrix<C> {
-    DMatrix::from_fn(a.nrows(), b.ncols(), |i, j| {
-        (0..a.ncols()).fold(C::default(), |sum, k| sum + a[(i, k)] * b[(k, j)])
-    })
 }
 
 #[cfg(test)]

@@ -3,8 +3,10 @@
 //! Between two instants they take [zᵀPz] with BᵀP + PB = Q, block by block. Where two eigenvalues nearly cancel (next to no
 //! damping) that P loses digits, and the motion itself is integrated, by Gauss-Legendre panels.
 
+use super::block::pairs;
 use super::flow::Flow;
 use super::integral::NEARLY_NEUTRAL;
+use super::lyapunov::Lyapunov;
 use super::system::{HybridSystem, dot};
 
 /// radius·h of a panel of the ten-point Gauss-Legendre rule: a squared signal turns twice as fast, and what the rule leaves
@@ -18,7 +20,7 @@ pub(crate) struct Dissipation {
     /// p′ of each unit of the block coordinates, and its largest entry.
     columns: Vec<Vec<f64>>,
     largest: Vec<f64>,
-    /// Q: pairs of blocks k ≤ l, row by row; those off the diagonal count for both.
+    /// Q, by [`pairs`] of blocks; those off the diagonal count for both.
     power: Vec<[f64; 4]>,
     /// P, where it keeps its digits.
     taken: Option<Vec<[f64; 4]>>,
@@ -34,10 +36,9 @@ impl Dissipation {
             let twice = if k == l { 1.0 } else { 2.0 };
             [(0, 0), (0, 1), (1, 0), (1, 1)].map(|(a, b)| twice * dot(&columns[2 * k + a], &damped[2 * l + b]))
         };
-        let pairs = || (0..flow.own).flat_map(|k| (k..flow.own).map(move |l| (k, l)));
-        let power: Vec<[f64; 4]> = pairs().map(form).collect();
+        let power: Vec<[f64; 4]> = pairs(flow.own).map(form).collect();
         let solved = |((k, l), q): ((usize, usize), &[f64; 4])| solve(flow, k, l, *q);
-        let taken = flow.is_free().then(|| pairs().zip(&power).map(solved).collect()).flatten();
+        let taken = flow.is_free().then(|| pairs(flow.own).zip(&power).map(solved).collect()).flatten();
         Self { columns, largest, power, taken }
     }
 
@@ -92,13 +93,13 @@ impl Dissipation {
 }
 
 /// zᵀ F z.
-fn form(pairs: &[[f64; 4]], z: &[f64]) -> f64 {
-    let mut pairs = pairs.iter();
+fn form(parts: &[[f64; 4]], z: &[f64]) -> f64 {
+    let mut parts = parts.iter();
     let blocks = z.as_chunks::<2>().0;
     let mut sum = 0.0;
     for (k, [x, y]) in blocks.iter().enumerate() {
         let (mut by_x, mut by_y) = (0.0, 0.0);
-        for ([u, v], [xu, xv, yu, yv]) in blocks[k..].iter().zip(pairs.by_ref()) {
+        for ([u, v], [xu, xv, yu, yv]) in blocks[k..].iter().zip(parts.by_ref()) {
             by_x += xu * u + xv * v;
             by_y += yu * u + yv * v;
         }
@@ -117,16 +118,7 @@ fn solve(flow: &Flow, k: usize, l: usize, q: [f64; 4]) -> Option<[f64; 4]> {
         return None;
     }
     let matrices = &flow.modes.spectral.matrices;
-    let ([a, b, c, d], [e, f, g, h]) = (matrices[k], matrices[l]);
-    // Unknowns p00, p01, p10, p11.
-    #[rustfmt::skip]
-    let system = nalgebra::Matrix4::new(
-        a + e, g, c, 0.0,
-        f, a + h, 0.0, c,
-        b, 0.0, d + e, g,
-        0.0, b, f, d + h,
-    );
-    system.lu().solve(&nalgebra::Vector4::from(q)).map(|p| [p[0], p[1], p[2], p[3]])
+    Lyapunov::new(matrices[k], matrices[l]).solve(q)
 }
 
 /// What the dashpots push against rates p′.

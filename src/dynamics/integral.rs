@@ -5,8 +5,9 @@
 //! (undamped motion) that P is large and the difference loses digits; then the flow itself is integrated, by Gauss-Legendre
 //! panels so short that they are exact to rounding.
 
-use super::block::{Block, Phase};
+use super::block::{Block, Phase, pairs};
 use super::flow::Parabola;
+use super::lyapunov::Lyapunov;
 
 /// Closed forms for the integrals of one signal and of its rate.
 pub(crate) struct Forms {
@@ -81,17 +82,15 @@ pub(crate) const NEARLY_NEUTRAL: f64 = 4e-4;
 impl Forms {
     /// The closed forms, or `None` where one of them would lose its digits.
     pub(crate) fn new(blocks: &[Block], driven: bool) -> Option<Self> {
-        let mut pairs = Vec::with_capacity(blocks.len() * (blocks.len() + 1) / 2);
-        for first in 0..blocks.len() {
-            for second in first..blocks.len() {
-                let kind = if first == second && driven && first + 1 == blocks.len() {
-                    PairKind::Neutral { square: blocks[first].determinant }
-                } else {
-                    pair(&blocks[first], &blocks[second])?.counted(first != second)
-                };
-                pairs.push(Pair { first, second, kind });
-            }
-        }
+        let of = |(first, second): (usize, usize)| {
+            let kind = if first == second && driven && first + 1 == blocks.len() {
+                PairKind::Neutral { square: blocks[first].determinant }
+            } else {
+                pair(&blocks[first], &blocks[second])?.counted(first != second)
+            };
+            Some(Pair { first, second, kind })
+        };
+        let pairs = pairs(blocks.len()).map(of).collect::<Option<Vec<_>>>()?;
         let linear =
             blocks.iter().map(|block| [2.0 * block.decay / block.determinant, 1.0 / block.determinant]).collect();
         Some(Self { pairs, linear })
@@ -132,7 +131,7 @@ impl Forms {
 pub(crate) struct PhaseMoments {
     /// Blocks in order: value, rate.
     pub(crate) first: Vec<[f64; 2]>,
-    /// Pairs in order, row by row.
+    /// By [`pairs`] of blocks.
     pub(crate) second: Vec<[f64; 4]>,
 }
 
@@ -196,29 +195,9 @@ fn pair(k: &Block, l: &Block) -> Option<PairKind> {
     if !k.keeps_apart(l, NEARLY_NEUTRAL) {
         return None;
     }
-    // C = [[0, 1], [−b, −2a]]; unknowns p00, p01, p10, p11.
-    let (ak, bk, al, bl) = (2.0 * k.decay, k.determinant, 2.0 * l.decay, l.determinant);
-    let system = nalgebra::Matrix4::new(
-        0.0,
-        -bl,
-        -bk,
-        0.0, //
-        1.0,
-        -al,
-        0.0,
-        -bk, //
-        1.0,
-        0.0,
-        -ak,
-        -bl, //
-        0.0,
-        1.0,
-        1.0,
-        -ak - al,
-    );
-    let lu = system.lu();
-    let solve = |load: [f64; 4]| lu.solve(&nalgebra::Vector4::from(load)).map(|p| [p[0], p[1], p[2], p[3]]);
-    Some(PairKind::Damped { value: solve([1.0, 0.0, 0.0, 0.0])?, rate: solve([0.0, 0.0, 0.0, 1.0])? })
+    let companion = |block: &Block| [0.0, 1.0, -block.determinant, -2.0 * block.decay];
+    let equation = Lyapunov::new(companion(k), companion(l));
+    Some(PairKind::Damped { value: equation.solve([1.0, 0.0, 0.0, 0.0])?, rate: equation.solve([0.0, 0.0, 0.0, 1.0])? })
 }
 
 /// Nodes and weights of the ten-point Gauss-Legendre rule on [0, 1].

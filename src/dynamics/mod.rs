@@ -33,6 +33,7 @@ mod guards;
 mod integral;
 mod lanes;
 mod linear;
+mod lyapunov;
 mod march;
 mod mobility;
 mod modes;

@@ -4,7 +4,7 @@
 //! above the diagonal (Bavely & Stewart, SIAM J. Numer. Anal. 16, 1979). A block keeps a complex pair or two real
 //! eigenvalues *together*, so a critically damped contact needs no eigenvectors and costs no digits.
 
-use nalgebra::{DMatrix, Schur};
+use nalgebra::{ComplexField, DMatrix, Schur};
 
 use super::EngineError;
 use super::block::Block;
@@ -246,17 +246,7 @@ fn decouple(t: &DMatrix<f64>, firsts: &[usize]) -> (DMatrix<f64>, DMatrix<f64>) 
             }
         }
     }
-    // The inverse of a unit upper triangular matrix, column by column.
-    let mut y = DMatrix::identity(order, order);
-    for j in 0..order {
-        for i in (0..j).rev() {
-            let mut sum = 0.0;
-            for k in i + 1..=j {
-                sum -= x[(i, k)] * y[(k, j)];
-            }
-            y[(i, j)] = sum;
-        }
-    }
+    let y = inverse_of_unit_upper(&x);
     (x, y)
 }
 
@@ -329,8 +319,20 @@ fn settle([p, q, r, s]: [f64; 4], norm: f64, creeps: bool) -> [f64; 4] {
 }
 
 /// Own loops: the library's product picks its kernel, and with it the last bit, by processor.
-fn product(a: &DMatrix<f64>, b: &DMatrix<f64>) -> DMatrix<f64> {
-    DMatrix::from_fn(a.nrows(), b.ncols(), |i, j| (0..a.ncols()).fold(0.0, |sum, k| sum + a[(i, k)] * b[(k, j)]))
+pub(super) fn product<T: ComplexField + Copy>(a: &DMatrix<T>, b: &DMatrix<T>) -> DMatrix<T> {
+    DMatrix::from_fn(a.nrows(), b.ncols(), |i, j| (0..a.ncols()).fold(T::zero(), |sum, k| sum + a[(i, k)] * b[(k, j)]))
+}
+
+/// The inverse of a unit upper triangular matrix, column by column.
+pub(super) fn inverse_of_unit_upper<T: ComplexField + Copy>(x: &DMatrix<T>) -> DMatrix<T> {
+    let order = x.nrows();
+    let mut y = DMatrix::identity(order, order);
+    for j in 0..order {
+        for i in (0..j).rev() {
+            y[(i, j)] = (i + 1..=j).fold(T::zero(), |sum, k| sum - x[(i, k)] * y[(k, j)]);
+        }
+    }
+    y
 }
 
 fn largest(m: &DMatrix<f64>) -> f64 {

@@ -2,8 +2,9 @@
 //! held against the states at both ends.
 
 use super::cycle::{Affine, Cycle, leave};
-use super::moments::{Moments, pairs};
+use super::moments::Moments;
 use crate::dynamics::audit::{Audit, Passed, State};
+use crate::dynamics::block::pairs;
 use crate::dynamics::flow::Flow;
 use crate::dynamics::integral::GAUSS;
 use crate::dynamics::system::{HybridSystem, Law, dot};

@@ -4,6 +4,7 @@
 //! squarings and no digit: nothing is divided by I − E, which vanishes at resonance.
 
 use super::cycle::{Affine, product, times};
+use crate::dynamics::block::pairs;
 
 /// Sums over the states of several cycles at the same time within each.
 #[derive(Debug, Clone)]
@@ -12,13 +13,8 @@ pub(super) struct Moments {
     pub(super) count: f64,
     /// Σ c, block by block.
     pub(super) first: Vec<[f64; 2]>,
-    /// Σ cₖ cₗᵀ for every pair of blocks k ≤ l, row by row.
+    /// Σ cₖ cₗᵀ for every one of the [`pairs`].
     pub(super) second: Vec<[f64; 4]>,
-}
-
-/// The pairs k ≤ l in the order of [`Moments::second`].
-pub(super) fn pairs(blocks: usize) -> impl Iterator<Item = (usize, usize)> {
-    (0..blocks).flat_map(move |k| (k..blocks).map(move |l| (k, l)))
 }
 
 impl Moments {

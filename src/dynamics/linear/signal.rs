@@ -1,8 +1,8 @@
 //! Signals of a flow as rows over its block coordinates, and their integrals over many cycles at once.
 
 use super::cycle::{Affine, Cycle, drive_at, product, times};
-use super::moments::{Moments, outer, pairs, transposed};
-use crate::dynamics::block::Phase;
+use super::moments::{Moments, outer, transposed};
+use crate::dynamics::block::{Phase, pairs};
 use crate::dynamics::flow::{DrivePhase, Flow};
 use crate::dynamics::integral::{GAUSS, Integrals, PhaseMoments};
 use crate::dynamics::system::HybridSystem;
