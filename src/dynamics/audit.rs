@@ -153,7 +153,7 @@ impl Audit {
         self.duration += length;
         let start = &start[..2 * flow.own];
         let mut end = vec![0.0; 2 * flow.own];
-        flow.advance(kernels, start, &mut end);
+        flow.move_blocks(kernels, start, &mut end);
         if let Some(taken) = flow.dissipation(system).between(start, &end) {
             self.dissipated += taken;
             self.moved(system, flow, &flow.integrated(start, &end), force.level, length);
@@ -174,7 +174,7 @@ impl Audit {
             let h = dissipation.panel(flow, |i| from[i].abs()).min(length - t0);
             nodes.set(flow, h);
             for ([x, weight], kernels) in GAUSS.iter().zip(&nodes.within) {
-                flow.advance(kernels, &from, &mut c);
+                flow.move_blocks(kernels, &from, &mut c);
                 let w = weight * h;
                 if flow.is_free() {
                     sum.iter_mut().zip(&c).for_each(|(sum, c)| *sum += w * c);
@@ -183,7 +183,7 @@ impl Audit {
                     self.node(system, flow, &c, Node { time: t0 + x * h, weight: w }, force);
                 }
             }
-            flow.advance(&nodes.end, &from, &mut c);
+            flow.move_blocks(&nodes.end, &from, &mut c);
             std::mem::swap(&mut from, &mut c);
             t0 += h;
         }

@@ -35,6 +35,22 @@ pub(crate) fn pairs(blocks: usize) -> impl Iterator<Item = (usize, usize)> {
     (0..blocks).flat_map(move |k| (k..blocks).map(move |l| (k, l)))
 }
 
+/// zᵀ F z, F by [`pairs`] of blocks; those off the diagonal count for both orders.
+pub(crate) fn form(parts: &[[f64; 4]], z: &[f64]) -> f64 {
+    let mut parts = parts.iter();
+    let blocks = z.as_chunks::<2>().0;
+    let mut sum = 0.0;
+    for (k, [x, y]) in blocks.iter().enumerate() {
+        let (mut by_x, mut by_y) = (0.0, 0.0);
+        for ([u, v], [xu, xv, yu, yv]) in blocks[k..].iter().zip(parts.by_ref()) {
+            by_x += xu * u + xv * v;
+            by_y += yu * u + yv * v;
+        }
+        sum += x * by_x + y * by_y;
+    }
+    sum
+}
+
 /// Value and first derivative of a block's share in a signal.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct Phase {

@@ -3,10 +3,9 @@
 //! Between two instants they take [zᵀPz] with BᵀP + PB = Q, block by block. Where two eigenvalues nearly cancel (next to no
 //! damping) that P loses digits, and the motion itself is integrated, by Gauss-Legendre panels.
 
-use super::block::pairs;
+use super::block::{form, pairs};
 use super::flow::Flow;
-use super::integral::NEARLY_NEUTRAL;
-use super::lyapunov::Lyapunov;
+use super::lyapunov::{Lyapunov, NEARLY_NEUTRAL};
 use super::system::{HybridSystem, dot};
 
 /// radius·h of a panel of the ten-point Gauss-Legendre rule: a squared signal turns twice as fast, and what the rule leaves
@@ -92,22 +91,6 @@ impl Dissipation {
     }
 }
 
-/// zᵀ F z.
-fn form(parts: &[[f64; 4]], z: &[f64]) -> f64 {
-    let mut parts = parts.iter();
-    let blocks = z.as_chunks::<2>().0;
-    let mut sum = 0.0;
-    for (k, [x, y]) in blocks.iter().enumerate() {
-        let (mut by_x, mut by_y) = (0.0, 0.0);
-        for ([u, v], [xu, xv, yu, yv]) in blocks[k..].iter().zip(parts.by_ref()) {
-            by_x += xu * u + xv * v;
-            by_y += yu * u + yv * v;
-        }
-        sum += x * by_x + y * by_y;
-    }
-    sum
-}
-
 /// P of BₖᵀP + P Bₗ = Q.
 fn solve(flow: &Flow, k: usize, l: usize, q: [f64; 4]) -> Option<[f64; 4]> {
     if q == [0.0; 4] {
@@ -118,7 +101,7 @@ fn solve(flow: &Flow, k: usize, l: usize, q: [f64; 4]) -> Option<[f64; 4]> {
         return None;
     }
     let matrices = &flow.modes.spectral.matrices;
-    Lyapunov::new(matrices[k], matrices[l]).solve(q)
+    Lyapunov::new(matrices[k], matrices[l]).map(|equation| equation.solve(q))
 }
 
 /// What the dashpots push against rates p′.

@@ -13,6 +13,7 @@ use super::bank::Bank;
 use super::block::Block;
 use super::contact_state::Modes;
 use super::dissipation::Dissipation;
+use super::gains::Closed;
 use super::series::Series;
 use super::signals::{Row, Rows, Signals};
 use super::system::{Contact, Face, HybridSystem, Law, dot};
@@ -40,7 +41,7 @@ pub(crate) struct Flow {
     /// Signals that are watched or measured.
     pub(crate) rows: Rows,
     /// Closed forms of its integrals, where they keep their digits.
-    pub(crate) forms: Option<super::integral::Forms>,
+    pub(crate) closed: Option<Closed>,
     dissipation: OnceCell<Dissipation>,
 }
 
@@ -139,17 +140,21 @@ impl Flow {
             force,
             harmonic,
             rows: Rows::default(),
-            forms: None,
+            closed: None,
             dissipation: OnceCell::new(),
         };
         flow.rows = Rows::new(system, &flow);
-        flow.forms = super::integral::Forms::new(&flow.blocks, flow.harmonic.is_some());
+        let omega = flow.harmonic.as_ref().map(|steady| steady.omega);
+        flow.closed = Closed::new(&flow.blocks, &flow.modes.spectral.matrices, omega);
         Ok(flow)
     }
 
     /// Numbers that it keeps, those of its modes among them.
     pub(crate) fn size(&self) -> usize {
-        self.modes.size() + self.rows.size() + self.dissipation.get().map_or(0, Dissipation::size)
+        self.modes.size()
+            + self.rows.size()
+            + self.closed.as_ref().map_or(0, Closed::size)
+            + self.dissipation.get().map_or(0, Dissipation::size)
     }
 
     /// The signal r·p.
@@ -254,9 +259,18 @@ impl Flow {
         }
     }
 
-    /// Propagates block coordinates by the kernels of a time.
+    /// Propagates block coordinates by the kernels of a time, with the drive's phase after it.
     #[inline]
-    pub(crate) fn advance(&self, kernels: &[super::block::Kernel], start: &[f64], end: &mut [f64]) {
+    pub(crate) fn advance(&self, kernels: &[super::block::Kernel], start: &[f64], drive: DrivePhase, end: &mut [f64]) {
+        self.move_blocks(kernels, start, end);
+        if self.harmonic.is_some() {
+            end[2 * self.own..2 * self.own + 2].copy_from_slice(&[drive.cosine, drive.sine]);
+        }
+    }
+
+    /// Propagates the coordinates of its own blocks by the kernels of a time.
+    #[inline]
+    pub(crate) fn move_blocks(&self, kernels: &[super::block::Kernel], start: &[f64], end: &mut [f64]) {
         for k in 0..self.own {
             let [p, q, r, s] = self.modes.spectral.matrices[k];
             let kernel = kernels[k];

@@ -118,12 +118,8 @@ pub(crate) fn steady_state(system: &HybridSystem) -> Result<Option<SteadyState>,
     let motion = |(row, part): (&Row, Integrals)| {
         let mut extremes = Extremes::default();
         range::take(system, &flow, row, &cycle, &steady, 1, &mut extremes);
-        let sums = Sums {
-            duration,
-            displacement: part.value,
-            displacement_square: part.square,
-            velocity_square: part.rate_square,
-        };
+        let mut sums = Sums::default();
+        sums.add(part, duration);
         SteadyMotion { cycle: sums, extremes }
     };
     Ok(Some(SteadyState { observed: rows.iter().zip(parts).map(motion).collect(), margin }))
@@ -247,11 +243,7 @@ impl<'a> Run<'a> {
             for Stretch { cycle, at, .. } in self.stretch(bounds[half], bounds[half + 1]) {
                 let (duration, parts) = integrals(system, flow, &rows, cycle, &at, options.displacement);
                 for (part, of) in parts.into_iter().zip(&mut response.observed) {
-                    let sum = &mut of.halves[half];
-                    sum.duration += duration;
-                    sum.displacement += part.value;
-                    sum.displacement_square += part.square;
-                    sum.velocity_square += part.rate_square;
+                    of.halves[half].add(part, duration);
                 }
             }
         }

@@ -24,6 +24,7 @@ use super::signals::{self, Signals};
 use super::states::States;
 use super::system::{Contact, Event, EventKind, HybridSystem, Law, Tick, dot};
 use super::trace::Sample;
+use super::visits::Visits;
 use super::{CycleRates, EngineError, Observed, Options, Proof, Response};
 use half_cycles::Half;
 
@@ -73,8 +74,8 @@ pub(crate) struct March<'a> {
     phase_time: f64,
     c: Vec<f64>,
     c_end: Vec<f64>,
-    observed_end: Vec<Phase>,
     // Results.
+    visits: Visits,
     clarity: Clarity,
     response: Response,
     audit: Option<Audit>,
@@ -121,7 +122,7 @@ impl<'a> March<'a> {
             phase_time: f64::NAN,
             c: vec![0.0; 2 * most + 2],
             c_end: vec![0.0; 2 * most + 2],
-            observed_end: Vec::new(),
+            visits: Visits::default(),
             clarity: Clarity { margin: f64::INFINITY, ties: 0 },
             response: Response {
                 observed: vec![Observed::default(); system.observed_rows.len()],
@@ -216,6 +217,7 @@ impl<'a> March<'a> {
     }
 
     fn finish(mut self) -> Result<Response, EngineError> {
+        self.pay_out();
         if let Some(audit) = self.audit.take() {
             let (momentum, energy) = audit.residuals(self.system, &self.audit_state());
             self.response.proof.momentum_residual = momentum;
@@ -300,6 +302,10 @@ impl<'a> March<'a> {
         for j in 0..self.damping.len() {
             self.damping[j] = self.damping_at(j);
         }
+        if self.equivalent.is_some() {
+            // Which of many dampings are still known hangs on the runs before; what is summed up together must not.
+            self.pay_out();
+        }
         self.flow = self.states.flow(self.system, &self.contacts, &self.damping)?;
         let width = 2 * self.flow.blocks.len();
         if self.c.len() < width {
@@ -366,9 +372,14 @@ impl<'a> March<'a> {
             Found::Nothing => limit,
             Found::Event { time, .. } => time.min(limit),
         };
+        let end_drive = match self.system.drive.harmonic {
+            None => drive,
+            Some(_) => self.drive_phase(self.time + length),
+        };
+        self.flow.advance(&self.search.kernels, &self.c, end_drive, &mut self.c_end);
         self.sum_up(length, drive);
         self.sample(length);
-        self.arrive(length, drive);
+        self.arrive(length, end_drive);
         self.time = match found {
             Found::Nothing if limit < until - self.time => self.time + limit,
             Found::Nothing => until,
@@ -383,11 +394,7 @@ impl<'a> March<'a> {
     }
 
     /// The state at the end of a segment.
-    fn arrive(&mut self, length: f64, drive: DrivePhase) {
-        let end_drive = match self.system.drive.harmonic {
-            None => drive,
-            Some(_) => self.drive_phase(self.time + length),
-        };
+    fn arrive(&mut self, length: f64, end_drive: DrivePhase) {
         let n = self.system.mass.order;
         let flow = &self.flow;
         for (j, particle) in self.system.particles.iter().enumerate() {
@@ -404,7 +411,6 @@ impl<'a> March<'a> {
             // What has begun at zero is there no longer.
             self.smooth[j] &= length == 0.0;
         }
-        flow.advance(&self.search.kernels, &self.c, &mut self.c_end);
         flow.leave(&self.c_end, length, self.level, end_drive, &mut self.q, &mut self.rate);
         let short = guards::is_short(flow, length);
         for (i, &j) in flow.modes.attached.iter().enumerate() {
@@ -420,32 +426,20 @@ impl<'a> March<'a> {
 
     /// Adds the segment to the measures, and to the audit if there is one.
     fn sum_up(&mut self, length: f64, drive: DrivePhase) {
-        let flow = &self.flow;
         if self.options.averages(self.cycle) {
             let second_half = 2 * (self.cycle - u64::from(self.options.skip)) >= u64::from(self.options.average);
-            for (of, &row) in self.response.observed.iter_mut().zip(&flow.rows.observed) {
-                let (observed, rest) = self.signals.of(row);
-                let integrals = match &flow.forms {
-                    Some(forms) => {
-                        self.observed_end.clear();
-                        let end = flow.blocks.iter().zip(observed).zip(&self.search.kernels);
-                        self.observed_end.extend(end.map(|((block, phase), kernel)| block.advance(*phase, *kernel)));
-                        forms
-                            .between(observed, &self.observed_end, length, self.options.displacement)
-                            .offset(rest.p0, length)
-                    }
-                    None => quadrature(&flow.blocks, observed, rest, length),
-                };
-                let sums = &mut of.halves[usize::from(second_half)];
-                sums.duration += length;
-                sums.velocity_square += integrals.rate_square;
-                sums.displacement += integrals.value;
-                sums.displacement_square += integrals.square;
-                if self.options.extremes {
-                    extremes::take(&mut of.extremes, &flow.blocks, observed, rest, length);
-                }
+            if self.visits.half != usize::from(second_half) || self.visits.is_full() {
+                self.pay_out();
+                self.visits.half = usize::from(second_half);
+            }
+            if self.flow.closed.is_some() {
+                self.visits.of(&self.flow).visit(&self.c, &self.c_end, self.level, length);
+            }
+            if self.flow.closed.is_none() || self.options.extremes {
+                self.look_along(length);
             }
         }
+        let flow = &self.flow;
         if let Some(audit) = &mut self.audit
             && self.cycle >= u64::from(self.options.skip)
         {
@@ -456,6 +450,24 @@ impl<'a> March<'a> {
             self.half.square += quadrature(&flow.blocks, bends, Parabola::default(), length).square;
             self.half.length += length;
         }
+    }
+
+    /// What has to be taken from the observed signals themselves.
+    fn look_along(&mut self, length: f64) {
+        let flow = &self.flow;
+        for (of, &row) in self.response.observed.iter_mut().zip(&flow.rows.observed) {
+            let (observed, rest) = flow.rows.evaluate(row, &self.c, self.level, flow.blocks.len());
+            if flow.closed.is_none() {
+                of.halves[self.visits.half].add(quadrature(&flow.blocks, &observed, rest, length), length);
+            }
+            if self.options.extremes {
+                extremes::take(&mut of.extremes, &flow.blocks, &observed, rest, length);
+            }
+        }
+    }
+
+    fn pay_out(&mut self) {
+        self.visits.pay_out(self.options.displacement, &mut self.response.observed);
     }
 
     fn audit_state(&self) -> super::audit::State {
@@ -494,7 +506,7 @@ impl<'a> March<'a> {
                 let (phases, rest) = flow.rows.evaluate(row, &self.c, self.level, flow.blocks.len());
                 value((&phases, rest))
             };
-            let [displacement, velocity, acceleration] = value(self.signals.of(flow.rows.observed[0]));
+            let [displacement, velocity, acceleration] = anywhere(flow.rows.observed[0]);
             let mut sample = Sample {
                 time: self.cycle as f64 * period + instant,
                 displacement,

@@ -29,6 +29,7 @@ mod elementary;
 mod extremes;
 mod fixed;
 mod flow;
+mod gains;
 mod guards;
 mod integral;
 mod lanes;
@@ -46,6 +47,7 @@ mod spline;
 mod states;
 mod system;
 mod trace;
+mod visits;
 mod window;
 
 pub use spline::Spline;
@@ -55,7 +57,7 @@ pub use system::{
 pub use trace::{Sample, TraceRequest};
 
 /// Changes whenever the same scene may give other bits. A test holds the bits of fixed scenes against it.
-pub const SOLVER_VERSION: u32 = 3;
+pub const SOLVER_VERSION: u32 = 4;
 
 /// What proves a run: residuals of the balances, and how clearly its events were decided.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -290,6 +292,13 @@ impl Observed {
 }
 
 impl Sums {
+    pub(crate) fn add(&mut self, more: integral::Integrals, duration: f64) {
+        self.duration += duration;
+        self.displacement += more.value;
+        self.displacement_square += more.square;
+        self.velocity_square += more.rate_square;
+    }
+
     /// RMS velocity, m/s.
     #[must_use]
     pub fn rms_velocity(&self) -> f64 {

@@ -48,7 +48,7 @@ pub(crate) struct GuardRows {
 pub(crate) struct Rows {
     rows: Vec<Row>,
     watched: usize,
-    /// Observed displacements.
+    /// Observed displacements; half cycles watch the first of them.
     pub(crate) observed: Vec<usize>,
     /// Acceleration of the first of them, where half cycles follow it.
     pub(crate) bend: Option<usize>,
@@ -145,11 +145,8 @@ impl Rows {
             padded.resize(flow.order, 0.0);
             flow.row(&padded)
         };
-        for row in &system.observed_rows {
-            let place = all.place(padded(row));
-            all.observed.push(place);
-        }
-        if let (Some(&first), Some(_)) = (all.observed.first(), &system.drive.half_cycles) {
+        if let (Some(row), Some(_)) = (system.observed_rows.first(), &system.drive.half_cycles) {
+            let first = all.place(padded(row));
             all.bend = Some(all.place(all.rows[first].acceleration(blocks)));
         }
         let compression = |j: usize| {
@@ -191,6 +188,10 @@ impl Rows {
             all.guards.push(rows);
         }
         all.watched = all.rows.len();
+        for row in &system.observed_rows {
+            let place = all.place(padded(row));
+            all.observed.push(place);
+        }
         for (j, particle) in system.particles.iter().enumerate() {
             let floor = all.place(padded(&particle.floor.row));
             let ceiling = particle.ceiling.as_ref().map_or(floor, |face| all.place(padded(&face.row)));

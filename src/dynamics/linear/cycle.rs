@@ -27,7 +27,7 @@ impl Affine {
         let mut columns = [vec![0.0; 2 * flow.own], vec![0.0; 2 * flow.own]];
         for (unit, column) in columns.iter_mut().enumerate() {
             let start: Vec<f64> = (0..2 * flow.own).map(|i| if i % 2 == unit { 1.0 } else { 0.0 }).collect();
-            flow.advance(&kernels, &start, column);
+            flow.move_blocks(&kernels, &start, column);
         }
         let [x, y] = columns;
         let turn = x.chunks_exact(2).zip(y.chunks_exact(2)).map(|(x, y)| [x[0], y[0], x[1], y[1]]).collect();

@@ -4,7 +4,8 @@ use super::cycle::{Affine, Cycle, drive_at, product, times};
 use super::moments::{Moments, outer, transposed};
 use crate::dynamics::block::{Phase, pairs};
 use crate::dynamics::flow::{DrivePhase, Flow};
-use crate::dynamics::integral::{GAUSS, Integrals, PhaseMoments};
+use crate::dynamics::gains::Gains;
+use crate::dynamics::integral::{GAUSS, Integrals};
 use crate::dynamics::system::HybridSystem;
 
 /// A row of the flow: value and rate of each block's share by its two coordinates.
@@ -77,17 +78,17 @@ pub(super) fn integrals(
         let end = start.moved(&segment.flow);
         duration += at.count * segment.length;
         let end_drive = drive_at(system, segment.begin + segment.length);
+        let ends = [At { moments: &start, drive: segment.drive }, At { moments: &end, drive: end_drive }];
+        let gains = || gains(flow, ends, segment.level, segment.length);
+        let integrated = flow.closed.as_ref().map(|closed| closed.solve(&gains()));
         for (row, sum) in rows.iter().zip(&mut sums) {
-            let (drive, rest) = row.outside(flow, segment.level, segment.drive);
-            let part = match &flow.forms {
-                Some(forms) => {
-                    let (after, _) = row.outside(flow, segment.level, end_drive);
-                    let (m0, m1) = (row.moments(&start, drive), row.moments(&end, after));
-                    forms.summed(&m0, &m1, segment.length, displacement)
+            let part = match &integrated {
+                Some(integrated) => integrated.of(flow.rows.row(row.index), displacement),
+                None => {
+                    let (drive, rest) = row.outside(flow, segment.level, segment.drive);
+                    quadrature(flow, row, &start, drive, segment.length).offset(rest, at.count * segment.length)
                 }
-                None => quadrature(flow, row, &start, drive, segment.length),
             };
-            let part = part.offset(rest, at.count * segment.length);
             sum.value += part.value;
             sum.square += part.square;
             sum.rate_square += part.rate_square;
@@ -95,6 +96,53 @@ pub(super) fn integrals(
         now = end;
     }
     (duration, sums)
+}
+
+/// An instant of every cycle.
+#[derive(Clone, Copy)]
+struct At<'a> {
+    moments: &'a Moments,
+    drive: DrivePhase,
+}
+
+/// What the blocks gain between two instants; the harmonic force is the same in every cycle.
+fn gains(flow: &Flow, [start, end]: [At<'_>; 2], level: f64, length: f64) -> Gains {
+    let blocks = flow.blocks.len();
+    let (mut gains, count) = (Gains::none(blocks), start.moments.count);
+    let phase = |at: &At<'_>| [at.drive.cosine, at.drive.sine];
+    let first = |at: &At<'_>, k: usize| match at.moments.first.get(k) {
+        Some(own) => *own,
+        None => phase(at).map(|part| count * part),
+    };
+    let second = |at: &At<'_>, k: usize, l: usize, own: usize| match at.moments.second.get(own) {
+        Some(moment) if l < flow.own => *moment,
+        _ => outer(first(at, k), phase(at)),
+    };
+    for (k, gain) in gains.first.iter_mut().enumerate() {
+        *gain = difference(first(&start, k), first(&end, k));
+    }
+    let mut own = 0;
+    for ((k, l), gain) in pairs(blocks).zip(&mut gains.second) {
+        *gain = difference(second(&start, k, l, own), second(&end, k, l, own));
+        own += usize::from(l < flow.own);
+    }
+    gains.forced = gains.first.iter().map(|gain| gain.map(|part| level * part)).collect();
+    let [cosine, sine] = phase(&start);
+    gains.swing = count * (cosine * cosine + sine * sine) * length;
+    gains.add_time(level, count * length);
+    gains
+}
+
+fn difference<const N: usize>(start: [f64; N], end: [f64; N]) -> [f64; N] {
+    std::array::from_fn(|i| end[i] - start[i])
+}
+
+/// Σ z and Σ zₖ zₗᵀ of a signal's phases over several runs of equal length.
+struct PhaseMoments {
+    /// Blocks in order: value, rate.
+    first: Vec<[f64; 2]>,
+    /// By [`pairs`] of blocks.
+    second: Vec<[f64; 4]>,
 }
 
 /// The same by panels that are exact to rounding, where undamped blocks leave no closed form.

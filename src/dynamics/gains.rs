@@ -1,0 +1,210 @@
+//! Integrals over any number of visits of a contact state, in closed form.
+//!
+//! Its coordinates obey c′ = Bc, so that the integral of every product of two signals is in G = ∫ c cᵀ dt, and
+//!
+//! B G + G Bᵀ = [c cᵀ],   B ∫ c dt = [c]:
+//!
+//! only the ends of a visit matter, not what is watched. What visits gain adds up; one equation for each pair of blocks is
+//! solved when all are over, for every observed signal at once. Where two eigenvalues nearly cancel (undamped motion) G
+//! would lose digits, and [`super::integral::quadrature`] takes its place.
+
+use super::block::{Block, form, pairs};
+use super::integral::Integrals;
+use super::lyapunov::{Lyapunov, NEARLY_NEUTRAL};
+use super::signals::Row;
+
+/// The equations of a contact state's integrals.
+pub(crate) struct Closed {
+    blocks: Vec<Inverse>,
+    /// In the order of [`pairs`]; without that of the harmonic force with itself, which turns for ever.
+    equations: Vec<Lyapunov>,
+    /// ω of the harmonic force, the last block.
+    drive: Option<f64>,
+}
+
+/// B⁻¹, row by row.
+type Inverse = [f64; 4];
+
+/// What the coordinates of a contact state have gained over its visits.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Gains {
+    /// Σ [c], and weighted by the constant force F of each visit.
+    pub(crate) first: Vec<[f64; 2]>,
+    pub(crate) forced: Vec<[f64; 2]>,
+    /// Σ [cₖ cₗᵀ] by [`pairs`] of blocks.
+    pub(crate) second: Vec<[f64; 4]>,
+    /// Σ |c|² t of the harmonic force.
+    pub(crate) swing: f64,
+    /// Σ t, Σ F t, Σ F² t.
+    pub(crate) time: [f64; 3],
+}
+
+/// ∫ c dt, ∫ F c dt and ∫ c cᵀ dt over these visits; pairs of two blocks count for both orders.
+pub(crate) struct Integrated {
+    first: Vec<f64>,
+    forced: Vec<f64>,
+    second: Vec<[f64; 4]>,
+    time: [f64; 3],
+}
+
+impl Gains {
+    /// Of no visit yet, to so many blocks.
+    pub(crate) fn none(blocks: usize) -> Self {
+        Self {
+            first: vec![[0.0; 2]; blocks],
+            forced: vec![[0.0; 2]; blocks],
+            second: vec![[0.0; 4]; blocks * (blocks + 1) / 2],
+            ..Self::default()
+        }
+    }
+
+    /// Adds a visit of `length` seconds under the constant force `level`, from `start` to `end`.
+    #[inline]
+    pub(crate) fn visit(&mut self, start: &[f64], end: &[f64], level: f64, length: f64) {
+        let blocks = self.first.len();
+        let (start, end) = (&start.as_chunks::<2>().0[..blocks], &end.as_chunks::<2>().0[..blocks]);
+        let mut second = self.second.as_mut_slice();
+        for k in 0..blocks {
+            let ([x0, y0], [x1, y1]) = (start[k], end[k]);
+            let (row, rest) = second.split_at_mut(blocks - k);
+            for ((cell, [u0, v0]), [u1, v1]) in row.iter_mut().zip(&start[k..]).zip(&end[k..]) {
+                cell[0] += x1 * u1 - x0 * u0;
+                cell[1] += x1 * v1 - x0 * v0;
+                cell[2] += y1 * u1 - y0 * u0;
+                cell[3] += y1 * v1 - y0 * v0;
+            }
+            second = rest;
+        }
+        for ((sum, from), to) in self.first.iter_mut().zip(start).zip(end) {
+            *sum = [sum[0] + (to[0] - from[0]), sum[1] + (to[1] - from[1])];
+        }
+        if level != 0.0 {
+            for ((sum, from), to) in self.forced.iter_mut().zip(start).zip(end) {
+                *sum = [sum[0] + level * (to[0] - from[0]), sum[1] + level * (to[1] - from[1])];
+            }
+        }
+        if let Some([x, y]) = start.last() {
+            self.swing += (x * x + y * y) * length;
+        }
+        self.add_time(level, length);
+    }
+
+    /// Adds `length` seconds under a constant force.
+    pub(crate) fn add_time(&mut self, level: f64, length: f64) {
+        self.time = [self.time[0] + length, self.time[1] + level * length, self.time[2] + level * level * length];
+    }
+}
+
+impl Closed {
+    /// The equations of these blocks, with their matrices; `drive` is ω of the harmonic force, the last of them. `None` where
+    /// a solution would lose its digits.
+    pub(crate) fn new(blocks: &[Block], matrices: &[[f64; 4]], drive: Option<f64>) -> Option<Self> {
+        let turning = drive.map(|omega| [0.0, -omega, omega, 0.0]);
+        let matrices: Vec<[f64; 4]> = matrices.iter().copied().chain(turning).collect();
+        let alone = drive.map(|_| blocks.len() - 1);
+        let equation = |(k, l): (usize, usize)| {
+            let transposed = |[p, q, r, s]: [f64; 4]| [p, r, q, s];
+            let apart = blocks[k].keeps_apart(&blocks[l], NEARLY_NEUTRAL);
+            Lyapunov::new(transposed(matrices[k]), transposed(matrices[l])).filter(|_| apart)
+        };
+        let inverse =
+            |(block, [p, q, r, s]): (&Block, &[f64; 4])| [*s, -q, -r, *p].map(|entry| entry / block.determinant);
+        Some(Self {
+            equations: pairs(blocks.len())
+                .filter(|(k, _)| Some(*k) != alone)
+                .map(equation)
+                .collect::<Option<Vec<_>>>()?,
+            blocks: blocks.iter().zip(&matrices).map(inverse).collect(),
+            drive,
+        })
+    }
+
+    /// Numbers that it keeps.
+    pub(crate) fn size(&self) -> usize {
+        self.equations.len() * size_of::<Lyapunov>() / size_of::<f64>() + 4 * self.blocks.len()
+    }
+
+    /// Solves them for what was gained.
+    pub(crate) fn solve(&self, gains: &Gains) -> Integrated {
+        let blocks = self.blocks.len();
+        let mut second = Vec::with_capacity(gains.second.len());
+        for ((equation, gain), (k, l)) in self.equations.iter().zip(&gains.second).zip(pairs(blocks)) {
+            let twice = if k == l { 1.0 } else { 2.0 };
+            second.push(equation.solve(*gain).map(|entry| twice * entry));
+        }
+        if let (Some(omega), Some([xx, xy, ..])) = (self.drive, gains.second.get(second.len())) {
+            // (xy)′ = ω (x² − y²), (x²)′ = −2 ω x y.
+            let (turned, mixed) = (0.5 * xy / omega, -0.5 * xx / omega);
+            second.push([0.5 * gains.swing + turned, mixed, mixed, 0.5 * gains.swing - turned]);
+        }
+        let undone = |gains: &[[f64; 2]]| -> Vec<f64> {
+            let each = |([a, b, c, d], [x, y]): (&Inverse, &[f64; 2])| [a * x + b * y, c * x + d * y];
+            self.blocks.iter().zip(gains).flat_map(each).collect()
+        };
+        Integrated { first: undone(&gains.first), forced: undone(&gains.forced), second, time: gains.time }
+    }
+}
+
+impl Integrated {
+    /// The integrals of a signal, of its square if `displacement`, and of its rate's square.
+    pub(crate) fn of(&self, row: &Row, displacement: bool) -> Integrals {
+        let rates: Vec<f64> = row.weights.iter().flat_map(|[.., r0, r1]| [*r0, *r1]).collect();
+        let rate_square = form(&self.second, &rates);
+        if !displacement {
+            return Integrals { rate_square, ..Integrals::default() };
+        }
+        let values: Vec<f64> = row.weights.iter().flat_map(|[v0, v1, ..]| [*v0, *v1]).collect();
+        let along = |sums: &[f64]| values.iter().zip(sums).fold(0.0, |sum, (v, c)| sum + v * c);
+        let (moved, forced) = (along(&self.first), along(&self.forced));
+        let (gravity, force, [t, ft, fft]) = (row.gravity.p0, row.force.p0, self.time);
+        let rest_square = gravity * gravity * t + 2.0 * gravity * force * ft + force * force * fft;
+        Integrals {
+            value: moved + gravity * t + force * ft,
+            square: form(&self.second, &values) + 2.0 * (gravity * moved + force * forced) + rest_square,
+            rate_square,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::block::Phase;
+    use super::super::flow::Parabola;
+    use super::super::integral::quadrature;
+    use super::*;
+
+    #[test]
+    fn closed_forms_agree_with_quadrature() {
+        let omega = 17.0;
+        let matrices = [[0.0, 1.0, -1000.0, -3.2], [-5.0, 140.0, -150.0, -40.0]];
+        let blocks = [Block::new(matrices[0]), Block::new(matrices[1]), Block::harmonic(omega)];
+        let (start, level, duration) = ([0.03, -0.4, -0.002, 0.005, 0.8, 0.6], 3.0, 0.13);
+        let parabola = |p0| Parabola { p0, ..Parabola::default() };
+        let row = Row {
+            weights: vec![[1.0, 0.0, 0.0, 1.0], [0.3, 0.2, -31.5, 34.0], [0.01, 0.02, 0.34, -0.17]],
+            gravity: parabola(-0.01),
+            force: parabola(0.002),
+        };
+        let phase = |(k, [v0, v1, r0, r1]): (usize, &[f64; 4])| {
+            let (x, y) = (start[2 * k], start[2 * k + 1]);
+            Phase { value: v0 * x + v1 * y, rate: r0 * x + r1 * y }
+        };
+        let phases: Vec<Phase> = row.weights.iter().enumerate().map(phase).collect();
+        let sampled = quadrature(&blocks, &phases, parabola(-0.01 + level * 0.002), duration);
+
+        let end = |(k, [p, q, r, s]): (usize, [f64; 4])| {
+            let (kernel, a) = (blocks[k].kernel(duration), blocks[k].decay);
+            let (x, y) = (start[2 * k], start[2 * k + 1]);
+            [kernel.c * x + kernel.s * ((p + a) * x + q * y), kernel.c * y + kernel.s * (r * x + (s + a) * y)]
+        };
+        let all = matrices.into_iter().chain([[0.0, -omega, omega, 0.0]]);
+        let end: Vec<f64> = all.enumerate().flat_map(end).collect();
+        let mut gains = Gains::none(3);
+        gains.visit(&start, &end, level, duration);
+        let closed = Closed::new(&blocks, &matrices, Some(omega)).unwrap();
+        let integrals = closed.solve(&gains).of(&row, true);
+        assert!((integrals.value / sampled.value - 1.0).abs() < 1e-12);
+        assert!((integrals.square / sampled.square - 1.0).abs() < 1e-12);
+        assert!((integrals.rate_square / sampled.rate_square - 1.0).abs() < 1e-12);
+    }
+}

@@ -1,0 +1,58 @@
+//! What the visits of contact states have gained, until the measures ask for it.
+//!
+//! A run comes to the same few contact states again and again. Each keeps one sum ([`super::gains`]), and its equations are
+//! solved when a half of the averaged window is over.
+
+use std::collections::BTreeMap;
+use std::rc::Rc;
+
+use super::Observed;
+use super::flow::Flow;
+use super::gains::Gains;
+
+/// Contact states that are kept before they are paid out.
+const MOST_STATES: usize = 1024;
+
+/// The sums of all contact states that were visited.
+#[derive(Default)]
+pub(crate) struct Visits {
+    /// In the order of the first visits, in which they are paid out.
+    states: Vec<(Rc<Flow>, Gains)>,
+    places: BTreeMap<*const Flow, usize>,
+    /// The last one visited.
+    here: usize,
+    /// Half of the averaged window that they belong to.
+    pub(crate) half: usize,
+}
+
+impl Visits {
+    /// The gains of a contact state.
+    #[inline]
+    pub(crate) fn of(&mut self, flow: &Rc<Flow>) -> &mut Gains {
+        if self.states.get(self.here).is_none_or(|(here, _)| !Rc::ptr_eq(here, flow)) {
+            self.here = *self.places.entry(Rc::as_ptr(flow)).or_insert_with(|| {
+                self.states.push((Rc::clone(flow), Gains::none(flow.blocks.len())));
+                self.states.len() - 1
+            });
+        }
+        &mut self.states[self.here].1
+    }
+
+    /// So many that they should be paid out before another one comes.
+    pub(crate) fn is_full(&self) -> bool {
+        self.states.len() >= MOST_STATES
+    }
+
+    /// Adds the integrals of all visits to the measures, and forgets them.
+    pub(crate) fn pay_out(&mut self, displacement: bool, observed: &mut [Observed]) {
+        for (flow, gains) in self.states.drain(..) {
+            let Some(closed) = &flow.closed else { continue };
+            let integrated = closed.solve(&gains);
+            for (of, &row) in observed.iter_mut().zip(&flow.rows.observed) {
+                of.halves[self.half].add(integrated.of(flow.rows.row(row), displacement), gains.time[0]);
+            }
+        }
+        self.places.clear();
+        self.here = 0;
+    }
+}
