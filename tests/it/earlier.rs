@@ -4,10 +4,11 @@ use std::fs;
 use std::path::PathBuf;
 
 use shotdamp::measure::Evaluated;
+use shotdamp::publish::{Opened, judge_all, publish};
 use shotdamp::study::{Evaluate, KnownRows, Silence, Simulation};
 use shotdamp::table::parquet;
 
-use crate::desk::{ASSUMPTIONS, Desk, GAP, GAP_REFERENCE, MadeUp, STOP, shotdamp};
+use crate::desk::{ASSUMPTIONS, Desk, GAP, GAP_REFERENCE, MadeUp, STOP, STOP_REFERENCE, shotdamp};
 use crate::shard::OPTIMISED;
 
 /// Simulations that bringing the study up to date takes.
@@ -42,6 +43,13 @@ fn to_do(desk: &Desk, id: &str) -> usize {
 fn earlier(desk: &Desk, id: &str) -> Vec<PathBuf> {
     let entries = fs::read_dir(desk.layout.path(&format!("results/earlier/{id}"))).into_iter().flatten();
     entries.map(|entry| entry.unwrap().path()).collect()
+}
+
+/// Figures that bringing the reports up to date draws.
+fn drawn(desk: &Desk) -> usize {
+    let opened = Opened::new(desk.layout.clone(), desk.texts());
+    let ids = opened.items.iter().map(|item| item.source.experiment.id.0.as_str()).collect();
+    publish(&opened, &judge_all(&opened), &ids).unwrap().drawn
 }
 
 const STOP_FILE: &str = "experiments/ch3/ch3-stop.yaml";
@@ -248,4 +256,40 @@ fn the_command_tells_what_is_to_do_and_how_long_it_will_take() {
     assert!(shotdamp(&desk, &["run", "--force", "ch3-stop"]).out.starts_with("1 experiments: 1 simulated; 0 figures"));
     let cleaned = shotdamp(&desk, &["clean", "--earlier"]).out;
     assert!(cleaned.ends_with("2 files removed\n") && earlier(&desk, "ch3-stop").is_empty(), "{cleaned}");
+}
+
+#[test]
+fn a_tolerance_judges_again_and_a_figure_is_drawn_when_it_shows_something_else() {
+    let desk = Desk::new();
+    simulations(&desk);
+    assert_eq!(drawn(&desk), 2);
+    let picture = desk.layout.path("reports/ch3/ch3-stop.png");
+    let page = || String::from_utf8(desk.bytes("reports/ch3/ch3-stop.md")).unwrap();
+    let reference = |value: &str, more: &str| {
+        let text = STOP_REFERENCE.replace("1.75", value);
+        desk.put("reference/ch3/ch3-stop.yaml", &format!("{}    {more}\n", text.trim_start_matches('\n')));
+    };
+    let (before, stamp) = (page(), fs::metadata(&picture).unwrap().modified().unwrap());
+    reference("1.75", "tolerance: {absolute: 5, reason: to see whether it is loose}");
+    assert_eq!((simulations(&desk), drawn(&desk)), (0, 0));
+    assert_ne!(page(), before, "another verdict");
+    assert_eq!(fs::metadata(&picture).unwrap().modified().unwrap(), stamp, "the file was not touched");
+    let whole = desk.bytes("reports/ch3/ch3-stop.png");
+
+    reference("1.85", "");
+    assert_eq!((simulations(&desk), drawn(&desk)), (0, 1), "another quoted point");
+    assert!(desk.bytes("reports/ch3/ch3-stop.png") != whole);
+    for (wanted, text) in [
+        (0, STOP.replace("Two curves.", "Two lines.")),
+        (1, STOP.replace("y: velocity_ratio", "y: velocity_ratio, markers: true")),
+        (1, STOP.replace("by: [stop, solver]", "by: [solver, stop]")),
+        (0, STOP.replace("title: Limit stop", "title: A stop").replace("by: [stop, solver]", "by: [solver, stop]")),
+        (1, STOP.replace("[1, 2, 4]", "[1, 2, 3, 4]")),
+    ] {
+        desk.put(STOP_FILE, &text);
+        simulations(&desk);
+        assert_eq!(drawn(&desk), wanted, "{text}");
+    }
+    fs::write(&picture, "painted over").unwrap();
+    assert_eq!((drawn(&desk), drawn(&desk)), (1, 0));
 }
