@@ -4,7 +4,6 @@
 //! Errors are against the solver of 32 digits. Every answer counts only by its numbers: RMS velocity, the sequence of events and
 //! their times.
 
-use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -312,7 +311,7 @@ impl Scene {
                 floats("error", "", &|found| found.error.max(LEAST)),
                 floats("event_error", "", &|found| found.event_error.max(LEAST)),
             ],
-            metadata: BTreeMap::new(),
+            ..Table::default()
         };
         let times = found.iter().map(|(_, found)| found.median);
         let times = times.fold([f64::INFINITY, 0.0], |[low, high], time: f64| [time.min(low), time.max(high)]);

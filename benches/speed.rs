@@ -3,7 +3,6 @@
 //! Each number is the least of many runs in one process, since other programs only add to it; the median stands beside it.
 //! A run that has visited its contact states before finds them built, so a first run in a new thread is timed apart.
 
-use std::collections::BTreeMap;
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
 use std::path::Path;
@@ -228,6 +227,6 @@ fn table(curve: &[(u32, Cost)]) -> Table {
             column("event", "µs", &|(_, cost)| 1e6 * cost.an_event()),
             column("state", "µs", &|(_, cost)| 1e6 * cost.a_state()),
         ],
-        metadata: BTreeMap::new(),
+        ..Table::default()
     }
 }

@@ -48,7 +48,14 @@ pub fn simulate(
     let metadata = BTreeMap::new();
     let tasks: Vec<Task<'_>> = chosen
         .iter()
-        .map(|experiment| Task { experiment, variants: &variants, metadata: &metadata, journal: None, shard: None })
+        .map(|experiment| Task {
+            experiment,
+            variants: &variants,
+            metadata: &metadata,
+            journal: None,
+            shard: None,
+            known: None,
+        })
         .collect();
     let tables =
         run(&tasks, threads, evaluate, listener, |index, finished| (chosen[index].id.to_string(), finished.table))?;

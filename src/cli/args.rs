@@ -79,7 +79,7 @@ Examples:
     Check(CheckArgs),
     /// Tell which numbers moved between two runs, beyond their uncertainty or within it
     Diff(DiffArgs),
-    /// Remove what experiments that are gone have left
+    /// Remove what experiments that are gone have left, or tables of earlier meanings
     Clean(CleanArgs),
     /// Write an experiment to begin with
     New(NewArgs),
@@ -346,11 +346,15 @@ pub(super) enum SchemaOf {
 #[command(after_help = "\
 Examples:
   shotdamp clean --orphans --dry-run
-  shotdamp clean --orphans")]
+  shotdamp clean --orphans
+  shotdamp clean --earlier                    room on the disk, for going back at the price of simulating")]
 pub(super) struct CleanArgs {
     /// Tables, records, figures and pages of experiments whose files are gone
-    #[arg(long, required = true)]
+    #[arg(long, required_unless_present = "earlier")]
     pub orphans: bool,
+    /// Tables of earlier meanings, which are kept so that going back to one simulates nothing
+    #[arg(long)]
+    pub earlier: bool,
     /// Only say what would be removed
     #[arg(long)]
     pub dry_run: bool,

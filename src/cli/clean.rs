@@ -1,5 +1,6 @@
 //! `shotdamp clean`.
 
+use std::collections::BTreeSet;
 use std::fs;
 
 use super::args::CleanArgs;
@@ -8,21 +9,31 @@ use super::exit::Exit;
 use super::output::print;
 use super::simulate::held;
 use crate::atomic::FileError;
-use crate::study::{Layout, Lock, Texts, orphans};
+use crate::study::{Layout, Lock, Texts, earlier_tables, orphans};
 
-/// Removes what experiments that are gone have left.
+/// Removes what experiments that are gone have left, and tables of earlier meanings.
 pub(super) fn clean(layout: &Layout, args: &CleanArgs) -> Result<Exit, CliError> {
     let _lock = Lock::of_study(layout, held(false))?;
-    let orphans = orphans(layout, &Texts::read(layout)?);
+    let mut names = BTreeSet::new();
+    if args.orphans {
+        names.extend(orphans(layout, &Texts::read(layout)?));
+    }
+    if args.earlier {
+        names.extend(earlier_tables(layout));
+    }
     let mut text = String::new();
-    for name in &orphans {
+    for name in &names {
         if !args.dry_run {
             let path = layout.path(name);
-            fs::remove_file(&path).map_err(|source| FileError { action: "remove", path, source })?;
+            fs::remove_file(&path).map_err(|source| FileError { action: "remove", path: path.clone(), source })?;
+            // Whose last earlier table it was needs no folder for them.
+            if let Some(folder) = path.parent().filter(|_| name.starts_with("results/earlier/")) {
+                let _ = fs::remove_dir(folder);
+            }
         }
         text += &format!("{name}\n");
     }
     let done = if args.dry_run { "would be removed" } else { "removed" };
-    print(&format!("{text}{} files {done}\n", orphans.len()))?;
+    print(&format!("{text}{} files {done}\n", names.len()))?;
     Ok(Exit::AsExpected)
 }

@@ -32,7 +32,8 @@ pub(super) fn gather_all(layout: &Layout, args: &GatherArgs) -> Result<Exit, Cli
             }
         }
     }
-    let done = Done { verb: "gathered", experiments: todo.len() - problems.len(), problems, tables_only: false };
+    let experiments = todo.len() - problems.len();
+    let done = Done { verb: "gathered", experiments, restored: 0, problems, tables_only: false };
     conclude(layout, opened.texts, &args.choice, done)
 }
 

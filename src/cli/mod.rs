@@ -6,6 +6,7 @@ mod calibrate;
 mod check;
 mod clean;
 mod diff;
+mod dry_run;
 mod effects;
 mod error;
 mod exit;

@@ -5,7 +5,7 @@ use super::error::CliError;
 use super::exit::Exit;
 use super::output::{complain, complain_of, print};
 use super::select::{choose, open};
-use super::simulate::{How, held, simulate};
+use super::simulate::{How, Ran, held, simulate};
 use crate::study::{Item, Layout, Lock, Shard, State};
 
 /// Simulates the shard's part of what is stale, and writes nothing but its own tables: no verdicts, figures or reports.
@@ -20,8 +20,8 @@ pub(super) fn run_shard(layout: &Layout, args: &RunArgs, shard: Shard, common: &
     let stale = |item: &&Item| args.force || !matches!(item.state, State::Current(_));
     let part: Vec<&Item> = chosen.items.iter().copied().filter(stale).filter(|item| shard.has_part_of(item)).collect();
     let todo: Vec<&Item> = part.iter().copied().filter(|item| args.force || !shard.has_done(layout, item)).collect();
-    let how = How { threads, quiet: common.quiet, shard: Some(shard) };
-    let unsaved = simulate(layout, &todo, how, |item, finished| shard.save(layout, item, finished))?;
+    let how = How { threads, quiet: common.quiet, shard: Some(shard), anew: args.force };
+    let Ran { unsaved, .. } = simulate(layout, &todo, how, |item, finished| shard.save(layout, item, finished))?;
     for problem in &unsaved {
         complain(&format!("error: {problem}\n"));
     }

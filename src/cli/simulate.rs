@@ -4,11 +4,13 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::Mutex;
 
+use rayon::prelude::*;
+
 use super::error::CliError;
 use super::output::complain;
 use super::select::Chosen;
 use crate::study::{
-    Engine, Finished, Held, Item, Layout, Listen, Progress, Shard, Silence, State, Task, journal_name, run,
+    Engine, Finished, Held, Item, KnownRows, Layout, Listen, Progress, Shard, Silence, State, Task, journal_name, run,
 };
 use crate::table::ParquetError;
 
@@ -30,17 +32,28 @@ pub(super) struct How {
     pub threads: usize,
     pub quiet: bool,
     pub shard: Option<Shard>,
+    /// Simulate also the rows that earlier tables have.
+    pub anew: bool,
 }
 
-/// Runs the items and has each saved as soon as it is finished; returns in words what could not be saved.
+/// How it went.
+#[derive(Debug, Default)]
+pub(super) struct Ran {
+    /// Experiments for which nothing had to be simulated.
+    pub restored: usize,
+    /// What could not be saved, in words.
+    pub unsaved: Vec<String>,
+}
+
+/// Runs the items and has each saved as soon as it is finished.
 pub(super) fn simulate(
     layout: &Layout,
     items: &[&Item],
     how: How,
     save: impl Fn(&Item, &Finished) -> Result<(), ParquetError> + Sync,
-) -> Result<Vec<String>, CliError> {
+) -> Result<Ran, CliError> {
     if items.is_empty() {
-        return Ok(Vec::new());
+        return Ok(Ran::default());
     }
     let provenance: Vec<BTreeMap<String, String>> = items.iter().map(|item| item.provenance()).collect();
     let journal = |item: &&Item| {
@@ -48,23 +61,34 @@ pub(super) fn simulate(
         layout.path(&how.shard.map_or_else(|| journal_name(id), |shard| shard.journal_name(id)))
     };
     let journals: Vec<PathBuf> = items.iter().map(journal).collect();
+    let known: Vec<KnownRows> = if how.anew {
+        items.iter().map(|_| KnownRows::nothing()).collect()
+    } else {
+        items.par_iter().map(|item| KnownRows::of(layout, item)).collect()
+    };
     let tasks: Vec<Task<'_>> = items
         .iter()
-        .zip(&provenance)
-        .zip(&journals)
-        .map(|((item, metadata), journal)| Task { shard: how.shard, ..item.task(metadata, journal) })
+        .zip(provenance.iter().zip(&journals))
+        .zip(&known)
+        .map(|((item, (metadata, journal)), known)| Task {
+            shard: how.shard,
+            known: Some(known),
+            ..item.task(metadata, journal)
+        })
         .collect();
     let progress = Progress::new();
     let listener: &dyn Listen = if how.quiet { &Silence } else { &progress };
     let unsaved = Mutex::new(BTreeMap::new());
-    run(&tasks, how.threads, &Engine, listener, |index, finished| {
+    let restored = run(&tasks, how.threads, &Engine, listener, |index, finished| {
         if let Err(error) = save(items[index], &finished)
             && let Ok(mut unsaved) = unsaved.lock()
         {
             unsaved.insert(index, format!("{}: {error}", items[index].source.experiment.id));
         }
+        finished.spent.is_nothing()
     })?;
-    Ok(unsaved.into_inner().unwrap_or_default().into_values().collect())
+    let restored = restored.into_iter().filter(|restored| *restored).count();
+    Ok(Ran { restored, unsaved: unsaved.into_inner().unwrap_or_default().into_values().collect() })
 }
 
 /// True if rows of the chosen experiments have no numbers.

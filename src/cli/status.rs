@@ -1,13 +1,14 @@
 //! `shotdamp status`.
 
 use super::args::StatusArgs;
+use super::dry_run::rows;
 use super::error::CliError;
 use super::exit::Exit;
 use super::output::{complain_of, print};
 use super::select::{choose, open};
 use crate::publish::publication_reasons;
 use crate::spec::line_of;
-use crate::study::{Layout, State, Texts};
+use crate::study::{KnownRows, Layout, State, Texts};
 
 /// Where in a file of the study a part of its meaning is written.
 fn line_in(texts: &Texts, file: &str, path: &[String]) -> Option<usize> {
@@ -43,8 +44,8 @@ pub(super) fn status(layout: &Layout, args: &StatusArgs) -> Result<Exit, CliErro
                 text += &format!("    {}\n", reason.told(|file, path| line_in(&opened.texts, file, path)));
             }
             if let State::Stale(_) = &item.state {
-                let extent = item.extent(layout);
-                text += &format!("    touches {} of {} rows\n", extent.touched, extent.rows);
+                let extent = item.extent(layout, &KnownRows::of(layout, item));
+                text += &format!("    {}\n", rows(&extent));
             }
         }
     }

@@ -1,11 +1,12 @@
 //! `shotdamp` and `shotdamp run`: simulate what is stale, then judge, draw and write.
 
 use super::args::{Args, Choice, RunArgs};
+use super::dry_run::dry_run;
 use super::error::CliError;
 use super::exit::Exit;
 use super::output::{complain, complain_of, print};
 use super::select::{Chosen, choose};
-use super::simulate::{How, held, simulate, tell_failures};
+use super::simulate::{How, Ran, held, simulate, tell_failures};
 use crate::publish::{Opened, Published, judge_all, publish, summary};
 use crate::study::{Item, Layout, Lock, Snapshot, State, Texts, save};
 
@@ -19,7 +20,7 @@ pub(super) fn update(layout: &Layout, args: &RunArgs, common: &Args) -> Result<E
         }
     }
     if args.dry_run {
-        return dry_run(layout, args);
+        return dry_run(layout, args, common);
     }
     // Figures are drawn on the shared pool.
     super::threads(common.jobs);
@@ -29,9 +30,11 @@ pub(super) fn update(layout: &Layout, args: &RunArgs, common: &Args) -> Result<E
     let chosen = choose(&opened, &args.choice)?;
     complain_of(chosen.unread.iter().copied());
     let todo = todo(&chosen, args);
-    let how = How { threads, quiet: common.quiet, shard: None };
-    let problems = simulate(layout, &todo, how, |item, finished| save(layout, item, finished).map(|_| ()))?;
-    let done = Done { verb: "simulated", experiments: todo.len(), problems, tables_only: args.tables };
+    let how = How { threads, quiet: common.quiet, shard: None, anew: args.force };
+    let Ran { restored, unsaved } =
+        simulate(layout, &todo, how, |item, finished| save(layout, item, finished).map(|_| ()))?;
+    let experiments = todo.len() - restored;
+    let done = Done { verb: "simulated", experiments, restored, problems: unsaved, tables_only: args.tables };
     conclude(layout, opened.texts.clone(), &args.choice, done)
 }
 
@@ -41,6 +44,8 @@ pub(super) struct Done {
     pub verb: &'static str,
     /// To how many experiments.
     pub experiments: usize,
+    /// Experiments whose rows all stood in earlier tables.
+    pub restored: usize,
     /// What went wrong, in words.
     pub problems: Vec<String>,
     /// Leave figures and reports as they are.
@@ -67,27 +72,16 @@ pub(super) fn conclude(layout: &Layout, texts: Texts, choice: &Choice, done: Don
     if choice.is_all() && whole_work && !done.tables_only && chosen.unread.is_empty() {
         Snapshot::take(layout, &opened.texts, published.outputs, &text, exit.code())?;
     }
-    let (all, Done { verb, experiments, .. }) = (chosen.items.len(), done);
+    let (all, Done { verb, experiments, restored, .. }) = (chosen.items.len(), done);
     let written = published.written;
-    print(&format!("{all} experiments: {experiments} {verb}; {written} figures and reports written.\n{text}"))?;
+    let restored = if restored == 0 { String::new() } else { format!(", {restored} restored") };
+    print(&format!(
+        "{all} experiments: {experiments} {verb}{restored}; {written} figures and reports written.\n{text}"
+    ))?;
     Ok(exit)
 }
 
-fn todo<'a>(chosen: &Chosen<'a>, args: &RunArgs) -> Vec<&'a Item> {
+/// What there is to do, among the chosen ones.
+pub(super) fn todo<'a>(chosen: &Chosen<'a>, args: &RunArgs) -> Vec<&'a Item> {
     chosen.items.iter().copied().filter(|item| args.force || !matches!(item.state, State::Current(_))).collect()
-}
-
-fn dry_run(layout: &Layout, args: &RunArgs) -> Result<Exit, CliError> {
-    let opened = super::select::open(layout)?;
-    let chosen = choose(&opened, &args.choice)?;
-    complain_of(chosen.unread.iter().copied());
-    let todo = todo(&chosen, args);
-    let mut text = String::new();
-    for item in &todo {
-        let (rows, simulations) = item.size();
-        text += &format!("{}: {rows} rows, {simulations} simulations at most\n", item.source.experiment.id);
-    }
-    text += &format!("{} of {} experiments would be simulated\n", todo.len(), chosen.items.len());
-    print(&text)?;
-    Ok(if chosen.unread.is_empty() { Exit::AsExpected } else { Exit::CouldNot })
 }

@@ -96,11 +96,8 @@ impl Energies {
     /// The list columns.
     pub(super) fn columns(&self, spec: &EnergySpec) -> Vec<TraceColumn> {
         let cycles = spec.from_cycle as usize..(spec.to_cycle as usize).min(self.with.len());
-        let column = |name, unit, of: &dyn Fn(usize) -> f64| TraceColumn {
-            name,
-            unit,
-            samples: cycles.clone().map(of).collect(),
-        };
+        let column =
+            |name, unit, of: &dyn Fn(usize) -> f64| TraceColumn::new(name, unit, cycles.clone().map(of).collect());
         vec![
             column("cycle", "", &|cycle| cycle as f64),
             column("kinetic_energy_after", "J", &|cycle| self.with[cycle].after),

@@ -91,10 +91,8 @@ fn crest(a: Sample, b: Sample) -> Peak {
 /// The trace as columns.
 pub(super) fn columns(history: &History<'_>) -> Vec<TraceColumn> {
     let gravity = history.scene.gravity;
-    let column = |name, unit, of: &dyn Fn(&Sample) -> f64| TraceColumn {
-        name,
-        unit,
-        samples: history.response.trace.iter().map(of).collect(),
+    let column = |name, unit, of: &dyn Fn(&Sample) -> f64| {
+        TraceColumn::new(name, unit, history.response.trace.iter().map(of).collect())
     };
     vec![
         column("time", "s", &|s| s.time),

@@ -4,6 +4,8 @@
 //! same with the standard deviation of the displacement (s. 3.5 of the study). Both are averaged over the forcing cycles
 //! after the skipped ones.
 
+use std::borrow::Cow;
+
 use serde::{Deserialize, Serialize};
 
 mod energy;
@@ -181,11 +183,19 @@ pub struct Evaluated {
 #[derive(Debug, Clone, PartialEq)]
 pub struct TraceColumn {
     /// Name as documented at [`crate::spec::TraceSpec`].
-    pub name: &'static str,
+    pub name: Cow<'static, str>,
     /// Unit symbol.
-    pub unit: &'static str,
+    pub unit: Cow<'static, str>,
     /// Samples.
     pub samples: Vec<f64>,
+}
+
+impl TraceColumn {
+    /// A column of this name and unit.
+    #[must_use]
+    pub fn new(name: impl Into<Cow<'static, str>>, unit: impl Into<Cow<'static, str>>, samples: Vec<f64>) -> Self {
+        Self { name: name.into(), unit: unit.into(), samples }
+    }
 }
 
 /// Why a case has no numbers.

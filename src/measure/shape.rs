@@ -43,11 +43,10 @@ impl Grid {
     }
 
     fn columns(&self) -> Vec<TraceColumn> {
-        let names = ["x", "y"];
-        names
-            .iter()
+        ["x", "y"]
+            .into_iter()
             .zip(&self.shares)
-            .map(|(name, shares)| TraceColumn { name, unit: "", samples: shares.clone() })
+            .map(|(name, shares)| TraceColumn::new(name, "", shares.clone()))
             .collect()
     }
 }
@@ -69,8 +68,8 @@ pub(super) fn of_mode(scene: &Scene, spec: &ShapeSpec, number: usize) -> Result<
     align(&mut exact, &shape);
     let mac = mac(&shape, &exact);
     let mut columns = grid.columns();
-    columns.push(TraceColumn { name: "shape", unit: "", samples: shape });
-    columns.push(TraceColumn { name: "exact_shape", unit: "", samples: exact });
+    columns.push(TraceColumn::new("shape", "", shape));
+    columns.push(TraceColumn::new("exact_shape", "", exact));
     Ok(Shape { columns, mac })
 }
 
@@ -102,9 +101,9 @@ pub(super) fn of_deflection(scene: &Scene, response: &Response, spec: &ShapeSpec
     align(&mut mode, &shape);
     let mac = mac(&shape, &mode);
     let mut columns = grid.columns();
-    columns.push(TraceColumn { name: "shape", unit: "", samples: shape });
-    columns.push(TraceColumn { name: "rms_displacement", unit: "m", samples: rms });
-    columns.push(TraceColumn { name: "mode_shape", unit: "", samples: mode });
+    columns.push(TraceColumn::new("shape", "", shape));
+    columns.push(TraceColumn::new("rms_displacement", "m", rms));
+    columns.push(TraceColumn::new("mode_shape", "", mode));
     Shape { columns, mac }
 }
 

@@ -94,6 +94,6 @@ fn table(accuracy: &Accuracy) -> Table {
                     .collect(),
             ),
         ],
-        metadata: BTreeMap::new(),
+        ..Table::default()
     }
 }

@@ -1,8 +1,11 @@
 //! Figures of one experiment.
 
+use serde_json::json;
+
 use crate::figure::{FigureError, QuotedPoint, draw};
 use crate::reference::{Allowed, Check, Entry, Extraction, ReferenceFile};
 use crate::spec::{Drawing, Experiment, FigureSpec};
+use crate::study::{FileHash, PRESENTATION_VERSION, fingerprint};
 use crate::table::Table;
 
 /// File name of a figure: the experiment's id, and the figure's own name if it is not the first.
@@ -22,16 +25,43 @@ pub(super) fn png(
     table: &Table,
     reference: Option<&ReferenceFile>,
 ) -> Result<Vec<u8>, FigureError> {
+    draw(experiment, figure, table, &quoted(figure, table, reference))
+}
+
+/// Hash of all that one figure shows: the table of this hash, how it is drawn, and the numbers that the study quotes. The caption
+/// stands on the page, and tolerances nowhere.
+pub(super) fn shown(
+    experiment: &Experiment,
+    figure: &FigureSpec,
+    table: &Table,
+    table_hash: &FileHash,
+    reference: Option<&ReferenceFile>,
+) -> String {
+    let quoted: Vec<String> = quoted(figure, table, reference)
+        .iter()
+        .map(|QuotedPoint { column, x, y, label }| format!("{column} {x:?} {y:?} {label}"))
+        .collect();
+    fingerprint(&json!({
+        "drawing": figure.drawing,
+        // A maximum is told on its axis.
+        "maximised": experiment.maximise.as_ref().map(|maximise| maximise.measure),
+        "quoted": quoted,
+        "table": table_hash.blake3,
+        "presentation_version": PRESENTATION_VERSION,
+    }))
+}
+
+/// The numbers that the study quotes of what a figure draws.
+fn quoted(figure: &FigureSpec, table: &Table, reference: Option<&ReferenceFile>) -> Vec<QuotedPoint> {
     let entries = reference.map_or(&[][..], |reference| &reference.entries);
-    let quoted: Vec<QuotedPoint> = match &figure.drawing {
+    match &figure.drawing {
         Drawing::Lines(panels) => panels
             .first()
             .map(|panel| entries.iter().filter_map(|entry| quoted_point(entry, &panel.x.column, table)).collect())
             .unwrap_or_default(),
         // A quoted number has no place among colours.
         Drawing::Map(_) => Vec::new(),
-    };
-    draw(experiment, figure, table, &quoted)
+    }
 }
 
 /// What an entry quotes of a curve over `x`: a point, the height of a maximum, or its place. Other numbers (onsets, ratios

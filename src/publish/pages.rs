@@ -5,12 +5,13 @@ use std::fs;
 
 use rayon::prelude::*;
 
-use super::figures::{figure_name, png};
+use super::figures::{figure_name, png, shown};
 use super::opened::Opened;
 use super::publication::{meaning, publication_reasons};
 use super::verdicts::Judgement;
 use super::views;
 use crate::atomic::{self, FileError};
+use crate::spec::FigureSpec;
 use crate::study::{FileHash, Item, Publication, Record, record_name, table_name};
 
 /// The index of all pages.
@@ -25,6 +26,8 @@ pub struct Published {
     pub outputs: BTreeSet<String>,
     /// Files that were written.
     pub written: usize,
+    /// Figures that were drawn; those that would show the same as before are not.
+    pub drawn: usize,
     /// Figures that could not be drawn, in words.
     pub problems: Vec<String>,
 }
@@ -45,7 +48,10 @@ pub fn publish(opened: &Opened, judgement: &Judgement, ids: &BTreeSet<&str>) -> 
     let mut published = Published::default();
     let pages: Vec<Page<'_>> = opened.items.iter().filter_map(|item| page(opened, item)).collect();
     let chosen = |page: &&Page<'_>| ids.contains(page.item.source.experiment.id.0.as_str());
-    let mut figures = draw(opened, judgement, pages.iter().filter(chosen).filter(|page| page.stale));
+    let stale = pages.iter().filter(chosen).filter(|page| page.stale);
+    let jobs = stale.flat_map(jobs).filter(|(page, figure)| !is_drawn(opened, judgement, page, figure));
+    let mut figures = draw(opened, judgement, jobs);
+    published.drawn = figures.values().map(Vec::len).sum();
     for page in pages.iter().filter(chosen) {
         let id = page.item.source.experiment.id.0.as_str();
         let drawn = figures.remove(id).unwrap_or_default();
@@ -66,12 +72,12 @@ fn of_the_study(opened: &Opened, judgement: &Judgement) -> [(&'static str, Strin
 /// Everything that a run would write under `reports/`, by name within the study; or in words why it cannot be made.
 pub(super) fn render(opened: &Opened, judgement: &Judgement) -> BTreeMap<String, Result<Vec<u8>, String>> {
     let pages: Vec<Page<'_>> = opened.items.iter().filter_map(|item| page(opened, item)).collect();
-    let mut figures = draw(opened, judgement, pages.iter());
+    let mut figures = draw(opened, judgement, pages.iter().flat_map(jobs));
     let mut files = BTreeMap::new();
     for page in &pages {
         let id = &page.item.source.experiment.id;
-        for (name, bytes) in figures.remove(id.0.as_str()).unwrap_or_default() {
-            files.insert(format!("{}/{name}", page.folder), bytes);
+        for (figure, bytes) in figures.remove(id.0.as_str()).unwrap_or_default() {
+            files.insert(name(page, figure), bytes);
         }
         let text = views::page(opened, judgement, page.item);
         files.insert(format!("{}/{id}.md", page.folder), Ok(text.into_bytes()));
@@ -89,17 +95,45 @@ fn page<'a>(opened: &Opened, item: &'a Item) -> Option<Page<'a>> {
     Some(Page { item, record, folder, stale: !publication_reasons(opened, item).is_empty() })
 }
 
-/// A figure's file name and its bytes, or why there are none.
-type Drawn = Vec<(String, Result<Vec<u8>, String>)>;
+/// The figures of a page.
+fn jobs<'a>(page: &'a Page<'a>) -> impl Iterator<Item = (&'a Page<'a>, &'a FigureSpec)> {
+    page.item.source.experiment.figures.iter().map(move |figure| (page, figure))
+}
+
+/// A figure's name within the study.
+fn name(page: &Page<'_>, figure: &FigureSpec) -> String {
+    format!("{}/{}", page.folder, figure_name(&page.item.source.experiment, figure))
+}
+
+/// What a figure would show; `None` without a table.
+fn shows(opened: &Opened, judgement: &Judgement, page: &Page<'_>, figure: &FigureSpec) -> Option<String> {
+    let experiment = &page.item.source.experiment;
+    let id = experiment.id.0.as_str();
+    let table = judgement.tables.get(id)?;
+    Some(shown(experiment, figure, table, &page.record.table, opened.references.get(id)))
+}
+
+/// True if the figure is on disk and shows what it would show.
+fn is_drawn(opened: &Opened, judgement: &Judgement, page: &Page<'_>, figure: &FigureSpec) -> bool {
+    let name = name(page, figure);
+    page.record.publication.as_ref().is_some_and(|old| {
+        let known = old.shown.get(&name);
+        known.is_some()
+            && known == shows(opened, judgement, page, figure).as_ref()
+            && old.files.get(&name).is_some_and(|hash| hash.matches(&opened.layout.path(&name)))
+    })
+}
+
+/// A figure and its bytes, or why there are none.
+type Drawn<'a> = Vec<(&'a FigureSpec, Result<Vec<u8>, String>)>;
 
 /// Draws side by side; each picture is one thread's work alone.
 fn draw<'a>(
     opened: &'a Opened,
     judgement: &'a Judgement,
-    pages: impl Iterator<Item = &'a Page<'a>>,
-) -> BTreeMap<&'a str, Drawn> {
-    let jobs: Vec<_> =
-        pages.flat_map(|page| page.item.source.experiment.figures.iter().map(move |figure| (page, figure))).collect();
+    jobs: impl Iterator<Item = (&'a Page<'a>, &'a FigureSpec)>,
+) -> BTreeMap<&'a str, Drawn<'a>> {
+    let jobs: Vec<_> = jobs.collect();
     let drawn: Vec<_> = jobs
         .par_iter()
         .map(|(page, figure)| {
@@ -109,12 +143,12 @@ fn draw<'a>(
                 judgement.tables.get(id).ok_or_else(|| "its table cannot be read".to_owned()).and_then(|table| {
                     png(experiment, figure, table, opened.references.get(id)).map_err(|error| error.to_string())
                 });
-            (id, figure_name(experiment, figure), bytes)
+            (id, *figure, bytes)
         })
         .collect();
-    let mut by_id = BTreeMap::<&str, Drawn>::new();
-    for (id, name, bytes) in drawn {
-        by_id.entry(id).or_default().push((name, bytes));
+    let mut by_id = BTreeMap::<&str, Drawn<'_>>::new();
+    for (id, figure, bytes) in drawn {
+        by_id.entry(id).or_default().push((figure, bytes));
     }
     by_id
 }
@@ -123,33 +157,41 @@ fn write_page(
     opened: &Opened,
     judgement: &Judgement,
     page: &Page<'_>,
-    drawn: Drawn,
+    drawn: Drawn<'_>,
     published: &mut Published,
 ) -> Result<(), FileError> {
     let id = &page.item.source.experiment.id;
     let layout = &opened.layout;
     let old = page.record.publication.as_ref();
     let mut files: BTreeMap<String, FileHash> = BTreeMap::new();
+    let mut shown: BTreeMap<String, String> = BTreeMap::new();
     let mut whole = true;
-    if page.stale {
-        for (name, bytes) in drawn {
-            let name = format!("{}/{name}", page.folder);
-            match bytes {
-                Ok(bytes) => {
-                    published.written += usize::from(atomic::write_if_changed(&layout.path(&name), &bytes)?);
-                    files.insert(name, FileHash::of(&bytes));
-                }
-                Err(why) => {
-                    whole = false;
-                    // Where rows have failed, that is the news, and it is told already.
-                    if page.record.failures.rows == 0 {
-                        published.problems.push(format!("{id}: {why}"));
-                    }
+    // Those that were not drawn now are there already.
+    for (_, figure) in jobs(page) {
+        let name = name(page, figure);
+        if let Some(old) = old
+            && let (Some(hash), false) = (old.files.get(&name), drawn.iter().any(|(other, _)| *other == figure))
+        {
+            shown.extend(old.shown.get(&name).map(|shows| (name.clone(), shows.clone())));
+            files.insert(name, hash.clone());
+        }
+    }
+    for (figure, bytes) in drawn {
+        let name = name(page, figure);
+        match bytes {
+            Ok(bytes) => {
+                published.written += usize::from(atomic::write_if_changed(&layout.path(&name), &bytes)?);
+                shown.extend(shows(opened, judgement, page, figure).map(|shows| (name.clone(), shows)));
+                files.insert(name, FileHash::of(&bytes));
+            }
+            Err(why) => {
+                whole = false;
+                // Where rows have failed, that is the news, and it is told already.
+                if page.record.failures.rows == 0 {
+                    published.problems.push(format!("{id}: {why}"));
                 }
             }
         }
-    } else if let Some(old) = old {
-        files.extend(old.files.iter().filter(|(name, _)| name.ends_with(".png")).map(|(n, h)| (n.clone(), h.clone())));
     }
     let text = views::page(opened, judgement, page.item);
     let name = format!("{}/{id}.md", page.folder);
@@ -168,7 +210,7 @@ fn write_page(
     published.outputs.extend(files.keys().cloned());
     published.outputs.extend([table_name(id), record_name(id)]);
     let meaning = meaning(opened, page.item, page.record);
-    let publication = whole.then_some(Publication { meaning, files });
+    let publication = whole.then_some(Publication { meaning, files, shown });
     let record = Record { publication, ..page.record.clone() };
     record.write(&layout.path(&record_name(id)))
 }

@@ -1,62 +1,90 @@
-//! How much of an experiment a change touches.
+//! How much of an experiment there is to do: the rows that no table of before has, and how long they will take.
 
-use std::collections::BTreeSet;
+use std::borrow::Cow;
 
-use serde_json::Value;
-
-use super::job::{Job, jobs};
-use super::layout::{Layout, record_name};
-use super::meaning::changes;
+use super::job::{self, Job, evaluations, jobs};
+use super::known_rows::KnownRows;
+use super::layout::Layout;
 use super::plan::Item;
-use super::record::Record;
-use crate::text::words;
+use super::refine;
+use super::row_meaning::RowMeaning;
+use super::spent::Spent;
+use crate::measure::Rigour;
+use crate::spec::{Case, Experiment};
 
-/// Rows of a table, and those among them that mean something else than they did.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+/// What is to be simulated of an experiment.
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Extent {
-    /// Rows whose meaning has changed, or that are new.
-    pub touched: usize,
+    /// Rows to be simulated. A row that shares another's numbers is not.
+    pub to_do: usize,
     /// All rows.
     pub rows: usize,
+    /// More rows may follow, where curves bend.
+    pub open: bool,
+    /// Simulations that it takes at most.
+    pub simulations: u64,
+    /// Processor time that it will take, s, by what earlier runs took; `None` where there was none.
+    pub seconds: Option<f64>,
 }
 
 impl Item {
-    /// How many rows differ in meaning from those of the table on disk; all of them if there is none.
+    /// What there is to do beside what is known.
     #[must_use]
-    pub fn extent(&self, layout: &Layout) -> Extent {
-        let (rows, _) = self.size();
-        let all = Extent { touched: rows, rows };
+    pub fn extent(&self, layout: &Layout, known: &KnownRows) -> Extent {
         let experiment = &self.source.experiment;
-        let record = Record::read(&layout.path(&record_name(&experiment.id)), &experiment.id);
-        let Ok(Record { simulation: old, .. }) = record else { return all };
+        let spent = Spent::read(layout, &experiment.id);
+        let (rows, simulations) = self.size();
         if experiment.optimise.is_some() {
-            return all;
+            let done = Extent { to_do: 0, rows, open: false, simulations: 0, seconds: Some(0.0) };
+            return match known.whole() {
+                Some(_) => done,
+                // How soon its searches end is not known before.
+                None => Extent { to_do: rows, simulations, seconds: spent.total(), ..done },
+            };
         }
-        let mut moved: BTreeSet<String> = BTreeSet::new();
-        for change in changes(&old, &self.simulation) {
-            let path: Vec<&str> = change.path.iter().map(String::as_str).collect();
-            match path.as_slice() {
-                // Which cases are new is looked at one by one; which parameters they set follows from them.
-                ["experiment", "cases" | "swept", ..] => {}
-                // The value of an assumption, or one of the ends of its range.
-                ["assumptions" | "sensitivity", name, ..] => {
-                    moved.insert(name.split_once('=').map_or(*name, |(name, _)| name).into());
-                }
-                _ => return all,
-            }
+        let experiment = &self.grown(known);
+        let meaning = RowMeaning::new(experiment);
+        let jobs = jobs(experiment, &self.variants);
+        let is_known = |job: &Job| known.has(meaning.of(&self.variants[job.variant], &experiment.cases[job.case], job));
+        let to_do: Vec<&Job> = jobs.iter().filter(|job| job.same_as.is_none() && !is_known(job)).collect();
+        let all = Extent { to_do: to_do.len(), rows: jobs.len(), open: false, simulations, seconds: None };
+        if experiment.refined.is_empty() {
+            let simulations = to_do.iter().map(|job| evaluations(experiment, job)).sum();
+            let seconds = to_do.iter().map(|job| ahead(experiment, job, &spent)).sum();
+            return Extent { simulations, seconds, ..all };
         }
-        let known: Vec<&Value> =
-            old["experiment"]["cases"].as_array().map(|cases| cases.iter().collect()).unwrap_or_default();
-        let is_touched = |job: &Job| {
-            let case = &experiment.cases[job.case];
-            let is_new = !serde_json::to_value(case).is_ok_and(|case| known.contains(&&case));
-            let assumptions = &self.variants[job.variant].assumptions;
-            is_new
-                || experiment.recipe_of(case).map_or(true, |recipe| {
-                    recipe.assumptions(assumptions).iter().any(|name| moved.contains(&words::of_key(name)))
-                })
-        };
-        let touched = jobs(experiment, &self.variants).iter().filter(|job| is_touched(job)).count();
-        Extent { touched, rows }
+        if to_do.is_empty() {
+            return Extent { simulations: 0, seconds: Some(0.0), ..all };
+        }
+        // A row that is missing brings others with it, as far as can be told in proportion.
+        let share = to_do.len() as f64 / jobs.len() as f64;
+        Extent { open: true, seconds: spent.total().map(|seconds| seconds * share), ..all }
     }
+
+    /// The experiment with the points that its curves get, as far as they follow from what is known.
+    fn grown(&self, known: &KnownRows) -> Cow<'_, Experiment> {
+        let experiment = &self.source.experiment;
+        if experiment.refined.is_empty() || known.is_empty() {
+            return Cow::Borrowed(experiment);
+        }
+        let meaning = RowMeaning::new(experiment);
+        let look = |case: &Case| {
+            let job = job::first_of(case);
+            let row = known.row(experiment, meaning.of(&self.variants[0], case, &job));
+            row.ok_or_else(|| "not known".to_owned())
+        };
+        let cases = refine::points(experiment, &look).into_iter().map(|point| point.case).collect();
+        Cow::Owned(Experiment { cases, ..experiment.clone() })
+    }
+}
+
+/// What a row will take, s.
+fn ahead(experiment: &Experiment, job: &Job, spent: &Spent) -> Option<f64> {
+    let Job { solver, .. } = *job;
+    // A mean is one simulation for each of its settings.
+    let each = experiment.mean_over.len().max(1) as u64;
+    let all = evaluations(experiment, job);
+    let results = u64::from(job.variant == 0).min(all);
+    let of = |rigour, count| spent.ahead(solver, rigour, each * count);
+    Some(of(Rigour::Result, results)? + of(Rigour::Look, all - results)?)
 }

@@ -109,7 +109,7 @@ pub fn gather(layout: &Layout, item: &Item, of: u32) -> Result<Finished, GatherE
     let tables: Vec<Table> = parts.into_iter().map(|(_, table, _)| table).collect();
     let table = Table { metadata: item.provenance(), ..join(&tables, &rows) };
     let failures = failures(&table);
-    Ok(Finished { table, failures })
+    Ok(Finished { table, failures, ..Finished::default() })
 }
 
 fn in_words(error: ParquetError) -> String {
@@ -139,6 +139,8 @@ fn join(tables: &[Table], rows: &[(usize, usize)]) -> Table {
     for column in first.columns.iter().filter(|column| !is_list(column)) {
         table.columns.push(joined(column, tables, rows));
     }
+    let fingerprint = |&(of, at): &(usize, usize)| tables[of].fingerprints.get(at).copied();
+    table.fingerprints = rows.iter().filter_map(fingerprint).collect();
     // Time histories that a table's rows lack it does not name; the first row that has one tells its place.
     for &(of, at) in rows {
         for column in tables[of].columns.iter().filter(|column| has_samples(column, at)) {

@@ -2,7 +2,7 @@
 
 use super::variant::Variant;
 use crate::measure::Measure;
-use crate::spec::{Experiment, SolverChoice, curves};
+use crate::spec::{Case, Experiment, SolverChoice, curves};
 
 /// A row.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -34,6 +34,12 @@ pub(super) fn jobs(experiment: &Experiment, variants: &[Variant]) -> Vec<Job> {
         }
     }
     jobs
+}
+
+/// The row of a case by which its curve is refined: its first solver at the baseline.
+pub(super) fn first_of(case: &Case) -> Job {
+    let solver = case.solvers.first().copied().unwrap_or(SolverChoice::EventDriven);
+    Job { case: 0, solver, variant: 0, same_as: None }
 }
 
 /// Simulations that a row takes at most.

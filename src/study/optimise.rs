@@ -11,6 +11,7 @@ use rayon::prelude::*;
 use super::evaluate::{Array, Evaluate, Simulation, guarded};
 use super::event::{Event, Listen};
 use super::journal::{Journal, Known};
+use super::known_rows::KnownRows;
 use super::mean::{mean, measures_of_each};
 use super::run::{Finished, Task};
 use super::tabulate_candidates::{Candidate, failures, table};
@@ -22,6 +23,7 @@ use crate::optimise::{
 };
 use crate::scene::Recipe;
 use crate::spec::{Experiment, Goal, Optimise, Search, SearchKind, SearchSpacing, SolverChoice};
+use crate::table::Table;
 use crate::text::words;
 
 /// Rows of an optimisation's table.
@@ -105,6 +107,12 @@ struct Searches<'a> {
 /// Runs it.
 pub(super) fn run_optimisation(task: Task<'_>, evaluate: &impl Evaluate, listener: &dyn Listen) -> Finished {
     let Task { experiment, variants, metadata, .. } = task;
+    if let Some(whole) = task.known.and_then(KnownRows::whole) {
+        let count = experiment.optimise.as_ref().map_or(0, |optimise| evaluations(optimise, variants));
+        listener.hear(&Event::Simulated { experiment: &experiment.id, count });
+        // Its title may have changed since.
+        return Finished { table: Table { metadata: metadata.clone(), ..whole.clone() }, ..Finished::default() };
+    }
     let (candidates, told) = match found(task, evaluate, listener) {
         Ok(found) => found,
         Err(reason) => (vec![Candidate::failed(reason)], 0),
@@ -114,7 +122,8 @@ pub(super) fn run_optimisation(task: Task<'_>, evaluate: &impl Evaluate, listene
         let left = evaluations(optimise, variants).saturating_sub(told);
         listener.hear(&Event::Simulated { experiment: &experiment.id, count: left });
     }
-    Finished { table: table(experiment, variants, &evaluated, metadata.clone()), failures: failures(&evaluated) }
+    let table = table(experiment, variants, &evaluated, metadata.clone());
+    Finished { table, failures: failures(&evaluated), ..Finished::default() }
 }
 
 /// The candidates of the file, and what the searches find.

@@ -1,16 +1,17 @@
-//! Results of experiments that are gone.
+//! Results of experiments that are gone, or of earlier meanings.
 
 use std::collections::BTreeSet;
 use std::fs;
 
 use super::layout::{ASSUMPTIONS, Layout, Texts};
 use super::record::Record;
+use super::{earlier, spent};
 use crate::spec::ExperimentId;
 
 /// What an experiment leaves in `results/`.
 const ENDINGS: [&str; 3] = ["parquet", "json", "journal"];
 
-/// Tables, records and journals of experiments that no file has the name of, and the figures and pages that their records
+/// Tables, earlier ones too, records, journals and times of experiments that no file has the name of, and the figures and pages that their records
 /// tell of; by their names within the study. A file that cannot be understood still counts as an experiment: what it meant may
 /// come back.
 #[must_use]
@@ -18,6 +19,11 @@ pub fn orphans(layout: &Layout, texts: &Texts) -> BTreeSet<String> {
     let names = texts.files.keys().filter(|file| file.starts_with("experiments/") && *file != ASSUMPTIONS);
     let known: BTreeSet<&str> = names.map(|file| stem(file)).collect();
     let mut found = BTreeSet::new();
+    let of_nobody = |name: &str| stem(name).parse::<ExperimentId>().is_ok_and(|id| !known.contains(id.0.as_str()));
+    for folder in names_in(layout, earlier::FOLDER).into_iter().filter(|name| of_nobody(name)) {
+        found.extend(names_in(layout, &folder));
+    }
+    found.extend(names_in(layout, spent::FOLDER).into_iter().filter(|name| of_nobody(name)));
     let Ok(entries) = fs::read_dir(layout.results()) else { return found };
     for entry in entries.flatten() {
         let Ok(name) = entry.file_name().into_string() else { continue };
@@ -34,6 +40,18 @@ pub fn orphans(layout: &Layout, texts: &Texts) -> BTreeSet<String> {
         }
     }
     found
+}
+
+/// The tables that experiments had before the ones in force, by their names within the study.
+#[must_use]
+pub fn earlier_tables(layout: &Layout) -> BTreeSet<String> {
+    names_in(layout, earlier::FOLDER).iter().flat_map(|folder| names_in(layout, folder)).collect()
+}
+
+/// What lies in a folder of the study, by its name within the study.
+fn names_in(layout: &Layout, folder: &str) -> Vec<String> {
+    let entries = fs::read_dir(layout.path(folder)).into_iter().flatten().flatten();
+    entries.filter_map(|entry| Some(format!("{folder}/{}", entry.file_name().into_string().ok()?))).collect()
 }
 
 fn stem(name: &str) -> &str {

@@ -79,6 +79,10 @@ pub struct Publication {
     pub meaning: Value,
     /// The files, by their name within the study.
     pub files: BTreeMap<String, FileHash>,
+    /// What each figure among them shows, as a hash: one that would show the same is not drawn again. Absent in records of
+    /// before; it is then drawn once more.
+    #[serde(default)]
+    pub shown: BTreeMap<String, String>,
 }
 
 /// Why a record is not there.

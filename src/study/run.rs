@@ -13,14 +13,16 @@ use rayon::prelude::*;
 
 use super::evaluate::Evaluate;
 use super::event::{Event, Listen};
-use super::job::{self, Job, cost};
+use super::job::{self, cost};
+use super::known_rows::KnownRows;
 use super::optimise::run_optimisation;
 use super::record::Failures;
 use super::refine;
 use super::shard::Shard;
+use super::spent::{Meter, Metered, Spent};
 use super::variant::Variant;
 use super::work::{Work, outcome};
-use crate::spec::{Case, Experiment, SolverChoice};
+use crate::spec::{Case, Experiment};
 use crate::table::Table;
 
 /// An experiment to be run.
@@ -36,15 +38,19 @@ pub struct Task<'a> {
     pub journal: Option<&'a Path>,
     /// The shard to which to keep; `None`: all of it. Of an experiment that is not divided the shard does all.
     pub shard: Option<Shard>,
+    /// Rows that need not be simulated; `None`: all are.
+    pub known: Option<&'a KnownRows>,
 }
 
 /// An experiment that has been run.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct Finished {
     /// Its table.
     pub table: Table,
     /// The rows of it that have no numbers.
     pub failures: Failures,
+    /// What it took.
+    pub spent: Spent,
 }
 
 /// How a run ended that could not even start.
@@ -76,7 +82,10 @@ pub fn run<T: Send + Sync>(
     let of_others = optimised.iter().chain(&refined).map(|&i| job::simulations(tasks[i].experiment, tasks[i].variants));
     listener.hear(&Event::Begun { experiments: tasks.len(), simulations: of_divided + of_others.sum::<u64>() });
     let taken: Vec<OnceLock<T>> = tasks.iter().map(|_| OnceLock::new()).collect();
-    let hand_over = |index: usize, finished: Finished| {
+    let meters: Vec<Meter> = tasks.iter().map(|_| Meter::default()).collect();
+    let engine = |index: usize| Metered { evaluate, meter: &meters[index] };
+    let hand_over = |index: usize, mut finished: Finished| {
+        finished.spent = meters[index].spent();
         let (rows, failures) = (finished.table.rows(), finished.failures.clone());
         // Only the thread that put the last row comes here, once.
         let _ = taken[index].set(take(index, finished));
@@ -84,25 +93,25 @@ pub fn run<T: Send + Sync>(
     };
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).stack_size(STACK).build()?;
     pool.install(|| {
-        let (work, hand_over) = (&work, &hand_over);
+        let (work, engine, hand_over) = (&work, &engine, &hand_over);
         rayon::scope_fifo(|scope| {
             // Their rounds wait for one another: they begin first.
             for index in optimised {
                 scope.spawn_fifo(move |_| {
-                    let finished = run_optimisation(tasks[index], evaluate, listener);
+                    let finished = run_optimisation(tasks[index], &engine(index), listener);
                     hand_over(index, undivided(tasks[index], finished));
                 });
             }
             for index in refined {
                 scope.spawn_fifo(move |_| {
                     let take = |work: &Work<'_>| hand_over(index, undivided(tasks[index], work.finish()));
-                    run_refined(tasks[index], evaluate, listener, take);
+                    run_refined(tasks[index], &engine(index), listener, take);
                 });
             }
             for (one, row) in order(work) {
                 scope.spawn_fifo(move |_| {
                     let (index, one) = &work[one];
-                    if one.put(row, one.row(row, evaluate, listener)) {
+                    if one.put(row, one.row(row, &engine(*index), listener)) {
                         hand_over(*index, one.finish());
                     }
                 });
@@ -116,7 +125,7 @@ pub fn run<T: Send + Sync>(
         .map(|(index, taken)| match taken.into_inner() {
             Some(taken) => taken,
             // An experiment without rows never has a last one.
-            None => take(index, Finished { table: Table::default(), failures: Failures::default() }),
+            None => take(index, Finished::default()),
         })
         .collect())
 }
@@ -133,10 +142,7 @@ fn undivided(task: Task<'_>, mut finished: Finished) -> Finished {
 /// Runs an experiment whose curves get more points where they bend: first the curves, then all else at their points.
 fn run_refined(task: Task<'_>, evaluate: &impl Evaluate, listener: &dyn Listen, hand_over: impl Fn(&Work<'_>)) {
     let ear = Counting { listener, told: AtomicU64::new(0) };
-    let look = |case: &Case| {
-        let solver = case.solvers.first().copied().unwrap_or(SolverChoice::EventDriven);
-        outcome(task, case, &Job { case: 0, solver, variant: 0, same_as: None }, evaluate, &ear)
-    };
+    let look = |case: &Case| outcome(task, case, &job::first_of(case), evaluate, &ear);
     let points = refine::points(task.experiment, &look);
     let cases = points.iter().map(|point| point.case.clone()).collect();
     let experiment = Experiment { cases, ..task.experiment.clone() };

@@ -130,6 +130,9 @@ impl Shard {
         if table.metadata.get("fingerprint") != Some(&item.fingerprint) {
             return Err("it was computed from other inputs than those of now".into());
         }
+        if item.source.experiment.optimise.is_none() && table.fingerprints.len() < table.rows() {
+            return Err("its rows do not say what they were computed from".into());
+        }
         Ok(())
     }
 

@@ -4,21 +4,31 @@ use std::fs::{self, File, TryLockError};
 use std::io::Write;
 use std::path::Path;
 
+use super::earlier;
 use super::layout::{Layout, journal_name, record_name, table_name};
 use super::plan::Item;
 use super::record::{FileHash, RECORD_FORMAT, Record};
 use super::run::Finished;
 use super::shard::Shard;
+use super::spent;
 use crate::atomic::{self, FileError};
 use crate::table::{ParquetError, parquet};
 
-/// Writes an experiment's table and then its record, which is what makes the table count.
+/// Writes an experiment's table and then its record, which is what makes the table count. A table of another meaning that
+/// was there is put aside for the day when that meaning comes back.
 ///
 /// # Errors
 /// [`ParquetError`] if one of them cannot be written; the record then still tells of the table before, or of none.
 pub fn save(layout: &Layout, item: &Item, finished: &Finished) -> Result<Record, ParquetError> {
     let id = &item.source.experiment.id;
-    let bytes = parquet::write(&finished.table, &layout.path(&table_name(id)))?;
+    let path = layout.path(&table_name(id));
+    if let Ok(old) = Record::read(&layout.path(&record_name(id)), id)
+        && old.simulation != item.simulation
+        && old.table.matches(&path)
+    {
+        earlier::put_aside(layout, id, &old.table);
+    }
+    let bytes = parquet::write(&finished.table, &path)?;
     let record = Record {
         format: RECORD_FORMAT,
         experiment: id.clone(),
@@ -28,6 +38,8 @@ pub fn save(layout: &Layout, item: &Item, finished: &Finished) -> Result<Record,
         publication: None,
     };
     record.write(&layout.path(&record_name(id)))?;
+    earlier::tidy(layout, id, &record.table);
+    finished.spent.keep(layout, id);
     if finished.failures.rows == 0 {
         // What it was kept for is done; one that cannot be removed is begun anew by the next optimisation.
         let _ = fs::remove_file(layout.path(&journal_name(id)));
@@ -73,6 +85,7 @@ impl Lock {
         let results = layout.results();
         let lock = Self::take(&results, held)?;
         atomic::sweep(&results);
+        atomic::sweep(&layout.path(spent::FOLDER));
         sweep_below(&layout.path("reports"), 4);
         Ok(lock)
     }

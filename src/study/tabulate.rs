@@ -9,7 +9,7 @@ use super::variant::Variant;
 use crate::measure::{Evaluated, Measure, TraceColumn};
 use crate::scene::{Parameter, ParameterValue};
 use crate::spec::Experiment;
-use crate::table::{Column, Data, Table};
+use crate::table::{Column, Data, RowFingerprint, Table};
 use crate::text::words;
 
 /// What came of a row.
@@ -29,12 +29,13 @@ pub(super) fn failures(outcomes: &[&Outcome]) -> Failures {
     Failures { rows: reasons.len(), first: reasons.first().copied().cloned().unwrap_or_default() }
 }
 
-/// The table of an experiment. `outcomes` stand in the order of `jobs`.
+/// The table of an experiment. `outcomes` and `fingerprints` stand in the order of `jobs`.
 pub(super) fn table(
     experiment: &Experiment,
     variants: &[Variant],
     jobs: &[Job],
     outcomes: &[&Outcome],
+    fingerprints: Vec<RowFingerprint>,
     metadata: BTreeMap<String, String>,
 ) -> Table {
     let mut columns = Vec::new();
@@ -81,7 +82,7 @@ pub(super) fn table(
     columns.push(Column::new("members", counts(&|row| u64::from(row.evaluated.members))));
     columns.push(Column::new("failure", texts(&|row| outcomes[row].as_ref().err().cloned().unwrap_or_default())));
     columns.extend(histories(jobs, outcomes));
-    Table { columns, metadata }
+    Table { columns, metadata, fingerprints }
 }
 
 fn swept_column(experiment: &Experiment, jobs: &[Job], parameter: Parameter) -> Column {
@@ -114,7 +115,7 @@ fn histories(jobs: &[Job], outcomes: &[&Outcome]) -> Vec<Column> {
                     same.map_or_else(Vec::new, |other| other.samples.clone())
                 };
                 let cells = Data::FloatList((0..outcomes.len()).map(cell).collect());
-                columns.push(Column::new(history.name, cells).with_unit(history.unit));
+                columns.push(Column::new(history.name.clone(), cells).with_unit(history.unit.clone()));
             }
         }
     }

@@ -109,7 +109,7 @@ pub(super) fn table(
     columns.extend(proof(candidates));
     columns.push(texts("failure", &|it| it.failure().into()));
     columns.extend(lists(optimise, candidates));
-    Table { columns, metadata }
+    Table { columns, metadata, ..Table::default() }
 }
 
 fn unit(word: GapWord) -> &'static str {

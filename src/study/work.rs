@@ -3,17 +3,23 @@
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
+use rayon::prelude::*;
+
 use super::evaluate::{Evaluate, Simulation, evaluate_guarded};
 use super::event::{Event, Listen};
 use super::job::{Job, evaluations, jobs, keeps_trace, measures_need_trace};
 use super::maximise::maximum;
 use super::mean::Averaging;
+use super::row_meaning::RowMeaning;
 use super::run::{Finished, Task};
 use super::shard::{Shard, part};
+use super::spent::Spent;
 use super::tabulate::{self, Outcome, Row};
 use super::variant::Variant;
 use crate::measure::Rigour;
+use crate::scene::Recipe;
 use crate::spec::{Case, Experiment};
+use crate::table::RowFingerprint;
 use crate::text::words;
 
 /// An experiment while it runs.
@@ -66,11 +72,23 @@ impl<'a> Work<'a> {
             .map(|(row, job)| self.outcomes[job.same_as.unwrap_or(row)].get().unwrap_or(&lost))
             .collect();
         let Task { experiment, variants, metadata, .. } = self.task;
-        let mut table = tabulate::table(experiment, variants, &self.jobs, &outcomes, metadata.clone());
+        let fingerprints = self.fingerprints();
+        let mut table = tabulate::table(experiment, variants, &self.jobs, &outcomes, fingerprints, metadata.clone());
         if let Some((shard, places)) = &self.part {
             shard.mark(&mut table, places);
         }
-        Finished { table, failures: tabulate::failures(&outcomes) }
+        Finished { table, failures: tabulate::failures(&outcomes), spent: Spent::default() }
+    }
+
+    /// What each row was computed from; of one that shares another's numbers, what that was.
+    fn fingerprints(&self) -> Vec<RowFingerprint> {
+        let Task { experiment, variants, .. } = self.task;
+        let meaning = RowMeaning::new(experiment);
+        let of = |job: &Job| {
+            let job = job.same_as.map_or(job, |row| &self.jobs[row]);
+            meaning.of(&variants[job.variant], &experiment.cases[job.case], job)
+        };
+        self.jobs.par_iter().map(of).collect()
     }
 
     /// Computes a row.
@@ -80,7 +98,7 @@ impl<'a> Work<'a> {
     }
 }
 
-/// One row, of a case that need not be among the experiment's.
+/// One row, of a case that need not be among the experiment's; taken over if it is known.
 pub(super) fn outcome(
     task: Task<'_>,
     case: &Case,
@@ -89,6 +107,13 @@ pub(super) fn outcome(
     listener: &dyn Listen,
 ) -> Outcome {
     let experiment = task.experiment;
+    if let Some(known) = task.known {
+        let fingerprint = RowMeaning::new(experiment).of(&task.variants[job.variant], case, job);
+        if let Some(row) = known.row(experiment, fingerprint) {
+            listener.hear(&Event::Simulated { experiment: &experiment.id, count: evaluations(experiment, job) });
+            return Ok(row);
+        }
+    }
     let told = AtomicUsize::new(0);
     let done = || {
         told.fetch_add(1, Ordering::Relaxed);
@@ -98,6 +123,32 @@ pub(super) fn outcome(
     let rest = evaluations(experiment, job).saturating_sub(told.into_inner() as u64);
     listener.hear(&Event::Simulated { experiment: &experiment.id, count: rest });
     outcome
+}
+
+/// What the engine is asked for a row.
+pub(super) fn asked<'a>(
+    experiment: &'a Experiment,
+    recipe: &'a Recipe,
+    variant: &'a Variant,
+    job: &Job,
+) -> Simulation<'a> {
+    let wanted = keeps_trace(experiment, job) || measures_need_trace(&experiment.measures);
+    Simulation {
+        recipe,
+        assumptions: &variant.assumptions,
+        solver: job.solver,
+        settings: &experiment.settings,
+        measures: &experiment.measures,
+        trace: experiment.trace.as_ref().filter(|_| wanted),
+        // Only the baseline keeps its lists; a measure of a shape needs it everywhere.
+        energies: experiment.energies.as_ref().filter(|_| job.variant == 0),
+        shape: experiment.shape.as_ref().filter(|_| job.variant == 0 || needs_shape(experiment)),
+        rigour: if job.variant == 0 { Rigour::Result } else { Rigour::Look },
+    }
+}
+
+fn needs_shape(experiment: &Experiment) -> bool {
+    experiment.measures.iter().any(|measure| measure.needs_shape())
 }
 
 fn simulate(
@@ -110,20 +161,7 @@ fn simulate(
 ) -> Outcome {
     let evaluate = &Averaging { experiment, evaluate };
     let recipe = experiment.recipe_of(case).map_err(|error| error.to_string())?;
-    let wanted = keeps_trace(experiment, job) || measures_need_trace(&experiment.measures);
-    let needs_shape = experiment.measures.iter().any(|measure| measure.needs_shape());
-    let simulation = Simulation {
-        recipe: &recipe,
-        assumptions: &variant.assumptions,
-        solver: job.solver,
-        settings: &experiment.settings,
-        measures: &experiment.measures,
-        trace: experiment.trace.as_ref().filter(|_| wanted),
-        // Only the baseline keeps its lists; a measure of a shape needs it everywhere.
-        energies: experiment.energies.as_ref().filter(|_| job.variant == 0),
-        shape: experiment.shape.as_ref().filter(|_| job.variant == 0 || needs_shape),
-        rigour: if job.variant == 0 { Rigour::Result } else { Rigour::Look },
-    };
+    let simulation = asked(experiment, &recipe, variant, job);
     let Some(maximise) = &experiment.maximise else {
         let evaluated = evaluate_guarded(evaluate, &simulation);
         done();
@@ -133,7 +171,7 @@ fn simulate(
         .ok_or_else(|| format!("{} is to be maximised and not measured", words::of_key(&maximise.measure)))?;
     // Histories of the points that are not the maximum are not wanted.
     let trace = simulation.trace.filter(|_| measures_need_trace(&experiment.measures));
-    let shape = simulation.shape.filter(|_| needs_shape);
+    let shape = simulation.shape.filter(|_| needs_shape(experiment));
     let look = Simulation { trace, energies: None, shape, rigour: Rigour::Look, ..simulation };
     let (found, place) = maximum(evaluate, &look, maximise, measure, done)?;
     if job.variant != 0 {

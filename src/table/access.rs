@@ -15,6 +15,14 @@ pub enum TableError {
         /// Rows of the first column.
         expected: usize,
     },
+    /// Fingerprints that are not one a row.
+    #[error("{fingerprints} fingerprints for {rows} rows")]
+    Fingerprints {
+        /// How many.
+        fingerprints: usize,
+        /// Rows of the table.
+        rows: usize,
+    },
     /// Two columns of one name.
     #[error("two columns are called `{0}`")]
     Twice(String),
@@ -135,7 +143,8 @@ impl Table {
     pub fn select(&self, rows: &[usize]) -> Self {
         let columns =
             self.columns.iter().map(|column| Column { data: column.data.select(rows), ..column.clone() }).collect();
-        Self { columns, metadata: self.metadata.clone() }
+        let fingerprints = rows.iter().filter_map(|&row| self.fingerprints.get(row).copied()).collect();
+        Self { columns, metadata: self.metadata.clone(), fingerprints }
     }
 
     /// The rows computed with the assumptions as the file gives them (`variant == baseline`).
@@ -144,7 +153,7 @@ impl Table {
         self.select(&self.rows_where("variant", super::BASELINE))
     }
 
-    /// Checks that all columns have the same length and each its own name.
+    /// Checks that all columns have the same length and each its own name, and that fingerprints belong to rows.
     ///
     /// # Errors
     /// [`TableError`] that names the column.
@@ -160,6 +169,10 @@ impl Table {
             if self.columns[..index].iter().any(|earlier| earlier.name == column.name) {
                 return Err(TableError::Twice(column.name.clone()));
             }
+        }
+        let (fingerprints, rows) = (self.fingerprints.len(), self.rows());
+        if ![0, rows].contains(&fingerprints) {
+            return Err(TableError::Fingerprints { fingerprints, rows });
         }
         Ok(())
     }

@@ -4,11 +4,13 @@
 //! list-valued cells of the same row, so that an experiment is one table and one file.
 
 mod access;
+mod fingerprint;
 pub mod parquet;
 
 use std::collections::BTreeMap;
 
 pub use access::TableError;
+pub use fingerprint::RowFingerprint;
 pub use parquet::ParquetError;
 
 /// The `variant` of a row computed with the assumptions as the file gives them.
@@ -47,4 +49,6 @@ pub struct Table {
     pub columns: Vec<Column>,
     /// Provenance: experiment, fingerprint, solver version, source. No time stamp, host or path.
     pub metadata: BTreeMap<String, String>,
+    /// What each row was computed from; empty where that is not known row by row.
+    pub fingerprints: Vec<RowFingerprint>,
 }

@@ -1,8 +1,10 @@
 //! Tables as Parquet files. The only file that names polars.
 //!
-//! A file carries two keys of its own in its metadata: `shotdamp`, JSON with the units, the symbols and the provenance,
+//! A file carries keys of its own in its metadata: `shotdamp`, JSON with the units, the symbols and the provenance,
 //! and `shotdamp_seal`, the hash of all the other bytes of the file. A reader checks the seal before it decodes a byte, so
 //! a cut, flipped or foreign file is an error and never a wrong number.
+//!
+//! A third, `shotdamp_rows`, holds the fingerprint of each row.
 //!
 //! For others who open the file, each field's own metadata repeats unit and symbol, and `PANDAS_ATTRS` holds units, symbols
 //! and provenance as pandas takes them for the attributes of a data frame.
@@ -18,13 +20,14 @@ use polars::prelude::{ListBuilderTrait, SerReader};
 use polars_arrow::io::ipc::write::{default_ipc_fields, schema_to_bytes};
 use serde::{Deserialize, Serialize};
 
-use super::{Column, Data, Table, TableError};
+use super::{Column, Data, Table, TableError, fingerprint};
 use crate::atomic::{self, FileError};
 
 /// Raised when the content of the `shotdamp` key changes its meaning.
 const FORMAT: u32 = 1;
 const ABOUT_KEY: &str = "shotdamp";
 const SCHEMA_KEY: &str = "ARROW:schema";
+const ROWS_KEY: &str = "shotdamp_rows";
 const PANDAS_KEY: &str = "PANDAS_ATTRS";
 const SEAL_KEY: &str = "shotdamp_seal";
 /// Stands before the hash, so that it can be found without decoding the file.
@@ -128,6 +131,9 @@ pub fn to_bytes(table: &Table) -> Result<Vec<u8>, ParquetError> {
     let mut frame = pl::DataFrame::new(table.rows(), columns).map_err(|error| refuse(error.to_string()))?;
     let mut keys = vec![(ABOUT_KEY.to_owned(), about), (PANDAS_KEY.to_owned(), attributes)];
     keys.insert(0, (SCHEMA_KEY.to_owned(), arrow_schema(&frame, table, &keys)));
+    if !table.fingerprints.is_empty() {
+        keys.push((ROWS_KEY.to_owned(), fingerprint::to_text(&table.fingerprints)));
+    }
     keys.push((SEAL_KEY.to_owned(), open_seal));
     let metadata = pl::KeyValueMetadata::from_static(keys);
     let mut bytes = Vec::new();
@@ -156,16 +162,12 @@ pub fn from_bytes(mut bytes: Vec<u8>, name: &str) -> Result<Table, ParquetError>
     }
     let wrong = |error: pl::PolarsError| damaged(&error.to_string());
     let mut reader = pl::ParquetReader::new(Cursor::new(bytes)).read_parallel(pl::ParallelStrategy::None);
-    let about = reader
-        .get_metadata()
-        .map_err(wrong)?
-        .key_value_metadata()
-        .iter()
-        .flatten()
-        .find(|pair| pair.key == ABOUT_KEY)
-        .and_then(|pair| pair.value.clone())
-        .ok_or_else(|| damaged("it does not say what its columns are"))?;
-    let about: About = serde_json::from_str(&about).map_err(|error| damaged(&error.to_string()))?;
+    let keys = reader.get_metadata().map_err(wrong)?.key_value_metadata().clone().unwrap_or_default();
+    let told = |key: &str| keys.iter().find(|pair| pair.key == key).and_then(|pair| pair.value.as_deref());
+    let about = told(ABOUT_KEY).ok_or_else(|| damaged("it does not say what its columns are"))?;
+    let fingerprints = fingerprint::from_text(told(ROWS_KEY).unwrap_or_default())
+        .ok_or_else(|| damaged("it does not say what its rows were computed from"))?;
+    let about: About = serde_json::from_str(about).map_err(|error| damaged(&error.to_string()))?;
     if about.format != FORMAT {
         return Err(damaged(&format!("it has format {}, and this program reads format {FORMAT}", about.format)));
     }
@@ -182,7 +184,7 @@ pub fn from_bytes(mut bytes: Vec<u8>, name: &str) -> Result<Table, ParquetError>
             Ok(Column { name: label.name, unit: label.unit, symbol: label.symbol, data })
         })
         .collect::<Result<_, ParquetError>>()?;
-    let table = Table { columns, metadata: about.provenance };
+    let table = Table { columns, metadata: about.provenance, fingerprints };
     table.check()?;
     Ok(table)
 }

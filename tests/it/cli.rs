@@ -9,11 +9,14 @@ use assert_cmd::cargo::CommandCargoExt;
 
 use crate::desk::{ASSUMPTIONS, Desk, GAP, GAP_REFERENCE, STOP, STOP_REFERENCE, shotdamp, simulated};
 
-/// Every file below the folder with its bytes.
+/// Every file below the folder with its bytes, but for the times that runs have taken.
 pub fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     let mut found = BTreeMap::new();
     for entry in fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
+        if path.ends_with("results/times") {
+            continue;
+        }
         if path.is_dir() {
             found.extend(files(&path));
         } else {
@@ -119,12 +122,17 @@ fn status_names_the_input_that_changed() {
         "ch3-gap   up to date\n\
          ch3-stop  stale\n    \
              experiments/assumptions.yaml:9: stop_length: 0.06 -> 0.055\n    \
-             touches 15 of 30 rows\n\
+             12 of 30 rows to simulate\n\
          2 experiments: 1 to simulate, 0 reports to renew\n"
     );
     assert_eq!((status.code, shotdamp(&desk, &["status", "--exit-code"]).code), (0, 1));
-    let dry = shotdamp(&desk, &["run", "--dry-run"]);
-    assert_eq!(dry.out, "ch3-stop: 30 rows, 27 simulations at most\n1 of 2 experiments would be simulated\n");
+    let dry = shotdamp(&desk, &["run", "--dry-run", "--jobs", "2"]);
+    assert_eq!(
+        dry.out,
+        "ch3-stop: 12 of 30 rows to simulate, 12 simulations at most, less than 0.1 s\n\
+         1 of 2 experiments would be simulated\n\
+         Less than 0.1 s on 2 threads\n"
+    );
 }
 
 #[test]

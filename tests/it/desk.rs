@@ -11,7 +11,7 @@ use shotdamp::measure::{Evaluated, Measured, TraceColumn};
 use shotdamp::publish::Opened;
 use shotdamp::scene::Excitation;
 use shotdamp::spec::SolverChoice;
-use shotdamp::study::{self, Evaluate, Item, Layout, Listen, Reason, Silence, Simulation, Task, Texts};
+use shotdamp::study::{self, Evaluate, Item, KnownRows, Layout, Listen, Reason, Silence, Simulation, Task, Texts};
 use shotdamp::table::{Table, parquet};
 
 pub const ASSUMPTIONS: &str = "
@@ -126,18 +126,19 @@ impl Desk {
         opened.items.into_iter().map(|item| (item.source.experiment.id.to_string(), item)).collect()
     }
 
-    /// Runs what is stale and returns the ids.
+    /// Runs what is stale, all but the rows that are known, and returns the ids.
     pub fn run(&self, threads: usize, evaluate: &impl Evaluate, listener: &dyn Listen) -> Vec<String> {
         let plan = self.plan();
         let stale: Vec<&Item> = plan.values().filter(|item| !item.reasons().is_empty()).collect();
         let provenance: Vec<_> = stale.iter().map(|item| item.provenance()).collect();
         let journal = |item: &&Item| self.layout.path(&study::journal_name(&item.source.experiment.id));
         let journals: Vec<_> = stale.iter().map(journal).collect();
+        let known: Vec<_> = stale.iter().map(|item| KnownRows::of(&self.layout, item)).collect();
         let tasks: Vec<Task<'_>> = stale
             .iter()
-            .zip(&provenance)
-            .zip(&journals)
-            .map(|((item, metadata), journal)| item.task(metadata, journal))
+            .zip(provenance.iter().zip(&journals))
+            .zip(&known)
+            .map(|((item, (metadata, journal)), known)| Task { known: Some(known), ..item.task(metadata, journal) })
             .collect();
         let save = |index: usize, finished| study::save(&self.layout, stale[index], &finished).unwrap();
         study::run(&tasks, threads, evaluate, listener, save).unwrap();
@@ -214,10 +215,7 @@ impl Evaluate for MadeUp {
             proof: Proof { events: 490, smallest_margin: 1e-3, ..Proof::default() },
             chaotic: false,
             members: 1,
-            trace: it
-                .trace
-                .map(|_| vec![TraceColumn { name: "time", unit: "s", samples: vec![0.0, 1.0] }])
-                .unwrap_or_default(),
+            trace: it.trace.map(|_| vec![TraceColumn::new("time", "s", vec![0.0, 1.0])]).unwrap_or_default(),
         })
     }
 }

@@ -65,9 +65,15 @@ impl Delays {
     }
 }
 
-/// All files; of the lock that it is there, as a killed run's signature may still stand in it.
+/// All files; of the lock that it is there, as a killed run's signature may still stand in it. Which earlier tables are kept
+/// depends on what was there before; each is whole, and what its name says.
 fn left(desk: &Desk) -> BTreeMap<String, Vec<u8>> {
     let mut files = relative_files(desk);
+    files.retain(|name, bytes| {
+        let earlier = name.starts_with("/results/earlier/");
+        assert!(!earlier || name.contains(&FileHash::of(bytes).blake3), "{name}");
+        !earlier
+    });
     files.insert("/results/.lock".into(), Vec::new());
     files
 }

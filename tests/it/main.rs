@@ -14,6 +14,7 @@ mod cli;
 mod daily;
 mod desk;
 mod diff;
+mod earlier;
 mod engine;
 mod export;
 mod faults;

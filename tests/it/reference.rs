@@ -1,6 +1,6 @@
 //! Verdicts: what a reader may rely on when the report says `reproduced`, `differs` or `missing`.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 use std::path::Path;
 
 use shotdamp::reference::{
@@ -25,7 +25,7 @@ fn text(name: &str, cells: &[&str]) -> Column {
 /// A table with these columns, and what every table has besides: one run a row, none failed.
 fn complete(columns: Vec<Column>) -> Table {
     let rows = columns[0].data.len();
-    let mut table = Table { columns, metadata: BTreeMap::new() };
+    let mut table = Table { columns, ..Table::default() };
     for (name, label) in [("solver", "event_driven"), ("variant", "baseline"), ("failure", "")] {
         if table.column(name).is_none() {
             table.columns.push(text(name, &vec![label; rows]));

@@ -69,7 +69,14 @@ fn bits() -> Bits {
     let planned: Vec<_> = opened.items.iter().map(task).collect();
     let tasks: Vec<Task<'_>> = planned
         .iter()
-        .map(|(experiment, variants)| Task { experiment, variants, metadata: &metadata, journal: None, shard: None })
+        .map(|(experiment, variants)| Task {
+            experiment,
+            variants,
+            metadata: &metadata,
+            journal: None,
+            shard: None,
+            known: None,
+        })
         .collect();
     let bits = Mutex::new(Bits::new());
     study::run(&tasks, 2, &Engine, &Silence, |index, finished| {

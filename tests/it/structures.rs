@@ -342,7 +342,7 @@ pub(crate) fn modes_and_deflections_come_as_shapes() {
         let [frequency, exact, mac] = values(row)[..] else { panic!("three measures") };
         close(frequency, exact, 1e-12);
         close(mac, 1.0, 1e-12);
-        assert_eq!(row.trace.iter().map(|column| column.name).collect::<Vec<_>>(), ["x", "shape", "exact_shape"]);
+        assert_eq!(row.trace.iter().map(|column| &*column.name).collect::<Vec<_>>(), ["x", "shape", "exact_shape"]);
         let largest = row.trace[1].samples.iter().fold(0.0_f64, |largest, w| largest.max(w.abs()));
         close(largest, 1.0, 1e-14);
     }

@@ -1,0 +1,108 @@
+//! `--dry-run`: what would be simulated, and how long that would take by what earlier runs took.
+
+use super::args::{Args, RunArgs};
+use super::error::CliError;
+use super::exit::Exit;
+use super::output::{complain_of, print};
+use super::select::{choose, open};
+use super::update::todo;
+use crate::study::{Extent, KnownRows, Layout};
+use crate::text::number::compact;
+use crate::text::words::capitalised;
+
+/// Tells it, and writes nothing.
+pub(super) fn dry_run(layout: &Layout, args: &RunArgs, common: &Args) -> Result<Exit, CliError> {
+    let opened = open(layout)?;
+    let chosen = choose(&opened, &args.choice)?;
+    complain_of(chosen.unread.iter().copied());
+    let threads = common.jobs.map_or_else(processors, usize::from);
+    let (mut text, mut total) = (String::new(), Total::default());
+    for item in todo(&chosen, args) {
+        let known = if args.force { KnownRows::nothing() } else { KnownRows::of(layout, item) };
+        let extent = item.extent(layout, &known);
+        text += &format!("{}: {}", item.source.experiment.id, rows(&extent));
+        if extent.to_do > 0 {
+            let ahead = wall(&extent, threads).map_or_else(|| "time not known".into(), about);
+            text += &format!(", {} simulations at most, {ahead}", extent.simulations);
+        }
+        text += "\n";
+        total.add(&extent, threads);
+    }
+    text += &format!("{} of {} experiments would be simulated{}\n", total.simulated, chosen.items.len(), total.rest());
+    if let Some(ahead) = total.time(threads) {
+        text += &format!("{ahead} on {threads} threads\n");
+    }
+    print(&text)?;
+    Ok(if chosen.unread.is_empty() { Exit::AsExpected } else { Exit::CouldNot })
+}
+
+fn processors() -> usize {
+    std::thread::available_parallelism().map_or(1, usize::from)
+}
+
+/// How many of the rows would be simulated.
+pub(super) fn rows(extent: &Extent) -> String {
+    let Extent { to_do, rows, open, .. } = *extent;
+    match (to_do, open) {
+        (0, _) => format!("none of {rows} rows to simulate: earlier tables have them"),
+        (_, true) => format!("{to_do} of {rows} rows to simulate, and those that follow where curves bend"),
+        (_, false) => format!("{to_do} of {rows} rows to simulate"),
+    }
+}
+
+/// Wall time, s.
+fn wall(extent: &Extent, threads: usize) -> Option<f64> {
+    let at_once = u64::try_from(threads).unwrap_or(u64::MAX).min(extent.simulations).max(1);
+    extent.seconds.map(|seconds| seconds / at_once as f64)
+}
+
+fn about(seconds: f64) -> String {
+    match seconds {
+        s if s < 0.1 => "less than 0.1 s".into(),
+        s if s < 100.0 => format!("about {} s", compact(s, 2)),
+        s if s < 6000.0 => format!("about {} min", compact(s / 60.0, 2)),
+        s => format!("about {} h", compact(s / 3600.0, 2)),
+    }
+}
+
+/// All experiments together.
+#[derive(Default)]
+struct Total {
+    simulated: usize,
+    restored: usize,
+    /// Experiments of which no time is known.
+    unknown: usize,
+    /// Processor time of the others, s.
+    seconds: f64,
+    /// The longest of them, s.
+    longest: f64,
+}
+
+impl Total {
+    fn add(&mut self, extent: &Extent, threads: usize) {
+        if extent.to_do == 0 {
+            self.restored += 1;
+            return;
+        }
+        self.simulated += 1;
+        self.unknown += usize::from(extent.seconds.is_none());
+        self.seconds += extent.seconds.unwrap_or(0.0);
+        self.longest = self.longest.max(wall(extent, threads).unwrap_or(0.0));
+    }
+
+    fn rest(&self) -> String {
+        if self.restored == 0 { String::new() } else { format!(", {} restored", self.restored) }
+    }
+
+    /// `None` if there is nothing to simulate, or nothing known of it.
+    fn time(&self, threads: usize) -> Option<String> {
+        if self.unknown == self.simulated {
+            return None;
+        }
+        let all = capitalised(&about((self.seconds / threads as f64).max(self.longest)));
+        Some(match self.unknown {
+            0 => all,
+            unknown => format!("{all}, and {unknown} experiments of which no time is known,"),
+        })
+    }
+}

@@ -1,0 +1,123 @@
+//! Rows that need not be simulated, because a table of before has them: only what a change touches is computed again, and
+//! going back to an earlier value computes nothing.
+//!
+//! Looked through are the experiment's table on disk, if it is still the one that its record speaks of, and the tables that
+//! it had before ([`super::earlier`]). A table that is not whole is as good as none. Rows of an optimisation hang
+//! together: of these a table counts as a whole or not at all.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::earlier;
+use super::job::jobs;
+use super::layout::{Layout, record_name, table_name};
+use super::plan::Item;
+use super::record::Record;
+use super::row_meaning::RowMeaning;
+use super::tabulate::Row;
+use super::untabulate::Cells;
+use crate::spec::Experiment;
+use crate::table::{RowFingerprint, Table, parquet};
+
+/// What is known of an experiment's rows.
+#[derive(Debug, Default)]
+pub struct KnownRows {
+    /// Of each table the rows that nothing before it has.
+    tables: Vec<Table>,
+    /// Table, and row in it.
+    places: BTreeMap<RowFingerprint, (usize, usize)>,
+    /// The table of the whole experiment.
+    whole: Option<Table>,
+}
+
+impl KnownRows {
+    /// Nothing: everything is simulated.
+    #[must_use]
+    pub fn nothing() -> Self {
+        Self::default()
+    }
+
+    /// Reads what there is of an experiment.
+    #[must_use]
+    pub fn of(layout: &Layout, item: &Item) -> Self {
+        let experiment = &item.source.experiment;
+        let mut known = Self::nothing();
+        let tables = on_disk(layout, item).into_iter().chain(earlier::tables(layout, &experiment.id));
+        if experiment.optimise.is_some() {
+            known.whole = tables.into_iter().find(|table| is_of(item, table));
+            return known;
+        }
+        // Which points a refined curve will get is not known before its rows are.
+        let mut wanted = experiment.refined.is_empty().then(|| fingerprints(item));
+        for table in tables {
+            known.take(experiment, &table, wanted.as_mut());
+            if wanted.as_ref().is_some_and(BTreeSet::is_empty) {
+                break;
+            }
+        }
+        known
+    }
+
+    /// Takes those rows that are wanted and new.
+    fn take(&mut self, experiment: &Experiment, table: &Table, mut wanted: Option<&mut BTreeSet<RowFingerprint>>) {
+        let Some(cells) = Cells::of(experiment, table) else { return };
+        let mut rows = Vec::new();
+        for (row, fingerprint) in table.fingerprints.iter().enumerate() {
+            let is_wanted = match &mut wanted {
+                Some(wanted) => wanted.contains(fingerprint),
+                None => !self.places.contains_key(fingerprint),
+            };
+            if is_wanted && cells.row(row).is_some() {
+                if let Some(wanted) = &mut wanted {
+                    wanted.remove(fingerprint);
+                }
+                self.places.insert(*fingerprint, (self.tables.len(), rows.len()));
+                rows.push(row);
+            }
+        }
+        if !rows.is_empty() {
+            self.tables.push(table.select(&rows));
+        }
+    }
+
+    /// The row of this fingerprint.
+    pub(super) fn row(&self, experiment: &Experiment, fingerprint: RowFingerprint) -> Option<Row> {
+        let (table, row) = *self.places.get(&fingerprint)?;
+        Cells::of(experiment, &self.tables[table])?.row(row)
+    }
+
+    /// True if there is a row of this fingerprint.
+    pub(super) fn has(&self, fingerprint: RowFingerprint) -> bool {
+        self.places.contains_key(&fingerprint)
+    }
+
+    /// True if no row is known.
+    pub(super) fn is_empty(&self) -> bool {
+        self.places.is_empty()
+    }
+
+    /// The whole table, of an experiment whose rows hang together.
+    pub(super) fn whole(&self) -> Option<&Table> {
+        self.whole.as_ref()
+    }
+}
+
+/// The table that is in force on disk.
+fn on_disk(layout: &Layout, item: &Item) -> Option<Table> {
+    let id = &item.source.experiment.id;
+    let path = layout.path(&table_name(id));
+    let record = Record::read(&layout.path(&record_name(id)), id).ok()?;
+    record.table.matches(&path).then(|| parquet::read(&path).ok()).flatten()
+}
+
+/// True if the table has the experiment's meaning of now, and a number in every row.
+fn is_of(item: &Item, table: &Table) -> bool {
+    table.metadata.get("fingerprint") == Some(&item.fingerprint)
+        && table.texts("failure").is_some_and(|cells| cells.iter().all(String::is_empty))
+}
+
+fn fingerprints(item: &Item) -> BTreeSet<RowFingerprint> {
+    let experiment = &item.source.experiment;
+    let meaning = RowMeaning::new(experiment);
+    let of = |job: &super::job::Job| meaning.of(&item.variants[job.variant], &experiment.cases[job.case], job);
+    jobs(experiment, &item.variants).iter().filter(|job| job.same_as.is_none()).map(of).collect()
+}

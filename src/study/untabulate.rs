@@ -1,0 +1,99 @@
+//! A table back to rows: what `tabulate` wrote, read to the same bits.
+
+use super::maximise::Place;
+use super::tabulate::Row;
+use crate::dynamics::Proof;
+use crate::measure::{Evaluated, Measured, TraceColumn};
+use crate::spec::Experiment;
+use crate::table::{Column, Data, Table};
+use crate::text::words;
+
+/// The columns of a table that the numbers of an experiment's rows stand in.
+pub(super) struct Cells<'a> {
+    /// Value, numerical error and spread of each measure.
+    measured: Vec<[&'a [f64]; 3]>,
+    /// The place of the maximum, and how far off it may be.
+    place: Option<[&'a [f64]; 2]>,
+    momentum_residual: &'a [f64],
+    energy_residual: &'a [f64],
+    smallest_margin: &'a [f64],
+    events: &'a [i64],
+    ties: &'a [i64],
+    chaotic: &'a [i64],
+    members: &'a [i64],
+    failure: &'a [String],
+    lists: Vec<(&'a Column, &'a [Vec<f64>])>,
+}
+
+impl<'a> Cells<'a> {
+    /// `None` if the table lacks one of them.
+    pub(super) fn of(experiment: &Experiment, table: &'a Table) -> Option<Self> {
+        let floats = |name: &str| match &table.column(name)?.data {
+            Data::Float(cells) => Some(cells.as_slice()),
+            _ => None,
+        };
+        let counts = |name: &str| match &table.column(name)?.data {
+            Data::Int(cells) => Some(cells.as_slice()),
+            _ => None,
+        };
+        let measured = experiment.measures.iter().map(|measure| {
+            let name = words::of_key(measure);
+            Some([floats(&name)?, floats(&format!("{name}_num"))?, floats(&format!("{name}_spread"))?])
+        });
+        let place = experiment.maximise.as_ref().map(|maximise| {
+            let name = format!("{}_at_maximum", words::of_key(&maximise.over));
+            Some([floats(&name)?, floats(&format!("{name}_num"))?])
+        });
+        let lists = table.columns.iter().filter_map(|column| match &column.data {
+            Data::FloatList(cells) => Some((column, cells.as_slice())),
+            _ => None,
+        });
+        Some(Self {
+            measured: measured.collect::<Option<_>>()?,
+            // Wanted and absent is not the same as not wanted.
+            place: match place {
+                Some(place) => Some(place?),
+                None => None,
+            },
+            momentum_residual: floats("momentum_residual")?,
+            energy_residual: floats("energy_residual")?,
+            smallest_margin: floats("smallest_margin")?,
+            events: counts("events")?,
+            ties: counts("ties")?,
+            chaotic: counts("chaotic")?,
+            members: counts("members")?,
+            failure: table.texts("failure")?,
+            lists: lists.collect(),
+        })
+    }
+
+    /// The row, unless it has no numbers.
+    pub(super) fn row(&self, row: usize) -> Option<Row> {
+        if !self.failure.get(row)?.is_empty() {
+            return None;
+        }
+        let measured = self.measured.iter().map(|[value, numerical, spread]| Measured {
+            value: value[row],
+            numerical: numerical[row],
+            spread: spread[row],
+        });
+        let proof = Proof {
+            momentum_residual: self.momentum_residual[row],
+            energy_residual: self.energy_residual[row],
+            events: u64::try_from(self.events[row]).ok()?,
+            smallest_margin: self.smallest_margin[row],
+            ties: u64::try_from(self.ties[row]).ok()?,
+        };
+        let kept = self.lists.iter().filter(|(_, cells)| !cells[row].is_empty());
+        let evaluated = Evaluated {
+            measured: measured.collect(),
+            proof,
+            chaotic: self.chaotic[row] != 0,
+            members: u32::try_from(self.members[row]).ok()?,
+            trace: kept
+                .map(|(column, cells)| TraceColumn::new(column.name.clone(), column.unit.clone(), cells[row].clone()))
+                .collect(),
+        };
+        Some(Row { evaluated, place: self.place.map(|[at, within]| Place { at: at[row], within: within[row] }) })
+    }
+}
