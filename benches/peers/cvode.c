@@ -263,7 +263,7 @@ static void answer(struct problem *s, const char *path, int lmm, double rtol, in
         failure = run(s, solver, at, &rms);
         times[count++] = now() - begin;
     }
-    printf("{\"file\": \"%s\", \"solver\": \"%s\", \"setting\": \"CVODE %s in C, rtol %.0e\", ", path, method, method, rtol);
+    printf("{\"file\": \"%s\", \"solver\": \"%s\", \"setting\": \"CVODE %s, rtol %.0e\", ", path, method, method, rtol);
     if (failure) {
         printf("\"failure\": \"%s\"}\n", failure);
     } else {

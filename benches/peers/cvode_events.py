@@ -46,5 +46,5 @@ if __name__ == "__main__":
         ["Adams", "BDF"],
         [1e-4, 1e-6, 1e-9, 1e-12],
         lambda scene, method, rtol: run(scene, segment(method, rtol)),
-        lambda method, rtol: f"CVODE {method} from Python, rtol {rtol:.0e}",
+        lambda method, rtol: f"scikit-sundae {method}, rtol {rtol:.0e}",
     )

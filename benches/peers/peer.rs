@@ -62,10 +62,10 @@ impl Peer {
         let of = |name, program, reads| Self { name, program, reads };
         std::fs::create_dir_all(scratch).expect("target can be written");
         vec![
-            of("CVODE in C", in_c(&scripts, scratch), "txt"),
+            of("CVODE", in_c(&scripts, scratch), "txt"),
             of("diffsol", in_rust(&scripts, scratch), "json"),
             of("SciPy", script("scipy_events.py"), "json"),
-            of("CVODE from Python", script("cvode_events.py"), "json"),
+            of("scikit-sundae", script("cvode_events.py"), "json"),
             of("numba", script("numba_fixed.py"), "json"),
         ]
     }

@@ -124,13 +124,12 @@ pub fn picture(scene: &str, answers: &[Priced]) -> Vec<u8> {
             texts("case", &|answer| answer.method.clone()),
             floats("time", "s", &|found| found.median),
             floats("error", "", &|found| found.error.max(LEAST)),
-            floats("event_error", "", &|found| found.event_error.max(LEAST)),
         ],
         metadata: BTreeMap::new(),
     };
     let times = found.iter().map(|(_, found)| found.median);
     let times = times.fold([f64::INFINITY, 0.0], |[low, high], time: f64| [time.min(low), time.max(high)]);
-    draw(&common::experiment(scene), &work_precision(times, None, true), &table, &[])
+    draw(&common::experiment(scene), &work_precision(times, None, false), &table, &[])
         .expect("there is something to draw")
 }
 
