@@ -3,33 +3,22 @@
 //! Each number is the least of many runs in one process, since other programs only add to it; the median stands beside it.
 //! A run that has visited its contact states before finds them built, so a first run in a new thread is timed apart.
 
+mod common;
+
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
 use std::path::Path;
 use std::time::Instant;
 
+use common::{BEAM, SINGLE, experiment, system};
 use shotdamp::dynamics::{Contact, EventKind, HybridSystem, Options, Response, event_driven};
 use shotdamp::figure::draw;
-use shotdamp::scene::{Assumptions, compile};
-use shotdamp::spec::{Axis, AxisScale, Drawing, Experiment, FigureSpec, Panel, load_assumptions, parse_experiment};
+use shotdamp::spec::{Axis, AxisScale, Drawing, FigureSpec, Panel};
+use shotdamp::study::Machine;
 use shotdamp::table::{BASELINE, Column, Data, Table};
 
-/// The scene of reference: 490 events, not chaotic; its RMS velocity from arithmetic of 128 bits.
-const REFERENCE_SCENE: &str = "structure: {single_mass: {mass: 1 kg, stiffness: 1000 N/m, damping_ratio: 0.05}}
-  dampers: [{mass_ratio: 0.05, gap_ratio: 50, floor: {resilient: {stiffness_ratio: 1, damping_ratio: 0.3}}}]
-  excitation: {impulse_train: {impulse: 2.171536069237626 N s, frequency_ratio: 1}}";
+/// The RMS velocity of the scene of reference from arithmetic of 128 bits.
 const REFERENCE_RMS: f64 = 2.044_410_542_971_8;
-
-/// Four dampers at the free end of a beam.
-const BEAM: &str = "structure: {cantilever_beam: {length: 1 m, width: 30 mm, thickness: 5 mm, youngs_modulus: 200 GPa, density: 7800 kg/m^3, rayleigh: 5e-5, basis: exact, modes: MODES}}
-  dampers:
-    - at: 0.96
-      mass_ratio: 0.1
-      particle_share: 0.5
-      gap: 42 mm
-      floor: {resilient: {stiffness: assumed, damping_ratio: 0.1}}
-      array: {count: 4, spacing: -4 cm}
-  excitation: {impulse_train: {at: 1, impulse: 0.244 N s, frequency_ratio: 1}}";
 
 /// Nine dampers about the centre of a plate of sixteen modes.
 const PLATE: &str = "structure: {supported_plate: {length: 1.3333333333333333 m, width: 1 m, thickness: 7.91 mm, youngs_modulus: 68.9 GPa, poisson_ratio: 0.33, density: 2700 kg/m^3, rayleigh: 5e-5, modes: [4, 4]}}
@@ -51,13 +40,14 @@ fn main() {
          run of 125 forcing cycles on one thread, the least and the median of many. On a machine with other work the least is \
          the one to compare.\n\n",
     );
-    let _ = writeln!(page, "Processor: {}, portable build ({}).\n", processor(), std::env::consts::ARCH);
+    let _ = writeln!(page, "Processor: {}, portable build ({}).\n", Machine::here().processor, std::env::consts::ARCH);
     page += "| Scene | Degrees of freedom | Events | Least | Median | An event | A contact state's first visit |\n";
     page += "| --- | ---: | ---: | ---: | ---: | ---: | ---: |\n";
-    let reference = Cost::of(&system(REFERENCE_SCENE));
+    let single = SINGLE.replace("PERIOD", "frequency_ratio: 1");
+    let reference = Cost::of(&system(&single));
     page += &reference.row("One mass, one damper");
-    let curve: Vec<(u32, Cost)> =
-        MODES.into_iter().map(|modes| (modes, Cost::of(&system(&BEAM.replace("MODES", &modes.to_string()))))).collect();
+    let beam = |modes: u32| BEAM.replace("MODES", &modes.to_string()).replace("DAMPING", "0.1");
+    let curve: Vec<(u32, Cost)> = MODES.into_iter().map(|modes| (modes, Cost::of(&system(&beam(modes))))).collect();
     for (modes, cost) in &curve {
         page += &cost.row(&format!("Beam, {modes} modes, 4 dampers"));
     }
@@ -69,8 +59,8 @@ fn main() {
          ![Cost against modes](speed.png)\n\nCost on the beam against the number of modes, with four dampers."
     );
     let reports = Path::new(env!("CARGO_MANIFEST_DIR")).join("reports");
-    let picture = draw(&experiment(REFERENCE_SCENE), &figure(), &table(&curve), &[])
-        .expect("the table has what the figure names");
+    let picture =
+        draw(&experiment(&single), &figure(), &table(&curve), &[]).expect("the table has what the figure names");
     std::fs::write(reports.join("speed.png"), picture).expect("the folder of reports can be written");
     std::fs::write(reports.join("speed.md"), &page).expect("the folder of reports can be written");
     print!("{page}");
@@ -158,31 +148,6 @@ fn visited(system: &HybridSystem, response: &Response) -> usize {
         states.insert(now.clone());
     }
     states.len()
-}
-
-fn assumptions() -> Assumptions {
-    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("experiments/assumptions.yaml");
-    load_assumptions(&file).unwrap_or_else(|problems| panic!("{problems}")).assumptions()
-}
-
-fn experiment(scene: &str) -> Experiment {
-    let text = format!(
-        "title: Speed\nsource: {{chapter: 3, section: '3.1'}}\nabout: Cost.\nscene:\n  {scene}\nmeasure: [rms_velocity]\n\
-         figure: {{x: momentum_residual, y: energy_residual, caption: Cost.}}\n"
-    );
-    let id = "speed".parse().expect("an id");
-    parse_experiment(&id, "speed.yaml", &text, &assumptions()).unwrap_or_else(|problems| panic!("{problems}"))
-}
-
-fn system(scene: &str) -> HybridSystem {
-    let scene = experiment(scene).recipe.resolve(&assumptions()).expect("the scenes above resolve");
-    compile(&scene).expect("the scenes above compile")
-}
-
-fn processor() -> String {
-    let known = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
-    let name = known.lines().find_map(|line| line.strip_prefix("model name")?.split_once(':'));
-    name.map_or_else(|| "unknown".into(), |(_, name)| name.trim().into())
 }
 
 fn figure() -> FigureSpec {

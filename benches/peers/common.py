@@ -97,7 +97,7 @@ class Scene:
 
 
 def run(scene, segment):
-    """From impulse to impulse and event to event; `segment` goes to the first event or to the end: (t, z, guard or None)."""
+    """From impulse to impulse and event to event; `segment` goes to the first event or to the end: (t, z, whether it is one)."""
     z, events = scene.start.copy(), []
     contacts = [FLOOR] * scene.p
     for cycle in range(scene.cycles):
@@ -105,31 +105,57 @@ def run(scene, segment):
         t, last = 0.0, 0
         while t < scene.period:
             before = t
-            slope = scene.slope(contacts, cycle >= scene.skip)
-            t, z, guard = segment(slope, scene.guards(contacts), t, scene.period, z)
-            if guard is not None:
-                _, _, _, j, contact, word = guard
-                contacts[j] = contact
-                events.append([cycle * scene.period + t, j, word])
+            slope, guards = scene.slope(contacts, cycle >= scene.skip), scene.guards(contacts)
+            t, z, is_event = segment(slope, guards, t, scene.period, z)
+            if is_event:
+                for j, contact, word in met(guards, slope(t, z), z):
+                    contacts[j] = contact
+                    events.append([cycle * scene.period + t, j, word])
             last = last + 1 if t == before else 0
             if last > 64:
                 raise RuntimeError(f"no progress in cycle {cycle} at {t} s")
     return scene.rms(z), events
 
 
-def answer(setting, once, patience=0.7):
-    """Prints one line of JSON: result, events, times of repeated runs."""
+def met(guards, slope, z):
+    """The surface that is nearest in time, of those that are approached from the right side; with it all that lie behind already."""
+    nearest, behind = None, []
+    for row, offset, direction, *then in guards:
+        speed, off = direction * (row @ slope), direction * (row @ z - offset)
+        if speed <= 0.0:
+            continue
+        if nearest is None or abs(off) < nearest[0] * speed:
+            nearest = (abs(off) / speed, then)
+        if off > 0.0:
+            behind.append(then)
+    if nearest is None:
+        raise RuntimeError("an event without a surface")
+    return [nearest[1]] + [then for then in behind if then is not nearest[1]]
+
+
+def answers(methods, settings, once, word, prepare=lambda scene: None):
+    """Prints a line of JSON an answer. A scene is run in all settings, repeatedly; after `--tightest` once, in the last of them."""
+    tightest = sys.argv[1] == "--tightest"
+    for path in sys.argv[2 if tightest else 1 :]:
+        scene = Scene(path)
+        prepare(scene)
+        for method in methods:
+            for setting in settings[-1:] if tightest else settings:
+                told = {"file": path, "solver": method, "setting": word(method, setting)}
+                print(json.dumps(told | answer(lambda: once(scene, method, setting), tightest)), flush=True)
+
+
+def answer(once, untimed, patience=0.7):
+    """Result, events, times of repeated runs."""
     try:
         times, begun = [], time.perf_counter()
         # A slow run is its own median.
-        while not times or (times[0] < patience and len(times) < 200 and time.perf_counter() - begun < 3.0 * patience):
+        while not times or (
+            not untimed and times[0] < patience and len(times) < 200 and time.perf_counter() - begun < 3.0 * patience
+        ):
             begin = time.perf_counter()
             rms, events = once()
             times.append(time.perf_counter() - begin)
-        print(json.dumps({"setting": setting, "rms": rms, "events": events, "times": times}), flush=True)
+        return {"rms": rms, "events": events, "times": times}
     except Exception as error:  # A peer that fails is a result too.
-        print(json.dumps({"setting": setting, "failure": f"{type(error).__name__}: {error}"}), flush=True)
-
-
-def scene():
-    return Scene(sys.argv[1])
+        return {"failure": f"{type(error).__name__}: {error}"}

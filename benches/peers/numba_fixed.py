@@ -3,7 +3,7 @@
 import numba
 import numpy as np
 
-from common import CEILING, FLIGHT, FLOOR, answer, scene
+from common import CEILING, FLIGHT, FLOOR, answers
 
 WORDS = {
     (FLIGHT, FLOOR): "floor_contact",
@@ -76,7 +76,8 @@ def go(z, stiffness, damping, rows, answers, masses, gaps, laws, gravity, jump, 
     return total, count
 
 
-def once(problem, steps):
+def once(problem, step):
+    steps = max(1, round(problem.period / step))
     masses = np.array([particle["mass"] for particle in problem.particles])
     gaps = np.array([particle["gap"] for particle in problem.particles])
     laws = np.array(
@@ -93,8 +94,10 @@ def once(problem, steps):
 
 
 if __name__ == "__main__":
-    problem = scene()
-    once(problem, 10)  # Compiles.
-    for step in [1e-3, 1e-4, 1e-5, 1e-6]:
-        steps = max(1, round(problem.period / step))
-        answer(f"numba RK4, step {step:.0e} s", lambda: once(problem, steps))
+    answers(
+        ["RK4"],
+        [1e-3, 1e-4, 1e-5, 1e-6],
+        lambda problem, _, step: once(problem, step),
+        lambda method, step: f"numba {method}, step {step:.0e} s",
+        prepare=lambda problem: once(problem, problem.period),  # Compiles.
+    )

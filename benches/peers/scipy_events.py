@@ -2,10 +2,10 @@
 
 from scipy.integrate import solve_ivp
 
-from common import answer, run, scene
+from common import answers, run
 
 
-def segment(method, rtol, scale):
+def segment(method, rtol):
     def go(slope, guards, t, until, z):
         events = []
         for row, offset, direction, *_ in guards:
@@ -14,18 +14,19 @@ def segment(method, rtol, scale):
 
             event.terminal, event.direction = True, direction
             events.append(event)
-        solved = solve_ivp(slope, (t, until), z, method=method, rtol=rtol, atol=rtol * scale, events=events)
+        solved = solve_ivp(slope, (t, until), z, method=method, rtol=rtol, atol=1e-2 * rtol, events=events)
         if not solved.success:
             raise RuntimeError(solved.message)
-        hit = next((i for i, times in enumerate(solved.t_events) if len(times)), None)
-        end = until if hit is None else solved.t[-1]
-        return end, solved.y[:, -1].copy(), None if hit is None else guards[hit]
+        is_event = solved.status == 1
+        return solved.t[-1] if is_event else until, solved.y[:, -1].copy(), is_event
 
     return go
 
 
 if __name__ == "__main__":
-    problem = scene()
-    for method in ["DOP853", "LSODA"]:
-        for rtol in [1e-4, 1e-6, 1e-9, 1e-12]:
-            answer(f"SciPy {method}, rtol {rtol:.0e}", lambda: run(problem, segment(method, rtol, 1e-2)))
+    answers(
+        ["DOP853", "LSODA"],
+        [1e-4, 1e-6, 1e-9, 1e-12],
+        lambda scene, method, rtol: run(scene, segment(method, rtol)),
+        lambda method, rtol: f"SciPy {method}, rtol {rtol:.0e}",
+    )

@@ -2,13 +2,15 @@
 
 use std::time::Duration;
 
+use rayon::prelude::*;
+
 use super::args::{AccuracyArgs, Choice};
 use super::error::CliError;
 use super::exit::Exit;
 use super::output::{complain, complain_of, print};
 use super::select::{choose, open};
-use crate::publish::{publish_accuracy, publish_accuracy_summary};
-use crate::study::{Layout, accuracy};
+use crate::publish::{judge_all, publish_accuracy, publish_accuracy_summary};
+use crate::study::{Layout, errors};
 
 /// Error against time of the chosen experiments; of all of them, and of what was measured before, the summary.
 pub(super) fn measure(layout: &Layout, args: &AccuracyArgs) -> Result<Exit, CliError> {
@@ -22,11 +24,16 @@ pub(super) fn measure(layout: &Layout, args: &AccuracyArgs) -> Result<Exit, CliE
     let assumptions = opened.sheet.assumptions();
     let longest = Duration::try_from_secs_f64(args.longest).unwrap_or(Duration::MAX / 32);
     let mut exit = if chosen.unread.is_empty() { Exit::AsExpected } else { Exit::CouldNot };
-    for item in &chosen.items {
+    let judgement = judge_all(&opened);
+    // Errors side by side, times one after the other with nothing beside them.
+    let prepared: Vec<_> =
+        chosen.items.par_iter().map(|item| errors(&item.source.experiment, &assumptions, longest)).collect();
+    for (item, errors) in chosen.items.iter().zip(prepared) {
         let experiment = &item.source.experiment;
-        match accuracy(experiment, &assumptions, longest) {
-            Ok(accuracy) => {
-                let page = publish_accuracy(layout, experiment, accuracy)?;
+        match errors {
+            Ok(errors) => {
+                let judged = judgement.verdicts.get(&experiment.id.0).map_or(&[][..], Vec::as_slice);
+                let page = publish_accuracy(layout, experiment, errors.timed(), judged)?;
                 print(&if args.all { format!("{}\n", experiment.id) } else { page })?;
             }
             // An experiment without a run has no price.

@@ -6,9 +6,10 @@ use std::fs;
 
 use crate::atomic::{self, FileError};
 use crate::figure::{draw, work_precision};
-use crate::report::{AccuracyView, accuracy_page, accuracy_summary};
+use crate::reference::Judged;
+use crate::report::{AccuracyView, VerdictPrice, accuracy_page, accuracy_summary};
 use crate::spec::{Experiment, SolverChoice};
-use crate::study::{Accuracy, Contender, Layout, Machine};
+use crate::study::{Accuracy, Contender, Layout, Machine, runs_of_a_row};
 use crate::table::{BASELINE, Column, Data, Table};
 
 /// Smallest error that a logarithmic axis shows: what is exact to the last digit stands here.
@@ -17,11 +18,16 @@ const LEAST: f64 = 1e-16;
 /// Where measurements wait for the summary, within the study.
 const MEASURED: &str = "results/accuracy";
 
-/// Writes the page and the picture of one experiment, and keeps what was measured for the summary; returns the page.
+/// Writes the page and the picture of one experiment, with what its verdicts cost, and keeps what was measured for the summary; returns the page.
 ///
 /// # Errors
 /// [`FileError`] if a file cannot be written.
-pub fn publish_accuracy(layout: &Layout, experiment: &Experiment, accuracy: Accuracy) -> Result<String, FileError> {
+pub fn publish_accuracy(
+    layout: &Layout,
+    experiment: &Experiment,
+    accuracy: Accuracy,
+    judged: &[Judged],
+) -> Result<String, FileError> {
     let id = experiment.id.to_string();
     let table = table(&accuracy);
     let floors: Vec<f64> = accuracy.cases.iter().filter_map(|case| case.floor).collect();
@@ -33,7 +39,14 @@ pub fn publish_accuracy(layout: &Layout, experiment: &Experiment, accuracy: Accu
     if let Ok(picture) = draw(experiment, &work_precision(times, floor, events), &table, &[]) {
         atomic::write_if_changed(&layout.path(&format!("reports/accuracy/{id}.png")), &picture)?;
     }
-    let view = AccuracyView { id: id.clone(), title: experiment.title.clone(), machine: Machine::here(), accuracy };
+    let factor = runs_of_a_row(experiment);
+    let view = AccuracyView {
+        id: id.clone(),
+        title: experiment.title.clone(),
+        machine: Machine::here(),
+        accuracy,
+        entries: judged.iter().map(|one| VerdictPrice::of(one, factor)).collect(),
+    };
     let page = accuracy_page(&view, &format!("{id}.png"));
     atomic::write(&layout.path(&format!("reports/accuracy/{id}.md")), page.as_bytes())?;
     let kept = serde_json::to_vec(&view).unwrap_or_default();

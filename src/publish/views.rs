@@ -7,7 +7,8 @@ use super::opened::{Opened, Unread};
 use super::verdicts::Judgement;
 use crate::reference::Judged;
 use crate::report::{
-    self, AssumptionView, CheckView, CheckedEntry, ExperimentView, FigureView, PageView, Trouble, value_in_words,
+    self, AccuracyLinks, AssumptionView, CheckView, CheckedEntry, ExperimentView, FigureView, PageView, Trouble,
+    value_in_words,
 };
 use crate::scene::{Assumption, Scene, effects};
 use crate::spec::{Experiment, FigureSpec};
@@ -15,10 +16,11 @@ use crate::study::{Item, table_name};
 use crate::text::words;
 
 /// Measured times stand on pages of their own, which benchmarks and other commands write.
-const MEASURED: [(&str, &str); 4] = [
+const MEASURED: [(&str, &str); 5] = [
     ("Speed", "speed.md"),
     ("What accuracy costs", "accuracy.md"),
     ("Peers", "accuracy/peers.md"),
+    ("Peers on hard sequences of events", "accuracy/peers-events.md"),
     ("Hard cases", "hard-cases.md"),
 ];
 
@@ -27,9 +29,6 @@ pub(super) fn page(opened: &Opened, judgement: &Judgement, item: &Item) -> Strin
     let experiment = &item.source.experiment;
     let used = experiment.assumptions_used(&opened.sheet);
     let up = to_reports(item);
-    let accuracy = format!("accuracy/{}.md", experiment.id);
-    let is_measured = opened.layout.path(&format!("reports/{accuracy}")).exists();
-    let accuracy = format!("{up}{accuracy}");
     report::page(&PageView {
         experiment,
         table: judgement.tables.get(&experiment.id.0),
@@ -38,9 +37,18 @@ pub(super) fn page(opened: &Opened, judgement: &Judgement, item: &Item) -> Strin
         effects: &effects(&scenes(opened, experiment)),
         figures: &figures(experiment, ""),
         table_link: &format!("{up}../{}", table_name(&experiment.id)),
-        accuracy_link: is_measured.then_some(accuracy.as_str()),
+        accuracy: accuracy(opened, item, &up),
         index_link: &format!("{up}README.md"),
     })
+}
+
+/// Links to what was measured, where it is there.
+fn accuracy(opened: &Opened, item: &Item, up: &str) -> Option<AccuracyLinks> {
+    let link = |ending: &str| {
+        let name = format!("accuracy/{}.{ending}", item.source.experiment.id);
+        opened.layout.path(&format!("reports/{name}")).exists().then(|| format!("{up}{name}"))
+    };
+    Some(AccuracyLinks { page: link("md")?, picture: link("png") })
 }
 
 /// The index of all pages.

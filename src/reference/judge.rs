@@ -13,6 +13,7 @@ use super::entry::{Check, Entry, ReferenceFile, Tolerance, ToleranceSize};
 use super::extract::Extracted;
 use super::extraction::Extraction;
 use super::fit::Fit;
+use super::price::Price;
 use super::printed::Printed;
 use super::resonance::PrintedPeak;
 use super::tally::{Decision, Outcome};
@@ -24,8 +25,12 @@ use crate::table::BASELINE;
 /// Gives every entry of a file its verdict. `fitted` holds the ids of the entries that an assumption was fitted to.
 #[must_use]
 pub fn judge(file: &ReferenceFile, tables: &Tables<'_>, fitted: &BTreeSet<String>) -> Vec<Judged> {
-    let reads = Reads::default();
-    file.entries.iter().map(|entry| judge_entry(entry, &file.experiment, tables, fitted, &reads)).collect()
+    let priced = |entry: &Entry| {
+        let reads = Reads::default();
+        let judged = judge_entry(entry, &file.experiment, tables, fitted, &reads);
+        Judged { price: Price::of(&reads, tables), ..judged }
+    };
+    file.entries.iter().map(priced).collect()
 }
 
 /// One entry; `reads` gathers the cells that decided it.
@@ -94,6 +99,7 @@ pub(crate) fn judge_entry(
         tolerance_reason,
         robust: judgement.robust,
         moved: judgement.moved,
+        price: Price::default(),
     }
 }
 

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::fit::Fit;
+use super::price::Price;
 
 /// What became of an entry.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
@@ -123,6 +124,8 @@ pub struct Judged {
     pub robust: Option<(u32, u32)>,
     /// What each of them gives.
     pub moved: Vec<Moved>,
+    /// What was simulated for it.
+    pub price: Price,
 }
 
 /// An entry with one assumption moved.

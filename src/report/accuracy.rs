@@ -6,6 +6,7 @@ use crate::text::number::{quantity, significant};
 use crate::text::words;
 
 use super::markdown::{Align, MarkdownTable, counted, one_line};
+use super::verdict_price::{self, VerdictPrice};
 
 /// Errors that somebody may want to reach.
 const GOALS: [(f64, &str); 3] = [(1e-2, "1 %"), (1e-4, "1e-4"), (1e-8, "1e-8")];
@@ -23,6 +24,8 @@ pub struct AccuracyView {
     pub machine: Machine,
     /// What was measured.
     pub accuracy: Accuracy,
+    /// The verdicts on it.
+    pub entries: Vec<VerdictPrice>,
 }
 
 /// The page of one experiment, `picture` beside it.
@@ -35,6 +38,7 @@ pub fn accuracy_page(view: &AccuracyView, picture: &str) -> String {
         told(&view.machine)
     );
     text += &format!("![Error against wall time]({picture})\n\n");
+    text += &verdict_price::section(&view.entries, &view.accuracy);
     for (number, case) in view.accuracy.cases.iter().enumerate() {
         text += &section(number + 1, case);
     }
@@ -121,7 +125,7 @@ fn error(value: f64) -> String {
     if value < f64::EPSILON { "< 2e-16".into() } else { format!("{value:.0e}") }
 }
 
-fn seconds(value: f64) -> String {
+pub(super) fn seconds(value: f64) -> String {
     quantity(value, "s", 3)
 }
 
@@ -172,15 +176,7 @@ fn row(view: &AccuracyView) -> Vec<String> {
     let exact = over(&regular, Contender::EventDriven { window_factor: 1.0 });
     cells.push(exact.map_or_else(String::new, |of| error(of.error)));
     cells.push(exact.map_or_else(String::new, |of| seconds(of.time)));
-    let mut steps: Vec<(f64, Over)> = Vec::new();
-    for point in regular.iter().flat_map(|case| &case.points) {
-        if let Contender::FixedStep { time_step } = point.contender
-            && steps.iter().all(|(known, _)| *known != time_step)
-            && let Some(of) = over(&regular, point.contender)
-        {
-            steps.push((time_step, of));
-        }
-    }
+    let steps = fixed_steps(&regular);
     for (goal, _) in GOALS {
         let cheapest = steps.iter().filter(|(_, of)| of.error <= goal).min_by(|a, b| a.1.time.total_cmp(&b.1.time));
         cells.push(match cheapest {
@@ -195,11 +191,25 @@ fn row(view: &AccuracyView) -> Vec<String> {
     cells
 }
 
+/// Every fixed step that all of these cases were run with, s.
+pub(super) fn fixed_steps(cases: &[&CaseAccuracy]) -> Vec<(f64, Over)> {
+    let mut steps: Vec<(f64, Over)> = Vec::new();
+    for point in cases.iter().flat_map(|case| &case.points) {
+        if let Contender::FixedStep { time_step } = point.contender
+            && steps.iter().all(|(known, _)| *known != time_step)
+            && let Some(of) = over(cases, point.contender)
+        {
+            steps.push((time_step, of));
+        }
+    }
+    steps
+}
+
 /// The worst error of a contender over cases, and its time over all of them.
 #[derive(Debug, Clone, Copy)]
-struct Over {
-    error: f64,
-    time: f64,
+pub(super) struct Over {
+    pub error: f64,
+    pub time: f64,
 }
 
 fn over(cases: &[&CaseAccuracy], contender: Contender) -> Option<Over> {

@@ -1,9 +1,9 @@
 //! What the study says beside what came out.
 
-use crate::reference::{Comparison, Judged, Moved, Verdict};
+use crate::reference::{Comparison, Judged, Moved, Price, Verdict};
 use crate::text::number::{compact, signed, significant};
 
-use super::markdown::{Align, MarkdownTable, one_line};
+use super::markdown::{Align, MarkdownTable, counted, one_line};
 use super::tally::{Tally, shown};
 
 /// The section on an experiment's page.
@@ -35,19 +35,36 @@ fn entries(judged: &[Judged]) -> String {
         ("Where", Align::Left),
         ("What came out", Align::Left),
         ("Verdict", Align::Left),
+        ("Rests on", Align::Right),
     ];
     if moved {
         header.push(("Same verdict with one assumption moved", Align::Right));
     }
     let mut table = MarkdownTable::new(&header);
     for one in judged {
-        let mut row = vec![entry(one), one.statement.clone(), one.place.clone(), one.found.clone(), shown(one)];
+        let mut row = vec![
+            entry(one),
+            one.statement.clone(),
+            one.place.clone(),
+            one.found.clone(),
+            shown(one),
+            rests_on(one.price),
+        ];
         if moved {
             row.push(one.robust.map_or_else(String::new, |(kept, run)| format!("{kept} of {run} runs")));
         }
         table.row(row);
     }
     table.finish()
+}
+
+/// `124 runs, 30120 events`; nothing where nothing was run.
+pub(super) fn rests_on(price: Price) -> String {
+    let Price { runs, events, .. } = price;
+    match price.rows {
+        0 => String::new(),
+        _ => format!("{}, {}", counted(runs as usize, "run", "runs"), counted(events as usize, "event", "events")),
+    }
 }
 
 /// The numbers with their uncertainties.

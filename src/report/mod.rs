@@ -25,6 +25,7 @@ mod page;
 mod proof;
 mod run;
 mod tally;
+mod verdict_price;
 mod view;
 
 pub use ablation::ablation;
@@ -41,4 +42,5 @@ pub use json::{Number, Standing, json, read_json};
 pub use junit::junit;
 pub use movement::{Moved, Movement, between_tables, between_verdicts, standing};
 pub use page::page;
-pub use view::{AssumptionView, ExperimentView, FigureView, PageView};
+pub use verdict_price::VerdictPrice;
+pub use view::{AccuracyLinks, AssumptionView, ExperimentView, FigureView, PageView};

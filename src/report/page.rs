@@ -3,7 +3,7 @@
 use crate::spec::Source;
 
 use super::markdown::one_line;
-use super::view::{FigureView, PageView};
+use super::view::{AccuracyLinks, FigureView, PageView};
 use super::{assumption, candidate, comparison, proof, run};
 
 /// The page of an experiment, Markdown.
@@ -34,15 +34,22 @@ pub fn page(view: &PageView<'_>) -> String {
         Some(table) => text += &proof::section(table),
         None => text += "## What proves the runs\n\nThere is no result: the experiment has not been run.\n\n",
     }
+    text += &view.accuracy.as_ref().map_or_else(String::new, accuracy);
     text += &run::section(experiment);
-    if let Some(link) = view.accuracy_link {
-        text += &format!(
-            "[What its accuracy costs]({link}): error against time, of both solvers, on some of these cases. "
-        );
-    }
     text +=
         &format!("All numbers: [the table as Parquet]({}). [All experiments]({}).\n", view.table_link, view.index_link);
     text
+}
+
+/// Times differ from run to run, so that they stand on a page of their own.
+fn accuracy(links: &AccuracyLinks) -> String {
+    let picture =
+        links.picture.as_ref().map_or_else(String::new, |link| format!("![Error against wall time]({link})\n\n"));
+    format!(
+        "## What accuracy costs\n\n{picture}Error against time of both solvers, on some of these cases: [all points, and what each \
+         verdict cost]({}).\n\n",
+        links.page
+    )
 }
 
 fn figure(figure: &FigureView) -> String {

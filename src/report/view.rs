@@ -29,6 +29,15 @@ pub struct FigureView {
     pub caption: String,
 }
 
+/// The measured page of what accuracy costs, and its diagram, as links.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct AccuracyLinks {
+    /// Relative to the text that shows them.
+    pub page: String,
+    /// `None` where there was no error to draw.
+    pub picture: Option<String>,
+}
+
 /// One experiment with its verdicts, for the index and the console.
 #[derive(Debug, Clone)]
 pub struct ExperimentView<'a> {
@@ -59,8 +68,8 @@ pub struct PageView<'a> {
     pub figures: &'a [FigureView],
     /// Its table as a file, relative to the page.
     pub table_link: &'a str,
-    /// The page of what its accuracy costs, relative to the page, if there is one.
-    pub accuracy_link: Option<&'a str>,
+    /// What its accuracy costs, if it was measured.
+    pub accuracy: Option<AccuracyLinks>,
     /// The index, relative to the page.
     pub index_link: &'a str,
 }

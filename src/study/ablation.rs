@@ -2,7 +2,8 @@
 
 use std::time::Duration;
 
-use super::accuracy::{NoAccuracy, is_chaotic, representative, worst};
+use super::accuracy::NoAccuracy;
+use super::representative::{is_chaotic, representative, worst};
 use super::timing::Times;
 use crate::dynamics::{EngineError, HybridSystem, Method, Options, Response, event_driven, is_linear};
 use crate::measure::{Measure, Trial};
@@ -121,7 +122,7 @@ fn case(
     let switched = used.iter().map(|of| Switched { effect: of.name, in_force: of.in_force > 0, outcome: outcome(of) });
     Ok(Ablation {
         told,
-        chaotic: is_chaotic(&trial, &own)?,
+        chaotic: is_chaotic(&trial, &own, &bare)?,
         closed_form,
         events: own.proof.events,
         times: base.times(&trial.system),

@@ -5,15 +5,16 @@
 
 use std::time::{Duration, Instant};
 
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
+use super::representative::{floor, representative, worst};
 use super::timing::Times;
 use crate::dynamics::{EngineError, Event, HybridSystem, Method, Options, Response, event_driven, fixed_step};
 use crate::measure::{EvaluateError, Measure, Trial};
 use crate::precise::{PreciseError, precise};
-use crate::scene::{Assumptions, ParameterValue, Recipe};
-use crate::spec::{Case, Experiment, SolverChoice};
-use crate::text::words;
+use crate::scene::Assumptions;
+use crate::spec::Experiment;
 
 /// Search windows that the event-driven solver is tried with.
 const WINDOWS: [f64; 3] = [1.0, 0.5, 0.25];
@@ -21,15 +22,8 @@ const WINDOWS: [f64; 3] = [1.0, 0.5, 0.25];
 const STAND_IN: f64 = 0.37;
 /// Steps that the fixed-step solver is tried with, s.
 const STEPS: [f64; 9] = [1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 3e-5, 1e-5, 3e-6, 1e-6];
-/// Cases of an experiment.
-const CASES: usize = 3;
 /// Events whose times are compared.
 const EVENTS: usize = 4000;
-/// Kick that tells chaos from order, and how far it may have grown.
-const TWIN: [f64; 2] = [1e-9, 1e-6];
-/// Perturbed starts, and the largest kick, that the floor of a chaotic case is taken from.
-const MEMBERS: u32 = 8;
-const KICK: f64 = 1e-6;
 /// How long the reference may take at least.
 const MOST_PATIENCE: Duration = Duration::from_secs(40);
 /// How long the median of a run may take to settle.
@@ -137,68 +131,61 @@ pub enum NoAccuracy {
     Reference(#[from] PreciseError),
 }
 
-/// A few cases of an experiment that stand for all of it, with dampers: of each third of its sweep the first one that has
-/// events and is not chaotic, tried from the middle outwards, or else the one in the middle.
-///
-/// # Errors
-/// [`NoAccuracy`] if a case that is tried does not run.
-pub fn representative(experiment: &Experiment, assumptions: &Assumptions) -> Result<Vec<(String, Recipe)>, NoAccuracy> {
-    let simulated = |case: &&Case| case.solvers.contains(&SolverChoice::EventDriven);
-    let mut cases: Vec<&Case> = experiment.cases.iter().filter(simulated).collect();
-    if cases.is_empty() {
-        cases = experiment.cases.iter().collect();
-    }
-    let damped: Vec<(String, Recipe)> =
-        cases.into_iter().filter_map(|case| ready(experiment, case, assumptions)).collect();
-    let mut chosen: Vec<(String, Recipe)> = Vec::new();
-    for third in 0..CASES {
-        let ends = [third, third + 1].map(|end| end * damped.len() / CASES);
-        let part = &damped[ends[0]..ends[1]];
-        let mut wanted = part.get(part.len() / 2);
-        for eighth in [4, 2, 6, 3, 5, 1, 7] {
-            // One further in each third, so that what changes from row to row does not always stand the same way.
-            let Some(candidate) = part.get(eighth * part.len() / 8 + third) else { continue };
-            let trial = Trial::new(&candidate.1, assumptions, &experiment.settings, &experiment.measures)?;
-            let own = event_driven(&trial.system, &trial.options)?;
-            if own.proof.events > 0 && !is_chaotic(&trial, &own)? {
-                wanted = Some(candidate);
-                break;
-            }
-        }
-        chosen.extend(wanted.cloned());
-    }
-    Ok(chosen)
-}
-
-/// A case with its scene, if that has dampers.
-fn ready(experiment: &Experiment, case: &Case, assumptions: &Assumptions) -> Option<(String, Recipe)> {
-    let mut recipe = experiment.recipes_of(case).ok()?.into_iter().next()?;
-    let mut told = case.told();
-    if let Some(maximise) = &experiment.maximise {
-        let value = *maximise.grid.get(maximise.grid.len() / 2)?;
-        recipe.set(maximise.over, ParameterValue::Number(value)).ok()?;
-        let over = format!("{} = {value}", words::of_key(&maximise.over));
-        told = if told.is_empty() { over } else { format!("{told}, {over}") };
-    }
-    let damped = recipe.resolve(assumptions).is_ok_and(|scene| !scene.dampers.is_empty());
-    damped.then_some((told, recipe))
-}
-
-/// Runs the contenders on representative cases. No run takes much longer than `longest`: steps that would are left out, and a
-/// reference that needs twenty times that, and more than forty seconds, is given up.
+/// Runs the contenders on representative cases: errors first, then times, alone on the machine. No run takes much longer than
+/// `longest`: steps that would are left out, and a reference that needs twenty times that, and more than forty seconds, is
+/// given up.
 ///
 /// # Errors
 /// [`NoAccuracy`] with the reason.
 pub fn accuracy(experiment: &Experiment, assumptions: &Assumptions, longest: Duration) -> Result<Accuracy, NoAccuracy> {
+    Ok(errors(experiment, assumptions, longest)?.timed())
+}
+
+/// Errors of an experiment, whose times are still to be taken.
+#[derive(Debug)]
+pub struct Errors {
+    cases: Vec<CaseErrors>,
+}
+
+#[derive(Debug)]
+struct CaseErrors {
+    /// Without times.
+    case: CaseAccuracy,
+    system: HybridSystem,
+    options: Options,
+}
+
+/// The first half of [`accuracy`]: references and errors, several cases side by side.
+///
+/// # Errors
+/// [`NoAccuracy`] with the reason.
+pub fn errors(experiment: &Experiment, assumptions: &Assumptions, longest: Duration) -> Result<Errors, NoAccuracy> {
     if experiment.optimise.is_some() {
         return Err(NoAccuracy::Nothing);
     }
-    let mut cases = Vec::new();
-    for (told, recipe) in representative(experiment, assumptions)? {
+    let chosen = representative(experiment, assumptions)?;
+    let cases = chosen.into_par_iter().map(|(told, recipe)| {
         let trial = Trial::new(&recipe, assumptions, &experiment.settings, &experiment.measures)?;
-        cases.push(case(told, &trial, longest)?);
+        let case = case(told, &trial, longest)?;
+        Ok(CaseErrors { case, system: trial.system, options: trial.options })
+    });
+    let cases = cases.collect::<Result<Vec<_>, NoAccuracy>>()?;
+    if cases.is_empty() { Err(NoAccuracy::Nothing) } else { Ok(Errors { cases }) }
+}
+
+impl Errors {
+    /// The second half: one run at a time. Nothing else should run meanwhile.
+    #[must_use]
+    pub fn timed(self) -> Accuracy {
+        let timed = |CaseErrors { mut case, system, options }| {
+            for point in &mut case.points {
+                let run = || drop(std::hint::black_box(point.contender.run(&system, &options)));
+                point.times = Times::of(run, PATIENCE);
+            }
+            case
+        };
+        Accuracy { cases: self.cases.into_iter().map(timed).collect() }
     }
-    if cases.is_empty() { Err(NoAccuracy::Nothing) } else { Ok(Accuracy { cases }) }
 }
 
 fn case(told: String, trial: &Trial<'_>, longest: Duration) -> Result<CaseAccuracy, NoAccuracy> {
@@ -206,7 +193,7 @@ fn case(told: String, trial: &Trial<'_>, longest: Duration) -> Result<CaseAccura
     let (reference, bare, origin) = reference(trial, &recorded, longest)?;
     let truth = trial.read(&reference, &bare)?;
     let own = event_driven(&trial.system, &trial.options)?;
-    let floor = floor(trial, &own)?;
+    let floor = floor(trial, &own, &event_driven(&trial.undamped, &trial.options)?)?;
     let mut points = Vec::new();
     let mut skipped = Vec::new();
     let compared = Compared { trial, recorded: &recorded, truth: &truth, events: &reference.events };
@@ -245,19 +232,16 @@ struct Compared<'a> {
 }
 
 impl Compared<'_> {
+    /// With the time of this one run, which others may have shared the machine with.
     fn point(&self, contender: Contender) -> Result<Point, NoAccuracy> {
         let Self { trial, recorded, truth, events } = *self;
+        let begin = Instant::now();
         let response = contender.run(&trial.system, recorded)?;
+        let times = Times::once(begin.elapsed());
         let values = trial.read(&response, &contender.run(&trial.undamped, &trial.options)?)?;
-        let times = Times::of(|| drop(std::hint::black_box(contender.run(&trial.system, &trial.options))), PATIENCE);
         let (worst, error) = worst(&trial.measures, &values, truth);
-        Ok(Point {
-            contender,
-            error,
-            worst,
-            events: compare(&response.events, events, trial.system.drive.period),
-            times,
-        })
+        let events = compare(&response.events, events, trial.system.drive.period);
+        Ok(Point { contender, error, worst, events, times })
     }
 }
 
@@ -292,51 +276,6 @@ fn reference(
             Ok((with, without, Origin::StandIn(error.to_string())))
         }
     }
-}
-
-/// The largest relative error and its measure.
-pub(super) fn worst(measures: &[Measure], values: &[f64], truth: &[f64]) -> (Measure, f64) {
-    let errors = measures.iter().zip(values).zip(truth).map(|((measure, value), truth)| {
-        let scale = if *truth == 0.0 { 1.0 } else { truth.abs() };
-        let error = (value - truth).abs() / scale;
-        (*measure, error)
-    });
-    errors.fold((Measure::RmsVelocity, 0.0), |worst, one| if one.1 >= worst.1 || one.1.is_nan() { one } else { worst })
-}
-
-/// A twin that was kicked a little ends elsewhere.
-pub(super) fn is_chaotic(trial: &Trial<'_>, own: &Response) -> Result<bool, NoAccuracy> {
-    if own.method == Method::ClosedForm {
-        return Ok(false);
-    }
-    let bare = event_driven(&trial.undamped, &trial.options)?;
-    let twin = event_driven(&trial.system, &Options { kick: TWIN[0], ..trial.options.clone() })?;
-    let (_, moved) = worst(&trial.measures, &trial.read(&twin, &bare)?, &trial.read(own, &bare)?);
-    Ok(moved.is_nan() || moved >= TWIN[1])
-}
-
-/// Spread over perturbed starts, where the motion is chaotic.
-fn floor(trial: &Trial<'_>, own: &Response) -> Result<Option<f64>, NoAccuracy> {
-    if !is_chaotic(trial, own)? {
-        return Ok(None);
-    }
-    let bare = event_driven(&trial.undamped, &trial.options)?;
-    let kicked = |kick: f64| -> Result<Vec<f64>, NoAccuracy> {
-        let response = event_driven(&trial.system, &Options { kick, ..trial.options.clone() })?;
-        Ok(trial.read(&response, &bare)?)
-    };
-    let still = trial.read(own, &bare)?;
-    let mut rows = vec![still.clone()];
-    for member in 0..MEMBERS {
-        rows.push(kicked(KICK * ((f64::from(member) + 0.5) / f64::from(MEMBERS) * 2.0 - 1.0))?);
-    }
-    let spread = |i: usize| {
-        let count = rows.len() as f64;
-        let mean = rows.iter().map(|row| row[i]).sum::<f64>() / count;
-        let square = rows.iter().map(|row| (row[i] - mean) * (row[i] - mean)).sum::<f64>() / (count - 1.0);
-        square.sqrt() / mean.abs()
-    };
-    Ok(Some((0..still.len()).map(spread).fold(0.0, f64::max)))
 }
 
 fn compare(got: &[Event], want: &[Event], period: f64) -> EventTimes {

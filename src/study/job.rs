@@ -55,6 +55,14 @@ pub(super) fn evaluations(experiment: &Experiment, job: &Job) -> u64 {
     }
 }
 
+/// Runs behind a row of the table, the members of an ensemble and the points of a search for gaps not counted.
+#[must_use]
+pub fn runs_of_a_row(experiment: &Experiment) -> u64 {
+    let points =
+        experiment.maximise.as_ref().map_or(1, |maximise| maximise.grid.len() as u64 + 2 * u64::from(maximise.refine));
+    points * (experiment.mean_over.len() as u64).max(1)
+}
+
 /// Simulations that an experiment takes at most, with all the points that its curves may get.
 pub(super) fn simulations(experiment: &Experiment, variants: &[Variant]) -> u64 {
     if let Some(optimise) = &experiment.optimise {

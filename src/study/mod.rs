@@ -25,6 +25,7 @@ mod progress;
 mod reason;
 mod record;
 mod refine;
+mod representative;
 mod row_meaning;
 mod run;
 mod shard;
@@ -40,12 +41,13 @@ mod work;
 
 pub use ablation::{Ablation, Outcome, Switched, ablation, idle_cases};
 pub use accuracy::{
-    Accuracy, CaseAccuracy, Contender, EventTimes, NoAccuracy, Origin, Point, Skipped, accuracy, representative,
+    Accuracy, CaseAccuracy, Contender, Errors, EventTimes, NoAccuracy, Origin, Point, Skipped, accuracy, errors,
 };
 pub use evaluate::{Array, Engine, Evaluate, Simulation};
 pub use event::{Event, Listen, Silence};
 pub use extent::Extent;
 pub use gather::{GatherError, gather};
+pub use job::runs_of_a_row;
 pub use known_rows::KnownRows;
 pub use layout::{ASSUMPTIONS, Layout, Texts, journal_name, record_name, table_name};
 pub use load::{Loaded, Refused, Source};
@@ -55,6 +57,7 @@ pub use plan::{Item, State};
 pub use progress::Progress;
 pub use reason::{Reason, differences};
 pub use record::{Failures, FileHash, NoRecord, PRESENTATION_VERSION, Publication, RECORD_FORMAT, Record};
+pub use representative::representative;
 pub use run::{Finished, Task, ThreadError, run};
 pub use shard::{Shard, ShardError};
 pub use snapshot::Snapshot;

@@ -22,7 +22,8 @@ pub struct Times {
     pub median: f64,
     /// How many runs.
     pub runs: usize,
-    /// The median moved by less than one per cent when the last quarter of the runs was added; otherwise time was up.
+    /// The median moved by less than one per cent when the last quarter of the runs was added, or all of a few runs lie
+    /// within one per cent of it; otherwise time was up.
     pub settled: bool,
 }
 
@@ -42,7 +43,16 @@ impl Times {
             }
         }
         let least = times.iter().copied().fold(f64::INFINITY, f64::min);
-        Self { least, median: median(&times), runs: times.len(), settled }
+        let median = median(&times);
+        // Runs so long that there are few of them differ little.
+        settled |= times.len() < BETWEEN && times.iter().all(|time| (time / median - 1.0).abs() < SETTLED);
+        Self { least, median, runs: times.len(), settled }
+    }
+
+    /// Of a single run: a guess.
+    pub(super) fn once(took: Duration) -> Self {
+        let took = took.as_secs_f64();
+        Self { least: took, median: took, runs: 1, settled: false }
     }
 }
 

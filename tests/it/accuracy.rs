@@ -59,6 +59,7 @@ fn a_reference_that_is_none_says_so() {
         title: "A damper".into(),
         machine: Machine::here(),
         accuracy: measured("floor: {rigid: {restitution: 0.5}}", "[7]"),
+        entries: Vec::new(),
     };
     let page = accuracy_page(&view, "a-damper.png");
     assert!(page.contains("does not know rigid faces that give something back"), "{page}");

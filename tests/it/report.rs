@@ -2,7 +2,7 @@
 //!
 //! After a wanted change, `GOLDEN=write cargo test` writes the files anew.
 
-use shotdamp::reference::{Comparison, Judged, Verdict};
+use shotdamp::reference::{Comparison, Judged, Price, Verdict};
 use shotdamp::report::{AssumptionView, ExperimentView, FigureView, PageView, index, page, summary, value_in_words};
 use shotdamp::scene::{Assumption, AssumptionValue, EffectUse};
 use shotdamp::table::Table;
@@ -36,6 +36,7 @@ fn entry(id: &str, verdict: Verdict) -> Judged {
         tolerance_reason: None,
         robust: Some((5, 6)),
         moved: Vec::new(),
+        price: Price { rows: 122, runs: 402, events: 61_180 },
     }
 }
 
@@ -126,7 +127,7 @@ fn page_of(table: Option<&Table>, judged: &[Judged]) -> String {
         effects: &effects(),
         figures: &figures(""),
         table_link: "../../results/ch3-limit-stop.parquet",
-        accuracy_link: None,
+        accuracy: None,
         index_link: "../README.md",
     })
 }

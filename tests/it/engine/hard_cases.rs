@@ -275,8 +275,15 @@ fn the_page_is_written_when_asked_for() {
     if std::env::var_os("SHOTDAMP_WRITE_HARD_CASES").is_none() {
         return;
     }
-    let mut page = String::from(
-        "# Hard cases\n\n[All experiments](README.md)\n\nScenes that break codes, each with a reference that is not the code \
+    let reports = Path::new(env!("CARGO_MANIFEST_DIR")).join("reports");
+    let peers = "accuracy/peers-events.md";
+    let beside = if reports.join(peers).exists() {
+        format!(" · [other solvers on the same sequences of events]({peers})")
+    } else {
+        String::new()
+    };
+    let mut page = format!(
+        "# Hard cases\n\n[All experiments](README.md){beside}\n\nScenes that break codes, each with a reference that is not the code \
          under test. Written by `SHOTDAMP_WRITE_HARD_CASES=1 cargo test --test it hard_cases`, from the comparisons of the \
          tests themselves: the figure is the error of the comparison that came closest to its bound. Where runs are sensitive \
          the bound includes what a drive known to twelve digits would change.\n\n\
@@ -291,6 +298,5 @@ fn the_page_is_written_when_asked_for() {
         };
         let _ = writeln!(page, "| {name} | {checks} | {reference} | {count} | {what} | {figure} | {bound} |");
     }
-    let reports = Path::new(env!("CARGO_MANIFEST_DIR")).join("reports");
     std::fs::write(reports.join("hard-cases.md"), page).expect("the folder of reports can be written");
 }
