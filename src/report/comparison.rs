@@ -4,7 +4,7 @@ use crate::reference::{Comparison, Judged, Moved, Verdict};
 use crate::text::number::{compact, signed, significant};
 
 use super::markdown::{Align, MarkdownTable, one_line};
-use super::tally::{Tally, shown};
+use super::tally::{Tally, role, shown};
 
 /// The section on an experiment's page.
 pub(super) fn section(judged: &[Judged]) -> String {
@@ -35,13 +35,15 @@ fn entries(judged: &[Judged]) -> String {
         ("Where", Align::Left),
         ("What came out", Align::Left),
         ("Verdict", Align::Left),
+        ("Fitted or held out", Align::Left),
     ];
     if moved {
         header.push(("Same verdict with one assumption moved", Align::Right));
     }
     let mut table = MarkdownTable::new(&header);
     for one in judged {
-        let mut row = vec![entry(one), one.statement.clone(), one.place.clone(), one.found.clone(), shown(one)];
+        let mut row =
+            vec![entry(one), one.statement.clone(), one.place.clone(), one.found.clone(), shown(one), role(one).into()];
         if moved {
             row.push(one.robust.map_or_else(String::new, |(kept, run)| format!("{kept} of {run} runs")));
         }

@@ -135,7 +135,9 @@ impl Experiment {
         used
     }
 
-    fn assumptions_under(&self, in_force: &Assumptions) -> BTreeSet<Assumption> {
+    /// The assumptions that a number of this experiment depends on under these values.
+    #[must_use]
+    pub fn assumptions_under(&self, in_force: &Assumptions) -> BTreeSet<Assumption> {
         let mut used = BTreeSet::new();
         for case in &self.cases {
             for recipe in self.recipes_of(case).unwrap_or_default() {

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::fs;
 
 use roxmltree::Document;
-use shotdamp::reference::{Comparison, Judged, Verdict, accept, parse_reference};
+use shotdamp::reference::{Comparison, Judged, Role, Verdict, accept, parse_reference};
 use shotdamp::report::{CheckView, CheckedEntry, SUMMARY_LIMIT, Trouble, annotations, json, junit, step_summary};
 
 use crate::desk::{Desk, GAP, GAP_REFERENCE, command, said, shotdamp, simulated};
@@ -26,6 +26,7 @@ fn judged(id: &str, verdict: Verdict, expected: Verdict) -> Judged {
         tolerance_reason: None,
         robust: None,
         moved: Vec::new(),
+        role: Role::Neither,
     }
 }
 

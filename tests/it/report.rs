@@ -2,7 +2,7 @@
 //!
 //! After a wanted change, `GOLDEN=write cargo test` writes the files anew.
 
-use shotdamp::reference::{Comparison, Judged, Verdict};
+use shotdamp::reference::{Comparison, Judged, Role, Verdict};
 use shotdamp::report::{AssumptionView, ExperimentView, FigureView, PageView, index, page, summary, value_in_words};
 use shotdamp::scene::{Assumption, AssumptionValue, EffectUse};
 use shotdamp::table::Table;
@@ -36,6 +36,7 @@ fn entry(id: &str, verdict: Verdict) -> Judged {
         tolerance_reason: None,
         robust: Some((5, 6)),
         moved: Vec::new(),
+        role: Role::Neither,
     }
 }
 
@@ -55,11 +56,13 @@ fn judged() -> Vec<Judged> {
         }),
         tolerance_reason: Some("\"approximately\": the text rounds to whole numbers | or coarser".into()),
         explanation: "The stop length was chosen by this number.".into(),
+        role: Role::Fitted,
         ..entry("parting", Verdict::Fitted)
     };
     let limit = Judged {
         statement: "The curve with stop tends to a higher limit".into(),
         found: "1.004 with, 1.015 without".into(),
+        role: Role::HeldOut,
         explanation: "At f′ = 10 it does, s. 3.6.3 says no more. Beyond f′ = 500 the order turns.".into(),
         ..entry("limit", Verdict::Differs)
     };
