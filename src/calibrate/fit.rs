@@ -1,98 +1,166 @@
-//! From the tables of all combinations to the best of them.
+//! The calibration itself: residuals of the sets that a search asks for, and the verdicts under the best one.
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::grid::{label, places};
-use super::simulate::CalibrationError;
-use crate::reference::{Entry, Found, ReferenceFile, TableState, Tables};
-use crate::scene::AssumptionValue;
-use crate::spec::Calibration;
-use crate::table::{BASELINE, Table};
+use super::bench::{Asked, Bench, Growing, Hands, SharedTables, Worth};
+use super::search::{Places, Trail, coordinate, grid};
+use super::set::{Set, place_in_force};
+use crate::reference::{Entry, Found, ReferenceFile, TableState, Tables, Verdict, judge};
+use crate::scene::Assumptions;
+use crate::spec::{Calibration, CalibrationSearch, Experiment};
+use crate::study::{Evaluate, Event, Listen, ThreadError};
+use crate::table::BASELINE;
+
+/// Why there is no calibration.
+#[derive(Debug, thiserror::Error)]
+pub enum CalibrationError {
+    /// An entry that the reference lacks.
+    #[error("`{0}` is no entry of an experiment of this study")]
+    NoEntry(String),
+    /// No thread.
+    #[error(transparent)]
+    Threads(#[from] ThreadError),
+}
 
 /// What a calibration found.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Calibrated {
-    /// Root mean square of the fitted entries' relative errors under the assumptions in force; none if one has no number.
+    /// Root mean square of the fitted entries' relative errors under the inputs in force, as the search sees them; none if one
+    /// has no number.
     pub in_force: Option<f64>,
-    /// The same of the best combination; none if no combination gives all of them a number.
+    /// The same of the best set; none if no set gives all of them a number.
     pub best: Option<f64>,
+    /// The same two of results, with ensembles where the motion is chaotic.
+    pub as_results: [Option<f64>; 2],
     /// Of each input the index of its best value.
     pub places: Vec<usize>,
     /// How well each input is determined.
     pub profiles: Vec<Profile>,
+    /// Sets that were tried.
+    pub tried: usize,
+    /// The residual at which each start of a coordinate search ended; empty for a grid.
+    pub ends: Vec<Option<f64>>,
+    /// The budget ended the search.
+    pub cut_short: bool,
     /// The entries that were fitted.
     pub fitted: Vec<Compared>,
     /// The entries that were held out.
     pub held_out: Vec<Compared>,
 }
 
-/// The least residual for each value of an input, all others free.
+/// Of each value of an input the least residual that was found with it; none where no set with it was tried that gives every
+/// fitted entry a number.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Profile {
-    /// The input.
-    pub name: String,
-    /// The first of the assumptions that it moves, which tells its unit.
-    pub moves: crate::scene::Assumption,
-    /// Value and residual; none where no combination with it gives every fitted entry a number.
-    pub points: Vec<(AssumptionValue, Option<f64>)>,
+    /// In the order of the input's values.
+    pub residuals: Vec<Option<f64>>,
 }
 
-/// An entry under the assumptions in force and under the best combination.
+/// An entry under the inputs in force and under the best ones.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Compared {
     /// `ch6-beam-b1-light/uniform`.
     pub id: String,
     /// In force.
-    pub in_force: Found,
-    /// Under the best combination.
-    pub best: Found,
+    pub in_force: Read,
+    /// Under the best set.
+    pub best: Read,
 }
 
-/// Reads the entries under every combination, and takes the best.
+/// What an entry reads, and the verdict on it by the entry's own tolerance. Nothing is added for unstated inputs, which are
+/// what is chosen.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Read {
+    /// What came out.
+    pub found: Found,
+    /// The verdict, as if no entry were fitted or blocked.
+    pub verdict: Verdict,
+}
+
+/// Searches the best inputs and judges all entries under them, on `threads` threads (0: one a processor).
 ///
 /// # Errors
-/// [`CalibrationError::NoEntry`] for an entry that the reference lacks.
-pub fn calibrated(
+/// [`CalibrationError::NoEntry`] for an entry that the reference or the experiments lack.
+pub fn calibrate(
     calibration: &Calibration,
+    experiments: &[&Experiment],
     references: &BTreeMap<String, ReferenceFile>,
-    tables: &BTreeMap<String, Table>,
+    in_force: &Assumptions,
+    threads: usize,
+    evaluate: &impl Evaluate,
+    listener: &dyn Listen,
 ) -> Result<Calibrated, CalibrationError> {
-    let states: Tables<'_> = tables.iter().map(|(id, table)| (id.clone(), TableState::Present(table))).collect();
     let fit = chosen(&calibration.fit, references, &BTreeSet::new())?;
     let taken: BTreeSet<&str> = fit.iter().map(|(_, entry)| entry.id.as_str()).collect();
     let held = chosen(&calibration.hold_out, references, &taken)?;
-    let residual = |variant: &str| residual(fit.iter().map(|(home, entry)| entry.found(home, &states, variant)));
-    let residuals: Vec<Option<f64>> = (0..calibration.combinations()).map(|index| residual(&label(index))).collect();
-    let least = |indices: &mut dyn Iterator<Item = usize>| {
-        let known = indices.filter_map(|index| Some((index, residuals[index]?)));
-        known.min_by(|a, b| a.1.total_cmp(&b.1))
+    for (home, entry) in fit.iter().chain(&held) {
+        for reading in entry.readings(home) {
+            if experiments.iter().all(|known| known.id.0 != reading.experiment) {
+                return Err(CalibrationError::NoEntry(entry.id.clone()));
+            }
+        }
+    }
+    let hands = Hands { threads, evaluate, listener: &Growing::new(listener) };
+    let now = Set::in_force(in_force);
+    let set = |places: &Places| Set::of(calibration, places, in_force);
+
+    let mut bench = Bench::new(&hands, Worth::Step { ensemble: calibration.ensemble }, experiments, &fit);
+    let mut residuals = |sets: &[Set]| -> Result<Vec<Option<f64>>, ThreadError> {
+        Ok(bench.tables(sets)?.iter().map(|tables| residual(fit.iter().map(|one| found(one, tables)))).collect())
     };
-    let best = least(&mut (0..residuals.len()));
-    let profile = |(which, input): (usize, &crate::spec::CalibrationInput)| {
-        let point = |(place, value): (usize, &AssumptionValue)| {
-            let mut with = (0..residuals.len()).filter(|index| places(calibration, *index)[which] == place);
-            (value.clone(), least(&mut with).map(|(_, residual)| residual))
-        };
-        Some(Profile {
-            name: input.name.clone(),
-            moves: *input.moves.first()?,
-            points: input.values.iter().enumerate().map(point).collect(),
-        })
+    let residual_in_force = residuals(std::slice::from_ref(&now))?[0];
+    let trail = search(calibration, in_force, |places| residuals(&places.iter().map(set).collect::<Vec<_>>()))?;
+    let best = trail.best(|_| true);
+
+    let all: Vec<Asked<'_>> = fit.iter().chain(&held).copied().collect();
+    let best_set = best.map_or_else(|| now.clone(), |(places, _)| set(places));
+    let as_results = Bench::new(&hands, Worth::Result, experiments, &all).tables(&[now, best_set])?;
+    listener.hear(&Event::Ended);
+    let compared = |one: &Asked<'_>| Compared {
+        id: one.1.id.clone(),
+        in_force: read(one, &as_results[0]),
+        best: read(one, &as_results[1]),
     };
-    let best_label = best.map_or_else(|| BASELINE.to_owned(), |(index, _)| label(index));
-    let compared = |(home, entry): &(&str, &Entry)| Compared {
-        id: entry.id.clone(),
-        in_force: entry.found(home, &states, BASELINE),
-        best: entry.found(home, &states, &best_label),
-    };
+    let fitted: Vec<Compared> = fit.iter().map(compared).collect();
     Ok(Calibrated {
-        in_force: residual(BASELINE),
+        in_force: residual_in_force,
         best: best.map(|(_, residual)| residual),
-        places: best.map(|(index, _)| places(calibration, index)).unwrap_or_default(),
-        profiles: calibration.inputs.iter().enumerate().filter_map(profile).collect(),
-        fitted: fit.iter().map(compared).collect(),
+        as_results: [
+            residual(fitted.iter().map(|one| one.in_force.found.clone())),
+            residual(fitted.iter().map(|one| one.best.found.clone())),
+        ],
+        places: best.map(|(places, _)| places.clone()).unwrap_or_default(),
+        profiles: profiles(calibration, &trail),
+        tried: trail.residuals.len(),
+        ends: trail.ends.iter().map(|(_, residual)| *residual).collect(),
+        cut_short: trail.cut_short,
+        fitted,
         held_out: held.iter().map(compared).collect(),
     })
+}
+
+fn search(
+    calibration: &Calibration,
+    in_force: &Assumptions,
+    residuals: impl FnMut(&[Places]) -> Result<Vec<Option<f64>>, ThreadError>,
+) -> Result<Trail, ThreadError> {
+    let counts: Vec<usize> = calibration.inputs.iter().map(|input| input.tried.count()).collect();
+    match calibration.search {
+        CalibrationSearch::Grid => grid(&counts, residuals),
+        CalibrationSearch::Coordinate { starts, budget } => {
+            let first = calibration.inputs.iter().map(|input| place_in_force(input, in_force)).collect();
+            coordinate(&counts, first, starts, budget, residuals)
+        }
+    }
+}
+
+fn profiles(calibration: &Calibration, trail: &Trail) -> Vec<Profile> {
+    let of = |which: usize, count: usize| Profile {
+        residuals: (0..count)
+            .map(|place| trail.best(|places| places[which] == place).map(|(_, residual)| residual))
+            .collect(),
+    };
+    calibration.inputs.iter().enumerate().map(|(which, input)| of(which, input.tried.count())).collect()
 }
 
 /// Entries by their ids; `EXPERIMENT/*` stands for all of an experiment that are not `taken`.
@@ -100,7 +168,7 @@ fn chosen<'a>(
     ids: &[String],
     references: &'a BTreeMap<String, ReferenceFile>,
     taken: &BTreeSet<&str>,
-) -> Result<Vec<(&'a str, &'a Entry)>, CalibrationError> {
+) -> Result<Vec<Asked<'a>>, CalibrationError> {
     let mut chosen = Vec::new();
     for id in ids {
         let none = || CalibrationError::NoEntry(id.clone());
@@ -114,6 +182,23 @@ fn chosen<'a>(
         }
     }
     Ok(chosen)
+}
+
+fn states(tables: &SharedTables) -> Tables<'_> {
+    tables.iter().map(|(id, table)| (id.clone(), TableState::Present(table.as_ref()))).collect()
+}
+
+fn found((home, entry): &Asked<'_>, tables: &SharedTables) -> Found {
+    entry.found(home, &states(tables), BASELINE)
+}
+
+pub(super) fn read(asked: &Asked<'_>, tables: &SharedTables) -> Read {
+    let (home, entry) = *asked;
+    let alone = Entry { blocked_by: Vec::new(), ..entry.clone() };
+    let file = ReferenceFile { experiment: home.to_owned(), entries: vec![alone] };
+    let judged = judge(&file, &states(tables), &BTreeSet::new());
+    let verdict = judged.first().map_or(Verdict::Missing, |judged| judged.verdict);
+    Read { found: found(asked, tables), verdict }
 }
 
 /// Root mean square of relative errors; a claim that fails counts as an error of the whole, none may lack its number.

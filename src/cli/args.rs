@@ -42,6 +42,13 @@ pub(super) struct Args {
     pub command: Option<Command>,
 }
 
+impl Args {
+    /// The number of threads as runners take it: 0 stands for one a processor.
+    pub(super) fn threads(&self) -> usize {
+        self.jobs.map_or(0, usize::from)
+    }
+}
+
 /// When to use colours.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub(super) enum Colour {
@@ -111,10 +118,14 @@ Examples:
     #[command(after_help = "\
 Examples:
   shotdamp explain ch3-limit-stop/parting
-  shotdamp explain 'ch6-beam-b1-heavy/*'")]
+  shotdamp explain 'ch6-beam-b1-heavy/*'
+  shotdamp explain --run ch3-limit-stop/parting     with every assumption moved, simulated now")]
     Explain {
         /// Id of the entry, `ch3-limit-stop/parting`, or a pattern with * and ?
         entry: String,
+        /// Simulate what the tables lack: every other value of every assumption that the entry hangs on, one at a time
+        #[arg(long)]
+        run: bool,
     },
 }
 

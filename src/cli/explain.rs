@@ -1,20 +1,63 @@
 //! `shotdamp explain ENTRY`.
 
+use std::collections::BTreeMap;
+
+use super::args::Args;
 use super::error::CliError;
 use super::exit::Exit;
 use super::output::{complain_of, print};
 use super::select::{matches, open};
-use crate::publish::{explanations, judge_all};
-use crate::study::Layout;
+use crate::calibrate::{CalibrationError, Read, moved_alone};
+use crate::publish::{Opened, Trial, entry, explanations, judge_all, untried};
+use crate::reference::{Found, Judged, Moved};
+use crate::spec::Experiment;
+use crate::study::{Engine, Layout, Listen, Progress, Silence};
+use crate::text::number::significant;
 
-/// How sensitive entries are to each assumption, from the tables on disk.
-pub(super) fn explain(layout: &Layout, pattern: &str) -> Result<Exit, CliError> {
+/// How sensitive entries are to each assumption: from the tables on disk, and with `run` from simulations made for it.
+pub(super) fn explain(layout: &Layout, pattern: &str, run: bool, common: &Args) -> Result<Exit, CliError> {
     let opened = open(layout)?;
     complain_of(&opened.unread);
-    let texts = explanations(&opened, &judge_all(&opened), |id| matches(pattern, id));
+    let judgement = judge_all(&opened);
+    let wanted = |id: &str| matches(pattern, id);
+    let mut trials = BTreeMap::new();
+    if run {
+        for judged in judgement.verdicts.values().flatten().filter(|judged| wanted(&judged.id)) {
+            trials.insert(judged.id.clone(), tried(&opened, judged, common)?);
+        }
+    }
+    let texts = explanations(&opened, &judgement, &trials, wanted);
     if texts.is_empty() {
         return Err(CliError::NoEntry(pattern.into()));
     }
     print(&texts.join("\n"))?;
     Ok(if opened.unread.is_empty() { Exit::AsExpected } else { Exit::CouldNot })
+}
+
+/// The entry with each assumption moved that the tables on disk have not.
+fn tried(opened: &Opened, judged: &Judged, common: &Args) -> Result<Vec<Trial>, CliError> {
+    let Some(entry) = entry(opened, judged) else { return Ok(Vec::new()) };
+    let moves = untried(opened, judged);
+    let experiments: Vec<&Experiment> = opened.items.iter().map(|item| &item.source.experiment).collect();
+    let progress = Progress::new();
+    let listener: &dyn Listen = if common.quiet { &Silence } else { &progress };
+    let asked = (judged.experiment.as_str(), entry);
+    let in_force = opened.sheet.assumptions();
+    let reads = moved_alone(asked, &moves, &experiments, &in_force, common.threads(), &Engine, listener)
+        .map_err(CalibrationError::from)?;
+    let trial = |((name, to), read)| Trial { name, to, moved: moved(judged, read) };
+    Ok(moves.into_iter().zip(reads).map(trial).collect())
+}
+
+/// A number keeps the uncertainties that it has in force.
+fn moved(judged: &Judged, read: Read) -> Moved {
+    let (found, value, verdict) = match read.found {
+        Found::Number { simulated, .. } => {
+            let verdict = judged.comparison.as_ref().map_or(read.verdict, |known| known.verdict_of(simulated));
+            (significant(simulated, 4), Some(simulated), verdict)
+        }
+        Found::Claim { holds } => (if holds { "holds" } else { "does not hold" }.into(), None, read.verdict),
+        Found::Nothing(reason) => (reason, None, read.verdict),
+    };
+    Moved { variant: String::new(), found, value, kept: verdict == judged.verdict, verdict }
 }

@@ -65,7 +65,7 @@ fn dispatch(args: &Args) -> Result<Exit, CliError> {
         },
         Some(Command::Export(export)) => export::export(&layout, export),
         Some(Command::Gather(gather)) => {
-            threads(args.jobs);
+            start_threads(args);
             gather::gather_all(&layout, gather)
         }
         Some(Command::List) => list::list(&layout),
@@ -73,7 +73,7 @@ fn dispatch(args: &Args) -> Result<Exit, CliError> {
         Some(Command::Effects { id }) => effects::effects(&layout, id),
         Some(Command::Status(status)) => status::status(&layout, status),
         Some(Command::Check(check)) => {
-            threads(args.jobs);
+            start_threads(args);
             check::check(&layout, check)
         }
         Some(Command::Diff(diff)) => diff::diff(&layout, diff),
@@ -82,14 +82,14 @@ fn dispatch(args: &Args) -> Result<Exit, CliError> {
         Some(Command::Schema(schema)) => schema::schema(&layout, schema),
         Some(Command::Completions { shell }) => completions(*shell),
         Some(Command::Accuracy(args)) => accuracy::measure(&layout, args),
-        Some(Command::Calibrate(calibrate)) => calibrate::calibrate(&layout, calibrate, args.jobs),
-        Some(Command::Explain { entry }) => explain::explain(&layout, entry),
+        Some(Command::Calibrate(calibrate)) => calibrate::calibrate(&layout, calibrate, args),
+        Some(Command::Explain { entry, run }) => explain::explain(&layout, entry, *run, args),
     }
 }
 
 /// The shared pool has so many threads; if somebody has started it already, it stays as it is.
-fn threads(jobs: Option<u16>) {
-    let _ = rayon::ThreadPoolBuilder::new().num_threads(jobs.map_or(0, usize::from)).build_global();
+fn start_threads(args: &Args) {
+    let _ = rayon::ThreadPoolBuilder::new().num_threads(args.threads()).build_global();
 }
 
 fn completions(shell: clap_complete::Shell) -> Result<Exit, CliError> {

@@ -12,7 +12,6 @@ use crate::study::{Item, Layout, Lock, Shard, State};
 ///
 /// A row without numbers is a result like any other; `gather` tells of it.
 pub(super) fn run_shard(layout: &Layout, args: &RunArgs, shard: Shard, common: &Args) -> Result<Exit, CliError> {
-    let threads = common.jobs.map_or(0, usize::from);
     let _lock = Lock::of_shard(layout, shard, held(args.no_wait))?;
     let opened = open(layout)?;
     let chosen = choose(&opened, &args.choice)?;
@@ -20,7 +19,7 @@ pub(super) fn run_shard(layout: &Layout, args: &RunArgs, shard: Shard, common: &
     let stale = |item: &&Item| args.force || !matches!(item.state, State::Current(_));
     let part: Vec<&Item> = chosen.items.iter().copied().filter(stale).filter(|item| shard.has_part_of(item)).collect();
     let todo: Vec<&Item> = part.iter().copied().filter(|item| args.force || !shard.has_done(layout, item)).collect();
-    let how = How { threads, quiet: common.quiet, shard: Some(shard), anew: args.force };
+    let how = How { threads: common.threads(), quiet: common.quiet, shard: Some(shard), anew: args.force };
     let Ran { unsaved, .. } = simulate(layout, &todo, how, |item, finished| shard.save(layout, item, finished))?;
     for problem in &unsaved {
         complain(&format!("error: {problem}\n"));

@@ -23,14 +23,13 @@ pub(super) fn update(layout: &Layout, args: &RunArgs, common: &Args) -> Result<E
         return dry_run(layout, args, common);
     }
     // Figures are drawn on the shared pool.
-    super::threads(common.jobs);
-    let threads = common.jobs.map_or(0, usize::from);
+    super::start_threads(common);
     let _lock = Lock::of_study(layout, held(args.no_wait))?;
     let opened = Opened::new(layout.clone(), Texts::read(layout)?);
     let chosen = choose(&opened, &args.choice)?;
     complain_of(chosen.unread.iter().copied());
     let todo = todo(&chosen, args);
-    let how = How { threads, quiet: common.quiet, shard: None, anew: args.force };
+    let how = How { threads: common.threads(), quiet: common.quiet, shard: None, anew: args.force };
     let Ran { restored, unsaved } =
         simulate(layout, &todo, how, |item, finished| save(layout, item, finished).map(|_| ()))?;
     let experiments = todo.len() - restored;

@@ -1,27 +1,93 @@
 //! What is known of the sensitivity of an entry, gathered for the report.
 
+use std::collections::{BTreeMap, BTreeSet};
+
 use super::opened::Opened;
 use super::verdicts::Judgement;
-use crate::reference::Judged;
+use crate::reference::{Entry, Judged, Moved};
 use crate::report::{self, EntryView, MoveView};
-use crate::scene::Assumption;
+use crate::scene::{Assumption, AssumptionValue};
+use crate::spec::Tried;
 use crate::study::{Item, Variant};
 
-/// The explanation of each entry whose id `wanted` admits, in their order.
+/// An assumption that was moved for an entry alone.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Trial {
+    /// Which.
+    pub name: Assumption,
+    /// The value that it was moved to.
+    pub to: AssumptionValue,
+    /// What came out then.
+    pub moved: Moved,
+}
+
+/// The explanation of each entry whose id `wanted` admits, in their order. `trials` holds by entry what was tried beyond the
+/// tables on disk.
 #[must_use]
-pub fn explanations(opened: &Opened, judgement: &Judgement, wanted: impl Fn(&str) -> bool) -> Vec<String> {
+pub fn explanations(
+    opened: &Opened,
+    judgement: &Judgement,
+    trials: &BTreeMap<String, Vec<Trial>>,
+    wanted: impl Fn(&str) -> bool,
+) -> Vec<String> {
     let mut texts = Vec::new();
     for (experiment, judged) in &judgement.verdicts {
         let item = opened.items.iter().find(|item| item.source.experiment.id.0 == *experiment);
         let entries = judged.iter().filter(|judged| wanted(&judged.id));
-        texts.extend(entries.map(|judged| report::explain(&view(opened, item, judged))));
+        texts.extend(entries.map(|judged| report::explain(&view(opened, item, judged, trials))));
     }
     texts
 }
 
-fn view<'a>(opened: &'a Opened, item: Option<&'a Item>, judged: &'a Judged) -> EntryView<'a> {
+/// The moves of assumptions that an entry hangs on and that the tables on disk do not hold: to every value of their ranges, and
+/// to every value that a calibration tries.
+#[must_use]
+pub fn untried(opened: &Opened, judged: &Judged) -> Vec<(Assumption, AssumptionValue)> {
+    let Some(entry) = entry(opened, judged) else { return Vec::new() };
+    let read: BTreeSet<String> = entry.readings(&judged.experiment).into_iter().map(|one| one.experiment).collect();
+    let items = || opened.items.iter().filter(|item| read.contains(&item.source.experiment.id.0));
+    let used: BTreeSet<Assumption> =
+        items().flat_map(|item| item.source.experiment.assumptions_used(&opened.sheet)).collect();
+    let known = |name: Assumption, value: &AssumptionValue| {
+        let own = opened.items.iter().filter(|item| item.source.experiment.id.0 == judged.experiment);
+        own.flat_map(|item| &item.variants).any(|variant| {
+            variant.moved == Some(name)
+                && variant.assumptions.values.get(&name) == Some(value)
+                && judged.moved.iter().any(|moved| moved.variant == variant.label)
+        })
+    };
+    let mut moves: Vec<(Assumption, AssumptionValue)> = Vec::new();
+    for name in used {
+        let Some(assumption) = opened.sheet.entries.get(&name) else { continue };
+        let calibrated = opened.calibrations.values().flat_map(|calibration| &calibration.inputs);
+        let calibrated = calibrated.flat_map(|input| match &input.tried {
+            Tried::Values { moves, values } if *moves == [name] => values.iter().flatten().collect(),
+            _ => Vec::new(),
+        });
+        for value in assumption.range.iter().chain(calibrated) {
+            let new = (name, value.clone());
+            if *value != assumption.value && !known(name, value) && !moves.contains(&new) {
+                moves.push(new);
+            }
+        }
+    }
+    moves
+}
+
+/// The entry of the reference that was judged.
+#[must_use]
+pub fn entry<'a>(opened: &'a Opened, judged: &Judged) -> Option<&'a Entry> {
+    opened.references.get(&judged.experiment)?.entries.iter().find(|entry| entry.id == judged.id)
+}
+
+fn view<'a>(
+    opened: &'a Opened,
+    item: Option<&'a Item>,
+    judged: &'a Judged,
+    trials: &'a BTreeMap<String, Vec<Trial>>,
+) -> EntryView<'a> {
     let variants: &[Variant] = item.map_or(&[], |item| &item.variants);
-    let moves: Vec<MoveView<'_>> = judged
+    let mut moves: Vec<MoveView<'_>> = judged
         .moved
         .iter()
         .filter_map(|moved| {
@@ -31,6 +97,11 @@ fn view<'a>(opened: &'a Opened, item: Option<&'a Item>, judged: &'a Judged) -> E
             Some(MoveView { name, from, to: variant.assumptions.values.get(&name)?, moved })
         })
         .collect();
+    let tried = trials.get(&judged.id).into_iter().flatten();
+    moves.extend(tried.filter_map(|trial| {
+        let from = &opened.sheet.entries.get(&trial.name)?.value;
+        Some(MoveView { name: trial.name, from, to: &trial.to, moved: &trial.moved })
+    }));
     let used = item.map(|item| item.source.experiment.assumptions_used(&opened.sheet)).unwrap_or_default();
     let unmoved: Vec<Assumption> = used.into_iter().filter(|name| moves.iter().all(|one| one.name != *name)).collect();
     let chosen_by = opened.sheet.entries.iter().filter(|(_, entry)| entry.fitted_to.contains(&judged.id));

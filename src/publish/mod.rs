@@ -15,7 +15,7 @@ mod views;
 
 pub use accuracy::{publish_accuracy, publish_accuracy_summary};
 pub use committed::{Departure, How, departures};
-pub use explain::explanations;
+pub use explain::{Trial, entry, explanations, untried};
 pub use figures::figure_name;
 pub use opened::{Opened, Unread};
 pub use pages::{Published, VERDICTS, publish};

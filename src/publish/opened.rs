@@ -2,8 +2,8 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::reference::{Check, ReferenceFile, parse_reference};
-use crate::spec::AssumptionSheet;
+use crate::reference::{Check, ReferenceFile, Role, parse_reference};
+use crate::spec::{AssumptionSheet, Calibration, parse_calibration};
 use crate::study::{Item, Layout, Loaded, Refused, Sensitivity, Texts};
 
 /// Everything that was read, and the plan.
@@ -19,6 +19,8 @@ pub struct Opened {
     pub items: Vec<Item>,
     /// The reference by id of the experiment.
     pub references: BTreeMap<String, ReferenceFile>,
+    /// The calibrations by the names of their files, without ending.
+    pub calibrations: BTreeMap<String, Calibration>,
     /// Files that could not be used.
     pub unread: Vec<Unread>,
 }
@@ -26,7 +28,7 @@ pub struct Opened {
 /// A file that could not be used.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum Unread {
-    /// An experiment or the assumptions.
+    /// An experiment, the assumptions or a calibration.
     #[error(transparent)]
     Experiment(#[from] Refused),
     /// A reference file.
@@ -72,6 +74,7 @@ impl Opened {
         let loaded = Loaded::from_texts(&texts);
         let mut unread: Vec<Unread> = loaded.refused.into_iter().map(Unread::from).collect();
         let references = references(&texts, &mut unread);
+        let calibrations = calibrations(&texts, &mut unread);
         let mut items: Vec<Item> = loaded
             .sources
             .into_iter()
@@ -87,7 +90,7 @@ impl Opened {
             })
             .collect();
         items.sort_by(|a, b| a.source.experiment.id.cmp(&b.source.experiment.id));
-        Self { layout, texts, sheet: loaded.sheet, items, references, unread }
+        Self { layout, texts, sheet: loaded.sheet, items, references, calibrations, unread }
     }
 
     /// The name within the study of the reference file of an experiment.
@@ -102,6 +105,39 @@ impl Opened {
     pub fn fitted(&self) -> BTreeSet<String> {
         self.sheet.entries.values().flat_map(|entry| entry.fitted_to.iter().cloned()).collect()
     }
+
+    /// The part of an entry in the choice of inputs.
+    #[must_use]
+    pub fn role(&self, entry: &str) -> Role {
+        let chose = self.sheet.entries.values().any(|assumption| assumption.fitted_to.iter().any(|id| id == entry));
+        let named = |list: fn(&Calibration) -> &[String]| {
+            self.calibrations.values().any(|one| list(one).iter().any(|id| names(id, entry)))
+        };
+        if chose || named(|calibration| &calibration.fit) {
+            Role::Fitted
+        } else if named(|calibration| &calibration.hold_out) {
+            Role::HeldOut
+        } else {
+            Role::Neither
+        }
+    }
+}
+
+/// Whether an id of a calibration's list, which may be `EXPERIMENT/*`, names this entry.
+fn names(id: &str, entry: &str) -> bool {
+    id == entry || id.strip_suffix('*').is_some_and(|start| start.ends_with('/') && entry.starts_with(start))
+}
+
+fn calibrations(texts: &Texts, unread: &mut Vec<Unread>) -> BTreeMap<String, Calibration> {
+    let mut calibrations = BTreeMap::new();
+    for (file, bytes) in texts.files.iter().filter(|(file, _)| file.starts_with("calibrations/")) {
+        let read = std::str::from_utf8(bytes).map_err(|_| Refused::Encoding(file.clone()));
+        match read.and_then(|text| parse_calibration(file, text).map_err(Refused::Text)) {
+            Ok(calibration) => drop(calibrations.insert(stem(file).to_owned(), calibration)),
+            Err(refused) => unread.push(refused.into()),
+        }
+    }
+    calibrations
 }
 
 fn stem(name: &str) -> &str {

@@ -1,11 +1,11 @@
 //! Verdicts over the tables on disk.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use rayon::prelude::*;
 
 use super::opened::Opened;
-use crate::reference::{Judged, SelfTestFailure, TableState, Tables, judge, self_test};
+use crate::reference::{Judged, ReferenceFile, SelfTestFailure, TableState, Tables, judge, self_test};
 use crate::study::{Item, State, table_name};
 use crate::table::{Table, parquet};
 
@@ -32,7 +32,8 @@ pub fn judge_all(opened: &Opened) -> Judgement {
     let states = on_disk(opened);
     let tables = tables(&states);
     let fitted = opened.fitted();
-    let verdicts = opened.references.iter().map(|(id, file)| (id.clone(), judge(file, &tables, &fitted))).collect();
+    let verdict = |(id, file): (&String, &ReferenceFile)| (id.clone(), judged(opened, file, &tables, &fitted));
+    let verdicts = opened.references.iter().map(verdict).collect();
     let tables = states
         .into_iter()
         .filter_map(|(id, state)| match state {
@@ -48,7 +49,13 @@ pub fn judge_all(opened: &Opened) -> Judgement {
 pub fn judge_tables(opened: &Opened, tables: &BTreeMap<String, Table>) -> Vec<Judged> {
     let states: Tables<'_> = tables.iter().map(|(id, table)| (id.clone(), TableState::Present(table))).collect();
     let fitted = opened.fitted();
-    opened.references.values().flat_map(|file| judge(file, &states, &fitted)).collect()
+    opened.references.values().flat_map(|file| judged(opened, file, &states, &fitted)).collect()
+}
+
+fn judged(opened: &Opened, file: &ReferenceFile, tables: &Tables<'_>, fitted: &BTreeSet<String>) -> Vec<Judged> {
+    let mut judged = judge(file, tables, fitted);
+    judged.iter_mut().for_each(|one| one.role = opened.role(&one.id));
+    judged
 }
 
 /// Shows of each entry of these experiments that it can fail; returns those that cannot.

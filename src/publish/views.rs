@@ -54,9 +54,17 @@ fn accuracy(opened: &Opened, item: &Item, up: &str) -> Option<AccuracyLinks> {
 /// The index of all pages.
 pub(super) fn index(opened: &Opened, judgement: &Judgement) -> String {
     let views: Vec<ExperimentView<'_>> = opened.items.iter().map(|item| listed(judgement, item)).collect();
-    let measured: Vec<(&str, &str)> =
-        MEASURED.into_iter().filter(|(_, page)| opened.layout.path(&format!("reports/{page}")).exists()).collect();
-    report::index(&views, &assumptions(opened, |_| true), &measured)
+    let calibrations = opened.calibrations.iter();
+    let calibrations: Vec<(String, String)> = calibrations
+        .map(|(id, calibration)| (format!("Calibration: {}", calibration.title), format!("calibrations/{id}.md")))
+        .collect();
+    let calibrations = calibrations.iter().map(|(title, page)| (title.as_str(), page.as_str()));
+    let others: Vec<(&str, &str)> = MEASURED
+        .into_iter()
+        .chain(calibrations)
+        .filter(|(_, page)| opened.layout.path(&format!("reports/{page}")).exists())
+        .collect();
+    report::index(&views, &assumptions(opened, |_| true), &others)
 }
 
 fn listed<'a>(judgement: &'a Judgement, item: &'a Item) -> ExperimentView<'a> {

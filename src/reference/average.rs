@@ -50,6 +50,10 @@ pub struct Interpolated {
 }
 
 impl Stretch {
+    pub(crate) fn source(&self) -> Source<'_> {
+        Source { table: self.table.as_deref(), rows: &self.rows }
+    }
+
     /// True if its ends are numbers in order.
     pub(crate) fn is_sound(&self) -> bool {
         let finite = [self.from, self.to].iter().flatten().all(|end| end.is_finite());
@@ -76,8 +80,7 @@ impl Stretch {
 
     /// What leaving out every other point changes is twice the grid's uncertainty; the points' own errors are taken as one.
     fn take(&self, view: &View<'_>, of: impl Fn(&Line) -> f64) -> Result<Extracted, Absence> {
-        let source = Source { table: self.table.as_deref(), rows: &self.rows };
-        let whole = self.cut(&view.line(source, &self.of, &self.over, None)?)?;
+        let whole = self.cut(&view.line(self.source(), &self.of, &self.over, None)?)?;
         let value = of(&whole);
         let last = whole.x.len() - 1;
         let half: Vec<usize> = (0..=last).filter(|i| i % 2 == 0 || *i == last).collect();
@@ -126,8 +129,12 @@ impl Stretch {
 }
 
 impl Interpolated {
+    pub(crate) fn source(&self) -> Source<'_> {
+        Source { table: self.table.as_deref(), rows: &self.rows }
+    }
+
     pub(crate) fn take(&self, view: &View<'_>) -> Result<Extracted, Absence> {
-        let line = view.line(Source { table: self.table.as_deref(), rows: &self.rows }, &self.of, &self.over, None)?;
+        let line = view.line(self.source(), &self.of, &self.over, None)?;
         let (at, half_unit) = self.at.converted_to(&line.over_unit).ok_or_else(|| {
             Absence::Broken(format!("`{}` is no `{}` in `{}`", self.at.text(), self.over, line.over_unit))
         })?;

@@ -39,6 +39,7 @@ use super::resonance::PrintedPeak;
 use super::selection::Selection;
 use super::tube::Curve;
 use super::verdict::Verdict;
+use super::view::Source;
 use crate::spec::{Spanned, from_yaml, position};
 
 /// The entries of one experiment.
@@ -127,14 +128,52 @@ impl ReferenceFile {
     #[must_use]
     pub fn other_tables(&self) -> BTreeSet<String> {
         let tables = |entry: &Entry| -> Vec<String> {
-            let named = match &entry.check {
-                Check::Value { from, .. } => from.tables(),
-                Check::Peak { .. } => Vec::new(),
-                Check::Claim { predicate, .. } => predicate.tables(),
-            };
-            named.into_iter().map(String::from).collect()
+            entry.sources().iter().filter_map(|source| source.table.map(String::from)).collect()
         };
         self.entries.iter().flat_map(tables).filter(|id| *id != self.experiment).collect()
+    }
+}
+
+/// Rows that an entry reads.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Reading {
+    /// The experiment whose table it is.
+    pub experiment: String,
+    /// The rows: those of a line, a map or a list, of which the entry picks for itself.
+    pub rows: Selection,
+    /// Of a line only what lies around this value of this parameter, if it is read between two points.
+    pub around: Option<(String, Printed)>,
+}
+
+impl Entry {
+    /// All that it reads, as an entry of `experiment`.
+    #[must_use]
+    pub fn readings(&self, experiment: &str) -> Vec<Reading> {
+        let around = match &self.check {
+            Check::Value { from: Extraction::Interpolated(word), .. } => Some((word.over.clone(), word.at.clone())),
+            _ => None,
+        };
+        let reading = |source: &Source<'_>| {
+            let id = source.table.unwrap_or(experiment);
+            let rows = if id == experiment { self.rows.and(source.rows) } else { source.rows.clone() };
+            Reading { experiment: id.into(), rows, around: around.clone() }
+        };
+        self.sources().iter().map(reading).collect()
+    }
+
+    /// True if it tells solvers apart; otherwise it reads the event-driven rows, where there are any.
+    #[must_use]
+    pub fn names_solver(&self) -> bool {
+        self.rows.0.contains_key("solver")
+            || serde_json::to_string(&self.check).is_ok_and(|text| text.contains("\"solver\""))
+    }
+
+    fn sources(&self) -> Vec<Source<'_>> {
+        match &self.check {
+            Check::Value { from, .. } => from.sources(),
+            Check::Peak { .. } => vec![Source { table: None, rows: &self.rows }],
+            Check::Claim { predicate, .. } => predicate.sources(),
+        }
     }
 }
 

@@ -245,27 +245,26 @@ impl Extraction {
         }
     }
 
-    /// The other experiments whose tables it reads.
-    pub(crate) fn tables(&self) -> Vec<&str> {
-        let table = match self {
-            Self::Number(_) | Self::NearestPassage(_) => None,
-            Self::Cell(word) | Self::Mean(word) | Self::Largest(word) | Self::Smallest(word) => word.table.as_deref(),
-            Self::Interpolated(word) => word.table.as_deref(),
-            Self::MeanOver(word) | Self::StandardDeviationOver(word) => word.table.as_deref(),
-            Self::Peak(peak) => peak.table.as_deref(),
-            Self::Maximum(word) | Self::Minimum(word) | Self::Argmax(word) | Self::Argmin(word) => {
-                word.table.as_deref()
-            }
-            Self::AtMaximum(word) => word.table.as_deref(),
-            Self::End(word) => word.table.as_deref(),
-            Self::Crossing(word) => word.table.as_deref(),
-            Self::FirstAbove(word) => word.table.as_deref(),
-            Self::Parting(word) => word.table.as_deref(),
-            Self::Meeting(word) => word.table.as_deref(),
-            Self::LargestStepBack(word) => word.table.as_deref(),
-            Self::Ratio(quotient) => return [quotient.of.tables(), quotient.to.tables()].concat(),
-            Self::Times(times) => return times.of.tables(),
+    /// Where it reads.
+    pub(crate) fn sources(&self) -> Vec<Source<'_>> {
+        let source = match self {
+            Self::Number(_) => return Vec::new(),
+            Self::NearestPassage(word) => Source { table: None, rows: &word.rows },
+            Self::Cell(word) | Self::Mean(word) | Self::Largest(word) | Self::Smallest(word) => word.source(),
+            Self::Interpolated(word) => word.source(),
+            Self::MeanOver(word) | Self::StandardDeviationOver(word) => word.source(),
+            Self::Peak(peak) => peak.source(),
+            Self::Maximum(word) | Self::Minimum(word) | Self::Argmax(word) | Self::Argmin(word) => word.source(),
+            Self::AtMaximum(word) => word.source(),
+            Self::End(word) => word.source(),
+            Self::Crossing(word) => word.source(),
+            Self::FirstAbove(word) => word.source(),
+            Self::Parting(word) => word.source(),
+            Self::Meeting(word) => word.source(),
+            Self::LargestStepBack(word) => word.source(),
+            Self::Ratio(quotient) => return [quotient.of.sources(), quotient.to.sources()].concat(),
+            Self::Times(times) => return times.of.sources(),
         };
-        table.into_iter().collect()
+        vec![source]
     }
 }

@@ -18,11 +18,12 @@ use super::printed::Printed;
 use super::resonance::PrintedPeak;
 use super::tally::{Decision, Outcome};
 use super::text::{percent, significant, with_unit};
-use super::verdict::{Comparison, Judged, Moved, Part, Verdict};
+use super::verdict::{Comparison, Judged, Moved, Part, Role, Verdict};
 use super::view::{Absence, Reads, Tables, View};
 use crate::table::BASELINE;
 
-/// Gives every entry of a file its verdict. `fitted` holds the ids of the entries that an assumption was fitted to.
+/// Gives every entry of a file its verdict. `fitted` holds the ids of the entries that an assumption was fitted to; whether a
+/// calibration knows them is left to the caller ([`Judged::role`]).
 #[must_use]
 pub fn judge(file: &ReferenceFile, tables: &Tables<'_>, fitted: &BTreeSet<String>) -> Vec<Judged> {
     let priced = |entry: &Entry| {
@@ -100,6 +101,7 @@ pub(crate) fn judge_entry(
         robust: judgement.robust,
         moved: judgement.moved,
         price: Price::default(),
+        role: Role::Neither,
     }
 }
 

@@ -35,7 +35,7 @@ mod view;
 
 pub use accept::{AcceptError, accept};
 pub use entry::{
-    Check, Entry, ReferenceError, ReferenceFile, Tolerance, ToleranceSize, load_reference, parse_reference,
+    Check, Entry, Reading, ReferenceError, ReferenceFile, Tolerance, ToleranceSize, load_reference, parse_reference,
 };
 pub use extraction::Extraction;
 pub use fit::{Fit, FitMeasure};
@@ -48,5 +48,5 @@ pub use resonance::{Feature, PrintedPeak, Which};
 pub use schema::reference_schema;
 pub use selection::{Allowed, Selection};
 pub use self_test::{SelfTestFailure, self_test};
-pub use verdict::{Comparison, Judged, Moved, Part, Verdict};
+pub use verdict::{Comparison, Judged, Moved, Part, Role, Verdict};
 pub use view::{TableState, Tables};

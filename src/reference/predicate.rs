@@ -441,15 +441,32 @@ impl Predicate {
         }
     }
 
-    /// The other experiments whose tables it reads.
-    pub(crate) fn tables(&self) -> Vec<&str> {
+    /// Where it reads.
+    pub(crate) fn sources(&self) -> Vec<Source<'_>> {
+        let at_home = |rows| vec![Source { table: None, rows }];
         match self {
-            Self::Trend(claim) => claim.of.tables(),
+            Self::Trend(claim) => claim.of.sources(),
             Self::GreatestFirst(values) | Self::Equal(Equal { values, .. }) | Self::Apart(Apart { values, .. }) => {
-                values.iter().flat_map(Extraction::tables).collect()
+                values.iter().flat_map(Extraction::sources).collect()
             }
-            Self::Between(claim) => claim.value.tables(),
-            _ => Vec::new(),
+            Self::Between(claim) => claim.value.sources(),
+            Self::Monotone(claim) => vec![claim.source()],
+            Self::Above(claim) | Self::Below(claim) => vec![claim.source()],
+            Self::ColumnsAgree(claim) => vec![claim.source()],
+            Self::LinesAgree(claim) => vec![claim.source()],
+            Self::LineAbove(claim) => vec![claim.source()],
+            Self::Linear(claim) => vec![claim.source()],
+            Self::LevelsOff(claim) => vec![claim.source()],
+            Self::GreatestAtEnd(claim) => vec![claim.source()],
+            Self::Peaks(claim) => vec![claim.source()],
+            Self::Onsets(claim) => vec![claim.source()],
+            Self::PathsCross(claim) => vec![claim.source()],
+            Self::PathMonotone(claim) => vec![claim.source()],
+            Self::GreatestPoint(claim) => vec![claim.source()],
+            Self::BestPlace(claim) => at_home(&claim.rows),
+            Self::GrowsTowards(claim) => at_home(&claim.rows),
+            Self::Curve(claim) => at_home(&claim.rows),
+            Self::ModeShape(claim) => at_home(&claim.rows),
         }
     }
 }

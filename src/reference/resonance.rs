@@ -76,13 +76,17 @@ pub(super) fn usual_prominence() -> f64 {
 }
 
 impl Peak {
+    pub(crate) fn source(&self) -> Source<'_> {
+        Source { table: self.table.as_deref(), rows: &self.rows }
+    }
+
     /// True if every number written into it makes sense.
     pub(crate) fn is_sound(&self) -> bool {
         (0.0..1.0).contains(&self.prominence) && self.which != Which::Number(0)
     }
 
     pub(crate) fn take(&self, view: &View<'_>) -> Result<Extracted, Absence> {
-        let line = view.line(Source { table: self.table.as_deref(), rows: &self.rows }, &self.of, &self.over, None)?;
+        let line = view.line(self.source(), &self.of, &self.over, None)?;
         let at = self.choose(&line)?;
         let extracted = |value: f64, run: f64, spread: f64, unit: &str| Extracted {
             value,

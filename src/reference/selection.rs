@@ -51,7 +51,7 @@ impl Selection {
 
 impl Allowed {
     /// Whether the cell of this row is allowed.
-    pub(crate) fn admits(&self, data: &Data, row: usize) -> bool {
+    pub fn admits(&self, data: &Data, row: usize) -> bool {
         match self {
             Self::OneOf(list) => list.iter().any(|one| one.admits(data, row)),
             Self::Text(text) => match data {

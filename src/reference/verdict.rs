@@ -67,6 +67,12 @@ impl Comparison {
         self.tolerance_by_hand.unwrap_or(self.derived_tolerance())
     }
 
+    /// The verdict that another number would have in the place of this one, with the same uncertainties.
+    #[must_use]
+    pub fn verdict_of(&self, simulated: f64) -> Verdict {
+        super::compare::verdict(&Self { simulated, ..*self }, None, false).0
+    }
+
     /// |E|/u_val: how far it is off in units of its uncertainty.
     #[must_use]
     pub fn deviation(&self) -> f64 {
@@ -126,6 +132,21 @@ pub struct Judged {
     pub moved: Vec<Moved>,
     /// What was simulated for it.
     pub price: Price,
+    /// Whether it had a say in the choice of inputs.
+    pub role: Role,
+}
+
+/// The part of an entry in the choice of the inputs that the study does not state.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Role {
+    /// An assumption was chosen by it, or a calibration fits it: its agreement proves nothing.
+    Fitted,
+    /// A calibration kept it aside, to be tested by it.
+    HeldOut,
+    /// None.
+    #[default]
+    Neither,
 }
 
 /// An entry with one assumption moved.

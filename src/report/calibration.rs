@@ -1,78 +1,134 @@
 //! The page of a calibration.
 
-use crate::calibrate::{Calibrated, Compared, Profile};
-use crate::reference::Found;
-use crate::spec::Calibration;
-use crate::text::number;
+use crate::calibrate::{Calibrated, Compared, Profile, Read};
+use crate::reference::{Found, Verdict};
+use crate::spec::{Calibration, CalibrationInput, CalibrationSearch, SolverChoice, Tried};
+use crate::text::{number, words};
 
 use super::assumption::value_in_words;
 use super::markdown::{Align, MarkdownTable, counted};
+use super::tally::word;
 
-/// Agreement that still tells something, as among the verdicts.
-const NEAR: f64 = 0.1;
 /// A value whose least residual exceeds the best by less than this share of it is as good as the best.
 const AS_GOOD: f64 = 0.1;
 
 /// The page.
 #[must_use]
 pub fn calibration(calibration: &Calibration, result: &Calibrated) -> String {
-    let share = |residual: Option<f64>| residual.map_or_else(|| "none".into(), percent);
     let mut text = format!("# {}\n\n[All experiments](../README.md)\n\n{}\n\n", calibration.title, calibration.about);
+    if !calibration.finding.is_empty() {
+        text += &format!("**What it shows**, in the words of who looked at the result: {}\n\n", calibration.finding);
+    }
     text += &format!(
-        "{} of values, every one of them run; {} fitted, {} held out. Residual: root mean square of the fitted entries’ \
-         relative errors. Best: **{}**; with the assumptions in force: {}.\n\n",
-        counted(calibration.combinations(), "combination", "combinations"),
+        "{} fitted, {} held out. {}\n\n{}\n\n",
         counted(result.fitted.len(), "entry", "entries"),
         result.held_out.len(),
-        share(result.best),
-        share(result.in_force),
+        searched(calibration, result),
+        residuals(result)
     );
-    text += "## Inputs\n\nFor each value the least residual with all other inputs free; bold the best. An input is \
-             determined if no other value comes as near.\n\n";
+    text += "## Inputs\n\nFor each value the least residual that was found with it, all other inputs free; bold the best. \
+             An input is determined if no other value comes within a tenth of the best residual.\n\n";
     let mut table = MarkdownTable::new(&[
         ("Input", Align::Left),
         ("Value: least residual", Align::Left),
         ("Determined", Align::Left),
     ]);
-    for (profile, place) in result.profiles.iter().zip(&result.places) {
-        table.row([format!("`{}`", profile.name), points(profile, *place), determined(profile, *place).into()]);
+    for ((input, profile), place) in calibration.inputs.iter().zip(&result.profiles).zip(&result.places) {
+        let cells = [format!("`{}`", input.name), points(input, profile, *place), determined(profile, *place).into()];
+        table.row(cells);
     }
     text += &table.finish();
-    text += &entries("Fitted entries", &result.fitted);
-    text += &entries("Held-out entries", &result.held_out);
-    let near = |list: &[Compared], of: fn(&Compared) -> &Found| list.iter().filter(|one| is_near(of(one))).count();
+    text += "## Entries\n\nRun as results, with an ensemble where the motion is chaotic, and judged by the entry’s own \
+             tolerance; nothing is allowed for inputs that the study does not state, as they are what is chosen here.\n\n";
+    text += &entries("Fitted", &result.fitted);
+    text += &entries("Held out", &result.held_out);
     text += &format!(
-        "Within a tenth, or holding: {} of {} fitted and {} of {} held-out entries with the best inputs; {} and {} with \
-         those in force.\n",
-        near(&result.fitted, |one| &one.best),
-        result.fitted.len(),
-        near(&result.held_out, |one| &one.best),
-        result.held_out.len(),
-        near(&result.fitted, |one| &one.in_force),
-        near(&result.held_out, |one| &one.in_force),
+        "Reproduced with the best inputs: {}; {}. With those in force: {}; {}.\n",
+        reproduced(&result.fitted, "fitted", |one| &one.best),
+        reproduced(&result.held_out, "held out", |one| &one.best),
+        reproduced(&result.fitted, "fitted", |one| &one.in_force),
+        reproduced(&result.held_out, "held out", |one| &one.in_force),
     );
     text
 }
 
-fn percent(residual: f64) -> String {
-    format!("{} %", number::significant(100.0 * residual, 2))
+/// How the sets were chosen, and how the search ended.
+fn searched(calibration: &Calibration, result: &Calibrated) -> String {
+    let runs = match calibration.ensemble {
+        0 => "each as a single run".to_owned(),
+        members => format!("chaotic points as the mean of {members} runs"),
+    };
+    let CalibrationSearch::Coordinate { .. } = calibration.search else {
+        let sets = counted(result.tried, "combination of values was", "combinations of values were");
+        return format!("All {sets} tried, {runs}.");
+    };
+    let ends: Vec<String> = result.ends.iter().map(|residual| share(*residual)).collect();
+    format!(
+        "Coordinate search, {runs}: {} of {} possible ones, from {}, which ended at {}{}. What lies between the sets that were \
+         tried is not known: a least residual is one that was found.",
+        counted(result.tried, "set of inputs", "sets of inputs"),
+        calibration.combinations(),
+        counted(ends.len(), "start", "starts"),
+        ends.join(", "),
+        if result.cut_short { ", the last one by the budget" } else { "" }
+    )
 }
 
-fn points(profile: &Profile, best: usize) -> String {
-    let told = profile.points.iter().enumerate().map(|(place, (value, residual))| {
-        let residual = residual.map_or_else(|| "no number".into(), percent);
-        let told = format!("{}: {residual}", value_in_words(profile.moves, value));
+fn residuals(result: &Calibrated) -> String {
+    let [in_force, best] = result.as_results.map(share);
+    format!(
+        "Residual: root mean square of the fitted entries’ relative errors, where a claim that fails counts as 100 %. Best: \
+         **{}**; with the inputs in force: {}. As results, with ensembles: {best} and {in_force}.",
+        share(result.best),
+        share(result.in_force),
+    )
+}
+
+fn share(residual: Option<f64>) -> String {
+    residual.map_or_else(|| "none".into(), |residual| format!("{} %", number::significant(100.0 * residual, 2)))
+}
+
+fn points(input: &CalibrationInput, profile: &Profile, best: usize) -> String {
+    let told = profile.residuals.iter().enumerate().map(|(place, residual)| {
+        let told =
+            format!("{}: {}", value(&input.tried, place), residual.map_or("none".into(), |one| share(Some(one))));
         if place == best { format!("**{told}**") } else { told }
     });
     told.collect::<Vec<_>>().join("; ")
 }
 
+/// One of the values, in words. Curves that end alike are told by their place.
+fn value(tried: &Tried, place: usize) -> String {
+    match tried {
+        Tried::Values { moves, values } => {
+            let told = |place: usize| {
+                let mut told: Vec<String> = Vec::new();
+                for (name, value) in moves.iter().zip(&values[place]) {
+                    let value = value_in_words(*name, value);
+                    if !told.contains(&value) {
+                        told.push(value);
+                    }
+                }
+                told.join(" / ")
+            };
+            let told_here = told(place);
+            let alike = (0..values.len()).any(|other| other != place && told(other) == told_here);
+            if alike { format!("no. {}, {told_here}", place + 1) } else { told_here }
+        }
+        Tried::Factors { by, .. } => format!("× {}", number::compact(by[place], 4)),
+        Tried::Solvers(solvers) => match solvers[place] {
+            SolverChoice::EventDriven => "exact".into(),
+            step @ SolverChoice::FixedStep { .. } => words::of_solver(&step.label()),
+        },
+    }
+}
+
 fn determined(profile: &Profile, best: usize) -> &'static str {
-    let Some((_, Some(least))) = profile.points.get(best) else { return "no" };
-    let rivals = profile.points.iter().enumerate().filter(|(place, (_, residual))| {
+    let Some(Some(least)) = profile.residuals.get(best) else { return "no" };
+    let rivals = profile.residuals.iter().enumerate().filter(|(place, residual)| {
         *place != best && residual.is_some_and(|residual| residual <= (1.0 + AS_GOOD) * least)
     });
-    match (rivals.count(), profile.points.len()) {
+    match (rivals.count(), profile.residuals.len()) {
         (_, 1) => "held",
         (0, _) => "yes",
         (rivals, all) if rivals + 1 == all => "no",
@@ -80,12 +136,9 @@ fn determined(profile: &Profile, best: usize) -> &'static str {
     }
 }
 
-fn is_near(found: &Found) -> bool {
-    match found {
-        Found::Number { simulated, published } => (simulated - published).abs() <= NEAR * published.abs(),
-        Found::Claim { holds } => *holds,
-        Found::Nothing(_) => false,
-    }
+fn reproduced(list: &[Compared], what: &str, of: fn(&Compared) -> &Read) -> String {
+    let count = list.iter().filter(|one| of(one).verdict == Verdict::Reproduced).count();
+    format!("{count} of {} {what}", list.len())
 }
 
 fn entries(title: &str, list: &[Compared]) -> String {
@@ -93,19 +146,27 @@ fn entries(title: &str, list: &[Compared]) -> String {
         ("Entry", Align::Left),
         ("Study", Align::Right),
         ("In force", Align::Right),
+        ("Verdict", Align::Left),
         ("Best inputs", Align::Right),
-        ("Within a tenth, or holds", Align::Left),
+        ("Verdict", Align::Left),
     ]);
     for one in list {
-        let study = match &one.best {
+        let study = match &one.best.found {
             Found::Number { published, .. } => number::compact(*published, 5),
             _ => String::new(),
         };
-        let near = if is_near(&one.best) { "yes" } else { "no" };
-        table.row([format!("`{}`", one.id), study, told(&one.in_force), told(&one.best), near.into()]);
+        let verdict = |read: &Read| word(read.verdict).to_owned();
+        table.row([
+            format!("`{}`", one.id),
+            study,
+            told(&one.in_force.found),
+            verdict(&one.in_force),
+            told(&one.best.found),
+            verdict(&one.best),
+        ]);
     }
     let table = table.finish();
-    if table.is_empty() { table } else { format!("## {title}\n\n{table}") }
+    if table.is_empty() { table } else { format!("### {title}\n\n{table}") }
 }
 
 fn told(found: &Found) -> String {

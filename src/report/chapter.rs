@@ -2,7 +2,7 @@
 
 use super::markdown::{Align, MarkdownTable, counted, one_line};
 use super::page::place;
-use super::tally::{Tally, VERDICTS, word};
+use super::tally::{ROLES, Tally, VERDICTS, agreeing, word};
 use super::view::ExperimentView;
 
 /// Pictures side by side in the gallery.
@@ -22,12 +22,14 @@ pub(super) fn section(chapter: u32, experiments: &[&ExperimentView<'_>]) -> Stri
     );
     let mut header = vec![("Experiment", Align::Left), ("In the study", Align::Left)];
     header.extend(VERDICTS.map(|verdict| (word(verdict), Align::Right)));
+    header.extend(ROLES.map(|role| (role, Align::Right)));
     let mut table = MarkdownTable::new(&header);
     for view in experiments {
         let tally = Tally::of(view.judged);
         let mut row = vec![link(view), place(&view.experiment.source)];
         // Zeros would hide what there is.
         row.extend(tally.each().map(|(_, count)| if count == 0 { String::new() } else { count.to_string() }));
+        row.extend(agreeing(view.judged));
         table.row(row);
     }
     text += &table.finish();

@@ -4,7 +4,7 @@ use crate::reference::{Comparison, Judged, Moved, Price, Verdict};
 use crate::text::number::{compact, signed, significant};
 
 use super::markdown::{Align, MarkdownTable, counted, one_line};
-use super::tally::{Tally, shown};
+use super::tally::{Tally, role, shown};
 
 /// The section on an experiment's page.
 pub(super) fn section(judged: &[Judged]) -> String {
@@ -35,6 +35,7 @@ fn entries(judged: &[Judged]) -> String {
         ("Where", Align::Left),
         ("What came out", Align::Left),
         ("Verdict", Align::Left),
+        ("Fitted or held out", Align::Left),
         ("Rests on", Align::Right),
     ];
     if moved {
@@ -48,6 +49,7 @@ fn entries(judged: &[Judged]) -> String {
             one.place.clone(),
             one.found.clone(),
             shown(one),
+            role(one).into(),
             rests_on(one.price),
         ];
         if moved {

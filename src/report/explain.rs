@@ -60,8 +60,10 @@ pub fn explain(view: &EntryView<'_>) -> String {
     }
     if !view.unmoved.is_empty() {
         text += &format!(
-            "\nIts experiment leans on these too, and was not run with another value of them: {}.\n",
-            names(&view.unmoved)
+            "\nIts experiment leans on these too, and was not run with another value of them: {}.\n\
+             `shotdamp explain --run {}` does, where they have one.\n",
+            names(&view.unmoved),
+            judged.id
         );
     }
     text

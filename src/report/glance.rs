@@ -4,13 +4,14 @@ use std::collections::BTreeMap;
 
 use super::chapter::title;
 use super::markdown::{Align, MarkdownTable};
-use super::tally::{Tally, VERDICTS, word};
+use super::tally::{ROLES, Tally, VERDICTS, agreeing, word};
 use super::view::ExperimentView;
 
 /// Experiments and entries by verdict, chapter by chapter and in all.
 pub(super) fn table(chapters: &BTreeMap<u32, Vec<&ExperimentView<'_>>>) -> String {
     let mut header = vec![("Chapter", Align::Left), ("Experiments", Align::Right), ("Entries", Align::Right)];
     header.extend(VERDICTS.map(|verdict| (word(verdict), Align::Right)));
+    header.extend(ROLES.map(|role| (role, Align::Right)));
     let mut table = MarkdownTable::new(&header);
     for (number, views) in chapters {
         let title = title(*number);
@@ -24,9 +25,14 @@ pub(super) fn table(chapters: &BTreeMap<u32, Vec<&ExperimentView<'_>>>) -> Strin
 }
 
 fn row(name: String, views: &[&ExperimentView<'_>]) -> Vec<String> {
-    let tally = Tally::of(views.iter().flat_map(|view| view.judged));
+    let judged = views.iter().flat_map(|view| view.judged);
+    let tally = Tally::of(judged.clone());
     let counts = tally.each().map(|(_, count)| if count == 0 { String::new() } else { count.to_string() });
-    [name, views.len().to_string(), tally.total().to_string()].into_iter().chain(counts).collect()
+    [name, views.len().to_string(), tally.total().to_string()]
+        .into_iter()
+        .chain(counts)
+        .chain(agreeing(judged))
+        .collect()
 }
 
 /// The name of a heading as a link knows it.

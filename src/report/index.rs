@@ -36,6 +36,10 @@ may be off (its discretisation, the grid of its sweep, the spread of its ensembl
 digit. |E| below u_val means that the two agree as well as can be known. A *claim* in words (\"increases\", \"the same \
 maximum\") is decided over the whole table.
 
+An entry is *fitted* if an input that the study does not state was chosen by it, or is searched by it in a calibration; \
+it is *held out* if a calibration keeps it aside to be tested by it. The columns \"fitted to\" and \"held out\" tell how \
+many of those agree. Only what is held out, or neither, is evidence.
+
 *Event-driven* runs follow the exact motion from one contact to the next; *fixed step* runs repeat the study’s scheme, \
 which looks for contacts once a step, so that the difference between the two is what its step did to its curve. Impact \
 dampers are chaotic in wide ranges: there the mean of an *ensemble* of minutely perturbed starts is shown, and the band \

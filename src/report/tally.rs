@@ -1,6 +1,6 @@
 //! Verdicts in words and in numbers.
 
-use crate::reference::{Judged, Verdict};
+use crate::reference::{Judged, Role, Verdict};
 
 /// All verdicts, the best first.
 pub(super) const VERDICTS: [Verdict; 6] =
@@ -45,6 +45,30 @@ pub(super) fn shown(judged: &Judged) -> String {
         verdict.to_owned()
     } else {
         format!("{verdict}, as expected")
+    }
+}
+
+/// The heads of the columns of [`agreeing`].
+pub(super) const ROLES: [&str; 2] = ["fitted to", "held out"];
+
+/// How many of the entries that inputs were fitted to agree, and how many of those held out: `3 of 4`, or nothing.
+pub(super) fn agreeing<'a>(judged: impl IntoIterator<Item = &'a Judged> + Clone) -> [String; 2] {
+    [Role::Fitted, Role::HeldOut].map(|role| {
+        let of_role = || judged.clone().into_iter().filter(|one| one.role == role);
+        let agree = of_role().filter(|one| matches!(one.verdict, Verdict::Reproduced | Verdict::Fitted)).count();
+        match of_role().count() {
+            0 => String::new(),
+            all => format!("{agree} of {all}"),
+        }
+    })
+}
+
+/// The role of an entry as a page tells it.
+pub(super) fn role(judged: &Judged) -> &'static str {
+    match judged.role {
+        Role::Fitted => "fitted",
+        Role::HeldOut => "held out",
+        Role::Neither => "neither",
     }
 }
 

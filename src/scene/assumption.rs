@@ -9,6 +9,9 @@ use super::recipe::{Given, RecipeError};
 /// A curve through measured points (abscissa, ordinate), abscissae increasing; end values outside.
 pub type Curve = Vec<[f64; 2]>;
 
+/// The reading of a contact damping ratio that puts the equivalent damping curve in its place.
+pub const EQUIVALENT_VISCOUS: &str = "equivalent_viscous";
+
 /// The names of the unstated inputs. The same word stands in `experiments/assumptions.yaml`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -19,7 +22,8 @@ pub enum Assumption {
     ImpulseFactor,
     /// Which ω that is: `forcing` or `natural` frequency.
     ImpulseFrequency,
-    /// Floor and ceiling damping ratio ζf = cf/(2 √(kf mp)).
+    /// Floor and ceiling damping ratio ζf = cf/(2 √(kf mp)), or `equivalent_viscous`: cf by [`Self::EquivalentDampingCurve`].
+    /// So are the other damping ratios of contacts.
     ContactDampingRatio,
     /// kf/ks where the text gives none.
     FloorStiffnessRatio,
@@ -146,6 +150,13 @@ impl Assumptions {
             Some(AssumptionValue::Curve(curve)) => Ok(curve),
             _ => Err(RecipeError::Assumption(name, "as a curve")),
         }
+    }
+
+    /// True if a damping ratio is left to the equivalent damping curve.
+    #[must_use]
+    pub fn is_equivalent_viscous(&self, given: Given) -> bool {
+        let Given::Assumed(name) = given else { return false };
+        matches!(self.values.get(&name), Some(AssumptionValue::Choice(word)) if word == EQUIVALENT_VISCOUS)
     }
 
     /// The number that was stated, or the assumption's.

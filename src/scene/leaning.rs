@@ -91,7 +91,12 @@ impl DamperRecipe {
                     StiffnessRecipe::Stiffness(_) | StiffnessRecipe::Tuned => {}
                 }
                 match damping {
-                    ContactDampingRecipe::Ratio(given) => lean(set, given),
+                    ContactDampingRecipe::Ratio(given) => {
+                        lean(set, given);
+                        if in_force.is_equivalent_viscous(*given) {
+                            set.insert(Assumption::EquivalentDampingCurve);
+                        }
+                    }
                     ContactDampingRecipe::EquivalentViscous => drop(set.insert(Assumption::EquivalentDampingCurve)),
                     ContactDampingRecipe::Damping(_) => {}
                 }

@@ -19,7 +19,7 @@ mod told;
 
 use serde::{Deserialize, Serialize};
 
-pub use assumption::{Assumption, AssumptionValue, Assumptions, Curve};
+pub use assumption::{Assumption, AssumptionValue, Assumptions, Curve, EQUIVALENT_VISCOUS};
 pub use compile::{CompileError, compile};
 pub use effect::{EffectUse, effects};
 pub use normal_modes::{NormalMode, normal_modes};

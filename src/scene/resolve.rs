@@ -276,7 +276,12 @@ impl SurfaceRecipe {
             Self::Resilient { stiffness, damping, no_tension } => {
                 let stiffness = stiffness.resolve(base, particle_mass, loaded)?;
                 above("the surface's stiffness", stiffness, 0.0)?;
+                let equivalent = || {
+                    let curve = assumptions.curve(Assumption::EquivalentDampingCurve)?;
+                    Ok::<_, RecipeError>(ContactDamping::EquivalentViscous(curve.clone()))
+                };
                 let damping = match damping {
+                    ContactDampingRecipe::Ratio(given) if assumptions.is_equivalent_viscous(given) => equivalent()?,
                     ContactDampingRecipe::Ratio(given) => {
                         let ratio = assumptions.given(given)?;
                         at_least("contact_damping_ratio", ratio, 0.0)?;
@@ -286,9 +291,7 @@ impl SurfaceRecipe {
                         at_least("the surface's damping", value, 0.0)?;
                         ContactDamping::Constant(value)
                     }
-                    ContactDampingRecipe::EquivalentViscous => ContactDamping::EquivalentViscous(
-                        assumptions.curve(Assumption::EquivalentDampingCurve)?.clone(),
-                    ),
+                    ContactDampingRecipe::EquivalentViscous => equivalent()?,
                 };
                 let ends = if no_tension { ContactEnd::ZeroForce } else { ContactEnd::ZeroGap };
                 Ok(Surface::Resilient { stiffness, damping, ends })

@@ -7,7 +7,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use serde::{Deserialize, Serialize};
 
-use crate::scene::{Assumption, AssumptionValue, Assumptions, ImpulseTime};
+use crate::scene::{Assumption, AssumptionValue, Assumptions, EQUIVALENT_VISCOUS, ImpulseTime};
 
 use super::diagnostic::{Findings, Problems};
 use super::quantity::Dimension;
@@ -67,6 +67,8 @@ impl AssumptionSheet {
 pub(super) enum Kind {
     Quantity(Dimension),
     Ratio,
+    /// A damping ratio of contacts, or the equivalent damping curve in its place.
+    ContactDamping,
     Restitution,
     Choice(&'static [&'static str]),
     /// A number of modes.
@@ -88,15 +90,15 @@ pub(super) fn kind(name: Assumption) -> Kind {
         Assumption::StopLength => Kind::Quantity(Dimension::Length),
         Assumption::StopRestitution => Kind::Restitution,
         Assumption::ImpulseFactor
-        | Assumption::ContactDampingRatio
         | Assumption::FloorStiffnessRatio
         | Assumption::CeilingMassRatio
         | Assumption::MasslessRatio
-        | Assumption::UntunedFrequencyRatio
+        | Assumption::UntunedFrequencyRatio => Kind::Ratio,
+        Assumption::ContactDampingRatio
         | Assumption::BeamContactDampingRatio
         | Assumption::BeamArrayDampingRatio
         | Assumption::PlateArrayDampingRatio
-        | Assumption::PlateContactDampingRatio => Kind::Ratio,
+        | Assumption::PlateContactDampingRatio => Kind::ContactDamping,
         Assumption::ImpulseFrequency => Kind::Choice(&["forcing", "natural"]),
         Assumption::UndampedMass | Assumption::HarmonicReference | Assumption::ImpulseReference => {
             Kind::Choice(&["base", "loaded"])
@@ -171,6 +173,10 @@ fn read_value(node: &Node, kind: Kind, findings: &Findings) -> Option<Assumption
     match kind {
         Kind::Quantity(dimension) => above_zero(node, dimension, findings).map(AssumptionValue::Number),
         Kind::Ratio => ratio(node, findings).map(AssumptionValue::Number),
+        Kind::ContactDamping => match scalar(node, findings)? {
+            EQUIVALENT_VISCOUS => Some(AssumptionValue::Choice(EQUIVALENT_VISCOUS.into())),
+            _ => ratio(node, findings).map(AssumptionValue::Number),
+        },
         Kind::Restitution => match ratio(node, findings)? {
             value if value <= 1.0 => Some(AssumptionValue::Number(value)),
             _ => findings.wrong(node.span, "a coefficient of restitution lies between 0 and 1"),

@@ -135,7 +135,9 @@ impl Experiment {
         used
     }
 
-    fn assumptions_under(&self, in_force: &Assumptions) -> BTreeSet<Assumption> {
+    /// The assumptions that a number of this experiment depends on under these values.
+    #[must_use]
+    pub fn assumptions_under(&self, in_force: &Assumptions) -> BTreeSet<Assumption> {
         let recipes = self.cases.iter().filter_map(|case| self.recipe_of(case).ok());
         recipes.flat_map(|recipe| self.assumptions_of(&recipe, in_force)).collect()
     }

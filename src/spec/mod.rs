@@ -34,7 +34,7 @@ mod word;
 mod yaml;
 
 pub use assumption_sheet::{AssumptionEntry, AssumptionSheet, parse_assumptions};
-pub use calibration::{Calibration, CalibrationInput, load_calibration, parse_calibration};
+pub use calibration::{Calibration, CalibrationInput, CalibrationSearch, Tried, load_calibration, parse_calibration};
 pub use diagnostic::{Place, Problem, Problems};
 pub(crate) use edit::{Written, set_keys};
 pub use experiment::{

@@ -71,7 +71,7 @@ pub fn journal_name(id: &crate::spec::ExperimentId) -> String {
     format!("results/{id}.journal")
 }
 
-/// Every YAML file under `experiments/` and `reference/` as it stood at one moment, by its name within the study.
+/// Every YAML file under `experiments/`, `reference/` and `calibrations/` as it stood at one moment, by its name within the study.
 ///
 /// All that follows, hashes included, is made from these bytes and never from a second look at the disk: a file that is
 /// edited while a study runs is stale afterwards.
@@ -88,7 +88,7 @@ impl Texts {
     /// [`FileError`] if a folder or a file cannot be read, or is far too large.
     pub fn read(layout: &Layout) -> Result<Self, FileError> {
         let mut texts = Self::default();
-        for folder in ["experiments", "reference"] {
+        for folder in ["experiments", "reference", "calibrations"] {
             let path = layout.path(folder);
             if path.is_dir() {
                 texts.walk(&path, folder, DEEPEST)?;

@@ -2,7 +2,7 @@
 //!
 //! After a wanted change, `GOLDEN=write cargo test` writes the files anew.
 
-use shotdamp::reference::{Comparison, Judged, Price, Verdict};
+use shotdamp::reference::{Comparison, Judged, Price, Role, Verdict};
 use shotdamp::report::{AssumptionView, ExperimentView, FigureView, PageView, index, page, summary, value_in_words};
 use shotdamp::scene::{Assumption, AssumptionValue, EffectUse};
 use shotdamp::table::Table;
@@ -37,6 +37,7 @@ fn entry(id: &str, verdict: Verdict) -> Judged {
         robust: Some((5, 6)),
         moved: Vec::new(),
         price: Price { rows: 122, runs: 402, events: 61_180 },
+        role: Role::Neither,
     }
 }
 
@@ -56,11 +57,13 @@ fn judged() -> Vec<Judged> {
         }),
         tolerance_reason: Some("\"approximately\": the text rounds to whole numbers | or coarser".into()),
         explanation: "The stop length was chosen by this number.".into(),
+        role: Role::Fitted,
         ..entry("parting", Verdict::Fitted)
     };
     let limit = Judged {
         statement: "The curve with stop tends to a higher limit".into(),
         found: "1.004 with, 1.015 without".into(),
+        role: Role::HeldOut,
         explanation: "At f′ = 10 it does, s. 3.6.3 says no more. Beyond f′ = 500 the order turns.".into(),
         ..entry("limit", Verdict::Differs)
     };

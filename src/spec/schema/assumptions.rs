@@ -3,7 +3,7 @@
 use serde_json::{Value, json};
 
 use super::parts::{Object, any_of, between, count, list, number, one_of_words, quantity, ratio, text};
-use crate::scene::Assumption;
+use crate::scene::{Assumption, EQUIVALENT_VISCOUS};
 use crate::spec::assumption_sheet::{Kind, kind};
 use crate::spec::quantity::Dimension;
 use crate::spec::word::{from_word, words};
@@ -36,6 +36,7 @@ fn value(kind: Kind) -> Value {
     match kind {
         Kind::Quantity(dimension) => quantity(about, dimension),
         Kind::Ratio => ratio(about),
+        Kind::ContactDamping => any_of(about, vec![ratio(about), one_of_words(about, &[EQUIVALENT_VISCOUS])]),
         Kind::Restitution => between(about, 0.0, 1.0),
         Kind::Choice(readings) => one_of_words(about, readings),
         Kind::Modes => count(about, "modes", 1, 1000),

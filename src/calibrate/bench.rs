@@ -1,0 +1,192 @@
+//! Runs experiments under sets of inputs, and never the same twice.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use super::rows::Wanted;
+use super::set::Set;
+use crate::measure::{Evaluated, Rigour};
+use crate::reference::Entry;
+use crate::scene::GapWord;
+use crate::spec::{Experiment, SolverChoice};
+use crate::study::{Array, Evaluate, Event, Listen, Simulation, Task, ThreadError, Variant, run};
+use crate::table::{BASELINE, Table};
+
+/// An entry with the id of its experiment.
+pub type Asked<'a> = (&'a str, &'a Entry);
+/// Tables by experiment.
+pub(super) type SharedTables = BTreeMap<String, Arc<Table>>;
+
+/// What a number has to be worth.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Worth {
+    /// One step of a search: the mean of so many runs where the motion is chaotic; 0: a single run, as the study's numbers are.
+    Step { ensemble: u32 },
+    /// A result, of an ensemble where the motion is chaotic.
+    Result,
+}
+
+/// Where it is run, and who listens.
+pub(super) struct Hands<'a, E> {
+    pub threads: usize,
+    pub evaluate: &'a E,
+    pub listener: &'a Growing<'a>,
+}
+
+/// The experiments that entries read, ready to be run under any inputs.
+pub(super) struct Bench<'a, E> {
+    hands: &'a Hands<'a, E>,
+    worth: Worth,
+    experiments: Vec<Experiment>,
+    /// By experiment and all that its numbers lean on.
+    known: BTreeMap<(usize, String), Arc<Table>>,
+}
+
+impl<'a, E: Evaluate> Bench<'a, E> {
+    pub(super) fn new(hands: &'a Hands<'a, E>, worth: Worth, experiments: &[&Experiment], asked: &[Asked<'_>]) -> Self {
+        let mut wanted: BTreeMap<String, Wanted> = BTreeMap::new();
+        for (home, entry) in asked {
+            let read: BTreeSet<String> = entry.readings(home).into_iter().map(|reading| reading.experiment).collect();
+            for id in read {
+                wanted.entry(id.clone()).or_default().add(entry, home, &id);
+            }
+        }
+        let part = |experiment: &&Experiment| {
+            let mut part = wanted.get(&experiment.id.0)?.of(experiment);
+            if let Worth::Step { ensemble } = worth {
+                part.settings.ensemble = ensemble;
+            }
+            Some(part)
+        };
+        Self { hands, worth, experiments: experiments.iter().filter_map(part).collect(), known: BTreeMap::new() }
+    }
+
+    /// The tables under each of the sets.
+    pub(super) fn tables(&mut self, sets: &[Set]) -> Result<Vec<SharedTables>, ThreadError> {
+        let mut solvers: Vec<SolverChoice> = Vec::new();
+        for set in sets {
+            if !solvers.contains(&set.solver) {
+                solvers.push(set.solver);
+            }
+        }
+        for solver in solvers {
+            self.run_new(sets.iter().filter(|set| set.solver == solver), solver)?;
+        }
+        let of = |set: &Set| {
+            let known = |index: usize| self.known.get(&(index, self.leaning(index, set))).cloned();
+            let each = (0..self.experiments.len()).filter_map(|index| Some((index, known(index)?)));
+            each.map(|(index, table)| (self.experiments[index].id.to_string(), table)).collect()
+        };
+        Ok(sets.iter().map(of).collect())
+    }
+
+    fn run_new<'s>(&mut self, sets: impl Iterator<Item = &'s Set>, solver: SolverChoice) -> Result<(), ThreadError> {
+        let mut new: BTreeMap<(usize, String), [Variant; 1]> = BTreeMap::new();
+        for set in sets {
+            for index in 0..self.experiments.len() {
+                let key = (index, self.leaning(index, set));
+                if !self.known.contains_key(&key) {
+                    let assumptions = set.assumptions.clone();
+                    new.entry(key).or_insert([Variant { label: BASELINE.into(), moved: None, assumptions }]);
+                }
+            }
+        }
+        let metadata = BTreeMap::new();
+        let tasks: Vec<Task<'_>> = new
+            .iter()
+            .map(|((index, _), variants)| Task {
+                experiment: &self.experiments[*index],
+                variants,
+                metadata: &metadata,
+                journal: None,
+                shard: None,
+                known: None,
+            })
+            .collect();
+        let evaluate = Under { evaluate: self.hands.evaluate, solver, worth: self.worth };
+        let tables =
+            run(&tasks, self.hands.threads, &evaluate, self.hands.listener, |_, finished| Arc::new(finished.table))?;
+        self.known.extend(new.into_keys().zip(tables));
+        Ok(())
+    }
+
+    /// All that the numbers of an experiment depend on under this set.
+    fn leaning(&self, index: usize, set: &Set) -> String {
+        let used = self.experiments[index].assumptions_under(&set.assumptions);
+        let values: Vec<_> = set.assumptions.values.iter().filter(|(name, _)| used.contains(name)).collect();
+        format!("{:?} {values:?}", set.solver)
+    }
+}
+
+/// Another solver in the place of the exact one, and single runs for steps.
+struct Under<'a, E> {
+    evaluate: &'a E,
+    solver: SolverChoice,
+    worth: Worth,
+}
+
+impl<E> Under<'_, E> {
+    fn simulation<'s>(&self, it: &Simulation<'s>) -> Simulation<'s> {
+        let solver = if it.solver == SolverChoice::EventDriven { self.solver } else { it.solver };
+        Simulation { solver, rigour: self.worth.rigour(it.rigour), ..*it }
+    }
+}
+
+impl<E: Evaluate> Evaluate for Under<'_, E> {
+    fn evaluate(&self, it: &Simulation<'_>) -> Result<Evaluated, String> {
+        self.evaluate.evaluate(&self.simulation(it))
+    }
+
+    fn array<'a>(&'a self, it: Simulation<'a>, word: GapWord) -> Result<Box<dyn Array + 'a>, String> {
+        let array = self.evaluate.array(self.simulation(&it), word)?;
+        Ok(Box::new(ArrayUnder { array, worth: self.worth }))
+    }
+}
+
+struct ArrayUnder<'a> {
+    array: Box<dyn Array + 'a>,
+    worth: Worth,
+}
+
+impl Array for ArrayUnder<'_> {
+    fn evaluate(&self, gaps: &[f64], rigour: Rigour) -> Result<Evaluated, String> {
+        self.array.evaluate(gaps, self.worth.rigour(rigour))
+    }
+}
+
+impl Worth {
+    fn rigour(self, asked: Rigour) -> Rigour {
+        match self {
+            Self::Step { ensemble: 0 } => Rigour::Step,
+            Self::Step { .. } => Rigour::Look,
+            Self::Result => asked,
+        }
+    }
+}
+
+/// Passes on what many runs tell as if they were one, whose size comes out as it goes on.
+pub(super) struct Growing<'a> {
+    listener: &'a dyn Listen,
+    simulations: AtomicU64,
+}
+
+impl<'a> Growing<'a> {
+    pub(super) fn new(listener: &'a dyn Listen) -> Self {
+        Self { listener, simulations: AtomicU64::new(0) }
+    }
+}
+
+impl Listen for Growing<'_> {
+    fn hear(&self, event: &Event<'_>) {
+        match event {
+            Event::Begun { experiments, simulations } => {
+                let simulations = self.simulations.fetch_add(*simulations, Ordering::Relaxed) + simulations;
+                self.listener.hear(&Event::Begun { experiments: *experiments, simulations });
+            }
+            // Whoever runs them says when the last one is over.
+            Event::Ended | Event::Finished { .. } => {}
+            other => self.listener.hear(other),
+        }
+    }
+}

@@ -1,0 +1,37 @@
+//! One assumption moved at a time: what an entry reads then.
+
+use super::bench::{Asked, Bench, Growing, Hands, Worth};
+use super::fit::{Read, read};
+use super::set::Set;
+use crate::scene::{Assumption, AssumptionValue, Assumptions};
+use crate::spec::Experiment;
+use crate::study::{Evaluate, Event, Listen, ThreadError};
+
+/// Members of the ensemble of a chaotic point: as for the other values of assumptions in a run.
+const MEMBERS: u32 = 8;
+
+/// What an entry of the experiment `asked.0` reads with each of `moves` by itself, all other inputs in force. Only the rows that
+/// it reads are run.
+///
+/// # Errors
+/// If the threads cannot be started.
+pub fn moved_alone(
+    asked: Asked<'_>,
+    moves: &[(Assumption, AssumptionValue)],
+    experiments: &[&Experiment],
+    in_force: &Assumptions,
+    threads: usize,
+    evaluate: &impl Evaluate,
+    listener: &dyn Listen,
+) -> Result<Vec<Read>, ThreadError> {
+    let hands = Hands { threads, evaluate, listener: &Growing::new(listener) };
+    let set = |(name, value): &(Assumption, AssumptionValue)| {
+        let mut set = Set::in_force(in_force);
+        set.assumptions.values.insert(*name, value.clone());
+        set
+    };
+    let sets: Vec<Set> = moves.iter().map(set).collect();
+    let tables = Bench::new(&hands, Worth::Step { ensemble: MEMBERS }, experiments, &[asked]).tables(&sets)?;
+    listener.hear(&Event::Ended);
+    Ok(tables.iter().map(|tables| read(&asked, tables)).collect())
+}

@@ -1,0 +1,112 @@
+//! Of an experiment the rows that entries read, so that no others are simulated.
+
+use crate::reference::{Entry, Reading, Selection};
+use crate::scene::ParameterValue;
+use crate::spec::{Case, Experiment, SolverChoice};
+use crate::table::Data;
+use crate::text::words;
+
+/// Points of a line to either side of a value between two of them: what an interpolation, and the refinement of the line
+/// there, look at.
+const BESIDE: usize = 3;
+
+/// What entries ask of one experiment.
+#[derive(Debug, Default)]
+pub(super) struct Wanted {
+    readings: Vec<Reading>,
+    every_solver: bool,
+}
+
+impl Wanted {
+    /// Adds what an entry of the experiment `home` reads of the experiment `id`.
+    pub(super) fn add(&mut self, entry: &Entry, home: &str, id: &str) {
+        self.readings.extend(entry.readings(home).into_iter().filter(|reading| reading.experiment == id));
+        self.every_solver |= entry.names_solver();
+    }
+
+    /// The experiment with these rows only, and without the searches of an optimisation: gaps that the study names are
+    /// evaluated, none are looked for.
+    pub(super) fn of(&self, experiment: &Experiment) -> Experiment {
+        let mut part = experiment.clone();
+        let near: Vec<Option<Vec<f64>>> =
+            self.readings.iter().map(|reading| points_around(reading, experiment)).collect();
+        let asked = |case: &Case, solver: Option<SolverChoice>| {
+            self.readings.iter().zip(&near).any(|(reading, near)| {
+                admits(&reading.rows, case, solver)
+                    && near.as_ref().is_none_or(|points| at(reading, case).is_none_or(|x| points.contains(&x)))
+            })
+        };
+        part.cases.retain(|case| asked(case, None));
+        for case in &mut part.cases {
+            let whole = case.clone();
+            let event_driven = whole.solvers.contains(&SolverChoice::EventDriven);
+            case.solvers.retain(|solver| {
+                asked(&whole, Some(*solver))
+                    && (self.every_solver || !event_driven || *solver == SolverChoice::EventDriven)
+            });
+        }
+        part.cases.retain(|case| !case.solvers.is_empty());
+        if let Some(optimise) = &mut part.optimise {
+            optimise.searches.clear();
+            optimise.two_opt_of.clear();
+            optimise.landscape = None;
+            let named = |name: &str| {
+                let name = Data::Text(vec![name.to_owned()]);
+                let admits =
+                    |reading: &Reading| reading.rows.0.get("candidate").is_none_or(|allowed| allowed.admits(&name, 0));
+                self.readings.iter().any(admits)
+            };
+            optimise.candidates.retain(|candidate| named(&candidate.name));
+        }
+        part
+    }
+}
+
+/// Whether the rows of a case may be meant. A condition on a column that is no parameter of the sweep excludes nothing.
+fn admits(rows: &Selection, case: &Case, solver: Option<SolverChoice>) -> bool {
+    rows.0.iter().all(|(column, allowed)| {
+        let cell = match column.as_str() {
+            "sweep" => Some(Data::Text(vec![case.sweep.clone()])),
+            "solver" => solver.map(|solver| Data::Text(vec![solver.label()])),
+            name => cell(case, name),
+        };
+        cell.is_none_or(|cell| allowed.admits(&cell, 0))
+    })
+}
+
+/// The cell of a case as its table has it; none for a parameter that the case does not set.
+fn cell(case: &Case, column: &str) -> Option<Data> {
+    let (_, value) = case.values.iter().find(|(parameter, _)| words::of_key(parameter) == column)?;
+    Some(match value {
+        ParameterValue::Number(x) => Data::Float(vec![*x]),
+        ParameterValue::Infinite => Data::Float(vec![f64::INFINITY]),
+        word => Data::Text(vec![words::of_key(word)]),
+    })
+}
+
+/// The case's value of the parameter between whose points the reading interpolates.
+fn at(reading: &Reading, case: &Case) -> Option<f64> {
+    let (over, _) = reading.around.as_ref()?;
+    case.values.iter().find_map(|(parameter, value)| match value {
+        ParameterValue::Number(x) if words::of_key(parameter) == *over => Some(*x),
+        _ => None,
+    })
+}
+
+/// The points of the lines around the value that is read.
+fn points_around(reading: &Reading, experiment: &Experiment) -> Option<Vec<f64>> {
+    let (over, printed) = reading.around.as_ref()?;
+    let parameter = experiment.swept.iter().find(|parameter| words::of_key(*parameter) == *over)?;
+    let (value, _) = printed.converted_to(parameter.unit())?;
+    let mut points: Vec<f64> = experiment
+        .cases
+        .iter()
+        .filter(|case| admits(&reading.rows, case, None))
+        .filter_map(|c| at(reading, c))
+        .collect();
+    points.sort_by(f64::total_cmp);
+    points.dedup();
+    let above = points.partition_point(|x| *x <= value);
+    let last = (above + BESIDE).min(points.len());
+    Some(points[above.saturating_sub(BESIDE)..last].to_vec())
+}
