@@ -146,7 +146,8 @@ Examples:
   shotdamp run                                all that is stale
   shotdamp run ch3-limit-stop                 one experiment; --force to simulate it again
   shotdamp run 'ch3-gap*' --dry-run           what a pattern would simulate
-  shotdamp run --chapter 4 --jobs 1")]
+  shotdamp run --chapter 4 --jobs 1
+  shotdamp run --force --times                all of it from nothing, and what it took")]
 pub(super) struct RunArgs {
     #[command(flatten)]
     pub choice: Choice,
@@ -159,6 +160,9 @@ pub(super) struct RunArgs {
     /// Only simulate; leave figures and reports as they are, for `check --reports`
     #[arg(long)]
     pub tables: bool,
+    /// Write what each experiment took to reports/times.json, for the index to show
+    #[arg(long, conflicts_with_all = ["dry_run", "shard"])]
+    pub times: bool,
     /// Go on after an experiment that fails; this is what happens anyway
     #[arg(long)]
     pub keep_going: bool,

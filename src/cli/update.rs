@@ -8,11 +8,11 @@ use super::output::{complain, complain_of, print};
 use super::select::{Chosen, choose};
 use super::simulate::{How, Ran, held, simulate, tell_failures};
 use crate::publish::{Opened, Published, judge_all, publish, summary};
-use crate::study::{Item, Layout, Lock, Snapshot, State, Texts, save};
+use crate::study::{Item, Layout, Lock, RunTimes, Snapshot, State, Texts, save};
 
 /// Brings the chosen experiments up to date.
 pub(super) fn update(layout: &Layout, args: &RunArgs, common: &Args) -> Result<Exit, CliError> {
-    if args.choice.is_all() && !args.force && !args.tables {
+    if args.choice.is_all() && !args.force && !args.tables && !args.times {
         // The short way: no lock, no YAML, no table, no thread.
         if let Some(snapshot) = Snapshot::current(layout, &Texts::read(layout)?) {
             print(&format!("Nothing to do.\n{}", snapshot.summary))?;
@@ -32,6 +32,9 @@ pub(super) fn update(layout: &Layout, args: &RunArgs, common: &Args) -> Result<E
     let how = How { threads: common.threads(), quiet: common.quiet, shard: None, anew: args.force };
     let Ran { restored, unsaved } =
         simulate(layout, &todo, how, |item, finished| save(layout, item, finished).map(|_| ()))?;
+    if args.times {
+        RunTimes::of(layout, opened.items.iter().map(|item| &item.source.experiment.id)).write(layout)?;
+    }
     let experiments = todo.len() - restored;
     let done = Done { verb: "simulated", experiments, restored, problems: unsaved, tables_only: args.tables };
     conclude(layout, opened.texts.clone(), &args.choice, done)

@@ -10,8 +10,14 @@ use super::pages::render;
 use super::verdicts::Judgement;
 
 /// What benchmarks, tests and other commands write below `reports/`, and no run: files that begin so.
-const WRITTEN_OTHERWISE: [&str; 5] =
-    ["reports/speed.", "reports/accuracy.", "reports/accuracy/", "reports/calibrations/", "reports/hard-cases."];
+const WRITTEN_OTHERWISE: [&str; 6] = [
+    "reports/speed.",
+    "reports/times.json",
+    "reports/accuracy.",
+    "reports/accuracy/",
+    "reports/calibrations/",
+    "reports/hard-cases.",
+];
 /// Folders in folders below `reports/`; ends a walk that a link leads in a circle.
 const DEEPEST: u32 = 8;
 /// Longest part of a line that is told.

@@ -12,7 +12,7 @@ use crate::report::{
 };
 use crate::scene::{Assumption, Scene, effects};
 use crate::spec::{Experiment, FigureSpec};
-use crate::study::{Item, table_name};
+use crate::study::{Item, RunTimes, table_name};
 use crate::text::words;
 
 /// Measured times stand on pages of their own, which benchmarks and other commands write.
@@ -53,7 +53,9 @@ fn accuracy(opened: &Opened, item: &Item, up: &str) -> Option<AccuracyLinks> {
 
 /// The index of all pages.
 pub(super) fn index(opened: &Opened, judgement: &Judgement) -> String {
-    let views: Vec<ExperimentView<'_>> = opened.items.iter().map(|item| listed(judgement, item)).collect();
+    let times = RunTimes::read(&opened.layout);
+    let listed = |item| listed(judgement, item, times.as_ref());
+    let views: Vec<ExperimentView<'_>> = opened.items.iter().map(listed).collect();
     let calibrations = opened.calibrations.iter();
     let calibrations: Vec<(String, String)> = calibrations
         .map(|(id, calibration)| (format!("Calibration: {}", calibration.title), format!("calibrations/{id}.md")))
@@ -64,10 +66,11 @@ pub(super) fn index(opened: &Opened, judgement: &Judgement) -> String {
         .chain(calibrations)
         .filter(|(_, page)| opened.layout.path(&format!("reports/{page}")).exists())
         .collect();
-    report::index(&views, &assumptions(opened, |_| true), &others)
+    let machine = times.as_ref().map(|times| &times.machine);
+    report::index(&views, &assumptions(opened, |_| true), &others, machine)
 }
 
-fn listed<'a>(judgement: &'a Judgement, item: &'a Item) -> ExperimentView<'a> {
+fn listed<'a>(judgement: &'a Judgement, item: &'a Item, times: Option<&RunTimes>) -> ExperimentView<'a> {
     let experiment = &item.source.experiment;
     let folder = match item.source.folder() {
         "" => String::new(),
@@ -78,6 +81,7 @@ fn listed<'a>(judgement: &'a Judgement, item: &'a Item) -> ExperimentView<'a> {
     ExperimentView {
         experiment,
         judged: judged(judgement, &experiment.id.0),
+        seconds: times.and_then(|times| times.seconds.get(&experiment.id.0)).copied(),
         page: format!("{folder}{}.md", experiment.id),
         figures: if drawn { figures(experiment, &folder) } else { Vec::new() },
     }

@@ -1,5 +1,6 @@
 //! A chapter of the study at a glance, as a part of the index.
 
+use super::glance::took;
 use super::markdown::{Align, MarkdownTable, counted, one_line};
 use super::page::place;
 use super::tally::{ROLES, Tally, VERDICTS, agreeing, word};
@@ -23,6 +24,8 @@ pub(super) fn section(chapter: u32, experiments: &[&ExperimentView<'_>]) -> Stri
     let mut header = vec![("Experiment", Align::Left), ("In the study", Align::Left)];
     header.extend(VERDICTS.map(|verdict| (word(verdict), Align::Right)));
     header.extend(ROLES.map(|role| (role, Align::Right)));
+    let timed = experiments.iter().any(|view| view.seconds.is_some());
+    header.extend(timed.then_some(("Processor time", Align::Right)));
     let mut table = MarkdownTable::new(&header);
     for view in experiments {
         let tally = Tally::of(view.judged);
@@ -30,6 +33,7 @@ pub(super) fn section(chapter: u32, experiments: &[&ExperimentView<'_>]) -> Stri
         // Zeros would hide what there is.
         row.extend(tally.each().map(|(_, count)| if count == 0 { String::new() } else { count.to_string() }));
         row.extend(agreeing(view.judged));
+        row.extend(timed.then(|| took(view.seconds.into_iter())));
         table.row(row);
     }
     text += &table.finish();

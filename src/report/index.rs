@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use crate::reference::{Judged, Verdict};
+use crate::study::Machine;
 
 use super::markdown::{counted, first_sentence, one_line};
 use super::tally::{Tally, VERDICTS, meaning, shown, word};
@@ -52,9 +53,14 @@ order.
 ";
 
 /// `reports/README.md`: everything at a glance. `experiments` in the order in which the index lists them; `measured` are
-/// the pages that other commands have written: title and link.
+/// the pages that other commands have written: title and link; `machine` is where times were taken, if they were.
 #[must_use]
-pub fn index(experiments: &[ExperimentView<'_>], assumptions: &[AssumptionView], measured: &[(&str, &str)]) -> String {
+pub fn index(
+    experiments: &[ExperimentView<'_>],
+    assumptions: &[AssumptionView],
+    measured: &[(&str, &str)],
+    machine: Option<&Machine>,
+) -> String {
     let judged = || experiments.iter().flat_map(|view| view.judged);
     let tally = Tally::of(judged());
     let unexpected = judged().filter(|one| !one.as_expected()).count();
@@ -78,8 +84,12 @@ pub fn index(experiments: &[ExperimentView<'_>], assumptions: &[AssumptionView],
         chapters.entry(view.experiment.source.chapter).or_default().push(view);
     }
     text += &glance::table(&chapters);
-    // The same results give the same bytes, and measured times are never the same.
-    text += "Times differ from run to run and are not in here; measured ones have pages of their own.\n\n";
+    if let Some(Machine { processor, threads, system, build }) = machine {
+        text += &format!(
+            "Processor time of one run from nothing ({processor}, {threads} threads, {system}, {build}); the wall sees as little \
+             of it as there are threads.\n\n"
+        );
+    }
     text += "[How to read a page](#how-to-read-a-page) · [Not reproduced](#not-reproduced) · \
              [Assumptions](#assumptions) · [Tolerances set by hand](#tolerances-set-by-hand)";
     for (title, link) in measured {

@@ -45,6 +45,8 @@ pub struct ExperimentView<'a> {
     pub experiment: &'a Experiment,
     /// Its entries with their verdicts.
     pub judged: &'a [Judged],
+    /// Processor time that its simulations took, s, where somebody has measured it.
+    pub seconds: Option<f64>,
     /// Its page, relative to the index.
     pub page: String,
     /// Its figures, relative to the index.

@@ -5,6 +5,7 @@
 use shotdamp::reference::{Comparison, Judged, Price, Role, Verdict};
 use shotdamp::report::{AssumptionView, ExperimentView, FigureView, PageView, index, page, summary, value_in_words};
 use shotdamp::scene::{Assumption, AssumptionValue, EffectUse};
+use shotdamp::study::Machine;
 use shotdamp::table::Table;
 use shotdamp::text::number::{compact, quantity, signed, significant};
 use shotdamp::text::words;
@@ -147,10 +148,17 @@ fn the_index_tells_the_whole_study_at_a_glance() {
     let view = ExperimentView {
         experiment: &experiment,
         judged: &judged,
+        seconds: Some(12.3),
         page: "ch3/ch3-limit-stop.md".into(),
         figures: figures("ch3/"),
     };
-    golden("index.md", &index(&[view], &assumptions(), &[("Speed", "speed.md")]));
+    let machine = Machine {
+        processor: "a processor".into(),
+        threads: 2,
+        system: "linux, x86_64".into(),
+        build: "release build".into(),
+    };
+    golden("index.md", &index(&[view], &assumptions(), &[("Speed", "speed.md")], Some(&machine)));
 }
 
 #[test]
@@ -192,8 +200,14 @@ fn an_explanation_is_told_by_its_first_sentence_in_the_index() {
         explanation: "Only Fig. 18 and s. 3.6 say so. The rest is lost.".into(),
         ..entry("limit", Verdict::Blocked)
     }];
-    let view = ExperimentView { experiment: &experiment, judged: &one, page: String::new(), figures: Vec::new() };
-    let text = index(&[view], &[], &[]);
+    let view = ExperimentView {
+        experiment: &experiment,
+        judged: &one,
+        seconds: None,
+        page: String::new(),
+        figures: Vec::new(),
+    };
+    let text = index(&[view], &[], &[], None);
     assert!(text.contains("Only Fig. 18 and s. 3.6 say so.\n"), "{text}");
 }
 
