@@ -138,15 +138,22 @@ impl Experiment {
     /// The assumptions that a number of this experiment depends on under these values.
     #[must_use]
     pub fn assumptions_under(&self, in_force: &Assumptions) -> BTreeSet<Assumption> {
-        let recipes = self.cases.iter().filter_map(|case| self.recipe_of(case).ok());
-        recipes.flat_map(|recipe| self.assumptions_of(&recipe, in_force)).collect()
+        self.assumptions_of(self.cases.iter().filter_map(|case| self.recipe_of(case).ok()), in_force)
     }
 
-    /// The assumptions that a number may depend on, in a scene in which a case has been set already.
+    /// The assumptions that a number may depend on, in scenes in which a case has been set already.
     #[must_use]
-    pub fn assumptions_of(&self, recipe: &Recipe, in_force: &Assumptions) -> BTreeSet<Assumption> {
-        let recipes = self.recipes_in(recipe).unwrap_or_default();
-        let mut used: BTreeSet<Assumption> = recipes.iter().flat_map(|recipe| recipe.assumptions(in_force)).collect();
+    pub fn assumptions_of(
+        &self,
+        scenes: impl IntoIterator<Item = Recipe>,
+        in_force: &Assumptions,
+    ) -> BTreeSet<Assumption> {
+        let mut used = BTreeSet::new();
+        for scene in scenes {
+            for recipe in self.recipes_in(&scene).unwrap_or_default() {
+                used.extend(recipe.assumptions(in_force));
+            }
+        }
         if !self.measures.iter().any(|measure| measure.needs_undamped()) {
             used.remove(&Assumption::UndampedMass);
         }

@@ -27,9 +27,10 @@ pub(super) fn jobs(experiment: &Experiment, variants: &[Variant]) -> Vec<Job> {
         jobs.iter().copied().enumerate().filter(|(_, job)| job.solver == SolverChoice::EventDriven).collect();
     for (variant, Variant { moved, assumptions, .. }) in variants.iter().enumerate().skip(1) {
         for (row, job) in &event_driven {
-            let leans = experiment
-                .recipe_of(&experiment.cases[job.case])
-                .map_or(true, |recipe| moved.is_none_or(|moved| recipe.assumptions(assumptions).contains(&moved)));
+            // Not the scene alone leans on assumptions: a measure may have readings of its own.
+            let leans = experiment.recipe_of(&experiment.cases[job.case]).map_or(true, |recipe| {
+                moved.is_none_or(|moved| experiment.assumptions_of([recipe], assumptions).contains(&moved))
+            });
             jobs.push(Job { variant, same_as: (!leans).then_some(*row), ..*job });
         }
     }

@@ -56,7 +56,7 @@ impl<'a> RowMeaning<'a> {
                 scene.set(maximise.over, ParameterValue::Number(*at)).ok().map(|()| scene)
             }));
         }
-        let names = scenes.iter().flat_map(|scene| self.experiment.assumptions_of(scene, in_force));
+        let names = self.experiment.assumptions_of(scenes, in_force).into_iter();
         names.filter_map(|name| Some((format!("{name:?}"), in_force.values.get(&name)?))).collect()
     }
 }

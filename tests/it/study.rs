@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use shotdamp::measure::Evaluated;
 use shotdamp::scene::Excitation;
-use shotdamp::study::{Evaluate, Event, Held, Listen, Loaded, Lock, Silence, Simulation, Snapshot};
+use shotdamp::study::{Evaluate, Event, Held, KnownRows, Listen, Loaded, Lock, Silence, Simulation, Snapshot};
 
 use crate::desk::{ASSUMPTIONS, Desk, GAP, GAP_REFERENCE, MadeUp, STOP};
 
@@ -45,6 +45,21 @@ fn a_row_is_a_case_under_a_solver_in_a_variant() {
     // The maximum itself is simulated once more, as a result.
     let grid_and_rounds = 3 * (5 + 3 * 2 + 1);
     assert_eq!(engine.simulations.into_inner(), 12 + 2 * 6 + 3 + grid_and_rounds);
+}
+
+/// The equation of the mass measure is lost: its readings are compared, though no scene depends on them.
+#[test]
+fn a_measure_that_can_be_read_in_several_ways_is_computed_for_each_of_them() {
+    let desk = Desk::new();
+    let repository = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
+    for name in ["experiments/assumptions.yaml", "experiments/ch5/ch5-measures-centre.yaml"] {
+        desk.put(name, &fs::read_to_string(repository.join(name)).unwrap());
+    }
+    let item = &desk.plan()["ch5-measures-centre"];
+    let extent = item.extent(&desk.layout, &KnownRows::nothing());
+    // Clean, light and heavy: at the baseline, with another damper mass (which the clean plate lacks), another impulse, and
+    // under two more readings.
+    assert_eq!((extent.to_do, extent.rows), (3 + 2 + 3 + 2 * 3, 15));
 }
 
 #[test]
