@@ -4,8 +4,8 @@ use std::time::{Duration, Instant};
 
 use serde::{Deserialize, Serialize};
 
-/// Fewest runs.
-const FEWEST: usize = 3;
+/// Fewest runs; three where two do not agree.
+const FEWEST: usize = 2;
 /// Runs between two looks at the median.
 const BETWEEN: usize = 8;
 /// Most runs.
@@ -28,12 +28,15 @@ pub struct Times {
 }
 
 impl Times {
-    /// Repeats a run until its median settles, or for `patience` but three times at least.
+    /// Repeats a run until its median settles, or for `patience` but until two runs agree, or three times, at least.
     pub fn of(mut run: impl FnMut(), patience: Duration) -> Self {
         let begun = Instant::now();
         let mut times: Vec<f64> = Vec::new();
         let mut settled = false;
-        while times.len() < FEWEST || (!settled && times.len() < MOST && begun.elapsed() < patience) {
+        while times.len() < FEWEST
+            || (times.len() == FEWEST && !are_alike(&times))
+            || (!settled && times.len() < MOST && begun.elapsed() < patience)
+        {
             let begin = Instant::now();
             run();
             times.push(begin.elapsed().as_secs_f64());
@@ -43,10 +46,9 @@ impl Times {
             }
         }
         let least = times.iter().copied().fold(f64::INFINITY, f64::min);
-        let median = median(&times);
         // Runs so long that there are few of them differ little.
-        settled |= times.len() < BETWEEN && times.iter().all(|time| (time / median - 1.0).abs() < SETTLED);
-        Self { least, median, runs: times.len(), settled }
+        settled |= times.len() < BETWEEN && are_alike(&times);
+        Self { least, median: median(&times), runs: times.len(), settled }
     }
 
     /// Of a single run: a guess.
@@ -56,10 +58,19 @@ impl Times {
     }
 }
 
+/// All within one per cent of their median.
+fn are_alike(times: &[f64]) -> bool {
+    let median = median(times);
+    times.iter().all(|time| (time / median - 1.0).abs() < SETTLED)
+}
+
 fn median(times: &[f64]) -> f64 {
     let mut sorted = times.to_vec();
     sorted.sort_by(f64::total_cmp);
-    sorted.get(sorted.len() / 2).copied().unwrap_or(f64::NAN)
+    match sorted.len() {
+        0 => f64::NAN,
+        count => f64::midpoint(sorted[(count - 1) / 2], sorted[count / 2]),
+    }
 }
 
 /// What times were measured on.

@@ -3,7 +3,8 @@
 use std::path::Path;
 use std::time::Duration;
 
-use shotdamp::report::{AccuracyView, ablation as told, accuracy_page, accuracy_summary};
+use shotdamp::reference::{Price, Verdict};
+use shotdamp::report::{AccuracyView, VerdictPrice, ablation as told, accuracy_page, accuracy_summary};
 use shotdamp::scene::Assumptions;
 use shotdamp::spec::{Experiment, load_assumptions, parse_experiment};
 use shotdamp::study::{Ablation, Accuracy, Contender, Machine, Origin, Outcome, ablation, accuracy};
@@ -50,6 +51,36 @@ fn certified_events_cost_no_digit_and_a_step_costs_most_of_them() {
         let finest = case.skipped.last().expect("steps of a microsecond take more than two milliseconds");
         assert!(finest.reason.contains("would take about"), "{}", finest.reason);
     }
+}
+
+#[test]
+fn beside_a_verdict_stands_what_it_cost_and_what_a_fixed_step_would_have() {
+    let entry = |name: &str, tolerance: Option<f64>| VerdictPrice {
+        entry: name.into(),
+        verdict: Verdict::Reproduced,
+        uncertainty: tolerance,
+        tolerance,
+        price: Price { rows: 2, runs: 2, events: 120 },
+        factor: 1,
+    };
+    let view = AccuracyView {
+        id: "a-damper".into(),
+        title: "A damper".into(),
+        machine: Machine::here(),
+        accuracy: measured("floor: {resilient: {stiffness_ratio: 1, damping_ratio: 0.3}}", "[7]"),
+        entries: vec![
+            entry("rough", Some(0.5)),
+            entry("fine", Some(1e-13)),
+            entry("claim", None),
+            VerdictPrice { price: Price::default(), ..entry("not-run", Some(0.5)) },
+        ],
+    };
+    let page = accuracy_page(&view, "a-damper.png");
+    let line = |name: &str| page.lines().find(|line| line.starts_with(&format!("| `{name}`"))).unwrap_or_default();
+    assert!(line("rough").contains("2 runs, 120 events") && line("rough").contains("s, fixed step"), "{page}");
+    assert!(line("fine").ends_with("| no step tried |"), "{page}");
+    assert!(line("claim").contains("a claim") && line("claim").ends_with("|  |"), "{page}");
+    assert_eq!(line("not-run"), "", "{page}");
 }
 
 #[test]

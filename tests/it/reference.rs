@@ -4,7 +4,8 @@ use std::collections::BTreeSet;
 use std::path::Path;
 
 use shotdamp::reference::{
-    Judged, Printed, ReferenceFile, TableState, Tables, Verdict, judge, load_reference, parse_reference, self_test,
+    Judged, Price, Printed, ReferenceFile, TableState, Tables, Verdict, judge, load_reference, parse_reference,
+    self_test,
 };
 use shotdamp::table::{Column, Data, Table};
 
@@ -124,6 +125,19 @@ fn half_a_unit_of_the_last_printed_digit_is_the_uncertainty_of_a_datum() {
     for nonsense in ["", "about 2", "NaN", "inf", "1e999", "2,5", "5 parsec", "0x10", "1e-400"] {
         assert!(Printed::parse(nonsense).is_err(), "{nonsense}");
     }
+}
+
+#[test]
+fn a_verdict_tells_what_was_simulated_for_it() {
+    let mut table = variants(&[("baseline", 1.52), ("stop_length=0.05", 1.53)], 0.0, 0.1, 9);
+    table.columns.push(column("events", "", Data::Int(vec![490, 500])));
+    assert_eq!(judged(CELL, &table).price, Price { rows: 2, runs: 18, events: 990 });
+    // Rows that a condition leaves out are not paid for.
+    let mut table = peak();
+    table.columns.push(column("events", "", Data::Int(vec![10; 21])));
+    let below = format!("where: {{force_ratio: {{to: 2.5}}}}\n{OPTIMUM}");
+    assert_eq!(judged(&below, &table).price, Price { rows: 11, runs: 11, events: 110 });
+    assert_eq!(judged_as(&entry(CELL), TableState::NotRun, &[]).price, Price::default());
 }
 
 #[test]

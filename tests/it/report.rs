@@ -3,7 +3,9 @@
 //! After a wanted change, `GOLDEN=write cargo test` writes the files anew.
 
 use shotdamp::reference::{Comparison, Judged, Price, Role, Verdict};
-use shotdamp::report::{AssumptionView, ExperimentView, FigureView, PageView, index, page, summary, value_in_words};
+use shotdamp::report::{
+    AccuracyLinks, AssumptionView, ExperimentView, FigureView, PageView, index, page, summary, value_in_words,
+};
 use shotdamp::scene::{Assumption, AssumptionValue, EffectUse};
 use shotdamp::study::Machine;
 use shotdamp::table::Table;
@@ -131,7 +133,10 @@ fn page_of(table: Option<&Table>, judged: &[Judged]) -> String {
         effects: &effects(),
         figures: &figures(""),
         table_link: "../../results/ch3-limit-stop.parquet",
-        accuracy: None,
+        accuracy: Some(AccuracyLinks {
+            page: "../accuracy/ch3-limit-stop.md".into(),
+            picture: Some("../accuracy/ch3-limit-stop.png".into()),
+        }),
         index_link: "../README.md",
     })
 }
