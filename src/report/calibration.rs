@@ -26,6 +26,9 @@ pub fn calibration(calibration: &Calibration, result: &Calibrated) -> String {
         searched(calibration, result),
         residuals(result)
     );
+    if result.best.is_none() {
+        text += "**No set gives every fitted entry a number**; “best inputs” stands for those in force.\n\n";
+    }
     text += "## Inputs\n\nFor each value the least residual that was found with it, all other inputs free; bold the best. \
              An input is determined if no other value comes within a tenth of the best residual.\n\n";
     let mut table = MarkdownTable::new(&[
