@@ -2,7 +2,7 @@
 
 use crate::reference::{Entry, Reading, Selection};
 use crate::scene::ParameterValue;
-use crate::spec::{Case, Experiment, SolverChoice};
+use crate::spec::{Case, Experiment, SolverChoice, curves};
 use crate::table::Data;
 use crate::text::words;
 
@@ -36,16 +36,26 @@ impl Wanted {
                     && near.as_ref().is_none_or(|points| at(reading, case).is_none_or(|x| points.contains(&x)))
             })
         };
-        part.cases.retain(|case| asked(case, None));
-        for case in &mut part.cases {
-            let whole = case.clone();
-            let event_driven = whole.solvers.contains(&SolverChoice::EventDriven);
-            case.solvers.retain(|solver| {
-                asked(&whole, Some(*solver))
-                    && (self.every_solver || !event_driven || *solver == SolverChoice::EventDriven)
-            });
+        let mut kept: Vec<bool> = experiment.cases.iter().map(|case| asked(case, None)).collect();
+        // A curve that is refined has no holes: its widest interval decides how fine it may become.
+        for curve in curves(&experiment.cases, &experiment.refined) {
+            let first = curve.cases.iter().position(|&case| kept[case]);
+            let last = curve.cases.iter().rposition(|&case| kept[case]);
+            if let (Some(first), Some(last)) = (first, last) {
+                curve.cases[first..=last].iter().for_each(|&case| kept[case] = true);
+            }
         }
-        part.cases.retain(|case| !case.solvers.is_empty());
+        let narrowed = |case: &Case| {
+            let event_driven = case.solvers.contains(&SolverChoice::EventDriven);
+            let filled_in = !asked(case, None);
+            let wanted = |solver: &&SolverChoice| {
+                (filled_in || asked(case, Some(**solver)))
+                    && (self.every_solver || !event_driven || **solver == SolverChoice::EventDriven)
+            };
+            Case { solvers: case.solvers.iter().filter(wanted).copied().collect(), ..case.clone() }
+        };
+        let cases = experiment.cases.iter().zip(kept).filter(|(_, kept)| *kept).map(|(case, _)| narrowed(case));
+        part.cases = cases.filter(|case| !case.solvers.is_empty()).collect();
         if let Some(optimise) = &mut part.optimise {
             optimise.searches.clear();
             optimise.two_opt_of.clear();

@@ -26,6 +26,9 @@ pub fn calibration(calibration: &Calibration, result: &Calibrated) -> String {
         searched(calibration, result),
         residuals(result)
     );
+    if result.best.is_none() {
+        text += "**No set gives every fitted entry a number**; “best inputs” stands for those in force.\n\n";
+    }
     text += "## Inputs\n\nFor each value the least residual that was found with it, all other inputs free; bold the best. \
              An input is determined if no other value comes within a tenth of the best residual.\n\n";
     let mut table = MarkdownTable::new(&[
@@ -34,7 +37,11 @@ pub fn calibration(calibration: &Calibration, result: &Calibrated) -> String {
         ("Determined", Align::Left),
     ]);
     for ((input, profile), place) in calibration.inputs.iter().zip(&result.profiles).zip(&result.places) {
-        let cells = [format!("`{}`", input.name), points(input, profile, *place), determined(profile, *place).into()];
+        let cells = [
+            format!("`{}`", input.name),
+            points(input, profile, *place),
+            determined(profile, *place, result.cut_short).into(),
+        ];
         table.row(cells);
     }
     text += &table.finish();
@@ -123,13 +130,14 @@ fn value(tried: &Tried, place: usize) -> String {
     }
 }
 
-fn determined(profile: &Profile, best: usize) -> &'static str {
+fn determined(profile: &Profile, best: usize, cut_short: bool) -> &'static str {
     let Some(Some(least)) = profile.residuals.get(best) else { return "no" };
     let rivals = profile.residuals.iter().enumerate().filter(|(place, residual)| {
         *place != best && residual.is_some_and(|residual| residual <= (1.0 + AS_GOOD) * least)
     });
     match (rivals.count(), profile.residuals.len()) {
         (_, 1) => "held",
+        (0, _) if cut_short => "as far as tried",
         (0, _) => "yes",
         (rivals, all) if rivals + 1 == all => "no",
         _ => "in part",

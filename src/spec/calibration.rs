@@ -1,4 +1,20 @@
 //! A calibration file: which unstated inputs are free, which entries they are fitted to, and which are held out.
+//!
+//! ```yaml
+//! title: Inputs of chapter 5
+//! about: What it is to show.
+//! finding: What it showed, written by hand when it has been run.     # may be absent
+//! search: {coordinate: {starts: 2, budget: 110 sets}}                 # every combination if absent
+//! ensemble: 4 members                                                # of chaotic points; single runs if absent
+//! calibrate:
+//!   plate_contact_damping_ratio: [0.1, 0.2, equivalent_viscous]       # values of an assumption
+//!   curve_height: {scales: equivalent_damping_curve, by: [0.5, 1, 2]} # factors of one
+//!   damper_mass: {moves: [beam_damper_mass, plate_damper_mass], values: [total, modal]}   # several at once
+//!   impulse: {moves: [impulse_factor, plate_impulse_time], values: [[1, radian], [2, half_sine]]}
+//!   solver: [event_driven, {fixed_step: {time_step: 1 ms}}]
+//! fit: [ch5-impulse-ratio/tuned-184]
+//! hold_out: [ch5-mass-crossing/*]
+//! ```
 
 use std::collections::BTreeSet;
 use std::path::Path;

@@ -249,6 +249,17 @@ fn explain_tells_what_an_entry_hangs_on_and_simulates_nothing() {
         assert!(said.out.contains(part), "{part}: {}", said.out);
     }
     assert!(before == files(desk.folder.path()), "nothing was written");
+    desk.put(
+        "experiments/assumptions.yaml",
+        &ASSUMPTIONS.replace("stop_restitution: {value: 0,", "stop_restitution: {value: 0, range: [0.5],"),
+    );
+    desk.put("reference/ch3/ch3-stop.yaml", &STOP_REFERENCE.replace("at-two", "at-2"));
+    let unmoved = shotdamp(&desk, &["explain", "ch3-stop/at-2"]);
+    assert!(unmoved.out.contains("`shotdamp explain --run ch3-stop/at-2`"), "{}", unmoved.out);
+    let tried = shotdamp(&desk, &["explain", "--run", "--quiet", "ch3-stop/at-2"]);
+    assert_eq!((tried.code, tried.out.as_str(), tried.err.as_str()), (0, "", ""), "quiet");
+    let tried = shotdamp(&desk, &["explain", "--run", "ch3-stop/at-2"]);
+    assert!(tried.out.contains("stop_restitution: 0 → 0.5"), "{}", tried.out);
     let unknown = shotdamp(&desk, &["explain", "ch3-stop/at-three"]);
     assert!(unknown.code == 2 && unknown.err.contains("there is no entry `ch3-stop/at-three`"), "{}", unknown.err);
 }
