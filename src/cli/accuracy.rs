@@ -10,7 +10,7 @@ use super::exit::Exit;
 use super::output::{complain, complain_of, print};
 use super::select::{choose, open};
 use crate::publish::{judge_all, publish_accuracy, publish_accuracy_summary};
-use crate::study::{Layout, errors};
+use crate::study::{Layout, Snapshot, errors};
 
 /// Error against time of the chosen experiments; of all of them, and of what was measured before, the summary.
 pub(super) fn measure(layout: &Layout, args: &AccuracyArgs) -> Result<Exit, CliError> {
@@ -46,6 +46,8 @@ pub(super) fn measure(layout: &Layout, args: &AccuracyArgs) -> Result<Exit, CliE
         }
     }
     let summary = publish_accuracy_summary(layout)?;
+    // The next run links the pages.
+    Snapshot::forget(layout)?;
     if args.all {
         print(&summary)?;
     }

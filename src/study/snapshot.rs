@@ -96,6 +96,18 @@ impl Snapshot {
         same.then_some(snapshot)
     }
 
+    /// Forgets it: something that pages link to was written by another command.
+    ///
+    /// # Errors
+    /// [`FileError`] if it cannot be removed.
+    pub fn forget(layout: &Layout) -> Result<(), FileError> {
+        let path = layout.path(NAME);
+        match std::fs::remove_file(&path) {
+            Err(error) if error.kind() != std::io::ErrorKind::NotFound => Err(FileError::new("remove", &path, error)),
+            _ => Ok(()),
+        }
+    }
+
     /// Remembers a complete run over `texts` that left `outputs` (names within the study) and said `summary`.
     ///
     /// # Errors
