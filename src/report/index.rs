@@ -34,7 +34,8 @@ A *number* is compared after ASME V&V 20: E = S − D is the difference between 
 D. It is held against the validation uncertainty u_val = √(u_num² + u_input² + u_D²): u_num is what the run itself \
 may be off (its discretisation, the grid of its sweep, the spread of its ensemble), u_input the shift that the inputs left open by the study may cause, and u_D half a unit of the last printed \
 digit. |E| below u_val means that the two agree as well as can be known. A *claim* in words (\"increases\", \"the same \
-maximum\") is decided over the whole table.
+maximum\") is decided over the whole table. A verdict *rests on* the rows that were looked at for it, with every \
+assumption moved: so many runs, and so many events in these rows. What that takes in time is measured on a page of its own.
 
 *Event-driven* runs follow the exact motion from one contact to the next; *fixed step* runs repeat the study’s scheme, \
 which looks for contacts once a step, so that the difference between the two is what its step did to its curve. Impact \
