@@ -10,7 +10,8 @@ use super::error::CliError;
 use super::output::complain;
 use super::select::Chosen;
 use crate::study::{
-    Engine, Finished, Held, Item, KnownRows, Layout, Listen, Progress, Shard, Silence, State, Task, journal_name, run,
+    Engine, Finished, Held, Item, KnownRows, Layout, Listen, Progress, Shard, Silence, Spent, State, Task,
+    journal_name, run,
 };
 use crate::table::ParquetError;
 
@@ -62,6 +63,7 @@ pub(super) fn simulate(
     };
     let journals: Vec<PathBuf> = items.iter().map(journal).collect();
     let known: Vec<KnownRows> = if how.anew {
+        items.iter().for_each(|item| Spent::forget(layout, &item.source.experiment.id));
         items.iter().map(|_| KnownRows::nothing()).collect()
     } else {
         items.par_iter().map(|item| KnownRows::of(layout, item)).collect()

@@ -6,18 +6,10 @@ use std::fs;
 use std::path::Path;
 
 use super::opened::Opened;
+use super::otherwise::is_written_otherwise;
 use super::pages::render;
 use super::verdicts::Judgement;
 
-/// What benchmarks, tests and other commands write below `reports/`, and no run: files that begin so.
-const WRITTEN_OTHERWISE: [&str; 6] = [
-    "reports/speed.",
-    "reports/times.json",
-    "reports/accuracy.",
-    "reports/accuracy/",
-    "reports/calibrations/",
-    "reports/hard-cases.",
-];
 /// Folders in folders below `reports/`; ends a walk that a link leads in a circle.
 const DEEPEST: u32 = 8;
 /// Longest part of a line that is told.
@@ -88,7 +80,7 @@ pub fn departures(opened: &Opened, judgement: &Judgement) -> Vec<Departure> {
             .iter()
             .any(|item| item.record().is_none() && stem.starts_with(item.source.experiment.id.0.as_str()))
     };
-    let otherwise = |file: &str| WRITTEN_OTHERWISE.iter().any(|start| file.starts_with(start));
+    let otherwise = |file: &str| file.strip_prefix("reports/").is_some_and(is_written_otherwise);
     let extra = present.into_iter().filter(|file| !known.contains(file.as_str()) && !unmade(file) && !otherwise(file));
     found.extend(extra.map(|file| Departure { file, how: How::Extra }));
     found.sort_by(|a, b| a.file.cmp(&b.file));

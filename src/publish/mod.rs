@@ -7,6 +7,7 @@ mod committed;
 mod explain;
 mod figures;
 mod opened;
+mod otherwise;
 mod pages;
 mod publication;
 mod ro_crate;

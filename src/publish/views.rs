@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 
 use super::figures::figure_name;
 use super::opened::{Opened, Unread};
+use super::otherwise::PAGES;
 use super::verdicts::Judgement;
 use crate::reference::Judged;
 use crate::report::{
@@ -14,15 +15,6 @@ use crate::scene::{Assumption, Scene, effects};
 use crate::spec::{Experiment, FigureSpec};
 use crate::study::{Item, RunTimes, table_name};
 use crate::text::words;
-
-/// Measured times stand on pages of their own, which benchmarks and other commands write.
-const MEASURED: [(&str, &str); 5] = [
-    ("Speed", "speed.md"),
-    ("What accuracy costs", "accuracy.md"),
-    ("Peers", "accuracy/peers.md"),
-    ("Peers on hard sequences of events", "accuracy/peers-events.md"),
-    ("Hard cases", "hard-cases.md"),
-];
 
 /// The page of an experiment.
 pub(super) fn page(opened: &Opened, judgement: &Judgement, item: &Item) -> String {
@@ -61,7 +53,7 @@ pub(super) fn index(opened: &Opened, judgement: &Judgement) -> String {
         .map(|(id, calibration)| (format!("Calibration: {}", calibration.title), format!("calibrations/{id}.md")))
         .collect();
     let calibrations = calibrations.iter().map(|(title, page)| (title.as_str(), page.as_str()));
-    let others: Vec<(&str, &str)> = MEASURED
+    let others: Vec<(&str, &str)> = PAGES
         .into_iter()
         .chain(calibrations)
         .filter(|(_, page)| opened.layout.path(&format!("reports/{page}")).exists())

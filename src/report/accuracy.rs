@@ -142,7 +142,7 @@ pub fn accuracy_summary(views: &[AccuracyView]) -> String {
     text += "The cheapest setting of each solver that reaches an error in every case of an experiment that is not chaotic, with \
              its time over these cases. The event-driven solver has no setting that is less exact: its time is the price of \
              all digits. The price of the next digit is by how much longer the fixed step takes for an error ten times \
-             smaller. ✗ stands for an error that no step tried could reach.\n\n";
+             smaller; it is left out where no step tried brings a digit. ✗ stands for an error that no step tried could reach.\n\n";
     let mut header = vec![("Experiment".to_owned(), Align::Left), ("Event-driven: error".into(), Align::Right)];
     header.push(("time".into(), Align::Right));
     header.extend(GOALS.iter().map(|(_, goal)| (format!("Fixed step: {goal}"), Align::Right)));
@@ -233,5 +233,8 @@ fn next_digit(points: &[Over]) -> Option<f64> {
     let [x, y] = [mean(0), mean(1)];
     let square: f64 = points.iter().map(|point| (point[0] - x) * (point[0] - x)).sum();
     let product: f64 = points.iter().map(|point| (point[0] - x) * (point[1] - y)).sum();
-    (points.len() > 2 && square > 0.0).then(|| libm::exp10(-product / square))
+    let span =
+        points.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], [x, _]| [low.min(*x), high.max(*x)]);
+    // A slope over less than one digit says nothing.
+    (points.len() > 2 && span[1] - span[0] >= 1.0).then(|| libm::exp10(-product / square))
 }

@@ -87,8 +87,8 @@ pub fn index(
     text += &glance::table(&chapters);
     if let Some(Machine { processor, threads, system, build }) = machine {
         text += &format!(
-            "Processor time of one run from nothing ({processor}, {threads} threads, {system}, {build}); the wall sees as little \
-             of it as there are threads.\n\n"
+            "Processor time of one run from nothing ({processor}, {threads} threads, {system}, {build}); a run on n \
+             threads takes about the n-th part of it.\n\n"
         );
     }
     text += "[How to read a page](#how-to-read-a-page) · [Not reproduced](#not-reproduced) · \

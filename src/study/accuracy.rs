@@ -15,6 +15,7 @@ use crate::measure::{EvaluateError, Measure, Trial};
 use crate::precise::{PreciseError, precise};
 use crate::scene::Assumptions;
 use crate::spec::Experiment;
+use crate::text::number::quantity;
 
 /// Search windows that the event-driven solver is tried with.
 const WINDOWS: [f64; 3] = [1.0, 0.5, 0.25];
@@ -206,7 +207,8 @@ fn case(told: String, trial: &Trial<'_>, longest: Duration) -> Result<CaseAccura
         let contender = Contender::FixedStep { time_step };
         let foreseen = last.map_or(0.0, |(step, seconds)| seconds * step / time_step);
         if foreseen > longest.as_secs_f64() {
-            skipped.push(Skipped { contender, reason: format!("a run would take about {foreseen:.1e} s") });
+            skipped
+                .push(Skipped { contender, reason: format!("a run would take about {}", quantity(foreseen, "s", 2)) });
             continue;
         }
         match compared.point(contender) {

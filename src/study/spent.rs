@@ -66,6 +66,11 @@ impl Spent {
         }
     }
 
+    /// Forgets what is known of an experiment: a run from nothing tells all of it again.
+    pub fn forget(layout: &Layout, id: &ExperimentId) {
+        let _ = fs::remove_file(layout.path(&name(id)));
+    }
+
     /// What so many simulations of a kind will take, s; `None` if there was none so far.
     pub(super) fn ahead(&self, solver: SolverChoice, rigour: Rigour, simulations: u64) -> Option<f64> {
         if simulations == 0 {
