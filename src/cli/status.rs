@@ -1,5 +1,7 @@
 //! `shotdamp status`.
 
+use std::collections::BTreeSet;
+
 use super::args::StatusArgs;
 use super::dry_run::rows;
 use super::error::CliError;
@@ -8,15 +10,30 @@ use super::output::{complain_of, print};
 use super::select::{choose, open};
 use crate::publish::publication_reasons;
 use crate::spec::line_of;
-use crate::study::{KnownRows, Layout, State, Texts};
+use crate::study::{KnownRows, Layout, Snapshot, State, Texts};
 
 /// Where in a file of the study a part of its meaning is written.
 fn line_in(texts: &Texts, file: &str, path: &[String]) -> Option<usize> {
     line_of(std::str::from_utf8(texts.files.get(file)?).ok()?, path)
 }
 
+/// What is told where there is nothing to do.
+fn up_to_date(ids: &BTreeSet<&str>) -> String {
+    let width = ids.iter().map(|id| id.len()).max().unwrap_or(0);
+    let lines: String = ids.iter().map(|id| format!("{id:width$}  up to date\n")).collect();
+    format!("{lines}{} experiments, all up to date\n", ids.len())
+}
+
 /// One line an experiment, and below it why.
 pub(super) fn status(layout: &Layout, args: &StatusArgs) -> Result<Exit, CliError> {
+    if args.choice.is_all() {
+        // The short way: as after the last complete run, which left everything up to date.
+        let texts = Texts::read(layout)?;
+        if Snapshot::current(layout, &texts).is_some() {
+            print(&up_to_date(&texts.ids()))?;
+            return Ok(Exit::AsExpected);
+        }
+    }
     let opened = open(layout)?;
     let chosen = choose(&opened, &args.choice)?;
     complain_of(chosen.unread.iter().copied());

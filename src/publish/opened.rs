@@ -2,6 +2,8 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use rayon::prelude::*;
+
 use crate::reference::{Check, ReferenceFile, Role, parse_reference};
 use crate::spec::{AssumptionSheet, Calibration, parse_calibration};
 use crate::study::{Item, Layout, Loaded, Refused, Sensitivity, Texts};
@@ -77,7 +79,7 @@ impl Opened {
         let calibrations = calibrations(&texts, &mut unread);
         let mut items: Vec<Item> = loaded
             .sources
-            .into_iter()
+            .into_par_iter()
             .map(|source| {
                 let reference = references.get(&source.experiment.id.0);
                 let asked = source.experiment.moved.is_some();

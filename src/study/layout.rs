@@ -1,6 +1,6 @@
 //! Where a study keeps its files, and what stands in them now.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs::{self, File};
 use std::io::Read;
 use std::path::{Path, PathBuf};
@@ -97,6 +97,13 @@ impl Texts {
         Ok(texts)
     }
 
+    /// Ids that the experiments' files are called by, whether they can be understood or not.
+    #[must_use]
+    pub fn ids(&self) -> BTreeSet<&str> {
+        let names = self.files.keys().filter(|file| file.starts_with("experiments/") && *file != ASSUMPTIONS);
+        names.map(|file| stem(file)).collect()
+    }
+
     fn walk(&mut self, folder: &Path, name: &str, depth: u32) -> Result<(), FileError> {
         let fail = |source| FileError::new("list", folder, source);
         for entry in fs::read_dir(folder).map_err(fail)? {
@@ -134,4 +141,10 @@ fn read_text(path: &Path) -> Result<Vec<u8>, FileError> {
         return Err(fail(std::io::Error::other(format!("it is longer than {} MiB", LONGEST_TEXT >> 20))));
     }
     Ok(bytes)
+}
+
+/// The name of a file without its folder and ending.
+pub(super) fn stem(name: &str) -> &str {
+    let name = name.rsplit('/').next().unwrap_or(name);
+    name.rsplit_once('.').map_or(name, |(stem, _)| stem)
 }

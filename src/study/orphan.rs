@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::fs;
 
-use super::layout::{ASSUMPTIONS, Layout, Texts};
+use super::layout::{Layout, Texts, stem};
 use super::record::Record;
 use super::{earlier, spent};
 use crate::spec::ExperimentId;
@@ -16,8 +16,7 @@ const ENDINGS: [&str; 3] = ["parquet", "json", "journal"];
 /// come back.
 #[must_use]
 pub fn orphans(layout: &Layout, texts: &Texts) -> BTreeSet<String> {
-    let names = texts.files.keys().filter(|file| file.starts_with("experiments/") && *file != ASSUMPTIONS);
-    let known: BTreeSet<&str> = names.map(|file| stem(file)).collect();
+    let known = texts.ids();
     let mut found = BTreeSet::new();
     let of_nobody = |name: &str| stem(name).parse::<ExperimentId>().is_ok_and(|id| !known.contains(id.0.as_str()));
     for folder in names_in(layout, earlier::FOLDER).into_iter().filter(|name| of_nobody(name)) {
@@ -52,9 +51,4 @@ pub fn earlier_tables(layout: &Layout) -> BTreeSet<String> {
 fn names_in(layout: &Layout, folder: &str) -> Vec<String> {
     let entries = fs::read_dir(layout.path(folder)).into_iter().flatten().flatten();
     entries.filter_map(|entry| Some(format!("{folder}/{}", entry.file_name().into_string().ok()?))).collect()
-}
-
-fn stem(name: &str) -> &str {
-    let name = name.rsplit('/').next().unwrap_or(name);
-    name.rsplit_once('.').map_or(name, |(stem, _)| stem)
 }
