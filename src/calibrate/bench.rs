@@ -95,14 +95,7 @@ impl<'a, E: Evaluate> Bench<'a, E> {
         let metadata = BTreeMap::new();
         let tasks: Vec<Task<'_>> = new
             .iter()
-            .map(|((index, _), variants)| Task {
-                experiment: &self.experiments[*index],
-                variants,
-                metadata: &metadata,
-                journal: None,
-                shard: None,
-                known: None,
-            })
+            .map(|((index, _), variants)| Task::new(&self.experiments[*index], variants, &metadata))
             .collect();
         let evaluate = Under { evaluate: self.hands.evaluate, solver, worth: self.worth };
         let tables =

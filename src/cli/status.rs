@@ -1,14 +1,12 @@
 //! `shotdamp status`.
 
-use std::collections::BTreeSet;
-
 use super::args::StatusArgs;
 use super::dry_run::rows;
 use super::error::CliError;
 use super::exit::Exit;
 use super::output::{complain_of, print};
-use super::select::{choose, open};
-use crate::publish::publication_reasons;
+use super::select::choose;
+use crate::publish::{Opened, publication_reasons};
 use crate::spec::line_of;
 use crate::study::{KnownRows, Layout, Snapshot, State, Texts};
 
@@ -17,27 +15,42 @@ fn line_in(texts: &Texts, file: &str, path: &[String]) -> Option<usize> {
     line_of(std::str::from_utf8(texts.files.get(file)?).ok()?, path)
 }
 
-/// What is told where there is nothing to do.
-fn up_to_date(ids: &BTreeSet<&str>) -> String {
-    let width = ids.iter().map(|id| id.len()).max().unwrap_or(0);
-    let lines: String = ids.iter().map(|id| format!("{id:width$}  up to date\n")).collect();
-    format!("{lines}{} experiments, all up to date\n", ids.len())
+/// What is told of an experiment for which there is nothing to do.
+const UP_TO_DATE: &str = "up to date";
+
+/// The line of an experiment; ids take up as much room as the longest.
+fn line(id: &str, width: usize, state: &str) -> String {
+    format!("{id:width$}  {state}\n")
+}
+
+/// Room for the longest of these ids.
+fn width<'a>(ids: impl Iterator<Item = &'a str>) -> usize {
+    ids.map(str::len).max().unwrap_or(0)
+}
+
+/// The last line.
+fn total(all: usize, simulations: usize, reports: usize) -> String {
+    match (simulations, reports) {
+        (0, 0) => format!("{all} experiments, all up to date\n"),
+        _ => format!("{all} experiments: {simulations} to simulate, {reports} reports to renew\n"),
+    }
 }
 
 /// One line an experiment, and below it why.
 pub(super) fn status(layout: &Layout, args: &StatusArgs) -> Result<Exit, CliError> {
-    if args.choice.is_all() {
-        // The short way: as after the last complete run, which left everything up to date.
-        let texts = Texts::read(layout)?;
-        if Snapshot::current(layout, &texts).is_some() {
-            print(&up_to_date(&texts.ids()))?;
-            return Ok(Exit::AsExpected);
-        }
+    let texts = Texts::read(layout)?;
+    // The short way: as after the last complete run, which left everything up to date.
+    if args.choice.is_all() && Snapshot::current(layout, &texts).is_some() {
+        let ids = texts.ids();
+        let width = width(ids.iter().copied());
+        let lines: String = ids.iter().map(|id| line(id, width, UP_TO_DATE)).collect();
+        print(&format!("{lines}{}", total(ids.len(), 0, 0)))?;
+        return Ok(Exit::AsExpected);
     }
-    let opened = open(layout)?;
+    let opened = Opened::new(layout.clone(), texts);
     let chosen = choose(&opened, &args.choice)?;
     complain_of(chosen.unread.iter().copied());
-    let width = chosen.items.iter().map(|item| item.source.experiment.id.0.len()).max().unwrap_or(0);
+    let width = width(chosen.items.iter().map(|item| item.source.experiment.id.0.as_str()));
     let mut text = String::new();
     let (mut simulations, mut reports) = (0, 0);
     for item in &chosen.items {
@@ -47,15 +60,15 @@ pub(super) fn status(layout: &Layout, args: &StatusArgs) -> Result<Exit, CliErro
             State::Failed(_) => "failed",
             State::Current(_) => {
                 reasons = publication_reasons(&opened, item);
-                if reasons.is_empty() { "up to date" } else { "report stale" }
+                if reasons.is_empty() { UP_TO_DATE } else { "report stale" }
             }
         };
         match state {
-            "up to date" => {}
+            UP_TO_DATE => {}
             "report stale" => reports += 1,
             _ => simulations += 1,
         }
-        text += &format!("{:width$}  {state}\n", item.source.experiment.id.0);
+        text += &line(&item.source.experiment.id.0, width, state);
         if args.why {
             for reason in &reasons {
                 text += &format!("    {}\n", reason.told(|file, path| line_in(&opened.texts, file, path)));
@@ -66,11 +79,7 @@ pub(super) fn status(layout: &Layout, args: &StatusArgs) -> Result<Exit, CliErro
             }
         }
     }
-    let all = chosen.items.len();
-    text += &match (simulations, reports) {
-        (0, 0) => format!("{all} experiments, all up to date\n"),
-        _ => format!("{all} experiments: {simulations} to simulate, {reports} reports to renew\n"),
-    };
+    text += &total(chosen.items.len(), simulations, reports);
     print(&text)?;
     Ok(if !chosen.unread.is_empty() {
         Exit::CouldNot

@@ -51,6 +51,11 @@ pub(crate) fn form(parts: &[[f64; 4]], z: &[f64]) -> f64 {
     sum
 }
 
+/// The transpose of a 2 × 2 matrix, row by row.
+pub(crate) fn transposed([p, q, r, s]: [f64; 4]) -> [f64; 4] {
+    [p, r, q, s]
+}
+
 /// Value and first derivative of a block's share in a signal.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct Phase {

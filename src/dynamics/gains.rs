@@ -8,7 +8,7 @@
 //! solved when all are over, for every observed signal at once. Where two eigenvalues nearly cancel (undamped motion) G
 //! would lose digits, and [`super::integral::quadrature`] takes its place.
 
-use super::block::{Block, form, pairs};
+use super::block::{Block, form, pairs, transposed};
 use super::integral::Integrals;
 use super::lyapunov::{Lyapunov, NEARLY_NEUTRAL};
 use super::signals::Row;
@@ -103,7 +103,6 @@ impl Closed {
         let matrices: Vec<[f64; 4]> = matrices.iter().copied().chain(turning).collect();
         let alone = drive.map(|_| blocks.len() - 1);
         let equation = |(k, l): (usize, usize)| {
-            let transposed = |[p, q, r, s]: [f64; 4]| [p, r, q, s];
             let apart = blocks[k].keeps_apart(&blocks[l], NEARLY_NEUTRAL);
             Lyapunov::new(transposed(matrices[k]), transposed(matrices[l])).filter(|_| apart)
         };

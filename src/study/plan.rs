@@ -57,7 +57,7 @@ impl Item {
     #[must_use]
     pub fn task<'a>(&'a self, metadata: &'a BTreeMap<String, String>, journal: &'a Path) -> Task<'a> {
         let Self { source, variants, .. } = self;
-        Task { experiment: &source.experiment, variants, metadata, journal: Some(journal), shard: None, known: None }
+        Task { journal: Some(journal), ..Task::new(&source.experiment, variants, metadata) }
     }
 
     /// The record of the table that has this meaning, if there is one.

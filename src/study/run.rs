@@ -42,6 +42,14 @@ pub struct Task<'a> {
     pub known: Option<&'a KnownRows>,
 }
 
+impl<'a> Task<'a> {
+    /// All of it, with nothing known and nothing kept on the way.
+    #[must_use]
+    pub fn new(experiment: &'a Experiment, variants: &'a [Variant], metadata: &'a BTreeMap<String, String>) -> Self {
+        Self { experiment, variants, metadata, journal: None, shard: None, known: None }
+    }
+}
+
 /// An experiment that has been run.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Finished {

@@ -107,7 +107,7 @@ pub(super) fn outcome(
     listener: &dyn Listen,
 ) -> Outcome {
     let experiment = task.experiment;
-    if let Some(known) = task.known {
+    if let Some(known) = task.known.filter(|known| !known.is_empty()) {
         let fingerprint = RowMeaning::new(experiment).of(&task.variants[job.variant], case, job);
         if let Some(row) = known.row(experiment, fingerprint) {
             listener.hear(&Event::Simulated { experiment: &experiment.id, count: evaluations(experiment, job) });

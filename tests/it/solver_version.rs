@@ -67,17 +67,8 @@ fn bits() -> Bits {
     let metadata = BTreeMap::new();
     let task = |item: &study::Item| (item.source.experiment.clone(), item.variants.clone());
     let planned: Vec<_> = opened.items.iter().map(task).collect();
-    let tasks: Vec<Task<'_>> = planned
-        .iter()
-        .map(|(experiment, variants)| Task {
-            experiment,
-            variants,
-            metadata: &metadata,
-            journal: None,
-            shard: None,
-            known: None,
-        })
-        .collect();
+    let tasks: Vec<Task<'_>> =
+        planned.iter().map(|(experiment, variants)| Task::new(experiment, variants, &metadata)).collect();
     let bits = Mutex::new(Bits::new());
     study::run(&tasks, 2, &Engine, &Silence, |index, finished| {
         assert_eq!(finished.failures.rows, 0, "{}", finished.failures.first);

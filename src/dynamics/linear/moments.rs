@@ -4,7 +4,7 @@
 //! squarings and no digit: nothing is divided by I − E, which vanishes at resonance.
 
 use super::cycle::{Affine, product, times};
-use crate::dynamics::block::pairs;
+use crate::dynamics::block::{pairs, transposed};
 
 /// Sums over the states of several cycles at the same time within each.
 #[derive(Debug, Clone)]
@@ -91,8 +91,4 @@ impl Moments {
 
 pub(super) fn outer([a, b]: [f64; 2], [x, y]: [f64; 2]) -> [f64; 4] {
     [a * x, a * y, b * x, b * y]
-}
-
-pub(super) fn transposed([p, q, r, s]: [f64; 4]) -> [f64; 4] {
-    [p, r, q, s]
 }

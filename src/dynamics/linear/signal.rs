@@ -1,10 +1,10 @@
 //! Signals of a flow as rows over its block coordinates, and their integrals over many cycles at once.
 
 use super::cycle::{Affine, Cycle, drive_at, product, times};
-use super::moments::{Moments, outer, transposed};
-use crate::dynamics::block::{Phase, pairs};
+use super::moments::{Moments, outer};
+use crate::dynamics::block::{Phase, pairs, transposed};
 use crate::dynamics::flow::{DrivePhase, Flow};
-use crate::dynamics::gains::Gains;
+use crate::dynamics::gains::{Closed, Gains};
 use crate::dynamics::integral::{GAUSS, Integrals};
 use crate::dynamics::system::HybridSystem;
 
@@ -79,8 +79,8 @@ pub(super) fn integrals(
         duration += at.count * segment.length;
         let end_drive = drive_at(system, segment.begin + segment.length);
         let ends = [At { moments: &start, drive: segment.drive }, At { moments: &end, drive: end_drive }];
-        let gains = || gains(flow, ends, segment.level, segment.length);
-        let integrated = flow.closed.as_ref().map(|closed| closed.solve(&gains()));
+        let gained = |closed: &Closed| closed.solve(&gains(flow, ends, segment.level, segment.length));
+        let integrated = flow.closed.as_ref().map(gained);
         for (row, sum) in rows.iter().zip(&mut sums) {
             let part = match &integrated {
                 Some(integrated) => integrated.of(flow.rows.row(row.index), displacement),
