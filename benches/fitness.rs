@@ -4,8 +4,9 @@
 use std::path::Path;
 
 use divan::Bencher;
+use shotdamp::experiment::{Experiment, load_assumptions, parse_experiment};
 use shotdamp::measure::Rigour;
-use shotdamp::spec::{Experiment, SolverChoice, load_assumptions, parse_experiment};
+use shotdamp::measure::SolverChoice;
 use shotdamp::study::{Array, Engine, Evaluate, Simulation};
 
 fn main() {

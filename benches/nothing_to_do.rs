@@ -2,7 +2,7 @@
 
 use std::process::Command;
 
-use shotdamp::study::Silence;
+use shotdamp::study::IgnoreEvents;
 
 #[path = "../tests/it/desk.rs"]
 #[expect(dead_code, reason = "a bench needs only a part of it")]
@@ -25,7 +25,7 @@ fn nothing_to_do(bencher: divan::Bencher<'_, '_>) {
         desk.put(&format!("experiments/ch3/ch3-gap-{copy}.yaml"), GAP);
         desk.put(&format!("reference/ch3/ch3-gap-{copy}.yaml"), GAP_REFERENCE);
     }
-    desk.run(2, &MadeUp::default(), &Silence);
+    desk.run(2, &MadeUp::default(), &IgnoreEvents);
     let mut command = Command::new(env!("CARGO_BIN_EXE_shotdamp"));
     command.arg("--root").arg(desk.folder.path());
     let mut said = || {

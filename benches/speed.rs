@@ -12,8 +12,8 @@ use std::time::Instant;
 
 use common::{BEAM, SINGLE, experiment, system};
 use shotdamp::dynamics::{Contact, EventKind, HybridSystem, Options, Response, event_driven};
+use shotdamp::experiment::{Axis, AxisScale, Drawing, FigureSpec, Panel};
 use shotdamp::figure::draw;
-use shotdamp::spec::{Axis, AxisScale, Drawing, FigureSpec, Panel};
 use shotdamp::study::Machine;
 use shotdamp::table::{BASELINE, Column, Data, Table};
 

@@ -9,12 +9,12 @@ use shotdamp::scene::{ContactDamping, ContactEnd, Damper, Excitation, Scene, Sin
 type Failure = Box<dyn std::error::Error>;
 
 fn main() -> Result<(), Failure> {
-    println!("{}", told()?);
+    println!("{}", describe()?);
     Ok(())
 }
 
 /// What comes out, in words.
-pub fn told() -> Result<String, Failure> {
+pub fn describe() -> Result<String, Failure> {
     let frequency = 1000_f64.sqrt(); // √(k/m) of 1 kg on 1000 N/m, rad/s
     let mass = SingleMass { mass: 1.0, stiffness: 1000.0, damping: 2.0 * 0.05 * frequency };
     // 2 N s, once in the time of a free oscillation.

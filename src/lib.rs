@@ -18,18 +18,17 @@
 //!
 //! A table on disk is all that verdicts, figures and reports read.
 
+pub mod accuracy;
 pub mod atomic;
 pub mod calibrate;
 pub mod dynamics;
+pub mod experiment;
 pub mod figure;
 pub mod measure;
 pub mod optimise;
-pub mod precise;
-pub mod publish;
 pub mod reference;
 pub mod report;
 pub mod scene;
-pub mod spec;
 pub mod study;
 pub mod table;
 pub mod text;

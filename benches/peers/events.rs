@@ -10,7 +10,7 @@ use shotdamp::scene::{
 };
 
 use crate::peer::{Answer, Peer};
-use crate::scene::{Scene, Told, told};
+use crate::scene::{Scene, Told, describe};
 
 /// m/s².
 const GRAVITY: f64 = 9.81;
@@ -32,7 +32,7 @@ enum Cell {
     /// Events in the right order, how many were told, and the largest error of the times of the right ones over the period.
     Answered {
         right: usize,
-        told: usize,
+        description: usize,
         error: f64,
     },
     Failed(String),
@@ -101,7 +101,7 @@ impl Case {
 
     fn cell(&self, events: &[Told]) -> Cell {
         let (right, error) = self.scene.in_order(events);
-        Cell::Answered { right, told: events.len(), error }
+        Cell::Answered { right, description: events.len(), error }
     }
 }
 
@@ -117,7 +117,7 @@ fn word(kind: &str) -> &'static str {
 
 fn ours(cases: &[Case]) -> Column {
     let cell = |case: &Case| match event_driven(&case.scene.system, &case.scene.options) {
-        Ok(response) => case.cell(&told(&response, case.scene.system.drive.period)),
+        Ok(response) => case.cell(&describe(&response, case.scene.system.drive.period)),
         Err(error) => Cell::Failed(error.to_string()),
     };
     Column { name: "shotdamp event-driven".into(), cells: cases.iter().map(cell).collect() }
@@ -160,7 +160,7 @@ fn written(cases: &[Case], columns: &[Column], not_run: &[String]) -> String {
     let mut failures: Vec<String> = Vec::new();
     for (i, case) in cases.iter().enumerate() {
         let want = case.scene.events.len();
-        let cells: Vec<String> = columns.iter().map(|column| column.cells[i].told(want)).collect();
+        let cells: Vec<String> = columns.iter().map(|column| column.cells[i].describe(want)).collect();
         let _ = writeln!(text, "| {}, {} | {want} | {} |", i + 1, case.family, cells.join(" | "));
         failures.extend(columns.iter().filter_map(|column| match &column.cells[i] {
             Cell::Failed(why) => Some(format!("Case {}, {}: {why}", i + 1, column.name)),
@@ -183,13 +183,13 @@ fn written(cases: &[Case], columns: &[Column], not_run: &[String]) -> String {
 
 impl Cell {
     fn is_right(&self, want: usize) -> bool {
-        matches!(self, Self::Answered { right, told, .. } if *right == want && *told == want)
+        matches!(self, Self::Answered { right, description, .. } if *right == want && *description == want)
     }
 
-    fn told(&self, want: usize) -> String {
+    fn describe(&self, want: usize) -> String {
         match self {
             Self::Answered { error, .. } if self.is_right(want) => format!("✓ {error:.0e}"),
-            Self::Answered { right, told, .. } => format!("{right} of {want}; {told}"),
+            Self::Answered { right, description, .. } => format!("{right} of {want}; {description}"),
             Self::Failed(_) => "failed".into(),
         }
     }

@@ -46,7 +46,7 @@ fn main() {
         let described = scene.describe(&pages.scenes.join(part));
         let mut answers = price::ours(&scene);
         for peer in &peers {
-            answers.extend(peer.timed(&described).into_iter().map(|told| price::of_peer(&scene, told)));
+            answers.extend(peer.timed(&described).into_iter().map(|description| price::of_peer(&scene, description)));
         }
         pages.write(&format!("peers-{part}.png"), &picture(&text, &answers));
         let _ = writeln!(page, "## {name}\n\n![Error against wall time](peers-{part}.png)\n");

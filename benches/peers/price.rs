@@ -3,15 +3,15 @@
 use std::fmt::Write as _;
 use std::time::Duration;
 
+use shotdamp::accuracy::Times;
 use shotdamp::dynamics::{Options, Response, event_driven, fixed_step};
 use shotdamp::figure::{draw, work_precision};
-use shotdamp::study::Times;
 use shotdamp::table::{BASELINE, Column, Data, Table};
 use shotdamp::text::number::{quantity, significant};
 
 use crate::common;
 use crate::peer::Answer;
-use crate::scene::{Scene, Told, told};
+use crate::scene::{Scene, Told, describe};
 
 /// Digits below those of a double.
 const LEAST: f64 = 1e-16;
@@ -55,7 +55,7 @@ pub fn ours(scene: &Scene) -> Vec<Priced> {
 fn own(scene: &Scene, name: &str, setting: String, run: &dyn Fn(&Options) -> Result<Response, String>) -> Priced {
     let plain = Options { record_events: 0, ..scene.options.clone() };
     let outcome = run(&scene.options).map(|response| {
-        let events = told(&response, scene.system.drive.period);
+        let events = describe(&response, scene.system.drive.period);
         let times = Times::of(|| drop(std::hint::black_box(run(&plain))), PATIENCE);
         compared(scene, response.window().rms_velocity(), &events, times.least, times.median)
     });

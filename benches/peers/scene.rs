@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use serde_json::{Value, json};
+use shotdamp::accuracy::precise::precise;
 use shotdamp::dynamics::{Event, EventKind, HybridSystem, Law, Options, Response};
-use shotdamp::precise::precise;
 
 use crate::common;
 
@@ -35,7 +35,7 @@ impl Scene {
         let reference =
             precise(&system, &options, Duration::from_secs(600)).expect("the benchmarks' scenes have a reference");
         let rms = Some(reference.window().rms_velocity());
-        let events = told(&reference, system.drive.period);
+        let events = describe(&reference, system.drive.period);
         Self { system, options, rms, events }
     }
 
@@ -123,13 +123,13 @@ impl Scene {
 }
 
 /// The events of a run of ours.
-pub fn told(response: &Response, period: f64) -> Vec<Told> {
-    let told = |event: &Event| Told {
+pub fn describe(response: &Response, period: f64) -> Vec<Told> {
+    let description = |event: &Event| Told {
         time: event.cycle as f64 * period + event.time,
         particle: event.particle,
         word: word(event.kind).into(),
     };
-    response.events.iter().map(told).collect()
+    response.events.iter().map(description).collect()
 }
 
 fn word(kind: EventKind) -> &'static str {

@@ -6,11 +6,12 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use super::rows::Wanted;
 use super::set::Set;
+use crate::experiment::Experiment;
+use crate::measure::SolverChoice;
 use crate::measure::{Evaluated, Rigour};
 use crate::reference::Entry;
 use crate::scene::GapWord;
-use crate::spec::{Experiment, SolverChoice};
-use crate::study::{Array, Evaluate, Event, Listen, Simulation, Task, ThreadError, Variant, run};
+use crate::study::{Array, Evaluate, Event, EventHandler, Simulation, Task, ThreadError, Variant, run};
 use crate::table::{BASELINE, Table};
 
 /// An entry with the id of its experiment.
@@ -31,7 +32,7 @@ pub(super) enum Worth {
 pub(super) struct Hands<'a, E> {
     pub threads: usize,
     pub evaluate: &'a E,
-    pub listener: &'a Growing<'a>,
+    pub handler: &'a Growing<'a>,
 }
 
 /// The experiments that entries read, ready to be run under any inputs.
@@ -99,7 +100,7 @@ impl<'a, E: Evaluate> Bench<'a, E> {
             .collect();
         let evaluate = Under { evaluate: self.hands.evaluate, solver, worth: self.worth };
         let tables =
-            run(&tasks, self.hands.threads, &evaluate, self.hands.listener, |_, finished| Arc::new(finished.table))?;
+            run(&tasks, self.hands.threads, &evaluate, self.hands.handler, |_, finished| Arc::new(finished.table))?;
         self.known.extend(new.into_keys().zip(tables));
         Ok(())
     }
@@ -160,26 +161,26 @@ impl Worth {
 
 /// Passes on what many runs tell as if they were one, whose size comes out as it goes on.
 pub(super) struct Growing<'a> {
-    listener: &'a dyn Listen,
+    handler: &'a dyn EventHandler,
     simulations: AtomicU64,
 }
 
 impl<'a> Growing<'a> {
-    pub(super) fn new(listener: &'a dyn Listen) -> Self {
-        Self { listener, simulations: AtomicU64::new(0) }
+    pub(super) fn new(handler: &'a dyn EventHandler) -> Self {
+        Self { handler, simulations: AtomicU64::new(0) }
     }
 }
 
-impl Listen for Growing<'_> {
-    fn hear(&self, event: &Event<'_>) {
+impl EventHandler for Growing<'_> {
+    fn on_event(&self, event: &Event<'_>) {
         match event {
             Event::Begun { experiments, simulations } => {
                 let simulations = self.simulations.fetch_add(*simulations, Ordering::Relaxed) + simulations;
-                self.listener.hear(&Event::Begun { experiments: *experiments, simulations });
+                self.handler.on_event(&Event::Begun { experiments: *experiments, simulations });
             }
             // Whoever runs them says when the last one is over.
             Event::Ended | Event::Finished { .. } => {}
-            other => self.listener.hear(other),
+            other => self.handler.on_event(other),
         }
     }
 }

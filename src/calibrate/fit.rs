@@ -5,10 +5,10 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::bench::{Asked, Bench, Growing, Hands, SharedTables, Worth};
 use super::search::{Places, Trail, coordinate, grid};
 use super::set::{Set, place_in_force};
+use crate::experiment::{Calibration, CalibrationSearch, Experiment};
 use crate::reference::{Entry, Found, ReferenceFile, TableState, Tables, Verdict, judge};
 use crate::scene::Assumptions;
-use crate::spec::{Calibration, CalibrationSearch, Experiment};
-use crate::study::{Evaluate, Event, Listen, ThreadError};
+use crate::study::{Evaluate, Event, EventHandler, ThreadError};
 use crate::table::BASELINE;
 
 /// Why there is no calibration.
@@ -88,7 +88,7 @@ pub fn calibrate(
     in_force: &Assumptions,
     threads: usize,
     evaluate: &impl Evaluate,
-    listener: &dyn Listen,
+    handler: &dyn EventHandler,
 ) -> Result<Calibrated, CalibrationError> {
     let fit = chosen(&calibration.fit, references, &BTreeSet::new())?;
     let taken: BTreeSet<&str> = fit.iter().map(|(_, entry)| entry.id.as_str()).collect();
@@ -100,7 +100,7 @@ pub fn calibrate(
             }
         }
     }
-    let hands = Hands { threads, evaluate, listener: &Growing::new(listener) };
+    let hands = Hands { threads, evaluate, handler: &Growing::new(handler) };
     let now = Set::in_force(in_force);
     let set = |places: &Places| Set::of(calibration, places, in_force);
 
@@ -115,7 +115,7 @@ pub fn calibrate(
     let all: Vec<Asked<'_>> = fit.iter().chain(&held).copied().collect();
     let best_set = best.map_or_else(|| now.clone(), |(places, _)| set(places));
     let as_results = Bench::new(&hands, Worth::Result, experiments, &all).tables(&[now, best_set])?;
-    listener.hear(&Event::Ended);
+    handler.on_event(&Event::Ended);
     let compared = |one: &Asked<'_>| Compared {
         id: one.1.id.clone(),
         in_force: read(one, &as_results[0]),

@@ -13,6 +13,7 @@
 mod bench;
 mod fit;
 mod moved;
+mod page;
 mod rows;
 mod search;
 mod set;
@@ -20,3 +21,4 @@ mod set;
 pub use bench::Asked;
 pub use fit::{Calibrated, CalibrationError, Compared, Profile, Read, calibrate};
 pub use moved::moved_alone;
+pub use page::calibration;

@@ -3,9 +3,9 @@
 use super::bench::{Asked, Bench, Growing, Hands, Worth};
 use super::fit::{Read, read};
 use super::set::Set;
+use crate::experiment::Experiment;
 use crate::scene::{Assumption, AssumptionValue, Assumptions};
-use crate::spec::Experiment;
-use crate::study::{Evaluate, Event, Listen, ThreadError};
+use crate::study::{Evaluate, Event, EventHandler, ThreadError};
 
 /// Members of the ensemble of a chaotic point: as for the other values of assumptions in a run.
 const MEMBERS: u32 = 8;
@@ -22,9 +22,9 @@ pub fn moved_alone(
     in_force: &Assumptions,
     threads: usize,
     evaluate: &impl Evaluate,
-    listener: &dyn Listen,
+    handler: &dyn EventHandler,
 ) -> Result<Vec<Read>, ThreadError> {
-    let hands = Hands { threads, evaluate, listener: &Growing::new(listener) };
+    let hands = Hands { threads, evaluate, handler: &Growing::new(handler) };
     let set = |(name, value): &(Assumption, AssumptionValue)| {
         let mut set = Set::in_force(in_force);
         set.assumptions.values.insert(*name, value.clone());
@@ -32,6 +32,6 @@ pub fn moved_alone(
     };
     let sets: Vec<Set> = moves.iter().map(set).collect();
     let tables = Bench::new(&hands, Worth::Step { ensemble: MEMBERS }, experiments, &[asked]).tables(&sets)?;
-    listener.hear(&Event::Ended);
+    handler.on_event(&Event::Ended);
     Ok(tables.iter().map(|tables| read(&asked, tables)).collect())
 }

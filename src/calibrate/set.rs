@@ -1,7 +1,8 @@
 //! A set of inputs: the value that each free input takes, and what that makes of the assumptions.
 
+use crate::experiment::{Calibration, CalibrationInput, Tried};
+use crate::measure::SolverChoice;
 use crate::scene::{AssumptionValue, Assumptions};
-use crate::spec::{Calibration, CalibrationInput, SolverChoice, Tried};
 
 /// Under what experiments run.
 #[derive(Debug, Clone, PartialEq)]

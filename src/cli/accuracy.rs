@@ -7,24 +7,25 @@ use rayon::prelude::*;
 use super::args::{AccuracyArgs, Choice};
 use super::error::CliError;
 use super::exit::Exit;
-use super::output::{complain, complain_of, print};
+use super::output::{print, print_error, print_unread};
 use super::select::{choose, open};
-use crate::publish::{judge_all, publish_accuracy, publish_accuracy_summary};
-use crate::study::{Layout, Snapshot, errors};
+use crate::accuracy::{errors, publish_accuracy, publish_accuracy_summary};
+use crate::report::judge_all;
+use crate::study::{Layout, Snapshot};
 
 /// Error against time of the chosen experiments; of all of them, and of what was measured before, the summary.
 pub(super) fn measure(layout: &Layout, args: &AccuracyArgs) -> Result<Exit, CliError> {
     if !args.all && args.patterns.is_empty() {
         return Err(CliError::NothingChosen("accuracy"));
     }
-    let opened = open(layout)?;
+    let study = open(layout)?;
     let patterns = if args.all { Vec::new() } else { args.patterns.clone() };
-    let chosen = choose(&opened, &Choice { patterns, chapter: None })?;
-    complain_of(chosen.unread.iter().copied());
-    let assumptions = opened.sheet.assumptions();
+    let chosen = choose(&study, &Choice { patterns, chapter: None })?;
+    print_unread(chosen.unread.iter().copied());
+    let assumptions = study.sheet.assumptions();
     let longest = Duration::try_from_secs_f64(args.longest).unwrap_or(Duration::MAX / 32);
     let mut exit = if chosen.unread.is_empty() { Exit::AsExpected } else { Exit::CouldNot };
-    let judgement = judge_all(&opened);
+    let judgement = judge_all(&study);
     // Errors side by side, times one after the other with nothing beside them.
     let prepared: Vec<_> =
         chosen.items.par_iter().map(|item| errors(&item.source.experiment, &assumptions, longest)).collect();
@@ -38,7 +39,7 @@ pub(super) fn measure(layout: &Layout, args: &AccuracyArgs) -> Result<Exit, CliE
             }
             // An experiment without a run has no price.
             Err(error) => {
-                complain(&format!("{}: {error}\n", experiment.id));
+                print_error(&format!("{}: {error}\n", experiment.id));
                 if !args.all {
                     exit = Exit::CouldNot;
                 }

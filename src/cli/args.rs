@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Parser, Subcommand};
 
-use crate::publish::RELEASED;
+use crate::report::RELEASED;
 use crate::study::Shard;
 
 /// Reproduces a published study of particle impact dampers.

@@ -5,34 +5,34 @@ use std::path::{Path, PathBuf};
 use super::args::CheckArgs;
 use super::error::CliError;
 use super::exit::Exit;
-use super::output::{complain, complain_of, print, print_document};
+use super::output::{print, print_document, print_error, print_unread};
 use super::select::{Chosen, choose, open};
 use crate::atomic::{self, FileError};
-use crate::publish::{Judgement, Opened, check_view, departures, judge_all, self_test_all, summary};
 use crate::reference;
 use crate::report::{self, CheckView};
-use crate::study::Layout;
+use crate::report::{Judgement, check_view, departures, judge_all, self_test_all, summary_of};
+use crate::study::{Layout, Study};
 
 /// Where GitHub wants the summary of a step.
 const STEP_SUMMARY: &str = "GITHUB_STEP_SUMMARY";
 
 /// The verdicts, from the tables on disk.
 pub(super) fn check(layout: &Layout, args: &CheckArgs) -> Result<Exit, CliError> {
-    let opened = open(layout)?;
-    let chosen = choose(&opened, &args.choice)?;
-    complain_of(chosen.unread.iter().copied());
-    let judgement = judge_all(&opened);
+    let study = open(layout)?;
+    let chosen = choose(&study, &args.choice)?;
+    print_unread(chosen.unread.iter().copied());
+    let judgement = judge_all(&study);
     if let (Some(id), Some(reason)) = (&args.accept, &args.reason) {
-        return accept(&opened, &judgement, id, reason);
+        return accept(&study, &judgement, id, reason);
     }
     let mut exit = chosen.exit(&judgement);
-    let view = check_view(&opened, &judgement, &chosen.ids, &chosen.unread);
-    let mut text = if args.json { report::json(&view) } else { summary(&judgement, &chosen.ids) };
+    let view = check_view(&study, &judgement, &chosen.ids, &chosen.unread);
+    let mut text = if args.json { report::json(&view) } else { summary_of(&judgement, &chosen.ids) };
     if args.self_test {
-        let (told, worst) = self_test(&opened, &chosen);
+        let (description, worst) = self_test(&study, &chosen);
         exit = exit.max(worst);
         // Standard output is the document's alone.
-        if args.json { complain(&told) } else { text += &told }
+        if args.json { print_error(&description) } else { text += &description }
     }
     if args.json {
         print_document(&text)?
@@ -40,7 +40,7 @@ pub(super) fn check(layout: &Layout, args: &CheckArgs) -> Result<Exit, CliError>
         print(&text)?
     }
     if args.reports {
-        exit = exit.max(compare_reports(&opened, &judgement, args)?);
+        exit = exit.max(compare_reports(&study, &judgement, args)?);
     }
     if let Some(file) = &args.junit {
         atomic::write(file, report::junit(&view).as_bytes())?;
@@ -52,21 +52,21 @@ pub(super) fn check(layout: &Layout, args: &CheckArgs) -> Result<Exit, CliError>
 }
 
 /// What could not be made to fail, and how many could.
-fn self_test(opened: &Opened, chosen: &Chosen<'_>) -> (String, Exit) {
+fn self_test(study: &Study, chosen: &Chosen<'_>) -> (String, Exit) {
     let ids: Vec<&str> = chosen.ids.iter().copied().collect();
-    let failures = self_test_all(opened, &ids);
+    let failures = self_test_all(study, &ids);
     for failure in &failures {
-        complain(&format!("error: {} cannot fail: {}\n", failure.id, failure.reason));
+        print_error(&format!("error: {} cannot fail: {}\n", failure.id, failure.reason));
     }
-    let entries: usize = ids.iter().filter_map(|id| opened.references.get(*id)).map(|file| file.entries.len()).sum();
-    let told = format!("self-test: {} of {entries} entries can fail\n", entries - failures.len());
-    (told, if failures.is_empty() { Exit::AsExpected } else { Exit::Unexpected })
+    let entries: usize = ids.iter().filter_map(|id| study.references.get(*id)).map(|file| file.entries.len()).sum();
+    let description = format!("self-test: {} of {entries} entries can fail\n", entries - failures.len());
+    (description, if failures.is_empty() { Exit::AsExpected } else { Exit::Unexpected })
 }
 
-fn compare_reports(opened: &Opened, judgement: &Judgement, args: &CheckArgs) -> Result<Exit, CliError> {
-    let departures = departures(opened, judgement);
+fn compare_reports(study: &Study, judgement: &Judgement, args: &CheckArgs) -> Result<Exit, CliError> {
+    let departures = departures(study, judgement);
     for departure in &departures {
-        complain(&format!("error: {departure}\n"));
+        print_error(&format!("error: {departure}\n"));
     }
     if departures.is_empty() && !args.json {
         print("reports: what is there is what would be generated\n")?;
@@ -91,16 +91,16 @@ fn append_summary(file: &Path, view: &CheckView<'_>) -> std::io::Result<()> {
     file.write_all(report::step_summary(view, report::SUMMARY_LIMIT.saturating_sub(written)).as_bytes())
 }
 
-fn accept(opened: &Opened, judgement: &Judgement, id: &str, reason: &str) -> Result<Exit, CliError> {
+fn accept(study: &Study, judgement: &Judgement, id: &str, reason: &str) -> Result<Exit, CliError> {
     let unknown = || CliError::NoEntry(id.into());
     let (experiment, _) = id.split_once('/').ok_or_else(unknown)?;
     let judged =
         judgement.verdicts.get(experiment).into_iter().flatten().find(|one| one.id == id).ok_or_else(unknown)?;
-    let name = opened.reference_name(experiment).ok_or_else(unknown)?;
-    let (reference, bytes) = opened.references.get(experiment).zip(opened.texts.files.get(name)).ok_or_else(unknown)?;
+    let name = study.reference_name(experiment).ok_or_else(unknown)?;
+    let (reference, bytes) = study.references.get(experiment).zip(study.texts.files.get(name)).ok_or_else(unknown)?;
     let text = String::from_utf8_lossy(bytes);
     let changed = reference::accept(reference, &text, judged, reason)?;
-    atomic::write(&opened.layout.path(name), changed.as_bytes())?;
+    atomic::write(&study.layout.path(name), changed.as_bytes())?;
     let verdict = |verdict| crate::text::words::of_key(verdict);
     print(&format!("{name}: {id} expects {} now, was {}\n", verdict(&judged.verdict), verdict(&judged.expected)))?;
     Ok(Exit::AsExpected)

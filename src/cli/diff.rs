@@ -9,8 +9,8 @@ use super::error::CliError;
 use super::exit::Exit;
 use super::output::print;
 use super::select::open;
-use crate::publish::{VERDICTS, judge_tables};
 use crate::report::{self, Detail, Movement, Standing};
+use crate::report::{VERDICTS, judge_tables};
 use crate::study::Layout;
 use crate::table::{Table, parquet};
 

@@ -3,7 +3,7 @@
 use super::args::{Args, RunArgs};
 use super::error::CliError;
 use super::exit::Exit;
-use super::output::{complain_of, print};
+use super::output::{print, print_unread};
 use super::select::{choose, open};
 use super::update::todo;
 use crate::study::{Extent, KnownRows, Layout};
@@ -12,9 +12,9 @@ use crate::text::words::capitalised;
 
 /// Tells it, and writes nothing.
 pub(super) fn dry_run(layout: &Layout, args: &RunArgs, common: &Args) -> Result<Exit, CliError> {
-    let opened = open(layout)?;
-    let chosen = choose(&opened, &args.choice)?;
-    complain_of(chosen.unread.iter().copied());
+    let study = open(layout)?;
+    let chosen = choose(&study, &args.choice)?;
+    print_unread(chosen.unread.iter().copied());
     let threads = common.jobs.map_or_else(processors, usize::from);
     let (mut text, mut total) = (String::new(), Total::default());
     for item in todo(&chosen, args) {

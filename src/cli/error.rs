@@ -5,9 +5,9 @@ use std::path::PathBuf;
 
 use crate::atomic::FileError;
 use crate::calibrate::CalibrationError;
-use crate::publish::CrateError;
+use crate::experiment::{IdError, Problems};
 use crate::reference::AcceptError;
-use crate::spec::{IdError, Problems};
+use crate::report::CrateError;
 use crate::study::{LockError, ThreadError};
 
 #[derive(Debug, thiserror::Error)]

@@ -5,45 +5,45 @@ use std::collections::BTreeMap;
 use super::args::Args;
 use super::error::CliError;
 use super::exit::Exit;
-use super::output::{complain_of, print};
+use super::output::{print, print_unread};
 use super::select::{matches, open};
 use crate::calibrate::{CalibrationError, Read, moved_alone};
-use crate::publish::{Opened, Trial, entry, explanations, judge_all, untried};
+use crate::experiment::Experiment;
 use crate::reference::{Found, Judged, Moved};
-use crate::spec::Experiment;
-use crate::study::{Engine, Layout, Listen, Progress, Silence};
+use crate::report::{Trial, entry, explanations, judge_all, untried};
+use crate::study::{Engine, EventHandler, IgnoreEvents, Layout, Progress, Study};
 use crate::text::number::significant;
 
 /// How sensitive entries are to each assumption: from the tables on disk, and with `run` from simulations made for it.
 pub(super) fn explain(layout: &Layout, pattern: &str, run: bool, common: &Args) -> Result<Exit, CliError> {
-    let opened = open(layout)?;
-    complain_of(&opened.unread);
-    let judgement = judge_all(&opened);
+    let study = open(layout)?;
+    print_unread(&study.unread);
+    let judgement = judge_all(&study);
     let wanted = |id: &str| matches(pattern, id);
     let mut trials = BTreeMap::new();
     if run {
         for judged in judgement.verdicts.values().flatten().filter(|judged| wanted(&judged.id)) {
-            trials.insert(judged.id.clone(), tried(&opened, judged, common)?);
+            trials.insert(judged.id.clone(), tried(&study, judged, common)?);
         }
     }
-    let texts = explanations(&opened, &judgement, &trials, wanted);
+    let texts = explanations(&study, &judgement, &trials, wanted);
     if texts.is_empty() {
         return Err(CliError::NoEntry(pattern.into()));
     }
     print(&texts.join("\n"))?;
-    Ok(if opened.unread.is_empty() { Exit::AsExpected } else { Exit::CouldNot })
+    Ok(if study.unread.is_empty() { Exit::AsExpected } else { Exit::CouldNot })
 }
 
 /// The entry with each assumption moved that the tables on disk have not.
-fn tried(opened: &Opened, judged: &Judged, common: &Args) -> Result<Vec<Trial>, CliError> {
-    let Some(entry) = entry(opened, judged) else { return Ok(Vec::new()) };
-    let moves = untried(opened, judged);
-    let experiments: Vec<&Experiment> = opened.items.iter().map(|item| &item.source.experiment).collect();
+fn tried(study: &Study, judged: &Judged, common: &Args) -> Result<Vec<Trial>, CliError> {
+    let Some(entry) = entry(study, judged) else { return Ok(Vec::new()) };
+    let moves = untried(study, judged);
+    let experiments: Vec<&Experiment> = study.items.iter().map(|item| &item.source.experiment).collect();
     let progress = Progress::new();
-    let listener: &dyn Listen = if common.quiet { &Silence } else { &progress };
+    let handler: &dyn EventHandler = if common.quiet { &IgnoreEvents } else { &progress };
     let asked = (judged.experiment.as_str(), entry);
-    let in_force = opened.sheet.assumptions();
-    let reads = moved_alone(asked, &moves, &experiments, &in_force, common.threads(), &Engine, listener)
+    let in_force = study.sheet.assumptions();
+    let reads = moved_alone(asked, &moves, &experiments, &in_force, common.threads(), &Engine, handler)
         .map_err(CalibrationError::from)?;
     let trial = |((name, to), read)| Trial { name, to, moved: moved(judged, read) };
     Ok(moves.into_iter().zip(reads).map(trial).collect())

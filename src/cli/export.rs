@@ -3,21 +3,21 @@
 use super::args::ExportArgs;
 use super::error::CliError;
 use super::exit::Exit;
-use super::output::{complain_of, print};
+use super::output::{print, print_unread};
 use super::select::{choose, open};
-use crate::publish::{CrateError, export_crate};
+use crate::report::{CrateError, export_crate};
 use crate::study::Layout;
 
 /// Writes the chosen experiments with all their results into a folder for others.
 pub(super) fn export(layout: &Layout, args: &ExportArgs) -> Result<Exit, CliError> {
-    let opened = open(layout)?;
-    let chosen = choose(&opened, &args.choice)?;
-    complain_of(chosen.unread.iter().copied());
+    let study = open(layout)?;
+    let chosen = choose(&study, &args.choice)?;
+    print_unread(chosen.unread.iter().copied());
     if !chosen.unread.is_empty() {
         let files = chosen.unread.iter().map(|unread| unread.file().to_owned()).collect();
         return Err(CrateError::NotUpToDate(files).into());
     }
-    let files = export_crate(&opened, &chosen.items, &args.ro_crate, &args.published)?;
+    let files = export_crate(&study, &chosen.items, &args.ro_crate, &args.published)?;
     print(&format!("{}: {} experiments, {files} files\n", args.ro_crate.display(), chosen.items.len()))?;
     Ok(Exit::AsExpected)
 }

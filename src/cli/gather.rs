@@ -3,7 +3,7 @@
 use super::args::GatherArgs;
 use super::error::CliError;
 use super::exit::Exit;
-use super::output::complain_of;
+use super::output::print_unread;
 use super::select::{choose, open};
 use super::simulate::held;
 use super::update::{Done, conclude};
@@ -12,9 +12,9 @@ use crate::study::{Item, Layout, Lock, Shard, State, gather, save};
 /// Joins what is stale, then judges, draws and writes as `run` does.
 pub(super) fn gather_all(layout: &Layout, args: &GatherArgs) -> Result<Exit, CliError> {
     let _lock = Lock::of_study(layout, held(args.no_wait))?;
-    let opened = open(layout)?;
-    let chosen = choose(&opened, &args.choice)?;
-    complain_of(chosen.unread.iter().copied());
+    let study = open(layout)?;
+    let chosen = choose(&study, &args.choice)?;
+    print_unread(chosen.unread.iter().copied());
     let stale = |item: &&Item| args.force || !matches!(item.state, State::Current(_));
     let todo: Vec<&Item> = chosen.items.iter().copied().filter(stale).collect();
     let mut problems = Vec::new();
@@ -34,12 +34,12 @@ pub(super) fn gather_all(layout: &Layout, args: &GatherArgs) -> Result<Exit, Cli
     }
     let experiments = todo.len() - problems.len();
     let done = Done { verb: "gathered", experiments, restored: 0, problems, tables_only: false };
-    conclude(layout, opened.texts, &args.choice, done)
+    conclude(layout, study.texts, &args.choice, done)
 }
 
 /// The number of shards whose tables are to be joined.
-fn division(layout: &Layout, told: Option<u32>) -> Result<u32, CliError> {
-    if let Some(of) = told {
+fn division(layout: &Layout, description: Option<u32>) -> Result<u32, CliError> {
+    if let Some(of) = description {
         return Ok(of);
     }
     let counts = Shard::counts(layout);

@@ -2,15 +2,15 @@
 
 use super::error::CliError;
 use super::exit::Exit;
-use super::output::{columns, complain_of, print};
+use super::output::{columns, print, print_unread};
 use super::select::{choose, open};
 use crate::study::Layout;
 
 /// One line an experiment: id, where it is shown, title.
 pub(super) fn list(layout: &Layout) -> Result<Exit, CliError> {
-    let opened = open(layout)?;
-    let chosen = choose(&opened, &super::args::Choice::default())?;
-    complain_of(&opened.unread);
+    let study = open(layout)?;
+    let chosen = choose(&study, &super::args::Choice::default())?;
+    print_unread(&study.unread);
     let rows: Vec<Vec<String>> = chosen
         .items
         .iter()
@@ -22,5 +22,5 @@ pub(super) fn list(layout: &Layout) -> Result<Exit, CliError> {
         })
         .collect();
     print(&columns(&rows))?;
-    Ok(if opened.unread.is_empty() { Exit::AsExpected } else { Exit::CouldNot })
+    Ok(if study.unread.is_empty() { Exit::AsExpected } else { Exit::CouldNot })
 }

@@ -43,7 +43,7 @@ pub fn main() -> ExitCode {
         // Whoever closed the pipe has read enough.
         Err(error) if error.is_broken_pipe() => ExitCode::SUCCESS,
         Err(error) => {
-            output::complain(&format!("error: {error}\n"));
+            output::print_error(&format!("error: {error}\n"));
             Exit::CouldNot.into()
         }
     }

@@ -7,7 +7,7 @@ use super::output::print;
 use super::schema::write_all;
 use super::select::{chapter_of, open};
 use crate::atomic;
-use crate::spec::{ExperimentId, IdError, scaffold, structures};
+use crate::experiment::{ExperimentId, IdError, scaffold, structures};
 use crate::study::Layout;
 
 /// Writes an experiment to begin with, and the schemas by which an editor completes and checks it.

@@ -4,8 +4,8 @@ use std::io::{self, IsTerminal, Write};
 use std::sync::OnceLock;
 
 use super::args::Colour;
-use crate::publish::Unread;
 use crate::study::Refused;
+use crate::study::Unread;
 
 /// How this process speaks; decided once, by its arguments.
 #[derive(Debug, Clone, Copy)]
@@ -51,7 +51,7 @@ pub(super) fn print_document(text: &str) -> io::Result<()> {
 }
 
 /// Tells of something wrong. Nobody is left to tell if that fails.
-pub(super) fn complain(text: &str) {
+pub(super) fn print_error(text: &str) {
     let text = match text.strip_prefix("error:") {
         Some(rest) if manner().colour => format!("\u{1b}[1;31merror:\u{1b}[0m{rest}"),
         _ => text.to_owned(),
@@ -60,15 +60,15 @@ pub(super) fn complain(text: &str) {
 }
 
 /// Tells of files that could not be used, with their places; framed for a person at a terminal.
-pub(super) fn complain_of<'a>(unread: impl IntoIterator<Item = &'a Unread>) {
+pub(super) fn print_unread<'a>(unread: impl IntoIterator<Item = &'a Unread>) {
     let colour = manner().colour;
     for one in unread {
         match one {
             Unread::Experiment(Refused::Text(problems)) if colour || io::stderr().is_terminal() => {
-                complain(&problems.fancy(colour));
+                print_error(&problems.fancy(colour));
             }
-            Unread::Experiment(Refused::Text(problems)) => complain(&problems.to_string()),
-            other => complain(&format!("error: {other}\n")),
+            Unread::Experiment(Refused::Text(problems)) => print_error(&problems.to_string()),
+            other => print_error(&format!("error: {other}\n")),
         }
     }
 }

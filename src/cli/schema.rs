@@ -5,8 +5,8 @@ use super::error::CliError;
 use super::exit::Exit;
 use super::output::{print, print_document};
 use crate::atomic::{self, FileError};
+use crate::experiment::{assumptions_schema, experiment_schema};
 use crate::reference::reference_schema;
-use crate::spec::{assumptions_schema, experiment_schema};
 use crate::study::Layout;
 
 impl SchemaOf {
@@ -43,8 +43,8 @@ pub(super) fn schema(layout: &Layout, args: &SchemaArgs) -> Result<Exit, CliErro
         return print_one(of);
     }
     write_all(layout)?;
-    let told: Vec<String> = SchemaOf::ALL.iter().map(|of| format!("{}\n", of.file())).collect();
-    print(&told.concat())?;
+    let description: Vec<String> = SchemaOf::ALL.iter().map(|of| format!("{}\n", of.file())).collect();
+    print(&description.concat())?;
     Ok(Exit::AsExpected)
 }
 

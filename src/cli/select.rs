@@ -6,9 +6,9 @@ use std::path::Path;
 use super::args::Choice;
 use super::error::CliError;
 use super::exit::Exit;
-use crate::publish::{Judgement, Opened, Unread};
 use crate::reference::Verdict;
-use crate::study::{ASSUMPTIONS, Item, Layout, Texts};
+use crate::report::Judgement;
+use crate::study::{ASSUMPTIONS, Item, Layout, Study, Texts, Unread};
 
 /// The study that is meant.
 pub(super) fn layout(root: Option<&Path>) -> Result<Layout, CliError> {
@@ -21,8 +21,8 @@ pub(super) fn layout(root: Option<&Path>) -> Result<Layout, CliError> {
 }
 
 /// Reads and plans the study.
-pub(super) fn open(layout: &Layout) -> Result<Opened, CliError> {
-    Ok(Opened::new(layout.clone(), Texts::read(layout)?))
+pub(super) fn open(layout: &Layout) -> Result<Study, CliError> {
+    Ok(Study::new(layout.clone(), Texts::read(layout)?))
 }
 
 impl Choice {
@@ -51,17 +51,17 @@ pub(super) struct Chosen<'a> {
 ///
 /// # Errors
 /// A pattern or a chapter that nothing answers to: it would otherwise pass for success.
-pub(super) fn choose<'a>(opened: &'a Opened, choice: &Choice) -> Result<Chosen<'a>, CliError> {
-    if opened.items.is_empty() && opened.unread.is_empty() {
+pub(super) fn choose<'a>(study: &'a Study, choice: &Choice) -> Result<Chosen<'a>, CliError> {
+    if study.items.is_empty() && study.unread.is_empty() {
         return Err(CliError::NoExperiments);
     }
     let chosen = Chosen {
-        items: opened
+        items: study
             .items
             .iter()
             .filter(|item| choice.admits(&item.source.experiment.id.0, item.source.experiment.source.chapter))
             .collect(),
-        unread: opened
+        unread: study
             .unread
             .iter()
             .filter(|unread| {
@@ -78,15 +78,15 @@ pub(super) fn choose<'a>(opened: &'a Opened, choice: &Choice) -> Result<Chosen<'
         known.chain(stems.iter().copied()).any(|id| matches(pattern, id))
     };
     if let Some(pattern) = choice.patterns.iter().find(|pattern| !blind && !answers(pattern)) {
-        return Err(CliError::NoMatch { pattern: pattern.clone(), known: known(opened) });
+        return Err(CliError::NoMatch { pattern: pattern.clone(), known: known(study) });
     }
     if let Some(chapter) = choice.chapter.filter(|_| chosen.items.is_empty() && chosen.unread.is_empty()) {
         return Err(CliError::NoChapter(chapter));
     }
     let items = chosen.items.iter().map(|item| item.source.experiment.id.0.as_str());
     // A reference without its experiment is missing it, and must not be passed over.
-    let orphans = opened.references.keys().map(String::as_str);
-    let orphans = orphans.filter(|id| opened.items.iter().all(|item| item.source.experiment.id.0 != *id));
+    let orphans = study.references.keys().map(String::as_str);
+    let orphans = orphans.filter(|id| study.items.iter().all(|item| item.source.experiment.id.0 != *id));
     let ids = items.chain(orphans.filter(|id| choice.admits(id, chapter_of(id)))).collect();
     Ok(Chosen { ids, ..chosen })
 }
@@ -105,8 +105,8 @@ impl Chosen<'_> {
     }
 }
 
-fn known(opened: &Opened) -> String {
-    let ids: Vec<&str> = opened.items.iter().map(|item| item.source.experiment.id.0.as_str()).collect();
+fn known(study: &Study) -> String {
+    let ids: Vec<&str> = study.items.iter().map(|item| item.source.experiment.id.0.as_str()).collect();
     match ids.as_slice() {
         [] => "none that can be read".into(),
         few if few.len() <= 8 => few.join(", "),

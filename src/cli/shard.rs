@@ -3,7 +3,7 @@
 use super::args::{Args, RunArgs};
 use super::error::CliError;
 use super::exit::Exit;
-use super::output::{complain, complain_of, print};
+use super::output::{print, print_error, print_unread};
 use super::select::{choose, open};
 use super::simulate::{How, Ran, held, simulate};
 use crate::study::{Item, Layout, Lock, Shard, State};
@@ -13,16 +13,16 @@ use crate::study::{Item, Layout, Lock, Shard, State};
 /// A row without numbers is a result like any other; `gather` tells of it.
 pub(super) fn run_shard(layout: &Layout, args: &RunArgs, shard: Shard, common: &Args) -> Result<Exit, CliError> {
     let _lock = Lock::of_shard(layout, shard, held(args.no_wait))?;
-    let opened = open(layout)?;
-    let chosen = choose(&opened, &args.choice)?;
-    complain_of(chosen.unread.iter().copied());
+    let study = open(layout)?;
+    let chosen = choose(&study, &args.choice)?;
+    print_unread(chosen.unread.iter().copied());
     let stale = |item: &&Item| args.force || !matches!(item.state, State::Current(_));
     let part: Vec<&Item> = chosen.items.iter().copied().filter(stale).filter(|item| shard.has_part_of(item)).collect();
     let todo: Vec<&Item> = part.iter().copied().filter(|item| args.force || !shard.has_done(layout, item)).collect();
     let how = How { threads: common.threads(), quiet: common.quiet, shard: Some(shard), anew: args.force };
     let Ran { unsaved, .. } = simulate(layout, &todo, how, |item, finished| shard.save(layout, item, finished))?;
     for problem in &unsaved {
-        complain(&format!("error: {problem}\n"));
+        print_error(&format!("error: {problem}\n"));
     }
     let (parts, done) = (part.len(), todo.len() - unsaved.len());
     print(&format!("shard {shard}: has a part in {parts} stale experiments; {done} simulated now.\n"))?;

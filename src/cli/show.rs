@@ -3,26 +3,27 @@
 use super::args::Choice;
 use super::error::CliError;
 use super::exit::Exit;
-use super::output::{columns, complain_of, print};
+use super::output::{columns, print, print_unread};
 use super::select::{choose, open};
-use crate::publish::{Opened, scenes};
+use crate::accuracy::idle_cases;
+use crate::experiment::Experiment;
+use crate::report::scenes;
 use crate::report::value_in_words;
 use crate::scene::{Scene, effects};
-use crate::spec::Experiment;
-use crate::study::{Item, Layout, State, idle_cases};
+use crate::study::{Item, Layout, State, Study};
 use crate::text::words;
 
 /// All that is known of one experiment before it runs.
 pub(super) fn show(layout: &Layout, id: &str) -> Result<Exit, CliError> {
-    let opened = open(layout)?;
-    let chosen = choose(&opened, &Choice { patterns: vec![id.into()], chapter: None })?;
-    complain_of(chosen.unread.iter().copied());
-    let texts: Vec<String> = chosen.items.iter().map(|item| told(&opened, item)).collect();
+    let study = open(layout)?;
+    let chosen = choose(&study, &Choice { patterns: vec![id.into()], chapter: None })?;
+    print_unread(chosen.unread.iter().copied());
+    let texts: Vec<String> = chosen.items.iter().map(|item| describe(&study, item)).collect();
     print(&texts.join("\n"))?;
     Ok(if chosen.unread.is_empty() { Exit::AsExpected } else { Exit::CouldNot })
 }
 
-fn told(opened: &Opened, item: &Item) -> String {
+fn describe(study: &Study, item: &Item) -> String {
     let experiment = &item.source.experiment;
     let source = &experiment.source;
     let mut text = format!("{}: {}\n", experiment.id, experiment.title);
@@ -34,10 +35,10 @@ fn told(opened: &Opened, item: &Item) -> String {
         experiment.about
     );
 
-    let scenes = scenes(opened, experiment);
-    let first = experiment.cases.first().map(|case| case.told()).filter(|case| !case.is_empty());
+    let scenes = scenes(study, experiment);
+    let first = experiment.cases.first().map(|case| case.describe()).filter(|case| !case.is_empty());
     text += &format!("\nScene{}\n", first.map_or_else(String::new, |case| format!(" of the first case ({case})")));
-    for line in scenes.first().map(Scene::told).unwrap_or_default() {
+    for line in scenes.first().map(Scene::describe).unwrap_or_default() {
         text += &format!("  {line}\n");
     }
     text += "\nEffects\n";
@@ -56,8 +57,8 @@ fn told(opened: &Opened, item: &Item) -> String {
     text += &idle(experiment, &scenes);
 
     text += "\nAssumptions\n";
-    let used = experiment.assumptions_used(&opened.sheet);
-    for (name, entry) in opened.sheet.entries.iter().filter(|(name, _)| used.contains(name)) {
+    let used = experiment.assumptions_used(&study.sheet);
+    for (name, entry) in study.sheet.entries.iter().filter(|(name, _)| used.contains(name)) {
         text += &format!("  {} = {}\n", words::of_key(name), value_in_words(*name, &entry.value));
         text += &wrapped(&entry.reason, "      ", 100);
     }

@@ -7,10 +7,10 @@ use std::sync::Mutex;
 use rayon::prelude::*;
 
 use super::error::CliError;
-use super::output::complain;
+use super::output::print_error;
 use super::select::Chosen;
 use crate::study::{
-    Engine, Finished, Held, Item, KnownRows, Layout, Listen, Progress, Shard, Silence, Spent, State, Task,
+    Engine, EventHandler, Finished, Held, IgnoreEvents, Item, KnownRows, Layout, Progress, Shard, Spent, State, Task,
     journal_name, run,
 };
 use crate::table::ParquetError;
@@ -21,7 +21,7 @@ pub(super) fn held(no_wait: bool) -> impl FnOnce(&str) -> Held {
         if no_wait {
             return Held::GiveUp;
         }
-        complain(&format!("waiting for another run here: {holder}\n"));
+        print_error(&format!("waiting for another run here: {holder}\n"));
         Held::Wait
     }
 }
@@ -79,9 +79,9 @@ pub(super) fn simulate(
         })
         .collect();
     let progress = Progress::new();
-    let listener: &dyn Listen = if how.quiet { &Silence } else { &progress };
+    let handler: &dyn EventHandler = if how.quiet { &IgnoreEvents } else { &progress };
     let unsaved = Mutex::new(BTreeMap::new());
-    let restored = run(&tasks, how.threads, &Engine, listener, |index, finished| {
+    let restored = run(&tasks, how.threads, &Engine, handler, |index, finished| {
         if let Err(error) = save(items[index], &finished)
             && let Ok(mut unsaved) = unsaved.lock()
         {
@@ -101,7 +101,7 @@ pub(super) fn tell_failures(chosen: &Chosen<'_>) -> bool {
             failed = true;
             let failures = &record.failures;
             let id = &item.source.experiment.id;
-            complain(&format!("error: {id}: {} rows failed; the first: {}\n", failures.rows, failures.first));
+            print_error(&format!("error: {id}: {} rows failed; the first: {}\n", failures.rows, failures.first));
         }
     }
     failed

@@ -4,11 +4,11 @@ use super::args::StatusArgs;
 use super::dry_run::rows;
 use super::error::CliError;
 use super::exit::Exit;
-use super::output::{complain_of, print};
+use super::output::{print, print_unread};
 use super::select::choose;
-use crate::publish::{Opened, publication_reasons};
-use crate::spec::line_of;
-use crate::study::{KnownRows, Layout, Snapshot, State, Texts};
+use crate::experiment::line_of;
+use crate::report::publication_reasons;
+use crate::study::{KnownRows, Layout, Snapshot, State, Study, Texts};
 
 /// Where in a file of the study a part of its meaning is written.
 fn line_in(texts: &Texts, file: &str, path: &[String]) -> Option<usize> {
@@ -47,9 +47,9 @@ pub(super) fn status(layout: &Layout, args: &StatusArgs) -> Result<Exit, CliErro
         print(&format!("{lines}{}", total(ids.len(), 0, 0)))?;
         return Ok(Exit::AsExpected);
     }
-    let opened = Opened::new(layout.clone(), texts);
-    let chosen = choose(&opened, &args.choice)?;
-    complain_of(chosen.unread.iter().copied());
+    let study = Study::new(layout.clone(), texts);
+    let chosen = choose(&study, &args.choice)?;
+    print_unread(chosen.unread.iter().copied());
     let width = width(chosen.items.iter().map(|item| item.source.experiment.id.0.as_str()));
     let mut text = String::new();
     let (mut simulations, mut reports) = (0, 0);
@@ -59,7 +59,7 @@ pub(super) fn status(layout: &Layout, args: &StatusArgs) -> Result<Exit, CliErro
             State::Stale(_) => "stale",
             State::Failed(_) => "failed",
             State::Current(_) => {
-                reasons = publication_reasons(&opened, item);
+                reasons = publication_reasons(&study, item);
                 if reasons.is_empty() { UP_TO_DATE } else { "report stale" }
             }
         };
@@ -71,7 +71,7 @@ pub(super) fn status(layout: &Layout, args: &StatusArgs) -> Result<Exit, CliErro
         text += &line(&item.source.experiment.id.0, width, state);
         if args.why {
             for reason in &reasons {
-                text += &format!("    {}\n", reason.told(|file, path| line_in(&opened.texts, file, path)));
+                text += &format!("    {}\n", reason.describe(|file, path| line_in(&study.texts, file, path)));
             }
             if let State::Stale(_) = &item.state {
                 let extent = item.extent(layout, &KnownRows::of(layout, item));

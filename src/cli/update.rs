@@ -4,11 +4,11 @@ use super::args::{Args, Choice, RunArgs};
 use super::dry_run::dry_run;
 use super::error::CliError;
 use super::exit::Exit;
-use super::output::{complain, complain_of, print};
+use super::output::{print, print_error, print_unread};
 use super::select::{Chosen, choose};
 use super::simulate::{How, Ran, held, simulate, tell_failures};
-use crate::publish::{Opened, Published, judge_all, publish, summary};
-use crate::study::{Item, Layout, Lock, RunTimes, Snapshot, State, Texts, save};
+use crate::report::{Published, judge_all, publish, summary_of};
+use crate::study::{Item, Layout, Lock, RunTimes, Snapshot, State, Study, Texts, save};
 
 /// Brings the chosen experiments up to date.
 pub(super) fn update(layout: &Layout, args: &RunArgs, common: &Args) -> Result<Exit, CliError> {
@@ -25,19 +25,19 @@ pub(super) fn update(layout: &Layout, args: &RunArgs, common: &Args) -> Result<E
     // Figures are drawn on the shared pool.
     super::start_threads(common);
     let _lock = Lock::of_study(layout, held(args.no_wait))?;
-    let opened = Opened::new(layout.clone(), Texts::read(layout)?);
-    let chosen = choose(&opened, &args.choice)?;
-    complain_of(chosen.unread.iter().copied());
+    let study = Study::new(layout.clone(), Texts::read(layout)?);
+    let chosen = choose(&study, &args.choice)?;
+    print_unread(chosen.unread.iter().copied());
     let todo = todo(&chosen, args);
     let how = How { threads: common.threads(), quiet: common.quiet, shard: None, anew: args.force };
     let Ran { restored, unsaved } =
         simulate(layout, &todo, how, |item, finished| save(layout, item, finished).map(|_| ()))?;
     if args.times {
-        RunTimes::of(layout, opened.items.iter().map(|item| &item.source.experiment.id)).write(layout)?;
+        RunTimes::of(layout, study.items.iter().map(|item| &item.source.experiment.id)).write(layout)?;
     }
     let experiments = todo.len() - restored;
     let done = Done { verb: "simulated", experiments, restored, problems: unsaved, tables_only: args.tables };
-    conclude(layout, opened.texts.clone(), &args.choice, done)
+    conclude(layout, study.texts.clone(), &args.choice, done)
 }
 
 /// What was done before the verdicts.
@@ -56,23 +56,23 @@ pub(super) struct Done {
 
 /// Judges, draws, writes and tells; from the texts that were read in the beginning, and the results that are on disk now.
 pub(super) fn conclude(layout: &Layout, texts: Texts, choice: &Choice, done: Done) -> Result<Exit, CliError> {
-    let opened = Opened::new(layout.clone(), texts);
-    let chosen = choose(&opened, choice)?;
-    let judgement = judge_all(&opened);
+    let study = Study::new(layout.clone(), texts);
+    let chosen = choose(&study, choice)?;
+    let judgement = judge_all(&study);
     // First what went wrong: that nothing can be published may be for the same reason.
     for problem in &done.problems {
-        complain(&format!("error: {problem}\n"));
+        print_error(&format!("error: {problem}\n"));
     }
     let failed = tell_failures(&chosen);
-    let published = if done.tables_only { Published::default() } else { publish(&opened, &judgement, &chosen.ids)? };
+    let published = if done.tables_only { Published::default() } else { publish(&study, &judgement, &chosen.ids)? };
     for problem in &published.problems {
-        complain(&format!("error: {problem}\n"));
+        print_error(&format!("error: {problem}\n"));
     }
     let whole_work = done.problems.is_empty() && published.problems.is_empty() && !failed;
     let exit = chosen.exit(&judgement).max(if whole_work { Exit::AsExpected } else { Exit::CouldNot });
-    let text = summary(&judgement, &chosen.ids);
+    let text = summary_of(&judgement, &chosen.ids);
     if choice.is_all() && whole_work && !done.tables_only && chosen.unread.is_empty() {
-        Snapshot::take(layout, &opened.texts, published.outputs, &text, exit.code())?;
+        Snapshot::take(layout, &study.texts, published.outputs, &text, exit.code())?;
     }
     let (all, Done { verb, experiments, restored, .. }) = (chosen.items.len(), done);
     let written = published.written;

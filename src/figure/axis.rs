@@ -1,6 +1,6 @@
 //! Axes: from numbers to the share of the axis they lie at, with ticks and their labels.
 
-use crate::spec::AxisScale;
+use crate::experiment::AxisScale;
 use crate::text::number::Prefix;
 
 /// Least and largest number that an axis has to show.

@@ -3,7 +3,7 @@
 //! viridis (van der Walt and Smith, 2015) from small to large; Brewer's RdBu reversed, which runs from blue over white to
 //! red, where a number in the middle has a meaning of its own.
 
-use crate::spec::AxisScale;
+use crate::experiment::AxisScale;
 
 use super::axis::{Axis, Extent, Room, Tick};
 use super::style::Color;

@@ -1,6 +1,6 @@
 //! A quantity over a rectangular grid: what a map draws. The grid need be neither even nor complete.
 
-use crate::spec::AxisScale;
+use crate::experiment::AxisScale;
 
 use super::axis::Axis;
 

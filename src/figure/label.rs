@@ -1,6 +1,6 @@
 //! What stands at axes and in legends: units and the field's symbols, words instead of column names.
 
-use crate::spec::Experiment;
+use crate::experiment::Experiment;
 use crate::table::{Column, Data};
 use crate::text::{number, words};
 

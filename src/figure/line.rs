@@ -3,7 +3,7 @@
 //! Every combination of the levels of the `by` columns and of the y columns is one line. The first thing that varies
 //! among them shows as colour, the rest as dashes; where only one thing varies it shows as both.
 
-use crate::spec::{Experiment, Panel};
+use crate::experiment::{Experiment, Panel};
 use crate::table::{Column, Data, Table};
 
 use super::error::FigureError;
@@ -84,7 +84,7 @@ impl<'a> Source<'a> {
     }
 
     /// The name of a y column in legends and at axes.
-    pub(super) fn label(&self, axis: &crate::spec::Axis) -> Result<String, FigureError> {
+    pub(super) fn label(&self, axis: &crate::experiment::Axis) -> Result<String, FigureError> {
         let column = self.column(&axis.column)?;
         Ok(axis.label.clone().unwrap_or_else(|| label::of_column(self.experiment, column)))
     }

@@ -1,6 +1,6 @@
 //! A map: the rows of a table split into fields, with the places to mark, before their places on the sheet are known.
 
-use crate::spec::{AxisScale, Best, MapSpec};
+use crate::experiment::{AxisScale, Best, MapSpec};
 use crate::table::{Column, Data};
 use crate::text::number::{compact, quantity};
 
@@ -77,15 +77,16 @@ impl<'a> Map<'a> {
         }
         let nothing = || FigureError::Nothing { figure: source.figure.to_owned() };
         let smooth = columns.are_lists();
-        let along = |axis: &crate::spec::Axis, nodes: fn(&Field) -> &[f64], marks: fn(&Place) -> f64, unit: &str| {
-            let ends = panels.iter().flat_map(|panel| {
-                let nodes = nodes(&panel.field);
-                let ends = if smooth { nodes.to_vec() } else { cell_edges(nodes, axis.scale) };
-                ends.into_iter().chain(panel.marks.iter().map(marks)).collect::<Vec<_>>()
-            });
-            let extent = Extent::of(ends.chain(axis.reach.into_iter().flatten()), axis.scale)?;
-            Some(Axis::new(axis.scale, extent, Room::Tight, unit))
-        };
+        let along =
+            |axis: &crate::experiment::Axis, nodes: fn(&Field) -> &[f64], marks: fn(&Place) -> f64, unit: &str| {
+                let ends = panels.iter().flat_map(|panel| {
+                    let nodes = nodes(&panel.field);
+                    let ends = if smooth { nodes.to_vec() } else { cell_edges(nodes, axis.scale) };
+                    ends.into_iter().chain(panel.marks.iter().map(marks)).collect::<Vec<_>>()
+                });
+                let extent = Extent::of(ends.chain(axis.reach.into_iter().flatten()), axis.scale)?;
+                Some(Axis::new(axis.scale, extent, Room::Tight, unit))
+            };
         let x = along(&spec.x, |field| &field.x, |at| at.x, &columns.x.unit).ok_or_else(nothing)?;
         let y = along(&spec.y, |field| &field.y, |at| at.y, &columns.y.unit).ok_or_else(nothing)?;
         let values = panels.iter().flat_map(|panel| panel.field.spots().map(|spot| spot.value));

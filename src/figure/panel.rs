@@ -1,6 +1,6 @@
 //! A panel: curves and axes made ready, before its place on the sheet is known.
 
-use crate::spec;
+use crate::experiment;
 
 use super::axis::{Axis, Extent, Room, Tick};
 use super::canvas::text_width;
@@ -24,7 +24,7 @@ const PEAK_ROOM: f64 = 0.07;
 
 /// One pair of axes with its curves.
 pub(super) struct Panel<'a> {
-    pub spec: &'a spec::Panel,
+    pub spec: &'a experiment::Panel,
     pub curves: Vec<Curve>,
     pub x: Axis,
     pub y: Axis,
@@ -37,7 +37,7 @@ pub(super) struct Panel<'a> {
 impl<'a> Panel<'a> {
     pub(super) fn new(
         source: Source<'_>,
-        spec: &'a spec::Panel,
+        spec: &'a experiment::Panel,
         quoted: &'a [QuotedPoint],
     ) -> Result<Self, FigureError> {
         let curves = curves(source, spec)?;

@@ -1,6 +1,6 @@
 //! Peaks of curves, to be marked with their place: a frequency response is read by its resonances.
 
-use crate::spec::PeakMarks;
+use crate::experiment::PeakMarks;
 
 use super::axis::Axis;
 use super::line::{Curve, Sample};

@@ -1,6 +1,6 @@
 //! From an experiment's table to the finished picture.
 
-use crate::spec::{self, Drawing, Experiment, FigureSpec};
+use crate::experiment::{self, Drawing, Experiment, FigureSpec};
 use crate::table::Table;
 
 use super::canvas::{ZOOM, svg};
@@ -56,7 +56,7 @@ pub fn draw(
 /// The panels one above the other, as SVG; the inner error is the drawing's.
 fn lines(
     source: Source<'_>,
-    panels: &[spec::Panel],
+    panels: &[experiment::Panel],
     quoted: &[QuotedPoint],
 ) -> Result<Result<String, String>, FigureError> {
     let panels = panels.iter().map(|spec| Panel::new(source, spec, quoted)).collect::<Result<Vec<_>, _>>()?;

@@ -1,6 +1,6 @@
 //! Work-precision diagrams: error against wall time, both logarithmic.
 
-use crate::spec::{Axis, AxisScale, Drawing, FigureSpec, Level, Panel};
+use crate::experiment::{Axis, AxisScale, Drawing, FigureSpec, Level, Panel};
 
 /// The figure of a table with the columns `solver`, `case`, `time` (s), `error` and `event_error`; all panels show the `times` from the
 /// first to the second; `floor` is the error below which chaos leaves no meaning.

@@ -13,8 +13,8 @@
 
 use super::TraceColumn;
 use crate::dynamics::{Matrix, Response};
+use crate::measure::{EnergySpec, Settings};
 use crate::scene::{Assumption, Assumptions, RecipeError, Scene};
-use crate::spec::{EnergySpec, Settings};
 
 /// Kinetic energies of every cycle, J.
 pub(super) struct Energies {

@@ -14,8 +14,8 @@ use super::reading::Reading;
 use super::shape::{self, Shape};
 use super::{EvaluateError, Evaluated, Measure, Measured, Rigour, TraceColumn};
 use crate::dynamics::{EngineError, HybridSystem, Method, Options, Proof, Response, TraceRequest, event_driven};
+use crate::measure::{EnergySpec, Settings, ShapeOf, ShapeSpec, SolverChoice, TraceSpec};
 use crate::scene::{Assumptions, Excitation, GapWord, Recipe, Scene, SingleMass, Structure, compile};
-use crate::spec::{EnergySpec, Settings, ShapeOf, ShapeSpec, SolverChoice, TraceSpec};
 
 /// Kick that tells chaos from order, relative to the drive.
 const TWIN_KICK: f64 = 1e-9;

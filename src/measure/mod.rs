@@ -12,10 +12,12 @@ mod energy;
 mod evaluate;
 mod history;
 mod reading;
+mod request;
 mod shape;
 mod trial;
 
 pub use evaluate::{Prepared, Request, evaluate};
+pub use request::{EnergySpec, Settings, ShapeOf, ShapeSpec, SolverChoice, TraceSpec};
 pub use trial::Trial;
 
 use crate::dynamics::{EngineError, Proof};
@@ -182,7 +184,7 @@ pub struct Evaluated {
 /// One column of a time history.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TraceColumn {
-    /// Name as documented at [`crate::spec::TraceSpec`].
+    /// Name as documented at [`TraceSpec`].
     pub name: Cow<'static, str>,
     /// Unit symbol.
     pub unit: Cow<'static, str>,

@@ -5,8 +5,8 @@
 
 use super::TraceColumn;
 use crate::dynamics::{HybridSystem, Observed, Response, dot};
+use crate::measure::ShapeSpec;
 use crate::scene::{CompileError, Model, Point, Scene};
-use crate::spec::ShapeSpec;
 
 /// A shape with its columns.
 pub(super) struct Shape {

@@ -5,8 +5,8 @@ use super::evaluate::rounded;
 use super::reading::Reading;
 use super::{EvaluateError, Measure, Request, Rigour};
 use crate::dynamics::{HybridSystem, Options, Response};
+use crate::measure::Settings;
 use crate::scene::{Assumptions, Recipe, Scene, compile};
-use crate::spec::Settings;
 
 /// A case, compiled, with the run without dampers that its measures compare with.
 #[derive(Debug)]

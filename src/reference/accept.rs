@@ -2,7 +2,7 @@
 
 use super::entry::{Entry, ReferenceFile, parse_reference};
 use super::verdict::{Judged, Verdict};
-use crate::spec::{Written, set_keys};
+use crate::experiment::{Written, set_keys};
 
 /// Why a verdict cannot be accepted.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]

@@ -40,7 +40,7 @@ use super::selection::Selection;
 use super::tube::Curve;
 use super::verdict::Verdict;
 use super::view::Source;
-use crate::spec::{Spanned, from_yaml, position};
+use crate::experiment::{Spanned, from_yaml, position};
 
 /// The entries of one experiment.
 #[derive(Debug, Clone, PartialEq, Serialize)]

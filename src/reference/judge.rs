@@ -56,14 +56,14 @@ pub(crate) fn judge_entry(
             };
             decide(predicate, &view).and_then(|baseline| {
                 let others = moved(&view, |variant| decide(predicate, variant))?;
-                let told = |(variant, other): &(&str, Decision)| Moved {
+                let description = |(variant, other): &(&str, Decision)| Moved {
                     variant: (*variant).into(),
                     found: in_words(other.outcome).into(),
                     value: None,
                     verdict: verdict(other.outcome),
                     kept: other.outcome == baseline.outcome,
                 };
-                let moved: Vec<Moved> = others.iter().map(told).collect();
+                let moved: Vec<Moved> = others.iter().map(description).collect();
                 Ok(Judgement {
                     found: format!("{}: {}", in_words(baseline.outcome), baseline.found),
                     robust: robust(&moved),
@@ -236,7 +236,7 @@ fn value(
         }),
     };
     let (verdict, remark) = compare::verdict(&comparison, simulated.scale, fitted);
-    let told = |(variant, other): &(&str, Option<Extracted>)| {
+    let description = |(variant, other): &(&str, Option<Extracted>)| {
         let there = other.as_ref().map_or(Verdict::Differs, |other| {
             compare::verdict(&Comparison { simulated: other.value, ..comparison }, simulated.scale, fitted).0
         });
@@ -249,7 +249,7 @@ fn value(
             kept: other.is_some() && there == verdict,
         }
     };
-    let moved: Vec<Moved> = others.iter().map(told).collect();
+    let moved: Vec<Moved> = others.iter().map(description).collect();
     let mut found = format!(
         "{} ± {}",
         with_unit(simulated.value, 5, &simulated.unit),

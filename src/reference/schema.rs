@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 use super::extraction::Extraction;
 use super::predicate::Predicate;
 use super::verdict::Verdict;
-use crate::spec::{Object, list, text, words_of};
+use crate::experiment::{Object, list, text, words_of};
 
 /// JSON Schema of a reference file.
 #[must_use]

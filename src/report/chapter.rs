@@ -19,7 +19,7 @@ pub(super) fn section(chapter: u32, experiments: &[&ExperimentView<'_>]) -> Stri
         title(chapter),
         counted(experiments.len(), "experiment", "experiments"),
         counted(tally.total(), "entry", "entries"),
-        tally.told()
+        tally.describe()
     );
     let mut header = vec![("Experiment", Align::Left), ("In the study", Align::Left)];
     header.extend(VERDICTS.map(|verdict| (word(verdict), Align::Right)));
@@ -75,9 +75,9 @@ fn picture(view: &ExperimentView<'_>, link: &str) -> String {
     let title = html(&one_line(&view.experiment.title));
     let width = GALLERY_WIDTH;
     format!(
-        "<td><a href=\"{page}\"><img src=\"{link}\" width=\"{width}\" alt=\"{title}\"></a><br>{title}<br><sub>{told}</sub></td>\n",
+        "<td><a href=\"{page}\"><img src=\"{link}\" width=\"{width}\" alt=\"{title}\"></a><br>{title}<br><sub>{description}</sub></td>\n",
         page = view.page,
-        told = Tally::of(view.judged).told(),
+        description = Tally::of(view.judged).describe(),
     )
 }
 

@@ -24,7 +24,11 @@ pub(super) fn section(judged: &[Judged]) -> String {
 
 fn sentence_of(tally: &Tally) -> String {
     let total = tally.total();
-    if total == 1 { format!("One entry: {}", tally.told()) } else { format!("{total} entries: {}", tally.told()) }
+    if total == 1 {
+        format!("One entry: {}", tally.describe())
+    } else {
+        format!("{total} entries: {}", tally.describe())
+    }
 }
 
 fn entries(judged: &[Judged]) -> String {
@@ -61,7 +65,7 @@ fn entries(judged: &[Judged]) -> String {
 }
 
 /// `124 runs, 30120 events`; nothing where nothing was run.
-pub(super) fn rests_on(price: Price) -> String {
+pub(crate) fn rests_on(price: Price) -> String {
     let Price { runs, events, .. } = price;
     match price.rows {
         0 => String::new(),
@@ -111,20 +115,20 @@ fn numbers(judged: &[Judged]) -> String {
 
 /// What comes out with each assumption moved: the other readings of the source. Nothing where none was moved.
 fn other_readings(judged: &[Judged]) -> String {
-    let told: Vec<&Judged> = judged.iter().filter(|one| !one.moved.is_empty()).collect();
+    let description: Vec<&Judged> = judged.iter().filter(|one| !one.moved.is_empty()).collect();
     let mut variants: Vec<&str> = Vec::new();
-    for one in told.iter().flat_map(|judged| &judged.moved) {
+    for one in description.iter().flat_map(|judged| &judged.moved) {
         if !variants.contains(&one.variant.as_str()) {
             variants.push(&one.variant);
         }
     }
-    let names: Vec<String> = told.iter().map(|one| entry(one)).collect();
+    let names: Vec<String> = description.iter().map(|one| entry(one)).collect();
     let mut header = vec![("Assumption moved", Align::Left)];
     header.extend(names.iter().map(|name| (name.as_str(), Align::Right)));
     let mut table = MarkdownTable::new(&header);
     for variant in variants {
         let mut row = vec![format!("`{variant}`")];
-        row.extend(told.iter().map(|one| {
+        row.extend(description.iter().map(|one| {
             let moved = one.moved.iter().find(|moved| moved.variant == variant);
             moved.map_or_else(
                 String::new,
@@ -185,9 +189,9 @@ fn width(name: &str, comparison: &Comparison) -> Option<String> {
 
 /// Why entries are not reproduced, and notes on those that are.
 fn explanations(judged: &[Judged]) -> String {
-    let told = |one: &&Judged| one.verdict != Verdict::Reproduced || !one.explanation.trim().is_empty();
+    let description = |one: &&Judged| one.verdict != Verdict::Reproduced || !one.explanation.trim().is_empty();
     let mut text = String::new();
-    for one in judged.iter().filter(told) {
+    for one in judged.iter().filter(description) {
         text += &format!("- {}: {}. {}\n", entry(one), shown(one), explanation(one));
     }
     if text.is_empty() { text } else { format!("### Notes on the verdicts\n\n{text}\n") }

@@ -33,7 +33,7 @@ pub fn summary(experiments: &[(&str, &[Judged])]) -> String {
     text += &format!(
         "\n{}: {}; {}.\n",
         counted(tally.total(), "entry", "entries"),
-        tally.told(),
+        tally.describe(),
         match unexpected.len() {
             0 => "all as expected".to_owned(),
             some => format!("{some} not as expected"),

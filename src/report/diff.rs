@@ -19,22 +19,24 @@ pub enum Detail {
 /// For the console: what moved in each experiment (or file), then a line that says it all. `whole` names experiments that only one of the two has, with what is the matter.
 #[must_use]
 pub fn diff(movements: &[(String, Movement)], whole: &[String], detail: Detail) -> String {
-    let told = if detail == Detail::All { usize::MAX } else { TOLD };
+    let description = if detail == Detail::All { usize::MAX } else { TOLD };
     let mut text = String::new();
     for (name, movement) in movements.iter().filter(|(_, movement)| !movement.is_none()) {
         text += &format!("{name}\n");
         let (beyond, within): (Vec<&Moved>, Vec<&Moved>) = movement.moved.iter().partition(|moved| moved.is_beyond());
-        text += &list("only in the first", &movement.gone, told, |name| name.clone());
-        text += &list("only in the second", &movement.new, told, |name| name.clone());
-        text += &list("told otherwise", &movement.told_otherwise, told, |(name, a, b)| format!("{name}: {a} -> {b}"));
-        text += &list("beyond their uncertainty", &beyond, told, |moved| line(moved));
-        text += &list("within their uncertainty", &within, told, |moved| line(moved));
+        text += &list("only in the first", &movement.gone, description, |name| name.clone());
+        text += &list("only in the second", &movement.new, description, |name| name.clone());
+        text += &list("judged differently", &movement.judged_differently, description, |(name, a, b)| {
+            format!("{name}: {a} -> {b}")
+        });
+        text += &list("beyond their uncertainty", &beyond, description, |moved| line(moved));
+        text += &list("within their uncertainty", &within, description, |moved| line(moved));
     }
     text.extend(whole.iter().map(|line| format!("{line}\n")));
     let count = |what: fn(&Movement) -> usize| movements.iter().map(|(_, movement)| what(movement)).sum::<usize>();
     let beyond = count(|movement| movement.moved.iter().filter(|moved| moved.is_beyond()).count());
     let moved = count(|movement| movement.moved.len());
-    let others = count(|movement| movement.gone.len() + movement.new.len() + movement.told_otherwise.len());
+    let others = count(|movement| movement.gone.len() + movement.new.len() + movement.judged_differently.len());
     text += &format!(
         "{}: {} the same to the bit, {} moved within their uncertainty, {beyond} beyond it; {} otherwise.\n",
         counted(count(|movement| movement.same) + moved, "number", "numbers"),
@@ -45,14 +47,14 @@ pub fn diff(movements: &[(String, Movement)], whole: &[String], detail: Detail) 
     text
 }
 
-fn list<T>(heading: &str, all: &[T], told: usize, line: impl Fn(&T) -> String) -> String {
+fn list<T>(heading: &str, all: &[T], description: usize, line: impl Fn(&T) -> String) -> String {
     if all.is_empty() {
         return String::new();
     }
     let mut text = format!("  {heading}: {}\n", all.len());
-    text.extend(all.iter().take(told).map(|one| format!("    {}\n", line(one))));
-    if all.len() > told {
-        text += &format!("    and {} more\n", all.len() - told);
+    text.extend(all.iter().take(description).map(|one| format!("    {}\n", line(one))));
+    if all.len() > description {
+        text += &format!("    and {} more\n", all.len() - description);
     }
     text
 }

@@ -117,17 +117,17 @@ fn rows(view: &EntryView<'_>) -> String {
 fn turns(view: &EntryView<'_>) -> String {
     let agrees = |verdict: Verdict| matches!(verdict, Verdict::Reproduced | Verdict::Fitted);
     let now = view.judged.verdict;
-    let told = |one: &MoveView<'_>| {
+    let description = |one: &MoveView<'_>| {
         format!("  {} = {}: {}\n", words::of_key(&one.name), value_in_words(one.name, one.to), word(one.moved.verdict))
     };
     if agrees(now) {
-        let lost: String = view.moves.iter().filter(|one| !agrees(one.moved.verdict)).map(told).collect();
+        let lost: String = view.moves.iter().filter(|one| !agrees(one.moved.verdict)).map(description).collect();
         return match lost.as_str() {
             "" => "It agrees whichever of them is moved.\n".into(),
             lost => format!("It agrees no more with\n{lost}"),
         };
     }
-    let mut text: String = view.moves.iter().filter(|one| agrees(one.moved.verdict)).map(told).collect();
+    let mut text: String = view.moves.iter().filter(|one| agrees(one.moved.verdict)).map(description).collect();
     if text.is_empty() {
         text = "No single one of these changes reproduces it.\n".into();
     } else {

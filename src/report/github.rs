@@ -64,7 +64,7 @@ pub fn step_summary(view: &CheckView<'_>, room: usize) -> String {
     let mut text = format!(
         "## Verdicts\n\n{}: {}. {}\n\n",
         counted(tally.total(), "entry", "entries"),
-        tally.told(),
+        tally.describe(),
         match unexpected.len() {
             0 => "All as expected.".to_owned(),
             some => format!("**{some} not as expected.**"),

@@ -73,7 +73,7 @@ pub fn index(
         "{}; {}: {}. {}\n\n",
         counted(experiments.len(), "experiment", "experiments"),
         counted(tally.total(), "published number or claim", "published numbers and claims"),
-        tally.told(),
+        tally.describe(),
         match unexpected {
             0 => "Every verdict is the expected one.".to_owned(),
             1 => "**One verdict is not the expected one.**".to_owned(),

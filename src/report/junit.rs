@@ -78,8 +78,8 @@ fn outcome(one: &Judged) -> Outcome {
     for (label, line) in finding::lines(one) {
         text += &format!("{label}: {line}\n");
     }
-    let told = Told { message, text };
-    if one.verdict == Verdict::Missing { Outcome::Error(told) } else { Outcome::Failure(told) }
+    let description = Told { message, text };
+    if one.verdict == Verdict::Missing { Outcome::Error(description) } else { Outcome::Failure(description) }
 }
 
 fn troubles(troubles: &[Trouble]) -> Vec<Case> {
@@ -87,8 +87,8 @@ fn troubles(troubles: &[Trouble]) -> Vec<Case> {
         // A file may be in trouble for several reasons, and names are unique.
         let before = troubles[..index].iter().filter(|other| other.file == trouble.file).count();
         let name = if before == 0 { trouble.file.clone() } else { format!("{}#{}", trouble.file, before + 1) };
-        let told = Told { message: "this file cannot be used".into(), text: trouble.message.clone() };
-        Case { name, outcome: Outcome::Error(told) }
+        let description = Told { message: "this file cannot be used".into(), text: trouble.message.clone() };
+        Case { name, outcome: Outcome::Error(description) }
     };
     troubles.iter().enumerate().map(case).collect()
 }
@@ -100,13 +100,13 @@ impl Suite {
             let (name, suite) = (escaped(&case.name), escaped(&self.name));
             xml += &format!("    <testcase classname=\"{suite}\" name=\"{name}\"");
             xml += &match &case.outcome {
-                Outcome::Passed(told) if told.is_empty() => "/>\n".to_owned(),
-                Outcome::Passed(told) => {
-                    format!(">\n      <system-out>{}</system-out>\n    </testcase>\n", escaped(told))
+                Outcome::Passed(description) if description.is_empty() => "/>\n".to_owned(),
+                Outcome::Passed(description) => {
+                    format!(">\n      <system-out>{}</system-out>\n    </testcase>\n", escaped(description))
                 }
-                Outcome::Skipped(told) => told.xml("skipped", ""),
-                Outcome::Failure(told) => told.xml("failure", " type=\"unexpected\""),
-                Outcome::Error(told) => told.xml("error", " type=\"missing\""),
+                Outcome::Skipped(description) => description.xml("skipped", ""),
+                Outcome::Failure(description) => description.xml("failure", " type=\"unexpected\""),
+                Outcome::Error(description) => description.xml("error", " type=\"missing\""),
             };
         }
         xml + "  </testsuite>\n"

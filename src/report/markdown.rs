@@ -1,20 +1,20 @@
 //! The few forms of Markdown that reports use.
 
 /// A table; cells are made safe, columns named in `right` are aligned to the right.
-pub(super) struct MarkdownTable {
+pub(crate) struct MarkdownTable {
     text: String,
     rows: usize,
 }
 
 /// Alignment of a column.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Align {
+pub(crate) enum Align {
     Left,
     Right,
 }
 
 impl MarkdownTable {
-    pub(super) fn new(header: &[(&str, Align)]) -> Self {
+    pub(crate) fn new(header: &[(&str, Align)]) -> Self {
         let mut text = String::new();
         push_row(&mut text, header.iter().map(|(name, _)| (*name).to_owned()));
         let rule = |align: &Align| match align {
@@ -25,13 +25,13 @@ impl MarkdownTable {
         Self { text, rows: 0 }
     }
 
-    pub(super) fn row(&mut self, cells: impl IntoIterator<Item = String>) {
+    pub(crate) fn row(&mut self, cells: impl IntoIterator<Item = String>) {
         push_row(&mut self.text, cells.into_iter());
         self.rows += 1;
     }
 
     /// The table with an empty line after it; nothing at all without rows.
-    pub(super) fn finish(self) -> String {
+    pub(crate) fn finish(self) -> String {
         if self.rows == 0 { String::new() } else { self.text + "\n" }
     }
 }
@@ -47,13 +47,13 @@ fn push_row(text: &mut String, cells: impl Iterator<Item = String>) {
 }
 
 /// Line breaks and runs of blanks become single blanks.
-pub(super) fn one_line(text: &str) -> String {
+pub(crate) fn one_line(text: &str) -> String {
     // A no-break space inside a number is no blank.
     text.split([' ', '\n', '\r', '\t']).filter(|word| !word.is_empty()).collect::<Vec<_>>().join(" ")
 }
 
 /// Text as it is: none of its letters means anything to Markdown.
-pub(super) fn escaped(text: &str) -> String {
+pub(crate) fn escaped(text: &str) -> String {
     let mut safe = String::with_capacity(text.len());
     for letter in text.chars() {
         if matches!(letter, '\\' | '`' | '*' | '_' | '[' | ']' | '<' | '>') {
@@ -65,7 +65,7 @@ pub(super) fn escaped(text: &str) -> String {
 }
 
 /// The first sentence of a text; abbreviations such as `s. 3.6` and `Fig. 18` do not end one.
-pub(super) fn first_sentence(text: &str) -> String {
+pub(crate) fn first_sentence(text: &str) -> String {
     let text = one_line(text);
     let ends = text.match_indices(". ").find(|(at, _)| {
         let before = text[..*at].rsplit(' ').next().unwrap_or("");
@@ -80,6 +80,6 @@ pub(super) fn first_sentence(text: &str) -> String {
 }
 
 /// `1 entry`, `2 entries`.
-pub(super) fn counted(count: usize, one: &str, many: &str) -> String {
+pub(crate) fn counted(count: usize, one: &str, many: &str) -> String {
     format!("{count} {}", if count == 1 { one } else { many })
 }

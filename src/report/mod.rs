@@ -3,38 +3,44 @@
 //! Tables and verdicts go in, text comes out; nothing here simulates, draws or touches the disk. No output holds a time,
 //! a host or a path beyond the links that the caller passes in.
 
-mod ablation;
-mod accuracy;
 mod assumption;
-mod calibration;
 mod candidate;
 mod chapter;
-mod comparison;
+mod committed;
+pub(crate) mod comparison;
 mod console;
 mod diff;
 mod explain;
+mod explanations;
+mod figures;
 mod finding;
 mod github;
 mod glance;
 mod index;
 mod json;
 mod junit;
-mod markdown;
+pub(crate) mod markdown;
 mod movement;
+mod other_pages;
 mod page;
+mod pages;
 mod proof;
+mod publication;
+mod ro_crate;
 mod run;
-mod tally;
-mod verdict_price;
+pub(crate) mod tally;
+mod verdicts;
 mod view;
+mod views;
 
-pub use ablation::ablation;
-pub use accuracy::{AccuracyView, accuracy_page, accuracy_summary};
 pub use assumption::value_in_words;
-pub use calibration::calibration;
+pub use committed::{Departure, How, departures};
 pub use console::summary;
+
 pub use diff::{Detail, diff};
 pub use explain::{EntryView, MoveView, explain};
+pub use explanations::{Trial, entry, explanations, untried};
+pub use figures::figure_name;
 pub use finding::{CheckView, CheckedEntry, Trouble};
 pub use github::{SUMMARY_LIMIT, annotations, step_summary};
 pub use index::index;
@@ -42,5 +48,9 @@ pub use json::{Number, Standing, json, read_json};
 pub use junit::junit;
 pub use movement::{Moved, Movement, between_tables, between_verdicts, standing};
 pub use page::page;
-pub use verdict_price::VerdictPrice;
+pub use pages::{Published, VERDICTS, publish};
+pub use publication::publication_reasons;
+pub use ro_crate::{CrateError, RELEASED, export_crate};
+pub use verdicts::{Judgement, judge_all, judge_tables, self_test_all};
 pub use view::{AccuracyLinks, AssumptionView, ExperimentView, FigureView, PageView};
+pub use views::{check_view, scenes, summary_of};

@@ -50,7 +50,7 @@ pub struct Movement {
     /// Numbers that are not, the farthest first.
     pub moved: Vec<Moved>,
     /// Verdicts and findings in words that changed: name, old, new.
-    pub told_otherwise: Vec<(String, String, String)>,
+    pub judged_differently: Vec<(String, String, String)>,
     /// Rows or entries that only the first has.
     pub gone: Vec<String>,
     /// Rows or entries that only the second has.
@@ -61,13 +61,13 @@ impl Movement {
     /// True if nothing moved, came or went.
     #[must_use]
     pub fn is_none(&self) -> bool {
-        self.moved.is_empty() && self.told_otherwise.is_empty() && self.gone.is_empty() && self.new.is_empty()
+        self.moved.is_empty() && self.judged_differently.is_empty() && self.gone.is_empty() && self.new.is_empty()
     }
 
     /// True if something changed that no uncertainty explains.
     #[must_use]
     pub fn is_beyond(&self) -> bool {
-        let words = !(self.told_otherwise.is_empty() && self.gone.is_empty() && self.new.is_empty());
+        let words = !(self.judged_differently.is_empty() && self.gone.is_empty() && self.new.is_empty());
         words || self.moved.iter().any(Moved::is_beyond)
     }
 
@@ -117,9 +117,9 @@ pub fn between_verdicts(a: &[Standing], b: &[Standing]) -> Movement {
             continue;
         };
         if old.verdict != new.verdict {
-            movement.told_otherwise.push((old.id.clone(), old.verdict.clone(), new.verdict.clone()));
+            movement.judged_differently.push((old.id.clone(), old.verdict.clone(), new.verdict.clone()));
         } else if old.numbers.is_empty() && new.numbers.is_empty() && old.found != new.found {
-            movement.told_otherwise.push((old.id.clone(), old.found.clone(), new.found.clone()));
+            movement.judged_differently.push((old.id.clone(), old.found.clone(), new.found.clone()));
         }
         for (name, number) in &old.numbers {
             let there = new.numbers.get(name).map_or((f64::NAN, f64::NAN), |number| (number.value, number.u));

@@ -1,6 +1,6 @@
 //! One experiment's page.
 
-use crate::spec::Source;
+use crate::experiment::Source;
 
 use super::markdown::one_line;
 use super::view::{AccuracyLinks, FigureView, PageView};

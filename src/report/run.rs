@@ -1,8 +1,9 @@
 //! How an experiment was run, and which effects its scene has.
 
+use crate::experiment::{Experiment, Optimise, Search};
+use crate::measure::SolverChoice;
 use crate::scene::EffectUse;
 use crate::scene::GapWord;
-use crate::spec::{Experiment, Optimise, Search, SolverChoice};
 use crate::text::number::{compact, quantity};
 use crate::text::words;
 
@@ -67,9 +68,9 @@ fn searches(optimise: &Optimise) -> String {
     let unit = if optimise.gaps == GapWord::Gap { "m" } else { "" };
     let mut bounds: Vec<String> = Vec::new();
     for [low, high] in &optimise.bounds {
-        let told = format!("{} to {}", quantity(*low, unit, 3), quantity(*high, unit, 3));
-        if !bounds.contains(&told) {
-            bounds.push(told);
+        let description = format!("{} to {}", quantity(*low, unit, 3), quantity(*high, unit, 3));
+        if !bounds.contains(&description) {
+            bounds.push(description);
         }
     }
     let count = counted(optimise.bounds.len(), "gap", "gaps");

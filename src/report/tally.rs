@@ -7,7 +7,7 @@ pub(super) const VERDICTS: [Verdict; 6] =
     [Verdict::Reproduced, Verdict::Fitted, Verdict::Differs, Verdict::Undecidable, Verdict::Blocked, Verdict::Missing];
 
 /// The verdict's word.
-pub(super) fn word(verdict: Verdict) -> &'static str {
+pub(crate) fn word(verdict: Verdict) -> &'static str {
     match verdict {
         Verdict::Reproduced => "reproduced",
         Verdict::Fitted => "fitted",
@@ -99,7 +99,7 @@ impl Tally {
     }
 
     /// `3 reproduced, 1 differs`; `no entries`.
-    pub(super) fn told(&self) -> String {
+    pub(super) fn describe(&self) -> String {
         let parts: Vec<_> = self
             .each()
             .filter(|(_, count)| *count > 0)

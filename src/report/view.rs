@@ -1,8 +1,8 @@
 //! What reports are written from, gathered by the caller.
 
+use crate::experiment::Experiment;
 use crate::reference::Judged;
 use crate::scene::EffectUse;
-use crate::spec::Experiment;
 use crate::table::Table;
 
 /// An assumption in force, in words.

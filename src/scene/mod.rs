@@ -5,6 +5,7 @@
 
 mod assumption;
 mod compile;
+mod describe;
 mod drive;
 mod effect;
 mod leaning;
@@ -15,7 +16,6 @@ mod recipe;
 mod resolve;
 mod structure;
 mod switch;
-mod told;
 
 use serde::{Deserialize, Serialize};
 

@@ -10,7 +10,7 @@ use std::time::SystemTime;
 
 use super::layout::{Layout, table_name};
 use super::record::FileHash;
-use crate::spec::ExperimentId;
+use crate::experiment::ExperimentId;
 use crate::table::{Table, parquet};
 
 /// Tables that an experiment keeps beside the one in force.

@@ -3,8 +3,8 @@
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use crate::measure::{self, Evaluated, Measure, Prepared, Request, Rigour};
+use crate::measure::{EnergySpec, Settings, ShapeSpec, SolverChoice, TraceSpec};
 use crate::scene::{Assumptions, GapWord, Recipe};
-use crate::spec::{EnergySpec, Settings, ShapeSpec, SolverChoice, TraceSpec};
 
 /// One simulation to be made.
 #[derive(Debug, Clone, Copy)]

@@ -1,7 +1,7 @@
 //! What a runner tells while it works. Progress bars and logs listen; the runner knows none of them.
 
 use super::record::Failures;
-use crate::spec::ExperimentId;
+use crate::experiment::ExperimentId;
 
 /// Something that happened.
 #[derive(Debug, Clone, PartialEq)]
@@ -47,15 +47,15 @@ pub enum Event<'a> {
 }
 
 /// Who listens. Called from many threads.
-pub trait Listen: Sync {
+pub trait EventHandler: Sync {
     /// Takes note of an event.
-    fn hear(&self, event: &Event<'_>);
+    fn on_event(&self, event: &Event<'_>);
 }
 
 /// Nobody listens.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct Silence;
+pub struct IgnoreEvents;
 
-impl Listen for Silence {
-    fn hear(&self, _event: &Event<'_>) {}
+impl EventHandler for IgnoreEvents {
+    fn on_event(&self, _event: &Event<'_>) {}
 }

@@ -7,10 +7,10 @@ use super::known_rows::KnownRows;
 use super::layout::Layout;
 use super::plan::Item;
 use super::refine;
-use super::row_meaning::RowMeaning;
+use super::row_fingerprint::RowFingerprints;
 use super::spent::Spent;
+use crate::experiment::{Case, Experiment};
 use crate::measure::Rigour;
-use crate::spec::{Case, Experiment};
 
 /// What is to be simulated of an experiment.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -43,7 +43,7 @@ impl Item {
             };
         }
         let experiment = &self.grown(known);
-        let meaning = RowMeaning::new(experiment);
+        let meaning = RowFingerprints::new(experiment);
         let jobs = jobs(experiment, &self.variants);
         let is_known = |job: &Job| known.has(meaning.of(&self.variants[job.variant], &experiment.cases[job.case], job));
         let to_do: Vec<&Job> = jobs.iter().filter(|job| job.same_as.is_none() && !is_known(job)).collect();
@@ -67,7 +67,7 @@ impl Item {
         if experiment.refined.is_empty() || known.is_empty() {
             return Cow::Borrowed(experiment);
         }
-        let meaning = RowMeaning::new(experiment);
+        let meaning = RowFingerprints::new(experiment);
         let look = |case: &Case| {
             let job = job::first_of(case);
             let row = known.row(experiment, meaning.of(&self.variants[0], case, &job));

@@ -9,7 +9,7 @@ use super::plan::Item;
 use super::record::Failures;
 use super::run::Finished;
 use super::shard::{ROW, Shard, divisible, owner, owners};
-use crate::spec::ExperimentId;
+use crate::experiment::ExperimentId;
 use crate::table::{Column, Data, ParquetError, Table, parquet};
 
 /// Why the tables of the shards do not make a whole.
@@ -53,10 +53,11 @@ pub enum GatherError {
 
 fn commands(shards: &[Shard]) -> String {
     const TOLD: usize = 4;
-    let told: Vec<String> = shards.iter().take(TOLD).map(|shard| format!("`shotdamp run --shard {shard}`")).collect();
+    let description: Vec<String> =
+        shards.iter().take(TOLD).map(|shard| format!("`shotdamp run --shard {shard}`")).collect();
     match shards.len().saturating_sub(TOLD) {
-        0 => told.join(", "),
-        more => format!("{} and {more} more", told.join(", ")),
+        0 => description.join(", "),
+        more => format!("{} and {more} more", description.join(", ")),
     }
 }
 

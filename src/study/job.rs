@@ -1,8 +1,9 @@
 //! Jobs: one row of a table each, a case under one solver in one variant of the assumptions.
 
 use super::variant::Variant;
+use crate::experiment::{Case, Experiment, curves};
 use crate::measure::Measure;
-use crate::spec::{Case, Experiment, SolverChoice, curves};
+use crate::measure::SolverChoice;
 
 /// A row.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -12,10 +12,10 @@ use super::job::jobs;
 use super::layout::{Layout, record_name, table_name};
 use super::plan::Item;
 use super::record::Record;
-use super::row_meaning::RowMeaning;
+use super::row_fingerprint::RowFingerprints;
 use super::tabulate::Row;
 use super::untabulate::Cells;
-use crate::spec::Experiment;
+use crate::experiment::Experiment;
 use crate::table::{RowFingerprint, Table, parquet};
 
 /// What is known of an experiment's rows.
@@ -117,7 +117,7 @@ fn is_of(item: &Item, table: &Table) -> bool {
 
 fn fingerprints(item: &Item) -> BTreeSet<RowFingerprint> {
     let experiment = &item.source.experiment;
-    let meaning = RowMeaning::new(experiment);
+    let meaning = RowFingerprints::new(experiment);
     let of = |job: &super::job::Job| meaning.of(&item.variants[job.variant], &experiment.cases[job.case], job);
     jobs(experiment, &item.variants).iter().filter(|job| job.same_as.is_none()).map(of).collect()
 }

@@ -55,19 +55,19 @@ pub const ASSUMPTIONS: &str = "experiments/assumptions.yaml";
 
 /// The table of an experiment, within the study.
 #[must_use]
-pub fn table_name(id: &crate::spec::ExperimentId) -> String {
+pub fn table_name(id: &crate::experiment::ExperimentId) -> String {
     format!("results/{id}.parquet")
 }
 
 /// The record of an experiment, within the study.
 #[must_use]
-pub fn record_name(id: &crate::spec::ExperimentId) -> String {
+pub fn record_name(id: &crate::experiment::ExperimentId) -> String {
     format!("results/{id}.json")
 }
 
 /// The journal of an optimisation that is under way, within the study.
 #[must_use]
-pub fn journal_name(id: &crate::spec::ExperimentId) -> String {
+pub fn journal_name(id: &crate::experiment::ExperimentId) -> String {
     format!("results/{id}.journal")
 }
 

@@ -1,7 +1,9 @@
 //! Texts to experiments: everything that can be read is, and everything that cannot is told.
 
 use super::layout::{ASSUMPTIONS, Texts};
-use crate::spec::{AssumptionSheet, Experiment, ExperimentId, IdError, Problems, parse_assumptions, parse_experiment};
+use crate::experiment::{
+    AssumptionSheet, Experiment, ExperimentId, IdError, Problems, parse_assumptions, parse_experiment,
+};
 
 /// The experiments of a study with the assumptions that they share.
 #[derive(Debug, Default)]

@@ -6,9 +6,9 @@
 use rayon::prelude::*;
 
 use super::evaluate::{Evaluate, Simulation, evaluate_guarded};
+use crate::experiment::Maximise;
 use crate::measure::Evaluated;
 use crate::scene::ParameterValue;
-use crate::spec::Maximise;
 use crate::text::words;
 
 /// Where a maximum lies.

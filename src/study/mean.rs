@@ -7,8 +7,8 @@ use rayon::prelude::*;
 
 use super::evaluate::{Evaluate, Simulation};
 use crate::dynamics::Proof;
+use crate::experiment::Experiment;
 use crate::measure::{Evaluated, Measure, Measured};
-use crate::spec::Experiment;
 
 /// The measures to ask of each setting, so that means can be taken.
 pub(super) fn measures_of_each(measures: &[Measure]) -> Vec<Measure> {

@@ -3,8 +3,7 @@
 //! texts → experiments → [`Item`]s (what each depends on, what is on disk) → [`run`] → tables and records. Nothing here
 //! draws or judges: verdicts, figures and reports are made from the tables afterwards.
 
-mod ablation;
-mod accuracy;
+mod canonical;
 mod earlier;
 mod evaluate;
 mod event;
@@ -15,9 +14,10 @@ mod journal;
 mod known_rows;
 mod layout;
 mod load;
+mod machine;
 mod maximise;
 mod mean;
-mod meaning;
+mod open;
 mod optimise;
 mod orphan;
 mod plan;
@@ -25,8 +25,7 @@ mod progress;
 mod reason;
 mod record;
 mod refine;
-mod representative;
-mod row_meaning;
+mod row_fingerprint;
 mod run;
 mod run_times;
 mod shard;
@@ -35,35 +34,30 @@ mod spent;
 mod store;
 mod tabulate;
 mod tabulate_candidates;
-mod timing;
 mod untabulate;
 mod variant;
 mod work;
 
-pub use ablation::{Ablation, Outcome, Switched, ablation, idle_cases};
-pub use accuracy::{
-    Accuracy, CaseAccuracy, Contender, Errors, EventTimes, NoAccuracy, Origin, Point, Skipped, accuracy, errors,
-};
+pub use canonical::{Change, canonical, changes, fingerprint};
 pub use evaluate::{Array, Engine, Evaluate, Simulation};
-pub use event::{Event, Listen, Silence};
+pub use event::{Event, EventHandler, IgnoreEvents};
 pub use extent::Extent;
 pub use gather::{GatherError, gather};
 pub use job::runs_of_a_row;
 pub use known_rows::KnownRows;
 pub use layout::{ASSUMPTIONS, Layout, Texts, journal_name, record_name, table_name};
 pub use load::{Loaded, Refused, Source};
-pub use meaning::{Change, canonical, changes, fingerprint};
+pub use machine::Machine;
+pub use open::{Study, Unread};
 pub use orphan::{earlier_tables, orphans};
 pub use plan::{Item, State};
 pub use progress::Progress;
 pub use reason::{Reason, differences};
 pub use record::{Failures, FileHash, NoRecord, PRESENTATION_VERSION, Publication, RECORD_FORMAT, Record};
-pub use representative::representative;
 pub use run::{Finished, Task, ThreadError, run};
 pub use run_times::RunTimes;
 pub use shard::{Shard, ShardError};
 pub use snapshot::Snapshot;
 pub use spent::{Cost, Spent};
 pub use store::{Held, Lock, LockError, save};
-pub use timing::{Machine, Times};
 pub use variant::{Sensitivity, Variant, variants};

@@ -9,20 +9,21 @@ use std::time::Instant;
 use rayon::prelude::*;
 
 use super::evaluate::{Array, Evaluate, Simulation, guarded};
-use super::event::{Event, Listen};
+use super::event::{Event, EventHandler};
 use super::journal::{Journal, Known};
 use super::known_rows::KnownRows;
 use super::mean::{mean, measures_of_each};
 use super::run::{Finished, Task};
 use super::tabulate_candidates::{Candidate, failures, table};
 use super::variant::Variant;
+use crate::experiment::{Experiment, Goal, Optimise, Search, SearchKind, SearchSpacing};
+use crate::measure::SolverChoice;
 use crate::measure::{Evaluated, Measure, Rigour};
 use crate::optimise::{
     Batch, Bounds, CmaEs, Dense, Found, Genetic, GeneticSettings, Optimiser, Score, Spacing, Stalled, Stopping, dense,
     minimise, sections, two_opt,
 };
 use crate::scene::Recipe;
-use crate::spec::{Experiment, Goal, Optimise, Search, SearchKind, SearchSpacing, SolverChoice};
 use crate::table::Table;
 use crate::text::words;
 
@@ -92,42 +93,46 @@ impl<'a> Fitness<'a> {
 struct Searches<'a> {
     experiment: &'a Experiment,
     optimise: &'a Optimise,
-    listener: &'a dyn Listen,
+    handler: &'a dyn EventHandler,
     bounds: Bounds,
     fitness: Fitness<'a>,
     /// Index of the fitness among the measures.
     measure: usize,
     journal: Journal,
     /// Evaluations told of so far.
-    told: u64,
+    description: u64,
     /// The search that was heard of last, and its best value so far.
     last: (String, f64),
 }
 
 /// Runs it.
-pub(super) fn run_optimisation(task: Task<'_>, evaluate: &impl Evaluate, listener: &dyn Listen) -> Finished {
+pub(super) fn run_optimisation(task: Task<'_>, evaluate: &impl Evaluate, handler: &dyn EventHandler) -> Finished {
     let Task { experiment, variants, metadata, .. } = task;
     if let Some(whole) = task.known.and_then(KnownRows::whole) {
         let count = experiment.optimise.as_ref().map_or(0, |optimise| evaluations(optimise, variants));
-        listener.hear(&Event::Simulated { experiment: &experiment.id, count });
+        handler.on_event(&Event::Simulated { experiment: &experiment.id, count });
         // Its title may have changed since.
         return Finished { table: Table { metadata: metadata.clone(), ..whole.clone() }, ..Finished::default() };
     }
-    let (candidates, told) = match found(task, evaluate, listener) {
+    let (candidates, description) = match found(task, evaluate, handler) {
         Ok(found) => found,
         Err(reason) => (vec![Candidate::failed(reason)], 0),
     };
     let evaluated = evaluate_all(task, evaluate, candidates);
     if let Some(optimise) = &experiment.optimise {
-        let left = evaluations(optimise, variants).saturating_sub(told);
-        listener.hear(&Event::Simulated { experiment: &experiment.id, count: left });
+        let left = evaluations(optimise, variants).saturating_sub(description);
+        handler.on_event(&Event::Simulated { experiment: &experiment.id, count: left });
     }
     let table = table(experiment, variants, &evaluated, metadata.clone());
     Finished { table, failures: failures(&evaluated), ..Finished::default() }
 }
 
 /// The candidates of the file, and what the searches find.
-fn found(task: Task<'_>, evaluate: &impl Evaluate, listener: &dyn Listen) -> Result<(Vec<Candidate>, u64), String> {
+fn found(
+    task: Task<'_>,
+    evaluate: &impl Evaluate,
+    handler: &dyn EventHandler,
+) -> Result<(Vec<Candidate>, u64), String> {
     let experiment = task.experiment;
     let optimise = experiment.optimise.as_ref().ok_or("there is nothing to optimise")?;
     let baseline = task.variants.first().ok_or("there are no assumptions")?;
@@ -139,16 +144,16 @@ fn found(task: Task<'_>, evaluate: &impl Evaluate, listener: &dyn Listen) -> Res
     let mut searches = Searches {
         experiment,
         optimise,
-        listener,
+        handler,
         bounds: Bounds::new(optimise.bounds.clone()).map_err(|error| error.to_string())?,
         fitness,
         measure: measure.ok_or("what is to be optimised is not measured")?,
         journal: Journal::open(task.journal, meaning),
-        told: 0,
+        description: 0,
         last: (String::new(), f64::INFINITY),
     };
     let candidates = searches.all()?;
-    Ok((candidates, searches.told))
+    Ok((candidates, searches.description))
 }
 
 impl Searches<'_> {
@@ -169,7 +174,7 @@ impl Searches<'_> {
                         let mut total = genetic.evaluations;
                         found.push(self.candidate(SearchKind::Genetic, Some(*seed), &genetic, 0));
                         if self.optimise.two_opt {
-                            let name = told(SearchKind::TwoOpt, Some(*seed));
+                            let name = describe(SearchKind::TwoOpt, Some(*seed));
                             let swapped =
                                 two_opt(&genetic.point, genetic.score, &mut |points| self.batch(points, &name, total))?;
                             total += swapped.evaluations;
@@ -190,7 +195,7 @@ impl Searches<'_> {
                 }
                 Search::Dense { points, spacing, refine } => {
                     let settings = Dense { points: *points as usize, spacing: spaced(*spacing), refine: *refine };
-                    let name = told(SearchKind::Dense, None);
+                    let name = describe(SearchKind::Dense, None);
                     let (bounds, mut done) = (self.bounds.clone(), 0);
                     let best = dense(&bounds, settings, &mut |points| {
                         done += points.len() as u64;
@@ -210,9 +215,9 @@ impl Searches<'_> {
         let known = self.optimise.candidates.iter().find(|candidate| candidate.name == *name);
         let gaps = known.ok_or_else(|| format!("{name} is no candidate"))?.gaps.clone();
         let improved = format!("{name}_two_opt");
-        let told = words::of_level("candidate", &improved);
-        let score = self.batch(std::slice::from_ref(&gaps), &told, 0)?.scores[0];
-        let swapped = two_opt(&gaps, score, &mut |points| self.batch(points, &told, 1))?;
+        let description = words::of_level("candidate", &improved);
+        let score = self.batch(std::slice::from_ref(&gaps), &description, 0)?.scores[0];
+        let swapped = two_opt(&gaps, score, &mut |points| self.batch(points, &description, 1))?;
         Ok(Candidate { name: improved, ..self.candidate(SearchKind::TwoOpt, None, &swapped, 1) })
     }
 
@@ -244,7 +249,7 @@ impl Searches<'_> {
         kind: SearchKind,
         seed: u32,
     ) -> Result<Found, String> {
-        let name = told(kind, Some(seed));
+        let name = describe(kind, Some(seed));
         let mut done = 0;
         let found = minimise(optimiser, stopping, &mut |points| {
             done += points.len() as u64;
@@ -282,9 +287,9 @@ impl Searches<'_> {
         let experiment = &self.experiment.id;
         let (evaluations, best) = (before + points.len() as u64, self.signed(best));
         let unit = self.optimise.measure.unit();
-        self.listener.hear(&Event::Simulated { experiment, count: points.len() as u64 });
-        self.listener.hear(&Event::Searched { experiment, search, evaluations, best, unit });
-        self.told += points.len() as u64;
+        self.handler.on_event(&Event::Simulated { experiment, count: points.len() as u64 });
+        self.handler.on_event(&Event::Searched { experiment, search, evaluations, best, unit });
+        self.description += points.len() as u64;
         let seconds = known.iter().map(|known| known.seconds).sum::<f64>() / rayon::current_num_threads() as f64;
         Ok(Batch { scores, seconds })
     }
@@ -320,7 +325,7 @@ impl Searches<'_> {
     fn landscape(&mut self, found: &mut Vec<Candidate>) -> Result<(), String> {
         let Some(landscape) = self.optimise.landscape else { return Ok(()) };
         let points: Vec<Vec<f64>> = found.iter().map(|candidate| candidate.gaps.clone()).collect();
-        let name = told(SearchKind::Landscape, None);
+        let name = describe(SearchKind::Landscape, None);
         // The journal knows all but the candidates of the file.
         let scores = self.batch(&points, &name, 0)?.scores;
         let order = |i: &usize| if scores[*i].value.is_nan() { f64::INFINITY } else { scores[*i].value };
@@ -353,7 +358,7 @@ fn spaced(spacing: SearchSpacing) -> Spacing {
 }
 
 /// A search for a person who waits for it.
-fn told(kind: SearchKind, seed: Option<u32>) -> String {
+fn describe(kind: SearchKind, seed: Option<u32>) -> String {
     let name = words::of_level("candidate", &words::of_key(&kind));
     seed.map_or(name.clone(), |seed| format!("{name}, seed {seed}"))
 }

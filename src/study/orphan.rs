@@ -6,7 +6,7 @@ use std::fs;
 use super::layout::{Layout, Texts, stem};
 use super::record::Record;
 use super::{earlier, spent};
-use crate::spec::ExperimentId;
+use crate::experiment::ExperimentId;
 
 /// What an experiment leaves in `results/`.
 const ENDINGS: [&str; 3] = ["parquet", "json", "journal"];

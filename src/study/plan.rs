@@ -5,16 +5,16 @@ use std::path::Path;
 
 use serde_json::{Value, json};
 
+use super::canonical::fingerprint;
 use super::layout::{ASSUMPTIONS, Layout, record_name, table_name};
 use super::load::Source;
-use super::meaning::fingerprint;
 use super::reason::{Reason, differences};
 use super::record::{NoRecord, Record};
 use super::run::Task;
 use super::variant::{Sensitivity, Variant, variants};
 use crate::dynamics::SOLVER_VERSION;
+use crate::experiment::AssumptionSheet;
 use crate::scene::AssumptionValue;
-use crate::spec::AssumptionSheet;
 
 /// One experiment as planned.
 #[derive(Debug, Clone, PartialEq)]

@@ -2,7 +2,7 @@
 
 use indicatif::{ProgressBar, ProgressStyle};
 
-use super::event::{Event, Listen};
+use super::event::{Event, EventHandler};
 use crate::text::number::quantity;
 
 /// Listens to a run and shows how far it is.
@@ -31,8 +31,8 @@ impl Default for Progress {
     }
 }
 
-impl Listen for Progress {
-    fn hear(&self, event: &Event<'_>) {
+impl EventHandler for Progress {
+    fn on_event(&self, event: &Event<'_>) {
         match event {
             Event::Begun { simulations, .. } => {
                 self.bar.set_length(*simulations);
@@ -44,8 +44,8 @@ impl Listen for Progress {
                 self.bar.set_message(format!("{experiment}, {search}: best {best} after {evaluations} evaluations"));
             }
             Event::Finished { experiment, failures, .. } => {
-                let told = if failures.rows == 0 { "done" } else { "done, with failed rows" };
-                self.bar.set_message(format!("{experiment} {told}"));
+                let description = if failures.rows == 0 { "done" } else { "done, with failed rows" };
+                self.bar.set_message(format!("{experiment} {description}"));
             }
             Event::Ended => self.bar.finish_and_clear(),
         }

@@ -4,7 +4,7 @@ use std::fmt;
 
 use serde_json::Value;
 
-use super::meaning::{Change, canonical, changes};
+use super::canonical::{Change, canonical, changes};
 use super::record::Failures;
 
 /// One reason.
@@ -71,7 +71,7 @@ pub fn differences(old: &Value, new: &Value, file_of: &dyn Fn(&[&str]) -> String
 impl Reason {
     /// As [`fmt::Display`] has it, with the line that `line_of` finds for the file and the path of what changed.
     #[must_use]
-    pub fn told(&self, line_of: impl Fn(&str, &[String]) -> Option<usize>) -> String {
+    pub fn describe(&self, line_of: impl Fn(&str, &[String]) -> Option<usize>) -> String {
         let line = match self {
             Self::Changed { file, change } => line_of(file, &change.path).map(|line| (file, line)),
             _ => None,
@@ -91,7 +91,7 @@ impl fmt::Display for Reason {
             Self::RecordUnreadable(what) => write!(f, "its record does not count: {what}"),
             Self::Changed { file, change } => {
                 let Change { path, old, new } = change;
-                write!(f, "{file}: {}: {} -> {}", key(path), told(old.as_ref()), told(new.as_ref()))
+                write!(f, "{file}: {}: {} -> {}", key(path), describe(old.as_ref()), describe(new.as_ref()))
             }
             Self::MoreChanged { file, count } => write!(f, "{file}: and {count} more"),
             Self::FileMissing(name) => write!(f, "{name} is missing"),
@@ -115,7 +115,7 @@ fn key(path: &[String]) -> String {
     keys.join(".")
 }
 
-fn told(value: Option<&Value>) -> String {
+fn describe(value: Option<&Value>) -> String {
     let text = match value {
         None => return "(absent)".into(),
         Some(Value::String(text)) => text.clone(),

@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use crate::atomic::{self, FileError};
-use crate::spec::ExperimentId;
+use crate::experiment::ExperimentId;
 
 /// Raised when a record changes its shape; older ones then count as absent.
 pub const RECORD_FORMAT: u32 = 2;

@@ -12,7 +12,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use rayon::prelude::*;
 
 use super::evaluate::Evaluate;
-use super::event::{Event, Listen};
+use super::event::{Event, EventHandler};
 use super::job::{self, cost};
 use super::known_rows::KnownRows;
 use super::optimise::run_optimisation;
@@ -22,7 +22,7 @@ use super::shard::Shard;
 use super::spent::{Meter, Metered, Spent};
 use super::variant::Variant;
 use super::work::{Work, outcome};
-use crate::spec::{Case, Experiment};
+use crate::experiment::{Case, Experiment};
 use crate::table::Table;
 
 /// An experiment to be run.
@@ -78,7 +78,7 @@ pub fn run<T: Send + Sync>(
     tasks: &[Task<'_>],
     threads: usize,
     evaluate: &impl Evaluate,
-    listener: &dyn Listen,
+    handler: &dyn EventHandler,
     take: impl Fn(usize, Finished) -> T + Sync,
 ) -> Result<Vec<T>, ThreadError> {
     let (optimised, swept): (Vec<usize>, Vec<usize>) =
@@ -88,7 +88,7 @@ pub fn run<T: Send + Sync>(
     let work: Vec<(usize, Work<'_>)> = plain.into_iter().map(|index| (index, Work::new(tasks[index]))).collect();
     let of_divided: u64 = work.iter().map(|(_, one)| one.simulations()).sum();
     let of_others = optimised.iter().chain(&refined).map(|&i| job::simulations(tasks[i].experiment, tasks[i].variants));
-    listener.hear(&Event::Begun { experiments: tasks.len(), simulations: of_divided + of_others.sum::<u64>() });
+    handler.on_event(&Event::Begun { experiments: tasks.len(), simulations: of_divided + of_others.sum::<u64>() });
     let taken: Vec<OnceLock<T>> = tasks.iter().map(|_| OnceLock::new()).collect();
     let meters: Vec<Meter> = tasks.iter().map(|_| Meter::default()).collect();
     let engine = |index: usize| Metered { evaluate, meter: &meters[index] };
@@ -97,7 +97,7 @@ pub fn run<T: Send + Sync>(
         let (rows, failures) = (finished.table.rows(), finished.failures.clone());
         // Only the thread that put the last row comes here, once.
         let _ = taken[index].set(take(index, finished));
-        listener.hear(&Event::Finished { experiment: &tasks[index].experiment.id, rows, failures: &failures });
+        handler.on_event(&Event::Finished { experiment: &tasks[index].experiment.id, rows, failures: &failures });
     };
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).stack_size(STACK).build()?;
     pool.install(|| {
@@ -106,27 +106,27 @@ pub fn run<T: Send + Sync>(
             // Their rounds wait for one another: they begin first.
             for index in optimised {
                 scope.spawn_fifo(move |_| {
-                    let finished = run_optimisation(tasks[index], &engine(index), listener);
+                    let finished = run_optimisation(tasks[index], &engine(index), handler);
                     hand_over(index, undivided(tasks[index], finished));
                 });
             }
             for index in refined {
                 scope.spawn_fifo(move |_| {
                     let take = |work: &Work<'_>| hand_over(index, undivided(tasks[index], work.finish()));
-                    run_refined(tasks[index], &engine(index), listener, take);
+                    run_refined(tasks[index], &engine(index), handler, take);
                 });
             }
             for (one, row) in order(work) {
                 scope.spawn_fifo(move |_| {
                     let (index, one) = &work[one];
-                    if one.put(row, one.row(row, &engine(*index), listener)) {
+                    if one.put(row, one.row(row, &engine(*index), handler)) {
                         hand_over(*index, one.finish());
                     }
                 });
             }
         });
     });
-    listener.hear(&Event::Ended);
+    handler.on_event(&Event::Ended);
     Ok(taken
         .into_iter()
         .enumerate()
@@ -148,8 +148,8 @@ fn undivided(task: Task<'_>, mut finished: Finished) -> Finished {
 }
 
 /// Runs an experiment whose curves get more points where they bend: first the curves, then all else at their points.
-fn run_refined(task: Task<'_>, evaluate: &impl Evaluate, listener: &dyn Listen, hand_over: impl Fn(&Work<'_>)) {
-    let ear = Counting { listener, told: AtomicU64::new(0) };
+fn run_refined(task: Task<'_>, evaluate: &impl Evaluate, handler: &dyn EventHandler, hand_over: impl Fn(&Work<'_>)) {
+    let ear = Counting { handler, description: AtomicU64::new(0) };
     let look = |case: &Case| outcome(task, case, &job::first_of(case), evaluate, &ear);
     let points = refine::points(task.experiment, &look);
     let cases = points.iter().map(|point| point.case.clone()).collect();
@@ -167,23 +167,23 @@ fn run_refined(task: Task<'_>, evaluate: &impl Evaluate, listener: &dyn Listen, 
     work.rows_to_do().into_par_iter().for_each(|row| {
         work.put(row, work.row(row, evaluate, &ear));
     });
-    let left = job::simulations(task.experiment, task.variants).saturating_sub(ear.told.into_inner());
-    listener.hear(&Event::Simulated { experiment: &experiment.id, count: left });
+    let left = job::simulations(task.experiment, task.variants).saturating_sub(ear.description.into_inner());
+    handler.on_event(&Event::Simulated { experiment: &experiment.id, count: left });
     hand_over(&work);
 }
 
 /// Passes on what it hears, and counts the simulations.
 struct Counting<'a> {
-    listener: &'a dyn Listen,
-    told: AtomicU64,
+    handler: &'a dyn EventHandler,
+    description: AtomicU64,
 }
 
-impl Listen for Counting<'_> {
-    fn hear(&self, event: &Event<'_>) {
+impl EventHandler for Counting<'_> {
+    fn on_event(&self, event: &Event<'_>) {
         if let Event::Simulated { count, .. } = event {
-            self.told.fetch_add(*count, Ordering::Relaxed);
+            self.description.fetch_add(*count, Ordering::Relaxed);
         }
-        self.listener.hear(event);
+        self.handler.on_event(event);
     }
 }
 

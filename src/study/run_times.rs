@@ -7,10 +7,10 @@ use std::fs;
 use serde::{Deserialize, Serialize};
 
 use super::layout::Layout;
+use super::machine::Machine;
 use super::spent::Spent;
-use super::timing::Machine;
 use crate::atomic::{self, FileError};
-use crate::spec::ExperimentId;
+use crate::experiment::ExperimentId;
 
 /// Its name within the study.
 const NAME: &str = "reports/times.json";

@@ -15,7 +15,7 @@ use super::layout::Layout;
 use super::plan::Item;
 use super::run::Finished;
 use super::variant::Variant;
-use crate::spec::{Experiment, ExperimentId};
+use crate::experiment::{Experiment, ExperimentId};
 use crate::table::{Column, Data, ParquetError, Table, parquet};
 
 /// The column that tells a row's place in the whole table.
@@ -33,7 +33,7 @@ pub struct Shard {
 
 /// A text that names no shard.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("a shard is told as 3/8, the third of eight; the first is 1/8")]
+#[error("a shard is written as 3/8, the third of eight; the first is 1/8")]
 pub struct ShardError;
 
 impl Shard {

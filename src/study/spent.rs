@@ -11,9 +11,10 @@ use serde::{Deserialize, Serialize};
 use super::evaluate::{Array, Evaluate, Simulation};
 use super::layout::Layout;
 use crate::atomic;
+use crate::experiment::ExperimentId;
+use crate::measure::SolverChoice;
 use crate::measure::{Evaluated, Rigour};
 use crate::scene::GapWord;
-use crate::spec::{ExperimentId, SolverChoice};
 
 /// The folder of what was spent, within the study.
 pub(super) const FOLDER: &str = "results/times";

@@ -111,7 +111,7 @@ impl Lock {
             Err(TryLockError::WouldBlock) => {
                 // Whoever has only just taken it has not signed it yet.
                 let signed = fs::read_to_string(&path).ok().filter(|text| !text.is_empty());
-                let holder = signed.unwrap_or_else(|| "it has not told its number".into());
+                let holder = signed.unwrap_or_else(|| "its process number is not known".into());
                 if held(&holder) == Held::GiveUp {
                     return Err(LockError::Held { holder });
                 }

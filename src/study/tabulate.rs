@@ -6,9 +6,9 @@ use super::job::Job;
 use super::maximise::Place;
 use super::record::Failures;
 use super::variant::Variant;
+use crate::experiment::Experiment;
 use crate::measure::{Evaluated, Measure, TraceColumn};
 use crate::scene::{Parameter, ParameterValue};
-use crate::spec::Experiment;
 use crate::table::{Column, Data, RowFingerprint, Table};
 use crate::text::words;
 

@@ -3,8 +3,8 @@
 use super::maximise::Place;
 use super::tabulate::Row;
 use crate::dynamics::Proof;
+use crate::experiment::Experiment;
 use crate::measure::{Evaluated, Measured, TraceColumn};
-use crate::spec::Experiment;
 use crate::table::{Column, Data, Table};
 use crate::text::words;
 

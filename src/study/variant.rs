@@ -2,8 +2,8 @@
 //!
 //! They say how much a published number depends on what the study leaves unstated (u_input of a comparison).
 
+use crate::experiment::{AssumptionSheet, Experiment};
 use crate::scene::{Assumption, Assumptions};
-use crate::spec::{AssumptionSheet, Experiment};
 use crate::table::BASELINE;
 
 /// One set of assumptions under which an experiment runs.

@@ -6,19 +6,19 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use rayon::prelude::*;
 
 use super::evaluate::{Evaluate, Simulation, evaluate_guarded};
-use super::event::{Event, Listen};
+use super::event::{Event, EventHandler};
 use super::job::{Job, evaluations, jobs, keeps_trace, measures_need_trace};
 use super::maximise::maximum;
 use super::mean::Averaging;
-use super::row_meaning::RowMeaning;
+use super::row_fingerprint::RowFingerprints;
 use super::run::{Finished, Task};
 use super::shard::{Shard, part};
 use super::spent::Spent;
 use super::tabulate::{self, Outcome, Row};
 use super::variant::Variant;
+use crate::experiment::{Case, Experiment};
 use crate::measure::Rigour;
 use crate::scene::Recipe;
-use crate::spec::{Case, Experiment};
 use crate::table::RowFingerprint;
 use crate::text::words;
 
@@ -83,7 +83,7 @@ impl<'a> Work<'a> {
     /// What each row was computed from; of one that shares another's numbers, what that was.
     fn fingerprints(&self) -> Vec<RowFingerprint> {
         let Task { experiment, variants, .. } = self.task;
-        let meaning = RowMeaning::new(experiment);
+        let meaning = RowFingerprints::new(experiment);
         let of = |job: &Job| {
             let job = job.same_as.map_or(job, |row| &self.jobs[row]);
             meaning.of(&variants[job.variant], &experiment.cases[job.case], job)
@@ -92,9 +92,9 @@ impl<'a> Work<'a> {
     }
 
     /// Computes a row.
-    pub(super) fn row(&self, row: usize, evaluate: &impl Evaluate, listener: &dyn Listen) -> Outcome {
+    pub(super) fn row(&self, row: usize, evaluate: &impl Evaluate, handler: &dyn EventHandler) -> Outcome {
         let job = &self.jobs[row];
-        outcome(self.task, &self.task.experiment.cases[job.case], job, evaluate, listener)
+        outcome(self.task, &self.task.experiment.cases[job.case], job, evaluate, handler)
     }
 }
 
@@ -104,24 +104,24 @@ pub(super) fn outcome(
     case: &Case,
     job: &Job,
     evaluate: &impl Evaluate,
-    listener: &dyn Listen,
+    handler: &dyn EventHandler,
 ) -> Outcome {
     let experiment = task.experiment;
     if let Some(known) = task.known.filter(|known| !known.is_empty()) {
-        let fingerprint = RowMeaning::new(experiment).of(&task.variants[job.variant], case, job);
+        let fingerprint = RowFingerprints::new(experiment).of(&task.variants[job.variant], case, job);
         if let Some(row) = known.row(experiment, fingerprint) {
-            listener.hear(&Event::Simulated { experiment: &experiment.id, count: evaluations(experiment, job) });
+            handler.on_event(&Event::Simulated { experiment: &experiment.id, count: evaluations(experiment, job) });
             return Ok(row);
         }
     }
-    let told = AtomicUsize::new(0);
+    let description = AtomicUsize::new(0);
     let done = || {
-        told.fetch_add(1, Ordering::Relaxed);
-        listener.hear(&Event::Simulated { experiment: &experiment.id, count: 1 });
+        description.fetch_add(1, Ordering::Relaxed);
+        handler.on_event(&Event::Simulated { experiment: &experiment.id, count: 1 });
     };
     let outcome = simulate(experiment, case, &task.variants[job.variant], job, evaluate, &done);
-    let rest = evaluations(experiment, job).saturating_sub(told.into_inner() as u64);
-    listener.hear(&Event::Simulated { experiment: &experiment.id, count: rest });
+    let rest = evaluations(experiment, job).saturating_sub(description.into_inner() as u64);
+    handler.on_event(&Event::Simulated { experiment: &experiment.id, count: rest });
     outcome
 }
 

@@ -81,11 +81,11 @@ struct Attributes<'a> {
 
 impl<'a> Attributes<'a> {
     fn of(table: &'a Table) -> Self {
-        let told = |text: fn(&Column) -> &str| {
+        let of_columns = |text: fn(&Column) -> &str| {
             let pairs = table.columns.iter().map(|column| (column.name.as_str(), text(column)));
             pairs.filter(|(_, text)| !text.is_empty()).collect()
         };
-        Self { provenance: &table.metadata, units: told(|c| &c.unit), symbols: told(|c| &c.symbol) }
+        Self { provenance: &table.metadata, units: of_columns(|c| &c.unit), symbols: of_columns(|c| &c.symbol) }
     }
 }
 
@@ -95,9 +95,9 @@ fn arrow_schema(frame: &pl::DataFrame, table: &Table, keys: &[(String, String)])
     // The oldest types for text and lists: every reader knows them.
     let plain = pl::SchemaExt::to_arrow(&**frame.schema(), pl::CompatLevel::oldest());
     let fields = plain.iter_values().zip(&table.columns).map(|(field, column)| {
-        let told = [("unit", &column.unit), ("symbol", &column.symbol)];
-        let told = told.into_iter().filter(|(_, text)| !text.is_empty());
-        let metadata = told.map(|(key, text)| (key.into(), text.as_str().into())).collect();
+        let description = [("unit", &column.unit), ("symbol", &column.symbol)];
+        let description = description.into_iter().filter(|(_, text)| !text.is_empty());
+        let metadata = description.map(|(key, text)| (key.into(), text.as_str().into())).collect();
         (field.name.clone(), field.clone().with_metadata(metadata))
     });
     let schema: pl::ArrowSchema = fields.collect();
@@ -163,9 +163,9 @@ pub fn from_bytes(mut bytes: Vec<u8>, name: &str) -> Result<Table, ParquetError>
     let wrong = |error: pl::PolarsError| damaged(&error.to_string());
     let mut reader = pl::ParquetReader::new(Cursor::new(bytes)).read_parallel(pl::ParallelStrategy::None);
     let keys = reader.get_metadata().map_err(wrong)?.key_value_metadata().clone().unwrap_or_default();
-    let told = |key: &str| keys.iter().find(|pair| pair.key == key).and_then(|pair| pair.value.as_deref());
-    let about = told(ABOUT_KEY).ok_or_else(|| damaged("it does not say what its columns are"))?;
-    let fingerprints = fingerprint::from_text(told(ROWS_KEY).unwrap_or_default())
+    let value = |key: &str| keys.iter().find(|pair| pair.key == key).and_then(|pair| pair.value.as_deref());
+    let about = value(ABOUT_KEY).ok_or_else(|| damaged("it does not say what its columns are"))?;
+    let fingerprints = fingerprint::from_text(value(ROWS_KEY).unwrap_or_default())
         .ok_or_else(|| damaged("it does not say what its rows were computed from"))?;
     let about: About = serde_json::from_str(about).map_err(|error| damaged(&error.to_string()))?;
     if about.format != FORMAT {

@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use super::number;
 
-/// The word that stands for a key in YAML and as a table column: `velocity_ratio` for [`crate::measure::Measure::VelocityRatio`].
+/// The word that stands for a key in YAML and as a table column: `velocity_ratio` for `Measure::VelocityRatio`.
 #[must_use]
 pub fn of_key<K: Serialize>(key: &K) -> String {
     match serde_json::to_value(key) {

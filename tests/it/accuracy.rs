@@ -3,11 +3,14 @@
 use std::path::Path;
 use std::time::Duration;
 
+use shotdamp::accuracy::{
+    Ablation, Accuracy, AccuracyView, Contender, Origin, Outcome, VerdictPrice, ablation, ablation_page, accuracy,
+    accuracy_page, accuracy_summary,
+};
+use shotdamp::experiment::{Experiment, load_assumptions, parse_experiment};
 use shotdamp::reference::{Price, Verdict};
-use shotdamp::report::{AccuracyView, VerdictPrice, ablation as told, accuracy_page, accuracy_summary};
 use shotdamp::scene::Assumptions;
-use shotdamp::spec::{Experiment, load_assumptions, parse_experiment};
-use shotdamp::study::{Ablation, Accuracy, Contender, Machine, Origin, Outcome, ablation, accuracy};
+use shotdamp::study::Machine;
 
 fn assumptions() -> Assumptions {
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("experiments/assumptions.yaml");
@@ -109,7 +112,7 @@ fn each_effect_is_switched_and_what_is_idle_is_left_alone() {
     for name in ["limit stop", "ceiling", "gravity", "structural damping"] {
         assert!(matches!(of(&cases, name), Outcome::Changed { change, .. } if change > 1e-6), "{name}: {cases:?}");
     }
-    let text = told(&cases);
+    let text = ablation_page(&cases);
     assert!(text.contains("| limit stop | in force | off |"), "{text}");
     assert!(text.contains("| soft walls | left out | no: the walls are rigid"), "{text}");
     // Too weak to lift the particle: stop and ceiling are named, and provably idle.

@@ -4,11 +4,11 @@ use std::collections::BTreeSet;
 use std::sync::atomic::Ordering;
 
 use shotdamp::calibrate::{Calibrated, CalibrationError, calibrate};
-use shotdamp::publish::{Opened, judge_all};
+use shotdamp::experiment::{Calibration, Experiment, parse_calibration};
 use shotdamp::reference::{Found, Role, Verdict};
-use shotdamp::report;
-use shotdamp::spec::{Calibration, Experiment, parse_calibration};
-use shotdamp::study::{Layout, Silence, Texts};
+use shotdamp::report::judge_all;
+use shotdamp::study::Study;
+use shotdamp::study::{IgnoreEvents, Layout, Texts};
 
 use crate::desk::{Desk, MadeUp, STOP_REFERENCE, simulated};
 
@@ -28,10 +28,10 @@ fn read(text: &str) -> Calibration {
 
 /// The result on this desk, and how many simulations it took.
 fn on(desk: &Desk, calibration: &Calibration, threads: usize) -> Result<(Calibrated, usize), CalibrationError> {
-    let opened = Opened::new(desk.layout.clone(), desk.texts());
-    let experiments: Vec<&Experiment> = opened.items.iter().map(|item| &item.source.experiment).collect();
-    let (in_force, engine) = (opened.sheet.assumptions(), MadeUp::default());
-    let result = calibrate(calibration, &experiments, &opened.references, &in_force, threads, &engine, &Silence)?;
+    let study = Study::new(desk.layout.clone(), desk.texts());
+    let experiments: Vec<&Experiment> = study.items.iter().map(|item| &item.source.experiment).collect();
+    let (in_force, engine) = (study.sheet.assumptions(), MadeUp::default());
+    let result = calibrate(calibration, &experiments, &study.references, &in_force, threads, &engine, &IgnoreEvents)?;
     Ok((result, engine.simulations.load(Ordering::Relaxed)))
 }
 
@@ -55,7 +55,7 @@ fn the_best_of_all_combinations_is_found_and_each_input_has_its_profile() {
     assert_eq!(result.held_out[0].id, "ch3-gap/grows");
     assert_eq!(result.held_out[0].best.found, Found::Claim { holds: true });
     assert_eq!(result.held_out[0].best.verdict, Verdict::Reproduced);
-    let page = report::calibration(&read(STOP), &result);
+    let page = shotdamp::calibrate::calibration(&read(STOP), &result);
     assert!(page.contains("**55 mm: 0.2") && page.contains("| yes |") && page.contains("| no |"), "{page}");
     assert!(page.contains("All 6 combinations of values were tried, each as a single run."), "{page}");
     assert_eq!(on(&Desk::new(), &read(STOP), 1).unwrap().0, result, "on any number of threads");
@@ -125,7 +125,7 @@ fn a_search_ends_at_its_budget_and_says_so() {
     let text = SEARCHED.replace("200 sets", "5 sets");
     let (result, _) = on(&with_a_known_answer(), &read(&text), 1).unwrap();
     assert!(result.cut_short && result.tried == 5);
-    let page = report::calibration(&read(&text), &result);
+    let page = shotdamp::calibrate::calibration(&read(&text), &result);
     assert!(page.contains("5 sets of inputs of 200 possible ones") && page.contains("by the budget"), "{page}");
 }
 
@@ -161,7 +161,7 @@ fn an_entry_that_is_none_and_an_input_that_is_none_are_told() {
 #[test]
 fn every_entry_has_a_role_in_the_choice_of_inputs() {
     let desk = simulated();
-    let role = |entry: &str| Opened::new(desk.layout.clone(), desk.texts()).role(entry);
+    let role = |entry: &str| Study::new(desk.layout.clone(), desk.texts()).role(entry);
     assert_eq!(role("ch3-stop/at-two"), Role::Neither);
     desk.put("calibrations/stop.yaml", STOP);
     assert_eq!(role("ch3-stop/at-two"), Role::Fitted, "a calibration fits it");
@@ -172,22 +172,22 @@ fn every_entry_has_a_role_in_the_choice_of_inputs() {
     );
     desk.put("reference/ch3/ch3-stop.yaml", &STOP_REFERENCE.replace("at-two", "at-2"));
     assert_eq!(role("ch3-stop/at-2"), Role::HeldOut);
-    let opened = Opened::new(desk.layout.clone(), desk.texts());
-    let judged = judge_all(&opened);
+    let study = Study::new(desk.layout.clone(), desk.texts());
+    let judged = judge_all(&study);
     assert_eq!(judged.verdicts["ch3-stop"][0].role, Role::HeldOut, "and pages tell it");
     desk.put("calibrations/stop.yaml", "title: nothing else");
-    let opened = Opened::new(desk.layout.clone(), desk.texts());
-    assert!(opened.unread[0].to_string().contains("calibrations/stop.yaml"), "{:?}", opened.unread);
+    let study = Study::new(desk.layout.clone(), desk.texts());
+    assert!(study.unread[0].to_string().contains("calibrations/stop.yaml"), "{:?}", study.unread);
 }
 
 #[test]
 fn the_calibrations_of_the_study_are_sound() {
     let layout = Layout::new(env!("CARGO_MANIFEST_DIR"));
-    let opened = Opened::new(layout.clone(), Texts::read(&layout).unwrap());
-    assert_eq!(opened.unread, []);
-    let known: Vec<_> = opened.references.values().flat_map(|file| &file.entries).collect();
-    let fitted_to = opened.fitted();
-    for (name, calibration) in &opened.calibrations {
+    let study = Study::new(layout.clone(), Texts::read(&layout).unwrap());
+    assert_eq!(study.unread, []);
+    let known: Vec<_> = study.references.values().flat_map(|file| &file.entries).collect();
+    let fitted_to = study.fitted();
+    for (name, calibration) in &study.calibrations {
         let fit: BTreeSet<&String> = calibration.fit.iter().collect();
         assert!(calibration.hold_out.iter().all(|id| !fit.contains(id)), "{name}: what is fitted is not held out");
         for id in calibration.fit.iter().chain(&calibration.hold_out).filter(|id| !id.ends_with("/*")) {

@@ -128,8 +128,8 @@ fn github_gets_the_nine_worst_and_a_count_of_the_rest() {
         let one = self::judged(&id, Verdict::Differs, Verdict::Reproduced);
         judged.push(Judged { comparison: off_by(f64::from(deviation)), ..one });
     }
-    let told = annotations(&view(&judged, vec![trouble("100 % wrong\r\nhere: x")]));
-    let lines: Vec<&str> = told.lines().collect();
+    let description = annotations(&view(&judged, vec![trouble("100 % wrong\r\nhere: x")]));
+    let lines: Vec<&str> = description.lines().collect();
     assert_eq!(lines.len(), 10, "GitHub shows no more than ten of a step");
     assert_eq!(
         lines[0],
@@ -137,7 +137,7 @@ fn github_gets_the_nine_worst_and_a_count_of_the_rest() {
     );
     assert!(lines[1].starts_with("::error file=reference/ch3/x.yaml,line=9,title=ch3-b/gone%3A missing%2C expected"));
     assert!(lines[2].contains("ch3-b/off%3A differs"), "the farthest first: {}", lines[2]);
-    assert!(lines[3].contains("ch3-c/11-off") && lines[8].contains("ch3-c/6-off"), "{told}");
+    assert!(lines[3].contains("ch3-c/11-off") && lines[8].contains("ch3-c/6-off"), "{description}");
     assert!(lines[9].starts_with("::error title=5 more not as expected::"), "{}", lines[9]);
 }
 
@@ -221,7 +221,7 @@ entries:
     value: \"3\"
     from: {cell: {of: velocity_ratio, where: {force_ratio: 2}}}
     expected: differs        # since the finer sweep
-    explanation: >-          # told at length
+    explanation: >-          # description at length
       The old reason,
       over two lines.
 
@@ -239,27 +239,27 @@ entries:
 #[test]
 fn accepting_a_verdict_changes_two_keys_and_nothing_else() {
     let file = parse_reference("ch3-x", LAYOUTS).unwrap();
-    let told = |id: &str, verdict, expected, reason: &str| {
+    let accepted = |id: &str, verdict, expected, reason: &str| {
         accept(&file, LAYOUTS, &judged(&format!("ch3-x/{id}"), verdict, expected), reason)
     };
     use Verdict::{Differs, Missing, Reproduced, Undecidable};
-    let plain = told("plain", Differs, Reproduced, "The study: rounds # \"down\".").unwrap();
+    let plain = accepted("plain", Differs, Reproduced, "The study: rounds # \"down\".").unwrap();
     let anchor = "{force_ratio: 2}}}   # at two\n";
     let added = "    expected: differs\n    explanation: >-\n      The study: rounds # \"down\".\n";
     assert_eq!(plain, LAYOUTS.replace(anchor, &format!("{anchor}{added}")));
 
-    let known = told("known", Undecidable, Differs, "Chaos.").unwrap();
+    let known = accepted("known", Undecidable, Differs, "Chaos.").unwrap();
     let expected = LAYOUTS
         .replace("expected: differs        # since", "expected: undecidable        # since")
         .replace("      The old reason,\n      over two lines.\n", "      Chaos.\n");
     assert_eq!(known, expected);
 
-    let flow = told("flow", Differs, Reproduced, "It: \"is\" so.").unwrap();
+    let flow = accepted("flow", Differs, Reproduced, "It: \"is\" so.").unwrap();
     let added = "{id: flow, expected: differs, explanation: \"It: \\\"is\\\" so.\", place";
     assert_eq!(flow, LAYOUTS.replace("{id: flow, place", added));
 
     let long = "word ".repeat(40);
-    let short = told("short", Differs, Reproduced, &long).unwrap();
+    let short = accepted("short", Differs, Reproduced, &long).unwrap();
     assert!(short.contains("    explanation: >-   # kept\n      word word"), "{short}");
     assert!(short.contains("\n    expected: differs\n# The end.\n"), "{short}");
     assert!(short.lines().all(|line| line.chars().count() <= 120));
@@ -268,9 +268,9 @@ fn accepting_a_verdict_changes_two_keys_and_nothing_else() {
     let one = judged("ch3-x/known", Undecidable, Differs);
     assert_eq!(accept(&file, &windows, &one, "Chaos.").unwrap(), expected.replace('\n', "\r\n"));
 
-    assert!(told("plain", Missing, Reproduced, "x").unwrap_err().to_string().contains("never an expected verdict"));
-    assert!(told("plain", Reproduced, Reproduced, "x").unwrap_err().to_string().contains("as expected already"));
-    assert!(told("plain", Differs, Reproduced, " \n").unwrap_err().to_string().contains("--reason"));
+    assert!(accepted("plain", Missing, Reproduced, "x").unwrap_err().to_string().contains("never an expected verdict"));
+    assert!(accepted("plain", Reproduced, Reproduced, "x").unwrap_err().to_string().contains("as expected already"));
+    assert!(accepted("plain", Differs, Reproduced, " \n").unwrap_err().to_string().contains("--reason"));
 }
 
 #[test]
@@ -306,10 +306,10 @@ fn committed_reports_are_those_that_would_be_generated() {
     fs::write(desk.layout.path("reports/ch3/ch3-stop.png"), png).unwrap();
     // Simulating alone does not renew them: a CI that has no results yet runs this first.
     assert_eq!(shotdamp(&desk, &["run", "--tables"]).code, 0);
-    let told = shotdamp(&desk, &["check", "--reports"]);
-    assert_eq!(told.code, 1);
+    let description = shotdamp(&desk, &["check", "--reports"]);
+    assert_eq!(description.code, 1);
     assert_eq!(
-        told.err,
+        description.err,
         "error: reports/ch3/ch3-gap.png: is not there\n\
          error: reports/ch3/ch3-lost.md: nothing writes it; remove it\n\
          error: reports/ch3/ch3-stop.md:5: differs first in this line\n    \

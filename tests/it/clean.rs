@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use shotdamp::study::Silence;
+use shotdamp::study::IgnoreEvents;
 
 use crate::desk::{Desk, MadeUp};
 
@@ -84,7 +84,7 @@ fn reports_tell_no_time_host_or_folder() {
 #[test]
 fn tables_and_records_tell_no_time_host_or_folder() {
     let desk = Desk::new();
-    desk.run(2, &MadeUp::default(), &Silence);
+    desk.run(2, &MadeUp::default(), &IgnoreEvents);
     let words = words_of_this_machine(&[desk.folder.path().display().to_string()]);
     for name in ["ch3-gap.parquet", "ch3-gap.json", "ch3-stop.parquet", "ch3-stop.json"] {
         assert_clean(name, &desk.bytes(&format!("results/{name}")), &words);

@@ -118,8 +118,8 @@ figure: {x: force_ratio, y: velocity_ratio, band: wide, guides: [{at: x}], peaks
 fn all_mistakes_of_a_file_are_told_at_once() {
     let desk = Desk::new();
     desk.put("experiments/ch3/ch3-bad.yaml", MISTAKEN);
-    let told = shotdamp(&desk, &["status"]).err;
-    let places: Vec<&str> = told.lines().filter(|line| line.contains("ch3-bad.yaml:")).collect();
+    let description = shotdamp(&desk, &["status"]).err;
+    let places: Vec<&str> = description.lines().filter(|line| line.contains("ch3-bad.yaml:")).collect();
     for (line, mistakes) in [
         (2, 1),
         (3, 2),
@@ -141,7 +141,7 @@ fn all_mistakes_of_a_file_are_told_at_once() {
         (23, 5),
     ] {
         let found = places.iter().filter(|place| place.contains(&format!("ch3-bad.yaml:{line}:"))).count();
-        assert_eq!(found, mistakes, "line {line}:\n{told}");
+        assert_eq!(found, mistakes, "line {line}:\n{description}");
     }
 }
 
@@ -188,7 +188,7 @@ fn what_a_deleted_experiment_left_is_removed() {
 #[test]
 fn status_points_at_the_line_that_changed_and_counts_the_rows() {
     let desk = simulated();
-    for (right, wrong, told) in [
+    for (right, wrong, description) in [
         ("mass: 1 kg", "mass: 2 kg", "experiments/ch3/ch3-stop.yaml:6: scene.structure.single_mass.mass: 1.0 -> 2.0"),
         ("gap_ratio: 50", "gap_ratio: 60", "experiments/ch3/ch3-stop.yaml:9: scene.dampers.0.gap.ratio: 50.0 -> 60.0"),
         ("skip: 25", "skip: 30", "experiments/ch3/ch3-stop.yaml:14: settings.skip: 25 -> 30"),
@@ -196,7 +196,7 @@ fn status_points_at_the_line_that_changed_and_counts_the_rows() {
     ] {
         desk.put("experiments/ch3/ch3-stop.yaml", &STOP.replace(right, wrong));
         let status = shotdamp(&desk, &["status", "--why", "ch3-stop"]).out;
-        assert!(status.contains(&format!("    {told}")), "{told}\n{status}");
+        assert!(status.contains(&format!("    {description}")), "{description}\n{status}");
         // Without a stop its length means nothing: three rows share the numbers of others.
         let to_do = if right.starts_with("force") { 9 } else { 27 };
         assert!(status.contains(&format!("\n    {to_do} of 30 rows to simulate\n")), "{status}");

@@ -7,11 +7,13 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use assert_cmd::cargo::CommandCargoExt;
 use shotdamp::dynamics::Proof;
+use shotdamp::measure::SolverChoice;
 use shotdamp::measure::{Evaluated, Measured, TraceColumn};
-use shotdamp::publish::Opened;
 use shotdamp::scene::Excitation;
-use shotdamp::spec::SolverChoice;
-use shotdamp::study::{self, Evaluate, Item, KnownRows, Layout, Listen, Reason, Silence, Simulation, Task, Texts};
+use shotdamp::study::Study;
+use shotdamp::study::{
+    self, Evaluate, EventHandler, IgnoreEvents, Item, KnownRows, Layout, Reason, Simulation, Task, Texts,
+};
 use shotdamp::table::{Table, parquet};
 
 pub const ASSUMPTIONS: &str = "
@@ -121,13 +123,13 @@ impl Desk {
 
     /// The plan by id; `ch3-stop` has a value to be held against, `ch3-gap` has a claim.
     pub fn plan(&self) -> BTreeMap<String, Item> {
-        let opened = Opened::new(self.layout.clone(), self.texts());
-        assert_eq!(opened.unread, []);
-        opened.items.into_iter().map(|item| (item.source.experiment.id.to_string(), item)).collect()
+        let study = Study::new(self.layout.clone(), self.texts());
+        assert_eq!(study.unread, []);
+        study.items.into_iter().map(|item| (item.source.experiment.id.to_string(), item)).collect()
     }
 
     /// Runs what is stale, all but the rows that are known, and returns the ids.
-    pub fn run(&self, threads: usize, evaluate: &impl Evaluate, listener: &dyn Listen) -> Vec<String> {
+    pub fn run(&self, threads: usize, evaluate: &impl Evaluate, handler: &dyn EventHandler) -> Vec<String> {
         let plan = self.plan();
         let stale: Vec<&Item> = plan.values().filter(|item| !item.reasons().is_empty()).collect();
         let provenance: Vec<_> = stale.iter().map(|item| item.provenance()).collect();
@@ -141,7 +143,7 @@ impl Desk {
             .map(|((item, (metadata, journal)), known)| Task { known: Some(known), ..item.task(metadata, journal) })
             .collect();
         let save = |index: usize, finished| study::save(&self.layout, stale[index], &finished).unwrap();
-        study::run(&tasks, threads, evaluate, listener, save).unwrap();
+        study::run(&tasks, threads, evaluate, handler, save).unwrap();
         stale.iter().map(|item| item.source.experiment.id.to_string()).collect()
     }
 
@@ -157,7 +159,7 @@ impl Desk {
 /// A study whose tables are there, made up.
 pub fn simulated() -> Desk {
     let desk = Desk::new();
-    desk.run(2, &MadeUp::default(), &Silence);
+    desk.run(2, &MadeUp::default(), &IgnoreEvents);
     desk
 }
 

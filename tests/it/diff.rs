@@ -36,10 +36,10 @@ fn diff(desk: &Desk) -> crate::desk::Said {
 
 #[test]
 fn the_same_run_twice_differs_in_nothing() {
-    let told = diff(&with_a_run_before());
-    assert_eq!(told.code, 0, "{}", told.err);
+    let description = diff(&with_a_run_before());
+    assert_eq!(description.code, 0, "{}", description.err);
     assert_eq!(
-        told.out,
+        description.out,
         "39 numbers: 39 the same to the bit, 0 moved within their uncertainty, 0 beyond it; 0 differences otherwise.\n"
     );
 }
@@ -74,11 +74,13 @@ fn rows_and_experiments_that_only_one_has_are_named() {
     let desk = with_a_run_before();
     fs::remove_file(desk.layout.path("results/ch3-stop.parquet")).unwrap();
     change(&desk, "ch3-gap", |table| floats(table, "gap_ratio")[0] = 12.0);
-    let told = diff(&desk);
-    assert_eq!(told.code, 1);
-    assert!(told.out.contains("only in the first: 1\n    gap_ratio 10, solver event_driven, variant baseline\n"));
-    assert!(told.out.contains("only in the second: 1\n    gap_ratio 12"), "{}", told.out);
-    assert!(told.out.contains("\nch3-stop: only in the first\n"), "{}", told.out);
+    let description = diff(&desk);
+    assert_eq!(description.code, 1);
+    assert!(
+        description.out.contains("only in the first: 1\n    gap_ratio 10, solver event_driven, variant baseline\n")
+    );
+    assert!(description.out.contains("only in the second: 1\n    gap_ratio 12"), "{}", description.out);
+    assert!(description.out.contains("\nch3-stop: only in the first\n"), "{}", description.out);
     let nothing = shotdamp(&desk, &["diff", &desk.layout.path("experiments").display().to_string()]);
     assert_eq!(nothing.code, 2);
     assert!(nothing.err.contains("neither tables"), "{}", nothing.err);
@@ -92,8 +94,12 @@ fn a_run_is_held_against_the_committed_report() {
     assert_eq!(same.code, 0, "{}{}", same.out, same.err);
     change(&desk, "ch3-stop", |table| floats(table, "velocity_ratio").iter_mut().for_each(|value| *value += 1.0));
     change(&desk, "ch3-gap", |table| floats(table, "velocity_ratio").reverse());
-    let told = shotdamp(&desk, &["diff"]);
-    assert_eq!(told.code, 1);
-    assert!(told.out.contains("told otherwise: 2\n    ch3-gap/grows: reproduced -> differs\n"), "{}", told.out);
-    assert!(told.out.contains("beyond their uncertainty: 1\n    ch3-stop/at-two: "), "{}", told.out);
+    let description = shotdamp(&desk, &["diff"]);
+    assert_eq!(description.code, 1);
+    assert!(
+        description.out.contains("judged differently: 2\n    ch3-gap/grows: reproduced -> differs\n"),
+        "{}",
+        description.out
+    );
+    assert!(description.out.contains("beyond their uncertainty: 1\n    ch3-stop/at-two: "), "{}", description.out);
 }

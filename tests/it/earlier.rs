@@ -4,8 +4,9 @@ use std::fs;
 use std::path::PathBuf;
 
 use shotdamp::measure::Evaluated;
-use shotdamp::publish::{Opened, judge_all, publish};
-use shotdamp::study::{Evaluate, KnownRows, Silence, Simulation};
+use shotdamp::report::{judge_all, publish};
+use shotdamp::study::Study;
+use shotdamp::study::{Evaluate, IgnoreEvents, KnownRows, Simulation};
 use shotdamp::table::parquet;
 
 use crate::desk::{ASSUMPTIONS, Desk, GAP, GAP_REFERENCE, MadeUp, STOP, STOP_REFERENCE, shotdamp};
@@ -14,7 +15,7 @@ use crate::shard::OPTIMISED;
 /// Simulations that bringing the study up to date takes.
 fn simulations(desk: &Desk) -> usize {
     let engine = MadeUp::default();
-    desk.run(2, &engine, &Silence);
+    desk.run(2, &engine, &IgnoreEvents);
     engine.simulations.into_inner()
 }
 
@@ -47,9 +48,9 @@ fn earlier(desk: &Desk, id: &str) -> Vec<PathBuf> {
 
 /// Figures that bringing the reports up to date draws.
 fn drawn(desk: &Desk) -> usize {
-    let opened = Opened::new(desk.layout.clone(), desk.texts());
-    let ids = opened.items.iter().map(|item| item.source.experiment.id.0.as_str()).collect();
-    publish(&opened, &judge_all(&opened), &ids).unwrap().drawn
+    let study = Study::new(desk.layout.clone(), desk.texts());
+    let ids = study.items.iter().map(|item| item.source.experiment.id.0.as_str()).collect();
+    publish(&study, &judge_all(&study), &ids).unwrap().drawn
 }
 
 const STOP_FILE: &str = "experiments/ch3/ch3-stop.yaml";
@@ -205,7 +206,7 @@ fn rows_that_failed_are_tried_again_and_no_others() {
     let desk = Desk::new();
     fs::remove_file(desk.layout.path("experiments/ch3/ch3-gap.yaml")).unwrap();
     fs::remove_file(desk.layout.path("reference/ch3/ch3-gap.yaml")).unwrap();
-    desk.run(2, &Breaks(MadeUp::default()), &Silence);
+    desk.run(2, &Breaks(MadeUp::default()), &IgnoreEvents);
     // Three points under two solvers, and where the impulse is moved.
     assert_eq!(to_do(&desk, "ch3-stop"), 3 * (2 + 2));
     assert_eq!(simulations(&desk), 3 * (2 + 2));

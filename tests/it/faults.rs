@@ -9,7 +9,7 @@ use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
 use assert_cmd::cargo::CommandCargoExt;
-use shotdamp::study::{FileHash, Held, Lock, Silence, Snapshot};
+use shotdamp::study::{FileHash, Held, IgnoreEvents, Lock, Snapshot};
 use shotdamp::table::parquet;
 
 use crate::cli::relative_files;
@@ -207,7 +207,7 @@ fn a_place_that_cannot_be_written_to_is_named_and_the_rest_is_kept() {
 #[test]
 fn a_damaged_table_is_never_taken_for_a_result() {
     let desk = Desk::new();
-    desk.run(2, &MadeUp::default(), &Silence);
+    desk.run(2, &MadeUp::default(), &IgnoreEvents);
     shotdamp(&desk, &["run", "--quiet"]);
     let whole = relative_files(&desk);
     assert!(shotdamp(&desk, &[]).out.starts_with("Nothing to do"));

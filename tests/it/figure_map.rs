@@ -1,7 +1,7 @@
 //! Maps: a quantity over two others, as colours. Each test leaves its picture in `target/tmp`, to be looked at.
 
+use shotdamp::experiment::{AxisScale, Best, Drawing, MapSpec, Mark};
 use shotdamp::figure::{FigureError, draw};
-use shotdamp::spec::{AxisScale, Best, Drawing, MapSpec, Mark};
 use shotdamp::table::{Column, Data, Table};
 
 use crate::made_up::{axis, drawn, limit_stop, log_range, numbers};

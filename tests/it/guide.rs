@@ -4,8 +4,9 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-use shotdamp::publish::{Opened, RELEASED};
-use shotdamp::study::{Layout, Silence, Texts};
+use shotdamp::report::RELEASED;
+use shotdamp::study::Study;
+use shotdamp::study::{IgnoreEvents, Layout, Texts};
 use shotdamp::text::words;
 
 use crate::desk::{Desk, MadeUp};
@@ -80,7 +81,7 @@ fn the_commands_of_the_guide_print_what_it_says() {
     let mut tried = 0;
     for (command, expected) in blocks(&guide, "console").into_iter().flat_map(commands) {
         let printed = if command == "cargo run --quiet --example one_damper" {
-            one_damper::told().unwrap() + "\n"
+            one_damper::describe().unwrap() + "\n"
         } else {
             let mut shell = Command::new("sh");
             let output = shell.args(["-c", &command]).env("PATH", &path).current_dir(folder.path()).output().unwrap();
@@ -96,15 +97,15 @@ fn the_commands_of_the_guide_print_what_it_says() {
 fn every_column_of_every_experiment_is_explained() {
     let text = document("docs/tables.md");
     let layout = Layout::new(repository());
-    let opened = Opened::new(layout.clone(), Texts::read(&layout).unwrap());
+    let study = Study::new(layout.clone(), Texts::read(&layout).unwrap());
     let mut columns: Vec<String> = Vec::new();
-    for item in &opened.items {
+    for item in &study.items {
         let experiment = &item.source.experiment;
         columns.extend(experiment.measures.iter().map(words::of_key));
         columns.extend(experiment.swept.iter().map(words::of_key));
     }
     let desk = Desk::new();
-    desk.run(2, &MadeUp::default(), &Silence);
+    desk.run(2, &MadeUp::default(), &IgnoreEvents);
     let made_of = |name: &str| ["_num", "_spread", "_at_maximum"].iter().any(|end| name.ends_with(end));
     for id in ["ch3-stop", "ch3-gap"] {
         columns.extend(desk.table(id).columns.into_iter().map(|column| column.name).filter(|name| !made_of(name)));

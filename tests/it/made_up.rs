@@ -1,13 +1,12 @@
 //! An experiment and tables made by hand, for rooms that only read them.
 
+use shotdamp::experiment::{Axis, AxisScale, Case, Drawing, Experiment, ExperimentId, FigureSpec, Panel, Source};
 use shotdamp::measure::Measure;
+use shotdamp::measure::{Settings, SolverChoice};
 use shotdamp::scene::{
     Assumption, ContactDampingRecipe, DamperRecipe, ExcitationKind, ExcitationRecipe, GapRecipe, Given, ImpulseTime,
     MassReading, MassRecipe, ObserveRecipe, Parameter, PlaceRecipe, Recipe, StiffnessRecipe, StopRecipe,
     StrengthRecipe, StructureRecipe, SurfaceRecipe, TimingRecipe,
-};
-use shotdamp::spec::{
-    Axis, AxisScale, Case, Drawing, Experiment, ExperimentId, FigureSpec, Panel, Settings, SolverChoice, Source,
 };
 use shotdamp::table::{Column, Data, Table};
 

@@ -7,6 +7,7 @@
 #![expect(clippy::excessive_precision, reason = "published numbers stand as published")]
 
 mod accuracy;
+mod architecture;
 mod calibrate;
 mod check;
 mod clean;

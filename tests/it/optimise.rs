@@ -205,6 +205,6 @@ fn sections_go_through_the_point_on_every_side() {
 #[test]
 fn bounds_that_enclose_nothing_are_refused() {
     assert!(Bounds::new(vec![]).is_err());
-    let told = Bounds::new(vec![[0.0, 1.0], [2.0, 2.0]]).unwrap_err().to_string();
-    assert_eq!(told, "coordinate 2 lies between 2 and 2, which is no range");
+    let description = Bounds::new(vec![[0.0, 1.0], [2.0, 2.0]]).unwrap_err().to_string();
+    assert_eq!(description, "coordinate 2 lies between 2 and 2, which is no range");
 }

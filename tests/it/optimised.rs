@@ -7,11 +7,12 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use shotdamp::dynamics::Proof;
+use shotdamp::experiment::{Experiment, ExperimentId, Problems, load_assumptions, parse_experiment};
 use shotdamp::measure::{Evaluated, Measure, Measured};
-use shotdamp::publish::{Opened, judge_all, publish};
+use shotdamp::report::{judge_all, publish};
 use shotdamp::scene::Excitation;
-use shotdamp::spec::{Experiment, ExperimentId, Problems, load_assumptions, parse_experiment};
-use shotdamp::study::{Array, Engine, Evaluate, Event, Listen, Silence, Simulation};
+use shotdamp::study::Study;
+use shotdamp::study::{Array, Engine, Evaluate, Event, EventHandler, IgnoreEvents, Simulation};
 use shotdamp::table::Table;
 
 use crate::desk::Desk;
@@ -89,7 +90,7 @@ fn desk() -> Desk {
 
 fn run(threads: usize) -> (Desk, Table) {
     let desk = desk();
-    desk.run(threads, &Bowl::default(), &Silence);
+    desk.run(threads, &Bowl::default(), &IgnoreEvents);
     let table = desk.table("ch6-gaps");
     (desk, table)
 }
@@ -122,15 +123,15 @@ fn every_candidate_is_a_row_with_gaps_fitness_and_what_it_cost() {
     assert!(along[9].len() >= 5 && along[9].len() == landscape[9].len() && along[2].is_empty());
     assert_eq!(table.floats("varied").unwrap()[9..], [1.0, 2.0, 3.0]);
     assert!(!desk.layout.path("results/ch6-gaps.journal").exists(), "what is done keeps no journal");
-    assert_eq!(desk.run(1, &Bowl::default(), &Silence), [""; 0]);
+    assert_eq!(desk.run(1, &Bowl::default(), &IgnoreEvents), [""; 0]);
 }
 
 #[test]
 fn the_bytes_depend_neither_on_threads_nor_on_an_interruption() {
     /// Keeps the journal as it was in the middle of the peer's search.
     struct Copy<'a>(&'a Path, Mutex<Option<Vec<u8>>>);
-    impl Listen for Copy<'_> {
-        fn hear(&self, event: &Event<'_>) {
+    impl EventHandler for Copy<'_> {
+        fn on_event(&self, event: &Event<'_>) {
             if let Event::Searched { search: "CMA-ES, seed 1", evaluations: 40.., .. } = event {
                 self.1.lock().unwrap().get_or_insert_with(|| fs::read(self.0).unwrap());
             }
@@ -153,7 +154,7 @@ fn the_bytes_depend_neither_on_threads_nor_on_an_interruption() {
     fs::create_dir_all(resumed.layout.results()).unwrap();
     fs::write(resumed.layout.path("results/ch6-gaps.journal"), &journal[..journal.len() - 9]).unwrap();
     let engine = Bowl::default();
-    resumed.run(2, &engine, &Silence);
+    resumed.run(2, &engine, &IgnoreEvents);
     let again = engine.evaluations.into_inner();
     assert!(again + all / 3 < all, "{again} of {all} evaluations");
     assert!(bytes == resumed.bytes("results/ch6-gaps.parquet"));
@@ -164,7 +165,7 @@ fn the_bytes_depend_neither_on_threads_nor_on_an_interruption() {
     fs::create_dir_all(other.layout.results()).unwrap();
     fs::write(other.layout.path("results/ch6-gaps.journal"), &journal).unwrap();
     let engine = Bowl::default();
-    other.run(2, &engine, &Silence);
+    other.run(2, &engine, &IgnoreEvents);
     assert_eq!(engine.evaluations.into_inner(), all);
 }
 
@@ -172,9 +173,9 @@ fn the_bytes_depend_neither_on_threads_nor_on_an_interruption() {
 fn an_improvement_within_its_standard_error_is_called_noise() {
     let page = |error: f64| {
         let desk = desk();
-        desk.run(2, &Bowl { error, ..Bowl::default() }, &Silence);
-        let opened = Opened::new(desk.layout.clone(), desk.texts());
-        let published = publish(&opened, &judge_all(&opened), &["ch6-gaps"].into()).unwrap();
+        desk.run(2, &Bowl { error, ..Bowl::default() }, &IgnoreEvents);
+        let study = Study::new(desk.layout.clone(), desk.texts());
+        let published = publish(&study, &judge_all(&study), &["ch6-gaps"].into()).unwrap();
         assert_eq!(published.problems, [""; 0]);
         String::from_utf8(desk.bytes("reports/ch6/ch6-gaps.md")).unwrap()
     };
@@ -194,10 +195,10 @@ fn a_search_that_cannot_begin_is_a_failed_row() {
         }
     }
     let desk = desk();
-    desk.run(2, &Broken, &Silence);
+    desk.run(2, &Broken, &IgnoreEvents);
     let table = desk.table("ch6-gaps");
     assert!(table.texts("failure").unwrap().contains(&"made to fail".to_owned()));
-    assert_eq!(desk.run(2, &Bowl::default(), &Silence), ["ch6-gaps"], "it is tried again");
+    assert_eq!(desk.run(2, &Bowl::default(), &IgnoreEvents), ["ch6-gaps"], "it is tried again");
 }
 
 fn sheet() -> shotdamp::scene::Assumptions {
@@ -240,17 +241,17 @@ fn mistakes_in_an_optimisation_are_told_where_they_stand() {
         let before: Vec<&str> = text.split('‹').next().unwrap().lines().collect();
         let wanted = (before.len(), before.last().unwrap().chars().count() + 1);
         let problems = read(&text.replace(['‹', '›'], "")).expect_err(written);
-        let told = |problem: &shotdamp::spec::Problem| {
+        let named = |problem: &shotdamp::experiment::Problem| {
             let place = problem.place.map_or((0, 0), |place| (place.line, place.column));
             let whole = format!("{} {}", problem.message, problem.help.clone().unwrap_or_default());
             place == wanted && whole.contains(says)
         };
         // A mapping is told at its first key.
-        let near = |problem: &shotdamp::spec::Problem| {
+        let near = |problem: &shotdamp::experiment::Problem| {
             let place = problem.place.map_or((0, 0), |place| (place.line, place.column));
             place.0 == wanted.0 && place.1 <= wanted.1 + 1 && problem.message.contains(says)
         };
-        assert!(problems.list.iter().any(|problem| told(problem) || near(problem)), "{written}: {problems}");
+        assert!(problems.list.iter().any(|problem| named(problem) || near(problem)), "{written}: {problems}");
     }
     let unbounded = GAPS.replace("  stop: {generations: 12}\n", "");
     assert!(read(&unbounded).unwrap_err().to_string().contains("nothing bounds this search"));

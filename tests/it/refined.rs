@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use shotdamp::dynamics::Proof;
 use shotdamp::measure::{Evaluated, Measured};
 use shotdamp::scene::Excitation;
-use shotdamp::study::{Evaluate, Event, Listen, Silence, Simulation};
+use shotdamp::study::{Evaluate, Event, EventHandler, IgnoreEvents, Simulation};
 use shotdamp::table::Table;
 
 use crate::desk::Desk;
@@ -53,7 +53,7 @@ fn beam(ratio: f64, gap: f64) -> f64 {
     mode(1.0 + 0.01 * gap, 6e-4) + mode(6.3, 4e-3)
 }
 
-fn run(evaluate: &impl Evaluate, threads: usize, text: &str, listener: &dyn Listen) -> (Desk, Table) {
+fn run(evaluate: &impl Evaluate, threads: usize, text: &str, handler: &dyn EventHandler) -> (Desk, Table) {
     let desk = Desk::new();
     desk.put("experiments/ch4/ch4-response.yaml", text);
     for other in ["experiments/ch3/ch3-stop.yaml", "experiments/ch3/ch3-gap.yaml"] {
@@ -62,7 +62,7 @@ fn run(evaluate: &impl Evaluate, threads: usize, text: &str, listener: &dyn List
     for other in ["reference/ch3/ch3-stop.yaml", "reference/ch3/ch3-gap.yaml"] {
         std::fs::remove_file(desk.layout.path(other)).unwrap();
     }
-    desk.run(threads, evaluate, listener);
+    desk.run(threads, evaluate, handler);
     let table = desk.table("ch4-response");
     (desk, table)
 }
@@ -81,7 +81,7 @@ fn within(curve: &[(f64, f64)], low: f64, high: f64) -> usize {
 
 #[test]
 fn a_curve_is_drawn_to_its_tolerance_over_sharp_resonances() {
-    let (_, table) = run(&Curve(|ratio, gap| (beam(ratio, gap), 0.0, false)), 2, RESPONSE, &Silence);
+    let (_, table) = run(&Curve(|ratio, gap| (beam(ratio, gap), 0.0, false)), 2, RESPONSE, &IgnoreEvents);
     for (gap_ratio, gap) in [(10.0, 0.0981), (50.0, 0.4905)] {
         let curve = curve(&table, gap_ratio);
         assert!(curve.is_sorted_by(|a, b| a.0 < b.0), "rows stand in the order of the parameter");
@@ -108,7 +108,7 @@ fn a_curve_is_drawn_to_its_tolerance_over_sharp_resonances() {
 fn points_are_the_same_for_any_number_of_threads() {
     let bytes = [1, 3, 8].map(|threads| {
         let engine = Curve(|ratio, gap| (beam(ratio, gap), 0.0, false));
-        run(&engine, threads, RESPONSE, &Silence).0.bytes("results/ch4-response.parquet")
+        run(&engine, threads, RESPONSE, &IgnoreEvents).0.bytes("results/ch4-response.parquet")
     });
     assert!(bytes[0] == bytes[1] && bytes[0] == bytes[2]);
 }
@@ -124,7 +124,7 @@ fn what_is_rough_or_broken_attracts_few_points() {
         r if r > 1.5 => (10.0, 0.0, false),
         _ => (5.0, 0.0, false),
     });
-    let (_, table) = run(&engine, 2, RESPONSE, &Silence);
+    let (_, table) = run(&engine, 2, RESPONSE, &IgnoreEvents);
     let curve = curve(&table, 10.0);
     let counts = [(0.2, 1.3), (1.3, 1.7), (1.7, 2.9), (3.1, 4.9), (5.1, 7.0)].map(|(a, b)| within(&curve, a, b));
     println!("{counts:?}");
@@ -139,8 +139,8 @@ fn what_is_rough_or_broken_attracts_few_points() {
 fn progress_ends_where_it_was_said_to_end() {
     #[derive(Default)]
     struct Ear(AtomicU64, AtomicU64);
-    impl Listen for Ear {
-        fn hear(&self, event: &Event<'_>) {
+    impl EventHandler for Ear {
+        fn on_event(&self, event: &Event<'_>) {
             match event {
                 Event::Begun { simulations, .. } => self.0.store(*simulations, Ordering::Relaxed),
                 Event::Simulated { count, .. } => drop(self.1.fetch_add(*count, Ordering::Relaxed)),
@@ -161,7 +161,7 @@ fn other_solvers_run_at_the_same_points_and_the_range_is_what_makes_stale() {
         .replace("event_driven}", "[event_driven, {fixed_step: {time_step: 0.1 ms}}]}")
         .replace("by: gap_ratio", "by: [gap_ratio, solver]");
     let engine = Curve(|ratio, gap| (beam(ratio, gap), 0.0, false));
-    let (desk, table) = run(&engine, 2, &both, &Silence);
+    let (desk, table) = run(&engine, 2, &both, &IgnoreEvents);
     let of = |solver: &str| {
         let x = table.floats("frequency_ratio").unwrap();
         table.rows_where("solver", solver).into_iter().map(|row| x[row]).collect::<Vec<_>>()

@@ -256,6 +256,6 @@ fn units_take_the_prefix_an_engineer_would_write() {
 #[test]
 fn an_assumed_curve_is_told_by_its_ends() {
     let curve = AssumptionValue::Curve(vec![[0.7, 1.0], [3.0, 4.0], [7.6, 2.0]]);
-    let told = value_in_words(Assumption::EquivalentDampingCurve, &curve);
-    assert_eq!(told, "a curve through 3 points, 1 N s/m at 0.7 g to 2 N s/m at 7.6 g");
+    let description = value_in_words(Assumption::EquivalentDampingCurve, &curve);
+    assert_eq!(description, "a curve through 3 points, 1 N s/m at 0.7 g to 2 N s/m at 7.6 g");
 }

@@ -7,11 +7,11 @@ use std::path::{Path, PathBuf};
 
 use regex::Regex;
 use serde_json::{Value, json};
-use shotdamp::reference::{parse_reference, reference_schema};
-use shotdamp::spec::{
+use shotdamp::experiment::{
     Dimension, assumptions_schema, experiment_schema, from_yaml, load_assumptions, parse_experiment, parse_quantity,
     scaffold, structures,
 };
+use shotdamp::reference::{parse_reference, reference_schema};
 
 use crate::desk::{GAP, STOP};
 

@@ -10,8 +10,8 @@ use std::sync::Mutex;
 
 use serde::{Deserialize, Serialize};
 use shotdamp::dynamics::SOLVER_VERSION;
-use shotdamp::publish::Opened;
-use shotdamp::study::{self, Engine, Layout, Silence, Task, Texts};
+use shotdamp::study::Study;
+use shotdamp::study::{self, Engine, IgnoreEvents, Layout, Task, Texts};
 use shotdamp::table::{Data, Table};
 
 /// Set it to write the bits down instead of comparing them.
@@ -62,15 +62,15 @@ fn no_bit_of_a_result_changes_without_the_solvers_version() {
 fn bits() -> Bits {
     let layout = Layout::new(folder());
     let texts = Texts::read(&layout).unwrap();
-    let opened = Opened::new(layout, texts);
-    assert_eq!(opened.unread, []);
+    let study = Study::new(layout, texts);
+    assert_eq!(study.unread, []);
     let metadata = BTreeMap::new();
     let task = |item: &study::Item| (item.source.experiment.clone(), item.variants.clone());
-    let planned: Vec<_> = opened.items.iter().map(task).collect();
+    let planned: Vec<_> = study.items.iter().map(task).collect();
     let tasks: Vec<Task<'_>> =
         planned.iter().map(|(experiment, variants)| Task::new(experiment, variants, &metadata)).collect();
     let bits = Mutex::new(Bits::new());
-    study::run(&tasks, 2, &Engine, &Silence, |index, finished| {
+    study::run(&tasks, 2, &Engine, &IgnoreEvents, |index, finished| {
         assert_eq!(finished.failures.rows, 0, "{}", finished.failures.first);
         bits.lock().unwrap().insert(planned[index].0.id.to_string(), of_table(&finished.table));
     })

@@ -3,12 +3,13 @@
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
+use shotdamp::experiment::{
+    AssumptionSheet, Dimension, Experiment, ExperimentId, Problems, load_assumptions, load_experiment,
+    parse_assumptions, parse_experiment, parse_number, parse_quantity,
+};
+use shotdamp::measure::SolverChoice;
 use shotdamp::scene::{
     Assumption, AssumptionValue, Assumptions, Excitation, GapRecipe, Parameter, ParameterValue, Surface,
-};
-use shotdamp::spec::{
-    AssumptionSheet, Dimension, Experiment, ExperimentId, Problems, SolverChoice, load_assumptions, load_experiment,
-    parse_assumptions, parse_experiment, parse_number, parse_quantity,
 };
 
 const GOOD: &str = "\
@@ -61,16 +62,16 @@ fn with(old: &str, new: &str) -> String {
 fn only_problem(text: &str) -> String {
     let problems = parse(text).expect_err("a mistake was expected");
     assert_eq!(problems.list.len(), 1, "{problems}");
-    told(&problems).remove(0)
+    describe(&problems).remove(0)
 }
 
-fn told(problems: &Problems) -> Vec<String> {
-    let told = problems.list.iter().map(|problem| {
+fn describe(problems: &Problems) -> Vec<String> {
+    let description = problems.list.iter().map(|problem| {
         let place = problem.place.map_or(String::new(), |place| format!("{}:{} ", place.line, place.column));
         let help = problem.help.as_ref().map_or(String::new(), |help| format!(" | {help}"));
         format!("{place}{}{help}", problem.message)
     });
-    told.collect()
+    description.collect()
 }
 
 #[test]
@@ -193,7 +194,7 @@ pub(crate) fn all_mistakes_of_a_file_come_at_once_with_their_places() {
         .replace("band: spread", "band: wide");
     let problems = parse(&text).expect_err("six mistakes");
     assert_eq!(
-        told(&problems),
+        describe(&problems),
         [
             "1:1 an experiment has no key `titel` | did you mean `title`?",
             "8:12 `5 s` is not a length | write for example 5 mm",
@@ -362,7 +363,7 @@ pub(crate) fn yaml_from_strangers_is_refused_before_anything_grows() {
         ("long.yaml", "is longer than 1024 KiB"),
         ("binary.yaml", "is not UTF-8 text (line 1) | save it as UTF-8"),
     ] {
-        assert_eq!(told(&load_experiment(&place(name), &assumptions()).expect_err(name)), [expected]);
+        assert_eq!(describe(&load_experiment(&place(name), &assumptions()).expect_err(name)), [expected]);
     }
     assert!(load_experiment(&place("absent.yaml"), &assumptions()).is_err());
 }
@@ -370,18 +371,18 @@ pub(crate) fn yaml_from_strangers_is_refused_before_anything_grows() {
 #[test]
 pub(crate) fn a_damaged_file_is_told_and_never_a_crash() {
     let ends: Vec<usize> = GOOD.char_indices().map(|(index, _)| index).collect();
-    let mut told = 0;
+    let mut description = 0;
     for end in ends.into_iter().step_by(5) {
         for damage in ["", "{", "é", "\n", "\u{0}"] {
             let whole = &GOOD[end + 1..];
             for rest in [whole, ""] {
                 if let Err(problems) = parse(&format!("{}{damage}{rest}", &GOOD[..end])) {
-                    told += usize::from(!problems.to_string().is_empty() && !problems.fancy(false).is_empty());
+                    description += usize::from(!problems.to_string().is_empty() && !problems.fancy(false).is_empty());
                 }
             }
         }
     }
-    assert!(told > 1_000, "{told}");
+    assert!(description > 1_000, "{description}");
 }
 
 #[test]
@@ -399,8 +400,8 @@ pub(crate) fn a_refined_range_starts_evenly_and_says_what_it_lacks() {
         (", of: separations", "`separations` is refined, but not measured | add `separations` to `measure`"),
         (", most: 1000000", "1000000 is too many: 20000 at most"),
     ] {
-        let told = only_problem(&refined(inside));
-        assert!(told.ends_with(message) && told.starts_with("13:"), "{told}");
+        let description = only_problem(&refined(inside));
+        assert!(description.ends_with(message) && description.starts_with("13:"), "{description}");
     }
     let two = with("  stop: [with, without]\n", "  gap_ratio: {refined: {from: 1, to: 9}}\n")
         .replace("by: stop", "by: gap_ratio");
@@ -413,13 +414,14 @@ pub(crate) fn sweeps_are_products_pairs_points_and_unions() {
     let sweep = "  force_ratio: {log: {from: 0.1, to: 100, points: 61}}\n  stop: [with, without]\n";
     let cases = |text: &str, by: &str| {
         let experiment = good(&with(sweep, text).replace("by: stop", by));
-        let told: Vec<_> = experiment.cases.iter().map(|case| format!("{}:{}", case.sweep, case.told())).collect();
-        (experiment, told)
+        let description: Vec<_> =
+            experiment.cases.iter().map(|case| format!("{}:{}", case.sweep, case.describe())).collect();
+        (experiment, description)
     };
-    let (_, told) =
+    let (_, description) =
         cases("  paired: {force_ratio: [1, 2], mass_ratio: [0.1, 0.2]}\n  stop: [with, without]\n", "by: stop");
     assert_eq!(
-        told,
+        description,
         [
             ":force_ratio = 1, mass_ratio = 0.1, stop = with",
             ":force_ratio = 1, mass_ratio = 0.1, stop = without",
@@ -427,10 +429,10 @@ pub(crate) fn sweeps_are_products_pairs_points_and_unions() {
             ":force_ratio = 2, mass_ratio = 0.2, stop = without",
         ]
     );
-    let (_, told) =
+    let (_, description) =
         cases("  points: [{force_ratio: 1, gap_ratio: infinite}, {force_ratio: 3, gap_ratio: 5}]\n", "by: gap_ratio");
-    assert_eq!(told, [":force_ratio = 1, gap_ratio = infinite", ":force_ratio = 3, gap_ratio = 5"]);
-    let (experiment, told) = cases(
+    assert_eq!(description, [":force_ratio = 1, gap_ratio = infinite", ":force_ratio = 3, gap_ratio = 5"]);
+    let (experiment, description) = cases(
         "  union:
     low: {force_ratio: [{linear: {from: 0.1, to: 0.3, points: 3}}, {step: {from: 0.3, to: 0.5, step: 0.1}}]}
     high: {force_ratio: [7], stop_length: [5 mm], solver: {fixed_step: {time_step: 0.1 ms}}}
@@ -438,8 +440,8 @@ pub(crate) fn sweeps_are_products_pairs_points_and_unions() {
         "by: [sweep, solver]",
     );
     let low = ["0.1", "0.2", "0.3", "0.4", "0.5"].map(|x| format!("low:force_ratio = {x}"));
-    assert_eq!(told[0], "high:force_ratio = 7, stop_length = 0.005");
-    assert_eq!(told[1..], low);
+    assert_eq!(description[0], "high:force_ratio = 7, stop_length = 0.005");
+    assert_eq!(description[1..], low);
     let labels: Vec<_> = experiment.runs().map(|(_, solver)| solver.label()).collect();
     assert_eq!(labels[..2], ["fixed_step_1e-4s", "event_driven"]);
     assert_eq!(experiment.solvers, [SolverChoice::FixedStep { time_step: 1e-4 }, SolverChoice::EventDriven]);
@@ -473,7 +475,7 @@ pub(crate) fn each_assumption_has_a_reason_and_moves_alone() {
     let text = "stop_length: {value: 5 s, reason: none}\nundamped_mass: {value: heavy, reason: none}\nstop_lenght: {value: 1 mm}\n";
     let problems = parse_assumptions("assumptions.yaml", text).expect_err("three mistakes");
     assert_eq!(
-        told(&problems),
+        describe(&problems),
         [
             "1:22 `5 s` is not a length | write for example 5 mm",
             "2:24 this assumption has no reading `heavy` | known are `base`, `loaded`",

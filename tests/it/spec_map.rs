@@ -1,6 +1,6 @@
 //! The `map` of a figure, its axes and the marks on peaks: what a file may say, and where a mistake in it is told.
 
-use shotdamp::spec::{
+use shotdamp::experiment::{
     AxisScale, Best, Drawing, Experiment, ExperimentId, Problems, load_assumptions, parse_experiment,
 };
 
@@ -74,10 +74,10 @@ fn mistakes_in_a_map_are_told_where_they_stand() {
     ] {
         let column = figure.chars().position(|c| c == '‹').unwrap() + 1;
         let problems = read(&figure.replace(['‹', '›'], "")).expect_err(&figure);
-        let told = |problem: &shotdamp::spec::Problem| {
+        let named = |problem: &shotdamp::experiment::Problem| {
             let place = problem.place.map_or((0, 0), |place| (place.line, place.column));
             place == (10, column) && problem.message.contains(says)
         };
-        assert!(problems.list.iter().any(told), "{figure}: {problems}");
+        assert!(problems.list.iter().any(named), "{figure}: {problems}");
     }
 }

@@ -4,9 +4,10 @@
 use std::f64::consts::PI;
 
 use shotdamp::dynamics::{Options, event_driven};
+use shotdamp::experiment::{Experiment, Problems, load_assumptions, parse_experiment};
+use shotdamp::measure::SolverChoice;
 use shotdamp::measure::{Evaluated, Request, Rigour, evaluate};
 use shotdamp::scene::{Assumptions, Point, Scene, Structure, compile};
-use shotdamp::spec::{Experiment, Problems, SolverChoice, load_assumptions, parse_experiment};
 
 const BEAM: &str = "cantilever_beam: {length: 1 m, width: 30 mm, thickness: 5 mm, youngs_modulus: 200 GPa, density: 7800 kg/m^3, rayleigh: 5e-5, MODES}";
 const PLATE: &str = "supported_plate: {length: 1.3333333333333333 m, width: 1 m, thickness: 7.91 mm, youngs_modulus: 68.9 GPa, poisson_ratio: 0.33, density: 2700 kg/m^3, rayleigh: 5e-5, MODES}";
@@ -470,9 +471,9 @@ pub(crate) fn what_no_structure_can_be_is_refused_where_it_stands() {
         let problem = &problems.list[0];
         let place = problem.place.expect("it has a place");
         let help = problem.help.as_ref().map_or_else(String::new, |help| format!(" | {help}"));
-        let told = format!("{}:{} {}{help}", place.line, place.column, problem.message);
-        let fits = if expected.ends_with(": ") { told.starts_with(expected) } else { told == expected };
-        assert!(fits, "{told}\n{expected}\n{text}");
+        let description = format!("{}:{} {}{help}", place.line, place.column, problem.message);
+        let fits = if expected.ends_with(": ") { description.starts_with(expected) } else { description == expected };
+        assert!(fits, "{description}\n{expected}\n{text}");
     }
 }
 

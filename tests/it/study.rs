@@ -6,7 +6,9 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use shotdamp::measure::Evaluated;
 use shotdamp::scene::Excitation;
-use shotdamp::study::{Evaluate, Event, Held, KnownRows, Listen, Loaded, Lock, Silence, Simulation, Snapshot};
+use shotdamp::study::{
+    Evaluate, Event, EventHandler, Held, IgnoreEvents, KnownRows, Loaded, Lock, Simulation, Snapshot,
+};
 
 use crate::desk::{ASSUMPTIONS, Desk, GAP, GAP_REFERENCE, MadeUp, STOP};
 
@@ -14,7 +16,7 @@ use crate::desk::{ASSUMPTIONS, Desk, GAP, GAP_REFERENCE, MadeUp, STOP};
 fn the_bytes_do_not_depend_on_the_number_of_threads() {
     let tables = [1, 2, 8].map(|threads| {
         let desk = Desk::new();
-        desk.run(threads, &MadeUp::default(), &Silence);
+        desk.run(threads, &MadeUp::default(), &IgnoreEvents);
         ["ch3-stop", "ch3-gap"]
             .map(|id| (desk.bytes(&format!("results/{id}.parquet")), desk.bytes(&format!("results/{id}.json"))))
     });
@@ -25,7 +27,7 @@ fn the_bytes_do_not_depend_on_the_number_of_threads() {
 fn a_row_is_a_case_under_a_solver_in_a_variant() {
     let desk = Desk::new();
     let engine = MadeUp::default();
-    desk.run(2, &engine, &Silence);
+    desk.run(2, &engine, &IgnoreEvents);
     let table = desk.table("ch3-stop");
     // 3 amplitudes x with and without x 2 solvers, then each of 3 ends of the assumptions event-driven.
     assert_eq!(table.rows(), 12 + 3 * 6);
@@ -65,7 +67,7 @@ fn a_measure_that_can_be_read_in_several_ways_is_computed_for_each_of_them() {
 #[test]
 fn a_maximum_is_found_between_the_points_of_the_grid() {
     let desk = Desk::new();
-    desk.run(2, &MadeUp::default(), &Silence);
+    desk.run(2, &MadeUp::default(), &IgnoreEvents);
     let table = desk.table("ch3-gap");
     let at = table.floats("base_amplitude_ratio_at_maximum").unwrap();
     let within = table.floats("base_amplitude_ratio_at_maximum_num").unwrap();
@@ -93,7 +95,7 @@ fn one_bad_case_is_a_row_and_a_panic_is_one_too() {
         }
     }
     let desk = Desk::new();
-    desk.run(2, &Bad, &Silence);
+    desk.run(2, &Bad, &IgnoreEvents);
     let table = desk.table("ch3-stop");
     let failure = table.texts("failure").unwrap();
     assert_eq!(failure[0], "");
@@ -103,7 +105,7 @@ fn one_bad_case_is_a_row_and_a_panic_is_one_too() {
     assert!(desk.table("ch3-gap").texts("failure").unwrap().iter().all(String::is_empty));
     // Failed rows are tried again, and the others are not.
     assert!(desk.why("ch3-stop")[0].contains("rows failed"));
-    assert_eq!(desk.run(1, &MadeUp::default(), &Silence), ["ch3-stop"]);
+    assert_eq!(desk.run(1, &MadeUp::default(), &IgnoreEvents), ["ch3-stop"]);
     assert_eq!(desk.why("ch3-stop"), [""; 0]);
 }
 
@@ -119,28 +121,28 @@ fn a_maximum_over_a_range_with_a_hole_is_none() {
         }
     }
     let desk = Desk::new();
-    desk.run(4, &Hole, &Silence);
+    desk.run(4, &Hole, &IgnoreEvents);
     assert_eq!(desk.table("ch3-gap").texts("failure").unwrap()[0], "at base_amplitude_ratio = 10: did not settle");
 }
 
 #[test]
 fn what_is_up_to_date_does_not_run_and_a_comment_changes_nothing() {
     let desk = Desk::new();
-    assert_eq!(desk.run(2, &MadeUp::default(), &Silence), ["ch3-gap", "ch3-stop"]);
-    assert_eq!(desk.run(2, &MadeUp::default(), &Silence), [""; 0]);
+    assert_eq!(desk.run(2, &MadeUp::default(), &IgnoreEvents), ["ch3-gap", "ch3-stop"]);
+    assert_eq!(desk.run(2, &MadeUp::default(), &IgnoreEvents), [""; 0]);
     let same_meaning = STOP
         .replace("mass: 1 kg", "mass: 1000 g")
         .replace("title: Limit stop", "title: Another title")
         .replace("by: [stop, solver]", "by: [solver, stop]");
     desk.put("experiments/ch3/ch3-stop.yaml", &format!("# a comment\n{same_meaning}"));
     desk.put("experiments/assumptions.yaml", &ASSUMPTIONS.replace("60 mm", "6 cm").replace("fits", "said better"));
-    assert_eq!(desk.run(2, &MadeUp::default(), &Silence), [""; 0]);
+    assert_eq!(desk.run(2, &MadeUp::default(), &IgnoreEvents), [""; 0]);
 }
 
 #[test]
 fn a_changed_input_is_named_with_file_key_and_values() {
     let desk = Desk::new();
-    desk.run(2, &MadeUp::default(), &Silence);
+    desk.run(2, &MadeUp::default(), &IgnoreEvents);
     desk.put("experiments/assumptions.yaml", &ASSUMPTIONS.replace("60 mm", "55 mm"));
     assert_eq!(desk.why("ch3-gap"), [""; 0], "it has no limit stop");
     assert_eq!(desk.why("ch3-stop"), ["experiments/assumptions.yaml: stop_length: 0.06 -> 0.055"]);
@@ -149,32 +151,32 @@ fn a_changed_input_is_named_with_file_key_and_values() {
 
     desk.put("experiments/ch3/ch3-gap.yaml", &GAP.replace("mass: 1 kg", "mass: 2 kg"));
     assert_eq!(desk.why("ch3-gap"), ["experiments/ch3/ch3-gap.yaml: scene.structure.single_mass.mass: 1.0 -> 2.0"]);
-    assert_eq!(desk.run(2, &MadeUp::default(), &Silence), ["ch3-gap"]);
+    assert_eq!(desk.run(2, &MadeUp::default(), &IgnoreEvents), ["ch3-gap"]);
 
     // Its first published number asks for the ends of the assumptions, which were not run so far.
     let number = "value: \"1.5\"\n    from: {maximum: {of: velocity_ratio, over: gap_ratio}}";
     let (before, _) = GAP_REFERENCE.split_once("claim").unwrap();
     desk.put("reference/ch3/ch3-gap.yaml", &format!("{before}{number}\n"));
     assert!(desk.why("ch3-gap")[0].starts_with("reference of ch3-gap: sensitivity: null -> "));
-    assert_eq!(desk.run(2, &MadeUp::default(), &Silence), ["ch3-gap"]);
+    assert_eq!(desk.run(2, &MadeUp::default(), &IgnoreEvents), ["ch3-gap"]);
 
     let longer =
         GAP.replace("mass: 1 kg", "mass: 2 kg").replace("[10, 50, infinite]", "[20, 60, 90, 95, 99, infinite]");
     desk.put("experiments/ch3/ch3-gap.yaml", &longer);
     let why = desk.why("ch3-gap");
-    assert!(why.len() == 4 && why[3].ends_with("more"), "a long sweep is not told leaf by leaf: {why:?}");
+    assert!(why.len() == 4 && why[3].ends_with("more"), "a long sweep is not listed leaf by leaf: {why:?}");
 }
 
 #[test]
 fn damaged_results_are_noticed_and_made_again() {
     let desk = Desk::new();
-    desk.run(2, &MadeUp::default(), &Silence);
+    desk.run(2, &MadeUp::default(), &IgnoreEvents);
     let name = desk.layout.path("results/ch3-gap.parquet");
     let whole = fs::read(&name).unwrap();
     for damage in [whole[..whole.len() / 2].to_vec(), [&whole[1..], b"!"].concat(), Vec::new()] {
         fs::write(&name, damage).unwrap();
         assert_eq!(desk.why("ch3-gap"), ["results/ch3-gap.parquet is not what was written"]);
-        assert_eq!(desk.run(2, &MadeUp::default(), &Silence), ["ch3-gap"]);
+        assert_eq!(desk.run(2, &MadeUp::default(), &IgnoreEvents), ["ch3-gap"]);
         assert_eq!(fs::read(&name).unwrap(), whole, "the same bytes again");
     }
     fs::remove_file(&name).unwrap();
@@ -190,10 +192,10 @@ fn damaged_results_are_noticed_and_made_again() {
 #[test]
 fn a_table_counts_only_with_its_record() {
     let desk = Desk::new();
-    desk.run(2, &MadeUp::default(), &Silence);
+    desk.run(2, &MadeUp::default(), &IgnoreEvents);
     let old = desk.bytes("results/ch3-gap.json");
     desk.put("experiments/ch3/ch3-gap.yaml", &GAP.replace("mass: 1 kg", "mass: 2 kg"));
-    desk.run(2, &MadeUp::default(), &Silence);
+    desk.run(2, &MadeUp::default(), &IgnoreEvents);
     fs::write(desk.layout.path("results/ch3-gap.json"), old).unwrap();
     desk.put("experiments/ch3/ch3-gap.yaml", GAP);
     assert_eq!(desk.why("ch3-gap"), ["results/ch3-gap.parquet is not what was written"]);
@@ -210,7 +212,7 @@ fn an_input_edited_during_the_run_is_stale_afterwards() {
     }
     let desk = Desk::new();
     let before = desk.texts();
-    desk.run(1, &Editor(&desk, MadeUp::default()), &Silence);
+    desk.run(1, &Editor(&desk, MadeUp::default()), &IgnoreEvents);
     assert!(desk.why("ch3-gap")[0].contains("1.0 -> 3.0"));
     Snapshot::take(&desk.layout, &before, ["results/ch3-gap.parquet".to_owned()], "done", 0).unwrap();
     assert_eq!(Snapshot::current(&desk.layout, &desk.texts()), None);
@@ -219,7 +221,7 @@ fn an_input_edited_during_the_run_is_stale_afterwards() {
 #[test]
 fn the_snapshot_holds_until_any_input_or_output_changes() {
     let desk = Desk::new();
-    desk.run(2, &MadeUp::default(), &Silence);
+    desk.run(2, &MadeUp::default(), &IgnoreEvents);
     let report = |middle| format!("{}{middle}{}", "head\n".repeat(4000), "tail\n".repeat(4000));
     desk.put("reports/README.md", &report("1.52"));
     let outputs = || ["results/ch3-gap.parquet", "results/ch3-stop.parquet", "reports/README.md"].map(str::to_owned);
@@ -255,8 +257,8 @@ fn the_snapshot_holds_until_any_input_or_output_changes() {
 fn listeners_hear_every_simulation_once() {
     #[derive(Default)]
     struct Ear(Mutex<Vec<String>>, AtomicUsize);
-    impl Listen for Ear {
-        fn hear(&self, event: &Event<'_>) {
+    impl EventHandler for Ear {
+        fn on_event(&self, event: &Event<'_>) {
             match event {
                 Event::Begun { simulations, .. } => self.0.lock().unwrap().push(format!("{simulations} to do")),
                 Event::Simulated { count, .. } => {
@@ -289,9 +291,9 @@ fn files_that_are_no_experiments_are_told_and_the_others_load() {
     fs::write(desk.layout.path("experiments/ch3/ch3-latin.yaml"), b"title: \xe9\n").unwrap();
     let loaded = Loaded::from_texts(&desk.texts());
     assert_eq!(loaded.sources.len(), 2);
-    let told: Vec<String> = loaded.refused.iter().map(ToString::to_string).collect();
-    assert_eq!(told.len(), 5, "{told:#?}");
-    let says = |words: &[&str]| told.iter().any(|line| words.iter().all(|word| line.contains(word)));
+    let description: Vec<String> = loaded.refused.iter().map(ToString::to_string).collect();
+    assert_eq!(description.len(), 5, "{description:#?}");
+    let says = |words: &[&str]| description.iter().any(|line| words.iter().all(|word| line.contains(word)));
     assert!(says(&["ch3-later.yml", "rename it"]));
     assert!(says(&["ch4/ch3-stop.yaml", "same id", "ch3/ch3-stop.yaml"]));
     assert!(says(&["not an id.yaml"]) && says(&["ch3-latin.yaml", "UTF-8"]));
@@ -304,7 +306,7 @@ fn two_runs_at_once_take_turns() {
     let first = Lock::of_study(&desk.layout, |_| panic!("nobody else is there")).unwrap();
     let held = Lock::of_study(&desk.layout, |_| Held::GiveUp).unwrap_err().to_string();
     assert!(held.contains(&format!("process {}", std::process::id())), "{held}");
-    let (tell, told) = std::sync::mpsc::channel();
+    let (tell, description) = std::sync::mpsc::channel();
     std::thread::scope(|scope| {
         let layout = &desk.layout;
         let wait = move |holder: &str| {
@@ -312,7 +314,7 @@ fn two_runs_at_once_take_turns() {
             Held::Wait
         };
         let second = scope.spawn(move || Lock::of_study(layout, wait).unwrap());
-        assert!(told.recv().unwrap().contains("process "));
+        assert!(description.recv().unwrap().contains("process "));
         assert!(!second.is_finished());
         drop(first);
         second.join().unwrap();

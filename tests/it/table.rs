@@ -126,7 +126,7 @@ fn units_symbols_and_provenance_stand_where_other_readers_look_for_them() {
         .collect();
     let schema = base64::Engine::decode(&base64::engine::general_purpose::STANDARD, encoded).unwrap();
     let schema = String::from_utf8_lossy(&schema);
-    for told in ["PANDAS_ATTRS", attributes, "unit", "m/s", "symbol", "h′"] {
-        assert!(schema.contains(told), "{told}");
+    for description in ["PANDAS_ATTRS", attributes, "unit", "m/s", "symbol", "h′"] {
+        assert!(schema.contains(description), "{description}");
     }
 }

@@ -68,7 +68,7 @@ impl Beam {
         Matrices::modal(self.mass(), natural_frequencies, self.rayleigh)
     }
 
-    pub(super) fn told(&self, what: &str, modes: &str) -> String {
+    pub(super) fn describe(&self, what: &str, modes: &str) -> String {
         let value = |x, unit| quantity(x, unit, 5);
         format!(
             "{what}: {} by {} by {}, {}, {}, λ = {}, {modes}",

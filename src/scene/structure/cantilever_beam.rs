@@ -107,11 +107,11 @@ impl Model for CantileverBeam {
         (number > 0).then(|| Mode::new(number, FarEnd::Free).at(at.x / self.beam.length))
     }
 
-    fn told(&self) -> String {
+    fn describe(&self) -> String {
         let modes = match &self.basis {
             Basis::Polynomial(modes) => format!("{} modes of polynomials", modes.len()),
             Basis::Exact(modes) => format!("{} exact modes", modes.len()),
         };
-        self.beam.told("cantilever", &modes)
+        self.beam.describe("cantilever", &modes)
     }
 }

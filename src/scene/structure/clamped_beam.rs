@@ -68,7 +68,7 @@ impl Model for ClampedBeam {
         (number > 0).then(|| Mode::new(number, FarEnd::Clamped).at(at.x / self.beam.length))
     }
 
-    fn told(&self) -> String {
-        self.beam.told("beam clamped at both ends", &format!("{} exact modes", self.modes.len()))
+    fn describe(&self) -> String {
+        self.beam.describe("beam clamped at both ends", &format!("{} exact modes", self.modes.len()))
     }
 }

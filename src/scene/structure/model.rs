@@ -65,7 +65,7 @@ pub trait Model {
     fn exact_shape(&self, number: usize, at: Point) -> Option<f64>;
 
     /// In words.
-    fn told(&self) -> String;
+    fn describe(&self) -> String;
 }
 
 /// The unit vector of a mode of a model in its own modes; nothing for a mode that it lacks.

@@ -73,7 +73,7 @@ impl Model for SingleMass {
         (number == 1).then_some(1.0)
     }
 
-    fn told(&self) -> String {
+    fn describe(&self) -> String {
         let value = |x, unit| quantity(x, unit, 5);
         format!(
             "one mass: {}, {}, {}",

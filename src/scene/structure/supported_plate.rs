@@ -135,7 +135,7 @@ impl Model for SupportedPlate {
         self.half_waves(number).map(|mode| self.at(mode, at))
     }
 
-    fn told(&self) -> String {
+    fn describe(&self) -> String {
         let value = |x, unit| quantity(x, unit, 5);
         format!(
             "simply supported plate: {} by {} by {}, {}, ν = {}, {}, λ = {}, {} modes",

@@ -4,8 +4,8 @@ use std::cell::RefCell;
 use std::time::Duration;
 
 use serde_json::Value;
+use shotdamp::accuracy::precise::precise;
 use shotdamp::dynamics::{Contact, Event, EventKind, HybridSystem, Options, Response, StartState, event_driven};
-use shotdamp::precise::precise;
 use shotdamp::scene::{ContactDamping, ContactEnd, Damper, Excitation, Scene, SingleMass, Surface, compile};
 
 /// m/s².

@@ -259,7 +259,7 @@ const HARD_CASES: &[HardCase] = &[
         tests: &[properties::left_alone_no_scene_gains_energy],
     },
     HardCase {
-        name: "Random scenes: told otherwise",
+        name: "Random scenes: described in another order",
         checks: "in other units, in one cycle or in 64, in search windows half as long",
         reference: "itself",
         tests: &[

@@ -2,8 +2,8 @@
 
 use std::time::Duration;
 
+use shotdamp::accuracy::precise::{PreciseError, precise};
 use shotdamp::dynamics::{Options, Response};
-use shotdamp::precise::{PreciseError, precise};
 
 use super::bench::{cases, close, instant, system, within};
 use super::reference_cases::{kind, scene};

@@ -1,8 +1,8 @@
 //! What holds in every scene, tried on random ones: any structure, any number of dampers, faces of any kind.
 
 use proptest::prelude::*;
+use shotdamp::accuracy::precise::PreciseError;
 use shotdamp::dynamics::{Face, HybridSystem, Law, Matrix, Options, Response, event_driven};
-use shotdamp::precise::PreciseError;
 
 use super::arrays::{Dice, any_scene, any_structure, apart, cycles, particle, quiet, spring, structure_after};
 use super::bench::{note, within};
@@ -188,7 +188,7 @@ pub(super) fn known_to_both(seed: u64) -> HybridSystem {
 pub(super) fn disagreement(system: &HybridSystem, options: &Options) -> Option<[f64; 2]> {
     let own = event_driven(system, options).unwrap_or_else(|error| panic!("{error}: {system:?}"));
     let moved = apart(&own, &kicked(system, options));
-    let many = match shotdamp::precise::precise(system, options, std::time::Duration::from_secs(20)) {
+    let many = match shotdamp::accuracy::precise::precise(system, options, std::time::Duration::from_secs(20)) {
         Ok(many) => many,
         Err(PreciseError::Unknown(_) | PreciseError::TooLong(_)) => return None,
         Err(error) => panic!("{error}: {system:?}"),

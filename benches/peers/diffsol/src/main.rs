@@ -135,7 +135,7 @@ fn answer(scene: &Scene, method: Method, rtol: f64, is_timed: bool) -> Value {
 }
 
 impl Method {
-    fn told(self) -> &'static str {
+    fn describe(self) -> &'static str {
         match self {
             Self::Tsit45 => "Tsit45",
             Self::Bdf => "BDF",
@@ -153,11 +153,11 @@ fn main() -> Result<(), String> {
         let scene = Scene::read(file)?;
         for method in METHODS {
             for rtol in settings {
-                let told = method.told();
+                let description = method.describe();
                 let mut line = answer(&scene, method, *rtol, !tightest);
                 line["file"] = json!(file);
                 line["solver"] = json!(told);
-                line["setting"] = json!(format!("diffsol {told}, rtol {rtol:e}"));
+                line["setting"] = json!(format!("diffsol {description}, rtol {rtol:e}"));
                 println!("{line}");
             }
         }

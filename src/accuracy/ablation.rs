@@ -1,0 +1,193 @@
+//! Ablation: a case with one effect switched at a time, what that does to the result, to the events, and to the time it takes.
+
+use std::time::Duration;
+
+use super::measured::NoAccuracy;
+use super::representative::{is_chaotic, representative, worst};
+use super::timing::Times;
+use crate::dynamics::{EngineError, HybridSystem, Method, Options, Response, event_driven, is_linear};
+use crate::experiment::Experiment;
+use crate::measure::Settings;
+use crate::measure::{Measure, Trial};
+use crate::scene::{
+    Assumptions, EffectUse, Parameter, ParameterValue, Recipe, Scene, Switching, compile, effects, switched,
+};
+
+/// How long the median of a run may take to settle.
+const PATIENCE: Duration = Duration::from_millis(500);
+
+/// What only particles that leave their floors can meet.
+const OF_FLIGHT: [&str; 5] =
+    ["ceiling", "limit stop", "contact without tension", "restitution", "equivalent viscous damping"];
+
+/// One case with each effect switched.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Ablation {
+    /// The case in words.
+    pub description: String,
+    /// It is chaotic: changes of its measures are no more than that.
+    pub chaotic: bool,
+    /// It is proved that no particle leaves its floor: the run is in closed form.
+    pub closed_form: bool,
+    /// Events of the case as it is.
+    pub events: u64,
+    /// Its times.
+    pub times: Times,
+    /// Effect by effect.
+    pub switched: Vec<Switched>,
+}
+
+/// One effect.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Switched {
+    /// Its name.
+    pub effect: &'static str,
+    /// Whether the scene has it.
+    pub in_force: bool,
+    /// What came of switching it.
+    pub outcome: Outcome,
+}
+
+/// What came of switching an effect.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Outcome {
+    /// It was switched.
+    Changed {
+        /// Largest relative change of the measures.
+        change: f64,
+        /// Of which.
+        worst: Measure,
+        /// Events without it, or with it.
+        events: u64,
+        /// Times without it, or with it.
+        times: Times,
+    },
+    /// The scene has it, but it is proved that it never acts: the run skips it.
+    Idle,
+    /// It was not switched, and why.
+    Not(String),
+}
+
+/// Switches every effect in a few cases that stand for the experiment.
+///
+/// # Errors
+/// [`NoAccuracy`] if a case as it is does not run.
+pub fn ablation(experiment: &Experiment, assumptions: &Assumptions) -> Result<Vec<Ablation>, NoAccuracy> {
+    if experiment.optimise.is_some() {
+        return Err(NoAccuracy::Nothing);
+    }
+    let cases = representative(experiment, assumptions)?;
+    if cases.is_empty() {
+        return Err(NoAccuracy::Nothing);
+    }
+    cases.into_iter().map(|(description, recipe)| case(description, &recipe, experiment, assumptions)).collect()
+}
+
+/// How many scenes have a particle of which it is proved that it never leaves its floor.
+#[must_use]
+pub fn idle_cases(experiment: &Experiment, scenes: &[Scene]) -> usize {
+    let Settings { skip, average, .. } = experiment.settings;
+    let options = Options { skip, average, ..Options::default() };
+    let proved = |scene: &&Scene| {
+        let linear = |system| is_linear(&system, &options).unwrap_or_default();
+        !scene.dampers.is_empty() && compile(scene).is_ok_and(linear)
+    };
+    scenes.iter().filter(proved).count()
+}
+
+fn case(
+    description: String,
+    recipe: &Recipe,
+    experiment: &Experiment,
+    assumptions: &Assumptions,
+) -> Result<Ablation, NoAccuracy> {
+    let trial = Trial::new(recipe, assumptions, &experiment.settings, &experiment.measures)?;
+    let own = event_driven(&trial.system, &trial.options)?;
+    let bare = event_driven(&trial.undamped, &trial.options)?;
+    let base = Base { values: trial.read(&own, &bare)?, trial: &trial, bare: &bare };
+    let closed_form = own.method == Method::ClosedForm;
+    let outcome = |EffectUse { name, in_force, why_not, .. }: &EffectUse| match *name {
+        name if *in_force > 0 && closed_form && OF_FLIGHT.contains(&name) => Outcome::Idle,
+        "structural damping" if *in_force > 0 => base.undamped(),
+        "further modes" if *in_force > 0 => base.one_mode(recipe, experiment, assumptions),
+        name => match switched(&trial.scene, name, assumptions) {
+            Switching::Not(_) if *in_force == 0 => Outcome::Not((*why_not).into()),
+            Switching::Not(why) => Outcome::Not(why.into()),
+            Switching::Off(scene) | Switching::On(scene) => match compile(&scene) {
+                Ok(system) => base.with(&system, &bare),
+                Err(error) => Outcome::Not(error.to_string()),
+            },
+        },
+    };
+    let used = effects(std::slice::from_ref(&trial.scene));
+    let switched = used.iter().map(|of| Switched { effect: of.name, in_force: of.in_force > 0, outcome: outcome(of) });
+    Ok(Ablation {
+        description,
+        chaotic: is_chaotic(&trial, &own, &bare)?,
+        closed_form,
+        events: own.proof.events,
+        times: base.times(&trial.system),
+        switched: switched.collect(),
+    })
+}
+
+/// The case as it is.
+struct Base<'a> {
+    trial: &'a Trial<'a>,
+    bare: &'a Response,
+    values: Vec<f64>,
+}
+
+impl Base<'_> {
+    fn times(&self, system: &HybridSystem) -> Times {
+        Times::of(|| drop(std::hint::black_box(event_driven(system, &self.trial.options))), PATIENCE)
+    }
+
+    /// The case with another system in its place.
+    fn with(&self, system: &HybridSystem, bare: &Response) -> Outcome {
+        let run = || -> Result<(u64, Vec<f64>), NoAccuracy> {
+            let response = event_driven(system, &self.trial.options)?;
+            Ok((response.proof.events, self.trial.read(&response, bare)?))
+        };
+        match run() {
+            Err(error) => Outcome::Not(error.to_string()),
+            Ok((events, values)) => {
+                let (worst, change) = worst(&self.trial.measures, &values, &self.values);
+                Outcome::Changed { change, worst, events, times: self.times(system) }
+            }
+        }
+    }
+
+    /// Without the structure's dashpots, with dampers and without.
+    fn undamped(&self) -> Outcome {
+        let still = |system: &HybridSystem| {
+            let mut system = system.clone();
+            system.damping.entries.fill(0.0);
+            system
+        };
+        match event_driven(&still(&self.trial.undamped), &self.trial.options) {
+            Ok(bare) => self.with(&still(&self.trial.system), &bare),
+            Err(error @ EngineError::UndampedResonance { .. }) => Outcome::Not(error.to_string()),
+            Err(_) => self.with(&still(&self.trial.system), self.bare),
+        }
+    }
+
+    /// With the first mode alone.
+    fn one_mode(&self, recipe: &Recipe, experiment: &Experiment, assumptions: &Assumptions) -> Outcome {
+        let mut recipe = recipe.clone();
+        let other = recipe
+            .set(Parameter::Modes, ParameterValue::Number(1.0))
+            .map_err(|error| error.to_string())
+            .and_then(|()| {
+                Trial::new(&recipe, assumptions, &experiment.settings, &experiment.measures)
+                    .map_err(|error| error.to_string())
+            });
+        match other {
+            Err(error) => Outcome::Not(error),
+            Ok(other) => match event_driven(&other.undamped, &self.trial.options) {
+                Ok(bare) => self.with(&other.system, &bare),
+                Err(error) => Outcome::Not(error.to_string()),
+            },
+        }
+    }
+}

@@ -1,0 +1,25 @@
+//! What accuracy costs in time: error against time of both solvers, judged by an independent reference.
+//!
+//! [`precise`] solves the same model with 32 digits by other means. [`accuracy`] runs some cases of an experiment with the
+//! event-driven solver and with fixed steps, and holds both against it; [`publish_accuracy`] writes the page and the diagram.
+
+mod ablation;
+mod ablation_page;
+mod measured;
+mod page;
+pub mod precise;
+mod publish;
+mod representative;
+mod timing;
+mod verdict_price;
+
+pub use ablation::{Ablation, Outcome, Switched, ablation, idle_cases};
+pub use ablation_page::ablation_page;
+pub use measured::{
+    Accuracy, CaseAccuracy, Contender, Errors, EventTimes, NoAccuracy, Origin, Point, Skipped, accuracy, errors,
+};
+pub use page::{AccuracyView, accuracy_page, accuracy_summary};
+pub use publish::{publish_accuracy, publish_accuracy_summary};
+pub use representative::representative;
+pub use timing::Times;
+pub use verdict_price::VerdictPrice;

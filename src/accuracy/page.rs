@@ -1,0 +1,243 @@
+//! What accuracy costs: the page of one experiment, and the summary of all.
+
+use crate::measure::SolverChoice;
+use crate::study::Machine;
+
+use super::measured::{Accuracy, CaseAccuracy, Contender, Origin, Point};
+use crate::text::number::{quantity, significant};
+use crate::text::words;
+
+use super::verdict_price::{self, VerdictPrice};
+use crate::report::markdown::{Align, MarkdownTable, counted, one_line};
+
+/// Errors that somebody may want to reach.
+const GOALS: [(f64, &str); 3] = [(1e-2, "1 %"), (1e-4, "1e-4"), (1e-8, "1e-8")];
+/// Errors as large as the number itself are in no line with smaller ones.
+const SENSELESS: f64 = 0.3;
+
+/// One experiment, measured.
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct AccuracyView {
+    /// Its id.
+    pub id: String,
+    /// Its title.
+    pub title: String,
+    /// Where times were taken.
+    pub machine: Machine,
+    /// What was measured.
+    pub accuracy: Accuracy,
+    /// The verdicts on it.
+    pub entries: Vec<VerdictPrice>,
+}
+
+/// The page of one experiment, `picture` beside it.
+#[must_use]
+pub fn accuracy_page(view: &AccuracyView, picture: &str) -> String {
+    let mut text = format!(
+        "# What accuracy costs: {}\n\n[All experiments](../accuracy.md) · written by `shotdamp accuracy {}`\n\n{}",
+        one_line(&view.title),
+        view.id,
+        describe(&view.machine)
+    );
+    text += &format!("![Error against wall time]({picture})\n\n");
+    text += &verdict_price::section(&view.entries, &view.accuracy);
+    for (number, case) in view.accuracy.cases.iter().enumerate() {
+        text += &section(number + 1, case);
+    }
+    text
+}
+
+fn describe(machine: &Machine) -> String {
+    format!(
+        "{}, {} threads, {}; {}; one thread a run, median and shortest of as many runs as it takes for the median to settle.\n\n",
+        machine.processor, machine.threads, machine.system, machine.build
+    )
+}
+
+fn section(number: usize, case: &CaseAccuracy) -> String {
+    let description =
+        if case.description.is_empty() { String::new() } else { format!(": {}", one_line(&case.description)) };
+    let mut text = format!("## Case {number}{description}\n\n");
+    text += &match &case.origin {
+        Origin::ManyDigits => {
+            "Errors are against the same model in arithmetic of 32 digits, by another method.\n".to_owned()
+        }
+        Origin::StandIn(reason) => format!(
+            "Errors are against the event-driven run in other search windows, since {reason}: what they say of the event-driven \
+             solver is only how well it agrees with itself.\n"
+        ),
+    };
+    if case.closed_form {
+        text += "No particle leaves its floor: the event-driven solver answers in closed form.\n";
+    }
+    if let Some(floor) = case.floor {
+        text += &format!(
+            "The motion is chaotic: perturbed starts spread by {}, and no smaller error has a meaning.\n",
+            significant(floor, 2)
+        );
+    }
+    text.push('\n');
+    let mut rows = MarkdownTable::new(&[
+        ("Solver", Align::Left),
+        ("Error of the measures", Align::Right),
+        ("Worst", Align::Left),
+        ("Events in the right order", Align::Right),
+        ("Error of their times / T", Align::Right),
+        ("Median", Align::Right),
+        ("Shortest", Align::Right),
+        ("Runs", Align::Right),
+    ]);
+    for point in &case.points {
+        let of = point.events;
+        let runs = if point.times.settled {
+            point.times.runs.to_string()
+        } else {
+            format!("{}, not settled", point.times.runs)
+        };
+        rows.row([
+            name(point.contender),
+            error(point.error),
+            words::of_column(&words::of_key(&point.worst)),
+            format!("{} of {}", of.right, of.of),
+            of.error.map_or_else(String::new, error),
+            seconds(point.times.median),
+            seconds(point.times.least),
+            runs,
+        ]);
+    }
+    text += &rows.finish();
+    for skipped in &case.skipped {
+        text += &format!("- Left out: {}; {}.\n", name(skipped.contender), skipped.reason);
+    }
+    if !case.skipped.is_empty() {
+        text.push('\n');
+    }
+    text
+}
+
+/// `event-driven, windows × 0.5`; `fixed step 10 µs`.
+pub(super) fn name(contender: Contender) -> String {
+    match contender {
+        Contender::EventDriven { window_factor: 1.0 } => "event-driven".into(),
+        Contender::EventDriven { window_factor } => format!("event-driven, windows × {window_factor}"),
+        Contender::FixedStep { time_step } => words::of_solver(&SolverChoice::FixedStep { time_step }.label()),
+    }
+}
+
+fn error(value: f64) -> String {
+    if value < f64::EPSILON { "< 2e-16".into() } else { format!("{value:.0e}") }
+}
+
+pub(super) fn seconds(value: f64) -> String {
+    quantity(value, "s", 3)
+}
+
+/// The summary of all experiments that were measured.
+#[must_use]
+pub fn accuracy_summary(views: &[AccuracyView]) -> String {
+    let mut text = String::from(
+        "# What accuracy costs\n\n[All experiments](README.md) · written by `shotdamp accuracy --all`\n\n",
+    );
+    let mut machines: Vec<&Machine> = views.iter().map(|view| &view.machine).collect();
+    machines.sort();
+    machines.dedup();
+    machines.into_iter().for_each(|machine| text += &describe(machine));
+    text += "The cheapest setting of each solver that reaches an error in every case of an experiment that is not chaotic, with \
+             its time over these cases. The event-driven solver has no setting that is less exact: its time is the price of \
+             all digits. The price of the next digit is by how much longer the fixed step takes for an error ten times \
+             smaller; it is left out where no step tried brings a digit. ✗ stands for an error that no step tried could reach.\n\n";
+    let mut header = vec![("Experiment".to_owned(), Align::Left), ("Event-driven: error".into(), Align::Right)];
+    header.push(("time".into(), Align::Right));
+    header.extend(GOALS.iter().map(|(_, goal)| (format!("Fixed step: {goal}"), Align::Right)));
+    header.push(("next digit".into(), Align::Right));
+    header.push(("Chaotic cases".into(), Align::Right));
+    let header: Vec<(&str, Align)> = header.iter().map(|(name, align)| (name.as_str(), *align)).collect();
+    let mut rows = MarkdownTable::new(&header);
+    for view in views {
+        rows.row(row(view));
+    }
+    text += &rows.finish();
+    let stand_ins: Vec<&AccuracyView> = views
+        .iter()
+        .filter(|view| view.accuracy.cases.iter().any(|case| matches!(case.origin, Origin::StandIn(_))))
+        .collect();
+    if !stand_ins.is_empty() {
+        let names: Vec<String> = stand_ins.iter().map(|view| format!("`{}`", view.id)).collect();
+        text += &format!(
+            "{} without an independent reference in some case, where the event-driven solver is held against itself: {}.\n",
+            counted(names.len(), "experiment", "experiments"),
+            names.join(", ")
+        );
+    }
+    text
+}
+
+fn row(view: &AccuracyView) -> Vec<String> {
+    let cases = &view.accuracy.cases;
+    let regular: Vec<&CaseAccuracy> = cases.iter().filter(|case| case.floor.is_none()).collect();
+    let mut cells = vec![format!("[`{0}`](accuracy/{0}.md)", view.id)];
+    let exact = over(&regular, Contender::EventDriven { window_factor: 1.0 });
+    cells.push(exact.map_or_else(String::new, |of| error(of.error)));
+    cells.push(exact.map_or_else(String::new, |of| seconds(of.time)));
+    let steps = fixed_steps(&regular);
+    for (goal, _) in GOALS {
+        let cheapest = steps.iter().filter(|(_, of)| of.error <= goal).min_by(|a, b| a.1.time.total_cmp(&b.1.time));
+        cells.push(match cheapest {
+            Some((step, of)) => format!("{} ({})", seconds(of.time), seconds(*step)),
+            None if regular.is_empty() => String::new(),
+            None => "✗".into(),
+        });
+    }
+    let next = next_digit(&steps.iter().map(|(_, of)| *of).collect::<Vec<_>>());
+    cells.push(next.map_or_else(String::new, |factor| format!("× {}", significant(factor, 2))));
+    cells.push(format!("{} of {}", cases.len() - regular.len(), cases.len()));
+    cells
+}
+
+/// Every fixed step that all of these cases were run with, s.
+pub(super) fn fixed_steps(cases: &[&CaseAccuracy]) -> Vec<(f64, Over)> {
+    let mut steps: Vec<(f64, Over)> = Vec::new();
+    for point in cases.iter().flat_map(|case| &case.points) {
+        if let Contender::FixedStep { time_step } = point.contender
+            && steps.iter().all(|(known, _)| *known != time_step)
+            && let Some(of) = over(cases, point.contender)
+        {
+            steps.push((time_step, of));
+        }
+    }
+    steps
+}
+
+/// The worst error of a contender over cases, and its time over all of them.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Over {
+    pub error: f64,
+    pub time: f64,
+}
+
+fn over(cases: &[&CaseAccuracy], contender: Contender) -> Option<Over> {
+    let points: Vec<&Point> =
+        cases.iter().filter_map(|case| case.points.iter().find(|point| point.contender == contender)).collect();
+    (points.len() == cases.len() && !points.is_empty()).then(|| Over {
+        error: points.iter().map(|point| point.error).fold(0.0, f64::max),
+        time: points.iter().map(|point| point.times.median).sum(),
+    })
+}
+
+/// By how much the time grows when the error falls to a tenth: the slope of the straight line through log time over log error.
+fn next_digit(points: &[Over]) -> Option<f64> {
+    let points: Vec<[f64; 2]> = points
+        .iter()
+        .filter(|of| of.error > 0.0 && of.error < SENSELESS)
+        .map(|of| [libm::log10(of.error), libm::log10(of.time)])
+        .collect();
+    let count = points.len() as f64;
+    let mean = |i: usize| points.iter().map(|point| point[i]).sum::<f64>() / count;
+    let [x, y] = [mean(0), mean(1)];
+    let square: f64 = points.iter().map(|point| (point[0] - x) * (point[0] - x)).sum();
+    let product: f64 = points.iter().map(|point| (point[0] - x) * (point[1] - y)).sum();
+    let span =
+        points.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], [x, _]| [low.min(*x), high.max(*x)]);
+    // A slope over less than one digit says nothing.
+    (points.len() > 2 && span[1] - span[0] >= 1.0).then(|| libm::exp10(-product / square))
+}

@@ -1,0 +1,191 @@
+//! The page of a calibration.
+
+use super::{Calibrated, Compared, Profile, Read};
+use crate::experiment::{Calibration, CalibrationInput, CalibrationSearch, Tried};
+use crate::measure::SolverChoice;
+use crate::reference::{Found, Verdict};
+use crate::text::{number, words};
+
+use crate::report::markdown::{Align, MarkdownTable, counted};
+use crate::report::tally::word;
+use crate::report::value_in_words;
+
+/// A value whose least residual exceeds the best by less than this share of it is as good as the best.
+const AS_GOOD: f64 = 0.1;
+
+/// The page.
+#[must_use]
+pub fn calibration(calibration: &Calibration, result: &Calibrated) -> String {
+    let mut text = format!("# {}\n\n[All experiments](../README.md)\n\n{}\n\n", calibration.title, calibration.about);
+    if !calibration.finding.is_empty() {
+        text += &format!("**What it shows**, in the words of who looked at the result: {}\n\n", calibration.finding);
+    }
+    text += &format!(
+        "{} fitted, {} held out. {}\n\n{}\n\n",
+        counted(result.fitted.len(), "entry", "entries"),
+        result.held_out.len(),
+        searched(calibration, result),
+        residuals(result)
+    );
+    if result.best.is_none() {
+        text += "**No set gives every fitted entry a number**; “best inputs” stands for those in force.\n\n";
+    }
+    text += "## Inputs\n\nFor each value the least residual that was found with it, all other inputs free; bold the best. \
+             An input is determined if no other value comes within a tenth of the best residual.\n\n";
+    let mut table = MarkdownTable::new(&[
+        ("Input", Align::Left),
+        ("Value: least residual", Align::Left),
+        ("Determined", Align::Left),
+    ]);
+    for ((input, profile), place) in calibration.inputs.iter().zip(&result.profiles).zip(&result.places) {
+        let cells = [
+            format!("`{}`", input.name),
+            points(input, profile, *place),
+            determined(profile, *place, result.cut_short).into(),
+        ];
+        table.row(cells);
+    }
+    text += &table.finish();
+    text += "## Entries\n\nRun as results, with an ensemble where the motion is chaotic, and judged by the entry’s own \
+             tolerance; nothing is allowed for inputs that the study does not state, as they are what is chosen here.\n\n";
+    text += &entries("Fitted", &result.fitted);
+    text += &entries("Held out", &result.held_out);
+    text += &format!(
+        "Reproduced with the best inputs: {}; {}. With those in force: {}; {}.\n",
+        reproduced(&result.fitted, "fitted", |one| &one.best),
+        reproduced(&result.held_out, "held out", |one| &one.best),
+        reproduced(&result.fitted, "fitted", |one| &one.in_force),
+        reproduced(&result.held_out, "held out", |one| &one.in_force),
+    );
+    text
+}
+
+/// How the sets were chosen, and how the search ended.
+fn searched(calibration: &Calibration, result: &Calibrated) -> String {
+    let runs = match calibration.ensemble {
+        0 => "each as a single run".to_owned(),
+        members => format!("chaotic points as the mean of {members} runs"),
+    };
+    let CalibrationSearch::Coordinate { .. } = calibration.search else {
+        let sets = counted(result.tried, "combination of values was", "combinations of values were");
+        return format!("All {sets} tried, {runs}.");
+    };
+    let ends: Vec<String> = result.ends.iter().map(|residual| share(*residual)).collect();
+    format!(
+        "Coordinate search, {runs}: {} of {} possible ones, from {}, which ended at {}{}. What lies between the sets that were \
+         tried is not known: a least residual is one that was found.",
+        counted(result.tried, "set of inputs", "sets of inputs"),
+        calibration.combinations(),
+        counted(ends.len(), "start", "starts"),
+        ends.join(", "),
+        if result.cut_short { ", the last one by the budget" } else { "" }
+    )
+}
+
+fn residuals(result: &Calibrated) -> String {
+    let [in_force, best] = result.as_results.map(share);
+    format!(
+        "Residual: root mean square of the fitted entries’ relative errors, where a claim that fails counts as 100 %. Best: \
+         **{}**; with the inputs in force: {}. As results, with ensembles: {best} and {in_force}.",
+        share(result.best),
+        share(result.in_force),
+    )
+}
+
+fn share(residual: Option<f64>) -> String {
+    residual.map_or_else(|| "none".into(), |residual| format!("{} %", number::significant(100.0 * residual, 2)))
+}
+
+fn points(input: &CalibrationInput, profile: &Profile, best: usize) -> String {
+    let description = profile.residuals.iter().enumerate().map(|(place, residual)| {
+        let description =
+            format!("{}: {}", value(&input.tried, place), residual.map_or("none".into(), |one| share(Some(one))));
+        if place == best { format!("**{description}**") } else { description }
+    });
+    description.collect::<Vec<_>>().join("; ")
+}
+
+/// One of the values, in words. Curves that end alike are told by their place.
+fn value(tried: &Tried, place: usize) -> String {
+    match tried {
+        Tried::Values { moves, values } => {
+            let tried = |place: usize| {
+                let mut description: Vec<String> = Vec::new();
+                for (name, value) in moves.iter().zip(&values[place]) {
+                    let value = value_in_words(*name, value);
+                    if !description.contains(&value) {
+                        description.push(value);
+                    }
+                }
+                description.join(" / ")
+            };
+            let told_here = tried(place);
+            let alike = (0..values.len()).any(|other| other != place && tried(other) == told_here);
+            if alike { format!("no. {}, {told_here}", place + 1) } else { told_here }
+        }
+        Tried::Factors { by, .. } => format!("× {}", number::compact(by[place], 4)),
+        Tried::Solvers(solvers) => match solvers[place] {
+            SolverChoice::EventDriven => "exact".into(),
+            step @ SolverChoice::FixedStep { .. } => words::of_solver(&step.label()),
+        },
+    }
+}
+
+fn determined(profile: &Profile, best: usize, cut_short: bool) -> &'static str {
+    let Some(Some(least)) = profile.residuals.get(best) else { return "no" };
+    let rivals = profile.residuals.iter().enumerate().filter(|(place, residual)| {
+        *place != best && residual.is_some_and(|residual| residual <= (1.0 + AS_GOOD) * least)
+    });
+    match (rivals.count(), profile.residuals.len()) {
+        (_, 1) => "held",
+        (0, _) if cut_short => "as far as tried",
+        (0, _) => "yes",
+        (rivals, all) if rivals + 1 == all => "no",
+        _ => "in part",
+    }
+}
+
+fn reproduced(list: &[Compared], what: &str, of: fn(&Compared) -> &Read) -> String {
+    let count = list.iter().filter(|one| of(one).verdict == Verdict::Reproduced).count();
+    format!("{count} of {} {what}", list.len())
+}
+
+fn entries(title: &str, list: &[Compared]) -> String {
+    let mut table = MarkdownTable::new(&[
+        ("Entry", Align::Left),
+        ("Study", Align::Right),
+        ("In force", Align::Right),
+        ("Verdict", Align::Left),
+        ("Best inputs", Align::Right),
+        ("Verdict", Align::Left),
+    ]);
+    for one in list {
+        let study = match &one.best.found {
+            Found::Number { published, .. } => number::compact(*published, 5),
+            _ => String::new(),
+        };
+        let verdict = |read: &Read| word(read.verdict).to_owned();
+        table.row([
+            format!("`{}`", one.id),
+            study,
+            describe(&one.in_force.found),
+            verdict(&one.in_force),
+            describe(&one.best.found),
+            verdict(&one.best),
+        ]);
+    }
+    let table = table.finish();
+    if table.is_empty() { table } else { format!("### {title}\n\n{table}") }
+}
+
+fn describe(found: &Found) -> String {
+    match found {
+        Found::Number { simulated, published } => {
+            let off = 100.0 * (simulated - published) / published.abs();
+            format!("{} ({} %)", number::significant(*simulated, 4), number::signed(off, 2))
+        }
+        Found::Claim { holds: true } => "holds".into(),
+        Found::Claim { holds: false } => "does not hold".into(),
+        Found::Nothing(reason) => reason.clone(),
+    }
+}

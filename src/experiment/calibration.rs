@@ -1,0 +1,261 @@
+//! A calibration file: which unstated inputs are free, which entries they are fitted to, and which are held out.
+//!
+//! ```yaml
+//! title: Inputs of chapter 5
+//! about: What it is to show.
+//! finding: What it showed, written by hand when it has been run.     # may be absent
+//! search: {coordinate: {starts: 2, budget: 110 sets}}                 # every combination if absent
+//! ensemble: 4 members                                                # of chaotic points; single runs if absent
+//! calibrate:
+//!   plate_contact_damping_ratio: [0.1, 0.2, equivalent_viscous]       # values of an assumption
+//!   curve_height: {scales: equivalent_damping_curve, by: [0.5, 1, 2]} # factors of one
+//!   damper_mass: {moves: [beam_damper_mass, plate_damper_mass], values: [total, modal]}   # several at once
+//!   impulse: {moves: [impulse_factor, plate_impulse_time], values: [[1, radian], [2, half_sine]]}
+//!   solver: [event_driven, {fixed_step: {time_step: 1 ms}}]
+//! fit: [ch5-impulse-ratio/tuned-184]
+//! hold_out: [ch5-mass-crossing/*]
+//! ```
+
+use std::collections::BTreeSet;
+use std::path::Path;
+
+use crate::scene::{Assumption, AssumptionValue};
+
+use super::assumption_sheet::read_value_of;
+use super::diagnostic::{Findings, Problems};
+use super::load::read;
+use super::reader::{Choice, Fields, all, count, list, no_such, number, scalar, text};
+use super::solver::read_solver;
+use super::word::{from_word, word_of, words};
+use super::yaml::{Entry, Node, Value, read_tree};
+use crate::measure::SolverChoice;
+
+/// Most combinations of values of a full grid: each is a run of every experiment concerned.
+const MOST_COMBINATIONS: usize = 10_000;
+/// Most sets of inputs that a search may try.
+const MOST_SETS: u32 = 10_000;
+
+/// A calibration.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Calibration {
+    /// Its title.
+    pub title: String,
+    /// What it is to show. Markdown.
+    pub about: String,
+    /// What its result means, written by a person who has seen it. Markdown; empty before that.
+    pub finding: String,
+    /// The free inputs.
+    pub inputs: Vec<CalibrationInput>,
+    /// How their values are searched.
+    pub search: CalibrationSearch,
+    /// Members of the ensemble that a chaotic point gets in the search; 0: a single run, as in the study.
+    pub ensemble: u32,
+    /// Ids of the entries to fit, or `EXPERIMENT/*` for all of an experiment.
+    pub fit: Vec<String>,
+    /// Ids of the entries held out, or `EXPERIMENT/*` for all that are not fitted.
+    pub hold_out: Vec<String>,
+}
+
+/// How the sets of inputs to be tried are chosen.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum CalibrationSearch {
+    /// Every combination of the values.
+    Grid,
+    /// One input after the other, all others held, from several starts.
+    Coordinate {
+        /// Starts: the inputs in force first, the others drawn.
+        starts: u32,
+        /// Most sets that are tried.
+        budget: u32,
+    },
+}
+
+/// A free input.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CalibrationInput {
+    /// As the file names it.
+    pub name: String,
+    /// What is tried.
+    pub tried: Tried,
+}
+
+/// The values of a free input.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Tried {
+    /// Values of an assumption, or of several that are moved together.
+    Values {
+        /// The assumptions.
+        moves: Vec<Assumption>,
+        /// The values, each one for every assumption.
+        values: Vec<Vec<AssumptionValue>>,
+    },
+    /// Factors of an assumption that is a number or a curve.
+    Factors {
+        /// The assumption, as in force or as another input has set it.
+        of: Assumption,
+        /// The factors.
+        by: Vec<f64>,
+    },
+    /// Solvers, in the place of the exact one.
+    Solvers(Vec<SolverChoice>),
+}
+
+impl Tried {
+    /// How many values there are.
+    #[must_use]
+    pub fn count(&self) -> usize {
+        match self {
+            Self::Values { values, .. } => values.len(),
+            Self::Factors { by, .. } => by.len(),
+            Self::Solvers(solvers) => solvers.len(),
+        }
+    }
+}
+
+impl Calibration {
+    /// How many combinations of values there are.
+    #[must_use]
+    pub fn combinations(&self) -> usize {
+        self.inputs.iter().fold(1, |product, input| product.saturating_mul(input.tried.count()))
+    }
+}
+
+/// Reads a calibration file.
+///
+/// # Errors
+/// Every mistake of the file, with its place.
+pub fn load_calibration(path: &Path) -> Result<Calibration, Problems> {
+    let file = path.display().to_string();
+    parse_calibration(&file, &read(path, &file)?)
+}
+
+/// Reads a calibration from its text; `file` only names it in messages.
+///
+/// # Errors
+/// Every mistake of the file, with its place.
+pub fn parse_calibration(file: &str, text: &str) -> Result<Calibration, Problems> {
+    let findings = Findings::default();
+    let calibration = read_tree(text, &findings).and_then(|root| calibration(&root, &findings));
+    findings.finish(file, text, calibration)
+}
+
+fn calibration(root: &Node, findings: &Findings) -> Option<Calibration> {
+    let fields = Fields::open(root, "a calibration", findings)?;
+    let title = fields.required("title", |node| text(node, findings));
+    let about = fields.required("about", |node| text(node, findings));
+    let finding = fields.optional("finding", |node| text(node, findings));
+    let inputs = fields.required("calibrate", |node| inputs(node, findings));
+    let search = fields.optional("search", |node| search(node, findings));
+    let ensemble = fields.optional("ensemble", |node| some(node, "members", findings));
+    let ids = |node| list(node, findings, |node| text(node, findings));
+    let fit = fields.required("fit", ids);
+    let hold_out = fields.optional("hold_out", ids);
+    fields.close()?;
+    let calibration = Calibration {
+        title: title?,
+        about: about?,
+        finding: finding?.unwrap_or_default(),
+        inputs: inputs?,
+        search: search?.unwrap_or(CalibrationSearch::Grid),
+        ensemble: ensemble?.unwrap_or(0),
+        fit: fit?,
+        hold_out: hold_out?.unwrap_or_default(),
+    };
+    let combinations = calibration.combinations();
+    if calibration.search == CalibrationSearch::Grid && combinations > MOST_COMBINATIONS {
+        return findings.report(
+            root.span,
+            format!("{combinations} combinations of values: {MOST_COMBINATIONS} at most"),
+            Some("write `search: {coordinate: {starts: 4, budget: 400 sets}}`, which tries a part of them".into()),
+        );
+    }
+    Some(calibration)
+}
+
+/// `grid`, or `{coordinate: {starts: 4, budget: 400 sets}}`.
+fn search(node: &Node, findings: &Findings) -> Option<CalibrationSearch> {
+    let choice = Choice::read(node, "a search", &["grid", "coordinate"], findings)?;
+    if choice.name == "grid" {
+        choice.bare(findings)?;
+        return Some(CalibrationSearch::Grid);
+    }
+    let fields = choice.fields("a coordinate search", findings)?;
+    let starts = fields.required("starts", |node| some(node, "starts", findings));
+    let budget = fields.required("budget", |node| some(node, "sets", findings));
+    fields.close()?;
+    Some(CalibrationSearch::Coordinate { starts: starts?, budget: budget? })
+}
+
+/// A number of things, one at least.
+fn some(node: &Node, noun: &str, findings: &Findings) -> Option<u32> {
+    match count(node, noun, MOST_SETS, findings)? {
+        0 => findings.wrong(node.span, format!("no {noun} at all would find nothing")),
+        some => Some(some),
+    }
+}
+
+fn inputs(node: &Node, findings: &Findings) -> Option<Vec<CalibrationInput>> {
+    let Value::Mapping(entries) = &node.value else {
+        return findings.wrong(node.span, "inputs are written as `assumption: [value, …]`");
+    };
+    let mut inputs: Vec<CalibrationInput> = Vec::new();
+    let mut moved = BTreeSet::new();
+    for entry in entries {
+        let input = input(entry, findings)?;
+        if let Tried::Values { moves, .. } = &input.tried
+            && let Some(name) = moves.iter().find(|name| !moved.insert(**name))
+        {
+            return findings.wrong(entry.key_span, format!("`{}` is moved by two inputs", word_of(*name)));
+        }
+        inputs.push(input);
+    }
+    if inputs.is_empty() { findings.wrong(node.span, "there is no input to calibrate") } else { Some(inputs) }
+}
+
+/// `assumption: [value, …]`, `name: {moves: [assumption, …], values: [value, …]}` with a value for all of them or a list of one
+/// for each, `name: {scales: assumption, by: [factor, …]}`, or `solver: [event_driven, {fixed_step: …}]`.
+fn input(entry: &Entry, findings: &Findings) -> Option<CalibrationInput> {
+    let Entry { key, key_span, node } = entry;
+    let input = |tried| Some(CalibrationInput { name: key.clone(), tried });
+    if key == "solver" {
+        return input(Tried::Solvers(list(node, findings, |node| read_solver(node, findings))?));
+    }
+    let assumption = |word: &str, span| match from_word::<Assumption>(word) {
+        Some(name) => Some(name),
+        None => no_such(findings, span, "assumption", word, words::<Assumption>()),
+    };
+    let value = |node: &Node, moves: &[Assumption]| {
+        let Value::Sequence(each) = &node.value else {
+            return all(moves.iter().map(|name| read_value_of(*name, node, findings)));
+        };
+        if each.len() != moves.len() {
+            return findings.wrong(node.span, format!("{} values for {} assumptions", each.len(), moves.len()));
+        }
+        all(moves.iter().zip(each).map(|(name, node)| read_value_of(*name, node, findings)))
+    };
+    let values = |node: &Node, moves: &[Assumption]| list(node, findings, |node| value(node, moves));
+    if matches!(node.value, Value::Sequence(_)) {
+        let name = assumption(key, *key_span)?;
+        return input(Tried::Values { moves: vec![name], values: values(node, &[name])? });
+    }
+    let named = |node: &Node| assumption(scalar(node, findings)?, node.span);
+    let fields = Fields::open(node, "an input", findings)?;
+    let tried = match fields.exactly_one(&["moves", "scales"]) {
+        Some(("moves", node)) => {
+            let moves = list(node, findings, named);
+            let tried = fields.required("values", |node| values(node, moves.as_ref()?));
+            moves.zip(tried).map(|(moves, values)| Tried::Values { moves, values })
+        }
+        Some((_, node)) => {
+            let factor = |node: &Node| match number(node, findings)? {
+                factor if factor > 0.0 => Some(factor),
+                _ => findings.wrong(node.span, "a factor above zero is wanted"),
+            };
+            let by = fields.required("by", |node| list(node, findings, factor));
+            named(node).zip(by).map(|(of, by)| Tried::Factors { of, by })
+        }
+        None => None,
+    };
+    fields.close()?;
+    input(tried?)
+}

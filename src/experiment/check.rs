@@ -1,0 +1,313 @@
+//! Checks across the parts of an experiment, and of every case against physics, before anything runs.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use crate::measure::Measure;
+use crate::scene::{Assumptions, ExcitationKind, Parameter, ParameterValue, Part, RecipeError, Scene};
+
+use super::definition::{Case, Drawing, Experiment, FigureSpec, Maximise, Panel, Refinement};
+use super::diagnostic::{Findings, Span};
+use super::optimise::Optimise;
+use super::refined::curves;
+use super::scene::ReadScene;
+use super::sweep::ReadSweep;
+use super::word::word_of;
+use crate::measure::{EnergySpec, Settings, ShapeSpec, SolverChoice, TraceSpec};
+
+/// Most runs of a whole experiment, ensembles not counted.
+const MOST_RUNS: usize = 1_000_000;
+/// Most steps of one fixed-step run: some ten minutes.
+const MOST_STEPS: f64 = 1e11;
+/// Most fitness evaluations of an optimisation.
+const MOST_EVALUATIONS: u64 = 10_000_000;
+/// Kinds of refusal that are told; more of them would hardly help.
+const MOST_TOLD: usize = 5;
+
+/// Looks at parts that were read without a mistake of their own.
+pub(super) struct Checks<'t> {
+    pub findings: &'t Findings,
+    pub assumptions: &'t Assumptions,
+}
+
+impl Checks<'_> {
+    /// Measures that need a time history, or the maximisation, have it.
+    pub fn measures(
+        &self,
+        measures: &[(Measure, Span)],
+        maximise: Option<&Maximise>,
+        trace: Option<&TraceSpec>,
+        shape: Option<&ShapeSpec>,
+    ) {
+        let from_trace = [
+            Measure::LastPeak,
+            Measure::PeakVariation,
+            Measure::PeakDecayError,
+            Measure::FloorImpactLag,
+            Measure::CeilingImpactLag,
+        ];
+        for (measure, span) in measures {
+            if shape.is_none() && measure.needs_shape() {
+                self.findings.report::<()>(
+                    *span,
+                    format!("`{}` is read off a shape, and this experiment keeps none", word_of(*measure)),
+                    Some("add `shape: {of: mode, points: …}`".into()),
+                );
+            }
+            if trace.is_none() && from_trace.contains(measure) {
+                self.findings.report::<()>(
+                    *span,
+                    format!("`{}` is read off a time history, and this experiment keeps none", word_of(*measure)),
+                    Some("add `trace: {from: … cycles, to: … cycles, samples_per_cycle: …}`".into()),
+                );
+            }
+        }
+        if let Some(maximise) = maximise
+            && !measures.iter().any(|(measure, _)| *measure == maximise.measure)
+            && let Some((_, span)) = measures.first()
+        {
+            let name = word_of(maximise.measure);
+            let help = format!("add `{name}` to `measure`");
+            self.findings.report::<()>(*span, format!("`{name}` is maximised, but not measured"), Some(help));
+        }
+    }
+
+    /// Amplitudes are compared with what drives the scene.
+    pub fn excitation(&self, measures: &[(Measure, Span)], excitation: &ExcitationKind) {
+        for (measure, span) in measures.iter().filter(|(measure, _)| !measure.suits(excitation)) {
+            let name = word_of(*measure);
+            self.findings.wrong::<()>(*span, format!("`{name}` is not measured under this excitation"));
+        }
+    }
+
+    /// Energies are kept of cycles that are run.
+    pub fn energies(&self, energies: Option<&EnergySpec>, settings: &Settings, at: Span) {
+        let cycles = settings.skip.saturating_add(settings.average);
+        if energies.is_some_and(|energies| energies.to_cycle > cycles) {
+            self.findings.wrong::<()>(at, format!("energies are kept of the {cycles} cycles that are run"));
+        }
+    }
+
+    /// `swept` in the scene needs a value from every case; a maximised parameter cannot be swept as well.
+    pub fn coverage(
+        &self,
+        scene: &ReadScene,
+        cases: &[Case],
+        places: &BTreeMap<Parameter, Span>,
+        mean_over: &ReadSweep,
+        maximise: Option<&Maximise>,
+    ) {
+        for (parameter, span) in &scene.swept {
+            let averaged = mean_over.places.contains_key(parameter)
+                && mean_over.cases.iter().all(|case| case.get(*parameter).is_some());
+            if averaged || maximise.is_some_and(|maximise| maximise.over == *parameter) {
+                continue;
+            }
+            let name = word_of(*parameter);
+            if !places.contains_key(parameter) {
+                let help = format!("add `{name}` to `sweep`, or give it a value here");
+                self.findings.report::<()>(*span, format!("nothing sweeps `{name}`"), Some(help));
+            } else if let Some(case) = cases.iter().find(|case| !sets_or_leaves_out(case, *parameter)) {
+                let help = "give the value here that those cases shall have".to_owned();
+                let message = format!("the sweep `{}` leaves `{name}` out", case.sweep);
+                self.findings.report::<()>(*span, message, Some(help));
+            }
+        }
+        if let Some(over) = maximise.map(|maximise| maximise.over)
+            && let Some(place) = places.get(&over)
+        {
+            let message = format!("`{}` is swept and maximised over at once", word_of(over));
+            self.findings.report::<()>(*place, message, Some("take it out of `sweep`".into()));
+        }
+    }
+
+    /// What is averaged over is not swept or maximised over as well.
+    pub fn mean_over(&self, mean_over: &ReadSweep, places: &BTreeMap<Parameter, Span>, maximise: Option<&Maximise>) {
+        for (parameter, span) in &mean_over.places {
+            if places.contains_key(parameter) || maximise.is_some_and(|maximise| maximise.over == *parameter) {
+                let message = format!("`{}` is averaged over and varied at once", word_of(*parameter));
+                self.findings.wrong::<()>(*span, message);
+            }
+        }
+    }
+
+    /// A line runs through points of one solver.
+    pub fn lines(&self, figures: &[FigureSpec], cases: &[Case], at: Span) {
+        let joined = |panel: &Panel| !panel.by.iter().any(|column| column == "solver");
+        let drawn =
+            |figure: &FigureSpec| matches!(&figure.drawing, Drawing::Lines(panels) if panels.iter().any(joined));
+        if cases.iter().any(|case| case.solvers.len() > 1) && figures.iter().any(drawn) {
+            let message = "a line would run through the points of several solvers";
+            self.findings.report::<()>(at, String::from(message), Some("add `solver` to `by`".into()));
+        }
+    }
+
+    /// The fitness is measured by a run, and the number of runs is bounded.
+    pub fn optimise(&self, optimise: &Optimise, measures: &[(Measure, Span)], solvers: &[SolverChoice], at: Span) {
+        if solvers.len() > 1 {
+            self.findings.wrong::<()>(at, "an optimisation runs under one solver");
+        }
+        let name = word_of(optimise.measure);
+        if !measures.iter().any(|(measure, _)| *measure == optimise.measure)
+            && let Some((_, span)) = measures.first()
+        {
+            let help = format!("add `{name}` to `measure`");
+            self.findings.report::<()>(*span, format!("`{name}` is optimised, but not measured"), Some(help));
+        }
+        for (measure, span) in measures {
+            if measure.needs_trace() || measure.needs_shape() || measure.needs_energies() {
+                let message = format!("`{}` is not measured in an optimisation", word_of(*measure));
+                self.findings.wrong::<()>(*span, message);
+            }
+        }
+        let evaluations = optimise.most_evaluations();
+        if evaluations > MOST_EVALUATIONS {
+            let message = format!("{evaluations} evaluations are too many: {MOST_EVALUATIONS} at most");
+            self.findings.wrong::<()>(at, message);
+        }
+    }
+
+    /// The measures that a refined range follows are measured, and have curves to be followed.
+    pub fn refined(&self, refined: &[(Refinement, Span)], measures: &[(Measure, Span)]) {
+        for (refinement, span) in refined {
+            for wanted in &refinement.measures {
+                if !measures.iter().any(|(measure, _)| measure == wanted) {
+                    let name = word_of(*wanted);
+                    let help = format!("add `{name}` to `measure`");
+                    self.findings.report::<()>(*span, format!("`{name}` is refined, but not measured"), Some(help));
+                }
+            }
+            if refinement.over == Parameter::Stop {
+                self.findings.wrong::<()>(*span, "only numbers can be refined");
+            }
+        }
+    }
+
+    /// The number of runs is bounded.
+    pub fn amount(
+        &self,
+        cases: &[Case],
+        refined: &[(Refinement, Span)],
+        maximise: Option<&Maximise>,
+        averaged: usize,
+        at: Span,
+    ) {
+        let of = |case: &Case| case.solvers.len();
+        let plain: usize = cases.iter().map(of).sum();
+        let added = curves(cases, refined.iter().map(|(rule, _)| rule)).into_iter().map(|curve| {
+            let solvers = curve.cases.first().map_or(0, |first| of(&cases[*first]));
+            (curve.rule.most as usize).saturating_sub(curve.cases.len()) * solvers
+        });
+        let runs = plain + added.sum::<usize>();
+        let each = maximise.map_or(1, |maximise| maximise.grid.len()) * averaged.max(1);
+        if runs.saturating_mul(each) > MOST_RUNS {
+            self.findings.wrong::<()>(at, format!("{runs} runs of {each} points are too many: {MOST_RUNS} at most"));
+        }
+    }
+
+    /// Resolves every case; `place` says where a parameter is swept, or else where a part of the scene stands, or all of it.
+    pub fn scenes(&self, experiment: &Experiment, place: impl Fn(Option<Parameter>, Option<Part>) -> Span) {
+        let mut met = BTreeSet::new();
+        for case in &experiment.cases {
+            let Err(refusal) = self.scene(experiment, case) else { continue };
+            if met.insert(refusal.message.clone()) && met.len() <= MOST_TOLD {
+                let description = case.describe();
+                let message = if description.is_empty() {
+                    refusal.message
+                } else {
+                    format!("{} (at {description})", refusal.message)
+                };
+                // What a sweep has made of a part is at the sweep; what the file says of it, at the part.
+                let swept = case.values.iter().map(|(parameter, _)| *parameter);
+                let of_part = |parameter: &Parameter| {
+                    let same = |part: Part| parameter.part() == Some(part.kind()) && parameter.words().is_empty();
+                    refusal.part.is_none_or(same)
+                };
+                let parameter = refusal.parameter.or_else(|| swept.into_iter().find(of_part));
+                self.findings.wrong::<()>(place(parameter, refusal.part), message);
+            }
+        }
+    }
+
+    fn scene(&self, experiment: &Experiment, case: &Case) -> Result<(), Refusal> {
+        let recipe = experiment.recipe_of(case)?;
+        // A maximisation is tried at both ends of its grid.
+        let mut recipes = Vec::new();
+        if let Some(maximise) = &experiment.maximise {
+            for end in [maximise.grid.first(), maximise.grid.last()].into_iter().flatten() {
+                let mut recipe = recipe.clone();
+                recipe.set(maximise.over, ParameterValue::Number(*end))?;
+                recipes.push(recipe);
+            }
+        }
+        if recipes.is_empty() {
+            recipes.push(recipe);
+        }
+        let mut all = Vec::new();
+        for recipe in &recipes {
+            all.extend(experiment.recipes_in(recipe)?);
+        }
+        for recipe in all {
+            steps(&recipe.resolve(self.assumptions)?, case, &experiment.settings)?;
+        }
+        Ok(())
+    }
+}
+
+/// The case gives the parameter a value, or has no damper that could use one.
+fn sets_or_leaves_out(case: &Case, parameter: Parameter) -> bool {
+    let clean = case.get(Parameter::Dampers) == Some(ParameterValue::Without);
+    case.get(parameter).is_some() || (clean && parameter.is_of_dampers())
+}
+
+/// Why a case cannot run.
+struct Refusal {
+    message: String,
+    parameter: Option<Parameter>,
+    /// The part of the scene that is meant.
+    part: Option<Part>,
+}
+
+impl From<String> for Refusal {
+    fn from(message: String) -> Self {
+        Self { message, parameter: None, part: None }
+    }
+}
+
+impl From<RecipeError> for Refusal {
+    fn from(error: RecipeError) -> Self {
+        match error {
+            RecipeError::NothingToVary { parameter, what } => Self {
+                message: format!("`{}` is swept, but the scene has {what}", word_of(parameter)),
+                parameter: Some(parameter),
+                part: None,
+            },
+            RecipeError::Assumption(name, form) => {
+                format!("the assumption `{}` is needed: give it {form} in the assumptions file", word_of(name)).into()
+            }
+            RecipeError::OutOfRange(message) => message.into(),
+            RecipeError::Part { part, message } => Self { message, parameter: None, part: Some(part) },
+        }
+    }
+}
+
+/// What a scene asks of the steps of its run.
+fn steps(scene: &Scene, case: &Case, settings: &Settings) -> Result<(), String> {
+    let period = scene.excitation.period();
+    let in_a_period = |step: f64| (period / step).round();
+    if let Some(step) = settings.round_period_to
+        && in_a_period(step) < 1.0
+    {
+        return Err(format!("a forcing period of {period} s rounds to no step of {step} s at all"));
+    }
+    for solver in &case.solvers {
+        let SolverChoice::FixedStep { time_step } = *solver else { continue };
+        if in_a_period(time_step) < 1.0 {
+            return Err(format!("a time step of {time_step} s is longer than the forcing period of {period} s"));
+        }
+        let cycles = f64::from(settings.skip) + f64::from(settings.average);
+        if in_a_period(time_step) * cycles > MOST_STEPS {
+            return Err(format!("a time step of {time_step} s makes more than {MOST_STEPS:e} steps a run"));
+        }
+    }
+    Ok(())
+}

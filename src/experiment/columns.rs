@@ -1,0 +1,133 @@
+//! The columns that an experiment's table will have, known before anything runs.
+
+use crate::measure::Measure;
+use crate::scene::{GapWord, Parameter};
+
+use super::definition::Maximise;
+use super::word::word_of;
+use crate::measure::{ShapeOf, ShapeSpec};
+
+/// What a column holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Role {
+    /// A number a row.
+    Number,
+    /// A word a row: splits lines, is no axis.
+    Label,
+    /// A time history a row.
+    History,
+}
+
+/// Names of proof columns.
+const PROOF: [&str; 7] =
+    ["momentum_residual", "energy_residual", "events", "smallest_margin", "ties", "chaotic", "members"];
+
+/// Names of time histories, as documented at [`super::TraceSpec`].
+pub(super) const HISTORIES: [&str; 13] = [
+    "time",
+    "base_displacement",
+    "base_velocity",
+    "base_acceleration",
+    "particle_displacement",
+    "floor_displacement",
+    "ceiling_displacement",
+    "rigid_floor",
+    "rigid_ceiling",
+    "contact_damping",
+    "rms_acceleration",
+    "event_time",
+    "event_kind",
+];
+
+/// Names of the lists of kinetic energies, as documented at [`super::EnergySpec`].
+pub(super) const ENERGIES: [&str; 7] = [
+    "cycle",
+    "kinetic_energy_after",
+    "kinetic_energy_before",
+    "undamped_kinetic_energy_after",
+    "undamped_kinetic_energy_before",
+    "damping_measure_of_cycle",
+    "mass_measure_of_cycle",
+];
+
+/// Names of what became of a candidate.
+const OUTCOME: [&str; 4] = ["fitness_in_search", "improvement", "improvement_num", "evaluations"];
+
+/// Names of the lists of an optimisation: the best fitness after so many evaluations, and the fitness along one gap.
+const SEARCHES: [&str; 4] = ["evaluation", "best_so_far", "along_gap", "fitness_along"];
+
+/// Names of the lists of a shape, as documented at [`super::ShapeSpec`].
+pub(super) fn shape_lists(shape: &ShapeSpec) -> Vec<&'static str> {
+    let sides = if shape.points.len() > 1 { &["x", "y"][..] } else { &["x"] };
+    let values = match shape.of {
+        ShapeOf::Mode => &["shape", "exact_shape"][..],
+        ShapeOf::Deflection => &["shape", "rms_displacement", "mode_shape"],
+    };
+    [sides, values].concat()
+}
+
+/// Columns with what they hold, in the order of the table.
+pub(super) struct Columns {
+    list: Vec<(String, Role)>,
+}
+
+impl Columns {
+    /// The columns of an experiment made of these parts.
+    pub fn of(
+        swept: &[Parameter],
+        union: bool,
+        measures: &[Measure],
+        maximise: Option<&Maximise>,
+        lists: &[&str],
+    ) -> Self {
+        let mut list: Vec<(String, Role)> = Vec::new();
+        for parameter in swept {
+            let role = if parameter.words().is_empty() { Role::Number } else { Role::Label };
+            list.push((word_of(*parameter), role));
+        }
+        let labels = [union.then_some("sweep"), Some("solver"), Some("variant")];
+        list.extend(labels.into_iter().flatten().map(|name| (name.into(), Role::Label)));
+        for measure in measures {
+            let name = word_of(*measure);
+            list.extend(["", "_num", "_spread"].map(|suffix| (format!("{name}{suffix}"), Role::Number)));
+        }
+        if let Some(maximise) = maximise {
+            list.push((format!("{}_at_maximum", word_of(maximise.over)), Role::Number));
+        }
+        list.extend(PROOF.map(|name| (name.into(), Role::Number)));
+        list.extend(lists.iter().map(|name| ((*name).into(), Role::History)));
+        Self { list }
+    }
+
+    /// The columns of an optimisation of so many gaps.
+    pub fn of_candidates(gaps: usize, word: GapWord, measures: &[Measure]) -> Self {
+        let mut list: Vec<(String, Role)> = vec![("candidate".into(), Role::Label)];
+        list.extend(["seed", "varied"].map(|name| (name.into(), Role::Number)));
+        list.extend((1..=gaps).map(|gap| (format!("{}_{gap}", word_of(word)), Role::Number)));
+        list.extend(["solver", "variant"].map(|name| (name.into(), Role::Label)));
+        for measure in measures {
+            let name = word_of(*measure);
+            list.extend(["", "_num", "_spread"].map(|suffix| (format!("{name}{suffix}"), Role::Number)));
+        }
+        list.extend(OUTCOME.map(|name| (name.into(), Role::Number)));
+        list.push(("stopped".into(), Role::Label));
+        list.extend(PROOF.map(|name| (name.into(), Role::Number)));
+        list.extend(SEARCHES.map(|name| (name.into(), Role::History)));
+        Self { list }
+    }
+
+    /// What the column `name` holds, if there is one.
+    pub fn role(&self, name: &str) -> Option<Role> {
+        self.list.iter().find(|(column, _)| column == name).map(|(_, role)| *role)
+    }
+
+    /// All names.
+    pub fn names(&self) -> Vec<&str> {
+        self.list.iter().map(|(name, _)| name.as_str()).collect()
+    }
+
+    /// True for a name that a kept time history would have.
+    pub fn is_history(name: &str) -> bool {
+        HISTORIES.contains(&name)
+    }
+}

@@ -1,0 +1,410 @@
+//! The validated experiment: meaning only. Comments, order of keys and `5 mm` against `0.005 m` leave it unchanged, so
+//! a hash of its canonical JSON says whether an experiment means something new.
+
+use std::collections::BTreeSet;
+
+use serde::{Deserialize, Serialize};
+
+use crate::measure::{EnergySpec, Measure, Settings, ShapeSpec, SolverChoice, TraceSpec};
+use crate::scene::{Assumption, Assumptions, Parameter, ParameterValue, Recipe, RecipeError};
+
+use super::assumption_sheet::AssumptionSheet;
+use super::optimise::Optimise;
+use super::word::word_of;
+
+/// Id of an experiment: its file name without ending, `ch3-limit-stop`; lower-case letters, digits and hyphens.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+pub struct ExperimentId(pub String);
+
+/// A text that is no id; nothing else ever becomes part of a path.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("`{0}` is not an id: lower-case letters, digits and hyphens, such as `ch3-limit-stop`")]
+pub struct IdError(pub String);
+
+impl std::str::FromStr for ExperimentId {
+    type Err = IdError;
+
+    fn from_str(text: &str) -> Result<Self, IdError> {
+        let fits = (1..=64).contains(&text.len())
+            && text.bytes().all(|byte| byte.is_ascii_lowercase() || byte.is_ascii_digit() || byte == b'-')
+            && !text.starts_with('-');
+        if fits { Ok(Self(text.into())) } else { Err(IdError(text.into())) }
+    }
+}
+
+impl std::fmt::Display for ExperimentId {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(&self.0)
+    }
+}
+
+/// One row of the study.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Experiment {
+    /// Id, from the file's name.
+    pub id: ExperimentId,
+    /// Title, as a reader of the study would call it.
+    pub title: String,
+    /// Where it stands in the study.
+    pub source: Source,
+    /// One or two sentences: what is shown and how. Markdown.
+    pub about: String,
+    /// The scene, before the sweep.
+    pub recipe: Recipe,
+    /// The points of the sweep in the order of the table's rows; one empty case when nothing is swept.
+    pub cases: Vec<Case>,
+    /// Parameters in the order of the table's columns.
+    pub swept: Vec<Parameter>,
+    /// All solvers that some case runs under; see [`Experiment::runs`].
+    pub solvers: Vec<SolverChoice>,
+    /// How a case is run and averaged.
+    pub settings: Settings,
+    /// An inner maximisation over one more parameter: the row then holds the maximum and where it lies.
+    pub maximise: Option<Maximise>,
+    /// Sweeps whose curves get more points where they bend; the cases hold the points that they start with.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub refined: Vec<Refinement>,
+    /// What every number is a mean over: settings of parameters that no column tells apart, such as force points. Empty as a
+    /// rule. A velocity ratio is then that of the mean RMS velocities.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub mean_over: Vec<Case>,
+    /// An optimisation of gaps in the place of a sweep.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub optimise: Option<Optimise>,
+    /// The assumptions that are moved for the sensitivity; `None` for all that the experiment leans on.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub moved: Option<BTreeSet<Assumption>>,
+    /// Measures in the order of the columns.
+    pub measures: Vec<Measure>,
+    /// Time history to keep with each row.
+    pub trace: Option<TraceSpec>,
+    /// Kinetic energies to keep with each row.
+    pub energies: Option<EnergySpec>,
+    /// Shape to keep with each row. At most one of the three is kept: the lists of a row are of one length.
+    pub shape: Option<ShapeSpec>,
+    /// The figures; never part of what makes a simulation stale.
+    pub figures: Vec<FigureSpec>,
+}
+
+impl Experiment {
+    /// Every run in the order of the table's rows: cases, and each under its solvers.
+    pub fn runs(&self) -> impl Iterator<Item = (&Case, SolverChoice)> {
+        self.cases.iter().flat_map(|case| case.solvers.iter().map(move |solver| (case, *solver)))
+    }
+
+    /// The scene of one case, still in the study's parameters.
+    ///
+    /// # Errors
+    /// Only for a case that is not this experiment's: validation has tried all of them.
+    pub fn recipe_of(&self, case: &Case) -> Result<Recipe, RecipeError> {
+        let mut recipe = self.recipe.clone();
+        for (parameter, value) in &case.values {
+            recipe.set(*parameter, *value)?;
+        }
+        Ok(recipe)
+    }
+
+    /// The scenes of one case that its numbers are means over; one as a rule.
+    ///
+    /// # Errors
+    /// As [`Experiment::recipe_of`].
+    pub fn recipes_of(&self, case: &Case) -> Result<Vec<Recipe>, RecipeError> {
+        self.recipes_in(&self.recipe_of(case)?)
+    }
+
+    /// The same of a scene in which a case has been set already.
+    ///
+    /// # Errors
+    /// As [`Experiment::recipe_of`].
+    pub fn recipes_in(&self, recipe: &Recipe) -> Result<Vec<Recipe>, RecipeError> {
+        let inner = |case: &Case| {
+            let mut recipe = recipe.clone();
+            case.values.iter().try_for_each(|(parameter, value)| recipe.set(*parameter, *value))?;
+            Ok(recipe)
+        };
+        if self.mean_over.is_empty() { Ok(vec![recipe.clone()]) } else { self.mean_over.iter().map(inner).collect() }
+    }
+
+    /// The assumptions that a number of this experiment may depend on, under the values in force or with one of them moved.
+    #[must_use]
+    pub fn assumptions_used(&self, sheet: &AssumptionSheet) -> BTreeSet<Assumption> {
+        let mut used = self.assumptions_under(&sheet.assumptions());
+        for (_, moved) in sheet.variants(&used) {
+            used.extend(self.assumptions_under(&moved));
+        }
+        used
+    }
+
+    /// The assumptions that a number of this experiment depends on under these values.
+    #[must_use]
+    pub fn assumptions_under(&self, in_force: &Assumptions) -> BTreeSet<Assumption> {
+        self.assumptions_of(self.cases.iter().filter_map(|case| self.recipe_of(case).ok()), in_force)
+    }
+
+    /// The assumptions that a number may depend on, in scenes in which a case has been set already.
+    #[must_use]
+    pub fn assumptions_of(
+        &self,
+        scenes: impl IntoIterator<Item = Recipe>,
+        in_force: &Assumptions,
+    ) -> BTreeSet<Assumption> {
+        let mut used = BTreeSet::new();
+        for scene in scenes {
+            for recipe in self.recipes_in(&scene).unwrap_or_default() {
+                used.extend(recipe.assumptions(in_force));
+            }
+        }
+        if !self.measures.iter().any(|measure| measure.needs_undamped()) {
+            used.remove(&Assumption::UndampedMass);
+        }
+        if self.energies.is_some() || self.measures.contains(&Measure::MassMeasure) {
+            used.insert(Assumption::MassMeasure);
+        }
+        used
+    }
+
+    /// The whole meaning as JSON; equal meanings give equal JSON. Keys are sorted.
+    #[must_use]
+    pub fn canonical_json(&self) -> serde_json::Value {
+        json(self)
+    }
+
+    /// What a simulation depends on: a changed title, caption or figure is not part of it.
+    #[must_use]
+    pub fn simulation_json(&self) -> serde_json::Value {
+        let mut meaning = serde_json::json!({
+            "recipe": json(&self.recipe),
+            "cases": json(&self.cases),
+            "swept": json(&self.swept),
+            "settings": json(&self.settings),
+            "maximise": json(&self.maximise),
+            "refined": json(&self.refined),
+            "measures": json(&self.measures),
+            "trace": json(&self.trace),
+            "energies": json(&self.energies),
+            "shape": json(&self.shape),
+        });
+        if !self.mean_over.is_empty() {
+            meaning["mean_over"] = json(&self.mean_over);
+        }
+        if let Some(optimise) = &self.optimise {
+            meaning["optimise"] = json(optimise);
+        }
+        meaning
+    }
+
+    /// What the drawings depend on beside the table.
+    #[must_use]
+    pub fn figures_json(&self) -> serde_json::Value {
+        json(&self.figures)
+    }
+}
+
+/// Plain data with text keys always has a JSON form.
+fn json(data: &impl Serialize) -> serde_json::Value {
+    serde_json::to_value(data).unwrap_or_else(|error| unreachable!("plain data has a JSON form: {error}"))
+}
+
+/// Place in the study.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Source {
+    /// Chapter number.
+    pub chapter: u32,
+    /// `3.6.3`.
+    pub section: String,
+    /// `Fig. 18`, `Figs 20, 21`, `Table 2`; as a reader would cite it.
+    pub shown_in: Vec<String>,
+}
+
+/// One point of the sweep. A parameter that a union of sweeps leaves out of this point is absent.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct Case {
+    /// Values by parameter, in the order of [`Experiment::swept`].
+    pub values: Vec<(Parameter, ParameterValue)>,
+    /// The name of the sweep within a union; empty otherwise.
+    pub sweep: String,
+    /// The solvers it runs under: those of the experiment, unless its named sweep has its own.
+    pub solvers: Vec<SolverChoice>,
+}
+
+impl Case {
+    /// The value that this case gives to `parameter`, if it sets it.
+    #[must_use]
+    pub fn get(&self, parameter: Parameter) -> Option<ParameterValue> {
+        self.values.iter().find(|(name, _)| *name == parameter).map(|(_, value)| *value)
+    }
+
+    /// In words: `gap_ratio = 50, stop = with`; empty when nothing is swept.
+    #[must_use]
+    pub fn describe(&self) -> String {
+        let description = self.values.iter().map(|(parameter, value)| {
+            let value = match value {
+                ParameterValue::Number(number) => number.to_string(),
+                other => word_of(*other),
+            };
+            format!("{} = {value}", word_of(*parameter))
+        });
+        description.collect::<Vec<_>>().join(", ")
+    }
+}
+
+/// Maximum of a measure over one parameter.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Maximise {
+    /// Of which measure.
+    pub measure: Measure,
+    /// Over which parameter.
+    pub over: Parameter,
+    /// The grid.
+    pub grid: Vec<f64>,
+    /// Points added around the best one, round by round, to sharpen the maximum.
+    pub refine: u32,
+}
+
+/// Points added to the curves of a sweep, one parameter running, where a straight line between two of them would miss.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Refinement {
+    /// The sweep within a union; empty otherwise.
+    pub sweep: String,
+    /// The parameter that runs along a curve.
+    pub over: Parameter,
+    /// How far a straight line may miss, relative to the local value; on a logarithmic scale in its logarithm.
+    pub tolerance: f64,
+    /// Most points of a curve.
+    pub most: u32,
+    /// The scale on which points are evenly spaced and intervals halved.
+    pub spacing: AxisScale,
+    /// The scale on which lines are straight.
+    pub value_scale: AxisScale,
+    /// The measures that decide; all where none is named.
+    pub measures: Vec<Measure>,
+}
+
+/// One PNG.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct FigureSpec {
+    /// File stem after the experiment's id; empty for the first.
+    pub name: String,
+    /// One line under the picture.
+    pub caption: String,
+    /// What is drawn.
+    pub drawing: Drawing,
+}
+
+/// What a figure draws.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Drawing {
+    /// Curves in panels, top to bottom, sharing the x axis.
+    Lines(Vec<Panel>),
+    /// A quantity over two others, as colours, in panels of one colour scale.
+    Map(Box<MapSpec>),
+}
+
+/// A map. Its three columns hold a number a row (a cell a row, drawn as such) or a list a row (a field a row, drawn with
+/// contours).
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct MapSpec {
+    /// x.
+    pub x: Axis,
+    /// y.
+    pub y: Axis,
+    /// What the colour stands for.
+    pub value: Axis,
+    /// Columns whose levels get a panel each.
+    pub by: Vec<String>,
+    /// A place to mark in each panel: where the force acts.
+    pub mark: Option<Mark>,
+    /// Which place to mark and to name.
+    pub best: Best,
+    /// The number from which colours run apart (0 for a deflection, 1 for a ratio); its contour is drawn.
+    pub centre: Option<f64>,
+    /// Height of a panel over its width; equal units are drawn to scale if absent.
+    pub aspect: Option<f64>,
+    /// Panels side by side; as many as suit their number if absent.
+    pub columns: Option<u32>,
+}
+
+/// A place to mark in a map.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Mark {
+    /// Column of its x.
+    pub x: String,
+    /// Column of its y.
+    pub y: String,
+    /// What it is, for the legend.
+    pub label: String,
+}
+
+/// The place of a map to mark and to name.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Best {
+    /// That of the largest value.
+    Highest,
+    /// That of the smallest value.
+    Lowest,
+    /// None.
+    None,
+}
+
+/// One pair of axes.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Panel {
+    /// x.
+    pub x: Axis,
+    /// y: one or more columns drawn against x.
+    pub y: Vec<Axis>,
+    /// Columns that split the rows into lines, one colour or dash each (`gap_ratio`, `solver`, `stop`).
+    pub by: Vec<String>,
+    /// Draw the ensemble's spread as a band.
+    pub band: bool,
+    /// Levels to draw as thin guides, with their labels.
+    pub guides: Vec<Level>,
+    /// Markers on the points (few points) instead of a line alone.
+    pub markers: bool,
+    /// Which peaks of the curves to mark with their place on the x axis.
+    pub peaks: Option<PeakMarks>,
+}
+
+/// Which peaks of a curve to mark.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct PeakMarks {
+    /// How far one has to descend from a peak before the curve rises above it, as a share of the y axis as drawn.
+    pub prominence: f64,
+    /// At most so many of a curve, the most prominent ones.
+    pub most: u32,
+}
+
+/// A labelled horizontal guide.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Level {
+    /// y value.
+    pub at: f64,
+    /// Label.
+    pub label: String,
+}
+
+/// A column as an axis.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Axis {
+    /// Name of the table's column.
+    pub column: String,
+    /// Axis label without unit, if the column's own name and symbol do not serve.
+    pub label: Option<String>,
+    /// Linear or logarithmic.
+    pub scale: AxisScale,
+    /// The axis reaches at least from the one to the other, whatever the data.
+    pub reach: Option<[f64; 2]>,
+}
+
+/// Scale of an axis.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum AxisScale {
+    /// Linear.
+    #[default]
+    Linear,
+    /// Base 10.
+    Log,
+}

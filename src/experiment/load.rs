@@ -1,0 +1,48 @@
+//! Files to text, with limits first: a file is never read further than an experiment could reach.
+
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+
+use crate::scene::Assumptions;
+
+use super::assumption_sheet::{AssumptionSheet, parse_assumptions};
+use super::definition::{Experiment, ExperimentId};
+use super::diagnostic::Problems;
+use super::validate::parse_experiment;
+use super::yaml::LONGEST;
+
+/// Reads an experiment; its id is the file's name without ending. Every case is tried against `assumptions`.
+///
+/// # Errors
+/// Every mistake of the file, with its place.
+pub fn load_experiment(path: &Path, assumptions: &Assumptions) -> Result<Experiment, Problems> {
+    let file = path.display().to_string();
+    let stem = path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
+    let id: ExperimentId = stem.parse().map_err(|error: super::IdError| {
+        Problems::unreadable(&file, error.to_string(), Some("rename the file".into()))
+    })?;
+    parse_experiment(&id, &file, &read(path, &file)?, assumptions)
+}
+
+/// Reads the assumptions file.
+///
+/// # Errors
+/// Every mistake of the file, with its place.
+pub fn load_assumptions(path: &Path) -> Result<AssumptionSheet, Problems> {
+    let file = path.display().to_string();
+    parse_assumptions(&file, &read(path, &file)?)
+}
+
+pub(super) fn read(path: &Path, file: &str) -> Result<String, Problems> {
+    let cannot = |error: std::io::Error| Problems::unreadable(file, format!("cannot be read: {error}"), None);
+    let mut bytes = Vec::new();
+    File::open(path).map_err(cannot)?.take(LONGEST as u64 + 1).read_to_end(&mut bytes).map_err(cannot)?;
+    if bytes.len() > LONGEST {
+        return Err(Problems::unreadable(file, format!("is longer than {} KiB", LONGEST >> 10), None));
+    }
+    String::from_utf8(bytes).map_err(|error| {
+        let line = error.as_bytes()[..error.utf8_error().valid_up_to()].iter().filter(|byte| **byte == b'\n').count();
+        Problems::unreadable(file, format!("is not UTF-8 text (line {})", line + 1), Some("save it as UTF-8".into()))
+    })
+}

@@ -1,0 +1,54 @@
+//! Experiments: YAML to validated types, with every mistake reported at once, with line and column.
+//!
+//! text → a tree of nodes that know where they stand → [`Experiment`] (units resolved, defaults filled, no places).
+//! Every reader goes on after a mistake, so a file's problems come together: see [`Problems`].
+
+mod assumption_sheet;
+mod calibration;
+mod check;
+mod columns;
+mod definition;
+mod diagnostic;
+mod edit;
+mod excitation;
+mod figure;
+mod line;
+mod load;
+mod map;
+mod optimise;
+mod optimise_reader;
+mod place;
+mod quantity;
+mod range;
+mod reader;
+mod refined;
+mod scaffold;
+mod scene;
+mod schema;
+mod solver;
+mod structure;
+mod sweep;
+mod typed;
+mod validate;
+mod word;
+mod yaml;
+
+pub use assumption_sheet::{AssumptionEntry, AssumptionSheet, parse_assumptions};
+pub use calibration::{Calibration, CalibrationInput, CalibrationSearch, Tried, load_calibration, parse_calibration};
+pub use definition::{
+    Axis, AxisScale, Best, Case, Drawing, Experiment, ExperimentId, FigureSpec, IdError, Level, MapSpec, Mark,
+    Maximise, Panel, PeakMarks, Refinement, Source,
+};
+pub use diagnostic::{Place, Problem, Problems};
+pub(crate) use edit::{Written, set_keys};
+pub use line::line_of;
+pub use load::{load_assumptions, load_experiment};
+pub use optimise::{Candidate, Goal, Landscape, Optimise, Search, SearchKind, SearchSpacing};
+pub use quantity::{Dimension, QuantityError, parse_number, parse_quantity};
+pub(crate) use refined::{Curve, curves};
+pub use scaffold::{scaffold, structures};
+pub(crate) use schema::{Object, list, text, words_of};
+pub use schema::{assumptions_schema, experiment_schema};
+pub use typed::{Located, from_yaml};
+pub(crate) use typed::{Spanned, position};
+pub use validate::parse_experiment;

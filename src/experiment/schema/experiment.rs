@@ -1,0 +1,119 @@
+//! The whole experiment.
+
+use serde_json::{Map, Value, json};
+
+use super::parts::{Object, any_of, count, list, one_or_more, quantity, reference, text, word, words_of};
+use super::{figure, optimise, scene, sweep};
+use crate::experiment::quantity::Dimension;
+use crate::experiment::validate::MOST_CYCLES;
+use crate::experiment::word::words;
+use crate::measure::Measure;
+use crate::measure::ShapeOf;
+use crate::scene::{Assumption, Parameter};
+
+/// JSON Schema of an experiment.
+#[must_use]
+pub fn experiment_schema() -> Value {
+    let mut definitions = Map::new();
+    let parts = [sweep::definitions(), scene::definitions(), figure::definitions()];
+    definitions.extend(parts.into_iter().flatten());
+    definitions.insert("maximisation".into(), maximisation());
+    // Rows of an optimisation are candidates.
+    let of_a_row = ["trace", "energies", "shape"].map(|key| json!({"required": [key]}));
+    let mut schema = Object::new("An experiment of the study")
+        .required("title", text("A few words"))
+        .required("source", source())
+        .required("about", text("One or two sentences"))
+        .required("scene", scene::scene())
+        .optional("sweep", reference("sweep"))
+        .optional("mean_over", reference("sweep"))
+        .optional("maximise", maximise())
+        .optional("optimise", optimise::optimise())
+        .required("measure", one_or_more("What is measured", reference("measure")))
+        .optional("run", run())
+        .optional("trace", trace())
+        .optional("energies", energies())
+        .optional("shape", shape())
+        .optional("figure", reference("figure"))
+        .optional("figures", list("Several figures", reference("figure")))
+        .exclusive(&["figure", "figures"])
+        .exclusive(&["trace", "energies", "shape"])
+        .exclusive(&["optimise", "sweep"])
+        .exclusive(&["optimise", "maximise"])
+        .rule(json!({"if": {"required": ["optimise"]}, "then": {"not": {"anyOf": of_a_row}}}))
+        .schema();
+    schema["$schema"] = json!("http://json-schema.org/draft-07/schema#");
+    schema["title"] = json!("Experiment");
+    schema["definitions"] = Value::Object(definitions);
+    schema
+}
+
+fn source() -> Value {
+    Object::new("Where the study shows it")
+        .required("chapter", count("Chapter", "", 0, 99))
+        .required("section", text("Section, for example \"3.6.3\""))
+        .optional("shown_in", one_or_more("Figures", text("For example Fig. 18")))
+        .schema()
+}
+
+fn maximisation() -> Value {
+    Object::new("Over which parameter, and where it is looked for")
+        .required("over", words_of::<Parameter>("A parameter"))
+        .required("in", sweep::any_range())
+        .optional("refine", count("Rounds of refinement around the best", "rounds", 0, 20))
+        .schema()
+}
+
+fn maximise() -> Value {
+    let mut schema = words::<Measure>()
+        .iter()
+        .fold(Object::new("The measure whose maximum is looked for"), |object, measure| {
+            object.optional(measure, reference("maximisation"))
+        })
+        .schema();
+    schema["minProperties"] = json!(1);
+    schema["maxProperties"] = json!(1);
+    schema
+}
+
+fn run() -> Value {
+    let cycles = |about, least| count(about, "cycles", least, MOST_CYCLES);
+    let sensitivity = one_or_more("Assumptions that are moved", words_of::<Assumption>("An assumption"));
+    Object::new("How it is run")
+        .optional("solver", one_or_more("Solvers", reference("solver")))
+        .optional("skip", cycles("Cycles before the averaging; 25 unless stated", 0))
+        .optional("average", cycles("Cycles that are averaged; 100 unless stated", 1))
+        .optional("round_period_to", quantity("The period is rounded to this", Dimension::Time))
+        .optional(
+            "ensemble",
+            any_of(
+                "Perturbed starts where the motion is chaotic; 32 members unless stated",
+                vec![count("Members", "members", 0, 10_000), word("none")],
+            ),
+        )
+        .optional("sensitivity", any_of("Assumptions that are moved, or none", vec![sensitivity, word("none")]))
+        .schema()
+}
+
+fn span(about: &str) -> Object {
+    let cycle = |about| count(about, "cycles", 0, MOST_CYCLES);
+    Object::new(about).required("from", cycle("First cycle")).required("to", cycle("Last cycle"))
+}
+
+fn trace() -> Value {
+    span("A time history that is kept")
+        .required("samples_per_cycle", count("Samples a cycle", "samples", 0, 1_000_000))
+        .schema()
+}
+
+fn energies() -> Value {
+    span("Kinetic energies that are kept").schema()
+}
+
+fn shape() -> Value {
+    let points = count("Points along a side", "points", 2, 100_000);
+    Object::new("A shape that is kept")
+        .required("of", words_of::<ShapeOf>("What it is of"))
+        .required("points", one_or_more("Points, or points a side", points))
+        .schema()
+}

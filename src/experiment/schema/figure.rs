@@ -1,0 +1,100 @@
+//! Figures and maps.
+
+use serde_json::{Value, json};
+
+use super::parts::{
+    Object, any_of, between, boolean, count, list, number, one_of_words, one_or_more, reference, text, words_of,
+};
+use super::sweep::NAME;
+use crate::experiment::columns::{ENERGIES, HISTORIES};
+use crate::experiment::definition::{AxisScale, Best};
+use crate::experiment::word::words;
+use crate::measure::Measure;
+use crate::scene::Parameter;
+
+/// The definitions that figures share.
+pub(super) fn definitions() -> Vec<(String, Value)> {
+    // Offered for completion; which columns there are depends on the rest of the file.
+    let mut known: Vec<&str> = words::<Parameter>().to_vec();
+    known.extend(words::<Measure>());
+    known.extend(HISTORIES);
+    known.extend(ENERGIES);
+    known.extend(["sweep", "solver", "variant", "candidate"]);
+    let mut offered: Vec<&str> = Vec::new();
+    for name in known {
+        if !offered.contains(&name) {
+            offered.push(name);
+        }
+    }
+    let column = any_of(
+        "A column of the table",
+        vec![json!({"enum": offered}), json!({"type": "string", "pattern": "^[a-z][a-z0-9_]*$"})],
+    );
+    let reach = json!({
+        "description": "From one number to a larger one",
+        "type": "array", "items": {"type": "number"}, "minItems": 2, "maxItems": 2,
+    });
+    let axis = Object::new("An axis")
+        .required("column", reference("column"))
+        .optional("label", text("Its label, in place of the column's own words"))
+        .optional("scale", words_of::<AxisScale>("Its scale"))
+        .optional("reach", reach);
+    let axis = any_of("A column, or {column, scale, label, reach}", vec![reference("column"), axis.schema()]);
+    vec![("column".into(), column), ("axis".into(), axis), ("figure".into(), figure())]
+}
+
+fn shared(object: Object) -> Object {
+    object
+        .optional("x", reference("axis"))
+        .optional("by", one_or_more("Columns that split rows into lines", reference("column")))
+        .optional("band", one_of_words("Standard deviation of the ensemble as a band", &["spread", "none"]))
+        .optional("markers", boolean("A mark at each point"))
+}
+
+fn own(object: Object) -> Object {
+    let guide =
+        Object::new("A level drawn across").required("at", number("Where")).optional("label", text("Its label"));
+    let peaks = Object::new("Peaks that are marked")
+        .optional("prominence", json!({"type": "number", "exclusiveMinimum": 0, "exclusiveMaximum": 1}))
+        .optional("most", count("Peaks at most", "peaks", 0, 50));
+    object
+        .optional("y", one_or_more("What is drawn", reference("axis")))
+        .optional("guides", list("Levels", guide.schema()))
+        .optional("peaks", peaks.schema())
+}
+
+fn figure() -> Value {
+    let mut panel = own(shared(Object::new("A panel"))).schema();
+    panel["required"] = json!(["y"]);
+    let name =
+        json!({"description": "Name of the file after the id; none for the first", "type": "string", "pattern": NAME});
+    own(shared(Object::new("A figure")))
+        .optional("name", name)
+        .required("caption", text("One line under it"))
+        .optional("panels", list("Panels above each other", panel))
+        .optional("map", map())
+        .rule(json!({
+            "if": {"required": ["map"]},
+            "then": {"propertyNames": {"enum": ["name", "caption", "map"]}},
+            "else": {"anyOf": [{"required": ["panels"]}, {"required": ["x", "y"]}]},
+        }))
+        .schema()
+}
+
+fn map() -> Value {
+    let mark = Object::new("A place that is marked")
+        .required("x", reference("column"))
+        .required("y", reference("column"))
+        .required("label", text("What is there"));
+    Object::new("Colours over two columns")
+        .required("x", reference("axis"))
+        .required("y", reference("axis"))
+        .required("value", reference("axis"))
+        .optional("by", one_or_more("A panel for each", reference("column")))
+        .optional("mark", mark.schema())
+        .optional("best", words_of::<Best>("The place to mark and to name"))
+        .optional("centre", number("The value of the middle of the colours"))
+        .optional("aspect", between("Height of a panel over its width", 0.1, 10.0))
+        .optional("columns", count("Panels side by side", "panels", 1, 6))
+        .schema()
+}

@@ -1,0 +1,256 @@
+//! Scenes: structure, dampers, excitation, what is observed.
+
+use serde_json::{Value, json};
+
+use super::parts::{
+    Object, any_of, between, boolean, count, form, list, one_of_words, one_or_more, quantity, ratio, reference, word,
+    words_of,
+};
+use crate::experiment::quantity::Dimension;
+use crate::experiment::scene::MOST_DAMPERS;
+use crate::experiment::structure::MOST_MODES;
+use crate::scene::{Assumption, Form, ImpulseTime, KINDS, Kind};
+
+/// The definitions that scenes share.
+pub(super) fn definitions() -> Vec<(String, Value)> {
+    vec![("surface".into(), surface()), ("place".into(), place()), ("damper".into(), damper())]
+}
+
+/// A value, or that it is swept.
+fn swept_or(value: Value) -> Value {
+    let about = value["description"].clone();
+    json!({"description": about, "anyOf": [value, word("swept")]})
+}
+
+/// A value, or that it is assumed.
+fn assumed_or(value: Value) -> Value {
+    let about = value["description"].clone();
+    json!({"description": about, "anyOf": [value, word("assumed")]})
+}
+
+/// A value, or that it is an assumption of this name.
+fn named_or(value: Value) -> Value {
+    let about = value["description"].clone();
+    json!({"description": about, "anyOf": [value, form("assumed", "By this name", words_of::<Assumption>("An assumption"))]})
+}
+
+pub(super) fn scene() -> Value {
+    let dampers = json!({
+        "description": "The dampers",
+        "type": "array",
+        "items": reference("damper"),
+        "maxItems": MOST_DAMPERS,
+    });
+    let on_one_mass: Vec<Value> = KINDS
+        .iter()
+        .filter(|kind| kind.sides.is_empty())
+        .map(|kind| json!({"properties": {"structure": {"required": [kind.name]}}}))
+        .collect();
+    Object::new("What is simulated")
+        .required("structure", structure())
+        .optional("gravity", assumed_or(quantity("Gravity", Dimension::Acceleration)))
+        .optional("dampers", dampers)
+        .required("excitation", excitation())
+        .optional("observe", observe())
+        // Where there are no sides there are no places; elsewhere there have to be.
+        .rule(json!({
+            "if": {"required": ["structure"], "anyOf": on_one_mass},
+            "then": {"properties": {"dampers": {"items": {
+                "not": {"anyOf": [{"required": ["at"]}, {"required": ["array"]}, {"required": ["mass_reading"]}]},
+            }}}},
+            "else": {"properties": {"dampers": {"items": {"required": ["at", "particle_share"]}}}},
+        }))
+        .schema()
+}
+
+fn structure() -> Value {
+    let kinds = KINDS.iter().map(|kind| (kind.name, of_kind(kind))).collect();
+    Object::new("The vibrating structure").exactly_one(kinds).schema()
+}
+
+fn of_kind(kind: &Kind) -> Value {
+    kind.fields
+        .iter()
+        .fold(Object::new(kind.what), |object, field| {
+            let about = field.key.replace('_', " ");
+            let value = match field.form {
+                Form::Length => quantity(&about, Dimension::Length),
+                Form::Mass => quantity(&about, Dimension::Mass),
+                Form::Stiffness => quantity(&about, Dimension::Stiffness),
+                Form::Stress => quantity(&about, Dimension::Stress),
+                Form::Density => quantity(&about, Dimension::Density),
+                Form::Ratio => ratio(&about),
+                Form::Modes(_) => assumed_or(one_or_more(
+                    "Number of modes, or one number a side",
+                    count("Number of modes", "modes", 0, MOST_MODES),
+                )),
+                Form::Word(words) => one_of_words(&about, words),
+            };
+            let value = if field.parameter.is_some() { swept_or(value) } else { value };
+            match field.form {
+                Form::Word(_) => object.optional(field.key, value),
+                _ => object.required(field.key, value),
+            }
+        })
+        .schema()
+}
+
+fn coordinate() -> Value {
+    any_of(
+        "A share of the side, 0 to 1, or a length",
+        vec![between("A share of the side", 0.0, 1.0), quantity("A length", Dimension::Length), word("swept")],
+    )
+}
+
+fn place() -> Value {
+    let both = json!({"type": "array", "items": coordinate(), "minItems": 2, "maxItems": 2});
+    any_of("A place: one coordinate on a beam, [x, y] on a plate", vec![coordinate(), both])
+}
+
+fn damper() -> Value {
+    let length = |about| quantity(about, Dimension::Length);
+    let gap_words = [word("infinite"), word("optimised")];
+    let mut ratios = vec![ratio("h′ = h ωn²/g"), word("swept"), list("One a damper of the array", ratio("h′"))];
+    ratios.extend(gap_words.clone());
+    let filled = Object::new("An array filled in one of two ways, which a sweep chooses")
+        .required("uniform", length("The gap of all"))
+        .required("optimised", list("One a damper", length("A gap")));
+    let mut gaps = vec![length("Gap clearance"), list("One a damper of the array", length("A gap")), filled.schema()];
+    gaps.extend(gap_words);
+    let share = swept_or(ratio("Particle over the whole damper, mass"));
+    Object::new("A particle impact damper")
+        .optional("at", reference("place"))
+        .optional("array", array())
+        .exactly_one(vec![
+            ("mass_ratio", swept_or(ratio("m′: mass of the damper over that of the structure"))),
+            ("mass", quantity("Mass of the damper", Dimension::Mass)),
+        ])
+        .optional(
+            "mass_reading",
+            named_or(one_of_words("Whose mass m′ is a share of", &["assumed", "total", "modal", "swept"])),
+        )
+        .optional("particle_share", share)
+        .exactly_one(vec![
+            ("gap_ratio", any_of("h′: dimensionless gap clearance", ratios)),
+            ("gap", any_of("Gap clearance between floor and ceiling", gaps)),
+        ])
+        .required("floor", reference("surface"))
+        .optional("ceiling", reference("surface"))
+        .optional("stop", stop())
+        .optional("walls", walls())
+        .schema()
+}
+
+fn array() -> Value {
+    let dampers = count("Number of dampers", "dampers", 1, MOST_DAMPERS as u32);
+    Object::new("Dampers side by side")
+        .required("count", swept_or(one_or_more("Number of dampers, or one number a side", dampers)))
+        .required("spacing", one_or_more("From one to the next", quantity("Spacing", Dimension::Length)))
+        .optional("centred", boolean("Around the place, rather than from there on"))
+        .optional("margin", named_or(assumed_or(quantity("Kept free at the edge", Dimension::Length))))
+        .schema()
+}
+
+fn restitution() -> Value {
+    between("Coefficient of restitution, 0 to 1", 0.0, 1.0)
+}
+
+fn surface() -> Value {
+    let rigid = Object::new("A rigid surface").required("restitution", restitution()).schema();
+    let stiffness = vec![
+        quantity("Stiffness", Dimension::Stiffness),
+        one_of_words("Tuned to the structure or not, or as assumed", &["tuned", "untuned", "assumed", "swept"]),
+    ];
+    let damping = vec![quantity("Damping", Dimension::Damping), word("equivalent_viscous")];
+    let resilient = Object::new("A resilient surface")
+        .exactly_one(vec![
+            ("stiffness_ratio", assumed_or(swept_or(ratio("kf/ks: stiffness over that of the structure")))),
+            ("stiffness", named_or(any_of("Stiffness", stiffness))),
+        ])
+        .exactly_one(vec![
+            ("damping_ratio", named_or(assumed_or(swept_or(ratio("Damping ratio under the particle"))))),
+            ("damping", any_of("Damping", damping)),
+        ])
+        .optional("no_tension", boolean("The surface does not pull at a particle that leaves it"))
+        .schema();
+    Object::new("A surface that the particle lands on")
+        .exactly_one(vec![("rigid", rigid), ("resilient", resilient)])
+        .schema()
+}
+
+fn stop() -> Value {
+    let stop = Object::new("A limit stop")
+        .required("length", assumed_or(swept_or(quantity("Length of the limit stop", Dimension::Length))))
+        .optional("restitution", assumed_or(restitution()))
+        .schema();
+    any_of("A limit stop", vec![stop, word("assumed")])
+}
+
+fn walls() -> Value {
+    Object::new("Soft walls")
+        .required("stiffness_ratio", swept_or(ratio("kw/ks: stiffness over that of the structure")))
+        .required("damping", quantity("Damping of the walls", Dimension::Damping))
+        .optional("ceiling_mass_ratio", assumed_or(ratio("Mass of the ceiling over that of the base")))
+        .schema()
+}
+
+fn excitation() -> Value {
+    let impulses = |about: &str| {
+        Object::new(about)
+            .optional("at", reference("place"))
+            .exactly_one(vec![
+                ("force_ratio", swept_or(ratio("f′ = F/(m g)"))),
+                ("impulse", assumed_or(swept_or(quantity("Impulse", Dimension::Impulse)))),
+            ])
+            .optional("impulse_time", impulse_time())
+    };
+    let harmonic = Object::new("A harmonic force")
+        .optional("at", reference("place"))
+        .exactly_one(vec![
+            ("force_ratio", swept_or(ratio("f′ = F/(m g)"))),
+            ("base_amplitude_ratio", swept_or(ratio("a ω²/g"))),
+            ("force", assumed_or(swept_or(quantity("Force", Dimension::Force)))),
+        ])
+        .exactly_one(timing());
+    let single =
+        timing().into_iter().fold(impulses("One impulse"), |object, (key, schema)| object.optional(key, schema));
+    let pulses = impulses("Pulses of finite duration")
+        .exactly_one(timing())
+        .required("duration", swept_or(quantity("Duration of a pulse", Dimension::Time)))
+        .required("shape", one_of_words("Shape of a pulse", &["rectangular", "binomial"]));
+    let forms = Object::new("What drives the structure").exactly_one(vec![
+        (
+            "single_impulse",
+            single.exclusive(&["frequency_ratio", "period", "angular_frequency", "forced_mode"]).schema(),
+        ),
+        ("impulse_train", impulses("Impulses one period apart").exactly_one(timing()).schema()),
+        ("harmonic", harmonic.schema()),
+        ("pulse_train", pulses.schema()),
+    ]);
+    any_of("What drives the structure", vec![forms.schema(), word("none")])
+}
+
+fn timing() -> Vec<(&'static str, Value)> {
+    vec![
+        ("frequency_ratio", swept_or(ratio("ω′ = ω/ωn"))),
+        ("period", quantity("Period", Dimension::Time)),
+        ("angular_frequency", swept_or(quantity("Angular frequency", Dimension::AngularFrequency))),
+        ("forced_mode", swept_or(count("Number of the natural frequency that is forced", "", 0, 100_000))),
+    ]
+}
+
+fn impulse_time() -> Value {
+    let mut words = vec!["assumed"];
+    words.extend(ImpulseTime::WORDS.map(|(word, _)| word));
+    let about = "Time by which a force ratio becomes an impulse";
+    any_of(about, vec![one_of_words(about, &words), quantity("A time", Dimension::Time)])
+}
+
+fn observe() -> Value {
+    let take = one_of_words("What is taken of several points", &["largest", "mean", "assumed"]);
+    let points = Object::new("Several points")
+        .required("points", list("The points", reference("place")))
+        .optional("take", take.clone());
+    let grid = form("nine_point_grid", "Nine points spread over a plate", take);
+    any_of("Where the motion is observed", vec![reference("place"), word("nine_point_grid"), grid, points.schema()])
+}

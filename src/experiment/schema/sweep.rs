@@ -1,0 +1,229 @@
+//! Sweeps and ranges.
+
+use serde_json::{Value, json};
+
+use super::parts::{
+    Object, any_of, count, form, list, one_of_words, one_or_more, quantity, ratio, reference, word, words_of,
+};
+use crate::experiment::definition::AxisScale;
+use crate::experiment::quantity::Dimension;
+use crate::experiment::range::{MOST_POINTS, dimension};
+use crate::experiment::refined;
+use crate::experiment::word::{from_word, word_of, words};
+use crate::measure::Measure;
+use crate::scene::Parameter;
+
+/// Names of sweeps and figures.
+pub(super) const NAME: &str = "^[A-Za-z0-9_-]{1,64}$";
+
+/// The definitions that sweeps share.
+pub(super) fn definitions() -> Vec<(String, Value)> {
+    let solver = any_of(
+        "A solver: event_driven, or the study's own scheme with its time step",
+        vec![
+            word("event_driven"),
+            form(
+                "fixed_step",
+                "The study's own scheme",
+                Object::new("Its step").required("time_step", quantity("Time step", Dimension::Time)).schema(),
+            ),
+        ],
+    );
+    let percent = json!({"type": "string", "pattern": r"^\s*[0-9.]+\s*%\s*$"});
+    let share = any_of(
+        "A share, for example 1 %",
+        vec![percent, json!({"type": "number", "exclusiveMinimum": 0, "exclusiveMaximum": 1})],
+    );
+    let mut definitions: Vec<(String, Value)> = vec![
+        ("solver".into(), solver),
+        ("share".into(), share),
+        ("measure".into(), words_of::<Measure>("A number that is measured")),
+        ("sweep".into(), sweep()),
+        ("named_sweep".into(), product(true)),
+        ("point".into(), point()),
+        ("paired".into(), paired()),
+    ];
+    // Most parameters take the same values: one definition for all that do.
+    for (_, parameter) in parameters() {
+        let kind = Values::of(parameter);
+        if definitions.iter().all(|(name, _)| *name != kind.one()) {
+            definitions.extend([
+                (kind.one(), kind.value()),
+                (kind.fixed(), kind.values(false)),
+                (kind.any(), kind.values(true)),
+            ]);
+        }
+    }
+    definitions
+}
+
+/// A sweep: a product of its keys, or a union of named ones.
+fn sweep() -> Value {
+    let union = json!({
+        "description": "Named sweeps joined",
+        "type": "object",
+        "minProperties": 1,
+        "propertyNames": {"pattern": NAME},
+        "additionalProperties": reference("named_sweep"),
+    });
+    let mut all = product(false);
+    all["properties"]["union"] = union;
+    all["if"] = json!({"required": ["union"]});
+    all["then"] = json!({"maxProperties": 1});
+    all
+}
+
+fn product(within_union: bool) -> Value {
+    let mut object = by_parameter("What varies: the product of its keys", Values::any)
+        .optional("paired", reference("paired"))
+        .optional("points", list("Points one by one", reference("point")));
+    if within_union {
+        object = object.optional("solver", one_or_more("Solvers of this sweep", reference("solver")));
+    }
+    not_empty(object)
+}
+
+fn point() -> Value {
+    not_empty(by_parameter("A point", Values::one))
+}
+
+fn paired() -> Value {
+    not_empty(by_parameter("Ranges of equal length that go in step", Values::fixed))
+}
+
+fn by_parameter(about: &str, definition: impl Fn(&Values) -> String) -> Object {
+    parameters().fold(Object::new(about), |object, (name, parameter)| {
+        let values = reference(&definition(&Values::of(parameter)));
+        // Beside a reference a description would not count.
+        object.optional(name, json!({"description": describe(name), "allOf": [values]}))
+    })
+}
+
+fn not_empty(object: Object) -> Value {
+    let mut schema = object.schema();
+    schema["minProperties"] = json!(1);
+    schema
+}
+
+fn parameters() -> impl Iterator<Item = (&'static str, Parameter)> {
+    words::<Parameter>().iter().filter_map(|name| Some((*name, from_word::<Parameter>(name)?)))
+}
+
+/// `force_ratio: dimensionless forcing amplitude`.
+fn describe(name: &str) -> String {
+    format!("{name}: {}", crate::text::words::of_column(name))
+}
+
+/// What values a parameter takes.
+enum Values {
+    Words(Vec<String>),
+    Quantity(Dimension),
+    Ratio,
+    RatioOrInfinite,
+}
+
+impl Values {
+    fn of(parameter: Parameter) -> Self {
+        if !parameter.words().is_empty() {
+            return Self::Words(parameter.words().iter().map(|word| word_of(*word)).collect());
+        }
+        match (dimension(parameter), parameter) {
+            (Some(dimension), _) => Self::Quantity(dimension),
+            (None, Parameter::GapRatio | Parameter::WallStiffnessRatio) => Self::RatioOrInfinite,
+            (None, _) => Self::Ratio,
+        }
+    }
+
+    /// The name of the definition of one value.
+    fn one(&self) -> String {
+        match self {
+            Self::Words(words) => words.join("_or_"),
+            Self::Quantity(dimension) => dimension.name().replace(' ', "_"),
+            Self::Ratio => "a_ratio".into(),
+            Self::RatioOrInfinite => "a_ratio_or_infinite".into(),
+        }
+    }
+
+    /// Of fixed values.
+    fn fixed(&self) -> String {
+        format!("values_{}", self.one())
+    }
+
+    /// Of values that may also be refined.
+    fn any(&self) -> String {
+        format!("swept_{}", self.one())
+    }
+
+    fn value(&self) -> Value {
+        match self {
+            Self::Words(words) => one_of_words("One of these", words),
+            Self::RatioOrInfinite => any_of("A ratio, or infinite", vec![self.size(), word("infinite")]),
+            Self::Quantity(_) | Self::Ratio => self.size(),
+        }
+    }
+
+    fn size(&self) -> Value {
+        match self {
+            Self::Quantity(dimension) => quantity("A value", *dimension),
+            _ => ratio("A ratio"),
+        }
+    }
+
+    /// One that is a number, by reference.
+    fn number(&self) -> Value {
+        match self {
+            Self::RatioOrInfinite => reference(&Self::Ratio.one()),
+            other => reference(&other.one()),
+        }
+    }
+
+    /// One value, a range, or a list of both.
+    fn values(&self, may_be_refined: bool) -> Value {
+        let about = "A value, a range, or a list of both";
+        let mut forms = vec![reference(&self.one())];
+        let is_number = !matches!(self, Self::Words(_));
+        if is_number {
+            forms.push(range(&self.number()));
+        }
+        let item = any_of("A value or a range", forms.clone());
+        if is_number && may_be_refined {
+            forms.push(refined(&self.number()));
+        }
+        forms.push(list(about, item));
+        any_of(about, forms)
+    }
+}
+
+fn range(size: &Value) -> Value {
+    let ends = |about: &str| Object::new(about).required("from", size.clone()).required("to", size.clone());
+    let points = || count("Number of points", "points", 2, MOST_POINTS);
+    Object::new("A range")
+        .exactly_one(vec![
+            ("linear", ends("Evenly spaced points").required("points", points()).schema()),
+            ("log", ends("Points evenly spaced in the logarithm").required("points", points()).schema()),
+            ("step", ends("Points a step apart").required("step", size.clone()).schema()),
+        ])
+        .schema()
+}
+
+fn refined(size: &Value) -> Value {
+    let points = |about| count(about, "points", 5, refined::MOST_POINTS);
+    let object = Object::new("A range that gets more points where a curve bends")
+        .required("from", size.clone())
+        .required("to", size.clone())
+        .optional("start", points("Points to start with"))
+        .optional("most", points("Points at most"))
+        .optional("tolerance", reference("share"))
+        .optional("spacing", words_of::<AxisScale>("Spacing of the first points"))
+        .optional("value_scale", words_of::<AxisScale>("Scale on which the curve is looked at"))
+        .optional("of", one_or_more("Measures whose curve is looked at", reference("measure")));
+    form("refined", "A refined range", object.schema())
+}
+
+/// The points of a maximisation over any parameter.
+pub(super) fn any_range() -> Value {
+    let any = json!({"type": ["number", "string"]});
+    let range = range(&any);
+    let item = any_of("A value or a range", vec![any.clone(), range.clone()]);
+    any_of("Increasing points", vec![range, any, list("Values and ranges", item)])
+}

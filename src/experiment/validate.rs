@@ -1,0 +1,454 @@
+//! A node tree to a validated [`Experiment`]: each part read by its own file, then checked against one another.
+//!
+//! A check runs as soon as the parts it talks about are sound, so a mistake in a figure is reported beside one in the
+//! scene. The last check resolves every case into its scene: what physics refuses is found before anything runs.
+
+use std::collections::BTreeSet;
+
+use crate::measure::Measure;
+use crate::scene::{Assumption, Assumptions, Parameter, ParameterValue, Recipe};
+
+use super::check::Checks;
+use super::columns::{Columns, ENERGIES, HISTORIES, shape_lists};
+use super::definition::{Case, Experiment, ExperimentId, Maximise, Source};
+use super::diagnostic::{Findings, Problems, Span};
+use super::figure::FigureReader;
+use super::optimise::Optimise;
+use super::optimise_reader::{OptimiseReader, ReadOptimise};
+use super::quantity::Dimension;
+use super::range::numbers;
+use super::reader::{Fields, above_zero, count, no_such, one_or_more, text, word};
+use super::scene::{ReadScene, read_scene};
+use super::solver::read_solver;
+use super::sweep::{ReadSweep, read_sweep};
+use super::word::{from_word, words};
+use super::yaml::{Node, Value, read_tree};
+use crate::measure::{EnergySpec, Settings, ShapeOf, ShapeSpec, SolverChoice, TraceSpec};
+
+/// Most forcing cycles of a run.
+pub(super) const MOST_CYCLES: u32 = 10_000_000;
+/// Most samples of a time history.
+const MOST_SAMPLES: u64 = 1_000_000;
+
+/// Reads an experiment from its text; `file` only names it in messages.
+///
+/// # Errors
+/// Every mistake of the file, with its place.
+pub fn parse_experiment(
+    id: &ExperimentId,
+    file: &str,
+    text: &str,
+    assumptions: &Assumptions,
+) -> Result<Experiment, Problems> {
+    let findings = Findings::default();
+    let experiment = read_tree(text, &findings).and_then(|root| {
+        let reader = ExperimentReader { findings: &findings, assumptions };
+        reader.experiment(id, &root)
+    });
+    findings.finish(file, text, experiment)
+}
+
+struct ExperimentReader<'t> {
+    findings: &'t Findings,
+    assumptions: &'t Assumptions,
+}
+
+struct Run {
+    solvers: Vec<SolverChoice>,
+    settings: Settings,
+    moved: Option<BTreeSet<Assumption>>,
+}
+
+impl<'t> ExperimentReader<'t> {
+    fn experiment(&self, id: &ExperimentId, root: &'t Node) -> Option<Experiment> {
+        let fields = Fields::open(root, "an experiment", self.findings)?;
+        let title = fields.required("title", |node| text(node, self.findings));
+        let source = fields.required("source", |node| self.source(node));
+        let about = fields.required("about", |node| text(node, self.findings));
+        let scene = fields.required("scene", |node| read_scene(node, self.findings));
+        let sweep = fields.optional("sweep", |node| read_sweep(node, self.findings));
+        let mean_over = fields.optional("mean_over", |node| self.mean_over(node));
+        let measures = fields.required("measure", |node| self.measures(node));
+        let maximise = fields.optional("maximise", |node| self.maximise(node));
+        let optimise = fields.optional("optimise", |node| OptimiseReader { findings: self.findings }.read(node));
+        let run = fields.optional("run", |node| self.run(node)).map(|run| run.unwrap_or_else(Run::default));
+        let trace = fields.optional("trace", |node| self.trace(node));
+        let energies = fields.optional("energies", |node| self.energies(node));
+        let shape = fields.optional("shape", |node| self.shape(node));
+        let one_list = self.one_list(&fields);
+        let alone = self.optimised_alone(&fields);
+        let whole = self.averaged_alone(&fields);
+        let energies_at = fields.get("energies").map_or(fields.span(), |node| node.span);
+        let place = |key| fields.get(key).map_or(fields.span(), |node| node.span);
+        let (scene_at, optimise_at) = (place("scene"), place("optimise"));
+        let figures_at = if fields.get("figure").is_some() { place("figure") } else { place("figures") };
+
+        let kept = match (&trace, &energies, &shape) {
+            (Some(trace), Some(energies), Some(shape)) => Some(match (trace, energies, shape) {
+                (Some(_), _, _) => HISTORIES.to_vec(),
+                (_, Some(_), _) => ENERGIES.to_vec(),
+                (_, _, Some(shape)) => shape_lists(shape),
+                _ => Vec::new(),
+            }),
+            _ => None,
+        };
+        let optimise = match (optimise, &scene, &mean_over) {
+            (Some(optimise), Some(scene), Some(inner)) => self.optimise(optimise, scene, inner.as_ref()),
+            _ => None,
+        };
+        let columns = match (&sweep, &measures, &maximise, &kept) {
+            _ if alone.is_none() || optimise.is_none() => None,
+            (Some(_), Some(measures), ..) if matches!(optimise, Some(Some(_))) => {
+                let of = |it: &Optimise| Columns::of_candidates(it.bounds.len(), it.gaps, &words_only(measures));
+                optimise.as_ref().and_then(Option::as_ref).map(of)
+            }
+            (Some(sweep), Some(measures), Some(maximise), Some(kept)) => {
+                let swept = sweep.as_ref().map_or(&[][..], |sweep| &sweep.swept);
+                let union = sweep.as_ref().is_some_and(|sweep| sweep.cases.iter().any(|case| !case.sweep.is_empty()));
+                Some(Columns::of(swept, union, &words_only(measures), maximise.as_ref(), kept))
+            }
+            _ => None,
+        };
+        let figures = FigureReader { findings: self.findings, columns: columns.as_ref() }.figures(&fields);
+        fields.close();
+
+        let checks = Checks { findings: self.findings, assumptions: self.assumptions };
+        one_list?;
+        alone?;
+        whole?;
+        let (mean_over, optimise) = (mean_over?.unwrap_or_else(ReadSweep::none), optimise?);
+        let (measures, maximise, trace, run) = (measures?, maximise?, trace?, run?);
+        let (energies, shape) = (energies?, shape?);
+        checks.measures(&measures, maximise.as_ref(), trace.as_ref(), shape.as_ref());
+        checks.energies(energies.as_ref(), &run.settings, energies_at);
+        let (mut scene, sweep) = (scene?, sweep?.unwrap_or_else(ReadSweep::none));
+        if let Some(optimise) = &optimise {
+            checks.optimise(optimise, &measures, &run.solvers, optimise_at);
+        }
+        checks.excitation(&measures, &scene.recipe.excitation.kind);
+        let mut places = sweep.places;
+        checks.mean_over(&mean_over, &places, maximise.as_ref());
+        let inner = mean_over.cases.first().filter(|case| !case.values.is_empty()).map(|_| mean_over.cases.clone());
+        let inner = inner.unwrap_or_default();
+        let cases = with_solvers(sweep.cases, &run.solvers);
+        checks.refined(&sweep.refined, &measures);
+        checks.coverage(&scene, &cases, &places, &mean_over, maximise.as_ref());
+        checks.amount(&cases, &sweep.refined, maximise.as_ref(), inner.len(), scene_at);
+        fill_placeholders(&mut scene.recipe, &cases, &sweep.swept, maximise.as_ref());
+        fill_placeholders(&mut scene.recipe, &inner, &mean_over.swept, None);
+        if let Some(optimise) = &optimise {
+            let low: Vec<f64> = optimise.bounds.iter().map(|[low, _]| *low).collect();
+            // As many as there are dampers: that was looked at when they were read.
+            let _ = scene.recipe.set_gaps(optimise.gaps, &low);
+        }
+        places.extend(mean_over.places);
+        let figures = figures?;
+        checks.lines(&figures, &cases, figures_at);
+        let experiment = Experiment {
+            id: id.clone(),
+            title: title?,
+            source: source?,
+            about: about?,
+            recipe: scene.recipe,
+            solvers: all_solvers(&cases),
+            cases,
+            swept: sweep.swept,
+            settings: run.settings,
+            moved: run.moved,
+            maximise,
+            refined: sweep.refined.into_iter().map(|(refinement, _)| refinement).collect(),
+            mean_over: inner,
+            optimise,
+            measures: words_only(&measures),
+            trace,
+            energies,
+            shape,
+            figures,
+        };
+        let parts = scene.parts;
+        checks.scenes(&experiment, |parameter, part| {
+            let swept = parameter.and_then(|parameter| places.get(&parameter).copied());
+            let at_part = || parts.iter().find(|(known, _)| Some(*known) == part).map(|(_, span)| *span);
+            swept.or_else(at_part).unwrap_or(scene_at)
+        });
+        Some(experiment)
+    }
+
+    fn source(&self, node: &'t Node) -> Option<Source> {
+        let fields = Fields::open(node, "a source", self.findings)?;
+        let chapter = fields.required("chapter", |node| count(node, "", 99, self.findings));
+        let section = fields.required("section", |node| text(node, self.findings));
+        let shown_in =
+            fields.optional("shown_in", |node| one_or_more(node, self.findings, |node| text(node, self.findings)));
+        fields.close()?;
+        Some(Source { chapter: chapter?, section: section?, shown_in: shown_in?.unwrap_or_default() })
+    }
+
+    fn measures(&self, node: &'t Node) -> Option<Vec<(Measure, Span)>> {
+        let measures = one_or_more(node, self.findings, |node| {
+            Some((word::<Measure>(node, "measure", self.findings)?, node.span))
+        })?;
+        for (index, (measure, span)) in measures.iter().enumerate() {
+            if measures[..index].iter().any(|(other, _)| other == measure) {
+                return self.findings.wrong(*span, format!("`{}` is measured twice", super::word::word_of(*measure)));
+            }
+        }
+        Some(measures)
+    }
+
+    /// Settings to take the mean over: a sweep without names and without refinement.
+    fn mean_over(&self, node: &'t Node) -> Option<ReadSweep> {
+        let sweep = read_sweep(node, self.findings)?;
+        if sweep.cases.iter().any(|case| !case.sweep.is_empty()) || !sweep.refined.is_empty() {
+            return self.findings.wrong(node.span, "a mean is taken over fixed points: neither `union` nor `refined`");
+        }
+        Some(sweep)
+    }
+
+    /// A mean has no time history.
+    fn averaged_alone(&self, fields: &Fields<'t>) -> Option<()> {
+        let lists = ["trace", "energies", "shape"].into_iter().filter_map(|key| fields.get(key)).next();
+        match (fields.get("mean_over"), lists) {
+            (Some(_), Some(list)) => self.findings.report(
+                list.span,
+                "a mean over several scenes has no list of one of them",
+                Some("give one of the scenes an experiment of its own".into()),
+            ),
+            _ => Some(()),
+        }
+    }
+
+    /// An optimisation has rows of its own.
+    fn optimised_alone(&self, fields: &Fields<'t>) -> Option<()> {
+        if fields.get("optimise").is_none() {
+            return Some(());
+        }
+        let others = ["sweep", "maximise", "trace", "energies", "shape"].into_iter().filter_map(|key| fields.get(key));
+        let mut fine = Some(());
+        for other in others {
+            fine = self.findings.report(
+                other.span,
+                "an optimisation has candidates for rows: neither a sweep nor a list of another kind goes with it",
+                Some("what fitness is a mean over stands under `mean_over`".into()),
+            );
+        }
+        fine
+    }
+
+    /// The optimisation, with as many gaps as there are dampers. `Some(None)`: there is none.
+    #[expect(clippy::option_option, reason = "absent and wrong are two things")]
+    fn optimise(
+        &self,
+        optimise: Option<ReadOptimise>,
+        scene: &ReadScene,
+        inner: Option<&ReadSweep>,
+    ) -> Option<Option<Optimise>> {
+        let Some(optimise) = optimise else {
+            for at in &scene.optimised {
+                let help = "add `optimise`, or give the gap a value".to_owned();
+                self.findings.report::<()>(*at, "nothing optimises this gap", Some(help));
+            }
+            return scene.optimised.is_empty().then_some(None);
+        };
+        if scene.optimised.len() != scene.recipe.dampers.len() || scene.optimised.is_empty() {
+            let help = "write `gap: optimised` in every damper of the scene".to_owned();
+            return self.findings.report(optimise.span, "a gap that is not optimised is not varied", Some(help));
+        }
+        let none = ReadSweep::none();
+        let cases = &inner.unwrap_or(&none).cases;
+        let mut counts = Vec::new();
+        for case in cases {
+            let mut recipe = scene.recipe.clone();
+            let set = case.values.iter().try_for_each(|(parameter, value)| recipe.set(*parameter, *value));
+            // What physics refuses is told where all scenes are tried.
+            counts.extend(set.and_then(|()| recipe.resolve(self.assumptions)).map(|scene| scene.dampers.len()));
+        }
+        match counts.as_slice() {
+            [] => optimise.spread(scene.recipe.dampers.len(), self.findings).map(Some),
+            [first, rest @ ..] if rest.iter().all(|other| other == first) => {
+                optimise.spread(*first, self.findings).map(Some)
+            }
+            _ => {
+                self.findings.wrong(optimise.span, "the number of dampers, and with it of gaps, is not always the same")
+            }
+        }
+    }
+
+    fn maximise(&self, node: &'t Node) -> Option<Maximise> {
+        let Value::Mapping(entries) = &node.value else {
+            return self.findings.wrong(node.span, "write `maximise: {velocity_ratio: {over: …, in: …}}`");
+        };
+        let [entry] = entries.as_slice() else {
+            return self.findings.wrong(node.span, "one measure is maximised at a time");
+        };
+        let measure = from_word::<Measure>(&entry.key)
+            .or_else(|| no_such(self.findings, entry.key_span, "measure", &entry.key, words::<Measure>()));
+        let fields = Fields::open(&entry.node, "a maximisation", self.findings)?;
+        let over = fields.required("over", |node| word::<Parameter>(node, "parameter", self.findings));
+        let grid = fields.required("in", |node| match over {
+            Some(over) => numbers(node, over, self.findings).map(|grid| (grid, node.span)),
+            None => None,
+        });
+        let refine = fields.optional("refine", |node| count(node, "rounds", 20, self.findings));
+        fields.close()?;
+        let (grid, grid_at) = grid?;
+        if !grid.is_sorted_by(|a, b| a < b) {
+            return self.findings.wrong(grid_at, "the points of a maximisation increase");
+        }
+        Some(Maximise { measure: measure?, over: over?, grid, refine: refine?.unwrap_or(0) })
+    }
+
+    fn run(&self, node: &'t Node) -> Option<Run> {
+        let fields = Fields::open(node, "a run", self.findings)?;
+        let solvers =
+            fields.optional("solver", |node| one_or_more(node, self.findings, |node| read_solver(node, self.findings)));
+        let cycles = |node: &'t Node| count(node, "cycles", MOST_CYCLES, self.findings);
+        let skip = fields.optional("skip", cycles);
+        let average = fields.optional("average", |node| {
+            let average = cycles(node)?;
+            if average > 0 { Some(average) } else { self.findings.wrong(node.span, "one cycle at least is averaged") }
+        });
+        let round_period_to =
+            fields.optional("round_period_to", |node| above_zero(node, Dimension::Time, self.findings));
+        let ensemble = fields.optional("ensemble", |node| match &node.value {
+            Value::Scalar(word) if word == "none" => Some(0),
+            _ => count(node, "members", 10_000, self.findings),
+        });
+        let moved = fields.optional("sensitivity", |node| match &node.value {
+            Value::Scalar(word) if word == "none" => Some(BTreeSet::new()),
+            _ => one_or_more(node, self.findings, |node| word::<Assumption>(node, "assumption", self.findings))
+                .map(|names| names.into_iter().collect()),
+        });
+        fields.close()?;
+        let usual = Run::default();
+        Some(Run {
+            solvers: solvers?.unwrap_or(usual.solvers),
+            settings: Settings {
+                skip: skip?.unwrap_or(usual.settings.skip),
+                average: average?.unwrap_or(usual.settings.average),
+                round_period_to: round_period_to?,
+                ensemble: ensemble?.unwrap_or(usual.settings.ensemble),
+            },
+            moved: moved?,
+        })
+    }
+
+    fn trace(&self, node: &'t Node) -> Option<TraceSpec> {
+        let fields = Fields::open(node, "a trace", self.findings)?;
+        let cycles = |node: &'t Node| count(node, "cycles", MOST_CYCLES, self.findings);
+        let from = fields.required("from", cycles);
+        let to = fields.required("to", cycles);
+        let samples = fields.required("samples_per_cycle", |node| count(node, "samples", 1_000_000, self.findings));
+        fields.close()?;
+        let (from_cycle, to_cycle, samples) = (from?, to?, samples?);
+        if from_cycle >= to_cycle {
+            return self.findings.wrong(node.span, "a trace ends after the cycle it begins with");
+        }
+        let all = u64::from(to_cycle - from_cycle) * u64::from(samples);
+        if all == 0 || all > MOST_SAMPLES {
+            return self.findings.wrong(node.span, format!("a trace has 1 to {MOST_SAMPLES} samples, not {all}"));
+        }
+        Some(TraceSpec { from_cycle, to_cycle, samples })
+    }
+}
+
+/// Most points of a shape.
+const MOST_POINTS: u64 = 100_000;
+
+impl<'t> ExperimentReader<'t> {
+    /// All lists of a row are of one length.
+    fn one_list(&self, fields: &Fields<'t>) -> Option<()> {
+        let given: Vec<_> = ["trace", "energies", "shape"].into_iter().filter_map(|key| fields.get(key)).collect();
+        match given.as_slice() {
+            [_, second, ..] => self.findings.report(
+                second.span,
+                "a row keeps lists of one length: one of `trace`, `energies` and `shape`",
+                Some("give the other an experiment of its own".into()),
+            ),
+            _ => Some(()),
+        }
+    }
+
+    fn energies(&self, node: &'t Node) -> Option<EnergySpec> {
+        let fields = Fields::open(node, "a span of cycles", self.findings)?;
+        let cycles = |node: &'t Node| count(node, "cycles", MOST_CYCLES, self.findings);
+        let (from, to) = (fields.required("from", cycles), fields.required("to", cycles));
+        fields.close()?;
+        let (from_cycle, to_cycle) = (from?, to?);
+        if from_cycle >= to_cycle {
+            return self.findings.wrong(node.span, "a span ends after the cycle it begins with");
+        }
+        Some(EnergySpec { from_cycle, to_cycle })
+    }
+
+    fn shape(&self, node: &'t Node) -> Option<ShapeSpec> {
+        let fields = Fields::open(node, "a shape", self.findings)?;
+        let of = fields.required("of", |node| word::<ShapeOf>(node, "shape", self.findings));
+        let points = fields.required("points", |node| {
+            one_or_more(node, self.findings, |node| match count(node, "points", 100_000, self.findings)? {
+                0 | 1 => self.findings.wrong(node.span, "a shape has two points along a side at least"),
+                points => Some(points),
+            })
+        });
+        fields.close()?;
+        let (of, points) = (of?, points?);
+        let all: u64 = points.iter().map(|count| u64::from(*count)).product();
+        if all > MOST_POINTS || points.len() > 2 {
+            return self
+                .findings
+                .wrong(node.span, format!("a shape has {MOST_POINTS} points at most, along two sides"));
+        }
+        Some(ShapeSpec { of, points })
+    }
+}
+
+impl Default for Run {
+    /// As the study: 25 cycles skipped, 100 averaged.
+    fn default() -> Self {
+        Self {
+            solvers: vec![SolverChoice::EventDriven],
+            settings: Settings { skip: 25, average: 100, round_period_to: None, ensemble: 32 },
+            moved: None,
+        }
+    }
+}
+
+fn words_only(measures: &[(Measure, Span)]) -> Vec<Measure> {
+    measures.iter().map(|(measure, _)| *measure).collect()
+}
+
+/// Cases run under the experiment's solvers unless their named sweep has its own.
+fn with_solvers(mut cases: Vec<Case>, usual: &[SolverChoice]) -> Vec<Case> {
+    for case in cases.iter_mut().filter(|case| case.solvers.is_empty()) {
+        case.solvers = usual.to_vec();
+    }
+    cases
+}
+
+fn all_solvers(cases: &[Case]) -> Vec<SolverChoice> {
+    let mut solvers: Vec<SolverChoice> = Vec::new();
+    for solver in cases.iter().flat_map(|case| &case.solvers) {
+        if !solvers.contains(solver) {
+            solvers.push(*solver);
+        }
+    }
+    solvers
+}
+
+/// Parameters that every case sets get the first case's value, so that what the scene says of them has no meaning left.
+fn fill_placeholders(recipe: &mut Recipe, cases: &[Case], swept: &[Parameter], maximise: Option<&Maximise>) {
+    let set = |recipe: &mut Recipe, parameter, value| {
+        // A parameter that the scene lacks is reported when its cases are resolved.
+        let _ = recipe.set(parameter, value);
+    };
+    for parameter in swept.iter().filter(|parameter| parameter.words().is_empty()) {
+        if let (Some(first), true) =
+            (cases.first().and_then(|case| case.get(*parameter)), cases.iter().all(|c| c.get(*parameter).is_some()))
+        {
+            set(recipe, *parameter, first);
+        }
+    }
+    if let Some((over, first)) = maximise.and_then(|maximise| Some((maximise.over, *maximise.grid.first()?))) {
+        set(recipe, over, ParameterValue::Number(first));
+    }
+}

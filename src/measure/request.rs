@@ -1,0 +1,85 @@
+//! What is asked of a run: solver, window, and which histories to keep with each row.
+
+use serde::{Deserialize, Serialize};
+
+/// Which solver.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum SolverChoice {
+    /// Exact propagation between certified events.
+    EventDriven,
+    /// The study's scheme.
+    FixedStep {
+        /// Δt, s.
+        time_step: f64,
+    },
+}
+
+impl SolverChoice {
+    /// The word in the table's column `solver`: `event_driven`, `fixed_step_1e-5s`.
+    #[must_use]
+    pub fn label(&self) -> String {
+        match self {
+            Self::EventDriven => "event_driven".into(),
+            Self::FixedStep { time_step } => format!("fixed_step_{time_step:e}s"),
+        }
+    }
+}
+
+/// How a case is run.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Settings {
+    /// Forcing cycles left out as transient.
+    pub skip: u32,
+    /// Forcing cycles averaged over.
+    pub average: u32,
+    /// The forcing period is rounded to whole steps of this length in every solver, s (the study's 199 steps of 1 ms).
+    pub round_period_to: Option<f64>,
+    /// Members of the ensemble of perturbed starts that a chaotic point gets; 0 switches ensembles off.
+    pub ensemble: u32,
+}
+
+/// Which part of the motion to keep as a time history. The list columns are then `time` (s), `base_displacement`,
+/// `base_velocity`, `base_acceleration`, `particle_displacement`, `floor_displacement` and `ceiling_displacement` (the
+/// resilient surfaces where they are), `rigid_floor`, `rigid_ceiling` (where they would be uncompressed),
+/// `contact_damping` (N s/m) and `rms_acceleration` (of the last complete half cycle, in g).
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct TraceSpec {
+    /// First forcing cycle, counted from 0.
+    pub from_cycle: u32,
+    /// One past the last.
+    pub to_cycle: u32,
+    /// Samples a cycle.
+    pub samples: u32,
+}
+
+/// Which cycles' kinetic energies to keep. The list columns are then `cycle`, `kinetic_energy_after` (J, of the structure alone,
+/// just after the impulse that opens the cycle), `kinetic_energy_before` (just before the next one), the same two with
+/// `undamped_` in front, `damping_measure_of_cycle` and `mass_measure_of_cycle`.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct EnergySpec {
+    /// First forcing cycle, counted from 0.
+    pub from_cycle: u32,
+    /// One past the last.
+    pub to_cycle: u32,
+}
+
+/// Which shape to keep. The list columns are then `x` and, with two sides, `y` (shares of the sides; x varies fastest), `shape`
+/// (largest modulus 1), and for a mode `exact_shape`, for a deflection `rms_displacement` (m) and `mode_shape`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ShapeSpec {
+    /// Of what.
+    pub of: ShapeOf,
+    /// Points along each side.
+    pub points: Vec<u32>,
+}
+
+/// What a shape is of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ShapeOf {
+    /// A normal mode.
+    Mode,
+    /// The motion under the excitation.
+    Deflection,
+}

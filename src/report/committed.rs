@@ -1,0 +1,153 @@
+//! Whether the reports on disk are what would be written now: byte for byte, and none too many.
+
+use std::collections::BTreeSet;
+use std::fmt;
+use std::fs;
+use std::path::Path;
+
+use super::other_pages::is_written_otherwise;
+use super::pages::render;
+use super::verdicts::Judgement;
+use crate::study::Study;
+
+/// Folders in folders below `reports/`; ends a walk that a link leads in a circle.
+const DEEPEST: u32 = 8;
+/// Longest part of a line that is told.
+const LONGEST: usize = 160;
+
+/// A file that is not what would be written.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Departure {
+    /// By its name within the study.
+    pub file: String,
+    /// In what.
+    pub how: How,
+}
+
+/// How a file departs.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum How {
+    /// It is not there.
+    Missing,
+    /// Nothing would write it.
+    Extra,
+    /// It cannot be made, for this reason.
+    CannotBeMade(String),
+    /// It cannot be read, for this reason.
+    Unreadable(String),
+    /// A text that differs first in this line.
+    Line {
+        /// Counted from 1.
+        number: usize,
+        /// As it stands; `None` beyond the end.
+        committed: Option<String>,
+        /// As it would be.
+        generated: Option<String>,
+    },
+    /// No text; it differs first in this byte, counted from 0.
+    Byte(usize),
+}
+
+/// Every file below `reports/` that departs from what would be written, in the order of the names.
+#[must_use]
+pub fn departures(study: &Study, judgement: &Judgement) -> Vec<Departure> {
+    let expected = render(study, judgement);
+    let mut found: Vec<Departure> = Vec::new();
+    for (file, bytes) in &expected {
+        let how = match bytes {
+            Err(why) => Some(How::CannotBeMade(why.clone())),
+            Ok(generated) => match fs::read(study.layout.path(file)) {
+                Ok(committed) => difference(&committed, generated),
+                Err(error) if error.kind() == std::io::ErrorKind::NotFound => Some(How::Missing),
+                Err(error) => Some(How::Unreadable(error.to_string())),
+            },
+        };
+        found.extend(how.map(|how| Departure { file: file.clone(), how }));
+    }
+    let unmade = study.items.iter().filter(|item| item.record().is_none());
+    found.extend(unmade.map(|item| Departure {
+        file: format!("reports of {}", item.source.experiment.id),
+        how: How::CannotBeMade("there is no table that is up to date; `shotdamp run` makes it".into()),
+    }));
+    let known: BTreeSet<&str> = expected.keys().map(String::as_str).collect();
+    let mut present = BTreeSet::new();
+    walk(&study.layout.path("reports"), "reports", DEEPEST, &mut present);
+    // Whose table is out of date has pages that cannot be told from those of an experiment that is gone.
+    let unmade = |file: &str| {
+        let stem = file.rsplit('/').next().and_then(|name| name.rsplit_once('.')).map_or("", |(stem, _)| stem);
+        study.items.iter().any(|item| item.record().is_none() && stem.starts_with(item.source.experiment.id.0.as_str()))
+    };
+    let otherwise = |file: &str| file.strip_prefix("reports/").is_some_and(is_written_otherwise);
+    let extra = present.into_iter().filter(|file| !known.contains(file.as_str()) && !unmade(file) && !otherwise(file));
+    found.extend(extra.map(|file| Departure { file, how: How::Extra }));
+    found.sort_by(|a, b| a.file.cmp(&b.file));
+    found
+}
+
+/// `None` if they are the same.
+fn difference(committed: &[u8], generated: &[u8]) -> Option<How> {
+    if committed == generated {
+        return None;
+    }
+    let (Ok(old), Ok(new)) = (std::str::from_utf8(committed), std::str::from_utf8(generated)) else {
+        let same = committed.iter().zip(generated).take_while(|(a, b)| a == b).count();
+        return Some(How::Byte(same));
+    };
+    // With their ends, so that a line break more or less is a difference too.
+    let (mut old, mut new) = (old.split_inclusive('\n'), new.split_inclusive('\n'));
+    let mut number = 0;
+    loop {
+        number += 1;
+        match (old.next(), new.next()) {
+            (Some(a), Some(b)) if a == b => {}
+            (a, b) => {
+                let line = |line: Option<&str>| line.map(clipped);
+                return Some(How::Line { number, committed: line(a), generated: line(b) });
+            }
+        }
+    }
+}
+
+fn clipped(line: &str) -> String {
+    let line = line.trim_end_matches('\n');
+    if line.chars().count() <= LONGEST { line.into() } else { line.chars().take(LONGEST - 1).chain(['…']).collect() }
+}
+
+fn walk(folder: &Path, name: &str, depth: u32, found: &mut BTreeSet<String>) {
+    let Ok(entries) = fs::read_dir(folder) else { return };
+    for entry in entries.flatten() {
+        let Ok(file_name) = entry.file_name().into_string() else { continue };
+        if file_name.starts_with('.') {
+            continue;
+        }
+        let name = format!("{name}/{file_name}");
+        let is_folder = entry.file_type().is_ok_and(|kind| kind.is_dir());
+        if is_folder && depth > 0 {
+            walk(&entry.path(), &name, depth - 1, found);
+        } else if !is_folder {
+            found.insert(name);
+        }
+    }
+}
+
+impl fmt::Display for Departure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let file = &self.file;
+        match &self.how {
+            How::Missing => write!(f, "{file}: is not there"),
+            How::Extra => write!(f, "{file}: nothing writes it; remove it"),
+            How::CannotBeMade(why) => write!(f, "{file}: cannot be made: {why}"),
+            How::Unreadable(why) => write!(f, "{file}: cannot be read: {why}"),
+            How::Byte(at) => write!(f, "{file}: differs from byte {at} on"),
+            How::Line { number, committed, generated } => {
+                let text = |line: &Option<String>| line.clone().unwrap_or_else(|| "(the text ends here)".into());
+                write!(
+                    f,
+                    "{file}:{number}: differs first in this line\n    committed  {}\n    generated  {}",
+                    text(committed),
+                    text(generated)
+                )
+            }
+        }
+    }
+}

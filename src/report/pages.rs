@@ -1,0 +1,216 @@
+//! Figures and reports of a study, written where they are not what they should be.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs;
+
+use rayon::prelude::*;
+
+use super::figures::{figure_name, png, shown};
+use super::publication::{meaning, publication_reasons};
+use super::verdicts::Judgement;
+use super::views;
+use crate::atomic::{self, FileError};
+use crate::experiment::FigureSpec;
+use crate::study::Study;
+use crate::study::{FileHash, Item, Publication, Record, record_name, table_name};
+
+/// The index of all pages.
+const INDEX: &str = "reports/README.md";
+/// The verdicts for programs, within the study.
+pub const VERDICTS: &str = "reports/verdicts.json";
+
+/// What publishing did.
+#[derive(Debug, Default)]
+pub struct Published {
+    /// Every file that the study consists of now, by its name within the study.
+    pub outputs: BTreeSet<String>,
+    /// Files that were written.
+    pub written: usize,
+    /// Figures that were drawn; those that would show the same as before are not.
+    pub drawn: usize,
+    /// Figures that could not be drawn, in words.
+    pub problems: Vec<String>,
+}
+
+/// An experiment whose table counts, while it is published.
+struct Page<'a> {
+    item: &'a Item,
+    record: &'a Record,
+    folder: String,
+    stale: bool,
+}
+
+/// Draws what is stale, renders every page of the experiments in `ids` and the index, and writes what differs.
+///
+/// # Errors
+/// [`FileError`] if a file cannot be written.
+pub fn publish(study: &Study, judgement: &Judgement, ids: &BTreeSet<&str>) -> Result<Published, FileError> {
+    let mut published = Published::default();
+    let pages: Vec<Page<'_>> = study.items.iter().filter_map(|item| page(study, item)).collect();
+    let chosen = |page: &&Page<'_>| ids.contains(page.item.source.experiment.id.0.as_str());
+    let stale = pages.iter().filter(chosen).filter(|page| page.stale);
+    let jobs = stale.flat_map(jobs).filter(|(page, figure)| !is_drawn(study, judgement, page, figure));
+    let mut figures = draw(study, judgement, jobs);
+    published.drawn = figures.values().map(Vec::len).sum();
+    for page in pages.iter().filter(chosen) {
+        let id = page.item.source.experiment.id.0.as_str();
+        let drawn = figures.remove(id).unwrap_or_default();
+        write_page(study, judgement, page, drawn, &mut published)?;
+    }
+    for (name, text) in of_the_study(study, judgement) {
+        published.written += usize::from(atomic::write_if_changed(&study.layout.path(name), text.as_bytes())?);
+        published.outputs.insert(name.into());
+    }
+    Ok(published)
+}
+
+/// What is written of the study as a whole.
+fn of_the_study(study: &Study, judgement: &Judgement) -> [(&'static str, String); 2] {
+    [(INDEX, views::index(study, judgement)), (VERDICTS, views::verdicts(study, judgement))]
+}
+
+/// Everything that a run would write under `reports/`, by name within the study; or in words why it cannot be made.
+pub(super) fn render(study: &Study, judgement: &Judgement) -> BTreeMap<String, Result<Vec<u8>, String>> {
+    let pages: Vec<Page<'_>> = study.items.iter().filter_map(|item| page(study, item)).collect();
+    let mut figures = draw(study, judgement, pages.iter().flat_map(jobs));
+    let mut files = BTreeMap::new();
+    for page in &pages {
+        let id = &page.item.source.experiment.id;
+        for (figure, bytes) in figures.remove(id.0.as_str()).unwrap_or_default() {
+            files.insert(name(page, figure), bytes);
+        }
+        let text = views::page(study, judgement, page.item);
+        files.insert(format!("{}/{id}.md", page.folder), Ok(text.into_bytes()));
+    }
+    files.extend(of_the_study(study, judgement).map(|(name, text)| (name.to_owned(), Ok(text.into_bytes()))));
+    files
+}
+
+fn page<'a>(study: &Study, item: &'a Item) -> Option<Page<'a>> {
+    let record = item.record()?;
+    let folder = match item.source.folder() {
+        "" => "reports".to_owned(),
+        folder => format!("reports/{folder}"),
+    };
+    Some(Page { item, record, folder, stale: !publication_reasons(study, item).is_empty() })
+}
+
+/// The figures of a page.
+fn jobs<'a>(page: &'a Page<'a>) -> impl Iterator<Item = (&'a Page<'a>, &'a FigureSpec)> {
+    page.item.source.experiment.figures.iter().map(move |figure| (page, figure))
+}
+
+/// A figure's name within the study.
+fn name(page: &Page<'_>, figure: &FigureSpec) -> String {
+    format!("{}/{}", page.folder, figure_name(&page.item.source.experiment, figure))
+}
+
+/// What a figure would show; `None` without a table.
+fn shows(study: &Study, judgement: &Judgement, page: &Page<'_>, figure: &FigureSpec) -> Option<String> {
+    let experiment = &page.item.source.experiment;
+    let id = experiment.id.0.as_str();
+    let table = judgement.tables.get(id)?;
+    Some(shown(experiment, figure, table, &page.record.table, study.references.get(id)))
+}
+
+/// True if the figure is on disk and shows what it would show.
+fn is_drawn(study: &Study, judgement: &Judgement, page: &Page<'_>, figure: &FigureSpec) -> bool {
+    let name = name(page, figure);
+    page.record.publication.as_ref().is_some_and(|old| {
+        let known = old.shown.get(&name);
+        known.is_some()
+            && known == shows(study, judgement, page, figure).as_ref()
+            && old.files.get(&name).is_some_and(|hash| hash.matches(&study.layout.path(&name)))
+    })
+}
+
+/// A figure and its bytes, or why there are none.
+type Drawn<'a> = Vec<(&'a FigureSpec, Result<Vec<u8>, String>)>;
+
+/// Draws side by side; each picture is one thread's work alone.
+fn draw<'a>(
+    study: &'a Study,
+    judgement: &'a Judgement,
+    jobs: impl Iterator<Item = (&'a Page<'a>, &'a FigureSpec)>,
+) -> BTreeMap<&'a str, Drawn<'a>> {
+    let jobs: Vec<_> = jobs.collect();
+    let drawn: Vec<_> = jobs
+        .par_iter()
+        .map(|(page, figure)| {
+            let experiment = &page.item.source.experiment;
+            let id = experiment.id.0.as_str();
+            let bytes =
+                judgement.tables.get(id).ok_or_else(|| "its table cannot be read".to_owned()).and_then(|table| {
+                    png(experiment, figure, table, study.references.get(id)).map_err(|error| error.to_string())
+                });
+            (id, *figure, bytes)
+        })
+        .collect();
+    let mut by_id = BTreeMap::<&str, Drawn<'_>>::new();
+    for (id, figure, bytes) in drawn {
+        by_id.entry(id).or_default().push((figure, bytes));
+    }
+    by_id
+}
+
+fn write_page(
+    study: &Study,
+    judgement: &Judgement,
+    page: &Page<'_>,
+    drawn: Drawn<'_>,
+    published: &mut Published,
+) -> Result<(), FileError> {
+    let id = &page.item.source.experiment.id;
+    let layout = &study.layout;
+    let old = page.record.publication.as_ref();
+    let mut files: BTreeMap<String, FileHash> = BTreeMap::new();
+    let mut shown: BTreeMap<String, String> = BTreeMap::new();
+    let mut whole = true;
+    // Those that were not drawn now are there already.
+    for (_, figure) in jobs(page) {
+        let name = name(page, figure);
+        if let Some(old) = old
+            && let (Some(hash), false) = (old.files.get(&name), drawn.iter().any(|(other, _)| *other == figure))
+        {
+            shown.extend(old.shown.get(&name).map(|shows| (name.clone(), shows.clone())));
+            files.insert(name, hash.clone());
+        }
+    }
+    for (figure, bytes) in drawn {
+        let name = name(page, figure);
+        match bytes {
+            Ok(bytes) => {
+                published.written += usize::from(atomic::write_if_changed(&layout.path(&name), &bytes)?);
+                shown.extend(shows(study, judgement, page, figure).map(|shows| (name.clone(), shows)));
+                files.insert(name, FileHash::of(&bytes));
+            }
+            Err(why) => {
+                whole = false;
+                // Where rows have failed, that is the news, and it is told already.
+                if page.record.failures.rows == 0 {
+                    published.problems.push(format!("{id}: {why}"));
+                }
+            }
+        }
+    }
+    let text = views::page(study, judgement, page.item);
+    let name = format!("{}/{id}.md", page.folder);
+    published.written += usize::from(atomic::write_if_changed(&layout.path(&name), text.as_bytes())?);
+    files.insert(name, FileHash::of(text.as_bytes()));
+    // A figure that was renamed or taken out does not stay behind.
+    for gone in old.iter().flat_map(|old| old.files.keys()).filter(|name| !files.contains_key(*name)) {
+        let path = layout.path(gone);
+        match fs::remove_file(&path) {
+            Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
+                return Err(FileError { action: "remove", path, source: error });
+            }
+            _ => {}
+        }
+    }
+    published.outputs.extend(files.keys().cloned());
+    published.outputs.extend([table_name(id), record_name(id)]);
+    let meaning = meaning(study, page.item, page.record);
+    let publication = whole.then_some(Publication { meaning, files, shown });
+    let record = Record { publication, ..page.record.clone() };
+    record.write(&layout.path(&record_name(id)))
+}

@@ -1,0 +1,47 @@
+//! What figures and report of an experiment depend on, and whether those on disk were made from just that.
+
+use std::collections::BTreeMap;
+
+use serde_json::{Value, json};
+
+use crate::study::Study;
+use crate::study::{ASSUMPTIONS, Item, PRESENTATION_VERSION, Reason, Record, differences};
+
+/// All that figures and report of an experiment depend on, other experiments' verdicts aside: pages are text, made anew
+/// whenever anything at all has changed.
+pub(super) fn meaning(study: &Study, item: &Item, record: &Record) -> Value {
+    let experiment = &item.source.experiment;
+    let used = experiment.assumptions_used(&study.sheet);
+    let assumptions: BTreeMap<_, _> = study.sheet.entries.iter().filter(|(name, _)| used.contains(name)).collect();
+    json!({
+        "experiment": experiment.canonical_json(),
+        "assumptions": assumptions,
+        "reference": study.references.get(&experiment.id.0),
+        "table": record.table.blake3,
+        "presentation_version": PRESENTATION_VERSION,
+    })
+}
+
+/// Why figures and report have to be made again; empty if they need not, or cannot because there is no table yet.
+#[must_use]
+pub fn publication_reasons(study: &Study, item: &Item) -> Vec<Reason> {
+    let Some(record) = item.record() else { return Vec::new() };
+    let Some(publication) = &record.publication else { return vec![Reason::NeverPublished] };
+    let id = &item.source.experiment.id;
+    let mut reasons = differences(&publication.meaning, &meaning(study, item, record), &|path| match path {
+        ["experiment", ..] => item.source.file.clone(),
+        ["assumptions", ..] => ASSUMPTIONS.into(),
+        ["reference", ..] => format!("reference of {id}"),
+        ["table"] => format!("table of {id}"),
+        _ => "this program".into(),
+    });
+    for (name, hash) in &publication.files {
+        let path = study.layout.path(name);
+        if !path.is_file() {
+            reasons.push(Reason::FileMissing(name.clone()));
+        } else if !hash.matches(&path) {
+            reasons.push(Reason::FileAltered(name.clone()));
+        }
+    }
+    reasons
+}

@@ -1,0 +1,250 @@
+//! A study as an RO-Crate: one folder that holds experiments, reference, tables, figures and pages, and a description of
+//! them that machines read (RO-Crate 1.1, JSON-LD). Each run is an action with its inputs and its results; each column of a
+//! table is a variable with its unit.
+//!
+//! Only what is up to date goes in, and the folder appears as a whole or not at all.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use serde_json::{Value, json};
+
+use super::publication::publication_reasons;
+use crate::atomic::{self, FileError};
+use crate::reference::ReferenceFile;
+use crate::study::Study;
+use crate::study::{ASSUMPTIONS, FileHash, Item, Record, State, table_name};
+use crate::table::{ParquetError, Table, parquet};
+
+/// When this version was released; a crate has to say when it was published, and nobody's clock is asked.
+pub const RELEASED: &str = "2026-11-21";
+
+const CONTEXT: &str = "https://w3id.org/ro/crate/1.1/context";
+const CONFORMS_TO: &str = "https://w3id.org/ro/crate/1.1";
+const LICENCES: [(&str, &str); 2] =
+    [("https://spdx.org/licenses/MIT", "MIT License"), ("https://spdx.org/licenses/Apache-2.0", "Apache License 2.0")];
+
+/// Why there is no crate.
+#[derive(Debug, thiserror::Error)]
+pub enum CrateError {
+    /// Results that are not those of today's inputs.
+    #[error("not up to date: {}; `shotdamp run` brings them up to date, then export again", .0.join(", "))]
+    NotUpToDate(Vec<String>),
+    /// Something is there already.
+    #[error("{} is there already; name a folder that is not", .0.display())]
+    Exists(PathBuf),
+    /// A table that cannot be read.
+    #[error(transparent)]
+    Table(#[from] ParquetError),
+    /// A file that cannot be read or written.
+    #[error(transparent)]
+    File(#[from] FileError),
+}
+
+/// Writes the crate of these experiments into `folder`, which must not exist; returns the number of its files.
+///
+/// # Errors
+/// [`CrateError`], and then there is no such folder.
+pub fn export_crate(study: &Study, items: &[&Item], folder: &Path, published: &str) -> Result<usize, CrateError> {
+    if folder.exists() {
+        return Err(CrateError::Exists(folder.into()));
+    }
+    let mut crated = Crate::default();
+    let mut stale = Vec::new();
+    for item in items {
+        match &item.state {
+            State::Current(record) if publication_reasons(study, item).is_empty() => crated.add(study, item, record)?,
+            _ => stale.push(item.source.experiment.id.to_string()),
+        }
+    }
+    if !stale.is_empty() {
+        return Err(CrateError::NotUpToDate(stale));
+    }
+    let description = serde_json::to_string_pretty(&crated.metadata(published)).unwrap_or_default() + "\n";
+    crated.files.insert("ro-crate-metadata.json".into(), description.into_bytes());
+    write_whole(&crated.files, folder)?;
+    Ok(crated.files.len())
+}
+
+/// Fills a hidden neighbour and gives it the name at the end.
+fn write_whole(files: &BTreeMap<String, Vec<u8>>, folder: &Path) -> Result<(), FileError> {
+    let fail = |source| FileError { action: "write", path: folder.to_path_buf(), source };
+    let parent = folder.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    fs::create_dir_all(parent).map_err(fail)?;
+    let mut builder = tempfile::Builder::new();
+    #[cfg(unix)]
+    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o777));
+    let neighbour = builder.prefix(".shotdamp-").tempdir_in(parent).map_err(fail)?;
+    for (name, bytes) in files {
+        atomic::write(&neighbour.path().join(name), bytes)?;
+    }
+    fs::rename(neighbour.path(), folder).map_err(fail)?;
+    // It has another name now: there is nothing left to remove.
+    let _ = neighbour.keep();
+    Ok(())
+}
+
+/// What goes into a crate.
+#[derive(Default)]
+struct Crate {
+    files: BTreeMap<String, Vec<u8>>,
+    /// The description of each file, run and column, by id.
+    entities: BTreeMap<String, Value>,
+    actions: Vec<Value>,
+}
+
+impl Crate {
+    fn add(&mut self, study: &Study, item: &Item, record: &Record) -> Result<(), CrateError> {
+        let experiment = &item.source.experiment;
+        let id = &experiment.id;
+        let mut inputs = vec![
+            self.text(study, &item.source.file, format!("Experiment: {}", experiment.title)),
+            self.text(study, ASSUMPTIONS, "Assumptions: the inputs that the study leaves open".into()),
+        ];
+        let is_of = |name: &&String| name.starts_with("reference/") && name.ends_with(&format!("/{id}.yaml"));
+        if let Some(name) = study.texts.files.keys().find(is_of) {
+            let entries = study.references.get(&id.0).map_or(0, |file: &ReferenceFile| file.entries.len());
+            inputs.push(self.text(study, name, format!("Reference: {entries} numbers and claims of the study")));
+        }
+        let name = table_name(id);
+        let bytes = read_as_recorded(study, &name, &record.table)?;
+        let table = parquet::from_bytes(bytes.clone(), &name)?;
+        let columns = self.columns(&table);
+        let mut results = vec![self.file(&name, &format!("Table: {}", experiment.title), bytes)];
+        self.describe(&name, "variableMeasured", columns);
+        for (name, hash) in record.publication.iter().flat_map(|publication| &publication.files) {
+            let kind = if name.ends_with(".png") { "Figure" } else { "Page" };
+            let bytes = read_as_recorded(study, name, hash)?;
+            results.push(self.file(name, &format!("{kind}: {}", experiment.title), bytes));
+        }
+        let action = format!("#run-{id}");
+        let run = json!({
+            "@id": action,
+            "@type": "CreateAction",
+            "name": format!("Simulation of {id}: {}", experiment.title),
+            "description": experiment.about,
+            "instrument": {"@id": "#shotdamp"},
+            "object": inputs,
+            "result": results,
+            "identifier": item.fingerprint,
+        });
+        self.entities.insert(action.clone(), run);
+        self.actions.push(json!({"@id": action}));
+        Ok(())
+    }
+
+    /// One of the study's texts as it was when it was read.
+    fn text(&mut self, study: &Study, name: &str, title: String) -> Value {
+        let bytes = study.texts.files.get(name).cloned().unwrap_or_default();
+        self.file(name, &title, bytes)
+    }
+
+    fn file(&mut self, name: &str, title: &str, bytes: Vec<u8>) -> Value {
+        let format = match name.rsplit('.').next() {
+            Some("parquet") => "application/vnd.apache.parquet",
+            Some("png") => "image/png",
+            Some("md") => "text/markdown",
+            _ => "application/yaml",
+        };
+        let entity = json!({
+            "@id": name,
+            "@type": "File",
+            "name": title,
+            "encodingFormat": format,
+            "contentSize": bytes.len().to_string(),
+        });
+        self.entities.insert(name.into(), entity);
+        self.files.insert(name.into(), bytes);
+        json!({"@id": name})
+    }
+
+    fn describe(&mut self, id: &str, key: &str, value: Value) {
+        if let Some(Value::Object(entity)) = self.entities.get_mut(id) {
+            entity.insert(key.into(), value);
+        }
+    }
+
+    /// The columns with a unit or a symbol. The same column of several experiments is the same variable.
+    fn columns(&mut self, table: &Table) -> Value {
+        let mut columns = Vec::new();
+        for column in table.columns.iter().filter(|column| !column.unit.is_empty() || !column.symbol.is_empty()) {
+            let unit = if column.unit.is_empty() { "1" } else { &column.unit };
+            let description: String = unit.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '-' }).collect();
+            let id = format!("#{}-{description}", column.name);
+            let name = if column.symbol.is_empty() { String::new() } else { format!(" ({})", column.symbol) };
+            let entity = json!({
+                "@id": id,
+                "@type": "PropertyValue",
+                "name": format!("{}{name}", column.name),
+                "unitText": unit,
+            });
+            self.entities.insert(id.clone(), entity);
+            columns.push(json!({"@id": id}));
+        }
+        single_or_all(columns)
+    }
+
+    fn metadata(&self, published: &str) -> Value {
+        let parts: Vec<Value> = self.files.keys().map(|name| json!({"@id": name})).collect();
+        let licences: Vec<Value> = LICENCES.iter().map(|(id, _)| json!({"@id": id})).collect();
+        let mut graph = vec![
+            json!({
+                "@id": "ro-crate-metadata.json",
+                "@type": "CreativeWork",
+                "conformsTo": {"@id": CONFORMS_TO},
+                "about": {"@id": "./"},
+            }),
+            json!({
+                "@id": "./",
+                "@type": "Dataset",
+                "name": "Reproduction of a study of particle impact dampers",
+                "description": "Experiments, the study's numbers and claims, tables, figures and verdicts of a reproduction \
+                                of a published study of resilient particle impact dampers under periodic impulses.",
+                "datePublished": published,
+                "license": licences,
+                "author": {"@id": "#authors"},
+                "publisher": {"@id": "#authors"},
+                "citation": {"@id": "#study"},
+                "hasPart": parts,
+                "mentions": single_or_all(self.actions.clone()),
+            }),
+            json!({"@id": "#authors", "@type": "Organization", "name": "The shotdamp authors"}),
+            json!({
+                "@id": "#study",
+                "@type": "Thesis",
+                "name": "The study that is reproduced: a dissertation on arrays of resilient particle impact dampers under \
+                         periodic impulses",
+            }),
+            json!({
+                "@id": "#shotdamp",
+                "@type": "SoftwareApplication",
+                "name": "shotdamp",
+                "description": env!("CARGO_PKG_DESCRIPTION"),
+                "softwareVersion": env!("CARGO_PKG_VERSION"),
+                "version": env!("CARGO_PKG_VERSION"),
+            }),
+        ];
+        let licence = |(id, name): &(&str, &str)| json!({"@id": id, "@type": "CreativeWork", "name": name});
+        graph.extend(LICENCES.iter().map(licence));
+        graph.extend(self.entities.values().cloned());
+        json!({"@context": CONTEXT, "@graph": graph})
+    }
+}
+
+/// A list of one is written as the one.
+fn single_or_all(mut values: Vec<Value>) -> Value {
+    if values.len() == 1 { values.remove(0) } else { Value::Array(values) }
+}
+
+/// The bytes of an output, if they are those that were recorded.
+fn read_as_recorded(study: &Study, name: &str, hash: &FileHash) -> Result<Vec<u8>, FileError> {
+    let path = study.layout.path(name);
+    let fail = |source| FileError { action: "read", path: path.clone(), source };
+    let bytes = fs::read(&path).map_err(fail)?;
+    if FileHash::of(&bytes) == *hash {
+        Ok(bytes)
+    } else {
+        Err(fail(std::io::Error::other("it is not what was written")))
+    }
+}

@@ -1,0 +1,101 @@
+//! Verdicts over the tables on disk.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use rayon::prelude::*;
+
+use crate::reference::{Judged, ReferenceFile, SelfTestFailure, TableState, Tables, judge, self_test};
+use crate::study::Study;
+use crate::study::{Item, State, table_name};
+use crate::table::{Table, parquet};
+
+/// The tables that count, and the verdicts that they give.
+#[derive(Debug, Default)]
+pub struct Judgement {
+    /// Tables by experiment.
+    pub tables: BTreeMap<String, Table>,
+    /// Verdicts by experiment, in the order of its reference file.
+    pub verdicts: BTreeMap<String, Vec<Judged>>,
+}
+
+/// What is known of the table of an experiment.
+enum OnDisk {
+    Present(Table),
+    Stale,
+    NotRun,
+    Failed(String),
+}
+
+/// Reads every table that has the meaning of its experiment, and judges every entry.
+#[must_use]
+pub fn judge_all(study: &Study) -> Judgement {
+    let states = on_disk(study);
+    let tables = tables(&states);
+    let fitted = study.fitted();
+    let verdict = |(id, file): (&String, &ReferenceFile)| (id.clone(), judged(study, file, &tables, &fitted));
+    let verdicts = study.references.iter().map(verdict).collect();
+    let tables = states
+        .into_iter()
+        .filter_map(|(id, state)| match state {
+            OnDisk::Present(table) => Some((id, table)),
+            _ => None,
+        })
+        .collect();
+    Judgement { tables, verdicts }
+}
+
+/// The verdicts that these tables give, whatever they were computed from.
+#[must_use]
+pub fn judge_tables(study: &Study, tables: &BTreeMap<String, Table>) -> Vec<Judged> {
+    let states: Tables<'_> = tables.iter().map(|(id, table)| (id.clone(), TableState::Present(table))).collect();
+    let fitted = study.fitted();
+    study.references.values().flat_map(|file| judged(study, file, &states, &fitted)).collect()
+}
+
+fn judged(study: &Study, file: &ReferenceFile, tables: &Tables<'_>, fitted: &BTreeSet<String>) -> Vec<Judged> {
+    let mut judged = judge(file, tables, fitted);
+    judged.iter_mut().for_each(|one| one.role = study.role(&one.id));
+    judged
+}
+
+/// Shows of each entry of these experiments that it can fail; returns those that cannot.
+#[must_use]
+pub fn self_test_all(study: &Study, ids: &[&str]) -> Vec<SelfTestFailure> {
+    let states = on_disk(study);
+    let tables = tables(&states);
+    let files: Vec<_> = ids.iter().filter_map(|id| study.references.get(*id)).collect();
+    let failures: Vec<_> = files.par_iter().map(|file| self_test(file, &tables)).collect();
+    failures.into_iter().flatten().collect()
+}
+
+fn on_disk(study: &Study) -> BTreeMap<String, OnDisk> {
+    let read = |item: &Item| {
+        let id = &item.source.experiment.id;
+        let state = match &item.state {
+            State::Current(_) | State::Failed(_) => match parquet::read(&study.layout.path(&table_name(id))) {
+                Ok(table) => OnDisk::Present(table),
+                Err(error) => OnDisk::Failed(error.to_string()),
+            },
+            State::Stale(_) if study.layout.path(&table_name(id)).is_file() => OnDisk::Stale,
+            State::Stale(_) => OnDisk::NotRun,
+        };
+        (id.to_string(), state)
+    };
+    let states: Vec<_> = study.items.par_iter().map(read).collect();
+    states.into_iter().collect()
+}
+
+fn tables(states: &BTreeMap<String, OnDisk>) -> Tables<'_> {
+    states.iter().map(|(id, on_disk)| (id.clone(), on_disk.state())).collect()
+}
+
+impl OnDisk {
+    fn state(&self) -> TableState<'_> {
+        match self {
+            Self::Present(table) => TableState::Present(table),
+            Self::Stale => TableState::Stale,
+            Self::NotRun => TableState::NotRun,
+            Self::Failed(reason) => TableState::Failed(reason.clone()),
+        }
+    }
+}

@@ -1,0 +1,130 @@
+//! A scene in words and SI units, for a person who asks what is simulated.
+
+use super::{ContactDamping, ContactEnd, Damper, Excitation, Observation, Point, PulseShape, Scene, Surface, Take};
+use crate::text::number::{compact, quantity};
+
+/// Significant digits.
+const DIGITS: usize = 5;
+
+impl Scene {
+    /// One line a part: structure, gravity, each damper, excitation.
+    #[must_use]
+    pub fn describe(&self) -> Vec<String> {
+        let model = self.structure.model();
+        let sides = model.sides();
+        let mut lines = vec![model.describe()];
+        if self.dampers.is_empty() {
+            lines.push("no damper".into());
+        } else {
+            lines.push(format!("gravity: {}", value(self.gravity, "m/s²")));
+        }
+        lines.extend(self.dampers.iter().map(|damper| damper.describe(&sides)));
+        lines.push(self.excitation.describe() + &place(self.force_at, &sides));
+        if !sides.is_empty() {
+            lines.push(self.observed.describe(&sides));
+        }
+        lines
+    }
+}
+
+impl Damper {
+    fn describe(&self, sides: &[f64]) -> String {
+        let gap =
+            if self.gap.is_finite() { format!("gap {}", value(self.gap, "m")) } else { "no ceiling in reach".into() };
+        let enclosure = if self.enclosure_mass > 0.0 {
+            format!(", enclosure {}", value(self.enclosure_mass, "kg"))
+        } else {
+            String::new()
+        };
+        let particle = value(self.particle_mass, "kg");
+        let mut parts = vec![format!("damper{}: particle {particle}{enclosure}", place(self.at, sides)), gap];
+        if self.floor == self.ceiling {
+            parts.push(format!("floor and ceiling {}", self.floor.describe()));
+        } else {
+            parts.push(format!("floor {}", self.floor.describe()));
+            parts.push(format!("ceiling {}", self.ceiling.describe()));
+        }
+        if let Some(stop) = self.stop {
+            let restitution = compact(stop.restitution, DIGITS);
+            parts.push(format!("limit stop at {} with restitution {restitution}", value(stop.length, "m")));
+        }
+        if let Some(walls) = self.walls {
+            parts.push(format!(
+                "soft walls {}, {}, ceiling side {}",
+                value(walls.stiffness, "N/m"),
+                value(walls.damping, "N s/m"),
+                value(walls.ceiling_mass, "kg")
+            ));
+        }
+        parts.join("; ")
+    }
+}
+
+impl Surface {
+    fn describe(&self) -> String {
+        match self {
+            Self::Rigid { restitution } => format!("rigid with restitution {}", compact(*restitution, DIGITS)),
+            Self::Resilient { stiffness, damping, ends } => {
+                let damping = match damping {
+                    ContactDamping::Constant(constant) => value(*constant, "N s/m"),
+                    ContactDamping::EquivalentViscous(_) => "equivalent viscous damping by half cycles".into(),
+                };
+                let ends = match ends {
+                    ContactEnd::ZeroGap => "",
+                    ContactEnd::ZeroForce => ", without tension",
+                };
+                format!("resilient {}, {damping}{ends}", value(*stiffness, "N/m"))
+            }
+        }
+    }
+}
+
+impl Observation {
+    fn describe(&self, sides: &[f64]) -> String {
+        match (self.points.as_slice(), self.take) {
+            ([point], _) => format!("observed{}", place(*point, sides)),
+            (points, Take::Largest) => format!("observed at {} points, the largest counts", points.len()),
+            (points, Take::Mean) => format!("observed at {} points, their mean counts", points.len()),
+        }
+    }
+}
+
+/// ` at 0.96 m`, ` at (0.25, 0.5) m`; nothing where there are no sides.
+fn place(at: Point, sides: &[f64]) -> String {
+    let short = |x: f64| compact(x, DIGITS);
+    match sides.len() {
+        0 => String::new(),
+        1 => format!(" at {}", value(at.x, "m")),
+        _ => format!(" at ({}, {}) m", short(at.x), short(at.y)),
+    }
+}
+
+impl Excitation {
+    fn describe(&self) -> String {
+        match self {
+            Self::SingleImpulse { impulse, .. } => format!("one impulse of {} at t = 0", value(*impulse, "N s")),
+            Self::ImpulseTrain { impulse, period } => {
+                format!("impulses of {} every {}", value(*impulse, "N s"), value(*period, "s"))
+            }
+            Self::Harmonic { force, angular_frequency } => {
+                format!("harmonic force of {} at {}", value(*force, "N"), value(*angular_frequency, "rad/s"))
+            }
+            Self::PulseTrain { impulse, period, duration, shape } => {
+                let shape = match shape {
+                    PulseShape::Rectangular => "rectangular",
+                    PulseShape::Binomial { .. } => "binomial",
+                };
+                format!(
+                    "{shape} pulses of {} and {} every {}",
+                    value(*impulse, "N s"),
+                    value(*duration, "s"),
+                    value(*period, "s")
+                )
+            }
+        }
+    }
+}
+
+fn value(number: f64, unit: &str) -> String {
+    quantity(number, unit, DIGITS)
+}

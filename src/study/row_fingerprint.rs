@@ -1,0 +1,68 @@
+//! What the numbers of one row depend on, as a hash: a row whose fingerprint an earlier table has need not be simulated.
+//!
+//! Hashed is what the engine is asked, and not where in a sweep the row stands or what it is called: a sweep may be cut,
+//! extended, renamed or written otherwise. Of the assumptions those count that the row's own scene leans on.
+
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+
+use super::job::Job;
+use super::variant::Variant;
+use super::work::asked;
+use crate::dynamics::SOLVER_VERSION;
+use crate::experiment::{Case, Experiment};
+use crate::measure::Rigour;
+use crate::scene::{Assumptions, ParameterValue, Recipe};
+use crate::table::RowFingerprint;
+
+/// The fingerprints of an experiment's rows.
+pub(super) struct RowFingerprints<'a> {
+    experiment: &'a Experiment,
+    /// Fed with what all rows share.
+    shared: blake3::Hasher,
+}
+
+impl<'a> RowFingerprints<'a> {
+    pub(super) fn new(experiment: &'a Experiment) -> Self {
+        let Experiment { settings, measures, maximise, mean_over, .. } = experiment;
+        let mut shared = blake3::Hasher::new();
+        feed(&mut shared, &(SOLVER_VERSION, settings, measures, maximise, mean_over));
+        Self { experiment, shared }
+    }
+
+    /// Of a row, whose case need not be among the experiment's.
+    pub(super) fn of(&self, variant: &Variant, case: &Case, job: &Job) -> RowFingerprint {
+        let mut hasher = self.shared.clone();
+        match self.experiment.recipe_of(case) {
+            Ok(recipe) => {
+                let asked = asked(self.experiment, &recipe, variant, job);
+                let is_result = asked.rigour == Rigour::Result;
+                feed(&mut hasher, &(&recipe, asked.solver, is_result, asked.trace, asked.energies, asked.shape));
+                feed(&mut hasher, &self.leaned_on(&recipe, &variant.assumptions));
+            }
+            // It has no numbers, and no table gives it any.
+            Err(_) => feed(&mut hasher, case),
+        }
+        RowFingerprint::of(hasher.finalize())
+    }
+
+    /// The values that the row's scene leans on, at any point of a maximum that is looked for.
+    fn leaned_on<'b>(&self, recipe: &Recipe, in_force: &'b Assumptions) -> BTreeMap<String, &'b impl Serialize> {
+        let mut scenes = vec![recipe.clone()];
+        if let Some(maximise) = &self.experiment.maximise {
+            scenes.extend(maximise.grid.iter().filter_map(|at| {
+                let mut scene = recipe.clone();
+                scene.set(maximise.over, ParameterValue::Number(*at)).ok().map(|()| scene)
+            }));
+        }
+        let names = self.experiment.assumptions_of(scenes, in_force).into_iter();
+        names.filter_map(|name| Some((format!("{name:?}"), in_force.values.get(&name)?))).collect()
+    }
+}
+
+/// Feeds a hash with JSON, which plain data always has; the fields of a type stand in one order.
+fn feed(hasher: &mut blake3::Hasher, part: &impl Serialize) {
+    let text = serde_json::to_vec(part).unwrap_or_else(|error| unreachable!("plain data has a JSON form: {error}"));
+    hasher.update(&text).update(b"\n");
+}
