@@ -39,6 +39,7 @@ mod march;
 mod mobility;
 mod modes;
 mod polynomial;
+mod schur;
 mod search;
 mod series;
 mod signals;

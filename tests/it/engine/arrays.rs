@@ -54,7 +54,7 @@ pub(super) fn chain(masses: &[f64], stiffness: f64, damping: f64) -> HybridSyste
 }
 
 /// A supported beam of unit length and `n` modes, with damping that ties them to each other.
-fn beam(n: usize, first: f64, damping: f64) -> HybridSystem {
+pub(super) fn beam(n: usize, first: f64, damping: f64) -> HybridSystem {
     let square: Vec<f64> = (1..=n).map(|i| (first * (i * i) as f64).powi(2)).collect();
     let dashpot = shape(n, 0.37);
     let mut damped = Matrix::diagonal(&square.iter().map(|square| damping * square / first).collect::<Vec<_>>());
@@ -76,7 +76,7 @@ fn beam(n: usize, first: f64, damping: f64) -> HybridSystem {
     }
 }
 
-fn shape(n: usize, place: f64) -> Vec<f64> {
+pub(super) fn shape(n: usize, place: f64) -> Vec<f64> {
     (1..=n).map(|i| 2.0_f64.sqrt() * (i as f64 * PI * place).sin()).collect()
 }
 

@@ -8,6 +8,7 @@ mod equal_modes;
 mod event_cases;
 mod extremes;
 mod floating;
+mod half_cycles;
 mod hard_cases;
 mod linear;
 mod long_runs;
