@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Parser, Subcommand};
 
+use crate::experiment::RowLimit;
 use crate::report::RELEASED;
 use crate::study::Shard;
 
@@ -163,6 +164,12 @@ pub(super) struct RunArgs {
     /// Write what each experiment took to reports/times.json, for the index to show
     #[arg(long, conflicts_with_all = ["dry_run", "shard"])]
     pub times: bool,
+    /// The most that a row may take, `1e7 events`, `30 s` or `1e7 events, 5 min`, in the place of `run: {limit: …}`
+    #[arg(long, value_name = "LIMIT")]
+    pub row_limit: Option<RowLimit>,
+    /// Simulate again where what an earlier run left is not what it wrote, and look at every byte of it to know
+    #[arg(long)]
+    pub verify: bool,
     /// Go on after an experiment that fails; this is what happens anyway
     #[arg(long)]
     pub keep_going: bool,

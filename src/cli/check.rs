@@ -10,7 +10,7 @@ use super::select::{Chosen, choose, open};
 use crate::atomic::{self, FileError};
 use crate::reference;
 use crate::report::{self, CheckView};
-use crate::report::{Judgement, check_view, departures, judge_all, self_test_all, summary_of};
+use crate::report::{Judgement, check_view, departures, doubts, judge_all, self_test_all, summary_of};
 use crate::study::{Layout, Study};
 
 /// Where GitHub wants the summary of a step.
@@ -27,7 +27,11 @@ pub(super) fn check(layout: &Layout, args: &CheckArgs) -> Result<Exit, CliError>
     }
     let mut exit = chosen.exit(&judgement);
     let view = check_view(&study, &judgement, &chosen.ids, &chosen.unread);
-    let mut text = if args.json { report::json(&view) } else { summary_of(&judgement, &chosen.ids) };
+    let mut text = if args.json {
+        report::json(&view)
+    } else {
+        summary_of(&judgement, &chosen.ids) + &doubts(&judgement, &chosen.ids)
+    };
     if args.self_test {
         let (description, worst) = self_test(&study, &chosen);
         exit = exit.max(worst);

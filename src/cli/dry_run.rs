@@ -6,7 +6,7 @@ use super::exit::Exit;
 use super::output::{print, print_unread};
 use super::select::{choose, open};
 use super::update::todo;
-use crate::study::{Extent, KnownRows, Layout};
+use crate::study::{Extent, KnownRows, Layout, forecast};
 use crate::text::number::compact;
 use crate::text::words::capitalised;
 
@@ -26,6 +26,11 @@ pub(super) fn dry_run(layout: &Layout, args: &RunArgs, common: &Args) -> Result<
             text += &format!(", {} simulations at most, {ahead}", extent.simulations);
         }
         text += "\n";
+        if extent.to_do > 0 {
+            for warning in forecast(&item.source.experiment, &study.sheet.assumptions()) {
+                text += &format!("  warning: {warning}\n");
+            }
+        }
         total.add(&extent, threads);
     }
     text += &format!("{} of {} experiments would be simulated{}\n", total.simulated, chosen.items.len(), total.rest());

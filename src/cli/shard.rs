@@ -19,7 +19,8 @@ pub(super) fn run_shard(layout: &Layout, args: &RunArgs, shard: Shard, common: &
     let stale = |item: &&Item| args.force || !matches!(item.state, State::Current(_));
     let part: Vec<&Item> = chosen.items.iter().copied().filter(stale).filter(|item| shard.has_part_of(item)).collect();
     let todo: Vec<&Item> = part.iter().copied().filter(|item| args.force || !shard.has_done(layout, item)).collect();
-    let how = How { threads: common.threads(), quiet: common.quiet, shard: Some(shard), anew: args.force };
+    let row_limit = args.row_limit.unwrap_or_default();
+    let how = How { threads: common.threads(), quiet: common.quiet, shard: Some(shard), row_limit, anew: args.force };
     let Ran { unsaved, .. } = simulate(layout, &todo, how, |item, finished| shard.save(layout, item, finished))?;
     for problem in &unsaved {
         print_error(&format!("error: {problem}\n"));

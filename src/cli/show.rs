@@ -1,17 +1,23 @@
 //! `shotdamp show ID`.
 
+use std::time::Duration;
+
 use super::args::Choice;
 use super::error::CliError;
 use super::exit::Exit;
 use super::output::{columns, print, print_unread};
 use super::select::{choose, open};
 use crate::accuracy::idle_cases;
+use crate::dynamics::{Allowance, Limit};
 use crate::experiment::Experiment;
 use crate::report::scenes;
 use crate::report::value_in_words;
 use crate::scene::{Scene, effects};
-use crate::study::{Item, Layout, State, Study};
+use crate::study::{Item, Layout, State, Study, forecast};
 use crate::text::words;
+
+/// How long the proof that particles stay on their floors may take; cases beyond it count as not proved.
+const PATIENCE: Duration = Duration::from_millis(500);
 
 /// All that is known of one experiment before it runs.
 pub(super) fn show(layout: &Layout, id: &str) -> Result<Exit, CliError> {
@@ -80,6 +86,9 @@ fn describe(study: &Study, item: &Item) -> String {
         text += &format!("  and event-driven with each of {}\n", ends.join(", "));
     }
     text += &format!("  {rows} rows, {simulations} simulations at most\n");
+    for warning in forecast(experiment, &study.sheet.assumptions()) {
+        text += &format!("  warning: {warning}\n");
+    }
     let state = match &item.state {
         State::Current(_) => "up to date",
         State::Failed(_) => "computed, with failed rows",
@@ -91,7 +100,8 @@ fn describe(study: &Study, item: &Item) -> String {
 
 /// Cases in which what only a particle in flight can meet is named and provably never met.
 fn idle(experiment: &Experiment, scenes: &[Scene]) -> String {
-    match idle_cases(experiment, scenes) {
+    let limit = Limit { time: PATIENCE, ..Limit::default() };
+    match Allowance::new(limit).simulate(|| idle_cases(experiment, scenes)) {
         0 => String::new(),
         count => format!(
             "  In {count} of {} cases it is proved that no particle leaves its floor: ceilings, stops and impacts are idle \

@@ -9,6 +9,7 @@ use rayon::prelude::*;
 use super::error::CliError;
 use super::output::print_error;
 use super::select::Chosen;
+use crate::experiment::RowLimit;
 use crate::study::{
     Engine, EventHandler, Finished, Held, IgnoreEvents, Item, KnownRows, Layout, Progress, Shard, Spent, State, Task,
     journal_name, run,
@@ -33,6 +34,8 @@ pub(super) struct How {
     pub threads: usize,
     pub quiet: bool,
     pub shard: Option<Shard>,
+    /// In the place of the limits that the experiments set.
+    pub row_limit: RowLimit,
     /// Simulate also the rows that earlier tables have.
     pub anew: bool,
 }
@@ -75,6 +78,7 @@ pub(super) fn simulate(
         .map(|((item, (metadata, journal)), known)| Task {
             shard: how.shard,
             known: Some(known),
+            limit: how.row_limit.over(item.source.experiment.limit),
             ..item.task(metadata, journal)
         })
         .collect();

@@ -7,12 +7,12 @@ use super::exit::Exit;
 use super::output::{print, print_error, print_unread};
 use super::select::{Chosen, choose};
 use super::simulate::{How, Ran, held, simulate, tell_failures};
-use crate::report::{Published, judge_all, publish, summary_of};
+use crate::report::{Published, doubts, judge_all, publish, summary_of};
 use crate::study::{Item, Layout, Lock, RunTimes, Snapshot, State, Study, Texts, save};
 
 /// Brings the chosen experiments up to date.
 pub(super) fn update(layout: &Layout, args: &RunArgs, common: &Args) -> Result<Exit, CliError> {
-    if args.choice.is_all() && !args.force && !args.tables && !args.times {
+    if args.choice.is_all() && !args.force && !args.tables && !args.times && !args.verify {
         // The short way: no lock, no YAML, no table, no thread.
         if let Some(snapshot) = Snapshot::current(layout, &Texts::read(layout)?) {
             print(&format!("Nothing to do.\n{}", snapshot.summary))?;
@@ -29,7 +29,8 @@ pub(super) fn update(layout: &Layout, args: &RunArgs, common: &Args) -> Result<E
     let chosen = choose(&study, &args.choice)?;
     print_unread(chosen.unread.iter().copied());
     let todo = todo(&chosen, args);
-    let how = How { threads: common.threads(), quiet: common.quiet, shard: None, anew: args.force };
+    let row_limit = args.row_limit.unwrap_or_default();
+    let how = How { threads: common.threads(), quiet: common.quiet, shard: None, row_limit, anew: args.force };
     let Ran { restored, unsaved } =
         simulate(layout, &todo, how, |item, finished| save(layout, item, finished).map(|_| ()))?;
     if args.times {
@@ -70,7 +71,7 @@ pub(super) fn conclude(layout: &Layout, texts: Texts, choice: &Choice, done: Don
     }
     let whole_work = done.problems.is_empty() && published.problems.is_empty() && !failed;
     let exit = chosen.exit(&judgement).max(if whole_work { Exit::AsExpected } else { Exit::CouldNot });
-    let text = summary_of(&judgement, &chosen.ids);
+    let text = summary_of(&judgement, &chosen.ids) + &doubts(&judgement, &chosen.ids);
     if choice.is_all() && whole_work && !done.tables_only && chosen.unread.is_empty() {
         Snapshot::take(layout, &study.texts, published.outputs, &text, exit.code())?;
     }

@@ -2,6 +2,7 @@
 //! without damping, where the closed forms of [`super::gains`] lose their digits.
 
 use super::block::{Block, Phase};
+use super::budget;
 use super::flow::Parabola;
 
 /// ∫ s, ∫ s², ∫ s′² of a signal.
@@ -30,6 +31,9 @@ pub(crate) fn quadrature(blocks: &[Block], start: &[Phase], rest: Parabola, dura
     let h = duration / count as f64;
     let mut sum = Integrals::default();
     for panel in 0..count {
+        if budget::spend(1) {
+            break;
+        }
         for [x, weight] in GAUSS {
             let t = (panel as f64 + x) * h;
             let (mut value, mut rate) = (rest.at(t), rest.rate(t));

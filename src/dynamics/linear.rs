@@ -21,6 +21,7 @@ use self::cycle::{Cycle, drive_at, enter, leave};
 use self::moments::Moments;
 use self::signal::{Row, integrals};
 use super::audit::Audit;
+use super::budget;
 use super::cholesky::Cholesky;
 use super::contact_state::contact_damping;
 use super::flow::{DrivePhase, Flow};
@@ -219,6 +220,9 @@ impl<'a> Run<'a> {
         let mut state = self.starts[0].clone();
         let mut all = Vec::new();
         for number in 0..cycles {
+            if budget::spend(1) {
+                break;
+            }
             let cycle = if number == 0 { &self.first } else { &self.regular };
             let after = cycle.segments.first().map_or_else(|| state.clone(), |segment| segment.jump.apply(&state));
             state = cycle.map.apply(&state);

@@ -11,6 +11,7 @@ use std::rc::Rc;
 
 use super::audit::{Audit, Force};
 use super::block::Phase;
+use super::budget;
 use super::cholesky::Cholesky;
 use super::contact::{Relative, Side};
 use super::contact_state::contact_damping;
@@ -182,6 +183,7 @@ impl<'a> March<'a> {
         for cycle in 0..cycles {
             self.cycle = cycle;
             self.time = 0.0;
+            budget::reach(cycle, cycles);
             if cycle == u64::from(self.options.skip) {
                 self.begin_window();
             }
@@ -278,6 +280,7 @@ impl<'a> March<'a> {
 
     fn record_at(&mut self, particle: usize, kind: EventKind, time: f64, approach: f64, departure: f64) {
         self.response.proof.events += 1;
+        budget::count_event();
         if self.options.averages(self.cycle) {
             self.response.counts.add(kind);
         }
@@ -335,6 +338,9 @@ impl<'a> March<'a> {
         let mut last = self.time;
         while self.time < until {
             self.segment(until)?;
+            if budget::spend(1) {
+                return Err(budget::overrun().into());
+            }
             if self.time > last + instant {
                 (stuck, last) = (0, self.time);
             }

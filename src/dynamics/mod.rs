@@ -19,6 +19,7 @@
 mod audit;
 mod bank;
 mod block;
+mod budget;
 mod cholesky;
 mod cluster;
 mod collision;
@@ -39,6 +40,7 @@ mod march;
 mod mobility;
 mod modes;
 mod polynomial;
+mod residual_bound;
 mod schur;
 mod search;
 mod series;
@@ -51,6 +53,7 @@ mod trace;
 mod visits;
 mod window;
 
+pub use budget::{Allowance, Exhausted, Limit, Overrun, in_words};
 pub use spline::Spline;
 pub use system::{
     Contact, Drive, Event, EventKind, Face, HalfCycles, Harmonic, HybridSystem, Law, Matrix, Particle, Stop, Tick, dot,
@@ -61,12 +64,15 @@ pub use trace::{Sample, TraceRequest};
 pub const SOLVER_VERSION: u32 = 4;
 
 /// What proves a run: residuals of the balances, and how clearly its events were decided.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Proof {
     /// |Σ impulses − momentum gained − impulse of springs, dashpots and gravity| over the impulse that passed or was carried, dimensionless.
     pub momentum_residual: f64,
     /// |work of the excitation − energy gained − energy dissipated| over the energy that passed, dimensionless.
     pub energy_residual: f64,
+    /// What both may be at most if nothing but rounding is in them; infinite where nobody audited, and for the fixed step, whose
+    /// residuals are the error of its step.
+    pub residual_bound: f64,
     /// Events of the whole run: contacts made and lost, stops hit; impulses not counted.
     pub events: u64,
     /// The smallest distance, in metres, by which a surface would have to be moved for the sequence of events to change; NaN
@@ -74,6 +80,20 @@ pub struct Proof {
     pub smallest_margin: f64,
     /// Decisions within rounding: simultaneous events that had to be put into an order, contacts that graze.
     pub ties: u64,
+}
+
+impl Default for Proof {
+    /// Of a run that nobody audited.
+    fn default() -> Self {
+        Self {
+            momentum_residual: 0.0,
+            energy_residual: 0.0,
+            residual_bound: f64::INFINITY,
+            events: 0,
+            smallest_margin: 0.0,
+            ties: 0,
+        }
+    }
 }
 
 /// How a system is run.
@@ -396,6 +416,9 @@ pub enum EngineError {
         /// s.
         period: f64,
     },
+    /// Its allowance was used up first.
+    #[error(transparent)]
+    Overrun(#[from] Overrun),
     /// Overflow.
     #[error("the motion leaves the range of numbers in cycle {cycle}")]
     NotFinite {
@@ -409,11 +432,15 @@ pub enum EngineError {
 /// # Errors
 /// [`EngineError`] with the reason.
 pub fn event_driven(system: &HybridSystem, options: &Options) -> Result<Response, EngineError> {
-    let states = states::States::of(system);
-    match linear::attempt(system, options, &states)? {
-        linear::Attempt::Solved(response) => Ok(*response),
-        linear::Attempt::Open => march::march(system, options, states),
-    }
+    budget::within(|| {
+        let states = states::States::of(system);
+        let mut response = match linear::attempt(system, options, &states)? {
+            linear::Attempt::Solved(response) => *response,
+            linear::Attempt::Open => march::march(system, options, states)?,
+        };
+        residual_bound::enter(system, options, &mut response);
+        Ok(response)
+    })
 }
 
 /// True where it is proved, without a simulation, that no particle leaves its floor in the run: it is then in closed form, and
@@ -422,7 +449,7 @@ pub fn event_driven(system: &HybridSystem, options: &Options) -> Result<Response
 /// # Errors
 /// [`EngineError`] with the reason.
 pub fn is_linear(system: &HybridSystem, options: &Options) -> Result<bool, EngineError> {
-    let attempt = linear::attempt(system, options, &states::States::of(system))?;
+    let attempt = budget::within(|| linear::attempt(system, options, &states::States::of(system)))?;
     Ok(matches!(attempt, linear::Attempt::Solved(_)))
 }
 
@@ -432,7 +459,7 @@ pub fn is_linear(system: &HybridSystem, options: &Options) -> Result<bool, Engin
 /// # Errors
 /// [`EngineError`] with the reason.
 pub fn steady_state(system: &HybridSystem) -> Result<Option<SteadyState>, EngineError> {
-    linear::steady_state(system)
+    budget::within(|| linear::steady_state(system))
 }
 
 /// Runs a system with the study's scheme: exact propagators of one time step, s, the contact state checked once a step.
@@ -440,5 +467,5 @@ pub fn steady_state(system: &HybridSystem) -> Result<Option<SteadyState>, Engine
 /// # Errors
 /// [`EngineError`] with the reason.
 pub fn fixed_step(system: &HybridSystem, options: &Options, time_step: f64) -> Result<Response, EngineError> {
-    fixed::run(system, options, time_step)
+    budget::within(|| fixed::run(system, options, time_step))
 }

@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 
 use serde::{Deserialize, Serialize};
 
+use crate::dynamics::Limit;
 use crate::measure::{EnergySpec, Measure, Settings, ShapeSpec, SolverChoice, TraceSpec};
 use crate::scene::{Assumption, Assumptions, Parameter, ParameterValue, Recipe, RecipeError};
 
@@ -59,6 +60,9 @@ pub struct Experiment {
     pub solvers: Vec<SolverChoice>,
     /// How a case is run and averaged.
     pub settings: Settings,
+    /// The most that a row may take; no number depends on it.
+    #[serde(default, skip_serializing_if = "is_usual")]
+    pub limit: Limit,
     /// An inner maximisation over one more parameter: the row then holds the maximum and where it lies.
     pub maximise: Option<Maximise>,
     /// Sweeps whose curves get more points where they bend; the cases hold the points that they start with.
@@ -198,6 +202,10 @@ impl Experiment {
     pub fn figures_json(&self) -> serde_json::Value {
         json(&self.figures)
     }
+}
+
+fn is_usual(limit: &Limit) -> bool {
+    *limit == Limit::default()
 }
 
 /// Plain data with text keys always has a JSON form.

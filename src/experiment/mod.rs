@@ -12,6 +12,7 @@ mod diagnostic;
 mod edit;
 mod excitation;
 mod figure;
+mod limit;
 mod line;
 mod load;
 mod map;
@@ -41,6 +42,7 @@ pub use definition::{
 };
 pub use diagnostic::{Place, Problem, Problems};
 pub(crate) use edit::{Written, set_keys};
+pub use limit::{NoLimit, RowLimit};
 pub use line::line_of;
 pub use load::{load_assumptions, load_experiment};
 pub use optimise::{Candidate, Goal, Landscape, Optimise, Search, SearchKind, SearchSpacing};

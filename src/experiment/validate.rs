@@ -5,6 +5,7 @@
 
 use std::collections::BTreeSet;
 
+use crate::dynamics::Limit;
 use crate::measure::Measure;
 use crate::scene::{Assumption, Assumptions, Parameter, ParameterValue, Recipe};
 
@@ -13,6 +14,7 @@ use super::columns::{Columns, ENERGIES, HISTORIES, shape_lists};
 use super::definition::{Case, Experiment, ExperimentId, Maximise, Source};
 use super::diagnostic::{Findings, Problems, Span};
 use super::figure::FigureReader;
+use super::limit::read_limit;
 use super::optimise::Optimise;
 use super::optimise_reader::{OptimiseReader, ReadOptimise};
 use super::quantity::Dimension;
@@ -56,6 +58,7 @@ struct ExperimentReader<'t> {
 struct Run {
     solvers: Vec<SolverChoice>,
     settings: Settings,
+    limit: Limit,
     moved: Option<BTreeSet<Assumption>>,
 }
 
@@ -154,6 +157,7 @@ impl<'t> ExperimentReader<'t> {
             cases,
             swept: sweep.swept,
             settings: run.settings,
+            limit: run.limit,
             moved: run.moved,
             maximise,
             refined: sweep.refined.into_iter().map(|(refinement, _)| refinement).collect(),
@@ -319,6 +323,7 @@ impl<'t> ExperimentReader<'t> {
             _ => one_or_more(node, self.findings, |node| word::<Assumption>(node, "assumption", self.findings))
                 .map(|names| names.into_iter().collect()),
         });
+        let limit = fields.optional("limit", |node| read_limit(node, self.findings));
         fields.close()?;
         let usual = Run::default();
         Some(Run {
@@ -329,6 +334,7 @@ impl<'t> ExperimentReader<'t> {
                 round_period_to: round_period_to?,
                 ensemble: ensemble?.unwrap_or(usual.settings.ensemble),
             },
+            limit: limit?.unwrap_or_default(),
             moved: moved?,
         })
     }
@@ -408,6 +414,7 @@ impl Default for Run {
         Self {
             solvers: vec![SolverChoice::EventDriven],
             settings: Settings { skip: 25, average: 100, round_period_to: None, ensemble: 32 },
+            limit: Limit::default(),
             moved: None,
         }
     }

@@ -12,6 +12,7 @@ use super::energy::Energies;
 use super::history::{History, columns};
 use super::reading::Reading;
 use super::shape::{self, Shape};
+use super::undefined::in_range;
 use super::{EvaluateError, Evaluated, Measure, Measured, Rigour, TraceColumn};
 use crate::dynamics::{EngineError, HybridSystem, Method, Options, Proof, Response, TraceRequest, event_driven};
 use crate::measure::{EnergySpec, Settings, ShapeOf, ShapeSpec, SolverChoice, TraceSpec};
@@ -134,7 +135,8 @@ impl<'a> Prepared<'a> {
         let request = Request { measures: self.measures, trace: None, energies: None, shape: None, rigour };
         let Self { recipe, assumptions, settings, .. } = self;
         let case = Case { recipe, assumptions, settings, request: &request, scene: &scene };
-        case.run(&system, self.reference.as_ref(), self.solver, &request.options(settings))
+        let evaluated = case.run(&system, self.reference.as_ref(), self.solver, &request.options(settings))?;
+        in_range(&scene, self.measures, evaluated)
     }
 }
 
@@ -161,7 +163,7 @@ pub fn evaluate(
     }
     let plain = request.options(settings);
     let reference = if request.needs_undamped() { Some(solve(&compile(&bare)?, &plain, solver)?) } else { None };
-    case.run(&system, reference.as_ref(), solver, &plain)
+    in_range(&scene, request.measures, case.run(&system, reference.as_ref(), solver, &plain)?)
 }
 
 impl Case<'_> {

@@ -15,6 +15,7 @@ mod reading;
 mod request;
 mod shape;
 mod trial;
+mod undefined;
 
 pub use evaluate::{Prepared, Request, evaluate};
 pub use request::{EnergySpec, Settings, ShapeOf, ShapeSpec, SolverChoice, TraceSpec};
@@ -22,6 +23,7 @@ pub use trial::Trial;
 
 use crate::dynamics::{EngineError, Proof};
 use crate::scene::{CompileError, RecipeError};
+use crate::text::words;
 
 /// What can be measured. The same word in YAML (`velocity_ratio`) and as a table column.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
@@ -221,6 +223,14 @@ pub enum EvaluateError {
     /// A measure of a run that was not made: a mistake of this program.
     #[error("{0:?} needs a run that was not made")]
     NoRun(Measure),
+    /// A number that floating point cannot hold, or that came of such numbers.
+    #[error("`{name}` leaves the range of numbers: {value}", name = words::of_key(measure))]
+    OutOfRange {
+        /// Which measure.
+        measure: Measure,
+        /// What came out.
+        value: f64,
+    },
     /// A measure of another excitation.
     #[error("{measure:?} is measured under {excitation}")]
     NotUnder {

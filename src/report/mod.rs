@@ -10,6 +10,7 @@ mod committed;
 pub(crate) mod comparison;
 mod console;
 mod diff;
+mod doubts;
 mod explain;
 mod explanations;
 mod figures;
@@ -38,6 +39,7 @@ pub use committed::{Departure, How, departures};
 pub use console::summary;
 
 pub use diff::{Detail, diff};
+pub use doubts::doubts;
 pub use explain::{EntryView, MoveView, explain};
 pub use explanations::{Trial, entry, explanations, untried};
 pub use figures::figure_name;

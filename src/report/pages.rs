@@ -11,8 +11,10 @@ use super::verdicts::Judgement;
 use super::views;
 use crate::atomic::{self, FileError};
 use crate::experiment::FigureSpec;
+use crate::figure::FigureError;
 use crate::study::Study;
 use crate::study::{FileHash, Item, Publication, Record, record_name, table_name};
+use crate::table::{Table, UNDEFINED};
 
 /// The index of all pages.
 const INDEX: &str = "reports/README.md";
@@ -141,7 +143,7 @@ fn draw<'a>(
             let id = experiment.id.0.as_str();
             let bytes =
                 judgement.tables.get(id).ok_or_else(|| "its table cannot be read".to_owned()).and_then(|table| {
-                    png(experiment, figure, table, study.references.get(id)).map_err(|error| error.to_string())
+                    png(experiment, figure, table, study.references.get(id)).map_err(|error| in_words(&error, table))
                 });
             (id, *figure, bytes)
         })
@@ -151,6 +153,15 @@ fn draw<'a>(
         by_id.entry(id).or_default().push((figure, bytes));
     }
     by_id
+}
+
+/// Why there is no figure; where all its numbers are undefined, that is why.
+fn in_words(error: &FigureError, table: &Table) -> String {
+    let undefined = table.texts(UNDEFINED).and_then(|cells| cells.iter().find(|cell| !cell.is_empty()));
+    match (error, undefined) {
+        (FigureError::Nothing { .. }, Some(why)) => format!("{error}; {why}"),
+        _ => error.to_string(),
+    }
 }
 
 fn write_page(

@@ -4,6 +4,7 @@ use crate::table::Table;
 use crate::text::number::{quantity, significant};
 use crate::text::words;
 
+use super::doubts;
 use super::markdown::{Align, MarkdownTable, counted, escaped};
 
 /// The section on an experiment's page.
@@ -44,8 +45,11 @@ pub(super) fn section(table: &Table) -> String {
             "{runs} one assumption moved to an end of its range; only the sensitivity (u_input) uses them.\n\n"
         );
     }
+    if solvers(&baseline).iter().any(|solver| solver.starts_with("fixed_step")) {
+        text += "The residuals of a fixed step are the error of the step itself: contacts are noticed up to a step late.\n\n";
+    }
     text += &failures(table);
-    text
+    text + &doubts::section(table)
 }
 
 /// The solvers of the rows, in their order.

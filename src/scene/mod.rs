@@ -221,6 +221,17 @@ pub enum Excitation {
 }
 
 impl Excitation {
+    /// It does not move anything.
+    #[must_use]
+    pub fn is_silent(&self) -> bool {
+        match self {
+            Self::Harmonic { force, .. } => *force == 0.0,
+            Self::SingleImpulse { impulse, .. }
+            | Self::ImpulseTrain { impulse, .. }
+            | Self::PulseTrain { impulse, .. } => *impulse == 0.0,
+        }
+    }
+
     /// The forcing cycle, s.
     #[must_use]
     pub fn period(&self) -> f64 {

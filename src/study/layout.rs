@@ -138,7 +138,11 @@ fn read_text(path: &Path) -> Result<Vec<u8>, FileError> {
     let mut bytes = Vec::with_capacity(usize::try_from(length).unwrap_or(0) + 1);
     file.take(LONGEST_TEXT + 1).read_to_end(&mut bytes).map_err(fail)?;
     if bytes.len() as u64 > LONGEST_TEXT {
-        return Err(fail(std::io::Error::other(format!("it is longer than {} MiB", LONGEST_TEXT >> 20))));
+        let length = fs::metadata(path).map_or(LONGEST_TEXT, |meta| meta.len());
+        let (length, most) = (length.div_ceil(1024), LONGEST_TEXT >> 10);
+        return Err(fail(std::io::Error::other(format!(
+            "it has {length} KiB, and {most} KiB are the most that is read"
+        ))));
     }
     Ok(bytes)
 }

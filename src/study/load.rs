@@ -4,6 +4,7 @@ use super::layout::{ASSUMPTIONS, Texts};
 use crate::experiment::{
     AssumptionSheet, Experiment, ExperimentId, IdError, Problems, parse_assumptions, parse_experiment,
 };
+use crate::text::utf8::{NotUtf8, decode};
 
 /// The experiments of a study with the assumptions that they share.
 #[derive(Debug, Default)]
@@ -49,8 +50,13 @@ pub enum Refused {
         error: IdError,
     },
     /// It is not a text.
-    #[error("{0}: this is not UTF-8 text")]
-    Encoding(String),
+    #[error("{file}: this is {error}")]
+    Encoding {
+        /// Which file.
+        file: String,
+        /// The first bad byte.
+        error: NotUtf8,
+    },
     /// Another ending than the one that is looked for would be overlooked in silence.
     #[error("{0}: rename it to end in .yaml")]
     Ending(String),
@@ -70,7 +76,9 @@ impl Refused {
     pub fn file(&self) -> &str {
         match self {
             Self::Text(problems) => &problems.file,
-            Self::Name { file, .. } | Self::Encoding(file) | Self::Ending(file) | Self::Twice { file, .. } => file,
+            Self::Name { file, .. } | Self::Encoding { file, .. } | Self::Ending(file) | Self::Twice { file, .. } => {
+                file
+            }
         }
     }
 }
@@ -121,6 +129,6 @@ fn identify(file: &str, known: &[Source]) -> Result<ExperimentId, Refused> {
     }
 }
 
-fn text<'a>(file: &str, bytes: &'a [u8]) -> Result<&'a str, Refused> {
-    std::str::from_utf8(bytes).map_err(|_| Refused::Encoding(file.into()))
+pub(super) fn text<'a>(file: &str, bytes: &'a [u8]) -> Result<&'a str, Refused> {
+    decode(bytes).map_err(|error| Refused::Encoding { file: file.into(), error })
 }

@@ -74,6 +74,12 @@ pub(super) fn mean(wanted: &[Measure], measures: &[Measure], each: &[Evaluated])
         proof: Proof {
             momentum_residual: worst(|proof| proof.momentum_residual),
             energy_residual: worst(|proof| proof.energy_residual),
+            // One that does not close is enough.
+            residual_bound: each
+                .iter()
+                .filter(|one| !one.proof.is_balanced())
+                .map(|one| one.proof.residual_bound)
+                .fold(f64::INFINITY, f64::min),
             events: each.iter().map(|one| one.proof.events).sum(),
             smallest_margin: each.iter().map(|one| one.proof.smallest_margin).fold(f64::INFINITY, f64::min),
             ties: each.iter().map(|one| one.proof.ties).sum(),

@@ -4,15 +4,18 @@
 //! draws or judges: verdicts, figures and reports are made from the tables afterwards.
 
 mod canonical;
+mod doubt;
 mod earlier;
 mod evaluate;
 mod event;
 mod extent;
+mod forecast;
 mod gather;
 mod job;
 mod journal;
 mod known_rows;
 mod layout;
+mod limited;
 mod load;
 mod machine;
 mod maximise;
@@ -42,6 +45,7 @@ pub use canonical::{Change, canonical, changes, fingerprint};
 pub use evaluate::{Array, Engine, Evaluate, Simulation};
 pub use event::{Event, EventHandler, IgnoreEvents};
 pub use extent::Extent;
+pub use forecast::forecast;
 pub use gather::{GatherError, gather};
 pub use job::runs_of_a_row;
 pub use known_rows::KnownRows;

@@ -4,9 +4,11 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use rayon::prelude::*;
 
+use super::load::text;
 use crate::experiment::{AssumptionSheet, Calibration, parse_calibration};
 use crate::reference::{Check, ReferenceFile, Role, parse_reference};
 use crate::study::{Item, Layout, Loaded, Refused, Sensitivity, Texts};
+use crate::text::utf8::decode;
 
 /// Everything that was read, and the plan.
 #[derive(Debug)]
@@ -51,6 +53,7 @@ impl Unread {
             Self::Experiment(Refused::Text(problems)) => {
                 problems.list.iter().find_map(|problem| problem.place).and_then(|place| u64::try_from(place.line).ok())
             }
+            Self::Experiment(Refused::Encoding { error, .. }) => u64::try_from(error.line).ok(),
             Self::Experiment(_) => None,
             Self::Reference { problem, .. } => {
                 let digits: String = problem.strip_prefix("line ")?.chars().take_while(char::is_ascii_digit).collect();
@@ -133,8 +136,7 @@ fn names(id: &str, entry: &str) -> bool {
 fn calibrations(texts: &Texts, unread: &mut Vec<Unread>) -> BTreeMap<String, Calibration> {
     let mut calibrations = BTreeMap::new();
     for (file, bytes) in texts.files.iter().filter(|(file, _)| file.starts_with("calibrations/")) {
-        let read = std::str::from_utf8(bytes).map_err(|_| Refused::Encoding(file.clone()));
-        match read.and_then(|text| parse_calibration(file, text).map_err(Refused::Text)) {
+        match text(file, bytes).and_then(|text| parse_calibration(file, text).map_err(Refused::Text)) {
             Ok(calibration) => drop(calibrations.insert(stem(file).to_owned(), calibration)),
             Err(refused) => unread.push(refused.into()),
         }
@@ -161,9 +163,12 @@ fn references(texts: &Texts, unread: &mut Vec<Unread>) -> BTreeMap<String, Refer
             refuse("rename it to end in .yaml".into());
             continue;
         };
-        let Ok(text) = std::str::from_utf8(bytes) else {
-            refuse("this is not UTF-8 text".into());
-            continue;
+        let text = match decode(bytes) {
+            Ok(text) => text,
+            Err(error) => {
+                refuse(format!("line {}: this is {error}", error.line));
+                continue;
+            }
         };
         match parse_reference(id, text) {
             Ok(_) if references.contains_key(id) => {

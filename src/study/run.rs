@@ -15,6 +15,7 @@ use super::evaluate::Evaluate;
 use super::event::{Event, EventHandler};
 use super::job::{self, cost};
 use super::known_rows::KnownRows;
+use super::limited::Limited;
 use super::optimise::run_optimisation;
 use super::record::Failures;
 use super::refine;
@@ -22,6 +23,7 @@ use super::shard::Shard;
 use super::spent::{Meter, Metered, Spent};
 use super::variant::Variant;
 use super::work::{Work, outcome};
+use crate::dynamics::Limit;
 use crate::experiment::{Case, Experiment};
 use crate::table::Table;
 
@@ -38,6 +40,8 @@ pub struct Task<'a> {
     pub journal: Option<&'a Path>,
     /// The shard to which to keep; `None`: all of it. Of an experiment that is not divided the shard does all.
     pub shard: Option<Shard>,
+    /// The most that a row may take.
+    pub limit: Limit,
     /// Rows that need not be simulated; `None`: all are.
     pub known: Option<&'a KnownRows>,
 }
@@ -46,7 +50,8 @@ impl<'a> Task<'a> {
     /// All of it, with nothing known and nothing kept on the way.
     #[must_use]
     pub fn new(experiment: &'a Experiment, variants: &'a [Variant], metadata: &'a BTreeMap<String, String>) -> Self {
-        Self { experiment, variants, metadata, journal: None, shard: None, known: None }
+        let limit = experiment.limit;
+        Self { experiment, variants, metadata, journal: None, shard: None, limit, known: None }
     }
 }
 
@@ -106,7 +111,9 @@ pub fn run<T: Send + Sync>(
             // Their rounds wait for one another: they begin first.
             for index in optimised {
                 scope.spawn_fifo(move |_| {
-                    let finished = run_optimisation(tasks[index], &engine(index), handler);
+                    let engine = engine(index);
+                    let limited = Limited::each(&engine, tasks[index].limit);
+                    let finished = run_optimisation(tasks[index], &limited, handler);
                     hand_over(index, undivided(tasks[index], finished));
                 });
             }

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use super::doubt;
 use super::job::Job;
 use super::maximise::Place;
 use super::record::Failures;
@@ -75,12 +76,16 @@ pub(super) fn table(
     }
     columns.push(Column::new("momentum_residual", floats(&|row| row.evaluated.proof.momentum_residual)));
     columns.push(Column::new("energy_residual", floats(&|row| row.evaluated.proof.energy_residual)));
+    let proofs = outcomes.iter().map(|outcome| outcome.as_ref().ok().map(|row| row.evaluated.proof));
+    columns.extend(doubt::residual_bounds(proofs));
     columns.push(Column::new("events", counts(&|row| row.evaluated.proof.events)));
     columns.push(Column::new("smallest_margin", floats(&|row| row.evaluated.proof.smallest_margin)).with_unit("m"));
     columns.push(Column::new("ties", counts(&|row| row.evaluated.proof.ties)));
     columns.push(Column::new("chaotic", counts(&|row| u64::from(row.evaluated.chaotic))));
     columns.push(Column::new("members", counts(&|row| u64::from(row.evaluated.members))));
     columns.push(Column::new("failure", texts(&|row| outcomes[row].as_ref().err().cloned().unwrap_or_default())));
+    let measured = outcomes.iter().map(|outcome| outcome.as_ref().ok().map(|row| row.evaluated.measured.as_slice()));
+    columns.extend(doubt::undefined(&experiment.measures, measured));
     columns.extend(histories(jobs, outcomes));
     Table { columns, metadata, fingerprints }
 }

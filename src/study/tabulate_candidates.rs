@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use super::doubt;
 use super::record::Failures;
 use super::variant::Variant;
 use crate::experiment::{Experiment, Goal, Optimise};
@@ -108,6 +109,7 @@ pub(super) fn table(
     columns.extend(outcome(experiment, optimise, candidates));
     columns.push(texts("stopped", &|it| it.stopped.clone()));
     columns.extend(proof(candidates));
+    columns.extend(doubt::residual_bounds(candidates.iter().map(|it| it.outcome.as_ref().ok().map(|one| one.proof))));
     columns.push(texts("failure", &|it| it.failure().into()));
     columns.extend(lists(optimise, candidates));
     Table { columns, metadata, ..Table::default() }

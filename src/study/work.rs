@@ -8,6 +8,7 @@ use rayon::prelude::*;
 use super::evaluate::{Evaluate, Simulation, evaluate_guarded};
 use super::event::{Event, EventHandler};
 use super::job::{Job, evaluations, jobs, keeps_trace, measures_need_trace};
+use super::limited::Limited;
 use super::maximise::maximum;
 use super::mean::Averaging;
 use super::row_fingerprint::RowFingerprints;
@@ -119,7 +120,8 @@ pub(super) fn outcome(
         description.fetch_add(1, Ordering::Relaxed);
         handler.on_event(&Event::Simulated { experiment: &experiment.id, count: 1 });
     };
-    let outcome = simulate(experiment, case, &task.variants[job.variant], job, evaluate, &done);
+    let limited = Limited::row(evaluate, task.limit);
+    let outcome = simulate(experiment, case, &task.variants[job.variant], job, &limited, &done);
     let rest = evaluations(experiment, job).saturating_sub(description.into_inner() as u64);
     handler.on_event(&Event::Simulated { experiment: &experiment.id, count: rest });
     outcome

@@ -21,7 +21,7 @@ use polars_arrow::io::ipc::write::{default_ipc_fields, schema_to_bytes};
 use serde::{Deserialize, Serialize};
 
 use super::{Column, Data, Table, TableError, fingerprint};
-use crate::atomic::{self, FileError};
+use crate::atomic::{self, FileError, from_here};
 
 /// Raised when the content of the `shotdamp` key changes its meaning.
 const FORMAT: u32 = 1;
@@ -205,7 +205,7 @@ pub fn write(table: &Table, path: &Path) -> Result<Vec<u8>, ParquetError> {
 /// [`ParquetError`] if the file is absent, damaged or not a table of this program.
 pub fn read(path: &Path) -> Result<Table, ParquetError> {
     let bytes = fs::read(path).map_err(|source| FileError::new("read", path, source))?;
-    from_bytes(bytes, &path.display().to_string())
+    from_bytes(bytes, &from_here(path))
 }
 
 /// Where the digits of the seal begin. The metadata stands at the end, behind all cells, so the last mark is the seal's.

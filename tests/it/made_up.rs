@@ -1,5 +1,6 @@
 //! An experiment and tables made by hand, for rooms that only read them.
 
+use shotdamp::dynamics::Limit;
 use shotdamp::experiment::{Axis, AxisScale, Case, Drawing, Experiment, ExperimentId, FigureSpec, Panel, Source};
 use shotdamp::measure::Measure;
 use shotdamp::measure::{Settings, SolverChoice};
@@ -55,6 +56,7 @@ pub fn limit_stop() -> Experiment {
         swept: vec![Parameter::ForceRatio, Parameter::Stop],
         solvers: vec![SolverChoice::EventDriven, SolverChoice::FixedStep { time_step: 1e-4 }],
         settings: Settings { skip: 25, average: 100, round_period_to: None, ensemble: 32 },
+        limit: Limit::default(),
         maximise: None,
         refined: Vec::new(),
         mean_over: Vec::new(),

@@ -4,6 +4,7 @@ use super::Run;
 use super::stretch::Tally;
 use super::vector::Vector;
 use crate::dynamics::audit::State;
+use crate::dynamics::budget;
 use crate::dynamics::contact::Side;
 use crate::dynamics::system::{Event, EventKind, Law, dot};
 use crate::dynamics::trace::Sample;
@@ -12,6 +13,7 @@ use crate::dynamics::{CycleRates, EngineError};
 impl<V: Vector> Run<'_, V> {
     pub(super) fn record(&mut self, particle: usize, kind: EventKind, approach: f64, departure: f64) {
         self.response.proof.events += 1;
+        budget::count_event();
         if self.options.averages(self.cycle) {
             self.response.counts.add(kind);
         }

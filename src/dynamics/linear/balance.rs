@@ -5,6 +5,7 @@ use super::cycle::{Affine, Cycle, leave};
 use super::moments::Moments;
 use crate::dynamics::audit::{Audit, Passed, State};
 use crate::dynamics::block::pairs;
+use crate::dynamics::budget;
 use crate::dynamics::flow::Flow;
 use crate::dynamics::integral::GAUSS;
 use crate::dynamics::system::{HybridSystem, Law, dot};
@@ -25,7 +26,7 @@ pub(super) fn pass(system: &HybridSystem, flow: &Flow, answer: &[f64], cycle: &C
         now = start.moved(&segment.flow);
         let mut passed = Passed { position: vec![0.0; n], duration: at.count * segment.length, ..Passed::default() };
         let mut t0 = 0.0;
-        while t0 < segment.length {
+        while t0 < segment.length && !budget::spend(4) {
             let there = start.moved(&Affine::flow(flow, t0));
             let squares: Vec<[f64; 4]> =
                 pairs(flow.own).zip(&there.second).filter(|((k, l), _)| k == l).map(|(_, moment)| *moment).collect();

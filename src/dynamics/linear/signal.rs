@@ -3,6 +3,7 @@
 use super::cycle::{Affine, Cycle, drive_at, product, times};
 use super::moments::{Moments, outer};
 use crate::dynamics::block::{Phase, pairs, transposed};
+use crate::dynamics::budget;
 use crate::dynamics::flow::{DrivePhase, Flow};
 use crate::dynamics::gains::{Closed, Gains};
 use crate::dynamics::integral::{GAUSS, Integrals};
@@ -149,7 +150,7 @@ struct PhaseMoments {
 fn quadrature(flow: &Flow, row: &Row, start: &Moments, drive: Option<Phase>, length: f64) -> Integrals {
     let mut sum = Integrals::default();
     let mut t0 = 0.0;
-    while t0 < length {
+    while t0 < length && !budget::spend(4) {
         let now = row.moments(&start.moved(&Affine::flow(flow, t0)), None);
         let h = panel(flow, &now, drive).min(length - t0);
         for [x, weight] in GAUSS {

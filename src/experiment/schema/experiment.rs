@@ -2,7 +2,9 @@
 
 use serde_json::{Map, Value, json};
 
-use super::parts::{Object, any_of, count, list, one_or_more, quantity, reference, text, word, words_of};
+use super::parts::{
+    NUMBER, Object, PREFIX, any_of, count, list, one_or_more, quantity, reference, text, word, words_of,
+};
 use super::{figure, optimise, scene, sweep};
 use crate::experiment::quantity::Dimension;
 use crate::experiment::validate::MOST_CYCLES;
@@ -91,7 +93,22 @@ fn run() -> Value {
                 vec![count("Members", "members", 0, 10_000), word("none")],
             ),
         )
+        .optional("limit", limit())
         .optional("sensitivity", any_of("Assumptions that are moved, or none", vec![sensitivity, word("none")]))
+        .schema()
+}
+
+fn limit() -> Value {
+    let events = json!({"description": "Events of a simulation; 1e8 unless stated", "type": "number", "minimum": 1, "maximum": 1e15});
+    let time = json!({
+        "description": "Processor time of a row; 10 min unless stated",
+        "type": "string",
+        "pattern": format!(r"^\s*{NUMBER}\s*(h|min|{PREFIX}s)\s*$"),
+        "examples": ["10 min"],
+    });
+    Object::new("The most that a row may take; one that reaches it has failed, with the reason, and the others go on")
+        .optional("events", events)
+        .optional("time", time)
         .schema()
 }
 
