@@ -25,6 +25,7 @@ mod other_pages;
 mod page;
 mod pages;
 mod proof;
+mod prose;
 mod publication;
 mod ro_crate;
 mod run;
