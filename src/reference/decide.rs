@@ -66,7 +66,11 @@ fn trend(claim: &Trend, view: &View<'_>) -> Result<Decision, Absence> {
         .zip(listed(&numbers))
         .enumerate()
         .map(|(i, (level, number))| {
-            if i == 0 { format!("{number} ({} = {level})", symbol(&claim.along)) } else { format!("{number} ({level})") }
+            if i == 0 {
+                format!("{number} ({} = {level})", symbol(&claim.along))
+            } else {
+                format!("{number} ({level})")
+            }
         })
         .collect();
     let mut tally = Tally::new();
@@ -150,8 +154,10 @@ fn equal(claim: &Equal, view: &View<'_>) -> Result<Decision, Absence> {
 
 /// Numbers and how far apart they are: `161.9 rad/s and 162.0 rad/s, 0.07 % apart`, `3.375, the same to the last bit`.
 fn difference(values: &[Extracted], within: Within) -> String {
-    let (low, high) =
-        values.iter().map(|one| one.value).fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
+    let (low, high) = values
+        .iter()
+        .map(|one| one.value)
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
     if let (Some(first), true) = (values.first(), low == high) {
         return format!("{}, the same to the last bit", with_unit(first.value, 4, &first.unit));
     }
@@ -220,7 +226,8 @@ fn level(claim: &Level, view: &View<'_>, side: f64) -> Result<Decision, Absence>
         tally.require(side * (cell.value - claim.level) + claim.slack, cell.run, || {
             let (extreme, bound) = if side > 0.0 { ("lowest", "at least") } else { ("highest", "at most") };
             let shown = told_apart(&[(cell.value, unit), (claim.level, unit)]);
-            let of = if cells.len() == 1 { String::new() } else { format!(", the {extreme} of {} points", cells.len()) };
+            let of =
+                if cells.len() == 1 { String::new() } else { format!(", the {extreme} of {} points", cells.len()) };
             format!("{}{of} (required: {bound} {})", shown[0], shown[1])
         });
     }
@@ -352,7 +359,9 @@ fn path_monotone(claim: &PathMonotone, view: &View<'_>) -> Result<Decision, Abse
     let (range, back) = (line.range(), line.largest_fall().value);
     let mut tally = Tally::new();
     let rise = line.y[line.y.len() - 1].value - line.y[0].value;
-    tally.require_strictly(rise, 0.0, || format!("changes by {} from end to end", with_unit(claim.direction.sign() * rise, 3, &line.unit)));
+    tally.require_strictly(rise, 0.0, || {
+        format!("changes by {} from end to end", with_unit(claim.direction.sign() * rise, 3, &line.unit))
+    });
     tally.require(claim.slack * range - back, 0.0, || {
         format!("steps back by up to {} of the range ({} allowed)", percent(back / range), percent(claim.slack))
     });

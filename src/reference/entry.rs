@@ -236,7 +236,9 @@ pub fn parse_reference(experiment: &str, text: &str) -> Result<ReferenceFile, Ve
         let names = |name: &String| !name.contains('/') && !ids.contains(name);
         for name in entry.prose().placeholders().filter_map(|one| one.entry.clone()).filter(names) {
             let (line, id) = (entry.line, &entry.id);
-            problems.push(format!("line {line}, column 1: entry `{id}` has a placeholder of `{name}`, which is no entry here"));
+            problems.push(format!(
+                "line {line}, column 1: entry `{id}` has a placeholder of `{name}`, which is no entry here"
+            ));
         }
     }
     if problems.is_empty() { Ok(ReferenceFile { experiment: experiment.into(), entries }) } else { Err(problems) }

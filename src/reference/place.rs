@@ -176,7 +176,12 @@ pub(crate) fn grows_towards(claim: &GrowsTowards, view: &View<'_>) -> Result<Dec
             }
             let u = if same(from.cell.value, to.cell.value) { 0.0 } else { libm::hypot(from.cell.run, to.cell.run) };
             tally.require(claim.slack * range + rise, u, || {
-                format!("falls back by {} of the range {} ({} allowed)", percent(-rise / range), way(), percent(claim.slack))
+                format!(
+                    "falls back by {} of the range {} ({} allowed)",
+                    percent(-rise / range),
+                    way(),
+                    percent(claim.slack)
+                )
             });
         }
         let by_distance = |spot: &&Spot| map.distance_to_target(spot);

@@ -12,8 +12,7 @@
 use super::verdict::Judged;
 
 /// Letters that units are made of.
-const UNITS: [&str; 13] =
-    ["rad/s", "m/(N s)", "mm/s", "m/s", "1/kg", "N s", "mm", "ms", "Hz", "%", "m", "s", "g"];
+const UNITS: [&str; 13] = ["rad/s", "m/(N s)", "mm/s", "m/s", "1/kg", "N s", "mm", "ms", "Hz", "%", "m", "s", "g"];
 
 /// A text in pieces.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]

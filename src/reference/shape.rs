@@ -18,7 +18,11 @@ pub(crate) fn monotone(claim: &Monotone, view: &View<'_>) -> Result<Decision, Ab
     line.x = line.x[part.clone()].to_vec();
     line.y = line.y[part].to_vec();
     if line.x.len() < 2 {
-        return Err(Absence::Nowhere(format!("that part of the line is one point, {} = {}", symbol(&claim.over), significant(line.x[0], 4))));
+        return Err(Absence::Nowhere(format!(
+            "that part of the line is one point, {} = {}",
+            symbol(&claim.over),
+            significant(line.x[0], 4)
+        )));
     }
     let line = if claim.direction == Direction::Increasing { line } else { line.inverted() };
     let mut tally = Tally::new();

@@ -39,9 +39,8 @@ pub(crate) fn with_unit(x: f64, digits: usize, unit: &str) -> String {
 
 /// Numbers with their units, in so many digits that two that differ look different.
 pub(crate) fn apart(values: &[(f64, &str)]) -> Vec<String> {
-    let texts = |digits: usize| -> Vec<String> {
-        values.iter().map(|(value, unit)| with_unit(*value, digits, unit)).collect()
-    };
+    let texts =
+        |digits: usize| -> Vec<String> { values.iter().map(|(value, unit)| with_unit(*value, digits, unit)).collect() };
     let clash = |texts: &[String]| {
         let pair = |i: usize, j: usize| texts[i] == texts[j] && values[i].0 != values[j].0;
         (0..texts.len()).any(|i| (0..i).any(|j| pair(i, j)))
@@ -78,7 +77,10 @@ pub(crate) fn measured(comparison: &Comparison, published: &Printed, scale: Opti
     if let Some(scale) = scale {
         let (late, units) = (with_unit(error.abs(), 2, "s"), significant(comparison.deviation(), 2));
         let share = percent(error.abs() / scale);
-        return format!("{here}, {late} {} {datum}: {units} u_val, {share} of the time between two", side("after", "before"));
+        return format!(
+            "{here}, {late} {} {datum}: {units} u_val, {share} of the time between two",
+            side("after", "before")
+        );
     }
     match error.abs() / comparison.published.abs() {
         off if off.is_finite() && off > 0.0 => format!("{here}, {} {} {datum}", percent(off), side("above", "below")),

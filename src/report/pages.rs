@@ -11,13 +11,23 @@ use super::verdicts::Judgement;
 use super::views;
 use crate::atomic::{self, FileError};
 use crate::experiment::FigureSpec;
+use crate::figure::FigureError;
 use crate::study::Study;
 use crate::study::{FileHash, Item, Publication, Record, record_name, table_name};
 
-/// The index of all pages.
-const INDEX: &str = "reports/README.md";
 /// The verdicts for programs, within the study.
 pub const VERDICTS: &str = "reports/verdicts.json";
+
+/// Why there is no picture.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum NotDrawn {
+    /// There is nothing to draw from.
+    #[error("its table cannot be read")]
+    NoTable,
+    /// The figure does not fit the table.
+    #[error(transparent)]
+    Figure(#[from] FigureError),
+}
 
 /// What publishing did.
 #[derive(Debug, Default)]
@@ -57,20 +67,15 @@ pub fn publish(study: &Study, judgement: &Judgement, ids: &BTreeSet<&str>) -> Re
         let drawn = figures.remove(id).unwrap_or_default();
         write_page(study, judgement, page, drawn, &mut published)?;
     }
-    for (name, text) in of_the_study(study, judgement) {
-        published.written += usize::from(atomic::write_if_changed(&study.layout.path(name), text.as_bytes())?);
-        published.outputs.insert(name.into());
+    for (name, text) in views::of_the_study(study, judgement) {
+        published.written += usize::from(atomic::write_if_changed(&study.layout.path(&name), text.as_bytes())?);
+        published.outputs.insert(name);
     }
     Ok(published)
 }
 
-/// What is written of the study as a whole.
-fn of_the_study(study: &Study, judgement: &Judgement) -> [(&'static str, String); 2] {
-    [(INDEX, views::index(study, judgement)), (VERDICTS, views::verdicts(study, judgement))]
-}
-
-/// Everything that a run would write under `reports/`, by name within the study; or in words why it cannot be made.
-pub(super) fn render(study: &Study, judgement: &Judgement) -> BTreeMap<String, Result<Vec<u8>, String>> {
+/// Everything that a run would write under `reports/`, by name within the study; or why it cannot be made.
+pub(super) fn render(study: &Study, judgement: &Judgement) -> BTreeMap<String, Result<Vec<u8>, NotDrawn>> {
     let pages: Vec<Page<'_>> = study.items.iter().filter_map(|item| page(study, item)).collect();
     let mut figures = draw(study, judgement, pages.iter().flat_map(jobs));
     let mut files = BTreeMap::new();
@@ -82,7 +87,7 @@ pub(super) fn render(study: &Study, judgement: &Judgement) -> BTreeMap<String, R
         let text = views::page(study, judgement, page.item);
         files.insert(format!("{}/{id}.md", page.folder), Ok(text.into_bytes()));
     }
-    files.extend(of_the_study(study, judgement).map(|(name, text)| (name.to_owned(), Ok(text.into_bytes()))));
+    files.extend(views::of_the_study(study, judgement).into_iter().map(|(name, text)| (name, Ok(text.into_bytes()))));
     files
 }
 
@@ -125,7 +130,7 @@ fn is_drawn(study: &Study, judgement: &Judgement, page: &Page<'_>, figure: &Figu
 }
 
 /// A figure and its bytes, or why there are none.
-type Drawn<'a> = Vec<(&'a FigureSpec, Result<Vec<u8>, String>)>;
+type Drawn<'a> = Vec<(&'a FigureSpec, Result<Vec<u8>, NotDrawn>)>;
 
 /// Draws side by side; each picture is one thread's work alone.
 fn draw<'a>(
@@ -134,18 +139,18 @@ fn draw<'a>(
     jobs: impl Iterator<Item = (&'a Page<'a>, &'a FigureSpec)>,
 ) -> BTreeMap<&'a str, Drawn<'a>> {
     let jobs: Vec<_> = jobs.collect();
-    let drawn: Vec<_> = jobs
-        .par_iter()
-        .map(|(page, figure)| {
-            let experiment = &page.item.source.experiment;
-            let id = experiment.id.0.as_str();
-            let bytes =
-                judgement.tables.get(id).ok_or_else(|| "its table cannot be read".to_owned()).and_then(|table| {
-                    png(experiment, figure, table, study.references.get(id)).map_err(|error| error.to_string())
-                });
-            (id, *figure, bytes)
-        })
-        .collect();
+    let drawn: Vec<_> =
+        jobs.par_iter()
+            .map(|(page, figure)| {
+                let experiment = &page.item.source.experiment;
+                let id = experiment.id.0.as_str();
+                let bytes =
+                    judgement.tables.get(id).ok_or(NotDrawn::NoTable).and_then(|table| {
+                        png(experiment, figure, table, study.references.get(id)).map_err(NotDrawn::from)
+                    });
+                (id, *figure, bytes)
+            })
+            .collect();
     let mut by_id = BTreeMap::<&str, Drawn<'_>>::new();
     for (id, figure, bytes) in drawn {
         by_id.entry(id).or_default().push((figure, bytes));

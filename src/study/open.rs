@@ -163,9 +163,9 @@ fn lost_placeholders(
 ) -> Vec<Unread> {
     let is_lost = |id: &str| match id.split_once('/') {
         None => true,
-        Some((experiment, _)) => references
-            .get(experiment)
-            .is_some_and(|reference| reference.entries.iter().all(|entry| entry.id != id)),
+        Some((experiment, _)) => {
+            references.get(experiment).is_some_and(|reference| reference.entries.iter().all(|entry| entry.id != id))
+        }
     };
     let lost = |file: &str, prose: &Prose| -> Vec<Unread> {
         let text = texts.files.get(file).map(|bytes| String::from_utf8_lossy(bytes)).unwrap_or_default();

@@ -17,6 +17,7 @@ mod desk;
 mod diff;
 mod earlier;
 mod engine;
+mod explanations;
 mod export;
 mod faults;
 mod figure;
