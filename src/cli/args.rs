@@ -273,6 +273,7 @@ pub(super) struct StatusArgs {
 Examples:
   shotdamp check                              all verdicts; what is not as expected in full
   shotdamp check 'ch3-*' --junit verdicts.xml
+  shotdamp check --markdown summary.md        what a pull request changes
   shotdamp check --github                     in a workflow: annotations, and a summary of the step
   shotdamp check --reports                    are the committed reports those of these results?
   shotdamp check --accept ch3-limit-stop/same-below --reason \"Within the noise since the finer sweep.\"")]
@@ -285,6 +286,12 @@ pub(super) struct CheckArgs {
     /// Also write the verdicts as JUnit XML
     #[arg(long, value_name = "FILE")]
     pub junit: Option<PathBuf>,
+    /// Also write the summary that a pull request shows, as Markdown: changes against the committed verdicts first
+    #[arg(long, value_name = "FILE")]
+    pub markdown: Option<PathBuf>,
+    /// The committed verdicts; by default those of this study's reports
+    #[arg(long, value_name = "FILE", requires = "markdown")]
+    pub against: Option<PathBuf>,
     /// Print the worst as annotations for GitHub, and append to the summary of the step ($GITHUB_STEP_SUMMARY)
     #[arg(long)]
     pub github: bool,

@@ -35,6 +35,7 @@ use super::extraction::Extraction;
 use super::mode_shape::ModeShape;
 use super::predicate::Predicate;
 use super::printed::Printed;
+use super::prose::Prose;
 use super::resonance::PrintedPeak;
 use super::selection::Selection;
 use super::tube::Curve;
@@ -66,7 +67,7 @@ pub struct Entry {
     pub rows: Selection,
     /// The verdict that is expected, never [`Verdict::Missing`].
     pub expected: Verdict,
-    /// Why, where that is not [`Verdict::Reproduced`]; otherwise a note, or empty.
+    /// Why, where that is not [`Verdict::Reproduced`]; otherwise a note, or empty. With placeholders, see [`Prose`].
     pub explanation: String,
     /// Inputs that the study does not give and without which the entry cannot be judged.
     pub blocked_by: Vec<String>,
@@ -146,6 +147,13 @@ pub struct Reading {
 }
 
 impl Entry {
+    /// The explanation with its placeholders.
+    #[must_use]
+    pub fn prose(&self) -> Prose {
+        // Validation has read it; one written by `check --accept` has no placeholder.
+        Prose::parse(&self.explanation).unwrap_or_default()
+    }
+
     /// All that it reads, as an entry of `experiment`.
     #[must_use]
     pub fn readings(&self, experiment: &str) -> Vec<Reading> {
@@ -224,6 +232,15 @@ pub fn parse_reference(experiment: &str, text: &str) -> Result<ReferenceFile, Ve
     if entries.is_empty() && problems.is_empty() {
         problems.push("line 1, column 1: there is no entry".into());
     }
+    for entry in &entries {
+        let names = |name: &String| !name.contains('/') && !ids.contains(name);
+        for name in entry.prose().placeholders().filter_map(|one| one.entry.clone()).filter(names) {
+            let (line, id) = (entry.line, &entry.id);
+            problems.push(format!(
+                "line {line}, column 1: entry `{id}` has a placeholder of `{name}`, which is no entry here"
+            ));
+        }
+    }
     if problems.is_empty() { Ok(ReferenceFile { experiment: experiment.into(), entries }) } else { Err(problems) }
 }
 
@@ -279,6 +296,9 @@ impl RawEntry {
         }
         if expected != Verdict::Reproduced && !filled(&self.explanation) {
             wrong.push("expects another verdict than `reproduced` and needs an `explanation`".into());
+        }
+        if let Err(error) = Prose::parse(self.explanation.as_deref().unwrap_or_default()) {
+            wrong.push(format!("has in its `explanation` {error}"));
         }
         if expected == Verdict::Blocked && self.blocked_by.is_empty() {
             wrong.push("expects `blocked` and needs `blocked_by`: which input the study does not give".into());

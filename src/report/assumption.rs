@@ -44,17 +44,24 @@ fn unit(name: Assumption) -> &'static str {
     }
 }
 
-/// The table of assumptions on an experiment's page.
-pub(super) fn table(assumptions: &[AssumptionView]) -> String {
-    let mut table = MarkdownTable::new(&[("Assumption", Align::Left), ("Value", Align::Left), ("Why", Align::Left)]);
-    for assumption in assumptions {
-        table.row([format!("`{}`", assumption.name), assumption.value.clone(), reason(assumption)]);
+/// The assumptions on an experiment's page: their values, and where their reasons stand.
+pub(super) fn links(assumptions: &[AssumptionView], to_reports: &str) -> String {
+    if assumptions.is_empty() {
+        return String::new();
     }
-    table.finish()
+    let link =
+        |one: &AssumptionView| format!("[`{name}`]({to_reports}assumptions.md#{name}) {}", one.value, name = one.name);
+    assumptions.iter().map(link).collect::<Vec<_>>().join(" · ") + "\n\n"
 }
 
-/// The table of all assumptions with the entries that depend on them.
-pub(super) fn table_with_entries(assumptions: &[AssumptionView]) -> String {
+/// `reports/assumptions.md`: all assumptions with the entries that depend on them.
+#[must_use]
+pub fn assumptions(assumptions: &[AssumptionView]) -> String {
+    let head = "# Assumptions\n\nInputs that the study uses and does not state. [The study in one page](README.md)\n\n";
+    format!("{head}{}", table_with_entries(assumptions))
+}
+
+fn table_with_entries(assumptions: &[AssumptionView]) -> String {
     let mut table = MarkdownTable::new(&[
         ("Assumption", Align::Left),
         ("Value", Align::Left),
@@ -63,7 +70,8 @@ pub(super) fn table_with_entries(assumptions: &[AssumptionView]) -> String {
     ]);
     for assumption in assumptions {
         let used_by = if assumption.used_by.is_empty() { "none".to_owned() } else { entries(&assumption.used_by) };
-        table.row([format!("`{}`", assumption.name), assumption.value.clone(), reason(assumption), used_by]);
+        let name = format!("<a id=\"{name}\"></a>`{name}`", name = assumption.name);
+        table.row([name, assumption.value.clone(), reason(assumption), used_by]);
     }
     table.finish()
 }

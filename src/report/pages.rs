@@ -16,10 +16,38 @@ use crate::study::Study;
 use crate::study::{FileHash, Item, Publication, Record, record_name, table_name};
 use crate::table::{Table, UNDEFINED};
 
-/// The index of all pages.
-const INDEX: &str = "reports/README.md";
 /// The verdicts for programs, within the study.
 pub const VERDICTS: &str = "reports/verdicts.json";
+
+/// Why there is no picture.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum NotDrawn {
+    /// There is nothing to draw from.
+    #[error("its table cannot be read")]
+    NoTable,
+    /// The figure does not fit the table.
+    #[error(transparent)]
+    Figure(#[from] FigureError),
+    /// There is nothing to show, as no row has a number.
+    #[error("{error}; {why}")]
+    Undefined {
+        /// As the figure says it.
+        error: FigureError,
+        /// Why the numbers are undefined.
+        why: String,
+    },
+}
+
+impl NotDrawn {
+    /// The error of a figure, with the reason where its numbers are undefined.
+    fn of(error: FigureError, table: &Table) -> Self {
+        let undefined = table.texts(UNDEFINED).and_then(|cells| cells.iter().find(|cell| !cell.is_empty()));
+        match (&error, undefined) {
+            (FigureError::Nothing { .. }, Some(why)) => Self::Undefined { error, why: why.clone() },
+            _ => Self::Figure(error),
+        }
+    }
+}
 
 /// What publishing did.
 #[derive(Debug, Default)]
@@ -59,20 +87,15 @@ pub fn publish(study: &Study, judgement: &Judgement, ids: &BTreeSet<&str>) -> Re
         let drawn = figures.remove(id).unwrap_or_default();
         write_page(study, judgement, page, drawn, &mut published)?;
     }
-    for (name, text) in of_the_study(study, judgement) {
-        published.written += usize::from(atomic::write_if_changed(&study.layout.path(name), text.as_bytes())?);
-        published.outputs.insert(name.into());
+    for (name, text) in views::of_the_study(study, judgement) {
+        published.written += usize::from(atomic::write_if_changed(&study.layout.path(&name), text.as_bytes())?);
+        published.outputs.insert(name);
     }
     Ok(published)
 }
 
-/// What is written of the study as a whole.
-fn of_the_study(study: &Study, judgement: &Judgement) -> [(&'static str, String); 2] {
-    [(INDEX, views::index(study, judgement)), (VERDICTS, views::verdicts(study, judgement))]
-}
-
-/// Everything that a run would write under `reports/`, by name within the study; or in words why it cannot be made.
-pub(super) fn render(study: &Study, judgement: &Judgement) -> BTreeMap<String, Result<Vec<u8>, String>> {
+/// Everything that a run would write under `reports/`, by name within the study; or why it cannot be made.
+pub(super) fn render(study: &Study, judgement: &Judgement) -> BTreeMap<String, Result<Vec<u8>, NotDrawn>> {
     let pages: Vec<Page<'_>> = study.items.iter().filter_map(|item| page(study, item)).collect();
     let mut figures = draw(study, judgement, pages.iter().flat_map(jobs));
     let mut files = BTreeMap::new();
@@ -84,7 +107,7 @@ pub(super) fn render(study: &Study, judgement: &Judgement) -> BTreeMap<String, R
         let text = views::page(study, judgement, page.item);
         files.insert(format!("{}/{id}.md", page.folder), Ok(text.into_bytes()));
     }
-    files.extend(of_the_study(study, judgement).map(|(name, text)| (name.to_owned(), Ok(text.into_bytes()))));
+    files.extend(views::of_the_study(study, judgement).into_iter().map(|(name, text)| (name, Ok(text.into_bytes()))));
     files
 }
 
@@ -127,7 +150,7 @@ fn is_drawn(study: &Study, judgement: &Judgement, page: &Page<'_>, figure: &Figu
 }
 
 /// A figure and its bytes, or why there are none.
-type Drawn<'a> = Vec<(&'a FigureSpec, Result<Vec<u8>, String>)>;
+type Drawn<'a> = Vec<(&'a FigureSpec, Result<Vec<u8>, NotDrawn>)>;
 
 /// Draws side by side; each picture is one thread's work alone.
 fn draw<'a>(
@@ -141,10 +164,9 @@ fn draw<'a>(
         .map(|(page, figure)| {
             let experiment = &page.item.source.experiment;
             let id = experiment.id.0.as_str();
-            let bytes =
-                judgement.tables.get(id).ok_or_else(|| "its table cannot be read".to_owned()).and_then(|table| {
-                    png(experiment, figure, table, study.references.get(id)).map_err(|error| in_words(&error, table))
-                });
+            let bytes = judgement.tables.get(id).ok_or(NotDrawn::NoTable).and_then(|table| {
+                png(experiment, figure, table, study.references.get(id)).map_err(|error| NotDrawn::of(error, table))
+            });
             (id, *figure, bytes)
         })
         .collect();
@@ -156,13 +178,6 @@ fn draw<'a>(
 }
 
 /// Why there is no figure; where all its numbers are undefined, that is why.
-fn in_words(error: &FigureError, table: &Table) -> String {
-    let undefined = table.texts(UNDEFINED).and_then(|cells| cells.iter().find(|cell| !cell.is_empty()));
-    match (error, undefined) {
-        (FigureError::Nothing { .. }, Some(why)) => format!("{error}; {why}"),
-        _ => error.to_string(),
-    }
-}
 
 fn write_page(
     study: &Study,

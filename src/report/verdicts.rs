@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use rayon::prelude::*;
 
+use super::prose;
 use crate::reference::{Judged, ReferenceFile, SelfTestFailure, TableState, Tables, judge, self_test};
 use crate::study::Study;
 use crate::study::{Item, State, table_name};
@@ -33,7 +34,8 @@ pub fn judge_all(study: &Study) -> Judgement {
     let tables = tables(&states);
     let fitted = study.fitted();
     let verdict = |(id, file): (&String, &ReferenceFile)| (id.clone(), judged(study, file, &tables, &fitted));
-    let verdicts = study.references.iter().map(verdict).collect();
+    let mut verdicts = study.references.iter().map(verdict).collect();
+    prose::fill(&mut verdicts);
     let tables = states
         .into_iter()
         .filter_map(|(id, state)| match state {

@@ -1,9 +1,11 @@
-//! What the report writes from, gathered: links as they stand in the written files, assumptions with all who lean on them.
+//! What the report writes from, gathered: links as they stand in the written files, assumptions with all that depend on them.
 
 use std::collections::BTreeSet;
 
 use super::figures::figure_name;
+use super::index::{OVERVIEW, STRIP};
 use super::other_pages::PAGES;
+use super::prose;
 use super::verdicts::Judgement;
 use crate::experiment::{Experiment, FigureSpec};
 use crate::reference::Judged;
@@ -25,29 +27,41 @@ pub(super) fn page(study: &Study, judgement: &Judgement, item: &Item) -> String 
         experiment,
         table: judgement.tables.get(&experiment.id.0),
         judged: judged(judgement, &experiment.id.0),
-        assumptions: &assumptions(study, |name| used.contains(&name)),
+        assumptions: &assumptions(study, judgement, |name| used.contains(&name)),
         effects: &effects(&scenes(study, experiment)),
-        figures: &figures(experiment, ""),
-        table_link: &format!("{up}../{}", table_name(&experiment.id)),
+        figures: &figures(experiment),
+        table_name: &table_name(&experiment.id),
         accuracy: accuracy(study, item, &up),
-        index_link: &format!("{up}README.md"),
+        to_reports: &up,
     })
 }
 
 /// Links to what was measured, where it is there.
 fn accuracy(study: &Study, item: &Item, up: &str) -> Option<AccuracyLinks> {
-    let link = |ending: &str| {
-        let name = format!("accuracy/{}.{ending}", item.source.experiment.id);
-        study.layout.path(&format!("reports/{name}")).exists().then(|| format!("{up}{name}"))
-    };
-    Some(AccuracyLinks { page: link("md")?, picture: link("png") })
+    let name = format!("accuracy/{}.md", item.source.experiment.id);
+    let exists = study.layout.path(&format!("reports/{name}")).exists();
+    exists.then(|| AccuracyLinks { page: format!("{up}{name}") })
 }
 
-/// The index of all pages.
-pub(super) fn index(study: &Study, judgement: &Judgement) -> String {
+/// What is written of the study as a whole, by name within the study.
+pub(super) fn of_the_study(study: &Study, judgement: &Judgement) -> Vec<(String, String)> {
     let times = RunTimes::read(&study.layout);
     let listed = |item| listed(judgement, item, times.as_ref());
     let views: Vec<ExperimentView<'_>> = study.items.iter().map(listed).collect();
+    [
+        ("README.md", index(study, &views, times.as_ref())),
+        (STRIP, report::strip_svg(&views)),
+        (OVERVIEW, report::overview_svg(&views)),
+        ("assumptions.md", report::assumptions(&assumptions(study, judgement, |_| true))),
+        ("tolerances.md", report::tolerances(&views)),
+        ("verdicts.json", verdicts(study, judgement)),
+    ]
+    .map(|(name, text)| (format!("reports/{name}"), text))
+    .into()
+}
+
+/// The index of all pages.
+fn index(study: &Study, views: &[ExperimentView<'_>], times: Option<&RunTimes>) -> String {
     let calibrations = study.calibrations.iter();
     let calibrations: Vec<(String, String)> = calibrations
         .map(|(id, calibration)| (format!("Calibration: {}", calibration.title), format!("calibrations/{id}.md")))
@@ -58,8 +72,7 @@ pub(super) fn index(study: &Study, judgement: &Judgement) -> String {
         .chain(calibrations)
         .filter(|(_, page)| study.layout.path(&format!("reports/{page}")).exists())
         .collect();
-    let machine = times.as_ref().map(|times| &times.machine);
-    report::index(&views, &assumptions(study, |_| true), &others, machine)
+    report::index(views, &others, times.map(|times| &times.machine))
 }
 
 fn listed<'a>(judgement: &'a Judgement, item: &'a Item, times: Option<&RunTimes>) -> ExperimentView<'a> {
@@ -68,14 +81,11 @@ fn listed<'a>(judgement: &'a Judgement, item: &'a Item, times: Option<&RunTimes>
         "" => String::new(),
         folder => format!("{folder}/"),
     };
-    // A figure is there once there is a table to draw it from.
-    let drawn = judgement.tables.contains_key(&experiment.id.0);
     ExperimentView {
         experiment,
         judged: judged(judgement, &experiment.id.0),
         seconds: times.and_then(|times| times.seconds.get(&experiment.id.0)).copied(),
         page: format!("{folder}{}.md", experiment.id),
-        figures: if drawn { figures(experiment, &folder) } else { Vec::new() },
     }
 }
 
@@ -106,7 +116,7 @@ pub fn check_view<'a>(
 }
 
 /// The verdicts of the whole study for programs.
-pub(super) fn verdicts(study: &Study, judgement: &Judgement) -> String {
+fn verdicts(study: &Study, judgement: &Judgement) -> String {
     let ids = judgement.verdicts.keys().map(String::as_str).collect();
     report::json(&check_view(study, judgement, &ids, &[]))
 }
@@ -130,15 +140,13 @@ fn to_reports(item: &Item) -> String {
     "../".repeat(folders)
 }
 
-fn figures(experiment: &Experiment, folder: &str) -> Vec<FigureView> {
-    let view = |figure: &FigureSpec| FigureView {
-        link: format!("{folder}{}", figure_name(experiment, figure)),
-        caption: figure.caption.clone(),
-    };
+fn figures(experiment: &Experiment) -> Vec<FigureView> {
+    let view =
+        |figure: &FigureSpec| FigureView { link: figure_name(experiment, figure), caption: figure.caption.clone() };
     experiment.figures.iter().map(view).collect()
 }
 
-fn assumptions(study: &Study, wanted: impl Fn(Assumption) -> bool) -> Vec<AssumptionView> {
+fn assumptions(study: &Study, judgement: &Judgement, wanted: impl Fn(Assumption) -> bool) -> Vec<AssumptionView> {
     let used_by = |name: &Assumption| {
         let items =
             study.items.iter().filter(|item| item.source.experiment.assumptions_used(&study.sheet).contains(name));
@@ -150,7 +158,7 @@ fn assumptions(study: &Study, wanted: impl Fn(Assumption) -> bool) -> Vec<Assump
         .map(|(name, entry)| AssumptionView {
             name: words::of_key(name),
             value: value_in_words(*name, &entry.value),
-            reason: entry.reason.clone(),
+            reason: prose::filled(&judgement.verdicts, &entry.reason, None),
             used_by: used_by(name),
             fitted_to: entry.fitted_to.clone(),
         })

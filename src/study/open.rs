@@ -6,9 +6,10 @@ use rayon::prelude::*;
 
 use super::load::text;
 use crate::experiment::{AssumptionSheet, Calibration, parse_calibration};
-use crate::reference::{Check, ReferenceFile, Role, parse_reference};
-use crate::study::{Item, Layout, Loaded, Refused, Sensitivity, Texts};
+use crate::reference::{Check, Prose, ReferenceFile, Role, parse_reference};
+use crate::study::{ASSUMPTIONS, Item, Layout, Loaded, Refused, Sensitivity, Texts};
 use crate::text::utf8::decode;
+use crate::text::words;
 
 /// Everything that was read, and the plan.
 #[derive(Debug)]
@@ -79,6 +80,7 @@ impl Study {
         let loaded = Loaded::from_texts(&texts);
         let mut unread: Vec<Unread> = loaded.refused.into_iter().map(Unread::from).collect();
         let references = references(&texts, &mut unread);
+        unread.extend(lost_placeholders(&texts, &loaded.sheet, &references));
         let calibrations = calibrations(&texts, &mut unread);
         let mut items: Vec<Item> = loaded
             .sources
@@ -152,6 +154,47 @@ fn stem(name: &str) -> &str {
 /// Numbers are held against the result with an uncertainty that needs the ends of the assumptions; claims are not.
 fn has_values(file: &ReferenceFile) -> bool {
     file.entries.iter().any(|entry| matches!(entry.check, Check::Value { .. } | Check::Peak { .. }))
+}
+
+/// Placeholders of entries that do not exist, in explanations and in the reasons of the assumptions. Those of an experiment that
+/// this study does not have are no mistake: they show no number.
+fn lost_placeholders(
+    texts: &Texts,
+    sheet: &AssumptionSheet,
+    references: &BTreeMap<String, ReferenceFile>,
+) -> Vec<Unread> {
+    let is_lost = |id: &str| match id.split_once('/') {
+        None => true,
+        Some((experiment, _)) => {
+            references.get(experiment).is_some_and(|reference| reference.entries.iter().all(|entry| entry.id != id))
+        }
+    };
+    let lost = |file: &str, prose: &Prose| -> Vec<Unread> {
+        let text = texts.files.get(file).map(|bytes| String::from_utf8_lossy(bytes)).unwrap_or_default();
+        // Names without their experiment were looked at with their file.
+        let unknown = |id: &&str| (file == ASSUMPTIONS || id.contains('/')) && is_lost(id);
+        let ids = prose.placeholders().filter_map(|one| one.entry.as_deref()).filter(unknown);
+        let problem = |id: &str| {
+            let line = text.lines().position(|line| line.contains(id)).map_or(1, |line| line + 1);
+            format!("line {line}, column 1: a placeholder names `{id}`, which is no entry of the reference")
+        };
+        ids.map(|id| Unread::Reference { file: file.into(), problem: problem(id) }).collect()
+    };
+    let mut unread = Vec::new();
+    for file in texts.files.keys().filter(|file| file.starts_with("reference/")) {
+        let entries = references.get(stem(file)).into_iter().flat_map(|reference| &reference.entries);
+        unread.extend(entries.flat_map(|entry| lost(file, &entry.prose())));
+    }
+    for (name, assumption) in &sheet.entries {
+        match Prose::parse(&assumption.reason) {
+            Ok(prose) => unread.extend(lost(ASSUMPTIONS, &prose)),
+            Err(error) => {
+                let problem = format!("the reason of `{}` has {error}", words::of_key(name));
+                unread.push(Unread::Reference { file: ASSUMPTIONS.into(), problem });
+            }
+        }
+    }
+    unread
 }
 
 fn references(texts: &Texts, unread: &mut Vec<Unread>) -> BTreeMap<String, ReferenceFile> {

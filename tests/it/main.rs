@@ -18,6 +18,7 @@ mod diff;
 mod earlier;
 mod edge_scenes;
 mod engine;
+mod explanations;
 mod export;
 mod faults;
 mod figure;
