@@ -2,6 +2,7 @@
 //! quantities, changes of units. `tests/it/data/README.md` says where the data come from.
 
 mod arrays;
+mod averages;
 mod bench;
 mod closed_forms;
 mod equal_modes;
@@ -19,3 +20,4 @@ mod search;
 mod walls;
 
 pub use bench::note;
+pub(crate) use closed_forms::expected;
