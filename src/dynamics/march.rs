@@ -393,19 +393,6 @@ impl<'a> March<'a> {
         Ok(())
     }
 
-    /// The state as the guards need it.
-    fn guarded(&self) -> Contacts<'_> {
-        Contacts {
-            system: self.system,
-            contacts: &self.contacts,
-            particles: &self.particles,
-            damping: &self.damping,
-            smooth: &self.smooth,
-            q: &self.q,
-            rate: &self.rate,
-        }
-    }
-
     /// The state at the end of a segment.
     fn arrive(&mut self, length: f64, end_drive: DrivePhase) {
         let n = self.system.mass.order;

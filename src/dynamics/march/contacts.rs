@@ -225,7 +225,7 @@ impl March<'_> {
         if self.particles[j] == Relative::default() {
             return Some(Side::Floor);
         }
-        let above = guards::above(self.guarded(), j)?;
+        let above = guards::above(&self.system.particles[j], self.particles[j], &self.q, &self.rate)?;
         (above == Relative::default()).then_some(Side::Ceiling)
     }
 

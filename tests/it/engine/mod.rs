@@ -15,6 +15,7 @@ mod linear;
 mod long_runs;
 mod precise;
 mod properties;
+mod random_scenes;
 mod reference_cases;
 mod search;
 mod walls;
