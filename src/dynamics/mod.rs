@@ -61,7 +61,7 @@ pub use system::{
 pub use trace::{Sample, TraceRequest};
 
 /// Changes whenever the same scene may give other bits. A test holds the bits of fixed scenes against it.
-pub const SOLVER_VERSION: u32 = 4;
+pub const SOLVER_VERSION: u32 = 5;
 
 /// What proves a run: residuals of the balances, and how clearly its events were decided.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -179,8 +179,8 @@ pub struct Sums {
     pub duration: f64,
     /// ∫ x dt.
     pub displacement: f64,
-    /// ∫ x² dt.
-    pub displacement_square: f64,
+    /// ∫ (x − x̄)² dt, x̄ the mean: about zero a motion far from it would lose its digits.
+    pub deviation_square: f64,
     /// ∫ v² dt.
     pub velocity_square: f64,
 }
@@ -302,22 +302,30 @@ impl Observed {
     /// Both halves of the averaged window.
     #[must_use]
     pub fn window(&self) -> Sums {
-        let [a, b] = self.halves;
-        Sums {
-            duration: a.duration + b.duration,
-            displacement: a.displacement + b.displacement,
-            displacement_square: a.displacement_square + b.displacement_square,
-            velocity_square: a.velocity_square + b.velocity_square,
-        }
+        let [mut whole, second] = self.halves;
+        whole.add(second);
+        whole
     }
 }
 
 impl Sums {
-    pub(crate) fn add(&mut self, more: integral::Integrals, duration: f64) {
-        self.duration += duration;
-        self.displacement += more.value;
-        self.displacement_square += more.square;
-        self.velocity_square += more.rate_square;
+    /// The same over both stretches.
+    pub(crate) fn add(&mut self, more: Self) {
+        let duration = self.duration + more.duration;
+        if self.duration > 0.0 && more.duration > 0.0 {
+            let apart = more.displacement / more.duration - self.displacement / self.duration;
+            self.deviation_square += apart * apart * (self.duration * (more.duration / duration));
+        }
+        self.duration = duration;
+        self.displacement += more.displacement;
+        self.deviation_square += more.deviation_square;
+        self.velocity_square += more.velocity_square;
+    }
+
+    /// Of raw sums, about zero.
+    pub(crate) fn of_raw(duration: f64, displacement: f64, square: f64, velocity_square: f64) -> Self {
+        let deviation_square = (square - displacement * (displacement / duration)).max(0.0);
+        Self { duration, displacement, deviation_square, velocity_square }
     }
 
     /// RMS velocity, m/s.
@@ -335,8 +343,7 @@ impl Sums {
     /// Standard deviation of the displacement, m.
     #[must_use]
     pub fn std_displacement(&self) -> f64 {
-        let mean = self.mean_displacement();
-        (self.displacement_square / self.duration - mean * mean).max(0.0).sqrt()
+        (self.deviation_square / self.duration).sqrt()
     }
 }
 
@@ -345,7 +352,7 @@ impl Sums {
 pub struct SteadyState {
     /// In the order of [`HybridSystem::observed_rows`].
     pub observed: Vec<SteadyMotion>,
-    /// How far, in metres, every particle stays from leaving its floor; infinite where there is none.
+    /// A lower bound on how far, in metres, every particle stays from leaving its floor; infinite where there is none.
     pub margin: f64,
 }
 

@@ -29,7 +29,7 @@ pub(super) fn pass(system: &HybridSystem, flow: &Flow, answer: &[f64], cycle: &C
         while t0 < segment.length && !budget::spend(4) {
             let there = start.moved(&Affine::flow(flow, t0));
             let squares: Vec<[f64; 4]> =
-                pairs(flow.own).zip(&there.second).filter(|((k, l), _)| k == l).map(|(_, moment)| *moment).collect();
+                pairs(flow.own).zip(there.second()).filter(|((k, l), _)| k == l).map(|(_, moment)| moment).collect();
             let size = |i: usize| squares[i / 2][3 * (i % 2)].max(0.0).sqrt();
             let h = dissipation.panel(flow, size).min(segment.length - t0);
             for [x, weight] in GAUSS {
@@ -45,10 +45,10 @@ pub(super) fn pass(system: &HybridSystem, flow: &Flow, answer: &[f64], cycle: &C
                 passed.force_modulus += w * force.abs();
                 passed.work += w * power;
                 passed.work_modulus += w * power.abs();
-                let mut dissipated = dissipation.of_moments(&moments.second);
+                let mut dissipated = dissipation.of_moments(&moments.second());
                 if system.drive.harmonic.is_some() {
                     let (_, driven) = leave(flow, &vec![0.0; 2 * flow.order], 0.0, drive);
-                    dissipated += dissipation.beside(system, flow, &driven, &moments.first, moments.count);
+                    dissipated += dissipation.beside(system, flow, &driven, &moments.first(), moments.count);
                 }
                 passed.dissipated += weight * h * dissipated;
             }

@@ -92,7 +92,7 @@ pub(super) fn times([p, q, r, s]: [f64; 4], [x, y]: [f64; 2]) -> [f64; 2] {
     [p * x + q * y, r * x + s * y]
 }
 
-fn sum([a, b]: [f64; 2], [x, y]: [f64; 2]) -> [f64; 2] {
+pub(super) fn sum([a, b]: [f64; 2], [x, y]: [f64; 2]) -> [f64; 2] {
     [a + x, b + y]
 }
 

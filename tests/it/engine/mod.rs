@@ -2,6 +2,7 @@
 //! quantities, changes of units. `tests/it/data/README.md` says where the data come from.
 
 mod arrays;
+mod averages;
 mod bench;
 mod closed_forms;
 mod equal_modes;
@@ -14,8 +15,10 @@ mod linear;
 mod long_runs;
 mod precise;
 mod properties;
+mod random_scenes;
 mod reference_cases;
 mod search;
 mod walls;
 
 pub use bench::note;
+pub(crate) use closed_forms::expected;
