@@ -1,11 +1,9 @@
 //! How large the residuals of a run may be if nothing but rounding is in them.
 //!
-//! Every event and every cycle rounds the state once, and the rounding of the fastest motion enters the balance with the ratio
-//! of its frequency to the forcing's:
+//! Every event and every cycle rounds the state once, and a rounding enters the balance with the ratio of the longest to the
+//! shortest time in the run: the forcing period T, the period of the fastest motion, the shortest stretch of the force,
 //!
-//! bound = 64 ε (events + cycles) max(1, ω T/2π),   at most one part in a million.
-//!
-//! The largest residual among the study's rows is a hundredth of it.
+//! bound = 64 ε (events + cycles) longest/shortest,   at most one part in a million.
 
 use super::{HybridSystem, Options, Proof, Response};
 
@@ -18,7 +16,10 @@ const LARGEST: f64 = 1e-6;
 pub(super) fn enter(system: &HybridSystem, options: &Options, response: &mut Response) {
     if options.audit {
         let roundings = ROUNDINGS * (response.proof.events as f64 + options.cycles() as f64);
-        let spread = (response.highest_frequency * system.drive.period / std::f64::consts::TAU).max(1.0);
+        let times = [system.drive.period, std::f64::consts::TAU / response.highest_frequency];
+        let stretches = system.drive.ticks.windows(2).map(|pair| pair[1].time - pair[0].time).filter(|time| *time > 0.0);
+        let shortest = stretches.chain(times).fold(f64::INFINITY, f64::min);
+        let spread = times.into_iter().fold(0.0, f64::max) / shortest;
         let bound = f64::EPSILON * roundings * spread;
         // Also where the spread is no number.
         response.proof.residual_bound = if bound < LARGEST { bound } else { LARGEST };

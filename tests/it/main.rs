@@ -25,6 +25,7 @@ mod figure;
 mod figure_map;
 mod fixed;
 mod guide;
+mod limits;
 mod made_up;
 mod mutations;
 mod optimise;
