@@ -2,9 +2,9 @@
 
 use super::cycle::{Affine, Cycle, Segment, drive_at, product, sum, times};
 use super::moments::{Moments, outer};
+use crate::dynamics::Sums;
 use crate::dynamics::block::{Block, Phase, pairs, transposed};
 use crate::dynamics::budget;
-use crate::dynamics::Sums;
 use crate::dynamics::flow::{DrivePhase, Flow};
 use crate::dynamics::gains::{Closed, Gains};
 use crate::dynamics::integral::GAUSS;
