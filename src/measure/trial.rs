@@ -27,24 +27,6 @@ pub struct Trial<'a> {
     pub options: Options,
 }
 
-impl Measure {
-    /// A number that tends to its limit as a run gets more exact: no count, no difference that should be zero, no sample.
-    fn converges(self) -> bool {
-        !self.is_modal()
-            && !self.needs_trace()
-            && !matches!(
-                self,
-                Self::FloorImpacts
-                    | Self::CeilingImpacts
-                    | Self::StopImpacts
-                    | Self::Separations
-                    | Self::Drift
-                    | Self::HighestFrequency
-                    | Self::ShortestPeriod
-            )
-    }
-}
-
 impl<'a> Trial<'a> {
     /// Gets a case ready.
     ///

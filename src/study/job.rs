@@ -88,16 +88,7 @@ pub(super) fn keeps_trace(experiment: &Experiment, job: &Job) -> bool {
 
 /// True if the row's measures cannot be computed without a time history.
 pub(super) fn measures_need_trace(measures: &[Measure]) -> bool {
-    measures.iter().any(|measure| {
-        matches!(
-            measure,
-            Measure::LastPeak
-                | Measure::PeakVariation
-                | Measure::PeakDecayError
-                | Measure::FloorImpactLag
-                | Measure::CeilingImpactLag
-        )
-    })
+    measures.iter().any(|measure| measure.needs_trace())
 }
 
 /// About how long a row takes, in arbitrary units: only the order counts, so that the last thread to finish does not

@@ -7,10 +7,11 @@ use shotdamp::experiment::{
     AssumptionSheet, Dimension, Experiment, ExperimentId, Problems, load_assumptions, load_experiment,
     parse_assumptions, parse_experiment, parse_number, parse_quantity,
 };
-use shotdamp::measure::SolverChoice;
+use shotdamp::measure::{Measure, SolverChoice};
 use shotdamp::scene::{
     Assumption, AssumptionValue, Assumptions, Excitation, GapRecipe, Parameter, ParameterValue, Surface,
 };
+use shotdamp::text::words;
 
 const GOOD: &str = "\
 title: Limit stop
@@ -454,6 +455,19 @@ pub(crate) fn sweeps_are_products_pairs_points_and_unions() {
     );
     let paired = with(sweep, "  paired: {force_ratio: [1, 2], mass_ratio: [1]}\n").replace("by: stop", "by: solver");
     assert_eq!(only_problem(&paired), "13:33 paired ranges are of equal length: 1 values here, 2 in the first");
+}
+
+#[test]
+pub(crate) fn what_is_read_off_a_time_history_or_a_shape_is_refused_without_one() {
+    for measure in Measure::ALL.iter().filter(|measure| measure.needs_trace()) {
+        let name = words::of_key(measure);
+        let problem = only_problem(&with("ceiling_impacts]", &format!("{name}]")));
+        assert!(problem.starts_with(&format!("16:27 `{name}` is read off a time history")), "{problem}");
+    }
+    let problem = only_problem(&with("ceiling_impacts]", "mac]"));
+    assert!(problem.starts_with("16:27 `mac` is read off a shape"), "{problem}");
+    let problem = only_problem(&with("ceiling_impacts]", "displacement_per_force]"));
+    assert_eq!(problem, "16:27 `displacement_per_force` is measured under a harmonic force, not under this excitation");
 }
 
 #[test]
