@@ -11,7 +11,6 @@ use crate::report::scenes;
 use crate::report::value_in_words;
 use crate::scene::{Scene, effects};
 use crate::study::{Item, Layout, State, Study};
-use crate::text::words;
 
 /// All that is known of one experiment before it runs.
 pub(super) fn show(layout: &Layout, id: &str) -> Result<Exit, CliError> {
@@ -57,12 +56,11 @@ fn describe(study: &Study, item: &Item) -> String {
     text += &idle(experiment, &scenes);
 
     text += "\nAssumptions\n";
-    let used = experiment.assumptions_used(&study.sheet);
-    for (name, entry) in study.sheet.entries.iter().filter(|(name, _)| used.contains(name)) {
-        text += &format!("  {} = {}\n", words::of_key(name), value_in_words(*name, &entry.value));
+    for (name, entry) in study.sheet.iter().filter(|(name, _)| item.used.contains(*name)) {
+        text += &format!("  {name} = {}\n", value_in_words(entry.kind.unit(), &entry.value));
         text += &wrapped(&entry.reason, "      ", 100);
     }
-    if used.is_empty() {
+    if item.used.is_empty() {
         text += "  none\n";
     }
 

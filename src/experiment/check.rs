@@ -2,8 +2,9 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use super::recipe::{Assumptions, ExcitationKind, Parameter, ParameterValue, Part, RecipeError};
 use crate::measure::{Measure, Under};
-use crate::scene::{Assumptions, ExcitationKind, Parameter, ParameterValue, Part, RecipeError, Scene};
+use crate::scene::Scene;
 
 use super::definition::{Case, Drawing, Experiment, FigureSpec, Maximise, Panel, Refinement};
 use super::diagnostic::{Findings, Span};
@@ -283,9 +284,7 @@ impl From<RecipeError> for Refusal {
                 parameter: Some(parameter),
                 part: None,
             },
-            RecipeError::Assumption(name, form) => {
-                format!("the assumption `{}` is needed: give it {form} in the assumptions file", word_of(name)).into()
-            }
+            error @ RecipeError::Assumption(_) => error.to_string().into(),
             RecipeError::OutOfRange(message) => message.into(),
             RecipeError::Part { part, message } => Self { message, parameter: None, part: Some(part) },
         }

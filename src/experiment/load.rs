@@ -4,7 +4,7 @@ use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
-use crate::scene::Assumptions;
+use super::recipe::Assumptions;
 
 use super::assumption_sheet::{AssumptionSheet, parse_assumptions};
 use super::definition::{Experiment, ExperimentId};

@@ -13,15 +13,17 @@ mod measure;
 mod reading;
 mod request;
 mod shape;
+mod subject;
 mod trial;
 
 pub use evaluate::{Prepared, Request, evaluate};
 pub use measure::{Facts, Measure, ReadOff, Runs, Under};
 pub use request::{EnergySpec, Settings, ShapeOf, ShapeSpec, SolverChoice, TraceSpec};
+pub use subject::{Comparison, Needs, Subject};
 pub use trial::Trial;
 
 use crate::dynamics::{EngineError, Proof};
-use crate::scene::{CompileError, RecipeError};
+use crate::scene::CompileError;
 
 /// How much a number has to be worth.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -83,9 +85,6 @@ impl TraceColumn {
 /// Why a case has no numbers.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum EvaluateError {
-    /// The recipe has no scene.
-    #[error(transparent)]
-    Recipe(#[from] RecipeError),
     /// The scene has no model.
     #[error(transparent)]
     Compile(#[from] CompileError),

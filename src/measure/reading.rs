@@ -6,12 +6,13 @@ use super::energy::Energies;
 use super::history::History;
 use super::{EvaluateError, Measure};
 use crate::dynamics::{EventKind, Observed, Response, Sums};
-use crate::scene::{Excitation, Recipe, Scene, Take};
+use crate::scene::{Excitation, Scene, Take};
 
 /// What there is to read measures of one run off.
 pub(super) struct Reading<'a> {
-    pub(super) recipe: &'a Recipe,
     pub(super) scene: &'a Scene,
+    /// Which mode natural frequencies are of, from 1.
+    pub(super) mode: u32,
     /// The run, and the one without damper; absent where nothing asks for them.
     pub(super) response: Option<&'a Response>,
     pub(super) undamped: Option<&'a Response>,
@@ -78,7 +79,7 @@ impl Reading<'_> {
 
     fn modal(&self, measure: Measure) -> Result<f64, EvaluateError> {
         let model = self.scene.structure.model();
-        let number = self.recipe.mode_number() as usize;
+        let number = self.mode as usize;
         let known = |frequencies: &[f64]| frequencies.get(number.wrapping_sub(1)).copied().unwrap_or(f64::NAN);
         Ok(match measure {
             Measure::NaturalFrequency => {

@@ -14,7 +14,7 @@ pub struct AssumptionView {
     pub value: String,
     /// Why this value. Markdown.
     pub reason: String,
-    /// Ids of the entries whose experiments lean on it.
+    /// Ids of the entries whose experiments depend on it.
     pub used_by: Vec<String>,
     /// Ids of the entries that it was chosen by.
     pub fitted_to: Vec<String>,
@@ -62,7 +62,7 @@ pub struct PageView<'a> {
     pub table: Option<&'a Table>,
     /// Its entries with their verdicts.
     pub judged: &'a [Judged],
-    /// The assumptions that it leans on.
+    /// The assumptions that it depends on.
     pub assumptions: &'a [AssumptionView],
     /// Effects over its cases.
     pub effects: &'a [EffectUse],

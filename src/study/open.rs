@@ -76,7 +76,7 @@ impl Study {
         let loaded = Loaded::from_texts(&texts);
         let mut unread: Vec<Unread> = loaded.refused.into_iter().map(Unread::from).collect();
         let references = references(&texts, &mut unread);
-        let calibrations = calibrations(&texts, &mut unread);
+        let calibrations = calibrations(&texts, &loaded.sheet, &mut unread);
         let mut items: Vec<Item> = loaded
             .sources
             .into_par_iter()
@@ -105,13 +105,13 @@ impl Study {
     /// The ids of the entries that an assumption was fitted to.
     #[must_use]
     pub fn fitted(&self) -> BTreeSet<String> {
-        self.sheet.entries.values().flat_map(|entry| entry.fitted_to.iter().cloned()).collect()
+        self.sheet.iter().flat_map(|(_, entry)| entry.fitted_to.iter().cloned()).collect()
     }
 
     /// The part of an entry in the choice of inputs.
     #[must_use]
     pub fn role(&self, entry: &str) -> Role {
-        let chose = self.sheet.entries.values().any(|assumption| assumption.fitted_to.iter().any(|id| id == entry));
+        let chose = self.sheet.iter().any(|(_, assumption)| assumption.fitted_to.iter().any(|id| id == entry));
         let named = |list: fn(&Calibration) -> &[String]| {
             self.calibrations.values().any(|one| list(one).iter().any(|id| names(id, entry)))
         };
@@ -130,11 +130,11 @@ fn names(id: &str, entry: &str) -> bool {
     id == entry || id.strip_suffix('*').is_some_and(|start| start.ends_with('/') && entry.starts_with(start))
 }
 
-fn calibrations(texts: &Texts, unread: &mut Vec<Unread>) -> BTreeMap<String, Calibration> {
+fn calibrations(texts: &Texts, sheet: &AssumptionSheet, unread: &mut Vec<Unread>) -> BTreeMap<String, Calibration> {
     let mut calibrations = BTreeMap::new();
     for (file, bytes) in texts.files.iter().filter(|(file, _)| file.starts_with("calibrations/")) {
         let read = std::str::from_utf8(bytes).map_err(|_| Refused::Encoding(file.clone()));
-        match read.and_then(|text| parse_calibration(file, text).map_err(Refused::Text)) {
+        match read.and_then(|text| parse_calibration(file, text, sheet).map_err(Refused::Text)) {
             Ok(calibration) => drop(calibrations.insert(stem(file).to_owned(), calibration)),
             Err(refused) => unread.push(refused.into()),
         }

@@ -4,10 +4,10 @@
 use std::f64::consts::PI;
 
 use shotdamp::dynamics::{Options, event_driven};
-use shotdamp::experiment::{Experiment, Problems, load_assumptions, parse_experiment};
+use shotdamp::experiment::{Assumptions, Experiment, Problems, load_assumptions, parse_experiment};
 use shotdamp::measure::SolverChoice;
 use shotdamp::measure::{Evaluated, Request, Rigour, evaluate};
-use shotdamp::scene::{Assumptions, Point, Scene, Structure, compile};
+use shotdamp::scene::{Point, Scene, Structure, compile};
 
 const BEAM: &str = "cantilever_beam: {length: 1 m, width: 30 mm, thickness: 5 mm, youngs_modulus: 200 GPa, density: 7800 kg/m^3, rayleigh: 5e-5, MODES}";
 const PLATE: &str = "supported_plate: {length: 1.3333333333333333 m, width: 1 m, thickness: 7.91 mm, youngs_modulus: 68.9 GPa, poisson_ratio: 0.33, density: 2700 kg/m^3, rayleigh: 5e-5, MODES}";
@@ -54,7 +54,8 @@ fn measured(experiment: &Experiment) -> Vec<Evaluated> {
             shape: experiment.shape.as_ref(),
             rigour: Rigour::Result,
         };
-        evaluate(&recipe, &assumptions(), SolverChoice::EventDriven, &experiment.settings, &request).unwrap()
+        let subject = recipe.subject(&assumptions(), request.needs()).unwrap();
+        evaluate(subject, SolverChoice::EventDriven, &experiment.settings, &request).unwrap()
     };
     experiment.cases.iter().map(one).collect()
 }
