@@ -7,10 +7,10 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use super::rows::Wanted;
 use super::set::Set;
 use crate::experiment::Experiment;
+use crate::experiment::GapWord;
 use crate::measure::SolverChoice;
 use crate::measure::{Evaluated, Rigour};
 use crate::reference::Entry;
-use crate::scene::GapWord;
 use crate::study::{Array, Evaluate, Event, EventHandler, Simulation, Task, ThreadError, Variant, run};
 use crate::table::{BASELINE, Table};
 
@@ -40,7 +40,7 @@ pub(super) struct Bench<'a, E> {
     hands: &'a Hands<'a, E>,
     worth: Worth,
     experiments: Vec<Experiment>,
-    /// By experiment and all that its numbers lean on.
+    /// By experiment and all that its numbers depend on.
     known: BTreeMap<(usize, String), Arc<Table>>,
 }
 
@@ -75,7 +75,7 @@ impl<'a, E: Evaluate> Bench<'a, E> {
             self.run_new(sets.iter().filter(|set| set.solver == solver), solver)?;
         }
         let of = |set: &Set| {
-            let known = |index: usize| self.known.get(&(index, self.leaning(index, set))).cloned();
+            let known = |index: usize| self.known.get(&(index, self.inputs(index, set))).cloned();
             let each = (0..self.experiments.len()).filter_map(|index| Some((index, known(index)?)));
             each.map(|(index, table)| (self.experiments[index].id.to_string(), table)).collect()
         };
@@ -86,7 +86,7 @@ impl<'a, E: Evaluate> Bench<'a, E> {
         let mut new: BTreeMap<(usize, String), [Variant; 1]> = BTreeMap::new();
         for set in sets {
             for index in 0..self.experiments.len() {
-                let key = (index, self.leaning(index, set));
+                let key = (index, self.inputs(index, set));
                 if !self.known.contains_key(&key) {
                     let assumptions = set.assumptions.clone();
                     new.entry(key).or_insert([Variant { label: BASELINE.into(), moved: None, assumptions }]);
@@ -106,7 +106,7 @@ impl<'a, E: Evaluate> Bench<'a, E> {
     }
 
     /// All that the numbers of an experiment depend on under this set.
-    fn leaning(&self, index: usize, set: &Set) -> String {
+    fn inputs(&self, index: usize, set: &Set) -> String {
         let used = self.experiments[index].assumptions_under(&set.assumptions);
         let values: Vec<_> = set.assumptions.values.iter().filter(|(name, _)| used.contains(name)).collect();
         format!("{:?} {values:?}", set.solver)

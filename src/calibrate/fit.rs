@@ -5,9 +5,9 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::bench::{Asked, Bench, Growing, Hands, SharedTables, Worth};
 use super::search::{Places, Trail, coordinate, grid};
 use super::set::{Set, place_in_force};
+use crate::experiment::Assumptions;
 use crate::experiment::{Calibration, CalibrationSearch, Experiment};
 use crate::reference::{Entry, Found, ReferenceFile, TableState, Tables, Verdict, judge};
-use crate::scene::Assumptions;
 use crate::study::{Evaluate, Event, EventHandler, ThreadError};
 use crate::table::BASELINE;
 

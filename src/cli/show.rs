@@ -14,7 +14,6 @@ use crate::report::scenes;
 use crate::report::value_in_words;
 use crate::scene::{Scene, effects};
 use crate::study::{Item, Layout, State, Study, forecast};
-use crate::text::words;
 
 /// How long the proof that particles stay on their floors may take; cases beyond it count as not proved.
 const PATIENCE: Duration = Duration::from_millis(500);
@@ -63,12 +62,11 @@ fn describe(study: &Study, item: &Item) -> String {
     text += &idle(experiment, &scenes);
 
     text += "\nAssumptions\n";
-    let used = experiment.assumptions_used(&study.sheet);
-    for (name, entry) in study.sheet.entries.iter().filter(|(name, _)| used.contains(name)) {
-        text += &format!("  {} = {}\n", words::of_key(name), value_in_words(*name, &entry.value));
+    for (name, entry) in study.sheet.iter().filter(|(name, _)| item.used.contains(*name)) {
+        text += &format!("  {name} = {}\n", value_in_words(entry.kind.unit(), &entry.value));
         text += &wrapped(&entry.reason, "      ", 100);
     }
-    if used.is_empty() {
+    if item.used.is_empty() {
         text += "  none\n";
     }
 

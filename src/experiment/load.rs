@@ -4,8 +4,8 @@ use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
+use super::recipe::Assumptions;
 use crate::atomic::from_here;
-use crate::scene::Assumptions;
 
 use super::assumption_sheet::{AssumptionSheet, parse_assumptions};
 use super::definition::{Experiment, ExperimentId};

@@ -22,6 +22,7 @@ mod place;
 mod quantity;
 mod range;
 mod reader;
+mod recipe;
 mod refined;
 mod scaffold;
 mod scene;
@@ -34,7 +35,9 @@ mod validate;
 mod word;
 mod yaml;
 
-pub use assumption_sheet::{AssumptionEntry, AssumptionSheet, parse_assumptions};
+pub use assumption_sheet::{
+    AssumptionEntry, AssumptionKind, AssumptionSheet, Moved, Quantity, Takes, parse_assumptions,
+};
 pub use calibration::{Calibration, CalibrationInput, CalibrationSearch, Tried, load_calibration, parse_calibration};
 pub use definition::{
     Axis, AxisScale, Best, Case, Drawing, Experiment, ExperimentId, FigureSpec, IdError, Level, MapSpec, Mark,
@@ -47,6 +50,13 @@ pub use line::line_of;
 pub use load::{load_assumptions, load_experiment};
 pub use optimise::{Candidate, Goal, Landscape, Optimise, Search, SearchKind, SearchSpacing};
 pub use quantity::{Dimension, QuantityError, parse_number, parse_quantity};
+pub use recipe::{
+    ArrayRecipe, Assumable, AssumptionName, AssumptionValue, Assumptions, Carried, ContactDampingRatio,
+    ContactDampingRecipe, Coordinate, DamperRecipe, ExcitationKind, ExcitationRecipe, Filling, FloorStiffness,
+    ForcingOrNatural, GapRecipe, GapWord, Given, ImpulseTime, ImpulseTimeRecipe, MassReading, MassRecipe,
+    ObserveRecipe, Parameter, ParameterValue, Part, PlaceRecipe, PointsRecipe, Recipe, RecipeError, Reference, Slot,
+    StiffnessRecipe, StopRecipe, StrengthRecipe, StructureRecipe, SurfaceRecipe, TimingRecipe, WallRecipe,
+};
 pub(crate) use refined::{Curve, curves};
 pub use scaffold::{scaffold, structures};
 pub(crate) use schema::{Object, list, text, words_of};

@@ -5,9 +5,9 @@
 
 use std::collections::BTreeSet;
 
+use super::recipe::{AssumptionName, Assumptions, Parameter, ParameterValue, Recipe};
 use crate::dynamics::Limit;
 use crate::measure::Measure;
-use crate::scene::{Assumption, Assumptions, Parameter, ParameterValue, Recipe};
 
 use super::check::Checks;
 use super::columns::{Columns, ENERGIES, HISTORIES, shape_lists};
@@ -59,7 +59,7 @@ struct Run {
     solvers: Vec<SolverChoice>,
     settings: Settings,
     limit: Limit,
-    moved: Option<BTreeSet<Assumption>>,
+    moved: Option<BTreeSet<AssumptionName>>,
 }
 
 impl<'t> ExperimentReader<'t> {
@@ -68,7 +68,7 @@ impl<'t> ExperimentReader<'t> {
         let title = fields.required("title", |node| text(node, self.findings));
         let source = fields.required("source", |node| self.source(node));
         let about = fields.required("about", |node| text(node, self.findings));
-        let scene = fields.required("scene", |node| read_scene(node, self.findings));
+        let scene = fields.required("scene", |node| read_scene(node, self.assumptions, self.findings));
         let sweep = fields.optional("sweep", |node| read_sweep(node, self.findings));
         let mean_over = fields.optional("mean_over", |node| self.mean_over(node));
         let measures = fields.required("measure", |node| self.measures(node));
@@ -320,7 +320,7 @@ impl<'t> ExperimentReader<'t> {
         });
         let moved = fields.optional("sensitivity", |node| match &node.value {
             Value::Scalar(word) if word == "none" => Some(BTreeSet::new()),
-            _ => one_or_more(node, self.findings, |node| word::<Assumption>(node, "assumption", self.findings))
+            _ => one_or_more(node, self.findings, |node| self.assumptions.sheet.named(node, self.findings))
                 .map(|names| names.into_iter().collect()),
         });
         let limit = fields.optional("limit", |node| read_limit(node, self.findings));
@@ -409,7 +409,7 @@ impl<'t> ExperimentReader<'t> {
 }
 
 impl Default for Run {
-    /// As the study: 25 cycles skipped, 100 averaged.
+    /// 25 cycles skipped, 100 averaged, exactly solved.
     fn default() -> Self {
         Self {
             solvers: vec![SolverChoice::EventDriven],

@@ -6,144 +6,26 @@
 
 use std::borrow::Cow;
 
-use serde::{Deserialize, Serialize};
-
 mod energy;
 mod evaluate;
 mod history;
+mod measure;
 mod reading;
 mod request;
 mod shape;
+mod subject;
 mod trial;
 mod undefined;
 
 pub use evaluate::{Prepared, Request, evaluate};
+pub use measure::{Facts, Measure, ReadOff, Runs, Under};
 pub use request::{EnergySpec, Settings, ShapeOf, ShapeSpec, SolverChoice, TraceSpec};
+pub use subject::{Comparison, Needs, Subject};
 pub use trial::Trial;
 
 use crate::dynamics::{EngineError, Proof};
-use crate::scene::{CompileError, RecipeError};
+use crate::scene::CompileError;
 use crate::text::words;
-
-/// What can be measured. The same word in YAML (`velocity_ratio`) and as a table column.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Measure {
-    /// ψ.
-    VelocityRatio,
-    /// η.
-    DisplacementRatio,
-    /// RMS velocity of the base, m/s.
-    RmsVelocity,
-    /// Standard deviation of the base displacement, m.
-    StdDisplacement,
-    /// Mean base displacement, m.
-    MeanDisplacement,
-    /// RMS velocity of the base without damper, m/s.
-    UndampedRmsVelocity,
-    /// Contacts made with the floor, in the averaged window.
-    FloorImpacts,
-    /// Contacts made with the ceiling.
-    CeilingImpacts,
-    /// Impacts on a limit stop.
-    StopImpacts,
-    /// Contacts lost with the floor.
-    Separations,
-    /// Largest compression of the floor in the window, m.
-    FloorCompression,
-    /// Largest compression of the ceiling, m.
-    CeilingCompression,
-    /// Largest base displacement of the last cycle of the trace, m (needs a trace).
-    LastPeak,
-    /// (largest − smallest)/mean of the trace's positive peaks (needs a trace).
-    PeakVariation,
-    /// Largest relative departure of the trace's peaks from the first one times exp(−c′ ωn t) (needs a trace).
-    PeakDecayError,
-    /// |RMS of the first half of the window / RMS of the second half − 1|: zero once transients are gone.
-    Drift,
-    /// Shortest time between an impulse in the trace and a floor contact, s (needs a trace).
-    FloorImpactLag,
-    /// The same to a ceiling contact, s (needs a trace).
-    CeilingImpactLag,
-    /// Highest natural frequency of the scene's contact states, Hz.
-    HighestFrequency,
-    /// Its period, s.
-    ShortestPeriod,
-    /// Half the peak-to-peak of the observed displacement in the window, from the extrema of the exact motion, m.
-    DisplacementAmplitude,
-    /// The same of the velocity, m/s.
-    VelocityAmplitude,
-    /// Displacement amplitude over the amplitude of the harmonic force, m/N.
-    DisplacementPerForce,
-    /// Velocity amplitude over the amplitude of the harmonic force, m/(N s).
-    VelocityPerForce,
-    /// Displacement amplitude over the impulse, m/(N s).
-    DisplacementPerImpulse,
-    /// Velocity amplitude over the impulse, 1/kg.
-    VelocityPerImpulse,
-    /// Displacement amplitude without dampers over the one with them.
-    DisplacementAmplitudeRatio,
-    /// The same of the velocity.
-    VelocityAmplitudeRatio,
-    /// Displacement amplitude without dampers, m.
-    UndampedDisplacementAmplitude,
-    /// The same of the velocity, m/s.
-    UndampedVelocityAmplitude,
-    /// Natural frequency of the scene's `mode`, dampers on board and particles at rest on their floors, rad/s.
-    NaturalFrequency,
-    /// The same of the model without dampers, rad/s.
-    CleanNaturalFrequency,
-    /// The same of the continuous structure, rad/s.
-    ExactNaturalFrequency,
-    /// Modes of the model: what a velocity just after an impulse depends on.
-    ModeCount,
-    /// Modal assurance criterion of the shape that is kept: a mode's against the exact one, a deflection's against the
-    /// forced mode's.
-    Mac,
-    /// Share of the structure's kinetic energy that is lost from just after an impulse to just before the next; mean over the
-    /// averaged cycles.
-    DampingMeasure,
-    /// Kinetic energy at the impulses, compared with that of the clean structure; mean over the averaged cycles.
-    MassMeasure,
-}
-
-impl Measure {
-    /// Unit symbol, empty when dimensionless.
-    #[must_use]
-    pub fn unit(self) -> &'static str {
-        match self {
-            Self::RmsVelocity
-            | Self::UndampedRmsVelocity
-            | Self::VelocityAmplitude
-            | Self::UndampedVelocityAmplitude => "m/s",
-            Self::DisplacementPerForce => "m/N",
-            Self::VelocityPerForce | Self::DisplacementPerImpulse => "m/(N s)",
-            Self::VelocityPerImpulse => "1/kg",
-            Self::NaturalFrequency | Self::CleanNaturalFrequency | Self::ExactNaturalFrequency => "rad/s",
-            Self::StdDisplacement
-            | Self::MeanDisplacement
-            | Self::FloorCompression
-            | Self::CeilingCompression
-            | Self::LastPeak
-            | Self::DisplacementAmplitude
-            | Self::UndampedDisplacementAmplitude => "m",
-            Self::FloorImpactLag | Self::CeilingImpactLag | Self::ShortestPeriod => "s",
-            Self::HighestFrequency => "Hz",
-            _ => "",
-        }
-    }
-
-    /// Symbol of the field, empty if it has none.
-    #[must_use]
-    pub fn symbol(self) -> &'static str {
-        match self {
-            Self::VelocityRatio => "ψ",
-            Self::DisplacementRatio => "η",
-            Self::NaturalFrequency | Self::CleanNaturalFrequency | Self::ExactNaturalFrequency => "ωₙ",
-            _ => "",
-        }
-    }
-}
 
 /// How much a number has to be worth.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -205,9 +87,6 @@ impl TraceColumn {
 /// Why a case has no numbers.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum EvaluateError {
-    /// The recipe has no scene.
-    #[error(transparent)]
-    Recipe(#[from] RecipeError),
     /// The scene has no model.
     #[error(transparent)]
     Compile(#[from] CompileError),

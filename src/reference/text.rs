@@ -6,8 +6,8 @@ use super::compare::COVERAGE;
 use super::extract::Extracted;
 use super::printed::Printed;
 use super::verdict::Comparison;
+use crate::experiment::Parameter;
 use crate::measure::Measure;
-use crate::scene::Parameter;
 use crate::text::number;
 use crate::text::words;
 

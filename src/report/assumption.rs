@@ -1,46 +1,24 @@
 //! Assumptions in words.
 
-use crate::scene::{Assumption, AssumptionValue};
+use crate::experiment::AssumptionValue;
 use crate::text::number;
 
 use super::markdown::{Align, MarkdownTable, one_line};
 use super::view::AssumptionView;
 
-/// The value of an assumption with its unit: `60 mm`, `9.81 m/s²`, `loaded`, a curve by its end points.
+/// The value of an assumption of this unit: `60 mm`, `9.81 m/s²`, `loaded`, a curve by its end points.
 #[must_use]
-pub fn value_in_words(name: Assumption, value: &AssumptionValue) -> String {
+pub fn value_in_words(unit: &str, value: &AssumptionValue) -> String {
     match value {
-        AssumptionValue::Number(value) => number_in_words(name, *value, 6),
+        AssumptionValue::Number(value) => number::quantity(*value, unit, 6),
         AssumptionValue::Choice(word) => word.replace('_', " "),
         AssumptionValue::Curve(points) => match (points.first(), points.last()) {
             (Some([x0, y0]), Some([x1, y1])) => {
-                let point =
-                    |x: f64, y: f64| format!("{} at {} g", number::quantity(y, unit(name), 4), number::compact(x, 4));
+                let point = |x: f64, y: f64| format!("{} at {} g", number::quantity(y, unit, 4), number::compact(x, 4));
                 format!("a curve through {} points, {} to {}", points.len(), point(*x0, *y0), point(*x1, *y1))
             }
             _ => "a curve without points".to_owned(),
         },
-    }
-}
-
-/// A number of that assumption's kind, to so many digits.
-pub(super) fn number_in_words(name: Assumption, value: f64, digits: usize) -> String {
-    number::quantity(value, unit(name), digits)
-}
-
-fn unit(name: Assumption) -> &'static str {
-    match name {
-        Assumption::Gravity => "m/s²",
-        Assumption::StopLength | Assumption::BeamArrayMargin | Assumption::CentredArrayMargin => "m",
-        Assumption::BeamImpulse | Assumption::PlateImpulse => "N s",
-        Assumption::BeamFloorTuning
-        | Assumption::PlateFloorTuning
-        | Assumption::BeamArrayFloorTuning
-        | Assumption::PlateArrayFloorTuning => "N/m",
-        Assumption::BeamImpulseTime | Assumption::PlateImpulseTime => "s",
-        Assumption::BeamHarmonicForce | Assumption::PlateHarmonicForce => "N",
-        Assumption::EquivalentDampingCurve => "N s/m",
-        _ => "",
     }
 }
 

@@ -1,7 +1,7 @@
 //! What an optimisation found: every candidate beside the first, and which of the differences are none.
 
+use crate::experiment::GapWord;
 use crate::experiment::{Goal, Optimise};
-use crate::scene::GapWord;
 use crate::table::Table;
 use crate::text::number::{compact, quantity, significant};
 use crate::text::words;

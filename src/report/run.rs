@@ -1,9 +1,9 @@
 //! How an experiment was run, and which effects its scene has.
 
+use crate::experiment::GapWord;
 use crate::experiment::{Experiment, Optimise, Search};
 use crate::measure::SolverChoice;
 use crate::scene::EffectUse;
-use crate::scene::GapWord;
 use crate::text::number::{compact, quantity};
 use crate::text::words;
 

@@ -7,27 +7,26 @@ use super::index::{OVERVIEW, STRIP};
 use super::other_pages::PAGES;
 use super::prose;
 use super::verdicts::Judgement;
+use crate::experiment::AssumptionName;
 use crate::experiment::{Experiment, FigureSpec};
 use crate::reference::Judged;
 use crate::report::{
     self, AccuracyLinks, AssumptionView, CheckView, CheckedEntry, ExperimentView, FigureView, PageView, Trouble,
     value_in_words,
 };
-use crate::scene::{Assumption, Scene, effects};
+use crate::scene::{Scene, effects};
 use crate::study::{Item, RunTimes, table_name};
 use crate::study::{Study, Unread};
-use crate::text::words;
 
 /// The page of an experiment.
 pub(super) fn page(study: &Study, judgement: &Judgement, item: &Item) -> String {
     let experiment = &item.source.experiment;
-    let used = experiment.assumptions_used(&study.sheet);
     let up = to_reports(item);
     report::page(&PageView {
         experiment,
         table: judgement.tables.get(&experiment.id.0),
         judged: judged(judgement, &experiment.id.0),
-        assumptions: &assumptions(study, judgement, |name| used.contains(&name)),
+        assumptions: &assumptions(study, judgement, |name| item.used.contains(name)),
         effects: &effects(&scenes(study, experiment)),
         figures: &figures(experiment),
         table_name: &table_name(&experiment.id),
@@ -146,18 +145,17 @@ fn figures(experiment: &Experiment) -> Vec<FigureView> {
     experiment.figures.iter().map(view).collect()
 }
 
-fn assumptions(study: &Study, judgement: &Judgement, wanted: impl Fn(Assumption) -> bool) -> Vec<AssumptionView> {
-    let used_by = |name: &Assumption| {
-        let items =
-            study.items.iter().filter(|item| item.source.experiment.assumptions_used(&study.sheet).contains(name));
+fn assumptions(study: &Study, judgement: &Judgement, wanted: impl Fn(&AssumptionName) -> bool) -> Vec<AssumptionView> {
+    let used_by = |name: &AssumptionName| {
+        let items = study.items.iter().filter(|item| item.used.contains(name));
         let files = items.filter_map(|item| study.references.get(&item.source.experiment.id.0));
         files.flat_map(|file| file.entries.iter().map(|entry| entry.id.clone())).collect()
     };
-    let entries = study.sheet.entries.iter().filter(|(name, _)| wanted(**name));
+    let entries = study.sheet.iter().filter(|(name, _)| wanted(name));
     entries
         .map(|(name, entry)| AssumptionView {
-            name: words::of_key(name),
-            value: value_in_words(*name, &entry.value),
+            name: name.to_string(),
+            value: value_in_words(entry.kind.unit(), &entry.value),
             reason: prose::filled(&judgement.verdicts, &entry.reason, None),
             used_by: used_by(name),
             fitted_to: entry.fitted_to.clone(),

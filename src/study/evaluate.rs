@@ -2,9 +2,9 @@
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-use crate::measure::{self, Evaluated, Measure, Prepared, Request, Rigour};
+use crate::experiment::{Assumptions, GapWord, Recipe};
+use crate::measure::{self, Evaluated, Measure, Needs, Prepared, Request, Rigour};
 use crate::measure::{EnergySpec, Settings, ShapeSpec, SolverChoice, TraceSpec};
-use crate::scene::{Assumptions, GapWord, Recipe};
 
 /// One simulation to be made.
 #[derive(Debug, Clone, Copy)]
@@ -87,12 +87,17 @@ impl Evaluate for Engine {
     fn evaluate(&self, it: &Simulation<'_>) -> Result<Evaluated, String> {
         let Simulation { measures, trace, energies, shape, rigour, .. } = *it;
         let request = Request { measures, trace, energies, shape, rigour };
-        measure::evaluate(it.recipe, it.assumptions, it.solver, it.settings, &request)
-            .map_err(|error| error.to_string())
+        let subject = it.recipe.subject(it.assumptions, request.needs()).map_err(|error| error.to_string())?;
+        measure::evaluate(subject, it.solver, it.settings, &request).map_err(|error| error.to_string())
     }
 
     fn array<'a>(&'a self, it: Simulation<'a>, word: GapWord) -> Result<Box<dyn Array + 'a>, String> {
-        let ready = Prepared::new(it.recipe, word, it.assumptions, it.solver, it.settings, it.measures);
+        let needs = Needs::of(it.measures, false);
+        let of = |recipe: &Recipe| recipe.subject(it.assumptions, needs).map_err(|error| error.to_string());
+        let mut recipe = it.recipe.clone();
+        let dampers = of(&recipe)?.scene.dampers.len();
+        recipe.set_gaps(word, &vec![1.0; dampers]).map_err(|error| error.to_string())?;
+        let ready = Prepared::new(of(&recipe)?, it.solver, it.settings, it.measures);
         Ok(Box::new(ready.map_err(|error| error.to_string())?))
     }
 }

@@ -2,9 +2,10 @@
 
 use std::time::{Duration, Instant};
 
+use crate::experiment::Assumptions;
 use crate::experiment::Experiment;
 use crate::measure::SolverChoice;
-use crate::scene::{Assumptions, Scene, Surface};
+use crate::scene::{Scene, Surface};
 use crate::text::number::significant;
 
 /// Fixed steps that take about a second.

@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use super::evaluate::{Array, Evaluate, Simulation};
 use crate::dynamics::{Allowance, Limit};
+use crate::experiment::GapWord;
 use crate::measure::{Evaluated, Rigour};
-use crate::scene::GapWord;
 
 /// What the simulations of an engine share.
 pub(super) enum Share {

@@ -7,8 +7,8 @@ use rayon::prelude::*;
 
 use super::evaluate::{Evaluate, Simulation, evaluate_guarded};
 use crate::experiment::Maximise;
+use crate::experiment::ParameterValue;
 use crate::measure::Evaluated;
-use crate::scene::ParameterValue;
 use crate::text::words;
 
 /// Where a maximum lies.

@@ -81,7 +81,7 @@ impl Study {
         let mut unread: Vec<Unread> = loaded.refused.into_iter().map(Unread::from).collect();
         let references = references(&texts, &mut unread);
         unread.extend(lost_placeholders(&texts, &loaded.sheet, &references));
-        let calibrations = calibrations(&texts, &mut unread);
+        let calibrations = calibrations(&texts, &loaded.sheet, &mut unread);
         let mut items: Vec<Item> = loaded
             .sources
             .into_par_iter()
@@ -110,13 +110,13 @@ impl Study {
     /// The ids of the entries that an assumption was fitted to.
     #[must_use]
     pub fn fitted(&self) -> BTreeSet<String> {
-        self.sheet.entries.values().flat_map(|entry| entry.fitted_to.iter().cloned()).collect()
+        self.sheet.iter().flat_map(|(_, entry)| entry.fitted_to.iter().cloned()).collect()
     }
 
     /// The part of an entry in the choice of inputs.
     #[must_use]
     pub fn role(&self, entry: &str) -> Role {
-        let chose = self.sheet.entries.values().any(|assumption| assumption.fitted_to.iter().any(|id| id == entry));
+        let chose = self.sheet.iter().any(|(_, assumption)| assumption.fitted_to.iter().any(|id| id == entry));
         let named = |list: fn(&Calibration) -> &[String]| {
             self.calibrations.values().any(|one| list(one).iter().any(|id| names(id, entry)))
         };
@@ -135,10 +135,10 @@ fn names(id: &str, entry: &str) -> bool {
     id == entry || id.strip_suffix('*').is_some_and(|start| start.ends_with('/') && entry.starts_with(start))
 }
 
-fn calibrations(texts: &Texts, unread: &mut Vec<Unread>) -> BTreeMap<String, Calibration> {
+fn calibrations(texts: &Texts, sheet: &AssumptionSheet, unread: &mut Vec<Unread>) -> BTreeMap<String, Calibration> {
     let mut calibrations = BTreeMap::new();
     for (file, bytes) in texts.files.iter().filter(|(file, _)| file.starts_with("calibrations/")) {
-        match text(file, bytes).and_then(|text| parse_calibration(file, text).map_err(Refused::Text)) {
+        match text(file, bytes).and_then(|text| parse_calibration(file, text, sheet).map_err(Refused::Text)) {
             Ok(calibration) => drop(calibrations.insert(stem(file).to_owned(), calibration)),
             Err(refused) => unread.push(refused.into()),
         }
@@ -185,7 +185,7 @@ fn lost_placeholders(
         let entries = references.get(stem(file)).into_iter().flat_map(|reference| &reference.entries);
         unread.extend(entries.flat_map(|entry| lost(file, &entry.prose())));
     }
-    for (name, assumption) in &sheet.entries {
+    for (name, assumption) in sheet.iter() {
         match Prose::parse(&assumption.reason) {
             Ok(prose) => unread.extend(lost(ASSUMPTIONS, &prose)),
             Err(error) => {

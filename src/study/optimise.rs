@@ -16,6 +16,7 @@ use super::mean::{mean, measures_of_each};
 use super::run::{Finished, Task};
 use super::tabulate_candidates::{Candidate, failures, table};
 use super::variant::Variant;
+use crate::experiment::Recipe;
 use crate::experiment::{Experiment, Goal, Optimise, Search, SearchKind, SearchSpacing};
 use crate::measure::SolverChoice;
 use crate::measure::{Evaluated, Measure, Rigour};
@@ -23,7 +24,6 @@ use crate::optimise::{
     Batch, Bounds, CmaEs, Dense, Found, Genetic, GeneticSettings, Optimiser, Score, Spacing, Stalled, Stopping, dense,
     minimise, sections, two_opt,
 };
-use crate::scene::Recipe;
 use crate::table::Table;
 use crate::text::words;
 

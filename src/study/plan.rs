@@ -1,6 +1,6 @@
 //! The plan: of each experiment what its simulation depends on, and whether the table on disk was made from just that.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use serde_json::{Value, json};
@@ -13,14 +13,16 @@ use super::record::{NoRecord, Record};
 use super::run::Task;
 use super::variant::{Sensitivity, Variant, variants};
 use crate::dynamics::SOLVER_VERSION;
-use crate::experiment::AssumptionSheet;
-use crate::scene::AssumptionValue;
+use crate::experiment::AssumptionValue;
+use crate::experiment::{AssumptionName, AssumptionSheet};
 
 /// One experiment as planned.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Item {
     /// The experiment and its file.
     pub source: Source,
+    /// The assumptions that its numbers depend on, recorded once.
+    pub used: BTreeSet<AssumptionName>,
     /// The assumptions under which it runs; the baseline first.
     pub variants: Vec<Variant>,
     /// All that its numbers depend on.
@@ -46,11 +48,12 @@ impl Item {
     /// Plans one experiment, and looks at what is on disk.
     #[must_use]
     pub fn new(layout: &Layout, source: Source, sheet: &AssumptionSheet, sensitivity: Sensitivity) -> Self {
-        let variants = variants(&source.experiment, sheet, sensitivity);
-        let simulation = simulation(&source, sheet, &variants, sensitivity);
+        let used = source.experiment.assumptions_used(sheet);
+        let variants = variants(&source.experiment, &used, sheet, sensitivity);
+        let simulation = simulation(&source, sheet, &used, &variants, sensitivity);
         let fingerprint = fingerprint(&simulation);
         let state = state(layout, &source, &simulation);
-        Self { source, variants, simulation, fingerprint, state }
+        Self { source, used, variants, simulation, fingerprint, state }
     }
 
     /// What the runner is to do for it.
@@ -106,10 +109,15 @@ impl Item {
     }
 }
 
-fn simulation(source: &Source, sheet: &AssumptionSheet, variants: &[Variant], sensitivity: Sensitivity) -> Value {
-    let used = source.experiment.assumptions_used(sheet);
+fn simulation(
+    source: &Source,
+    sheet: &AssumptionSheet,
+    used: &BTreeSet<AssumptionName>,
+    variants: &[Variant],
+    sensitivity: Sensitivity,
+) -> Value {
     let assumptions: BTreeMap<_, _> =
-        sheet.entries.iter().filter(|(name, _)| used.contains(name)).map(|(name, e)| (name, &e.value)).collect();
+        sheet.iter().filter(|(name, _)| used.contains(*name)).map(|(name, entry)| (name, &entry.value)).collect();
     let sensitivity = (sensitivity == Sensitivity::Wanted).then(|| ends(variants));
     json!({
         "experiment": source.experiment.simulation_json(),
@@ -123,7 +131,7 @@ fn simulation(source: &Source, sheet: &AssumptionSheet, variants: &[Variant], se
 fn ends(variants: &[Variant]) -> BTreeMap<&str, &AssumptionValue> {
     variants
         .iter()
-        .filter_map(|variant| Some((variant.label.as_str(), variant.assumptions.values.get(&variant.moved?)?)))
+        .filter_map(|variant| Some((variant.label.as_str(), variant.assumptions.values.get(variant.moved.as_ref()?)?)))
         .collect()
 }
 

@@ -10,9 +10,9 @@
 use rayon::prelude::*;
 
 use super::tabulate::Outcome;
+use crate::experiment::ParameterValue;
 use crate::experiment::{AxisScale, Case, Curve, Experiment, Refinement, curves};
 use crate::measure::Measured;
-use crate::scene::ParameterValue;
 
 /// Halvings of the first intervals, at most: from 3 rad/s to 0.0002 rad/s.
 const MOST_HALVINGS: u32 = 14;

@@ -12,9 +12,9 @@ use super::evaluate::{Array, Evaluate, Simulation};
 use super::layout::Layout;
 use crate::atomic;
 use crate::experiment::ExperimentId;
+use crate::experiment::GapWord;
 use crate::measure::SolverChoice;
 use crate::measure::{Evaluated, Rigour};
-use crate::scene::GapWord;
 
 /// The folder of what was spent, within the study.
 pub(super) const FOLDER: &str = "results/times";

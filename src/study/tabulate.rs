@@ -8,8 +8,8 @@ use super::maximise::Place;
 use super::record::Failures;
 use super::variant::Variant;
 use crate::experiment::Experiment;
+use crate::experiment::{Parameter, ParameterValue};
 use crate::measure::{Evaluated, Measure, TraceColumn};
-use crate::scene::{Parameter, ParameterValue};
 use crate::table::{Column, Data, RowFingerprint, Table};
 use crate::text::words;
 

@@ -5,10 +5,10 @@ use std::collections::BTreeMap;
 use super::doubt;
 use super::record::Failures;
 use super::variant::Variant;
+use crate::experiment::GapWord;
 use crate::experiment::{Experiment, Goal, Optimise};
 use crate::measure::SolverChoice;
 use crate::measure::{Evaluated, Measured};
-use crate::scene::GapWord;
 use crate::table::{Column, Data, Table};
 use crate::text::words;
 

@@ -17,9 +17,9 @@ use super::shard::{Shard, part};
 use super::spent::Spent;
 use super::tabulate::{self, Outcome, Row};
 use super::variant::Variant;
+use crate::experiment::Recipe;
 use crate::experiment::{Case, Experiment};
 use crate::measure::Rigour;
-use crate::scene::Recipe;
 use crate::table::RowFingerprint;
 use crate::text::words;
 
@@ -181,7 +181,9 @@ fn simulate(
     }
     // The row itself is a result: the maximum once more, with all that proves it.
     let mut at_maximum = recipe.clone();
-    at_maximum.set(maximise.over, crate::scene::ParameterValue::Number(place.at)).map_err(|error| error.to_string())?;
+    at_maximum
+        .set(maximise.over, crate::experiment::ParameterValue::Number(place.at))
+        .map_err(|error| error.to_string())?;
     let wanted = simulation.trace.filter(|_| keeps_trace(experiment, job) || trace.is_some());
     let evaluated = evaluate_guarded(evaluate, &Simulation { recipe: &at_maximum, trace: wanted, ..simulation })?;
     done();

@@ -7,9 +7,8 @@ use shotdamp::accuracy::{
     Ablation, Accuracy, AccuracyView, Contender, Origin, Outcome, VerdictPrice, ablation, ablation_page, accuracy,
     accuracy_page, accuracy_summary,
 };
-use shotdamp::experiment::{Experiment, load_assumptions, parse_experiment};
+use shotdamp::experiment::{Assumptions, Experiment, load_assumptions, parse_experiment};
 use shotdamp::reference::{Price, Verdict};
-use shotdamp::scene::Assumptions;
 use shotdamp::study::Machine;
 
 fn assumptions() -> Assumptions {

@@ -188,7 +188,7 @@ fn a_bad_experiment_does_not_stop_the_others() {
     assert_eq!(said.code, 2);
     assert!(said.err.contains("reference/ch3/ch3-bad.yaml: line 1"), "{}", said.err);
 
-    desk.put("experiments/assumptions.yaml", "gravity: {value: 9.81 s, reason: wrong unit}\n");
+    desk.put("experiments/assumptions.yaml", "gravity: {quantity: acceleration, value: 9.81 s, reason: wrong unit}\n");
     let said = shotdamp(&desk, &["run", "ch3-gap"]);
     assert_eq!(said.code, 2);
     assert!(said.err.contains("experiments/assumptions.yaml:1:"), "{}", said.err);

@@ -199,7 +199,7 @@ fn rows_that_failed_are_tried_again_and_no_others() {
     struct Breaks(MadeUp);
     impl Evaluate for Breaks {
         fn evaluate(&self, it: &Simulation<'_>) -> Result<Evaluated, String> {
-            it.recipe.dampers[0].stop.ok_or("too hard without a stop")?;
+            it.recipe.dampers[0].stop.as_ref().ok_or("too hard without a stop")?;
             self.0.evaluate(it)
         }
     }

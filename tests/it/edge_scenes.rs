@@ -7,8 +7,8 @@ use std::time::{Duration, Instant};
 
 use rayon::prelude::*;
 use shotdamp::dynamics::Limit;
+use shotdamp::experiment::Assumptions;
 use shotdamp::experiment::{load_assumptions, parse_experiment};
-use shotdamp::scene::Assumptions;
 use shotdamp::study::{Engine, Finished, IgnoreEvents, Task, Variant, run};
 use shotdamp::table::UNDEFINED;
 

@@ -201,7 +201,7 @@ fn a_search_that_cannot_begin_is_a_failed_row() {
     assert_eq!(desk.run(2, &Bowl::default(), &IgnoreEvents), ["ch6-gaps"], "it is tried again");
 }
 
-fn sheet() -> shotdamp::scene::Assumptions {
+fn sheet() -> shotdamp::experiment::Assumptions {
     let sheet = Path::new(env!("CARGO_MANIFEST_DIR")).join("experiments/assumptions.yaml");
     load_assumptions(&sheet).unwrap_or_else(|problems| panic!("{problems}")).assumptions()
 }
@@ -329,7 +329,7 @@ fn a_scene_that_is_prepared_once_gives_the_bits_of_one_that_is_built_for_its_gap
             rigour: shotdamp::measure::Rigour::Result,
         };
         let built = Engine.evaluate(&simulation).unwrap();
-        let ready: Box<dyn Array + '_> = Engine.array(simulation, shotdamp::scene::GapWord::Gap).unwrap();
+        let ready: Box<dyn Array + '_> = Engine.array(simulation, shotdamp::experiment::GapWord::Gap).unwrap();
         assert_eq!(ready.evaluate(&[0.0083, 0.0568, 0.003, 0.0188], simulation.rigour).unwrap(), built);
         let other = ready.evaluate(&[0.0419; 4], simulation.rigour).unwrap();
         assert_ne!(other.measured, built.measured);

@@ -4,10 +4,10 @@
 use std::f64::consts::PI;
 
 use shotdamp::dynamics::{Options, Response, Tick, event_driven, steady_state};
-use shotdamp::experiment::{Experiment, Problems, load_assumptions, parse_experiment};
+use shotdamp::experiment::{Assumptions, Experiment, Problems, load_assumptions, parse_experiment};
 use shotdamp::measure::SolverChoice;
 use shotdamp::measure::{Evaluated, Request, Rigour, evaluate};
-use shotdamp::scene::{Assumptions, Point, Scene, Structure, compile};
+use shotdamp::scene::{Point, Scene, Structure, compile};
 
 use crate::engine::expected;
 
@@ -56,7 +56,8 @@ fn measured(experiment: &Experiment) -> Vec<Evaluated> {
             shape: experiment.shape.as_ref(),
             rigour: Rigour::Result,
         };
-        evaluate(&recipe, &assumptions(), SolverChoice::EventDriven, &experiment.settings, &request).unwrap()
+        let subject = recipe.subject(&assumptions(), request.needs()).unwrap();
+        evaluate(subject, SolverChoice::EventDriven, &experiment.settings, &request).unwrap()
     };
     experiment.cases.iter().map(one).collect()
 }

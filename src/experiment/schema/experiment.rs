@@ -7,11 +7,11 @@ use super::parts::{
 };
 use super::{figure, optimise, scene, sweep};
 use crate::experiment::quantity::Dimension;
+use crate::experiment::recipe::Parameter;
 use crate::experiment::validate::MOST_CYCLES;
 use crate::experiment::word::words;
 use crate::measure::Measure;
 use crate::measure::ShapeOf;
-use crate::scene::{Assumption, Parameter};
 
 /// JSON Schema of an experiment.
 #[must_use]
@@ -80,7 +80,7 @@ fn maximise() -> Value {
 
 fn run() -> Value {
     let cycles = |about, least| count(about, "cycles", least, MOST_CYCLES);
-    let sensitivity = one_or_more("Assumptions that are moved", words_of::<Assumption>("An assumption"));
+    let sensitivity = one_or_more("Assumptions that are moved", text("An assumption"));
     Object::new("How it is run")
         .optional("solver", one_or_more("Solvers", reference("solver")))
         .optional("skip", cycles("Cycles before the averaging; 25 unless stated", 0))
