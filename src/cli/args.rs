@@ -163,9 +163,6 @@ pub(super) struct RunArgs {
     /// Write what each experiment took to reports/times.json, for the index to show
     #[arg(long, conflicts_with_all = ["dry_run", "shard"])]
     pub times: bool,
-    /// Go on after an experiment that fails; this is what happens anyway
-    #[arg(long)]
-    pub keep_going: bool,
     /// Only the third of eight parts of the work, into tables of its own; `gather` joins them
     #[arg(long, value_name = "3/8", conflicts_with = "dry_run")]
     pub shard: Option<Shard>,

@@ -57,7 +57,7 @@ fn describe(study: &Study, item: &Item) -> String {
     text += &idle(experiment, &scenes);
 
     text += "\nAssumptions\n";
-    let used = experiment.assumptions_used(&study.sheet);
+    let used = &item.used;
     for (name, entry) in study.sheet.entries.iter().filter(|(name, _)| used.contains(name)) {
         text += &format!("  {} = {}\n", words::of_key(name), value_in_words(*name, &entry.value));
         text += &wrapped(&entry.reason, "      ", 100);

@@ -93,8 +93,8 @@ pub(super) fn simulate(
     Ok(Ran { restored, unsaved: unsaved.into_inner().unwrap_or_default().into_values().collect() })
 }
 
-/// True if rows of the chosen experiments have no numbers.
-pub(super) fn tell_failures(chosen: &Chosen<'_>) -> bool {
+/// Prints which of the chosen experiments have rows without numbers; true if there are any.
+pub(super) fn print_failures(chosen: &Chosen<'_>) -> bool {
     let mut failed = false;
     for item in &chosen.items {
         if let State::Failed(record) = &item.state {

@@ -46,8 +46,7 @@ pub fn untried(study: &Study, judged: &Judged) -> Vec<(Assumption, AssumptionVal
     let Some(entry) = entry(study, judged) else { return Vec::new() };
     let read: BTreeSet<String> = entry.readings(&judged.experiment).into_iter().map(|one| one.experiment).collect();
     let items = || study.items.iter().filter(|item| read.contains(&item.source.experiment.id.0));
-    let used: BTreeSet<Assumption> =
-        items().flat_map(|item| item.source.experiment.assumptions_used(&study.sheet)).collect();
+    let used: BTreeSet<Assumption> = items().flat_map(|item| item.used.iter().cloned()).collect();
     let known = |name: Assumption, value: &AssumptionValue| {
         let own = study.items.iter().filter(|item| item.source.experiment.id.0 == judged.experiment);
         own.flat_map(|item| &item.variants).any(|variant| {
@@ -102,7 +101,7 @@ fn view<'a>(
         let from = &study.sheet.entries.get(&trial.name)?.value;
         Some(MoveView { name: trial.name, from, to: &trial.to, moved: &trial.moved })
     }));
-    let used = item.map(|item| item.source.experiment.assumptions_used(&study.sheet)).unwrap_or_default();
+    let used = item.map(|item| item.used.clone()).unwrap_or_default();
     let unmoved: Vec<Assumption> = used.into_iter().filter(|name| moves.iter().all(|one| one.name != *name)).collect();
     let chosen_by = study.sheet.entries.iter().filter(|(_, entry)| entry.fitted_to.contains(&judged.id));
     EntryView { judged, moves, unmoved, chosen_by: chosen_by.map(|(name, _)| *name).collect() }

@@ -11,8 +11,9 @@ use super::verdicts::Judgement;
 use super::views;
 use crate::atomic::{self, FileError};
 use crate::experiment::FigureSpec;
+use crate::reference::ReferenceFile;
 use crate::study::Study;
-use crate::study::{FileHash, Item, Publication, Record, record_name, table_name};
+use crate::study::{FileHash, Heading, Item, Publication, Record, State, Summary, record_name, stem, table_name};
 
 /// The index of all pages.
 const INDEX: &str = "reports/README.md";
@@ -22,8 +23,10 @@ pub const VERDICTS: &str = "reports/verdicts.json";
 /// What publishing did.
 #[derive(Debug, Default)]
 pub struct Published {
-    /// Every file that the study consists of now, by its name within the study.
-    pub outputs: BTreeSet<String>,
+    /// Experiments that are up to date now, by id: their files, and what the rest of the study needs to know of them.
+    pub experiments: BTreeMap<String, (BTreeSet<String>, Summary)>,
+    /// Files of the study as a whole.
+    pub of_the_study: BTreeSet<String>,
     /// Files that were written.
     pub written: usize,
     /// Figures that were drawn; those that would show the same as before are not.
@@ -40,7 +43,9 @@ struct Page<'a> {
     stale: bool,
 }
 
-/// Draws what is stale, renders every page of the experiments in `ids` and the index, and writes what differs.
+/// Draws what is stale, renders every page of the experiments in `ids` and the index, and writes what differs. Pages of others
+/// that were planned are written where their figures are up to date: a verdict on them may have changed with a table that it
+/// reads.
 ///
 /// # Errors
 /// [`FileError`] if a file cannot be written.
@@ -52,14 +57,14 @@ pub fn publish(study: &Study, judgement: &Judgement, ids: &BTreeSet<&str>) -> Re
     let jobs = stale.flat_map(jobs).filter(|(page, figure)| !is_drawn(study, judgement, page, figure));
     let mut figures = draw(study, judgement, jobs);
     published.drawn = figures.values().map(Vec::len).sum();
-    for page in pages.iter().filter(chosen) {
+    for page in pages.iter().filter(|page| chosen(page) || !page.stale) {
         let id = page.item.source.experiment.id.0.as_str();
         let drawn = figures.remove(id).unwrap_or_default();
         write_page(study, judgement, page, drawn, &mut published)?;
     }
     for (name, text) in of_the_study(study, judgement) {
         published.written += usize::from(atomic::write_if_changed(&study.layout.path(name), text.as_bytes())?);
-        published.outputs.insert(name.into());
+        published.of_the_study.insert(name.into());
     }
     Ok(published)
 }
@@ -153,6 +158,29 @@ fn draw<'a>(
     by_id
 }
 
+/// The summary of an experiment; `None` if it is to be looked at again the next time: rows of it failed, its reference cannot
+/// be read, or an entry reads a table that does not count.
+fn summary(study: &Study, judgement: &Judgement, page: &Page<'_>) -> Option<Summary> {
+    let experiment = &page.item.source.experiment;
+    let id = experiment.id.0.as_str();
+    let reference = study.references.get(id);
+    let tables = study.tables();
+    let reads = reference.map(ReferenceFile::other_tables).unwrap_or_default();
+    let reads: Option<BTreeMap<String, String>> =
+        reads.into_iter().map(|id| Some((id.clone(), (*tables.get(id.as_str())?).to_owned()))).collect();
+    let is_read = matches!(page.item.state, State::Current(_)) && study.unread.iter().all(|one| stem(one.file()) != id);
+    is_read.then_some(Summary {
+        heading: Heading::of(experiment),
+        folder: page.item.source.folder().to_owned(),
+        figures: views::pictures(experiment),
+        used: page.item.used.clone(),
+        table: page.record.table.blake3.clone(),
+        reads: reads?,
+        judged: judgement.verdicts.get(id).cloned().unwrap_or_default(),
+        lines: reference.into_iter().flat_map(|file| &file.entries).map(|entry| entry.line).collect(),
+    })
+}
+
 fn write_page(
     study: &Study,
     judgement: &Judgement,
@@ -207,8 +235,10 @@ fn write_page(
             _ => {}
         }
     }
-    published.outputs.extend(files.keys().cloned());
-    published.outputs.extend([table_name(id), record_name(id)]);
+    if whole && let Some(summary) = summary(study, judgement, page) {
+        let outputs = files.keys().cloned().chain([table_name(id), record_name(id)]).collect();
+        published.experiments.insert(id.0.clone(), (outputs, summary));
+    }
     let meaning = meaning(study, page.item, page.record);
     let publication = whole.then_some(Publication { meaning, files, shown });
     let record = Record { publication, ..page.record.clone() };

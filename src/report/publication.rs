@@ -11,8 +11,7 @@ use crate::study::{ASSUMPTIONS, Item, PRESENTATION_VERSION, Reason, Record, diff
 /// whenever anything at all has changed.
 pub(super) fn meaning(study: &Study, item: &Item, record: &Record) -> Value {
     let experiment = &item.source.experiment;
-    let used = experiment.assumptions_used(&study.sheet);
-    let assumptions: BTreeMap<_, _> = study.sheet.entries.iter().filter(|(name, _)| used.contains(name)).collect();
+    let assumptions: BTreeMap<_, _> = study.sheet.entries.iter().filter(|(name, _)| item.used.contains(name)).collect();
     json!({
         "experiment": experiment.canonical_json(),
         "assumptions": assumptions,

@@ -1,6 +1,6 @@
-//! What the report writes from, gathered: links as they stand in the written files, assumptions with all who lean on them.
+//! What the report writes from, gathered: links as they stand in the written files, assumptions with the entries that depend on them.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::figures::figure_name;
 use super::other_pages::PAGES;
@@ -12,22 +12,21 @@ use crate::report::{
     value_in_words,
 };
 use crate::scene::{Assumption, Scene, effects};
-use crate::study::{Item, RunTimes, table_name};
+use crate::study::{Heading, Item, Picture, RunTimes, table_name};
 use crate::study::{Study, Unread};
 use crate::text::words;
 
 /// The page of an experiment.
 pub(super) fn page(study: &Study, judgement: &Judgement, item: &Item) -> String {
     let experiment = &item.source.experiment;
-    let used = experiment.assumptions_used(&study.sheet);
     let up = to_reports(item);
     report::page(&PageView {
         experiment,
         table: judgement.tables.get(&experiment.id.0),
         judged: judged(judgement, &experiment.id.0),
-        assumptions: &assumptions(study, |name| used.contains(&name)),
+        assumptions: &assumptions(study, &|name| item.used.contains(name), &|_| Vec::new()),
         effects: &effects(&scenes(study, experiment)),
-        figures: &figures(experiment, ""),
+        figures: &figures(pictures(experiment), ""),
         table_link: &format!("{up}../{}", table_name(&experiment.id)),
         accuracy: accuracy(study, item, &up),
         index_link: &format!("{up}README.md"),
@@ -46,8 +45,11 @@ fn accuracy(study: &Study, item: &Item, up: &str) -> Option<AccuracyLinks> {
 /// The index of all pages.
 pub(super) fn index(study: &Study, judgement: &Judgement) -> String {
     let times = RunTimes::read(&study.layout);
-    let listed = |item| listed(judgement, item, times.as_ref());
-    let views: Vec<ExperimentView<'_>> = study.items.iter().map(listed).collect();
+    let planned = study.items.iter().map(|item| planned(judgement, item));
+    let known = study.known.values().map(|known| (known.heading.clone(), known.folder.as_str(), known.figures.clone()));
+    let mut views: Vec<ExperimentView<'_>> =
+        planned.chain(known).map(|one| listed(judgement, one, times.as_ref())).collect();
+    views.sort_by(|a, b| a.experiment.id.cmp(&b.experiment.id));
     let calibrations = study.calibrations.iter();
     let calibrations: Vec<(String, String)> = calibrations
         .map(|(id, calibration)| (format!("Calibration: {}", calibration.title), format!("calibrations/{id}.md")))
@@ -59,24 +61,40 @@ pub(super) fn index(study: &Study, judgement: &Judgement) -> String {
         .filter(|(_, page)| study.layout.path(&format!("reports/{page}")).exists())
         .collect();
     let machine = times.as_ref().map(|times| &times.machine);
-    report::index(&views, &assumptions(study, |_| true), &others, machine)
+    report::index(&views, &assumptions(study, &|_| true, &|name| entries_that_use(study, name)), &others, machine)
 }
 
-fn listed<'a>(judgement: &'a Judgement, item: &'a Item, times: Option<&RunTimes>) -> ExperimentView<'a> {
+/// An experiment in the index: its name, folder and figures.
+type Listed<'a> = (Heading, &'a str, Vec<Picture>);
+
+fn planned<'a>(judgement: &Judgement, item: &'a Item) -> Listed<'a> {
     let experiment = &item.source.experiment;
-    let folder = match item.source.folder() {
-        "" => String::new(),
-        folder => format!("{folder}/"),
-    };
     // A figure is there once there is a table to draw it from.
     let drawn = judgement.tables.contains_key(&experiment.id.0);
+    let pictures = if drawn { pictures(experiment) } else { Vec::new() };
+    (Heading::of(experiment), item.source.folder(), pictures)
+}
+
+fn listed<'a>(
+    judgement: &'a Judgement,
+    (experiment, folder, pictures): Listed<'_>,
+    times: Option<&RunTimes>,
+) -> ExperimentView<'a> {
+    let folder = if folder.is_empty() { String::new() } else { format!("{folder}/") };
     ExperimentView {
-        experiment,
         judged: judged(judgement, &experiment.id.0),
         seconds: times.and_then(|times| times.seconds.get(&experiment.id.0)).copied(),
         page: format!("{folder}{}.md", experiment.id),
-        figures: if drawn { figures(experiment, &folder) } else { Vec::new() },
+        figures: figures(pictures, &folder),
+        experiment,
     }
+}
+
+/// The figures of an experiment.
+pub(super) fn pictures(experiment: &Experiment) -> Vec<Picture> {
+    let picture =
+        |figure: &FigureSpec| Picture { file: figure_name(experiment, figure), caption: figure.caption.clone() };
+    experiment.figures.iter().map(picture).collect()
 }
 
 /// The summary on the console, of the experiments and reference files in `ids`.
@@ -94,10 +112,12 @@ pub fn check_view<'a>(
     ids: &BTreeSet<&'a str>,
     unread: &[&Unread],
 ) -> CheckView<'a> {
+    let files = study.reference_names();
     let mut entries = Vec::new();
     for id in ids {
-        let file = study.reference_name(id).unwrap_or_default();
+        let file = files.get(id).copied().unwrap_or_default();
         let lines = study.references.get(*id).into_iter().flat_map(|file| &file.entries).map(|entry| entry.line);
+        let lines = lines.chain(study.known.get(*id).into_iter().flat_map(|known| known.lines.iter().copied()));
         let judged = judged(judgement, id).iter().zip(lines);
         entries.extend(judged.map(|(judged, line)| CheckedEntry { judged, file, line }));
     }
@@ -130,22 +150,30 @@ fn to_reports(item: &Item) -> String {
     "../".repeat(folders)
 }
 
-fn figures(experiment: &Experiment, folder: &str) -> Vec<FigureView> {
-    let view = |figure: &FigureSpec| FigureView {
-        link: format!("{folder}{}", figure_name(experiment, figure)),
-        caption: figure.caption.clone(),
-    };
-    experiment.figures.iter().map(view).collect()
+fn figures(pictures: Vec<Picture>, folder: &str) -> Vec<FigureView> {
+    let view = |picture: Picture| FigureView { link: format!("{folder}{}", picture.file), caption: picture.caption };
+    pictures.into_iter().map(view).collect()
 }
 
-fn assumptions(study: &Study, wanted: impl Fn(Assumption) -> bool) -> Vec<AssumptionView> {
-    let used_by = |name: &Assumption| {
-        let items =
-            study.items.iter().filter(|item| item.source.experiment.assumptions_used(&study.sheet).contains(name));
-        let files = items.filter_map(|item| study.references.get(&item.source.experiment.id.0));
-        files.flat_map(|file| file.entries.iter().map(|entry| entry.id.clone())).collect()
-    };
-    let entries = study.sheet.entries.iter().filter(|(name, _)| wanted(**name));
+/// Ids of the entries whose experiments depend on an assumption.
+fn entries_that_use(study: &Study, name: &Assumption) -> Vec<String> {
+    let planned = study.items.iter().filter(|item| item.used.contains(name)).filter_map(|item| {
+        let id = &item.source.experiment.id.0;
+        let ids = study.references.get(id)?.entries.iter().map(|entry| entry.id.as_str()).collect::<Vec<_>>();
+        Some((id.as_str(), ids))
+    });
+    let known = study.known.iter().filter(|(_, known)| known.used.contains(name));
+    let known = known.map(|(id, known)| (id.as_str(), known.judged.iter().map(|one| one.id.as_str()).collect()));
+    let by_experiment: BTreeMap<&str, Vec<&str>> = planned.chain(known).collect();
+    by_experiment.into_values().flatten().map(str::to_owned).collect()
+}
+
+fn assumptions(
+    study: &Study,
+    wanted: &dyn Fn(&Assumption) -> bool,
+    used_by: &dyn Fn(&Assumption) -> Vec<String>,
+) -> Vec<AssumptionView> {
+    let entries = study.sheet.entries.iter().filter(|(name, _)| wanted(name));
     entries
         .map(|(name, entry)| AssumptionView {
             name: words::of_key(name),

@@ -6,9 +6,9 @@ use rayon::prelude::*;
 
 use crate::experiment::{AssumptionSheet, Calibration, parse_calibration};
 use crate::reference::{Check, ReferenceFile, Role, parse_reference};
-use crate::study::{Item, Layout, Loaded, Refused, Sensitivity, Texts};
+use crate::study::{Item, Layout, Loaded, Refused, Sensitivity, Summary, Texts, stem};
 
-/// Everything that was read, and the plan.
+/// The study: what was read and planned, and the experiments that are up to date and need not be.
 #[derive(Debug)]
 pub struct Study {
     /// Where it lies.
@@ -17,8 +17,10 @@ pub struct Study {
     pub texts: Texts,
     /// The assumptions.
     pub sheet: AssumptionSheet,
-    /// The experiments, planned, in the order of their ids.
+    /// The experiments that were planned, in the order of their ids.
     pub items: Vec<Item>,
+    /// Experiments that are up to date and were neither read nor planned.
+    pub known: BTreeMap<String, Summary>,
     /// The reference by id of the experiment.
     pub references: BTreeMap<String, ReferenceFile>,
     /// The calibrations by the names of their files, without ending.
@@ -73,11 +75,44 @@ impl Study {
     /// Reads and plans the study that the texts make.
     #[must_use]
     pub fn new(layout: Layout, texts: Texts) -> Self {
-        let loaded = Loaded::from_texts(&texts);
-        let mut unread: Vec<Unread> = loaded.refused.into_iter().map(Unread::from).collect();
-        let references = references(&texts, &mut unread);
+        Self::beside(layout, texts, BTreeMap::new())
+    }
+
+    /// The same, but for the experiments that are `known` to be up to date.
+    #[must_use]
+    pub fn beside(layout: Layout, texts: Texts, known: BTreeMap<String, Summary>) -> Self {
+        let mut unread = Vec::new();
         let calibrations = calibrations(&texts, &mut unread);
-        let mut items: Vec<Item> = loaded
+        let mut study = Self {
+            layout,
+            texts,
+            sheet: AssumptionSheet::default(),
+            items: Vec::new(),
+            known: BTreeMap::new(),
+            references: BTreeMap::new(),
+            calibrations,
+            unread,
+        };
+        study.plan(&|id| !known.contains_key(id));
+        study.known = known;
+        study.plan_dependents();
+        study
+    }
+
+    /// Looks at what is on disk again, after a run.
+    pub fn refresh(&mut self) {
+        let Self { items, layout, .. } = self;
+        items.par_iter_mut().for_each(|item| item.refresh(layout));
+        self.plan_dependents();
+    }
+
+    /// Reads and plans the experiments whose ids are `wanted`.
+    fn plan(&mut self, wanted: &(dyn Fn(&str) -> bool + Sync)) {
+        let Self { texts, layout, unread, .. } = self;
+        let loaded = Loaded::chosen(texts, wanted);
+        unread.extend(loaded.refused.into_iter().map(Unread::from));
+        let references = references(texts, wanted, unread);
+        let items: Vec<Item> = loaded
             .sources
             .into_par_iter()
             .map(|source| {
@@ -88,18 +123,44 @@ impl Study {
                 } else {
                     Sensitivity::NotWanted
                 };
-                Item::new(&layout, source, &loaded.sheet, sensitivity)
+                Item::new(layout, source, &loaded.sheet, sensitivity)
             })
             .collect();
-        items.sort_by(|a, b| a.source.experiment.id.cmp(&b.source.experiment.id));
-        Self { layout, texts, sheet: loaded.sheet, items, references, calibrations, unread }
+        self.sheet = loaded.sheet;
+        self.references.extend(references);
+        self.items.extend(items);
+        self.items.sort_by(|a, b| a.source.experiment.id.cmp(&b.source.experiment.id));
     }
 
-    /// The name within the study of the reference file of an experiment.
+    /// Plans those known experiments whose entries read a table that is no longer the one they were judged by.
+    fn plan_dependents(&mut self) {
+        let tables = self.tables();
+        let moved =
+            |summary: &Summary| summary.reads.iter().any(|(id, hash)| tables.get(id.as_str()) != Some(&hash.as_str()));
+        let lost: BTreeSet<String> =
+            self.known.iter().filter(|(_, summary)| moved(summary)).map(|(id, _)| id.clone()).collect();
+        if !lost.is_empty() {
+            self.known.retain(|id, _| !lost.contains(id));
+            self.plan(&|id| lost.contains(id));
+        }
+    }
+
+    /// The hash of every table that counts, by experiment.
     #[must_use]
-    pub fn reference_name(&self, id: &str) -> Option<&str> {
-        let named = |name: &&String| name.strip_prefix("reference/").is_some_and(|rest| stem(rest) == id);
-        self.texts.files.keys().find(named).map(String::as_str)
+    pub fn tables(&self) -> BTreeMap<&str, &str> {
+        let known = self.known.iter().map(|(id, summary)| (id.as_str(), summary.table.as_str()));
+        let planned = self
+            .items
+            .iter()
+            .filter_map(|item| Some((item.source.experiment.id.0.as_str(), item.record()?.table.blake3.as_str())));
+        known.chain(planned).collect()
+    }
+
+    /// The names within the study of the reference files, by experiment.
+    #[must_use]
+    pub fn reference_names(&self) -> BTreeMap<&str, &str> {
+        let names = self.texts.files.keys().rev().filter(|name| name.starts_with("reference/"));
+        names.map(|name| (stem(name), name.as_str())).collect()
     }
 
     /// The ids of the entries that an assumption was fitted to.
@@ -142,19 +203,19 @@ fn calibrations(texts: &Texts, unread: &mut Vec<Unread>) -> BTreeMap<String, Cal
     calibrations
 }
 
-fn stem(name: &str) -> &str {
-    let name = name.rsplit('/').next().unwrap_or(name);
-    name.strip_suffix(".yaml").unwrap_or(name)
-}
-
 /// Numbers are held against the result with an uncertainty that needs the ends of the assumptions; claims are not.
 fn has_values(file: &ReferenceFile) -> bool {
     file.entries.iter().any(|entry| matches!(entry.check, Check::Value { .. } | Check::Peak { .. }))
 }
 
-fn references(texts: &Texts, unread: &mut Vec<Unread>) -> BTreeMap<String, ReferenceFile> {
+fn references(
+    texts: &Texts,
+    wanted: &dyn Fn(&str) -> bool,
+    unread: &mut Vec<Unread>,
+) -> BTreeMap<String, ReferenceFile> {
     let mut references = BTreeMap::<String, ReferenceFile>::new();
-    for (file, bytes) in texts.files.iter().filter(|(file, _)| file.starts_with("reference/")) {
+    let files = texts.files.iter().filter(|(file, _)| file.starts_with("reference/") && wanted(stem(file)));
+    for (file, bytes) in files {
         let mut refuse = |problem: String| unread.push(Unread::Reference { file: file.clone(), problem });
         let name = file.rsplit('/').next().unwrap_or(file);
         let Some(id) = name.strip_suffix(".yaml") else {

@@ -27,9 +27,8 @@ pub fn orphans(layout: &Layout, texts: &Texts) -> BTreeSet<String> {
     for entry in entries.flatten() {
         let Ok(name) = entry.file_name().into_string() else { continue };
         let ours = name.rsplit_once('.').is_some_and(|(_, ending)| ENDINGS.contains(&ending));
-        // Whatever else lies there has no experiment's name, the snapshot least of all.
         let Ok(id) = stem(&name).parse::<ExperimentId>() else { continue };
-        if !ours || known.contains(id.0.as_str()) || name == "snapshot.json" {
+        if !ours || known.contains(id.0.as_str()) {
             continue;
         }
         found.insert(format!("results/{name}"));

@@ -1,6 +1,6 @@
 //! The plan: of each experiment what its simulation depends on, and whether the table on disk was made from just that.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use serde_json::{Value, json};
@@ -14,7 +14,7 @@ use super::run::Task;
 use super::variant::{Sensitivity, Variant, variants};
 use crate::dynamics::SOLVER_VERSION;
 use crate::experiment::AssumptionSheet;
-use crate::scene::AssumptionValue;
+use crate::scene::{Assumption, AssumptionValue};
 
 /// One experiment as planned.
 #[derive(Debug, Clone, PartialEq)]
@@ -23,6 +23,8 @@ pub struct Item {
     pub source: Source,
     /// The assumptions under which it runs; the baseline first.
     pub variants: Vec<Variant>,
+    /// The assumptions that its numbers depend on.
+    pub used: BTreeSet<Assumption>,
     /// All that its numbers depend on.
     pub simulation: Value,
     /// Hash of [`Item::simulation`].
@@ -46,11 +48,17 @@ impl Item {
     /// Plans one experiment, and looks at what is on disk.
     #[must_use]
     pub fn new(layout: &Layout, source: Source, sheet: &AssumptionSheet, sensitivity: Sensitivity) -> Self {
-        let variants = variants(&source.experiment, sheet, sensitivity);
-        let simulation = simulation(&source, sheet, &variants, sensitivity);
+        let used = source.experiment.assumptions_used(sheet);
+        let variants = variants(&source.experiment, sheet, &used, sensitivity);
+        let simulation = simulation(&source, sheet, &used, &variants, sensitivity);
         let fingerprint = fingerprint(&simulation);
         let state = state(layout, &source, &simulation);
-        Self { source, variants, simulation, fingerprint, state }
+        Self { source, variants, used, simulation, fingerprint, state }
+    }
+
+    /// Looks at what is on disk again.
+    pub(super) fn refresh(&mut self, layout: &Layout) {
+        self.state = state(layout, &self.source, &self.simulation);
     }
 
     /// What the runner is to do for it.
@@ -106,8 +114,13 @@ impl Item {
     }
 }
 
-fn simulation(source: &Source, sheet: &AssumptionSheet, variants: &[Variant], sensitivity: Sensitivity) -> Value {
-    let used = source.experiment.assumptions_used(sheet);
+fn simulation(
+    source: &Source,
+    sheet: &AssumptionSheet,
+    used: &BTreeSet<Assumption>,
+    variants: &[Variant],
+    sensitivity: Sensitivity,
+) -> Value {
     let assumptions: BTreeMap<_, _> =
         sheet.entries.iter().filter(|(name, _)| used.contains(name)).map(|(name, e)| (name, &e.value)).collect();
     let sensitivity = (sensitivity == Sensitivity::Wanted).then(|| ends(variants));

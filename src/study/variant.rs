@@ -2,6 +2,8 @@
 //!
 //! They say how much a published number depends on what the study leaves unstated (u_input of a comparison).
 
+use std::collections::BTreeSet;
+
 use crate::experiment::{AssumptionSheet, Experiment};
 use crate::scene::{Assumption, Assumptions};
 use crate::table::BASELINE;
@@ -26,13 +28,18 @@ pub enum Sensitivity {
     NotWanted,
 }
 
-/// The variants of an experiment, the baseline first.
+/// The variants of an experiment that depends on the assumptions in `used`, the baseline first.
 #[must_use]
-pub fn variants(experiment: &Experiment, sheet: &AssumptionSheet, sensitivity: Sensitivity) -> Vec<Variant> {
+pub fn variants(
+    experiment: &Experiment,
+    sheet: &AssumptionSheet,
+    used: &BTreeSet<Assumption>,
+    sensitivity: Sensitivity,
+) -> Vec<Variant> {
     let baseline = sheet.assumptions();
     let mut variants = Vec::new();
     if sensitivity == Sensitivity::Wanted {
-        let mut used = experiment.assumptions_used(sheet);
+        let mut used = used.clone();
         if let Some(wanted) = &experiment.moved {
             used.retain(|name| wanted.contains(name));
         }

@@ -119,11 +119,11 @@ fn status_names_the_input_that_changed() {
     let status = shotdamp(&desk, &["status", "--why"]);
     assert_eq!(
         status.out,
-        "ch3-gap   up to date\n\
+        "\
          ch3-stop  stale\n    \
              experiments/assumptions.yaml:9: stop_length: 0.06 -> 0.055\n    \
              12 of 30 rows to simulate\n\
-         2 experiments: 1 to simulate, 0 reports to renew\n"
+         2 experiments: 1 to simulate, 0 reports to renew, 1 up to date\n"
     );
     assert_eq!((status.code, shotdamp(&desk, &["status", "--exit-code"]).code), (0, 1));
     let dry = shotdamp(&desk, &["run", "--dry-run", "--jobs", "2"]);

@@ -254,7 +254,7 @@ fn the_command_tells_what_is_to_do_and_how_long_it_will_take() {
 
     let all = shotdamp(&desk, &["run", "--force", "--dry-run", "ch3-stop"]).out;
     assert!(all.contains("ch3-stop: 12 of 12 rows"), "{all}");
-    assert!(shotdamp(&desk, &["run", "--force", "ch3-stop"]).out.starts_with("1 experiments: 1 simulated; 0 figures"));
+    assert!(shotdamp(&desk, &["run", "--force", "ch3-stop"]).out.starts_with("1 experiment: 1 simulated; 0 figures"));
     let cleaned = shotdamp(&desk, &["clean", "--earlier"]).out;
     assert!(cleaned.ends_with("2 files removed\n") && earlier(&desk, "ch3-stop").is_empty(), "{cleaned}");
 }

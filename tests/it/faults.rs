@@ -131,7 +131,8 @@ fn runs_killed_at_any_moment_resume_to_the_bytes_of_an_undisturbed_one() {
                 Some(_) => kills += 1,
                 None => finished += 1,
             }
-            let ended = Snapshot::current(&desk.layout, &desk.texts()).is_some();
+            let texts = desk.texts();
+            let ended = Snapshot::current(&desk.layout, &texts).is_complete(&texts);
             for (id, bytes) in counting(&desk) {
                 assert!(bytes == tables[&id], "{id} counts and is not what it should be");
             }

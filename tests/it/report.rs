@@ -7,7 +7,7 @@ use shotdamp::report::{
     AccuracyLinks, AssumptionView, ExperimentView, FigureView, PageView, index, page, summary, value_in_words,
 };
 use shotdamp::scene::{Assumption, AssumptionValue, EffectUse};
-use shotdamp::study::Machine;
+use shotdamp::study::{Heading, Machine};
 use shotdamp::table::Table;
 use shotdamp::text::number::{compact, quantity, signed, significant};
 use shotdamp::text::words;
@@ -151,7 +151,7 @@ fn the_index_tells_the_whole_study_at_a_glance() {
     let experiment = limit_stop();
     let judged = judged();
     let view = ExperimentView {
-        experiment: &experiment,
+        experiment: Heading::of(&experiment),
         judged: &judged,
         seconds: Some(12.3),
         page: "ch3/ch3-limit-stop.md".into(),
@@ -206,7 +206,7 @@ fn an_explanation_is_told_by_its_first_sentence_in_the_index() {
         ..entry("limit", Verdict::Blocked)
     }];
     let view = ExperimentView {
-        experiment: &experiment,
+        experiment: Heading::of(&experiment),
         judged: &one,
         seconds: None,
         page: String::new(),
