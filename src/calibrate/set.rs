@@ -4,7 +4,7 @@ use crate::experiment::{Calibration, CalibrationInput, Tried};
 use crate::measure::SolverChoice;
 use crate::scene::{AssumptionValue, Assumptions};
 
-/// Under what experiments run.
+/// Substituted what experiments run.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Set {
     pub assumptions: Assumptions,

@@ -1,4 +1,4 @@
-//! `shotdamp check`.
+//! `shotdamp check`: the verdicts for the tables on disk.
 
 use std::path::{Path, PathBuf};
 
@@ -69,7 +69,7 @@ fn compare_reports(study: &Study, judgement: &Judgement, args: &CheckArgs) -> Re
         print_error(&format!("error: {departure}\n"));
     }
     if departures.is_empty() && !args.json {
-        print("reports: what is there is what would be generated\n")?;
+        print("reports are up to date\n")?;
     }
     Ok(if departures.is_empty() { Exit::AsExpected } else { Exit::Unexpected })
 }

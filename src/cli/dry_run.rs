@@ -1,4 +1,4 @@
-//! `--dry-run`: what would be simulated, and how long that would take by what earlier runs took.
+//! `--dry-run`: what would be simulated, and how long that would take, estimated from earlier runs.
 
 use super::args::{Args, RunArgs};
 use super::error::CliError;
@@ -10,7 +10,7 @@ use crate::study::{Extent, KnownRows, Layout};
 use crate::text::number::compact;
 use crate::text::words::capitalised;
 
-/// Tells it, and writes nothing.
+/// Prints it, and writes nothing.
 pub(super) fn dry_run(layout: &Layout, args: &RunArgs, common: &Args) -> Result<Exit, CliError> {
     let study = open_stale(layout, &args.choice, args.force)?;
     let chosen = choose(&study, &args.choice)?;

@@ -89,7 +89,7 @@ pub(super) fn choose<'a>(study: &'a Study, choice: &Choice) -> Result<Chosen<'a>
             .collect(),
         ids: BTreeSet::new(),
     };
-    // The assumptions are everybody's: while they cannot be read, no pattern can be told from a wrong one.
+    // While the assumptions cannot be read no experiment is: then no pattern is called wrong.
     let blind = chosen.unread.iter().any(|unread| unread.file() == ASSUMPTIONS);
     let stems: Vec<&str> = chosen.unread.iter().map(|unread| stem(unread.file())).collect();
     let answers = |pattern: &&String| chosen.ids().chain(stems.iter().copied()).any(|id| matches(pattern, id));
@@ -141,7 +141,7 @@ fn known(study: &Study) -> String {
     }
 }
 
-/// The chapter that a name speaks of, `ch3-gap` or `experiments/ch3/…`; 0 if none.
+/// The chapter in a name, `ch3-gap` or `experiments/ch3/…`; 0 if none.
 pub(super) fn chapter_of(name: &str) -> u32 {
     let chapter = |part: &str| -> Option<u32> {
         let digits: String = part.strip_prefix("ch")?.chars().take_while(char::is_ascii_digit).collect();

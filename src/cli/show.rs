@@ -1,4 +1,4 @@
-//! `shotdamp show ID`.
+//! `shotdamp show ID`: the experiment in words.
 
 use super::args::Choice;
 use super::error::CliError;
@@ -13,7 +13,7 @@ use crate::scene::{Scene, effects};
 use crate::study::{Item, Layout, State, Study};
 use crate::text::words;
 
-/// All that is known of one experiment before it runs.
+/// Prints all that is known of an experiment before it runs.
 pub(super) fn show(layout: &Layout, id: &str) -> Result<Exit, CliError> {
     let study = open(layout)?;
     let chosen = choose(&study, &Choice { patterns: vec![id.into()], chapter: None })?;
@@ -101,7 +101,7 @@ fn idle(experiment: &Experiment, scenes: &[Scene]) -> String {
     }
 }
 
-/// Lines of at most so many letters, each after a margin.
+/// The text wrapped at `width` letters, each line after a margin.
 fn wrapped(text: &str, margin: &str, width: usize) -> String {
     let mut lines: Vec<String> = Vec::new();
     for word in text.split_whitespace() {

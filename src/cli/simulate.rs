@@ -1,4 +1,4 @@
-//! What commands that simulate share: the lock, threads and progress, and a word about what failed.
+//! What commands that simulate share: lock, threads, progress, and the report of failed rows.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -15,13 +15,13 @@ use crate::study::{
 };
 use crate::table::ParquetError;
 
-/// Tells who is at work, and what becomes of us.
+/// Whether to wait for another run, which is described.
 pub(super) fn held(no_wait: bool) -> impl FnOnce(&str) -> Held {
     move |holder| {
         if no_wait {
             return Held::GiveUp;
         }
-        print_error(&format!("waiting for another run here: {holder}\n"));
+        print_error(&format!("waiting for another run: {holder}\n"));
         Held::Wait
     }
 }
@@ -34,7 +34,7 @@ pub(super) struct How {
     pub quiet: bool,
     pub shard: Option<Shard>,
     /// Simulate also the rows that earlier tables have.
-    pub anew: bool,
+    pub from_scratch: bool,
 }
 
 /// How it went.
@@ -62,7 +62,7 @@ pub(super) fn simulate(
         layout.path(&how.shard.map_or_else(|| journal_name(id), |shard| shard.journal_name(id)))
     };
     let journals: Vec<PathBuf> = items.iter().map(journal).collect();
-    let known: Vec<KnownRows> = if how.anew {
+    let known: Vec<KnownRows> = if how.from_scratch {
         items.iter().for_each(|item| Spent::forget(layout, &item.source.experiment.id));
         items.iter().map(|_| KnownRows::nothing()).collect()
     } else {

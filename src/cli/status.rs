@@ -1,4 +1,4 @@
-//! `shotdamp status`.
+//! `shotdamp status`: what is stale, and why.
 
 use super::args::StatusArgs;
 use super::dry_run::rows;

@@ -35,7 +35,7 @@ pub(super) fn update(layout: &Layout, args: &RunArgs, common: &Args) -> Result<E
     let chosen = choose(&study, &args.choice)?;
     print_unread(chosen.unread.iter().copied());
     let todo = todo(&chosen, args);
-    let how = How { threads: common.threads(), quiet: common.quiet, shard: None, anew: args.force };
+    let how = How { threads: common.threads(), quiet: common.quiet, shard: None, from_scratch: args.force };
     let Ran { restored, unsaved } =
         simulate(layout, &todo, how, |item, finished| save(layout, item, finished).map(|_| ()))?;
     if args.times {

@@ -6,7 +6,7 @@ use std::fs;
 use rayon::prelude::*;
 
 use super::figures::{figure_name, png, shown};
-use super::publication::{meaning, publication_reasons};
+use super::publication::{inputs, publication_reasons};
 use super::verdicts::Judgement;
 use super::views;
 use crate::atomic::{self, FileError};
@@ -214,7 +214,7 @@ fn write_page(
             }
             Err(why) => {
                 whole = false;
-                // Where rows have failed, that is the news, and it is told already.
+                // Failed rows are reported elsewhere, and are the reason.
                 if page.record.failures.rows == 0 {
                     published.problems.push(format!("{id}: {why}"));
                 }
@@ -239,8 +239,8 @@ fn write_page(
         let outputs = files.keys().cloned().chain([table_name(id), record_name(id)]).collect();
         published.experiments.insert(id.0.clone(), (outputs, summary));
     }
-    let meaning = meaning(study, page.item, page.record);
-    let publication = whole.then_some(Publication { meaning, files, shown });
+    let inputs = inputs(study, page.item, page.record);
+    let publication = whole.then_some(Publication { inputs, files, shown });
     let record = Record { publication, ..page.record.clone() };
     record.write(&layout.path(&record_name(id)))
 }

@@ -13,7 +13,7 @@ pub(super) struct Job {
     pub solver: SolverChoice,
     /// Index of the variant.
     pub variant: usize,
-    /// The row whose numbers this one shares, because its case does not lean on the assumption that the variant moves.
+    /// The row whose numbers this one shares, because its case does not depend on the assumption that the variant moves.
     pub same_as: Option<usize>,
 }
 
@@ -28,11 +28,11 @@ pub(super) fn jobs(experiment: &Experiment, variants: &[Variant]) -> Vec<Job> {
         jobs.iter().copied().enumerate().filter(|(_, job)| job.solver == SolverChoice::EventDriven).collect();
     for (variant, Variant { moved, assumptions, .. }) in variants.iter().enumerate().skip(1) {
         for (row, job) in &event_driven {
-            // Not the scene alone leans on assumptions: a measure may have readings of its own.
-            let leans = experiment.recipe_of(&experiment.cases[job.case]).map_or(true, |recipe| {
+            // Measures depend on assumptions too.
+            let depends = experiment.recipe_of(&experiment.cases[job.case]).map_or(true, |recipe| {
                 moved.is_none_or(|moved| experiment.assumptions_of([recipe], assumptions).contains(&moved))
             });
-            jobs.push(Job { variant, same_as: (!leans).then_some(*row), ..*job });
+            jobs.push(Job { variant, same_as: (!depends).then_some(*row), ..*job });
         }
     }
     jobs

@@ -1,4 +1,4 @@
-//! Where a study keeps its files, and what stands in them now.
+//! The files of a study: their names, and the texts as they are now.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs::{self, File};
@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use crate::atomic::FileError;
 
-/// No experiment of a person is longer; a longer file is refused before it is read.
+/// No hand-written experiment is longer; a longer file is refused before it is read.
 const LONGEST_TEXT: u64 = 4 << 20;
 /// Folders in folders below `experiments/`; ends a walk that a link leads in a circle.
 const DEEPEST: u32 = 8;

@@ -1,4 +1,4 @@
-//! Texts to experiments: everything that can be read is, and everything that cannot is told.
+//! Texts to experiments, with an error for every file that cannot be read.
 
 use std::collections::BTreeMap;
 
@@ -53,7 +53,7 @@ pub enum Refused {
     /// It is not a text.
     #[error("{0}: this is not UTF-8 text")]
     Encoding(String),
-    /// Another ending than the one that is looked for would be overlooked in silence.
+    /// Another ending than the one that is looked for would be overlooked.
     #[error("{0}: rename it to end in .yaml")]
     Ending(String),
     /// Two files of one id would write into each other's table.

@@ -1,6 +1,7 @@
-//! A study: what is planned, what is stale and why, the parallel runner, the tables and records that it leaves.
+//! A study: the plan, what is stale and why, the parallel runner, its tables and records.
 //!
-//! texts → experiments → [`Item`]s (what each depends on, what is on disk) → [`run`] → tables and records. Nothing here
+//! texts → experiments → [`Item`]s (what each depends on, what is on disk) → [`run`] → tables and records; what was up to date
+//! after the last run ([`Snapshot`]) is neither read nor planned. Nothing here
 //! draws or judges: verdicts, figures and reports are made from the tables afterwards.
 
 mod canonical;
@@ -26,6 +27,7 @@ mod progress;
 mod reason;
 mod record;
 mod refine;
+mod row_failure;
 mod row_fingerprint;
 mod run;
 mod run_times;
@@ -56,9 +58,10 @@ pub use plan::{Item, State};
 pub use progress::Progress;
 pub use reason::{Reason, differences};
 pub use record::{Failures, FileHash, NoRecord, PRESENTATION_VERSION, Publication, RECORD_FORMAT, Record};
+pub use row_failure::{RowFailure, SearchError};
 pub use run::{Finished, Task, ThreadError, run};
 pub use run_times::RunTimes;
-pub use shard::{Shard, ShardError};
+pub use shard::{NotThePart, Shard, ShardError};
 pub use snapshot::Snapshot;
 pub use spent::{Cost, Spent};
 pub use store::{Held, Lock, LockError, save};

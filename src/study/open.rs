@@ -1,11 +1,11 @@
-//! A study as it lies before us: experiments, assumptions and reference read, planned, and held against what is on disk.
+//! The study as loaded: experiments, assumptions and reference, the plan, and what of it is on disk.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use rayon::prelude::*;
 
 use crate::experiment::{AssumptionSheet, Calibration, parse_calibration};
-use crate::reference::{Check, ReferenceFile, Role, parse_reference};
+use crate::reference::{Check, ReferenceFile, ReferenceProblem, Role, parse_reference};
 use crate::study::{Item, Layout, Loaded, Refused, Sensitivity, Summary, Texts, stem};
 
 /// The study: what was read and planned, and the experiments that are up to date and need not be.
@@ -41,7 +41,7 @@ pub enum Unread {
         /// Which.
         file: String,
         /// What is wrong with it, with its place.
-        problem: String,
+        problem: ReferenceProblem,
     },
 }
 
@@ -54,10 +54,7 @@ impl Unread {
                 problems.list.iter().find_map(|problem| problem.place).and_then(|place| u64::try_from(place.line).ok())
             }
             Self::Experiment(_) => None,
-            Self::Reference { problem, .. } => {
-                let digits: String = problem.strip_prefix("line ")?.chars().take_while(char::is_ascii_digit).collect();
-                digits.parse().ok()
-            }
+            Self::Reference { problem, .. } => problem.line(),
         }
     }
 
@@ -216,20 +213,18 @@ fn references(
     let mut references = BTreeMap::<String, ReferenceFile>::new();
     let files = texts.files.iter().filter(|(file, _)| file.starts_with("reference/") && wanted(stem(file)));
     for (file, bytes) in files {
-        let mut refuse = |problem: String| unread.push(Unread::Reference { file: file.clone(), problem });
+        let mut refuse = |problem| unread.push(Unread::Reference { file: file.clone(), problem });
         let name = file.rsplit('/').next().unwrap_or(file);
         let Some(id) = name.strip_suffix(".yaml") else {
-            refuse("rename it to end in .yaml".into());
+            refuse(ReferenceProblem::Ending);
             continue;
         };
         let Ok(text) = std::str::from_utf8(bytes) else {
-            refuse("this is not UTF-8 text".into());
+            refuse(ReferenceProblem::Encoding);
             continue;
         };
         match parse_reference(id, text) {
-            Ok(_) if references.contains_key(id) => {
-                refuse("another file holds the reference of this experiment".into())
-            }
+            Ok(_) if references.contains_key(id) => refuse(ReferenceProblem::Twice),
             Ok(reference) => {
                 references.insert(id.into(), reference);
             }

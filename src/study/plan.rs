@@ -1,4 +1,4 @@
-//! The plan: of each experiment what its simulation depends on, and whether the table on disk was made from just that.
+//! The plan: what the simulation of each experiment depends on, and whether the table on disk was made from exactly that.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -29,18 +29,18 @@ pub struct Item {
     pub simulation: Value,
     /// Hash of [`Item::simulation`].
     pub fingerprint: String,
-    /// Whether there is anything to simulate.
+    /// Whether it is to be simulated.
     pub state: State,
 }
 
 /// What is on disk.
 #[derive(Debug, Clone, PartialEq)]
 pub enum State {
-    /// The table of this meaning.
+    /// The table with this fingerprint.
     Current(Record),
-    /// The table of this meaning, but some of its rows failed: it counts, and is tried again.
+    /// The table with this fingerprint, but some of its rows failed: it counts, and is tried again.
     Failed(Record),
-    /// Nothing, or the table of another meaning; and why.
+    /// Nothing, or a table with another fingerprint; and why.
     Stale(Vec<Reason>),
 }
 
@@ -68,7 +68,7 @@ impl Item {
         Task { journal: Some(journal), ..Task::new(&source.experiment, variants, metadata) }
     }
 
-    /// The record of the table that has this meaning, if there is one.
+    /// The record of the current table, if there is one.
     #[must_use]
     pub fn record(&self) -> Option<&Record> {
         match &self.state {

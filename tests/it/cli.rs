@@ -9,12 +9,12 @@ use assert_cmd::cargo::CommandCargoExt;
 
 use crate::desk::{ASSUMPTIONS, Desk, GAP, GAP_REFERENCE, STOP, STOP_REFERENCE, shotdamp, simulated};
 
-/// Every file below the folder with its bytes, but for the times that runs have taken.
+/// Every file below the folder with its bytes, except the times that runs have taken and the snapshot, which holds times of files.
 pub fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     let mut found = BTreeMap::new();
     for entry in fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
-        if path.ends_with("results/times") {
+        if path.ends_with("results/times") || path.ends_with("results/snapshot.bin") {
             continue;
         }
         if path.is_dir() {

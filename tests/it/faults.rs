@@ -78,7 +78,7 @@ fn left(desk: &Desk) -> BTreeMap<String, Vec<u8>> {
     files
 }
 
-/// Tables that count, by id; each is whole, and the one its record speaks of.
+/// Tables that count, by id; each is whole, and the one in its record.
 fn counting(desk: &Desk) -> BTreeMap<String, Vec<u8>> {
     let mut counting = BTreeMap::new();
     for (id, item) in desk.plan() {
@@ -243,7 +243,7 @@ fn the_second_run_says_who_holds_the_lock_and_waits_or_gives_up() {
     for command in ["run", "gather"] {
         let said = shotdamp(&desk, &[command, "--no-wait"]);
         assert_eq!(said.code, 2);
-        assert!(said.err.starts_with(&format!("error: another run is at work here: {holder}")), "{}", said.err);
+        assert!(said.err.starts_with(&format!("error: another run is working here: {holder}")), "{}", said.err);
     }
     let mut waiting = spawn(&desk, &["run", "--quiet"]);
     let mut said = String::new();

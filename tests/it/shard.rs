@@ -141,7 +141,7 @@ fn what_is_missing_comes_twice_or_is_damaged_is_told_with_what_to_do() {
     assert!(fs::read(part("2-of-3")).unwrap() == whole);
 
     desk.put("experiments/ch3/ch3-stop.yaml", &STOP.replace("mass: 1 kg", "mass: 2 kg"));
-    assert!(gather().contains("computed from other inputs than those of now"));
+    assert!(gather().contains("computed from other inputs than the current ones"));
     run_shard(&desk, "1/2");
     assert!(gather().contains("tables of 2 and of 3 shards; say which with --of"));
     run_shard(&desk, "2/2");

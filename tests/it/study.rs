@@ -8,8 +8,8 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use shotdamp::measure::Evaluated;
 use shotdamp::scene::Excitation;
 use shotdamp::study::{
-    Evaluate, Event, EventHandler, Heading, Held, IgnoreEvents, Item, KnownRows, Loaded, Lock, Simulation, Snapshot,
-    Study, Summary, Texts,
+    Evaluate, Event, EventHandler, Heading, Held, IgnoreEvents, Item, KnownRows, Loaded, Lock, RowFailure, Simulation,
+    Snapshot, Study, Summary, Texts,
 };
 
 use crate::desk::{ASSUMPTIONS, Desk, GAP, GAP_REFERENCE, MadeUp, STOP};
@@ -85,13 +85,13 @@ fn a_maximum_is_found_between_the_points_of_the_grid() {
 fn one_bad_case_is_a_row_and_a_panic_is_one_too() {
     struct Bad;
     impl Evaluate for Bad {
-        fn evaluate(&self, it: &Simulation<'_>) -> Result<Evaluated, String> {
+        fn evaluate(&self, it: &Simulation<'_>) -> Result<Evaluated, RowFailure> {
             let Excitation::ImpulseTrain { impulse, .. } = it.recipe.resolve(it.assumptions).unwrap().excitation else {
                 return MadeUp::default().evaluate(it);
             };
             if it.recipe.dampers[0].stop.is_none() {
                 assert!(impulse > 1.0, "made to fail");
-                return Err("too hard".into());
+                return Err(RowFailure::Other("too hard".into()));
             }
             MadeUp::default().evaluate(it)
         }
@@ -115,9 +115,11 @@ fn one_bad_case_is_a_row_and_a_panic_is_one_too() {
 fn a_maximum_over_a_range_with_a_hole_is_none() {
     struct Hole;
     impl Evaluate for Hole {
-        fn evaluate(&self, it: &Simulation<'_>) -> Result<Evaluated, String> {
+        fn evaluate(&self, it: &Simulation<'_>) -> Result<Evaluated, RowFailure> {
             match it.recipe.resolve(it.assumptions).unwrap().excitation {
-                Excitation::Harmonic { force, .. } if force.abs() > 50.0 => Err("did not settle".into()),
+                Excitation::Harmonic { force, .. } if force.abs() > 50.0 => {
+                    Err(RowFailure::Other("did not settle".into()))
+                }
                 _ => MadeUp::default().evaluate(it),
             }
         }
@@ -184,8 +186,8 @@ fn damaged_results_are_noticed_and_made_again() {
     fs::remove_file(&name).unwrap();
     assert_eq!(desk.why("ch3-gap"), ["results/ch3-gap.parquet is missing"]);
     desk.put("results/ch3-stop.json", "{\"format\": 0}");
-    assert!(desk.why("ch3-stop")[0].starts_with("its record does not count"));
-    // A record that was renamed speaks of another experiment.
+    assert!(desk.why("ch3-stop")[0].starts_with("its record cannot be used"));
+    // A renamed record is that of another experiment.
     fs::copy(desk.layout.path("results/ch3-gap.json"), desk.layout.path("results/ch3-stop.json")).unwrap();
     assert!(desk.why("ch3-stop")[0].contains("belongs to ch3-gap"));
 }
@@ -207,7 +209,7 @@ fn a_table_counts_only_with_its_record() {
 fn an_input_edited_during_the_run_is_stale_afterwards() {
     struct Editor<'a>(&'a Desk, MadeUp);
     impl Evaluate for Editor<'_> {
-        fn evaluate(&self, it: &Simulation<'_>) -> Result<Evaluated, String> {
+        fn evaluate(&self, it: &Simulation<'_>) -> Result<Evaluated, RowFailure> {
             self.0.put("experiments/ch3/ch3-gap.yaml", &GAP.replace("mass: 1 kg", "mass: 3 kg"));
             self.1.evaluate(it)
         }
