@@ -91,7 +91,7 @@ impl Assumed {
     fn of(sheet: &AssumptionSheet) -> Self {
         let hash = |entry| serde_json::to_vec(entry).map_or_else(|_| String::new(), |text| hash(&text));
         Self {
-            each: sheet.entries.iter().map(|(name, entry)| (name.clone(), hash(entry))).collect(),
+            each: sheet.entries.iter().map(|(name, entry)| (*name, hash(entry))).collect(),
             fitted: sheet.entries.values().flat_map(|entry| entry.fitted_to.iter().cloned()).collect(),
         }
     }

@@ -113,7 +113,7 @@ pub(super) fn table(
     columns.extend(outcome(experiment, optimise, candidates));
     columns.push(texts("stopped", &|it| it.stopped.clone()));
     columns.extend(proof(candidates));
-    columns.push(texts("failure", &|it| it.failure().into()));
+    columns.push(texts("failure", &|it| it.failure()));
     columns.extend(lists(optimise, candidates));
     Table { columns, metadata, ..Table::default() }
 }

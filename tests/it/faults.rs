@@ -248,7 +248,7 @@ fn the_second_run_says_who_holds_the_lock_and_waits_or_gives_up() {
     let mut waiting = spawn(&desk, &["run", "--quiet"]);
     let mut said = String::new();
     BufReader::new(waiting.stderr.take().unwrap()).read_line(&mut said).unwrap();
-    assert!(said.starts_with(&format!("waiting for another run here: {holder}")), "{said}");
+    assert!(said.starts_with(&format!("waiting for another run: {holder}")), "{said}");
     std::thread::sleep(Duration::from_millis(50));
     assert!(waiting.try_wait().unwrap().is_none(), "it waits");
     // A shard writes elsewhere and need not wait.

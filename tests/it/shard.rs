@@ -159,7 +159,7 @@ fn a_shard_does_what_is_left_of_its_part() {
     let (before, bytes) = (stamp(&path), fs::read(&path).unwrap());
     desk.put("experiments/ch3/ch3-gap.yaml", &GAP.replace("mass: 1 kg", "mass: 2 kg"));
     let said = shotdamp(&desk, &["run", "--shard", "1/2"]);
-    assert!(said.out.contains("; 1 simulated now"), "{}", said.out);
+    assert!(said.out.contains("; 1 simulated."), "{}", said.out);
     assert_eq!(stamp(&path), before);
     shotdamp(&desk, &["run", "--shard", "1/2", "--force", "--jobs", "1"]);
     assert!(stamp(&path) != before && fs::read(&path).unwrap() == bytes);
