@@ -1,8 +1,8 @@
 //! One assumption moved at a time: what an entry reads then.
 
-use super::bench::{Asked, Bench, Growing, Hands, Worth};
 use super::fit::{Read, read};
 use super::set::Set;
+use super::trials::{Asked, CumulativeEvents, TrialRunner, Workers, Worth};
 use crate::experiment::Experiment;
 use crate::experiment::{AssumptionName, AssumptionValue, Assumptions};
 use crate::study::{Evaluate, Event, EventHandler, ThreadError};
@@ -24,14 +24,14 @@ pub fn moved_alone(
     evaluate: &impl Evaluate,
     handler: &dyn EventHandler,
 ) -> Result<Vec<Read>, ThreadError> {
-    let hands = Hands { threads, evaluate, handler: &Growing::new(handler) };
+    let workers = Workers { threads, evaluate, handler: &CumulativeEvents::new(handler) };
     let set = |(name, value): &(AssumptionName, AssumptionValue)| {
         let mut set = Set::in_force(in_force);
         set.assumptions.values.insert(name.clone(), value.clone());
         set
     };
     let sets: Vec<Set> = moves.iter().map(set).collect();
-    let tables = Bench::new(&hands, Worth::Step { ensemble: MEMBERS }, experiments, &[asked]).tables(&sets)?;
+    let tables = TrialRunner::new(&workers, Worth::Step { ensemble: MEMBERS }, experiments, &[asked]).tables(&sets)?;
     handler.on_event(&Event::Ended);
     Ok(tables.iter().map(|tables| read(&asked, tables)).collect())
 }

@@ -105,7 +105,7 @@ fn points(input: &CalibrationInput, profile: &Profile, best: usize) -> String {
     description.collect::<Vec<_>>().join("; ")
 }
 
-/// One of the values, in words. Curves that end alike are told by their place.
+/// One of the values, in words. Curves that end alike are named by their place.
 fn value(tried: &Tried, place: usize) -> String {
     match tried {
         Tried::Values { units, values, .. } => {

@@ -4,7 +4,7 @@ use crate::experiment::{AssumptionValue, Assumptions};
 use crate::experiment::{Calibration, CalibrationInput, Tried};
 use crate::measure::SolverChoice;
 
-/// Under what experiments run.
+/// Substituted what experiments run.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Set {
     pub assumptions: Assumptions,

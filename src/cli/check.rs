@@ -1,4 +1,4 @@
-//! `shotdamp check`.
+//! `shotdamp check`: the verdicts for the tables on disk.
 
 use std::path::{Path, PathBuf};
 
@@ -114,7 +114,7 @@ fn accept(study: &Study, judgement: &Judgement, id: &str, reason: &str) -> Resul
     let (experiment, _) = id.split_once('/').ok_or_else(unknown)?;
     let judged =
         judgement.verdicts.get(experiment).into_iter().flatten().find(|one| one.id == id).ok_or_else(unknown)?;
-    let name = study.reference_name(experiment).ok_or_else(unknown)?;
+    let name = *study.reference_names().get(experiment).ok_or_else(unknown)?;
     let (reference, bytes) = study.references.get(experiment).zip(study.texts.files.get(name)).ok_or_else(unknown)?;
     let text = String::from_utf8_lossy(bytes);
     let changed = reference::accept(reference, &text, judged, reason)?;

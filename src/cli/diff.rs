@@ -1,4 +1,4 @@
-//! `shotdamp diff`.
+//! `shotdamp diff`: what moved between two runs.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -20,7 +20,7 @@ enum Side {
     Verdicts(Vec<Standing>),
 }
 
-/// Tells what moved between two runs.
+/// Prints what moved between two runs.
 pub(super) fn diff(layout: &Layout, args: &DiffArgs) -> Result<Exit, CliError> {
     let a = args.a.clone().unwrap_or_else(|| layout.path(VERDICTS));
     let b = args.b.clone().unwrap_or_else(|| layout.results());

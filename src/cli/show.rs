@@ -1,4 +1,4 @@
-//! `shotdamp show ID`.
+//! `shotdamp show ID`: the experiment in words.
 
 use std::time::Duration;
 
@@ -18,7 +18,7 @@ use crate::study::{Item, Layout, State, Study, forecast};
 /// How long the proof that particles stay on their floors may take; cases beyond it count as not proved.
 const PATIENCE: Duration = Duration::from_millis(500);
 
-/// All that is known of one experiment before it runs.
+/// Prints all that is known of an experiment before it runs.
 pub(super) fn show(layout: &Layout, id: &str) -> Result<Exit, CliError> {
     let study = open(layout)?;
     let chosen = choose(&study, &Choice { patterns: vec![id.into()], chapter: None })?;
@@ -109,7 +109,7 @@ fn idle(experiment: &Experiment, scenes: &[Scene]) -> String {
     }
 }
 
-/// Lines of at most so many letters, each after a margin.
+/// The text wrapped at `width` letters, each line after a margin.
 fn wrapped(text: &str, margin: &str, width: usize) -> String {
     let mut lines: Vec<String> = Vec::new();
     for word in text.split_whitespace() {

@@ -1,4 +1,4 @@
-//! What commands that simulate share: the lock, threads and progress, and a word about what failed.
+//! What commands that simulate share: lock, threads, progress, and the report of failed rows.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -16,13 +16,13 @@ use crate::study::{
 };
 use crate::table::ParquetError;
 
-/// Tells who is at work, and what becomes of us.
+/// Whether to wait for another run, which is described.
 pub(super) fn held(no_wait: bool) -> impl FnOnce(&str) -> Held {
     move |holder| {
         if no_wait {
             return Held::GiveUp;
         }
-        print_error(&format!("waiting for another run here: {holder}\n"));
+        print_error(&format!("waiting for another run: {holder}\n"));
         Held::Wait
     }
 }
@@ -37,7 +37,7 @@ pub(super) struct How {
     /// In the place of the limits that the experiments set.
     pub row_limit: RowLimit,
     /// Simulate also the rows that earlier tables have.
-    pub anew: bool,
+    pub from_scratch: bool,
 }
 
 /// How it went.
@@ -65,7 +65,7 @@ pub(super) fn simulate(
         layout.path(&how.shard.map_or_else(|| journal_name(id), |shard| shard.journal_name(id)))
     };
     let journals: Vec<PathBuf> = items.iter().map(journal).collect();
-    let known: Vec<KnownRows> = if how.anew {
+    let known: Vec<KnownRows> = if how.from_scratch {
         items.iter().for_each(|item| Spent::forget(layout, &item.source.experiment.id));
         items.iter().map(|_| KnownRows::nothing()).collect()
     } else {
@@ -97,8 +97,8 @@ pub(super) fn simulate(
     Ok(Ran { restored, unsaved: unsaved.into_inner().unwrap_or_default().into_values().collect() })
 }
 
-/// True if rows of the chosen experiments have no numbers.
-pub(super) fn tell_failures(chosen: &Chosen<'_>) -> bool {
+/// Prints which of the chosen experiments have rows without numbers; true if there are any.
+pub(super) fn print_failures(chosen: &Chosen<'_>) -> bool {
     let mut failed = false;
     for item in &chosen.items {
         if let State::Failed(record) = &item.state {

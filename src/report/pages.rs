@@ -6,14 +6,15 @@ use std::fs;
 use rayon::prelude::*;
 
 use super::figures::{figure_name, png, shown};
-use super::publication::{meaning, publication_reasons};
+use super::publication::{inputs, publication_reasons};
 use super::verdicts::Judgement;
 use super::views;
 use crate::atomic::{self, FileError};
 use crate::experiment::FigureSpec;
 use crate::figure::FigureError;
+use crate::reference::{Judged, ReferenceFile};
 use crate::study::Study;
-use crate::study::{FileHash, Item, Publication, Record, record_name, table_name};
+use crate::study::{FileHash, Heading, Item, Publication, Record, State, Summary, record_name, stem, table_name};
 use crate::table::{Table, UNDEFINED};
 
 /// The verdicts for programs, within the study.
@@ -52,8 +53,10 @@ impl NotDrawn {
 /// What publishing did.
 #[derive(Debug, Default)]
 pub struct Published {
-    /// Every file that the study consists of now, by its name within the study.
-    pub outputs: BTreeSet<String>,
+    /// Experiments that are up to date now, by id: their files, and what the rest of the study needs to know of them.
+    pub experiments: BTreeMap<String, (BTreeSet<String>, Summary)>,
+    /// Files of the study as a whole.
+    pub of_the_study: BTreeSet<String>,
     /// Files that were written.
     pub written: usize,
     /// Figures that were drawn; those that would show the same as before are not.
@@ -70,7 +73,9 @@ struct Page<'a> {
     stale: bool,
 }
 
-/// Draws what is stale, renders every page of the experiments in `ids` and the index, and writes what differs.
+/// Draws what is stale, renders every page of the experiments in `ids` and the index, and writes what differs. Pages of others
+/// that were planned are written where their figures are up to date: a verdict on them may have changed with a table that it
+/// reads.
 ///
 /// # Errors
 /// [`FileError`] if a file cannot be written.
@@ -82,14 +87,14 @@ pub fn publish(study: &Study, judgement: &Judgement, ids: &BTreeSet<&str>) -> Re
     let jobs = stale.flat_map(jobs).filter(|(page, figure)| !is_drawn(study, judgement, page, figure));
     let mut figures = draw(study, judgement, jobs);
     published.drawn = figures.values().map(Vec::len).sum();
-    for page in pages.iter().filter(chosen) {
+    for page in pages.iter().filter(|page| chosen(page) || !page.stale) {
         let id = page.item.source.experiment.id.0.as_str();
         let drawn = figures.remove(id).unwrap_or_default();
         write_page(study, judgement, page, drawn, &mut published)?;
     }
     for (name, text) in views::of_the_study(study, judgement) {
         published.written += usize::from(atomic::write_if_changed(&study.layout.path(&name), text.as_bytes())?);
-        published.outputs.insert(name);
+        published.of_the_study.insert(name);
     }
     Ok(published)
 }
@@ -177,7 +182,39 @@ fn draw<'a>(
     by_id
 }
 
-/// Why there is no figure; where all its numbers are undefined, that is why.
+/// The verdicts of an experiment with their explanations as the file has them: their numbers are those of other tables, too.
+fn judged_as_written(judgement: &Judgement, reference: Option<&ReferenceFile>, id: &str) -> Vec<Judged> {
+    let mut judged = judgement.verdicts.get(id).cloned().unwrap_or_default();
+    for one in &mut judged {
+        let entry = reference.and_then(|file| file.entries.iter().find(|entry| entry.id == one.id));
+        if let Some(entry) = entry {
+            one.explanation = entry.explanation.clone();
+        }
+    }
+    judged
+}
+
+/// The summary of an experiment; `None` if it is to be looked at again the next time: rows of it failed, its reference cannot
+/// be read, or an entry reads a table that does not count.
+fn summary(study: &Study, judgement: &Judgement, page: &Page<'_>) -> Option<Summary> {
+    let experiment = &page.item.source.experiment;
+    let id = experiment.id.0.as_str();
+    let reference = study.references.get(id);
+    let tables = study.tables();
+    let reads = reference.map(ReferenceFile::other_tables).unwrap_or_default();
+    let reads: Option<BTreeMap<String, String>> =
+        reads.into_iter().map(|id| Some((id.clone(), (*tables.get(id.as_str())?).to_owned()))).collect();
+    let is_read = matches!(page.item.state, State::Current(_)) && study.unread.iter().all(|one| stem(one.file()) != id);
+    is_read.then_some(Summary {
+        heading: Heading::of(experiment),
+        folder: page.item.source.folder().to_owned(),
+        used: page.item.used.clone(),
+        table: page.record.table.blake3.clone(),
+        reads: reads?,
+        judged: judged_as_written(judgement, reference, id),
+        lines: reference.into_iter().flat_map(|file| &file.entries).map(|entry| entry.line).collect(),
+    })
+}
 
 fn write_page(
     study: &Study,
@@ -212,7 +249,7 @@ fn write_page(
             }
             Err(why) => {
                 whole = false;
-                // Where rows have failed, that is the news, and it is told already.
+                // Failed rows are reported elsewhere, and are the reason.
                 if page.record.failures.rows == 0 {
                     published.problems.push(format!("{id}: {why}"));
                 }
@@ -233,10 +270,12 @@ fn write_page(
             _ => {}
         }
     }
-    published.outputs.extend(files.keys().cloned());
-    published.outputs.extend([table_name(id), record_name(id)]);
-    let meaning = meaning(study, page.item, page.record);
-    let publication = whole.then_some(Publication { meaning, files, shown });
+    if whole && let Some(summary) = summary(study, judgement, page) {
+        let outputs = files.keys().cloned().chain([table_name(id), record_name(id)]).collect();
+        published.experiments.insert(id.0.clone(), (outputs, summary));
+    }
+    let inputs = inputs(study, page.item, page.record);
+    let publication = whole.then_some(Publication { inputs, files, shown });
     let record = Record { publication, ..page.record.clone() };
     record.write(&layout.path(&record_name(id)))
 }

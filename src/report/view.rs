@@ -3,6 +3,7 @@
 use crate::experiment::Experiment;
 use crate::reference::Judged;
 use crate::scene::EffectUse;
+use crate::study::Heading;
 use crate::table::Table;
 
 /// An assumption in force, in words.
@@ -40,7 +41,7 @@ pub struct AccuracyLinks {
 #[derive(Debug, Clone)]
 pub struct ExperimentView<'a> {
     /// The experiment.
-    pub experiment: &'a Experiment,
+    pub experiment: Heading,
     /// Its entries with their verdicts.
     pub judged: &'a [Judged],
     /// Processor time that its simulations took, s, where somebody has measured it.

@@ -1,6 +1,6 @@
-//! What the report writes from, gathered: links as they stand in the written files, assumptions with all that depend on them.
+//! What the report writes from, gathered: links as they stand in the written files, assumptions with the entries that depend on them.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::figures::figure_name;
 use super::index::{OVERVIEW, STRIP};
@@ -15,7 +15,7 @@ use crate::report::{
     value_in_words,
 };
 use crate::scene::{Scene, effects};
-use crate::study::{Item, RunTimes, table_name};
+use crate::study::{Heading, Item, RunTimes, table_name};
 use crate::study::{Study, Unread};
 
 /// The page of an experiment.
@@ -26,7 +26,7 @@ pub(super) fn page(study: &Study, judgement: &Judgement, item: &Item) -> String 
         experiment,
         table: judgement.tables.get(&experiment.id.0),
         judged: judged(judgement, &experiment.id.0),
-        assumptions: &assumptions(study, judgement, |name| item.used.contains(name)),
+        assumptions: &assumptions(study, judgement, &|name| item.used.contains(name), &|_| Vec::new()),
         effects: &effects(&scenes(study, experiment)),
         figures: &figures(experiment),
         table_name: &table_name(&experiment.id),
@@ -45,13 +45,17 @@ fn accuracy(study: &Study, item: &Item, up: &str) -> Option<AccuracyLinks> {
 /// What is written of the study as a whole, by name within the study.
 pub(super) fn of_the_study(study: &Study, judgement: &Judgement) -> Vec<(String, String)> {
     let times = RunTimes::read(&study.layout);
-    let listed = |item| listed(judgement, item, times.as_ref());
-    let views: Vec<ExperimentView<'_>> = study.items.iter().map(listed).collect();
+    let planned = study.items.iter().map(|item| (Heading::of(&item.source.experiment), item.source.folder()));
+    let known = study.known.values().map(|known| (known.heading.clone(), known.folder.as_str()));
+    let mut views: Vec<ExperimentView<'_>> =
+        planned.chain(known).map(|(heading, folder)| listed(judgement, heading, folder, times.as_ref())).collect();
+    views.sort_by(|a, b| a.experiment.id.cmp(&b.experiment.id));
+    let assumptions = assumptions(study, judgement, &|_| true, &|name| entries_that_use(study, name));
     [
         ("README.md", index(study, &views, times.as_ref())),
         (STRIP, report::strip_svg(&views)),
         (OVERVIEW, report::overview_svg(&views)),
-        ("assumptions.md", report::assumptions(&assumptions(study, judgement, |_| true))),
+        ("assumptions.md", report::assumptions(&assumptions)),
         ("tolerances.md", report::tolerances(&views)),
         ("verdicts.json", verdicts(study, judgement)),
     ]
@@ -74,17 +78,18 @@ fn index(study: &Study, views: &[ExperimentView<'_>], times: Option<&RunTimes>) 
     report::index(views, &others, times.map(|times| &times.machine))
 }
 
-fn listed<'a>(judgement: &'a Judgement, item: &'a Item, times: Option<&RunTimes>) -> ExperimentView<'a> {
-    let experiment = &item.source.experiment;
-    let folder = match item.source.folder() {
-        "" => String::new(),
-        folder => format!("{folder}/"),
-    };
+fn listed<'a>(
+    judgement: &'a Judgement,
+    experiment: Heading,
+    folder: &str,
+    times: Option<&RunTimes>,
+) -> ExperimentView<'a> {
+    let folder = if folder.is_empty() { String::new() } else { format!("{folder}/") };
     ExperimentView {
-        experiment,
         judged: judged(judgement, &experiment.id.0),
         seconds: times.and_then(|times| times.seconds.get(&experiment.id.0)).copied(),
         page: format!("{folder}{}.md", experiment.id),
+        experiment,
     }
 }
 
@@ -103,10 +108,12 @@ pub fn check_view<'a>(
     ids: &BTreeSet<&'a str>,
     unread: &[&Unread],
 ) -> CheckView<'a> {
+    let files = study.reference_names();
     let mut entries = Vec::new();
     for id in ids {
-        let file = study.reference_name(id).unwrap_or_default();
+        let file = files.get(id).copied().unwrap_or_default();
         let lines = study.references.get(*id).into_iter().flat_map(|file| &file.entries).map(|entry| entry.line);
+        let lines = lines.chain(study.known.get(*id).into_iter().flat_map(|known| known.lines.iter().copied()));
         let judged = judged(judgement, id).iter().zip(lines);
         entries.extend(judged.map(|(judged, line)| CheckedEntry { judged, file, line }));
     }
@@ -145,12 +152,25 @@ fn figures(experiment: &Experiment) -> Vec<FigureView> {
     experiment.figures.iter().map(view).collect()
 }
 
-fn assumptions(study: &Study, judgement: &Judgement, wanted: impl Fn(&AssumptionName) -> bool) -> Vec<AssumptionView> {
-    let used_by = |name: &AssumptionName| {
-        let items = study.items.iter().filter(|item| item.used.contains(name));
-        let files = items.filter_map(|item| study.references.get(&item.source.experiment.id.0));
-        files.flat_map(|file| file.entries.iter().map(|entry| entry.id.clone())).collect()
-    };
+/// Ids of the entries whose experiments depend on an assumption.
+fn entries_that_use(study: &Study, name: &AssumptionName) -> Vec<String> {
+    let planned = study.items.iter().filter(|item| item.used.contains(name)).filter_map(|item| {
+        let id = &item.source.experiment.id.0;
+        let ids = study.references.get(id)?.entries.iter().map(|entry| entry.id.as_str()).collect::<Vec<_>>();
+        Some((id.as_str(), ids))
+    });
+    let known = study.known.iter().filter(|(_, known)| known.used.contains(name));
+    let known = known.map(|(id, known)| (id.as_str(), known.judged.iter().map(|one| one.id.as_str()).collect()));
+    let by_experiment: BTreeMap<&str, Vec<&str>> = planned.chain(known).collect();
+    by_experiment.into_values().flatten().map(str::to_owned).collect()
+}
+
+fn assumptions(
+    study: &Study,
+    judgement: &Judgement,
+    wanted: &dyn Fn(&AssumptionName) -> bool,
+    used_by: &dyn Fn(&AssumptionName) -> Vec<String>,
+) -> Vec<AssumptionView> {
     let entries = study.sheet.iter().filter(|(name, _)| wanted(name));
     entries
         .map(|(name, entry)| AssumptionView {

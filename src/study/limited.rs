@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::evaluate::{Array, Evaluate, Simulation};
+use super::row_failure::RowFailure;
 use crate::dynamics::{Allowance, Limit};
 use crate::experiment::GapWord;
 use crate::measure::{Evaluated, Rigour};
@@ -43,11 +44,11 @@ impl Share {
 }
 
 impl<E: Evaluate> Evaluate for Limited<'_, E> {
-    fn evaluate(&self, simulation: &Simulation<'_>) -> Result<Evaluated, String> {
+    fn evaluate(&self, simulation: &Simulation<'_>) -> Result<Evaluated, RowFailure> {
         self.share.simulate(|| self.evaluate.evaluate(simulation))
     }
 
-    fn array<'a>(&'a self, simulation: Simulation<'a>, word: GapWord) -> Result<Box<dyn Array + 'a>, String> {
+    fn array<'a>(&'a self, simulation: Simulation<'a>, word: GapWord) -> Result<Box<dyn Array + 'a>, RowFailure> {
         let array = self.share.simulate(|| self.evaluate.array(simulation, word))?;
         Ok(Box::new(LimitedArray { array, share: &self.share }))
     }
@@ -59,7 +60,7 @@ struct LimitedArray<'a> {
 }
 
 impl Array for LimitedArray<'_> {
-    fn evaluate(&self, gaps: &[f64], rigour: Rigour) -> Result<Evaluated, String> {
+    fn evaluate(&self, gaps: &[f64], rigour: Rigour) -> Result<Evaluated, RowFailure> {
         self.share.simulate(|| self.array.evaluate(gaps, rigour))
     }
 }

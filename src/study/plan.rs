@@ -1,4 +1,4 @@
-//! The plan: of each experiment what its simulation depends on, and whether the table on disk was made from just that.
+//! The plan: what the simulation of each experiment depends on, and whether the table on disk was made from exactly that.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -13,8 +13,7 @@ use super::record::{NoRecord, Record};
 use super::run::Task;
 use super::variant::{Sensitivity, Variant, variants};
 use crate::dynamics::SOLVER_VERSION;
-use crate::experiment::AssumptionValue;
-use crate::experiment::{AssumptionName, AssumptionSheet};
+use crate::experiment::{AssumptionName, AssumptionSheet, AssumptionValue};
 
 /// One experiment as planned.
 #[derive(Debug, Clone, PartialEq)]
@@ -29,18 +28,18 @@ pub struct Item {
     pub simulation: Value,
     /// Hash of [`Item::simulation`].
     pub fingerprint: String,
-    /// Whether there is anything to simulate.
+    /// Whether it is to be simulated.
     pub state: State,
 }
 
 /// What is on disk.
 #[derive(Debug, Clone, PartialEq)]
 pub enum State {
-    /// The table of this meaning.
+    /// The table with this fingerprint.
     Current(Record),
-    /// The table of this meaning, but some of its rows failed: it counts, and is tried again.
+    /// The table with this fingerprint, but some of its rows failed: it counts, and is tried again.
     Failed(Record),
-    /// Nothing, or the table of another meaning; and why.
+    /// Nothing, or a table with another fingerprint; and why.
     Stale(Vec<Reason>),
 }
 
@@ -53,7 +52,12 @@ impl Item {
         let simulation = simulation(&source, sheet, &used, &variants, sensitivity);
         let fingerprint = fingerprint(&simulation);
         let state = state(layout, &source, &simulation);
-        Self { source, used, variants, simulation, fingerprint, state }
+        Self { source, variants, used, simulation, fingerprint, state }
+    }
+
+    /// Looks at what is on disk again.
+    pub(super) fn refresh(&mut self, layout: &Layout) {
+        self.state = state(layout, &self.source, &self.simulation);
     }
 
     /// What the runner is to do for it.
@@ -63,7 +67,7 @@ impl Item {
         Task { journal: Some(journal), ..Task::new(&source.experiment, variants, metadata) }
     }
 
-    /// The record of the table that has this meaning, if there is one.
+    /// The record of the current table, if there is one.
     #[must_use]
     pub fn record(&self) -> Option<&Record> {
         match &self.state {

@@ -1,7 +1,7 @@
 //! What the numbers of one row depend on, as a hash: a row whose fingerprint an earlier table has need not be simulated.
 //!
 //! Hashed is what the engine is asked, and not where in a sweep the row stands or what it is called: a sweep may be cut,
-//! extended, renamed or written otherwise. Of the assumptions those count that the row's own scene depends on.
+//! extended, renamed or written otherwise. Only the assumptions that the row's own scene depends on count.
 
 use std::collections::BTreeMap;
 
@@ -47,7 +47,7 @@ impl<'a> RowFingerprints<'a> {
         RowFingerprint::of(hasher.finalize())
     }
 
-    /// The values that the row's scene depends on, at any point of a maximum that is looked for.
+    /// The values that the row's scene depends on, at any point of a maximisation.
     fn read<'b>(&self, recipe: &Recipe, in_force: &'b Assumptions) -> BTreeMap<String, &'b impl Serialize> {
         let mut scenes = vec![recipe.clone()];
         if let Some(maximise) = &self.experiment.maximise {

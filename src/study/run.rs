@@ -99,10 +99,15 @@ pub fn run<T: Send + Sync>(
     let engine = |index: usize| Metered { evaluate, meter: &meters[index] };
     let hand_over = |index: usize, mut finished: Finished| {
         finished.spent = meters[index].spent();
-        let (rows, failures) = (finished.table.rows(), finished.failures.clone());
+        let (rows, failures, seconds) = (finished.table.rows(), finished.failures.clone(), finished.spent.total());
         // Only the thread that put the last row comes here, once.
         let _ = taken[index].set(take(index, finished));
-        handler.on_event(&Event::Finished { experiment: &tasks[index].experiment.id, rows, failures: &failures });
+        handler.on_event(&Event::Finished {
+            experiment: &tasks[index].experiment.id,
+            rows,
+            failures: &failures,
+            seconds,
+        });
     };
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).stack_size(STACK).build()?;
     pool.install(|| {
@@ -156,8 +161,8 @@ fn undivided(task: Task<'_>, mut finished: Finished) -> Finished {
 
 /// Runs an experiment whose curves get more points where they bend: first the curves, then all else at their points.
 fn run_refined(task: Task<'_>, evaluate: &impl Evaluate, handler: &dyn EventHandler, hand_over: impl Fn(&Work<'_>)) {
-    let ear = Counting { handler, description: AtomicU64::new(0) };
-    let look = |case: &Case| outcome(task, case, &job::first_of(case), evaluate, &ear);
+    let counting = Counting { handler, simulations: AtomicU64::new(0) };
+    let look = |case: &Case| outcome(task, case, &job::first_of(case), evaluate, &counting);
     let points = refine::points(task.experiment, &look);
     let cases = points.iter().map(|point| point.case.clone()).collect();
     let experiment = Experiment { cases, ..task.experiment.clone() };
@@ -172,23 +177,23 @@ fn run_refined(task: Task<'_>, evaluate: &impl Evaluate, handler: &dyn EventHand
         }
     }
     work.rows_to_do().into_par_iter().for_each(|row| {
-        work.put(row, work.row(row, evaluate, &ear));
+        work.put(row, work.row(row, evaluate, &counting));
     });
-    let left = job::simulations(task.experiment, task.variants).saturating_sub(ear.description.into_inner());
+    let left = job::simulations(task.experiment, task.variants).saturating_sub(counting.simulations.into_inner());
     handler.on_event(&Event::Simulated { experiment: &experiment.id, count: left });
     hand_over(&work);
 }
 
-/// Passes on what it hears, and counts the simulations.
+/// Passes the events on, and counts the simulations.
 struct Counting<'a> {
     handler: &'a dyn EventHandler,
-    description: AtomicU64,
+    simulations: AtomicU64,
 }
 
 impl EventHandler for Counting<'_> {
     fn on_event(&self, event: &Event<'_>) {
         if let Event::Simulated { count, .. } = event {
-            self.description.fetch_add(*count, Ordering::Relaxed);
+            self.simulations.fetch_add(*count, Ordering::Relaxed);
         }
         self.handler.on_event(event);
     }

@@ -12,7 +12,7 @@ use shotdamp::measure::{Evaluated, Measured, TraceColumn};
 use shotdamp::scene::Excitation;
 use shotdamp::study::Study;
 use shotdamp::study::{
-    self, Evaluate, EventHandler, IgnoreEvents, Item, KnownRows, Layout, Reason, Simulation, Task, Texts,
+    self, Evaluate, EventHandler, IgnoreEvents, Item, KnownRows, Layout, Reason, RowFailure, Simulation, Task, Texts,
 };
 use shotdamp::table::{Table, parquet};
 
@@ -201,13 +201,13 @@ pub struct MadeUp {
 }
 
 impl Evaluate for MadeUp {
-    fn evaluate(&self, it: &Simulation<'_>) -> Result<Evaluated, String> {
+    fn evaluate(&self, it: &Simulation<'_>) -> Result<Evaluated, RowFailure> {
         self.simulations.fetch_add(1, Ordering::Relaxed);
-        let scene = it.recipe.resolve(it.assumptions).map_err(|error| error.to_string())?;
+        let scene = it.recipe.resolve(it.assumptions)?;
         let strength = match scene.excitation {
             Excitation::Harmonic { force, .. } => force.abs() / 9.81,
             Excitation::ImpulseTrain { impulse, .. } => impulse,
-            _ => return Err("not in this test".into()),
+            _ => return Err(RowFailure::Other("not in this test".into())),
         };
         let mass = scene.structure.model().total_mass();
         let damper = &scene.dampers[0];

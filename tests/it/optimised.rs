@@ -12,7 +12,7 @@ use shotdamp::measure::{Evaluated, Measure, Measured};
 use shotdamp::report::{judge_all, publish};
 use shotdamp::scene::Excitation;
 use shotdamp::study::Study;
-use shotdamp::study::{Array, Engine, Evaluate, Event, EventHandler, IgnoreEvents, Simulation};
+use shotdamp::study::{Array, Engine, Evaluate, Event, EventHandler, IgnoreEvents, RowFailure, Simulation};
 use shotdamp::table::Table;
 
 use crate::desk::Desk;
@@ -54,10 +54,12 @@ struct Bowl {
 }
 
 impl Evaluate for Bowl {
-    fn evaluate(&self, it: &Simulation<'_>) -> Result<Evaluated, String> {
+    fn evaluate(&self, it: &Simulation<'_>) -> Result<Evaluated, RowFailure> {
         self.evaluations.fetch_add(1, Ordering::Relaxed);
-        let scene = it.recipe.resolve(it.assumptions).map_err(|error| error.to_string())?;
-        let Excitation::Harmonic { force, .. } = scene.excitation else { return Err("not in this test".into()) };
+        let scene = it.recipe.resolve(it.assumptions)?;
+        let Excitation::Harmonic { force, .. } = scene.excitation else {
+            return Err(RowFailure::Other("not in this test".into()));
+        };
         let off = |(damper, best): (&shotdamp::scene::Damper, f64)| (damper.gap - best) * (damper.gap - best);
         let bowl: f64 = scene.dampers.iter().zip([0.010, 0.070, 0.030]).map(off).sum();
         let value = |measure: &Measure| match measure {
@@ -190,8 +192,8 @@ fn an_improvement_within_its_standard_error_is_called_noise() {
 fn a_search_that_cannot_begin_is_a_failed_row() {
     struct Broken;
     impl Evaluate for Broken {
-        fn evaluate(&self, _: &Simulation<'_>) -> Result<Evaluated, String> {
-            Err("made to fail".into())
+        fn evaluate(&self, _: &Simulation<'_>) -> Result<Evaluated, RowFailure> {
+            Err(RowFailure::Other("made to fail".into()))
         }
     }
     let desk = desk();

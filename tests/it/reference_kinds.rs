@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use shotdamp::reference::{
-    FitMeasure, Judged, ReferenceFile, TableState, Tables, Verdict, judge, parse_reference, self_test,
+    FitMeasure, Judged, ReferenceFile, ReferenceProblem, TableState, Tables, Verdict, judge, parse_reference, self_test,
 };
 use shotdamp::table::{Column, Data, Table};
 
@@ -11,7 +11,7 @@ use crate::made_up::{numbers, texts};
 
 const EXPERIMENT: &str = "ch4-example";
 
-fn entry(body: &str) -> Result<ReferenceFile, Vec<String>> {
+fn entry(body: &str) -> Result<ReferenceFile, Vec<ReferenceProblem>> {
     let indented: String = body.trim().lines().map(|line| format!("    {}\n", line.trim())).collect();
     parse_reference(EXPERIMENT, &format!("entries:\n  - id: it\n    place: s. 1\n    says: Something.\n{indented}"))
 }
@@ -32,11 +32,11 @@ fn verdict(body: &str, table: &Table) -> Verdict {
 fn cannot_fail(body: &str, table: &Table) -> Vec<String> {
     let file = entry(body).unwrap_or_else(|problems| panic!("{problems:?}"));
     let tables = Tables::from([(EXPERIMENT.to_string(), TableState::Present(table))]);
-    self_test(&file, &tables).into_iter().map(|failure| failure.reason).collect()
+    self_test(&file, &tables).into_iter().map(|failure| failure.reason.to_string()).collect()
 }
 
 fn refused(body: &str) -> String {
-    entry(body).expect_err(body).join("\n")
+    entry(body).expect_err(body).iter().map(ToString::to_string).collect::<Vec<_>>().join("\n")
 }
 
 /// The columns that every table has, with the errors of the measures.

@@ -9,7 +9,7 @@ use shotdamp::report::{
     overview_svg, page, strip_svg, summary, tolerances, value_in_words,
 };
 use shotdamp::scene::EffectUse;
-use shotdamp::study::Machine;
+use shotdamp::study::{Heading, Machine};
 use shotdamp::table::Table;
 use shotdamp::text::number::{compact, quantity, signed, significant, with_uncertainty};
 use shotdamp::text::words;
@@ -151,7 +151,7 @@ fn the_index_tells_the_whole_study_at_a_glance() {
     let experiment = limit_stop();
     let judged = judged();
     let view = ExperimentView {
-        experiment: &experiment,
+        experiment: Heading::of(&experiment),
         judged: &judged,
         seconds: Some(12.3),
         page: "ch3/ch3-limit-stop.md".into(),
@@ -220,7 +220,8 @@ fn a_page_gives_the_first_sentence_of_the_reason_before_all_else() {
 fn the_rule_of_agreement_is_said_once_and_is_the_one_that_judges() {
     let judged = judged();
     let experiment = limit_stop();
-    let view = ExperimentView { experiment: &experiment, judged: &judged, seconds: None, page: String::new() };
+    let view =
+        ExperimentView { experiment: Heading::of(&experiment), judged: &judged, seconds: None, page: String::new() };
     let index = index(&[view], &[], None);
     assert!(index.contains("The two agree if |E| ≤ 2 u_val. **± is 2 u_val**"), "{index}");
     let at = |deviation: f64| {
@@ -239,7 +240,8 @@ fn a_tolerance_by_hand_stands_beside_the_verdict() {
 #[test]
 fn the_headline_separates_numbers_from_claims() {
     let (experiment, judged) = (limit_stop(), judged());
-    let view = ExperimentView { experiment: &experiment, judged: &judged, seconds: None, page: String::new() };
+    let view =
+        ExperimentView { experiment: Heading::of(&experiment), judged: &judged, seconds: None, page: String::new() };
     let text = index(&[view], &[], None);
     let counts = "**2 numbers**: 1 fitted, 1 differs. **2 claims**: 1 reproduced, 1 differs. **Held out** of all fits: 0 of 1 agree.";
     assert!(text.contains(counts), "{text}");
