@@ -4,9 +4,10 @@
 //!
 //! 1. [`spec`] reads an experiment (YAML) into a validated [`spec::Experiment`]: units resolved, defaults filled,
 //!    every mistake of the file reported at once with line and column.
-//! 2. [`scene`] holds what is simulated: a [`scene::Recipe`] in the study's own dimensionless parameters resolves, with
-//!    the [`scene::Assumptions`] for all that the study leaves open, into a [`scene::Scene`] in SI units, which compiles
-//!    into a [`dynamics::HybridSystem`] that carries only the effects the scene names.
+//!    Its [`experiment::Recipe`], in dimensionless parameters, resolves with the [`experiment::Assumptions`] for all that the
+//!    study leaves open, and records which of them it read.
+//! 2. [`scene`] holds what is simulated: a [`scene::Scene`] in SI units, which compiles into a [`dynamics::HybridSystem`] that
+//!    carries only the effects the scene names.
 //! 3. [`dynamics`] propagates it: exactly from certified event to certified event, or with the study's fixed step; [`precise`] does
 //!    it again with 32 digits, for those who want to know how exact that is.
 //! 4. [`measure`] turns responses into the numbers that the study plots.

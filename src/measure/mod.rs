@@ -9,7 +9,7 @@ use std::borrow::Cow;
 mod energy;
 mod evaluate;
 mod history;
-mod measure;
+mod measures;
 mod reading;
 mod request;
 mod shape;
@@ -17,7 +17,7 @@ mod subject;
 mod trial;
 
 pub use evaluate::{Prepared, Request, evaluate};
-pub use measure::{Facts, Measure, ReadOff, Runs, Under};
+pub use measures::{Facts, Measure, ReadOff, Runs, Under};
 pub use request::{EnergySpec, Settings, ShapeOf, ShapeSpec, SolverChoice, TraceSpec};
 pub use subject::{Comparison, Needs, Subject};
 pub use trial::Trial;
