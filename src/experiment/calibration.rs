@@ -239,7 +239,11 @@ fn input(entry: &Entry, sheet: &AssumptionSheet, findings: &Findings) -> Option<
             return no_such(findings, *key_span, "assumption", key, &sheet.names());
         };
         let tried = values(node, std::slice::from_ref(name))?;
-        return input(Tried::Values { units: units(&[name.clone()]), moves: vec![name.clone()], values: tried });
+        return input(Tried::Values {
+            units: units(std::slice::from_ref(name)),
+            moves: vec![name.clone()],
+            values: tried,
+        });
     }
     let named = |node: &Node| sheet.named(node, findings);
     let fields = Fields::open(node, "an input", findings)?;

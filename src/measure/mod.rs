@@ -9,7 +9,7 @@ use std::borrow::Cow;
 mod energy;
 mod evaluate;
 mod history;
-mod measure;
+mod measures;
 mod reading;
 mod request;
 mod shape;
@@ -18,7 +18,7 @@ mod trial;
 mod undefined;
 
 pub use evaluate::{Prepared, Request, evaluate};
-pub use measure::{Facts, Measure, ReadOff, Runs, Under};
+pub use measures::{Facts, Measure, ReadOff, Runs, Under};
 pub use request::{EnergySpec, Settings, ShapeOf, ShapeSpec, SolverChoice, TraceSpec};
 pub use subject::{Comparison, Needs, Subject};
 pub use trial::Trial;

@@ -501,7 +501,7 @@ gap: {quantity: lenght, value: 1 mm, reason: none}
         [
             "1:33 `5 s` is not a length | write for example 5 mm",
             "2:41 this assumption has no reading `heavy` | known are `base`, `loaded`",
-            "3:8 this assumption has no kind | add `quantity: length`, `quantity: ratio`, …, or `readings: [one, other]`",
+            "3:1 this assumption has no kind | add `quantity: length`, `quantity: ratio`, …, or `readings: [one, other]`",
             "4:17 `lenght` is not a kind of quantity | did you mean `length`?",
         ]
     );
@@ -538,16 +538,16 @@ zeta: {quantity: ratio, readings: [equivalent_viscous], value: 0.1, reason: none
     let one = |text: &str| describe(&read(text).expect_err("a mistake")).remove(0);
     assert_eq!(
         one(&stated.replace("assumed: length", "assumed: lenght")),
-        "11:31 `lenght` is not an assumption | did you mean `length`?"
+        "10:32 `lenght` is not an assumption | did you mean `length`?"
     );
     assert_eq!(
         one(&stated.replace("assumed: length", "assumed: zeta")),
-        "11:31 `stop_length` takes a length, but the assumption `zeta` (line 3 of the assumptions file) is a dimensionless \
+        "10:32 `stop_length` takes a length, but the assumption `zeta` (line 3 of the assumptions file) is a dimensionless \
          number or one of equivalent_viscous"
     );
     assert_eq!(
         one(&GOOD.replace("60 mm", "{assumed: length}")),
-        "10:60 no assumption stands for `damping_ratio` on a single mass | write `{assumed: NAME}`, or declare one under \
+        "9:62 no assumption stands for `damping_ratio` on a single mass | write `{assumed: NAME}`, or declare one under \
          `defaults: damping_ratio` of the assumptions"
     );
     // A study without assumptions has the general values: standard gravity, J = f′ m g/ω, the run without damper clean.
