@@ -88,7 +88,7 @@ impl std::fmt::Display for Overrun {
             write!(f, " in cycle {cycle} of {cycles}")?;
         }
         if runs > 0 {
-            write!(f, " of run {}", runs + 1)?;
+            write!(f, ", run {}", runs + 1)?;
         }
         match self.exhausted {
             // No clock enters: the same words on any machine.

@@ -1,9 +1,10 @@
 //! How large the residuals of a run may be if nothing but rounding is in them.
 //!
 //! Every event and every cycle rounds the state once, and a rounding enters the balance with the ratio of the longest to the
-//! shortest time in the run: the forcing period T, the period of the fastest motion, the shortest stretch of the force,
+//! shortest time in the run (the forcing period, the period of the fastest motion, the shortest stretch of the force), and of
+//! the heaviest particle to what carries it:
 //!
-//! bound = 64 ε (events + cycles) longest/shortest,   at most one part in a million.
+//! bound = 64 ε (events + cycles) longest/shortest max(1, mp φᵀM⁻¹φ),   at most one part in a million.
 
 use super::{HybridSystem, Options, Proof, Response};
 
@@ -21,10 +22,17 @@ pub(super) fn enter(system: &HybridSystem, options: &Options, response: &mut Res
             system.drive.ticks.windows(2).map(|pair| pair[1].time - pair[0].time).filter(|time| *time > 0.0);
         let shortest = stretches.chain(times).fold(f64::INFINITY, f64::min);
         let spread = times.into_iter().fold(0.0, f64::max) / shortest;
-        let bound = f64::EPSILON * roundings * spread;
+        let bound = f64::EPSILON * roundings * spread * heaviest(system);
         // Also where the spread is no number.
         response.proof.residual_bound = if bound < LARGEST { bound } else { LARGEST };
     }
+}
+
+/// mp φᵀM⁻¹φ of the heaviest particle, by the diagonal of M; 1 at least.
+fn heaviest(system: &HybridSystem) -> f64 {
+    let n = system.mass.order;
+    let carried = |row: &[f64]| (0..n).map(|i| row[i] * row[i] / system.mass.entries[i * n + i]).sum::<f64>();
+    system.particles.iter().map(|particle| particle.mass * carried(&particle.floor.row)).fold(1.0, f64::max)
 }
 
 impl Proof {

@@ -18,6 +18,17 @@ impl Measure {
         }
     }
 
+    /// A ratio of the run without dampers to the one with them.
+    fn compares(self) -> bool {
+        matches!(
+            self,
+            Self::VelocityRatio
+                | Self::DisplacementRatio
+                | Self::VelocityAmplitudeRatio
+                | Self::DisplacementAmplitudeRatio
+        )
+    }
+
     /// It is no number where nothing excites the structure.
     fn needs_motion(self) -> bool {
         !self.needs_trace() && !self.is_modal()
@@ -28,8 +39,16 @@ impl Measure {
 ///
 /// # Errors
 /// [`EvaluateError::OutOfRange`] for the first number that left the range of numbers.
-pub(super) fn in_range(scene: &Scene, measures: &[Measure], evaluated: Evaluated) -> Result<Evaluated, EvaluateError> {
-    for (measure, measured) in measures.iter().zip(&evaluated.measured) {
+pub(super) fn in_range(
+    scene: &Scene,
+    measures: &[Measure],
+    mut evaluated: Evaluated,
+) -> Result<Evaluated, EvaluateError> {
+    for (measure, measured) in measures.iter().zip(&mut evaluated.measured) {
+        if measure.compares() && scene.excitation.is_silent() {
+            // Steps leave rounding of the rest where nothing moves; a ratio of that is none.
+            measured.value = f64::NAN;
+        }
         let value = measured.value;
         let fine = match measure {
             // Infinite where nothing is hit.

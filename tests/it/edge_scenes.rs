@@ -18,7 +18,7 @@ const BASES: &str = include_str!("edge_scenes/bases.txt");
 const SCENES: &str = include_str!("edge_scenes/scenes.txt");
 
 /// What a row may take here; a scene without an answer has none in an hour either.
-const LIMIT: Limit = Limit { events: 30_000, time: Duration::from_millis(700) };
+const LIMIT: Limit = Limit { events: 30_000, time: Duration::from_millis(400) };
 
 /// A base: its text with `«name»` in the place of each value, and the usual values.
 struct Base<'a> {
