@@ -1,4 +1,4 @@
-//! What an entry hangs on: how far each assumption, moved alone, shifts what came out, and which move would change its verdict.
+//! What an entry depends on: how far each assumption, moved alone, shifts what came out, and which move would change its verdict.
 
 use crate::reference::{Judged, Moved, Verdict};
 use crate::scene::{Assumption, AssumptionValue};
@@ -15,7 +15,7 @@ pub struct EntryView<'a> {
     pub judged: &'a Judged,
     /// The moves that were run.
     pub moves: Vec<MoveView<'a>>,
-    /// Assumptions that its experiment leans on and that were not moved.
+    /// Assumptions that its experiment depends on and that were not moved.
     pub unmoved: Vec<Assumption>,
     /// Assumptions that were chosen by it.
     pub chosen_by: Vec<Assumption>,
@@ -60,7 +60,7 @@ pub fn explain(view: &EntryView<'_>) -> String {
     }
     if !view.unmoved.is_empty() {
         text += &format!(
-            "\nIts experiment leans on these too, and was not run with another value of them: {}.\n\
+            "\nIts experiment also depends on these, which were not moved: {}.\n\
              `shotdamp explain --run {}` does, where they have one.\n",
             names(&view.unmoved),
             judged.id
@@ -124,7 +124,7 @@ fn turns(view: &EntryView<'_>) -> String {
         let lost: String = view.moves.iter().filter(|one| !agrees(one.moved.verdict)).map(description).collect();
         return match lost.as_str() {
             "" => "It agrees whichever of them is moved.\n".into(),
-            lost => format!("It agrees no more with\n{lost}"),
+            lost => format!("It no longer agrees with\n{lost}"),
         };
     }
     let mut text: String = view.moves.iter().filter(|one| agrees(one.moved.verdict)).map(description).collect();
