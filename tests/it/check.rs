@@ -338,7 +338,7 @@ fn the_templates_for_a_ci_use_options_that_exist() {
 fn the_summary_of_a_pull_request_starts_with_what_changed() {
     use shotdamp::report::{PULL_REQUEST_LIMIT, pull_request, read_json};
     let before = judged("ch3-a/x", Verdict::Reproduced, Verdict::Reproduced);
-    let committed = read_json(&json(&view(&[before.clone()], Vec::new()))).unwrap();
+    let committed = read_json(&json(&view(std::slice::from_ref(&before), Vec::new()))).unwrap();
     let now = [judged("ch3-a/x", Verdict::Differs, Verdict::Reproduced)];
     let text = pull_request(&view(&now, Vec::new()), &committed);
     let (change, rest) = (text.find("`ch3-a/x`: reproduced → **differs**"), text.find("### Not as expected"));
