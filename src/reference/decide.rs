@@ -165,9 +165,7 @@ fn difference(values: &[Extracted], within: Within) -> String {
         Within::Relative(_) => percent((high - low) / low.abs().max(high.abs())),
         Within::Absolute(_) => significant(high - low, 3),
     };
-    let mut shown: Vec<String> = values.iter().map(|one| with_unit(one.value, 4, &one.unit)).collect();
-    shown.dedup();
-    format!("{}, {apart} apart", shown.join(" and "))
+    format!("{}, {apart} apart", listed(values).join(" and "))
 }
 
 /// Error of a difference of two (value, error). Numbers that are equal to the last bit come from the same motion, chaotic or

@@ -151,7 +151,7 @@ pub fn numbers(found: &str) -> Vec<String> {
     while let Some(letter) = rest.chars().next() {
         let sign = if matches!(letter, '−' | '+') { letter.len_utf8() } else { 0 };
         let starts = rest[sign..].starts_with(|letter: char| letter.is_ascii_digit());
-        if !starts || before.is_alphanumeric() || before == '-' {
+        if !starts || before.is_alphanumeric() || matches!(before, '-' | '_') {
             before = letter;
             rest = &rest[letter.len_utf8()..];
             continue;

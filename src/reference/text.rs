@@ -84,7 +84,7 @@ pub(crate) fn measured(comparison: &Comparison, published: &Printed, scale: Opti
     }
     match error.abs() / comparison.published.abs() {
         off if off.is_finite() && off > 0.0 => format!("{here}, {} {} {datum}", percent(off), side("above", "below")),
-        off if off == 0.0 => format!("{here}, equal to {datum}"),
+        0.0 => format!("{here}, equal to {datum}"),
         _ => format!("{here}; the study: {datum}"),
     }
 }

@@ -1,4 +1,4 @@
-//! What an entry hangs on: how far each assumption, moved alone, shifts what came out, and which move would change its verdict.
+//! What an entry depends on: how far each assumption, moved alone, shifts what came out, and which move would change its verdict.
 
 use crate::experiment::{AssumptionName, AssumptionValue};
 use crate::reference::{Judged, Moved, Verdict};
@@ -62,7 +62,7 @@ pub fn explain(view: &EntryView<'_>) -> String {
     }
     if !view.unmoved.is_empty() {
         text += &format!(
-            "\nIts experiment depends on these too, and was not run with another value of them: {}.\n\
+            "\nIts experiment also depends on these, which were not moved: {}.\n\
              `shotdamp explain --run {}` does, where they have one.\n",
             names(&view.unmoved),
             judged.id
@@ -126,7 +126,7 @@ fn turns(view: &EntryView<'_>) -> String {
         let lost: String = view.moves.iter().filter(|one| !agrees(one.moved.verdict)).map(description).collect();
         return match lost.as_str() {
             "" => "It agrees whichever of them is moved.\n".into(),
-            lost => format!("It agrees no more with\n{lost}"),
+            lost => format!("It no longer agrees with\n{lost}"),
         };
     }
     let mut text: String = view.moves.iter().filter(|one| agrees(one.moved.verdict)).map(description).collect();

@@ -38,7 +38,7 @@ pub fn explanations(
     texts
 }
 
-/// The moves of assumptions that an entry hangs on and that the tables on disk do not hold: to every value of their ranges, and
+/// The moves of assumptions that an entry depends on and that the tables on disk do not hold: to every value of their ranges, and
 /// to every value that a calibration tries.
 #[must_use]
 pub fn untried(study: &Study, judged: &Judged) -> Vec<(AssumptionName, AssumptionValue)> {

@@ -86,6 +86,21 @@ fn beside_a_verdict_stands_what_it_cost_and_what_a_fixed_step_would_have() {
 }
 
 #[test]
+fn a_run_that_diverged_has_no_error_worth_a_number() {
+    let mut accuracy = measured("floor: {resilient: {stiffness_ratio: 1, damping_ratio: 0.3}}", "[7]");
+    accuracy.cases[0].points[0].error = 5e78;
+    let view = AccuracyView {
+        id: "a-damper".into(),
+        title: "A damper".into(),
+        machine: Machine::here(),
+        accuracy,
+        entries: Vec::new(),
+    };
+    let page = accuracy_page(&view, "a-damper.png");
+    assert!(page.contains("diverged") && !page.contains("e78"), "{page}");
+}
+
+#[test]
 fn a_reference_that_is_none_says_so() {
     let view = AccuracyView {
         id: "a-damper".into(),

@@ -1,10 +1,13 @@
 //! Numbers in explanations: filled in from the tables, refused where they name nothing, and never written by hand where a
 //! placeholder would give them.
 
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
 use shotdamp::reference::{Check, Entry, Judged, Prose, load_reference, numbers, parse_reference};
+use shotdamp::report::{ExperimentView, index};
+use shotdamp::study::{Layout, Study, Texts};
 
 const ENTRY: &str = "entries:\n  - id: optimum\n    place: s. 1\n    says: It is 2.5.\n    value: \"2.5\"\n    from: {maximum: {of: velocity_ratio, over: gap_ratio}}\n    explanation: ";
 
@@ -95,4 +98,51 @@ fn no_explanation_writes_by_hand_what_a_placeholder_gives() {
         found.extend(written.map(|x| format!("{}: {x}, write {{here}}", entry.id)));
     }
     assert!(found.is_empty(), "{}", found.join("\n"));
+}
+
+/// Entries as the committed verdicts have them, with the explanations of today.
+fn judged_today() -> BTreeMap<String, Vec<Judged>> {
+    let verdicts = verdicts();
+    let mut judged = BTreeMap::<String, Vec<Judged>>::new();
+    for entry in entries() {
+        let (experiment, _) = entry.id.split_once('/').unwrap();
+        let find = |name: Option<&str>| {
+            let id = match name {
+                None => entry.id.clone(),
+                Some(name) if name.contains('/') => name.to_owned(),
+                Some(name) => format!("{experiment}/{name}"),
+            };
+            verdicts.iter().find(|one| one.id == id)
+        };
+        let Some(one) = find(None) else { continue };
+        let explanation = entry.prose().filled(find);
+        let blocked_by = entry.blocked_by.clone();
+        judged.entry(experiment.into()).or_default().push(Judged { explanation, blocked_by, ..one.clone() });
+    }
+    judged
+}
+
+#[test]
+fn the_index_of_the_whole_study_loads_at_once() {
+    let layout = Layout::new(env!("CARGO_MANIFEST_DIR"));
+    let study = Study::new(layout.clone(), Texts::read(&layout).unwrap());
+    let judged = judged_today();
+    let views: Vec<ExperimentView<'_>> = study
+        .items
+        .iter()
+        .map(|item| {
+            let experiment = &item.source.experiment;
+            let page = format!("{}/{}.md", item.source.folder(), experiment.id);
+            let judged = judged.get(&experiment.id.0).map_or(&[][..], Vec::as_slice);
+            ExperimentView { experiment, judged, seconds: Some(1.234), page }
+        })
+        .collect();
+    let index = index(&views, &[], None);
+    assert!(index.len() < 30_000, "{} bytes", index.len());
+    let numbers = views.iter().flat_map(|view| view.judged).filter(|one| one.comparison.is_some()).count();
+    assert!(index.contains(&format!("**{numbers} numbers**")), "{index}");
+    assert!(index.find("## How to read") < index.find("## Experiments"), "first how to read, then what there is");
+    for view in &views {
+        assert!(index.contains(&format!("]({}", view.page)), "no link to {}", view.page);
+    }
 }

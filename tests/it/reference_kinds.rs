@@ -426,7 +426,7 @@ fn one_line_lies_above_another_at_every_point_or_it_does_not() {
     assert_eq!(verdict(claim, &fillings(0.1, 0.2)), Verdict::Undecidable);
     assert_eq!(verdict(claim, &fillings(0.0, 1e-6)), Verdict::Undecidable);
     assert_eq!(cannot_fail(claim, &fillings(0.1, 1e-6)), [""; 0]);
-    assert!(judged(claim, &fillings(0.1, 1e-6)).found.contains("least lead 0.1 at angular_frequency = 40"));
+    assert!(judged(claim, &fillings(0.1, 1e-6)).found.contains("smallest lead 0.1 at ω = 40"));
     let nobody = claim.replace("above: optimised", "above: uniform");
     assert!(refused(&nobody).contains("not above itself"));
 }
