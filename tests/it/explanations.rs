@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use shotdamp::reference::{Check, Entry, Judged, Prose, load_reference, numbers, parse_reference};
 use shotdamp::report::{ExperimentView, index};
-use shotdamp::study::{Layout, Study, Texts};
+use shotdamp::study::{Heading, Layout, Study, Texts};
 
 const ENTRY: &str = "entries:\n  - id: optimum\n    place: s. 1\n    says: It is 2.5.\n    value: \"2.5\"\n    from: {maximum: {of: velocity_ratio, over: gap_ratio}}\n    explanation: ";
 
@@ -134,7 +134,7 @@ fn the_index_of_the_whole_study_loads_at_once() {
             let experiment = &item.source.experiment;
             let page = format!("{}/{}.md", item.source.folder(), experiment.id);
             let judged = judged.get(&experiment.id.0).map_or(&[][..], Vec::as_slice);
-            ExperimentView { experiment, judged, seconds: Some(1.234), page }
+            ExperimentView { experiment: Heading::of(experiment), judged, seconds: Some(1.234), page }
         })
         .collect();
     let index = index(&views, &[], None);
