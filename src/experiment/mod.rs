@@ -36,7 +36,7 @@ mod yaml;
 pub use assumption_sheet::{AssumptionEntry, AssumptionSheet, parse_assumptions};
 pub use calibration::{Calibration, CalibrationInput, CalibrationSearch, Tried, load_calibration, parse_calibration};
 pub use definition::{
-    Axis, AxisScale, Best, Case, Drawing, Experiment, ExperimentId, FigureSpec, IdError, Level, MapSpec, Mark,
+    Axis, AxisScale, Band, Best, Case, Drawing, Experiment, ExperimentId, FigureSpec, IdError, Level, MapSpec, Mark, Only,
     Maximise, Panel, PeakMarks, Refinement, Source,
 };
 pub use diagnostic::{Place, Problem, Problems};

@@ -343,7 +343,7 @@ fn solve(system: &HybridSystem, options: &Options, solver: SolverChoice) -> Resu
 }
 
 /// The forcing period rounded to whole steps, if the experiment asks for it: the study's 199 steps of 1 ms.
-pub(super) fn rounded(mut scene: Scene, settings: &Settings) -> Scene {
+pub fn rounded(mut scene: Scene, settings: &Settings) -> Scene {
     let Some(step) = settings.round_period_to else { return scene };
     let round = |period: f64| (period / step).round().max(1.0) * step;
     match &mut scene.excitation {

@@ -16,7 +16,7 @@ mod request;
 mod shape;
 mod trial;
 
-pub use evaluate::{Prepared, Request, evaluate};
+pub use evaluate::{Prepared, Request, evaluate, rounded};
 pub use request::{EnergySpec, Settings, ShapeOf, ShapeSpec, SolverChoice, TraceSpec};
 pub use trial::Trial;
 

@@ -26,6 +26,7 @@ mod page;
 mod pages;
 mod proof;
 mod publication;
+mod quoted;
 mod ro_crate;
 mod run;
 pub(crate) mod tally;

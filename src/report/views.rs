@@ -2,10 +2,11 @@
 
 use std::collections::BTreeSet;
 
-use super::figures::figure_name;
+use super::figures::{figure_name, scene_name};
 use super::other_pages::PAGES;
 use super::verdicts::Judgement;
 use crate::experiment::{Experiment, FigureSpec};
+use crate::figure::sketch;
 use crate::reference::Judged;
 use crate::report::{
     self, AccuracyLinks, AssumptionView, CheckView, CheckedEntry, ExperimentView, FigureView, PageView, Trouble,
@@ -27,7 +28,7 @@ pub(super) fn page(study: &Study, judgement: &Judgement, item: &Item) -> String 
         judged: judged(judgement, &experiment.id.0),
         assumptions: &assumptions(study, |name| used.contains(&name)),
         effects: &effects(&scenes(study, experiment)),
-        figures: &figures(experiment, ""),
+        figures: &[figures(experiment, ""), scene(study, experiment)].concat(),
         table_link: &format!("{up}../{}", table_name(&experiment.id)),
         accuracy: accuracy(study, item, &up),
         index_link: &format!("{up}README.md"),
@@ -136,6 +137,13 @@ fn figures(experiment: &Experiment, folder: &str) -> Vec<FigureView> {
         caption: figure.caption.clone(),
     };
     experiment.figures.iter().map(view).collect()
+}
+
+/// The drawing of what is simulated, where there is one.
+fn scene(study: &Study, experiment: &Experiment) -> Vec<FigureView> {
+    let caption = "What is simulated; of a sweep its first case, with all places of dampers and forces.".into();
+    let drawn = sketch(&scenes(study, experiment)).is_some();
+    drawn.then(|| FigureView { link: scene_name(experiment), caption }).into_iter().collect()
 }
 
 fn assumptions(study: &Study, wanted: impl Fn(Assumption) -> bool) -> Vec<AssumptionView> {

@@ -68,6 +68,17 @@ impl Scene {
     }
 }
 
+impl Scene {
+    /// Time from one impulse to the next, s; `None` where there is no train of them.
+    #[must_use]
+    pub fn impulse_period(&self) -> Option<f64> {
+        match self.excitation {
+            Excitation::ImpulseTrain { period, .. } => Some(period),
+            Excitation::SingleImpulse { .. } | Excitation::Harmonic { .. } | Excitation::PulseTrain { .. } => None,
+        }
+    }
+}
+
 /// Where the motion is observed.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Observation {

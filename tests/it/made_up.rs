@@ -1,6 +1,6 @@
 //! An experiment and tables made by hand, for rooms that only read them.
 
-use shotdamp::experiment::{Axis, AxisScale, Case, Drawing, Experiment, ExperimentId, FigureSpec, Panel, Source};
+use shotdamp::experiment::{Axis, AxisScale, Band, Case, Drawing, Experiment, ExperimentId, FigureSpec, Panel, Source};
 use shotdamp::measure::Measure;
 use shotdamp::measure::{Settings, SolverChoice};
 use shotdamp::scene::{
@@ -73,7 +73,7 @@ pub fn figure(panels: Vec<Panel>) -> FigureSpec {
 }
 
 pub fn drawn(drawing: Drawing) -> FigureSpec {
-    FigureSpec { name: String::new(), caption: "Effect of the limit stop on the velocity ratio.".into(), drawing }
+    FigureSpec { name: String::new(), only: None, caption: "Effect of the limit stop on the velocity ratio.".into(), drawing }
 }
 
 pub fn axis(column: &str, scale: AxisScale) -> Axis {
@@ -86,7 +86,8 @@ pub fn panel(x: &str, scale: AxisScale, y: &[&str]) -> Panel {
         x: axis(x, scale),
         y: y.iter().map(|column| axis(column, AxisScale::Linear)).collect(),
         by: Vec::new(),
-        band: false,
+        band: Band::None,
+        over_first: false,
         guides: Vec::new(),
         markers: false,
         peaks: None,
