@@ -59,8 +59,8 @@ fn main() {
          ![Cost against modes](speed.png)\n\nCost on the beam against the number of modes, with four dampers."
     );
     let reports = Path::new(env!("CARGO_MANIFEST_DIR")).join("reports");
-    let picture =
-        draw(&experiment(&single), &figure(), &table(&curve), Beside::default()).expect("the table has what the figure names");
+    let picture = draw(&experiment(&single), &figure(), &table(&curve), Beside::default())
+        .expect("the table has what the figure names");
     std::fs::write(reports.join("speed.svg"), picture.svg).expect("the folder of reports can be written");
     std::fs::write(reports.join("speed.png"), picture.png).expect("the folder of reports can be written");
     std::fs::write(reports.join("speed.md"), &page).expect("the folder of reports can be written");
@@ -159,14 +159,15 @@ fn figure() -> FigureSpec {
         reach: None,
     };
     FigureSpec {
-        name: String::new(), only: None,
+        name: String::new(),
+        only: None,
         caption: "Cost on the beam against the number of modes.".into(),
         drawing: Drawing::Lines(vec![Panel {
             x: axis("modes", "Modes"),
             y: vec![axis("event", "An event"), axis("state", "A contact state's first visit")],
             by: Vec::new(),
             band: Band::None,
-        over_first: false,
+            over_first: false,
             guides: Vec::new(),
             markers: true,
             peaks: None,

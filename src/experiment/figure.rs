@@ -51,7 +51,8 @@ impl<'t> FigureReader<'t> {
         let only = fields.optional("only", |node| self.only(node));
         if let Some(node) = fields.get("map") {
             let map = self.map(node);
-            let misplaced = ["x", "y", "by", "band", "over_first", "markers", "panels", "guides", "peaks"].map(|key| fields.get(key));
+            let misplaced = ["x", "y", "by", "band", "over_first", "markers", "panels", "guides", "peaks"]
+                .map(|key| fields.get(key));
             fields.close()?;
             if let Some(node) = misplaced.into_iter().flatten().next() {
                 return self.findings.wrong(node.span, "beside `map`, a figure has `name`, `caption` and `only` alone");
@@ -124,7 +125,8 @@ impl<'t> FigureReader<'t> {
         let y = fields.required("y", |node| one_or_more(node, self.findings, |node| self.axis(node)));
         let by = by.map_or(Some(Vec::new()), |node| one_or_more(node, self.findings, |node| self.split(node)));
         let band = band.map_or(Some(Band::None), |node| {
-            let word = Choice::read(node, "a band", &["spread", "none", "seeds"], self.findings)?.bare(self.findings)?;
+            let word =
+                Choice::read(node, "a band", &["spread", "none", "seeds"], self.findings)?.bare(self.findings)?;
             Some(match word {
                 "spread" => Band::Spread,
                 "seeds" => Band::Seeds,

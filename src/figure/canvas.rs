@@ -165,11 +165,8 @@ impl Sheet {
     pub(super) fn text(&self, at: Point, lettering: &Lettering<'_>) {
         let Lettering { text, size, anchor, upright, color } = *lettering;
         let down = CENTRE * size;
-        let (at, turn) = if upright {
-            (Point { x: at.x + down, ..at }, true)
-        } else {
-            (Point { y: at.y + down, ..at }, false)
-        };
+        let (at, turn) =
+            if upright { (Point { x: at.x + down, ..at }, true) } else { (Point { y: at.y + down, ..at }, false) };
         let [x, y, size] = [at.x, at.y, size].map(whole);
         let anchor = match anchor {
             Anchor::Left => "",
@@ -200,7 +197,8 @@ fn path(points: &[Point]) -> String {
             // A minus sign parts two numbers as well as a space.
             Some((a, b)) => {
                 let (dx, dy) = (x - a, y - b);
-                let (first, second) = (if dx < 0 || d.ends_with('l') { "" } else { " " }, if dy < 0 { "" } else { " " });
+                let (first, second) =
+                    (if dx < 0 || d.ends_with('l') { "" } else { " " }, if dy < 0 { "" } else { " " });
                 write!(d, "{first}{dx}{second}{dy}")
             }
         };

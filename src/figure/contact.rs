@@ -11,7 +11,7 @@ use crate::experiment;
 use crate::table::Data;
 
 /// Height of a bar.
-const BAR: f64 = 12.0;
+pub(super) const BAR: f64 = 12.0;
 /// Dash of an impulse's line.
 const IMPULSE: &[f64] = &[3.0, 7.0];
 /// Paths closer than this share of their range are one.

@@ -97,6 +97,7 @@ pub(super) fn simplified(points: &[Point], deviation: f64) -> Vec<Point> {
 fn distance(point: Point, a: Point, b: Point) -> f64 {
     let (dx, dy) = (b.x - a.x, b.y - a.y);
     let length = dx * dx + dy * dy;
-    let along = if length > 0.0 { (((point.x - a.x) * dx + (point.y - a.y) * dy) / length).clamp(0.0, 1.0) } else { 0.0 };
+    let along =
+        if length > 0.0 { (((point.x - a.x) * dx + (point.y - a.y) * dy) / length).clamp(0.0, 1.0) } else { 0.0 };
     libm::hypot(point.x - a.x - along * dx, point.y - a.y - along * dy)
 }

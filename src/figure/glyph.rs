@@ -20,7 +20,8 @@ fn length(a: Point, b: Point) -> f64 {
 /// A zigzag.
 pub(super) fn spring(sheet: &Sheet, a: Point, b: Point) {
     let long = length(a, b);
-    let turn = |i: u8| beside(a, b, (0.2 + 0.6 * f64::from(i) / 8.0) * long, if i.is_multiple_of(2) { 16.0 } else { -16.0 });
+    let turn =
+        |i: u8| beside(a, b, (0.2 + 0.6 * f64::from(i) / 8.0) * long, if i.is_multiple_of(2) { 16.0 } else { -16.0 });
     let points: Vec<Point> = [a, beside(a, b, 0.15 * long, 0.0)]
         .into_iter()
         .chain((0..=8).map(turn))

@@ -8,8 +8,9 @@ use crate::text::{number, words};
 pub(super) fn of_column(experiment: Option<&Experiment>, column: &Column) -> String {
     let name = words::of_column(&column.name);
     let named = if column.symbol.is_empty() { name } else { format!("{name} {}", column.symbol) };
-    let maximised =
-        experiment.and_then(|experiment| experiment.maximise.as_ref()).is_some_and(|maximise| words::of_key(&maximise.measure) == column.name);
+    let maximised = experiment
+        .and_then(|experiment| experiment.maximise.as_ref())
+        .is_some_and(|maximise| words::of_key(&maximise.measure) == column.name);
     if maximised { format!("maximum {named}") } else { named }
 }
 

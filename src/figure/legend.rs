@@ -8,7 +8,8 @@ use super::line::Curve;
 use super::paint;
 use super::quoted::{self, Quoted};
 use super::style::{
-    GUIDE, GUIDE_DASH, BAND_OPACITY, CURVE, Color, GREY, INK, LEGEND_LINE, LEGEND_ROW, LEGEND_TEXT, Look, Marker, PAPER, QUOTED, SPACE,
+    BAND_OPACITY, CURVE, Color, GREY, GUIDE, GUIDE_DASH, INK, LEGEND_LINE, LEGEND_ROW, LEGEND_TEXT, Look, Marker,
+    PAPER, QUOTED, QUOTED_OPACITY, SPACE,
 };
 
 /// What is drawn before a legend's text.
@@ -17,6 +18,7 @@ enum Sign {
     Line { look: Look, marker: bool },
     Band(Color),
     Quoted,
+    Tolerance,
     Guide,
     Bar,
     Impulse,
@@ -84,6 +86,9 @@ impl Legend {
         }
         if points {
             entries.push(Entry { sign: Sign::Quoted, text: "study ± 2 u_val".into() });
+        }
+        if quoted.iter().any(|one| !one.is_point() && one.tolerance.is_some()) {
+            entries.push(Entry { sign: Sign::Tolerance, text: "study ± 2 u_val".into() });
         }
         Self { entries, indent: 0.0 }
     }
@@ -240,6 +245,12 @@ impl Entry {
                 let bar = [-0.45, 0.45].map(|down| Point { y: at.y + down * LEGEND_ROW, ..middle });
                 sheet.line(&bar, Pen::solid(INK, GUIDE));
                 quoted::diamond(sheet, middle, 0.8 * QUOTED);
+            }
+            Sign::Tolerance => {
+                let half = LEGEND_ROW * 0.3;
+                let place = Rect { left: at.x, top: at.y - half, right: end.x, bottom: at.y + half };
+                sheet.fill(&place.corners(), INK, QUOTED_OPACITY);
+                sheet.line(&[at, end], Pen { color: INK, width: GUIDE, dash: quoted::DASH });
             }
             Sign::Bar => {
                 let place = Rect { left: at.x, top: at.y - 6.0, right: end.x, bottom: at.y + 6.0 };

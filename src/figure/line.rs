@@ -134,7 +134,8 @@ pub(super) fn curves(source: Source<'_>, panel: &Panel) -> Result<Vec<Curve>, Fi
             match (panel.band, &x.data, &y.data) {
                 (Band::Seeds, Data::FloatList(steps), Data::FloatList(values)) => {
                     let search = |&row: &usize| Some((steps.get(row)?.as_slice(), values.get(row)?.as_slice()));
-                    let searches: Vec<_> = group.rows.iter().filter_map(search).filter(|one| !one.0.is_empty()).collect();
+                    let searches: Vec<_> =
+                        group.rows.iter().filter_map(search).filter(|one| !one.0.is_empty()).collect();
                     curve.samples = searches::median(&searches);
                     curve.seeds = searches.len();
                 }

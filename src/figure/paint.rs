@@ -11,8 +11,8 @@ use super::legend::Obstacles;
 use super::panel::Panel;
 use super::peak::peaks;
 use super::style::{
-    GUIDE_DASH, BAND_OPACITY, CURVE, Color, FRAME, GREY, GRID, GUIDE, INK, LABEL_TEXT, Look, MARKER, MINOR_TICK, Marker, NOTE_TEXT,
-    PALE, PAPER, SPACE, TICK, TICK_TEXT,
+    BAND_OPACITY, CURVE, Color, FRAME, GREY, GRID, GUIDE, GUIDE_DASH, INK, LABEL_TEXT, Look, MARKER, MINOR_TICK,
+    Marker, NOTE_TEXT, PALE, PAPER, SPACE, TICK, TICK_TEXT,
 };
 
 /// Where a panel's legend goes.
@@ -155,15 +155,7 @@ fn peak_marks(sheet: &Sheet, panel: &Panel<'_>, frame: &Rect, taken: &mut Obstac
 }
 
 /// A labelled horizontal line; the label stands at an end where nothing is in its way.
-fn level(
-    sheet: &Sheet,
-    panel: &Panel<'_>,
-    frame: &Rect,
-    y: f64,
-    label: &str,
-    color: Color,
-    taken: &mut Obstacles,
-) {
+fn level(sheet: &Sheet, panel: &Panel<'_>, frame: &Rect, y: f64, label: &str, color: Color, taken: &mut Obstacles) {
     let Some(ends) = panel.level(frame, y) else { return };
     sheet.line(&ends, Pen { color, width: GUIDE, dash: GUIDE_DASH });
     if label.is_empty() {

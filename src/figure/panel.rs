@@ -4,7 +4,7 @@ use crate::experiment::{self, AxisScale};
 
 use super::axis::{Axis, Extent, Room, Tick};
 use super::canvas::text_width;
-use super::contact::{Contact, contacts};
+use super::contact::{self, Contact, contacts};
 use super::error::FigureError;
 use super::geometry::{Point, Rect};
 use super::label;
@@ -49,8 +49,8 @@ fn widen_hidden(curves: &mut [Curve], y: &Axis) {
         let (here, above) = curves.split_at(index + 1);
         let Some(curve) = here.last() else { continue };
         let hidden = above.iter().any(|other| agrees(&curve.samples, &other.samples, y));
-        if hidden && curve.look.width < 2.0 * CURVE {
-            curves[index].look.width *= 2.0;
+        if hidden && curve.look.width < 1.7 * CURVE {
+            curves[index].look.width *= 1.7;
         }
     }
 }
@@ -233,6 +233,10 @@ impl<'a> Panel<'a> {
         }
         for guide in &self.spec.guides {
             obstacles.lines.extend(self.level(frame, guide.at).map(Vec::from));
+        }
+        if !self.contacts.is_empty() {
+            let (top, bottom) = (frame.top + contact::BAR, frame.bottom - contact::BAR);
+            obstacles.boxes.extend([Rect { bottom: top, ..*frame }, Rect { top: bottom, ..*frame }]);
         }
         for one in &self.quoted {
             one.obstacle(self, frame, &mut obstacles);

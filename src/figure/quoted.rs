@@ -10,7 +10,7 @@ use super::style::{CURVE, GUIDE, INK, NOTE_TEXT, PAPER, QUOTED, QUOTED_OPACITY, 
 use crate::experiment::{self, AxisScale};
 
 /// Dash of what stands for a missing coordinate.
-const DASH: &[f64] = &[16.0, 8.0];
+pub(super) const DASH: &[f64] = &[16.0, 8.0];
 /// A value far outside of the curves would leave them no room: how many times their own range it may take.
 const STRETCH: f64 = 3.0;
 
@@ -164,7 +164,9 @@ impl Quoted {
         let aside = [at.x + SPACE / 2.0, at.x - SPACE / 2.0 - width];
         let places: Vec<Rect> = match self.at {
             QuotedAt::Place(_) => (0..=30_u8)
-                .map(|step| frame.top + half + SPACE / 2.0 + f64::from(step) / 30.0 * (frame.height() - 2.0 * half - SPACE))
+                .map(|step| {
+                    frame.top + half + SPACE / 2.0 + f64::from(step) / 30.0 * (frame.height() - 2.0 * half - SPACE)
+                })
                 .flat_map(|y| aside.map(|x| about(x, y)))
                 .collect(),
             QuotedAt::Level(_) => (0..=20_u8)
@@ -174,7 +176,8 @@ impl Quoted {
             QuotedAt::Point { .. } => {
                 let away = QUOTED + SPACE / 2.0;
                 let ring = [(0.0, 0.0), (1.0, 0.0), (-1.0, 0.0), (1.5, 0.0), (-1.5, 0.0), (2.5, 0.0), (-2.5, 0.0)];
-                let beside = ring.map(|(down, _)| [at.x + away, at.x - away - width].map(|x| about(x, at.y + down * 2.0 * half)));
+                let beside = ring
+                    .map(|(down, _)| [at.x + away, at.x - away - width].map(|x| about(x, at.y + down * 2.0 * half)));
                 let above = [-1.0, 1.0, -2.0, 2.0].map(|down| about(at.x - width / 2.0, at.y + down * (away + half)));
                 beside.into_iter().flatten().chain(above).collect()
             }

@@ -106,11 +106,7 @@ fn chosen(figure: &FigureSpec, table: &Table) -> Table {
 }
 
 /// The panels one above the other, as SVG.
-fn lines(
-    source: Source<'_>,
-    specs: &[experiment::Panel],
-    beside: Beside<'_>,
-) -> Result<String, FigureError> {
+fn lines(source: Source<'_>, specs: &[experiment::Panel], beside: Beside<'_>) -> Result<String, FigureError> {
     let mut panels = specs.iter().map(|spec| Panel::new(source, spec, beside)).collect::<Result<Vec<_>, _>>()?;
     if panels.is_empty() {
         return Err(FigureError::Nothing { figure: source.figure.to_owned() });

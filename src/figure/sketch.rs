@@ -8,7 +8,7 @@ use super::contour::contours;
 use super::field::{Field, Spot};
 use super::geometry::{Point as At, Rect};
 use super::glyph::{arrow, dashpot, hatch, spring};
-use super::style::{CURVE, Color, GREY, INK, NOTE_TEXT, PALE, PAPER, PLACE, SKETCH_WIDTH, SPACE, BLUE_INK, VERMILION};
+use super::style::{BLUE_INK, CURVE, Color, GREY, INK, NOTE_TEXT, PALE, PAPER, PLACE, SKETCH_WIDTH, SPACE, VERMILION};
 use crate::scene::{Damper, Excitation, Model, Point, Scene, Structure, Surface};
 use crate::text::number::quantity;
 
@@ -51,7 +51,9 @@ fn dampers(scene: &Scene) -> Vec<Point> {
 fn forced_mode(scene: &Scene) -> Option<usize> {
     let forced = match scene.excitation {
         Excitation::Harmonic { angular_frequency, .. } => angular_frequency,
-        Excitation::ImpulseTrain { period, .. } | Excitation::PulseTrain { period, .. } => std::f64::consts::TAU / period,
+        Excitation::ImpulseTrain { period, .. } | Excitation::PulseTrain { period, .. } => {
+            std::f64::consts::TAU / period
+        }
         Excitation::SingleImpulse { .. } => return None,
     };
     let frequencies = scene.structure.model().natural_frequencies();

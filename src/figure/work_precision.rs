@@ -27,5 +27,10 @@ pub fn work_precision(times: [f64; 2], floor: Option<f64>, events: bool) -> Figu
     if events {
         panels.push(panel("event_error", "Error of event times / T", Vec::new()));
     }
-    FigureSpec { name: String::new(), only: None, caption: "Error against wall time.".into(), drawing: Drawing::Lines(panels) }
+    FigureSpec {
+        name: String::new(),
+        only: None,
+        caption: "Error against wall time.".into(),
+        drawing: Drawing::Lines(panels),
+    }
 }

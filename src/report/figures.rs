@@ -56,8 +56,7 @@ pub(super) fn shown(
     table_hash: &FileHash,
     said: Said<'_>,
 ) -> String {
-    let quoted: Vec<String> =
-        quoted(experiment, figure, table, said).iter().map(|one| format!("{one:?}")).collect();
+    let quoted: Vec<String> = quoted(experiment, figure, table, said).iter().map(|one| format!("{one:?}")).collect();
     fingerprint(&json!({
         "drawing": figure.drawing,
         "only": figure.only,

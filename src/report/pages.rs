@@ -186,7 +186,8 @@ fn draw<'a>(
             let id = experiment.id.0.as_str();
             let picture =
                 judgement.tables.get(id).ok_or_else(|| "its table cannot be read".to_owned()).and_then(|table| {
-                    picture(experiment, figure, table, said(study, judgement, experiment)).map_err(|error| error.to_string())
+                    picture(experiment, figure, table, said(study, judgement, experiment))
+                        .map_err(|error| error.to_string())
                 });
             (id, *figure, picture)
         })

@@ -7,7 +7,9 @@
 use super::figures::Said;
 use crate::experiment::{Drawing, Experiment, FigureSpec};
 use crate::figure::{Known, Quoted, QuotedAt};
-use crate::reference::{Allowed, Check, Comparison, Entry, Extraction, Feature, Judged, Printed, PrintedPeak, Selection};
+use crate::reference::{
+    Allowed, Check, Comparison, Entry, Extraction, Feature, Judged, Printed, PrintedPeak, Selection,
+};
 use crate::table::Table;
 use crate::text::words;
 
@@ -50,9 +52,13 @@ struct Axes<'a> {
 /// Where on the axes an extraction's number stands.
 enum Where {
     /// At this place.
-    Value { x: f64 },
+    Value {
+        x: f64,
+    },
     /// It is itself a place, at which the curve has this value.
-    PlaceOf { y: f64 },
+    PlaceOf {
+        y: f64,
+    },
     Place,
     /// What it is of the whole curve: `mean`.
     Level(&'static str),
@@ -168,7 +174,8 @@ impl Axes<'_> {
     /// The drawn column that shows a measure: itself, or the fitness of the searches for it.
     fn drawn<'e>(&'e self, of: &'e str) -> Option<&'e str> {
         let is_fitness = self.experiment.optimise.as_ref().is_some_and(|search| words::of_key(&search.measure) == of);
-        let shows = |column: &&&str| **column == of || (is_fitness && ["best_so_far", "fitness_along"].contains(*column));
+        let shows =
+            |column: &&&str| **column == of || (is_fitness && ["best_so_far", "fitness_along"].contains(*column));
         self.y.iter().find(shows).copied()
     }
 

@@ -68,7 +68,10 @@ fn runs_with_an_assumption_moved_are_not_drawn() {
     let without = with_variant.select(&with_variant.rows_where("variant", "baseline"));
     assert!(without.rows() < with_variant.rows());
     let experiment = limit_stop();
-    assert_eq!(draw(&experiment, &spec, &with_variant, Beside::default()), draw(&experiment, &spec, &without, Beside::default()));
+    assert_eq!(
+        draw(&experiment, &spec, &with_variant, Beside::default()),
+        draw(&experiment, &spec, &without, Beside::default())
+    );
 }
 
 /// Base, particle, resilient and rigid surfaces over three forcing cycles.
@@ -145,7 +148,13 @@ fn few_points_carry_markers() {
         markers: true,
         ..panel("mass_ratio", AxisScale::Linear, &["velocity_ratio", "displacement_ratio"])
     }]);
-    picture("markers", &experiment, &spec, &table, &[study("velocity_ratio", "mass_ratio", QuotedAt::Point { x: 0.05, y: 1.516, known: Known::Y })]);
+    picture(
+        "markers",
+        &experiment,
+        &spec,
+        &table,
+        &[study("velocity_ratio", "mass_ratio", QuotedAt::Point { x: 0.05, y: 1.516, known: Known::Y })],
+    );
 }
 
 /// h′ = 10, 50, 90 and infinity against base amplitude.

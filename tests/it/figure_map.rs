@@ -22,7 +22,8 @@ fn map(x: &str, y: &str, value: &str) -> MapSpec {
 }
 
 fn picture(name: &str, spec: MapSpec, table: &Table) -> Vec<u8> {
-    let Picture { svg, png } = draw(&limit_stop(), &drawn(Drawing::Map(spec.into())), table, Beside::default()).unwrap();
+    let Picture { svg, png } =
+        draw(&limit_stop(), &drawn(Drawing::Map(spec.into())), table, Beside::default()).unwrap();
     assert!(svg.len() < 250_000, "{name}: {} bytes of SVG are too many to commit", svg.len());
     std::fs::write(format!("{}/{name}.png", env!("CARGO_TARGET_TMPDIR")), &png).unwrap();
     assert!(png.len() < 250_000, "{name}: {} bytes are too many to commit", png.len());
@@ -150,8 +151,9 @@ fn shapes_of_a_plate_show_their_nodal_lines() {
 
 #[test]
 fn a_map_that_cannot_be_drawn_says_why() {
-    let attempt =
-        |spec: MapSpec, table: &Table| draw(&limit_stop(), &drawn(Drawing::Map(spec.into())), table, Beside::default()).unwrap_err();
+    let attempt = |spec: MapSpec, table: &Table| {
+        draw(&limit_stop(), &drawn(Drawing::Map(spec.into())), table, Beside::default()).unwrap_err()
+    };
     let plate = plate();
     let overlaid = attempt(map("damper_x", "damper_y", "velocity_ratio"), &plate);
     assert!(matches!(overlaid, FigureError::Twice { .. }) && overlaid.to_string().contains("`by`"), "{overlaid}");

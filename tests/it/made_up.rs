@@ -73,7 +73,12 @@ pub fn figure(panels: Vec<Panel>) -> FigureSpec {
 }
 
 pub fn drawn(drawing: Drawing) -> FigureSpec {
-    FigureSpec { name: String::new(), only: None, caption: "Effect of the limit stop on the velocity ratio.".into(), drawing }
+    FigureSpec {
+        name: String::new(),
+        only: None,
+        caption: "Effect of the limit stop on the velocity ratio.".into(),
+        drawing,
+    }
 }
 
 pub fn axis(column: &str, scale: AxisScale) -> Axis {

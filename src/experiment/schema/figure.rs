@@ -44,7 +44,8 @@ pub(super) fn definitions() -> Vec<(String, Value)> {
 }
 
 /// What a band shows.
-const BAND: &str = "spread: standard deviation of the ensemble; seeds: least to largest of searches that differ in their seed";
+const BAND: &str =
+    "spread: standard deviation of the ensemble; seeds: least to largest of searches that differ in their seed";
 
 fn shared(object: Object) -> Object {
     object
