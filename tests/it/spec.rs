@@ -201,7 +201,7 @@ pub(crate) fn all_mistakes_of_a_file_come_at_once_with_their_places() {
             "13:51 `many` is not a number of points | write for example 25 points",
             "15:55 `-1 cycles` is not a number of cycles | write for example 25 cycles",
             "16:27 `ceiling_impact` is not a measure | did you mean `ceiling_impacts`?",
-            "17:61 a band has no form `wide` | known are `spread`, `none`",
+            "17:61 a band has no form `wide` | known are `spread`, `none`, `seeds`",
         ]
     );
     let plain = problems.to_string();
