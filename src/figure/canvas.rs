@@ -1,15 +1,21 @@
-//! A sheet to draw on, in pixels of the finished picture, which writes SVG.
+//! A sheet to draw on, in pixels of the finished picture: plotters on [`super::backend`].
 //!
 //! Coordinates are whole tenths of a pixel, and paths are relative: a point of a curve takes about six bytes. Points that
 //! would not move a line by a tenth of a pixel are left out.
 
 use std::cell::RefCell;
-use std::fmt::Write as _;
+use std::rc::Rc;
 use std::sync::LazyLock;
 
+use plotters::coord::Shift;
+use plotters::drawing::{DrawingArea, IntoDrawingArea};
+use plotters::element::{Circle, Drawable, PathElement, PointCollection, Polygon, Rectangle, Text};
+use plotters::style::text_anchor::{HPos, Pos, VPos};
+use plotters::style::{Color as _, FontDesc, FontFamily, FontStyle, FontTransform, RGBColor, ShapeStyle};
 use ttf_parser::Face;
 
-use super::geometry::{Point, Rect, simplified};
+use super::backend::Writer;
+use super::geometry::{Point, Rect, dashed, simplified};
 use super::raster::{FAMILY, FONT};
 use super::style::{Color, PAPER};
 
@@ -59,21 +65,20 @@ pub(super) struct Lettering<'a> {
 
 /// A sheet of paper.
 pub(super) struct Sheet {
-    text: RefCell<String>,
+    area: DrawingArea<Writer, Shift>,
 }
 
 /// Paints on a white sheet of this size; returns the SVG.
 pub(super) fn svg(width: f64, height: f64, paint: impl FnOnce(&Sheet)) -> String {
-    let [wide, high] = [width, height].map(whole);
-    let sheet = Sheet {
-        text: RefCell::new(format!(
-            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width:.0}\" height=\"{height:.0}\" \
-             viewBox=\"0 0 {wide} {high}\" font-family=\"{FAMILY}, {FALLBACK}\" stroke-linejoin=\"round\">\n"
-        )),
-    };
+    let [wide, high] = [width, height].map(|length| whole(length).unsigned_abs());
+    let text = Rc::new(RefCell::new(format!(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width:.0}\" height=\"{height:.0}\" \
+         viewBox=\"0 0 {wide} {high}\" font-family=\"{FAMILY}, {FALLBACK}\" stroke-linejoin=\"round\">\n"
+    )));
+    let sheet = Sheet { area: Writer { size: (wide, high), text: Rc::clone(&text) }.into_drawing_area() };
     sheet.cell(&Rect { left: 0.0, top: 0.0, right: width, bottom: height }, PAPER);
     paint(&sheet);
-    sheet.text.into_inner() + "</svg>\n"
+    text.take() + "</svg>\n"
 }
 
 /// Width of a text in pixels of the picture.
@@ -106,105 +111,84 @@ impl Sheet {
         if points.len() < 2 {
             return;
         }
-        let dash = match pen.dash {
-            [] => String::new(),
-            lengths => {
-                let lengths: Vec<String> = lengths.iter().map(|length| whole(*length).to_string()).collect();
-                format!(" stroke-dasharray=\"{}\"", lengths.join(" "))
-            }
-        };
-        self.put(format_args!(
-            "<path fill=\"none\" stroke=\"{}\" stroke-width=\"{}\"{dash} d=\"{}\"/>\n",
-            pen.color,
-            whole(pen.width),
-            path(&points)
-        ));
+        for stretch in dashed(&points, pen.dash) {
+            self.put(&PathElement::new(places(&stretch), pen.style()));
+        }
     }
 
     /// A filled polygon.
     pub(super) fn fill(&self, corners: &[Point], color: Color, opacity: f64) {
-        let opacity = if opacity < 1.0 { format!(" fill-opacity=\"{opacity:.2}\"") } else { String::new() };
-        let outline = path(&simplified(corners, DEVIATION));
-        self.put(format_args!("<path fill=\"{color}\"{opacity} d=\"{outline}z\"/>\n"));
+        self.put(&Polygon::new(places(&simplified(corners, DEVIATION)), rgb(color).mix(opacity).filled()));
     }
 
     /// A filled rectangle whose edges meet its neighbours' without a seam.
     pub(super) fn cell(&self, place: &Rect, color: Color) {
-        self.cells(std::slice::from_ref(place), color);
+        let corners = [(whole(place.left), whole(place.top)), (whole(place.right), whole(place.bottom))];
+        self.put(&Rectangle::new(corners, rgb(color).filled()));
     }
 
     /// As [`Sheet::cell`], of one colour.
     pub(super) fn cells(&self, places: &[Rect], color: Color) {
-        let mut d = String::new();
-        let (mut x, mut y) = (0, 0);
-        for place in places {
-            let [left, top] = [place.left, place.top].map(whole);
-            let (across, down) = (whole(place.right) - left, whole(place.bottom) - top);
-            _ = write!(d, "m{} {}h{across}v{down}h{}z", left - x, top - y, -across);
-            (x, y) = (left, top);
-        }
-        self.put(format_args!("<path fill=\"{color}\" shape-rendering=\"crispEdges\" d=\"{d}\"/>\n"));
+        places.iter().for_each(|place| self.cell(place, color));
     }
 
     /// A filled disc.
     pub(super) fn disc(&self, centre: Point, radius: f64, color: Color) {
-        let [x, y, r] = [centre.x, centre.y, radius].map(whole);
-        self.put(format_args!("<circle cx=\"{x}\" cy=\"{y}\" r=\"{r}\" fill=\"{color}\"/>\n"));
+        self.put(&Circle::new(place(centre), whole(radius), rgb(color).filled()));
     }
 
     /// A circle.
     pub(super) fn ring(&self, centre: Point, radius: f64, pen: Pen) {
-        let [x, y, r, width] = [centre.x, centre.y, radius, pen.width].map(whole);
-        let color = pen.color;
-        self.put(format_args!(
-            "<circle cx=\"{x}\" cy=\"{y}\" r=\"{r}\" fill=\"none\" stroke=\"{color}\" stroke-width=\"{width}\"/>\n"
-        ));
+        self.put(&Circle::new(place(centre), whole(radius), pen.style()));
     }
 
     /// A text.
     pub(super) fn text(&self, at: Point, lettering: &Lettering<'_>) {
         let Lettering { text, size, anchor, upright, color } = *lettering;
         let down = CENTRE * size;
-        let (at, turn) =
-            if upright { (Point { x: at.x + down, ..at }, true) } else { (Point { y: at.y + down, ..at }, false) };
-        let [x, y, size] = [at.x, at.y, size].map(whole);
-        let anchor = match anchor {
-            Anchor::Left => "",
-            Anchor::Centre => " text-anchor=\"middle\"",
-            Anchor::Right => " text-anchor=\"end\"",
+        let (at, turn) = if upright {
+            (Point { x: at.x + down, ..at }, FontTransform::Rotate270)
+        } else {
+            (Point { y: at.y + down, ..at }, FontTransform::None)
         };
-        let turn = if turn { format!(" transform=\"rotate(-90 {x} {y})\"") } else { String::new() };
-        let text = text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;");
-        self.put(format_args!(
-            "<text x=\"{x}\" y=\"{y}\" font-size=\"{size}\" fill=\"{color}\"{anchor}{turn}>{text}</text>\n"
-        ));
+        let h_pos = match anchor {
+            Anchor::Left => HPos::Left,
+            Anchor::Centre => HPos::Center,
+            Anchor::Right => HPos::Right,
+        };
+        let font = FontDesc::new(FontFamily::Name(FAMILY), f64::from(whole(size)), FontStyle::Normal).transform(turn);
+        let mut style = font.color(&rgb(color));
+        style.pos = Pos::new(h_pos, VPos::Bottom);
+        self.put(&Text::new(text, place(at), style));
     }
 
-    fn put(&self, element: std::fmt::Arguments<'_>) {
-        // Writing to a string cannot fail.
-        _ = self.text.borrow_mut().write_fmt(element);
+    fn put<'b, E>(&self, element: &'b E)
+    where
+        &'b E: PointCollection<'b, (i32, i32)>,
+        E: Drawable<Writer>,
+    {
+        let drawn = self.area.draw(element);
+        debug_assert!(drawn.is_ok(), "writing into memory cannot fail");
     }
 }
 
-/// The `d` of a polyline.
-fn path(points: &[Point]) -> String {
-    let mut d = String::new();
-    let mut before: Option<(i32, i32)> = None;
-    for point in points {
-        let (x, y) = (whole(point.x), whole(point.y));
-        _ = match before {
-            None => write!(d, "M{x} {y}l"),
-            // A minus sign parts two numbers as well as a space.
-            Some((a, b)) => {
-                let (dx, dy) = (x - a, y - b);
-                let (first, second) =
-                    (if dx < 0 || d.ends_with('l') { "" } else { " " }, if dy < 0 { "" } else { " " });
-                write!(d, "{first}{dx}{second}{dy}")
-            }
-        };
-        before = Some((x, y));
+impl Pen {
+    fn style(self) -> ShapeStyle {
+        let stroke_width = whole(self.width).unsigned_abs();
+        ShapeStyle { color: rgb(self.color).to_rgba(), filled: false, stroke_width }
     }
-    d
+}
+
+fn rgb(color: Color) -> RGBColor {
+    RGBColor(color.0, color.1, color.2)
+}
+
+fn places(points: &[Point]) -> Vec<(i32, i32)> {
+    points.iter().copied().map(place).collect()
+}
+
+fn place(point: Point) -> (i32, i32) {
+    (whole(point.x), whole(point.y))
 }
 
 /// Pixels of the picture to units of the SVG.

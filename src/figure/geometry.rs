@@ -101,3 +101,37 @@ fn distance(point: Point, a: Point, b: Point) -> f64 {
         if length > 0.0 { (((point.x - a.x) * dx + (point.y - a.y) * dy) / length).clamp(0.0, 1.0) } else { 0.0 };
     libm::hypot(point.x - a.x - along * dx, point.y - a.y - along * dy)
 }
+
+/// A polyline cut into the drawn stretches of a dash pattern (lengths drawn and left out, by turns); empty is solid.
+pub(super) fn dashed(points: &[Point], pattern: &[f64]) -> Vec<Vec<Point>> {
+    let Some(&first) = pattern.first() else { return vec![points.to_vec()] };
+    let mut stretches = Vec::new();
+    let mut current: Vec<Point> = points.first().copied().into_iter().collect();
+    let (mut phase, mut left) = (0, first);
+    for pair in points.windows(2) {
+        let (a, b) = (pair[0], pair[1]);
+        let length = libm::hypot(b.x - a.x, b.y - a.y);
+        let mut gone = 0.0;
+        while length - gone > left {
+            gone += left;
+            let share = gone / length;
+            let here = Point { x: a.x + share * (b.x - a.x), y: a.y + share * (b.y - a.y) };
+            if phase % 2 == 0 {
+                current.push(here);
+                stretches.push(std::mem::take(&mut current));
+            } else {
+                current = vec![here];
+            }
+            phase = (phase + 1) % pattern.len();
+            left = pattern[phase];
+        }
+        left -= length - gone;
+        if phase % 2 == 0 {
+            current.push(b);
+        }
+    }
+    if current.len() > 1 {
+        stretches.push(current);
+    }
+    stretches
+}

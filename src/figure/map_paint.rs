@@ -37,9 +37,8 @@ pub(super) fn map(sheet: &Sheet, map: &Map<'_>, layout: &MapLayout) {
     }
     labels(sheet, map, layout);
     bar(sheet, map, &layout.bar);
-    match layout.legend {
-        Some(top) => legend(sheet, map, Point { x: layout.frames[0].left, y: top + LEGEND_ROW / 2.0 }),
-        None => {}
+    if let Some(top) = layout.legend {
+        legend(sheet, map, Point { x: layout.frames[0].left, y: top + LEGEND_ROW / 2.0 });
     }
 }
 

@@ -5,6 +5,7 @@
 //! same picture on any machine.
 
 mod axis;
+mod backend;
 mod bars;
 mod canvas;
 mod colormap;
