@@ -30,12 +30,13 @@ fn drawn(name: &str, spec: Panel, table: &Table, quoted: &[Quoted], impulses: Op
 #[test]
 fn a_place_without_a_value_is_a_labelled_line_and_no_point() {
     let over_force = || panel("force_ratio", AxisScale::Log, &["velocity_ratio"]);
-    let place = drawn("study-place", over_force(), &curve(), &[quoted(QuotedAt::Place(2.5))], None);
+    let bare = |at| Quoted { tolerance: None, ..quoted(at) };
+    let place = drawn("study-place", over_force(), &curve(), &[bare(QuotedAt::Place(2.5))], None);
     assert!(place.svg.contains("study: quoted"), "the number stands at its line");
     // A diamond would claim a value: it is the only thing filled with paper that has four corners.
     let diamonds = |picture: &Picture| picture.svg.matches("z\"/>").count();
     let at = QuotedAt::Point { x: 2.5, y: 1.6, known: Known::Y };
-    let point = drawn("study-point", over_force(), &curve(), &[quoted(at)], None);
+    let point = drawn("study-point", over_force(), &curve(), &[bare(at)], None);
     assert!(diamonds(&point) > diamonds(&place), "a value at a place is a diamond");
     let elsewhere = Quoted { over: Some("gap_ratio".into()), ..quoted(QuotedAt::Place(2.5)) };
     assert!(!drawn("study-elsewhere", over_force(), &curve(), &[elsewhere], None).svg.contains("study"), "other axes");

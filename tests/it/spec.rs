@@ -330,7 +330,7 @@ pub(crate) fn yaml_from_strangers_is_refused_before_anything_grows() {
     assert_eq!(parse(&many_mistakes).expect_err("no measure of that name").list.len(), 100);
     let keys: String = (0..100_000).map(|i| format!("a{i}: 1\n")).collect();
     assert_eq!(only_problem(&keys), "1001:1 more than 1000 keys in one place");
-    assert_eq!(only_problem(&"#\n".repeat(1 << 20)), "1:1 the file is longer than 1024 KiB");
+    assert_eq!(only_problem(&"#\n".repeat(1 << 20)), "1:1 the file has 2048 KiB; at most 1024 KiB are read");
     let sweep = |range: &str| only_problem(&with("{log: {from: 0.1, to: 100, points: 61}}", range));
     assert_eq!(
         sweep("{log: {from: 0.1, to: 100, points: 1000000000}}"),
