@@ -207,11 +207,13 @@ impl Block {
     /// radius^j/√|d| or, where that blows up near critical damping, by (j + radius·window) radius^(j−1).
     #[inline]
     pub(crate) fn amplitude(&self, phase: Phase, order: f64, window: f64) -> f64 {
-        if !self.is_near_critical() {
-            phase.value.abs() + (phase.rate + self.decay * phase.value).abs() * self.inverse_root
-        } else {
-            self.amplitude_near_critical(phase, order, window)
-        }
+        if !self.is_near_critical() { self.swing(phase) } else { self.amplitude_near_critical(phase, order, window) }
+    }
+
+    /// The same where it depends on neither.
+    #[inline(always)]
+    pub(crate) fn swing(&self, phase: Phase) -> f64 {
+        phase.value.abs() + (phase.rate + self.decay * phase.value).abs() * self.inverse_root
     }
 
     #[cold]

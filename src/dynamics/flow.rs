@@ -13,6 +13,7 @@ use super::bank::Bank;
 use super::block::Block;
 use super::contact_state::Modes;
 use super::dissipation::Dissipation;
+use super::economised::Economised;
 use super::gains::Closed;
 use super::series::Series;
 use super::signals::{Row, Rows, Signals};
@@ -26,8 +27,9 @@ pub(crate) struct Flow {
     pub(crate) blocks: Vec<Block>,
     /// The same, side by side for their kernels.
     pub(crate) bank: Bank,
-    /// Their Taylor series.
+    /// Their Taylor series, and their economised tables.
     pub(crate) series: Series,
+    pub(crate) cells: Economised,
     /// Blocks without the drive.
     pub(crate) own: usize,
     /// Some block has an eigenvalue zero, so that a constant load sets it moving.
@@ -132,6 +134,7 @@ impl Flow {
         let mut flow = Self {
             bank: Bank::new(&blocks),
             series: Series::new(&blocks),
+            cells: Economised::new(&blocks),
             drifts: blocks[..own].iter().any(|block| block.determinant == 0.0),
             blocks,
             own,
@@ -153,6 +156,7 @@ impl Flow {
     pub(crate) fn size(&self) -> usize {
         self.modes.size()
             + self.rows.size()
+            + self.cells.size()
             + self.closed.as_ref().map_or(0, Closed::size)
             + self.dissipation.get().map_or(0, Dissipation::size)
     }

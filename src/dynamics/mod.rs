@@ -4,7 +4,7 @@
 //! [`Options`]; the [`Response`] holds the integrals of the averaged window, the counts, and the [`Proof`].
 //!
 //! - `flow`: the exact motion of one contact state, split into 2 × 2 `block`s by `modes` and `spectral`;
-//! - `search`: the first event, certified by Bernstein enclosures;
+//! - `search`: the first event, certified by Bernstein `enclosure`s over cells whose tables (`economised`) a contact state keeps;
 //! - `contact`: what an event leads to; `march`: from event to event;
 //! - `linear`: a run without any event, in closed form;
 //! - `integral`: measures in closed form; `audit`: momentum and energy balanced by other means;
@@ -25,7 +25,9 @@ mod collision;
 mod contact;
 mod contact_state;
 mod dissipation;
+mod economised;
 mod elementary;
+mod enclosure;
 mod extremes;
 mod fixed;
 mod flow;
@@ -57,7 +59,7 @@ pub use system::{
 pub use trace::{Sample, TraceRequest};
 
 /// Changes whenever the same scene may give other bits. A test holds the bits of fixed scenes against it.
-pub const SOLVER_VERSION: u32 = 4;
+pub const SOLVER_VERSION: u32 = 5;
 
 /// What proves a run: residuals of the balances, and how clearly its events were decided.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -98,7 +100,7 @@ pub struct Options {
     pub record_events: usize,
     /// Time history to keep.
     pub trace: Option<TraceRequest>,
-    /// Search windows are shorter by this factor; 1 as a rule, less for a second accuracy.
+    /// Cells and windows of the search are shorter by this factor, cells by powers of two; 1 as a rule, less for a second accuracy.
     pub window_factor: f64,
 }
 

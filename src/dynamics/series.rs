@@ -22,8 +22,6 @@ pub(crate) struct Series {
     pub(crate) unit: f64,
     /// Some block is near critical damping: its amplitude depends on the window.
     pub(crate) near_critical: bool,
-    /// The blocks, fastest first, with the squares of their radii, 1/s².
-    pub(crate) by_radius: Vec<(usize, f64)>,
     terms: Vec<Terms>,
 }
 
@@ -39,16 +37,11 @@ struct Terms {
     left_out: f64,
 }
 
-/// A block whose Taylor polynomial may leave out this share of its amplitude is left out itself.
-const TOO_FAST: f64 = 0.5;
-
 /// What an expansion leaves out.
 pub(crate) struct Bounds {
     pub(crate) left_out: f64,
     /// On values and slopes of what is expanded.
     pub(crate) moving: f64,
-    /// Whole blocks are left out.
-    pub(crate) leaves_blocks: bool,
 }
 
 impl Series {
@@ -57,10 +50,7 @@ impl Series {
         let pace = if fastest > 0.0 { fastest } else { 1.0 };
         let unit = 1.0 / pace;
         let terms = blocks.iter().map(|block| Terms::new(block, pace)).collect();
-        let mut by_radius: Vec<(usize, f64)> =
-            blocks.iter().map(|block| block.radius * block.radius).enumerate().collect();
-        by_radius.sort_by(|a, b| b.1.total_cmp(&a.1));
-        Self { pace, unit, near_critical: blocks.iter().any(Block::is_near_critical), by_radius, terms }
+        Self { pace, unit, near_critical: blocks.iter().any(Block::is_near_critical), terms }
     }
 
     /// Coefficients `FROM` to `FROM` + N of Σ shares, in powers of ρt.
@@ -75,36 +65,15 @@ impl Series {
         sum
     }
 
-    /// The same over a window of ρΔ with `twelfth` = (ρΔ)¹², leaving out the blocks too fast for it.
+    /// Over a window, with `amplitudes` as in [`Block::amplitude`]: what is left out of Σ shares beyond degree eleven, and a
+    /// bound on values and slopes of what is expanded.
     #[inline(always)]
-    pub(crate) fn expand_slow(&self, shares: &[Phase], twelfth: f64) -> [f64; TERMS] {
-        let mut sum = [0.0; TERMS];
-        for (terms, share) in self.terms.iter().zip(shares) {
-            if terms.left_out * twelfth > TOO_FAST {
-                continue;
-            }
-            for j in 0..TERMS {
-                sum[j] += share.value * terms.value[j] + share.rate * terms.rate[j];
-            }
-        }
-        sum
-    }
-
-    /// Over a window, with `amplitudes` as in [`Block::amplitude`]: what is left out of Σ shares beyond degree eleven, and with
-    /// `leave_fast` the blocks too fast for it; bounds on what is expanded.
-    #[inline(always)]
-    pub(crate) fn bounds(&self, amplitudes: &[f64], span: &Span, leave_fast: bool) -> Bounds {
+    pub(crate) fn bounds(&self, amplitudes: &[f64], span: &Span) -> Bounds {
         let (length, twelfth) = (span.powers[1], span.powers[TERMS]);
-        let mut bounds = Bounds { left_out: 0.0, moving: 0.0, leaves_blocks: false };
+        let mut bounds = Bounds { left_out: 0.0, moving: 0.0 };
         for (terms, amplitude) in self.terms.iter().zip(amplitudes) {
-            let share = terms.left_out * twelfth;
-            if leave_fast && share > TOO_FAST {
-                bounds.left_out += amplitude;
-                bounds.leaves_blocks = true;
-            } else {
-                bounds.left_out += amplitude * share;
-                bounds.moving += amplitude * (1.0 + terms.radius * length);
-            }
+            bounds.left_out += amplitude * (terms.left_out * twelfth);
+            bounds.moving += amplitude * (1.0 + terms.radius * length);
         }
         bounds
     }

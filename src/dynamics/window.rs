@@ -25,8 +25,6 @@ pub(crate) enum Verdict {
     Clear { clearance: f64 },
     /// Exactly one root: first guess of its σ, and an upper bound.
     Root { guess: f64, high: f64 },
-    /// No root before this σ: there the blocks that were left out might make one.
-    Until { sigma: f64 },
     /// Nothing.
     Unsure,
 }
@@ -56,14 +54,12 @@ pub(crate) struct Window {
     b: Coefficients,
     /// What the polynomial leaves out, with the rounding.
     remainder: f64,
-    /// Whole blocks are part of that: it may turn as fast as they do.
-    leaves_blocks: bool,
     start: Start,
 }
 
 impl Window {
     pub(crate) fn new() -> Self {
-        Self { a: [0.0; DEGREE + 1], b: [0.0; DEGREE + 1], remainder: 0.0, leaves_blocks: false, start: Start::Apart }
+        Self { a: [0.0; DEGREE + 1], b: [0.0; DEGREE + 1], remainder: 0.0, start: Start::Apart }
     }
 
     /// Expands a guard over a window: its shares and their bounds at the window's start, its parabola from the segment's.
@@ -83,11 +79,10 @@ impl Window {
         let base = [parabola.at(span.from), parabola.rate(span.from) * span.length, bent * span.length];
         self.start = start;
         self.remainder = bounds.left_out;
-        self.leaves_blocks = bounds.leaves_blocks;
         match start {
             Start::Apart => {
                 self.remainder += 8.0 * f64::EPSILON * (base[0].abs() + base[1].abs() + bounds.moving);
-                let a = series.expand_slow(shares, span.powers[DEGREE + 1]);
+                let a: Coefficients = series.expand::<0, _>(shares.iter().copied());
                 for j in 0..DEGREE + 1 {
                     self.a[j] = a[j] * (sign * span.powers[j]);
                 }
@@ -133,26 +128,10 @@ impl Window {
             let near_miss = self.start == Start::Apart && b[1] < b[0] && b[DEGREE] > b[DEGREE - 1];
             return Verdict::Clear { clearance: if near_miss { lowest(b) - self.remainder } else { f64::INFINITY } };
         }
-        if self.leaves_blocks {
-            return self.clear_prefix(signs);
-        }
         match self.single_crossing(signs, bend) {
             Some(guess) => Verdict::Root { guess, high: 1.0 },
             None => self.judge_shape(),
         }
-    }
-
-    /// How far the polynomial keeps above its remainder: where it falls to that once, by Descartes' rule, and no more.
-    #[cold]
-    fn clear_prefix(&self, signs: Signs) -> Verdict {
-        if signs.positive == 0 || signs.positive & (signs.positive + 1) != 0 {
-            return Verdict::Unsure;
-        }
-        let mut above = Self { a: self.a, b: self.b, remainder: 0.0, leaves_blocks: false, start: self.start };
-        above.a[0] -= self.remainder;
-        // Newton has the root to three digits or so; a little before it the polynomial is still above.
-        let sigma = 0.98 * above.root(0.5, 1.0).0;
-        if above.value(sigma) > 0.0 { Verdict::Until { sigma } } else { Verdict::Unsure }
     }
 
     /// Descartes' rule in Bernstein form: coefficients positive, then doubtful, then negative. The guard is positive before

@@ -120,3 +120,28 @@ fn search_for_scenes_that_break_the_engine() {
     }
     println!("{tried} scenes tried, {found} found");
 }
+
+/// The smallest margin is a property of the motion: however time is cut, it is the same to a hundredth.
+#[test]
+fn the_smallest_margin_does_not_depend_on_how_time_is_cut() {
+    let damping = 0.1 * 1000.0_f64.sqrt();
+    let dampers = |gap| vec![Damper::between(resilient(1000.0, 4.2), 0.05, gap)];
+    // Impulses that lift the particle, weak and strong; a rectangular force that does not.
+    let natural = 1000.0_f64.sqrt();
+    let scenes = [(0.02, 0.49), (2.0, 0.49), (2.2, 0.4905)].map(|(impulse, gap)| {
+        let drive = Excitation::ImpulseTrain { impulse, period: std::f64::consts::TAU / natural };
+        Scene::on_one_mass(base(1.0, 1000.0, damping), GRAVITY, dampers(gap), drive)
+    });
+    for scene in scenes {
+        let system = system(&scene);
+        let margin = |window_factor| {
+            let options = Options { window_factor, ..cycles(30) };
+            event_driven(&system, &options).unwrap().proof.smallest_margin
+        };
+        let whole = margin(1.0);
+        assert!(whole > 0.0);
+        for factor in [0.5, 0.25, 0.1] {
+            assert!((margin(factor) / whole - 1.0).abs() < 0.01, "× {factor}: {} instead of {whole}", margin(factor));
+        }
+    }
+}
