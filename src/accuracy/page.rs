@@ -8,7 +8,8 @@ use crate::text::number::{quantity, significant};
 use crate::text::words;
 
 use super::verdict_price::{self, VerdictPrice};
-use crate::report::markdown::{Align, MarkdownTable, counted, one_line};
+use crate::report::markdown::{Align, MarkdownTable, one_line};
+use crate::text::words::counted;
 
 /// Errors that somebody may want to reach.
 const GOALS: [(f64, &str); 3] = [(1e-2, "1 %"), (1e-4, "1e-4"), (1e-8, "1e-8")];

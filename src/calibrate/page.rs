@@ -6,9 +6,10 @@ use crate::measure::SolverChoice;
 use crate::reference::{Found, Verdict};
 use crate::text::{number, words};
 
-use crate::report::markdown::{Align, MarkdownTable, counted};
+use crate::report::markdown::{Align, MarkdownTable};
 use crate::report::tally::word;
 use crate::report::value_in_words;
+use crate::text::words::counted;
 
 /// A value whose least residual exceeds the best by less than this share of it is as good as the best.
 const AS_GOOD: f64 = 0.1;

@@ -7,9 +7,9 @@ use super::exit::Exit;
 use super::output::{print, print_unread};
 use super::select::{Chosen, choose, matched};
 use crate::experiment::line_of;
-use crate::report::markdown::counted;
 use crate::report::publication_reasons;
 use crate::study::{Item, KnownRows, Layout, Reason, Snapshot, State, Study, Texts};
+use crate::text::words::counted;
 
 /// What a run would have to do for an experiment.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -9,9 +9,9 @@ use super::exit::Exit;
 use super::output::{print, print_error, print_unread};
 use super::select::{Chosen, choose, matched};
 use super::simulate::{How, Ran, held, print_failures, simulate};
-use crate::report::markdown::counted;
 use crate::report::{Judgement, Published, doubts, judge_all, publish, summary_of};
 use crate::study::{Item, Layout, Lock, RunTimes, Snapshot, State, Study, Texts, save};
+use crate::text::words::counted;
 
 /// Brings the chosen experiments up to date.
 pub(super) fn update(layout: &Layout, args: &RunArgs, common: &Args) -> Result<Exit, CliError> {

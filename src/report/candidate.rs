@@ -6,7 +6,8 @@ use crate::table::Table;
 use crate::text::number::{compact, quantity, significant};
 use crate::text::words;
 
-use super::markdown::{Align, MarkdownTable, counted};
+use super::markdown::{Align, MarkdownTable};
+use crate::text::words::counted;
 
 /// The section on an experiment's page.
 pub(super) fn section(optimise: &Optimise, table: &Table) -> String {

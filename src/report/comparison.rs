@@ -3,8 +3,9 @@
 use crate::reference::{Comparison, Judged, Moved, Price, Role, Verdict};
 use crate::text::number::{compact, signed, significant};
 
-use super::markdown::{Align, MarkdownTable, counted, first_sentence, one_line};
+use super::markdown::{Align, MarkdownTable, first_sentence, one_line};
 use super::tally::{Tally, agrees, role, shown};
+use crate::text::words::counted;
 
 /// The entry that a page leads with: the worst, and of several the first.
 pub(super) fn lead(judged: &[Judged]) -> Option<&Judged> {

@@ -5,8 +5,9 @@ use comfy_table::{CellAlignment, LineStyle, Table, TableStyle};
 use crate::reference::{Judged, Verdict};
 
 use super::finding;
-use super::markdown::{counted, one_line};
+use super::markdown::one_line;
 use super::tally::{Tally, VERDICTS, word};
+use crate::text::words::counted;
 
 /// Counts by experiment, what is known to differ, what is unexpected; ends with a line that says it all.
 ///

@@ -1,8 +1,8 @@
 //! Two runs side by side: which numbers moved, and whether by more than they are uncertain.
 
-use super::markdown::counted;
 use super::movement::{Moved, Movement};
 use crate::text::number::{quantity, signed, significant};
+use crate::text::words::counted;
 
 /// Told of each kind in each experiment; the rest is counted.
 const TOLD: usize = 5;

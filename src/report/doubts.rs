@@ -2,10 +2,11 @@
 
 use std::collections::BTreeSet;
 
-use super::markdown::{counted, escaped};
+use super::markdown::escaped;
 use super::verdicts::Judgement;
 use crate::table::{Table, UNDEFINED};
 use crate::text::number::significant;
+use crate::text::words::counted;
 
 /// The part of an experiment's page; nothing where there is no cause.
 pub(super) fn section(table: &Table) -> String {

@@ -5,9 +5,10 @@ use std::collections::BTreeMap;
 use crate::reference::{Judged, Role, Verdict};
 
 use super::comparison::{anchor, name};
-use super::markdown::{counted, one_line};
+use super::markdown::one_line;
 use super::tally::{Kind, Tally, agrees, kind};
 use super::view::ExperimentView;
+use crate::text::words::counted;
 
 /// Experiments or inputs that are named one by one.
 const NAMED: usize = 6;

@@ -1,9 +1,10 @@
 //! Markdown with a limit: sections in pieces, as many as fit, and a last sentence on what was cut.
 
 use super::finding::{self, CheckView, CheckedEntry};
-use super::markdown::{Align, MarkdownTable, counted, escaped, one_line};
+use super::markdown::{Align, MarkdownTable, escaped, one_line};
 use super::tally::{Tally, VERDICTS, word};
 use crate::reference::Judged;
+use crate::text::words::counted;
 
 /// Longest text of one thing in a summary, bytes.
 const LONGEST_PIECE: usize = 16 << 10;

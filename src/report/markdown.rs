@@ -92,8 +92,3 @@ pub(crate) fn first_sentence(text: &str) -> String {
         None => text,
     }
 }
-
-/// `1 entry`, `2 entries`.
-pub(crate) fn counted(count: usize, one: &str, many: &str) -> String {
-    format!("{count} {}", if count == 1 { one } else { many })
-}

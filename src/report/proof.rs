@@ -4,7 +4,8 @@ use crate::table::Table;
 use crate::text::number::{quantity, significant};
 use crate::text::words;
 
-use super::markdown::{Align, MarkdownTable, counted, escaped};
+use super::markdown::{Align, MarkdownTable, escaped};
+use crate::text::words::counted;
 
 /// The balances on an experiment's page; nothing without a table.
 pub(super) fn section(table: Option<&Table>) -> String {

@@ -7,7 +7,7 @@ use crate::scene::EffectUse;
 use crate::text::number::{compact, quantity};
 use crate::text::words;
 
-use super::markdown::counted;
+use crate::text::words::counted;
 
 /// The section on how it was run.
 pub(super) fn section(experiment: &Experiment) -> String {

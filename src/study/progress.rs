@@ -7,6 +7,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 
 use super::event::{Event, EventHandler};
 use crate::text::number::quantity;
+use crate::text::words::counted;
 
 /// Shows the progress of a run.
 #[derive(Debug)]
@@ -105,7 +106,8 @@ impl Left {
                     (1, simulations) => format!("1 experiment left, {simulations} simulations at most"),
                     (many, simulations) => format!("{many} experiments left, {simulations} simulations at most"),
                 };
-                Some(format!("{experiment}: {rows} rows{failed}, {took}; {left}\n"))
+                let rows = counted(*rows, "row", "rows");
+                Some(format!("{experiment}: {rows}{failed}, {took}; {left}\n"))
             }
             Event::Searched { .. } | Event::Ended => None,
         }

@@ -105,3 +105,9 @@ pub fn capitalised(text: &str) -> String {
         None => String::new(),
     }
 }
+
+/// `1 entry`, `2 entries`.
+#[must_use]
+pub fn counted(count: usize, one: &str, many: &str) -> String {
+    format!("{count} {}", if count == 1 { one } else { many })
+}

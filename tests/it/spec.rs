@@ -360,7 +360,7 @@ pub(crate) fn yaml_from_strangers_is_refused_before_anything_grows() {
             "not an id.yaml",
             "`not an id` is not an id: lower-case letters, digits and hyphens, such as `ch3-limit-stop` | rename the file",
         ),
-        ("long.yaml", "has 2048 KiB, and 1024 KiB are the most that is read"),
+        ("long.yaml", "has 2048 KiB; at most 1024 KiB are read"),
         ("binary.yaml", "is not UTF-8 text: line 1, column 8 holds the byte 0xff; save the file as UTF-8"),
     ] {
         assert_eq!(describe(&load_experiment(&place(name), &assumptions()).expect_err(name)), [expected]);

@@ -61,7 +61,8 @@ pub(super) fn half_cycles_end_where_motion_has_died_away() {
         let trace = Some(TraceRequest { from_cycle: 1, to_cycle: 2, samples: 20 });
         let end = settled(&format!("seed {seed}"), &system, &Options { trace, ..cycles(2) });
         let last = end.trace.last().expect("it was sampled");
-        assert_eq!(last.damping, lowest, "seed {seed}: the damping of no motion");
+        // The last half cycle that was counted still moved a little, and the curve may rise from its lower end at once.
+        assert!((last.damping / lowest - 1.0).abs() < 1e-6, "seed {seed}: {} for no motion, {lowest}", last.damping);
         assert!(last.velocity.abs() < 1e-13 && last.acceleration.abs() < 1e-12, "seed {seed}: {last:?}");
     }
 }
