@@ -39,7 +39,7 @@ pub fn representative(experiment: &Experiment, assumptions: &Assumptions) -> Res
             let Some(candidate) = part.get(eighth * part.len() / 8 + third) else { continue };
             let trial = Trial::new(&candidate.1, assumptions, &experiment.settings, &experiment.measures)?;
             let own = event_driven(&trial.system, &trial.options)?;
-            let bare = event_driven(&trial.undamped, &trial.options)?;
+            let bare = event_driven(&trial.undamped, &trial.undamped_options)?;
             if own.proof.events > 0 && !is_chaotic(&trial, &own, &bare)? {
                 wanted = Some(candidate);
                 break;

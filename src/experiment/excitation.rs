@@ -14,7 +14,7 @@ impl<'t> SceneReader<'t> {
         let names = ["single_impulse", "impulse_train", "harmonic", "pulse_train", "none"];
         let choice = Choice::read(node, "the excitation", &names, self.findings)?;
         if choice.name == "none" {
-            return choice.bare(self.findings).map(|_| ExcitationRecipe::silent());
+            return self.silence(&choice);
         }
         let fields = choice.fields("the excitation", self.findings)?;
         let at = self.at(&fields, kind, [Parameter::ForceX, Parameter::ForceY]);
@@ -50,6 +50,18 @@ impl<'t> SceneReader<'t> {
         };
         let impulse_time = impulse_time?.unwrap_or(ImpulseTime::Assumed);
         Some(ExcitationRecipe { kind, at: at?, strength, timing, impulse_time })
+    }
+
+    /// `none`, or `{none: {period: 1 s}}` where time is not counted in natural cycles: a mass without spring has none.
+    fn silence(&self, choice: &Choice<'t>) -> Option<ExcitationRecipe> {
+        let silent = ExcitationRecipe::silent();
+        if choice.content.is_none() {
+            return Some(silent);
+        }
+        let fields = choice.fields("the cycle that time is counted in", self.findings)?;
+        let timing = fields.required("period", |node| self.timing("period", node));
+        fields.close()?;
+        Some(ExcitationRecipe { timing: timing?, ..silent })
     }
 
     /// `assumed`, a time, or a reading.

@@ -7,7 +7,7 @@ use crate::scene::{FieldValue, Form, KINDS, Kind, Parameter, StructureRecipe};
 
 use super::diagnostic::{Findings, Span};
 use super::quantity::Dimension;
-use super::reader::{Choice, above_zero, count, list, ratio, scalar, unknown};
+use super::reader::{Choice, above_zero, count, list, ratio, scalar, unknown, zero_or_more};
 use super::yaml::{Node, Value};
 
 /// Most modes that are read at all; how many a structure carries is its own affair.
@@ -63,7 +63,7 @@ fn read_value(node: &Node, form: Form, findings: &Findings) -> Option<FieldValue
     match form {
         Form::Length => size(Dimension::Length),
         Form::Mass => size(Dimension::Mass),
-        Form::Stiffness => size(Dimension::Stiffness),
+        Form::Stiffness => zero_or_more(node, Dimension::Stiffness, findings).map(FieldValue::Number),
         Form::Stress => size(Dimension::Stress),
         Form::Density => size(Dimension::Density),
         Form::Ratio => ratio(node, findings).map(FieldValue::Number),

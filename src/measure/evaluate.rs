@@ -67,6 +67,7 @@ impl Request<'_> {
             average: settings.average,
             displacement: self.any(Measure::needs_displacement) || self.deflection().is_some(),
             extremes: self.any(Measure::needs_extremes),
+            record_events: if self.any(Measure::needs_events) { usize::MAX } else { 0 },
             cycle_rates: self.energies.is_some() || self.any(Measure::needs_energies),
             ..Options::default()
         }
@@ -113,7 +114,8 @@ impl<'a> Prepared<'a> {
         let request = Request { measures, trace: None, energies: None, shape: None, rigour: Rigour::Look };
         let reference = if request.needs_undamped() {
             let bare = rounded(recipe.resolve_undamped(assumptions)?, settings);
-            Some(solve(&compile(&bare)?, &request.options(settings), solver)?)
+            let options = Options { start: recipe.start_state(&bare), ..request.options(settings) };
+            Some(solve(&compile(&bare)?, &options, solver)?)
         } else {
             None
         };
@@ -134,7 +136,8 @@ impl<'a> Prepared<'a> {
         let request = Request { measures: self.measures, trace: None, energies: None, shape: None, rigour };
         let Self { recipe, assumptions, settings, .. } = self;
         let case = Case { recipe, assumptions, settings, request: &request, scene: &scene };
-        case.run(&system, self.reference.as_ref(), self.solver, &request.options(settings))
+        let options = Options { start: recipe.start_state(&scene), ..request.options(settings) };
+        case.run(&system, self.reference.as_ref(), self.solver, &options)
     }
 }
 
@@ -159,8 +162,13 @@ pub fn evaluate(
     if request.deflection().is_some() {
         shape::watch_products(&mut system);
     }
-    let plain = request.options(settings);
-    let reference = if request.needs_undamped() { Some(solve(&compile(&bare)?, &plain, solver)?) } else { None };
+    let plain = Options { start: recipe.start_state(&scene), ..request.options(settings) };
+    let reference = if request.needs_undamped() {
+        let alone = Options { start: recipe.start_state(&bare), ..plain.clone() };
+        Some(solve(&compile(&bare)?, &alone, solver)?)
+    } else {
+        None
+    };
     case.run(&system, reference.as_ref(), solver, &plain)
 }
 
@@ -292,7 +300,16 @@ impl Case<'_> {
         undamped: Option<&'r Response>,
         mac: Option<f64>,
     ) -> Reading<'r> {
-        Reading { recipe: self.recipe, scene: self.scene, response, undamped, history: None, energies: None, mac }
+        Reading {
+            recipe: self.recipe,
+            scene: self.scene,
+            response,
+            undamped,
+            history: None,
+            energies: None,
+            skip: self.settings.skip,
+            mac,
+        }
     }
 
     /// All measures, and the lists; of a run of an ensemble (not `whole`) only what is averaged.
@@ -310,7 +327,10 @@ impl Case<'_> {
             Some(spec) => Some(shape::of_deflection(self.scene, response, spec, self.recipe.mode_number() as usize)),
             None => self.mode_shape()?,
         };
-        let history = request.trace.filter(|_| whole).map(|_| History { response, scene: self.scene });
+        let history = request.trace.filter(|_| whole).map(|trace| {
+            let cycles = u64::from(trace.from_cycle)..u64::from(trace.to_cycle);
+            History { response, scene: self.scene, cycles }
+        });
         let mac = shape.as_ref().map(|shape| shape.mac);
         let mut reading = self.reading(Some(response), undamped, mac);
         reading.history = history;

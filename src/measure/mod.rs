@@ -11,6 +11,7 @@ use serde::{Deserialize, Serialize};
 mod energy;
 mod evaluate;
 mod history;
+mod impact;
 mod reading;
 mod request;
 mod shape;
@@ -103,6 +104,32 @@ pub enum Measure {
     DampingMeasure,
     /// Kinetic energy at the impulses, compared with that of the clean structure; mean over the averaged cycles.
     MassMeasure,
+    /// First contact of the first particle with its floor in the window, s from the start of the run.
+    FloorImpactTime,
+    /// Time between the last two floor contacts, s.
+    FloorImpactInterval,
+    /// By how much that time differs from the one before, s.
+    FloorIntervalChange,
+    /// Relative speed just before the last floor contact, m/s.
+    FloorImpactSpeed,
+    /// ω t of the last floor contact, counted from the start of its forcing cycle, rad.
+    FloorImpactPhase,
+    /// Relative speed at the end of the last floor contact that has ended, m/s.
+    FloorReboundSpeed,
+    /// Relative speed at its end over the one at its begin.
+    FloorRestitution,
+    /// Its duration, s.
+    FloorContactTime,
+    /// First release from the floor in the window, s from the start of the run.
+    FloorReleaseTime,
+    /// End of the first complete chatter in the window, s from the start of the run.
+    ChatterEndTime,
+    /// Observed displacement at the end of the run, m.
+    FinalDisplacement,
+    /// Observed velocity at the end of the run, m/s.
+    FinalVelocity,
+    /// Height of the first particle over the base at the end of the run, m.
+    FinalHeight,
 }
 
 impl Measure {
@@ -113,7 +140,11 @@ impl Measure {
             Self::RmsVelocity
             | Self::UndampedRmsVelocity
             | Self::VelocityAmplitude
-            | Self::UndampedVelocityAmplitude => "m/s",
+            | Self::UndampedVelocityAmplitude
+            | Self::FloorImpactSpeed
+            | Self::FloorReboundSpeed
+            | Self::FinalVelocity => "m/s",
+            Self::FloorImpactPhase => "rad",
             Self::DisplacementPerForce => "m/N",
             Self::VelocityPerForce | Self::DisplacementPerImpulse => "m/(N s)",
             Self::VelocityPerImpulse => "1/kg",
@@ -124,8 +155,18 @@ impl Measure {
             | Self::CeilingCompression
             | Self::LastPeak
             | Self::DisplacementAmplitude
-            | Self::UndampedDisplacementAmplitude => "m",
-            Self::FloorImpactLag | Self::CeilingImpactLag | Self::ShortestPeriod => "s",
+            | Self::UndampedDisplacementAmplitude
+            | Self::FinalDisplacement
+            | Self::FinalHeight => "m",
+            Self::FloorImpactLag
+            | Self::CeilingImpactLag
+            | Self::ShortestPeriod
+            | Self::FloorImpactTime
+            | Self::FloorImpactInterval
+            | Self::FloorIntervalChange
+            | Self::FloorContactTime
+            | Self::FloorReleaseTime
+            | Self::ChatterEndTime => "s",
             Self::HighestFrequency => "Hz",
             _ => "",
         }

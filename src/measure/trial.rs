@@ -25,6 +25,8 @@ pub struct Trial<'a> {
     pub undamped: HybridSystem,
     /// How it is run.
     pub options: Options,
+    /// How the same without dampers is run.
+    pub undamped_options: Options,
 }
 
 impl Measure {
@@ -32,6 +34,8 @@ impl Measure {
     fn converges(self) -> bool {
         !self.is_modal()
             && !self.needs_trace()
+            && !self.needs_events()
+            && !self.is_final()
             && !matches!(
                 self,
                 Self::FloorImpacts
@@ -63,10 +67,12 @@ impl<'a> Trial<'a> {
         }
         let request =
             Request { measures: &measures, trace: None, energies: None, shape: None, rigour: Rigour::default() };
-        let options = request.options(settings);
+        let bare = rounded(recipe.resolve_undamped(assumptions)?, settings);
+        let options = Options { start: recipe.start_state(&scene), ..request.options(settings) };
+        let undamped_options = Options { start: recipe.start_state(&bare), ..options.clone() };
         let system = compile(&scene)?;
-        let undamped = compile(&rounded(recipe.resolve_undamped(assumptions)?, settings))?;
-        Ok(Self { recipe, assumptions, settings, measures, scene, system, undamped, options })
+        let undamped = compile(&bare)?;
+        Ok(Self { recipe, assumptions, settings, measures, scene, system, undamped, options, undamped_options })
     }
 
     /// The measures, in their order, of a run and its companion without dampers.
@@ -85,6 +91,7 @@ impl<'a> Trial<'a> {
             response: Some(response),
             undamped: Some(undamped),
             history: None,
+            skip: self.settings.skip,
             energies: energies.as_ref(),
             mac: None,
         };

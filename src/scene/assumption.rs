@@ -141,6 +141,14 @@ impl Assumptions {
         .ok_or(RecipeError::Assumption(name, "as one of its named readings"))
     }
 
+    /// The same of a reading that most studies have no need to state: the first choice where the file does not name it.
+    ///
+    /// # Errors
+    /// If it is there and not one of `choices`.
+    pub fn choice_or_first(&self, name: Assumption, choices: &'static [&'static str]) -> Result<usize, RecipeError> {
+        if self.values.contains_key(&name) { self.choice(name, choices) } else { Ok(0) }
+    }
+
     /// The curve that an assumption holds.
     ///
     /// # Errors

@@ -59,11 +59,20 @@ impl ExcitationRecipe {
     }
 
     fn angular_frequency(&self, base: &Base<'_>, carried: f64) -> Result<f64, RecipeError> {
+        if let (TimingRecipe::FrequencyRatio(_), true) = (self.timing, base.natural() == 0.0) {
+            let instead = if self.is_silent() {
+                "state how long the cycle is that time is counted in: `excitation: {none: {period: 1 s}}`"
+            } else {
+                "write `angular_frequency` or `period` instead of `frequency_ratio`"
+            };
+            return Err(RecipeError::OutOfRange(format!("a mass without spring has no natural frequency: {instead}")));
+        }
         Ok(match (self.timing, base.structure) {
             (TimingRecipe::FrequencyRatio(ratio), Structure::SingleMass(mass)) => {
                 let harmonic = self.kind == ExcitationKind::Harmonic;
                 let name = if harmonic { Assumption::HarmonicReference } else { Assumption::ImpulseReference };
-                let carried = if base.assumptions.choice(name, &["base", "loaded"])? == 1 { carried } else { 0.0 };
+                let loaded = base.assumptions.choice_or_first(name, &["base", "loaded"])? == 1;
+                let carried = if loaded { carried } else { 0.0 };
                 ratio * (mass.stiffness / (mass.mass + carried)).sqrt()
             }
             (TimingRecipe::FrequencyRatio(ratio), _) => ratio * base.natural(),

@@ -14,6 +14,7 @@ mod parameter;
 mod place;
 mod recipe;
 mod resolve;
+mod start;
 mod structure;
 mod switch;
 
@@ -30,6 +31,7 @@ pub use recipe::{
     Given, ImpulseTime, MassReading, MassRecipe, ObserveRecipe, Part, PointsRecipe, PulseShape, Recipe, RecipeError,
     StiffnessRecipe, StopRecipe, StrengthRecipe, SurfaceRecipe, TimingRecipe, WallRecipe,
 };
+pub use start::{ParticleStart, StartRecipe};
 pub use structure::{
     CantileverBeam, ClampedBeam, Family, Field, FieldValue, Form, KINDS, Kind, Matrices, Model, Point, SingleMass,
     Structure, StructureRecipe, SupportedPlate, Values,

@@ -5,6 +5,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::place::PlaceRecipe;
+use super::start::StartRecipe;
 use super::structure::StructureRecipe;
 use super::{Assumption, Parameter, Take};
 
@@ -31,6 +32,9 @@ pub struct Recipe {
     pub without_dampers: bool,
     /// What drives it.
     pub excitation: ExcitationRecipe,
+    /// Where it starts; in static equilibrium unless it is stated.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub start: Option<StartRecipe>,
     /// Where its motion is observed.
     pub observe: ObserveRecipe,
     /// Which mode natural frequencies and mode shapes are of, from 1; the forced one unless it is stated.
@@ -400,6 +404,8 @@ pub enum Part {
     Excitation,
     /// What is observed.
     Observe,
+    /// Initial conditions.
+    Start,
 }
 
 impl Part {

@@ -89,7 +89,9 @@ impl Recipe {
         let silent = self.excitation.is_silent() && self.excitation.at.0.is_empty();
         let force_at = if silent { Point::default() } else { places.point(&self.excitation.at, Part::Excitation)? };
         let observed = self.observe.resolve(&base, &places)?;
-        Ok(Scene { structure, gravity, dampers, excitation, force_at, observed })
+        let scene = Scene { structure, gravity, dampers, excitation, force_at, observed };
+        self.start.as_ref().map_or(Ok(()), |start| start.check(&scene))?;
+        Ok(scene)
     }
 
     /// The scene of the run "without an impact damper": same excitation. A beam or plate is then clean; one mass is taken by
@@ -100,7 +102,7 @@ impl Recipe {
     pub fn resolve_undamped(&self, assumptions: &Assumptions) -> Result<Scene, RecipeError> {
         let mut scene = self.resolve(assumptions)?;
         if let Structure::SingleMass(base) = &mut scene.structure
-            && assumptions.choice(Assumption::UndampedMass, &["base", "loaded"])? == 1
+            && assumptions.choice_or_first(Assumption::UndampedMass, &["base", "loaded"])? == 1
         {
             base.mass += scene.dampers.iter().map(|damper| damper.particle_mass + damper.enclosure_mass).sum::<f64>();
         }
@@ -221,6 +223,11 @@ impl Placed<'_> {
     fn gap(&self, base: &Base<'_>, loaded: Option<f64>) -> Result<f64, RecipeError> {
         let unit = || {
             let natural = base.clean_or_loaded(loaded, base.kind.family.gap_frequency())?;
+            if natural == 0.0 {
+                return Err(RecipeError::OutOfRange(
+                    "a mass without spring has no natural frequency: write `gap` instead of `gap_ratio`".into(),
+                ));
+            }
             Ok::<_, RecipeError>((base.gravity, natural * natural))
         };
         let by_ratio = |ratio: f64| {
@@ -349,7 +356,9 @@ impl ObserveRecipe {
         let take = match self.take {
             Some(take) => take,
             None if points.len() == 1 => Take::Largest,
-            None if base.assumptions.choice(Assumption::GridVelocity, &["largest", "mean"])? == 1 => Take::Mean,
+            None if base.assumptions.choice_or_first(Assumption::GridVelocity, &["largest", "mean"])? == 1 => {
+                Take::Mean
+            }
             None => Take::Largest,
         };
         Ok(Observation { points, take })

@@ -48,6 +48,7 @@ pub fn limit_stop() -> Experiment {
                 timing: TimingRecipe::FrequencyRatio(1.0),
                 impulse_time: ImpulseTime::Assumed,
             },
+            start: None,
             observe: ObserveRecipe::default(),
             mode: None,
         },

@@ -51,6 +51,7 @@ pub(super) fn scene() -> Value {
         .optional("gravity", assumed_or(quantity("Gravity", Dimension::Acceleration)))
         .optional("dampers", dampers)
         .required("excitation", excitation())
+        .optional("start", start())
         .optional("observe", observe())
         // Where there are no sides there are no places; elsewhere there have to be.
         .rule(json!({
@@ -227,7 +228,11 @@ fn excitation() -> Value {
         ("harmonic", harmonic.schema()),
         ("pulse_train", pulses.schema()),
     ]);
-    any_of("What drives the structure", vec![forms.schema(), word("none")])
+    let cycle = Object::new("Nothing, and the cycle that time is counted in")
+        .required("period", quantity("Period", Dimension::Time))
+        .schema();
+    let nothing = form("none", "Nothing drives it", cycle);
+    any_of("What drives the structure", vec![forms.schema(), word("none"), nothing])
 }
 
 fn timing() -> Vec<(&'static str, Value)> {
@@ -244,6 +249,20 @@ fn impulse_time() -> Value {
     words.extend(ImpulseTime::WORDS.map(|(word, _)| word));
     let about = "Time by which a force ratio becomes an impulse";
     any_of(about, vec![one_of_words(about, &words), quantity("A time", Dimension::Time)])
+}
+
+fn start() -> Value {
+    let velocity = |about| quantity(about, Dimension::Velocity);
+    let particle = Object::new("A particle in flight")
+        .required("height", quantity("Height over its floor", Dimension::Length))
+        .required("velocity", velocity("Velocity relative to its floor"))
+        .schema();
+    let particle = any_of("A particle", vec![particle, word("on_floor")]);
+    Object::new("Initial conditions; static equilibrium without them")
+        .optional("displacement", quantity("Displacement of the mass", Dimension::Length))
+        .optional("velocity", velocity("Velocity of the mass"))
+        .optional("particles", list("One a damper", particle))
+        .schema()
 }
 
 fn observe() -> Value {

@@ -1,0 +1,88 @@
+//! Initial conditions: displacement and velocity of one mass, and where each particle is in its enclosure.
+//!
+//! A particle's height is measured from its floor and its velocity is relative to it, u = y − x and u′ = y′ − x′.
+
+use serde::{Deserialize, Serialize};
+
+use super::recipe::{Part, RecipeError};
+use super::structure::Structure;
+use super::{Recipe, Scene};
+use crate::dynamics::{Contact, StartState};
+
+/// Where a run starts.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct StartRecipe {
+    /// x, m.
+    pub displacement: f64,
+    /// x′, m/s.
+    pub velocity: f64,
+    /// One a damper, in the order of the scene; empty: all of them on their floors.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub particles: Vec<ParticleStart>,
+}
+
+/// Where a particle starts.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ParticleStart {
+    /// On its floor, which is not compressed, and at rest relative to it.
+    OnFloor,
+    /// Between floor and ceiling.
+    InFlight {
+        /// u, m.
+        height: f64,
+        /// u′, m/s.
+        velocity: f64,
+    },
+}
+
+impl StartRecipe {
+    /// Refuses a start that does not fit the scene.
+    pub(super) fn check(&self, scene: &Scene) -> Result<(), RecipeError> {
+        let refuse = |message: String| Err(RecipeError::Part { part: Part::Start, message });
+        if !matches!(scene.structure, Structure::SingleMass(_)) && (self.displacement != 0.0 || self.velocity != 0.0) {
+            return refuse("displacement and velocity of a start are those of a single mass".into());
+        }
+        let dampers = scene.dampers.len();
+        if !self.particles.is_empty() && dampers > 0 && self.particles.len() != dampers {
+            let given = self.particles.len();
+            return refuse(format!("the start places {given} particles, and the scene has {dampers}: one each"));
+        }
+        for (particle, damper) in self.particles.iter().zip(&scene.dampers) {
+            if let ParticleStart::InFlight { height, .. } = particle
+                && !(0.0..=damper.gap).contains(height)
+            {
+                let ceiling =
+                    if damper.gap.is_finite() { format!(", which lies at {} m", damper.gap) } else { String::new() };
+                return refuse(format!(
+                    "a particle starts no lower than its floor and no higher than its ceiling{ceiling}; its height is {height} m"
+                ));
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Recipe {
+    /// Where a run of this scene starts; of the scene without dampers the structure alone.
+    #[must_use]
+    pub fn start_state(&self, scene: &Scene) -> StartState {
+        let Some(start) = &self.start else { return StartState::StaticEquilibrium };
+        let walls = scene.dampers.iter().any(|damper| damper.walls.is_some());
+        let order = scene.structure.model().natural_frequencies().len() + usize::from(walls);
+        let coordinates = |first: f64| {
+            let mut all = vec![0.0; order];
+            all[0] = first;
+            all
+        };
+        let place = |index: usize| match start.particles.get(index) {
+            None | Some(ParticleStart::OnFloor) => (Contact::Floor, 0.0, 0.0),
+            Some(ParticleStart::InFlight { height, velocity }) => (Contact::Flight, *height, *velocity),
+        };
+        StartState::Given {
+            q: coordinates(start.displacement),
+            rate: coordinates(start.velocity),
+            particles: (0..scene.dampers.len()).map(place).collect(),
+        }
+    }
+}
