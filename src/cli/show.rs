@@ -41,6 +41,9 @@ fn describe(study: &Study, item: &Item) -> String {
     for line in scenes.first().map(Scene::describe).unwrap_or_default() {
         text += &format!("  {line}\n");
     }
+    if let Some(start) = &experiment.recipe.start {
+        text += &format!("  {}\n", start.describe());
+    }
     text += "\nEffects\n";
     let rows: Vec<Vec<String>> = effects(&scenes)
         .into_iter()

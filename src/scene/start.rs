@@ -8,6 +8,7 @@ use super::recipe::{Part, RecipeError};
 use super::structure::Structure;
 use super::{Recipe, Scene};
 use crate::dynamics::{Contact, StartState};
+use crate::text::number::quantity;
 
 /// Where a run starts.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
@@ -37,6 +38,24 @@ pub enum ParticleStart {
 }
 
 impl StartRecipe {
+    /// In words, for a person who asks what is simulated.
+    #[must_use]
+    pub fn describe(&self) -> String {
+        let value = |x, unit| quantity(x, unit, 5);
+        let mut text = format!("start: {}, {}", value(self.displacement, "m"), value(self.velocity, "m/s"));
+        for particle in &self.particles {
+            text += &match particle {
+                ParticleStart::OnFloor => "; particle on its floor".to_owned(),
+                ParticleStart::InFlight { height, velocity } => format!(
+                    "; particle {} above its floor with {} relative to it",
+                    value(*height, "m"),
+                    value(*velocity, "m/s")
+                ),
+            };
+        }
+        text
+    }
+
     /// Refuses a start that does not fit the scene.
     pub(super) fn check(&self, scene: &Scene) -> Result<(), RecipeError> {
         let refuse = |message: String| Err(RecipeError::Part { part: Part::Start, message });
