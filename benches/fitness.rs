@@ -13,7 +13,7 @@ fn main() {
     divan::main();
 }
 
-fn experiment(id: &str) -> (Experiment, shotdamp::scene::Assumptions) {
+fn experiment(id: &str) -> (Experiment, shotdamp::experiment::Assumptions) {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("experiments");
     let sheet = load_assumptions(&root.join("assumptions.yaml")).unwrap_or_else(|problems| panic!("{problems}"));
     let path = root.join(format!("ch6/{id}.yaml"));

@@ -12,7 +12,7 @@ const PREFIX: &str = ".shotdamp-";
 
 /// A file that could not be read or written, with its name.
 #[derive(Debug, thiserror::Error)]
-#[error("cannot {action} {}: {source}", path.display())]
+#[error("cannot {action} {}: {source}", from_here(path))]
 pub struct FileError {
     /// `read`, `write`, …
     pub action: &'static str,
@@ -26,6 +26,14 @@ impl FileError {
     pub(crate) fn new(action: &'static str, path: &Path, source: io::Error) -> Self {
         Self { action, path: path.to_path_buf(), source }
     }
+}
+
+/// A path as a person sees it: from the current folder if it lies below that.
+#[must_use]
+pub fn from_here(path: &Path) -> String {
+    let here = std::env::current_dir().ok();
+    let below = here.as_deref().and_then(|here| path.strip_prefix(here).ok());
+    below.filter(|below| !below.as_os_str().is_empty()).unwrap_or(path).display().to_string()
 }
 
 /// Writes the whole file or leaves it as it was; makes the folder if it is not there.
@@ -52,10 +60,10 @@ pub fn write(path: &Path, bytes: &[u8]) -> Result<(), FileError> {
     Ok(())
 }
 
-/// As [`write`], but leaves a file alone that holds these bytes already. Returns whether it wrote.
+/// As [`write()`], but leaves a file alone that holds these bytes already. Returns whether it wrote.
 ///
 /// # Errors
-/// As [`write`].
+/// As [`write()`].
 pub fn write_if_changed(path: &Path, bytes: &[u8]) -> Result<bool, FileError> {
     if fs::metadata(path).is_ok_and(|meta| meta.len() == bytes.len() as u64)
         && fs::read(path).is_ok_and(|old| old == bytes)

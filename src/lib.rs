@@ -1,36 +1,81 @@
-//! `shotdamp` reproduces a published study of particle impact dampers.
+//! Exact simulation of particle impact dampers, and the reproduction of published studies of them.
 //!
-//! The way of the data, in the order of use:
+//! A particle impact damper is a loose mass in an enclosure on a vibrating structure. Between two contacts the motion is
+//! linear, so it is known exactly; all that has to be found is the next contact. This crate finds it by bounds that
+//! exclude any earlier one, and so steps over none.
 //!
-//! 1. [`spec`] reads an experiment (YAML) into a validated [`spec::Experiment`]: units resolved, defaults filled,
-//!    every mistake of the file reported at once with line and column.
-//! 2. [`scene`] holds what is simulated: a [`scene::Recipe`] in the study's own dimensionless parameters resolves, with
-//!    the [`scene::Assumptions`] for all that the study leaves open, into a [`scene::Scene`] in SI units, which compiles
-//!    into a [`dynamics::HybridSystem`] that carries only the effects the scene names.
-//! 3. [`dynamics`] propagates it: exactly from certified event to certified event, or with the study's fixed step; [`precise`] does
-//!    it again with 32 digits, for those who want to know how exact that is.
-//! 4. [`measure`] turns responses into the numbers that the study plots.
-//! 5. [`optimise`] looks for the best of a function over a box, and knows nothing of what it stands for.
-//! 6. [`study`] plans, runs in parallel and stores one [`table::Table`] per experiment.
-//! 7. [`reference`] holds each published number and claim and gives its verdict; [`figure`] draws; [`report`] writes.
+//! ```
+//! use shotdamp::dynamics::{Options, event_driven};
+//! use shotdamp::scene::{ContactDamping, ContactEnd, Damper, Excitation, Scene, SingleMass, Surface, compile};
 //!
-//! [`calibrate`] runs experiments under many combinations of the assumptions and looks for the best of them.
+//! // 1 kg on 1000 N/m with 5 % of critical damping, an impulse of 2 N s in every natural period.
+//! let frequency = 1000_f64.sqrt();
+//! let mass = SingleMass { mass: 1.0, stiffness: 1000.0, damping: 2.0 * 0.05 * frequency };
+//! let impulses = Excitation::ImpulseTrain { impulse: 2.0, period: std::f64::consts::TAU / frequency };
 //!
-//! A table on disk is all that verdicts, figures and reports read.
+//! // A particle of 50 g between two springs with dashpots, 0.49 m apart.
+//! let damping = ContactDamping::Constant(4.2);
+//! let face = Surface::Resilient { stiffness: 1000.0, damping, ends: ContactEnd::ZeroGap };
+//! let damper = Damper::between(face, 0.05, 0.49);
+//!
+//! let rms_velocity = |dampers| -> Result<f64, Box<dyn std::error::Error>> {
+//!     let scene = Scene::on_one_mass(mass, 9.81, dampers, impulses.clone());
+//!     let response = event_driven(&compile(&scene)?, &Options::default())?;
+//!     Ok(response.window().rms_velocity())
+//! };
+//! let velocity_ratio = rms_velocity(Vec::new())? / rms_velocity(vec![damper])?;
+//! assert!(velocity_ratio > 2.0);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! In the order of use:
+//!
+//! 1. [`scene`]: structures, dampers and excitations in SI units; [`scene::compile`] makes a [`dynamics::HybridSystem`] that
+//!    carries only the effects that the scene names.
+//! 2. [`dynamics`]: the engine, exactly from certified event to certified event, or with a fixed step.
+//! 3. [`measure`]: the numbers that studies plot, from responses.
+//! 4. [`optimise`]: searches for the best of any function over a box.
+//!
+//! With the default feature `pipeline` also what the command is made of, which reproduces a whole study from YAML. A table on
+//! disk is all that verdicts, figures and reports read.
+//!
+#![cfg_attr(
+    feature = "pipeline",
+    doc = "
+5. [`experiment`] reads YAML into validated experiments: units resolved, every mistake reported with line and column.
+6. [`study`] plans, runs in parallel and stores one [`table::Table`] per experiment.
+7. [`reference`] holds each published number and claim and gives its verdict; [`figure`] draws; [`report`] writes.
+8. [`accuracy`] measures error against time; [`calibrate`] searches sets of assumptions.
+"
+)]
+//!
+//! `ARCHITECTURE.md` in the repository shows the rooms and which may use which.
 
-pub mod accuracy;
-pub mod atomic;
-pub mod calibrate;
+#![deny(missing_docs)]
+
 pub mod dynamics;
-pub mod experiment;
-pub mod figure;
 pub mod measure;
 pub mod optimise;
-pub mod reference;
-pub mod report;
 pub mod scene;
-pub mod study;
-pub mod table;
 pub mod text;
 
+#[cfg(feature = "pipeline")]
+pub mod accuracy;
+#[cfg(feature = "pipeline")]
+pub mod atomic;
+#[cfg(feature = "pipeline")]
+pub mod calibrate;
+#[cfg(feature = "pipeline")]
 pub mod cli;
+#[cfg(feature = "pipeline")]
+pub mod experiment;
+#[cfg(feature = "pipeline")]
+pub mod figure;
+#[cfg(feature = "pipeline")]
+pub mod reference;
+#[cfg(feature = "pipeline")]
+pub mod report;
+#[cfg(feature = "pipeline")]
+pub mod study;
+#[cfg(feature = "pipeline")]
+pub mod table;

@@ -3,8 +3,9 @@
 use std::path::Path;
 
 use shotdamp::dynamics::HybridSystem;
+use shotdamp::experiment::Assumptions;
 use shotdamp::experiment::{Experiment, load_assumptions, parse_experiment};
-use shotdamp::scene::{Assumptions, compile};
+use shotdamp::scene::compile;
 
 /// The scene of reference: 490 events, not chaotic; after its period.
 pub const SINGLE: &str = "structure: {single_mass: {mass: 1 kg, stiffness: 1000 N/m, damping_ratio: 0.05}}

@@ -3,15 +3,13 @@
 use std::time::Duration;
 
 use super::measured::NoAccuracy;
-use super::representative::{is_chaotic, representative, worst};
+use super::representative::{is_chaotic, representative, trial, worst};
 use super::timing::Times;
 use crate::dynamics::{EngineError, HybridSystem, Method, Options, Response, event_driven, is_linear};
-use crate::experiment::Experiment;
+use crate::experiment::{Assumptions, Experiment, Given, Parameter, ParameterValue, Recipe, Slot, StopRecipe};
 use crate::measure::Settings;
 use crate::measure::{Measure, Trial};
-use crate::scene::{
-    Assumptions, EffectUse, Parameter, ParameterValue, Recipe, Scene, Switching, compile, effects, switched,
-};
+use crate::scene::{EffectUse, LimitStop, Scene, Switching, compile, effects, switched};
 
 /// How long the median of a run may take to settle.
 const PATIENCE: Duration = Duration::from_millis(500);
@@ -101,7 +99,8 @@ fn case(
     experiment: &Experiment,
     assumptions: &Assumptions,
 ) -> Result<Ablation, NoAccuracy> {
-    let trial = Trial::new(recipe, assumptions, &experiment.settings, &experiment.measures)?;
+    let trial = trial(recipe, experiment, assumptions)?;
+    let limit_stop = usual_stop(recipe, assumptions);
     let own = event_driven(&trial.system, &trial.options)?;
     let bare = event_driven(&trial.undamped, &trial.options)?;
     let base = Base { values: trial.read(&own, &bare)?, trial: &trial, bare: &bare };
@@ -110,7 +109,7 @@ fn case(
         name if *in_force > 0 && closed_form && OF_FLIGHT.contains(&name) => Outcome::Idle,
         "structural damping" if *in_force > 0 => base.undamped(),
         "further modes" if *in_force > 0 => base.one_mode(recipe, experiment, assumptions),
-        name => match switched(&trial.scene, name, assumptions) {
+        name => match switched(&trial.scene, name, limit_stop) {
             Switching::Not(_) if *in_force == 0 => Outcome::Not((*why_not).into()),
             Switching::Not(why) => Outcome::Not(why.into()),
             Switching::Off(scene) | Switching::On(scene) => match compile(&scene) {
@@ -129,6 +128,14 @@ fn case(
         times: base.times(&trial.system),
         switched: switched.collect(),
     })
+}
+
+/// The limit stop that the study's assumptions give to a scene without one.
+fn usual_stop(recipe: &Recipe, assumptions: &Assumptions) -> Option<LimitStop> {
+    let kind = recipe.structure.kind().ok()?;
+    let by_default = |slot| assumptions.sheet.default_of(slot, kind.name).cloned().map(Given::Assumed);
+    let stop = StopRecipe { length: by_default(Slot::StopLength)?, restitution: by_default(Slot::StopRestitution)? };
+    stop.resolve(assumptions).ok()
 }
 
 /// The case as it is.
@@ -178,10 +185,7 @@ impl Base<'_> {
         let other = recipe
             .set(Parameter::Modes, ParameterValue::Number(1.0))
             .map_err(|error| error.to_string())
-            .and_then(|()| {
-                Trial::new(&recipe, assumptions, &experiment.settings, &experiment.measures)
-                    .map_err(|error| error.to_string())
-            });
+            .and_then(|()| trial(&recipe, experiment, assumptions).map_err(|error| error.to_string()));
         match other {
             Err(error) => Outcome::Not(error),
             Ok(other) => match event_driven(&other.undamped, &self.trial.options) {

@@ -8,13 +8,12 @@ use std::time::{Duration, Instant};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use super::representative::{floor, representative, worst};
+use super::representative::{floor, representative, trial, worst};
 use super::timing::Times;
 use crate::accuracy::precise::{PreciseError, precise};
 use crate::dynamics::{EngineError, Event, HybridSystem, Method, Options, Response, event_driven, fixed_step};
-use crate::experiment::Experiment;
+use crate::experiment::{Assumptions, Experiment, RecipeError};
 use crate::measure::{EvaluateError, Measure, Trial};
-use crate::scene::Assumptions;
 use crate::text::number::quantity;
 
 /// Search windows that the event-driven solver is tried with.
@@ -121,6 +120,9 @@ pub enum NoAccuracy {
     /// Nothing is simulated.
     #[error("no case has a damper whose motion takes time to simulate")]
     Nothing,
+    /// A case has no scene.
+    #[error(transparent)]
+    Recipe(#[from] RecipeError),
     /// A case does not run.
     #[error(transparent)]
     Case(#[from] EvaluateError),
@@ -166,7 +168,7 @@ pub fn errors(experiment: &Experiment, assumptions: &Assumptions, longest: Durat
     }
     let chosen = representative(experiment, assumptions)?;
     let cases = chosen.into_par_iter().map(|(description, recipe)| {
-        let trial = Trial::new(&recipe, assumptions, &experiment.settings, &experiment.measures)?;
+        let trial = trial(&recipe, experiment, assumptions)?;
         let case = case(description, &trial, longest)?;
         Ok(CaseErrors { case, system: trial.system, options: trial.options })
     });

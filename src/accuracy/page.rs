@@ -14,6 +14,8 @@ use crate::report::markdown::{Align, MarkdownTable, counted, one_line};
 const GOALS: [(f64, &str); 3] = [(1e-2, "1 %"), (1e-4, "1e-4"), (1e-8, "1e-8")];
 /// Errors as large as the number itself are in no line with smaller ones.
 const SENSELESS: f64 = 0.3;
+/// A run that is off by ten times the number has diverged; by how much says nothing and would only stretch an axis.
+pub(super) const DIVERGED: f64 = 10.0;
 
 /// One experiment, measured.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -125,7 +127,11 @@ pub(super) fn name(contender: Contender) -> String {
 }
 
 fn error(value: f64) -> String {
-    if value < f64::EPSILON { "< 2e-16".into() } else { format!("{value:.0e}") }
+    match value {
+        exact if exact < f64::EPSILON => "< 2e-16".into(),
+        far if far > DIVERGED => "diverged".into(),
+        value => format!("{value:.0e}"),
+    }
 }
 
 pub(super) fn seconds(value: f64) -> String {
@@ -144,8 +150,8 @@ pub fn accuracy_summary(views: &[AccuracyView]) -> String {
     machines.into_iter().for_each(|machine| text += &describe(machine));
     text += "The cheapest setting of each solver that reaches an error in every case of an experiment that is not chaotic, with \
              its time over these cases. The event-driven solver has no setting that is less exact: its time is the price of \
-             all digits. The price of the next digit is by how much longer the fixed step takes for an error ten times \
-             smaller; it is left out where no step tried brings a digit. ✗ stands for an error that no step tried could reach.\n\n";
+             all digits. Next digit: factor by which the fixed step's time grows for a tenth of the error; empty where no step tried \
+             gains a digit. ✗: no step tried reaches that error.\n\n";
     let mut header = vec![("Experiment".to_owned(), Align::Left), ("Event-driven: error".into(), Align::Right)];
     header.push(("time".into(), Align::Right));
     header.extend(GOALS.iter().map(|(_, goal)| (format!("Fixed step: {goal}"), Align::Right)));

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use std::fs;
 
 use super::measured::{Accuracy, Contender};
-use super::page::{AccuracyView, accuracy_page, accuracy_summary};
+use super::page::{AccuracyView, DIVERGED, accuracy_page, accuracy_summary};
 use super::verdict_price::VerdictPrice;
 use crate::atomic::{self, FileError};
 use crate::experiment::Experiment;
@@ -85,7 +85,7 @@ fn table(accuracy: &Accuracy) -> Table {
         Contender::EventDriven { .. } => SolverChoice::EventDriven.label(),
         Contender::FixedStep { .. } => "fixed_step".into(),
     };
-    let shown = |error: f64| error.max(LEAST);
+    let shown = |error: f64| error.clamp(LEAST, DIVERGED);
     let floats = |name: &str, unit: &str, data: Vec<f64>| Column {
         name: name.into(),
         unit: unit.into(),

@@ -2,10 +2,9 @@
 
 use super::measured::NoAccuracy;
 use crate::dynamics::{Method, Options, Response, event_driven};
-use crate::experiment::{Case, Experiment};
+use crate::experiment::{Assumptions, Case, Experiment, ParameterValue, Recipe};
 use crate::measure::SolverChoice;
-use crate::measure::{Measure, Trial};
-use crate::scene::{Assumptions, ParameterValue, Recipe};
+use crate::measure::{Measure, Needs, Trial};
 use crate::text::words;
 
 /// Cases of an experiment.
@@ -37,7 +36,7 @@ pub fn representative(experiment: &Experiment, assumptions: &Assumptions) -> Res
         for eighth in [4, 2, 6, 3, 5, 1, 7] {
             // One further in each third, so that what changes from row to row does not always stand the same way.
             let Some(candidate) = part.get(eighth * part.len() / 8 + third) else { continue };
-            let trial = Trial::new(&candidate.1, assumptions, &experiment.settings, &experiment.measures)?;
+            let trial = trial(&candidate.1, experiment, assumptions)?;
             let own = event_driven(&trial.system, &trial.options)?;
             let bare = event_driven(&trial.undamped, &trial.undamped_options)?;
             if own.proof.events > 0 && !is_chaotic(&trial, &own, &bare)? {
@@ -48,6 +47,16 @@ pub fn representative(experiment: &Experiment, assumptions: &Assumptions) -> Res
         chosen.extend(wanted.cloned());
     }
     Ok(chosen)
+}
+
+/// A case ready to be run with dampers and without.
+pub(super) fn trial<'a>(
+    recipe: &Recipe,
+    experiment: &'a Experiment,
+    assumptions: &Assumptions,
+) -> Result<Trial<'a>, NoAccuracy> {
+    let needs = Needs { undamped: true, ..Needs::of(&experiment.measures, false) };
+    Ok(Trial::new(recipe.subject(assumptions, needs)?, &experiment.settings, &experiment.measures)?)
 }
 
 /// A case with its scene, if that has dampers.

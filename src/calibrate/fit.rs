@@ -2,12 +2,12 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::bench::{Asked, Bench, Growing, Hands, SharedTables, Worth};
 use super::search::{Places, Trail, coordinate, grid};
 use super::set::{Set, place_in_force};
+use super::trials::{Asked, CumulativeEvents, SharedTables, TrialRunner, Workers, Worth};
+use crate::experiment::Assumptions;
 use crate::experiment::{Calibration, CalibrationSearch, Experiment};
 use crate::reference::{Entry, Found, ReferenceFile, TableState, Tables, Verdict, judge};
-use crate::scene::Assumptions;
 use crate::study::{Evaluate, Event, EventHandler, ThreadError};
 use crate::table::BASELINE;
 
@@ -63,7 +63,7 @@ pub struct Compared {
     pub id: String,
     /// In force.
     pub in_force: Read,
-    /// Under the best set.
+    /// Substituted the best set.
     pub best: Read,
 }
 
@@ -100,13 +100,13 @@ pub fn calibrate(
             }
         }
     }
-    let hands = Hands { threads, evaluate, handler: &Growing::new(handler) };
+    let workers = Workers { threads, evaluate, handler: &CumulativeEvents::new(handler) };
     let now = Set::in_force(in_force);
     let set = |places: &Places| Set::of(calibration, places, in_force);
 
-    let mut bench = Bench::new(&hands, Worth::Step { ensemble: calibration.ensemble }, experiments, &fit);
+    let mut trials = TrialRunner::new(&workers, Worth::Step { ensemble: calibration.ensemble }, experiments, &fit);
     let mut residuals = |sets: &[Set]| -> Result<Vec<Option<f64>>, ThreadError> {
-        Ok(bench.tables(sets)?.iter().map(|tables| residual(fit.iter().map(|one| found(one, tables)))).collect())
+        Ok(trials.tables(sets)?.iter().map(|tables| residual(fit.iter().map(|one| found(one, tables)))).collect())
     };
     let residual_in_force = residuals(std::slice::from_ref(&now))?[0];
     let trail = search(calibration, in_force, |places| residuals(&places.iter().map(set).collect::<Vec<_>>()))?;
@@ -114,7 +114,7 @@ pub fn calibrate(
 
     let all: Vec<Asked<'_>> = fit.iter().chain(&held).copied().collect();
     let best_set = best.map_or_else(|| now.clone(), |(places, _)| set(places));
-    let as_results = Bench::new(&hands, Worth::Result, experiments, &all).tables(&[now, best_set])?;
+    let as_results = TrialRunner::new(&workers, Worth::Result, experiments, &all).tables(&[now, best_set])?;
     handler.on_event(&Event::Ended);
     let compared = |one: &Asked<'_>| Compared {
         id: one.1.id.clone(),

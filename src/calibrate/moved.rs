@@ -1,10 +1,10 @@
 //! One assumption moved at a time: what an entry reads then.
 
-use super::bench::{Asked, Bench, Growing, Hands, Worth};
 use super::fit::{Read, read};
 use super::set::Set;
+use super::trials::{Asked, CumulativeEvents, TrialRunner, Workers, Worth};
 use crate::experiment::Experiment;
-use crate::scene::{Assumption, AssumptionValue, Assumptions};
+use crate::experiment::{AssumptionName, AssumptionValue, Assumptions};
 use crate::study::{Evaluate, Event, EventHandler, ThreadError};
 
 /// Members of the ensemble of a chaotic point: as for the other values of assumptions in a run.
@@ -17,21 +17,21 @@ const MEMBERS: u32 = 8;
 /// If the threads cannot be started.
 pub fn moved_alone(
     asked: Asked<'_>,
-    moves: &[(Assumption, AssumptionValue)],
+    moves: &[(AssumptionName, AssumptionValue)],
     experiments: &[&Experiment],
     in_force: &Assumptions,
     threads: usize,
     evaluate: &impl Evaluate,
     handler: &dyn EventHandler,
 ) -> Result<Vec<Read>, ThreadError> {
-    let hands = Hands { threads, evaluate, handler: &Growing::new(handler) };
-    let set = |(name, value): &(Assumption, AssumptionValue)| {
+    let workers = Workers { threads, evaluate, handler: &CumulativeEvents::new(handler) };
+    let set = |(name, value): &(AssumptionName, AssumptionValue)| {
         let mut set = Set::in_force(in_force);
-        set.assumptions.values.insert(*name, value.clone());
+        set.assumptions.values.insert(name.clone(), value.clone());
         set
     };
     let sets: Vec<Set> = moves.iter().map(set).collect();
-    let tables = Bench::new(&hands, Worth::Step { ensemble: MEMBERS }, experiments, &[asked]).tables(&sets)?;
+    let tables = TrialRunner::new(&workers, Worth::Step { ensemble: MEMBERS }, experiments, &[asked]).tables(&sets)?;
     handler.on_event(&Event::Ended);
     Ok(tables.iter().map(|tables| read(&asked, tables)).collect())
 }

@@ -105,14 +105,14 @@ fn points(input: &CalibrationInput, profile: &Profile, best: usize) -> String {
     description.collect::<Vec<_>>().join("; ")
 }
 
-/// One of the values, in words. Curves that end alike are told by their place.
+/// One of the values, in words. Curves that end alike are named by their place.
 fn value(tried: &Tried, place: usize) -> String {
     match tried {
-        Tried::Values { moves, values } => {
+        Tried::Values { units, values, .. } => {
             let tried = |place: usize| {
                 let mut description: Vec<String> = Vec::new();
-                for (name, value) in moves.iter().zip(&values[place]) {
-                    let value = value_in_words(*name, value);
+                for (unit, value) in units.iter().zip(&values[place]) {
+                    let value = value_in_words(unit, value);
                     if !description.contains(&value) {
                         description.push(value);
                     }

@@ -1,9 +1,9 @@
 //! Of an experiment the rows that entries read, so that no others are simulated.
 
+use crate::experiment::ParameterValue;
 use crate::experiment::{Case, Experiment, curves};
 use crate::measure::SolverChoice;
 use crate::reference::{Entry, Reading, Selection};
-use crate::scene::ParameterValue;
 use crate::table::Data;
 use crate::text::words;
 

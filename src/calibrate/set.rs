@@ -1,10 +1,10 @@
 //! A set of inputs: the value that each free input takes, and what that makes of the assumptions.
 
+use crate::experiment::{AssumptionValue, Assumptions};
 use crate::experiment::{Calibration, CalibrationInput, Tried};
 use crate::measure::SolverChoice;
-use crate::scene::{AssumptionValue, Assumptions};
 
-/// Under what experiments run.
+/// Substituted what experiments run.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Set {
     pub assumptions: Assumptions,
@@ -23,8 +23,8 @@ impl Set {
         let inputs = || calibration.inputs.iter().zip(places);
         for (input, &place) in inputs() {
             match &input.tried {
-                Tried::Values { moves, values } => {
-                    set.assumptions.values.extend(moves.iter().copied().zip(values[place].iter().cloned()));
+                Tried::Values { moves, values, .. } => {
+                    set.assumptions.values.extend(moves.iter().cloned().zip(values[place].iter().cloned()));
                 }
                 Tried::Solvers(solvers) => set.solver = solvers[place],
                 Tried::Factors { .. } => {}
@@ -54,7 +54,7 @@ fn scale(value: &mut AssumptionValue, factor: f64) {
 /// The place of the value in force; the first where that is not among those tried.
 pub(super) fn place_in_force(input: &CalibrationInput, in_force: &Assumptions) -> usize {
     let place = match &input.tried {
-        Tried::Values { moves, values } => {
+        Tried::Values { moves, values, .. } => {
             let now: Vec<_> = moves.iter().map(|name| in_force.values.get(name)).collect();
             values.iter().position(|value| value.iter().map(Some).eq(now.iter().copied()))
         }

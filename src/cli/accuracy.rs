@@ -1,4 +1,4 @@
-//! `shotdamp accuracy`.
+//! `shotdamp accuracy`: error against time.
 
 use std::time::Duration;
 

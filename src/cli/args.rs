@@ -1,16 +1,17 @@
-//! Arguments, as written.
+//! The arguments of the command, with their help.
 
 use std::path::PathBuf;
 
 use clap::{Parser, Subcommand};
 
+use crate::experiment::RowLimit;
 use crate::report::RELEASED;
 use crate::study::Shard;
 
 /// Reproduces a published study of particle impact dampers.
 ///
-/// Without a command: brings everything up to date (simulates only what is stale), renews figures and reports, and prints
-/// the verdicts.
+/// Without a command: brings everything up to date. Simulates only what is stale, renews figures and reports, and prints the
+/// verdicts.
 #[derive(Debug, Parser)]
 #[command(
     version,
@@ -26,16 +27,16 @@ Exit code: 0 every verdict is the expected one; 1 some verdict is not;
 2 something could not run, is missing, or was asked for wrongly."
 )]
 pub(super) struct Args {
-    /// Folder of the study; by default the nearest one upwards that holds `experiments`
+    /// Folder of the study [default: the nearest parent folder with `experiments`]
     #[arg(long, global = true, value_name = "DIR")]
     pub root: Option<PathBuf>,
-    /// Threads; by default one a processor. The results do not depend on it
+    /// Number of threads; results do not depend on it [default: one per processor]
     #[arg(long, short, global = true, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     pub jobs: Option<u16>,
     /// Print errors only
     #[arg(long, short, global = true)]
     pub quiet: bool,
-    /// Colours; `auto` has them on a terminal, unless NO_COLOR is set
+    /// When to use colours; `auto`: on a terminal, unless NO_COLOR is set
     #[arg(long, global = true, value_name = "WHEN", value_enum, default_value_t = Colour::Auto)]
     pub color: Colour,
     #[command(subcommand)]
@@ -61,9 +62,9 @@ pub(super) enum Colour {
 pub(super) enum Command {
     /// Bring experiments up to date
     Run(RunArgs),
-    /// Join the tables of all shards, after checking that no row is missing or there twice; then as `run`
+    /// Join the tables of all shards, check that each row occurs once, and continue as `run`
     Gather(GatherArgs),
-    /// Hand the study on: experiments, reference, tables, figures and pages in one described folder
+    /// Export the study as an RO-Crate: experiments, reference, tables, figures and pages
     Export(ExportArgs),
     /// List the experiments
     #[command(after_help = "\
@@ -71,7 +72,7 @@ Examples:
   shotdamp list
   shotdamp list | grep Fig. 18                the experiment that draws a figure of the study")]
     List,
-    /// Show one experiment: its scene in words, the effects in force, the assumptions it uses, its cases
+    /// Describe an experiment: scene, effects in force, assumptions used, cases
     #[command(after_help = "\
 Examples:
   shotdamp show ch3-limit-stop
@@ -80,19 +81,19 @@ Examples:
         /// Id of the experiment
         id: String,
     },
-    /// Say what is stale; writes nothing
+    /// List what is stale; writes nothing
     Status(StatusArgs),
-    /// Give the verdicts over the tables on disk; simulates and writes nothing
+    /// Print the verdicts for the tables on disk; simulates and writes nothing
     Check(CheckArgs),
-    /// Tell which numbers moved between two runs, beyond their uncertainty or within it
+    /// Compare two runs: which numbers moved, and whether beyond their uncertainty
     Diff(DiffArgs),
-    /// Remove what experiments that are gone have left, or tables of earlier meanings
+    /// Remove files of deleted experiments, or earlier tables
     Clean(CleanArgs),
-    /// Write an experiment to begin with
+    /// Write an experiment to start from
     New(NewArgs),
-    /// Write the JSON Schemas by which editors complete and check the files of a study
+    /// Write JSON Schemas, with which editors complete and check the files of a study
     Schema(SchemaArgs),
-    /// Print the completions of a shell
+    /// Print shell completions
     #[command(after_help = "\
 Examples:
   shotdamp completions bash > ~/.local/share/bash-completion/completions/shotdamp
@@ -101,7 +102,7 @@ Examples:
         /// Which shell
         shell: clap_complete::Shell,
     },
-    /// Switch each effect of an experiment on or off: what it changes in the result, in events and in time; writes nothing
+    /// Switch each effect of an experiment on or off, and print the change in result, events and time; writes nothing
     #[command(after_help = "\
 Examples:
   shotdamp effects ch3-limit-stop
@@ -110,11 +111,11 @@ Examples:
         /// Id of the experiment, or a pattern with * and ?
         id: String,
     },
-    /// Measure what accuracy costs: error against wall time of both solvers; writes reports/accuracy
+    /// Measure error against wall time of both solvers; writes reports/accuracy
     Accuracy(AccuracyArgs),
-    /// Look for the values of unstated inputs that bring chosen entries nearest, and see what becomes of others
+    /// Fit unstated inputs to chosen entries, and judge the entries held out
     Calibrate(CalibrateArgs),
-    /// Say how an entry hangs on each assumption, and which change of one would reproduce it; simulates nothing
+    /// Show how an entry depends on each assumption, and which change of one would reproduce it; simulates nothing
     #[command(after_help = "\
 Examples:
   shotdamp explain ch3-limit-stop/parting
@@ -123,7 +124,7 @@ Examples:
     Explain {
         /// Id of the entry, `ch3-limit-stop/parting`, or a pattern with * and ?
         entry: String,
-        /// Simulate what the tables lack: every other value of every assumption that the entry hangs on, one at a time
+        /// Simulate what the tables lack: every other value of every assumption that the entry depends on, one at a time
         #[arg(long)]
         run: bool,
     },
@@ -132,7 +133,7 @@ Examples:
 /// Which experiments.
 #[derive(Debug, Default, Clone, clap::Args)]
 pub(super) struct Choice {
-    /// Ids, or patterns with * and ?; none for all
+    /// Ids, or patterns with * and ? [default: all]
     #[arg(value_name = "PATTERN")]
     pub patterns: Vec<String>,
     /// Only this chapter of the study
@@ -151,25 +152,28 @@ Examples:
 pub(super) struct RunArgs {
     #[command(flatten)]
     pub choice: Choice,
-    /// Simulate also what is up to date
+    /// Re-simulate regardless
     #[arg(long)]
     pub force: bool,
-    /// Only say what would be simulated
+    /// Print what would be simulated, and stop
     #[arg(long)]
     pub dry_run: bool,
-    /// Only simulate; leave figures and reports as they are, for `check --reports`
+    /// Simulate only; leave figures and reports as they are, for `check --reports`
     #[arg(long)]
     pub tables: bool,
-    /// Write what each experiment took to reports/times.json, for the index to show
+    /// Write the processor time of each experiment to reports/times.json, which the index shows
     #[arg(long, conflicts_with_all = ["dry_run", "shard"])]
     pub times: bool,
-    /// Go on after an experiment that fails; this is what happens anyway
+    /// The most that a row may take, `1e7 events`, `30 s` or `1e7 events, 5 min`, in the place of `run: {limit: …}`
+    #[arg(long, value_name = "LIMIT")]
+    pub row_limit: Option<RowLimit>,
+    /// Simulate again where what an earlier run left is not what it wrote, and look at every byte of it to know
     #[arg(long)]
-    pub keep_going: bool,
-    /// Only the third of eight parts of the work, into tables of its own; `gather` joins them
+    pub verify: bool,
+    /// Compute one of n parts of the work, here the third of eight; `gather` joins their tables
     #[arg(long, value_name = "3/8", conflicts_with = "dry_run")]
     pub shard: Option<Shard>,
-    /// Fail if another run is at work here, instead of waiting for it
+    /// Fail if another run holds the lock, instead of waiting
     #[arg(long)]
     pub no_wait: bool,
 }
@@ -182,13 +186,13 @@ Examples:
 pub(super) struct GatherArgs {
     #[command(flatten)]
     pub choice: Choice,
-    /// The number of shards; needed only if there are tables of several divisions
+    /// Number of shards; needed only if there are tables of several divisions
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub of: Option<u32>,
-    /// Gather also what is up to date
+    /// Gather regardless
     #[arg(long)]
     pub force: bool,
-    /// Fail if another run is at work here, instead of waiting for it
+    /// Fail if another run holds the lock, instead of waiting
     #[arg(long)]
     pub no_wait: bool,
 }
@@ -204,17 +208,21 @@ pub(super) struct ExportArgs {
     /// Write an RO-Crate into this folder, which must not exist yet
     #[arg(long, value_name = "DIR")]
     pub ro_crate: PathBuf,
-    /// When it is published, for its description; by default when this version of the program was
+    /// Date of publication in its metadata; defaults to that of this version of the program
     #[arg(long, value_name = "YYYY-MM-DD", value_parser = date, default_value = RELEASED)]
     pub published: String,
 }
 
-fn date(text: &str) -> Result<String, String> {
+#[derive(Debug, thiserror::Error)]
+#[error("write a date as 2026-11-21")]
+struct DateError;
+
+fn date(text: &str) -> Result<String, DateError> {
     let parts: Vec<Option<u32>> = text.split('-').map(|part| part.parse().ok()).collect();
     let lengths = text.split('-').map(str::len);
     match parts.as_slice() {
         [Some(_), Some(1..=12), Some(1..=31)] if lengths.eq([4, 2, 2]) => Ok(text.into()),
-        _ => Err("a date is written 2026-11-21".into()),
+        _ => Err(DateError),
     }
 }
 
@@ -230,7 +238,7 @@ pub(super) struct AccuracyArgs {
     /// All experiments, and the summary
     #[arg(long)]
     pub all: bool,
-    /// Longest run in seconds; smaller steps are left out
+    /// Longest run in seconds; smaller steps are skipped
     #[arg(long, value_name = "SECONDS", default_value_t = 2.0)]
     pub longest: f64,
 }
@@ -241,7 +249,7 @@ Examples:
   shotdamp calibrate beam-arrays
   shotdamp calibrate all-chapters --jobs 2")]
 pub(super) struct CalibrateArgs {
-    /// Name of a file in `calibrations/`, without ending
+    /// Name of a file in `calibrations/`, without extension
     pub id: String,
 }
 
@@ -266,31 +274,38 @@ pub(super) struct StatusArgs {
 Examples:
   shotdamp check                              all verdicts; what is not as expected in full
   shotdamp check 'ch3-*' --junit verdicts.xml
+  shotdamp check --markdown summary.md        what a pull request changes
   shotdamp check --github                     in a workflow: annotations, and a summary of the step
   shotdamp check --reports                    are the committed reports those of these results?
   shotdamp check --accept ch3-limit-stop/same-below --reason \"Within the noise since the finer sweep.\"")]
 pub(super) struct CheckArgs {
     #[command(flatten)]
     pub choice: Choice,
-    /// Show of each entry that it can fail
+    /// Check that each entry can fail
     #[arg(long)]
     pub self_test: bool,
     /// Also write the verdicts as JUnit XML
     #[arg(long, value_name = "FILE")]
     pub junit: Option<PathBuf>,
-    /// Print the worst as annotations for GitHub, and append to the summary of the step ($GITHUB_STEP_SUMMARY)
+    /// Also write the summary that a pull request shows, as Markdown: changes against the committed verdicts first
+    #[arg(long, value_name = "FILE")]
+    pub markdown: Option<PathBuf>,
+    /// The committed verdicts; by default those of this study's reports
+    #[arg(long, value_name = "FILE", requires = "markdown")]
+    pub against: Option<PathBuf>,
+    /// Print the worst verdicts as GitHub annotations, and append to $GITHUB_STEP_SUMMARY
     #[arg(long)]
     pub github: bool,
     /// Print the verdicts as JSON instead
     #[arg(long, conflicts_with = "github")]
     pub json: bool,
-    /// Also compare what stands under reports/ with what would be generated
+    /// Also check that reports/ is up to date
     #[arg(long)]
     pub reports: bool,
-    /// Change the verdict that this entry expects (experiment/entry) to the one that it got, in its file
+    /// Change the expected verdict of this entry (experiment/entry) in its file to the one that it got
     #[arg(long, value_name = "ID", requires = "reason", conflicts_with_all = ["patterns", "chapter"])]
     pub accept: Option<String>,
-    /// Why it is accepted; becomes the explanation of the entry
+    /// Why; becomes the explanation of the entry
     #[arg(long, value_name = "TEXT", requires = "accept")]
     pub reason: Option<String>,
 }
@@ -306,20 +321,20 @@ Examples:
   shotdamp diff before/results results
   shotdamp diff before/results --all")]
 pub(super) struct DiffArgs {
-    /// The first; by default the reports of this study
+    /// The first [default: the reports of this study]
     #[arg(value_name = "A")]
     pub a: Option<PathBuf>,
-    /// The second; by default the tables of this study
+    /// The second [default: the tables of this study]
     #[arg(value_name = "B")]
     pub b: Option<PathBuf>,
-    /// Tell all that moved, not the farthest few of each experiment
+    /// List all that moved, not only the farthest few of each experiment
     #[arg(long)]
     pub all: bool,
 }
 
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
-The file validates as it is; change it while `shotdamp show` and your editor look on.
+The file is valid as written; change it, and check it with `shotdamp show` and in your editor.
 
 Examples:
   shotdamp new ch3-my-idea
@@ -327,24 +342,24 @@ Examples:
 pub(super) struct NewArgs {
     /// Its id: small letters, digits and hyphens; `ch3-…` puts it into chapter 3
     pub id: String,
-    /// Chapter of the study; by default the one that the id names
+    /// Chapter of the study [default: the one in the id]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..100))]
     pub chapter: Option<u32>,
-    /// What vibrates
+    /// Kind of structure
     #[arg(long, value_name = "KIND", default_value = "single_mass")]
     pub structure: String,
 }
 
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
-An editor with a YAML language server uses them where a file begins with
+An editor with a YAML language server uses a schema in files that begin with
   # yaml-language-server: $schema=../../schema/experiment.json
 
 Examples:
   shotdamp schema                             writes schema/*.json into the study
   shotdamp schema experiment                  prints one")]
 pub(super) struct SchemaArgs {
-    /// Print this one instead of writing all
+    /// Print this schema instead of writing all
     #[arg(value_enum)]
     pub of: Option<SchemaOf>,
 }
@@ -362,15 +377,15 @@ pub(super) enum SchemaOf {
 Examples:
   shotdamp clean --orphans --dry-run
   shotdamp clean --orphans
-  shotdamp clean --earlier                    room on the disk, for going back at the price of simulating")]
+  shotdamp clean --earlier                    free disk space; going back to earlier inputs then re-simulates")]
 pub(super) struct CleanArgs {
-    /// Tables, records, figures and pages of experiments whose files are gone
+    /// Remove tables, records, figures and pages of experiments whose files no longer exist
     #[arg(long, required_unless_present = "earlier")]
     pub orphans: bool,
-    /// Tables of earlier meanings, which are kept so that going back to one simulates nothing
+    /// Remove earlier tables, which are kept so that going back to earlier inputs simulates nothing
     #[arg(long)]
     pub earlier: bool,
-    /// Only say what would be removed
+    /// Print what would be removed, and stop
     #[arg(long)]
     pub dry_run: bool,
 }

@@ -1,4 +1,4 @@
-//! `shotdamp check`.
+//! `shotdamp check`: the verdicts for the tables on disk.
 
 use std::path::{Path, PathBuf};
 
@@ -9,8 +9,8 @@ use super::output::{print, print_document, print_error, print_unread};
 use super::select::{Chosen, choose, open};
 use crate::atomic::{self, FileError};
 use crate::reference;
-use crate::report::{self, CheckView};
-use crate::report::{Judgement, check_view, departures, judge_all, self_test_all, summary_of};
+use crate::report::{self, CheckView, Standing};
+use crate::report::{Judgement, check_view, departures, doubts, judge_all, self_test_all, summary_of};
 use crate::study::{Layout, Study};
 
 /// Where GitHub wants the summary of a step.
@@ -27,7 +27,11 @@ pub(super) fn check(layout: &Layout, args: &CheckArgs) -> Result<Exit, CliError>
     }
     let mut exit = chosen.exit(&judgement);
     let view = check_view(&study, &judgement, &chosen.ids, &chosen.unread);
-    let mut text = if args.json { report::json(&view) } else { summary_of(&judgement, &chosen.ids) };
+    let mut text = if args.json {
+        report::json(&view)
+    } else {
+        summary_of(&judgement, &chosen.ids) + &doubts(&judgement, &chosen.ids)
+    };
     if args.self_test {
         let (description, worst) = self_test(&study, &chosen);
         exit = exit.max(worst);
@@ -45,10 +49,24 @@ pub(super) fn check(layout: &Layout, args: &CheckArgs) -> Result<Exit, CliError>
     if let Some(file) = &args.junit {
         atomic::write(file, report::junit(&view).as_bytes())?;
     }
+    if let Some(file) = &args.markdown {
+        atomic::write(file, report::pull_request(&view, &committed(layout, args)?).as_bytes())?;
+    }
     if args.github {
         github(&view)?;
     }
     Ok(exit)
+}
+
+/// The verdicts before; none if this study has never written any.
+fn committed(layout: &Layout, args: &CheckArgs) -> Result<Vec<Standing>, CliError> {
+    let path = args.against.clone().unwrap_or_else(|| layout.path(report::VERDICTS));
+    let unreadable = |problem: String| CliError::Unreadable { path: path.clone(), problem };
+    match std::fs::read_to_string(&path) {
+        Ok(text) => report::read_json(&text).map_err(|error| unreadable(error.to_string())),
+        Err(error) if args.against.is_none() && error.kind() == std::io::ErrorKind::NotFound => Ok(Vec::new()),
+        Err(error) => Err(unreadable(error.to_string())),
+    }
 }
 
 /// What could not be made to fail, and how many could.
@@ -69,7 +87,7 @@ fn compare_reports(study: &Study, judgement: &Judgement, args: &CheckArgs) -> Re
         print_error(&format!("error: {departure}\n"));
     }
     if departures.is_empty() && !args.json {
-        print("reports: what is there is what would be generated\n")?;
+        print("reports are up to date\n")?;
     }
     Ok(if departures.is_empty() { Exit::AsExpected } else { Exit::Unexpected })
 }
@@ -96,7 +114,7 @@ fn accept(study: &Study, judgement: &Judgement, id: &str, reason: &str) -> Resul
     let (experiment, _) = id.split_once('/').ok_or_else(unknown)?;
     let judged =
         judgement.verdicts.get(experiment).into_iter().flatten().find(|one| one.id == id).ok_or_else(unknown)?;
-    let name = study.reference_name(experiment).ok_or_else(unknown)?;
+    let name = *study.reference_names().get(experiment).ok_or_else(unknown)?;
     let (reference, bytes) = study.references.get(experiment).zip(study.texts.files.get(name)).ok_or_else(unknown)?;
     let text = String::from_utf8_lossy(bytes);
     let changed = reference::accept(reference, &text, judged, reason)?;

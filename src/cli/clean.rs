@@ -1,4 +1,4 @@
-//! `shotdamp clean`.
+//! `shotdamp clean`: remove files that no experiment needs.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -11,7 +11,7 @@ use super::simulate::held;
 use crate::atomic::FileError;
 use crate::study::{Layout, Lock, Texts, earlier_tables, orphans};
 
-/// Removes what experiments that are gone have left, and tables of earlier meanings.
+/// Removes files of deleted experiments, and earlier tables.
 pub(super) fn clean(layout: &Layout, args: &CleanArgs) -> Result<Exit, CliError> {
     let _lock = Lock::of_study(layout, held(false))?;
     let mut names = BTreeSet::new();

@@ -1,4 +1,4 @@
-//! `shotdamp diff`.
+//! `shotdamp diff`: what moved between two runs.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -20,7 +20,7 @@ enum Side {
     Verdicts(Vec<Standing>),
 }
 
-/// Tells what moved between two runs.
+/// Prints what moved between two runs.
 pub(super) fn diff(layout: &Layout, args: &DiffArgs) -> Result<Exit, CliError> {
     let a = args.a.clone().unwrap_or_else(|| layout.path(VERDICTS));
     let b = args.b.clone().unwrap_or_else(|| layout.results());
@@ -57,7 +57,9 @@ impl Side {
         let verdicts = if path.is_dir() { path.join("verdicts.json") } else { path.to_path_buf() };
         if verdicts.is_file() {
             let text = fs::read_to_string(&verdicts).map_err(|error| unreadable(&verdicts, error.to_string()))?;
-            return report::read_json(&text).map(Self::Verdicts).map_err(|error| unreadable(&verdicts, error));
+            return report::read_json(&text)
+                .map(Self::Verdicts)
+                .map_err(|error| unreadable(&verdicts, error.to_string()));
         }
         let files = tables_in(path).map_err(|error| unreadable(path, error.to_string()))?;
         if files.is_empty() {

@@ -1,18 +1,18 @@
-//! `--dry-run`: what would be simulated, and how long that would take by what earlier runs took.
+//! `--dry-run`: what would be simulated, and how long that would take, estimated from earlier runs.
 
 use super::args::{Args, RunArgs};
 use super::error::CliError;
 use super::exit::Exit;
 use super::output::{print, print_unread};
-use super::select::{choose, open};
-use super::update::todo;
-use crate::study::{Extent, KnownRows, Layout};
+use super::select::choose;
+use super::update::{open_stale, todo};
+use crate::study::{Extent, KnownRows, Layout, forecast};
 use crate::text::number::compact;
 use crate::text::words::capitalised;
 
-/// Tells it, and writes nothing.
+/// Prints it, and writes nothing.
 pub(super) fn dry_run(layout: &Layout, args: &RunArgs, common: &Args) -> Result<Exit, CliError> {
-    let study = open(layout)?;
+    let study = open_stale(layout, &args.choice, args.force)?;
     let chosen = choose(&study, &args.choice)?;
     print_unread(chosen.unread.iter().copied());
     let threads = common.jobs.map_or_else(processors, usize::from);
@@ -26,9 +26,14 @@ pub(super) fn dry_run(layout: &Layout, args: &RunArgs, common: &Args) -> Result<
             text += &format!(", {} simulations at most, {ahead}", extent.simulations);
         }
         text += "\n";
+        if extent.to_do > 0 {
+            for warning in forecast(&item.source.experiment, &study.sheet.assumptions()) {
+                text += &format!("  warning: {warning}\n");
+            }
+        }
         total.add(&extent, threads);
     }
-    text += &format!("{} of {} experiments would be simulated{}\n", total.simulated, chosen.items.len(), total.rest());
+    text += &format!("{} of {} experiments would be simulated{}\n", total.simulated, chosen.count(), total.rest());
     if let Some(ahead) = total.time(threads) {
         text += &format!("{ahead} on {threads} threads\n");
     }

@@ -1,4 +1,4 @@
-//! `shotdamp effects`.
+//! `shotdamp effects`: each effect of an experiment switched on or off.
 
 use super::args::Choice;
 use super::error::CliError;

@@ -3,7 +3,7 @@
 use std::io;
 use std::path::PathBuf;
 
-use crate::atomic::FileError;
+use crate::atomic::{FileError, from_here};
 use crate::calibrate::CalibrationError;
 use crate::experiment::{IdError, Problems};
 use crate::reference::AcceptError;
@@ -12,9 +12,9 @@ use crate::study::{LockError, ThreadError};
 
 #[derive(Debug, thiserror::Error)]
 pub(super) enum CliError {
-    #[error("there is no study here: no folder `experiments` in {} or above it; name one with --root", .0.display())]
+    #[error("there is no study here: no folder `experiments` in {} or above it; name one with --root", from_here(.0))]
     NoStudy(PathBuf),
-    #[error("there is no study in {}: it has no folder `experiments`", .0.display())]
+    #[error("there is no study in {}: it has no folder `experiments`", from_here(.0))]
     NoStudyAt(PathBuf),
     #[error("there are no experiments yet: write one into experiments/")]
     NoExperiments,
@@ -26,9 +26,9 @@ pub(super) enum CliError {
     NoChapter(u32),
     #[error("there is no entry `{0}`; entries are named experiment/entry, as `shotdamp check` shows them")]
     NoEntry(String),
-    #[error("{} holds neither tables (*.parquet) nor verdicts (verdicts.json)", .0.display())]
+    #[error("{} holds neither tables (*.parquet) nor verdicts (verdicts.json)", from_here(.0))]
     NoResults(PathBuf),
-    #[error("cannot compare {}: {problem}", .path.display())]
+    #[error("cannot compare {}: {problem}", from_here(.path))]
     Unreadable { path: PathBuf, problem: String },
     #[error("{0}")]
     Id(String),

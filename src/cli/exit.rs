@@ -2,6 +2,8 @@
 
 use std::process::ExitCode;
 
+use crate::reference::{Judged, Verdict};
+
 /// How a command ended; the worst counts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Exit {
@@ -22,12 +24,14 @@ impl Exit {
         }
     }
 
-    pub fn from_code(code: u8) -> Self {
-        match code {
-            0 => Self::AsExpected,
-            1 => Self::Unexpected,
-            _ => Self::CouldNot,
-        }
+    /// What these verdicts come to.
+    pub fn of_verdicts<'a>(verdicts: impl Iterator<Item = &'a Judged>) -> Self {
+        let of = |judged: &Judged| match judged {
+            judged if judged.verdict == Verdict::Missing => Self::CouldNot,
+            judged if judged.as_expected() => Self::AsExpected,
+            _ => Self::Unexpected,
+        };
+        verdicts.map(of).max().unwrap_or(Self::AsExpected)
     }
 }
 

@@ -4,15 +4,15 @@ use super::args::GatherArgs;
 use super::error::CliError;
 use super::exit::Exit;
 use super::output::print_unread;
-use super::select::{choose, open};
+use super::select::choose;
 use super::simulate::held;
-use super::update::{Done, conclude};
+use super::update::{Done, conclude, open_stale};
 use crate::study::{Item, Layout, Lock, Shard, State, gather, save};
 
 /// Joins what is stale, then judges, draws and writes as `run` does.
 pub(super) fn gather_all(layout: &Layout, args: &GatherArgs) -> Result<Exit, CliError> {
     let _lock = Lock::of_study(layout, held(args.no_wait))?;
-    let study = open(layout)?;
+    let mut study = open_stale(layout, &args.choice, args.force)?;
     let chosen = choose(&study, &args.choice)?;
     print_unread(chosen.unread.iter().copied());
     let stale = |item: &&Item| args.force || !matches!(item.state, State::Current(_));
@@ -34,7 +34,8 @@ pub(super) fn gather_all(layout: &Layout, args: &GatherArgs) -> Result<Exit, Cli
     }
     let experiments = todo.len() - problems.len();
     let done = Done { verb: "gathered", experiments, restored: 0, problems, tables_only: false };
-    conclude(layout, study.texts, &args.choice, done)
+    study.refresh();
+    conclude(&study, &args.choice, done)
 }
 
 /// The number of shards whose tables are to be joined.

@@ -1,4 +1,4 @@
-//! `shotdamp list`.
+//! `shotdamp list`: the experiments, one a line.
 
 use super::error::CliError;
 use super::exit::Exit;

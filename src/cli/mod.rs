@@ -1,4 +1,4 @@
-//! The command. One thin file a subcommand; what they share is how a study is found, chosen from and reported on.
+//! The command: one file a subcommand, and what they share: finding a study, choosing experiments, printing.
 
 mod accuracy;
 mod args;
@@ -37,10 +37,10 @@ use exit::Exit;
 #[must_use]
 pub fn main() -> ExitCode {
     let args = Args::parse();
-    output::speak(args.quiet, args.color);
+    output::set_style(args.quiet, args.color);
     match dispatch(&args) {
         Ok(exit) => exit.into(),
-        // Whoever closed the pipe has read enough.
+        // The reader closed the pipe: it has read enough.
         Err(error) if error.is_broken_pipe() => ExitCode::SUCCESS,
         Err(error) => {
             output::print_error(&format!("error: {error}\n"));
@@ -87,7 +87,7 @@ fn dispatch(args: &Args) -> Result<Exit, CliError> {
     }
 }
 
-/// The shared pool has so many threads; if somebody has started it already, it stays as it is.
+/// Sets the number of threads of the shared pool; one that is running stays as it is.
 fn start_threads(args: &Args) {
     let _ = rayon::ThreadPoolBuilder::new().num_threads(args.threads()).build_global();
 }

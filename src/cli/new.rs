@@ -1,4 +1,4 @@
-//! `shotdamp new`.
+//! `shotdamp new`: an experiment to start from.
 
 use super::args::{NewArgs, SchemaOf};
 use super::error::CliError;

@@ -1,4 +1,4 @@
-//! What a command says, where, and in which colours.
+//! Output: standard output for answers, standard error for errors, colours on a terminal.
 
 use std::io::{self, IsTerminal, Write};
 use std::sync::OnceLock;
@@ -7,23 +7,23 @@ use super::args::Colour;
 use crate::study::Refused;
 use crate::study::Unread;
 
-/// How this process speaks; decided once, by its arguments.
+/// How this process prints; set once, from its arguments.
 #[derive(Debug, Clone, Copy)]
-struct Manner {
+struct Style {
     quiet: bool,
     /// On standard error.
     colour: bool,
 }
 
-static MANNER: OnceLock<Manner> = OnceLock::new();
+static STYLE: OnceLock<Style> = OnceLock::new();
 
-/// Decides how this process speaks, before it says anything.
-pub(super) fn speak(quiet: bool, colour: Colour) {
-    let _ = MANNER.set(Manner { quiet, colour: wants_colour(colour) });
+/// Sets how this process prints.
+pub(super) fn set_style(quiet: bool, colour: Colour) {
+    let _ = STYLE.set(Style { quiet, colour: wants_colour(colour) });
 }
 
-fn manner() -> Manner {
-    *MANNER.get_or_init(|| Manner { quiet: false, colour: wants_colour(Colour::Auto) })
+fn style() -> Style {
+    *STYLE.get_or_init(|| Style { quiet: false, colour: wants_colour(Colour::Auto) })
 }
 
 /// True if errors are to be coloured: as asked for, or on a terminal that can, unless `NO_COLOR` is set.
@@ -40,7 +40,7 @@ fn wants_colour(colour: Colour) -> bool {
 
 /// Prints the answer, unless nothing but errors is wanted.
 pub(super) fn print(text: &str) -> io::Result<()> {
-    if manner().quiet { Ok(()) } else { print_document(text) }
+    if style().quiet { Ok(()) } else { print_document(text) }
 }
 
 /// Prints a document that was asked for by name, which is never left out.
@@ -50,18 +50,18 @@ pub(super) fn print_document(text: &str) -> io::Result<()> {
     out.flush()
 }
 
-/// Tells of something wrong. Nobody is left to tell if that fails.
+/// Prints an error. A failure to print it is ignored.
 pub(super) fn print_error(text: &str) {
     let text = match text.strip_prefix("error:") {
-        Some(rest) if manner().colour => format!("\u{1b}[1;31merror:\u{1b}[0m{rest}"),
+        Some(rest) if style().colour => format!("\u{1b}[1;31merror:\u{1b}[0m{rest}"),
         _ => text.to_owned(),
     };
     let _ = io::stderr().lock().write_all(text.as_bytes());
 }
 
-/// Tells of files that could not be used, with their places; framed for a person at a terminal.
+/// Prints the errors of files that could not be used, with their places; framed on a terminal.
 pub(super) fn print_unread<'a>(unread: impl IntoIterator<Item = &'a Unread>) {
-    let colour = manner().colour;
+    let colour = style().colour;
     for one in unread {
         match one {
             Unread::Experiment(Refused::Text(problems)) if colour || io::stderr().is_terminal() => {

@@ -1,4 +1,4 @@
-//! `shotdamp schema`.
+//! `shotdamp schema`: JSON Schemas for editors.
 
 use super::args::{SchemaArgs, SchemaOf};
 use super::error::CliError;

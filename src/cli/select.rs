@@ -6,9 +6,8 @@ use std::path::Path;
 use super::args::Choice;
 use super::error::CliError;
 use super::exit::Exit;
-use crate::reference::Verdict;
 use crate::report::Judgement;
-use crate::study::{ASSUMPTIONS, Item, Layout, Study, Texts, Unread};
+use crate::study::{ASSUMPTIONS, Item, Layout, Snapshot, Study, Summary, Texts, Unread, stem};
 
 /// The study that is meant.
 pub(super) fn layout(root: Option<&Path>) -> Result<Layout, CliError> {
@@ -26,25 +25,44 @@ pub(super) fn open(layout: &Layout) -> Result<Study, CliError> {
 }
 
 impl Choice {
-    /// True for all experiments.
-    pub fn is_all(&self) -> bool {
-        self.patterns.is_empty() && self.chapter.is_none()
+    /// True for an experiment that is known to be up to date.
+    pub fn admits_known(&self, known: &Summary) -> bool {
+        self.admits(&known.heading.id.0, known.heading.source.chapter)
     }
 
     fn admits(&self, id: &str, chapter: u32) -> bool {
-        self.chapter.is_none_or(|wanted| wanted == chapter)
-            && (self.patterns.is_empty() || self.patterns.iter().any(|pattern| matches(pattern, id)))
+        self.chapter.is_none_or(|wanted| wanted == chapter) && self.admits_any_chapter(id)
+    }
+
+    fn admits_any_chapter(&self, id: &str) -> bool {
+        self.patterns.is_empty() || self.patterns.iter().any(|pattern| matches(pattern, id))
     }
 }
 
 /// The experiments, files and entries that a command is about.
 pub(super) struct Chosen<'a> {
-    /// Experiments that could be read.
+    /// Experiments that were planned.
     pub items: Vec<&'a Item>,
+    /// Those that are known to be up to date.
+    pub known: Vec<&'a Summary>,
     /// Files that could not.
     pub unread: Vec<&'a Unread>,
     /// Ids of experiments and of reference files.
     pub ids: BTreeSet<&'a str>,
+}
+
+/// The chosen ids, if all of them are known to be up to date, and the index with them.
+pub(super) fn matched<'a>(snapshot: &'a Snapshot, texts: &'a Texts, choice: &Choice) -> Option<BTreeSet<&'a str>> {
+    let admitted = |id: &&str| match snapshot.experiments.get(*id) {
+        Some(known) => choice.admits_known(known),
+        // Of one that has to be read first the chapter is not known.
+        None => choice.admits_any_chapter(id),
+    };
+    let ids: BTreeSet<&str> = texts.stems().into_iter().filter(admitted).collect();
+    let is_known = |id: &&str| snapshot.experiments.contains_key(*id);
+    let answers = |pattern: &String| ids.iter().any(|id| matches(pattern, id));
+    let all = snapshot.index_is_current && !ids.is_empty() && ids.iter().all(is_known);
+    (all && choice.patterns.iter().all(answers)).then_some(ids)
 }
 
 /// What `choice` means in this study.
@@ -52,7 +70,7 @@ pub(super) struct Chosen<'a> {
 /// # Errors
 /// A pattern or a chapter that nothing answers to: it would otherwise pass for success.
 pub(super) fn choose<'a>(study: &'a Study, choice: &Choice) -> Result<Chosen<'a>, CliError> {
-    if study.items.is_empty() && study.unread.is_empty() {
+    if study.items.is_empty() && study.known.is_empty() && study.unread.is_empty() {
         return Err(CliError::NoExperiments);
     }
     let chosen = Chosen {
@@ -61,6 +79,7 @@ pub(super) fn choose<'a>(study: &'a Study, choice: &Choice) -> Result<Chosen<'a>
             .iter()
             .filter(|item| choice.admits(&item.source.experiment.id.0, item.source.experiment.source.chapter))
             .collect(),
+        known: study.known.values().filter(|known| choice.admits_known(known)).collect(),
         unread: study
             .unread
             .iter()
@@ -70,43 +89,51 @@ pub(super) fn choose<'a>(study: &'a Study, choice: &Choice) -> Result<Chosen<'a>
             .collect(),
         ids: BTreeSet::new(),
     };
-    // The assumptions are everybody's: while they cannot be read, no pattern can be told from a wrong one.
+    // While the assumptions cannot be read no experiment is: then no pattern is called wrong.
     let blind = chosen.unread.iter().any(|unread| unread.file() == ASSUMPTIONS);
     let stems: Vec<&str> = chosen.unread.iter().map(|unread| stem(unread.file())).collect();
-    let answers = |pattern: &&String| {
-        let known = chosen.items.iter().map(|item| item.source.experiment.id.0.as_str());
-        known.chain(stems.iter().copied()).any(|id| matches(pattern, id))
-    };
+    let answers = |pattern: &&String| chosen.ids().chain(stems.iter().copied()).any(|id| matches(pattern, id));
     if let Some(pattern) = choice.patterns.iter().find(|pattern| !blind && !answers(pattern)) {
         return Err(CliError::NoMatch { pattern: pattern.clone(), known: known(study) });
     }
-    if let Some(chapter) = choice.chapter.filter(|_| chosen.items.is_empty() && chosen.unread.is_empty()) {
+    if let Some(chapter) = choice.chapter.filter(|_| chosen.is_empty()) {
         return Err(CliError::NoChapter(chapter));
     }
-    let items = chosen.items.iter().map(|item| item.source.experiment.id.0.as_str());
     // A reference without its experiment is missing it, and must not be passed over.
-    let orphans = study.references.keys().map(String::as_str);
-    let orphans = orphans.filter(|id| study.items.iter().all(|item| item.source.experiment.id.0 != *id));
-    let ids = items.chain(orphans.filter(|id| choice.admits(id, chapter_of(id)))).collect();
+    let planned: BTreeSet<&str> = study.items.iter().map(|item| item.source.experiment.id.0.as_str()).collect();
+    let orphans = study.references.keys().map(String::as_str).filter(|id| !planned.contains(id));
+    let ids = chosen.ids().chain(orphans.filter(|id| choice.admits(id, chapter_of(id)))).collect();
     Ok(Chosen { ids, ..chosen })
 }
 
-impl Chosen<'_> {
+impl<'a> Chosen<'a> {
+    /// The ids of the experiments.
+    fn ids(&self) -> impl Iterator<Item = &'a str> {
+        let planned = self.items.iter().map(|item| item.source.experiment.id.0.as_str());
+        planned.chain(self.known.iter().map(|known| known.heading.id.0.as_str()))
+    }
+
+    /// The number of experiments.
+    pub fn count(&self) -> usize {
+        self.items.len() + self.known.len()
+    }
+
+    fn is_empty(&self) -> bool {
+        self.count() == 0 && self.unread.is_empty()
+    }
+
     /// What the verdicts and what could not be read come to.
     pub fn exit(&self, judgement: &Judgement) -> Exit {
         let verdicts = judgement.verdicts.iter().filter(|(id, _)| self.ids.contains(id.as_str())).flat_map(|(_, v)| v);
-        let verdict = |judged: &crate::reference::Judged| match judged {
-            judged if judged.verdict == Verdict::Missing => Exit::CouldNot,
-            judged if judged.as_expected() => Exit::AsExpected,
-            _ => Exit::Unexpected,
-        };
         let unread = if self.unread.is_empty() { Exit::AsExpected } else { Exit::CouldNot };
-        verdicts.map(verdict).chain([unread]).max().unwrap_or(Exit::AsExpected)
+        Exit::of_verdicts(verdicts).max(unread)
     }
 }
 
 fn known(study: &Study) -> String {
-    let ids: Vec<&str> = study.items.iter().map(|item| item.source.experiment.id.0.as_str()).collect();
+    let planned = study.items.iter().map(|item| item.source.experiment.id.0.as_str());
+    let ids: BTreeSet<&str> = planned.chain(study.known.keys().map(String::as_str)).collect();
+    let ids: Vec<&str> = ids.into_iter().collect();
     match ids.as_slice() {
         [] => "none that can be read".into(),
         few if few.len() <= 8 => few.join(", "),
@@ -114,13 +141,7 @@ fn known(study: &Study) -> String {
     }
 }
 
-/// Of a file that could not be read the name is all there is.
-fn stem(file: &str) -> &str {
-    let name = file.rsplit('/').next().unwrap_or(file);
-    name.rsplit_once('.').map_or(name, |(stem, _)| stem)
-}
-
-/// The chapter that a name speaks of, `ch3-gap` or `experiments/ch3/…`; 0 if none.
+/// The chapter in a name, `ch3-gap` or `experiments/ch3/…`; 0 if none.
 pub(super) fn chapter_of(name: &str) -> u32 {
     let chapter = |part: &str| -> Option<u32> {
         let digits: String = part.strip_prefix("ch")?.chars().take_while(char::is_ascii_digit).collect();

@@ -10,7 +10,7 @@ use crate::study::{Item, Layout, Lock, Shard, State};
 
 /// Simulates the shard's part of what is stale, and writes nothing but its own tables: no verdicts, figures or reports.
 ///
-/// A row without numbers is a result like any other; `gather` tells of it.
+/// A row without numbers is a result like any other; `gather` reports it.
 pub(super) fn run_shard(layout: &Layout, args: &RunArgs, shard: Shard, common: &Args) -> Result<Exit, CliError> {
     let _lock = Lock::of_shard(layout, shard, held(args.no_wait))?;
     let study = open(layout)?;
@@ -19,12 +19,14 @@ pub(super) fn run_shard(layout: &Layout, args: &RunArgs, shard: Shard, common: &
     let stale = |item: &&Item| args.force || !matches!(item.state, State::Current(_));
     let part: Vec<&Item> = chosen.items.iter().copied().filter(stale).filter(|item| shard.has_part_of(item)).collect();
     let todo: Vec<&Item> = part.iter().copied().filter(|item| args.force || !shard.has_done(layout, item)).collect();
-    let how = How { threads: common.threads(), quiet: common.quiet, shard: Some(shard), anew: args.force };
+    let row_limit = args.row_limit.unwrap_or_default();
+    let how =
+        How { threads: common.threads(), quiet: common.quiet, shard: Some(shard), row_limit, from_scratch: args.force };
     let Ran { unsaved, .. } = simulate(layout, &todo, how, |item, finished| shard.save(layout, item, finished))?;
     for problem in &unsaved {
         print_error(&format!("error: {problem}\n"));
     }
     let (parts, done) = (part.len(), todo.len() - unsaved.len());
-    print(&format!("shard {shard}: has a part in {parts} stale experiments; {done} simulated now.\n"))?;
+    print(&format!("shard {shard}: has part of {parts} stale experiments; {done} simulated.\n"))?;
     Ok(if unsaved.is_empty() && chosen.unread.is_empty() { Exit::AsExpected } else { Exit::CouldNot })
 }

@@ -1,4 +1,6 @@
-//! `shotdamp show ID`.
+//! `shotdamp show ID`: the experiment in words.
+
+use std::time::Duration;
 
 use super::args::Choice;
 use super::error::CliError;
@@ -6,14 +8,17 @@ use super::exit::Exit;
 use super::output::{columns, print, print_unread};
 use super::select::{choose, open};
 use crate::accuracy::idle_cases;
+use crate::dynamics::{Allowance, Limit};
 use crate::experiment::Experiment;
 use crate::report::scenes;
 use crate::report::value_in_words;
 use crate::scene::{Scene, effects};
-use crate::study::{Item, Layout, State, Study};
-use crate::text::words;
+use crate::study::{Item, Layout, State, Study, forecast};
 
-/// All that is known of one experiment before it runs.
+/// How long the proof that particles stay on their floors may take; cases beyond it count as not proved.
+const PATIENCE: Duration = Duration::from_millis(500);
+
+/// Prints all that is known of an experiment before it runs.
 pub(super) fn show(layout: &Layout, id: &str) -> Result<Exit, CliError> {
     let study = open(layout)?;
     let chosen = choose(&study, &Choice { patterns: vec![id.into()], chapter: None })?;
@@ -41,9 +46,6 @@ fn describe(study: &Study, item: &Item) -> String {
     for line in scenes.first().map(Scene::describe).unwrap_or_default() {
         text += &format!("  {line}\n");
     }
-    if let Some(start) = &experiment.recipe.start {
-        text += &format!("  {}\n", start.describe());
-    }
     text += "\nEffects\n";
     let rows: Vec<Vec<String>> = effects(&scenes)
         .into_iter()
@@ -60,12 +62,11 @@ fn describe(study: &Study, item: &Item) -> String {
     text += &idle(experiment, &scenes);
 
     text += "\nAssumptions\n";
-    let used = experiment.assumptions_used(&study.sheet);
-    for (name, entry) in study.sheet.entries.iter().filter(|(name, _)| used.contains(name)) {
-        text += &format!("  {} = {}\n", words::of_key(name), value_in_words(*name, &entry.value));
+    for (name, entry) in study.sheet.iter().filter(|(name, _)| item.used.contains(*name)) {
+        text += &format!("  {name} = {}\n", value_in_words(entry.kind.unit(), &entry.value));
         text += &wrapped(&entry.reason, "      ", 100);
     }
-    if used.is_empty() {
+    if item.used.is_empty() {
         text += "  none\n";
     }
 
@@ -83,6 +84,9 @@ fn describe(study: &Study, item: &Item) -> String {
         text += &format!("  and event-driven with each of {}\n", ends.join(", "));
     }
     text += &format!("  {rows} rows, {simulations} simulations at most\n");
+    for warning in forecast(experiment, &study.sheet.assumptions()) {
+        text += &format!("  warning: {warning}\n");
+    }
     let state = match &item.state {
         State::Current(_) => "up to date",
         State::Failed(_) => "computed, with failed rows",
@@ -94,7 +98,8 @@ fn describe(study: &Study, item: &Item) -> String {
 
 /// Cases in which what only a particle in flight can meet is named and provably never met.
 fn idle(experiment: &Experiment, scenes: &[Scene]) -> String {
-    match idle_cases(experiment, scenes) {
+    let limit = Limit { time: PATIENCE, ..Limit::default() };
+    match Allowance::new(limit).simulate(|| idle_cases(experiment, scenes)) {
         0 => String::new(),
         count => format!(
             "  In {count} of {} cases it is proved that no particle leaves its floor: ceilings, stops and impacts are idle \
@@ -104,7 +109,7 @@ fn idle(experiment: &Experiment, scenes: &[Scene]) -> String {
     }
 }
 
-/// Lines of at most so many letters, each after a margin.
+/// The text wrapped at `width` letters, each line after a margin.
 fn wrapped(text: &str, margin: &str, width: usize) -> String {
     let mut lines: Vec<String> = Vec::new();
     for word in text.split_whitespace() {

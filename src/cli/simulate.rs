@@ -1,4 +1,4 @@
-//! What commands that simulate share: the lock, threads and progress, and a word about what failed.
+//! What commands that simulate share: lock, threads, progress, and the report of failed rows.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -9,19 +9,20 @@ use rayon::prelude::*;
 use super::error::CliError;
 use super::output::print_error;
 use super::select::Chosen;
+use crate::experiment::RowLimit;
 use crate::study::{
     Engine, EventHandler, Finished, Held, IgnoreEvents, Item, KnownRows, Layout, Progress, Shard, Spent, State, Task,
     journal_name, run,
 };
 use crate::table::ParquetError;
 
-/// Tells who is at work, and what becomes of us.
+/// Whether to wait for another run, which is described.
 pub(super) fn held(no_wait: bool) -> impl FnOnce(&str) -> Held {
     move |holder| {
         if no_wait {
             return Held::GiveUp;
         }
-        print_error(&format!("waiting for another run here: {holder}\n"));
+        print_error(&format!("waiting for another run: {holder}\n"));
         Held::Wait
     }
 }
@@ -33,8 +34,10 @@ pub(super) struct How {
     pub threads: usize,
     pub quiet: bool,
     pub shard: Option<Shard>,
+    /// In the place of the limits that the experiments set.
+    pub row_limit: RowLimit,
     /// Simulate also the rows that earlier tables have.
-    pub anew: bool,
+    pub from_scratch: bool,
 }
 
 /// How it went.
@@ -62,7 +65,7 @@ pub(super) fn simulate(
         layout.path(&how.shard.map_or_else(|| journal_name(id), |shard| shard.journal_name(id)))
     };
     let journals: Vec<PathBuf> = items.iter().map(journal).collect();
-    let known: Vec<KnownRows> = if how.anew {
+    let known: Vec<KnownRows> = if how.from_scratch {
         items.iter().for_each(|item| Spent::forget(layout, &item.source.experiment.id));
         items.iter().map(|_| KnownRows::nothing()).collect()
     } else {
@@ -75,6 +78,7 @@ pub(super) fn simulate(
         .map(|((item, (metadata, journal)), known)| Task {
             shard: how.shard,
             known: Some(known),
+            limit: how.row_limit.over(item.source.experiment.limit),
             ..item.task(metadata, journal)
         })
         .collect();
@@ -93,8 +97,8 @@ pub(super) fn simulate(
     Ok(Ran { restored, unsaved: unsaved.into_inner().unwrap_or_default().into_values().collect() })
 }
 
-/// True if rows of the chosen experiments have no numbers.
-pub(super) fn tell_failures(chosen: &Chosen<'_>) -> bool {
+/// Prints which of the chosen experiments have rows without numbers; true if there are any.
+pub(super) fn print_failures(chosen: &Chosen<'_>) -> bool {
     let mut failed = false;
     for item in &chosen.items {
         if let State::Failed(record) = &item.state {

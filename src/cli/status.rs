@@ -1,91 +1,101 @@
-//! `shotdamp status`.
+//! `shotdamp status`: what is stale, and why.
 
 use super::args::StatusArgs;
 use super::dry_run::rows;
 use super::error::CliError;
 use super::exit::Exit;
 use super::output::{print, print_unread};
-use super::select::choose;
+use super::select::{Chosen, choose, matched};
 use crate::experiment::line_of;
+use crate::report::markdown::counted;
 use crate::report::publication_reasons;
-use crate::study::{KnownRows, Layout, Snapshot, State, Study, Texts};
+use crate::study::{Item, KnownRows, Layout, Reason, Snapshot, State, Study, Texts};
 
-/// Where in a file of the study a part of its meaning is written.
-fn line_in(texts: &Texts, file: &str, path: &[String]) -> Option<usize> {
-    line_of(std::str::from_utf8(texts.files.get(file)?).ok()?, path)
+/// What a run would have to do for an experiment.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Standing {
+    UpToDate,
+    Stale,
+    Failed,
+    ReportStale,
 }
 
-/// What is told of an experiment for which there is nothing to do.
-const UP_TO_DATE: &str = "up to date";
-
-/// The line of an experiment; ids take up as much room as the longest.
-fn line(id: &str, width: usize, state: &str) -> String {
-    format!("{id:width$}  {state}\n")
-}
-
-/// Room for the longest of these ids.
-fn width<'a>(ids: impl Iterator<Item = &'a str>) -> usize {
-    ids.map(str::len).max().unwrap_or(0)
-}
-
-/// The last line.
-fn total(all: usize, simulations: usize, reports: usize) -> String {
-    match (simulations, reports) {
-        (0, 0) => format!("{all} experiments, all up to date\n"),
-        _ => format!("{all} experiments: {simulations} to simulate, {reports} reports to renew\n"),
+impl Standing {
+    fn label(self) -> &'static str {
+        match self {
+            Self::UpToDate => "up to date",
+            Self::Stale => "stale",
+            Self::Failed => "failed",
+            Self::ReportStale => "report stale",
+        }
     }
 }
 
-/// One line an experiment, and below it why.
+/// One line for each experiment that is not up to date, below it why, and the number of the others.
 pub(super) fn status(layout: &Layout, args: &StatusArgs) -> Result<Exit, CliError> {
     let texts = Texts::read(layout)?;
-    // The short way: as after the last complete run, which left everything up to date.
-    if args.choice.is_all() && Snapshot::current(layout, &texts).is_some() {
-        let ids = texts.ids();
-        let width = width(ids.iter().copied());
-        let lines: String = ids.iter().map(|id| line(id, width, UP_TO_DATE)).collect();
-        print(&format!("{lines}{}", total(ids.len(), 0, 0)))?;
+    let snapshot = Snapshot::current(layout, &texts);
+    if let Some(ids) = matched(&snapshot, &texts, &args.choice) {
+        print(&total(ids.len(), 0, 0))?;
         return Ok(Exit::AsExpected);
     }
-    let study = Study::new(layout.clone(), texts);
+    let study = Study::beside(layout.clone(), texts, snapshot.experiments);
     let chosen = choose(&study, &args.choice)?;
     print_unread(chosen.unread.iter().copied());
-    let width = width(chosen.items.iter().map(|item| item.source.experiment.id.0.as_str()));
+    let stale = stale(&study, &chosen);
+    let width = stale.iter().map(|(item, ..)| item.source.experiment.id.0.len()).max().unwrap_or(0);
     let mut text = String::new();
-    let (mut simulations, mut reports) = (0, 0);
-    for item in &chosen.items {
-        let mut reasons = item.reasons();
-        let state = match &item.state {
-            State::Stale(_) => "stale",
-            State::Failed(_) => "failed",
-            State::Current(_) => {
-                reasons = publication_reasons(&study, item);
-                if reasons.is_empty() { UP_TO_DATE } else { "report stale" }
-            }
-        };
-        match state {
-            UP_TO_DATE => {}
-            "report stale" => reports += 1,
-            _ => simulations += 1,
-        }
-        text += &line(&item.source.experiment.id.0, width, state);
+    for (item, standing, reasons) in &stale {
+        text += &format!("{:width$}  {}\n", item.source.experiment.id.0, standing.label());
         if args.why {
-            for reason in &reasons {
+            for reason in reasons {
                 text += &format!("    {}\n", reason.describe(|file, path| line_in(&study.texts, file, path)));
             }
-            if let State::Stale(_) = &item.state {
-                let extent = item.extent(layout, &KnownRows::of(layout, item));
-                text += &format!("    {}\n", rows(&extent));
+            if *standing == Standing::Stale {
+                text += &format!("    {}\n", rows(&item.extent(layout, &KnownRows::of(layout, item))));
             }
         }
     }
-    text += &total(chosen.items.len(), simulations, reports);
+    let reports = stale.iter().filter(|(_, standing, _)| *standing == Standing::ReportStale).count();
+    if chosen.count() > 0 {
+        text += &total(chosen.count(), stale.len() - reports, reports);
+    }
     print(&text)?;
     Ok(if !chosen.unread.is_empty() {
         Exit::CouldNot
-    } else if args.exit_code && simulations + reports > 0 {
+    } else if args.exit_code && !stale.is_empty() {
         Exit::Unexpected
     } else {
         Exit::AsExpected
     })
+}
+
+/// The experiments that are not up to date, and why.
+fn stale<'a>(study: &Study, chosen: &Chosen<'a>) -> Vec<(&'a Item, Standing, Vec<Reason>)> {
+    let standing = |item: &'a Item| match &item.state {
+        State::Stale(reasons) => (item, Standing::Stale, reasons.clone()),
+        State::Failed(_) => (item, Standing::Failed, item.reasons()),
+        State::Current(_) => match publication_reasons(study, item) {
+            reasons if reasons.is_empty() => (item, Standing::UpToDate, reasons),
+            reasons => (item, Standing::ReportStale, reasons),
+        },
+    };
+    chosen.items.iter().map(|item| standing(item)).filter(|(_, standing, _)| *standing != Standing::UpToDate).collect()
+}
+
+/// The last line.
+fn total(all: usize, simulations: usize, reports: usize) -> String {
+    let experiments = counted(all, "experiment", "experiments");
+    match all - simulations - reports {
+        current if current == all => format!("{experiments}, all up to date\n"),
+        current => {
+            let reports = counted(reports, "report", "reports");
+            format!("{experiments}: {simulations} to simulate, {reports} to renew, {current} up to date\n")
+        }
+    }
+}
+
+/// The line of a file of the study on which a changed value stands.
+fn line_in(texts: &Texts, file: &str, path: &[String]) -> Option<usize> {
+    line_of(std::str::from_utf8(texts.files.get(file)?).ok()?, path)
 }

@@ -1,22 +1,27 @@
 //! `shotdamp` and `shotdamp run`: simulate what is stale, then judge, draw and write.
 
+use std::collections::{BTreeMap, BTreeSet};
+
 use super::args::{Args, Choice, RunArgs};
 use super::dry_run::dry_run;
 use super::error::CliError;
 use super::exit::Exit;
 use super::output::{print, print_error, print_unread};
-use super::select::{Chosen, choose};
-use super::simulate::{How, Ran, held, simulate, tell_failures};
-use crate::report::{Published, judge_all, publish, summary_of};
+use super::select::{Chosen, choose, matched};
+use super::simulate::{How, Ran, held, print_failures, simulate};
+use crate::report::markdown::counted;
+use crate::report::{Judgement, Published, doubts, judge_all, publish, summary_of};
 use crate::study::{Item, Layout, Lock, RunTimes, Snapshot, State, Study, Texts, save};
 
 /// Brings the chosen experiments up to date.
 pub(super) fn update(layout: &Layout, args: &RunArgs, common: &Args) -> Result<Exit, CliError> {
-    if args.choice.is_all() && !args.force && !args.tables && !args.times {
-        // The short way: no lock, no YAML, no table, no thread.
-        if let Some(snapshot) = Snapshot::current(layout, &Texts::read(layout)?) {
-            print(&format!("Nothing to do.\n{}", snapshot.summary))?;
-            return Ok(Exit::from_code(snapshot.exit_code));
+    if !args.force && !args.tables && !args.times && !args.verify {
+        // Without lock, YAML, table or thread.
+        let texts = Texts::read(layout)?;
+        let snapshot = Snapshot::current(layout, &texts);
+        if let Some(ids) = matched(&snapshot, &texts, &args.choice) {
+            snapshot.settle(layout);
+            return nothing_to_do(&snapshot, &ids);
         }
     }
     if args.dry_run {
@@ -25,19 +30,45 @@ pub(super) fn update(layout: &Layout, args: &RunArgs, common: &Args) -> Result<E
     // Figures are drawn on the shared pool.
     super::start_threads(common);
     let _lock = Lock::of_study(layout, held(args.no_wait))?;
-    let study = Study::new(layout.clone(), Texts::read(layout)?);
+    // Read again: another run may have ended before this one got the lock.
+    let mut study = open_stale(layout, &args.choice, args.force)?;
     let chosen = choose(&study, &args.choice)?;
     print_unread(chosen.unread.iter().copied());
     let todo = todo(&chosen, args);
-    let how = How { threads: common.threads(), quiet: common.quiet, shard: None, anew: args.force };
+    let row_limit = args.row_limit.unwrap_or_default();
+    let how = How { threads: common.threads(), quiet: common.quiet, shard: None, row_limit, from_scratch: args.force };
     let Ran { restored, unsaved } =
         simulate(layout, &todo, how, |item, finished| save(layout, item, finished).map(|_| ()))?;
     if args.times {
-        RunTimes::of(layout, study.items.iter().map(|item| &item.source.experiment.id)).write(layout)?;
+        let known = study.known.values().map(|known| &known.heading.id);
+        RunTimes::of(layout, study.items.iter().map(|item| &item.source.experiment.id).chain(known)).write(layout)?;
     }
     let experiments = todo.len() - restored;
     let done = Done { verb: "simulated", experiments, restored, problems: unsaved, tables_only: args.tables };
-    conclude(layout, study.texts.clone(), &args.choice, done)
+    study.refresh();
+    conclude(&study, &args.choice, done)
+}
+
+/// The study, in which only the experiments are planned that are not known to be up to date, or are chosen and `forced`.
+pub(super) fn open_stale(layout: &Layout, choice: &Choice, forced: bool) -> Result<Study, CliError> {
+    let texts = Texts::read(layout)?;
+    let mut known = Snapshot::current(layout, &texts).experiments;
+    known.retain(|_, known| !forced || !choice.admits_known(known));
+    Ok(Study::beside(layout.clone(), texts, known))
+}
+
+fn nothing_to_do(snapshot: &Snapshot, ids: &BTreeSet<&str>) -> Result<Exit, CliError> {
+    let chosen = snapshot.experiments.iter().filter(|(id, _)| ids.contains(id.as_str()));
+    let verdicts: BTreeMap<_, _> = chosen.map(|(id, known)| (id.clone(), known.judged.clone())).collect();
+    let judgement = Judgement { verdicts, tables: BTreeMap::new() };
+    print(&format!("Nothing to do.\n{}", verdicts_of(&judgement, ids)))?;
+    Ok(Exit::of_verdicts(judgement.verdicts.values().flatten()))
+}
+
+/// The verdicts in words; nothing where there are none.
+fn verdicts_of(judgement: &Judgement, ids: &BTreeSet<&str>) -> String {
+    let judged = ids.iter().any(|id| judgement.verdicts.get(*id).is_some_and(|judged| !judged.is_empty()));
+    if judged { summary_of(judgement, ids) + &doubts(judgement, ids) } else { String::new() }
 }
 
 /// What was done before the verdicts.
@@ -54,33 +85,45 @@ pub(super) struct Done {
     pub tables_only: bool,
 }
 
-/// Judges, draws, writes and tells; from the texts that were read in the beginning, and the results that are on disk now.
-pub(super) fn conclude(layout: &Layout, texts: Texts, choice: &Choice, done: Done) -> Result<Exit, CliError> {
-    let study = Study::new(layout.clone(), texts);
-    let chosen = choose(&study, choice)?;
-    let judgement = judge_all(&study);
+/// Judges, draws, writes and reports; from the texts that were read in the beginning, and the results that are on disk now.
+pub(super) fn conclude(study: &Study, choice: &Choice, done: Done) -> Result<Exit, CliError> {
+    let chosen = choose(study, choice)?;
+    let judgement = judge_all(study);
     // First what went wrong: that nothing can be published may be for the same reason.
     for problem in &done.problems {
         print_error(&format!("error: {problem}\n"));
     }
-    let failed = tell_failures(&chosen);
-    let published = if done.tables_only { Published::default() } else { publish(&study, &judgement, &chosen.ids)? };
+    let failed = print_failures(&chosen);
+    let published = if done.tables_only { Published::default() } else { publish(study, &judgement, &chosen.ids)? };
     for problem in &published.problems {
         print_error(&format!("error: {problem}\n"));
     }
-    let whole_work = done.problems.is_empty() && published.problems.is_empty() && !failed;
-    let exit = chosen.exit(&judgement).max(if whole_work { Exit::AsExpected } else { Exit::CouldNot });
-    let text = summary_of(&judgement, &chosen.ids);
-    if choice.is_all() && whole_work && !done.tables_only && chosen.unread.is_empty() {
-        Snapshot::take(layout, &study.texts, published.outputs, &text, exit.code())?;
-    }
-    let (all, Done { verb, experiments, restored, .. }) = (chosen.items.len(), done);
+    let all_worked = done.problems.is_empty() && published.problems.is_empty() && !failed;
+    let exit = chosen.exit(&judgement).max(if all_worked { Exit::AsExpected } else { Exit::CouldNot });
     let written = published.written;
-    let restored = if restored == 0 { String::new() } else { format!(", {restored} restored") };
-    print(&format!(
-        "{all} experiments: {experiments} {verb}{restored}; {written} figures and reports written.\n{text}"
-    ))?;
+    if !done.tables_only {
+        take_snapshot(study, published)?;
+    }
+    let (all, Done { verb, experiments, restored, .. }) = (chosen.count(), done);
+    if all > 0 {
+        let all = counted(all, "experiment", "experiments");
+        let restored = if restored == 0 { String::new() } else { format!(", {restored} restored") };
+        let written = format!("{} written", counted(written, "figure or report", "figures and reports"));
+        print(&format!("{all}: {experiments} {verb}{restored}; {written}.\n"))?;
+    }
+    print(&verdicts_of(&judgement, &chosen.ids))?;
     Ok(exit)
+}
+
+/// Writes down what is up to date now.
+fn take_snapshot(study: &Study, published: Published) -> Result<(), CliError> {
+    // A calibration that cannot be read has a say in every verdict.
+    if study.unread.iter().any(|one| one.file().starts_with("calibrations/")) {
+        return Ok(());
+    }
+    let Published { experiments, of_the_study, .. } = published;
+    let kept = study.known.keys().map(String::as_str).collect();
+    Ok(Snapshot::take(&study.layout, &study.texts, &study.sheet, &kept, experiments, &of_the_study)?)
 }
 
 /// What there is to do, among the chosen ones.

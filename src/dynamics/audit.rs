@@ -10,6 +10,7 @@
 //! Both hold in chaotic runs too. They cannot show an event that was missed altogether; that is the search's certificate.
 
 use super::block::Kernel;
+use super::budget;
 use super::flow::{DrivePhase, Flow};
 use super::integral::GAUSS;
 use super::system::{HybridSystem, dot};
@@ -170,7 +171,7 @@ impl Audit {
         let mut t0 = 0.0;
         // Σ w c over all nodes: where nothing but the blocks moves, their mean is all that positions and rates need.
         let mut sum = vec![0.0; start.len()];
-        while t0 < length {
+        while t0 < length && !budget::spend(2) {
             let h = dissipation.panel(flow, |i| from[i].abs()).min(length - t0);
             nodes.set(flow, h);
             for ([x, weight], kernels) in GAUSS.iter().zip(&nodes.within) {

@@ -67,7 +67,13 @@ impl Dissipation {
     /// Length of a quadrature panel: short against the force, and against every block that still moves visibly; `size` is
     /// the modulus of a coordinate.
     pub(crate) fn panel(&self, flow: &Flow, size: impl Fn(usize) -> f64) -> f64 {
-        let of = |k: usize| self.largest[2 * k] * size(2 * k) + self.largest[2 * k + 1] * size(2 * k + 1);
+        // With what turns into it: a block at rest away from its place has no rate yet.
+        let of = |k: usize| {
+            let ([p, q, r, s], radius) = (flow.modes.spectral.matrices[k], flow.blocks[k].radius);
+            let (x, y) = (size(2 * k), size(2 * k + 1));
+            let turned = |a: f64, b: f64| if radius > 0.0 { (a.abs() * x + b.abs() * y) / radius } else { 0.0 };
+            self.largest[2 * k] * (x + turned(p, q)) + self.largest[2 * k + 1] * (y + turned(r, s))
+        };
         let total: f64 = (0..flow.own).map(of).sum();
         let driven = flow.blocks.get(flow.own).map_or(0.0, |block| block.radius);
         let fastest = (0..flow.own)

@@ -34,6 +34,7 @@ mod stretch;
 mod vector;
 
 use super::audit::{Audit, Passed};
+use super::budget;
 use super::cholesky::Cholesky;
 use super::contact::{Relative, Side};
 use super::flow::Flow;
@@ -46,6 +47,10 @@ use vector::Vector;
 
 /// Propagators kept; equivalent viscous damping makes new ones at every half cycle.
 const MOST_PROPAGATORS: usize = 64;
+/// Steps between two questions for what is left of the allowance.
+const STEPS_A_STRETCH: u64 = 1024;
+/// What a stretch counts as, about.
+const UNITS_A_STRETCH: u32 = 16;
 
 /// Runs a system.
 pub(super) fn run(system: &HybridSystem, options: &Options, time_step: f64) -> Result<Response, EngineError> {
@@ -153,6 +158,7 @@ impl<'a, V: Vector> Run<'a, V> {
         let skip = u64::from(self.options.skip);
         for cycle in 0..self.options.cycles() {
             self.cycle = cycle;
+            budget::reach(cycle, self.options.cycles());
             if cycle == skip {
                 self.begin_window();
             }
@@ -213,7 +219,10 @@ impl<'a, V: Vector> Run<'a, V> {
             if self.step == self.samples.step {
                 self.sample();
             }
-            let steps = until.min(self.samples.step) - self.step;
+            let steps = (until.min(self.samples.step) - self.step).min(STEPS_A_STRETCH);
+            if budget::spend(UNITS_A_STRETCH) {
+                return Err(budget::overrun().into());
+            }
             let propagator = &self.propagators[self.now];
             let end = if audited {
                 self.motion.stretch::<true>(propagator, &self.watch, steps, &mut self.tally)

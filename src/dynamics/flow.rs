@@ -292,6 +292,11 @@ impl Flow {
         self.blocks.iter().all(|block| block.radius * time < 5e-6)
     }
 
+    /// So short a time that its slowest block has hardly turned.
+    pub(crate) fn is_brief(&self, time: f64) -> bool {
+        self.blocks[..self.own].iter().any(|block| block.radius * time < super::integral::BRIEF)
+    }
+
     /// Seconds for which it may be followed without a new start.
     pub(crate) fn lasts(&self) -> f64 {
         self.modes.spectral.lasts

@@ -8,8 +8,8 @@
 //! solved when all are over, for every observed signal at once. Where two eigenvalues nearly cancel (undamped motion) G
 //! would lose digits, and [`super::integral::quadrature`] takes its place.
 
+use super::Sums;
 use super::block::{Block, form, pairs, transposed};
-use super::integral::Integrals;
 use super::lyapunov::{Lyapunov, NEARLY_NEUTRAL};
 use super::signals::Row;
 
@@ -145,22 +145,24 @@ impl Closed {
 }
 
 impl Integrated {
-    /// The integrals of a signal, of its square if `displacement`, and of its rate's square.
-    pub(crate) fn of(&self, row: &Row, displacement: bool) -> Integrals {
+    /// The measures of a signal; velocities alone unless `displacement`.
+    pub(crate) fn of(&self, row: &Row, displacement: bool) -> Sums {
         let rates: Vec<f64> = row.weights.iter().flat_map(|[.., r0, r1]| [*r0, *r1]).collect();
-        let rate_square = form(&self.second, &rates);
-        if !displacement {
-            return Integrals { rate_square, ..Integrals::default() };
+        let [t, ft, fft] = self.time;
+        let sums = Sums { duration: t, velocity_square: form(&self.second, &rates), ..Sums::default() };
+        if !displacement || t == 0.0 {
+            return sums;
         }
         let values: Vec<f64> = row.weights.iter().flat_map(|[v0, v1, ..]| [*v0, *v1]).collect();
         let along = |sums: &[f64]| values.iter().zip(sums).fold(0.0, |sum, (v, c)| sum + v * c);
-        let (moved, forced) = (along(&self.first), along(&self.forced));
-        let (gravity, force, [t, ft, fft]) = (row.gravity.p0, row.force.p0, self.time);
-        let rest_square = gravity * gravity * t + 2.0 * gravity * force * ft + force * force * fft;
-        Integrals {
-            value: moved + gravity * t + force * ft,
-            square: form(&self.second, &values) + 2.0 * (gravity * moved + force * forced) + rest_square,
-            rate_square,
+        let force = row.force.p0;
+        // From where gravity alone would hold it.
+        let moved = along(&self.first) + force * ft;
+        let square = form(&self.second, &values) + force * (2.0 * along(&self.forced) + force * fft);
+        Sums {
+            displacement: moved + row.gravity.p0 * t,
+            deviation_square: (square - moved * (moved / t)).max(0.0),
+            ..sums
         }
     }
 }
@@ -202,8 +204,8 @@ mod tests {
         gains.visit(&start, &end, level, duration);
         let closed = Closed::new(&blocks, &matrices, Some(omega)).unwrap();
         let integrals = closed.solve(&gains).of(&row, true);
-        assert!((integrals.value / sampled.value - 1.0).abs() < 1e-12);
-        assert!((integrals.square / sampled.square - 1.0).abs() < 1e-12);
-        assert!((integrals.rate_square / sampled.rate_square - 1.0).abs() < 1e-12);
+        assert!((integrals.displacement / sampled.displacement - 1.0).abs() < 1e-12);
+        assert!((integrals.deviation_square / sampled.deviation_square - 1.0).abs() < 1e-12);
+        assert!((integrals.velocity_square / sampled.velocity_square - 1.0).abs() < 1e-12);
     }
 }

@@ -161,6 +161,22 @@ fn start(distance: f64, rate: f64, smooth: bool, phases: &[Phase], size: f64) ->
     }
 }
 
+/// A particle in flight relative to its ceiling, of a structure at q and q′; what rounding has left of rest there is rest.
+#[inline]
+pub(crate) fn above(particle: &Particle, here: Relative, q: &[f64], q_rate: &[f64]) -> Option<Relative> {
+    let ceiling = particle.ceiling.as_ref()?;
+    if ceiling.row == particle.floor.row {
+        return Some(Relative { gap: here.gap - particle.gap, rate: here.rate });
+    }
+    let shift = |x: &[f64]| dot(&ceiling.row, x) - dot(&particle.floor.row, x);
+    let size = |x: &[f64]| [&ceiling.row, &particle.floor.row].map(|row| magnitude(row, x)).iter().sum::<f64>();
+    let known = |value: f64, size: f64| if value.abs() <= 4.0 * f64::EPSILON * size { 0.0 } else { value };
+    Some(Relative {
+        gap: known(here.gap - particle.gap - shift(q), particle.gap + size(q)),
+        rate: known(here.rate - shift(q_rate), size(q_rate)),
+    })
+}
+
 #[inline]
 fn in_flight(
     state: Contacts<'_>,
@@ -185,21 +201,14 @@ fn in_flight(
         start: start(here.gap, here.rate, state.smooth[j], phases, 0.0),
         distance: true,
     });
-    let Some(ceiling) = &particle.ceiling else { return path };
-    let (relative, above, phases) = if ceiling.row == particle.floor.row {
-        let relative = Relative { gap: here.gap - particle.gap, rate: here.rate };
-        (relative, Parabola { p0: path.p0 - particle.gap, ..path }, phases)
+    let (Some(ceiling), Some(relative)) = (&particle.ceiling, above(particle, here, state.q, state.rate)) else {
+        return path;
+    };
+    let (above, phases) = if ceiling.row == particle.floor.row {
+        (Parabola { p0: path.p0 - particle.gap, ..path }, phases)
     } else {
-        let shift = |x: &[f64]| dot(&ceiling.row, x) - dot(&particle.floor.row, x);
-        // Referred to the floor, the rest at the ceiling is known to rounding: there it is rest all the same.
-        let size = |x: &[f64]| [&ceiling.row, &particle.floor.row].map(|row| magnitude(row, x)).iter().sum::<f64>();
-        let known = |value: f64, size: f64| if value.abs() <= 4.0 * f64::EPSILON * size { 0.0 } else { value };
-        let relative = Relative {
-            gap: known(here.gap - particle.gap - shift(state.q), particle.gap + size(state.q)),
-            rate: known(here.rate - shift(state.rate), size(state.rate)),
-        };
         let (phases, rest) = signals.of(rows.second);
-        (relative, flight_path(flow, rest, phases, relative, gravity), phases)
+        (flight_path(flow, rest, phases, relative, gravity), phases)
     };
     guards.push(Guard {
         particle: j,

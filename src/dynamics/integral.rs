@@ -1,46 +1,49 @@
 //! Integrals of a signal over a segment, by Gauss-Legendre panels so short that they are exact to rounding: for motion
-//! without damping, where the closed forms of [`super::gains`] lose their digits.
+//! without damping and for brief stretches, where the closed forms of [`super::gains`] lose their digits.
 
+use super::Sums;
 use super::block::{Block, Phase};
+use super::budget;
 use super::flow::Parabola;
 
-/// ∫ s, ∫ s², ∫ s′² of a signal.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub(crate) struct Integrals {
-    pub(crate) value: f64,
-    pub(crate) square: f64,
-    pub(crate) rate_square: f64,
-}
+/// Times the slowest turn of a contact state: stretches shorter than this leave next to nothing of the differences of end values
+/// that the closed forms are made of.
+pub(crate) const BRIEF: f64 = 0.05;
 
-impl Integrals {
-    /// The same of the signal plus a constant.
-    pub(crate) fn offset(self, constant: f64, duration: f64) -> Self {
-        Self {
-            value: self.value + constant * duration,
-            square: self.square + constant * (2.0 * self.value + constant * duration),
-            rate_square: self.rate_square,
-        }
+/// The measures of a signal with its parabola, by panels that are exact to rounding.
+pub(crate) fn quadrature(blocks: &[Block], start: &[Phase], rest: Parabola, duration: f64) -> Sums {
+    // About a place on the way: the mean would do as well.
+    let place = start.iter().fold(rest.p0, |sum, phase| sum + phase.value);
+    let [moved, square, velocity_square] = integrals(blocks, start, rest, duration, place);
+    Sums {
+        duration,
+        displacement: place * duration + moved,
+        deviation_square: (square - moved * moved / duration).max(0.0),
+        velocity_square,
     }
 }
 
-/// Integrals of a signal with its parabola, by panels that are exact to rounding.
-pub(crate) fn quadrature(blocks: &[Block], start: &[Phase], rest: Parabola, duration: f64) -> Integrals {
+/// ∫ (s − place), ∫ (s − place)² and ∫ s′² of a signal.
+pub(crate) fn integrals(blocks: &[Block], start: &[Phase], rest: Parabola, duration: f64, place: f64) -> [f64; 3] {
     let radius = blocks.iter().fold(0.0_f64, |largest, block| largest.max(block.radius));
     let count = panels(radius, duration);
     let h = duration / count as f64;
-    let mut sum = Integrals::default();
+    let mut sum = [0.0; 3];
     for panel in 0..count {
+        if budget::spend(1) {
+            break;
+        }
         for [x, weight] in GAUSS {
             let t = (panel as f64 + x) * h;
-            let (mut value, mut rate) = (rest.at(t), rest.rate(t));
+            let (mut value, mut rate) = (rest.at(t) - place, rest.rate(t));
             for (block, phase) in blocks.iter().zip(start) {
                 let now = block.advance(*phase, block.kernel(t));
                 value += now.value;
                 rate += now.rate;
             }
-            sum.value += weight * h * value;
-            sum.square += weight * h * value * value;
-            sum.rate_square += weight * h * rate * rate;
+            sum[0] += weight * h * value;
+            sum[1] += weight * h * value * value;
+            sum[2] += weight * h * rate * rate;
         }
     }
     sum

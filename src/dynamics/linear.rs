@@ -21,10 +21,10 @@ use self::cycle::{Cycle, drive_at, enter, leave};
 use self::moments::Moments;
 use self::signal::{Row, integrals};
 use super::audit::Audit;
+use super::budget;
 use super::cholesky::Cholesky;
 use super::contact_state::contact_damping;
 use super::flow::{DrivePhase, Flow};
-use super::integral::Integrals;
 use super::states::States;
 use super::system::{Contact, HybridSystem, Law, Tick, dot};
 use super::{
@@ -114,13 +114,11 @@ pub(crate) fn steady_state(system: &HybridSystem) -> Result<Option<SteadyState>,
     let Some(margin) = watch.margin() else { return Ok(None) };
     let rows: Vec<Row> = flow.rows.observed.iter().map(|&row| Row::new(&flow, row)).collect();
     let at = Moments::over(&cycle.map, &steady, 1);
-    let (duration, parts) = integrals(system, &flow, &rows, &cycle, &at, true);
-    let motion = |(row, part): (&Row, Integrals)| {
+    let parts = integrals(system, &flow, &rows, &cycle, &at, true);
+    let motion = |(row, part): (&Row, Sums)| {
         let mut extremes = Extremes::default();
         range::take(system, &flow, row, &cycle, &steady, 1, &mut extremes);
-        let mut sums = Sums::default();
-        sums.add(part, duration);
-        SteadyMotion { cycle: sums, extremes }
+        SteadyMotion { cycle: part, extremes }
     };
     Ok(Some(SteadyState { observed: rows.iter().zip(parts).map(motion).collect(), margin }))
 }
@@ -219,6 +217,9 @@ impl<'a> Run<'a> {
         let mut state = self.starts[0].clone();
         let mut all = Vec::new();
         for number in 0..cycles {
+            if budget::spend(1) {
+                break;
+            }
             let cycle = if number == 0 { &self.first } else { &self.regular };
             let after = cycle.segments.first().map_or_else(|| state.clone(), |segment| segment.jump.apply(&state));
             state = cycle.map.apply(&state);
@@ -241,9 +242,9 @@ impl<'a> Run<'a> {
         };
         for half in 0..2 {
             for Stretch { cycle, at, .. } in self.stretch(bounds[half], bounds[half + 1]) {
-                let (duration, parts) = integrals(system, flow, &rows, cycle, &at, options.displacement);
+                let parts = integrals(system, flow, &rows, cycle, &at, options.displacement);
                 for (part, of) in parts.into_iter().zip(&mut response.observed) {
-                    of.halves[half].add(part, duration);
+                    of.halves[half].add(part);
                 }
             }
         }

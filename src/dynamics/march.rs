@@ -11,13 +11,14 @@ use std::rc::Rc;
 
 use super::audit::{Audit, Force};
 use super::block::Phase;
+use super::budget;
 use super::cholesky::Cholesky;
 use super::contact::{Relative, Side};
 use super::contact_state::contact_damping;
 use super::extremes;
 use super::flow::{DrivePhase, Flow, Parabola};
 use super::guards::{self, Contacts};
-use super::integral::quadrature;
+use super::integral::{integrals, quadrature};
 use super::mobility::Mobilities;
 use super::search::{Clarity, Found, Search};
 use super::signals::{self, Signals};
@@ -182,6 +183,7 @@ impl<'a> March<'a> {
         for cycle in 0..cycles {
             self.cycle = cycle;
             self.time = 0.0;
+            budget::reach(cycle, cycles);
             if cycle == u64::from(self.options.skip) {
                 self.begin_window();
             }
@@ -278,6 +280,7 @@ impl<'a> March<'a> {
 
     fn record_at(&mut self, particle: usize, kind: EventKind, time: f64, approach: f64, departure: f64) {
         self.response.proof.events += 1;
+        budget::count_event();
         if self.options.averages(self.cycle) {
             self.response.counts.add(kind);
         }
@@ -335,6 +338,9 @@ impl<'a> March<'a> {
         let mut last = self.time;
         while self.time < until {
             self.segment(until)?;
+            if budget::spend(1) {
+                return Err(budget::overrun().into());
+            }
             if self.time > last + instant {
                 (stuck, last) = (0, self.time);
             }
@@ -397,11 +403,16 @@ impl<'a> March<'a> {
     fn arrive(&mut self, length: f64, end_drive: DrivePhase) {
         let n = self.system.mass.order;
         let flow = &self.flow;
+        let mut kept = Vec::new();
         for (j, particle) in self.system.particles.iter().enumerate() {
             let contact = self.contacts[j];
             if contact.face(particle).is_none() {
-                if self.smooth[j] && self.particles[j] == Relative::default() && flow.is_short(length) {
+                if self.smooth[j]
+                    && flow.is_short(length)
+                    && let Some(side) = self.lies_at(j)
+                {
                     // Let go at the same instant as another: u = u‴t³/6 is still nothing, and is kept so to the bit.
+                    kept.push((j, side));
                     continue;
                 }
                 let (phases, _) = self.signals.of(flow.rows.guards[j].first);
@@ -412,6 +423,13 @@ impl<'a> March<'a> {
             self.smooth[j] &= length == 0.0;
         }
         flow.leave(&self.c_end, length, self.level, end_drive, &mut self.q, &mut self.rate);
+        for (j, side) in kept {
+            self.particles[j] = Relative::default();
+            if side == Side::Ceiling {
+                self.refer_to_floor(j);
+            }
+        }
+        let flow = &self.flow;
         let short = guards::is_short(flow, length);
         for (i, &j) in flow.modes.attached.iter().enumerate() {
             self.particles[j] = match flow.rows.faces[j].compression {
@@ -432,10 +450,11 @@ impl<'a> March<'a> {
                 self.pay_out();
                 self.visits.half = usize::from(second_half);
             }
-            if self.flow.closed.is_some() {
+            let closed = self.has_closed_forms();
+            if closed {
                 self.visits.of(&self.flow).visit(&self.c, &self.c_end, self.level, length);
             }
-            if self.flow.closed.is_none() || self.options.extremes {
+            if !closed || self.options.extremes {
                 self.look_along(length);
             }
         }
@@ -447,18 +466,26 @@ impl<'a> March<'a> {
         }
         if let (Some(bend), false) = (flow.rows.bend, self.half.idle) {
             let bends = self.signals.of(bend).0;
-            self.half.square += quadrature(&flow.blocks, bends, Parabola::default(), length).square;
+            self.half.square += integrals(&flow.blocks, bends, Parabola::default(), length, 0.0)[1];
             self.half.length += length;
         }
     }
 
+    /// The integrals are differences of end values: not of motion without damping, nor between jumps of the force that follow
+    /// each other within a small part of the slowest turn.
+    fn has_closed_forms(&self) -> bool {
+        let drive = &self.system.drive;
+        self.flow.closed.is_some() && !self.flow.is_brief(drive.period / drive.ticks.len().max(1) as f64)
+    }
+
     /// What has to be taken from the observed signals themselves.
     fn look_along(&mut self, length: f64) {
+        let sampled = length > 0.0 && !self.has_closed_forms();
         let flow = &self.flow;
         for (of, &row) in self.response.observed.iter_mut().zip(&flow.rows.observed) {
             let (observed, rest) = flow.rows.evaluate(row, &self.c, self.level, flow.blocks.len());
-            if flow.closed.is_none() {
-                of.halves[self.visits.half].add(quadrature(&flow.blocks, &observed, rest, length), length);
+            if sampled {
+                of.halves[self.visits.half].add(quadrature(&flow.blocks, &observed, rest, length));
             }
             if self.options.extremes {
                 extremes::take(&mut of.extremes, &flow.blocks, &observed, rest, length);

@@ -19,6 +19,7 @@
 mod audit;
 mod bank;
 mod block;
+mod budget;
 mod cholesky;
 mod cluster;
 mod collision;
@@ -39,6 +40,8 @@ mod march;
 mod mobility;
 mod modes;
 mod polynomial;
+mod residual_bound;
+mod schur;
 mod search;
 mod series;
 mod signals;
@@ -50,6 +53,7 @@ mod trace;
 mod visits;
 mod window;
 
+pub use budget::{Allowance, Exhausted, Limit, Overrun, in_words};
 pub use spline::Spline;
 pub use system::{
     Contact, Drive, Event, EventKind, Face, HalfCycles, Harmonic, HybridSystem, Law, Matrix, Particle, Stop, Tick, dot,
@@ -57,15 +61,18 @@ pub use system::{
 pub use trace::{Sample, TraceRequest};
 
 /// Changes whenever the same scene may give other bits. A test holds the bits of fixed scenes against it.
-pub const SOLVER_VERSION: u32 = 4;
+pub const SOLVER_VERSION: u32 = 5;
 
 /// What proves a run: residuals of the balances, and how clearly its events were decided.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Proof {
     /// |Σ impulses − momentum gained − impulse of springs, dashpots and gravity| over the impulse that passed or was carried, dimensionless.
     pub momentum_residual: f64,
     /// |work of the excitation − energy gained − energy dissipated| over the energy that passed, dimensionless.
     pub energy_residual: f64,
+    /// What both may be at most if nothing but rounding is in them; infinite where nobody audited, and for the fixed step, whose
+    /// residuals are the error of its step.
+    pub residual_bound: f64,
     /// Events of the whole run: contacts made and lost, stops hit; impulses not counted.
     pub events: u64,
     /// The smallest distance, in metres, by which a surface would have to be moved for the sequence of events to change; NaN
@@ -73,6 +80,20 @@ pub struct Proof {
     pub smallest_margin: f64,
     /// Decisions within rounding: simultaneous events that had to be put into an order, contacts that graze.
     pub ties: u64,
+}
+
+impl Default for Proof {
+    /// Of a run that nobody audited.
+    fn default() -> Self {
+        Self {
+            momentum_residual: 0.0,
+            energy_residual: 0.0,
+            residual_bound: f64::INFINITY,
+            events: 0,
+            smallest_margin: 0.0,
+            ties: 0,
+        }
+    }
 }
 
 /// How a system is run.
@@ -158,8 +179,8 @@ pub struct Sums {
     pub duration: f64,
     /// ∫ x dt.
     pub displacement: f64,
-    /// ∫ x² dt.
-    pub displacement_square: f64,
+    /// ∫ (x − x̄)² dt, x̄ the mean: about zero a motion far from it would lose its digits.
+    pub deviation_square: f64,
     /// ∫ v² dt.
     pub velocity_square: f64,
 }
@@ -281,22 +302,30 @@ impl Observed {
     /// Both halves of the averaged window.
     #[must_use]
     pub fn window(&self) -> Sums {
-        let [a, b] = self.halves;
-        Sums {
-            duration: a.duration + b.duration,
-            displacement: a.displacement + b.displacement,
-            displacement_square: a.displacement_square + b.displacement_square,
-            velocity_square: a.velocity_square + b.velocity_square,
-        }
+        let [mut whole, second] = self.halves;
+        whole.add(second);
+        whole
     }
 }
 
 impl Sums {
-    pub(crate) fn add(&mut self, more: integral::Integrals, duration: f64) {
-        self.duration += duration;
-        self.displacement += more.value;
-        self.displacement_square += more.square;
-        self.velocity_square += more.rate_square;
+    /// The same over both stretches.
+    pub(crate) fn add(&mut self, more: Self) {
+        let duration = self.duration + more.duration;
+        if self.duration > 0.0 && more.duration > 0.0 {
+            let apart = more.displacement / more.duration - self.displacement / self.duration;
+            self.deviation_square += apart * apart * (self.duration * (more.duration / duration));
+        }
+        self.duration = duration;
+        self.displacement += more.displacement;
+        self.deviation_square += more.deviation_square;
+        self.velocity_square += more.velocity_square;
+    }
+
+    /// Of raw sums, about zero.
+    pub(crate) fn of_raw(duration: f64, displacement: f64, square: f64, velocity_square: f64) -> Self {
+        let deviation_square = (square - displacement * (displacement / duration)).max(0.0);
+        Self { duration, displacement, deviation_square, velocity_square }
     }
 
     /// RMS velocity, m/s.
@@ -314,8 +343,7 @@ impl Sums {
     /// Standard deviation of the displacement, m.
     #[must_use]
     pub fn std_displacement(&self) -> f64 {
-        let mean = self.mean_displacement();
-        (self.displacement_square / self.duration - mean * mean).max(0.0).sqrt()
+        (self.deviation_square / self.duration).sqrt()
     }
 }
 
@@ -324,7 +352,7 @@ impl Sums {
 pub struct SteadyState {
     /// In the order of [`HybridSystem::observed_rows`].
     pub observed: Vec<SteadyMotion>,
-    /// How far, in metres, every particle stays from leaving its floor; infinite where there is none.
+    /// A lower bound on how far, in metres, every particle stays from leaving its floor; infinite where there is none.
     pub margin: f64,
 }
 
@@ -395,6 +423,9 @@ pub enum EngineError {
         /// s.
         period: f64,
     },
+    /// Its allowance was used up first.
+    #[error(transparent)]
+    Overrun(#[from] Overrun),
     /// Overflow.
     #[error("the motion leaves the range of numbers in cycle {cycle}")]
     NotFinite {
@@ -408,11 +439,15 @@ pub enum EngineError {
 /// # Errors
 /// [`EngineError`] with the reason.
 pub fn event_driven(system: &HybridSystem, options: &Options) -> Result<Response, EngineError> {
-    let states = states::States::of(system);
-    match linear::attempt(system, options, &states)? {
-        linear::Attempt::Solved(response) => Ok(*response),
-        linear::Attempt::Open => march::march(system, options, states),
-    }
+    budget::within(|| {
+        let states = states::States::of(system);
+        let mut response = match linear::attempt(system, options, &states)? {
+            linear::Attempt::Solved(response) => *response,
+            linear::Attempt::Open => march::march(system, options, states)?,
+        };
+        residual_bound::enter(system, options, &mut response);
+        Ok(response)
+    })
 }
 
 /// True where it is proved, without a simulation, that no particle leaves its floor in the run: it is then in closed form, and
@@ -421,7 +456,7 @@ pub fn event_driven(system: &HybridSystem, options: &Options) -> Result<Response
 /// # Errors
 /// [`EngineError`] with the reason.
 pub fn is_linear(system: &HybridSystem, options: &Options) -> Result<bool, EngineError> {
-    let attempt = linear::attempt(system, options, &states::States::of(system))?;
+    let attempt = budget::within(|| linear::attempt(system, options, &states::States::of(system)))?;
     Ok(matches!(attempt, linear::Attempt::Solved(_)))
 }
 
@@ -431,7 +466,7 @@ pub fn is_linear(system: &HybridSystem, options: &Options) -> Result<bool, Engin
 /// # Errors
 /// [`EngineError`] with the reason.
 pub fn steady_state(system: &HybridSystem) -> Result<Option<SteadyState>, EngineError> {
-    linear::steady_state(system)
+    budget::within(|| linear::steady_state(system))
 }
 
 /// Runs a system with the study's scheme: exact propagators of one time step, s, the contact state checked once a step.
@@ -439,5 +474,5 @@ pub fn steady_state(system: &HybridSystem) -> Result<Option<SteadyState>, Engine
 /// # Errors
 /// [`EngineError`] with the reason.
 pub fn fixed_step(system: &HybridSystem, options: &Options, time_step: f64) -> Result<Response, EngineError> {
-    fixed::run(system, options, time_step)
+    budget::within(|| fixed::run(system, options, time_step))
 }

@@ -17,6 +17,7 @@
 
 use super::bank::Bank;
 use super::block::{Block, Kernel, Phase};
+use super::budget;
 use super::contact::Crossing;
 use super::flow::{Flow, Parabola};
 use super::polynomial::nearest_root;
@@ -208,7 +209,7 @@ impl Search {
         let mut horizon = limit;
         loop {
             let (guard, clear) = self.least_clear();
-            if !(clear < horizon - instant) {
+            if !(clear < horizon - instant) || budget::spend(1) {
                 break;
             }
             let Look::Root(root) = self.look(motion, signals, guard, horizon, limit, clarity) else { continue };

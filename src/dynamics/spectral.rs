@@ -4,10 +4,11 @@
 //! above the diagonal (Bavely & Stewart, SIAM J. Numer. Anal. 16, 1979). A block keeps a complex pair or two real
 //! eigenvalues *together*, so a critically damped contact needs no eigenvectors and costs no digits.
 
-use nalgebra::{ComplexField, DMatrix, Schur};
+use nalgebra::{ComplexField, DMatrix};
 
 use super::EngineError;
 use super::block::Block;
+use super::schur::schur;
 
 /// e^(At) = V diag(e^(Bₖt)) W, with W = V⁻¹ where there are as many blocks as coordinates ask for.
 pub(crate) struct Spectral {
@@ -58,8 +59,7 @@ impl Spectral {
         let a = DMatrix::from_row_slice(order, order, matrix);
         let creeps = a.column_iter().any(|column| column.iter().all(|entry| *entry == 0.0));
         let norm = a.iter().fold(0.0_f64, |largest, x| largest.max(x.abs()));
-        let schur = Schur::try_new(a, f64::EPSILON, 200 * order).ok_or(EngineError::NoSchurForm { order })?;
-        let (mut q, mut t) = schur.unpack();
+        let [mut q, mut t] = schur(a)?;
         let firsts = gather(&mut q, &mut t);
         let (x, y) = decouple(&t, &firsts);
         if !(largest(&x) * largest(&y) < WORST_CONDITION) {

@@ -27,7 +27,7 @@ impl Spline {
     #[must_use]
     pub fn at(&self, x: f64) -> f64 {
         let last = self.x.len() - 1;
-        if x <= self.x[0] {
+        if !(x > self.x[0]) {
             return self.y[0];
         }
         if x >= self.x[last] {

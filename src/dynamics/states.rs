@@ -9,6 +9,7 @@ use std::collections::BTreeMap;
 use std::rc::Rc;
 
 use super::EngineError;
+use super::budget;
 use super::contact_state::Modes;
 use super::flow::Flow;
 use super::system::{Contact, HybridSystem, Particle};
@@ -73,6 +74,11 @@ impl States {
         damping: &[f64],
     ) -> Result<Rc<Flow>, EngineError> {
         let build = || {
+            let order = system.mass.order + contacts.len();
+            // About what the Schur form of a matrix of twice the order takes.
+            if budget::spend_ahead(u32::try_from(order.saturating_pow(3) / 8).unwrap_or(u32::MAX)) {
+                return Err(budget::overrun().into());
+            }
             let modes = visit(
                 &self.0.undriven.modes,
                 contacts,

@@ -49,7 +49,7 @@ impl Visits {
             let Some(closed) = &flow.closed else { continue };
             let integrated = closed.solve(&gains);
             for (of, &row) in observed.iter_mut().zip(&flow.rows.observed) {
-                of.halves[self.half].add(integrated.of(flow.rows.row(row), displacement), gains.time[0]);
+                of.halves[self.half].add(integrated.of(flow.rows.row(row), displacement));
             }
         }
         self.places.clear();

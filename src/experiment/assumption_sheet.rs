@@ -1,30 +1,42 @@
-//! The assumptions file: each input that the study uses and does not state, with value, reason and range.
+//! The assumptions file: each input that a study uses and does not state, with kind, value, reason and range.
+//!
+//! ```yaml
+//! defaults:                          # which assumption stands where an experiment says `assumed` or leaves the slot out
+//!   gravity: gravity                 # on every structure
+//!   modes: {cantilever_beam: beam_modes, supported_plate: plate_modes}
+//! gravity: {quantity: acceleration, value: 9.81 m/s^2, range: [9.80665 m/s^2], reason: The usual rounding.}
+//! ```
 //!
 //! The range is what a reader may believe as well; moving one assumption at a time to its ends gives the sensitivity of
 //! every number to what is not known.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use crate::scene::{Assumption, AssumptionValue, Assumptions, EQUIVALENT_VISCOUS, ImpulseTime};
-
-use super::diagnostic::{Findings, Problems};
+use super::diagnostic::{Findings, Problems, place};
 use super::quantity::Dimension;
 use super::reader::{Fields, above_zero, count, list, no_such, number, ratio, scalar, text, unknown};
-use super::word::{from_word, word_of, words};
+use super::recipe::{AssumptionName, AssumptionValue, Assumptions, Slot};
+use super::word::{from_word, words};
 use super::yaml::{Entry, Node, Value, read_tree};
+use crate::scene::{Curve, KINDS};
 
 /// The assumptions with all that the file says of them.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct AssumptionSheet {
-    /// Entries by name.
-    pub entries: BTreeMap<Assumption, AssumptionEntry>,
+    /// Entries in the order of the file.
+    entries: Vec<(AssumptionName, Arc<AssumptionEntry>)>,
+    /// Which assumption stands for a slot on a kind of structure.
+    defaults: Arc<BTreeMap<(Slot, &'static str), AssumptionName>>,
 }
 
 /// One assumption.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct AssumptionEntry {
+    /// What kind of value it has.
+    pub kind: AssumptionKind,
     /// The value in force.
     pub value: AssumptionValue,
     /// Why this value. Markdown.
@@ -33,92 +45,184 @@ pub struct AssumptionEntry {
     pub range: Vec<AssumptionValue>,
     /// Ids of the reference entries that the value was chosen by: their agreement proves nothing.
     pub fitted_to: Vec<String>,
+    /// The line of the file where it stands.
+    #[serde(skip)]
+    pub line: usize,
+}
+
+/// What kind of value an assumption has: a quantity, one of named readings, or either.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct AssumptionKind {
+    /// What its numbers are; none for readings alone.
+    pub quantity: Option<Quantity>,
+    /// Its readings.
+    pub readings: Vec<String>,
+}
+
+/// What a number, or a curve, is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Quantity {
+    /// Dimensionless, zero or more.
+    Ratio,
+    /// A whole number, one or more.
+    Count,
+    /// A damping curve.
+    #[serde(rename = "damping_curve")]
+    Curve,
+    /// Of this dimension.
+    #[serde(untagged)]
+    Of(Dimension),
+}
+
+/// What a place of a scene takes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Takes<'a> {
+    /// Numbers, or a curve.
+    pub quantity: Option<Quantity>,
+    /// Readings.
+    pub readings: &'a [&'a str],
+}
+
+impl Takes<'_> {
+    /// Of this dimension.
+    #[must_use]
+    pub fn quantity(dimension: Dimension) -> Self {
+        Self { quantity: Some(Quantity::Of(dimension)), readings: &[] }
+    }
+
+    /// Dimensionless.
+    #[must_use]
+    pub fn ratio() -> Self {
+        Self { quantity: Some(Quantity::Ratio), readings: &[] }
+    }
+
+    /// Every value of the kind has a meaning here.
+    #[must_use]
+    pub fn admits(self, kind: &AssumptionKind) -> bool {
+        (kind.quantity.is_none() || kind.quantity == self.quantity)
+            && kind.readings.iter().all(|reading| self.readings.contains(&reading.as_str()))
+    }
+
+    /// In words: `a length`, `one of clean, loaded`.
+    #[must_use]
+    pub fn words(self) -> String {
+        in_words(self.quantity, self.readings)
+    }
+}
+
+impl AssumptionKind {
+    /// In words.
+    #[must_use]
+    pub fn words(&self) -> String {
+        let readings: Vec<&str> = self.readings.iter().map(String::as_str).collect();
+        in_words(self.quantity, &readings)
+    }
+
+    /// Unit symbol of its numbers, empty when dimensionless.
+    #[must_use]
+    pub fn unit(&self) -> &'static str {
+        match self.quantity {
+            Some(Quantity::Of(dimension)) => dimension.unit(),
+            Some(Quantity::Curve) => Dimension::Damping.unit(),
+            Some(Quantity::Ratio | Quantity::Count) | None => "",
+        }
+    }
+}
+
+fn in_words(quantity: Option<Quantity>, readings: &[&str]) -> String {
+    let quantity = quantity.map(|quantity| match quantity {
+        Quantity::Of(dimension) => dimension.name(),
+        Quantity::Ratio => "a dimensionless number",
+        Quantity::Count => "a whole number",
+        Quantity::Curve => "a damping curve",
+    });
+    let readings = if readings.is_empty() { None } else { Some(format!("one of {}", readings.join(", "))) };
+    match (quantity, readings) {
+        (Some(quantity), Some(readings)) => format!("{quantity} or {readings}"),
+        (Some(quantity), None) => quantity.into(),
+        (None, readings) => readings.unwrap_or_default(),
+    }
+}
+
+/// One assumption moved to a value of its range.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Moved {
+    /// Such as `stop_length=0.05`.
+    pub label: String,
+    /// Which.
+    pub name: AssumptionName,
+    /// All values in force then.
+    pub assumptions: Assumptions,
 }
 
 impl AssumptionSheet {
+    /// The entries in the order of the file.
+    pub fn iter(&self) -> impl Iterator<Item = (&AssumptionName, &AssumptionEntry)> {
+        self.entries.iter().map(|(name, entry)| (name, entry.as_ref()))
+    }
+
+    /// The entry of this name.
+    #[must_use]
+    pub fn get(&self, name: &AssumptionName) -> Option<&AssumptionEntry> {
+        self.iter().find(|(known, _)| *known == name).map(|(_, entry)| entry)
+    }
+
+    /// The assumption that stands for a slot on this kind of structure, if the study declares one.
+    #[must_use]
+    pub fn default_of(&self, slot: Slot, structure: &'static str) -> Option<&AssumptionName> {
+        self.defaults.get(&(slot, structure))
+    }
+
+    /// The assumptions that stand for some slot by default.
+    pub fn defaults(&self) -> impl Iterator<Item = &AssumptionName> {
+        self.defaults.values()
+    }
+
     /// The values in force.
     #[must_use]
     pub fn assumptions(&self) -> Assumptions {
-        Assumptions { values: self.entries.iter().map(|(name, entry)| (*name, entry.value.clone())).collect() }
+        let values = self.iter().map(|(name, entry)| (name.clone(), entry.value.clone())).collect();
+        Assumptions { values, sheet: Arc::new(self.clone()) }
     }
 
-    /// One assumption at a time moved to each value of its range, with a label such as `stop_length=0.05`.
+    /// One assumption at a time moved to each value of its range.
     #[must_use]
-    pub fn variants(&self, of: &BTreeSet<Assumption>) -> Vec<(String, Assumptions)> {
+    pub fn variants(&self, of: &BTreeSet<AssumptionName>) -> Vec<Moved> {
         let mut variants = Vec::new();
-        for (name, entry) in self.entries.iter().filter(|(name, _)| of.contains(name)) {
+        let in_force = self.assumptions();
+        for (name, entry) in self.iter().filter(|(name, _)| of.contains(*name)) {
             for (index, value) in entry.range.iter().filter(|value| **value != entry.value).enumerate() {
                 let description = match value {
                     AssumptionValue::Number(number) => number.to_string(),
                     AssumptionValue::Choice(word) => word.clone(),
                     AssumptionValue::Curve(_) => format!("curve_{}", index + 1),
                 };
-                let mut moved = self.assumptions();
-                moved.values.insert(*name, value.clone());
-                variants.push((format!("{}={description}", word_of(*name)), moved));
+                let mut assumptions = in_force.clone();
+                assumptions.values.insert(name.clone(), value.clone());
+                variants.push(Moved { label: format!("{name}={description}"), name: name.clone(), assumptions });
             }
         }
         variants
     }
-}
 
-/// What values an assumption takes.
-#[derive(Clone, Copy)]
-pub(super) enum Kind {
-    Quantity(Dimension),
-    Ratio,
-    /// A damping ratio of contacts, or the equivalent damping curve in its place.
-    ContactDamping,
-    Restitution,
-    Choice(&'static [&'static str]),
-    /// A number of modes.
-    Modes,
-    /// A quantity, or one of these readings.
-    QuantityOr(Dimension, &'static [&'static str]),
-    Curve,
-}
+    /// Names as they are declared, for suggestions.
+    pub(super) fn names(&self) -> Vec<&str> {
+        self.iter().map(|(name, _)| name.as_str()).collect()
+    }
 
-/// Readings of the time by which a force ratio becomes an impulse.
-const IMPULSE_TIMES: [&str; ImpulseTime::WORDS.len()] = {
-    let [(a, _), (b, _), (c, _)] = ImpulseTime::WORDS;
-    [a, b, c]
-};
-
-pub(super) fn kind(name: Assumption) -> Kind {
-    match name {
-        Assumption::Gravity => Kind::Quantity(Dimension::Acceleration),
-        Assumption::StopLength => Kind::Quantity(Dimension::Length),
-        Assumption::StopRestitution => Kind::Restitution,
-        Assumption::ImpulseFactor
-        | Assumption::FloorStiffnessRatio
-        | Assumption::CeilingMassRatio
-        | Assumption::MasslessRatio
-        | Assumption::UntunedFrequencyRatio => Kind::Ratio,
-        Assumption::ContactDampingRatio
-        | Assumption::BeamContactDampingRatio
-        | Assumption::BeamArrayDampingRatio
-        | Assumption::PlateArrayDampingRatio
-        | Assumption::PlateContactDampingRatio => Kind::ContactDamping,
-        Assumption::ImpulseFrequency => Kind::Choice(&["forcing", "natural"]),
-        Assumption::UndampedMass | Assumption::HarmonicReference | Assumption::ImpulseReference => {
-            Kind::Choice(&["base", "loaded"])
+    /// The declared name that a word is, or a refusal with the nearest one.
+    pub(super) fn named(&self, node: &Node, findings: &Findings) -> Option<AssumptionName> {
+        let word = scalar(node, findings)?;
+        match self.iter().find(|(name, _)| name.as_str() == word) {
+            Some((name, _)) => Some(name.clone()),
+            None => no_such(findings, node.span, "assumption", word, &self.names()),
         }
-        Assumption::EquivalentDampingCurve => Kind::Curve,
-        Assumption::BeamModes | Assumption::PlateModes => Kind::Modes,
-        Assumption::BeamDamperMass | Assumption::PlateDamperMass | Assumption::ArrayDamperMass => {
-            Kind::Choice(&["total", "modal"])
-        }
-        Assumption::BeamGapFrequency | Assumption::PlateGapFrequency => Kind::Choice(&["clean", "loaded"]),
-        Assumption::BeamFloorTuning
-        | Assumption::PlateFloorTuning
-        | Assumption::BeamArrayFloorTuning
-        | Assumption::PlateArrayFloorTuning => Kind::QuantityOr(Dimension::Stiffness, &["clean", "loaded", "untuned"]),
-        Assumption::BeamImpulseTime | Assumption::PlateImpulseTime => Kind::QuantityOr(Dimension::Time, &IMPULSE_TIMES),
-        Assumption::BeamImpulse | Assumption::PlateImpulse => Kind::Quantity(Dimension::Impulse),
-        Assumption::BeamArrayMargin | Assumption::CentredArrayMargin => Kind::Quantity(Dimension::Length),
-        Assumption::BeamHarmonicForce | Assumption::PlateHarmonicForce => Kind::Quantity(Dimension::Force),
-        Assumption::GridVelocity => Kind::Choice(&["largest", "mean"]),
-        Assumption::MassMeasure => Kind::Choice(&["jump", "after", "level"]),
+    }
+
+    /// A value of this assumption.
+    pub(super) fn value_of(&self, name: &AssumptionName, node: &Node, findings: &Findings) -> Option<AssumptionValue> {
+        read_value(node, &self.get(name)?.kind, findings)
     }
 }
 
@@ -128,80 +232,163 @@ pub(super) fn kind(name: Assumption) -> Kind {
 /// Every mistake of the file, with its place.
 pub fn parse_assumptions(file: &str, text: &str) -> Result<AssumptionSheet, Problems> {
     let findings = Findings::default();
-    let sheet = read_tree(text, &findings).and_then(|root| read_sheet(&root, &findings));
+    let sheet = read_tree(text, &findings).and_then(|root| read_sheet(&root, text, &findings));
     findings.finish(file, text, sheet)
 }
 
-fn read_sheet(root: &Node, findings: &Findings) -> Option<AssumptionSheet> {
+fn read_sheet(root: &Node, text: &str, findings: &Findings) -> Option<AssumptionSheet> {
     let Value::Mapping(entries) = &root.value else {
         return findings.wrong(root.span, "the assumptions are written as `name: {value: …, reason: …}`");
     };
     let mut sheet = AssumptionSheet::default();
-    for Entry { key, key_span, node } in entries {
-        let Some(name) = from_word::<Assumption>(key) else {
-            no_such::<()>(findings, *key_span, "assumption", key, words::<Assumption>());
-            continue;
-        };
-        if let Some(entry) = read_entry(node, kind(name), findings) {
-            sheet.entries.insert(name, entry);
+    for Entry { key, key_span, node } in entries.iter().filter(|entry| entry.key != DEFAULTS) {
+        if !is_name(key) {
+            findings.wrong::<()>(*key_span, format!("`{key}` cannot name an assumption: use letters, digits and `_`"));
+        } else if let Some(entry) = read_entry(node, place(text, *key_span).line, findings) {
+            sheet.entries.push((AssumptionName::from(key.as_str()), Arc::new(entry)));
         }
+    }
+    if let Some(defaults) = entries.iter().find(|entry| entry.key == DEFAULTS) {
+        sheet.defaults = Arc::new(read_defaults(&defaults.node, &sheet, findings)?);
     }
     Some(sheet)
 }
 
-fn read_entry(node: &Node, kind: Kind, findings: &Findings) -> Option<AssumptionEntry> {
+/// The key of the defaults, which no assumption can have for a name.
+const DEFAULTS: &str = "defaults";
+
+/// What stands in column names and labels of variants.
+fn is_name(key: &str) -> bool {
+    !key.is_empty() && key.len() <= 64 && key.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')
+}
+
+type Defaults = BTreeMap<(Slot, &'static str), AssumptionName>;
+
+/// `slot: name` for every structure, or `slot: {structure: name}`.
+fn read_defaults(node: &Node, sheet: &AssumptionSheet, findings: &Findings) -> Option<Defaults> {
+    let Value::Mapping(entries) = &node.value else {
+        return findings
+            .wrong(node.span, "defaults are written as `slot: assumption` or `slot: {structure: assumption}`");
+    };
+    let mut defaults = Defaults::new();
+    for Entry { key, key_span, node } in entries {
+        let Some(slot) = from_word::<Slot>(key) else {
+            no_such::<()>(findings, *key_span, "slot of a scene", key, words::<Slot>());
+            continue;
+        };
+        let name = |node: &Node| {
+            let name = sheet.named(node, findings)?;
+            fits(sheet, &name, node, slot.takes(), &format!("`{key}`"), findings).then_some(name)
+        };
+        if let Value::Mapping(each) = &node.value {
+            for Entry { key, key_span, node } in each {
+                let Some(kind) = KINDS.iter().find(|kind| kind.name == key) else {
+                    let known: Vec<&str> = KINDS.iter().map(|kind| kind.name).collect();
+                    no_such::<()>(findings, *key_span, "structure", key, &known);
+                    continue;
+                };
+                defaults.extend(name(node).map(|name| ((slot, kind.name), name)));
+            }
+        } else if let Some(name) = name(node) {
+            defaults.extend(KINDS.iter().map(|kind| ((slot, kind.name), name.clone())));
+        }
+    }
+    Some(defaults)
+}
+
+/// Whether an assumption is of the kind that a place takes; if it is not, that is reported with the line of both.
+pub(super) fn fits(
+    sheet: &AssumptionSheet,
+    name: &AssumptionName,
+    at: &Node,
+    takes: Takes<'_>,
+    place: &str,
+    findings: &Findings,
+) -> bool {
+    let Some(entry) = sheet.get(name).filter(|entry| !takes.admits(&entry.kind)) else { return true };
+    let message = format!(
+        "{place} takes {}, but the assumption `{name}` (line {} of the assumptions file) is {}",
+        takes.words(),
+        entry.line,
+        entry.kind.words()
+    );
+    findings.wrong::<()>(at.span, message);
+    false
+}
+
+fn read_entry(node: &Node, line: usize, findings: &Findings) -> Option<AssumptionEntry> {
     let fields = Fields::open(node, "an assumption", findings)?;
-    let value = fields.required("value", |node| read_value(node, kind, findings));
+    let quantity = fields.optional("quantity", |node| read_quantity(node, findings));
+    let readings =
+        fields.optional("readings", |node| list(node, findings, |node| scalar(node, findings).map(str::to_owned)));
+    let kind = match (quantity, readings) {
+        (Some(None), Some(None)) => {
+            let help = "add `quantity: length`, `quantity: ratio`, …, or `readings: [one, other]`".to_owned();
+            findings.report(node.span, "this assumption has no kind", Some(help))
+        }
+        (Some(quantity), Some(readings)) => Some(AssumptionKind { quantity, readings: readings.unwrap_or_default() }),
+        _ => None,
+    };
+    let value = |node: &Node| read_value(node, kind.as_ref()?, findings);
+    let in_force = fields.required("value", value);
     let reason = fields.required("reason", |node| text(node, findings));
-    let range = fields.optional("range", |node| list(node, findings, |node| read_value(node, kind, findings)));
+    let range = fields.optional("range", |node| list(node, findings, value));
     let fitted_to = fields.optional("fitted_to", |node| list(node, findings, |node| text(node, findings)));
     fields.close()?;
     Some(AssumptionEntry {
-        value: value?,
+        value: in_force?,
         reason: reason?,
         range: range?.unwrap_or_default(),
         fitted_to: fitted_to?.unwrap_or_default(),
+        line,
+        kind: kind?,
     })
 }
 
-/// A value of this assumption.
-pub(super) fn read_value_of(name: Assumption, node: &Node, findings: &Findings) -> Option<AssumptionValue> {
-    read_value(node, kind(name), findings)
+/// The words that are no dimensions.
+pub(super) const COUNTED: [(&str, Quantity); 3] =
+    [("ratio", Quantity::Ratio), ("count", Quantity::Count), ("damping_curve", Quantity::Curve)];
+
+fn read_quantity(node: &Node, findings: &Findings) -> Option<Quantity> {
+    let word = scalar(node, findings)?;
+    let counted = COUNTED.into_iter().find(|(known, _)| *known == word).map(|(_, quantity)| quantity);
+    counted.or_else(|| from_word::<Dimension>(word).map(Quantity::Of)).or_else(|| {
+        let known: Vec<&str> =
+            COUNTED.iter().map(|(word, _)| *word).chain(words::<Dimension>().iter().copied()).collect();
+        no_such(findings, node.span, "kind of quantity", word, &known)
+    })
 }
 
-fn read_value(node: &Node, kind: Kind, findings: &Findings) -> Option<AssumptionValue> {
-    match kind {
-        Kind::Quantity(dimension) => above_zero(node, dimension, findings).map(AssumptionValue::Number),
-        Kind::Ratio => ratio(node, findings).map(AssumptionValue::Number),
-        Kind::ContactDamping => match scalar(node, findings)? {
-            EQUIVALENT_VISCOUS => Some(AssumptionValue::Choice(EQUIVALENT_VISCOUS.into())),
-            _ => ratio(node, findings).map(AssumptionValue::Number),
-        },
-        Kind::Restitution => match ratio(node, findings)? {
-            value if value <= 1.0 => Some(AssumptionValue::Number(value)),
-            _ => findings.wrong(node.span, "a coefficient of restitution lies between 0 and 1"),
-        },
-        Kind::Choice(readings) => {
-            let word = scalar(node, findings)?;
-            if readings.contains(&word) {
-                return Some(AssumptionValue::Choice(word.into()));
-            }
-            unknown(findings, node.span, "this assumption", "reading", word, readings)
+fn read_value(node: &Node, kind: &AssumptionKind, findings: &Findings) -> Option<AssumptionValue> {
+    if !kind.readings.is_empty() {
+        let word = match (&node.value, kind.quantity) {
+            (Value::Scalar(_), _) | (_, None) => scalar(node, findings)?,
+            _ => "",
+        };
+        if kind.readings.iter().any(|reading| reading == word) {
+            return Some(AssumptionValue::Choice(word.into()));
         }
-        Kind::Modes => match count(node, "modes", 1000, findings)? {
-            0 => findings.wrong(node.span, "a structure without modes does not move: give it one at least"),
-            modes => Some(AssumptionValue::Number(f64::from(modes))),
+        if kind.quantity.is_none() {
+            let known: Vec<&str> = kind.readings.iter().map(String::as_str).collect();
+            return unknown(findings, node.span, "this assumption", "reading", word, &known);
+        }
+    }
+    match kind.quantity? {
+        Quantity::Of(dimension) => above_zero(node, dimension, findings).map(AssumptionValue::Number),
+        Quantity::Ratio => ratio(node, findings).map(AssumptionValue::Number),
+        Quantity::Count => match count(node, "", MOST_COUNTED, findings)? {
+            0 => findings.wrong(node.span, "a whole number, one or more, is wanted"),
+            count => Some(AssumptionValue::Number(f64::from(count))),
         },
-        Kind::QuantityOr(dimension, readings) => match scalar(node, findings)? {
-            word if readings.contains(&word) => Some(AssumptionValue::Choice(word.into())),
-            _ => above_zero(node, dimension, findings).map(AssumptionValue::Number),
-        },
-        Kind::Curve => read_curve(node, findings),
+        Quantity::Curve => read_curve(node, findings).map(AssumptionValue::Curve),
     }
 }
 
+/// Most of what an assumption counts.
+pub(super) const MOST_COUNTED: u32 = 1000;
+
 /// `{acceleration_ratio: [0.7, …], damping: [2 N s/m, …]}`: acceleration in units of g, increasing.
-fn read_curve(node: &Node, findings: &Findings) -> Option<AssumptionValue> {
+pub(super) fn read_curve(node: &Node, findings: &Findings) -> Option<Curve> {
     let fields = Fields::open(node, "a curve", findings)?;
     let abscissae = fields.required("acceleration_ratio", |node| list(node, findings, |node| number(node, findings)));
     let ordinates =
@@ -214,5 +401,5 @@ fn read_curve(node: &Node, findings: &Findings) -> Option<AssumptionValue> {
     if !abscissae.is_sorted_by(|a, b| a < b) {
         return findings.wrong(node.span, "the abscissae of a curve increase");
     }
-    Some(AssumptionValue::Curve(abscissae.into_iter().zip(ordinates).map(|(x, y)| [x, y]).collect()))
+    Some(abscissae.into_iter().zip(ordinates).map(|(x, y)| [x, y]).collect())
 }

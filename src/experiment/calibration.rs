@@ -19,14 +19,13 @@
 use std::collections::BTreeSet;
 use std::path::Path;
 
-use crate::scene::{Assumption, AssumptionValue};
+use super::recipe::{AssumptionName, AssumptionValue};
 
-use super::assumption_sheet::read_value_of;
+use super::assumption_sheet::AssumptionSheet;
 use super::diagnostic::{Findings, Problems};
 use super::load::read;
-use super::reader::{Choice, Fields, all, count, list, no_such, number, scalar, text};
+use super::reader::{Choice, Fields, all, count, list, no_such, number, text};
 use super::solver::read_solver;
-use super::word::{from_word, word_of, words};
 use super::yaml::{Entry, Node, Value, read_tree};
 use crate::measure::SolverChoice;
 
@@ -85,14 +84,16 @@ pub enum Tried {
     /// Values of an assumption, or of several that are moved together.
     Values {
         /// The assumptions.
-        moves: Vec<Assumption>,
+        moves: Vec<AssumptionName>,
+        /// Unit symbols of their numbers.
+        units: Vec<&'static str>,
         /// The values, each one for every assumption.
         values: Vec<Vec<AssumptionValue>>,
     },
     /// Factors of an assumption that is a number or a curve.
     Factors {
         /// The assumption, as in force or as another input has set it.
-        of: Assumption,
+        of: AssumptionName,
         /// The factors.
         by: Vec<f64>,
     },
@@ -124,27 +125,27 @@ impl Calibration {
 ///
 /// # Errors
 /// Every mistake of the file, with its place.
-pub fn load_calibration(path: &Path) -> Result<Calibration, Problems> {
+pub fn load_calibration(path: &Path, sheet: &AssumptionSheet) -> Result<Calibration, Problems> {
     let file = path.display().to_string();
-    parse_calibration(&file, &read(path, &file)?)
+    parse_calibration(&file, &read(path, &file)?, sheet)
 }
 
 /// Reads a calibration from its text; `file` only names it in messages.
 ///
 /// # Errors
 /// Every mistake of the file, with its place.
-pub fn parse_calibration(file: &str, text: &str) -> Result<Calibration, Problems> {
+pub fn parse_calibration(file: &str, text: &str, sheet: &AssumptionSheet) -> Result<Calibration, Problems> {
     let findings = Findings::default();
-    let calibration = read_tree(text, &findings).and_then(|root| calibration(&root, &findings));
+    let calibration = read_tree(text, &findings).and_then(|root| calibration(&root, sheet, &findings));
     findings.finish(file, text, calibration)
 }
 
-fn calibration(root: &Node, findings: &Findings) -> Option<Calibration> {
+fn calibration(root: &Node, sheet: &AssumptionSheet, findings: &Findings) -> Option<Calibration> {
     let fields = Fields::open(root, "a calibration", findings)?;
     let title = fields.required("title", |node| text(node, findings));
     let about = fields.required("about", |node| text(node, findings));
     let finding = fields.optional("finding", |node| text(node, findings));
-    let inputs = fields.required("calibrate", |node| inputs(node, findings));
+    let inputs = fields.required("calibrate", |node| inputs(node, sheet, findings));
     let search = fields.optional("search", |node| search(node, findings));
     let ensemble = fields.optional("ensemble", |node| some(node, "members", findings));
     let ids = |node| list(node, findings, |node| text(node, findings));
@@ -194,18 +195,18 @@ fn some(node: &Node, noun: &str, findings: &Findings) -> Option<u32> {
     }
 }
 
-fn inputs(node: &Node, findings: &Findings) -> Option<Vec<CalibrationInput>> {
+fn inputs(node: &Node, sheet: &AssumptionSheet, findings: &Findings) -> Option<Vec<CalibrationInput>> {
     let Value::Mapping(entries) = &node.value else {
         return findings.wrong(node.span, "inputs are written as `assumption: [value, …]`");
     };
     let mut inputs: Vec<CalibrationInput> = Vec::new();
     let mut moved = BTreeSet::new();
     for entry in entries {
-        let input = input(entry, findings)?;
+        let input = input(entry, sheet, findings)?;
         if let Tried::Values { moves, .. } = &input.tried
-            && let Some(name) = moves.iter().find(|name| !moved.insert(**name))
+            && let Some(name) = moves.iter().find(|name| !moved.insert((*name).clone()))
         {
-            return findings.wrong(entry.key_span, format!("`{}` is moved by two inputs", word_of(*name)));
+            return findings.wrong(entry.key_span, format!("`{name}` is moved by two inputs"));
         }
         inputs.push(input);
     }
@@ -214,37 +215,43 @@ fn inputs(node: &Node, findings: &Findings) -> Option<Vec<CalibrationInput>> {
 
 /// `assumption: [value, …]`, `name: {moves: [assumption, …], values: [value, …]}` with a value for all of them or a list of one
 /// for each, `name: {scales: assumption, by: [factor, …]}`, or `solver: [event_driven, {fixed_step: …}]`.
-fn input(entry: &Entry, findings: &Findings) -> Option<CalibrationInput> {
+fn input(entry: &Entry, sheet: &AssumptionSheet, findings: &Findings) -> Option<CalibrationInput> {
     let Entry { key, key_span, node } = entry;
     let input = |tried| Some(CalibrationInput { name: key.clone(), tried });
     if key == "solver" {
         return input(Tried::Solvers(list(node, findings, |node| read_solver(node, findings))?));
     }
-    let assumption = |word: &str, span| match from_word::<Assumption>(word) {
-        Some(name) => Some(name),
-        None => no_such(findings, span, "assumption", word, words::<Assumption>()),
-    };
-    let value = |node: &Node, moves: &[Assumption]| {
+    let value = |node: &Node, moves: &[AssumptionName]| {
         let Value::Sequence(each) = &node.value else {
-            return all(moves.iter().map(|name| read_value_of(*name, node, findings)));
+            return all(moves.iter().map(|name| sheet.value_of(name, node, findings)));
         };
         if each.len() != moves.len() {
             return findings.wrong(node.span, format!("{} values for {} assumptions", each.len(), moves.len()));
         }
-        all(moves.iter().zip(each).map(|(name, node)| read_value_of(*name, node, findings)))
+        all(moves.iter().zip(each).map(|(name, node)| sheet.value_of(name, node, findings)))
     };
-    let values = |node: &Node, moves: &[Assumption]| list(node, findings, |node| value(node, moves));
+    let units = |moves: &[AssumptionName]| -> Vec<&'static str> {
+        moves.iter().map(|name| sheet.get(name).map_or("", |entry| entry.kind.unit())).collect()
+    };
+    let values = |node: &Node, moves: &[AssumptionName]| list(node, findings, |node| value(node, moves));
     if matches!(node.value, Value::Sequence(_)) {
-        let name = assumption(key, *key_span)?;
-        return input(Tried::Values { moves: vec![name], values: values(node, &[name])? });
+        let Some((name, _)) = sheet.iter().find(|(name, _)| name.as_str() == key) else {
+            return no_such(findings, *key_span, "assumption", key, &sheet.names());
+        };
+        let tried = values(node, std::slice::from_ref(name))?;
+        return input(Tried::Values {
+            units: units(std::slice::from_ref(name)),
+            moves: vec![name.clone()],
+            values: tried,
+        });
     }
-    let named = |node: &Node| assumption(scalar(node, findings)?, node.span);
+    let named = |node: &Node| sheet.named(node, findings);
     let fields = Fields::open(node, "an input", findings)?;
     let tried = match fields.exactly_one(&["moves", "scales"]) {
         Some(("moves", node)) => {
             let moves = list(node, findings, named);
             let tried = fields.required("values", |node| values(node, moves.as_ref()?));
-            moves.zip(tried).map(|(moves, values)| Tried::Values { moves, values })
+            moves.zip(tried).map(|(moves, values)| Tried::Values { units: units(&moves), moves, values })
         }
         Some((_, node)) => {
             let factor = |node: &Node| match number(node, findings)? {

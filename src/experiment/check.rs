@@ -2,8 +2,9 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::measure::Measure;
-use crate::scene::{Assumptions, ExcitationKind, Parameter, ParameterValue, Part, RecipeError, Scene};
+use super::recipe::{Assumptions, ExcitationKind, Parameter, ParameterValue, Part, RecipeError};
+use crate::measure::{Measure, Under};
+use crate::scene::Scene;
 
 use super::definition::{Case, Drawing, Experiment, FigureSpec, Maximise, Panel, Refinement};
 use super::diagnostic::{Findings, Span};
@@ -38,13 +39,6 @@ impl Checks<'_> {
         trace: Option<&TraceSpec>,
         shape: Option<&ShapeSpec>,
     ) {
-        let from_trace = [
-            Measure::LastPeak,
-            Measure::PeakVariation,
-            Measure::PeakDecayError,
-            Measure::FloorImpactLag,
-            Measure::CeilingImpactLag,
-        ];
         for (measure, span) in measures {
             if shape.is_none() && measure.needs_shape() {
                 self.findings.report::<()>(
@@ -53,7 +47,7 @@ impl Checks<'_> {
                     Some("add `shape: {of: mode, points: …}`".into()),
                 );
             }
-            if trace.is_none() && from_trace.contains(measure) {
+            if trace.is_none() && measure.needs_trace() {
                 self.findings.report::<()>(
                     *span,
                     format!("`{}` is read off a time history, and this experiment keeps none", word_of(*measure)),
@@ -73,9 +67,18 @@ impl Checks<'_> {
 
     /// Amplitudes are compared with what drives the scene.
     pub fn excitation(&self, measures: &[(Measure, Span)], excitation: &ExcitationKind) {
-        for (measure, span) in measures.iter().filter(|(measure, _)| !measure.suits(excitation)) {
-            let name = word_of(*measure);
-            self.findings.wrong::<()>(*span, format!("`{name}` is not measured under this excitation"));
+        for (measure, span) in measures {
+            let under = measure.facts().under;
+            let admitted = match under {
+                Under::Any => true,
+                Under::Harmonic => *excitation == ExcitationKind::Harmonic,
+                Under::Impulses => !matches!(excitation, ExcitationKind::Harmonic | ExcitationKind::None),
+            };
+            if !admitted {
+                let message =
+                    format!("`{}` is measured under {}, not under this excitation", word_of(*measure), under.words());
+                self.findings.wrong::<()>(*span, message);
+            }
         }
     }
 
@@ -281,9 +284,7 @@ impl From<RecipeError> for Refusal {
                 parameter: Some(parameter),
                 part: None,
             },
-            RecipeError::Assumption(name, form) => {
-                format!("the assumption `{}` is needed: give it {form} in the assumptions file", word_of(name)).into()
-            }
+            error @ RecipeError::Assumption(_) => error.to_string().into(),
             RecipeError::OutOfRange(message) => message.into(),
             RecipeError::Part { part, message } => Self { message, parameter: None, part: Some(part) },
         }

@@ -1,7 +1,7 @@
 //! The columns that an experiment's table will have, known before anything runs.
 
+use super::recipe::{GapWord, Parameter};
 use crate::measure::Measure;
-use crate::scene::{GapWord, Parameter};
 
 use super::definition::Maximise;
 use super::word::word_of;

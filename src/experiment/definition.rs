@@ -5,8 +5,9 @@ use std::collections::BTreeSet;
 
 use serde::{Deserialize, Serialize};
 
-use crate::measure::{EnergySpec, Measure, Settings, ShapeSpec, SolverChoice, TraceSpec};
-use crate::scene::{Assumption, Assumptions, Parameter, ParameterValue, Recipe, RecipeError};
+use super::recipe::{AssumptionName, Assumptions, Parameter, ParameterValue, Recipe, RecipeError};
+use crate::dynamics::Limit;
+use crate::measure::{EnergySpec, Measure, Needs, Settings, ShapeSpec, SolverChoice, TraceSpec};
 
 use super::assumption_sheet::AssumptionSheet;
 use super::optimise::Optimise;
@@ -59,6 +60,9 @@ pub struct Experiment {
     pub solvers: Vec<SolverChoice>,
     /// How a case is run and averaged.
     pub settings: Settings,
+    /// The most that a row may take; no number depends on it.
+    #[serde(default, skip_serializing_if = "is_usual")]
+    pub limit: Limit,
     /// An inner maximisation over one more parameter: the row then holds the maximum and where it lies.
     pub maximise: Option<Maximise>,
     /// Sweeps whose curves get more points where they bend; the cases hold the points that they start with.
@@ -71,9 +75,9 @@ pub struct Experiment {
     /// An optimisation of gaps in the place of a sweep.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub optimise: Option<Optimise>,
-    /// The assumptions that are moved for the sensitivity; `None` for all that the experiment leans on.
+    /// The assumptions that are moved for the sensitivity; `None` for all that the experiment depends on.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub moved: Option<BTreeSet<Assumption>>,
+    pub moved: Option<BTreeSet<AssumptionName>>,
     /// Measures in the order of the columns.
     pub measures: Vec<Measure>,
     /// Time history to keep with each row.
@@ -127,40 +131,31 @@ impl Experiment {
 
     /// The assumptions that a number of this experiment may depend on, under the values in force or with one of them moved.
     #[must_use]
-    pub fn assumptions_used(&self, sheet: &AssumptionSheet) -> BTreeSet<Assumption> {
+    pub fn assumptions_used(&self, sheet: &AssumptionSheet) -> BTreeSet<AssumptionName> {
         let mut used = self.assumptions_under(&sheet.assumptions());
-        for (_, moved) in sheet.variants(&used) {
-            used.extend(self.assumptions_under(&moved));
+        for moved in sheet.variants(&used) {
+            used.extend(self.assumptions_under(&moved.assumptions));
         }
         used
     }
 
     /// The assumptions that a number of this experiment depends on under these values.
     #[must_use]
-    pub fn assumptions_under(&self, in_force: &Assumptions) -> BTreeSet<Assumption> {
+    pub fn assumptions_under(&self, in_force: &Assumptions) -> BTreeSet<AssumptionName> {
         self.assumptions_of(self.cases.iter().filter_map(|case| self.recipe_of(case).ok()), in_force)
     }
 
-    /// The assumptions that a number may depend on, in scenes in which a case has been set already.
+    /// The assumptions that a number depends on, in scenes in which a case has been set already: those that are read while
+    /// the scenes are resolved for what is measured.
     #[must_use]
     pub fn assumptions_of(
         &self,
         scenes: impl IntoIterator<Item = Recipe>,
         in_force: &Assumptions,
-    ) -> BTreeSet<Assumption> {
-        let mut used = BTreeSet::new();
-        for scene in scenes {
-            for recipe in self.recipes_in(&scene).unwrap_or_default() {
-                used.extend(recipe.assumptions(in_force));
-            }
-        }
-        if !self.measures.iter().any(|measure| measure.needs_undamped()) {
-            used.remove(&Assumption::UndampedMass);
-        }
-        if self.energies.is_some() || self.measures.contains(&Measure::MassMeasure) {
-            used.insert(Assumption::MassMeasure);
-        }
-        used
+    ) -> BTreeSet<AssumptionName> {
+        let needs = Needs::of(&self.measures, self.energies.is_some());
+        let each = scenes.into_iter().flat_map(|scene| self.recipes_in(&scene).unwrap_or_default());
+        each.flat_map(|recipe| recipe.dependencies(in_force, needs)).collect()
     }
 
     /// The whole meaning as JSON; equal meanings give equal JSON. Keys are sorted.
@@ -198,6 +193,10 @@ impl Experiment {
     pub fn figures_json(&self) -> serde_json::Value {
         json(&self.figures)
     }
+}
+
+fn is_usual(limit: &Limit) -> bool {
+    *limit == Limit::default()
 }
 
 /// Plain data with text keys always has a JSON form.

@@ -203,7 +203,7 @@ fn harmless(text: &str) -> String {
     out
 }
 
-fn place(text: &str, span: Span) -> Place {
+pub(super) fn place(text: &str, span: Span) -> Place {
     let mut offset = span.start.min(text.len());
     while !text.is_char_boundary(offset) {
         offset -= 1;

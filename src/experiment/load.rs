@@ -4,20 +4,22 @@ use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
-use crate::scene::Assumptions;
+use super::recipe::Assumptions;
+use crate::atomic::from_here;
 
 use super::assumption_sheet::{AssumptionSheet, parse_assumptions};
 use super::definition::{Experiment, ExperimentId};
 use super::diagnostic::Problems;
 use super::validate::parse_experiment;
-use super::yaml::LONGEST;
+use super::yaml::{LONGEST, too_long};
+use crate::text::utf8::decode;
 
 /// Reads an experiment; its id is the file's name without ending. Every case is tried against `assumptions`.
 ///
 /// # Errors
 /// Every mistake of the file, with its place.
 pub fn load_experiment(path: &Path, assumptions: &Assumptions) -> Result<Experiment, Problems> {
-    let file = path.display().to_string();
+    let file = from_here(path);
     let stem = path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
     let id: ExperimentId = stem.parse().map_err(|error: super::IdError| {
         Problems::unreadable(&file, error.to_string(), Some("rename the file".into()))
@@ -30,7 +32,7 @@ pub fn load_experiment(path: &Path, assumptions: &Assumptions) -> Result<Experim
 /// # Errors
 /// Every mistake of the file, with its place.
 pub fn load_assumptions(path: &Path) -> Result<AssumptionSheet, Problems> {
-    let file = path.display().to_string();
+    let file = from_here(path);
     parse_assumptions(&file, &read(path, &file)?)
 }
 
@@ -39,10 +41,8 @@ pub(super) fn read(path: &Path, file: &str) -> Result<String, Problems> {
     let mut bytes = Vec::new();
     File::open(path).map_err(cannot)?.take(LONGEST as u64 + 1).read_to_end(&mut bytes).map_err(cannot)?;
     if bytes.len() > LONGEST {
-        return Err(Problems::unreadable(file, format!("is longer than {} KiB", LONGEST >> 10), None));
+        let length = std::fs::metadata(path).map_or(bytes.len() as u64, |meta| meta.len());
+        return Err(Problems::unreadable(file, too_long(length), None));
     }
-    String::from_utf8(bytes).map_err(|error| {
-        let line = error.as_bytes()[..error.utf8_error().valid_up_to()].iter().filter(|byte| **byte == b'\n').count();
-        Problems::unreadable(file, format!("is not UTF-8 text (line {})", line + 1), Some("save it as UTF-8".into()))
-    })
+    decode(&bytes).map(str::to_owned).map_err(|error| Problems::unreadable(file, format!("is {error}"), None))
 }

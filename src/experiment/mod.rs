@@ -12,6 +12,7 @@ mod diagnostic;
 mod edit;
 mod excitation;
 mod figure;
+mod limit;
 mod line;
 mod load;
 mod map;
@@ -21,6 +22,7 @@ mod place;
 mod quantity;
 mod range;
 mod reader;
+mod recipe;
 mod refined;
 mod scaffold;
 mod scene;
@@ -34,7 +36,9 @@ mod validate;
 mod word;
 mod yaml;
 
-pub use assumption_sheet::{AssumptionEntry, AssumptionSheet, parse_assumptions};
+pub use assumption_sheet::{
+    AssumptionEntry, AssumptionKind, AssumptionSheet, Moved, Quantity, Takes, parse_assumptions,
+};
 pub use calibration::{Calibration, CalibrationInput, CalibrationSearch, Tried, load_calibration, parse_calibration};
 pub use definition::{
     Axis, AxisScale, Best, Case, Drawing, Experiment, ExperimentId, FigureSpec, IdError, Level, MapSpec, Mark,
@@ -42,10 +46,18 @@ pub use definition::{
 };
 pub use diagnostic::{Place, Problem, Problems};
 pub(crate) use edit::{Written, set_keys};
+pub use limit::{NoLimit, RowLimit};
 pub use line::line_of;
 pub use load::{load_assumptions, load_experiment};
 pub use optimise::{Candidate, Goal, Landscape, Optimise, Search, SearchKind, SearchSpacing};
 pub use quantity::{Dimension, QuantityError, parse_number, parse_quantity};
+pub use recipe::{
+    ArrayRecipe, Assumable, AssumptionName, AssumptionValue, Assumptions, Carried, ContactDampingRatio,
+    ContactDampingRecipe, Coordinate, DamperRecipe, ExcitationKind, ExcitationRecipe, Filling, FloorStiffness,
+    ForcingOrNatural, GapRecipe, GapWord, Given, ImpulseTime, ImpulseTimeRecipe, MassReading, MassRecipe,
+    ObserveRecipe, Parameter, ParameterValue, Part, PlaceRecipe, PointsRecipe, Recipe, RecipeError, Reference, Slot,
+    StiffnessRecipe, StopRecipe, StrengthRecipe, StructureRecipe, SurfaceRecipe, TimingRecipe, WallRecipe,
+};
 pub(crate) use refined::{Curve, curves};
 pub use scaffold::{scaffold, structures};
 pub(crate) use schema::{Object, list, text, words_of};

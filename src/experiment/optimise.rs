@@ -2,8 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::recipe::GapWord;
 use crate::measure::Measure;
-use crate::scene::GapWord;
 
 /// An optimisation of the gaps of an array. Its rows are candidates: those that the file names, and what each search found.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

@@ -1,7 +1,7 @@
 //! The `optimise` of an experiment: nodes to [`Optimise`].
 
+use super::recipe::GapWord;
 use crate::measure::Measure;
-use crate::scene::GapWord;
 
 use super::diagnostic::{Findings, Span};
 use super::optimise::{Candidate, Goal, Landscape, Optimise, Search, SearchKind, SearchSpacing};

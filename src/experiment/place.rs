@@ -1,13 +1,11 @@
 //! Places in a scene: where dampers sit, where the force acts, where the motion is observed; and arrays of dampers.
 
-use crate::scene::{
-    ArrayRecipe, Assumption, Coordinate, Family, Given, Kind, ObserveRecipe, Parameter, PlaceRecipe, PointsRecipe, Take,
-};
-
 use super::quantity::Dimension;
 use super::reader::{Choice, Fields, boolean, count, list, number, one_or_more, quantity};
+use super::recipe::{ArrayRecipe, Coordinate, Given, ObserveRecipe, Parameter, PlaceRecipe, PointsRecipe, Slot};
 use super::scene::{MOST_DAMPERS, SceneReader, is_word};
 use super::yaml::{Node, Value};
+use crate::scene::{Kind, Take};
 
 impl<'t> SceneReader<'t> {
     /// One coordinate a side; `along` are the parameters that may stand for them.
@@ -61,43 +59,39 @@ impl<'t> SceneReader<'t> {
         fields.required("at", |node| self.place(node, kind, along))
     }
 
-    pub(super) fn observe(&self, node: &'t Node, kind: &Kind) -> Option<ObserveRecipe> {
+    /// Where the motion is observed unless the file says so.
+    pub(super) fn usual_observation(&self, kind: &'static Kind) -> ObserveRecipe {
+        ObserveRecipe { points: PointsRecipe::Usual, take: self.left_out(Slot::Take, kind, Take::Largest) }
+    }
+
+    pub(super) fn observe(&self, node: &'t Node, kind: &'static Kind) -> Option<ObserveRecipe> {
         // Observed points are not swept.
         let point = |node: &'t Node| match node.value {
             _ if is_word(node, "swept") => self.findings.wrong(node.span, "observed points cannot be swept"),
             _ => self.place(node, kind, [Parameter::DamperX, Parameter::DamperY]),
         };
         let Value::Mapping(entries) = &node.value else {
-            return Some(ObserveRecipe { points: PointsRecipe::Points(vec![point(node)?]), take: Some(Take::Largest) });
+            let points = PointsRecipe::Points(vec![point(node)?]);
+            return Some(ObserveRecipe { points, take: Given::Stated(Take::Largest) });
         };
+        let take = |node: &'t Node| self.reading::<Take>(node, Slot::Take, kind);
+        let usual = || self.left_out(Slot::Take, kind, Take::Largest);
         if entries.iter().any(|entry| entry.key == "points") {
             let fields = Fields::open(node, "what is observed", self.findings)?;
             let points = fields.required("points", |node| list(node, self.findings, point));
-            let take = fields.optional("take", |node| self.take(node));
+            let take = fields.optional("take", take);
             fields.close()?;
-            return Some(ObserveRecipe { points: PointsRecipe::Points(points?), take: take?.flatten() });
+            return Some(ObserveRecipe { points: PointsRecipe::Points(points?), take: take?.unwrap_or_else(usual) });
         }
         let choice = Choice::read(node, "what is observed", &["nine_point_grid"], self.findings)?;
         let take = match choice.content {
-            Some(node) => self.take(node)?,
-            None => None,
+            Some(node) => take(node)?,
+            None => usual(),
         };
         Some(ObserveRecipe { points: PointsRecipe::NinePointGrid, take })
     }
 
-    /// `largest`, `mean`, or `assumed`.
-    #[expect(clippy::option_option, reason = "assumed and wrong are two things")]
-    fn take(&self, node: &'t Node) -> Option<Option<Take>> {
-        let names = ["largest", "mean", "assumed"];
-        let choice = Choice::read(node, "what is taken of several points", &names, self.findings)?;
-        Some(match choice.bare(self.findings)? {
-            "largest" => Some(Take::Largest),
-            "mean" => Some(Take::Mean),
-            _ => None,
-        })
-    }
-
-    pub(super) fn array(&self, node: &'t Node, kind: &Kind) -> Option<ArrayRecipe> {
+    pub(super) fn array(&self, node: &'t Node, kind: &'static Kind) -> Option<ArrayRecipe> {
         let fields = Fields::open(node, "an array of dampers", self.findings)?;
         let most = MOST_DAMPERS as u32;
         let count = fields.required("count", |node| {
@@ -115,13 +109,7 @@ impl<'t> SceneReader<'t> {
         });
         let centred = fields.optional("centred", |node| boolean(node, self.findings));
         let margin = fields.optional("margin", |node| {
-            if is_word(node, "assumed") && kind.family != Family::Beam {
-                return self.findings.wrong(node.span, "the assumed margin is that of arrays on beams: give a length");
-            }
-            if let Some(named) = self.named(node, &[Assumption::BeamArrayMargin, Assumption::CentredArrayMargin]) {
-                return named.map(Given::Assumed);
-            }
-            self.given(node, Assumption::BeamArrayMargin, |node| quantity(node, Dimension::Length, self.findings))
+            self.slot(node, Slot::Margin, kind, |node| quantity(node, Dimension::Length, self.findings))
         });
         fields.close()?;
         // A plate's array lies around its place, a beam's begins there.

@@ -5,8 +5,11 @@
 
 use std::f64::consts::TAU;
 
+use serde::{Deserialize, Serialize};
+
 /// What kind of quantity a key wants.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Dimension {
     /// m.
     Length,
@@ -99,6 +102,25 @@ impl Dimension {
             Self::AngularFrequency => "an angular frequency",
             Self::Stress => "a modulus",
             Self::Density => "a density",
+        }
+    }
+
+    /// Symbol of its SI unit.
+    #[must_use]
+    pub fn unit(self) -> &'static str {
+        match self {
+            Self::Length => "m",
+            Self::Mass => "kg",
+            Self::Time => "s",
+            Self::Force => "N",
+            Self::Impulse => "N s",
+            Self::Stiffness => "N/m",
+            Self::Damping => "N s/m",
+            Self::Velocity => "m/s",
+            Self::Acceleration => "m/s²",
+            Self::AngularFrequency => "rad/s",
+            Self::Stress => "Pa",
+            Self::Density => "kg/m³",
         }
     }
 

@@ -3,7 +3,7 @@
 //!
 //! Points are rounded to 13 significant digits: decades come out exactly, and on every machine alike.
 
-use crate::scene::{Parameter, ParameterValue};
+use super::recipe::{Parameter, ParameterValue};
 
 use super::diagnostic::{Findings, Span};
 use super::quantity::Dimension;

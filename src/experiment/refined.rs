@@ -1,7 +1,7 @@
 //! Refined ranges: a few points to start with, and the rule by which a run adds more where a curve bends.
 
+use super::recipe::{Parameter, ParameterValue};
 use crate::measure::Measure;
-use crate::scene::{Parameter, ParameterValue};
 
 use super::definition::{AxisScale, Case, Refinement};
 use super::diagnostic::Findings;

@@ -30,7 +30,7 @@ pub fn scaffold(id: &ExperimentId, chapter: u32, structure: &str, schema: &str) 
         (String::new(), String::new(), "", "stiffness_ratio: 1")
     } else {
         let share = "      particle_share: 0.5\n";
-        (format!("at: {place}\n      "), format!("at: {place}, "), share, "stiffness: assumed")
+        (format!("at: {place}\n      "), format!("at: {place}, "), share, "stiffness: tuned")
     };
     let title = crate::text::words::capitalised(&id.0.replace('-', " "));
     Some(format!(
@@ -46,7 +46,7 @@ scene:
   dampers:
     - {at_damper}mass_ratio: 0.05
 {share}      gap_ratio: 50
-      floor: {{resilient: {{{stiffness}, damping_ratio: assumed}}}}
+      floor: {{resilient: {{{stiffness}, damping_ratio: 0.15}}}}
   excitation: {{impulse_train: {{{at_force}force_ratio: swept, frequency_ratio: 1}}}}
 sweep:
   force_ratio: {{log: {{from: 0.1, to: 100, points: 31}}}}
@@ -66,7 +66,7 @@ figure:
 fn example(kind: &Kind, key: &str, form: Form) -> Option<&'static str> {
     Some(match (form, key) {
         (Form::Word(_), _) => return None,
-        (Form::Modes(_), _) => "assumed",
+        (Form::Modes, _) => "4",
         (Form::Length, "thickness") => "5 mm",
         (Form::Length, "width") if kind.sides.len() < 2 => "30 mm",
         (Form::Length, _) => "1 m",

@@ -1,15 +1,15 @@
 //! The start of a scene: initial conditions in the place of static equilibrium.
 
-use crate::scene::{Part, ParticleStart, StartRecipe};
-
 use super::quantity::Dimension;
 use super::reader::{Fields, list, quantity, unknown};
+use super::recipe::Part;
 use super::scene::SceneReader;
 use super::yaml::{Node, Value};
+use crate::scene::{ParticleStart, Start};
 
 impl<'t> SceneReader<'t> {
     /// `{displacement: 2 mm, velocity: 0.1 m/s, particles: [{height: 10 mm, velocity: -1 m/s}, on_floor]}`.
-    pub(super) fn start(&self, node: &'t Node) -> Option<StartRecipe> {
+    pub(super) fn start(&self, node: &'t Node) -> Option<Start> {
         self.parts.borrow_mut().push((Part::Start, node.span));
         let fields = Fields::open(node, "a start", self.findings)?;
         let displacement = fields.optional("displacement", |node| quantity(node, Dimension::Length, self.findings));
@@ -17,7 +17,7 @@ impl<'t> SceneReader<'t> {
         let particles =
             fields.optional("particles", |node| list(node, self.findings, |node| self.particle_start(node)));
         fields.close()?;
-        Some(StartRecipe {
+        Some(Start {
             displacement: displacement?.unwrap_or(0.0),
             velocity: velocity?.unwrap_or(0.0),
             particles: particles?.unwrap_or_default(),

@@ -1,14 +1,15 @@
 //! The structure of a scene: read by the table of its kind, whatever structure that is.
 
-use std::cell::RefCell;
 use std::collections::BTreeMap;
 
-use crate::scene::{FieldValue, Form, KINDS, Kind, Parameter, StructureRecipe};
-
-use super::diagnostic::{Findings, Span};
+use super::assumption_sheet::{Quantity, Takes};
 use super::quantity::Dimension;
 use super::reader::{Choice, above_zero, count, list, ratio, scalar, unknown, zero_or_more};
+use super::recipe::{Given, Parameter, Slot, StructureRecipe};
+use super::scene::{SceneReader, is_word};
+use super::word::from_word;
 use super::yaml::{Node, Value};
+use crate::scene::{FieldValue, Form, KINDS, Kind};
 
 /// Most modes that are read at all; how many a structure carries is its own affair.
 pub(super) const MOST_MODES: u32 = 100_000;
@@ -21,28 +22,25 @@ pub(super) struct ReadStructure {
     pub recipe: StructureRecipe,
 }
 
-/// Reads the node under `structure`; what it says is swept goes to `swept`.
-pub(super) fn read_structure(
-    node: &Node,
-    findings: &Findings,
-    swept: &RefCell<Vec<(Parameter, Span)>>,
-) -> Option<ReadStructure> {
+/// Reads the node under `structure`.
+pub(super) fn read_structure<'t>(node: &'t Node, reader: &SceneReader<'t>) -> Option<ReadStructure> {
+    let findings = reader.findings;
     let names: Vec<&'static str> = KINDS.iter().map(|kind| kind.name).collect();
     let choice = Choice::read(node, "the structure", &names, findings)?;
-    let kind = KINDS.iter().find(|kind| kind.name == choice.name)?;
+    let kind = Kind::named(choice.name)?;
     let fields = choice.fields(kind.what, findings)?;
     let mut values = BTreeMap::new();
     let mut fine = true;
     for field in kind.fields {
-        let read = |node: &Node| match (&node.value, field.parameter) {
-            (Value::Scalar(word), Some(parameter)) if word == "swept" => {
-                swept.borrow_mut().push((parameter, node.span));
-                Some(match field.form {
-                    Form::Modes(_) => FieldValue::Counts(vec![1]),
+        let read = |node: &'t Node| match field.swept.then(|| from_word::<Parameter>(field.key)).flatten() {
+            Some(parameter) if is_word(node, "swept") => {
+                reader.swept.borrow_mut().push((parameter, node.span));
+                Some(Given::Stated(match field.form {
+                    Form::Modes => FieldValue::Counts(vec![1]),
                     _ => FieldValue::Number(PLACEHOLDER),
-                })
+                }))
             }
-            _ => read_value(node, field.form, findings),
+            _ => read_value(node, field.form, kind, reader),
         };
         let value = match field.form {
             Form::Word(_) => fields.optional(field.key, read),
@@ -58,28 +56,40 @@ pub(super) fn read_structure(
     fine.then_some(ReadStructure { kind, recipe: StructureRecipe { kind: kind.name.into(), values } })
 }
 
-fn read_value(node: &Node, form: Form, findings: &Findings) -> Option<FieldValue> {
-    let size = |dimension| above_zero(node, dimension, findings).map(FieldValue::Number);
+fn read_value<'t>(
+    node: &'t Node,
+    form: Form,
+    kind: &'static Kind,
+    reader: &SceneReader<'t>,
+) -> Option<Given<FieldValue>> {
+    let findings = reader.findings;
+    let size = |dimension: Dimension| {
+        reader.given(node, Takes::quantity(dimension), |node| {
+            above_zero(node, dimension, findings).map(FieldValue::Number)
+        })
+    };
+    let modes = |node: &Node| count(node, "modes", MOST_MODES, findings);
     match form {
         Form::Length => size(Dimension::Length),
         Form::Mass => size(Dimension::Mass),
-        Form::Stiffness => zero_or_more(node, Dimension::Stiffness, findings).map(FieldValue::Number),
+        Form::Stiffness => reader.given(node, Takes::quantity(Dimension::Stiffness), |node| {
+            zero_or_more(node, Dimension::Stiffness, findings).map(FieldValue::Number)
+        }),
         Form::Stress => size(Dimension::Stress),
         Form::Density => size(Dimension::Density),
-        Form::Ratio => ratio(node, findings).map(FieldValue::Number),
-        Form::Modes(assumption) => match &node.value {
-            Value::Scalar(word) if word == "assumed" => Some(FieldValue::Assumed(assumption)),
-            Value::Sequence(_) => {
-                list(node, findings, |node| count(node, "modes", MOST_MODES, findings)).map(FieldValue::Counts)
-            }
-            _ => count(node, "modes", MOST_MODES, findings).map(|count| FieldValue::Counts(vec![count])),
-        },
-        Form::Word(words) => {
+        Form::Ratio => reader.given(node, Takes::ratio(), |node| ratio(node, findings).map(FieldValue::Number)),
+        Form::Modes => reader.slot(node, Slot::Modes, kind, |node| {
+            Some(FieldValue::Counts(match &node.value {
+                Value::Sequence(_) => list(node, findings, modes)?,
+                _ => vec![modes(node)?],
+            }))
+        }),
+        Form::Word(words) => reader.given(node, Takes { quantity: None::<Quantity>, readings: words }, |node| {
             let word = scalar(node, findings)?;
             if words.contains(&word) {
                 return Some(FieldValue::Word(word.into()));
             }
             unknown(findings, node.span, "this key", "word", word, words)
-        }
+        }),
     }
 }

@@ -6,7 +6,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::scene::{Parameter, ParameterValue};
+use super::recipe::{Parameter, ParameterValue};
 
 use super::definition::{Case, Refinement};
 use super::diagnostic::{Findings, Span};

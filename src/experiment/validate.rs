@@ -5,14 +5,16 @@
 
 use std::collections::BTreeSet;
 
+use super::recipe::{AssumptionName, Assumptions, Parameter, ParameterValue, Recipe};
+use crate::dynamics::Limit;
 use crate::measure::Measure;
-use crate::scene::{Assumption, Assumptions, Parameter, ParameterValue, Recipe};
 
 use super::check::Checks;
 use super::columns::{Columns, ENERGIES, HISTORIES, shape_lists};
 use super::definition::{Case, Experiment, ExperimentId, Maximise, Source};
 use super::diagnostic::{Findings, Problems, Span};
 use super::figure::FigureReader;
+use super::limit::read_limit;
 use super::optimise::Optimise;
 use super::optimise_reader::{OptimiseReader, ReadOptimise};
 use super::quantity::Dimension;
@@ -56,7 +58,8 @@ struct ExperimentReader<'t> {
 struct Run {
     solvers: Vec<SolverChoice>,
     settings: Settings,
-    moved: Option<BTreeSet<Assumption>>,
+    limit: Limit,
+    moved: Option<BTreeSet<AssumptionName>>,
 }
 
 impl<'t> ExperimentReader<'t> {
@@ -65,7 +68,7 @@ impl<'t> ExperimentReader<'t> {
         let title = fields.required("title", |node| text(node, self.findings));
         let source = fields.required("source", |node| self.source(node));
         let about = fields.required("about", |node| text(node, self.findings));
-        let scene = fields.required("scene", |node| read_scene(node, self.findings));
+        let scene = fields.required("scene", |node| read_scene(node, self.assumptions, self.findings));
         let sweep = fields.optional("sweep", |node| read_sweep(node, self.findings));
         let mean_over = fields.optional("mean_over", |node| self.mean_over(node));
         let measures = fields.required("measure", |node| self.measures(node));
@@ -154,6 +157,7 @@ impl<'t> ExperimentReader<'t> {
             cases,
             swept: sweep.swept,
             settings: run.settings,
+            limit: run.limit,
             moved: run.moved,
             maximise,
             refined: sweep.refined.into_iter().map(|(refinement, _)| refinement).collect(),
@@ -316,9 +320,10 @@ impl<'t> ExperimentReader<'t> {
         });
         let moved = fields.optional("sensitivity", |node| match &node.value {
             Value::Scalar(word) if word == "none" => Some(BTreeSet::new()),
-            _ => one_or_more(node, self.findings, |node| word::<Assumption>(node, "assumption", self.findings))
+            _ => one_or_more(node, self.findings, |node| self.assumptions.sheet.named(node, self.findings))
                 .map(|names| names.into_iter().collect()),
         });
+        let limit = fields.optional("limit", |node| read_limit(node, self.findings));
         fields.close()?;
         let usual = Run::default();
         Some(Run {
@@ -329,6 +334,7 @@ impl<'t> ExperimentReader<'t> {
                 round_period_to: round_period_to?,
                 ensemble: ensemble?.unwrap_or(usual.settings.ensemble),
             },
+            limit: limit?.unwrap_or_default(),
             moved: moved?,
         })
     }
@@ -403,11 +409,12 @@ impl<'t> ExperimentReader<'t> {
 }
 
 impl Default for Run {
-    /// As the study: 25 cycles skipped, 100 averaged.
+    /// 25 cycles skipped, 100 averaged, exactly solved.
     fn default() -> Self {
         Self {
             solvers: vec![SolverChoice::EventDriven],
             settings: Settings { skip: 25, average: 100, round_period_to: None, ensemble: 32 },
+            limit: Limit::default(),
             moved: None,
         }
     }

@@ -39,6 +39,11 @@ pub(super) struct Entry {
 /// Longest text, in bytes.
 pub(super) const LONGEST: usize = 1 << 20;
 
+/// What is wrong with a longer one.
+pub(super) fn too_long(bytes: u64) -> String {
+    format!("has {} KiB, and {} KiB are the most that is read", bytes.div_ceil(1024), LONGEST >> 10)
+}
+
 /// Most keys of one mapping.
 const MOST_KEYS: usize = 1000;
 
@@ -47,7 +52,7 @@ type Located<'t> = (Event<'t>, Span);
 /// Reads the one document of `text`; all that is no plain YAML is reported.
 pub(super) fn read_tree(text: &str, findings: &Findings) -> Option<Node> {
     if text.len() > LONGEST {
-        return findings.wrong(Span::default(), format!("the file is longer than {} KiB", LONGEST >> 10));
+        return findings.wrong(Span::default(), format!("the file {}", too_long(text.len() as u64)));
     }
     let options = options! {
         emit_comments: false,

@@ -1,8 +1,8 @@
-//! Kinetic energies of the structure at the impulses, and the two measures made of them (s. 5.2.5 of the study).
+//! Kinetic energies of the structure at the impulses, and the two measures made of them.
 //!
 //! T is the kinetic energy of the structure alone, without enclosures and particles. The damping measure of a cycle is what T has
-//! lost from just after the impulse that opens it to just before the next, relative to the former. The equation of the mass measure
-//! is lost; [`crate::scene::Assumption::MassMeasure`] says how T at the impulse is compared with that of the clean structure:
+//! lost from just after the impulse that opens it to just before the next, relative to the former. The mass measure
+//! compares T at the impulse with that of the clean structure, in one of three ways ([`Comparison`]):
 //!
 //! - `jump`: the jumps of T at the impulse;
 //! - `after`: T just after it;
@@ -11,16 +11,16 @@
 //! A point impulse gives each mode the same share, so that T just after it grows with the number of modes without limit:
 //! these measures mean something together with that number only.
 
-use super::TraceColumn;
+use super::{Comparison, TraceColumn};
 use crate::dynamics::{Matrix, Response};
 use crate::measure::{EnergySpec, Settings};
-use crate::scene::{Assumption, Assumptions, RecipeError, Scene};
+use crate::scene::Scene;
 
 /// Kinetic energies of every cycle, J.
 pub(super) struct Energies {
     with: Vec<Ends>,
     without: Vec<Ends>,
-    reading: Reading,
+    comparison: Option<Comparison>,
     averaged: std::ops::Range<usize>,
 }
 
@@ -31,35 +31,22 @@ struct Ends {
     before: f64,
 }
 
-/// How the mass measure compares.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Reading {
-    Jump,
-    After,
-    Level,
-}
-
 impl Energies {
     pub(super) fn of(
         scene: &Scene,
         response: &Response,
         undamped: &Response,
-        assumptions: &Assumptions,
+        comparison: Option<Comparison>,
         settings: &Settings,
-    ) -> Result<Self, RecipeError> {
-        let reading = match assumptions.choice(Assumption::MassMeasure, &["jump", "after", "level"])? {
-            0 => Reading::Jump,
-            1 => Reading::After,
-            _ => Reading::Level,
-        };
+    ) -> Self {
         let mass = scene.structure.model().matrices().mass;
         let skip = settings.skip as usize;
-        Ok(Self {
+        Self {
             with: ends(&mass, response),
             without: ends(&mass, undamped),
-            reading,
+            comparison,
             averaged: skip..skip + settings.average as usize,
-        })
+        }
     }
 
     /// Mean over the averaged cycles.
@@ -86,10 +73,11 @@ impl Energies {
         // It starts at rest.
         let before = |cycles: &[Ends]| cycle.checked_sub(1).map_or(0.0, |last| cycles[last].before);
         let jump = |cycles: &[Ends]| cycles[cycle].after - before(cycles);
-        match self.reading {
-            Reading::Jump => jump(&self.with) / jump(&self.without),
-            Reading::After => self.with[cycle].after / self.without[cycle].after,
-            Reading::Level => jump(&self.with) / before(&self.without),
+        match self.comparison {
+            Some(Comparison::Jump) => jump(&self.with) / jump(&self.without),
+            Some(Comparison::After) => self.with[cycle].after / self.without[cycle].after,
+            Some(Comparison::Level) => jump(&self.with) / before(&self.without),
+            None => f64::NAN,
         }
     }
 

@@ -12,10 +12,11 @@ use super::energy::Energies;
 use super::history::{History, columns};
 use super::reading::Reading;
 use super::shape::{self, Shape};
-use super::{EvaluateError, Evaluated, Measure, Measured, Rigour, TraceColumn};
+use super::undefined::in_range;
+use super::{EvaluateError, Evaluated, Measure, Measured, Needs, Rigour, Subject, TraceColumn};
 use crate::dynamics::{EngineError, HybridSystem, Method, Options, Proof, Response, TraceRequest, event_driven};
 use crate::measure::{EnergySpec, Settings, ShapeOf, ShapeSpec, SolverChoice, TraceSpec};
-use crate::scene::{Assumptions, Excitation, GapWord, Recipe, Scene, SingleMass, Structure, compile};
+use crate::scene::{Excitation, Scene, SingleMass, Structure, compile};
 
 /// Kick that tells chaos from order, relative to the drive.
 const TWIN_KICK: f64 = 1e-9;
@@ -60,9 +61,10 @@ impl Request<'_> {
             || self.deflection().is_some()
     }
 
-    /// A run without an audit and without a history.
-    pub(super) fn options(&self, settings: &Settings) -> Options {
+    /// A run of a scene without an audit and without a history.
+    pub(super) fn options(&self, scene: &Scene, settings: &Settings) -> Options {
         Options {
+            start: scene.start_state(),
             skip: settings.skip,
             average: settings.average,
             displacement: self.any(Measure::needs_displacement) || self.deflection().is_some(),
@@ -73,54 +75,43 @@ impl Request<'_> {
         }
     }
 
-    fn needs_undamped(&self) -> bool {
-        self.energies.is_some() || self.any(Measure::needs_undamped)
+    /// What it takes of a subject.
+    #[must_use]
+    pub fn needs(&self) -> Needs {
+        Needs::of(self.measures, self.energies.is_some())
     }
 }
 
 /// A scene that is ready to be run with other gaps: resolved, compiled and compared with the clean structure once.
 #[derive(Debug)]
 pub struct Prepared<'a> {
-    recipe: Recipe,
-    assumptions: &'a Assumptions,
+    subject: Subject,
     settings: &'a Settings,
     measures: &'a [Measure],
     solver: SolverChoice,
-    scene: Scene,
     system: HybridSystem,
     reference: Option<Response>,
-    /// The gap of each damper, m, that is one in the recipe's word.
+    /// The gap of each damper, m, that is one in the word by which gaps are given.
     units: Vec<f64>,
 }
 
 impl<'a> Prepared<'a> {
-    /// Gets a scene ready; gaps will be told in this `word`.
+    /// Gets a scene ready whose gaps are one each, in the word by which gaps will be given.
     ///
     /// # Errors
     /// [`EvaluateError`] with the reason.
     pub fn new(
-        recipe: &Recipe,
-        word: GapWord,
-        assumptions: &'a Assumptions,
+        subject: Subject,
         solver: SolverChoice,
         settings: &'a Settings,
         measures: &'a [Measure],
     ) -> Result<Self, EvaluateError> {
-        let mut recipe = recipe.clone();
-        let count = recipe.resolve(assumptions)?.dampers.len();
-        recipe.set_gaps(word, &vec![1.0; count])?;
-        let scene = rounded(recipe.resolve(assumptions)?, settings);
-        let system = compile(&scene)?;
+        let subject = rounded_subject(subject, settings);
+        let system = compile(&subject.scene)?;
         let request = Request { measures, trace: None, energies: None, shape: None, rigour: Rigour::Look };
-        let reference = if request.needs_undamped() {
-            let bare = rounded(recipe.resolve_undamped(assumptions)?, settings);
-            let options = Options { start: recipe.start_state(&bare), ..request.options(settings) };
-            Some(solve(&compile(&bare)?, &options, solver)?)
-        } else {
-            None
-        };
-        let units = scene.dampers.iter().map(|damper| damper.gap).collect();
-        Ok(Self { recipe, assumptions, settings, measures, solver, scene, system, reference, units })
+        let reference = reference(&subject, &request, settings, solver)?;
+        let units = subject.scene.dampers.iter().map(|damper| damper.gap).collect();
+        Ok(Self { subject, settings, measures, solver, system, reference, units })
     }
 
     /// Runs it with these gaps; sequential and deterministic as [`evaluate`].
@@ -128,16 +119,17 @@ impl<'a> Prepared<'a> {
     /// # Errors
     /// [`EvaluateError`] with the reason.
     pub fn evaluate(&self, gaps: &[f64], rigour: Rigour) -> Result<Evaluated, EvaluateError> {
-        let (mut scene, mut system) = (self.scene.clone(), self.system.clone());
+        let (mut scene, mut system) = (self.subject.scene.clone(), self.system.clone());
         for (i, (gap, unit)) in gaps.iter().zip(&self.units).enumerate() {
             scene.dampers[i].gap = gap * unit;
             system.particles[i].gap = gap * unit;
         }
         let request = Request { measures: self.measures, trace: None, energies: None, shape: None, rigour };
-        let Self { recipe, assumptions, settings, .. } = self;
-        let case = Case { recipe, assumptions, settings, request: &request, scene: &scene };
-        let options = Options { start: recipe.start_state(&scene), ..request.options(settings) };
-        case.run(&system, self.reference.as_ref(), self.solver, &options)
+        let Self { subject, settings, .. } = self;
+        let case = Case { subject, settings, request: &request, scene: &scene };
+        let plain = request.options(&scene, settings);
+        let evaluated = case.run(&system, self.reference.as_ref(), self.solver, &plain)?;
+        in_range(&scene, self.measures, evaluated)
     }
 }
 
@@ -146,30 +138,38 @@ impl<'a> Prepared<'a> {
 /// # Errors
 /// [`EvaluateError`] with the reason.
 pub fn evaluate(
-    recipe: &Recipe,
-    assumptions: &Assumptions,
+    subject: Subject,
     solver: SolverChoice,
     settings: &Settings,
     request: &Request<'_>,
 ) -> Result<Evaluated, EvaluateError> {
-    let scene = rounded(recipe.resolve(assumptions)?, settings);
-    let case = Case { recipe, assumptions, settings, request, scene: &scene };
+    let subject = rounded_subject(subject, settings);
+    let case = Case { subject: &subject, settings, request, scene: &subject.scene };
     if !request.needs_run() {
         return case.without_run();
     }
-    let bare = rounded(recipe.resolve_undamped(assumptions)?, settings);
-    let mut system = compile(&scene)?;
+    let mut system = compile(&subject.scene)?;
     if request.deflection().is_some() {
         shape::watch_products(&mut system);
     }
-    let plain = Options { start: recipe.start_state(&scene), ..request.options(settings) };
-    let reference = if request.needs_undamped() {
-        let alone = Options { start: recipe.start_state(&bare), ..plain.clone() };
-        Some(solve(&compile(&bare)?, &alone, solver)?)
-    } else {
-        None
-    };
-    case.run(&system, reference.as_ref(), solver, &plain)
+    let plain = request.options(&subject.scene, settings);
+    let reference = reference(&subject, request, settings, solver)?;
+    in_range(&subject.scene, request.measures, case.run(&system, reference.as_ref(), solver, &plain)?)
+}
+
+/// The run without dampers, where something is compared with it.
+fn reference(
+    subject: &Subject,
+    request: &Request<'_>,
+    settings: &Settings,
+    solver: SolverChoice,
+) -> Result<Option<Response>, EvaluateError> {
+    match &subject.undamped {
+        Some(bare) if request.needs().undamped => {
+            Ok(Some(solve(&compile(bare)?, &request.options(bare, settings), solver)?))
+        }
+        _ => Ok(None),
+    }
 }
 
 impl Case<'_> {
@@ -259,8 +259,7 @@ impl Case<'_> {
 
 /// A case while it is evaluated.
 struct Case<'a> {
-    recipe: &'a Recipe,
-    assumptions: &'a Assumptions,
+    subject: &'a Subject,
     settings: &'a Settings,
     request: &'a Request<'a>,
     scene: &'a Scene,
@@ -290,7 +289,7 @@ impl Case<'_> {
 
     fn mode_shape(&self) -> Result<Option<Shape>, EvaluateError> {
         let wanted = self.request.shape.filter(|shape| shape.of == ShapeOf::Mode);
-        let number = self.recipe.mode_number() as usize;
+        let number = self.subject.mode as usize;
         Ok(wanted.map(|spec| shape::of_mode(self.scene, spec, number)).transpose()?)
     }
 
@@ -301,8 +300,8 @@ impl Case<'_> {
         mac: Option<f64>,
     ) -> Reading<'r> {
         Reading {
-            recipe: self.recipe,
             scene: self.scene,
+            mode: self.subject.mode,
             response,
             undamped,
             history: None,
@@ -318,13 +317,13 @@ impl Case<'_> {
         let wants_energies = request.energies.is_some() || request.any(Measure::needs_energies);
         let energies = match undamped {
             Some(clean) if wants_energies => {
-                Some(Energies::of(self.scene, response, clean, self.assumptions, self.settings)?)
+                Some(Energies::of(self.scene, response, clean, self.subject.comparison, self.settings))
             }
             _ => None,
         };
         let shape = match request.deflection() {
             _ if !whole => None,
-            Some(spec) => Some(shape::of_deflection(self.scene, response, spec, self.recipe.mode_number() as usize)),
+            Some(spec) => Some(shape::of_deflection(self.scene, response, spec, self.subject.mode as usize)),
             None => self.mode_shape()?,
         };
         let history = request.trace.filter(|_| whole).map(|trace| {
@@ -362,7 +361,12 @@ fn solve(system: &HybridSystem, options: &Options, solver: SolverChoice) -> Resu
     }
 }
 
-/// The forcing period rounded to whole steps, if the experiment asks for it: the study's 199 steps of 1 ms.
+fn rounded_subject(subject: Subject, settings: &Settings) -> Subject {
+    let undamped = subject.undamped.map(|scene| rounded(scene, settings));
+    Subject { scene: rounded(subject.scene, settings), undamped, ..subject }
+}
+
+/// The forcing period rounded to whole steps, if the experiment asks for it.
 pub(super) fn rounded(mut scene: Scene, settings: &Settings) -> Scene {
     let Some(step) = settings.round_period_to else { return scene };
     let round = |period: f64| (period / step).round().max(1.0) * step;

@@ -21,30 +21,6 @@ struct Contact<'a> {
     end: &'a Event,
 }
 
-impl Measure {
-    /// Read off single events.
-    pub(crate) fn needs_events(self) -> bool {
-        matches!(
-            self,
-            Self::FloorImpactTime
-                | Self::FloorImpactInterval
-                | Self::FloorIntervalChange
-                | Self::FloorImpactSpeed
-                | Self::FloorImpactPhase
-                | Self::FloorReboundSpeed
-                | Self::FloorRestitution
-                | Self::FloorContactTime
-                | Self::FloorReleaseTime
-                | Self::ChatterEndTime
-        )
-    }
-
-    /// Read off the state at the end of the run.
-    pub(crate) fn is_final(self) -> bool {
-        matches!(self, Self::FinalDisplacement | Self::FinalVelocity | Self::FinalHeight)
-    }
-}
-
 impl<'a> Impacts<'a> {
     /// Of a run whose first `skip` cycles are left out.
     pub(super) fn of(response: &'a Response, scene: &Scene, skip: u32) -> Self {
@@ -67,9 +43,10 @@ impl<'a> Impacts<'a> {
             Measure::FloorImpactSpeed => last.map(|event| -event.approach),
             Measure::FloorImpactPhase => last.map(|event| TAU / self.period * event.time),
             Measure::FloorReboundSpeed => self.last_contact().map(|contact| contact.end.departure),
-            Measure::FloorRestitution => {
-                self.last_contact().map(|contact| -contact.end.departure / contact.begin.approach)
-            }
+            Measure::FloorRestitution => self
+                .last_contact()
+                .filter(|contact| contact.begin.approach != 0.0)
+                .map(|contact| -contact.end.departure / contact.begin.approach),
             Measure::FloorContactTime => self.last_contact().map(|contact| self.between(contact.begin, contact.end)),
             _ => None,
         };

@@ -7,12 +7,13 @@ use super::history::History;
 use super::impact::Impacts;
 use super::{EvaluateError, Measure};
 use crate::dynamics::{EventKind, Observed, Response, Sums};
-use crate::scene::{Excitation, ExcitationKind, Recipe, Scene, Take};
+use crate::scene::{Excitation, Scene, Take};
 
 /// What there is to read measures of one run off.
 pub(super) struct Reading<'a> {
-    pub(super) recipe: &'a Recipe,
     pub(super) scene: &'a Scene,
+    /// Which mode natural frequencies are of, from 1.
+    pub(super) mode: u32,
     /// The run, and the one without damper; absent where nothing asks for them.
     pub(super) response: Option<&'a Response>,
     pub(super) undamped: Option<&'a Response>,
@@ -22,90 +23,6 @@ pub(super) struct Reading<'a> {
     pub(super) skip: u32,
     /// Modal assurance criterion of the shape, if there is one.
     pub(super) mac: Option<f64>,
-}
-
-impl Measure {
-    /// Read off a time history.
-    pub(crate) fn needs_trace(self) -> bool {
-        matches!(
-            self,
-            Self::LastPeak
-                | Self::PeakVariation
-                | Self::PeakDecayError
-                | Self::FloorImpactLag
-                | Self::CeilingImpactLag
-                | Self::FloorCompression
-                | Self::CeilingCompression
-        )
-    }
-
-    pub(super) fn needs_displacement(self) -> bool {
-        matches!(self, Self::DisplacementRatio | Self::StdDisplacement | Self::MeanDisplacement)
-    }
-
-    /// Read off the largest and smallest values of the motion.
-    pub(super) fn needs_extremes(self) -> bool {
-        matches!(
-            self,
-            Self::DisplacementAmplitude
-                | Self::VelocityAmplitude
-                | Self::DisplacementPerForce
-                | Self::VelocityPerForce
-                | Self::DisplacementPerImpulse
-                | Self::VelocityPerImpulse
-                | Self::DisplacementAmplitudeRatio
-                | Self::VelocityAmplitudeRatio
-                | Self::UndampedDisplacementAmplitude
-                | Self::UndampedVelocityAmplitude
-        )
-    }
-
-    /// Read off the velocities at the ends of cycles.
-    pub(crate) fn needs_energies(self) -> bool {
-        matches!(self, Self::DampingMeasure | Self::MassMeasure)
-    }
-
-    /// Compares with the run without damper, or is of it.
-    pub(crate) fn needs_undamped(self) -> bool {
-        matches!(
-            self,
-            Self::VelocityRatio
-                | Self::DisplacementRatio
-                | Self::UndampedRmsVelocity
-                | Self::DisplacementAmplitudeRatio
-                | Self::VelocityAmplitudeRatio
-                | Self::UndampedDisplacementAmplitude
-                | Self::UndampedVelocityAmplitude
-        ) || self.needs_energies()
-    }
-
-    /// Known without a run.
-    pub(super) fn is_modal(self) -> bool {
-        matches!(
-            self,
-            Self::NaturalFrequency
-                | Self::CleanNaturalFrequency
-                | Self::ExactNaturalFrequency
-                | Self::ModeCount
-                | Self::Mac
-        )
-    }
-
-    /// It has a meaning under this excitation.
-    pub(crate) fn suits(self, excitation: &ExcitationKind) -> bool {
-        match self {
-            Self::DisplacementPerForce | Self::VelocityPerForce => *excitation == ExcitationKind::Harmonic,
-            Self::DisplacementPerImpulse | Self::VelocityPerImpulse => {
-                !matches!(excitation, ExcitationKind::Harmonic | ExcitationKind::None)
-            }
-            _ => true,
-        }
-    }
-
-    /// Read off the shape that is kept.
-    pub(crate) fn needs_shape(self) -> bool {
-        self == Self::Mac
-    }
 }
 
 impl Reading<'_> {
@@ -143,10 +60,10 @@ impl Reading<'_> {
             Measure::CeilingImpactLag => trace()?.lag(EventKind::CeilingContact),
             Measure::DisplacementAmplitude => self.displacement_amplitude(response),
             Measure::VelocityAmplitude => self.velocity_amplitude(response),
-            Measure::DisplacementPerForce => self.displacement_amplitude(response) / self.force(measure)?,
-            Measure::VelocityPerForce => self.velocity_amplitude(response) / self.force(measure)?,
-            Measure::DisplacementPerImpulse => self.displacement_amplitude(response) / self.impulse(measure)?,
-            Measure::VelocityPerImpulse => self.velocity_amplitude(response) / self.impulse(measure)?,
+            Measure::DisplacementPerForce => self.displacement_amplitude(response) / self.drive(measure)?,
+            Measure::VelocityPerForce => self.velocity_amplitude(response) / self.drive(measure)?,
+            Measure::DisplacementPerImpulse => self.displacement_amplitude(response) / self.drive(measure)?,
+            Measure::VelocityPerImpulse => self.velocity_amplitude(response) / self.drive(measure)?,
             Measure::DisplacementAmplitudeRatio => {
                 self.displacement_amplitude(undamped()?) / self.displacement_amplitude(response)
             }
@@ -180,7 +97,7 @@ impl Reading<'_> {
 
     fn modal(&self, measure: Measure) -> Result<f64, EvaluateError> {
         let model = self.scene.structure.model();
-        let number = self.recipe.mode_number() as usize;
+        let number = self.mode as usize;
         let known = |frequencies: &[f64]| frequencies.get(number.wrapping_sub(1)).copied().unwrap_or(f64::NAN);
         Ok(match measure {
             Measure::NaturalFrequency => {
@@ -221,16 +138,14 @@ impl Reading<'_> {
         }
     }
 
-    fn force(&self, measure: Measure) -> Result<f64, EvaluateError> {
-        match self.scene.excitation {
+    /// The force or the impulse that an amplitude is compared with.
+    fn drive(&self, measure: Measure) -> Result<f64, EvaluateError> {
+        let under = measure.facts().under;
+        match &self.scene.excitation {
+            excitation if !under.admits(excitation) => {
+                Err(EvaluateError::NotUnder { measure, excitation: under.words() })
+            }
             Excitation::Harmonic { force, .. } => Ok(force.abs()),
-            _ => Err(EvaluateError::NotUnder { measure, excitation: "a harmonic force" }),
-        }
-    }
-
-    fn impulse(&self, measure: Measure) -> Result<f64, EvaluateError> {
-        match self.scene.excitation {
-            Excitation::Harmonic { .. } => Err(EvaluateError::NotUnder { measure, excitation: "impulses" }),
             Excitation::SingleImpulse { impulse, .. }
             | Excitation::ImpulseTrain { impulse, .. }
             | Excitation::PulseTrain { impulse, .. } => Ok(impulse.abs()),

@@ -38,14 +38,14 @@ pub(crate) fn verdict(comparison: &Comparison, scale: Option<f64>, fitted: bool)
         || fitted && error <= telling;
     if !says_something {
         let (verdict, cause) = if comparison.u_input > comparison.u_num {
-            (Verdict::Blocked, "the inputs that the study does not state move it so far")
+            (Verdict::Blocked, "the unstated inputs alone move it by")
         } else if comparison.spread * comparison.spread > comparison.u_num * comparison.u_num / 2.0 {
-            (Verdict::Undecidable, "the chaotic spread is so wide")
+            (Verdict::Undecidable, "the chaotic spread alone is")
         } else {
-            (Verdict::Undecidable, "the sweep's grid and the run's own error are so coarse")
+            (Verdict::Undecidable, "the sweep's grid and the run's own error alone are")
         };
         let width = super::text::percent(simulated / scale);
-        return (verdict, Some(format!("agrees, but within ± {width} any value would: {cause}")));
+        return (verdict, Some(format!("cannot be tested: {cause} ±{width}")));
     }
     (if fitted { Verdict::Fitted } else { Verdict::Reproduced }, None)
 }

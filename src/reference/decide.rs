@@ -1,5 +1,7 @@
 //! Decides predicates over the rows of a view.
 
+use std::cmp::Ordering;
+
 use super::extract::Extracted;
 use super::line::{common, lines};
 use super::place::{best_place, grows_towards};
@@ -10,8 +12,9 @@ use super::predicate::{
 use super::selection::Allowed;
 use super::shape::{greatest_at_end, levels_off, linear, monotone, onsets, peaks};
 use super::tally::{Decision, Outcome, Tally};
-use super::text::{percent, significant, with_unit};
+use super::text::{apart as told_apart, listed, percent, significant, symbol, with_unit};
 use super::view::{Absence, Cell, Line, View};
+use crate::text::number::with_uncertainty;
 
 /// Decides a claim over the rows that the view means.
 pub(crate) fn decide(predicate: &Predicate, view: &View<'_>) -> Result<Decision, Absence> {
@@ -60,8 +63,15 @@ fn trend(claim: &Trend, view: &View<'_>) -> Result<Decision, Absence> {
         - numbers.iter().map(|n| n.value).fold(f64::INFINITY, f64::min);
     let list: Vec<String> = levels
         .iter()
-        .zip(&numbers)
-        .map(|(level, number)| format!("{} ({level})", with_unit(number.value, 4, &number.unit)))
+        .zip(listed(&numbers))
+        .enumerate()
+        .map(|(i, (level, number))| {
+            if i == 0 {
+                format!("{number} ({} = {level})", symbol(&claim.along))
+            } else {
+                format!("{number} ({level})")
+            }
+        })
         .collect();
     let mut tally = Tally::new();
     for pair in numbers.windows(2) {
@@ -79,11 +89,29 @@ fn trend(claim: &Trend, view: &View<'_>) -> Result<Decision, Absence> {
         let margin = claim.direction.sign() * (last.value - first.value);
         tally.require_strictly(margin, libm::hypot(first.run, last.run), String::new);
     }
-    Ok(Decision { found: list.join(", "), ..tally.decision()? })
+    let margin = |i: usize| claim.direction.sign() * (numbers[i + 1].value - numbers[i].value);
+    let worst = (0..numbers.len().saturating_sub(1)).min_by(|a, b| margin(*a).total_cmp(&margin(*b)));
+    Ok(Decision { found: shortened(&list, worst.unwrap_or(0)), ..tally.decision()? })
 }
 
-fn list(values: &[Extracted], between: &str) -> String {
-    values.iter().map(|one| with_unit(one.value, 5, &one.unit)).collect::<Vec<_>>().join(between)
+/// Short lists whole; of long ones both ends and the two numbers from `worst` on.
+fn shortened(list: &[String], worst: usize) -> String {
+    if list.len() <= 6 {
+        return list.join(", ");
+    }
+    let mut shown: Vec<usize> = vec![0, worst, worst + 1, list.len() - 1];
+    shown.dedup();
+    let mut text = String::new();
+    for (i, &at) in shown.iter().enumerate() {
+        let before = i.checked_sub(1).map(|i| shown[i]);
+        text += match before {
+            None => "",
+            Some(before) if before + 1 == at => ", ",
+            Some(_) => " … ",
+        };
+        text += &list[at];
+    }
+    text
 }
 
 fn greatest_first(values: &[Extracted]) -> Result<Decision, Absence> {
@@ -92,11 +120,18 @@ fn greatest_first(values: &[Extracted]) -> Result<Decision, Absence> {
         tally.require_strictly(pair[0].value - pair[1].value, libm::hypot(pair[0].run, pair[1].run), String::new);
     }
     let decision = tally.decision()?;
-    let found = match decision.outcome {
-        Outcome::Holds => list(values, " > "),
-        Outcome::Undecided => list(values, ", "),
-        Outcome::Fails => format!("{}: not in this order", list(values, ", ")),
-    };
+    let mut found = String::new();
+    for (i, text) in listed(values).iter().enumerate() {
+        if let Some(before) = i.checked_sub(1) {
+            found += match values[before].value.total_cmp(&values[i].value) {
+                _ if decision.outcome == Outcome::Undecided => " ≈ ",
+                Ordering::Greater => " > ",
+                Ordering::Equal => " = ",
+                Ordering::Less => " < ",
+            };
+        }
+        found += text;
+    }
     Ok(Decision { found, ..decision })
 }
 
@@ -113,8 +148,24 @@ fn equal(claim: &Equal, view: &View<'_>) -> Result<Decision, Absence> {
             );
         }
     }
-    let found = format!("{}, to agree within {}", list(&values, " and "), claim.within.words());
+    let found = format!("{} ({} allowed)", difference(&values, claim.within), claim.within.words());
     Ok(Decision { found, ..tally.decision()? })
+}
+
+/// Numbers and how far apart they are: `161.9 rad/s and 162.0 rad/s, 0.07 % apart`, `3.375, the same to the last bit`.
+fn difference(values: &[Extracted], within: Within) -> String {
+    let (low, high) = values
+        .iter()
+        .map(|one| one.value)
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
+    if let (Some(first), true) = (values.first(), low == high) {
+        return format!("{}, the same to the last bit", with_unit(first.value, 4, &first.unit));
+    }
+    let apart = match within {
+        Within::Relative(_) => percent((high - low) / low.abs().max(high.abs())),
+        Within::Absolute(_) => significant(high - low, 3),
+    };
+    format!("{}, {apart} apart", listed(values).join(" and "))
 }
 
 /// Error of a difference of two (value, error). Numbers that are equal to the last bit come from the same motion, chaotic or
@@ -132,7 +183,7 @@ fn apart(claim: &Apart, view: &View<'_>) -> Result<Decision, Absence> {
             tally.require_strictly(apart - claim.by.allows(a.value, b.value), libm::hypot(a.run, b.run), String::new);
         }
     }
-    let found = format!("{}, to differ by {}", list(&values, " and "), claim.by.words());
+    let found = format!("{} (at least {} required)", difference(&values, claim.by), claim.by.words());
     Ok(Decision { found, ..tally.decision()? })
 }
 
@@ -145,14 +196,22 @@ fn between(claim: &Between, view: &View<'_>) -> Result<Decision, Absence> {
     if let Some(to) = claim.to {
         tally.require(to - value.value, value.run, String::new);
     }
-    let end = |end: Option<f64>| end.map_or_else(|| "…".to_string(), |x| significant(x, 4));
-    let found = format!(
-        "{} ± {}, to lie in {} to {}",
-        with_unit(value.value, 4, &value.unit),
-        significant(value.run, 2),
-        end(claim.from),
-        end(claim.to)
-    );
+    let end = |x: f64| with_unit(x, 4, &value.unit);
+    let required = match (claim.from, claim.to) {
+        (Some(from), Some(to)) => format!("{} to {}", end(from), end(to)),
+        (Some(from), None) => format!("at least {}", end(from)),
+        (None, Some(to)) => format!("at most {}", end(to)),
+        (None, None) => "any".into(),
+    };
+    // Below the digits shown it is rounding and not worth a reader's time.
+    let shown = if value.run > 1e-4 * value.value.abs() {
+        let (number, error) = with_uncertainty(value.value, value.run);
+        let unit = if value.unit.is_empty() { String::new() } else { format!(" {}", value.unit) };
+        format!("{number} ± {error}{unit}")
+    } else {
+        with_unit(value.value, 4, &value.unit)
+    };
+    let found = format!("{shown} (required: {required})");
     Ok(Decision { found, ..tally.decision()? })
 }
 
@@ -163,8 +222,11 @@ fn level(claim: &Level, view: &View<'_>, side: f64) -> Result<Decision, Absence>
     let mut tally = Tally::new();
     for cell in &cells {
         tally.require(side * (cell.value - claim.level) + claim.slack, cell.run, || {
-            let nearest = with_unit(cell.value, 5, unit);
-            if cells.len() == 1 { nearest } else { format!("nearest to the level in {} rows: {nearest}", cells.len()) }
+            let (extreme, bound) = if side > 0.0 { ("lowest", "at least") } else { ("highest", "at most") };
+            let shown = told_apart(&[(cell.value, unit), (claim.level, unit)]);
+            let of =
+                if cells.len() == 1 { String::new() } else { format!(", the {extreme} of {} points", cells.len()) };
+            format!("{}{of} (required: {bound} {})", shown[0], shown[1])
         });
     }
     tally.decision()
@@ -191,7 +253,7 @@ fn lines_agree(claim: &LinesAgree, view: &View<'_>) -> Result<Decision, Absence>
     let all = lines(view, claim.source(), &claim.of, &claim.over, &claim.by)?;
     let mut tally = Tally::new();
     for (x, cells) in common(&all)? {
-        agree(&mut tally, &cells, claim.within, || format!(" at {} = {}", claim.over, significant(x, 4)));
+        agree(&mut tally, &cells, claim.within, || format!(" at {} = {}", symbol(&claim.over), significant(x, 4)));
     }
     tally.decision()
 }
@@ -208,7 +270,7 @@ fn line_above(claim: &LineAbove, view: &View<'_>) -> Result<Decision, Absence> {
         let (above, below) = (cells[0], cells[1]);
         let margin = above.value - below.value;
         tally.require_strictly(margin, libm::hypot(above.run, below.run), || {
-            format!("least lead {} at {} = {}", significant(margin, 3), claim.over, significant(x, 4))
+            format!("smallest lead {} at {} = {}", significant(margin, 3), symbol(&claim.over), significant(x, 4))
         });
     }
     tally.decision()
@@ -223,7 +285,7 @@ fn agree(tally: &mut Tally, cells: &[Cell], within: Within, place: impl FnOnce()
                 Within::Relative(_) => percent(apart / low.value.abs().max(high.value.abs())),
                 Within::Absolute(_) => significant(apart, 3),
             };
-            format!("at most {shown} apart{}, {} allowed", place(), within.words())
+            format!("at most {shown} apart{} ({} allowed)", place(), within.words())
         });
     }
 }
@@ -237,9 +299,9 @@ fn paths_cross(claim: &PathsCross, view: &View<'_>) -> Result<Decision, Absence>
     let mut tally = Tally::new();
     tally.require_strictly(above.min(below), 0.0, || {
         format!(
-            "`{}` rises above `{}` by up to {} and falls below by up to {}",
-            claim.of,
-            claim.other,
+            "{} goes above {} by up to {} and below it by up to {}",
+            symbol(&claim.of),
+            symbol(&claim.other),
             with_unit(above, 3, unit),
             with_unit(below, 3, unit)
         )
@@ -265,7 +327,7 @@ fn greatest_point(claim: &GreatestPoint, view: &View<'_>) -> Result<Decision, Ab
         format!(
             "{} at {} = {}; elsewhere at most {}, at {}",
             with_unit(value, 4, unit),
-            claim.over,
+            symbol(&claim.over),
             significant(here, 4),
             with_unit(most, 4, unit),
             significant(other, 4)
@@ -295,9 +357,11 @@ fn path_monotone(claim: &PathMonotone, view: &View<'_>) -> Result<Decision, Abse
     let (range, back) = (line.range(), line.largest_fall().value);
     let mut tally = Tally::new();
     let rise = line.y[line.y.len() - 1].value - line.y[0].value;
-    tally.require_strictly(rise, 0.0, || "it does not go that way from end to end".into());
+    tally.require_strictly(rise, 0.0, || {
+        format!("changes by {} from end to end", with_unit(claim.direction.sign() * rise, 3, &line.unit))
+    });
     tally.require(claim.slack * range - back, 0.0, || {
-        format!("largest step back {} of the range, {} allowed", percent(back / range), percent(claim.slack))
+        format!("steps back by up to {} of the range ({} allowed)", percent(back / range), percent(claim.slack))
     });
     tally.decision()
 }

@@ -35,6 +35,8 @@ use super::extraction::Extraction;
 use super::mode_shape::ModeShape;
 use super::predicate::Predicate;
 use super::printed::Printed;
+use super::problem::ReferenceProblem;
+use super::prose::Prose;
 use super::resonance::PrintedPeak;
 use super::selection::Selection;
 use super::tube::Curve;
@@ -66,7 +68,7 @@ pub struct Entry {
     pub rows: Selection,
     /// The verdict that is expected, never [`Verdict::Missing`].
     pub expected: Verdict,
-    /// Why, where that is not [`Verdict::Reproduced`]; otherwise a note, or empty.
+    /// Why, where that is not [`Verdict::Reproduced`]; otherwise a note, or empty. With placeholders, see [`Prose`].
     pub explanation: String,
     /// Inputs that the study does not give and without which the entry cannot be judged.
     pub blocked_by: Vec<String>,
@@ -146,6 +148,13 @@ pub struct Reading {
 }
 
 impl Entry {
+    /// The explanation with its placeholders.
+    #[must_use]
+    pub fn prose(&self) -> Prose {
+        // Validation has read it; one written by `check --accept` has no placeholder.
+        Prose::parse(&self.explanation).unwrap_or_default()
+    }
+
     /// All that it reads, as an entry of `experiment`.
     #[must_use]
     pub fn readings(&self, experiment: &str) -> Vec<Reading> {
@@ -184,7 +193,7 @@ pub struct ReferenceError {
     /// The file, as it was named by the caller.
     pub file: String,
     /// All that is wrong, in the order of the file, each with line and column.
-    pub problems: Vec<String>,
+    pub problems: Vec<ReferenceProblem>,
 }
 
 /// Reads a reference file; its name is the id of its experiment.
@@ -193,9 +202,9 @@ pub struct ReferenceError {
 /// If it cannot be read or understood: every unsound entry is named.
 pub fn load_reference(path: &Path) -> Result<ReferenceFile, ReferenceError> {
     let file = path.display().to_string();
-    let fail = |problem: String| ReferenceError { file: file.clone(), problems: vec![problem] };
+    let fail = |problem| ReferenceError { file: file.clone(), problems: vec![problem] };
     let experiment = path.file_stem().and_then(|stem| stem.to_str()).unwrap_or_default();
-    let text = std::fs::read_to_string(path).map_err(|error| fail(format!("cannot be read: {error}")))?;
+    let text = std::fs::read_to_string(path).map_err(|error| fail(ReferenceProblem::Unreadable(error.to_string())))?;
     parse_reference(experiment, &text).map_err(|problems| ReferenceError { file: file.clone(), problems })
 }
 
@@ -203,8 +212,8 @@ pub fn load_reference(path: &Path) -> Result<ReferenceFile, ReferenceError> {
 ///
 /// # Errors
 /// All that is wrong, each with line and column.
-pub fn parse_reference(experiment: &str, text: &str) -> Result<ReferenceFile, Vec<String>> {
-    let raw: RawReference = from_yaml(text).map_err(|mistake| vec![mistake.to_string()])?;
+pub fn parse_reference(experiment: &str, text: &str) -> Result<ReferenceFile, Vec<ReferenceProblem>> {
+    let raw: RawReference = from_yaml(text).map_err(|mistake| vec![mistake.into()])?;
     let mut problems = Vec::new();
     let mut ids = BTreeSet::new();
     let mut entries = Vec::new();
@@ -219,10 +228,18 @@ pub fn parse_reference(experiment: &str, text: &str) -> Result<ReferenceFile, Ve
             Ok(entry) => entries.push(Entry { line, ..entry }),
             Err(more) => found.extend(more),
         }
-        problems.extend(found.into_iter().map(|what| format!("line {line}, column {column}: entry `{name}` {what}")));
+        let problem = |mistake| ReferenceProblem::Entry { line, column, entry: name.clone(), mistake };
+        problems.extend(found.into_iter().map(problem));
     }
     if entries.is_empty() && problems.is_empty() {
-        problems.push("line 1, column 1: there is no entry".into());
+        problems.push(ReferenceProblem::NoEntry);
+    }
+    for entry in &entries {
+        let names = |name: &String| !name.contains('/') && !ids.contains(name);
+        for name in entry.prose().placeholders().filter_map(|one| one.entry.clone()).filter(names) {
+            let mistake = format!("has a placeholder of `{name}`, which is no entry here");
+            problems.push(ReferenceProblem::Entry { line: entry.line, column: 1, entry: entry.id.clone(), mistake });
+        }
     }
     if problems.is_empty() { Ok(ReferenceFile { experiment: experiment.into(), entries }) } else { Err(problems) }
 }
@@ -279,6 +296,9 @@ impl RawEntry {
         }
         if expected != Verdict::Reproduced && !filled(&self.explanation) {
             wrong.push("expects another verdict than `reproduced` and needs an `explanation`".into());
+        }
+        if let Err(error) = Prose::parse(self.explanation.as_deref().unwrap_or_default()) {
+            wrong.push(format!("has in its `explanation` {error}"));
         }
         if expected == Verdict::Blocked && self.blocked_by.is_empty() {
             wrong.push("expects `blocked` and needs `blocked_by`: which input the study does not give".into());

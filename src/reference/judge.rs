@@ -17,7 +17,7 @@ use super::price::Price;
 use super::printed::Printed;
 use super::resonance::PrintedPeak;
 use super::tally::{Decision, Outcome};
-use super::text::{percent, significant, with_unit};
+use super::text::{measured, significant};
 use super::verdict::{Comparison, Judged, Moved, Part, Role, Verdict};
 use super::view::{Absence, Reads, Tables, View};
 use crate::table::BASELINE;
@@ -77,7 +77,7 @@ pub(crate) fn judge_entry(
     let mut judgement = judgement.unwrap_or_else(|absence| Judgement::missing(&absence));
     if !entry.blocked_by.is_empty() && judgement.verdict != Verdict::Missing {
         judgement.verdict = Verdict::Blocked;
-        judgement.found = format!("not given: {}; here {}", entry.blocked_by.join(", "), judgement.found);
+        judgement.found = format!("{} (not stated: {})", judgement.found, entry.blocked_by.join(", "));
     }
     let tolerance_reason = match &entry.check {
         Check::Value { tolerance, .. } | Check::Peak { tolerance, .. } => {
@@ -97,6 +97,7 @@ pub(crate) fn judge_entry(
         parts: judgement.parts,
         fit: judgement.fit,
         explanation: entry.explanation.clone(),
+        blocked_by: entry.blocked_by.clone(),
         tolerance_reason,
         robust: judgement.robust,
         moved: judgement.moved,
@@ -107,9 +108,9 @@ pub(crate) fn judge_entry(
 
 fn in_words(outcome: Outcome) -> &'static str {
     match outcome {
-        Outcome::Holds => "holds",
-        Outcome::Undecided => "too near to tell",
-        Outcome::Fails => "does not hold",
+        Outcome::Holds => "true",
+        Outcome::Undecided => "too close to call",
+        Outcome::Fails => "false",
     }
 }
 
@@ -250,16 +251,7 @@ fn value(
         }
     };
     let moved: Vec<Moved> = others.iter().map(description).collect();
-    let mut found = format!(
-        "{} ± {}",
-        with_unit(simulated.value, 5, &simulated.unit),
-        significant(compare::COVERAGE * comparison.u_val(), 2)
-    );
-    if datum != 0.0 {
-        let relative = comparison.error() / datum.abs();
-        let sign = if relative < 0.0 { "" } else { "+" };
-        found = format!("{found}, {sign}{} of {}", percent(relative), published.text());
-    }
+    let mut found = measured(&comparison, published, simulated.scale);
     if let Some(remark) = remark {
         found = format!("{found}; {remark}");
     }

@@ -176,7 +176,12 @@ pub(crate) fn grows_towards(claim: &GrowsTowards, view: &View<'_>) -> Result<Dec
             }
             let u = if same(from.cell.value, to.cell.value) { 0.0 } else { libm::hypot(from.cell.run, to.cell.run) };
             tally.require(claim.slack * range + rise, u, || {
-                format!("step back of {} of the range {}", percent(-rise / range), way())
+                format!(
+                    "falls back by {} of the range {} ({} allowed)",
+                    percent(-rise / range),
+                    way(),
+                    percent(claim.slack)
+                )
             });
         }
         let by_distance = |spot: &&Spot| map.distance_to_target(spot);
@@ -199,11 +204,11 @@ pub(crate) fn grows_towards(claim: &GrowsTowards, view: &View<'_>) -> Result<Dec
     if decision.outcome == Outcome::Holds {
         let (back, way) = largest;
         let back = if back > 0.0 {
-            format!("; largest step back {} of the range {way}", percent(back))
+            format!("; falls back by at most {} of the range {way}", percent(back))
         } else {
             String::new()
         };
-        let found = format!("grows on {up} of {steps} steps{back}, {} allowed", percent(claim.slack));
+        let found = format!("grows on {up} of {steps} steps{back} ({} allowed)", percent(claim.slack));
         return Ok(Decision { found, ..decision });
     }
     Ok(decision)

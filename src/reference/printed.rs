@@ -92,6 +92,12 @@ impl Printed {
         self.half_unit
     }
 
+    /// Its unit, as printed; empty if it is dimensionless.
+    #[must_use]
+    pub fn unit(&self) -> &str {
+        &self.unit
+    }
+
     /// As printed.
     #[must_use]
     pub fn text(&self) -> &str {

@@ -19,12 +19,66 @@ use super::view::{Read, Reads, Role, TableState, Tables, View};
 use crate::table::{BASELINE, Table};
 
 /// An entry that passed where it had to fail, or that could not be put to the test.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct SelfTestFailure {
     /// Id of the entry.
     pub id: String,
     /// What was done to the table, and what came out.
-    pub reason: String,
+    pub reason: Flaw,
+}
+
+/// What is wrong with an entry: what was done to the table, and what came out.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum Flaw {
+    /// There is no table.
+    #[error("its table is missing, so it cannot be put to the test")]
+    NoTable,
+    /// It has no result even on the undamaged table.
+    #[error("it is missing already: {0}")]
+    Missing(String),
+    /// Nothing that it reads was measured in its own experiment.
+    #[error("it reads no measure of its own table")]
+    NoMeasure,
+    /// It is a constant.
+    #[error("its value is a fixed number")]
+    FixedNumber,
+    /// Data were taken away and it still has a verdict.
+    #[error("{damage} it is {verdict:?}, not missing")]
+    NotMissing {
+        /// What was done.
+        damage: String,
+        /// The verdict then.
+        verdict: Verdict,
+    },
+    /// Its numbers were moved and it reads something else.
+    #[error("moved to {target}, it reads {reached}: {found}")]
+    ReadsOther {
+        /// Where its value was to be.
+        target: f64,
+        /// What it reads.
+        reached: f64,
+        /// In words.
+        found: String,
+    },
+    /// Its value was moved across its tolerance and the verdict did not follow.
+    #[error("moved to {target}, it is {verdict:?}")]
+    WrongVerdict {
+        /// Where its value is.
+        target: f64,
+        /// The verdict there.
+        verdict: Verdict,
+    },
+    /// No change made it fail.
+    #[error("nothing that was done to the measures it reads made it fail")]
+    Unbreakable,
+    /// One of its numbers.
+    #[error("{name}: {reason}")]
+    Part {
+        /// Which.
+        name: String,
+        /// What is wrong with it.
+        reason: Box<Self>,
+    },
 }
 
 impl std::fmt::Display for SelfTestFailure {
@@ -49,16 +103,17 @@ pub fn self_test(file: &ReferenceFile, tables: &Tables<'_>) -> Vec<SelfTestFailu
             Some(TableState::Present(table)) => {
                 // What an unstated input blocks must be able to fail once it is stated.
                 let entry = Entry { blocked_by: Vec::new(), ..entry.clone() };
-                Bench { entry: &entry, experiment: &file.experiment, tables, table }.run().err()
+                Trial { entry: &entry, experiment: &file.experiment, tables, table }.run().err()
             }
-            _ => Some("its table is missing, so it cannot be put to the test".to_string()),
+            _ => Some(Flaw::NoTable),
         };
         failures.extend(failed.map(|reason| SelfTestFailure { id: entry.id.clone(), reason }));
     }
     failures
 }
 
-struct Bench<'a> {
+/// One entry under test.
+struct Trial<'a> {
     entry: &'a Entry,
     experiment: &'a str,
     tables: &'a Tables<'a>,
@@ -66,15 +121,15 @@ struct Bench<'a> {
     table: &'a Table,
 }
 
-impl Bench<'_> {
-    fn run(&self) -> Result<(), String> {
+impl Trial<'_> {
+    fn run(&self) -> Result<(), Flaw> {
         let (judged, reads) = judge_noting(self.entry, self.experiment, self.tables);
         if judged.verdict == Verdict::Missing {
-            return Err(format!("it is missing already: {}", judged.found));
+            return Err(Flaw::Missing(judged.found));
         }
         let reads = reads.into_inner();
         if self.measures(&reads).is_empty() {
-            return Err("it reads no measure of its own table".into());
+            return Err(Flaw::NoMeasure);
         }
         self.without_columns(&reads)?;
         self.not_a_number(&reads)?;
@@ -90,7 +145,9 @@ impl Bench<'_> {
                         tolerance: tolerance.clone(),
                     };
                     let entry = Entry { check, ..self.entry.clone() };
-                    Bench { entry: &entry, ..*self }.run().map_err(|reason| format!("{name}: {reason}"))
+                    Trial { entry: &entry, ..*self }
+                        .run()
+                        .map_err(|reason| Flaw::Part { name: name.to_string(), reason: Box::new(reason) })
                 })
             }
             Check::Claim { predicate, .. } => self.broken_claim(&judged, predicate, &reads),
@@ -134,19 +191,22 @@ impl Bench<'_> {
         experiments.into_iter().flat_map(of).collect()
     }
 
-    fn without_columns(&self, reads: &BTreeSet<Read>) -> Result<(), String> {
+    fn without_columns(&self, reads: &BTreeSet<Read>) -> Result<(), Flaw> {
         for (experiment, table, column, _) in self.all_reads(reads) {
             let mut table = table.clone();
             let name = table.columns.remove(column).name;
             let verdict = self.judge_with(experiment, &table).verdict;
             if verdict != Verdict::Missing {
-                return Err(format!("without the column `{name}` of `{experiment}` it is {verdict:?}, not missing"));
+                return Err(Flaw::NotMissing {
+                    damage: format!("without the column `{name}` of `{experiment}`"),
+                    verdict,
+                });
             }
         }
         Ok(())
     }
 
-    fn not_a_number(&self, reads: &BTreeSet<Read>) -> Result<(), String> {
+    fn not_a_number(&self, reads: &BTreeSet<Read>) -> Result<(), Flaw> {
         for (experiment, table, column, rows) in self.all_reads(reads) {
             let count = numbers(table, column, &rows).len();
             if count == 0 {
@@ -159,18 +219,15 @@ impl Bench<'_> {
                 let verdict = self.judge_with(experiment, &damaged).verdict;
                 if verdict != Verdict::Missing {
                     let name = &table.columns[column].name;
-                    return Err(format!(
-                        "with a NaN for number {} of the {count} that it reads in `{name}` of `{experiment}` it is \
-                         {verdict:?}, not missing",
-                        at + 1
-                    ));
+                    let nan = format!("with a NaN for number {} of the {count} that it reads", at + 1);
+                    return Err(Flaw::NotMissing { damage: format!("{nan} in `{name}` of `{experiment}`"), verdict });
                 }
             }
         }
         Ok(())
     }
 
-    fn moved_value(&self, judged: &Judged, from: &Extraction, reads: &BTreeSet<Read>) -> Result<(), String> {
+    fn moved_value(&self, judged: &Judged, from: &Extraction, reads: &BTreeSet<Read>) -> Result<(), Flaw> {
         // A feature that does not occur cannot be moved; it differs already.
         let Some(comparison) = judged.comparison else { return Ok(()) };
         for (offset, should_differ) in [(JUST_OUTSIDE, true), (-JUST_OUTSIDE, true), (0.0, false)] {
@@ -188,13 +245,13 @@ impl Bench<'_> {
                 let reached = moved.comparison.map_or(f64::NAN, |comparison| comparison.simulated);
                 // A scaled number's own error scales with it; a moved one is exact to rounding.
                 if (reached - target).abs() > 0.01 * tolerance {
-                    return Err(format!("moved to {target}, it reads {reached}: {}", moved.found));
+                    return Err(Flaw::ReadsOther { target, reached, found: moved.found });
                 }
                 if (moved.verdict == Verdict::Differs) == should_differ {
                     break;
                 }
                 if last || !should_differ {
-                    return Err(format!("moved to {target}, it is {:?}", moved.verdict));
+                    return Err(Flaw::WrongVerdict { target, verdict: moved.verdict });
                 }
                 tolerance = moved.comparison.map_or(tolerance, |comparison| comparison.tolerance());
             }
@@ -210,7 +267,7 @@ impl Bench<'_> {
         now: f64,
         to: f64,
         reads: &BTreeSet<Read>,
-    ) -> Result<(), String> {
+    ) -> Result<(), Flaw> {
         let column_of =
             |name: &str| self.table.columns.iter().position(|column| column.name == name).unwrap_or(usize::MAX);
         let cells = |role: Role, name: &str| -> (usize, Vec<usize>) {
@@ -255,7 +312,7 @@ impl Bench<'_> {
                 Feature::HalfPowerWidth => {
                     let at = Peak { read: Feature::Place, ..peak.clone() };
                     let place = at.take(&self.view(BASELINE, &Reads::default()));
-                    let place = place.map_err(|absence| absence.reason().to_string())?.value;
+                    let place = place.map_err(|absence| Flaw::Missing(absence.reason().to_string()))?.value;
                     let (column, rows) = cells(Role::Coordinate, &peak.over);
                     alter(table, column, &rows, |x, _| place + (x - place) * to / now);
                 }
@@ -278,17 +335,17 @@ impl Bench<'_> {
                     alter(table, column, &rows, |x, _| x * to / now);
                 }
             }
-            Extraction::Number(_) => return Err("its value is a fixed number".into()),
+            Extraction::Number(_) => return Err(Flaw::FixedNumber),
         }
         Ok(())
     }
 
     /// True if a shape that is said to be different from another fails when it is that very one: no small damage makes two
     /// shapes alike.
-    fn takes_no_double(&self, predicate: &Predicate, reads: &BTreeSet<Read>) -> Result<bool, String> {
+    fn takes_no_double(&self, predicate: &Predicate, reads: &BTreeSet<Read>) -> Result<bool, Flaw> {
         let Predicate::ModeShape(claim) = predicate else { return Ok(false) };
         let double = claim.double(&self.view(BASELINE, &Reads::default()));
-        let double = double.map_err(|absence| absence.reason().to_string())?;
+        let double = double.map_err(|absence| Flaw::Missing(absence.reason().to_string()))?;
         let mut table = self.table.clone();
         for (column, rows) in self.measures(reads) {
             if self.table.columns[column].name == claim.of {
@@ -300,7 +357,7 @@ impl Bench<'_> {
 
     /// Some change of the numbers that it reads must make a claim fail. One that two tops lie apart cannot be refuted on a
     /// coarse grid; it must at least be left open.
-    fn broken_claim(&self, judged: &Judged, predicate: &Predicate, reads: &BTreeSet<Read>) -> Result<(), String> {
+    fn broken_claim(&self, judged: &Judged, predicate: &Predicate, reads: &BTreeSet<Read>) -> Result<(), Flaw> {
         if judged.verdict == Verdict::Differs {
             return Ok(());
         }
@@ -324,7 +381,7 @@ impl Bench<'_> {
                 }
             }
         }
-        if left_open { Ok(()) } else { Err("nothing that was done to the measures it reads made it fail".into()) }
+        if left_open { Ok(()) } else { Err(Flaw::Unbreakable) }
     }
 }
 

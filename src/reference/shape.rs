@@ -3,8 +3,9 @@
 use super::extraction::{Direction, Side};
 use super::predicate::{GreatestAtEnd, LevelsOff, Linear, Monotone, Onsets, Part, Peaks};
 use super::tally::{Decision, Outcome, Tally};
-use super::text::{percent, significant, with_unit};
+use super::text::{percent, significant, symbol, with_unit};
 use super::view::{Absence, View};
+use crate::text::number::signed;
 
 pub(crate) fn monotone(claim: &Monotone, view: &View<'_>) -> Result<Decision, Absence> {
     let mut line = view.line(claim.source(), &claim.of, &claim.over, None)?;
@@ -17,14 +18,22 @@ pub(crate) fn monotone(claim: &Monotone, view: &View<'_>) -> Result<Decision, Ab
     line.x = line.x[part.clone()].to_vec();
     line.y = line.y[part].to_vec();
     if line.x.len() < 2 {
-        return Err(Absence::Nowhere(format!("that part of the line is one point, {} = {}", claim.over, line.x[0])));
+        return Err(Absence::Nowhere(format!(
+            "that part of the line is one point, {} = {}",
+            symbol(&claim.over),
+            significant(line.x[0], 4)
+        )));
     }
     let line = if claim.direction == Direction::Increasing { line } else { line.inverted() };
     let mut tally = Tally::new();
     let (first, last) = (line.y[0], line.y[line.y.len() - 1]);
     tally.require_strictly(last.value - first.value, libm::hypot(last.run, first.run), || {
-        format!("from end to end it changes by {}", significant(claim.direction.sign() * (last.value - first.value), 3))
+        format!("changes by {} from end to end", signed(claim.direction.sign() * (last.value - first.value), 3))
     });
+    let (goes, turns) = match claim.direction {
+        Direction::Increasing => ("rises", "falls back"),
+        Direction::Decreasing => ("falls", "rises again"),
+    };
     let mut reached = line.y[0];
     let mut largest = (0.0, line.x[0]);
     let allowed = claim.slack * range;
@@ -35,10 +44,11 @@ pub(crate) fn monotone(claim: &Monotone, view: &View<'_>) -> Result<Decision, Ab
         }
         tally.require(allowed - back, libm::hypot(cell.run, reached.run), || {
             format!(
-                "step back of {} of the range at {} = {}",
+                "{turns} by {} of the range up to {} = {} ({} allowed)",
                 percent(back / range),
-                claim.over,
-                with_unit(x, 4, &line.over_unit)
+                symbol(&claim.over),
+                with_unit(x, 3, &line.over_unit),
+                percent(claim.slack)
             )
         });
         if cell.value > reached.value {
@@ -48,9 +58,9 @@ pub(crate) fn monotone(claim: &Monotone, view: &View<'_>) -> Result<Decision, Ab
     let mut decision = tally.decision()?;
     if decision.outcome == Outcome::Holds {
         decision.found = if largest.0 > 0.0 {
-            format!("largest step back {} of the range, {} allowed", percent(largest.0 / range), percent(claim.slack))
+            format!("{turns} by at most {} of the range ({} allowed)", percent(largest.0 / range), percent(claim.slack))
         } else {
-            format!("no step back in {} points", line.x.len())
+            format!("{goes} on each of {} steps", line.x.len() - 1)
         };
     }
     Ok(decision)
@@ -76,7 +86,7 @@ pub(crate) fn linear(claim: &Linear, view: &View<'_>) -> Result<Decision, Absenc
         let off = (cell.value - mean_y - slope * (x - mean_x)).abs();
         tally.require(claim.within * line.range() - off, cell.run, || {
             format!(
-                "departs from a straight line by {} of its range, {} allowed",
+                "departs from a straight line by {} of its range ({} allowed)",
                 percent(off / line.range()),
                 percent(claim.within)
             )
@@ -93,8 +103,8 @@ pub(crate) fn levels_off(claim: &LevelsOff, view: &View<'_>) -> Result<Decision,
         let off = (cell.value - last.value).abs();
         tally.require(claim.within * line.range() - off, libm::hypot(cell.run, last.run), || {
             format!(
-                "from {} = {} on it stays within {} of its range, {} allowed",
-                claim.over,
+                "stays within {2} of its range from {0} = {1} on ({3} allowed)",
+                symbol(&claim.over),
                 significant(claim.from, 4),
                 percent(off / line.range()),
                 percent(claim.within)
@@ -115,7 +125,7 @@ pub(crate) fn greatest_at_end(claim: &GreatestAtEnd, view: &View<'_>) -> Result<
                 "{} at the end, {} at {} = {}",
                 with_unit(at_end.value, 4, &line.unit),
                 with_unit(cell.value, 4, &line.unit),
-                claim.over,
+                symbol(&claim.over),
                 significant(line.x[i], 4)
             )
         });
@@ -149,10 +159,10 @@ pub(crate) fn peaks(claim: &Peaks, view: &View<'_>) -> Result<Decision, Absence>
         }
     });
     let places: Vec<String> = sure.iter().map(|&x| significant(x, 3)).collect();
-    let found = if places.is_empty() {
-        format!("no peak stands out by {} of the range", percent(claim.prominence))
-    } else {
-        format!("{} peaks: {} = {}", sure.len(), claim.over, places.join(", "))
+    let found = match places.len() {
+        0 => format!("no peak stands out by {} of the range", percent(claim.prominence)),
+        1 => format!("1 peak: {} = {}", symbol(&claim.over), places[0]),
+        more => format!("{more} peaks: {} = {}", symbol(&claim.over), places.join(", ")),
     };
     Ok(Decision { outcome: at_least.max(at_most), found, reach: None })
 }
@@ -175,7 +185,7 @@ pub(crate) fn onsets(claim: &Onsets, view: &View<'_>) -> Result<Decision, Absenc
         .order
         .iter()
         .zip(&found)
-        .map(|(onset, x)| format!("{} from {} = {}", onset.of, claim.over, significant(*x, 3)))
+        .map(|(onset, x)| format!("{} from {} = {}", symbol(&onset.of), symbol(&claim.over), significant(*x, 3)))
         .collect();
     Ok(Decision { found: words.join(", "), ..tally.decision()? })
 }

@@ -1,21 +1,23 @@
-//! Numbers for a reader: significant digits, without the noise of doubles.
+//! Numbers of verdicts for a reader: as many digits as say something, in the unit in which studies print them.
 
-/// `x` to `digits` significant digits, trailing zeros dropped; an exponent only where zeros would pile up.
+use serde::de::DeserializeOwned;
+
+use super::compare::COVERAGE;
+use super::extract::Extracted;
+use super::printed::Printed;
+use super::verdict::Comparison;
+use crate::experiment::Parameter;
+use crate::measure::Measure;
+use crate::text::number;
+use crate::text::words;
+
+/// Digits with which numbers of a list are told apart at first, and at most.
+const LIST_DIGITS: usize = 4;
+const MOST_DIGITS: usize = 10;
+
+/// `x` to `digits` significant digits, trailing zeros dropped.
 pub(crate) fn significant(x: f64, digits: usize) -> String {
-    if x == 0.0 {
-        return "0".into();
-    }
-    if !x.is_finite() {
-        return if x.is_nan() { "NaN".into() } else { (if x > 0.0 { "infinite" } else { "-infinite" }).into() };
-    }
-    let scientific = format!("{x:.*e}", digits.max(1) - 1);
-    let Some((mantissa, exponent)) = scientific.split_once('e') else { return scientific };
-    let exponent: i32 = exponent.parse().unwrap_or(0);
-    if !(-4..6).contains(&exponent) {
-        return format!("{}e{exponent}", trim(mantissa));
-    }
-    let decimals = usize::try_from(i32::try_from(digits).unwrap_or(6) - 1 - exponent).unwrap_or(0);
-    trim(&format!("{x:.decimals$}"))
+    number::compact(x, digits)
 }
 
 /// A fraction as per cent: `2.9 %`.
@@ -23,12 +25,66 @@ pub(crate) fn percent(fraction: f64) -> String {
     format!("{} %", significant(100.0 * fraction, 2))
 }
 
-/// A number with its unit.
+/// A number with its unit; lengths, times and velocities in thousandths where that is shorter.
 pub(crate) fn with_unit(x: f64, digits: usize, unit: &str) -> String {
-    let number = significant(x, digits);
+    let (factor, unit) = match unit {
+        "m/s" if x.abs() < 2.0 => (1e3, "mm/s"),
+        "m" if x != 0.0 && x.abs() < 1.0 => (1e3, "mm"),
+        "s" if x != 0.0 && x.abs() < 1.0 => (1e3, "ms"),
+        _ => (1.0, unit),
+    };
+    let number = significant(x * factor, digits);
     if unit.is_empty() { number } else { format!("{number} {unit}") }
 }
 
-fn trim(number: &str) -> String {
-    if number.contains('.') { number.trim_end_matches('0').trim_end_matches('.').into() } else { number.into() }
+/// Numbers with their units, in so many digits that two that differ look different.
+pub(crate) fn apart(values: &[(f64, &str)]) -> Vec<String> {
+    let texts =
+        |digits: usize| -> Vec<String> { values.iter().map(|(value, unit)| with_unit(*value, digits, unit)).collect() };
+    let clash = |texts: &[String]| {
+        let pair = |i: usize, j: usize| texts[i] == texts[j] && values[i].0 != values[j].0;
+        (0..texts.len()).any(|i| (0..i).any(|j| pair(i, j)))
+    };
+    (LIST_DIGITS..MOST_DIGITS).map(texts).find(|texts| !clash(texts)).unwrap_or_else(|| texts(MOST_DIGITS))
+}
+
+/// As [`apart`], of numbers that were taken out of tables.
+pub(crate) fn listed(values: &[Extracted]) -> Vec<String> {
+    apart(&values.iter().map(|one| (one.value, one.unit.as_str())).collect::<Vec<_>>())
+}
+
+/// A column as formulas name it: `f′` for `force_ratio`; in words where it has no symbol.
+pub(crate) fn symbol(column: &str) -> String {
+    fn known<K: DeserializeOwned>(column: &str) -> Option<K> {
+        serde_json::from_value(serde_json::Value::String(column.into())).ok()
+    }
+    let parameter = known::<Parameter>(column).map(Parameter::symbol);
+    let symbol = parameter.or_else(|| known::<Measure>(column).map(Measure::symbol)).unwrap_or_default();
+    if symbol.is_empty() { words::of_column(column) } else { symbol.into() }
+}
+
+/// What came out beside what is published, in the unit of the publication: `628 ± 65 mm/s, 21 % below 794.8 mm/s`. An instant,
+/// with the time `scale` between two of its kind, is told by the time between: `52.327 ± 0.010 s, 17 ms after 52.31 s: 3.4 u_val,
+/// 4.6 % of the time between two`.
+pub(crate) fn measured(comparison: &Comparison, published: &Printed, scale: Option<f64>) -> String {
+    let factor = published.half_unit() / comparison.u_data;
+    let (value, uncertainty) =
+        number::with_uncertainty(comparison.simulated * factor, COVERAGE * comparison.u_val() * factor);
+    let unit = if published.unit().is_empty() { String::new() } else { format!(" {}", published.unit()) };
+    let here = format!("{value} ± {uncertainty}{unit}");
+    let (error, datum) = (comparison.error(), published.text());
+    let side = |above: &'static str, below: &'static str| if error < 0.0 { below } else { above };
+    if let Some(scale) = scale {
+        let (late, units) = (with_unit(error.abs(), 2, "s"), significant(comparison.deviation(), 2));
+        let share = percent(error.abs() / scale);
+        return format!(
+            "{here}, {late} {} {datum}: {units} u_val, {share} of the time between two",
+            side("after", "before")
+        );
+    }
+    match error.abs() / comparison.published.abs() {
+        off if off.is_finite() && off > 0.0 => format!("{here}, {} {} {datum}", percent(off), side("above", "below")),
+        0.0 => format!("{here}, equal to {datum}"),
+        _ => format!("{here}; the study: {datum}"),
+    }
 }

@@ -11,7 +11,7 @@ use super::fit::{Fit, FitMeasure};
 use super::predicate::Within;
 use super::selection::Selection;
 use super::tally::{Decision, Tally};
-use super::text::{significant, with_unit};
+use super::text::{significant, symbol, with_unit};
 use super::view::{Absence, Line, Source, View};
 
 /// A published curve.
@@ -105,7 +105,11 @@ impl Curve {
 
     fn words(&self, departure: &Departure, line: &Line) -> String {
         let at = with_unit(departure.x, 4, &line.over_unit);
-        format!("largest departure {} of the tube's width, at {} = {at}", significant(departure.widths, 3), self.over)
+        format!(
+            "largest departure {} of the tube's width, at {} = {at}",
+            significant(departure.widths, 3),
+            symbol(&self.over)
+        )
     }
 
     fn departures(&self, view: &View<'_>) -> Result<(Line, Vec<Departure>), Absence> {

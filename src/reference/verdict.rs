@@ -114,7 +114,7 @@ pub struct Judged {
     pub verdict: Verdict,
     /// The verdict that the entry expects.
     pub expected: Verdict,
-    /// What came out, in one line: `1.5603, +2.9 % of 1.516`, `holds: largest step back 0.2 %`.
+    /// What came out, in one line: `1.56 ± 0.12, 2.9 % above 1.516`, `true: steps back by at most 0.2 % of the range`.
     pub found: String,
     /// For values.
     pub comparison: Option<Comparison>,
@@ -124,6 +124,9 @@ pub struct Judged {
     pub fit: Option<Fit>,
     /// Why it is expected to differ, to be blocked or undecidable; the entry's own note. Markdown.
     pub explanation: String,
+    /// Inputs that the study does not give and without which the entry cannot be judged.
+    #[serde(default)]
+    pub blocked_by: Vec<String>,
     /// Why a tolerance was set by hand, if it was.
     pub tolerance_reason: Option<String>,
     /// Of the variants of the assumptions that were run, how many keep the verdict: (kept, run).

@@ -168,6 +168,12 @@ impl<'a> View<'a> {
         if let Some(&row) = rows.indices.iter().find(|&&row| !failures[row].is_empty()) {
             return Err(Absence::Broken(format!("a run failed: {}", failures[row])));
         }
+        if let Some(&row) = rows.indices.iter().find(|&&row| table.is_unbalanced(row)) {
+            return Err(Absence::Broken(format!(
+                "the balances of row {} do not close: its numbers prove nothing",
+                row + 1
+            )));
+        }
         Ok(rows)
     }
 

@@ -1,21 +1,20 @@
 //! Assumptions in words.
 
-use crate::scene::{Assumption, AssumptionValue};
+use crate::experiment::AssumptionValue;
 use crate::text::number;
 
 use super::markdown::{Align, MarkdownTable, one_line};
 use super::view::AssumptionView;
 
-/// The value of an assumption with its unit: `60 mm`, `9.81 m/s²`, `loaded`, a curve by its end points.
+/// The value of an assumption of this unit: `60 mm`, `9.81 m/s²`, `loaded`, a curve by its end points.
 #[must_use]
-pub fn value_in_words(name: Assumption, value: &AssumptionValue) -> String {
+pub fn value_in_words(unit: &str, value: &AssumptionValue) -> String {
     match value {
-        AssumptionValue::Number(value) => number_in_words(name, *value, 6),
+        AssumptionValue::Number(value) => number::quantity(*value, unit, 6),
         AssumptionValue::Choice(word) => word.replace('_', " "),
         AssumptionValue::Curve(points) => match (points.first(), points.last()) {
             (Some([x0, y0]), Some([x1, y1])) => {
-                let point =
-                    |x: f64, y: f64| format!("{} at {} g", number::quantity(y, unit(name), 4), number::compact(x, 4));
+                let point = |x: f64, y: f64| format!("{} at {} g", number::quantity(y, unit, 4), number::compact(x, 4));
                 format!("a curve through {} points, {} to {}", points.len(), point(*x0, *y0), point(*x1, *y1))
             }
             _ => "a curve without points".to_owned(),
@@ -23,38 +22,24 @@ pub fn value_in_words(name: Assumption, value: &AssumptionValue) -> String {
     }
 }
 
-/// A number of that assumption's kind, to so many digits.
-pub(super) fn number_in_words(name: Assumption, value: f64, digits: usize) -> String {
-    number::quantity(value, unit(name), digits)
-}
-
-fn unit(name: Assumption) -> &'static str {
-    match name {
-        Assumption::Gravity => "m/s²",
-        Assumption::StopLength | Assumption::BeamArrayMargin | Assumption::CentredArrayMargin => "m",
-        Assumption::BeamImpulse | Assumption::PlateImpulse => "N s",
-        Assumption::BeamFloorTuning
-        | Assumption::PlateFloorTuning
-        | Assumption::BeamArrayFloorTuning
-        | Assumption::PlateArrayFloorTuning => "N/m",
-        Assumption::BeamImpulseTime | Assumption::PlateImpulseTime => "s",
-        Assumption::BeamHarmonicForce | Assumption::PlateHarmonicForce => "N",
-        Assumption::EquivalentDampingCurve => "N s/m",
-        _ => "",
+/// The assumptions on an experiment's page: their values, and where their reasons stand.
+pub(super) fn links(assumptions: &[AssumptionView], to_reports: &str) -> String {
+    if assumptions.is_empty() {
+        return String::new();
     }
+    let link =
+        |one: &AssumptionView| format!("[`{name}`]({to_reports}assumptions.md#{name}) {}", one.value, name = one.name);
+    assumptions.iter().map(link).collect::<Vec<_>>().join(" · ") + "\n\n"
 }
 
-/// The table of assumptions on an experiment's page.
-pub(super) fn table(assumptions: &[AssumptionView]) -> String {
-    let mut table = MarkdownTable::new(&[("Assumption", Align::Left), ("Value", Align::Left), ("Why", Align::Left)]);
-    for assumption in assumptions {
-        table.row([format!("`{}`", assumption.name), assumption.value.clone(), reason(assumption)]);
-    }
-    table.finish()
+/// `reports/assumptions.md`: all assumptions with the entries that depend on them.
+#[must_use]
+pub fn assumptions(assumptions: &[AssumptionView]) -> String {
+    let head = "# Assumptions\n\nInputs that the study uses and does not state. [The study in one page](README.md)\n\n";
+    format!("{head}{}", table_with_entries(assumptions))
 }
 
-/// The table of all assumptions with the entries that depend on them.
-pub(super) fn table_with_entries(assumptions: &[AssumptionView]) -> String {
+fn table_with_entries(assumptions: &[AssumptionView]) -> String {
     let mut table = MarkdownTable::new(&[
         ("Assumption", Align::Left),
         ("Value", Align::Left),
@@ -63,7 +48,8 @@ pub(super) fn table_with_entries(assumptions: &[AssumptionView]) -> String {
     ]);
     for assumption in assumptions {
         let used_by = if assumption.used_by.is_empty() { "none".to_owned() } else { entries(&assumption.used_by) };
-        table.row([format!("`{}`", assumption.name), assumption.value.clone(), reason(assumption), used_by]);
+        let name = format!("<a id=\"{name}\"></a>`{name}`", name = assumption.name);
+        table.row([name, assumption.value.clone(), reason(assumption), used_by]);
     }
     table.finish()
 }

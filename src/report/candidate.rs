@@ -1,7 +1,7 @@
 //! What an optimisation found: every candidate beside the first, and which of the differences are none.
 
+use crate::experiment::GapWord;
 use crate::experiment::{Goal, Optimise};
-use crate::scene::GapWord;
 use crate::table::Table;
 use crate::text::number::{compact, quantity, significant};
 use crate::text::words;
@@ -19,9 +19,8 @@ pub(super) fn section(optimise: &Optimise, table: &Table) -> String {
     text += &rows.best(optimise);
     text += &rows.table(optimise);
     text += &format!(
-        "A search sees one run for each setting. Every candidate is evaluated once more afterwards, as the mean over an \
-         ensemble where the motion is chaotic: a search chooses what happened to look good. ± is the standard error. Improvements are measured from {}; one no larger than \
-         its standard error is called noise.\n\n",
+        "A search sees one run for each setting; its result is evaluated again as the mean over an ensemble, ± one standard error. \
+         Improvements are against {}; one within its standard error is noise.\n\n",
         rows.list[0].name
     );
     text

@@ -6,7 +6,7 @@ use std::fs;
 use std::path::Path;
 
 use super::other_pages::is_written_otherwise;
-use super::pages::render;
+use super::pages::{NotDrawn, render};
 use super::verdicts::Judgement;
 use crate::study::Study;
 
@@ -31,8 +31,10 @@ pub enum How {
     Missing,
     /// Nothing would write it.
     Extra,
-    /// It cannot be made, for this reason.
-    CannotBeMade(String),
+    /// There is no table that is up to date.
+    NoTable,
+    /// It cannot be drawn, for this reason.
+    NotDrawn(NotDrawn),
     /// It cannot be read, for this reason.
     Unreadable(String),
     /// A text that differs first in this line.
@@ -55,7 +57,7 @@ pub fn departures(study: &Study, judgement: &Judgement) -> Vec<Departure> {
     let mut found: Vec<Departure> = Vec::new();
     for (file, bytes) in &expected {
         let how = match bytes {
-            Err(why) => Some(How::CannotBeMade(why.clone())),
+            Err(why) => Some(How::NotDrawn(why.clone())),
             Ok(generated) => match fs::read(study.layout.path(file)) {
                 Ok(committed) => difference(&committed, generated),
                 Err(error) if error.kind() == std::io::ErrorKind::NotFound => Some(How::Missing),
@@ -65,10 +67,9 @@ pub fn departures(study: &Study, judgement: &Judgement) -> Vec<Departure> {
         found.extend(how.map(|how| Departure { file: file.clone(), how }));
     }
     let unmade = study.items.iter().filter(|item| item.record().is_none());
-    found.extend(unmade.map(|item| Departure {
-        file: format!("reports of {}", item.source.experiment.id),
-        how: How::CannotBeMade("there is no table that is up to date; `shotdamp run` makes it".into()),
-    }));
+    found.extend(
+        unmade.map(|item| Departure { file: format!("reports of {}", item.source.experiment.id), how: How::NoTable }),
+    );
     let known: BTreeSet<&str> = expected.keys().map(String::as_str).collect();
     let mut present = BTreeSet::new();
     walk(&study.layout.path("reports"), "reports", DEEPEST, &mut present);
@@ -136,7 +137,8 @@ impl fmt::Display for Departure {
         match &self.how {
             How::Missing => write!(f, "{file}: is not there"),
             How::Extra => write!(f, "{file}: nothing writes it; remove it"),
-            How::CannotBeMade(why) => write!(f, "{file}: cannot be made: {why}"),
+            How::NoTable => write!(f, "{file}: there is no table that is up to date; `shotdamp run` makes it"),
+            How::NotDrawn(why) => write!(f, "{file}: cannot be drawn: {why}"),
             How::Unreadable(why) => write!(f, "{file}: cannot be read: {why}"),
             How::Byte(at) => write!(f, "{file}: differs from byte {at} on"),
             How::Line { number, committed, generated } => {

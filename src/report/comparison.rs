@@ -1,65 +1,111 @@
 //! What the study says beside what came out.
 
-use crate::reference::{Comparison, Judged, Moved, Price, Verdict};
+use crate::reference::{Comparison, Judged, Moved, Price, Role, Verdict};
 use crate::text::number::{compact, signed, significant};
 
-use super::markdown::{Align, MarkdownTable, counted, one_line};
-use super::tally::{Tally, role, shown};
+use super::markdown::{Align, MarkdownTable, counted, first_sentence, one_line};
+use super::tally::{Tally, agrees, role, shown};
 
-/// The section on an experiment's page.
-pub(super) fn section(judged: &[Judged]) -> String {
-    let mut text = String::from("## What the study says, and what came out\n\n");
-    if judged.is_empty() {
-        text += "The study makes no claim and quotes no number here that a run could be held against.\n\n";
-        return text;
+/// The entry that a page leads with: the worst, and of several the first.
+pub(super) fn lead(judged: &[Judged]) -> Option<&Judged> {
+    let rank = |one: &&Judged| match one.verdict {
+        Verdict::Missing => 0,
+        Verdict::Differs => 1,
+        Verdict::Blocked => 2,
+        Verdict::Undecidable => 3,
+        Verdict::Reproduced => 4,
+        Verdict::Fitted => 5,
+    };
+    judged.iter().min_by_key(rank)
+}
+
+/// What the page says, in a few lines.
+pub(super) fn in_short(judged: &[Judged]) -> String {
+    let Some(lead) = lead(judged) else {
+        return "The study makes no claim and quotes no number here that a run could be compared with.\n\n".to_owned();
+    };
+    let mut text = format!("**In short.** {}\n\n", conclusion(judged));
+    text += &format!(
+        "- The study says: {}\n- Here: {}\n",
+        closed(&one_line(&lead.statement)),
+        closed(&one_line(&lead.found))
+    );
+    if !agrees(lead.verdict) {
+        text += &format!("- Why: {}\n", first_sentence(&explanation(lead)));
     }
-    text += &format!("{}.\n\n", sentence_of(&Tally::of(judged)));
-    text += &entries(judged);
-    text += &numbers(judged);
-    text += &other_readings(judged);
-    text += &by_hand(judged);
-    text += &explanations(judged);
+    text + "\n"
+}
+
+/// `Stands in part: 2 of 3 statements agree.`
+fn conclusion(judged: &[Judged]) -> String {
+    let tally = Tally::of(judged);
+    let (all, agree) = (judged.len(), judged.iter().filter(|one| agrees(one.verdict)).count());
+    let has = |verdict: Verdict| judged.iter().any(|one| one.verdict == verdict);
+    let word = match agree {
+        _ if has(Verdict::Missing) => "Not complete",
+        agree if agree == all && !has(Verdict::Reproduced) => "Fitted, not tested",
+        agree if agree == all => "Stands",
+        0 if !has(Verdict::Differs) => "Cannot be decided",
+        0 => "Does not stand",
+        _ => "Stands in part",
+    };
+    format!("{word}: {agree} of {} ({}).", counted(all, "statement agrees", "statements agree"), tally.describe())
+}
+
+fn closed(text: &str) -> String {
+    if text.ends_with(['.', '!', '?']) { text.to_owned() } else { format!("{text}.") }
+}
+
+/// The table of a page: a row for each statement.
+pub(super) fn statements(judged: &[Judged]) -> String {
+    let mut table = MarkdownTable::new(&[
+        ("The study says", Align::Left),
+        ("Here", Align::Left),
+        ("Verdict", Align::Left),
+        ("Why", Align::Left),
+    ]);
+    for one in judged {
+        let statement = format!("<a id=\"{}\"></a>{}", anchor(name(one)), one.statement);
+        let why =
+            if one.explanation.trim().is_empty() && agrees(one.verdict) { String::new() } else { explanation(one) };
+        table.row([statement, one.found.clone(), verdict(one), why]);
+    }
+    table.finish()
+}
+
+/// The verdict with all that a reader has to know to believe it.
+fn verdict(one: &Judged) -> String {
+    let mut text = shown(one);
+    if one.role == Role::HeldOut {
+        text += ", held out";
+    }
+    for (name, comparison) in one.comparisons() {
+        if let Some(width) = comparison.tolerance_by_hand {
+            let name = if name.is_empty() { String::new() } else { format!(" of the {name}") };
+            text += &format!("; tolerance{name} set by hand: ±{}", compact(width, 3));
+        }
+    }
     text
 }
 
-fn sentence_of(tally: &Tally) -> String {
-    let total = tally.total();
-    if total == 1 {
-        format!("One entry: {}", tally.describe())
-    } else {
-        format!("{total} entries: {}", tally.describe())
-    }
+/// Uncertainties, other readings and what each verdict depends on.
+pub(super) fn uncertainties(judged: &[Judged]) -> String {
+    numbers(judged) + &other_readings(judged) + &by_hand(judged) + &entries(judged)
 }
 
 fn entries(judged: &[Judged]) -> String {
-    let moved = judged.iter().any(|one| one.robust.is_some());
-    let mut header = vec![
+    let mut table = MarkdownTable::new(&[
         ("Entry", Align::Left),
-        ("The study says", Align::Left),
         ("Where", Align::Left),
-        ("What came out", Align::Left),
-        ("Verdict", Align::Left),
-        ("Fitted or held out", Align::Left),
-        ("Rests on", Align::Right),
-    ];
-    if moved {
-        header.push(("Same verdict with one assumption moved", Align::Right));
-    }
-    let mut table = MarkdownTable::new(&header);
+        ("Used in fits", Align::Left),
+        ("Depends on", Align::Left),
+        ("Verdict kept with one assumption moved", Align::Left),
+    ]);
     for one in judged {
-        let mut row = vec![
-            entry(one),
-            one.statement.clone(),
-            one.place.clone(),
-            one.found.clone(),
-            shown(one),
-            role(one).into(),
-            rests_on(one.price),
-        ];
-        if moved {
-            row.push(one.robust.map_or_else(String::new, |(kept, run)| format!("{kept} of {run} runs")));
-        }
-        table.row(row);
+        let kept = one
+            .robust
+            .map_or_else(String::new, |(kept, run)| format!("in {kept} of {}", counted(run as usize, "run", "runs")));
+        table.row([entry(one), one.place.clone(), role(one).into(), rests_on(one.price), kept]);
     }
     table.finish()
 }
@@ -106,11 +152,7 @@ fn numbers(judged: &[Judged]) -> String {
     if table.is_empty() {
         return table;
     }
-    format!(
-        "How far each number is off, and how far it may be (all in the number’s own unit): u_num is what the run \
-         itself may be off, u_input what the unstated inputs may shift, u_D half a unit of the last printed digit, and \
-         u_val = √(u_num² + u_input² + u_D²).\n\n{table}"
-    )
+    format!("In the unit of the table:\n\n{table}")
 }
 
 /// What comes out with each assumption moved: the other readings of the source. Nothing where none was moved.
@@ -141,9 +183,7 @@ fn other_readings(judged: &[Judged]) -> String {
     if table.is_empty() {
         return table;
     }
-    format!(
-        "What the other values of the assumptions give, one moved at a time; bold where the verdict would be another:\n\n{table}"
-    )
+    format!("Other values of the assumptions, one moved at a time; bold where the verdict would change:\n\n{table}")
 }
 
 fn digits(comparison: &Comparison) -> String {
@@ -165,7 +205,7 @@ fn by_hand(judged: &[Judged]) -> String {
             text += &format!("- {}: {tolerance}\n", entry(one));
         }
     }
-    if text.is_empty() { text } else { format!("**Tolerances set by hand**, not derived from u_val:\n\n{text}\n") }
+    if text.is_empty() { text } else { format!("Tolerances set by hand:\n\n{text}\n") }
 }
 
 /// The tolerance that was set by hand, with its reason, and whether it is looser than the one that it replaces.
@@ -187,16 +227,6 @@ fn width(name: &str, comparison: &Comparison) -> Option<String> {
     Some(format!("{name}±{}, {beside} the derived ±{}", compact(width, 6), significant(derived, 2)))
 }
 
-/// Why entries are not reproduced, and notes on those that are.
-fn explanations(judged: &[Judged]) -> String {
-    let description = |one: &&Judged| one.verdict != Verdict::Reproduced || !one.explanation.trim().is_empty();
-    let mut text = String::new();
-    for one in judged.iter().filter(description) {
-        text += &format!("- {}: {}. {}\n", entry(one), shown(one), explanation(one));
-    }
-    if text.is_empty() { text } else { format!("### Notes on the verdicts\n\n{text}\n") }
-}
-
 /// The entry's explanation, or a plain word that there is none.
 pub(super) fn explanation(judged: &Judged) -> String {
     let explanation = one_line(&judged.explanation);
@@ -205,12 +235,20 @@ pub(super) fn explanation(judged: &Judged) -> String {
     } else if judged.verdict == Verdict::Missing {
         one_line(&judged.found)
     } else {
-        "The entry gives no explanation.".to_owned()
+        "Not explained.".to_owned()
     }
 }
 
 /// The entry's name without its experiment's.
+pub(super) fn name(judged: &Judged) -> &str {
+    judged.id.rsplit('/').next().unwrap_or(&judged.id)
+}
+
+/// A name as the target of a link within a page; the prefix keeps it apart from headings.
+pub(super) fn anchor(name: &str) -> String {
+    format!("entry-{name}")
+}
+
 fn entry(judged: &Judged) -> String {
-    let name = judged.id.rsplit('/').next().unwrap_or(&judged.id);
-    format!("`{name}`")
+    format!("`{}`", name(judged))
 }

@@ -1,10 +1,10 @@
-//! What an entry hangs on: how far each assumption, moved alone, shifts what came out, and which move would change its verdict.
+//! What an entry depends on: how far each assumption, moved alone, shifts what came out, and which move would change its verdict.
 
+use crate::experiment::{AssumptionName, AssumptionValue};
 use crate::reference::{Judged, Moved, Verdict};
-use crate::scene::{Assumption, AssumptionValue};
-use crate::text::{number, words};
+use crate::text::number;
 
-use super::assumption::{number_in_words, value_in_words};
+use super::assumption::value_in_words;
 use super::markdown::one_line;
 use super::tally::{shown, word};
 
@@ -15,17 +15,19 @@ pub struct EntryView<'a> {
     pub judged: &'a Judged,
     /// The moves that were run.
     pub moves: Vec<MoveView<'a>>,
-    /// Assumptions that its experiment leans on and that were not moved.
-    pub unmoved: Vec<Assumption>,
+    /// Assumptions that its experiment depends on and that were not moved.
+    pub unmoved: Vec<AssumptionName>,
     /// Assumptions that were chosen by it.
-    pub chosen_by: Vec<Assumption>,
+    pub chosen_by: Vec<AssumptionName>,
 }
 
 /// One assumption moved.
 #[derive(Debug)]
 pub struct MoveView<'a> {
     /// Which.
-    pub name: Assumption,
+    pub name: &'a AssumptionName,
+    /// Unit symbol of its numbers.
+    pub unit: &'static str,
     /// The value in force.
     pub from: &'a AssumptionValue,
     /// The other one.
@@ -60,7 +62,7 @@ pub fn explain(view: &EntryView<'_>) -> String {
     }
     if !view.unmoved.is_empty() {
         text += &format!(
-            "\nIts experiment leans on these too, and was not run with another value of them: {}.\n\
+            "\nIts experiment also depends on these, which were not moved: {}.\n\
              `shotdamp explain --run {}` does, where they have one.\n",
             names(&view.unmoved),
             judged.id
@@ -69,8 +71,8 @@ pub fn explain(view: &EntryView<'_>) -> String {
     text
 }
 
-fn names(names: &[Assumption]) -> String {
-    names.iter().map(words::of_key).collect::<Vec<_>>().join(", ")
+fn names(names: &[AssumptionName]) -> String {
+    names.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ")
 }
 
 /// How far a move shifts the number, relative to the published one.
@@ -86,7 +88,7 @@ fn rows(view: &EntryView<'_>) -> String {
     moves.sort_by(|a, b| weight(b).total_cmp(&weight(a)));
     let mut rows: Vec<[String; 5]> = Vec::new();
     for one in moves {
-        let (from, to) = (value_in_words(one.name, one.from), value_in_words(one.name, one.to));
+        let (from, to) = (value_in_words(one.unit, one.from), value_in_words(one.unit, one.to));
         let shifted =
             shift(view, one).map_or_else(String::new, |shift| format!("{} %", number::signed(100.0 * shift, 2)));
         let off =
@@ -95,7 +97,7 @@ fn rows(view: &EntryView<'_>) -> String {
                 format!("{} % off", number::signed(100.0 * off, 2))
             });
         rows.push([
-            format!("{}: {from} → {to}", words::of_key(&one.name)),
+            format!("{}: {from} → {to}", one.name),
             one.moved.found.clone(),
             shifted,
             off,
@@ -118,13 +120,13 @@ fn turns(view: &EntryView<'_>) -> String {
     let agrees = |verdict: Verdict| matches!(verdict, Verdict::Reproduced | Verdict::Fitted);
     let now = view.judged.verdict;
     let description = |one: &MoveView<'_>| {
-        format!("  {} = {}: {}\n", words::of_key(&one.name), value_in_words(one.name, one.to), word(one.moved.verdict))
+        format!("  {} = {}: {}\n", one.name, value_in_words(one.unit, one.to), word(one.moved.verdict))
     };
     if agrees(now) {
         let lost: String = view.moves.iter().filter(|one| !agrees(one.moved.verdict)).map(description).collect();
         return match lost.as_str() {
             "" => "It agrees whichever of them is moved.\n".into(),
-            lost => format!("It agrees no more with\n{lost}"),
+            lost => format!("It no longer agrees with\n{lost}"),
         };
     }
     let mut text: String = view.moves.iter().filter(|one| agrees(one.moved.verdict)).map(description).collect();
@@ -148,6 +150,6 @@ fn meeting(view: &EntryView<'_>, one: &MoveView<'_>) -> Option<String> {
     if !(0.0..=1.0).contains(&share) {
         return None;
     }
-    let at = number_in_words(one.name, from + share * (to - from), 3);
-    Some(format!("  {} = {at}\n", words::of_key(&one.name)))
+    let at = number::quantity(from + share * (to - from), one.unit, 3);
+    Some(format!("  {} = {at}\n", one.name))
 }

@@ -3,10 +3,9 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::verdicts::Judgement;
-use crate::experiment::Tried;
+use crate::experiment::{AssumptionEntry, AssumptionName, AssumptionValue, Tried};
 use crate::reference::{Entry, Judged, Moved};
 use crate::report::{self, EntryView, MoveView};
-use crate::scene::{Assumption, AssumptionValue};
 use crate::study::Study;
 use crate::study::{Item, Variant};
 
@@ -14,7 +13,7 @@ use crate::study::{Item, Variant};
 #[derive(Debug, Clone, PartialEq)]
 pub struct Trial {
     /// Which.
-    pub name: Assumption,
+    pub name: AssumptionName,
     /// The value that it was moved to.
     pub to: AssumptionValue,
     /// What came out then.
@@ -39,33 +38,33 @@ pub fn explanations(
     texts
 }
 
-/// The moves of assumptions that an entry hangs on and that the tables on disk do not hold: to every value of their ranges, and
+/// The moves of assumptions that an entry depends on and that the tables on disk do not hold: to every value of their ranges, and
 /// to every value that a calibration tries.
 #[must_use]
-pub fn untried(study: &Study, judged: &Judged) -> Vec<(Assumption, AssumptionValue)> {
+pub fn untried(study: &Study, judged: &Judged) -> Vec<(AssumptionName, AssumptionValue)> {
     let Some(entry) = entry(study, judged) else { return Vec::new() };
     let read: BTreeSet<String> = entry.readings(&judged.experiment).into_iter().map(|one| one.experiment).collect();
     let items = || study.items.iter().filter(|item| read.contains(&item.source.experiment.id.0));
-    let used: BTreeSet<Assumption> =
-        items().flat_map(|item| item.source.experiment.assumptions_used(&study.sheet)).collect();
-    let known = |name: Assumption, value: &AssumptionValue| {
+    let used: BTreeSet<&AssumptionName> = items().flat_map(|item| &item.used).collect();
+    let known = |name: &AssumptionName, value: &AssumptionValue| {
         let own = study.items.iter().filter(|item| item.source.experiment.id.0 == judged.experiment);
         own.flat_map(|item| &item.variants).any(|variant| {
-            variant.moved == Some(name)
-                && variant.assumptions.values.get(&name) == Some(value)
+            variant.moved.as_ref() == Some(name)
+                && variant.assumptions.values.get(name) == Some(value)
                 && judged.moved.iter().any(|moved| moved.variant == variant.label)
         })
     };
-    let mut moves: Vec<(Assumption, AssumptionValue)> = Vec::new();
-    for name in used {
-        let Some(assumption) = study.sheet.entries.get(&name) else { continue };
+    let mut moves: Vec<(AssumptionName, AssumptionValue)> = Vec::new();
+    for (name, assumption) in study.sheet.iter().filter(|(name, _)| used.contains(name)) {
         let calibrated = study.calibrations.values().flat_map(|calibration| &calibration.inputs);
         let calibrated = calibrated.flat_map(|input| match &input.tried {
-            Tried::Values { moves, values } if *moves == [name] => values.iter().flatten().collect(),
+            Tried::Values { moves, values, .. } if moves.as_slice() == std::slice::from_ref(name) => {
+                values.iter().flatten().collect()
+            }
             _ => Vec::new(),
         });
         for value in assumption.range.iter().chain(calibrated) {
-            let new = (name, value.clone());
+            let new = (name.clone(), value.clone());
             if *value != assumption.value && !known(name, value) && !moves.contains(&new) {
                 moves.push(new);
             }
@@ -92,18 +91,23 @@ fn view<'a>(
         .iter()
         .filter_map(|moved| {
             let variant = variants.iter().find(|variant| variant.label == moved.variant)?;
-            let name = variant.moved?;
-            let from = &study.sheet.entries.get(&name)?.value;
-            Some(MoveView { name, from, to: variant.assumptions.values.get(&name)?, moved })
+            let name = variant.moved.as_ref()?;
+            let entry = study.sheet.get(name)?;
+            let to = variant.assumptions.values.get(name)?;
+            Some(MoveView { name, unit: entry.kind.unit(), from: &entry.value, to, moved })
         })
         .collect();
     let tried = trials.get(&judged.id).into_iter().flatten();
     moves.extend(tried.filter_map(|trial| {
-        let from = &study.sheet.entries.get(&trial.name)?.value;
-        Some(MoveView { name: trial.name, from, to: &trial.to, moved: &trial.moved })
+        let entry = study.sheet.get(&trial.name)?;
+        let (name, unit) = (&trial.name, entry.kind.unit());
+        Some(MoveView { name, unit, from: &entry.value, to: &trial.to, moved: &trial.moved })
     }));
-    let used = item.map(|item| item.source.experiment.assumptions_used(&study.sheet)).unwrap_or_default();
-    let unmoved: Vec<Assumption> = used.into_iter().filter(|name| moves.iter().all(|one| one.name != *name)).collect();
-    let chosen_by = study.sheet.entries.iter().filter(|(_, entry)| entry.fitted_to.contains(&judged.id));
-    EntryView { judged, moves, unmoved, chosen_by: chosen_by.map(|(name, _)| *name).collect() }
+    let used = |name: &AssumptionName| item.is_some_and(|item| item.used.contains(name));
+    let names = |wanted: &dyn Fn(&AssumptionName, &AssumptionEntry) -> bool| -> Vec<AssumptionName> {
+        study.sheet.iter().filter(|(name, entry)| wanted(name, entry)).map(|(name, _)| name.clone()).collect()
+    };
+    let unmoved = names(&|name, _| used(name) && moves.iter().all(|one| one.name != name));
+    let chosen_by = names(&|_, entry| entry.fitted_to.contains(&judged.id));
+    EntryView { judged, moves, unmoved, chosen_by }
 }

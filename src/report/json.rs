@@ -105,14 +105,28 @@ impl Number {
     }
 }
 
+/// Why verdicts cannot be read.
+#[derive(Debug, thiserror::Error)]
+pub enum VerdictsError {
+    /// Not a document of verdicts.
+    #[error(transparent)]
+    Json(#[from] serde_json::Error),
+    /// Written by another version.
+    #[error("it has the format {found} instead of {FORMAT}: write it again with this version, `shotdamp check --json`")]
+    Format {
+        /// Its format.
+        found: u32,
+    },
+}
+
 /// Reads such a document again.
 ///
 /// # Errors
-/// In words what is wrong with it.
-pub fn read_json(text: &str) -> Result<Vec<Standing>, String> {
-    let document: Written = serde_json::from_str(text).map_err(|error| error.to_string())?;
+/// [`VerdictsError`] if it is no such document.
+pub fn read_json(text: &str) -> Result<Vec<Standing>, VerdictsError> {
+    let document: Written = serde_json::from_str(text)?;
     if document.format != FORMAT {
-        return Err(format!("it has the format {} instead of {FORMAT}", document.format));
+        return Err(VerdictsError::Format { found: document.format });
     }
     Ok(document.entries.into_iter().map(WrittenEntry::standing).collect())
 }

@@ -64,6 +64,20 @@ pub(crate) fn escaped(text: &str) -> String {
     safe
 }
 
+/// Text for HTML, as SVG is.
+pub(super) fn html(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+}
+
+/// A section that is closed at first; nothing if it is empty.
+pub(super) fn details(summary: &str, body: &str) -> String {
+    if body.is_empty() {
+        String::new()
+    } else {
+        format!("<details><summary>{summary}</summary>\n\n{body}</details>\n\n")
+    }
+}
+
 /// The first sentence of a text; abbreviations such as `s. 3.6` and `Fig. 18` do not end one.
 pub(crate) fn first_sentence(text: &str) -> String {
     let text = one_line(text);

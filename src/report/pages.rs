@@ -6,24 +6,57 @@ use std::fs;
 use rayon::prelude::*;
 
 use super::figures::{figure_name, png, shown};
-use super::publication::{meaning, publication_reasons};
+use super::publication::{inputs, publication_reasons};
 use super::verdicts::Judgement;
 use super::views;
 use crate::atomic::{self, FileError};
 use crate::experiment::FigureSpec;
+use crate::figure::FigureError;
+use crate::reference::{Judged, ReferenceFile};
 use crate::study::Study;
-use crate::study::{FileHash, Item, Publication, Record, record_name, table_name};
+use crate::study::{FileHash, Heading, Item, Publication, Record, State, Summary, record_name, stem, table_name};
+use crate::table::{Table, UNDEFINED};
 
-/// The index of all pages.
-const INDEX: &str = "reports/README.md";
 /// The verdicts for programs, within the study.
 pub const VERDICTS: &str = "reports/verdicts.json";
+
+/// Why there is no picture.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum NotDrawn {
+    /// There is nothing to draw from.
+    #[error("its table cannot be read")]
+    NoTable,
+    /// The figure does not fit the table.
+    #[error(transparent)]
+    Figure(#[from] FigureError),
+    /// There is nothing to show, as no row has a number.
+    #[error("{error}; {why}")]
+    Undefined {
+        /// As the figure says it.
+        error: FigureError,
+        /// Why the numbers are undefined.
+        why: String,
+    },
+}
+
+impl NotDrawn {
+    /// The error of a figure, with the reason where its numbers are undefined.
+    fn of(error: FigureError, table: &Table) -> Self {
+        let undefined = table.texts(UNDEFINED).and_then(|cells| cells.iter().find(|cell| !cell.is_empty()));
+        match (&error, undefined) {
+            (FigureError::Nothing { .. }, Some(why)) => Self::Undefined { error, why: why.clone() },
+            _ => Self::Figure(error),
+        }
+    }
+}
 
 /// What publishing did.
 #[derive(Debug, Default)]
 pub struct Published {
-    /// Every file that the study consists of now, by its name within the study.
-    pub outputs: BTreeSet<String>,
+    /// Experiments that are up to date now, by id: their files, and what the rest of the study needs to know of them.
+    pub experiments: BTreeMap<String, (BTreeSet<String>, Summary)>,
+    /// Files of the study as a whole.
+    pub of_the_study: BTreeSet<String>,
     /// Files that were written.
     pub written: usize,
     /// Figures that were drawn; those that would show the same as before are not.
@@ -40,7 +73,9 @@ struct Page<'a> {
     stale: bool,
 }
 
-/// Draws what is stale, renders every page of the experiments in `ids` and the index, and writes what differs.
+/// Draws what is stale, renders every page of the experiments in `ids` and the index, and writes what differs. Pages of others
+/// that were planned are written where their figures are up to date: a verdict on them may have changed with a table that it
+/// reads.
 ///
 /// # Errors
 /// [`FileError`] if a file cannot be written.
@@ -52,25 +87,20 @@ pub fn publish(study: &Study, judgement: &Judgement, ids: &BTreeSet<&str>) -> Re
     let jobs = stale.flat_map(jobs).filter(|(page, figure)| !is_drawn(study, judgement, page, figure));
     let mut figures = draw(study, judgement, jobs);
     published.drawn = figures.values().map(Vec::len).sum();
-    for page in pages.iter().filter(chosen) {
+    for page in pages.iter().filter(|page| chosen(page) || !page.stale) {
         let id = page.item.source.experiment.id.0.as_str();
         let drawn = figures.remove(id).unwrap_or_default();
         write_page(study, judgement, page, drawn, &mut published)?;
     }
-    for (name, text) in of_the_study(study, judgement) {
-        published.written += usize::from(atomic::write_if_changed(&study.layout.path(name), text.as_bytes())?);
-        published.outputs.insert(name.into());
+    for (name, text) in views::of_the_study(study, judgement) {
+        published.written += usize::from(atomic::write_if_changed(&study.layout.path(&name), text.as_bytes())?);
+        published.of_the_study.insert(name);
     }
     Ok(published)
 }
 
-/// What is written of the study as a whole.
-fn of_the_study(study: &Study, judgement: &Judgement) -> [(&'static str, String); 2] {
-    [(INDEX, views::index(study, judgement)), (VERDICTS, views::verdicts(study, judgement))]
-}
-
-/// Everything that a run would write under `reports/`, by name within the study; or in words why it cannot be made.
-pub(super) fn render(study: &Study, judgement: &Judgement) -> BTreeMap<String, Result<Vec<u8>, String>> {
+/// Everything that a run would write under `reports/`, by name within the study; or why it cannot be made.
+pub(super) fn render(study: &Study, judgement: &Judgement) -> BTreeMap<String, Result<Vec<u8>, NotDrawn>> {
     let pages: Vec<Page<'_>> = study.items.iter().filter_map(|item| page(study, item)).collect();
     let mut figures = draw(study, judgement, pages.iter().flat_map(jobs));
     let mut files = BTreeMap::new();
@@ -82,7 +112,7 @@ pub(super) fn render(study: &Study, judgement: &Judgement) -> BTreeMap<String, R
         let text = views::page(study, judgement, page.item);
         files.insert(format!("{}/{id}.md", page.folder), Ok(text.into_bytes()));
     }
-    files.extend(of_the_study(study, judgement).map(|(name, text)| (name.to_owned(), Ok(text.into_bytes()))));
+    files.extend(views::of_the_study(study, judgement).into_iter().map(|(name, text)| (name, Ok(text.into_bytes()))));
     files
 }
 
@@ -125,7 +155,7 @@ fn is_drawn(study: &Study, judgement: &Judgement, page: &Page<'_>, figure: &Figu
 }
 
 /// A figure and its bytes, or why there are none.
-type Drawn<'a> = Vec<(&'a FigureSpec, Result<Vec<u8>, String>)>;
+type Drawn<'a> = Vec<(&'a FigureSpec, Result<Vec<u8>, NotDrawn>)>;
 
 /// Draws side by side; each picture is one thread's work alone.
 fn draw<'a>(
@@ -139,10 +169,9 @@ fn draw<'a>(
         .map(|(page, figure)| {
             let experiment = &page.item.source.experiment;
             let id = experiment.id.0.as_str();
-            let bytes =
-                judgement.tables.get(id).ok_or_else(|| "its table cannot be read".to_owned()).and_then(|table| {
-                    png(experiment, figure, table, study.references.get(id)).map_err(|error| error.to_string())
-                });
+            let bytes = judgement.tables.get(id).ok_or(NotDrawn::NoTable).and_then(|table| {
+                png(experiment, figure, table, study.references.get(id)).map_err(|error| NotDrawn::of(error, table))
+            });
             (id, *figure, bytes)
         })
         .collect();
@@ -151,6 +180,40 @@ fn draw<'a>(
         by_id.entry(id).or_default().push((figure, bytes));
     }
     by_id
+}
+
+/// The verdicts of an experiment with their explanations as the file has them: their numbers are those of other tables, too.
+fn judged_as_written(judgement: &Judgement, reference: Option<&ReferenceFile>, id: &str) -> Vec<Judged> {
+    let mut judged = judgement.verdicts.get(id).cloned().unwrap_or_default();
+    for one in &mut judged {
+        let entry = reference.and_then(|file| file.entries.iter().find(|entry| entry.id == one.id));
+        if let Some(entry) = entry {
+            one.explanation = entry.explanation.clone();
+        }
+    }
+    judged
+}
+
+/// The summary of an experiment; `None` if it is to be looked at again the next time: rows of it failed, its reference cannot
+/// be read, or an entry reads a table that does not count.
+fn summary(study: &Study, judgement: &Judgement, page: &Page<'_>) -> Option<Summary> {
+    let experiment = &page.item.source.experiment;
+    let id = experiment.id.0.as_str();
+    let reference = study.references.get(id);
+    let tables = study.tables();
+    let reads = reference.map(ReferenceFile::other_tables).unwrap_or_default();
+    let reads: Option<BTreeMap<String, String>> =
+        reads.into_iter().map(|id| Some((id.clone(), (*tables.get(id.as_str())?).to_owned()))).collect();
+    let is_read = matches!(page.item.state, State::Current(_)) && study.unread.iter().all(|one| stem(one.file()) != id);
+    is_read.then_some(Summary {
+        heading: Heading::of(experiment),
+        folder: page.item.source.folder().to_owned(),
+        used: page.item.used.clone(),
+        table: page.record.table.blake3.clone(),
+        reads: reads?,
+        judged: judged_as_written(judgement, reference, id),
+        lines: reference.into_iter().flat_map(|file| &file.entries).map(|entry| entry.line).collect(),
+    })
 }
 
 fn write_page(
@@ -186,7 +249,7 @@ fn write_page(
             }
             Err(why) => {
                 whole = false;
-                // Where rows have failed, that is the news, and it is told already.
+                // Failed rows are reported elsewhere, and are the reason.
                 if page.record.failures.rows == 0 {
                     published.problems.push(format!("{id}: {why}"));
                 }
@@ -207,10 +270,12 @@ fn write_page(
             _ => {}
         }
     }
-    published.outputs.extend(files.keys().cloned());
-    published.outputs.extend([table_name(id), record_name(id)]);
-    let meaning = meaning(study, page.item, page.record);
-    let publication = whole.then_some(Publication { meaning, files, shown });
+    if whole && let Some(summary) = summary(study, judgement, page) {
+        let outputs = files.keys().cloned().chain([table_name(id), record_name(id)]).collect();
+        published.experiments.insert(id.0.clone(), (outputs, summary));
+    }
+    let inputs = inputs(study, page.item, page.record);
+    let publication = whole.then_some(Publication { inputs, files, shown });
     let record = Record { publication, ..page.record.clone() };
     record.write(&layout.path(&record_name(id)))
 }

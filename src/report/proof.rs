@@ -6,10 +6,11 @@ use crate::text::words;
 
 use super::markdown::{Align, MarkdownTable, counted, escaped};
 
-/// The section on an experiment's page.
-pub(super) fn section(table: &Table) -> String {
+/// The balances on an experiment's page; nothing without a table.
+pub(super) fn section(table: Option<&Table>) -> String {
+    let Some(table) = table else { return String::new() };
     let baseline = table.baseline();
-    let mut text = String::from("## What proves the runs\n\n");
+    let mut text = String::new();
     let mut rows = MarkdownTable::new(&[
         ("Solver", Align::Left),
         ("Runs", Align::Right),
@@ -19,7 +20,7 @@ pub(super) fn section(table: &Table) -> String {
         ("Smallest margin", Align::Right),
         ("Ties resolved", Align::Right),
         ("Chaotic", Align::Right),
-        ("Members of an ensemble", Align::Right),
+        ("Largest ensemble", Align::Right),
     ]);
     for solver in solvers(&baseline) {
         let of_solver = baseline.select(&baseline.rows_where("solver", &solver));
@@ -40,11 +41,11 @@ pub(super) fn section(table: &Table) -> String {
     let variants = table.rows().saturating_sub(baseline.rows());
     if variants > 0 {
         let runs = counted(variants, "more run has", "more runs have");
-        text += &format!(
-            "{runs} one assumption moved to an end of its range; only the sensitivity (u_input) uses them.\n\n"
-        );
+        text += &format!("{runs} one assumption moved, for u_input alone.\n\n");
     }
-    text += &failures(table);
+    if solvers(&baseline).iter().any(|solver| solver.starts_with("fixed_step")) {
+        text += "The residuals of a fixed step are the error of the step itself: contacts are noticed up to a step late.\n\n";
+    }
     text
 }
 
@@ -60,7 +61,7 @@ fn solvers(table: &Table) -> Vec<String> {
 }
 
 /// Runs without a result; nothing if all went well.
-fn failures(table: &Table) -> String {
+pub(super) fn failures(table: &Table) -> String {
     let mut reasons: Vec<(&String, usize)> = Vec::new();
     for reason in table.texts("failure").unwrap_or_default().iter().filter(|reason| !reason.is_empty()) {
         match reasons.iter_mut().find(|(known, _)| *known == reason) {

@@ -9,10 +9,9 @@ use crate::study::{ASSUMPTIONS, Item, PRESENTATION_VERSION, Reason, Record, diff
 
 /// All that figures and report of an experiment depend on, other experiments' verdicts aside: pages are text, made anew
 /// whenever anything at all has changed.
-pub(super) fn meaning(study: &Study, item: &Item, record: &Record) -> Value {
+pub(super) fn inputs(study: &Study, item: &Item, record: &Record) -> Value {
     let experiment = &item.source.experiment;
-    let used = experiment.assumptions_used(&study.sheet);
-    let assumptions: BTreeMap<_, _> = study.sheet.entries.iter().filter(|(name, _)| used.contains(name)).collect();
+    let assumptions: BTreeMap<_, _> = study.sheet.iter().filter(|(name, _)| item.used.contains(*name)).collect();
     json!({
         "experiment": experiment.canonical_json(),
         "assumptions": assumptions,
@@ -28,7 +27,7 @@ pub fn publication_reasons(study: &Study, item: &Item) -> Vec<Reason> {
     let Some(record) = item.record() else { return Vec::new() };
     let Some(publication) = &record.publication else { return vec![Reason::NeverPublished] };
     let id = &item.source.experiment.id;
-    let mut reasons = differences(&publication.meaning, &meaning(study, item, record), &|path| match path {
+    let mut reasons = differences(&publication.inputs, &inputs(study, item, record), &|path| match path {
         ["experiment", ..] => item.source.file.clone(),
         ["assumptions", ..] => ASSUMPTIONS.into(),
         ["reference", ..] => format!("reference of {id}"),

@@ -1,9 +1,9 @@
 //! How an experiment was run, and which effects its scene has.
 
+use crate::experiment::GapWord;
 use crate::experiment::{Experiment, Optimise, Search};
 use crate::measure::SolverChoice;
 use crate::scene::EffectUse;
-use crate::scene::GapWord;
 use crate::text::number::{compact, quantity};
 use crate::text::words;
 
@@ -12,7 +12,7 @@ use super::markdown::counted;
 /// The section on how it was run.
 pub(super) fn section(experiment: &Experiment) -> String {
     let settings = &experiment.settings;
-    let mut text = String::from("## How it was run\n\n");
+    let mut text = String::new();
     match &experiment.optimise {
         Some(optimise) => text += &searches(optimise),
         None => text += &format!("- {}.\n", cases(experiment)),
@@ -33,8 +33,7 @@ pub(super) fn section(experiment: &Experiment) -> String {
     }
     if settings.ensemble > 0 {
         text += &format!(
-            "- Where the motion is chaotic, the number shown is the mean of {} from minutely perturbed starts, and the band \
-             one standard deviation of them.\n",
+            "- Where the motion is chaotic: the mean of {} from slightly perturbed starts.\n",
             counted(settings.ensemble as usize, "run", "runs")
         );
     }
@@ -175,18 +174,15 @@ pub(super) fn effects(effects: &[EffectUse]) -> String {
     if effects.is_empty() {
         return String::new();
     }
-    let mut text = String::from("## Effects\n\n");
+    let mut text = String::new();
     let in_force: Vec<String> = effects.iter().filter(|effect| effect.in_force > 0).map(in_force).collect();
     if !in_force.is_empty() {
         text += &format!("In force: {}.\n\n", in_force.join(", "));
     }
     let left_out: Vec<&EffectUse> = effects.iter().filter(|effect| effect.in_force == 0).collect();
     if !left_out.is_empty() {
-        text += "Left out of the simulation, at no cost, because the scene has none of it:\n\n";
-        for effect in left_out {
-            text += &format!("- {}: {}\n", effect.name, effect.why_not);
-        }
-        text += "\n";
+        let names: Vec<&str> = left_out.iter().map(|effect| effect.name).collect();
+        text += &format!("Not in this scene: {}.\n\n", names.join(", "));
     }
     text
 }

@@ -18,57 +18,61 @@ pub(crate) fn word(verdict: Verdict) -> &'static str {
     }
 }
 
+/// The verdict's symbol.
+pub(super) fn mark(verdict: Verdict) -> &'static str {
+    match verdict {
+        Verdict::Reproduced => "●",
+        Verdict::Fitted => "◐",
+        Verdict::Differs => "✕",
+        Verdict::Undecidable => "≈",
+        Verdict::Blocked => "□",
+        Verdict::Missing => "?",
+    }
+}
+
+/// True if the entry agrees with the study, whatever that proves.
+pub(super) fn agrees(verdict: Verdict) -> bool {
+    matches!(verdict, Verdict::Reproduced | Verdict::Fitted)
+}
+
 /// What the word means, for a reader who meets it for the first time.
 pub(super) fn meaning(verdict: Verdict) -> &'static str {
     match verdict {
-        Verdict::Reproduced => "what came out agrees with the study, within the stated tolerance",
-        Verdict::Fitted => {
-            "it agrees, but an input that the study leaves open was chosen to make it agree: it proves nothing"
-        }
-        Verdict::Differs => "it does not agree, by more than all uncertainties together",
+        Verdict::Reproduced => "agrees with the study within the stated tolerance",
+        Verdict::Fitted => "agrees, but was used to choose an unstated input: it proves nothing",
+        Verdict::Differs => "differs by more than all uncertainties together",
         Verdict::Undecidable => {
-            "the motion is chaotic there and the published value lies within its spread: no run can confirm or refute it"
+            "the chaotic spread or the grid is wider than the question: no run can confirm or refute it"
         }
-        Verdict::Blocked => "it hangs on an input that the study does not give",
-        Verdict::Missing => {
-            "there is no result to hold against the study: not run, failed, out of date or not a number"
-        }
+        Verdict::Blocked => "depends on an input that the study does not state",
+        Verdict::Missing => "no result to compare: not run, failed, out of date or not a number",
     }
 }
 
 /// The verdict as a page shows it, with what was expected of it if that is something else.
 pub(super) fn shown(judged: &Judged) -> String {
-    let verdict = word(judged.verdict);
-    if !judged.as_expected() {
-        format!("**{verdict}** (expected: {})", word(judged.expected))
-    } else if judged.verdict == Verdict::Reproduced {
-        verdict.to_owned()
-    } else {
-        format!("{verdict}, as expected")
-    }
+    let verdict = format!("{} {}", mark(judged.verdict), word(judged.verdict));
+    if judged.as_expected() { verdict } else { format!("**{verdict}** (expected: {})", word(judged.expected)) }
 }
 
-/// The heads of the columns of [`agreeing`].
-pub(super) const ROLES: [&str; 2] = ["fitted to", "held out"];
-
-/// How many of the entries that inputs were fitted to agree, and how many of those held out: `3 of 4`, or nothing.
-pub(super) fn agreeing<'a>(judged: impl IntoIterator<Item = &'a Judged> + Clone) -> [String; 2] {
-    [Role::Fitted, Role::HeldOut].map(|role| {
-        let of_role = || judged.clone().into_iter().filter(|one| one.role == role);
-        let agree = of_role().filter(|one| matches!(one.verdict, Verdict::Reproduced | Verdict::Fitted)).count();
-        match of_role().count() {
-            0 => String::new(),
-            all => format!("{agree} of {all}"),
-        }
-    })
+/// A number or a claim.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Kind {
+    Number,
+    Claim,
 }
 
-/// The role of an entry as a page tells it.
+/// What an entry is; one without a result counts as a claim.
+pub(super) fn kind(judged: &Judged) -> Kind {
+    if judged.comparisons().next().is_some() { Kind::Number } else { Kind::Claim }
+}
+
+/// The role of an entry as a page tells it; empty where it has none.
 pub(super) fn role(judged: &Judged) -> &'static str {
     match judged.role {
         Role::Fitted => "fitted",
         Role::HeldOut => "held out",
-        Role::Neither => "neither",
+        Role::Neither => "",
     }
 }
 
@@ -103,7 +107,10 @@ impl Tally {
         let parts: Vec<_> = self
             .each()
             .filter(|(_, count)| *count > 0)
-            .map(|(verdict, count)| format!("{count} {}", word(verdict)))
+            .map(|(verdict, count)| match verdict {
+                Verdict::Differs if count > 1 => format!("{count} differ"),
+                _ => format!("{count} {}", word(verdict)),
+            })
             .collect();
         if parts.is_empty() { "no entries".to_owned() } else { parts.join(", ") }
     }

@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use rayon::prelude::*;
 
+use super::prose;
 use crate::reference::{Judged, ReferenceFile, SelfTestFailure, TableState, Tables, judge, self_test};
 use crate::study::Study;
 use crate::study::{Item, State, table_name};
@@ -32,8 +33,10 @@ pub fn judge_all(study: &Study) -> Judgement {
     let states = on_disk(study);
     let tables = tables(&states);
     let fitted = study.fitted();
+    let known = study.known.iter().map(|(id, known)| (id.clone(), known.judged.clone()));
     let verdict = |(id, file): (&String, &ReferenceFile)| (id.clone(), judged(study, file, &tables, &fitted));
-    let verdicts = study.references.iter().map(verdict).collect();
+    let mut verdicts = study.references.iter().map(verdict).chain(known).collect();
+    prose::fill(&mut verdicts);
     let tables = states
         .into_iter()
         .filter_map(|(id, state)| match state {
@@ -82,7 +85,14 @@ fn on_disk(study: &Study) -> BTreeMap<String, OnDisk> {
         (id.to_string(), state)
     };
     let states: Vec<_> = study.items.par_iter().map(read).collect();
-    states.into_iter().collect()
+    // Of what is known to be up to date only the tables that entries of other experiments read.
+    let others: BTreeSet<String> = study.references.values().flat_map(ReferenceFile::other_tables).collect();
+    let known = others.into_iter().filter_map(|id| {
+        let known = study.known.get(&id)?;
+        let table = parquet::read(&study.layout.path(&table_name(&known.heading.id)));
+        Some((id, table.map_or_else(|error| OnDisk::Failed(error.to_string()), OnDisk::Present)))
+    });
+    states.into_iter().chain(known).collect()
 }
 
 fn tables(states: &BTreeMap<String, OnDisk>) -> Tables<'_> {

@@ -3,6 +3,7 @@
 use crate::experiment::Experiment;
 use crate::reference::Judged;
 use crate::scene::EffectUse;
+use crate::study::Heading;
 use crate::table::Table;
 
 /// An assumption in force, in words.
@@ -14,7 +15,7 @@ pub struct AssumptionView {
     pub value: String,
     /// Why this value. Markdown.
     pub reason: String,
-    /// Ids of the entries whose experiments lean on it.
+    /// Ids of the entries whose experiments depend on it.
     pub used_by: Vec<String>,
     /// Ids of the entries that it was chosen by.
     pub fitted_to: Vec<String>,
@@ -29,28 +30,24 @@ pub struct FigureView {
     pub caption: String,
 }
 
-/// The measured page of what accuracy costs, and its diagram, as links.
+/// The measured page of what accuracy costs, as a link.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct AccuracyLinks {
-    /// Relative to the text that shows them.
+    /// Relative to the text that shows it.
     pub page: String,
-    /// `None` where there was no error to draw.
-    pub picture: Option<String>,
 }
 
 /// One experiment with its verdicts, for the index and the console.
 #[derive(Debug, Clone)]
 pub struct ExperimentView<'a> {
     /// The experiment.
-    pub experiment: &'a Experiment,
+    pub experiment: Heading,
     /// Its entries with their verdicts.
     pub judged: &'a [Judged],
     /// Processor time that its simulations took, s, where somebody has measured it.
     pub seconds: Option<f64>,
     /// Its page, relative to the index.
     pub page: String,
-    /// Its figures, relative to the index.
-    pub figures: Vec<FigureView>,
 }
 
 /// All that one experiment's page tells.
@@ -62,16 +59,16 @@ pub struct PageView<'a> {
     pub table: Option<&'a Table>,
     /// Its entries with their verdicts.
     pub judged: &'a [Judged],
-    /// The assumptions that it leans on.
+    /// The assumptions that it depends on.
     pub assumptions: &'a [AssumptionView],
     /// Effects over its cases.
     pub effects: &'a [EffectUse],
     /// Its figures, relative to the page.
     pub figures: &'a [FigureView],
-    /// Its table as a file, relative to the page.
-    pub table_link: &'a str,
+    /// Its table, by its name within the study.
+    pub table_name: &'a str,
     /// What its accuracy costs, if it was measured.
     pub accuracy: Option<AccuracyLinks>,
-    /// The index, relative to the page.
-    pub index_link: &'a str,
+    /// The way to `reports/`: empty or ends in `/`.
+    pub to_reports: &'a str,
 }

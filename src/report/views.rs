@@ -1,53 +1,70 @@
-//! What the report writes from, gathered: links as they stand in the written files, assumptions with all who lean on them.
+//! What the report writes from, gathered: links as they stand in the written files, assumptions with the entries that depend on them.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::figures::figure_name;
+use super::index::{OVERVIEW, STRIP};
 use super::other_pages::PAGES;
+use super::prose;
 use super::verdicts::Judgement;
+use crate::experiment::AssumptionName;
 use crate::experiment::{Experiment, FigureSpec};
 use crate::reference::Judged;
 use crate::report::{
     self, AccuracyLinks, AssumptionView, CheckView, CheckedEntry, ExperimentView, FigureView, PageView, Trouble,
     value_in_words,
 };
-use crate::scene::{Assumption, Scene, effects};
-use crate::study::{Item, RunTimes, table_name};
+use crate::scene::{Scene, effects};
+use crate::study::{Heading, Item, RunTimes, table_name};
 use crate::study::{Study, Unread};
-use crate::text::words;
 
 /// The page of an experiment.
 pub(super) fn page(study: &Study, judgement: &Judgement, item: &Item) -> String {
     let experiment = &item.source.experiment;
-    let used = experiment.assumptions_used(&study.sheet);
     let up = to_reports(item);
     report::page(&PageView {
         experiment,
         table: judgement.tables.get(&experiment.id.0),
         judged: judged(judgement, &experiment.id.0),
-        assumptions: &assumptions(study, |name| used.contains(&name)),
+        assumptions: &assumptions(study, judgement, &|name| item.used.contains(name), &|_| Vec::new()),
         effects: &effects(&scenes(study, experiment)),
-        figures: &figures(experiment, ""),
-        table_link: &format!("{up}../{}", table_name(&experiment.id)),
+        figures: &figures(experiment),
+        table_name: &table_name(&experiment.id),
         accuracy: accuracy(study, item, &up),
-        index_link: &format!("{up}README.md"),
+        to_reports: &up,
     })
 }
 
 /// Links to what was measured, where it is there.
 fn accuracy(study: &Study, item: &Item, up: &str) -> Option<AccuracyLinks> {
-    let link = |ending: &str| {
-        let name = format!("accuracy/{}.{ending}", item.source.experiment.id);
-        study.layout.path(&format!("reports/{name}")).exists().then(|| format!("{up}{name}"))
-    };
-    Some(AccuracyLinks { page: link("md")?, picture: link("png") })
+    let name = format!("accuracy/{}.md", item.source.experiment.id);
+    let exists = study.layout.path(&format!("reports/{name}")).exists();
+    exists.then(|| AccuracyLinks { page: format!("{up}{name}") })
+}
+
+/// What is written of the study as a whole, by name within the study.
+pub(super) fn of_the_study(study: &Study, judgement: &Judgement) -> Vec<(String, String)> {
+    let times = RunTimes::read(&study.layout);
+    let planned = study.items.iter().map(|item| (Heading::of(&item.source.experiment), item.source.folder()));
+    let known = study.known.values().map(|known| (known.heading.clone(), known.folder.as_str()));
+    let mut views: Vec<ExperimentView<'_>> =
+        planned.chain(known).map(|(heading, folder)| listed(judgement, heading, folder, times.as_ref())).collect();
+    views.sort_by(|a, b| a.experiment.id.cmp(&b.experiment.id));
+    let assumptions = assumptions(study, judgement, &|_| true, &|name| entries_that_use(study, name));
+    [
+        ("README.md", index(study, &views, times.as_ref())),
+        (STRIP, report::strip_svg(&views)),
+        (OVERVIEW, report::overview_svg(&views)),
+        ("assumptions.md", report::assumptions(&assumptions)),
+        ("tolerances.md", report::tolerances(&views)),
+        ("verdicts.json", verdicts(study, judgement)),
+    ]
+    .map(|(name, text)| (format!("reports/{name}"), text))
+    .into()
 }
 
 /// The index of all pages.
-pub(super) fn index(study: &Study, judgement: &Judgement) -> String {
-    let times = RunTimes::read(&study.layout);
-    let listed = |item| listed(judgement, item, times.as_ref());
-    let views: Vec<ExperimentView<'_>> = study.items.iter().map(listed).collect();
+fn index(study: &Study, views: &[ExperimentView<'_>], times: Option<&RunTimes>) -> String {
     let calibrations = study.calibrations.iter();
     let calibrations: Vec<(String, String)> = calibrations
         .map(|(id, calibration)| (format!("Calibration: {}", calibration.title), format!("calibrations/{id}.md")))
@@ -58,24 +75,21 @@ pub(super) fn index(study: &Study, judgement: &Judgement) -> String {
         .chain(calibrations)
         .filter(|(_, page)| study.layout.path(&format!("reports/{page}")).exists())
         .collect();
-    let machine = times.as_ref().map(|times| &times.machine);
-    report::index(&views, &assumptions(study, |_| true), &others, machine)
+    report::index(views, &others, times.map(|times| &times.machine))
 }
 
-fn listed<'a>(judgement: &'a Judgement, item: &'a Item, times: Option<&RunTimes>) -> ExperimentView<'a> {
-    let experiment = &item.source.experiment;
-    let folder = match item.source.folder() {
-        "" => String::new(),
-        folder => format!("{folder}/"),
-    };
-    // A figure is there once there is a table to draw it from.
-    let drawn = judgement.tables.contains_key(&experiment.id.0);
+fn listed<'a>(
+    judgement: &'a Judgement,
+    experiment: Heading,
+    folder: &str,
+    times: Option<&RunTimes>,
+) -> ExperimentView<'a> {
+    let folder = if folder.is_empty() { String::new() } else { format!("{folder}/") };
     ExperimentView {
-        experiment,
         judged: judged(judgement, &experiment.id.0),
         seconds: times.and_then(|times| times.seconds.get(&experiment.id.0)).copied(),
         page: format!("{folder}{}.md", experiment.id),
-        figures: if drawn { figures(experiment, &folder) } else { Vec::new() },
+        experiment,
     }
 }
 
@@ -94,10 +108,12 @@ pub fn check_view<'a>(
     ids: &BTreeSet<&'a str>,
     unread: &[&Unread],
 ) -> CheckView<'a> {
+    let files = study.reference_names();
     let mut entries = Vec::new();
     for id in ids {
-        let file = study.reference_name(id).unwrap_or_default();
+        let file = files.get(id).copied().unwrap_or_default();
         let lines = study.references.get(*id).into_iter().flat_map(|file| &file.entries).map(|entry| entry.line);
+        let lines = lines.chain(study.known.get(*id).into_iter().flat_map(|known| known.lines.iter().copied()));
         let judged = judged(judgement, id).iter().zip(lines);
         entries.extend(judged.map(|(judged, line)| CheckedEntry { judged, file, line }));
     }
@@ -106,7 +122,7 @@ pub fn check_view<'a>(
 }
 
 /// The verdicts of the whole study for programs.
-pub(super) fn verdicts(study: &Study, judgement: &Judgement) -> String {
+fn verdicts(study: &Study, judgement: &Judgement) -> String {
     let ids = judgement.verdicts.keys().map(String::as_str).collect();
     report::json(&check_view(study, judgement, &ids, &[]))
 }
@@ -130,27 +146,37 @@ fn to_reports(item: &Item) -> String {
     "../".repeat(folders)
 }
 
-fn figures(experiment: &Experiment, folder: &str) -> Vec<FigureView> {
-    let view = |figure: &FigureSpec| FigureView {
-        link: format!("{folder}{}", figure_name(experiment, figure)),
-        caption: figure.caption.clone(),
-    };
+fn figures(experiment: &Experiment) -> Vec<FigureView> {
+    let view =
+        |figure: &FigureSpec| FigureView { link: figure_name(experiment, figure), caption: figure.caption.clone() };
     experiment.figures.iter().map(view).collect()
 }
 
-fn assumptions(study: &Study, wanted: impl Fn(Assumption) -> bool) -> Vec<AssumptionView> {
-    let used_by = |name: &Assumption| {
-        let items =
-            study.items.iter().filter(|item| item.source.experiment.assumptions_used(&study.sheet).contains(name));
-        let files = items.filter_map(|item| study.references.get(&item.source.experiment.id.0));
-        files.flat_map(|file| file.entries.iter().map(|entry| entry.id.clone())).collect()
-    };
-    let entries = study.sheet.entries.iter().filter(|(name, _)| wanted(**name));
+/// Ids of the entries whose experiments depend on an assumption.
+fn entries_that_use(study: &Study, name: &AssumptionName) -> Vec<String> {
+    let planned = study.items.iter().filter(|item| item.used.contains(name)).filter_map(|item| {
+        let id = &item.source.experiment.id.0;
+        let ids = study.references.get(id)?.entries.iter().map(|entry| entry.id.as_str()).collect::<Vec<_>>();
+        Some((id.as_str(), ids))
+    });
+    let known = study.known.iter().filter(|(_, known)| known.used.contains(name));
+    let known = known.map(|(id, known)| (id.as_str(), known.judged.iter().map(|one| one.id.as_str()).collect()));
+    let by_experiment: BTreeMap<&str, Vec<&str>> = planned.chain(known).collect();
+    by_experiment.into_values().flatten().map(str::to_owned).collect()
+}
+
+fn assumptions(
+    study: &Study,
+    judgement: &Judgement,
+    wanted: &dyn Fn(&AssumptionName) -> bool,
+    used_by: &dyn Fn(&AssumptionName) -> Vec<String>,
+) -> Vec<AssumptionView> {
+    let entries = study.sheet.iter().filter(|(name, _)| wanted(name));
     entries
         .map(|(name, entry)| AssumptionView {
-            name: words::of_key(name),
-            value: value_in_words(*name, &entry.value),
-            reason: entry.reason.clone(),
+            name: name.to_string(),
+            value: value_in_words(entry.kind.unit(), &entry.value),
+            reason: prose::filled(&judgement.verdicts, &entry.reason, None),
             used_by: used_by(name),
             fitted_to: entry.fitted_to.clone(),
         })

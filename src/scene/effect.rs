@@ -66,7 +66,7 @@ const EFFECTS: [Effect; 13] = [
         |scene| {
             surfaces(scene).any(|surface| matches!(surface, Surface::Resilient { ends: ContactEnd::ZeroForce, .. }))
         },
-        "contacts end at zero gap, as in the study",
+        "contacts end at zero gap",
     ),
     (
         "ceiling",

@@ -97,7 +97,7 @@ fn at_rest(system: &HybridSystem) -> (Matrix, Matrix) {
 }
 
 /// A += x φ φᵀ.
-pub(super) fn add_square(matrix: &mut Matrix, x: f64, row: &[f64]) {
+pub fn add_square(matrix: &mut Matrix, x: f64, row: &[f64]) {
     let order = matrix.order;
     for (i, a) in row.iter().enumerate() {
         for (j, b) in row.iter().enumerate() {

@@ -4,15 +4,13 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::recipe::{Part, RecipeError};
-use super::structure::Structure;
-use super::{Recipe, Scene};
+use super::{Scene, Structure};
 use crate::dynamics::{Contact, StartState};
 use crate::text::number::quantity;
 
 /// Where a run starts.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
-pub struct StartRecipe {
+pub struct Start {
     /// x, m.
     pub displacement: f64,
     /// x′, m/s.
@@ -37,10 +35,20 @@ pub enum ParticleStart {
     },
 }
 
-impl StartRecipe {
-    /// In words, for a person who asks what is simulated.
+/// Why a scene cannot start there.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{0}")]
+pub struct StartError(pub String);
+
+impl Start {
+    /// The same without particles.
     #[must_use]
-    pub fn describe(&self) -> String {
+    pub fn of_structure(self) -> Self {
+        Self { particles: Vec::new(), ..self }
+    }
+
+    /// In words, for a person who asks what is simulated.
+    pub(super) fn describe(&self) -> String {
         let value = |x, unit| quantity(x, unit, 5);
         let mut text = format!("start: {}, {}", value(self.displacement, "m"), value(self.velocity, "m/s"));
         for particle in &self.particles {
@@ -55,19 +63,25 @@ impl StartRecipe {
         }
         text
     }
+}
 
+impl Scene {
     /// Refuses a start that does not fit the scene.
-    pub(super) fn check(&self, scene: &Scene) -> Result<(), RecipeError> {
-        let refuse = |message: String| Err(RecipeError::Part { part: Part::Start, message });
-        if !matches!(scene.structure, Structure::SingleMass(_)) && (self.displacement != 0.0 || self.velocity != 0.0) {
+    ///
+    /// # Errors
+    /// [`StartError`] with the reason.
+    pub fn check_start(&self) -> Result<(), StartError> {
+        let Some(start) = &self.start else { return Ok(()) };
+        let refuse = |message: String| Err(StartError(message));
+        let moves = start.displacement != 0.0 || start.velocity != 0.0;
+        if moves && !matches!(self.structure, Structure::SingleMass(_)) {
             return refuse("displacement and velocity of a start are those of a single mass".into());
         }
-        let dampers = scene.dampers.len();
-        if !self.particles.is_empty() && dampers > 0 && self.particles.len() != dampers {
-            let given = self.particles.len();
+        let (given, dampers) = (start.particles.len(), self.dampers.len());
+        if given > 0 && given != dampers {
             return refuse(format!("the start places {given} particles, and the scene has {dampers}: one each"));
         }
-        for (particle, damper) in self.particles.iter().zip(&scene.dampers) {
+        for (particle, damper) in start.particles.iter().zip(&self.dampers) {
             if let ParticleStart::InFlight { height, .. } = particle
                 && !(0.0..=damper.gap).contains(height)
             {
@@ -80,15 +94,19 @@ impl StartRecipe {
         }
         Ok(())
     }
-}
 
-impl Recipe {
-    /// Where a run of this scene starts; of the scene without dampers the structure alone.
+    /// Nothing sets it in motion.
     #[must_use]
-    pub fn start_state(&self, scene: &Scene) -> StartState {
+    pub fn is_at_rest(&self) -> bool {
+        self.excitation.is_silent() && self.start.is_none()
+    }
+
+    /// Where a run starts.
+    #[must_use]
+    pub fn start_state(&self) -> StartState {
         let Some(start) = &self.start else { return StartState::StaticEquilibrium };
-        let walls = scene.dampers.iter().any(|damper| damper.walls.is_some());
-        let order = scene.structure.model().natural_frequencies().len() + usize::from(walls);
+        let walls = self.dampers.iter().any(|damper| damper.walls.is_some());
+        let order = self.structure.model().natural_frequencies().len() + usize::from(walls);
         let coordinates = |first: f64| {
             let mut all = vec![0.0; order];
             all[0] = first;
@@ -101,7 +119,7 @@ impl Recipe {
         StartState::Given {
             q: coordinates(start.displacement),
             rate: coordinates(start.velocity),
-            particles: (0..scene.dampers.len()).map(place).collect(),
+            particles: (0..self.dampers.len()).map(place).collect(),
         }
     }
 }

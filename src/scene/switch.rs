@@ -1,6 +1,6 @@
-//! A scene with one effect switched: off where it is in force, on where it is not and the assumptions give it numbers.
+//! A scene with one effect switched: off where it is in force, on where it is not and its numbers are known.
 
-use super::{Assumption, Assumptions, ContactDamping, ContactEnd, Damper, Excitation, LimitStop, Scene, Surface};
+use super::{ContactDamping, ContactEnd, Damper, Excitation, LimitStop, Scene, Surface};
 
 /// What became of switching an effect.
 #[derive(Debug, Clone, PartialEq)]
@@ -13,9 +13,10 @@ pub enum Switching {
     Not(&'static str),
 }
 
-/// Switches an effect of the dampers or of the excitation, by its name in [`super::effects`].
+/// Switches an effect of the dampers or of the excitation, by its name in [`super::effects`]. `limit_stop` is the stop that a
+/// scene without one may get.
 #[must_use]
-pub fn switched(scene: &Scene, effect: &str, assumptions: &Assumptions) -> Switching {
+pub fn switched(scene: &Scene, effect: &str, limit_stop: Option<LimitStop>) -> Switching {
     let off = |change: &dyn Fn(&mut Damper)| {
         let mut other = scene.clone();
         other.dampers.iter_mut().for_each(change);
@@ -49,7 +50,7 @@ pub fn switched(scene: &Scene, effect: &str, assumptions: &Assumptions) -> Switc
         }),
         "contact without tension" => tension(scene),
         "ceiling" => off(&|damper| damper.gap = f64::INFINITY),
-        "limit stop" => stop(scene, assumptions),
+        "limit stop" => stop(scene, limit_stop),
         "soft walls" => off(&|damper| damper.walls = None),
         "finite pulse" => match scene.excitation {
             Excitation::PulseTrain { impulse, period, .. } => {
@@ -83,18 +84,17 @@ fn tension(scene: &Scene) -> Switching {
     }
 }
 
-fn stop(scene: &Scene, assumptions: &Assumptions) -> Switching {
+fn stop(scene: &Scene, limit_stop: Option<LimitStop>) -> Switching {
     let mut other = scene.clone();
     if scene.dampers.iter().any(|damper| damper.stop.is_some()) {
         other.dampers.iter_mut().for_each(|damper| damper.stop = None);
         return Switching::Off(Box::new(other));
     }
-    let assumed = [Assumption::StopLength, Assumption::StopRestitution].map(|name| assumptions.number(name).ok());
-    let [Some(length), Some(restitution)] = assumed else { return Switching::Not("no assumption gives its length") };
+    let Some(limit_stop) = limit_stop else { return Switching::Not("no assumption gives its length") };
     let resilient = |damper: &Damper| matches!(damper.floor, Surface::Resilient { .. });
     if !scene.dampers.iter().any(resilient) {
         return Switching::Not("no surface is resilient");
     }
-    other.dampers.iter_mut().for_each(|damper| damper.stop = Some(LimitStop { length, restitution }));
+    other.dampers.iter_mut().for_each(|damper| damper.stop = Some(limit_stop));
     Switching::On(Box::new(other))
 }

@@ -1,4 +1,4 @@
-//! Meaning as canonical JSON: equal meaning, equal text, equal hash; and where two meanings differ, leaf by leaf.
+//! Validated inputs as canonical JSON: equal inputs give equal text and equal hash; and the leaves in which two differ.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -6,14 +6,14 @@ use serde_json::Value;
 
 /// blake3 of a canonical JSON text, in hexadecimal.
 #[must_use]
-pub fn fingerprint(meaning: &Value) -> String {
-    blake3::hash(canonical(meaning).as_bytes()).to_hex().to_string()
+pub fn fingerprint(inputs: &Value) -> String {
+    blake3::hash(canonical(inputs).as_bytes()).to_hex().to_string()
 }
 
-/// One text for one meaning: keys sorted, no space, shortest digits that read back to the same bits.
+/// One text for equal inputs: keys sorted, no space, shortest digits that read back to the same bits.
 #[must_use]
-pub fn canonical(meaning: &Value) -> String {
-    match meaning {
+pub fn canonical(inputs: &Value) -> String {
+    match inputs {
         Value::Array(items) => format!("[{}]", items.iter().map(canonical).collect::<Vec<_>>().join(",")),
         Value::Object(map) => {
             // Sorted here, whatever map the JSON crate was built with.
@@ -28,7 +28,7 @@ pub fn canonical(meaning: &Value) -> String {
     }
 }
 
-/// A leaf that two meanings do not share.
+/// A leaf in which two inputs differ.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Change {
     /// Keys and indices from the root, `["assumptions", "stop_length"]`.

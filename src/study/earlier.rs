@@ -1,8 +1,8 @@
-//! Tables that an experiment had before: put aside when one of another meaning takes their place, so that going back to an
+//! Tables that an experiment had before: put aside when one of another fingerprint takes their place, so that going back to an
 //! earlier value simulates nothing.
 //!
 //! Each is called by the hash of its bytes: one that was cut, edited or exchanged is not what its name says, and counts for
-//! nothing. The [`KEPT`] that were in force last are kept.
+//! nothing. The last [`KEPT`] are kept.
 
 use std::fs::{self, File};
 use std::path::PathBuf;
@@ -13,7 +13,7 @@ use super::record::FileHash;
 use crate::experiment::ExperimentId;
 use crate::table::{Table, parquet};
 
-/// Tables that an experiment keeps beside the one in force.
+/// Earlier tables that are kept of each experiment.
 const KEPT: usize = 8;
 /// The folder of all of them, within the study.
 pub(super) const FOLDER: &str = "results/earlier";
@@ -27,7 +27,7 @@ fn path(layout: &Layout, id: &ExperimentId, hash: &FileHash) -> PathBuf {
     layout.path(&format!("{}/{}.parquet", folder(id), hash.blake3))
 }
 
-/// Those that are whole, the one in force last first, each read when it is asked for.
+/// Those that are undamaged, the latest first, each read when it is needed.
 pub(super) fn tables(layout: &Layout, id: &ExperimentId) -> impl Iterator<Item = Table> {
     files(layout, id).into_iter().filter_map(|path| {
         let bytes = fs::read(&path).ok()?;
@@ -53,13 +53,13 @@ pub(super) fn put_aside(layout: &Layout, id: &ExperimentId, hash: &FileHash) {
     if fs::rename(layout.path(&table_name(id)), &to).is_err() {
         return;
     }
-    // Its own time is that of its making; what counts is when it was in force last.
+    // The file's time is that of its making; they are ordered by when each was last current.
     let _ = File::options().append(true).open(&to).and_then(|file| file.set_modified(SystemTime::now()));
 }
 
-/// Removes the copy of the table that is in force again, and those that are too many.
-pub(super) fn tidy(layout: &Layout, id: &ExperimentId, in_force: &FileHash) {
-    let _ = fs::remove_file(path(layout, id, in_force));
+/// Removes the copy of the table that is current again, and all but the last [`KEPT`] others.
+pub(super) fn tidy(layout: &Layout, id: &ExperimentId, current: &FileHash) {
+    let _ = fs::remove_file(path(layout, id, current));
     for path in files(layout, id).into_iter().skip(KEPT) {
         let _ = fs::remove_file(path);
     }

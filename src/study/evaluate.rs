@@ -1,10 +1,11 @@
-//! The one thing that a study needs of the engine, so that a runner can be tried without one.
+//! The interface between study and engine; tests run a study with a stand-in for the engine.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-use crate::measure::{self, Evaluated, Measure, Prepared, Request, Rigour};
+use super::row_failure::RowFailure;
+use crate::experiment::{Assumptions, GapWord, Recipe};
+use crate::measure::{self, Evaluated, Measure, Needs, Prepared, Request, Rigour};
 use crate::measure::{EnergySpec, Settings, ShapeSpec, SolverChoice, TraceSpec};
-use crate::scene::{Assumptions, GapWord, Recipe};
 
 /// One simulation to be made.
 #[derive(Debug, Clone, Copy)]
@@ -31,17 +32,17 @@ pub struct Simulation<'a> {
 
 /// What turns a simulation into numbers: the engine, or a stand-in for it.
 pub trait Evaluate: Sync {
-    /// The numbers, or why there are none. The same simulation gives the same bits, whoever asks and when.
+    /// The numbers, or why there are none. The same simulation gives the same bits, on any thread and at any time.
     ///
     /// # Errors
-    /// The reason, in words for the table's `failure` column.
-    fn evaluate(&self, simulation: &Simulation<'_>) -> Result<Evaluated, String>;
+    /// The reason.
+    fn evaluate(&self, simulation: &Simulation<'_>) -> Result<Evaluated, RowFailure>;
 
-    /// Gets ready the array of a simulation, whose gaps, told in `word`, alone will change.
+    /// Prepares the array of a simulation of which only the gaps, given in `word`, will change.
     ///
     /// # Errors
-    /// The reason, in words.
-    fn array<'a>(&'a self, simulation: Simulation<'a>, word: GapWord) -> Result<Box<dyn Array + 'a>, String>
+    /// The reason.
+    fn array<'a>(&'a self, simulation: Simulation<'a>, word: GapWord) -> Result<Box<dyn Array + 'a>, RowFailure>
     where
         Self: Sized,
     {
@@ -54,11 +55,11 @@ pub trait Array: Send + Sync {
     /// As [`Evaluate::evaluate`], with these gaps, one a damper.
     ///
     /// # Errors
-    /// The reason, in words.
-    fn evaluate(&self, gaps: &[f64], rigour: Rigour) -> Result<Evaluated, String>;
+    /// The reason.
+    fn evaluate(&self, gaps: &[f64], rigour: Rigour) -> Result<Evaluated, RowFailure>;
 }
 
-/// An array that is built anew for all gaps.
+/// An array that is rebuilt for each set of gaps.
 struct Unprepared<'a, E> {
     evaluate: &'a E,
     simulation: Simulation<'a>,
@@ -66,16 +67,16 @@ struct Unprepared<'a, E> {
 }
 
 impl<E: Evaluate> Array for Unprepared<'_, E> {
-    fn evaluate(&self, gaps: &[f64], rigour: Rigour) -> Result<Evaluated, String> {
+    fn evaluate(&self, gaps: &[f64], rigour: Rigour) -> Result<Evaluated, RowFailure> {
         let mut recipe = self.simulation.recipe.clone();
-        recipe.set_gaps(self.word, gaps).map_err(|error| error.to_string())?;
+        recipe.set_gaps(self.word, gaps)?;
         self.evaluate.evaluate(&Simulation { recipe: &recipe, rigour, ..self.simulation })
     }
 }
 
 impl Array for Prepared<'_> {
-    fn evaluate(&self, gaps: &[f64], rigour: Rigour) -> Result<Evaluated, String> {
-        Prepared::evaluate(self, gaps, rigour).map_err(|error| error.to_string())
+    fn evaluate(&self, gaps: &[f64], rigour: Rigour) -> Result<Evaluated, RowFailure> {
+        Ok(Prepared::evaluate(self, gaps, rigour)?)
     }
 }
 
@@ -84,26 +85,30 @@ impl Array for Prepared<'_> {
 pub struct Engine;
 
 impl Evaluate for Engine {
-    fn evaluate(&self, it: &Simulation<'_>) -> Result<Evaluated, String> {
+    fn evaluate(&self, it: &Simulation<'_>) -> Result<Evaluated, RowFailure> {
         let Simulation { measures, trace, energies, shape, rigour, .. } = *it;
         let request = Request { measures, trace, energies, shape, rigour };
-        measure::evaluate(it.recipe, it.assumptions, it.solver, it.settings, &request)
-            .map_err(|error| error.to_string())
+        let subject = it.recipe.subject(it.assumptions, request.needs())?;
+        Ok(measure::evaluate(subject, it.solver, it.settings, &request)?)
     }
 
-    fn array<'a>(&'a self, it: Simulation<'a>, word: GapWord) -> Result<Box<dyn Array + 'a>, String> {
-        let ready = Prepared::new(it.recipe, word, it.assumptions, it.solver, it.settings, it.measures);
-        Ok(Box::new(ready.map_err(|error| error.to_string())?))
+    fn array<'a>(&'a self, it: Simulation<'a>, word: GapWord) -> Result<Box<dyn Array + 'a>, RowFailure> {
+        let needs = Needs::of(it.measures, false);
+        let mut recipe = it.recipe.clone();
+        let dampers = recipe.subject(it.assumptions, needs)?.scene.dampers.len();
+        recipe.set_gaps(word, &vec![1.0; dampers])?;
+        let subject = recipe.subject(it.assumptions, needs)?;
+        Ok(Box::new(Prepared::new(subject, it.solver, it.settings, it.measures)?))
     }
 }
 
 /// As [`Evaluate::evaluate`]; a panic is a failure of this simulation and of no other.
-pub(super) fn evaluate_guarded(evaluate: &impl Evaluate, simulation: &Simulation<'_>) -> Result<Evaluated, String> {
+pub(super) fn evaluate_guarded(evaluate: &impl Evaluate, simulation: &Simulation<'_>) -> Result<Evaluated, RowFailure> {
     guarded(|| evaluate.evaluate(simulation))
 }
 
 /// A panic is an error of this evaluation and of no other.
-pub(super) fn guarded<T>(evaluate: impl FnOnce() -> Result<T, String>) -> Result<T, String> {
+pub(super) fn guarded<T>(evaluate: impl FnOnce() -> Result<T, RowFailure>) -> Result<T, RowFailure> {
     // What is evaluated is only read, and what a panic may have left half done dies with it.
     catch_unwind(AssertUnwindSafe(evaluate)).unwrap_or_else(|panic| {
         let message = panic
@@ -111,6 +116,6 @@ pub(super) fn guarded<T>(evaluate: impl FnOnce() -> Result<T, String>) -> Result
             .copied()
             .or_else(|| panic.downcast_ref::<String>().map(String::as_str))
             .unwrap_or("without a message");
-        Err(format!("the program made a mistake here (panic: {message})"))
+        Err(RowFailure::Panic(message.to_owned()))
     })
 }

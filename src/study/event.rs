@@ -1,4 +1,4 @@
-//! What a runner tells while it works. Progress bars and logs listen; the runner knows none of them.
+//! What happens in a run, for progress bars and logs; the runner itself prints nothing.
 
 use super::record::Failures;
 use crate::experiment::ExperimentId;
@@ -6,7 +6,7 @@ use crate::experiment::ExperimentId;
 /// Something that happened.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Event<'a> {
-    /// The work begins.
+    /// The run starts.
     Begun {
         /// Experiments to be run.
         experiments: usize,
@@ -41,18 +41,20 @@ pub enum Event<'a> {
         rows: usize,
         /// Rows among them without numbers.
         failures: &'a Failures,
+        /// Processor time of its simulations, s; `None` if there were none.
+        seconds: Option<f64>,
     },
-    /// The work is over.
+    /// The run is over.
     Ended,
 }
 
-/// Who listens. Called from many threads.
+/// Handles the events of a run. Called from many threads.
 pub trait EventHandler: Sync {
-    /// Takes note of an event.
+    /// Handles one.
     fn on_event(&self, event: &Event<'_>);
 }
 
-/// Nobody listens.
+/// Ignores all of them.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct IgnoreEvents;
 

@@ -1,4 +1,4 @@
-//! How much of an experiment there is to do: the rows that no table of before has, and how long they will take.
+//! How much of an experiment is to be simulated: the rows that no earlier table has, and how long they will take.
 
 use std::borrow::Cow;
 
@@ -7,6 +7,7 @@ use super::known_rows::KnownRows;
 use super::layout::Layout;
 use super::plan::Item;
 use super::refine;
+use super::row_failure::RowFailure;
 use super::row_fingerprint::RowFingerprints;
 use super::spent::Spent;
 use crate::experiment::{Case, Experiment};
@@ -42,10 +43,11 @@ impl Item {
                 None => Extent { to_do: rows, simulations, seconds: spent.total(), ..done },
             };
         }
-        let experiment = &self.grown(known);
-        let meaning = RowFingerprints::new(experiment);
+        let experiment = &self.with_known_points(known);
+        let fingerprints = RowFingerprints::new(experiment);
         let jobs = jobs(experiment, &self.variants);
-        let is_known = |job: &Job| known.has(meaning.of(&self.variants[job.variant], &experiment.cases[job.case], job));
+        let is_known =
+            |job: &Job| known.has(fingerprints.of(&self.variants[job.variant], &experiment.cases[job.case], job));
         let to_do: Vec<&Job> = jobs.iter().filter(|job| job.same_as.is_none() && !is_known(job)).collect();
         let all = Extent { to_do: to_do.len(), rows: jobs.len(), open: false, simulations, seconds: None };
         if experiment.refined.is_empty() {
@@ -56,22 +58,22 @@ impl Item {
         if to_do.is_empty() {
             return Extent { simulations: 0, seconds: Some(0.0), ..all };
         }
-        // A row that is missing brings others with it, as far as can be told in proportion.
+        // A missing row brings others with it; how many is estimated in proportion.
         let share = to_do.len() as f64 / jobs.len() as f64;
         Extent { open: true, seconds: spent.total().map(|seconds| seconds * share), ..all }
     }
 
     /// The experiment with the points that its curves get, as far as they follow from what is known.
-    fn grown(&self, known: &KnownRows) -> Cow<'_, Experiment> {
+    fn with_known_points(&self, known: &KnownRows) -> Cow<'_, Experiment> {
         let experiment = &self.source.experiment;
         if experiment.refined.is_empty() || known.is_empty() {
             return Cow::Borrowed(experiment);
         }
-        let meaning = RowFingerprints::new(experiment);
+        let fingerprints = RowFingerprints::new(experiment);
         let look = |case: &Case| {
             let job = job::first_of(case);
-            let row = known.row(experiment, meaning.of(&self.variants[0], case, &job));
-            row.ok_or_else(|| "not known".to_owned())
+            let row = known.row(experiment, fingerprints.of(&self.variants[0], case, &job));
+            row.ok_or(RowFailure::NotComputed)
         };
         let cases = refine::points(experiment, &look).into_iter().map(|point| point.case).collect();
         Cow::Owned(Experiment { cases, ..experiment.clone() })

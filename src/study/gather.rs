@@ -8,9 +8,9 @@ use super::layout::Layout;
 use super::plan::Item;
 use super::record::Failures;
 use super::run::Finished;
-use super::shard::{ROW, Shard, divisible, owner, owners};
+use super::shard::{NotThePart, ROW, Shard, divisible, owner, owners};
 use crate::experiment::ExperimentId;
-use crate::table::{Column, Data, ParquetError, Table, parquet};
+use crate::table::{Column, Data, Table, parquet};
 
 /// Why the tables of the shards do not make a whole.
 #[derive(Debug, thiserror::Error)]
@@ -45,23 +45,23 @@ pub enum GatherError {
         /// Its name within the study.
         name: String,
         /// What is wrong with it.
-        what: String,
+        what: NotThePart,
         /// Whose it should be.
         shard: Shard,
     },
 }
 
 fn commands(shards: &[Shard]) -> String {
-    const TOLD: usize = 4;
+    const LISTED: usize = 4;
     let description: Vec<String> =
-        shards.iter().take(TOLD).map(|shard| format!("`shotdamp run --shard {shard}`")).collect();
-    match shards.len().saturating_sub(TOLD) {
+        shards.iter().take(LISTED).map(|shard| format!("`shotdamp run --shard {shard}`")).collect();
+    match shards.len().saturating_sub(LISTED) {
         0 => description.join(", "),
         more => format!("{} and {more} more", description.join(", ")),
     }
 }
 
-/// The whole table of an experiment from the tables of so many shards.
+/// The whole table of an experiment, from the tables of `of` shards.
 ///
 /// # Errors
 /// [`GatherError`] that names the table or the shard at fault, and the command that mends it.
@@ -73,9 +73,9 @@ pub fn gather(layout: &Layout, item: &Item, of: u32) -> Result<Finished, GatherE
         let path = shard.path(layout, item);
         if path.exists() {
             let wrong = |what| GatherError::NotThePart { name: shard.table_name(id), what, shard };
-            let mut table = parquet::read(&path).map_err(|error| wrong(in_words(error)))?;
+            let mut table = parquet::read(&path).map_err(|error| wrong(error.into()))?;
             shard.check(&table, item).map_err(wrong)?;
-            let places = take_places(&mut table).ok_or_else(|| wrong("its rows have no places".into()))?;
+            let places = take_places(&mut table).ok_or_else(|| wrong(NotThePart::NoPlaces))?;
             parts.push((shard, table, places));
         }
     }
@@ -89,8 +89,8 @@ pub fn gather(layout: &Layout, item: &Item, of: u32) -> Result<Finished, GatherE
     let mut found: Vec<Option<(usize, usize)>> = vec![None; owners.len()];
     for (part, (shard, _, places)) in parts.iter().enumerate() {
         for (at, &row) in places.iter().enumerate() {
-            let what = || format!("its row {row} is not a row of the experiment");
-            let wrong = || GatherError::NotThePart { name: shard.table_name(id), what: what(), shard: *shard };
+            let what = NotThePart::NoSuchRow(row);
+            let wrong = || GatherError::NotThePart { name: shard.table_name(id), what, shard: *shard };
             match found.get_mut(row).ok_or_else(wrong)? {
                 Some((first, _)) => {
                     return Err(GatherError::Twice { id: id.clone(), row, first: parts[*first].0, second: *shard });
@@ -113,13 +113,6 @@ pub fn gather(layout: &Layout, item: &Item, of: u32) -> Result<Finished, GatherE
     Ok(Finished { table, failures, ..Finished::default() })
 }
 
-fn in_words(error: ParquetError) -> String {
-    match error {
-        ParquetError::Damaged { what, .. } => what,
-        other => other.to_string(),
-    }
-}
-
 fn take_places(table: &mut Table) -> Option<Vec<usize>> {
     let Some(Column { name, data: Data::Int(places), .. }) = table.columns.first() else { return None };
     let places = places.iter().map(|&place| usize::try_from(place).ok()).collect::<Option<Vec<_>>>()?;
@@ -130,7 +123,7 @@ fn take_places(table: &mut Table) -> Option<Vec<usize>> {
     Some(places)
 }
 
-/// The rows, each told by its table and its place in it, as one table.
+/// The rows, each given by its table and its place in it, as one table.
 fn join(tables: &[Table], rows: &[(usize, usize)]) -> Table {
     let mut table = Table::default();
     let Some(first) = tables.first() else { return table };
@@ -142,7 +135,7 @@ fn join(tables: &[Table], rows: &[(usize, usize)]) -> Table {
     }
     let fingerprint = |&(of, at): &(usize, usize)| tables[of].fingerprints.get(at).copied();
     table.fingerprints = rows.iter().filter_map(fingerprint).collect();
-    // Time histories that a table's rows lack it does not name; the first row that has one tells its place.
+    // A table lists only the time histories that its rows have; the first row that has one fixes its place.
     for &(of, at) in rows {
         for column in tables[of].columns.iter().filter(|column| has_samples(column, at)) {
             if table.column(&column.name).is_none() {

@@ -1,7 +1,9 @@
 //! Jobs: one row of a table each, a case under one solver in one variant of the assumptions.
 
 use super::variant::Variant;
-use crate::experiment::{Case, Experiment, curves};
+use std::collections::BTreeSet;
+
+use crate::experiment::{AssumptionName, Case, Experiment, curves};
 use crate::measure::Measure;
 use crate::measure::SolverChoice;
 
@@ -13,7 +15,7 @@ pub(super) struct Job {
     pub solver: SolverChoice,
     /// Index of the variant.
     pub variant: usize,
-    /// The row whose numbers this one shares, because its case does not lean on the assumption that the variant moves.
+    /// The row whose numbers this one shares, because its case does not depend on the assumption that the variant moves.
     pub same_as: Option<usize>,
 }
 
@@ -26,13 +28,22 @@ pub(super) fn jobs(experiment: &Experiment, variants: &[Variant]) -> Vec<Job> {
     }
     let event_driven: Vec<(usize, Job)> =
         jobs.iter().copied().enumerate().filter(|(_, job)| job.solver == SolverChoice::EventDriven).collect();
-    for (variant, Variant { moved, assumptions, .. }) in variants.iter().enumerate().skip(1) {
-        for (row, job) in &event_driven {
-            // Not the scene alone leans on assumptions: a measure may have readings of its own.
-            let leans = experiment.recipe_of(&experiment.cases[job.case]).map_or(true, |recipe| {
-                moved.is_none_or(|moved| experiment.assumptions_of([recipe], assumptions).contains(&moved))
-            });
-            jobs.push(Job { variant, same_as: (!leans).then_some(*row), ..*job });
+    if variants.len() < 2 {
+        return jobs;
+    }
+    // Until the moved assumption is read, all values are those of the baseline: who reads it then reads it in the baseline.
+    let read = |(_, job): &(usize, Job)| {
+        let recipe = experiment.recipe_of(&experiment.cases[job.case]).ok()?;
+        Some(experiment.assumptions_of([recipe], &variants[0].assumptions))
+    };
+    let read: Vec<Option<BTreeSet<AssumptionName>>> = event_driven.iter().map(read).collect();
+    for (variant, Variant { moved, .. }) in variants.iter().enumerate().skip(1) {
+        for ((row, job), read) in event_driven.iter().zip(&read) {
+            let depends = match (moved, read) {
+                (Some(moved), Some(read)) => read.contains(moved),
+                _ => true,
+            };
+            jobs.push(Job { variant, same_as: (!depends).then_some(*row), ..*job });
         }
     }
     jobs
@@ -88,16 +99,7 @@ pub(super) fn keeps_trace(experiment: &Experiment, job: &Job) -> bool {
 
 /// True if the row's measures cannot be computed without a time history.
 pub(super) fn measures_need_trace(measures: &[Measure]) -> bool {
-    measures.iter().any(|measure| {
-        matches!(
-            measure,
-            Measure::LastPeak
-                | Measure::PeakVariation
-                | Measure::PeakDecayError
-                | Measure::FloorImpactLag
-                | Measure::CeilingImpactLag
-        )
-    })
+    measures.iter().any(|measure| measure.needs_trace())
 }
 
 /// About how long a row takes, in arbitrary units: only the order counts, so that the last thread to finish does not

@@ -26,10 +26,10 @@ pub(super) struct Journal {
 }
 
 impl Journal {
-    /// The journal at `path`, if it is of the same `meaning`; else a new one. One that cannot be read or written is done
+    /// The journal at `path`, if it has the same `fingerprint`; else a new one. One that cannot be read or written is done
     /// without: it saves time and decides nothing.
-    pub(super) fn open(path: Option<&Path>, meaning: &str) -> Self {
-        let header = format!("shotdamp journal 2 {meaning}\n");
+    pub(super) fn open(path: Option<&Path>, fingerprint: &str) -> Self {
+        let header = format!("shotdamp journal 2 {fingerprint}\n");
         let Some(path) = path else { return Self { known: BTreeMap::new(), file: None } };
         let text = fs::read_to_string(path).unwrap_or_default();
         let mut known = BTreeMap::new();

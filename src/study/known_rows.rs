@@ -1,9 +1,9 @@
-//! Rows that need not be simulated, because a table of before has them: only what a change touches is computed again, and
+//! Rows that need not be simulated, because an earlier table has them: only what a change touches is computed again, and
 //! going back to an earlier value computes nothing.
 //!
-//! Looked through are the experiment's table on disk, if it is still the one that its record speaks of, and the tables that
-//! it had before ([`super::earlier`]). A table that is not whole is as good as none. Rows of an optimisation hang
-//! together: of these a table counts as a whole or not at all.
+//! Their sources are the experiment's table on disk, if it is still the one in its record, and the tables that
+//! it had before ([`super::earlier`]). A damaged table is ignored. Rows of an optimisation depend
+//! on each other: such a table is used as a whole or not at all.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -95,7 +95,7 @@ impl KnownRows {
         self.places.is_empty()
     }
 
-    /// The whole table, of an experiment whose rows hang together.
+    /// The whole table, of an experiment whose rows depend on each other.
     pub(super) fn whole(&self) -> Option<&Table> {
         self.whole.as_ref()
     }
@@ -109,7 +109,7 @@ fn on_disk(layout: &Layout, item: &Item) -> Option<Table> {
     record.table.matches(&path).then(|| parquet::read(&path).ok()).flatten()
 }
 
-/// True if the table has the experiment's meaning of now, and a number in every row.
+/// True if the table has the experiment's current fingerprint, and a number in every row.
 fn is_of(item: &Item, table: &Table) -> bool {
     table.metadata.get("fingerprint") == Some(&item.fingerprint)
         && table.texts("failure").is_some_and(|cells| cells.iter().all(String::is_empty))
@@ -117,7 +117,7 @@ fn is_of(item: &Item, table: &Table) -> bool {
 
 fn fingerprints(item: &Item) -> BTreeSet<RowFingerprint> {
     let experiment = &item.source.experiment;
-    let meaning = RowFingerprints::new(experiment);
-    let of = |job: &super::job::Job| meaning.of(&item.variants[job.variant], &experiment.cases[job.case], job);
+    let fingerprints = RowFingerprints::new(experiment);
+    let of = |job: &super::job::Job| fingerprints.of(&item.variants[job.variant], &experiment.cases[job.case], job);
     jobs(experiment, &item.variants).iter().filter(|job| job.same_as.is_none()).map(of).collect()
 }

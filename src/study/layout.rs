@@ -1,4 +1,4 @@
-//! Where a study keeps its files, and what stands in them now.
+//! The files of a study: their names, and the texts as they are now.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs::{self, File};
@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use crate::atomic::FileError;
 
-/// No experiment of a person is longer; a longer file is refused before it is read.
+/// No hand-written experiment is longer; a longer file is refused before it is read.
 const LONGEST_TEXT: u64 = 4 << 20;
 /// Folders in folders below `experiments/`; ends a walk that a link leads in a circle.
 const DEEPEST: u32 = 8;
@@ -104,6 +104,17 @@ impl Texts {
         names.map(|file| stem(file)).collect()
     }
 
+    /// True for the text of one experiment or of its reference; assumptions and calibrations concern the whole study.
+    pub(super) fn is_of_experiment(name: &str) -> bool {
+        (name.starts_with("experiments/") && name != ASSUMPTIONS) || name.starts_with("reference/")
+    }
+
+    /// Ids that the files of experiments and of their references are called by.
+    #[must_use]
+    pub fn stems(&self) -> BTreeSet<&str> {
+        self.files.keys().filter(|name| Self::is_of_experiment(name)).map(|name| stem(name)).collect()
+    }
+
     fn walk(&mut self, folder: &Path, name: &str, depth: u32) -> Result<(), FileError> {
         let fail = |source| FileError::new("list", folder, source);
         for entry in fs::read_dir(folder).map_err(fail)? {
@@ -138,13 +149,18 @@ fn read_text(path: &Path) -> Result<Vec<u8>, FileError> {
     let mut bytes = Vec::with_capacity(usize::try_from(length).unwrap_or(0) + 1);
     file.take(LONGEST_TEXT + 1).read_to_end(&mut bytes).map_err(fail)?;
     if bytes.len() as u64 > LONGEST_TEXT {
-        return Err(fail(std::io::Error::other(format!("it is longer than {} MiB", LONGEST_TEXT >> 20))));
+        let length = fs::metadata(path).map_or(LONGEST_TEXT, |meta| meta.len());
+        let (length, most) = (length.div_ceil(1024), LONGEST_TEXT >> 10);
+        return Err(fail(std::io::Error::other(format!(
+            "it has {length} KiB, and {most} KiB are the most that is read"
+        ))));
     }
     Ok(bytes)
 }
 
 /// The name of a file without its folder and ending.
-pub(super) fn stem(name: &str) -> &str {
+#[must_use]
+pub fn stem(name: &str) -> &str {
     let name = name.rsplit('/').next().unwrap_or(name);
     name.rsplit_once('.').map_or(name, |(stem, _)| stem)
 }

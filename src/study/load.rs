@@ -1,9 +1,12 @@
-//! Texts to experiments: everything that can be read is, and everything that cannot is told.
+//! Texts to experiments, with an error for every file that cannot be read.
 
-use super::layout::{ASSUMPTIONS, Texts};
+use std::collections::BTreeMap;
+
+use super::layout::{ASSUMPTIONS, Texts, stem};
 use crate::experiment::{
     AssumptionSheet, Experiment, ExperimentId, IdError, Problems, parse_assumptions, parse_experiment,
 };
+use crate::text::utf8::{NotUtf8, decode};
 
 /// The experiments of a study with the assumptions that they share.
 #[derive(Debug, Default)]
@@ -49,9 +52,14 @@ pub enum Refused {
         error: IdError,
     },
     /// It is not a text.
-    #[error("{0}: this is not UTF-8 text")]
-    Encoding(String),
-    /// Another ending than the one that is looked for would be overlooked in silence.
+    #[error("{file}: this is {error}")]
+    Encoding {
+        /// Which file.
+        file: String,
+        /// The first bad byte.
+        error: NotUtf8,
+    },
+    /// Another ending than the one that is looked for would be overlooked.
     #[error("{0}: rename it to end in .yaml")]
     Ending(String),
     /// Two files of one id would write into each other's table.
@@ -70,7 +78,9 @@ impl Refused {
     pub fn file(&self) -> &str {
         match self {
             Self::Text(problems) => &problems.file,
-            Self::Name { file, .. } | Self::Encoding(file) | Self::Ending(file) | Self::Twice { file, .. } => file,
+            Self::Name { file, .. } | Self::Encoding { file, .. } | Self::Ending(file) | Self::Twice { file, .. } => {
+                file
+            }
         }
     }
 }
@@ -79,7 +89,14 @@ impl Loaded {
     /// Reads all experiments among `texts`.
     #[must_use]
     pub fn from_texts(texts: &Texts) -> Self {
+        Self::chosen(texts, &|_| true)
+    }
+
+    /// Reads the assumptions, and the experiments whose ids are `wanted`.
+    #[must_use]
+    pub fn chosen(texts: &Texts, wanted: &dyn Fn(&str) -> bool) -> Self {
         let mut loaded = Self::default();
+        let mut files_by_id = BTreeMap::<ExperimentId, &str>::new();
         if let Some(bytes) = texts.files.get(ASSUMPTIONS) {
             match text(ASSUMPTIONS, bytes).and_then(|text| parse_assumptions(ASSUMPTIONS, text).map_err(Refused::Text))
             {
@@ -93,16 +110,19 @@ impl Loaded {
         }
         let assumptions = loaded.sheet.assumptions();
         for (file, bytes) in texts.files.iter().filter(|(file, _)| file.starts_with("experiments/")) {
-            if file == ASSUMPTIONS {
+            if file == ASSUMPTIONS || !wanted(stem(file)) {
                 continue;
             }
-            let source = identify(file, &loaded.sources).and_then(|id| {
+            let source = identify(file, &files_by_id).and_then(|id| {
                 let text = text(file, bytes)?;
                 let experiment = parse_experiment(&id, file, text, &assumptions).map_err(Refused::Text)?;
                 Ok(Source { experiment, file: file.clone() })
             });
             match source {
-                Ok(source) => loaded.sources.push(source),
+                Ok(source) => {
+                    files_by_id.insert(source.experiment.id.clone(), file);
+                    loaded.sources.push(source);
+                }
                 Err(refused) => loaded.refused.push(refused),
             }
         }
@@ -111,16 +131,16 @@ impl Loaded {
 }
 
 /// The id that a file's name makes.
-fn identify(file: &str, known: &[Source]) -> Result<ExperimentId, Refused> {
+fn identify(file: &str, known: &BTreeMap<ExperimentId, &str>) -> Result<ExperimentId, Refused> {
     let name = file.rsplit('/').next().unwrap_or(file);
     let stem = name.strip_suffix(".yaml").ok_or_else(|| Refused::Ending(file.into()))?;
     let id: ExperimentId = stem.parse().map_err(|error| Refused::Name { file: file.into(), error })?;
-    match known.iter().find(|source| source.experiment.id == id) {
-        Some(source) => Err(Refused::Twice { file: file.into(), other: source.file.clone() }),
+    match known.get(&id) {
+        Some(other) => Err(Refused::Twice { file: file.into(), other: (*other).into() }),
         None => Ok(id),
     }
 }
 
-fn text<'a>(file: &str, bytes: &'a [u8]) -> Result<&'a str, Refused> {
-    std::str::from_utf8(bytes).map_err(|_| Refused::Encoding(file.into()))
+pub(super) fn text<'a>(file: &str, bytes: &'a [u8]) -> Result<&'a str, Refused> {
+    decode(bytes).map_err(|error| Refused::Encoding { file: file.into(), error })
 }

@@ -6,9 +6,10 @@
 use rayon::prelude::*;
 
 use super::evaluate::{Evaluate, Simulation, evaluate_guarded};
+use super::row_failure::RowFailure;
 use crate::experiment::Maximise;
+use crate::experiment::ParameterValue;
 use crate::measure::Evaluated;
-use crate::scene::ParameterValue;
 use crate::text::words;
 
 /// Where a maximum lies.
@@ -37,14 +38,14 @@ pub(super) fn maximum(
     maximise: &Maximise,
     measure: usize,
     done: &(impl Fn() + Sync),
-) -> Result<(Evaluated, Place), String> {
+) -> Result<(Evaluated, Place), RowFailure> {
     let all = |points: &[f64]| {
         let attempt = |&at: &f64| {
             let tried = one(evaluate, simulation, maximise, measure, at);
             done();
             tried
         };
-        // Through a list, so that of several failures the first in order is told, not the first in time.
+        // Through a list, so that of several failures the first in order is reported, not the first in time.
         let tried: Vec<_> = points.par_iter().map(attempt).collect();
         tried.into_iter().collect::<Result<Vec<_>, _>>()
     };
@@ -52,13 +53,13 @@ pub(super) fn maximum(
     tried.sort_by(|a, b| a.at.total_cmp(&b.at));
     tried.dedup_by(|a, b| a.at == b.at);
     for _ in 0..maximise.refine {
-        let best = best(&tried).ok_or("there is no grid to look for a maximum on")?;
+        let best = best(&tried).ok_or(RowFailure::NoGrid)?;
         let between = neighbours(&tried, best).map(|other| between(tried[best].at, tried[other].at));
         let new: Vec<f64> = between.filter(|at| tried.iter().all(|known| known.at != *at)).collect();
         tried.extend(all(&new)?);
         tried.sort_by(|a, b| a.at.total_cmp(&b.at));
     }
-    let best = best(&tried).ok_or("there is no grid to look for a maximum on")?;
+    let best = best(&tried).ok_or(RowFailure::NoGrid)?;
     let at = tried[best].at;
     let within = neighbours(&tried, best).map(|other| (tried[other].at - at).abs()).fold(0.0, f64::max);
     Ok((tried.swap_remove(best).evaluated, Place { at, within }))
@@ -70,14 +71,14 @@ fn one(
     maximise: &Maximise,
     measure: usize,
     at: f64,
-) -> Result<Tried, String> {
+) -> Result<Tried, RowFailure> {
     let mut recipe = simulation.recipe.clone();
-    let place = |reason: String| format!("at {} = {at}: {reason}", words::of_key(&maximise.over));
-    recipe.set(maximise.over, ParameterValue::Number(at)).map_err(|error| place(error.to_string()))?;
+    let place = |reason| RowFailure::At { parameter: words::of_key(&maximise.over), at, reason: Box::new(reason) };
+    recipe.set(maximise.over, ParameterValue::Number(at)).map_err(|error| place(error.into()))?;
     let evaluated = evaluate_guarded(evaluate, &Simulation { recipe: &recipe, ..*simulation }).map_err(place)?;
     match evaluated.measured.get(measure) {
         Some(measured) if !measured.value.is_nan() => Ok(Tried { at, value: measured.value, evaluated }),
-        _ => Err(place(format!("{} has no value", words::of_key(&maximise.measure)))),
+        _ => Err(place(RowFailure::NoValue(words::of_key(&maximise.measure)))),
     }
 }
 

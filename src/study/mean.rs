@@ -1,4 +1,4 @@
-//! Means over settings that no column tells apart: the study's six force points of chapter 6.
+//! Means over settings that have no column of their own, such as several force points.
 //!
 //! Every measure is the mean of its values. The velocity ratio alone is the ratio of the mean RMS velocities, so that it
 //! belongs to the fitness that the study's optimisation reduces.
@@ -6,6 +6,7 @@
 use rayon::prelude::*;
 
 use super::evaluate::{Evaluate, Simulation};
+use super::row_failure::RowFailure;
 use crate::dynamics::Proof;
 use crate::experiment::Experiment;
 use crate::measure::{Evaluated, Measure, Measured};
@@ -30,15 +31,15 @@ pub(super) struct Averaging<'a, E> {
 }
 
 impl<E: Evaluate> Evaluate for Averaging<'_, E> {
-    fn evaluate(&self, simulation: &Simulation<'_>) -> Result<Evaluated, String> {
+    fn evaluate(&self, simulation: &Simulation<'_>) -> Result<Evaluated, RowFailure> {
         if self.experiment.mean_over.is_empty() {
             return self.evaluate.evaluate(simulation);
         }
-        let recipes = self.experiment.recipes_in(simulation.recipe).map_err(|error| error.to_string())?;
+        let recipes = self.experiment.recipes_in(simulation.recipe)?;
         let measures = measures_of_each(simulation.measures);
         let one = |recipe| self.evaluate.evaluate(&Simulation { recipe, measures: &measures, ..*simulation });
-        // Through a list, so that of several failures the first in order is told.
-        let each: Vec<Result<Evaluated, String>> = recipes.par_iter().map(one).collect();
+        // Through a list, so that of several failures the first in order is reported.
+        let each: Vec<Result<Evaluated, RowFailure>> = recipes.par_iter().map(one).collect();
         let each = each.into_iter().collect::<Result<Vec<_>, _>>()?;
         Ok(mean(simulation.measures, &measures, &each))
     }
@@ -74,6 +75,12 @@ pub(super) fn mean(wanted: &[Measure], measures: &[Measure], each: &[Evaluated])
         proof: Proof {
             momentum_residual: worst(|proof| proof.momentum_residual),
             energy_residual: worst(|proof| proof.energy_residual),
+            // One that does not close is enough.
+            residual_bound: each
+                .iter()
+                .filter(|one| !one.proof.is_balanced())
+                .map(|one| one.proof.residual_bound)
+                .fold(f64::INFINITY, f64::min),
             events: each.iter().map(|one| one.proof.events).sum(),
             smallest_margin: each.iter().map(|one| one.proof.smallest_margin).fold(f64::INFINITY, f64::min),
             ties: each.iter().map(|one| one.proof.ties).sum(),

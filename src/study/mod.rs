@@ -1,18 +1,23 @@
-//! A study: what is planned, what is stale and why, the parallel runner, the tables and records that it leaves.
+//! A study: the plan, what is stale and why, the parallel runner, its tables and records.
 //!
-//! texts → experiments → [`Item`]s (what each depends on, what is on disk) → [`run`] → tables and records. Nothing here
+//! texts → experiments → [`Item`]s (what each depends on, what is on disk) → [`run`] → tables and records; what was up to date
+//! after the last run ([`Snapshot`]) is neither read nor planned. Nothing here
 //! draws or judges: verdicts, figures and reports are made from the tables afterwards.
 
 mod canonical;
+mod doubt;
 mod earlier;
 mod evaluate;
 mod event;
 mod extent;
+mod forecast;
 mod gather;
+mod glance;
 mod job;
 mod journal;
 mod known_rows;
 mod layout;
+mod limited;
 mod load;
 mod machine;
 mod maximise;
@@ -25,6 +30,7 @@ mod progress;
 mod reason;
 mod record;
 mod refine;
+mod row_failure;
 mod row_fingerprint;
 mod run;
 mod run_times;
@@ -32,6 +38,7 @@ mod shard;
 mod snapshot;
 mod spent;
 mod store;
+mod summary;
 mod tabulate;
 mod tabulate_candidates;
 mod untabulate;
@@ -42,10 +49,11 @@ pub use canonical::{Change, canonical, changes, fingerprint};
 pub use evaluate::{Array, Engine, Evaluate, Simulation};
 pub use event::{Event, EventHandler, IgnoreEvents};
 pub use extent::Extent;
+pub use forecast::forecast;
 pub use gather::{GatherError, gather};
 pub use job::runs_of_a_row;
 pub use known_rows::KnownRows;
-pub use layout::{ASSUMPTIONS, Layout, Texts, journal_name, record_name, table_name};
+pub use layout::{ASSUMPTIONS, Layout, Texts, journal_name, record_name, stem, table_name};
 pub use load::{Loaded, Refused, Source};
 pub use machine::Machine;
 pub use open::{Study, Unread};
@@ -54,10 +62,12 @@ pub use plan::{Item, State};
 pub use progress::Progress;
 pub use reason::{Reason, differences};
 pub use record::{Failures, FileHash, NoRecord, PRESENTATION_VERSION, Publication, RECORD_FORMAT, Record};
+pub use row_failure::{RowFailure, SearchError};
 pub use run::{Finished, Task, ThreadError, run};
 pub use run_times::RunTimes;
-pub use shard::{Shard, ShardError};
+pub use shard::{NotThePart, Shard, ShardError};
 pub use snapshot::Snapshot;
 pub use spent::{Cost, Spent};
 pub use store::{Held, Lock, LockError, save};
+pub use summary::{Heading, Summary};
 pub use variant::{Sensitivity, Variant, variants};

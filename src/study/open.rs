@@ -1,14 +1,16 @@
-//! A study as it lies before us: experiments, assumptions and reference read, planned, and held against what is on disk.
+//! The study as loaded: experiments, assumptions and reference, the plan, and what of it is on disk.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use rayon::prelude::*;
 
+use super::load::text;
 use crate::experiment::{AssumptionSheet, Calibration, parse_calibration};
-use crate::reference::{Check, ReferenceFile, Role, parse_reference};
-use crate::study::{Item, Layout, Loaded, Refused, Sensitivity, Texts};
+use crate::reference::{Check, Prose, ReferenceFile, ReferenceProblem, Role, parse_reference};
+use crate::study::{ASSUMPTIONS, Item, Layout, Loaded, Refused, Sensitivity, Summary, Texts, stem};
+use crate::text::utf8::decode;
 
-/// Everything that was read, and the plan.
+/// The study: what was read and planned, and the experiments that are up to date and need not be.
 #[derive(Debug)]
 pub struct Study {
     /// Where it lies.
@@ -17,8 +19,10 @@ pub struct Study {
     pub texts: Texts,
     /// The assumptions.
     pub sheet: AssumptionSheet,
-    /// The experiments, planned, in the order of their ids.
+    /// The experiments that were planned, in the order of their ids.
     pub items: Vec<Item>,
+    /// Experiments that are up to date and were neither read nor planned.
+    pub known: BTreeMap<String, Summary>,
     /// The reference by id of the experiment.
     pub references: BTreeMap<String, ReferenceFile>,
     /// The calibrations by the names of their files, without ending.
@@ -39,7 +43,7 @@ pub enum Unread {
         /// Which.
         file: String,
         /// What is wrong with it, with its place.
-        problem: String,
+        problem: ReferenceProblem,
     },
 }
 
@@ -51,11 +55,9 @@ impl Unread {
             Self::Experiment(Refused::Text(problems)) => {
                 problems.list.iter().find_map(|problem| problem.place).and_then(|place| u64::try_from(place.line).ok())
             }
+            Self::Experiment(Refused::Encoding { error, .. }) => u64::try_from(error.line).ok(),
             Self::Experiment(_) => None,
-            Self::Reference { problem, .. } => {
-                let digits: String = problem.strip_prefix("line ")?.chars().take_while(char::is_ascii_digit).collect();
-                digits.parse().ok()
-            }
+            Self::Reference { problem, .. } => problem.line(),
         }
     }
 
@@ -73,11 +75,45 @@ impl Study {
     /// Reads and plans the study that the texts make.
     #[must_use]
     pub fn new(layout: Layout, texts: Texts) -> Self {
-        let loaded = Loaded::from_texts(&texts);
-        let mut unread: Vec<Unread> = loaded.refused.into_iter().map(Unread::from).collect();
-        let references = references(&texts, &mut unread);
-        let calibrations = calibrations(&texts, &mut unread);
-        let mut items: Vec<Item> = loaded
+        Self::beside(layout, texts, BTreeMap::new())
+    }
+
+    /// The same, but for the experiments that are `known` to be up to date.
+    #[must_use]
+    pub fn beside(layout: Layout, texts: Texts, known: BTreeMap<String, Summary>) -> Self {
+        let mut study = Self {
+            layout,
+            texts,
+            sheet: AssumptionSheet::default(),
+            items: Vec::new(),
+            known: BTreeMap::new(),
+            references: BTreeMap::new(),
+            calibrations: BTreeMap::new(),
+            unread: Vec::new(),
+        };
+        study.plan(&|id| !known.contains_key(id));
+        study.known = known;
+        study.plan_dependents();
+        study.calibrations = calibrations(&study.texts, &study.sheet, &mut study.unread);
+        let lost = study.lost_placeholders();
+        study.unread.extend(lost);
+        study
+    }
+
+    /// Looks at what is on disk again, after a run.
+    pub fn refresh(&mut self) {
+        let Self { items, layout, .. } = self;
+        items.par_iter_mut().for_each(|item| item.refresh(layout));
+        self.plan_dependents();
+    }
+
+    /// Reads and plans the experiments whose ids are `wanted`.
+    fn plan(&mut self, wanted: &(dyn Fn(&str) -> bool + Sync)) {
+        let Self { texts, layout, unread, .. } = self;
+        let loaded = Loaded::chosen(texts, wanted);
+        unread.extend(loaded.refused.into_iter().map(Unread::from));
+        let references = references(texts, wanted, unread);
+        let items: Vec<Item> = loaded
             .sources
             .into_par_iter()
             .map(|source| {
@@ -88,30 +124,93 @@ impl Study {
                 } else {
                     Sensitivity::NotWanted
                 };
-                Item::new(&layout, source, &loaded.sheet, sensitivity)
+                Item::new(layout, source, &loaded.sheet, sensitivity)
             })
             .collect();
-        items.sort_by(|a, b| a.source.experiment.id.cmp(&b.source.experiment.id));
-        Self { layout, texts, sheet: loaded.sheet, items, references, calibrations, unread }
+        self.sheet = loaded.sheet;
+        self.references.extend(references);
+        self.items.extend(items);
+        self.items.sort_by(|a, b| a.source.experiment.id.cmp(&b.source.experiment.id));
     }
 
-    /// The name within the study of the reference file of an experiment.
+    /// Plans those known experiments whose entries read a table that is no longer the one they were judged by.
+    fn plan_dependents(&mut self) {
+        let tables = self.tables();
+        let moved =
+            |summary: &Summary| summary.reads.iter().any(|(id, hash)| tables.get(id.as_str()) != Some(&hash.as_str()));
+        let lost: BTreeSet<String> =
+            self.known.iter().filter(|(_, summary)| moved(summary)).map(|(id, _)| id.clone()).collect();
+        if !lost.is_empty() {
+            self.known.retain(|id, _| !lost.contains(id));
+            self.plan(&|id| lost.contains(id));
+        }
+    }
+
+    /// The hash of every table that counts, by experiment.
     #[must_use]
-    pub fn reference_name(&self, id: &str) -> Option<&str> {
-        let named = |name: &&String| name.strip_prefix("reference/").is_some_and(|rest| stem(rest) == id);
-        self.texts.files.keys().find(named).map(String::as_str)
+    pub fn tables(&self) -> BTreeMap<&str, &str> {
+        let known = self.known.iter().map(|(id, summary)| (id.as_str(), summary.table.as_str()));
+        let planned = self
+            .items
+            .iter()
+            .filter_map(|item| Some((item.source.experiment.id.0.as_str(), item.record()?.table.blake3.as_str())));
+        known.chain(planned).collect()
+    }
+
+    /// The names within the study of the reference files, by experiment.
+    #[must_use]
+    pub fn reference_names(&self) -> BTreeMap<&str, &str> {
+        let names = self.texts.files.keys().rev().filter(|name| name.starts_with("reference/"));
+        names.map(|name| (stem(name), name.as_str())).collect()
+    }
+
+    /// Placeholders of entries that do not exist, in explanations and in the reasons of the assumptions. Those of an experiment
+    /// that this study does not have are no mistake: they show no number.
+    fn lost_placeholders(&self) -> Vec<Unread> {
+        let has = |id: &str| -> Option<bool> {
+            let (experiment, _) = id.split_once('/')?;
+            let planned = self.references.get(experiment).map(|file| file.entries.iter().any(|entry| entry.id == id));
+            let known = self.known.get(experiment).map(|known| known.judged.iter().any(|one| one.id == id));
+            Some(planned.or(known).unwrap_or(true))
+        };
+        let lost = |file: &str, prose: &Prose| -> Vec<Unread> {
+            let text = self.texts.files.get(file).map(|bytes| String::from_utf8_lossy(bytes)).unwrap_or_default();
+            let names = prose.placeholders().filter_map(|one| one.entry.as_deref());
+            // A name without its experiment was checked with its file; in an assumption's reason it means nothing.
+            let unknown = |name: &&str| has(name).map_or(file == ASSUMPTIONS, |has| !has);
+            let problem = |name: &str| ReferenceProblem::Placeholder {
+                line: text.lines().position(|line| line.contains(name)).map_or(1, |line| line as u64 + 1),
+                name: name.into(),
+            };
+            names.filter(unknown).map(|name| Unread::Reference { file: file.into(), problem: problem(name) }).collect()
+        };
+        let mut unread = Vec::new();
+        for file in self.texts.files.keys().filter(|file| file.starts_with("reference/")) {
+            let entries = self.references.get(stem(file)).into_iter().flat_map(|reference| &reference.entries);
+            unread.extend(entries.flat_map(|entry| lost(file, &entry.prose())));
+        }
+        for (name, assumption) in self.sheet.iter() {
+            match Prose::parse(&assumption.reason) {
+                Ok(prose) => unread.extend(lost(ASSUMPTIONS, &prose)),
+                Err(error) => {
+                    let problem = ReferenceProblem::Reason { name: name.clone(), error };
+                    unread.push(Unread::Reference { file: ASSUMPTIONS.into(), problem });
+                }
+            }
+        }
+        unread
     }
 
     /// The ids of the entries that an assumption was fitted to.
     #[must_use]
     pub fn fitted(&self) -> BTreeSet<String> {
-        self.sheet.entries.values().flat_map(|entry| entry.fitted_to.iter().cloned()).collect()
+        self.sheet.iter().flat_map(|(_, entry)| entry.fitted_to.iter().cloned()).collect()
     }
 
     /// The part of an entry in the choice of inputs.
     #[must_use]
     pub fn role(&self, entry: &str) -> Role {
-        let chose = self.sheet.entries.values().any(|assumption| assumption.fitted_to.iter().any(|id| id == entry));
+        let chose = self.sheet.iter().any(|(_, assumption)| assumption.fitted_to.iter().any(|id| id == entry));
         let named = |list: fn(&Calibration) -> &[String]| {
             self.calibrations.values().any(|one| list(one).iter().any(|id| names(id, entry)))
         };
@@ -130,11 +229,10 @@ fn names(id: &str, entry: &str) -> bool {
     id == entry || id.strip_suffix('*').is_some_and(|start| start.ends_with('/') && entry.starts_with(start))
 }
 
-fn calibrations(texts: &Texts, unread: &mut Vec<Unread>) -> BTreeMap<String, Calibration> {
+fn calibrations(texts: &Texts, sheet: &AssumptionSheet, unread: &mut Vec<Unread>) -> BTreeMap<String, Calibration> {
     let mut calibrations = BTreeMap::new();
     for (file, bytes) in texts.files.iter().filter(|(file, _)| file.starts_with("calibrations/")) {
-        let read = std::str::from_utf8(bytes).map_err(|_| Refused::Encoding(file.clone()));
-        match read.and_then(|text| parse_calibration(file, text).map_err(Refused::Text)) {
+        match text(file, bytes).and_then(|text| parse_calibration(file, text, sheet).map_err(Refused::Text)) {
             Ok(calibration) => drop(calibrations.insert(stem(file).to_owned(), calibration)),
             Err(refused) => unread.push(refused.into()),
         }
@@ -142,33 +240,34 @@ fn calibrations(texts: &Texts, unread: &mut Vec<Unread>) -> BTreeMap<String, Cal
     calibrations
 }
 
-fn stem(name: &str) -> &str {
-    let name = name.rsplit('/').next().unwrap_or(name);
-    name.strip_suffix(".yaml").unwrap_or(name)
-}
-
 /// Numbers are held against the result with an uncertainty that needs the ends of the assumptions; claims are not.
 fn has_values(file: &ReferenceFile) -> bool {
     file.entries.iter().any(|entry| matches!(entry.check, Check::Value { .. } | Check::Peak { .. }))
 }
 
-fn references(texts: &Texts, unread: &mut Vec<Unread>) -> BTreeMap<String, ReferenceFile> {
+fn references(
+    texts: &Texts,
+    wanted: &dyn Fn(&str) -> bool,
+    unread: &mut Vec<Unread>,
+) -> BTreeMap<String, ReferenceFile> {
     let mut references = BTreeMap::<String, ReferenceFile>::new();
-    for (file, bytes) in texts.files.iter().filter(|(file, _)| file.starts_with("reference/")) {
-        let mut refuse = |problem: String| unread.push(Unread::Reference { file: file.clone(), problem });
+    let files = texts.files.iter().filter(|(file, _)| file.starts_with("reference/") && wanted(stem(file)));
+    for (file, bytes) in files {
+        let mut refuse = |problem| unread.push(Unread::Reference { file: file.clone(), problem });
         let name = file.rsplit('/').next().unwrap_or(file);
         let Some(id) = name.strip_suffix(".yaml") else {
-            refuse("rename it to end in .yaml".into());
+            refuse(ReferenceProblem::Ending);
             continue;
         };
-        let Ok(text) = std::str::from_utf8(bytes) else {
-            refuse("this is not UTF-8 text".into());
-            continue;
+        let text = match decode(bytes) {
+            Ok(text) => text,
+            Err(error) => {
+                refuse(ReferenceProblem::Encoding { error });
+                continue;
+            }
         };
         match parse_reference(id, text) {
-            Ok(_) if references.contains_key(id) => {
-                refuse("another file holds the reference of this experiment".into())
-            }
+            Ok(_) if references.contains_key(id) => refuse(ReferenceProblem::Twice),
             Ok(reference) => {
                 references.insert(id.into(), reference);
             }

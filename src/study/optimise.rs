@@ -13,9 +13,11 @@ use super::event::{Event, EventHandler};
 use super::journal::{Journal, Known};
 use super::known_rows::KnownRows;
 use super::mean::{mean, measures_of_each};
+use super::row_failure::{RowFailure, SearchError};
 use super::run::{Finished, Task};
 use super::tabulate_candidates::{Candidate, failures, table};
 use super::variant::Variant;
+use crate::experiment::Recipe;
 use crate::experiment::{Experiment, Goal, Optimise, Search, SearchKind, SearchSpacing};
 use crate::measure::SolverChoice;
 use crate::measure::{Evaluated, Measure, Rigour};
@@ -23,7 +25,6 @@ use crate::optimise::{
     Batch, Bounds, CmaEs, Dense, Found, Genetic, GeneticSettings, Optimiser, Score, Spacing, Stalled, Stopping, dense,
     minimise, sections, two_opt,
 };
-use crate::scene::Recipe;
 use crate::table::Table;
 use crate::text::words;
 
@@ -63,7 +64,7 @@ impl<'a> Fitness<'a> {
         variant: &'a Variant,
         recipes: &'a [Recipe],
         measures: &'a [Measure],
-    ) -> Result<Self, String> {
+    ) -> Result<Self, RowFailure> {
         let ready = |recipe: &'a Recipe| {
             let simulation = Simulation {
                 recipe,
@@ -82,7 +83,7 @@ impl<'a> Fitness<'a> {
         Ok(Self { arrays, wanted: &experiment.measures, measures })
     }
 
-    fn evaluate(&self, gaps: &[f64], rigour: Rigour) -> Result<Evaluated, String> {
+    fn evaluate(&self, gaps: &[f64], rigour: Rigour) -> Result<Evaluated, RowFailure> {
         let one = |array: &(dyn Array + 'a)| guarded(|| array.evaluate(gaps, rigour));
         let each = self.arrays.iter().map(|array| one(array.as_ref())).collect::<Result<Vec<_>, _>>()?;
         Ok(mean(self.wanted, self.measures, &each))
@@ -99,9 +100,9 @@ struct Searches<'a> {
     /// Index of the fitness among the measures.
     measure: usize,
     journal: Journal,
-    /// Evaluations told of so far.
-    description: u64,
-    /// The search that was heard of last, and its best value so far.
+    /// Evaluations so far.
+    evaluations: u64,
+    /// The search that was reported last, and its best value so far.
     last: (String, f64),
 }
 
@@ -114,13 +115,13 @@ pub(super) fn run_optimisation(task: Task<'_>, evaluate: &impl Evaluate, handler
         // Its title may have changed since.
         return Finished { table: Table { metadata: metadata.clone(), ..whole.clone() }, ..Finished::default() };
     }
-    let (candidates, description) = match found(task, evaluate, handler) {
+    let (candidates, spent) = match found(task, evaluate, handler) {
         Ok(found) => found,
         Err(reason) => (vec![Candidate::failed(reason)], 0),
     };
     let evaluated = evaluate_all(task, evaluate, candidates);
     if let Some(optimise) = &experiment.optimise {
-        let left = evaluations(optimise, variants).saturating_sub(description);
+        let left = evaluations(optimise, variants).saturating_sub(spent);
         handler.on_event(&Event::Simulated { experiment: &experiment.id, count: left });
     }
     let table = table(experiment, variants, &evaluated, metadata.clone());
@@ -132,32 +133,32 @@ fn found(
     task: Task<'_>,
     evaluate: &impl Evaluate,
     handler: &dyn EventHandler,
-) -> Result<(Vec<Candidate>, u64), String> {
+) -> Result<(Vec<Candidate>, u64), RowFailure> {
     let experiment = task.experiment;
-    let optimise = experiment.optimise.as_ref().ok_or("there is nothing to optimise")?;
-    let baseline = task.variants.first().ok_or("there are no assumptions")?;
-    let recipes = experiment.recipes_in(&experiment.recipe).map_err(|error| error.to_string())?;
+    let optimise = experiment.optimise.as_ref().ok_or(SearchError::NothingToOptimise)?;
+    let baseline = task.variants.first().ok_or(SearchError::NoAssumptions)?;
+    let recipes = experiment.recipes_in(&experiment.recipe)?;
     let measures = measures_of_each(&experiment.measures);
     let fitness = Fitness::new(evaluate, experiment, optimise, baseline, &recipes, &measures)?;
     let measure = experiment.measures.iter().position(|measure| *measure == optimise.measure);
-    let meaning = task.metadata.get("fingerprint").map_or("", String::as_str);
+    let fingerprint = task.metadata.get("fingerprint").map_or("", String::as_str);
     let mut searches = Searches {
         experiment,
         optimise,
         handler,
-        bounds: Bounds::new(optimise.bounds.clone()).map_err(|error| error.to_string())?,
+        bounds: Bounds::new(optimise.bounds.clone()).map_err(SearchError::from)?,
         fitness,
-        measure: measure.ok_or("what is to be optimised is not measured")?,
-        journal: Journal::open(task.journal, meaning),
-        description: 0,
+        measure: measure.ok_or(SearchError::FitnessNotMeasured)?,
+        journal: Journal::open(task.journal, fingerprint),
+        evaluations: 0,
         last: (String::new(), f64::INFINITY),
     };
     let candidates = searches.all()?;
-    Ok((candidates, searches.description))
+    Ok((candidates, searches.evaluations))
 }
 
 impl Searches<'_> {
-    fn all(&mut self) -> Result<Vec<Candidate>, String> {
+    fn all(&mut self) -> Result<Vec<Candidate>, RowFailure> {
         let mut found: Vec<Candidate> =
             self.optimise.candidates.iter().map(|known| Candidate::named(&known.name, known.gaps.clone())).collect();
         for name in &self.optimise.two_opt_of {
@@ -201,7 +202,7 @@ impl Searches<'_> {
                         done += points.len() as u64;
                         self.batch(points, &name, done - points.len() as u64)
                     })?;
-                    let best = best.ok_or("a grid without points")?;
+                    let best = best.ok_or(SearchError::EmptyGrid)?;
                     found.push(self.candidate(SearchKind::Dense, None, &best, 0));
                 }
             }
@@ -211,9 +212,9 @@ impl Searches<'_> {
     }
 
     /// A candidate of the file, improved by swaps.
-    fn two_opt_of(&mut self, name: &str) -> Result<Candidate, String> {
+    fn two_opt_of(&mut self, name: &str) -> Result<Candidate, RowFailure> {
         let known = self.optimise.candidates.iter().find(|candidate| candidate.name == *name);
-        let gaps = known.ok_or_else(|| format!("{name} is no candidate"))?.gaps.clone();
+        let gaps = known.ok_or_else(|| SearchError::NoCandidate(name.to_owned()))?.gaps.clone();
         let improved = format!("{name}_two_opt");
         let description = words::of_level("candidate", &improved);
         let score = self.batch(std::slice::from_ref(&gaps), &description, 0)?.scores[0];
@@ -221,9 +222,9 @@ impl Searches<'_> {
         Ok(Candidate { name: improved, ..self.candidate(SearchKind::TwoOpt, None, &swapped, 1) })
     }
 
-    fn genetic(&mut self, search: &Search, seed: u32) -> Result<Found, String> {
+    fn genetic(&mut self, search: &Search, seed: u32) -> Result<Found, RowFailure> {
         let Search::Genetic { population, elites, crossover, start } = search else {
-            return Err("not a genetic algorithm".into());
+            return Err(SearchError::NotGenetic.into());
         };
         let optimise = self.optimise;
         let settings =
@@ -248,18 +249,18 @@ impl Searches<'_> {
         stopping: &Stopping,
         kind: SearchKind,
         seed: u32,
-    ) -> Result<Found, String> {
+    ) -> Result<Found, RowFailure> {
         let name = describe(kind, Some(seed));
         let mut done = 0;
         let found = minimise(optimiser, stopping, &mut |points| {
             done += points.len() as u64;
             self.batch(points, &name, done - points.len() as u64)
         })?;
-        found.ok_or_else(|| format!("{name} has evaluated nothing"))
+        Ok(found.ok_or(SearchError::NothingEvaluated(name))?)
     }
 
-    /// Scores of a batch: what the journal does not know is evaluated, side by side.
-    fn batch(&mut self, points: &[Vec<f64>], search: &str, before: u64) -> Result<Batch, String> {
+    /// Scores of a batch: points that are not in the journal are evaluated in parallel.
+    fn batch(&mut self, points: &[Vec<f64>], search: &str, before: u64) -> Result<Batch, RowFailure> {
         let mut new: Vec<&Vec<f64>> = Vec::new();
         for point in points {
             if self.journal.get(point).is_none() && !new.contains(&point) {
@@ -276,7 +277,7 @@ impl Searches<'_> {
         let known: Vec<Known> = points.iter().filter_map(|point| self.journal.get(point)).collect();
         let scores: Vec<Score> = known.iter().map(|known| known.score).collect();
         if scores.len() < points.len() {
-            return Err("a point has no number that could be kept".into());
+            return Err(SearchError::NotKept.into());
         }
         if self.last.0 != search {
             self.last = (search.to_owned(), f64::INFINITY);
@@ -289,13 +290,13 @@ impl Searches<'_> {
         let unit = self.optimise.measure.unit();
         self.handler.on_event(&Event::Simulated { experiment, count: points.len() as u64 });
         self.handler.on_event(&Event::Searched { experiment, search, evaluations, best, unit });
-        self.description += points.len() as u64;
+        self.evaluations += points.len() as u64;
         let seconds = known.iter().map(|known| known.seconds).sum::<f64>() / rayon::current_num_threads() as f64;
         Ok(Batch { scores, seconds })
     }
 
     /// Smaller is better to the optimisers; what has no number is the worst.
-    fn score(&self, evaluated: Result<Evaluated, String>) -> Score {
+    fn score(&self, evaluated: Result<Evaluated, RowFailure>) -> Score {
         match evaluated.ok().and_then(|evaluated| evaluated.measured.get(self.measure).copied()) {
             Some(fitness) => Score { value: self.signed(fitness.value) },
             None => Score { value: f64::NAN },
@@ -322,15 +323,15 @@ impl Searches<'_> {
     }
 
     /// Sections through the best candidate as the searches saw it.
-    fn landscape(&mut self, found: &mut Vec<Candidate>) -> Result<(), String> {
+    fn landscape(&mut self, found: &mut Vec<Candidate>) -> Result<(), RowFailure> {
         let Some(landscape) = self.optimise.landscape else { return Ok(()) };
         let points: Vec<Vec<f64>> = found.iter().map(|candidate| candidate.gaps.clone()).collect();
         let name = describe(SearchKind::Landscape, None);
-        // The journal knows all but the candidates of the file.
+        // The journal has all but the candidates of the file.
         let scores = self.batch(&points, &name, 0)?.scores;
         let order = |i: &usize| if scores[*i].value.is_nan() { f64::INFINITY } else { scores[*i].value };
         let best = (0..points.len()).min_by(|a, b| order(a).total_cmp(&order(b)));
-        let centre = best.map(|best| points[best].clone()).ok_or("there is no candidate")?;
+        let centre = best.map(|best| points[best].clone()).ok_or(SearchError::NoCandidates)?;
         let bounds = self.bounds.clone();
         let count = landscape.points as usize;
         let mut done = 0;
@@ -372,7 +373,7 @@ fn evaluate_all(task: Task<'_>, evaluate: &impl Evaluate, candidates: Vec<Candid
         let kept = candidates.iter().filter(|candidate| variant == 0 || candidate.varied.is_none());
         all.extend(kept.map(|candidate| Candidate { variant, ..candidate.clone() }));
     }
-    let recipes = experiment.recipes_in(&experiment.recipe).map_err(|error| error.to_string());
+    let recipes = experiment.recipes_in(&experiment.recipe);
     let measures = measures_of_each(&experiment.measures);
     // A variant's scenes are compiled once for all its candidates.
     let ready: Vec<_> = match &recipes {
@@ -381,12 +382,11 @@ fn evaluate_all(task: Task<'_>, evaluate: &impl Evaluate, candidates: Vec<Candid
             .par_iter()
             .map(|variant| Fitness::new(evaluate, experiment, optimise, variant, recipes, &measures))
             .collect(),
-        Err(reason) => task.variants.iter().map(|_| Err(reason.clone())).collect(),
+        Err(reason) => task.variants.iter().map(|_| Err(reason.clone().into())).collect(),
     };
     // Several searches may have found the same gaps.
-    let open = |candidate: &Candidate| {
-        candidate.varied.is_none() && candidate.outcome.as_ref().is_err_and(|reason| reason.is_empty())
-    };
+    let open =
+        |candidate: &Candidate| candidate.varied.is_none() && matches!(candidate.outcome, Err(RowFailure::NotComputed));
     let mut places: Vec<(usize, Vec<f64>)> = Vec::new();
     for candidate in all.iter().filter(|candidate| open(candidate)) {
         let place = (candidate.variant, candidate.gaps.clone());
@@ -396,9 +396,9 @@ fn evaluate_all(task: Task<'_>, evaluate: &impl Evaluate, candidates: Vec<Candid
     }
     let evaluated = |(variant, gaps): &(usize, Vec<f64>)| {
         let rigour = if *variant == 0 { Rigour::Result } else { Rigour::Look };
-        ready[*variant].as_ref().map_err(String::clone)?.evaluate(gaps, rigour)
+        ready[*variant].as_ref().map_err(RowFailure::clone)?.evaluate(gaps, rigour)
     };
-    let outcomes: Vec<Result<Evaluated, String>> = places.par_iter().map(evaluated).collect();
+    let outcomes: Vec<Result<Evaluated, RowFailure>> = places.par_iter().map(evaluated).collect();
     for candidate in all.iter_mut().filter(|candidate| open(candidate)) {
         let at = places.iter().position(|(variant, gaps)| *variant == candidate.variant && *gaps == candidate.gaps);
         if let Some(at) = at {

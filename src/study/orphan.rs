@@ -1,4 +1,4 @@
-//! Results of experiments that are gone, or of earlier meanings.
+//! Results of experiments that no longer exist, and earlier tables.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -12,24 +12,22 @@ use crate::experiment::ExperimentId;
 const ENDINGS: [&str; 3] = ["parquet", "json", "journal"];
 
 /// Tables, earlier ones too, records, journals and times of experiments that no file has the name of, and the figures and pages that their records
-/// tell of; by their names within the study. A file that cannot be understood still counts as an experiment: what it meant may
-/// come back.
+/// list; by their names within the study. A file that cannot be understood still counts as an experiment: it may be repaired.
 #[must_use]
 pub fn orphans(layout: &Layout, texts: &Texts) -> BTreeSet<String> {
     let known = texts.ids();
     let mut found = BTreeSet::new();
-    let of_nobody = |name: &str| stem(name).parse::<ExperimentId>().is_ok_and(|id| !known.contains(id.0.as_str()));
-    for folder in names_in(layout, earlier::FOLDER).into_iter().filter(|name| of_nobody(name)) {
+    let is_orphan = |name: &str| stem(name).parse::<ExperimentId>().is_ok_and(|id| !known.contains(id.0.as_str()));
+    for folder in names_in(layout, earlier::FOLDER).into_iter().filter(|name| is_orphan(name)) {
         found.extend(names_in(layout, &folder));
     }
-    found.extend(names_in(layout, spent::FOLDER).into_iter().filter(|name| of_nobody(name)));
+    found.extend(names_in(layout, spent::FOLDER).into_iter().filter(|name| is_orphan(name)));
     let Ok(entries) = fs::read_dir(layout.results()) else { return found };
     for entry in entries.flatten() {
         let Ok(name) = entry.file_name().into_string() else { continue };
         let ours = name.rsplit_once('.').is_some_and(|(_, ending)| ENDINGS.contains(&ending));
-        // Whatever else lies there has no experiment's name, the snapshot least of all.
         let Ok(id) = stem(&name).parse::<ExperimentId>() else { continue };
-        if !ours || known.contains(id.0.as_str()) || name == "snapshot.json" {
+        if !ours || known.contains(id.0.as_str()) {
             continue;
         }
         found.insert(format!("results/{name}"));

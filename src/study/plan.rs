@@ -1,6 +1,6 @@
-//! The plan: of each experiment what its simulation depends on, and whether the table on disk was made from just that.
+//! The plan: what the simulation of each experiment depends on, and whether the table on disk was made from exactly that.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use serde_json::{Value, json};
@@ -13,32 +13,33 @@ use super::record::{NoRecord, Record};
 use super::run::Task;
 use super::variant::{Sensitivity, Variant, variants};
 use crate::dynamics::SOLVER_VERSION;
-use crate::experiment::AssumptionSheet;
-use crate::scene::AssumptionValue;
+use crate::experiment::{AssumptionName, AssumptionSheet, AssumptionValue};
 
 /// One experiment as planned.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Item {
     /// The experiment and its file.
     pub source: Source,
+    /// The assumptions that its numbers depend on, recorded once.
+    pub used: BTreeSet<AssumptionName>,
     /// The assumptions under which it runs; the baseline first.
     pub variants: Vec<Variant>,
     /// All that its numbers depend on.
     pub simulation: Value,
     /// Hash of [`Item::simulation`].
     pub fingerprint: String,
-    /// Whether there is anything to simulate.
+    /// Whether it is to be simulated.
     pub state: State,
 }
 
 /// What is on disk.
 #[derive(Debug, Clone, PartialEq)]
 pub enum State {
-    /// The table of this meaning.
+    /// The table with this fingerprint.
     Current(Record),
-    /// The table of this meaning, but some of its rows failed: it counts, and is tried again.
+    /// The table with this fingerprint, but some of its rows failed: it counts, and is tried again.
     Failed(Record),
-    /// Nothing, or the table of another meaning; and why.
+    /// Nothing, or a table with another fingerprint; and why.
     Stale(Vec<Reason>),
 }
 
@@ -46,11 +47,17 @@ impl Item {
     /// Plans one experiment, and looks at what is on disk.
     #[must_use]
     pub fn new(layout: &Layout, source: Source, sheet: &AssumptionSheet, sensitivity: Sensitivity) -> Self {
-        let variants = variants(&source.experiment, sheet, sensitivity);
-        let simulation = simulation(&source, sheet, &variants, sensitivity);
+        let used = source.experiment.assumptions_used(sheet);
+        let variants = variants(&source.experiment, &used, sheet, sensitivity);
+        let simulation = simulation(&source, sheet, &used, &variants, sensitivity);
         let fingerprint = fingerprint(&simulation);
         let state = state(layout, &source, &simulation);
-        Self { source, variants, simulation, fingerprint, state }
+        Self { source, variants, used, simulation, fingerprint, state }
+    }
+
+    /// Looks at what is on disk again.
+    pub(super) fn refresh(&mut self, layout: &Layout) {
+        self.state = state(layout, &self.source, &self.simulation);
     }
 
     /// What the runner is to do for it.
@@ -60,7 +67,7 @@ impl Item {
         Task { journal: Some(journal), ..Task::new(&source.experiment, variants, metadata) }
     }
 
-    /// The record of the table that has this meaning, if there is one.
+    /// The record of the current table, if there is one.
     #[must_use]
     pub fn record(&self) -> Option<&Record> {
         match &self.state {
@@ -106,10 +113,15 @@ impl Item {
     }
 }
 
-fn simulation(source: &Source, sheet: &AssumptionSheet, variants: &[Variant], sensitivity: Sensitivity) -> Value {
-    let used = source.experiment.assumptions_used(sheet);
+fn simulation(
+    source: &Source,
+    sheet: &AssumptionSheet,
+    used: &BTreeSet<AssumptionName>,
+    variants: &[Variant],
+    sensitivity: Sensitivity,
+) -> Value {
     let assumptions: BTreeMap<_, _> =
-        sheet.entries.iter().filter(|(name, _)| used.contains(name)).map(|(name, e)| (name, &e.value)).collect();
+        sheet.iter().filter(|(name, _)| used.contains(*name)).map(|(name, entry)| (name, &entry.value)).collect();
     let sensitivity = (sensitivity == Sensitivity::Wanted).then(|| ends(variants));
     json!({
         "experiment": source.experiment.simulation_json(),
@@ -123,7 +135,7 @@ fn simulation(source: &Source, sheet: &AssumptionSheet, variants: &[Variant], se
 fn ends(variants: &[Variant]) -> BTreeMap<&str, &AssumptionValue> {
     variants
         .iter()
-        .filter_map(|variant| Some((variant.label.as_str(), variant.assumptions.values.get(&variant.moved?)?)))
+        .filter_map(|variant| Some((variant.label.as_str(), variant.assumptions.values.get(variant.moved.as_ref()?)?)))
         .collect()
 }
 

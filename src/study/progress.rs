@@ -1,27 +1,42 @@
-//! A progress bar on standard error; silent where that is not a terminal.
+//! How far a run is, on standard error: a bar on a terminal, elsewhere a line for each experiment that ends.
+
+use std::io::{self, IsTerminal, Write};
+use std::sync::Mutex;
 
 use indicatif::{ProgressBar, ProgressStyle};
 
 use super::event::{Event, EventHandler};
 use crate::text::number::quantity;
 
-/// Listens to a run and shows how far it is.
+/// Shows the progress of a run.
 #[derive(Debug)]
-pub struct Progress {
-    bar: ProgressBar,
+pub enum Progress {
+    /// As a bar.
+    Bar(ProgressBar),
+    /// In lines.
+    Lines(Mutex<Left>),
+}
+
+/// What is left of a run.
+#[derive(Debug, Default)]
+pub struct Left {
+    experiments: usize,
+    simulations: u64,
 }
 
 impl Progress {
-    /// A bar that appears with the first event.
+    /// A bar if standard error is a terminal, otherwise lines.
     #[must_use]
     pub fn new() -> Self {
-        // indicatif hides a bar whose terminal is none.
+        if !io::stderr().is_terminal() {
+            return Self::Lines(Mutex::default());
+        }
         let bar = ProgressBar::new(0);
         let template = "{bar:32} {human_pos}/{human_len} simulations, {eta} left  {msg}";
         if let Ok(style) = ProgressStyle::with_template(template) {
             bar.set_style(style);
         }
-        Self { bar }
+        Self::Bar(bar)
     }
 }
 
@@ -33,21 +48,66 @@ impl Default for Progress {
 
 impl EventHandler for Progress {
     fn on_event(&self, event: &Event<'_>) {
+        match self {
+            Self::Bar(bar) => show(bar, event),
+            Self::Lines(left) => {
+                if let Ok(mut left) = left.lock()
+                    && let Some(line) = left.line(event)
+                {
+                    // A progress line that cannot be written is no reason to end the run.
+                    let _ = io::stderr().lock().write_all(line.as_bytes());
+                }
+            }
+        }
+    }
+}
+
+fn show(bar: &ProgressBar, event: &Event<'_>) {
+    match event {
+        Event::Begun { simulations, .. } => {
+            bar.set_length(*simulations);
+            bar.enable_steady_tick(std::time::Duration::from_millis(200));
+        }
+        Event::Simulated { count, .. } => bar.inc(*count),
+        Event::Searched { experiment, search, evaluations, best, unit } => {
+            let best = quantity(*best, unit, 5);
+            bar.set_message(format!("{experiment}, {search}: best {best} after {evaluations} evaluations"));
+        }
+        Event::Finished { experiment, failures, .. } => {
+            let state = if failures.rows == 0 { "done" } else { "done, with failed rows" };
+            bar.set_message(format!("{experiment} {state}"));
+        }
+        Event::Ended => bar.finish_and_clear(),
+    }
+}
+
+impl Left {
+    /// The line about an event, if there is something to say: `ch3-gap: 3 rows in 1.2 s; 4 experiments left`.
+    pub fn line(&mut self, event: &Event<'_>) -> Option<String> {
         match event {
-            Event::Begun { simulations, .. } => {
-                self.bar.set_length(*simulations);
-                self.bar.enable_steady_tick(std::time::Duration::from_millis(200));
+            Event::Begun { experiments, simulations } => {
+                *self = Self { experiments: *experiments, simulations: *simulations };
+                None
             }
-            Event::Simulated { count, .. } => self.bar.inc(*count),
-            Event::Searched { experiment, search, evaluations, best, unit } => {
-                let best = quantity(*best, unit, 5);
-                self.bar.set_message(format!("{experiment}, {search}: best {best} after {evaluations} evaluations"));
+            Event::Simulated { count, .. } => {
+                self.simulations = self.simulations.saturating_sub(*count);
+                None
             }
-            Event::Finished { experiment, failures, .. } => {
-                let description = if failures.rows == 0 { "done" } else { "done, with failed rows" };
-                self.bar.set_message(format!("{experiment} {description}"));
+            Event::Finished { experiment, rows, failures, seconds } => {
+                self.experiments = self.experiments.saturating_sub(1);
+                let failed = if failures.rows == 0 { String::new() } else { format!(" ({} failed)", failures.rows) };
+                let took = match seconds {
+                    Some(seconds) => format!("{} of processor time", quantity(*seconds, "s", 2)),
+                    None => "restored from earlier tables".into(),
+                };
+                let left = match (self.experiments, self.simulations) {
+                    (0, _) => "none left".into(),
+                    (1, simulations) => format!("1 experiment left, {simulations} simulations at most"),
+                    (many, simulations) => format!("{many} experiments left, {simulations} simulations at most"),
+                };
+                Some(format!("{experiment}: {rows} rows{failed}, {took}; {left}\n"))
             }
-            Event::Ended => self.bar.finish_and_clear(),
+            Event::Searched { .. } | Event::Ended => None,
         }
     }
 }

@@ -1,4 +1,4 @@
-//! Why something has to be made again, in words that name the file, the key, the old value and the new.
+//! Why something is stale: the file, the key, the old value and the new.
 
 use std::fmt;
 
@@ -12,9 +12,9 @@ use super::record::Failures;
 pub enum Reason {
     /// There is no record.
     NeverRun,
-    /// There is a record that does not count, with what is wrong with it.
+    /// There is a record that does not count, with the reason.
     RecordUnreadable(String),
-    /// An input means something else.
+    /// An input has changed.
     Changed {
         /// The file that it stands in.
         file: String,
@@ -38,9 +38,9 @@ pub enum Reason {
     NeverPublished,
 }
 
-/// Leaves told one by one before the rest is counted: a longer sweep changes hundreds.
-const TOLD: usize = 3;
-/// Longest value that is told in full.
+/// Leaves listed one by one before the rest is counted: a longer sweep changes hundreds.
+const LISTED: usize = 3;
+/// Longest value that is printed in full.
 const LONGEST: usize = 60;
 
 /// The leaves in which `new` departs from `old`, each with the file that `file_of` finds for its path.
@@ -59,8 +59,8 @@ pub fn differences(old: &Value, new: &Value, file_of: &dyn Fn(&[&str]) -> String
     }
     let mut reasons = Vec::new();
     for (file, list) in by_file {
-        let count = list.len().saturating_sub(TOLD);
-        reasons.extend(list.into_iter().take(TOLD).map(|change| Reason::Changed { file: file.clone(), change }));
+        let count = list.len().saturating_sub(LISTED);
+        reasons.extend(list.into_iter().take(LISTED).map(|change| Reason::Changed { file: file.clone(), change }));
         if count > 0 {
             reasons.push(Reason::MoreChanged { file, count });
         }
@@ -88,7 +88,7 @@ impl fmt::Display for Reason {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::NeverRun => write!(f, "it has not been run"),
-            Self::RecordUnreadable(what) => write!(f, "its record does not count: {what}"),
+            Self::RecordUnreadable(what) => write!(f, "its record cannot be used: {what}"),
             Self::Changed { file, change } => {
                 let Change { path, old, new } = change;
                 write!(f, "{file}: {}: {} -> {}", key(path), describe(old.as_ref()), describe(new.as_ref()))
@@ -102,7 +102,7 @@ impl fmt::Display for Reason {
     }
 }
 
-/// The key as a reader of the YAML knows it.
+/// The key as it stands in the YAML.
 fn key(path: &[String]) -> String {
     let mut keys: Vec<&str> = path.iter().map(String::as_str).collect();
     if keys.first() == Some(&"recipe") {

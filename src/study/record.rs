@@ -1,6 +1,6 @@
-//! One record per experiment, beside its table: from which meaning the table, the figures and the report were made.
+//! One record per experiment, beside its table: the inputs that table, figures and report were made from.
 //!
-//! The record keeps the meaning itself and not its hash alone, so that `status --why` can name the leaf that changed.
+//! The record holds the inputs and not only their hash, so that `status --why` can name the value that changed.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -76,7 +76,8 @@ impl FileHash {
 #[serde(deny_unknown_fields)]
 pub struct Publication {
     /// What they were made from.
-    pub meaning: Value,
+    #[serde(rename = "meaning")]
+    pub inputs: Value,
     /// The files, by their name within the study.
     pub files: BTreeMap<String, FileHash>,
     /// What each figure among them shows, as a hash: one that would show the same is not drawn again. Absent in records of

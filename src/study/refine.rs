@@ -10,9 +10,9 @@
 use rayon::prelude::*;
 
 use super::tabulate::Outcome;
+use crate::experiment::ParameterValue;
 use crate::experiment::{AxisScale, Case, Curve, Experiment, Refinement, curves};
 use crate::measure::Measured;
-use crate::scene::ParameterValue;
 
 /// Halvings of the first intervals, at most: from 3 rad/s to 0.0002 rad/s.
 const MOST_HALVINGS: u32 = 14;
@@ -31,15 +31,15 @@ pub(super) struct Point {
 /// All cases with those that were added, curve by curve in the order of their first cases.
 pub(super) fn points(experiment: &Experiment, look: &(impl Fn(&Case) -> Outcome + Sync)) -> Vec<Point> {
     let curves = curves(&experiment.cases, &experiment.refined);
-    let grown: Vec<Vec<Point>> = curves.par_iter().map(|curve| grow(experiment, curve, look)).collect();
+    let refined: Vec<Vec<Point>> = curves.par_iter().map(|curve| refine(experiment, curve, look)).collect();
     let mut on_a_curve = vec![false; experiment.cases.len()];
     curves.iter().flat_map(|curve| &curve.cases).for_each(|&case| on_a_curve[case] = true);
-    let mut grown: Vec<(usize, Vec<Point>)> =
-        curves.iter().map(|curve| curve.cases.first().copied().unwrap_or(0)).zip(grown).collect();
+    let mut refined: Vec<(usize, Vec<Point>)> =
+        curves.iter().map(|curve| curve.cases.first().copied().unwrap_or(0)).zip(refined).collect();
     let single = experiment.cases.iter().enumerate().filter(|(index, _)| !on_a_curve[*index]);
-    grown.extend(single.map(|(index, case)| (index, vec![Point { case: case.clone(), known: None }])));
-    grown.sort_by_key(|(first, _)| *first);
-    grown.into_iter().flat_map(|(_, points)| points).collect()
+    refined.extend(single.map(|(index, case)| (index, vec![Point { case: case.clone(), known: None }])));
+    refined.sort_by_key(|(first, _)| *first);
+    refined.into_iter().flat_map(|(_, points)| points).collect()
 }
 
 /// A point of a curve as the rule sees it.
@@ -52,7 +52,7 @@ struct Seen {
     point: Point,
 }
 
-fn grow(experiment: &Experiment, curve: &Curve<'_>, look: &(impl Fn(&Case) -> Outcome + Sync)) -> Vec<Point> {
+fn refine(experiment: &Experiment, curve: &Curve<'_>, look: &(impl Fn(&Case) -> Outcome + Sync)) -> Vec<Point> {
     let rule = curve.rule;
     let see = |case: Case| {
         let known = look(&case);
@@ -133,7 +133,7 @@ fn miss(three: &[Seen], rule: &Refinement) -> f64 {
             AxisScale::Log => 1.0,
         };
         let share = off / (rule.tolerance * local * 4.0 * before * after);
-        // A hole in the curve, or a value that is nothing all around, attracts nobody.
+        // A hole in the curve, or a value that is nothing all around, attracts no points.
         if off > noise && share.is_finite() { share } else { 0.0 }
     };
     a.values.iter().zip(&b.values).zip(&c.values).map(of).fold(0.0, f64::max)

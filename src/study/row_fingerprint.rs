@@ -1,7 +1,7 @@
 //! What the numbers of one row depend on, as a hash: a row whose fingerprint an earlier table has need not be simulated.
 //!
 //! Hashed is what the engine is asked, and not where in a sweep the row stands or what it is called: a sweep may be cut,
-//! extended, renamed or written otherwise. Of the assumptions those count that the row's own scene leans on.
+//! extended, renamed or written otherwise. Only the assumptions that the row's own scene depends on count.
 
 use std::collections::BTreeMap;
 
@@ -11,9 +11,9 @@ use super::job::Job;
 use super::variant::Variant;
 use super::work::asked;
 use crate::dynamics::SOLVER_VERSION;
+use crate::experiment::{Assumptions, ParameterValue, Recipe};
 use crate::experiment::{Case, Experiment};
 use crate::measure::Rigour;
-use crate::scene::{Assumptions, ParameterValue, Recipe};
 use crate::table::RowFingerprint;
 
 /// The fingerprints of an experiment's rows.
@@ -39,7 +39,7 @@ impl<'a> RowFingerprints<'a> {
                 let asked = asked(self.experiment, &recipe, variant, job);
                 let is_result = asked.rigour == Rigour::Result;
                 feed(&mut hasher, &(&recipe, asked.solver, is_result, asked.trace, asked.energies, asked.shape));
-                feed(&mut hasher, &self.leaned_on(&recipe, &variant.assumptions));
+                feed(&mut hasher, &self.read(&recipe, &variant.assumptions));
             }
             // It has no numbers, and no table gives it any.
             Err(_) => feed(&mut hasher, case),
@@ -47,8 +47,8 @@ impl<'a> RowFingerprints<'a> {
         RowFingerprint::of(hasher.finalize())
     }
 
-    /// The values that the row's scene leans on, at any point of a maximum that is looked for.
-    fn leaned_on<'b>(&self, recipe: &Recipe, in_force: &'b Assumptions) -> BTreeMap<String, &'b impl Serialize> {
+    /// The values that the row's scene depends on, at any point of a maximisation.
+    fn read<'b>(&self, recipe: &Recipe, in_force: &'b Assumptions) -> BTreeMap<String, &'b impl Serialize> {
         let mut scenes = vec![recipe.clone()];
         if let Some(maximise) = &self.experiment.maximise {
             scenes.extend(maximise.grid.iter().filter_map(|at| {
@@ -57,7 +57,7 @@ impl<'a> RowFingerprints<'a> {
             }));
         }
         let names = self.experiment.assumptions_of(scenes, in_force).into_iter();
-        names.filter_map(|name| Some((format!("{name:?}"), in_force.values.get(&name)?))).collect()
+        names.filter_map(|name| Some((name.to_string(), in_force.values.get(&name)?))).collect()
     }
 }
 

@@ -15,6 +15,7 @@ use super::evaluate::Evaluate;
 use super::event::{Event, EventHandler};
 use super::job::{self, cost};
 use super::known_rows::KnownRows;
+use super::limited::Limited;
 use super::optimise::run_optimisation;
 use super::record::Failures;
 use super::refine;
@@ -22,6 +23,7 @@ use super::shard::Shard;
 use super::spent::{Meter, Metered, Spent};
 use super::variant::Variant;
 use super::work::{Work, outcome};
+use crate::dynamics::Limit;
 use crate::experiment::{Case, Experiment};
 use crate::table::Table;
 
@@ -38,6 +40,8 @@ pub struct Task<'a> {
     pub journal: Option<&'a Path>,
     /// The shard to which to keep; `None`: all of it. Of an experiment that is not divided the shard does all.
     pub shard: Option<Shard>,
+    /// The most that a row may take.
+    pub limit: Limit,
     /// Rows that need not be simulated; `None`: all are.
     pub known: Option<&'a KnownRows>,
 }
@@ -46,7 +50,8 @@ impl<'a> Task<'a> {
     /// All of it, with nothing known and nothing kept on the way.
     #[must_use]
     pub fn new(experiment: &'a Experiment, variants: &'a [Variant], metadata: &'a BTreeMap<String, String>) -> Self {
-        Self { experiment, variants, metadata, journal: None, shard: None, known: None }
+        let limit = experiment.limit;
+        Self { experiment, variants, metadata, journal: None, shard: None, limit, known: None }
     }
 }
 
@@ -94,10 +99,15 @@ pub fn run<T: Send + Sync>(
     let engine = |index: usize| Metered { evaluate, meter: &meters[index] };
     let hand_over = |index: usize, mut finished: Finished| {
         finished.spent = meters[index].spent();
-        let (rows, failures) = (finished.table.rows(), finished.failures.clone());
+        let (rows, failures, seconds) = (finished.table.rows(), finished.failures.clone(), finished.spent.total());
         // Only the thread that put the last row comes here, once.
         let _ = taken[index].set(take(index, finished));
-        handler.on_event(&Event::Finished { experiment: &tasks[index].experiment.id, rows, failures: &failures });
+        handler.on_event(&Event::Finished {
+            experiment: &tasks[index].experiment.id,
+            rows,
+            failures: &failures,
+            seconds,
+        });
     };
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).stack_size(STACK).build()?;
     pool.install(|| {
@@ -106,7 +116,9 @@ pub fn run<T: Send + Sync>(
             // Their rounds wait for one another: they begin first.
             for index in optimised {
                 scope.spawn_fifo(move |_| {
-                    let finished = run_optimisation(tasks[index], &engine(index), handler);
+                    let engine = engine(index);
+                    let limited = Limited::each(&engine, tasks[index].limit);
+                    let finished = run_optimisation(tasks[index], &limited, handler);
                     hand_over(index, undivided(tasks[index], finished));
                 });
             }
@@ -149,8 +161,8 @@ fn undivided(task: Task<'_>, mut finished: Finished) -> Finished {
 
 /// Runs an experiment whose curves get more points where they bend: first the curves, then all else at their points.
 fn run_refined(task: Task<'_>, evaluate: &impl Evaluate, handler: &dyn EventHandler, hand_over: impl Fn(&Work<'_>)) {
-    let ear = Counting { handler, description: AtomicU64::new(0) };
-    let look = |case: &Case| outcome(task, case, &job::first_of(case), evaluate, &ear);
+    let counting = Counting { handler, simulations: AtomicU64::new(0) };
+    let look = |case: &Case| outcome(task, case, &job::first_of(case), evaluate, &counting);
     let points = refine::points(task.experiment, &look);
     let cases = points.iter().map(|point| point.case.clone()).collect();
     let experiment = Experiment { cases, ..task.experiment.clone() };
@@ -165,23 +177,23 @@ fn run_refined(task: Task<'_>, evaluate: &impl Evaluate, handler: &dyn EventHand
         }
     }
     work.rows_to_do().into_par_iter().for_each(|row| {
-        work.put(row, work.row(row, evaluate, &ear));
+        work.put(row, work.row(row, evaluate, &counting));
     });
-    let left = job::simulations(task.experiment, task.variants).saturating_sub(ear.description.into_inner());
+    let left = job::simulations(task.experiment, task.variants).saturating_sub(counting.simulations.into_inner());
     handler.on_event(&Event::Simulated { experiment: &experiment.id, count: left });
     hand_over(&work);
 }
 
-/// Passes on what it hears, and counts the simulations.
+/// Passes the events on, and counts the simulations.
 struct Counting<'a> {
     handler: &'a dyn EventHandler,
-    description: AtomicU64,
+    simulations: AtomicU64,
 }
 
 impl EventHandler for Counting<'_> {
     fn on_event(&self, event: &Event<'_>) {
         if let Event::Simulated { count, .. } = event {
-            self.description.fetch_add(*count, Ordering::Relaxed);
+            self.simulations.fetch_add(*count, Ordering::Relaxed);
         }
         self.handler.on_event(event);
     }

@@ -1,5 +1,5 @@
-//! What each experiment took on a machine, as a file that goes with the reports: written when it is asked for, since times are
-//! never the same again, and read like any other input of the index.
+//! Processor time of each experiment on one machine, in a file beside the reports. It is written on request only, since times
+//! differ from run to run; the index reads it like any other input.
 
 use std::collections::BTreeMap;
 use std::fs;

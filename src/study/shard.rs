@@ -1,6 +1,6 @@
 //! Shards: a study's work in n parts for n tasks of a cluster's scheduler, each with tables of its own.
 //!
-//! The plan alone decides which rows belong to which shard, so tasks need not know of each other: the rows of an
+//! The plan alone decides which rows belong to which shard, so tasks need no communication: the rows of an
 //! experiment are dealt out, the longest first. Where rows depend on each other (refined curves, searches) the experiment
 //! is one shard's as a whole. A shard's table is that of the experiment with fewer rows and one column more, `row`, the
 //! place of each in the whole table.
@@ -18,17 +18,51 @@ use super::variant::Variant;
 use crate::experiment::{Experiment, ExperimentId};
 use crate::table::{Column, Data, ParquetError, Table, parquet};
 
-/// The column that tells a row's place in the whole table.
+/// The column with a row's place in the whole table.
 pub(super) const ROW: &str = "row";
-/// The key of a table's metadata that tells the shard.
+/// The key of the shard in a table's metadata.
 const SHARD: &str = "shard";
 
-/// One of n parts, told `3/8` from `1/8` to `8/8`.
+/// One of n parts, written `1/8` to `8/8`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Shard {
     /// From 0.
     index: u32,
     of: u32,
+}
+
+/// Why a table is not the one that its name says.
+#[derive(Debug, thiserror::Error)]
+pub enum NotThePart {
+    /// It cannot be read.
+    #[error("{}", damage(.0))]
+    Unreadable(#[from] ParquetError),
+    /// It lacks the column that says where its rows belong.
+    #[error("its rows have no places")]
+    NoPlaces,
+    /// The plan has no such row.
+    #[error("its row {0} is not a row of the experiment")]
+    NoSuchRow(usize),
+    /// It is another shard's.
+    #[error("it is the table of shard {0}")]
+    OfAnotherShard(String),
+    /// It is a whole table.
+    #[error("it is the table of no shard")]
+    OfNoShard,
+    /// It is out of date.
+    #[error("it was computed from other inputs than the current ones")]
+    OtherInputs,
+    /// It was written by an older version.
+    #[error("its rows do not say what they were computed from")]
+    NoFingerprints,
+}
+
+/// The error without the name of the file, which stands in front of it.
+fn damage(error: &ParquetError) -> String {
+    match error {
+        ParquetError::Damaged { what, .. } => what.clone(),
+        other => other.to_string(),
+    }
 }
 
 /// A text that names no shard.
@@ -37,7 +71,7 @@ pub struct Shard {
 pub struct ShardError;
 
 impl Shard {
-    /// All shards of so many.
+    /// All `of` shards.
     pub fn all(of: u32) -> impl Iterator<Item = Self> {
         (0..of).map(move |index| Self { index, of })
     }
@@ -89,7 +123,7 @@ impl Shard {
         }
     }
 
-    /// True if its table of the experiment is there, whole, and has the meaning of today.
+    /// True if its table of the experiment is there, whole, and is up to date.
     #[must_use]
     pub fn has_done(self, layout: &Layout, item: &Item) -> bool {
         let path = layout.path(&self.table_name(&item.source.experiment.id));
@@ -113,25 +147,25 @@ impl Shard {
         Ok(())
     }
 
-    /// What tells its table from the whole one.
+    /// Marks its table as that of a shard.
     pub(super) fn mark(self, table: &mut Table, places: &[usize]) {
         let rows = places.iter().map(|&row| i64::try_from(row).unwrap_or(i64::MAX)).collect();
         table.columns.insert(0, Column::new(ROW, Data::Int(rows)));
         table.metadata.insert(SHARD.into(), self.to_string());
     }
 
-    /// What makes a table not its table of the experiment, in words.
-    pub(super) fn check(self, table: &Table, item: &Item) -> Result<(), String> {
+    /// What makes a table not its table of the experiment.
+    pub(super) fn check(self, table: &Table, item: &Item) -> Result<(), NotThePart> {
         match table.metadata.get(SHARD) {
             Some(shard) if *shard == self.to_string() => {}
-            Some(shard) => return Err(format!("it is the table of shard {shard}")),
-            None => return Err("it is the table of no shard".into()),
+            Some(shard) => return Err(NotThePart::OfAnotherShard(shard.clone())),
+            None => return Err(NotThePart::OfNoShard),
         }
         if table.metadata.get("fingerprint") != Some(&item.fingerprint) {
-            return Err("it was computed from other inputs than those of now".into());
+            return Err(NotThePart::OtherInputs);
         }
         if item.source.experiment.optimise.is_none() && table.fingerprints.len() < table.rows() {
-            return Err("its rows do not say what they were computed from".into());
+            return Err(NotThePart::NoFingerprints);
         }
         Ok(())
     }

@@ -1,99 +1,145 @@
-//! The short way for a run with nothing to do: one file that remembers every text that went in and every file that came
-//! out of the last complete run, and what it said in the end.
+//! What the last runs left up to date: of each experiment a hash of its texts, a glance at its files, and the summary of its
+//! result. A run plans only the experiments for which one of these has changed; with nothing to do it parses no YAML, opens
+//! no table and starts no thread.
 //!
-//! If all of them are as they were, nothing is parsed, no table opened and no thread started. The snapshot decides
-//! nothing else: when anything differs it is put aside and the plan asks the records, which know the meaning.
+//! The snapshot saves time and decides nothing else: where a text, an assumption in use, a table that an entry reads, an output
+//! or the program differs, the experiment is planned from its YAML, and its record tells what is stale. A damaged snapshot
+//! counts as none.
 
-use std::collections::BTreeMap;
-use std::fs::File;
-use std::io::{Read, Seek, SeekFrom};
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 use std::time::SystemTime;
 
 use serde::{Deserialize, Serialize};
 
-use super::layout::{Layout, Texts};
+use super::glance::{Glance, Match};
+use super::layout::{ASSUMPTIONS, Layout, Texts, stem};
 use super::record::{PRESENTATION_VERSION, RECORD_FORMAT};
+use super::summary::Summary;
 use crate::atomic::{self, FileError};
 use crate::dynamics::SOLVER_VERSION;
+use crate::experiment::AssumptionName;
+use crate::experiment::{AssumptionSheet, parse_assumptions};
 
 /// Name of the file within the study.
-const NAME: &str = "results/snapshot.json";
-/// Outputs of which the head and the tail say enough: a Parquet file ends with the seal over all its bytes and a PNG with the
-/// checksum over all its pixels, and a record only repeats what the inputs mean, which are looked at themselves. Whoever
-/// edits the middle leaves a later time. Reports are read whole.
-const HEAD_AND_TAIL: [&str; 3] = ["parquet", "png", "json"];
-/// How much of each.
-const LOOK: usize = 4 << 10;
+const NAME: &str = "results/snapshot.bin";
 
-/// The last complete run.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+/// Hashes of texts by name.
+type Hashes = BTreeMap<String, String>;
+
+/// The experiments that are up to date.
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct Snapshot {
-    versions: Versions,
-    inputs: BTreeMap<String, String>,
-    outputs: BTreeMap<String, Glance>,
-    /// What it printed in the end.
-    pub summary: String,
-    /// Its exit code.
-    pub exit_code: u8,
+    /// By id.
+    pub experiments: BTreeMap<String, Summary>,
+    /// True if index and verdicts are as the last run left them.
+    pub index_is_current: bool,
+    /// Files that were compared by content, and need not be the next time.
+    settled: Option<Box<OnDisk>>,
 }
 
-/// What the program itself contributed.
+/// An experiment, or what concerns the study as a whole, with the files that make it valid.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+struct Seen<T> {
+    inputs: Hashes,
+    outputs: BTreeMap<String, Glance>,
+    content: T,
+}
+
+/// The snapshot as it is written.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+struct OnDisk {
+    program: Program,
+    study: Seen<Assumed>,
+    experiments: BTreeMap<String, Seen<Summary>>,
+}
+
+/// What the program itself contributes.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Versions {
+struct Program {
     record: u32,
     solver: u32,
     presentation: u32,
+    version: String,
+    /// Length and time of the executable: a rebuilt program may judge or write otherwise.
+    executable: Option<(u64, SystemTime)>,
 }
 
-impl Versions {
-    const CURRENT: Self = Self { record: RECORD_FORMAT, solver: SOLVER_VERSION, presentation: PRESENTATION_VERSION };
-}
-
-/// An output at a glance: enough to see that it was cut, replaced or edited.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Glance {
-    bytes: u64,
-    blake3: String,
-}
-
-impl Glance {
-    /// True if the file is still what was seen, and nobody has written to it after `taken`.
-    fn holds(&self, path: &Path, taken: Option<SystemTime>) -> bool {
-        let later = || Some(std::fs::metadata(path).ok()?.modified().ok()? > taken?);
-        later() != Some(true) && Self::at(path).is_ok_and(|glance| glance == *self)
-    }
-
-    fn at(path: &Path) -> std::io::Result<Self> {
-        let mut file = File::open(path)?;
-        let bytes = file.metadata()?.len();
-        let short = path.extension().is_some_and(|extension| HEAD_AND_TAIL.iter().any(|one| extension == *one));
-        let length = usize::try_from(bytes).map_err(std::io::Error::other)?;
-        let mut seen = vec![0; if short { length.min(2 * LOOK) } else { length }];
-        let (head, tail) = seen.split_at_mut(length.min(LOOK));
-        file.read_exact(head)?;
-        if short && length > 2 * LOOK {
-            file.seek(SeekFrom::Start(bytes - LOOK as u64))?;
+impl Program {
+    fn here() -> Self {
+        let metadata = || std::fs::metadata(std::env::current_exe().ok()?).ok();
+        Self {
+            record: RECORD_FORMAT,
+            solver: SOLVER_VERSION,
+            presentation: PRESENTATION_VERSION,
+            version: env!("CARGO_PKG_VERSION").into(),
+            executable: metadata().and_then(|metadata| Some((metadata.len(), metadata.modified().ok()?))),
         }
-        file.read_exact(tail)?;
-        Ok(Self { bytes, blake3: blake3::hash(&seen).to_hex().to_string() })
+    }
+}
+
+/// The assumptions, as hashes.
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
+struct Assumed {
+    /// Of each with all that the file says of it.
+    each: BTreeMap<AssumptionName, String>,
+    /// Ids of the entries that one was fitted to; they are judged differently, whatever they use.
+    fitted: BTreeSet<String>,
+}
+
+impl Assumed {
+    fn of(sheet: &AssumptionSheet) -> Self {
+        let hash = |entry| serde_json::to_vec(entry).map_or_else(|_| String::new(), |text| hash(&text));
+        Self {
+            each: sheet.iter().map(|(name, entry)| (name.clone(), hash(entry))).collect(),
+            fitted: sheet.iter().flat_map(|(_, entry)| entry.fitted_to.iter().cloned()).collect(),
+        }
     }
 }
 
 impl Snapshot {
-    /// The last complete run, if these texts and all its outputs are still what they were.
+    /// What of the last runs still holds for these texts and the files on disk.
     #[must_use]
-    pub fn current(layout: &Layout, texts: &Texts) -> Option<Self> {
+    pub fn current(layout: &Layout, texts: &Texts) -> Self {
+        Self::read(layout, texts).unwrap_or_default()
+    }
+
+    fn read(layout: &Layout, texts: &Texts) -> Option<Self> {
         let path = layout.path(NAME);
-        let snapshot: Self = serde_json::from_slice(&std::fs::read(&path).ok()?).ok()?;
-        let taken = std::fs::metadata(&path).and_then(|meta| meta.modified()).ok();
-        let same = snapshot.versions == Versions::CURRENT
-            && snapshot.inputs == texts.hashes()
-            && snapshot.outputs.iter().all(|(name, glance)| glance.holds(&layout.path(name), taken));
-        same.then_some(snapshot)
+        let mut known = OnDisk::from_bytes(&std::fs::read(&path).ok()?)?;
+        let taken = std::fs::metadata(&path).and_then(|meta| meta.modified()).ok()?;
+        if known.program != Program::here() {
+            return None;
+        }
+        let shared = shared_inputs(texts);
+        let changed = known.study.changed_assumptions(&shared, texts)?;
+        let mut look = Look { layout, taken, settled: false };
+        let unchanged = shared == known.study.inputs;
+        let index_is_current = unchanged && look.holds(&mut known.study.outputs);
+        let texts = texts_by_experiment(texts);
+        known.experiments.retain(|id, seen| {
+            texts.get(id.as_str()).is_some_and(|texts| *texts == seen.inputs)
+                && seen.content.used.is_disjoint(&changed)
+                && look.holds(&mut seen.outputs)
+        });
+        let experiments: BTreeMap<_, _> =
+            known.experiments.iter().map(|(id, seen)| (id.clone(), seen.content.clone())).collect();
+        let all = texts.len() == experiments.len();
+        let settled = (look.settled && all && index_is_current).then(|| Box::new(known));
+        Some(Self { experiments, index_is_current, settled })
+    }
+
+    /// True if every experiment and every reference file among `texts` is up to date, and the index.
+    #[must_use]
+    pub fn is_complete(&self, texts: &Texts) -> bool {
+        self.index_is_current && texts.stems().iter().all(|id| self.experiments.contains_key(*id))
+    }
+
+    /// Writes down which files one `stat` will do for the next time. It saves time only: on a full disk nothing is lost.
+    pub fn settle(&self, layout: &Layout) {
+        if let Some(settled) = &self.settled {
+            let _ = settled.write(&layout.path(NAME));
+        }
     }
 
     /// Forgets it: something that pages link to was written by another command.
@@ -108,31 +154,120 @@ impl Snapshot {
         }
     }
 
-    /// Remembers a complete run over `texts` that left `outputs` (names within the study) and said `summary`.
+    /// Writes down what is up to date after a run over `texts`: of each experiment the files that it consists of and its
+    /// summary, and the files of the study as a whole. Experiments in `kept` are as [`Snapshot::current`] found them.
     ///
     /// # Errors
     /// [`FileError`] if an output cannot be read back or the snapshot not be written.
     pub fn take(
         layout: &Layout,
         texts: &Texts,
-        outputs: impl IntoIterator<Item = String>,
-        summary: &str,
-        exit_code: u8,
+        sheet: &AssumptionSheet,
+        kept: &BTreeSet<&str>,
+        published: BTreeMap<String, (BTreeSet<String>, Summary)>,
+        of_the_study: &BTreeSet<String>,
     ) -> Result<(), FileError> {
-        let outputs = outputs
-            .into_iter()
-            .map(|name| {
-                let path = layout.path(&name);
-                let glance = Glance::at(&path).map_err(|source| FileError::new("read", &path, source))?;
-                Ok((name, glance))
-            })
-            .collect::<Result<_, FileError>>()?;
-        let snapshot =
-            Self { versions: Versions::CURRENT, inputs: texts.hashes(), outputs, summary: summary.into(), exit_code };
         let path = layout.path(NAME);
-        let text = serde_json::to_string_pretty(&snapshot)
-            .map_err(|error| FileError::new("write", &path, std::io::Error::other(error)))?;
+        let old = std::fs::read(&path).ok().and_then(|bytes| OnDisk::from_bytes(&bytes));
+        let mut experiments = old.map(|old| old.experiments).unwrap_or_default();
+        experiments.retain(|id, _| kept.contains(id.as_str()));
+        let mut inputs = texts_by_experiment(texts);
+        for (id, (files, content)) in published {
+            let outputs = glances(layout, &files)?;
+            let inputs = inputs.remove(id.as_str()).unwrap_or_default();
+            experiments.insert(id, Seen { inputs, outputs, content });
+        }
+        let outputs = glances(layout, of_the_study)?;
+        let study = Seen { inputs: shared_inputs(texts), outputs, content: Assumed::of(sheet) };
         // Also where it says the same as before: its own time tells which outputs were written later.
-        atomic::write(&path, text.as_bytes())
+        OnDisk { program: Program::here(), study, experiments }.write(&path)
     }
+}
+
+impl Seen<Assumed> {
+    /// The assumptions that differ now; `None` if no experiment can be relied upon.
+    fn changed_assumptions(&self, shared: &Hashes, texts: &Texts) -> Option<BTreeSet<AssumptionName>> {
+        let others = |hashes: &Hashes| {
+            hashes
+                .iter()
+                .filter(|(name, _)| *name != ASSUMPTIONS)
+                .map(|(k, v)| (k.clone(), v.clone()))
+                .collect::<Hashes>()
+        };
+        if self.inputs == *shared {
+            return Some(BTreeSet::new());
+        }
+        if others(&self.inputs) != others(shared) {
+            return None;
+        }
+        let text = std::str::from_utf8(texts.files.get(ASSUMPTIONS)?).ok()?;
+        let now = Assumed::of(&parse_assumptions(ASSUMPTIONS, text).ok()?);
+        let differs = |name: &&AssumptionName| now.each.get(*name) != self.content.each.get(*name);
+        (now.fitted == self.content.fitted)
+            .then(|| now.each.keys().chain(self.content.each.keys()).filter(differs).cloned().collect())
+    }
+}
+
+impl OnDisk {
+    /// The bytes begin with the hash of the rest.
+    fn from_bytes(bytes: &[u8]) -> Option<Self> {
+        let (seal, content) = bytes.split_at_checked(32)?;
+        (blake3::hash(content).as_bytes() == seal).then(|| postcard::from_bytes(content).ok()).flatten()
+    }
+
+    fn write(&self, path: &Path) -> Result<(), FileError> {
+        let fail = |error| FileError::new("write", path, std::io::Error::other(error));
+        let content = postcard::to_stdvec(self).map_err(fail)?;
+        atomic::write(path, &[blake3::hash(&content).as_bytes(), content.as_slice()].concat())
+    }
+}
+
+/// Compares files with what was seen of them.
+struct Look<'a> {
+    layout: &'a Layout,
+    taken: SystemTime,
+    /// A file was compared by content that will not have to be again.
+    settled: bool,
+}
+
+impl Look<'_> {
+    fn holds(&mut self, outputs: &mut BTreeMap<String, Glance>) -> bool {
+        outputs.iter_mut().all(|(name, glance)| match glance.compare(&self.layout.path(name), self.taken) {
+            Match::Untouched => true,
+            Match::Same(now) => {
+                self.settled |= now.is_settled();
+                *glance = now;
+                true
+            }
+            Match::Different => false,
+        })
+    }
+}
+
+fn glances(layout: &Layout, names: &BTreeSet<String>) -> Result<BTreeMap<String, Glance>, FileError> {
+    let glance = |name: &String| {
+        let path = layout.path(name);
+        let glance = Glance::at(&path).map_err(|source| FileError::new("read", &path, source))?;
+        Ok((name.clone(), glance))
+    };
+    names.iter().map(glance).collect()
+}
+
+fn hash(bytes: &[u8]) -> String {
+    blake3::hash(bytes).to_hex().to_string()
+}
+
+/// Texts that concern the study as a whole: assumptions and calibrations.
+fn shared_inputs(texts: &Texts) -> Hashes {
+    let shared = texts.files.iter().filter(|(name, _)| !Texts::is_of_experiment(name));
+    shared.map(|(name, bytes)| (name.clone(), hash(bytes))).collect()
+}
+
+/// The texts of each experiment; two files of one id are both its own, and never those that a run has left.
+fn texts_by_experiment(texts: &Texts) -> BTreeMap<&str, Hashes> {
+    let mut by_id = BTreeMap::<&str, Hashes>::new();
+    for (name, bytes) in texts.files.iter().filter(|(name, _)| Texts::is_of_experiment(name)) {
+        by_id.entry(stem(name)).or_default().insert(name.clone(), hash(bytes));
+    }
+    by_id
 }

@@ -10,11 +10,12 @@ use serde::{Deserialize, Serialize};
 
 use super::evaluate::{Array, Evaluate, Simulation};
 use super::layout::Layout;
+use super::row_failure::RowFailure;
 use crate::atomic;
 use crate::experiment::ExperimentId;
+use crate::experiment::GapWord;
 use crate::measure::SolverChoice;
 use crate::measure::{Evaluated, Rigour};
-use crate::scene::GapWord;
 
 /// The folder of what was spent, within the study.
 pub(super) const FOLDER: &str = "results/times";
@@ -67,12 +68,12 @@ impl Spent {
         }
     }
 
-    /// Forgets what is known of an experiment: a run from nothing tells all of it again.
+    /// Forgets what is known of an experiment: a run from scratch measures all of it again.
     pub fn forget(layout: &Layout, id: &ExperimentId) {
         let _ = fs::remove_file(layout.path(&name(id)));
     }
 
-    /// What so many simulations of a kind will take, s; `None` if there was none so far.
+    /// Estimated time of `simulations` of a kind, s; `None` if there was none so far.
     pub(super) fn ahead(&self, solver: SolverChoice, rigour: Rigour, simulations: u64) -> Option<f64> {
         if simulations == 0 {
             return Some(0.0);
@@ -102,7 +103,7 @@ pub(super) struct Meter(Mutex<Spent>);
 
 impl Meter {
     fn time<T>(&self, solver: SolverChoice, rigour: Rigour, simulate: impl FnOnce() -> T) -> T {
-        // A simulation keeps to its thread and waits for nobody.
+        // A simulation stays on its thread and never waits, so that wall time is processor time.
         let begun = Instant::now();
         let done = simulate();
         let seconds = begun.elapsed().as_secs_f64();
@@ -126,11 +127,11 @@ pub(super) struct Metered<'a, E> {
 }
 
 impl<E: Evaluate> Evaluate for Metered<'_, E> {
-    fn evaluate(&self, simulation: &Simulation<'_>) -> Result<Evaluated, String> {
+    fn evaluate(&self, simulation: &Simulation<'_>) -> Result<Evaluated, RowFailure> {
         self.meter.time(simulation.solver, simulation.rigour, || self.evaluate.evaluate(simulation))
     }
 
-    fn array<'a>(&'a self, simulation: Simulation<'a>, word: GapWord) -> Result<Box<dyn Array + 'a>, String> {
+    fn array<'a>(&'a self, simulation: Simulation<'a>, word: GapWord) -> Result<Box<dyn Array + 'a>, RowFailure> {
         let array = self.evaluate.array(simulation, word)?;
         Ok(Box::new(MeteredArray { array, meter: self.meter, solver: simulation.solver }))
     }
@@ -143,7 +144,7 @@ struct MeteredArray<'a> {
 }
 
 impl Array for MeteredArray<'_> {
-    fn evaluate(&self, gaps: &[f64], rigour: Rigour) -> Result<Evaluated, String> {
+    fn evaluate(&self, gaps: &[f64], rigour: Rigour) -> Result<Evaluated, RowFailure> {
         self.meter.time(self.solver, rigour, || self.array.evaluate(gaps, rigour))
     }
 }

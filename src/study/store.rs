@@ -14,11 +14,11 @@ use super::spent;
 use crate::atomic::{self, FileError};
 use crate::table::{ParquetError, parquet};
 
-/// Writes an experiment's table and then its record, which is what makes the table count. A table of another meaning that
-/// was there is put aside for the day when that meaning comes back.
+/// Writes an experiment's table and then its record, which is what makes the table count. An earlier
+/// table with another fingerprint is kept for the day when its inputs come back.
 ///
 /// # Errors
-/// [`ParquetError`] if one of them cannot be written; the record then still tells of the table before, or of none.
+/// [`ParquetError`] if one of them cannot be written; the record is then still that of the table before, or absent.
 pub fn save(layout: &Layout, item: &Item, finished: &Finished) -> Result<Record, ParquetError> {
     let id = &item.source.experiment.id;
     let path = layout.path(&table_name(id));
@@ -41,7 +41,7 @@ pub fn save(layout: &Layout, item: &Item, finished: &Finished) -> Result<Record,
     earlier::tidy(layout, id, &record.table);
     finished.spent.keep(layout, id);
     if finished.failures.rows == 0 {
-        // What it was kept for is done; one that cannot be removed is begun anew by the next optimisation.
+        // What it was kept for is done; one that cannot be removed is overwritten by the next optimisation.
         let _ = fs::remove_file(layout.path(&journal_name(id)));
     }
     Ok(record)
@@ -66,7 +66,7 @@ pub enum Held {
 #[derive(Debug, thiserror::Error)]
 pub enum LockError {
     /// Another run holds it, and this one was not to wait.
-    #[error("another run is at work here: {holder}")]
+    #[error("another run is working here: {holder}")]
     Held {
         /// Which, in words.
         holder: String,
@@ -77,7 +77,7 @@ pub enum LockError {
 }
 
 impl Lock {
-    /// The lock of the study. Removes what killed runs left behind. If another run holds it, `held` hears which.
+    /// The lock of the study. Removes what killed runs left behind. If another run holds it, `held` is called with its description.
     ///
     /// # Errors
     /// [`LockError`] if another run holds it and `held` gives up, or if the folder cannot be made or locked.
@@ -109,7 +109,7 @@ impl Lock {
         match file.try_lock() {
             Ok(()) => {}
             Err(TryLockError::WouldBlock) => {
-                // Whoever has only just taken it has not signed it yet.
+                // A process that has just taken the lock has not signed it yet.
                 let signed = fs::read_to_string(&path).ok().filter(|text| !text.is_empty());
                 let holder = signed.unwrap_or_else(|| "its process number is not known".into());
                 if held(&holder) == Held::GiveUp {
@@ -119,7 +119,7 @@ impl Lock {
             }
             Err(TryLockError::Error(source)) => return Err(fail(source)),
         }
-        // It tells others who is at work, and decides nothing: on a full disk it stays empty.
+        // For the information of other runs only: on a full disk it stays empty.
         let _ = file.set_len(0).and_then(|()| file.write_all(signature().as_bytes()));
         Ok(Self { file })
     }

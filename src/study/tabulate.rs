@@ -2,18 +2,20 @@
 
 use std::collections::BTreeMap;
 
+use super::doubt;
 use super::job::Job;
 use super::maximise::Place;
 use super::record::Failures;
+use super::row_failure::RowFailure;
 use super::variant::Variant;
 use crate::experiment::Experiment;
+use crate::experiment::{Parameter, ParameterValue};
 use crate::measure::{Evaluated, Measure, TraceColumn};
-use crate::scene::{Parameter, ParameterValue};
 use crate::table::{Column, Data, RowFingerprint, Table};
 use crate::text::words;
 
 /// What came of a row.
-pub(super) type Outcome = Result<Row, String>;
+pub(super) type Outcome = Result<Row, RowFailure>;
 
 /// A row that could be computed.
 #[derive(Debug, Clone, PartialEq)]
@@ -25,8 +27,8 @@ pub(super) struct Row {
 
 /// How many rows have no numbers, and why the first has none.
 pub(super) fn failures(outcomes: &[&Outcome]) -> Failures {
-    let reasons: Vec<&String> = outcomes.iter().filter_map(|outcome| outcome.as_ref().err()).collect();
-    Failures { rows: reasons.len(), first: reasons.first().copied().cloned().unwrap_or_default() }
+    let reasons: Vec<&RowFailure> = outcomes.iter().filter_map(|outcome| outcome.as_ref().err()).collect();
+    Failures { rows: reasons.len(), first: reasons.first().map(ToString::to_string).unwrap_or_default() }
 }
 
 /// The table of an experiment. `outcomes` and `fingerprints` stand in the order of `jobs`.
@@ -75,12 +77,19 @@ pub(super) fn table(
     }
     columns.push(Column::new("momentum_residual", floats(&|row| row.evaluated.proof.momentum_residual)));
     columns.push(Column::new("energy_residual", floats(&|row| row.evaluated.proof.energy_residual)));
+    let proofs = outcomes.iter().map(|outcome| outcome.as_ref().ok().map(|row| row.evaluated.proof));
+    columns.extend(doubt::residual_bounds(proofs));
     columns.push(Column::new("events", counts(&|row| row.evaluated.proof.events)));
     columns.push(Column::new("smallest_margin", floats(&|row| row.evaluated.proof.smallest_margin)).with_unit("m"));
     columns.push(Column::new("ties", counts(&|row| row.evaluated.proof.ties)));
     columns.push(Column::new("chaotic", counts(&|row| u64::from(row.evaluated.chaotic))));
     columns.push(Column::new("members", counts(&|row| u64::from(row.evaluated.members))));
-    columns.push(Column::new("failure", texts(&|row| outcomes[row].as_ref().err().cloned().unwrap_or_default())));
+    columns.push(Column::new(
+        "failure",
+        texts(&|row| outcomes[row].as_ref().err().map(ToString::to_string).unwrap_or_default()),
+    ));
+    let measured = outcomes.iter().map(|outcome| outcome.as_ref().ok().map(|row| row.evaluated.measured.as_slice()));
+    columns.extend(doubt::undefined(&experiment.measures, measured));
     columns.extend(histories(jobs, outcomes));
     Table { columns, metadata, fingerprints }
 }

@@ -2,12 +2,14 @@
 
 use std::collections::BTreeMap;
 
+use super::doubt;
 use super::record::Failures;
+use super::row_failure::RowFailure;
 use super::variant::Variant;
+use crate::experiment::GapWord;
 use crate::experiment::{Experiment, Goal, Optimise};
 use crate::measure::SolverChoice;
 use crate::measure::{Evaluated, Measured};
-use crate::scene::GapWord;
 use crate::table::{Column, Data, Table};
 use crate::text::words;
 
@@ -30,8 +32,8 @@ pub(super) struct Candidate {
     pub section: Vec<[f64; 2]>,
     /// Index of the variant.
     pub variant: usize,
-    /// What came of it; an empty reason: not evaluated yet, or a section.
-    pub outcome: Result<Evaluated, String>,
+    /// What came of it; not computed: not evaluated yet, or a section.
+    pub outcome: Result<Evaluated, RowFailure>,
 }
 
 impl Candidate {
@@ -47,12 +49,12 @@ impl Candidate {
             trail: Vec::new(),
             section: Vec::new(),
             variant: 0,
-            outcome: Err(String::new()),
+            outcome: Err(RowFailure::NotComputed),
         }
     }
 
     /// In the place of all that could not be searched for.
-    pub(super) fn failed(reason: String) -> Self {
+    pub(super) fn failed(reason: RowFailure) -> Self {
         Self { outcome: Err(reason), ..Self::named("", Vec::new()) }
     }
 
@@ -61,15 +63,19 @@ impl Candidate {
         self.outcome.as_ref().ok().and_then(|evaluated| evaluated.measured.get(index).copied()).unwrap_or(none)
     }
 
-    fn failure(&self) -> &str {
-        self.outcome.as_ref().err().map_or("", String::as_str)
+    /// Why it has no numbers; empty if it has, or needs none.
+    fn failure(&self) -> String {
+        match &self.outcome {
+            Ok(_) | Err(RowFailure::NotComputed) => String::new(),
+            Err(reason) => reason.to_string(),
+        }
     }
 }
 
 /// Rows without numbers that should have some.
 pub(super) fn failures(candidates: &[Candidate]) -> Failures {
-    let reasons: Vec<&str> = candidates.iter().map(Candidate::failure).filter(|reason| !reason.is_empty()).collect();
-    Failures { rows: reasons.len(), first: reasons.first().map_or_else(String::new, |first| (*first).into()) }
+    let reasons: Vec<String> = candidates.iter().map(Candidate::failure).filter(|reason| !reason.is_empty()).collect();
+    Failures { rows: reasons.len(), first: reasons.first().cloned().unwrap_or_default() }
 }
 
 /// The table.
@@ -108,7 +114,8 @@ pub(super) fn table(
     columns.extend(outcome(experiment, optimise, candidates));
     columns.push(texts("stopped", &|it| it.stopped.clone()));
     columns.extend(proof(candidates));
-    columns.push(texts("failure", &|it| it.failure().into()));
+    columns.extend(doubt::residual_bounds(candidates.iter().map(|it| it.outcome.as_ref().ok().map(|one| one.proof))));
+    columns.push(texts("failure", &|it| it.failure()));
     columns.extend(lists(optimise, candidates));
     Table { columns, metadata, ..Table::default() }
 }

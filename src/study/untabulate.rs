@@ -1,5 +1,6 @@
 //! A table back to rows: what `tabulate` wrote, read to the same bits.
 
+use super::doubt::RESIDUAL_BOUND;
 use super::maximise::Place;
 use super::tabulate::Row;
 use crate::dynamics::Proof;
@@ -16,6 +17,8 @@ pub(super) struct Cells<'a> {
     place: Option<[&'a [f64]; 2]>,
     momentum_residual: &'a [f64],
     energy_residual: &'a [f64],
+    /// There where some row does not balance.
+    residual_bound: Option<&'a [f64]>,
     smallest_margin: &'a [f64],
     events: &'a [i64],
     ties: &'a [i64],
@@ -57,6 +60,7 @@ impl<'a> Cells<'a> {
             },
             momentum_residual: floats("momentum_residual")?,
             energy_residual: floats("energy_residual")?,
+            residual_bound: floats(RESIDUAL_BOUND),
             smallest_margin: floats("smallest_margin")?,
             events: counts("events")?,
             ties: counts("ties")?,
@@ -80,6 +84,7 @@ impl<'a> Cells<'a> {
         let proof = Proof {
             momentum_residual: self.momentum_residual[row],
             energy_residual: self.energy_residual[row],
+            residual_bound: self.residual_bound.map_or(f64::NAN, |cells| cells[row]).min(f64::INFINITY),
             events: u64::try_from(self.events[row]).ok()?,
             smallest_margin: self.smallest_margin[row],
             ties: u64::try_from(self.ties[row]).ok()?,

@@ -2,8 +2,9 @@
 //!
 //! They say how much a published number depends on what the study leaves unstated (u_input of a comparison).
 
-use crate::experiment::{AssumptionSheet, Experiment};
-use crate::scene::{Assumption, Assumptions};
+use std::collections::BTreeSet;
+
+use crate::experiment::{AssumptionName, AssumptionSheet, Assumptions, Experiment, Moved};
 use crate::table::BASELINE;
 
 /// One set of assumptions under which an experiment runs.
@@ -12,7 +13,7 @@ pub struct Variant {
     /// As the table's `variant` column holds it: `baseline`, `stop_length=0.05`.
     pub label: String,
     /// The assumption that was moved; `None` for the baseline.
-    pub moved: Option<Assumption>,
+    pub moved: Option<AssumptionName>,
     /// All values in force.
     pub assumptions: Assumptions,
 }
@@ -26,22 +27,26 @@ pub enum Sensitivity {
     NotWanted,
 }
 
-/// The variants of an experiment, the baseline first.
+/// The variants of an experiment that uses these assumptions, the baseline first.
 #[must_use]
-pub fn variants(experiment: &Experiment, sheet: &AssumptionSheet, sensitivity: Sensitivity) -> Vec<Variant> {
-    let baseline = sheet.assumptions();
-    let mut variants = Vec::new();
+pub fn variants(
+    experiment: &Experiment,
+    used: &BTreeSet<AssumptionName>,
+    sheet: &AssumptionSheet,
+    sensitivity: Sensitivity,
+) -> Vec<Variant> {
+    let mut variants = vec![Variant { label: BASELINE.into(), moved: None, assumptions: sheet.assumptions() }];
     if sensitivity == Sensitivity::Wanted {
-        let mut used = experiment.assumptions_used(sheet);
+        let mut used = used.clone();
         if let Some(wanted) = &experiment.moved {
             used.retain(|name| wanted.contains(name));
         }
-        for (label, assumptions) in sheet.variants(&used) {
-            let moved = assumptions.values.iter().find(|(name, value)| baseline.values.get(name) != Some(value));
-            let moved = moved.map(|(name, _)| *name);
-            variants.push(Variant { label, moved, assumptions });
-        }
+        let moved = sheet.variants(&used).into_iter();
+        variants.extend(moved.map(|Moved { label, name, assumptions }| Variant {
+            label,
+            moved: Some(name),
+            assumptions,
+        }));
     }
-    variants.insert(0, Variant { label: BASELINE.into(), moved: None, assumptions: baseline });
     variants
 }

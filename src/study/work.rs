@@ -1,4 +1,4 @@
-//! An experiment while it runs: its rows, what came of them, and the table in the end.
+//! An experiment while it runs: its rows, their outcomes, and the table at the end.
 
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -8,17 +8,19 @@ use rayon::prelude::*;
 use super::evaluate::{Evaluate, Simulation, evaluate_guarded};
 use super::event::{Event, EventHandler};
 use super::job::{Job, evaluations, jobs, keeps_trace, measures_need_trace};
+use super::limited::Limited;
 use super::maximise::maximum;
 use super::mean::Averaging;
+use super::row_failure::RowFailure;
 use super::row_fingerprint::RowFingerprints;
 use super::run::{Finished, Task};
 use super::shard::{Shard, part};
 use super::spent::Spent;
 use super::tabulate::{self, Outcome, Row};
 use super::variant::Variant;
+use crate::experiment::Recipe;
 use crate::experiment::{Case, Experiment};
 use crate::measure::Rigour;
-use crate::scene::Recipe;
 use crate::table::RowFingerprint;
 use crate::text::words;
 
@@ -50,7 +52,7 @@ impl<'a> Work<'a> {
         self.jobs.iter().map(|job| evaluations(self.task.experiment, job)).sum()
     }
 
-    /// The rows that nobody has computed yet and that share no other's numbers.
+    /// The rows that have not been computed yet and do not share another's numbers.
     pub(super) fn rows_to_do(&self) -> Vec<usize> {
         (0..self.jobs.len())
             .filter(|&row| self.jobs[row].same_as.is_none() && self.outcomes[row].get().is_none())
@@ -64,7 +66,7 @@ impl<'a> Work<'a> {
     }
 
     pub(super) fn finish(&self) -> Finished {
-        let lost: Outcome = Err("the row was never computed".into());
+        let lost: Outcome = Err(RowFailure::NotComputed);
         let outcomes: Vec<&Outcome> = self
             .jobs
             .iter()
@@ -83,10 +85,10 @@ impl<'a> Work<'a> {
     /// What each row was computed from; of one that shares another's numbers, what that was.
     fn fingerprints(&self) -> Vec<RowFingerprint> {
         let Task { experiment, variants, .. } = self.task;
-        let meaning = RowFingerprints::new(experiment);
+        let fingerprints = RowFingerprints::new(experiment);
         let of = |job: &Job| {
             let job = job.same_as.map_or(job, |row| &self.jobs[row]);
-            meaning.of(&variants[job.variant], &experiment.cases[job.case], job)
+            fingerprints.of(&variants[job.variant], &experiment.cases[job.case], job)
         };
         self.jobs.par_iter().map(of).collect()
     }
@@ -114,13 +116,14 @@ pub(super) fn outcome(
             return Ok(row);
         }
     }
-    let description = AtomicUsize::new(0);
+    let simulated = AtomicUsize::new(0);
     let done = || {
-        description.fetch_add(1, Ordering::Relaxed);
+        simulated.fetch_add(1, Ordering::Relaxed);
         handler.on_event(&Event::Simulated { experiment: &experiment.id, count: 1 });
     };
-    let outcome = simulate(experiment, case, &task.variants[job.variant], job, evaluate, &done);
-    let rest = evaluations(experiment, job).saturating_sub(description.into_inner() as u64);
+    let limited = Limited::row(evaluate, task.limit);
+    let outcome = simulate(experiment, case, &task.variants[job.variant], job, &limited, &done);
+    let rest = evaluations(experiment, job).saturating_sub(simulated.into_inner() as u64);
     handler.on_event(&Event::Simulated { experiment: &experiment.id, count: rest });
     outcome
 }
@@ -160,7 +163,7 @@ fn simulate(
     done: &(impl Fn() + Sync),
 ) -> Outcome {
     let evaluate = &Averaging { experiment, evaluate };
-    let recipe = experiment.recipe_of(case).map_err(|error| error.to_string())?;
+    let recipe = experiment.recipe_of(case)?;
     let simulation = asked(experiment, &recipe, variant, job);
     let Some(maximise) = &experiment.maximise else {
         let evaluated = evaluate_guarded(evaluate, &simulation);
@@ -168,7 +171,7 @@ fn simulate(
         return Ok(Row { evaluated: evaluated?, place: None });
     };
     let measure = tabulate::maximised_index(experiment, maximise.measure)
-        .ok_or_else(|| format!("{} is to be maximised and not measured", words::of_key(&maximise.measure)))?;
+        .ok_or_else(|| RowFailure::NotMeasured(words::of_key(&maximise.measure)))?;
     // Histories of the points that are not the maximum are not wanted.
     let trace = simulation.trace.filter(|_| measures_need_trace(&experiment.measures));
     let shape = simulation.shape.filter(|_| needs_shape(experiment));
@@ -179,7 +182,7 @@ fn simulate(
     }
     // The row itself is a result: the maximum once more, with all that proves it.
     let mut at_maximum = recipe.clone();
-    at_maximum.set(maximise.over, crate::scene::ParameterValue::Number(place.at)).map_err(|error| error.to_string())?;
+    at_maximum.set(maximise.over, crate::experiment::ParameterValue::Number(place.at))?;
     let wanted = simulation.trace.filter(|_| keeps_trace(experiment, job) || trace.is_some());
     let evaluated = evaluate_guarded(evaluate, &Simulation { recipe: &at_maximum, trace: wanted, ..simulation })?;
     done();

@@ -122,6 +122,15 @@ impl Table {
         }
     }
 
+    /// True if the momentum or energy of this row does not balance to within rounding.
+    #[must_use]
+    pub fn is_unbalanced(&self, row: usize) -> bool {
+        match self.column(super::RESIDUAL_BOUND).map(|column| &column.data) {
+            Some(Data::Float(bounds)) => bounds.get(row).is_some_and(|bound| !bound.is_nan()),
+            _ => false,
+        }
+    }
+
     /// The time histories of a list column, one per row.
     #[must_use]
     pub fn lists(&self, name: &str) -> Option<&[Vec<f64>]> {

@@ -16,6 +16,12 @@ pub use parquet::ParquetError;
 /// The `variant` of a row computed with the assumptions as the file gives them.
 pub const BASELINE: &str = "baseline";
 
+/// The column of the bound that the residuals of a row exceed, NaN in rows that balance; there only if some row does not.
+pub const RESIDUAL_BOUND: &str = "residual_bound";
+
+/// The column that says which numbers of a row are undefined, and why; there only if some are.
+pub const UNDEFINED: &str = "undefined";
+
 /// A named column with its unit (empty for dimensionless and text).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Column {

@@ -21,9 +21,9 @@ use polars_arrow::io::ipc::write::{default_ipc_fields, schema_to_bytes};
 use serde::{Deserialize, Serialize};
 
 use super::{Column, Data, Table, TableError, fingerprint};
-use crate::atomic::{self, FileError};
+use crate::atomic::{self, FileError, from_here};
 
-/// Raised when the content of the `shotdamp` key changes its meaning.
+/// Raised when the content of the `shotdamp` key is to be read differently.
 const FORMAT: u32 = 1;
 const ABOUT_KEY: &str = "shotdamp";
 const SCHEMA_KEY: &str = "ARROW:schema";
@@ -92,7 +92,7 @@ impl<'a> Attributes<'a> {
 /// The Arrow schema, as readers built on Arrow look for it in the file's metadata: with unit and symbol in the metadata of
 /// each field. Such readers take the keys of the file from here too, and overlook those that stand beside it.
 fn arrow_schema(frame: &pl::DataFrame, table: &Table, keys: &[(String, String)]) -> String {
-    // The oldest types for text and lists: every reader knows them.
+    // The oldest types for text and lists: every reader supports them.
     let plain = pl::SchemaExt::to_arrow(&**frame.schema(), pl::CompatLevel::oldest());
     let fields = plain.iter_values().zip(&table.columns).map(|(field, column)| {
         let description = [("unit", &column.unit), ("symbol", &column.symbol)];
@@ -173,7 +173,7 @@ pub fn from_bytes(mut bytes: Vec<u8>, name: &str) -> Result<Table, ParquetError>
     }
     let frame = reader.set_rechunk(true).finish().map_err(wrong)?;
     if frame.width() != about.columns.len() {
-        return Err(damaged("its columns are not those it speaks of"));
+        return Err(damaged("its columns are not those that its metadata list"));
     }
     let columns = about
         .columns
@@ -205,7 +205,7 @@ pub fn write(table: &Table, path: &Path) -> Result<Vec<u8>, ParquetError> {
 /// [`ParquetError`] if the file is absent, damaged or not a table of this program.
 pub fn read(path: &Path) -> Result<Table, ParquetError> {
     let bytes = fs::read(path).map_err(|source| FileError::new("read", path, source))?;
-    from_bytes(bytes, &path.display().to_string())
+    from_bytes(bytes, &from_here(path))
 }
 
 /// Where the digits of the seal begin. The metadata stands at the end, behind all cells, so the last mark is the seal's.

@@ -2,4 +2,5 @@
 //! reports and on the console.
 
 pub mod number;
+pub mod utf8;
 pub mod words;

@@ -32,6 +32,19 @@ pub fn signed(value: f64, digits: usize) -> String {
     if value > 0.0 { format!("+{text}") } else { text }
 }
 
+/// A value and its uncertainty: two digits of the uncertainty, and the value stops where they stop, but keeps two of its own:
+/// `628` and `65`, `3.6` and `10`.
+#[must_use]
+pub fn with_uncertainty(value: f64, uncertainty: f64) -> (String, String) {
+    let size = |x: f64| libm::floor(libm::log10(x.abs()));
+    let digits = size(value) - (size(uncertainty) - 1.0) + 1.0;
+    // Zero, NaN and infinity have no place of a last digit; an exact value needs no more digits than any other.
+    let digits = if digits.is_finite() { digits.clamp(2.0, 7.0) } else { 2.0 };
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "from 2 to 7")]
+    let digits = digits as usize;
+    (significant(value, digits), significant(uncertainty, 2))
+}
+
 /// A number with its unit, the prefix chosen so that one to three digits stand before the point: `10 µs`, `60 mm`.
 /// Units that take no prefix (`N s/m`) are written as they are; an empty unit gives the bare number.
 #[must_use]

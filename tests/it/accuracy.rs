@@ -7,9 +7,8 @@ use shotdamp::accuracy::{
     Ablation, Accuracy, AccuracyView, Contender, Origin, Outcome, VerdictPrice, ablation, ablation_page, accuracy,
     accuracy_page, accuracy_summary,
 };
-use shotdamp::experiment::{Experiment, load_assumptions, parse_experiment};
+use shotdamp::experiment::{Assumptions, Experiment, load_assumptions, parse_experiment};
 use shotdamp::reference::{Price, Verdict};
-use shotdamp::scene::Assumptions;
 use shotdamp::study::Machine;
 
 fn assumptions() -> Assumptions {
@@ -84,6 +83,21 @@ fn beside_a_verdict_stands_what_it_cost_and_what_a_fixed_step_would_have() {
     assert!(line("fine").ends_with("| no step tried |"), "{page}");
     assert!(line("claim").contains("a claim") && line("claim").ends_with("|  |"), "{page}");
     assert_eq!(line("not-run"), "", "{page}");
+}
+
+#[test]
+fn a_run_that_diverged_has_no_error_worth_a_number() {
+    let mut accuracy = measured("floor: {resilient: {stiffness_ratio: 1, damping_ratio: 0.3}}", "[7]");
+    accuracy.cases[0].points[0].error = 5e78;
+    let view = AccuracyView {
+        id: "a-damper".into(),
+        title: "A damper".into(),
+        machine: Machine::here(),
+        accuracy,
+        entries: Vec::new(),
+    };
+    let page = accuracy_page(&view, "a-damper.png");
+    assert!(page.contains("diverged") && !page.contains("e78"), "{page}");
 }
 
 #[test]

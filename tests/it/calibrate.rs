@@ -4,13 +4,13 @@ use std::collections::BTreeSet;
 use std::sync::atomic::Ordering;
 
 use shotdamp::calibrate::{Calibrated, CalibrationError, calibrate};
-use shotdamp::experiment::{Calibration, Experiment, parse_calibration};
+use shotdamp::experiment::{AssumptionSheet, Calibration, Experiment, parse_assumptions, parse_calibration};
 use shotdamp::reference::{Found, Role, Verdict};
 use shotdamp::report::judge_all;
 use shotdamp::study::Study;
 use shotdamp::study::{IgnoreEvents, Layout, Texts};
 
-use crate::desk::{Desk, MadeUp, STOP_REFERENCE, simulated};
+use crate::desk::{ASSUMPTIONS, Desk, MadeUp, STOP_REFERENCE, simulated};
 
 const STOP: &str = "
 title: How long the stop is
@@ -22,8 +22,12 @@ fit: [ch3-stop/at-two]
 hold_out: [ch3-gap/*]
 ";
 
+fn sheet() -> AssumptionSheet {
+    parse_assumptions("assumptions.yaml", ASSUMPTIONS).unwrap_or_else(|problems| panic!("{problems}"))
+}
+
 fn read(text: &str) -> Calibration {
-    parse_calibration("it.yaml", text).unwrap_or_else(|problems| panic!("{problems}"))
+    parse_calibration("it.yaml", text, &sheet()).unwrap_or_else(|problems| panic!("{problems}"))
 }
 
 /// The result on this desk, and how many simulations it took.
@@ -150,7 +154,8 @@ fn an_input_may_be_a_factor_a_solver_or_a_reading_of_several_assumptions() {
 fn an_entry_that_is_none_and_an_input_that_is_none_are_told() {
     let unknown = on(&Desk::new(), &read(&STOP.replace("at-two", "at-three")), 1).unwrap_err();
     assert_eq!(unknown.to_string(), "`ch3-stop/at-three` is no entry of an experiment of this study");
-    let wrong = |from: &str, to: &str| parse_calibration("it.yaml", &STOP.replace(from, to)).unwrap_err().to_string();
+    let wrong =
+        |from: &str, to: &str| parse_calibration("it.yaml", &STOP.replace(from, to), &sheet()).unwrap_err().to_string();
     assert!(wrong("stop_length:", "stop_lenght:").contains("did you mean `stop_length`"));
     assert!(wrong("[10 mm, 55 mm, 110 mm]", "[10 kg]").contains("length"));
     assert!(wrong("[stop_restitution], values: [0, 0.5]", "[stop_length], values: [1 mm]").contains("two inputs"));

@@ -23,6 +23,7 @@ fn judged(id: &str, verdict: Verdict, expected: Verdict) -> Judged {
         parts: Vec::new(),
         fit: None,
         explanation: "Nobody\nknows.".into(),
+        blocked_by: Vec::new(),
         tolerance_reason: None,
         robust: None,
         moved: Vec::new(),
@@ -152,7 +153,7 @@ fn a_step_summary_says_what_it_cut() {
     let text = step_summary(&view(&judged, Vec::new()), SUMMARY_LIMIT);
     assert!(text.len() <= SUMMARY_LIMIT && text.len() > SUMMARY_LIMIT - 2048, "{}", text.len());
     let shown = text.matches("\n- **`").count();
-    let cut = format!("Cut, as a summary has its limit: {} entries that are not as expected.", 6000 - shown);
+    let cut = format!("Cut to the limit of a summary: {} entries that are not as expected.", 6000 - shown);
     assert!(text.contains(&cut), "{shown} shown: {}", &text[text.len() - 300..]);
     assert!(step_summary(&view(&judged, Vec::new()), 100).len() <= 100, "whatever is left");
 
@@ -312,9 +313,39 @@ fn committed_reports_are_those_that_would_be_generated() {
         description.err,
         "error: reports/ch3/ch3-gap.png: is not there\n\
          error: reports/ch3/ch3-lost.md: nothing writes it; remove it\n\
-         error: reports/ch3/ch3-stop.md:5: differs first in this line\n    \
+         error: reports/ch3/ch3-stop.md:38: differs first in this line\n    \
              committed  Polished.\n    generated  With and without.\n\
          error: reports/ch3/ch3-stop.png: differs from byte 1000 on\n"
     );
     assert_eq!(shotdamp(&Desk::new(), &["check", "--reports"]).code, 2, "without tables nothing can be said");
+}
+
+#[test]
+fn the_templates_for_a_ci_use_options_that_exist() {
+    let help = shotdamp(&simulated(), &["check", "--help"]).out;
+    for name in ["github.yml", "gitlab.yml"] {
+        let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("ci-templates").join(name);
+        let text = fs::read_to_string(path).unwrap();
+        assert!(text.contains("shotdamp run") && text.contains("shotdamp check"), "{name}");
+        let check = &text[text.find("shotdamp check").unwrap()..];
+        let options = check.lines().take(2).flat_map(str::split_whitespace).filter(|word| word.starts_with("--"));
+        let unknown: Vec<&str> = options.filter(|option| !help.contains(option)).collect();
+        assert!(unknown.is_empty(), "{name}: {unknown:?}");
+    }
+}
+
+#[test]
+fn the_summary_of_a_pull_request_starts_with_what_changed() {
+    use shotdamp::report::{PULL_REQUEST_LIMIT, pull_request, read_json};
+    let before = judged("ch3-a/x", Verdict::Reproduced, Verdict::Reproduced);
+    let committed = read_json(&json(&view(std::slice::from_ref(&before), Vec::new()))).unwrap();
+    let now = [judged("ch3-a/x", Verdict::Differs, Verdict::Reproduced)];
+    let text = pull_request(&view(&now, Vec::new()), &committed);
+    let (change, rest) = (text.find("`ch3-a/x`: reproduced → **differs**"), text.find("### Not as expected"));
+    assert!(change.is_some() && change < rest, "{text}");
+    let same = pull_request(&view(&[before], Vec::new()), &committed);
+    assert!(same.contains("No verdict and no number changed."), "{same}");
+    let many: Vec<Judged> =
+        (0..3000).map(|n| judged(&format!("ch3-a/{n}"), Verdict::Differs, Verdict::Reproduced)).collect();
+    assert!(pull_request(&view(&many, Vec::new()), &committed).len() <= PULL_REQUEST_LIMIT);
 }

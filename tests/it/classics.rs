@@ -5,9 +5,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use shotdamp::experiment::{ExperimentId, parse_experiment};
+use shotdamp::experiment::{Assumptions, ExperimentId, parse_experiment};
 use shotdamp::reference::{Check, Verdict, load_reference};
-use shotdamp::scene::Assumptions;
 
 fn study() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/classics")

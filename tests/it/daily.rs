@@ -177,7 +177,7 @@ fn what_a_deleted_experiment_left_is_removed() {
     );
     assert_eq!((names(&desk, "results"), names(&desk, "reports/ch3")), before);
     assert_eq!(shotdamp(&desk, &["clean", "--orphans"]).code, 0);
-    assert_eq!(names(&desk, "results"), ["ch3-stop.json", "ch3-stop.parquet", "earlier", "snapshot.json", "times"]);
+    assert_eq!(names(&desk, "results"), ["ch3-stop.json", "ch3-stop.parquet", "earlier", "snapshot.bin", "times"]);
     assert_eq!(
         (names(&desk, "results/earlier"), names(&desk, "results/times")),
         (vec!["ch3-stop".into()], vec!["ch3-stop.json".into()])

@@ -12,20 +12,24 @@ use shotdamp::measure::{Evaluated, Measured, TraceColumn};
 use shotdamp::scene::Excitation;
 use shotdamp::study::Study;
 use shotdamp::study::{
-    self, Evaluate, EventHandler, IgnoreEvents, Item, KnownRows, Layout, Reason, Simulation, Task, Texts,
+    self, Evaluate, EventHandler, IgnoreEvents, Item, KnownRows, Layout, Reason, RowFailure, Simulation, Task, Texts,
 };
 use shotdamp::table::{Table, parquet};
 
 pub const ASSUMPTIONS: &str = "
-gravity: {value: 9.81 m/s^2, reason: usual}
-impulse_factor: {value: 2, range: [1.8, 2.2], reason: half sine}
-impulse_frequency: {value: natural, reason: fixed}
-impulse_reference: {value: base, reason: plain}
-harmonic_reference: {value: base, reason: plain}
-undamped_mass: {value: base, reason: plain}
-contact_damping_ratio: {value: 0.15, reason: fits}
-stop_length: {value: 60 mm, range: [50 mm], reason: fits}
-stop_restitution: {value: 0, reason: plastic}
+gravity: {value: 9.81 m/s^2, reason: usual, quantity: acceleration}
+impulse_factor: {value: 2, range: [1.8, 2.2], reason: half sine, quantity: ratio}
+impulse_frequency: {value: natural, reason: fixed, readings: [forcing, natural]}
+impulse_reference: {value: base, reason: plain, readings: [base, loaded]}
+harmonic_reference: {value: base, reason: plain, readings: [base, loaded]}
+undamped_mass: {value: base, reason: plain, readings: [base, loaded]}
+contact_damping_ratio: {value: 0.15, reason: fits, quantity: ratio, readings: [equivalent_viscous]}
+stop_length: {value: 60 mm, range: [50 mm], reason: fits, quantity: length}
+stop_restitution: {value: 0, reason: plastic, quantity: ratio}
+defaults:
+  {gravity: gravity, undamped_mass: undamped_mass, impulse_factor: impulse_factor, impulse_frequency: impulse_frequency,
+   frequency_reference: impulse_reference, harmonic_reference: harmonic_reference, damping_ratio: contact_damping_ratio,
+   stop_length: stop_length, stop_restitution: stop_restitution}
 ";
 
 pub const STOP: &str = "
@@ -197,13 +201,13 @@ pub struct MadeUp {
 }
 
 impl Evaluate for MadeUp {
-    fn evaluate(&self, it: &Simulation<'_>) -> Result<Evaluated, String> {
+    fn evaluate(&self, it: &Simulation<'_>) -> Result<Evaluated, RowFailure> {
         self.simulations.fetch_add(1, Ordering::Relaxed);
-        let scene = it.recipe.resolve(it.assumptions).map_err(|error| error.to_string())?;
+        let scene = it.recipe.resolve(it.assumptions)?;
         let strength = match scene.excitation {
             Excitation::Harmonic { force, .. } => force.abs() / 9.81,
             Excitation::ImpulseTrain { impulse, .. } => impulse,
-            _ => return Err("not in this test".into()),
+            _ => return Err(RowFailure::Other("not in this test".into())),
         };
         let mass = scene.structure.model().total_mass();
         let damper = &scene.dampers[0];

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use shotdamp::measure::Evaluated;
 use shotdamp::report::{judge_all, publish};
 use shotdamp::study::Study;
-use shotdamp::study::{Evaluate, IgnoreEvents, KnownRows, Simulation};
+use shotdamp::study::{Evaluate, IgnoreEvents, KnownRows, RowFailure, Simulation};
 use shotdamp::table::parquet;
 
 use crate::desk::{ASSUMPTIONS, Desk, GAP, GAP_REFERENCE, MadeUp, STOP, STOP_REFERENCE, shotdamp};
@@ -198,8 +198,8 @@ fn a_damaged_earlier_table_is_simulated_anew() {
 fn rows_that_failed_are_tried_again_and_no_others() {
     struct Breaks(MadeUp);
     impl Evaluate for Breaks {
-        fn evaluate(&self, it: &Simulation<'_>) -> Result<Evaluated, String> {
-            it.recipe.dampers[0].stop.ok_or("too hard without a stop")?;
+        fn evaluate(&self, it: &Simulation<'_>) -> Result<Evaluated, RowFailure> {
+            it.recipe.dampers[0].stop.as_ref().ok_or(RowFailure::Other("too hard without a stop".into()))?;
             self.0.evaluate(it)
         }
     }
@@ -241,7 +241,14 @@ fn the_command_tells_what_is_to_do_and_how_long_it_will_take() {
     assert!(dry_now.contains("\n2 of 3 experiments would be simulated\n"), "{dry_now}");
     assert!(dry_now.ends_with(" on 2 threads\n"), "{dry_now}");
     assert!(shotdamp(&desk, &["status", "--why"]).out.contains("    4 of 12 rows to simulate\n"));
-    assert!(shotdamp(&desk, &["run"]).out.starts_with("3 experiments: 2 simulated; "));
+    let run = shotdamp(&desk, &["run"]);
+    assert!(run.out.starts_with("3 experiments: 2 simulated; "));
+    // Without a terminal each experiment that ends has a line.
+    let lines: Vec<&str> = run.err.lines().collect();
+    assert!(
+        lines.len() == 2 && lines[0].contains("; 1 experiment left, ") && lines[1].ends_with("; none left"),
+        "{lines:?}"
+    );
 
     desk.put(STOP_FILE, &short(STOP));
     desk.put("experiments/ch6/ch6-gap.yaml", &short(OPTIMISED));
@@ -254,7 +261,7 @@ fn the_command_tells_what_is_to_do_and_how_long_it_will_take() {
 
     let all = shotdamp(&desk, &["run", "--force", "--dry-run", "ch3-stop"]).out;
     assert!(all.contains("ch3-stop: 12 of 12 rows"), "{all}");
-    assert!(shotdamp(&desk, &["run", "--force", "ch3-stop"]).out.starts_with("1 experiments: 1 simulated; 0 figures"));
+    assert!(shotdamp(&desk, &["run", "--force", "ch3-stop"]).out.starts_with("1 experiment: 1 simulated; 0 figures"));
     let cleaned = shotdamp(&desk, &["clean", "--earlier"]).out;
     assert!(cleaned.ends_with("2 files removed\n") && earlier(&desk, "ch3-stop").is_empty(), "{cleaned}");
 }

@@ -73,5 +73,5 @@ fn what_is_not_up_to_date_or_in_the_way_is_told_and_nothing_is_written() {
     assert!(export().err.contains("is there already"));
     assert_eq!(desk.bytes("crate"), b"something");
     let wrong = shotdamp(&desk, &["export", "--ro-crate", "x", "--published", "29.2.2024"]);
-    assert!(wrong.code == 2 && wrong.err.contains("a date is written 2026-11-21"), "{}", wrong.err);
+    assert!(wrong.code == 2 && wrong.err.contains("write a date as 2026-11-21"), "{}", wrong.err);
 }

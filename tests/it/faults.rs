@@ -78,7 +78,7 @@ fn left(desk: &Desk) -> BTreeMap<String, Vec<u8>> {
     files
 }
 
-/// Tables that count, by id; each is whole, and the one its record speaks of.
+/// Tables that count, by id; each is whole, and the one in its record.
 fn counting(desk: &Desk) -> BTreeMap<String, Vec<u8>> {
     let mut counting = BTreeMap::new();
     for (id, item) in desk.plan() {
@@ -131,7 +131,8 @@ fn runs_killed_at_any_moment_resume_to_the_bytes_of_an_undisturbed_one() {
                 Some(_) => kills += 1,
                 None => finished += 1,
             }
-            let ended = Snapshot::current(&desk.layout, &desk.texts()).is_some();
+            let texts = desk.texts();
+            let ended = Snapshot::current(&desk.layout, &texts).is_complete(&texts);
             for (id, bytes) in counting(&desk) {
                 assert!(bytes == tables[&id], "{id} counts and is not what it should be");
             }
@@ -242,12 +243,12 @@ fn the_second_run_says_who_holds_the_lock_and_waits_or_gives_up() {
     for command in ["run", "gather"] {
         let said = shotdamp(&desk, &[command, "--no-wait"]);
         assert_eq!(said.code, 2);
-        assert!(said.err.starts_with(&format!("error: another run is at work here: {holder}")), "{}", said.err);
+        assert!(said.err.starts_with(&format!("error: another run is working here: {holder}")), "{}", said.err);
     }
     let mut waiting = spawn(&desk, &["run", "--quiet"]);
     let mut said = String::new();
     BufReader::new(waiting.stderr.take().unwrap()).read_line(&mut said).unwrap();
-    assert!(said.starts_with(&format!("waiting for another run here: {holder}")), "{said}");
+    assert!(said.starts_with(&format!("waiting for another run: {holder}")), "{said}");
     std::thread::sleep(Duration::from_millis(50));
     assert!(waiting.try_wait().unwrap().is_none(), "it waits");
     // A shard writes elsewhere and need not wait.

@@ -1,9 +1,8 @@
 //! Figures. Each test leaves its picture in `target/tmp`, to be looked at.
 
-use shotdamp::experiment::{AxisScale, Experiment, FigureSpec, Level, Maximise, Panel, PeakMarks};
+use shotdamp::experiment::{AxisScale, Experiment, FigureSpec, Level, Maximise, Panel, Parameter, PeakMarks};
 use shotdamp::figure::{FigureError, QuotedPoint, draw};
 use shotdamp::measure::Measure;
-use shotdamp::scene::Parameter;
 use shotdamp::table::{Column, Data, Table};
 
 use crate::made_up::{axis, figure, hump, limit_stop, limit_stop_table, log_range, numbers, panel, texts};

@@ -4,6 +4,7 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
+use shotdamp::measure::Measure;
 use shotdamp::report::RELEASED;
 use shotdamp::study::Study;
 use shotdamp::study::{IgnoreEvents, Layout, Texts};
@@ -113,6 +114,19 @@ fn every_column_of_every_experiment_is_explained() {
     for column in columns {
         assert!(text.contains(&format!("`{column}`")), "docs/tables.md does not explain `{column}`");
     }
+}
+
+#[test]
+fn the_table_of_measures_is_that_of_the_program() {
+    let mut expected = String::from("| Column | Unit | Meaning |\n| --- | --- | --- |\n");
+    for measure in Measure::ALL {
+        let facts = measure.facts();
+        let symbol = if facts.symbol.is_empty() { String::new() } else { format!(", {}", facts.symbol) };
+        expected += &format!("| `{}` | {} | {}{symbol} |\n", words::of_key(measure), facts.unit, facts.about)
+            .replace("|  |", "| |");
+    }
+    let text = document("docs/tables.md");
+    assert!(text.contains(&expected), "docs/tables.md should hold\n{expected}");
 }
 
 #[test]

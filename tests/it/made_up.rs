@@ -1,20 +1,23 @@
 //! An experiment and tables made by hand, for rooms that only read them.
 
-use shotdamp::experiment::{Axis, AxisScale, Case, Drawing, Experiment, ExperimentId, FigureSpec, Panel, Source};
-use shotdamp::measure::Measure;
-use shotdamp::measure::{Settings, SolverChoice};
-use shotdamp::scene::{
-    Assumption, ContactDampingRecipe, DamperRecipe, ExcitationKind, ExcitationRecipe, GapRecipe, Given, ImpulseTime,
-    MassReading, MassRecipe, ObserveRecipe, Parameter, PlaceRecipe, Recipe, StiffnessRecipe, StopRecipe,
-    StrengthRecipe, StructureRecipe, SurfaceRecipe, TimingRecipe,
+use shotdamp::dynamics::Limit;
+use shotdamp::experiment::{
+    Axis, AxisScale, Carried, Case, ContactDampingRecipe, DamperRecipe, Drawing, ExcitationKind, ExcitationRecipe,
+    Experiment, ExperimentId, FigureSpec, ForcingOrNatural, GapRecipe, Given, ImpulseTimeRecipe, MassReading,
+    MassRecipe, ObserveRecipe, Panel, Parameter, PlaceRecipe, PointsRecipe, Recipe, Reference, Source, StiffnessRecipe,
+    StopRecipe, StrengthRecipe, StructureRecipe, SurfaceRecipe, TimingRecipe,
 };
+use shotdamp::measure::{Comparison, Measure, Settings, SolverChoice};
+use shotdamp::scene::Take;
 use shotdamp::table::{Column, Data, Table};
 
 /// The limit stop of section 3.6.3, with one figure of its velocity ratio.
 pub fn limit_stop() -> Experiment {
     let floor = SurfaceRecipe::Resilient {
         stiffness: StiffnessRecipe::Ratio(Given::Stated(1.0)),
-        damping: ContactDampingRecipe::Ratio(Given::Assumed(Assumption::ContactDampingRatio)),
+        untuned_ratio: None,
+        damping_curve: None,
+        damping: ContactDampingRecipe::Ratio(Given::Assumed("contact_damping_ratio".into())),
         no_tension: false,
     };
     Experiment {
@@ -24,19 +27,23 @@ pub fn limit_stop() -> Experiment {
         about: "Velocity ratio against the forcing amplitude, with and without a stop.".into(),
         recipe: Recipe {
             structure: StructureRecipe::single_mass(1.0, 1000.0, 0.05),
-            gravity: Given::Assumed(Assumption::Gravity),
+            gravity: Given::Assumed("gravity".into()),
+            undamped_mass: Given::Stated(Carried::Base),
+            mass_measure: Given::Stated(Comparison::Jump),
             dampers: vec![DamperRecipe {
                 at: PlaceRecipe::default(),
                 array: None,
-                mass_reading: MassReading::Assumed,
-                particle_share: 1.0,
-                mass: MassRecipe::Ratio(0.05),
-                gap: GapRecipe::Ratio(50.0),
+                mass_reading: Given::Stated(MassReading::Total),
+                massless_ratio: None,
+                particle_share: Given::Stated(1.0),
+                mass: MassRecipe::Ratio(Given::Stated(0.05)),
+                gap: GapRecipe::Ratio(Given::Stated(50.0)),
+                gap_frequency: Given::Stated(Reference::Clean),
                 floor: floor.clone(),
                 ceiling: floor,
                 stop: Some(StopRecipe {
-                    length: Given::Assumed(Assumption::StopLength),
-                    restitution: Given::Assumed(Assumption::StopRestitution),
+                    length: Given::Assumed("stop_length".into()),
+                    restitution: Given::Assumed("stop_restitution".into()),
                 }),
                 walls: None,
             }],
@@ -44,18 +51,23 @@ pub fn limit_stop() -> Experiment {
             excitation: ExcitationRecipe {
                 kind: ExcitationKind::ImpulseTrain,
                 at: PlaceRecipe::default(),
-                strength: StrengthRecipe::ForceRatio(1.0),
-                timing: TimingRecipe::FrequencyRatio(1.0),
-                impulse_time: ImpulseTime::Assumed,
+                strength: StrengthRecipe::ForceRatio(Given::Stated(1.0)),
+                timing: TimingRecipe::FrequencyRatio(Given::Stated(1.0)),
+                frequency_reference: Given::Stated(Carried::Base),
+                impulse_time: ImpulseTimeRecipe::Factor {
+                    factor: Given::Assumed("impulse_factor".into()),
+                    frequency: Given::Stated(ForcingOrNatural::Forcing),
+                },
             },
             start: None,
-            observe: ObserveRecipe::default(),
+            observe: ObserveRecipe { points: PointsRecipe::Usual, take: Given::Stated(Take::Largest) },
             mode: None,
         },
         cases: vec![Case::default()],
         swept: vec![Parameter::ForceRatio, Parameter::Stop],
         solvers: vec![SolverChoice::EventDriven, SolverChoice::FixedStep { time_step: 1e-4 }],
         settings: Settings { skip: 25, average: 100, round_period_to: None, ensemble: 32 },
+        limit: Limit::default(),
         maximise: None,
         refined: Vec::new(),
         mean_over: Vec::new(),

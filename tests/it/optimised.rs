@@ -12,7 +12,7 @@ use shotdamp::measure::{Evaluated, Measure, Measured};
 use shotdamp::report::{judge_all, publish};
 use shotdamp::scene::Excitation;
 use shotdamp::study::Study;
-use shotdamp::study::{Array, Engine, Evaluate, Event, EventHandler, IgnoreEvents, Simulation};
+use shotdamp::study::{Array, Engine, Evaluate, Event, EventHandler, IgnoreEvents, RowFailure, Simulation};
 use shotdamp::table::Table;
 
 use crate::desk::Desk;
@@ -54,10 +54,12 @@ struct Bowl {
 }
 
 impl Evaluate for Bowl {
-    fn evaluate(&self, it: &Simulation<'_>) -> Result<Evaluated, String> {
+    fn evaluate(&self, it: &Simulation<'_>) -> Result<Evaluated, RowFailure> {
         self.evaluations.fetch_add(1, Ordering::Relaxed);
-        let scene = it.recipe.resolve(it.assumptions).map_err(|error| error.to_string())?;
-        let Excitation::Harmonic { force, .. } = scene.excitation else { return Err("not in this test".into()) };
+        let scene = it.recipe.resolve(it.assumptions)?;
+        let Excitation::Harmonic { force, .. } = scene.excitation else {
+            return Err(RowFailure::Other("not in this test".into()));
+        };
         let off = |(damper, best): (&shotdamp::scene::Damper, f64)| (damper.gap - best) * (damper.gap - best);
         let bowl: f64 = scene.dampers.iter().zip([0.010, 0.070, 0.030]).map(off).sum();
         let value = |measure: &Measure| match measure {
@@ -190,8 +192,8 @@ fn an_improvement_within_its_standard_error_is_called_noise() {
 fn a_search_that_cannot_begin_is_a_failed_row() {
     struct Broken;
     impl Evaluate for Broken {
-        fn evaluate(&self, _: &Simulation<'_>) -> Result<Evaluated, String> {
-            Err("made to fail".into())
+        fn evaluate(&self, _: &Simulation<'_>) -> Result<Evaluated, RowFailure> {
+            Err(RowFailure::Other("made to fail".into()))
         }
     }
     let desk = desk();
@@ -201,7 +203,7 @@ fn a_search_that_cannot_begin_is_a_failed_row() {
     assert_eq!(desk.run(2, &Bowl::default(), &IgnoreEvents), ["ch6-gaps"], "it is tried again");
 }
 
-fn sheet() -> shotdamp::scene::Assumptions {
+fn sheet() -> shotdamp::experiment::Assumptions {
     let sheet = Path::new(env!("CARGO_MANIFEST_DIR")).join("experiments/assumptions.yaml");
     load_assumptions(&sheet).unwrap_or_else(|problems| panic!("{problems}")).assumptions()
 }
@@ -329,7 +331,7 @@ fn a_scene_that_is_prepared_once_gives_the_bits_of_one_that_is_built_for_its_gap
             rigour: shotdamp::measure::Rigour::Result,
         };
         let built = Engine.evaluate(&simulation).unwrap();
-        let ready: Box<dyn Array + '_> = Engine.array(simulation, shotdamp::scene::GapWord::Gap).unwrap();
+        let ready: Box<dyn Array + '_> = Engine.array(simulation, shotdamp::experiment::GapWord::Gap).unwrap();
         assert_eq!(ready.evaluate(&[0.0083, 0.0568, 0.003, 0.0188], simulation.rigour).unwrap(), built);
         let other = ready.evaluate(&[0.0419; 4], simulation.rigour).unwrap();
         assert_ne!(other.measured, built.measured);

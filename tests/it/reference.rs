@@ -99,7 +99,7 @@ fn verdict(body: &str, table: &Table) -> Verdict {
 
 fn broken(body: &str, table: &Table) -> Vec<String> {
     let tables = Tables::from([(EXPERIMENT.to_string(), TableState::Present(table))]);
-    self_test(&entry(body), &tables).into_iter().map(|failure| failure.reason).collect()
+    self_test(&entry(body), &tables).into_iter().map(|failure| failure.reason.to_string()).collect()
 }
 
 const CELL: &str = "value: \"1.52\"\nfrom: {cell: {of: velocity_ratio}}";
@@ -484,7 +484,10 @@ fn the_self_test_finds_an_entry_that_cannot_fail() {
 
 #[test]
 fn an_unsound_reference_file_is_refused_with_every_mistake_and_its_line() {
-    let mistakes = |text: &str| parse_reference(EXPERIMENT, text).unwrap_err();
+    let mistakes = |text: &str| {
+        let problems = parse_reference(EXPERIMENT, text).unwrap_err();
+        problems.iter().map(ToString::to_string).collect::<Vec<_>>()
+    };
     let unknown = mistakes("entries:\n  - id: a\n    plase: s. 1\n");
     assert!(unknown[0].starts_with("line 3, column") && unknown[0].contains("place"), "{unknown:?}");
 

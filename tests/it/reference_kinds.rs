@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use shotdamp::reference::{
-    FitMeasure, Judged, ReferenceFile, TableState, Tables, Verdict, judge, parse_reference, self_test,
+    FitMeasure, Judged, ReferenceFile, ReferenceProblem, TableState, Tables, Verdict, judge, parse_reference, self_test,
 };
 use shotdamp::table::{Column, Data, Table};
 
@@ -11,7 +11,7 @@ use crate::made_up::{numbers, texts};
 
 const EXPERIMENT: &str = "ch4-example";
 
-fn entry(body: &str) -> Result<ReferenceFile, Vec<String>> {
+fn entry(body: &str) -> Result<ReferenceFile, Vec<ReferenceProblem>> {
     let indented: String = body.trim().lines().map(|line| format!("    {}\n", line.trim())).collect();
     parse_reference(EXPERIMENT, &format!("entries:\n  - id: it\n    place: s. 1\n    says: Something.\n{indented}"))
 }
@@ -32,11 +32,11 @@ fn verdict(body: &str, table: &Table) -> Verdict {
 fn cannot_fail(body: &str, table: &Table) -> Vec<String> {
     let file = entry(body).unwrap_or_else(|problems| panic!("{problems:?}"));
     let tables = Tables::from([(EXPERIMENT.to_string(), TableState::Present(table))]);
-    self_test(&file, &tables).into_iter().map(|failure| failure.reason).collect()
+    self_test(&file, &tables).into_iter().map(|failure| failure.reason.to_string()).collect()
 }
 
 fn refused(body: &str) -> String {
-    entry(body).expect_err(body).join("\n")
+    entry(body).expect_err(body).iter().map(ToString::to_string).collect::<Vec<_>>().join("\n")
 }
 
 /// The columns that every table has, with the errors of the measures.
@@ -426,7 +426,7 @@ fn one_line_lies_above_another_at_every_point_or_it_does_not() {
     assert_eq!(verdict(claim, &fillings(0.1, 0.2)), Verdict::Undecidable);
     assert_eq!(verdict(claim, &fillings(0.0, 1e-6)), Verdict::Undecidable);
     assert_eq!(cannot_fail(claim, &fillings(0.1, 1e-6)), [""; 0]);
-    assert!(judged(claim, &fillings(0.1, 1e-6)).found.contains("least lead 0.1 at angular_frequency = 40"));
+    assert!(judged(claim, &fillings(0.1, 1e-6)).found.contains("smallest lead 0.1 at ω = 40"));
     let nobody = claim.replace("above: optimised", "above: uniform");
     assert!(refused(&nobody).contains("not above itself"));
 }

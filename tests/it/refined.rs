@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use shotdamp::dynamics::Proof;
 use shotdamp::measure::{Evaluated, Measured};
 use shotdamp::scene::Excitation;
-use shotdamp::study::{Evaluate, Event, EventHandler, IgnoreEvents, Simulation};
+use shotdamp::study::{Evaluate, Event, EventHandler, IgnoreEvents, RowFailure, Simulation};
 use shotdamp::table::Table;
 
 use crate::desk::Desk;
@@ -28,10 +28,10 @@ figure: {x: frequency_ratio, y: rms_velocity, by: gap_ratio, caption: Two curves
 struct Curve(fn(f64, f64) -> (f64, f64, bool));
 
 impl Evaluate for Curve {
-    fn evaluate(&self, it: &Simulation<'_>) -> Result<Evaluated, String> {
-        let scene = it.recipe.resolve(it.assumptions).map_err(|error| error.to_string())?;
+    fn evaluate(&self, it: &Simulation<'_>) -> Result<Evaluated, RowFailure> {
+        let scene = it.recipe.resolve(it.assumptions)?;
         let Excitation::Harmonic { angular_frequency, .. } = scene.excitation else {
-            return Err("not in this test".into());
+            return Err(RowFailure::Other("not in this test".into()));
         };
         let (value, spread, chaotic) = (self.0)(angular_frequency / 1000_f64.sqrt(), scene.dampers[0].gap);
         Ok(Evaluated {

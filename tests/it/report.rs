@@ -2,14 +2,16 @@
 //!
 //! After a wanted change, `GOLDEN=write cargo test` writes the files anew.
 
+use shotdamp::experiment::AssumptionValue;
 use shotdamp::reference::{Comparison, Judged, Price, Role, Verdict};
 use shotdamp::report::{
-    AccuracyLinks, AssumptionView, ExperimentView, FigureView, PageView, index, page, summary, value_in_words,
+    AccuracyLinks, AssumptionView, ExperimentView, FigureView, PageView, assumptions as assumptions_page, index,
+    overview_svg, page, strip_svg, summary, tolerances, value_in_words,
 };
-use shotdamp::scene::{Assumption, AssumptionValue, EffectUse};
-use shotdamp::study::Machine;
+use shotdamp::scene::EffectUse;
+use shotdamp::study::{Heading, Machine};
 use shotdamp::table::Table;
-use shotdamp::text::number::{compact, quantity, signed, significant};
+use shotdamp::text::number::{compact, quantity, signed, significant, with_uncertainty};
 use shotdamp::text::words;
 
 use crate::made_up::{limit_stop, limit_stop_table};
@@ -36,6 +38,7 @@ fn entry(id: &str, verdict: Verdict) -> Judged {
         parts: Vec::new(),
         fit: None,
         explanation: String::new(),
+        blocked_by: Vec::new(),
         tolerance_reason: None,
         robust: Some((5, 6)),
         moved: Vec::new(),
@@ -94,14 +97,14 @@ fn assumptions() -> Vec<AssumptionView> {
     vec![
         AssumptionView {
             name: "stop_length".into(),
-            value: value_in_words(Assumption::StopLength, &AssumptionValue::Number(0.06)),
+            value: value_in_words("m", &AssumptionValue::Number(0.06)),
             reason: "With 60 mm the curves part\nwhere the text says.".into(),
             used_by: vec!["ch3-limit-stop/parting".into(), "ch3-limit-stop/limit".into(), "ch3-gap/order".into()],
             fitted_to: vec!["ch3-limit-stop/parting".into()],
         },
         AssumptionView {
             name: "gravity".into(),
-            value: value_in_words(Assumption::Gravity, &AssumptionValue::Number(9.81)),
+            value: value_in_words("m/s²", &AssumptionValue::Number(9.81)),
             reason: "The usual rounding.".into(),
             used_by: Vec::new(),
             fitted_to: Vec::new(),
@@ -117,9 +120,9 @@ fn effects() -> Vec<EffectUse> {
     ]
 }
 
-fn figures(folder: &str) -> Vec<FigureView> {
+fn figures() -> Vec<FigureView> {
     vec![FigureView {
-        link: format!("{folder}ch3-limit-stop.png"),
+        link: "ch3-limit-stop.png".into(),
         caption: "Velocity ratio ψ against f′, with and without stop.".into(),
     }]
 }
@@ -131,13 +134,10 @@ fn page_of(table: Option<&Table>, judged: &[Judged]) -> String {
         judged,
         assumptions: &assumptions(),
         effects: &effects(),
-        figures: &figures(""),
-        table_link: "../../results/ch3-limit-stop.parquet",
-        accuracy: Some(AccuracyLinks {
-            page: "../accuracy/ch3-limit-stop.md".into(),
-            picture: Some("../accuracy/ch3-limit-stop.png".into()),
-        }),
-        index_link: "../README.md",
+        figures: &figures(),
+        table_name: "results/ch3-limit-stop.parquet",
+        accuracy: Some(AccuracyLinks { page: "../accuracy/ch3-limit-stop.md".into() }),
+        to_reports: "../",
     })
 }
 
@@ -151,11 +151,10 @@ fn the_index_tells_the_whole_study_at_a_glance() {
     let experiment = limit_stop();
     let judged = judged();
     let view = ExperimentView {
-        experiment: &experiment,
+        experiment: Heading::of(&experiment),
         judged: &judged,
         seconds: Some(12.3),
         page: "ch3/ch3-limit-stop.md".into(),
-        figures: figures("ch3/"),
     };
     let machine = Machine {
         processor: "a processor".into(),
@@ -163,7 +162,15 @@ fn the_index_tells_the_whole_study_at_a_glance() {
         system: "linux, x86_64".into(),
         build: "release build".into(),
     };
-    golden("index.md", &index(&[view], &assumptions(), &[("Speed", "speed.md")], Some(&machine)));
+    golden("strip.svg", &strip_svg(std::slice::from_ref(&view)));
+    golden("overview.svg", &overview_svg(std::slice::from_ref(&view)));
+    golden("tolerances.md", &tolerances(std::slice::from_ref(&view)));
+    golden("index.md", &index(std::slice::from_ref(&view), &[("Speed", "speed.md")], Some(&machine)));
+}
+
+#[test]
+fn assumptions_have_a_page_of_their_own() {
+    golden("assumptions.md", &assumptions_page(&assumptions()));
 }
 
 #[test]
@@ -182,7 +189,7 @@ fn missing_is_never_as_expected() {
     let missing = [Judged { found: "the table is stale".into(), ..entry("peak", Verdict::Missing) }];
     assert!(summary(&[("ch3-limit-stop", &missing)]).contains("1 not as expected"));
     let text = page_of(None, &missing);
-    assert!(text.contains("**missing**") && text.contains("has not been run"), "{text}");
+    assert!(text.contains("**? missing**") && text.contains("has not been run"), "{text}");
     assert!(text.contains("the table is stale"), "{text}");
 }
 
@@ -199,21 +206,51 @@ fn a_failed_run_is_told_with_its_reason() {
 }
 
 #[test]
-fn an_explanation_is_told_by_its_first_sentence_in_the_index() {
-    let experiment = limit_stop();
+fn a_page_gives_the_first_sentence_of_the_reason_before_all_else() {
     let one = [Judged {
         explanation: "Only Fig. 18 and s. 3.6 say so. The rest is lost.".into(),
         ..entry("limit", Verdict::Blocked)
     }];
-    let view = ExperimentView {
-        experiment: &experiment,
-        judged: &one,
-        seconds: None,
-        page: String::new(),
-        figures: Vec::new(),
+    let text = page_of(None, &one);
+    assert!(text.contains("- Why: Only Fig. 18 and s. 3.6 say so.\n"), "{text}");
+    assert!(text.find("- Why:") < text.find("!["), "before the figure: {text}");
+}
+
+#[test]
+fn the_rule_of_agreement_is_said_once_and_is_the_one_that_judges() {
+    let judged = judged();
+    let experiment = limit_stop();
+    let view =
+        ExperimentView { experiment: Heading::of(&experiment), judged: &judged, seconds: None, page: String::new() };
+    let index = index(&[view], &[], None);
+    assert!(index.contains("The two agree if |E| ≤ 2 u_val. **± is 2 u_val**"), "{index}");
+    let at = |deviation: f64| {
+        let comparison = judged[3].comparison.unwrap();
+        comparison.verdict_of(comparison.published + deviation * comparison.u_val())
     };
-    let text = index(&[view], &[], &[], None);
-    assert!(text.contains("Only Fig. 18 and s. 3.6 say so.\n"), "{text}");
+    assert_eq!((at(1.9), at(2.1)), (Verdict::Reproduced, Verdict::Differs));
+}
+
+#[test]
+fn a_tolerance_by_hand_stands_beside_the_verdict() {
+    let row = page_of(None, &judged()).lines().find(|line| line.contains("entry-parting")).unwrap().to_owned();
+    assert!(row.contains("tolerance set by hand: ±0.3"), "{row}");
+}
+
+#[test]
+fn the_headline_separates_numbers_from_claims() {
+    let (experiment, judged) = (limit_stop(), judged());
+    let view =
+        ExperimentView { experiment: Heading::of(&experiment), judged: &judged, seconds: None, page: String::new() };
+    let text = index(&[view], &[], None);
+    let counts = "**2 numbers**: 1 fitted, 1 differs. **2 claims**: 1 reproduced, 1 differs. **Held out** of all fits: 0 of 1 agree.";
+    assert!(text.contains(counts), "{text}");
+}
+
+#[test]
+fn no_page_links_to_a_file_that_is_not_committed() {
+    let text = page_of(Some(&limit_stop_table()), &judged());
+    assert!(!text.contains(".parquet)") && text.contains("`shotdamp run ch3-limit-stop` writes `results/"), "{text}");
 }
 
 #[test]
@@ -242,6 +279,21 @@ fn numbers_keep_their_significant_digits() {
 }
 
 #[test]
+fn a_value_stops_where_its_uncertainty_stops() {
+    for (value, uncertainty, texts) in [
+        (628.45, 65.2, ("628", "65")),
+        (3.6332, 10.0, ("3.6", "10")),
+        (52.327_1, 0.010_1, ("52.327", "0.010")),
+        (1.538_99, 0.78, ("1.54", "0.78")),
+        (0.569_68, 0.44, ("0.57", "0.44")),
+        (-0.5, 1e-14, ("−0.5000000", "1.0e-14")),
+    ] {
+        let (value, uncertainty) = with_uncertainty(value, uncertainty);
+        assert_eq!((value.as_str(), uncertainty.as_str()), texts);
+    }
+}
+
+#[test]
 fn units_take_the_prefix_an_engineer_would_write() {
     assert_eq!(quantity(0.06, "m", 3), "60 mm");
     assert_eq!(quantity(1e-3, "s", 3), "1 ms");
@@ -256,6 +308,6 @@ fn units_take_the_prefix_an_engineer_would_write() {
 #[test]
 fn an_assumed_curve_is_told_by_its_ends() {
     let curve = AssumptionValue::Curve(vec![[0.7, 1.0], [3.0, 4.0], [7.6, 2.0]]);
-    let description = value_in_words(Assumption::EquivalentDampingCurve, &curve);
+    let description = value_in_words("N s/m", &curve);
     assert_eq!(description, "a curve through 3 points, 1 N s/m at 0.7 g to 2 N s/m at 7.6 g");
 }

@@ -4,13 +4,13 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use shotdamp::experiment::{
-    AssumptionSheet, Dimension, Experiment, ExperimentId, Problems, load_assumptions, load_experiment,
-    parse_assumptions, parse_experiment, parse_number, parse_quantity,
+    AssumptionName, AssumptionSheet, AssumptionValue, Assumptions, Dimension, Experiment, ExperimentId, GapRecipe,
+    Given, Parameter, ParameterValue, Problems, load_assumptions, load_experiment, parse_assumptions, parse_experiment,
+    parse_number, parse_quantity,
 };
-use shotdamp::measure::SolverChoice;
-use shotdamp::scene::{
-    Assumption, AssumptionValue, Assumptions, Excitation, GapRecipe, Parameter, ParameterValue, Surface,
-};
+use shotdamp::measure::{Measure, SolverChoice};
+use shotdamp::scene::{Excitation, Surface};
+use shotdamp::text::words;
 
 const GOOD: &str = "\
 title: Limit stop
@@ -82,18 +82,18 @@ pub(crate) fn an_experiment_says_what_its_file_says() {
     assert_eq!(experiment.cases.len(), 122);
     assert_eq!(experiment.cases[41].get(Parameter::ForceRatio), Some(ParameterValue::Number(1.0)), "decades are exact");
     assert_eq!(experiment.cases[41].get(Parameter::Stop), Some(ParameterValue::Without));
-    assert_eq!(experiment.recipe.dampers[0].gap, GapRecipe::Gap(0.4905));
+    assert_eq!(experiment.recipe.dampers[0].gap, GapRecipe::Gap(Given::Stated(0.4905)));
     assert_eq!(experiment.settings.round_period_to, Some(0.001));
     let used = [
-        Assumption::Gravity,
-        Assumption::ImpulseFactor,
-        Assumption::ImpulseFrequency,
-        Assumption::ContactDampingRatio,
-        Assumption::StopRestitution,
-        Assumption::UndampedMass,
-        Assumption::ImpulseReference,
+        "gravity",
+        "impulse_factor",
+        "impulse_frequency",
+        "contact_damping_ratio",
+        "stop_restitution",
+        "undamped_mass",
+        "impulse_reference",
     ];
-    assert_eq!(experiment.assumptions_used(&sheet()), BTreeSet::from(used));
+    assert_eq!(experiment.assumptions_used(&sheet()), BTreeSet::from(used.map(AssumptionName::from)));
 }
 
 #[test]
@@ -360,8 +360,8 @@ pub(crate) fn yaml_from_strangers_is_refused_before_anything_grows() {
             "not an id.yaml",
             "`not an id` is not an id: lower-case letters, digits and hyphens, such as `ch3-limit-stop` | rename the file",
         ),
-        ("long.yaml", "is longer than 1024 KiB"),
-        ("binary.yaml", "is not UTF-8 text (line 1) | save it as UTF-8"),
+        ("long.yaml", "has 2048 KiB, and 1024 KiB are the most that is read"),
+        ("binary.yaml", "is not UTF-8 text: line 1, column 8 holds the byte 0xff; save the file as UTF-8"),
     ] {
         assert_eq!(describe(&load_experiment(&place(name), &assumptions()).expect_err(name)), [expected]);
     }
@@ -457,31 +457,109 @@ pub(crate) fn sweeps_are_products_pairs_points_and_unions() {
 }
 
 #[test]
+pub(crate) fn what_is_read_off_a_time_history_or_a_shape_is_refused_without_one() {
+    for measure in Measure::ALL.iter().filter(|measure| measure.needs_trace()) {
+        let name = words::of_key(measure);
+        let problem = only_problem(&with("ceiling_impacts]", &format!("{name}]")));
+        assert!(problem.starts_with(&format!("16:27 `{name}` is read off a time history")), "{problem}");
+    }
+    let problem = only_problem(&with("ceiling_impacts]", "mac]"));
+    assert!(problem.starts_with("16:27 `mac` is read off a shape"), "{problem}");
+    let problem = only_problem(&with("ceiling_impacts]", "displacement_per_force]"));
+    assert_eq!(problem, "16:27 `displacement_per_force` is measured under a harmonic force, not under this excitation");
+}
+
+#[test]
 pub(crate) fn each_assumption_has_a_reason_and_moves_alone() {
     let sheet = load_assumptions(&folder().join("assumptions.yaml")).unwrap_or_else(|problems| panic!("{problems}"));
-    for (name, entry) in &sheet.entries {
+    for (name, entry) in sheet.iter() {
         assert!(entry.reason.len() > 20, "{name:?}");
     }
-    let variants = sheet.variants(&BTreeSet::from([Assumption::StopLength, Assumption::UndampedMass]));
-    let labels: Vec<_> = variants.iter().map(|(label, _)| label.as_str()).collect();
+    let variants = sheet.variants(&BTreeSet::from(["stop_length", "undamped_mass"].map(AssumptionName::from)));
+    let labels: Vec<_> = variants.iter().map(|moved| moved.label.as_str()).collect();
     assert_eq!(labels, ["stop_length=0.045", "stop_length=0.054", "undamped_mass=base"]);
     let baseline = sheet.assumptions();
-    for (_, moved) in &variants {
-        let differing = baseline.values.iter().filter(|(name, value)| moved.values[*name] != **value).count();
-        assert_eq!((differing, moved.values.len()), (1, baseline.values.len()));
+    for moved in &variants {
+        let values = &moved.assumptions.values;
+        let differing = baseline.values.iter().filter(|(name, value)| values[*name] != **value).count();
+        assert_eq!((differing, values.len()), (1, baseline.values.len()));
     }
-    assert_eq!(variants[0].1.values[&Assumption::StopLength], AssumptionValue::Number(0.045));
+    assert_eq!(variants[0].assumptions.values[&AssumptionName::from("stop_length")], AssumptionValue::Number(0.045));
+}
 
-    let text = "stop_length: {value: 5 s, reason: none}\nundamped_mass: {value: heavy, reason: none}\nstop_lenght: {value: 1 mm}\n";
-    let problems = parse_assumptions("assumptions.yaml", text).expect_err("three mistakes");
+#[test]
+pub(crate) fn an_assumption_is_declared_with_its_kind_and_stands_only_where_that_fits() {
+    let text = "\
+stop: {quantity: length, value: 5 s, reason: none}
+mass: {readings: [base, loaded], value: heavy, reason: none}
+share: {value: 1, reason: none}
+gap: {quantity: lenght, value: 1 mm, reason: none}
+";
+    let problems = parse_assumptions("assumptions.yaml", text).expect_err("mistakes");
     assert_eq!(
         describe(&problems),
         [
-            "1:22 `5 s` is not a length | write for example 5 mm",
-            "2:24 this assumption has no reading `heavy` | known are `base`, `loaded`",
-            "3:1 `stop_lenght` is not an assumption | did you mean `stop_length`?",
+            "1:33 `5 s` is not a length | write for example 5 mm",
+            "2:41 this assumption has no reading `heavy` | known are `base`, `loaded`",
+            "3:1 this assumption has no kind | add `quantity: length`, `quantity: ratio`, …, or `readings: [one, other]`",
+            "4:17 `lenght` is not a kind of quantity | did you mean `length`?",
         ]
     );
+    let text = "\
+stop: {quantity: length, value: 5 mm, reason: none}
+defaults: {gravty: stop, stop_restitution: sotp, stop_length: {single_mas: stop}, take: stop}
+";
+    let problems = parse_assumptions("assumptions.yaml", text).expect_err("mistakes");
+    assert_eq!(
+        describe(&problems),
+        [
+            "2:12 `gravty` is not a slot of a scene | did you mean `gravity`?",
+            "2:44 `sotp` is not an assumption | did you mean `stop`?",
+            "2:64 `single_mas` is not a structure | did you mean `single_mass`?",
+            "2:89 `take` takes one of largest, mean, but the assumption `stop` (line 1 of the assumptions file) is a length",
+        ]
+    );
+
+    let sheet = parse_assumptions(
+        "assumptions.yaml",
+        "\
+# The first line says nothing.
+length: {quantity: length, value: 60 mm, range: [50 mm], reason: none}
+zeta: {quantity: ratio, readings: [equivalent_viscous], value: 0.1, reason: none}
+",
+    )
+    .unwrap_or_else(|problems| panic!("{problems}"));
+    let read = |text: &str| parse_experiment(&"ch3-test".parse().unwrap(), "ch3-test.yaml", text, &sheet.assumptions());
+    let stated = with("damping_ratio: assumed", "damping_ratio: {assumed: zeta}").replace("60 mm", "{assumed: length}");
+    let experiment = read(&stated).unwrap_or_else(|problems| panic!("{problems}"));
+    let used = experiment.assumptions_used(&sheet);
+    assert_eq!(used, BTreeSet::from(["length", "zeta"].map(AssumptionName::from)), "whatever they are called");
+
+    let one = |text: &str| describe(&read(text).expect_err("a mistake")).remove(0);
+    assert_eq!(
+        one(&stated.replace("assumed: length", "assumed: lenght")),
+        "10:32 `lenght` is not an assumption | did you mean `length`?"
+    );
+    assert_eq!(
+        one(&stated.replace("assumed: length", "assumed: zeta")),
+        "10:32 `stop_length` takes a length, but the assumption `zeta` (line 3 of the assumptions file) is a dimensionless \
+         number or one of equivalent_viscous"
+    );
+    assert_eq!(
+        one(&GOOD.replace("60 mm", "{assumed: length}")),
+        "9:62 no assumption stands for `damping_ratio` on a single mass | write `{assumed: NAME}`, or declare one under \
+         `defaults: damping_ratio` of the assumptions"
+    );
+    // A study without assumptions has the general values: standard gravity, J = f′ m g/ω, the run without damper clean.
+    let bare = with("damping_ratio: assumed", "damping_ratio: 0.15");
+    let experiment = parse_experiment(&"a".parse().unwrap(), "a.yaml", &bare, &Assumptions::default())
+        .unwrap_or_else(|problems| panic!("{problems}"));
+    assert!(experiment.assumptions_used(&AssumptionSheet::default()).is_empty());
+    let recipe = experiment.recipe_of(&experiment.cases[41]).unwrap();
+    let scene = recipe.resolve(&Assumptions::default()).unwrap();
+    assert_eq!(scene.gravity, 9.80665);
+    let Excitation::ImpulseTrain { impulse, .. } = scene.excitation else { panic!("{scene:?}") };
+    assert!((impulse - 9.80665 / 1000_f64.sqrt()).abs() < 1e-15, "{impulse}");
 }
 
 #[test]
@@ -493,8 +571,8 @@ pub(crate) fn every_shipped_experiment_loads_and_resolves_under_every_variant() 
         let path = file.unwrap().path();
         let experiment = load_experiment(&path, &sheet.assumptions()).unwrap_or_else(|problems| panic!("{problems}"));
         assert!(!experiment.figures.is_empty() && experiment.source.chapter == 3, "{}", experiment.id);
-        for (label, moved) in sheet.variants(&experiment.assumptions_used(&sheet)) {
-            assert!(load_experiment(&path, &moved).is_ok(), "{} under {label}", experiment.id);
+        for moved in sheet.variants(&experiment.assumptions_used(&sheet)) {
+            assert!(load_experiment(&path, &moved.assumptions).is_ok(), "{} under {}", experiment.id, moved.label);
         }
         let points = experiment.maximise.as_ref().map_or(1, |maximise| maximise.grid.len());
         for (case, solver) in experiment.runs() {

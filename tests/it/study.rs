@@ -1,5 +1,6 @@
 //! A study runs what is stale, tells why, and leaves the same bytes whoever computes them.
 
+use std::collections::BTreeMap;
 use std::fs;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -7,7 +8,8 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use shotdamp::measure::Evaluated;
 use shotdamp::scene::Excitation;
 use shotdamp::study::{
-    Evaluate, Event, EventHandler, Held, IgnoreEvents, KnownRows, Loaded, Lock, Simulation, Snapshot,
+    Evaluate, Event, EventHandler, Heading, Held, IgnoreEvents, Item, KnownRows, Loaded, Lock, RowFailure, Simulation,
+    Snapshot, Study, Summary, Texts,
 };
 
 use crate::desk::{ASSUMPTIONS, Desk, GAP, GAP_REFERENCE, MadeUp, STOP};
@@ -83,13 +85,13 @@ fn a_maximum_is_found_between_the_points_of_the_grid() {
 fn one_bad_case_is_a_row_and_a_panic_is_one_too() {
     struct Bad;
     impl Evaluate for Bad {
-        fn evaluate(&self, it: &Simulation<'_>) -> Result<Evaluated, String> {
+        fn evaluate(&self, it: &Simulation<'_>) -> Result<Evaluated, RowFailure> {
             let Excitation::ImpulseTrain { impulse, .. } = it.recipe.resolve(it.assumptions).unwrap().excitation else {
                 return MadeUp::default().evaluate(it);
             };
             if it.recipe.dampers[0].stop.is_none() {
                 assert!(impulse > 1.0, "made to fail");
-                return Err("too hard".into());
+                return Err(RowFailure::Other("too hard".into()));
             }
             MadeUp::default().evaluate(it)
         }
@@ -113,9 +115,11 @@ fn one_bad_case_is_a_row_and_a_panic_is_one_too() {
 fn a_maximum_over_a_range_with_a_hole_is_none() {
     struct Hole;
     impl Evaluate for Hole {
-        fn evaluate(&self, it: &Simulation<'_>) -> Result<Evaluated, String> {
+        fn evaluate(&self, it: &Simulation<'_>) -> Result<Evaluated, RowFailure> {
             match it.recipe.resolve(it.assumptions).unwrap().excitation {
-                Excitation::Harmonic { force, .. } if force.abs() > 50.0 => Err("did not settle".into()),
+                Excitation::Harmonic { force, .. } if force.abs() > 50.0 => {
+                    Err(RowFailure::Other("did not settle".into()))
+                }
                 _ => MadeUp::default().evaluate(it),
             }
         }
@@ -182,8 +186,8 @@ fn damaged_results_are_noticed_and_made_again() {
     fs::remove_file(&name).unwrap();
     assert_eq!(desk.why("ch3-gap"), ["results/ch3-gap.parquet is missing"]);
     desk.put("results/ch3-stop.json", "{\"format\": 0}");
-    assert!(desk.why("ch3-stop")[0].starts_with("its record does not count"));
-    // A record that was renamed speaks of another experiment.
+    assert!(desk.why("ch3-stop")[0].starts_with("its record cannot be used"));
+    // A renamed record is that of another experiment.
     fs::copy(desk.layout.path("results/ch3-gap.json"), desk.layout.path("results/ch3-stop.json")).unwrap();
     assert!(desk.why("ch3-stop")[0].contains("belongs to ch3-gap"));
 }
@@ -205,7 +209,7 @@ fn a_table_counts_only_with_its_record() {
 fn an_input_edited_during_the_run_is_stale_afterwards() {
     struct Editor<'a>(&'a Desk, MadeUp);
     impl Evaluate for Editor<'_> {
-        fn evaluate(&self, it: &Simulation<'_>) -> Result<Evaluated, String> {
+        fn evaluate(&self, it: &Simulation<'_>) -> Result<Evaluated, RowFailure> {
             self.0.put("experiments/ch3/ch3-gap.yaml", &GAP.replace("mass: 1 kg", "mass: 3 kg"));
             self.1.evaluate(it)
         }
@@ -214,47 +218,95 @@ fn an_input_edited_during_the_run_is_stale_afterwards() {
     let before = desk.texts();
     desk.run(1, &Editor(&desk, MadeUp::default()), &IgnoreEvents);
     assert!(desk.why("ch3-gap")[0].contains("1.0 -> 3.0"));
-    Snapshot::take(&desk.layout, &before, ["results/ch3-gap.parquet".to_owned()], "done", 0).unwrap();
-    assert_eq!(Snapshot::current(&desk.layout, &desk.texts()), None);
+    take_snapshot(&desk, &before);
+    let known = Snapshot::current(&desk.layout, &desk.texts()).experiments;
+    assert_eq!(known.keys().collect::<Vec<_>>(), ["ch3-stop"], "the edited one is not known to be up to date");
 }
 
 #[test]
-fn the_snapshot_holds_until_any_input_or_output_changes() {
+fn the_snapshot_knows_an_experiment_until_one_of_its_inputs_or_outputs_changes() {
     let desk = Desk::new();
     desk.run(2, &MadeUp::default(), &IgnoreEvents);
-    let report = |middle| format!("{}{middle}{}", "head\n".repeat(4000), "tail\n".repeat(4000));
-    desk.put("reports/README.md", &report("1.52"));
-    let outputs = || ["results/ch3-gap.parquet", "results/ch3-stop.parquet", "reports/README.md"].map(str::to_owned);
-    let take = || Snapshot::take(&desk.layout, &desk.texts(), outputs(), "all done", 1).unwrap();
-    let holds = || Snapshot::current(&desk.layout, &desk.texts()).is_some();
-    assert!(!holds(), "none taken");
+    let page = |middle| format!("{}{middle}{}", "head\n".repeat(4000), "tail\n".repeat(4000));
+    let take = || take_snapshot(&desk, &desk.texts());
+    let known = || {
+        let current = Snapshot::current(&desk.layout, &desk.texts());
+        (current.index_is_current, current.experiments.into_keys().collect::<Vec<_>>())
+    };
+    let both = || (true, vec!["ch3-gap".to_owned(), "ch3-stop".to_owned()]);
+    let one = |id: &str| (true, vec![id.to_owned()]);
+    desk.put("reports/ch3/ch3-gap.md", &page("1.52"));
+    desk.put("reports/ch3/ch3-stop.md", "stop");
+    desk.put("reports/README.md", "index");
+    assert_eq!(known(), (false, vec![]), "none taken");
     take();
-    let snapshot = Snapshot::current(&desk.layout, &desk.texts()).unwrap();
-    assert_eq!((snapshot.summary.as_str(), snapshot.exit_code), ("all done", 1));
+    assert_eq!(known(), both());
 
     desk.put("experiments/ch3/ch3-gap.yaml", &format!("{GAP}# comment\n"));
-    assert!(!holds(), "a comment is for the plan to judge");
+    assert_eq!(known(), one("ch3-stop"), "a comment is for the plan to judge");
     desk.put("experiments/ch3/ch3-gap.yaml", GAP);
-    assert!(holds());
-    desk.put("reference/ch3/ch3-new.yaml", "entries: []\n");
-    assert!(!holds(), "a new file");
-    fs::remove_file(desk.layout.path("reference/ch3/ch3-new.yaml")).unwrap();
-    assert!(holds());
-    desk.put("reports/README.md", &report("1.53"));
-    assert!(!holds(), "one digit of a long report");
-    desk.put("reports/README.md", &report("1.52"));
-    assert!(!holds(), "written to since then: the plan is to look at it");
+    assert_eq!(known(), both());
+    desk.put("experiments/ch4/ch3-gap.yaml", GAP);
+    assert_eq!(known(), one("ch3-stop"), "a second file of the same id");
+    fs::remove_file(desk.layout.path("experiments/ch4/ch3-gap.yaml")).unwrap();
+
+    // An experiment depends on the assumptions that it uses, and every verdict on those that were fitted.
+    let assume = |old: &str, new: &str| desk.put("experiments/assumptions.yaml", &ASSUMPTIONS.replace(old, new));
+    assume("60 mm", "61 mm");
+    assert_eq!(known(), (false, vec!["ch3-gap".to_owned()]), "only one has a stop");
+    assume("reason: plastic", "reason: plastic, fitted_to: [ch3-stop/at-two]");
+    assert_eq!(known(), (false, vec![]));
+    desk.put("experiments/assumptions.yaml", ASSUMPTIONS);
+    desk.put("calibrations/new.yaml", "title: x\n");
+    assert_eq!(known(), (false, vec![]), "a calibration says which entries are fitted");
+    fs::remove_file(desk.layout.path("calibrations/new.yaml")).unwrap();
+    assert_eq!(known(), both());
+
+    desk.put("reports/ch3/ch3-gap.md", &page("1.53"));
+    assert_eq!(known(), one("ch3-stop"), "one digit of a long report");
     take();
-    assert!(holds());
+    assert_eq!(known(), both());
     let name = "results/ch3-gap.parquet";
     let mut bytes = desk.bytes(name);
     bytes[100] ^= 1;
     fs::write(desk.layout.path(name), &bytes).unwrap();
-    assert!(!holds(), "a flipped bit");
+    assert_eq!(known(), one("ch3-stop"), "a flipped bit");
+
+    let mut bytes = desk.bytes("results/snapshot.bin");
+    let middle = bytes.len() / 2;
+    bytes[middle] ^= 1;
+    fs::write(desk.layout.path("results/snapshot.bin"), &bytes).unwrap();
+    assert_eq!(known(), (false, vec![]), "a damaged snapshot counts as none");
+}
+
+/// Writes down that all of the study is up to date, over these texts.
+fn take_snapshot(desk: &Desk, texts: &Texts) {
+    let study = Study::new(desk.layout.clone(), texts.clone());
+    let summary = |item: &Item| Summary {
+        heading: Heading::of(&item.source.experiment),
+        folder: "ch3".into(),
+        used: item.used.clone(),
+        table: item.record().unwrap().table.blake3.clone(),
+        reads: BTreeMap::new(),
+        judged: Vec::new(),
+        lines: Vec::new(),
+    };
+    let files = |id: &str| {
+        let page = format!("reports/ch3/{id}.md");
+        let page = desk.layout.path(&page).is_file().then_some(page);
+        page.into_iter().chain([format!("results/{id}.parquet")]).collect()
+    };
+    let published = study.items.iter().map(|item| {
+        let id = item.source.experiment.id.to_string();
+        (id.clone(), (files(&id), summary(item)))
+    });
+    let index = desk.layout.path("reports/README.md").is_file().then(|| "reports/README.md".to_owned());
+    let index = index.into_iter().collect();
+    Snapshot::take(&desk.layout, texts, &study.sheet, &[].into(), published.collect(), &index).unwrap();
 }
 
 #[test]
-fn listeners_hear_every_simulation_once() {
+fn every_simulation_is_reported_once() {
     #[derive(Default)]
     struct Ear(Mutex<Vec<String>>, AtomicUsize);
     impl EventHandler for Ear {

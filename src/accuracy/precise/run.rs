@@ -60,10 +60,10 @@ pub fn precise(system: &HybridSystem, options: &Options, patience: Duration) -> 
                 Law::Rigid { restitution } if restitution > 0.0 => {
                     return Err(PreciseError::Unknown("rigid faces that give something back"));
                 }
-                Law::Rigid { .. } | Law::Resilient { stop: Some(_), .. } => rigid += 1,
                 Law::Resilient { no_tension: true, .. } => {
                     return Err(PreciseError::Unknown("faces that cannot pull"));
                 }
+                Law::Rigid { .. } | Law::Resilient { stop: Some(_), .. } => rigid += 1,
                 Law::Resilient { .. } => {}
             }
         }
@@ -206,11 +206,17 @@ impl<'a> Run<'a> {
         let cycles = f64::from(self.options.average);
         let second = (cycles / 2.0).floor();
         for (of, sums) in self.response.observed.iter_mut().zip(&self.sums) {
-            for (half, sums) in of.halves.iter_mut().zip(sums) {
-                [half.displacement, half.displacement_square, half.velocity_square] = sums.map(Double::near);
+            let cycles = [cycles - second, second];
+            for ((half, [displacement, square, velocity_square]), cycles) in of.halves.iter_mut().zip(sums).zip(cycles)
+            {
+                half.duration = cycles * self.system.drive.period;
+                half.displacement = displacement.near();
+                half.velocity_square = velocity_square.near();
+                if half.duration > 0.0 {
+                    half.deviation_square =
+                        (*square - *displacement * *displacement / Double::from(half.duration)).near();
+                }
             }
-            of.halves[0].duration = (cycles - second) * self.system.drive.period;
-            of.halves[1].duration = second * self.system.drive.period;
         }
         if let Some(row) = self.system.observed_rows.first() {
             self.response.final_displacement = dot(row, &self.state.q).near();

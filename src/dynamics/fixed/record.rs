@@ -4,14 +4,16 @@ use super::Run;
 use super::stretch::Tally;
 use super::vector::Vector;
 use crate::dynamics::audit::State;
+use crate::dynamics::budget;
 use crate::dynamics::contact::Side;
 use crate::dynamics::system::{Event, EventKind, Law, dot};
 use crate::dynamics::trace::Sample;
-use crate::dynamics::{CycleRates, EngineError};
+use crate::dynamics::{CycleRates, EngineError, Sums};
 
 impl<V: Vector> Run<'_, V> {
     pub(super) fn record(&mut self, particle: usize, kind: EventKind, approach: f64, departure: f64) {
         self.response.proof.events += 1;
+        budget::count_event();
         if self.options.averages(self.cycle) {
             self.response.counts.add(kind);
         }
@@ -61,23 +63,15 @@ impl<V: Vector> Run<'_, V> {
             }
             let second_half = 2 * (self.cycle - u64::from(self.options.skip)) >= u64::from(self.options.average);
             let half = usize::from(second_half);
-            for ((of, squares), [displacement, _]) in
-                self.response.observed[1..].iter_mut().zip(&tally.more).zip(&self.watch.more)
-            {
-                let sums = &mut of.halves[half];
-                sums.duration += tally.steps as f64 * weight;
-                sums.velocity_square += squares[1] * weight;
-                if self.options.displacement {
-                    sums.displacement += displacement.dot(&tally.state) * weight;
-                    sums.displacement_square += squares[0] * weight;
-                }
-            }
-            let sums = &mut self.response.observed[0].halves[half];
-            sums.duration += tally.steps as f64 * weight;
-            sums.velocity_square += tally.velocity_square * weight;
-            if self.options.displacement {
-                sums.displacement += self.watch.displacement.dot(&tally.state) * weight;
-                sums.displacement_square += tally.displacement_square * weight;
+            let summed = |displacement: f64, [square, velocity_square]: [f64; 2]| {
+                let seen = if self.options.displacement { [displacement * weight, square * weight] } else { [0.0; 2] };
+                Sums::of_raw(tally.steps as f64 * weight, seen[0], seen[1], velocity_square * weight)
+            };
+            let first = (self.watch.displacement.dot(&tally.state), [tally.displacement_square, tally.velocity_square]);
+            let more =
+                self.watch.more.iter().zip(&tally.more).map(|([row, _], squares)| (row.dot(&tally.state), *squares));
+            for ((displacement, squares), of) in std::iter::once(first).chain(more).zip(&mut self.response.observed) {
+                of.halves[half].add(summed(displacement, squares));
             }
         }
         if self.audited() {

@@ -5,6 +5,7 @@ use super::cycle::{Affine, Cycle, leave};
 use super::moments::Moments;
 use crate::dynamics::audit::{Audit, Passed, State};
 use crate::dynamics::block::pairs;
+use crate::dynamics::budget;
 use crate::dynamics::flow::Flow;
 use crate::dynamics::integral::GAUSS;
 use crate::dynamics::system::{HybridSystem, Law, dot};
@@ -25,10 +26,10 @@ pub(super) fn pass(system: &HybridSystem, flow: &Flow, answer: &[f64], cycle: &C
         now = start.moved(&segment.flow);
         let mut passed = Passed { position: vec![0.0; n], duration: at.count * segment.length, ..Passed::default() };
         let mut t0 = 0.0;
-        while t0 < segment.length {
+        while t0 < segment.length && !budget::spend(4) {
             let there = start.moved(&Affine::flow(flow, t0));
             let squares: Vec<[f64; 4]> =
-                pairs(flow.own).zip(&there.second).filter(|((k, l), _)| k == l).map(|(_, moment)| *moment).collect();
+                pairs(flow.own).zip(there.second()).filter(|((k, l), _)| k == l).map(|(_, moment)| moment).collect();
             let size = |i: usize| squares[i / 2][3 * (i % 2)].max(0.0).sqrt();
             let h = dissipation.panel(flow, size).min(segment.length - t0);
             for [x, weight] in GAUSS {
@@ -44,10 +45,10 @@ pub(super) fn pass(system: &HybridSystem, flow: &Flow, answer: &[f64], cycle: &C
                 passed.force_modulus += w * force.abs();
                 passed.work += w * power;
                 passed.work_modulus += w * power.abs();
-                let mut dissipated = dissipation.of_moments(&moments.second);
+                let mut dissipated = dissipation.of_moments(&moments.second());
                 if system.drive.harmonic.is_some() {
                     let (_, driven) = leave(flow, &vec![0.0; 2 * flow.order], 0.0, drive);
-                    dissipated += dissipation.beside(system, flow, &driven, &moments.first, moments.count);
+                    dissipated += dissipation.beside(system, flow, &driven, &moments.first(), moments.count);
                 }
                 passed.dissipated += weight * h * dissipated;
             }

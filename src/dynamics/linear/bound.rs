@@ -8,6 +8,7 @@
 use super::cycle::Cycle;
 use super::signal::Row;
 use crate::dynamics::block::{Block, Phase};
+use crate::dynamics::budget;
 use crate::dynamics::flow::Flow;
 use crate::dynamics::system::{HybridSystem, Law};
 
@@ -143,7 +144,7 @@ impl Signal<'_> {
         let mut open = vec![[0.0, length]];
         let (mut sampled, mut lowest) = (f64::INFINITY, f64::INFINITY);
         let mut pieces = 0;
-        while let Some([begin, end]) = open.pop() {
+        while let Some([begin, end]) = open.pop().filter(|_| !budget::spend(1)) {
             let (middle, bound) = self.piece(begin, end);
             sampled = sampled.min(middle);
             pieces += 1;

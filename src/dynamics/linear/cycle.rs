@@ -3,6 +3,7 @@
 //! Blocks do not mix, so the map is a 2 × 2 matrix and a pair for each of them; n cycles are its n-th power, by squaring.
 //! A harmonic force needs no d: block coordinates are those beside its steady answer, and it is in phase again after a cycle.
 
+use crate::dynamics::budget;
 use crate::dynamics::flow::{DrivePhase, Flow};
 use crate::dynamics::system::{HybridSystem, Tick};
 
@@ -91,7 +92,7 @@ pub(super) fn times([p, q, r, s]: [f64; 4], [x, y]: [f64; 2]) -> [f64; 2] {
     [p * x + q * y, r * x + s * y]
 }
 
-fn sum([a, b]: [f64; 2], [x, y]: [f64; 2]) -> [f64; 2] {
+pub(super) fn sum([a, b]: [f64; 2], [x, y]: [f64; 2]) -> [f64; 2] {
     [a + x, b + y]
 }
 
@@ -144,6 +145,9 @@ impl Cycle {
         let mut map = Affine::identity(flow.own);
         let mut level = before;
         for (i, tick) in ticks.iter().enumerate() {
+            if budget::spend(1) {
+                break;
+            }
             let end = ticks.get(i + 1).map_or(period, |next| next.time);
             let impulse = tick.impulse + if i == 0 { kick } else { 0.0 };
             let jump = Affine {

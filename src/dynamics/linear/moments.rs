@@ -1,32 +1,32 @@
-//! Moments: Σ c and Σ c cᵀ over any number of cycles, by doubling.
+//! Moments: mean and spread of c over any number of cycles, by doubling.
 //!
-//! Every measure that is an integral of x, x² or v² over cycles is linear in them, so that a million cycles cost twenty
-//! squarings and no digit: nothing is divided by I − E, which vanishes at resonance.
+//! Every measure that is an integral of x, x² or v² over cycles is linear in Σ c and Σ c cᵀ, so that a million cycles cost
+//! twenty squarings and no digit: nothing is divided by I − E, which vanishes at resonance. Second moments are kept about the
+//! mean: a motion that hardly moves far from its rest keeps its digits (Chan, Golub & LeVeque, Am. Stat. 37, 1983).
 
-use super::cycle::{Affine, product, times};
+use super::cycle::{Affine, product, sum, times};
 use crate::dynamics::block::{pairs, transposed};
 
-/// Sums over the states of several cycles at the same time within each.
+/// Of the states of several cycles at the same time within each.
 #[derive(Debug, Clone)]
 pub(super) struct Moments {
     /// Cycles.
     pub(super) count: f64,
-    /// Σ c, block by block.
-    pub(super) first: Vec<[f64; 2]>,
-    /// Σ cₖ cₗᵀ for every one of the [`pairs`].
-    pub(super) second: Vec<[f64; 4]>,
+    /// Mean of c, block by block.
+    pub(super) mean: Vec<[f64; 2]>,
+    /// Σ (cₖ − mean)(cₗ − mean)ᵀ for every one of the [`pairs`].
+    pub(super) spread: Vec<[f64; 4]>,
 }
 
 impl Moments {
     fn none(blocks: usize) -> Self {
-        Self { count: 0.0, first: vec![[0.0; 2]; blocks], second: vec![[0.0; 4]; blocks * (blocks + 1) / 2] }
+        Self { count: 0.0, mean: vec![[0.0; 2]; blocks], spread: vec![[0.0; 4]; blocks * (blocks + 1) / 2] }
     }
 
     /// Of one state.
     fn of(c: &[f64]) -> Self {
-        let first: Vec<[f64; 2]> = c.chunks_exact(2).map(|pair| [pair[0], pair[1]]).collect();
-        let second = pairs(first.len()).map(|(k, l)| outer(first[k], first[l])).collect();
-        Self { count: 1.0, first, second }
+        let mean: Vec<[f64; 2]> = c.chunks_exact(2).map(|pair| [pair[0], pair[1]]).collect();
+        Self { count: 1.0, ..Self { mean, ..Self::none(c.len() / 2) } }
     }
 
     /// Of `cycles` states, the first of them `start` and each the `map` of the one before.
@@ -49,43 +49,51 @@ impl Moments {
     }
 
     pub(super) fn add(&mut self, other: &Self) {
-        self.count += other.count;
-        for (sum, more) in self.first.iter_mut().zip(&other.first) {
-            sum.iter_mut().zip(more).for_each(|(sum, more)| *sum += more);
+        let count = self.count + other.count;
+        if !(count > 0.0) {
+            return;
         }
-        for (sum, more) in self.second.iter_mut().zip(&other.second) {
-            sum.iter_mut().zip(more).for_each(|(sum, more)| *sum += more);
+        let share = other.count / count;
+        let apart: Vec<[f64; 2]> = self.mean.iter().zip(&other.mean).map(|([a, b], [x, y])| [x - a, y - b]).collect();
+        for (((k, l), sum), more) in pairs(apart.len()).zip(&mut self.spread).zip(&other.spread) {
+            let between = outer(apart[k], apart[l]).map(|part| self.count * share * part);
+            (0..4).for_each(|i| sum[i] += more[i] + between[i]);
         }
+        for (mean, apart) in self.mean.iter_mut().zip(&apart) {
+            *mean = [mean[0] + share * apart[0], mean[1] + share * apart[1]];
+        }
+        self.count = count;
     }
 
     /// The same states, all of them mapped.
     pub(super) fn moved(&self, map: &Affine) -> Self {
-        let turned: Vec<[f64; 2]> =
-            map.turn.iter().zip(&self.first).map(|(turn, first)| times(*turn, *first)).collect();
-        let shifts = map.shift.iter().any(|shift| *shift != [0.0; 2]);
-        let mut second = Vec::with_capacity(self.second.len());
-        for ((k, l), old) in pairs(self.first.len()).zip(&self.second) {
-            let mut new = product(product(map.turn[k], *old), transposed(map.turn[l]));
-            if shifts {
-                let (dk, dl) = (map.shift[k], map.shift[l]);
-                let parts = [outer(turned[k], dl), outer(dk, turned[l]), outer(dk, dl).map(|part| self.count * part)];
-                for part in parts {
-                    new.iter_mut().zip(part).for_each(|(sum, more)| *sum += more);
-                }
-            }
-            second.push(new);
+        let mean = map.turn.iter().zip(&self.mean).zip(&map.shift);
+        let turned =
+            |((k, l), old): ((usize, usize), &[f64; 4])| product(product(map.turn[k], *old), transposed(map.turn[l]));
+        Self {
+            count: self.count,
+            mean: mean.map(|((turn, mean), shift)| sum(times(*turn, *mean), *shift)).collect(),
+            spread: pairs(self.mean.len()).zip(&self.spread).map(turned).collect(),
         }
-        let first = turned
-            .iter()
-            .zip(&map.shift)
-            .map(|(turned, shift)| [turned[0] + self.count * shift[0], turned[1] + self.count * shift[1]])
-            .collect();
-        Self { count: self.count, first, second }
+    }
+
+    /// Σ c.
+    pub(super) fn first(&self) -> Vec<[f64; 2]> {
+        self.mean.iter().map(|mean| mean.map(|part| self.count * part)).collect()
+    }
+
+    /// Σ cₖ cₗᵀ for every one of the [`pairs`].
+    pub(super) fn second(&self) -> Vec<[f64; 4]> {
+        let whole = |((k, l), spread): ((usize, usize), &[f64; 4])| {
+            let square = outer(self.mean[k], self.mean[l]);
+            std::array::from_fn(|i| spread[i] + self.count * square[i])
+        };
+        pairs(self.mean.len()).zip(&self.spread).map(whole).collect()
     }
 
     /// The mean state.
     pub(super) fn mean(&self) -> Vec<f64> {
-        self.first.iter().flatten().map(|sum| sum / self.count).collect()
+        self.mean.concat()
     }
 }
 

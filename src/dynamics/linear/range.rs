@@ -8,6 +8,7 @@ use super::cycle::{Cycle, Segment, drive_at};
 use super::signal::Row;
 use crate::dynamics::Extremes;
 use crate::dynamics::block::{Block, Phase};
+use crate::dynamics::budget;
 use crate::dynamics::flow::Flow;
 use crate::dynamics::system::HybridSystem;
 
@@ -55,6 +56,9 @@ pub(super) fn take(
         cycle.segments.iter().filter(|segment| segment.length > 0.0).map(|s| Grid::new(system, flow, row, s)).collect();
     let mut state = start.to_vec();
     for _ in 0..cycles {
+        if budget::spend(1) {
+            return;
+        }
         let begin = state.clone();
         let mut next_grid = grids.iter();
         for segment in &cycle.segments {

@@ -1,11 +1,13 @@
 //! Signals of a flow as rows over its block coordinates, and their integrals over many cycles at once.
 
-use super::cycle::{Affine, Cycle, drive_at, product, times};
+use super::cycle::{Affine, Cycle, Segment, drive_at, product, sum, times};
 use super::moments::{Moments, outer};
-use crate::dynamics::block::{Phase, pairs, transposed};
+use crate::dynamics::Sums;
+use crate::dynamics::block::{Block, Phase, pairs, transposed};
+use crate::dynamics::budget;
 use crate::dynamics::flow::{DrivePhase, Flow};
 use crate::dynamics::gains::{Closed, Gains};
-use crate::dynamics::integral::{GAUSS, Integrals};
+use crate::dynamics::integral::GAUSS;
 use crate::dynamics::system::HybridSystem;
 
 /// A row of the flow: value and rate of each block's share by its two coordinates.
@@ -40,28 +42,36 @@ impl Row {
         self.weights.iter().zip(c.chunks_exact(2)).map(share).collect()
     }
 
-    /// The moments of its shares; the harmonic force's own are the same in every cycle.
-    fn moments(&self, of: &Moments, drive: Option<Phase>) -> PhaseMoments {
-        let mut first: Vec<[f64; 2]> = self.weights.iter().zip(&of.first).map(|(w, sum)| times(*w, *sum)).collect();
-        let own = first.len();
-        let drive = drive.map(|phase| [phase.value, phase.rate]);
-        let mut second = Vec::with_capacity((own + 1) * (own + 2) / 2);
-        let mut sums = pairs(own).zip(&of.second);
-        for k in 0..own {
-            for ((_, l), sum) in sums.by_ref().take(own - k) {
-                second.push(product(product(self.weights[k], *sum), transposed(self.weights[l])));
-            }
-            second.extend(drive.map(|drive| outer(first[k], drive)));
+    /// Mean of value and rate beside `outside` over the states of several cycles, and Σ of their squares about it.
+    fn moments(&self, of: &Moments, outside: Option<Phase>) -> [[f64; 2]; 2] {
+        let outside = outside.unwrap_or_default();
+        let mean = self
+            .weights
+            .iter()
+            .zip(&of.mean)
+            .fold([outside.value, outside.rate], |all, (weights, mean)| sum(all, times(*weights, *mean)));
+        let mut spread = [0.0; 2];
+        for ((k, l), own) in pairs(of.mean.len()).zip(&of.spread) {
+            // Every pair of two blocks counts in both orders.
+            let twice = if k == l { 1.0 } else { 2.0 };
+            let [value, .., rate] = product(product(self.weights[k], *own), transposed(self.weights[l]));
+            spread = sum(spread, [twice * value, twice * rate]);
         }
-        if let Some(drive) = drive {
-            second.push(outer(drive, drive).map(|part| of.count * part));
-            first.push(drive.map(|part| of.count * part));
-        }
-        PhaseMoments { first, second }
+        [mean, spread]
+    }
+
+    /// Root of Σ of the squares of each block's value and rate.
+    fn sizes<'a>(&'a self, of: &'a Moments) -> impl Iterator<Item = [f64; 2]> + 'a {
+        let own = pairs(of.mean.len()).zip(&of.spread).filter(|((k, l), _)| k == l).map(|(_, spread)| spread);
+        self.weights.iter().zip(&of.mean).zip(own).map(|((weights, mean), spread)| {
+            let [value, .., rate] = product(product(*weights, *spread), transposed(*weights));
+            let mean = times(*weights, *mean);
+            [(value, mean[0]), (rate, mean[1])].map(|(spread, mean)| (spread + of.count * mean * mean).max(0.0).sqrt())
+        })
     }
 }
 
-/// The integrals of each row over the cycles that `at` are the states of at the beginning; s, and the sums of each row.
+/// The measures of each row over the cycles that `at` are the states of at the beginning.
 pub(super) fn integrals(
     system: &HybridSystem,
     flow: &Flow,
@@ -69,33 +79,28 @@ pub(super) fn integrals(
     cycle: &Cycle,
     at: &Moments,
     displacement: bool,
-) -> (f64, Vec<Integrals>) {
-    let mut sums = vec![Integrals::default(); rows.len()];
-    let mut duration = 0.0;
+) -> Vec<Sums> {
+    let mut sums = vec![Sums::default(); rows.len()];
     let mut now = at.clone();
     for segment in &cycle.segments {
         let start = now.moved(&segment.jump);
         let end = start.moved(&segment.flow);
-        duration += at.count * segment.length;
+        now = end.clone();
+        if segment.length == 0.0 {
+            continue;
+        }
         let end_drive = drive_at(system, segment.begin + segment.length);
         let ends = [At { moments: &start, drive: segment.drive }, At { moments: &end, drive: end_drive }];
         let gained = |closed: &Closed| closed.solve(&gains(flow, ends, segment.level, segment.length));
-        let integrated = flow.closed.as_ref().map(gained);
+        let integrated = flow.closed.as_ref().filter(|_| !flow.is_brief(segment.length)).map(gained);
         for (row, sum) in rows.iter().zip(&mut sums) {
-            let part = match &integrated {
+            sum.add(match &integrated {
                 Some(integrated) => integrated.of(flow.rows.row(row.index), displacement),
-                None => {
-                    let (drive, rest) = row.outside(flow, segment.level, segment.drive);
-                    quadrature(flow, row, &start, drive, segment.length).offset(rest, at.count * segment.length)
-                }
-            };
-            sum.value += part.value;
-            sum.square += part.square;
-            sum.rate_square += part.rate_square;
+                None => quadrature(flow, row, &start, segment),
+            });
         }
-        now = end;
     }
-    (duration, sums)
+    sums
 }
 
 /// An instant of every cycle.
@@ -110,13 +115,14 @@ fn gains(flow: &Flow, [start, end]: [At<'_>; 2], level: f64, length: f64) -> Gai
     let blocks = flow.blocks.len();
     let (mut gains, count) = (Gains::none(blocks), start.moments.count);
     let phase = |at: &At<'_>| [at.drive.cosine, at.drive.sine];
-    let first = |at: &At<'_>, k: usize| match at.moments.first.get(k) {
-        Some(own) => *own,
-        None => phase(at).map(|part| count * part),
-    };
-    let second = |at: &At<'_>, k: usize, l: usize, own: usize| match at.moments.second.get(own) {
-        Some(moment) if l < flow.own => *moment,
-        _ => outer(first(at, k), phase(at)),
+    let mean = |at: &At<'_>, k: usize| at.moments.mean.get(k).copied().unwrap_or_else(|| phase(at));
+    let first = |at: &At<'_>, k: usize| mean(at, k).map(|part| count * part);
+    let second = |at: &At<'_>, k: usize, l: usize, own: usize| -> [f64; 4] {
+        let square = outer(first(at, k), mean(at, l));
+        match at.moments.spread.get(own) {
+            Some(spread) if l < flow.own => std::array::from_fn(|i| spread[i] + square[i]),
+            _ => square,
+        }
     };
     for (k, gain) in gains.first.iter_mut().enumerate() {
         *gain = difference(first(&start, k), first(&end, k));
@@ -137,54 +143,45 @@ fn difference<const N: usize>(start: [f64; N], end: [f64; N]) -> [f64; N] {
     std::array::from_fn(|i| end[i] - start[i])
 }
 
-/// Σ z and Σ zₖ zₗᵀ of a signal's phases over several runs of equal length.
-struct PhaseMoments {
-    /// Blocks in order: value, rate.
-    first: Vec<[f64; 2]>,
-    /// By [`pairs`] of blocks.
-    second: Vec<[f64; 4]>,
-}
-
-/// The same by panels that are exact to rounding, where undamped blocks leave no closed form.
-fn quadrature(flow: &Flow, row: &Row, start: &Moments, drive: Option<Phase>, length: f64) -> Integrals {
-    let mut sum = Integrals::default();
+/// The same by panels that are exact to rounding, where there is no closed form that keeps its digits.
+fn quadrature(flow: &Flow, row: &Row, start: &Moments, segment: &Segment) -> Sums {
+    let (drive, rest) = row.outside(flow, segment.level, segment.drive);
+    let count = start.count;
+    let [[place, _], _] = row.moments(start, drive);
+    let (mut moved, mut square, mut velocity_square) = (0.0, 0.0, 0.0);
     let mut t0 = 0.0;
-    while t0 < length {
-        let now = row.moments(&start.moved(&Affine::flow(flow, t0)), None);
-        let h = panel(flow, &now, drive).min(length - t0);
+    while t0 < segment.length && !budget::spend(4) {
+        let h = panel(flow, row, &start.moved(&Affine::flow(flow, t0)), drive).min(segment.length - t0);
         for [x, weight] in GAUSS {
             let t = t0 + x * h;
             let after = drive.map(|phase| {
                 let block = &flow.blocks[flow.own];
                 block.advance(phase, block.kernel(t))
             });
-            let m = row.moments(&start.moved(&Affine::flow(flow, t)), after);
+            let [[value, rate], [values, rates]] = row.moments(&start.moved(&Affine::flow(flow, t)), after);
             let w = weight * h;
-            sum.value += w * m.first.iter().fold(0.0, |sum, first| sum + first[0]);
-            // Every pair of two blocks counts in both orders.
-            for ((k, l), moment) in pairs(m.first.len()).zip(&m.second) {
-                let times = if k == l { w } else { 2.0 * w };
-                sum.square += times * moment[0];
-                sum.rate_square += times * moment[3];
-            }
+            moved += w * count * (value - place);
+            square += w * (values + count * (value - place) * (value - place));
+            velocity_square += w * (rates + count * rate * rate);
         }
         t0 += h;
     }
-    sum
+    let duration = count * segment.length;
+    Sums {
+        duration,
+        displacement: (rest + place) * duration + moved,
+        deviation_square: (square - moved * (moved / duration)).max(0.0),
+        velocity_square,
+    }
 }
 
 /// Length of a panel: short against every block that still moves the signal visibly.
-fn panel(flow: &Flow, now: &PhaseMoments, drive: Option<Phase>) -> f64 {
-    let own = now.first.len();
-    let mut shares = vec![0.0; own];
-    for ((k, l), moment) in pairs(own).zip(&now.second) {
-        if k == l {
-            shares[k] = moment[3].max(0.0).sqrt() + flow.blocks[k].radius * moment[0].max(0.0).sqrt();
-        }
-    }
+fn panel(flow: &Flow, row: &Row, now: &Moments, drive: Option<Phase>) -> f64 {
+    let share = |([value, rate], block): ([f64; 2], &Block)| rate + block.radius * value;
+    let shares: Vec<f64> = row.sizes(now).zip(&flow.blocks).map(share).collect();
     let total: f64 = shares.iter().sum::<f64>() + drive.map_or(0.0, |phase| phase.rate.abs());
     let slowest = drive.map_or(0.0, |_| flow.blocks[flow.own].radius);
-    let fastest =
-        (0..own).filter(|&k| shares[k] > 1e-15 * total).fold(slowest, |fastest, k| fastest.max(flow.blocks[k].radius));
+    let moving = shares.iter().zip(&flow.blocks).filter(|(share, _)| **share > 1e-15 * total);
+    let fastest = moving.fold(slowest, |fastest, (_, block)| fastest.max(block.radius));
     if fastest > 0.0 { 1.5 / fastest } else { f64::INFINITY }
 }

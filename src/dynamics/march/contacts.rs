@@ -4,6 +4,7 @@
 use super::March;
 use crate::dynamics::EngineError;
 use crate::dynamics::contact::{Crossing, Relative, Side};
+use crate::dynamics::guards;
 use crate::dynamics::system::{Contact, EventKind, Law, dot};
 
 /// Faces closer to each other than this share of their way have met.
@@ -217,6 +218,15 @@ impl March<'_> {
             self.refer_to_floor(j);
         }
         Ok(())
+    }
+
+    /// The face at which a particle in flight lies without moving against it, as far as its places are known there.
+    pub(super) fn lies_at(&self, j: usize) -> Option<Side> {
+        if self.particles[j] == Relative::default() {
+            return Some(Side::Floor);
+        }
+        let above = guards::above(&self.system.particles[j], self.particles[j], &self.q, &self.rate)?;
+        (above == Relative::default()).then_some(Side::Ceiling)
     }
 
     /// Position relative to the ceiling, for a particle whose state refers to the floor.

@@ -3,8 +3,12 @@
 use super::March;
 use crate::dynamics::EngineError;
 
-/// An acceleration below this share of its parts is zero: the crossing that ended the half cycle was smooth.
+/// An acceleration below this share of what it may become is zero: the crossing that ended the half cycle was smooth.
 const SMOOTH: f64 = 1e-9;
+/// Share of a place that rounding may have moved it by.
+const ROUNDING: f64 = 16.0 * f64::EPSILON;
+/// An acceleration that stays below so many times its rounding has died away.
+const DIED_AWAY: f64 = 64.0;
 
 /// Bookkeeping of the equivalent viscous damping.
 #[derive(Debug, Clone, Copy, Default)]
@@ -19,7 +23,7 @@ pub(super) struct Half {
     pub(super) last: f64,
     /// The crossing was smooth, so that the guard starts at zero.
     pub(super) touching: bool,
-    /// Too weak to leave the curve's lower end: not followed.
+    /// Too weak to leave the curve's lower end, or to be told from rounding: not followed.
     pub(super) idle: bool,
 }
 
@@ -30,29 +34,32 @@ impl March<'_> {
         let flow = &self.flow;
         let Some(bend) = flow.rows.bend else { return Ok(()) };
         let bends = self.signals.of(bend).0;
-        // Below the curve's first point every half cycle gives the same damping: no need to follow them until something
-        // happens. The bound holds to the end of the segment, and the half cycle under way is as weak.
-        let [least, damping] = half_cycles.curve.lower_end();
         let bound = flow
             .blocks
             .iter()
             .zip(bends)
             .fold(0.0, |sum, (block, phase)| sum + block.amplitude(*phase, 0.0, self.system.drive.period));
+        // Below the curve's first point every half cycle gives the same damping: no need to follow them until something
+        // happens. The bound holds to the end of the segment, and the half cycle under way is as weak.
+        let [least, damping] = half_cycles.curve.lower_end();
         let least = least * self.system.gravity;
         let weak = self.half.square <= least * least * self.half.length;
-        if bound < least && weak && self.equivalent == Some(damping) {
+        let is_lowest = self.equivalent == Some(damping);
+        let rounding = self.rounding(bend);
+        let died_away = bound < DIED_AWAY * rounding;
+        if died_away || (bound < least && weak && is_lowest) {
             self.half = Half { idle: true, last: self.half.last, ..Half::default() };
+            if !is_lowest {
+                self.equivalent = Some(damping);
+                self.changed = true;
+                self.renew()?;
+            }
             return Ok(());
         }
         self.half.idle = false;
         let total = bends.iter().fold(0.0, |sum, phase| sum + phase.value);
         let rate = bends.iter().fold(0.0, |sum, phase| sum + phase.rate);
-        // Its parts: with a single block the acceleration itself is what rounding has left of them.
-        let observed = self.signals.of(flow.rows.observed[0]).0;
-        let scale = flow.blocks.iter().zip(observed).fold(0.0, |sum, (block, phase)| {
-            sum + (2.0 * block.decay * phase.rate).abs() + (block.determinant * phase.value).abs()
-        });
-        let smooth = total.abs() <= SMOOTH * scale;
+        let smooth = total.abs() <= SMOOTH * bound + rounding;
         if self.half.sign == 0.0 {
             // From rest the first half cycle goes where the acceleration is about to go.
             self.half.touching = smooth;
@@ -73,11 +80,30 @@ impl March<'_> {
         }
         self.half.sign = -self.half.sign;
         self.close_half_cycle();
+        self.renew()
+    }
+
+    /// Goes on with the damping now in force.
+    fn renew(&mut self) -> Result<(), EngineError> {
         self.hold_on()?;
         let drive = self.drive_phase(self.time);
         self.enter_flow(drive);
         self.flow.watch(&self.c, self.level, &mut self.signals);
         Ok(())
+    }
+
+    /// What of the acceleration is rounding of the places that it is the answer to: weights sink the springs, and there the
+    /// places round however little they move.
+    fn rounding(&self, bend: usize) -> f64 {
+        let flow = &self.flow;
+        let size = flow.modes.spectral.width();
+        let weights = &flow.rows.row(bend).weights[..flow.own];
+        let answer = |entries: &[f64]| {
+            let blocks = weights.iter().zip(entries.as_chunks::<2>().0);
+            blocks.fold(0.0, |sum, ([v0, v1, ..], [x, y])| sum + (v0 * x).abs() + (v1 * y).abs())
+        };
+        let places = self.q.iter().zip(flow.modes.spectral.to_blocks.chunks_exact(size)).take(flow.order);
+        places.fold(0.0, |sum, (place, entries)| sum + ROUNDING * place.abs() * answer(entries))
     }
 
     /// The RMS of a finished half cycle sets the damping of the next.

@@ -2,14 +2,16 @@
 
 use serde_json::{Map, Value, json};
 
-use super::parts::{Object, any_of, count, list, one_or_more, quantity, reference, text, word, words_of};
+use super::parts::{
+    NUMBER, Object, PREFIX, any_of, count, list, one_or_more, quantity, reference, text, word, words_of,
+};
 use super::{figure, optimise, scene, sweep};
 use crate::experiment::quantity::Dimension;
+use crate::experiment::recipe::Parameter;
 use crate::experiment::validate::MOST_CYCLES;
 use crate::experiment::word::words;
 use crate::measure::Measure;
 use crate::measure::ShapeOf;
-use crate::scene::{Assumption, Parameter};
 
 /// JSON Schema of an experiment.
 #[must_use]
@@ -78,7 +80,7 @@ fn maximise() -> Value {
 
 fn run() -> Value {
     let cycles = |about, least| count(about, "cycles", least, MOST_CYCLES);
-    let sensitivity = one_or_more("Assumptions that are moved", words_of::<Assumption>("An assumption"));
+    let sensitivity = one_or_more("Assumptions that are moved", text("An assumption"));
     Object::new("How it is run")
         .optional("solver", one_or_more("Solvers", reference("solver")))
         .optional("skip", cycles("Cycles before the averaging; 25 unless stated", 0))
@@ -91,7 +93,22 @@ fn run() -> Value {
                 vec![count("Members", "members", 0, 10_000), word("none")],
             ),
         )
+        .optional("limit", limit())
         .optional("sensitivity", any_of("Assumptions that are moved, or none", vec![sensitivity, word("none")]))
+        .schema()
+}
+
+fn limit() -> Value {
+    let events = json!({"description": "Events of a simulation; 1e8 unless stated", "type": "number", "minimum": 1, "maximum": 1e15});
+    let time = json!({
+        "description": "Processor time of a row; 10 min unless stated",
+        "type": "string",
+        "pattern": format!(r"^\s*{NUMBER}\s*(h|min|{PREFIX}s)\s*$"),
+        "examples": ["10 min"],
+    });
+    Object::new("The most that a row may take; one that reaches it has failed, with the reason, and the others go on")
+        .optional("events", events)
+        .optional("time", time)
         .schema()
 }
 

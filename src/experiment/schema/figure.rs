@@ -8,9 +8,9 @@ use super::parts::{
 use super::sweep::NAME;
 use crate::experiment::columns::{ENERGIES, HISTORIES};
 use crate::experiment::definition::{AxisScale, Best};
+use crate::experiment::recipe::Parameter;
 use crate::experiment::word::words;
 use crate::measure::Measure;
-use crate::scene::Parameter;
 
 /// The definitions that figures share.
 pub(super) fn definitions() -> Vec<(String, Value)> {

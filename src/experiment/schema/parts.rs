@@ -7,9 +7,9 @@ use crate::experiment::quantity::Dimension;
 use crate::experiment::word::words;
 
 /// A number as people write it.
-const NUMBER: &str = r"[-+]?(\d+(\.\d*)?|\.\d+)([eE][-+]?\d+)?";
+pub(super) const NUMBER: &str = r"[-+]?(\d+(\.\d*)?|\.\d+)([eE][-+]?\d+)?";
 /// Prefixes of units.
-const PREFIX: &str = "[nuµμmckMG]?";
+pub(super) const PREFIX: &str = "[nuµμmckMG]?";
 
 /// A mapping: its keys, which must be there, and which exclude each other.
 pub(crate) struct Object {

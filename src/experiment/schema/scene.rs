@@ -2,14 +2,15 @@
 
 use serde_json::{Value, json};
 
+use super::assumptions::{assumed, curve};
 use super::parts::{
     Object, any_of, between, boolean, count, form, list, one_of_words, one_or_more, quantity, ratio, reference, word,
-    words_of,
 };
 use crate::experiment::quantity::Dimension;
+use crate::experiment::recipe::Slot;
 use crate::experiment::scene::MOST_DAMPERS;
 use crate::experiment::structure::MOST_MODES;
-use crate::scene::{Assumption, Form, ImpulseTime, KINDS, Kind};
+use crate::scene::{Form, KINDS, Kind};
 
 /// The definitions that scenes share.
 pub(super) fn definitions() -> Vec<(String, Value)> {
@@ -22,16 +23,21 @@ fn swept_or(value: Value) -> Value {
     json!({"description": about, "anyOf": [value, word("swept")]})
 }
 
-/// A value, or that it is assumed.
-fn assumed_or(value: Value) -> Value {
+/// A value, or `{assumed: NAME}`.
+fn given(value: Value) -> Value {
     let about = value["description"].clone();
-    json!({"description": about, "anyOf": [value, word("assumed")]})
+    json!({"description": about, "anyOf": [value, assumed()]})
 }
 
-/// A value, or that it is an assumption of this name.
-fn named_or(value: Value) -> Value {
+/// The same, or plain `assumed` where the study declares which assumption that is.
+fn slot(value: Value) -> Value {
     let about = value["description"].clone();
-    json!({"description": about, "anyOf": [value, form("assumed", "By this name", words_of::<Assumption>("An assumption"))]})
+    json!({"description": about, "anyOf": [value, word("assumed"), assumed()]})
+}
+
+/// A reading of a slot.
+fn reading(slot_of: Slot) -> Value {
+    slot(one_of_words(slot_of.about(), slot_of.takes().readings))
 }
 
 pub(super) fn scene() -> Value {
@@ -48,7 +54,9 @@ pub(super) fn scene() -> Value {
         .collect();
     Object::new("What is simulated")
         .required("structure", structure())
-        .optional("gravity", assumed_or(quantity("Gravity", Dimension::Acceleration)))
+        .optional("gravity", slot(quantity("Gravity", Dimension::Acceleration)))
+        .optional("undamped_mass", reading(Slot::UndampedMass))
+        .optional("mass_measure", reading(Slot::MassMeasure))
         .optional("dampers", dampers)
         .required("excitation", excitation())
         .optional("start", start())
@@ -57,9 +65,17 @@ pub(super) fn scene() -> Value {
         .rule(json!({
             "if": {"required": ["structure"], "anyOf": on_one_mass},
             "then": {"properties": {"dampers": {"items": {
-                "not": {"anyOf": [{"required": ["at"]}, {"required": ["array"]}, {"required": ["mass_reading"]}]},
+                "not": {"anyOf": [
+                    {"required": ["at"]},
+                    {"required": ["array"]},
+                    {"required": ["mass_reading"]},
+                    {"required": ["gap_frequency"]},
+                ]},
             }}}},
-            "else": {"properties": {"dampers": {"items": {"required": ["at", "particle_share"]}}}},
+            "else": {"not": {"required": ["undamped_mass"]}, "properties": {"dampers": {"items": {
+                "required": ["at", "particle_share"],
+                "not": {"required": ["massless_ratio"]},
+            }}}},
         }))
         .schema()
 }
@@ -75,19 +91,19 @@ fn of_kind(kind: &Kind) -> Value {
         .fold(Object::new(kind.what), |object, field| {
             let about = field.key.replace('_', " ");
             let value = match field.form {
-                Form::Length => quantity(&about, Dimension::Length),
-                Form::Mass => quantity(&about, Dimension::Mass),
-                Form::Stiffness => quantity(&about, Dimension::Stiffness),
-                Form::Stress => quantity(&about, Dimension::Stress),
-                Form::Density => quantity(&about, Dimension::Density),
-                Form::Ratio => ratio(&about),
-                Form::Modes(_) => assumed_or(one_or_more(
+                Form::Length => given(quantity(&about, Dimension::Length)),
+                Form::Mass => given(quantity(&about, Dimension::Mass)),
+                Form::Stiffness => given(quantity(&about, Dimension::Stiffness)),
+                Form::Stress => given(quantity(&about, Dimension::Stress)),
+                Form::Density => given(quantity(&about, Dimension::Density)),
+                Form::Ratio => given(ratio(&about)),
+                Form::Modes => slot(one_or_more(
                     "Number of modes, or one number a side",
                     count("Number of modes", "modes", 0, MOST_MODES),
                 )),
-                Form::Word(words) => one_of_words(&about, words),
+                Form::Word(words) => given(one_of_words(&about, words)),
             };
-            let value = if field.parameter.is_some() { swept_or(value) } else { value };
+            let value = if field.swept { swept_or(value) } else { value };
             match field.form {
                 Form::Word(_) => object.optional(field.key, value),
                 _ => object.required(field.key, value),
@@ -111,25 +127,25 @@ fn place() -> Value {
 fn damper() -> Value {
     let length = |about| quantity(about, Dimension::Length);
     let gap_words = [word("infinite"), word("optimised")];
-    let mut ratios = vec![ratio("h′ = h ωn²/g"), word("swept"), list("One a damper of the array", ratio("h′"))];
+    let mut ratios = vec![given(ratio("h′ = h ωn²/g")), word("swept"), list("One a damper of the array", ratio("h′"))];
     ratios.extend(gap_words.clone());
     let filled = Object::new("An array filled in one of two ways, which a sweep chooses")
         .required("uniform", length("The gap of all"))
         .required("optimised", list("One a damper", length("A gap")));
-    let mut gaps = vec![length("Gap clearance"), list("One a damper of the array", length("A gap")), filled.schema()];
+    let mut gaps =
+        vec![given(length("Gap clearance")), list("One a damper of the array", length("A gap")), filled.schema()];
     gaps.extend(gap_words);
-    let share = swept_or(ratio("Particle over the whole damper, mass"));
+    let share = swept_or(given(ratio("Particle over the whole damper, mass")));
     Object::new("A particle impact damper")
         .optional("at", reference("place"))
         .optional("array", array())
         .exactly_one(vec![
-            ("mass_ratio", swept_or(ratio("m′: mass of the damper over that of the structure"))),
-            ("mass", quantity("Mass of the damper", Dimension::Mass)),
+            ("mass_ratio", swept_or(given(ratio("m′: mass of the damper over that of the structure")))),
+            ("mass", given(quantity("Mass of the damper", Dimension::Mass))),
         ])
-        .optional(
-            "mass_reading",
-            named_or(one_of_words("Whose mass m′ is a share of", &["assumed", "total", "modal", "swept"])),
-        )
+        .optional("mass_reading", swept_or(reading(Slot::MassReading)))
+        .optional("massless_ratio", slot(ratio(Slot::MasslessRatio.about())))
+        .optional("gap_frequency", reading(Slot::GapFrequency))
         .optional("particle_share", share)
         .exactly_one(vec![
             ("gap_ratio", any_of("h′: dimensionless gap clearance", ratios)),
@@ -148,7 +164,7 @@ fn array() -> Value {
         .required("count", swept_or(one_or_more("Number of dampers, or one number a side", dampers)))
         .required("spacing", one_or_more("From one to the next", quantity("Spacing", Dimension::Length)))
         .optional("centred", boolean("Around the place, rather than from there on"))
-        .optional("margin", named_or(assumed_or(quantity("Kept free at the edge", Dimension::Length))))
+        .optional("margin", slot(quantity("Kept free at the edge", Dimension::Length)))
         .schema()
 }
 
@@ -157,21 +173,23 @@ fn restitution() -> Value {
 }
 
 fn surface() -> Value {
-    let rigid = Object::new("A rigid surface").required("restitution", restitution()).schema();
+    let rigid = Object::new("A rigid surface").required("restitution", given(restitution())).schema();
     let stiffness = vec![
         quantity("Stiffness", Dimension::Stiffness),
-        one_of_words("Tuned to the structure or not, or as assumed", &["tuned", "untuned", "assumed", "swept"]),
+        one_of_words("Tuned to the structure or not", &["tuned", "clean", "loaded", "untuned", "swept"]),
     ];
-    let damping = vec![quantity("Damping", Dimension::Damping), word("equivalent_viscous")];
+    let damping = vec![given(quantity("Damping", Dimension::Damping)), word("equivalent_viscous")];
     let resilient = Object::new("A resilient surface")
         .exactly_one(vec![
-            ("stiffness_ratio", assumed_or(swept_or(ratio("kf/ks: stiffness over that of the structure")))),
-            ("stiffness", named_or(any_of("Stiffness", stiffness))),
+            ("stiffness_ratio", slot(swept_or(ratio("kf/ks: stiffness over that of the structure")))),
+            ("stiffness", slot(any_of("Stiffness", stiffness))),
         ])
         .exactly_one(vec![
-            ("damping_ratio", named_or(assumed_or(swept_or(ratio("Damping ratio under the particle"))))),
+            ("damping_ratio", slot(swept_or(ratio("Damping ratio under the particle")))),
             ("damping", any_of("Damping", damping)),
         ])
+        .optional("untuned_frequency_ratio", slot(ratio(Slot::UntunedFrequencyRatio.about())))
+        .optional("damping_curve", slot(curve()))
         .optional("no_tension", boolean("The surface does not pull at a particle that leaves it"))
         .schema();
     Object::new("A surface that the particle lands on")
@@ -181,17 +199,17 @@ fn surface() -> Value {
 
 fn stop() -> Value {
     let stop = Object::new("A limit stop")
-        .required("length", assumed_or(swept_or(quantity("Length of the limit stop", Dimension::Length))))
-        .optional("restitution", assumed_or(restitution()))
+        .required("length", slot(swept_or(quantity("Length of the limit stop", Dimension::Length))))
+        .optional("restitution", slot(restitution()))
         .schema();
     any_of("A limit stop", vec![stop, word("assumed")])
 }
 
 fn walls() -> Value {
     Object::new("Soft walls")
-        .required("stiffness_ratio", swept_or(ratio("kw/ks: stiffness over that of the structure")))
-        .required("damping", quantity("Damping of the walls", Dimension::Damping))
-        .optional("ceiling_mass_ratio", assumed_or(ratio("Mass of the ceiling over that of the base")))
+        .required("stiffness_ratio", swept_or(given(ratio("kw/ks: stiffness over that of the structure"))))
+        .required("damping", given(quantity("Damping of the walls", Dimension::Damping)))
+        .optional("ceiling_mass_ratio", slot(ratio("Mass of the ceiling over that of the base")))
         .schema()
 }
 
@@ -200,24 +218,26 @@ fn excitation() -> Value {
         Object::new(about)
             .optional("at", reference("place"))
             .exactly_one(vec![
-                ("force_ratio", swept_or(ratio("f′ = F/(m g)"))),
-                ("impulse", assumed_or(swept_or(quantity("Impulse", Dimension::Impulse)))),
+                ("force_ratio", swept_or(given(ratio("f′ = F/(m g)")))),
+                ("impulse", slot(swept_or(quantity("Impulse", Dimension::Impulse)))),
             ])
             .optional("impulse_time", impulse_time())
+            .optional("frequency_reference", reading(Slot::FrequencyReference))
     };
     let harmonic = Object::new("A harmonic force")
         .optional("at", reference("place"))
         .exactly_one(vec![
-            ("force_ratio", swept_or(ratio("f′ = F/(m g)"))),
-            ("base_amplitude_ratio", swept_or(ratio("a ω²/g"))),
-            ("force", assumed_or(swept_or(quantity("Force", Dimension::Force)))),
+            ("force_ratio", swept_or(given(ratio("f′ = F/(m g)")))),
+            ("base_amplitude_ratio", swept_or(given(ratio("a ω²/g")))),
+            ("force", slot(swept_or(quantity("Force", Dimension::Force)))),
         ])
+        .optional("frequency_reference", reading(Slot::HarmonicReference))
         .exactly_one(timing());
     let single =
         timing().into_iter().fold(impulses("One impulse"), |object, (key, schema)| object.optional(key, schema));
     let pulses = impulses("Pulses of finite duration")
         .exactly_one(timing())
-        .required("duration", swept_or(quantity("Duration of a pulse", Dimension::Time)))
+        .required("duration", swept_or(given(quantity("Duration of a pulse", Dimension::Time))))
         .required("shape", one_of_words("Shape of a pulse", &["rectangular", "binomial"]));
     let forms = Object::new("What drives the structure").exactly_one(vec![
         (
@@ -237,18 +257,20 @@ fn excitation() -> Value {
 
 fn timing() -> Vec<(&'static str, Value)> {
     vec![
-        ("frequency_ratio", swept_or(ratio("ω′ = ω/ωn"))),
-        ("period", quantity("Period", Dimension::Time)),
-        ("angular_frequency", swept_or(quantity("Angular frequency", Dimension::AngularFrequency))),
+        ("frequency_ratio", swept_or(given(ratio("ω′ = ω/ωn")))),
+        ("period", given(quantity("Period", Dimension::Time))),
+        ("angular_frequency", swept_or(given(quantity("Angular frequency", Dimension::AngularFrequency)))),
         ("forced_mode", swept_or(count("Number of the natural frequency that is forced", "", 0, 100_000))),
     ]
 }
 
 fn impulse_time() -> Value {
-    let mut words = vec!["assumed"];
-    words.extend(ImpulseTime::WORDS.map(|(word, _)| word));
-    let about = "Time by which a force ratio becomes an impulse";
-    any_of(about, vec![one_of_words(about, &words), quantity("A time", Dimension::Time)])
+    let about = Slot::ImpulseTime.about();
+    let factor = Object::new("A factor over an angular frequency")
+        .required("factor", slot(ratio(Slot::ImpulseFactor.about())))
+        .optional("frequency", reading(Slot::ImpulseFrequency));
+    let readings = one_of_words(about, Slot::ImpulseTime.takes().readings);
+    slot(any_of(about, vec![readings, quantity("A time", Dimension::Time), factor.schema()]))
 }
 
 fn start() -> Value {
@@ -266,7 +288,7 @@ fn start() -> Value {
 }
 
 fn observe() -> Value {
-    let take = one_of_words("What is taken of several points", &["largest", "mean", "assumed"]);
+    let take = reading(Slot::Take);
     let points = Object::new("Several points")
         .required("points", list("The points", reference("place")))
         .optional("take", take.clone());

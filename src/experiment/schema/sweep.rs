@@ -8,10 +8,10 @@ use super::parts::{
 use crate::experiment::definition::AxisScale;
 use crate::experiment::quantity::Dimension;
 use crate::experiment::range::{MOST_POINTS, dimension};
+use crate::experiment::recipe::Parameter;
 use crate::experiment::refined;
 use crate::experiment::word::{from_word, word_of, words};
 use crate::measure::Measure;
-use crate::scene::Parameter;
 
 /// Names of sweeps and figures.
 pub(super) const NAME: &str = "^[A-Za-z0-9_-]{1,64}$";

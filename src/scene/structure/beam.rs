@@ -2,9 +2,8 @@
 
 use std::f64::consts::PI;
 
-use super::kind::{Field, Form, Values};
+use super::kind::{Field, Form, StructureError, Values};
 use super::model::Matrices;
-use crate::scene::{Assumption, Parameter, RecipeError};
 use crate::text::number::{compact, quantity};
 
 /// Most exact modes: their shapes are right to rounding far beyond, but no motion has ever needed as many.
@@ -31,17 +30,17 @@ pub struct Beam {
 
 /// Keys of every beam.
 pub(super) const FIELDS: [Field; 7] = [
-    Field { key: "length", form: Form::Length, parameter: Some(Parameter::Length) },
-    Field { key: "width", form: Form::Length, parameter: Some(Parameter::Width) },
-    Field { key: "thickness", form: Form::Length, parameter: Some(Parameter::Thickness) },
-    Field { key: "youngs_modulus", form: Form::Stress, parameter: None },
-    Field { key: "density", form: Form::Density, parameter: None },
-    Field { key: "rayleigh", form: Form::Ratio, parameter: Some(Parameter::Rayleigh) },
-    Field { key: "modes", form: Form::Modes(Assumption::BeamModes), parameter: Some(Parameter::Modes) },
+    Field { key: "length", form: Form::Length, swept: true },
+    Field { key: "width", form: Form::Length, swept: true },
+    Field { key: "thickness", form: Form::Length, swept: true },
+    Field { key: "youngs_modulus", form: Form::Stress, swept: false },
+    Field { key: "density", form: Form::Density, swept: false },
+    Field { key: "rayleigh", form: Form::Ratio, swept: true },
+    Field { key: "modes", form: Form::Modes, swept: true },
 ];
 
 impl Beam {
-    pub(super) fn read(values: &Values<'_>) -> Result<Self, RecipeError> {
+    pub(super) fn read(values: &Values<'_>) -> Result<Self, StructureError> {
         Ok(Self {
             length: values.above_zero("length")?,
             width: values.above_zero("width")?,

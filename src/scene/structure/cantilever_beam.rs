@@ -8,12 +8,9 @@
 //! (n − ½)π + δ. The study's own basis, ξ^(i+1) with i = 1 … N, is [`super::polynomial`].
 
 use super::beam::{self, Beam, FarEnd, Mode};
-use super::kind::{Family, Field, Form, Kind};
+use super::kind::{Field, Form, Kind};
 use super::model::{Matrices, Model, Point, unit};
 use super::polynomial;
-
-/// Most polynomials: the frequencies of the highest grow with the fourth power of their number.
-const MOST_POLYNOMIALS: u32 = 60;
 
 const BASES: &[&str] = &["polynomial", "exact"];
 
@@ -36,10 +33,9 @@ enum Basis {
 pub(super) const KIND: Kind = Kind {
     name: "cantilever_beam",
     what: "a cantilever beam",
-    family: Family::Beam,
     fields: &{
         let [a, b, c, d, e, f, g] = beam::FIELDS;
-        [a, b, c, d, e, f, g, Field { key: "basis", form: Form::Word(BASES), parameter: None }]
+        [a, b, c, d, e, f, g, Field { key: "basis", form: Form::Word(BASES), swept: false }]
     },
     sides: &["length"],
     performance_point: Some(&[1.0]),
@@ -48,7 +44,7 @@ pub(super) const KIND: Kind = Kind {
         let basis = if values.word("basis", BASES)? == 0 {
             let why = "the upper third of so many polynomials vibrates far faster than any mode of the beam, and the \
                        search for events pays for it; `basis: exact` goes on";
-            let [count] = values.modes(MOST_POLYNOMIALS, why)?;
+            let [count] = values.modes(polynomial::MOST as u32, why)?;
             Basis::Polynomial(polynomial::modes(count as usize))
         } else {
             let [count] = values.modes(beam::MOST_MODES, beam::WHY)?;

@@ -5,7 +5,7 @@
 //! φ = cosh βξ − cos βξ − σ (sinh βξ − sin βξ),   σ = (cosh β − cos β)/(sinh β − sin β),   ∫ φ² dξ = 1.
 
 use super::beam::{self, Beam, FarEnd, Mode};
-use super::kind::{Family, Kind};
+use super::kind::Kind;
 use super::model::{Matrices, Model, Point, unit};
 
 /// A clamped beam in its own modes.
@@ -18,7 +18,6 @@ pub struct ClampedBeam {
 pub(super) const KIND: Kind = Kind {
     name: "clamped_beam",
     what: "a beam clamped at both ends",
-    family: Family::Beam,
     fields: &beam::FIELDS,
     sides: &["length"],
     performance_point: Some(&[0.5]),

@@ -7,7 +7,6 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use super::Structure;
-use crate::scene::{Assumption, Assumptions, Parameter, RecipeError};
 
 /// A kind of structure.
 #[derive(Debug)]
@@ -16,8 +15,6 @@ pub struct Kind {
     pub name: &'static str,
     /// With its article, for messages: `a cantilever beam`.
     pub what: &'static str,
-    /// Which of the study's chapters it belongs with; assumptions differ by it.
-    pub family: Family,
     /// Keys, in the order in which they are read.
     pub fields: &'static [Field],
     /// Words for its sides, in the order of the coordinates of a place.
@@ -25,19 +22,27 @@ pub struct Kind {
     /// Where its motion is observed unless the file says so, shares of its sides; none for the nine-point grid.
     pub performance_point: Option<&'static [f64]>,
     /// From values to the model.
-    pub build: fn(&Values<'_>) -> Result<Structure, RecipeError>,
+    pub build: fn(&Values<'_>) -> Result<Structure, StructureError>,
 }
 
-/// Structures that share their assumptions.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Family {
-    /// One mass (chapter 3).
-    Mass,
-    /// Beams (chapter 4).
-    Beam,
-    /// Plates (chapter 5).
-    Plate,
+impl Kind {
+    /// The kind of this name.
+    #[must_use]
+    pub fn named(name: &str) -> Option<&'static Self> {
+        super::KINDS.iter().find(|kind| kind.name == name).copied()
+    }
+
+    /// It is one mass at one place: no sides, and no modes of which one could be meant.
+    #[must_use]
+    pub fn is_lumped(&self) -> bool {
+        self.sides.is_empty()
+    }
 }
+
+/// Why values make no structure.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{0}")]
+pub struct StructureError(pub String);
 
 /// A key of a structure.
 #[derive(Debug)]
@@ -46,8 +51,8 @@ pub struct Field {
     pub key: &'static str,
     /// What it takes.
     pub form: Form,
-    /// The sweep parameter that varies it.
-    pub parameter: Option<Parameter>,
+    /// A sweep may vary it, by the same word.
+    pub swept: bool,
 }
 
 /// What a key of a structure takes.
@@ -65,8 +70,8 @@ pub enum Form {
     Density,
     /// Zero or more, without unit.
     Ratio,
-    /// Number of modes: one number, or one a side; or this assumption.
-    Modes(Assumption),
+    /// Number of modes: one number, or one a side.
+    Modes,
     /// One of these words; the first unless the file says so.
     Word(&'static [&'static str]),
 }
@@ -81,122 +86,42 @@ pub enum FieldValue {
     Counts(Vec<u32>),
     /// A word.
     Word(String),
-    /// Taken from the assumptions.
-    Assumed(Assumption),
 }
 
-/// A structure as an experiment names it; in JSON as in YAML, `{kind: {key: value}}`.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(into = "Tagged", try_from = "Tagged")]
-pub struct StructureRecipe {
-    /// Name of its kind.
-    pub kind: String,
-    /// Values by key.
-    pub values: BTreeMap<String, FieldValue>,
-}
-
-type Tagged = BTreeMap<String, BTreeMap<String, FieldValue>>;
-
-impl From<StructureRecipe> for Tagged {
-    fn from(recipe: StructureRecipe) -> Self {
-        Self::from([(recipe.kind, recipe.values)])
-    }
-}
-
-impl TryFrom<Tagged> for StructureRecipe {
-    type Error = &'static str;
-
-    fn try_from(tagged: Tagged) -> Result<Self, Self::Error> {
-        let mut kinds = tagged.into_iter();
-        match (kinds.next(), kinds.next()) {
-            (Some((kind, values)), None) => Ok(Self { kind, values }),
-            _ => Err("a structure is of one kind"),
-        }
-    }
-}
-
-impl StructureRecipe {
-    /// One mass on a spring and a dashpot: kg, N/m, c′.
-    #[must_use]
-    pub fn single_mass(mass: f64, stiffness: f64, damping_ratio: f64) -> Self {
-        let values = [("mass", mass), ("stiffness", stiffness), ("damping_ratio", damping_ratio)];
-        Self {
-            kind: super::single_mass::KIND.name.into(),
-            values: values.into_iter().map(|(key, x)| (key.into(), FieldValue::Number(x))).collect(),
-        }
-    }
-
-    /// Its kind.
-    ///
-    /// # Errors
-    /// [`RecipeError::OutOfRange`] for a name that is none.
-    pub fn kind(&self) -> Result<&'static Kind, RecipeError> {
-        super::KINDS
-            .iter()
-            .find(|kind| kind.name == self.kind)
-            .copied()
-            .ok_or_else(|| RecipeError::OutOfRange(format!("there is no structure `{}`", self.kind)))
-    }
-
-    /// Gives the key that `parameter` varies another value; false if it has no such key.
-    pub(crate) fn set(&mut self, parameter: Parameter, value: f64) -> Result<bool, RecipeError> {
-        let Some(field) = self.kind()?.fields.iter().find(|field| field.parameter == Some(parameter)) else {
-            return Ok(false);
-        };
-        let value = match field.form {
-            Form::Modes(_) => FieldValue::Counts(vec![whole(value)?]),
-            _ => FieldValue::Number(value),
-        };
-        self.values.insert(field.key.into(), value);
-        Ok(true)
-    }
-
-    /// The model.
-    ///
-    /// # Errors
-    /// An assumption that is absent, or values that make no structure.
-    pub fn build(&self, assumptions: &Assumptions) -> Result<Structure, RecipeError> {
-        (self.kind()?.build)(&Values { recipe: self, assumptions })
-    }
-
-    /// The assumptions that its values name.
-    pub(crate) fn assumed(&self) -> impl Iterator<Item = Assumption> {
-        self.values.values().filter_map(|value| match value {
-            FieldValue::Assumed(name) => Some(*name),
-            _ => None,
-        })
-    }
-}
-
-/// A whole number above zero, from a sweep.
-pub(in crate::scene) fn whole(value: f64) -> Result<u32, RecipeError> {
+/// A whole number above zero.
+///
+/// # Errors
+/// If it is none.
+pub fn whole(value: f64) -> Result<u32, StructureError> {
     if (1.0..=1e6).contains(&value) && value.fract() == 0.0 {
         return Ok(value as u32);
     }
-    Err(RecipeError::OutOfRange(format!("a whole number above zero is wanted, not {value}")))
+    Err(StructureError(format!("a whole number above zero is wanted, not {value}")))
 }
 
 /// The values of a structure's keys, for its model.
 #[derive(Debug)]
 pub struct Values<'a> {
-    recipe: &'a StructureRecipe,
-    assumptions: &'a Assumptions,
+    /// The kind of the structure.
+    pub kind: &'static Kind,
+    /// Values by key.
+    pub values: &'a BTreeMap<String, FieldValue>,
 }
 
 impl Values<'_> {
-    fn get(&self, key: &str) -> Result<&FieldValue, RecipeError> {
-        let value = self.recipe.values.get(key);
-        value.ok_or_else(|| RecipeError::structure(format!("`{}` lacks `{key}`", self.recipe.kind)))
+    fn get(&self, key: &str) -> Result<&FieldValue, StructureError> {
+        let value = self.values.get(key);
+        value.ok_or_else(|| StructureError(format!("`{}` lacks `{key}`", self.kind.name)))
     }
 
     /// A number above zero.
     ///
     /// # Errors
     /// If it is absent, or not above zero.
-    pub fn above_zero(&self, key: &str) -> Result<f64, RecipeError> {
+    pub fn above_zero(&self, key: &str) -> Result<f64, StructureError> {
         match self.number(key)? {
             value if value > 0.0 && value.is_finite() => Ok(value),
-            value => Err(RecipeError::structure(format!("{key} must be above 0, not {value}"))),
+            value => Err(StructureError(format!("{key} must be above 0, not {value}"))),
         }
     }
 
@@ -204,10 +129,10 @@ impl Values<'_> {
     ///
     /// # Errors
     /// If it is absent, or negative.
-    pub fn ratio(&self, key: &str) -> Result<f64, RecipeError> {
+    pub fn ratio(&self, key: &str) -> Result<f64, StructureError> {
         match self.number(key)? {
             value if value >= 0.0 && value.is_finite() => Ok(value),
-            value => Err(RecipeError::structure(format!("{key} must be 0 or more, not {value}"))),
+            value => Err(StructureError(format!("{key} must be 0 or more, not {value}"))),
         }
     }
 
@@ -215,11 +140,10 @@ impl Values<'_> {
     ///
     /// # Errors
     /// If it is absent.
-    pub fn number(&self, key: &str) -> Result<f64, RecipeError> {
+    pub fn number(&self, key: &str) -> Result<f64, StructureError> {
         match self.get(key)? {
             FieldValue::Number(value) => Ok(*value),
-            FieldValue::Assumed(name) => self.assumptions.number(*name),
-            _ => Err(RecipeError::structure(format!("{key} must be a number"))),
+            _ => Err(StructureError(format!("{key} must be a number"))),
         }
     }
 
@@ -227,8 +151,8 @@ impl Values<'_> {
     ///
     /// # Errors
     /// If it is absent, zero, not as many as there are sides, or more than `most` in all.
-    pub fn modes<const SIDES: usize>(&self, most: u32, why: &str) -> Result<[u32; SIDES], RecipeError> {
-        let refuse = |message: String| Err(RecipeError::structure(message));
+    pub fn modes<const SIDES: usize>(&self, most: u32, why: &str) -> Result<[u32; SIDES], StructureError> {
+        let refuse = |message: String| Err(StructureError(message));
         let counts = match self.get("modes")? {
             FieldValue::Counts(counts) => counts.clone(),
             _ => vec![whole(self.number("modes")?)?],
@@ -254,14 +178,14 @@ impl Values<'_> {
     ///
     /// # Errors
     /// If it is no such word.
-    pub fn word(&self, key: &str, words: &[&str]) -> Result<usize, RecipeError> {
-        match self.recipe.values.get(key) {
+    pub fn word(&self, key: &str, words: &[&str]) -> Result<usize, StructureError> {
+        match self.values.get(key) {
             None => Ok(0),
             Some(FieldValue::Word(word)) => words
                 .iter()
                 .position(|known| known == word)
-                .ok_or_else(|| RecipeError::structure(format!("{key} is not `{word}`"))),
-            Some(_) => Err(RecipeError::structure(format!("{key} is one of {}", words.join(", ")))),
+                .ok_or_else(|| StructureError(format!("{key} is not `{word}`"))),
+            Some(_) => Err(StructureError(format!("{key} is one of {}", words.join(", ")))),
         }
     }
 }

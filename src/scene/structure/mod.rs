@@ -9,8 +9,7 @@ mod model;
 mod polynomial;
 mod register;
 
-pub(super) use kind::whole;
-pub use kind::{Family, Field, FieldValue, Form, Kind, StructureRecipe, Values};
+pub use kind::{Field, FieldValue, Form, Kind, StructureError, Values, whole};
 pub use model::{Matrices, Model, Point};
 
 register::structures! {

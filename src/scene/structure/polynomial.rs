@@ -6,6 +6,11 @@
 //! to a column at most. Turning the columns in pairs until they are orthogonal (one-sided Jacobi) leaves the stiffness the unit
 //! matrix and makes the mass diagonal: the columns are the modes, their squared lengths 1/β⁴, each to its own last digits.
 
+use std::sync::OnceLock;
+
+/// Most polynomials: the frequencies of the highest grow with the fourth power of their number.
+pub(super) const MOST: usize = 60;
+
 /// A mode of the polynomial space, ∫ w² dξ = 1.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Mode {
@@ -15,8 +20,16 @@ pub(super) struct Mode {
     coefficients: Vec<f64>,
 }
 
-/// The modes of N polynomials, slowest first.
+/// The modes of N polynomials, slowest first. They are the same for every beam, and worked out once.
 pub(super) fn modes(count: usize) -> Vec<Mode> {
+    static KNOWN: [OnceLock<Vec<Mode>>; MOST + 1] = [const { OnceLock::new() }; MOST + 1];
+    match KNOWN.get(count) {
+        Some(known) => known.get_or_init(|| rayleigh_ritz(count)).clone(),
+        None => rayleigh_ritz(count),
+    }
+}
+
+fn rayleigh_ritz(count: usize) -> Vec<Mode> {
     let mut columns: Vec<Vec<f64>> = (0..count).map(|i| twofold_integral(i, count + 2)).collect();
     // A handful of sweeps; the bound only ends a loop that rounding might keep going.
     for _ in 0..40 {

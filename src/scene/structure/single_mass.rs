@@ -1,9 +1,8 @@
 //! One mass on a spring and a dashpot: m x″ + c x′ + k x = F (chapter 3 of the study), with c′ = c/(2 √(k m)).
 
-use super::kind::{Family, Field, Form, Kind};
+use super::kind::{Field, Form, Kind};
 use super::model::{Matrices, Model, Point, unit};
 use crate::dynamics::Matrix;
-use crate::scene::Parameter;
 use crate::text::number::quantity;
 
 /// One mass.
@@ -20,11 +19,10 @@ pub struct SingleMass {
 pub(super) const KIND: Kind = Kind {
     name: "single_mass",
     what: "a single mass",
-    family: Family::Mass,
     fields: &[
-        Field { key: "mass", form: Form::Mass, parameter: None },
-        Field { key: "stiffness", form: Form::Stiffness, parameter: None },
-        Field { key: "damping_ratio", form: Form::Ratio, parameter: Some(Parameter::DampingRatio) },
+        Field { key: "mass", form: Form::Mass, swept: false },
+        Field { key: "stiffness", form: Form::Stiffness, swept: false },
+        Field { key: "damping_ratio", form: Form::Ratio, swept: true },
     ],
     sides: &[],
     performance_point: Some(&[]),

@@ -6,9 +6,8 @@
 
 use std::f64::consts::PI;
 
-use super::kind::{Family, Field, Form, Kind};
+use super::kind::{Field, Form, Kind, StructureError};
 use super::model::{Matrices, Model, Point, unit};
-use crate::scene::{Assumption, Parameter, RecipeError};
 use crate::text::number::{compact, quantity};
 
 /// Most modes.
@@ -31,16 +30,15 @@ pub struct SupportedPlate {
 pub(super) const KIND: Kind = Kind {
     name: "supported_plate",
     what: "a simply supported plate",
-    family: Family::Plate,
     fields: &[
-        Field { key: "length", form: Form::Length, parameter: Some(Parameter::Length) },
-        Field { key: "width", form: Form::Length, parameter: Some(Parameter::Width) },
-        Field { key: "thickness", form: Form::Length, parameter: Some(Parameter::Thickness) },
-        Field { key: "youngs_modulus", form: Form::Stress, parameter: None },
-        Field { key: "poisson_ratio", form: Form::Ratio, parameter: None },
-        Field { key: "density", form: Form::Density, parameter: None },
-        Field { key: "rayleigh", form: Form::Ratio, parameter: Some(Parameter::Rayleigh) },
-        Field { key: "modes", form: Form::Modes(Assumption::PlateModes), parameter: Some(Parameter::Modes) },
+        Field { key: "length", form: Form::Length, swept: true },
+        Field { key: "width", form: Form::Length, swept: true },
+        Field { key: "thickness", form: Form::Length, swept: true },
+        Field { key: "youngs_modulus", form: Form::Stress, swept: false },
+        Field { key: "poisson_ratio", form: Form::Ratio, swept: false },
+        Field { key: "density", form: Form::Density, swept: false },
+        Field { key: "rayleigh", form: Form::Ratio, swept: true },
+        Field { key: "modes", form: Form::Modes, swept: true },
     ],
     sides: &["width", "length"],
     performance_point: None,
@@ -49,7 +47,7 @@ pub(super) const KIND: Kind = Kind {
         let [m, n] = values.modes(MOST_MODES, why)?;
         let poisson_ratio = values.ratio("poisson_ratio")?;
         if poisson_ratio > 0.5 {
-            return Err(RecipeError::structure(format!("poisson_ratio lies between 0 and 0.5, not at {poisson_ratio}")));
+            return Err(StructureError(format!("poisson_ratio lies between 0 and 0.5, not at {poisson_ratio}")));
         }
         let mut plate = SupportedPlate {
             width: values.above_zero("width")?,

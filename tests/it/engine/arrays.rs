@@ -54,7 +54,7 @@ pub(super) fn chain(masses: &[f64], stiffness: f64, damping: f64) -> HybridSyste
 }
 
 /// A supported beam of unit length and `n` modes, with damping that ties them to each other.
-fn beam(n: usize, first: f64, damping: f64) -> HybridSystem {
+pub(super) fn beam(n: usize, first: f64, damping: f64) -> HybridSystem {
     let square: Vec<f64> = (1..=n).map(|i| (first * (i * i) as f64).powi(2)).collect();
     let dashpot = shape(n, 0.37);
     let mut damped = Matrix::diagonal(&square.iter().map(|square| damping * square / first).collect::<Vec<_>>());
@@ -76,7 +76,7 @@ fn beam(n: usize, first: f64, damping: f64) -> HybridSystem {
     }
 }
 
-fn shape(n: usize, place: f64) -> Vec<f64> {
+pub(super) fn shape(n: usize, place: f64) -> Vec<f64> {
     (1..=n).map(|i| 2.0_f64.sqrt() * (i as f64 * PI * place).sin()).collect()
 }
 
@@ -515,4 +515,31 @@ pub(super) fn a_blow_from_above_leaves_the_neighbour_that_loses_its_floor() {
     let other_side = seesaw([1.0, -1.0]);
     assert!(!other_side.events.iter().any(|event| event.particle == 0), "it is carried along");
     within("how fast", other_side.final_velocity, 0.1 / 1.2, 2e-2);
+}
+
+#[test]
+pub(super) fn particles_that_a_ceiling_lets_go_together_leave_together() {
+    // Both lie at their ceilings, which push them by the same acceleration and let go at one instant.
+    let scene = |masses: &[f64], gap: f64, impulse: f64, period: f64, damping: f64| {
+        let mut system = chain(&[1.0], 500.0, 0.5 * damping);
+        for mass in masses {
+            system.particles.push(particle(*mass, gap, vec![1.0], [rigid(0.0); 2]));
+        }
+        system.drive = blows(period, impulse);
+        system
+    };
+    let alike = |what: &str, system: &HybridSystem| {
+        let options = cycles(60);
+        let [one, other] = [1.0, 0.5].map(|window_factor| go(system, &Options { window_factor, ..options.clone() }));
+        assert_eq!(one.proof.events, other.proof.events, "{what}: shorter windows find the same events");
+        let creeps = |event: &&Event| event.approach != 0.0 && event.approach.abs() < 1e-20;
+        assert!(!one.events.iter().any(|event| creeps(&event)), "{what}: a contact made of rounding");
+    };
+    alike("0.2 and 0.02 kg", &scene(&[0.2, 0.02], 5e-4, 0.5, 0.2, 3.0));
+    for seed in 0..60 {
+        let mut dice = Dice(seed);
+        let masses: Vec<f64> = (0..2 + seed % 3).map(|_| dice.ratio(0.005, 0.3)).collect();
+        let [gap, impulse, period] = [dice.ratio(3e-5, 3e-3), dice.ratio(0.1, 2.0), dice.between(0.05, 0.5)];
+        alike(&format!("seed {seed}"), &scene(&masses, gap, impulse, period, dice.between(0.0, 6.0)));
+    }
 }

@@ -219,7 +219,7 @@ pub fn agree(what: &str, system: &HybridSystem, options: &Options, tolerance: f6
     };
     let rms = many.window().rms_velocity();
     let window = many.window();
-    let places = (window.displacement_square / window.duration).sqrt();
+    let places = window.mean_displacement().hypot(window.std_displacement());
     // Places round where they are, however little they move; a mode turns that into speeds.
     let rounding = 8.0 * f64::EPSILON * places;
     let rounding = [rounding, rounding * response.highest_frequency];

@@ -8,8 +8,8 @@ use std::path::Path;
 
 use super::bench::{Ledger, listened};
 use super::{
-    arrays, closed_forms, equal_modes, event_cases, extremes, floating, long_runs, precise, properties,
-    reference_cases, walls,
+    arrays, averages, closed_forms, equal_modes, event_cases, extremes, floating, half_cycles, long_runs, precise,
+    properties, reference_cases, walls,
 };
 use crate::{spec, structures};
 
@@ -208,6 +208,31 @@ const HARD_CASES: &[HardCase] = &[
         checks: "where in its cycle an event falls",
         reference: "the thousandth cycle",
         tests: &[long_runs::after_a_million_cycles_an_impulse_falls_where_the_thousandth_fell],
+    },
+    HardCase {
+        name: "Particles that a ceiling lets go together",
+        checks: "no contact made of rounding, the same events by shorter windows",
+        reference: "itself",
+        tests: &[arrays::particles_that_a_ceiling_lets_go_together_leave_together],
+    },
+    HardCase {
+        name: "Equivalent viscous damping: base without damping, motion that dies away, arrays of light dampers",
+        checks: "momentum and energy; damping of no motion",
+        reference: "conservation; the curve's lower end",
+        tests: &[
+            half_cycles::a_base_without_damping_counts_its_half_cycles,
+            half_cycles::half_cycles_end_where_motion_has_died_away,
+            half_cycles::arrays_of_equal_light_dampers_have_contact_states_of_any_order,
+        ],
+    },
+    HardCase {
+        name: "Impulses so close that the displacement is all mean; pulses from rest",
+        checks: "RMS velocity, mean and deviation; momentum and energy",
+        reference: "sawtooth and parabola; conservation",
+        tests: &[
+            averages::impulses_without_pause_leave_a_sawtooth_and_a_parabola,
+            averages::the_audit_of_a_pulse_from_rest_closes_whatever_the_damping,
+        ],
     },
     HardCase {
         name: "Chaotic range",

@@ -111,8 +111,10 @@ fn difference(a: &Response, b: &Response) -> f64 {
         for (a, b) in a.halves.iter().zip(&b.halves) {
             take(a.duration, b.duration, b.duration);
             take(a.velocity_square, b.velocity_square, b.velocity_square);
-            take(a.displacement_square, b.displacement_square, b.displacement_square);
-            take(a.displacement, b.displacement, (b.displacement_square * b.duration).sqrt());
+            // Beside the whole motion, the place it is about included.
+            let square = b.deviation_square + b.displacement * b.displacement / b.duration;
+            take(a.deviation_square, b.deviation_square, square);
+            take(a.displacement, b.displacement, (square * b.duration).sqrt());
         }
         for (a, b) in [(a.extremes.displacement, b.extremes.displacement), (a.extremes.velocity, b.extremes.velocity)] {
             // Beside the rest under gravity, which may be many times the motion.

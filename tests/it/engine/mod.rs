@@ -2,19 +2,23 @@
 //! quantities, changes of units. `tests/it/data/README.md` says where the data come from.
 
 mod arrays;
+mod averages;
 mod bench;
 mod closed_forms;
 mod equal_modes;
 mod event_cases;
 mod extremes;
 mod floating;
+mod half_cycles;
 mod hard_cases;
 mod linear;
 mod long_runs;
 mod precise;
 mod properties;
+mod random_scenes;
 mod reference_cases;
 mod search;
 mod walls;
 
 pub use bench::note;
+pub(crate) use closed_forms::expected;

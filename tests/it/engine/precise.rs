@@ -3,8 +3,9 @@
 use std::time::Duration;
 
 use shotdamp::accuracy::precise::{PreciseError, precise};
-use shotdamp::dynamics::{Options, Response};
+use shotdamp::dynamics::{Law, Options, Response, Stop};
 
+use super::arrays::{chain, particle};
 use super::bench::{cases, close, instant, system, within};
 use super::reference_cases::{kind, scene};
 
@@ -48,4 +49,16 @@ pub(super) fn it_meets_the_reference_cases_to_all_digits_of_a_double() {
         }
     }
     assert_eq!(refused, [("M1_harm_eps0.3_g10", "rigid faces that give something back")]);
+}
+
+#[test]
+fn what_it_does_not_model_is_refused() {
+    // With and without a stop behind it.
+    for stop in [None, Some(Stop { length: 1e-3, restitution: 0.0 })] {
+        let law = Law::Resilient { stiffness: 1000.0, damping: 3.0, no_tension: true, stop };
+        let mut system = chain(&[1.0], 500.0, 1.0);
+        system.particles.push(particle(0.05, 0.1, vec![1.0], [law, law]));
+        let refused = precise(&system, &Options::default(), PATIENCE);
+        assert_eq!(refused, Err(PreciseError::Unknown("faces that cannot pull")), "{stop:?}");
+    }
 }

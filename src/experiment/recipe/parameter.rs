@@ -2,11 +2,12 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::recipe::{
-    ContactDampingRecipe, DamperRecipe, ExcitationKind, Filling, GapRecipe, Given, MassReading, MassRecipe, Part,
-    PulseShape, Recipe, RecipeError, StiffnessRecipe, StrengthRecipe, SurfaceRecipe, TimingRecipe,
+use super::given::Given;
+use super::parts::{
+    ContactDampingRatio, ContactDampingRecipe, DamperRecipe, ExcitationKind, Filling, FloorStiffness, GapRecipe,
+    MassReading, MassRecipe, Part, Recipe, RecipeError, StiffnessRecipe, StrengthRecipe, SurfaceRecipe, TimingRecipe,
 };
-use super::structure::whole;
+use crate::scene::{PulseShape, whole};
 
 /// What a sweep may vary. The earlier one varies slower.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
@@ -131,7 +132,7 @@ impl Parameter {
         }
     }
 
-    /// Symbol in the study, empty if it has none.
+    /// Symbol of the field, empty if it has none.
     #[must_use]
     pub fn symbol(self) -> &'static str {
         match self {
@@ -208,12 +209,14 @@ impl Recipe {
         let nothing = |what| RecipeError::NothingToVary { parameter, what };
         let number = || number(parameter, value);
         match parameter {
-            Parameter::ForceRatio => self.excitation.strength = StrengthRecipe::ForceRatio(number()?),
-            Parameter::BaseAmplitudeRatio => self.excitation.strength = StrengthRecipe::BaseAmplitudeRatio(number()?),
+            Parameter::ForceRatio => self.excitation.strength = StrengthRecipe::ForceRatio(number()?.into()),
+            Parameter::BaseAmplitudeRatio => {
+                self.excitation.strength = StrengthRecipe::BaseAmplitudeRatio(number()?.into())
+            }
             Parameter::Force => self.excitation.strength = StrengthRecipe::Force(Given::Stated(number()?)),
             Parameter::Impulse => self.excitation.strength = StrengthRecipe::Impulse(Given::Stated(number()?)),
-            Parameter::FrequencyRatio => self.excitation.timing = TimingRecipe::FrequencyRatio(number()?),
-            Parameter::AngularFrequency => self.excitation.timing = TimingRecipe::AngularFrequency(number()?),
+            Parameter::FrequencyRatio => self.excitation.timing = TimingRecipe::FrequencyRatio(number()?.into()),
+            Parameter::AngularFrequency => self.excitation.timing = TimingRecipe::AngularFrequency(number()?.into()),
             Parameter::ForcedMode => self.excitation.timing = TimingRecipe::ForcedMode(whole(number()?)?),
             Parameter::ForceX | Parameter::ForceY => {
                 let side = usize::from(parameter == Parameter::ForceY);
@@ -223,9 +226,9 @@ impl Recipe {
             }
             Parameter::PulseDuration => match &mut self.excitation.kind {
                 ExcitationKind::PulseTrain { duration, shape, .. } => {
-                    *duration = number()?;
+                    *duration = number()?.into();
                     if let PulseShape::Binomial { impulses } = shape {
-                        // One impulse a step of 1 ms, as the study's figure 31.
+                        // One impulse a step of 1 ms.
                         *impulses = (number()? / 1e-3).round().max(1.0) as u32;
                     }
                 }
@@ -261,10 +264,10 @@ impl DamperRecipe {
         let nothing = |what| RecipeError::NothingToVary { parameter, what };
         let number = || number(parameter, value);
         match parameter {
-            Parameter::MassRatio => self.mass = MassRecipe::Ratio(number()?),
+            Parameter::MassRatio => self.mass = MassRecipe::Ratio(number()?.into()),
             Parameter::MassReading => {
-                self.mass_reading =
-                    if value == ParameterValue::Modal { MassReading::Modal } else { MassReading::Total };
+                let modal = value == ParameterValue::Modal;
+                self.mass_reading = Given::Stated(if modal { MassReading::Modal } else { MassReading::Total });
             }
             Parameter::Filling => match &mut self.gap {
                 GapRecipe::Filled { filling, .. } => {
@@ -272,7 +275,7 @@ impl DamperRecipe {
                 }
                 _ => return Err(nothing("one filling alone: write `gap: {uniform: …, optimised: […]}`")),
             },
-            Parameter::ParticleShare => self.particle_share = number()?,
+            Parameter::ParticleShare => self.particle_share = number()?.into(),
             Parameter::DamperX | Parameter::DamperY => {
                 if !self.at.set_share(usize::from(parameter == Parameter::DamperY), number()?) {
                     return Err(nothing("no such side at the damper"));
@@ -285,7 +288,7 @@ impl DamperRecipe {
             Parameter::GapRatio => {
                 self.gap = match value {
                     ParameterValue::Infinite => GapRecipe::Infinite,
-                    _ => GapRecipe::Ratio(number()?),
+                    _ => GapRecipe::Ratio(number()?.into()),
                 };
             }
             Parameter::FloorStiffnessRatio | Parameter::ContactDampingRatio | Parameter::FloorTuning => {
@@ -296,10 +299,14 @@ impl DamperRecipe {
                     match parameter {
                         Parameter::FloorStiffnessRatio => *stiffness = StiffnessRecipe::Ratio(Given::Stated(number()?)),
                         Parameter::ContactDampingRatio => {
-                            *damping = ContactDampingRecipe::Ratio(Given::Stated(number()?));
+                            let ratio = ContactDampingRatio::Ratio(number()?);
+                            *damping = ContactDampingRecipe::Ratio(Given::Stated(ratio));
                         }
-                        _ if value == ParameterValue::Untuned => *stiffness = StiffnessRecipe::Untuned,
-                        _ => *stiffness = StiffnessRecipe::Tuned,
+                        _ => {
+                            let untuned = value == ParameterValue::Untuned;
+                            let tuning = if untuned { FloorStiffness::Untuned } else { FloorStiffness::Clean };
+                            *stiffness = StiffnessRecipe::By(Given::Stated(tuning));
+                        }
                     }
                 }
             }
@@ -308,7 +315,7 @@ impl DamperRecipe {
                 match value {
                     // Walls that do not give: Model 2.
                     ParameterValue::Infinite => self.walls = None,
-                    _ => walls.stiffness_ratio = number()?,
+                    _ => walls.stiffness_ratio = number()?.into(),
                 }
             }
             Parameter::Stop => match value {

@@ -2,8 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::recipe::{ArrayRecipe, Part, RecipeError};
-use super::structure::{Kind, Model, Point};
+use super::parts::{ArrayRecipe, Part, RecipeError};
+use crate::scene::{Kind, Model, Point};
 
 /// A place, one coordinate a side; none on a single mass.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]

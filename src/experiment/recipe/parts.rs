@@ -1,23 +1,15 @@
-//! Recipes: a scene in the study's own parameters, before the sweep and the assumptions have filled it in.
+//! Recipes: a scene as an experiment names it, before the sweep and the assumptions have filled it in.
 //!
-//! Table 1 of the study defines m′ = mp/m, c′ = c/(2√(ks m)), h′ = h ωn²/g, f′ = F/(m g), ω′ = ω/ωn with ωn = √(ks/m).
+//! Dimensionless parameters: m′ = mp/m, c′ = c/(2√(ks m)), h′ = h ωn²/g, f′ = F/(m g), ω′ = ω/ωn with ωn = √(ks/m).
 
 use serde::{Deserialize, Serialize};
 
+use super::given::{AssumptionName, Given};
+use super::parameter::Parameter;
 use super::place::PlaceRecipe;
-use super::start::StartRecipe;
 use super::structure::StructureRecipe;
-use super::{Assumption, Parameter, Take};
-
-/// A number that the study states, or the name of the assumption that stands for it.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Given {
-    /// Stated, SI or dimensionless.
-    Stated(f64),
-    /// Taken from the assumptions.
-    Assumed(Assumption),
-}
+use crate::measure::Comparison;
+use crate::scene::{Curve, PulseShape, Start, StartError, StructureError, Take};
 
 /// A scene as an experiment names it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -26,6 +18,10 @@ pub struct Recipe {
     pub structure: StructureRecipe,
     /// g, m/s².
     pub gravity: Given,
+    /// Of one mass: what it weighs in the run without dampers.
+    pub undamped_mass: Given<Carried>,
+    /// How the mass measure compares kinetic energies with those of the clean structure.
+    pub mass_measure: Given<Comparison>,
     /// The dampers, in the order of the file.
     pub dampers: Vec<DamperRecipe>,
     /// They are taken out: the clean structure.
@@ -34,7 +30,7 @@ pub struct Recipe {
     pub excitation: ExcitationRecipe,
     /// Where it starts; in static equilibrium unless it is stated.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub start: Option<StartRecipe>,
+    pub start: Option<Start>,
     /// Where its motion is observed.
     pub observe: ObserveRecipe,
     /// Which mode natural frequencies and mode shapes are of, from 1; the forced one unless it is stated.
@@ -42,12 +38,12 @@ pub struct Recipe {
 }
 
 /// Where the motion is observed, and what is made of several points.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ObserveRecipe {
     /// Where.
     pub points: PointsRecipe,
-    /// How one number is taken of them; `None`: by [`Assumption::GridVelocity`].
-    pub take: Option<Take>,
+    /// How one number is taken of several points.
+    pub take: Given<Take>,
 }
 
 /// Observed points.
@@ -59,7 +55,7 @@ pub enum PointsRecipe {
     Usual,
     /// These.
     Points(Vec<PlaceRecipe>),
-    /// The crossings of the lines that quarter both sides of a plate (s. 5.2.4).
+    /// The crossings of the lines that quarter both sides of a plate.
     NinePointGrid,
 }
 
@@ -72,12 +68,16 @@ pub struct DamperRecipe {
     pub array: Option<ArrayRecipe>,
     /// Particle and enclosure together, of the whole array.
     pub mass: MassRecipe,
-    /// What m′ is a share of.
-    pub mass_reading: MassReading,
+    /// What m′ is a share of; on one mass its mass.
+    pub mass_reading: Given<MassReading>,
+    /// The mass ratio that stands for m′ = 0 under a resilient surface, where a contact without mass is singular.
+    pub massless_ratio: Option<Given>,
     /// mp/(mp + ms).
-    pub particle_share: f64,
+    pub particle_share: Given,
     /// The gap clearance.
     pub gap: GapRecipe,
+    /// Whose first natural frequency stands in h′.
+    pub gap_frequency: Given<Reference>,
     /// The floor.
     pub floor: SurfaceRecipe,
     /// The ceiling; the same as the floor unless the file says otherwise.
@@ -103,27 +103,43 @@ pub struct ArrayRecipe {
 }
 
 /// Mass of particle and enclosure.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum MassRecipe {
-    /// m′ = (mp + ms)/m; on one mass 0 under a resilient surface becomes [`Assumption::MasslessRatio`].
-    Ratio(f64),
+    /// m′ = (mp + ms)/m.
+    Ratio(Given),
     /// mp + ms, kg.
-    Mass(f64),
+    Mass(Given),
 }
 
 /// What the mass ratio of a damper on a beam or plate is a share of.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum MassReading {
-    /// By [`Assumption::BeamDamperMass`] or [`Assumption::PlateDamperMass`].
-    Assumed,
-    /// By this assumption, which is of their kind.
-    By(Assumption),
     /// The structure's mass.
     Total,
     /// Its first modal mass where the largest amplitude is one.
     Modal,
+}
+
+/// A structure without its dampers, or with them fixed to it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Reference {
+    /// Without.
+    Clean,
+    /// With.
+    Loaded,
+}
+
+/// One mass alone, or with its particles.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Carried {
+    /// m.
+    Base,
+    /// m + mp.
+    Loaded,
 }
 
 /// The gap clearance.
@@ -131,9 +147,9 @@ pub enum MassReading {
 #[serde(rename_all = "snake_case")]
 pub enum GapRecipe {
     /// h′ = h ωn²/g.
-    Ratio(f64),
+    Ratio(Given),
     /// h, m.
-    Gap(f64),
+    Gap(Given),
     /// h′ of each damper of an array.
     Ratios(Vec<f64>),
     /// h of each damper of an array, m.
@@ -161,7 +177,7 @@ pub enum Filling {
     Optimised,
 }
 
-/// In which of the study's words gaps are told.
+/// The word by which gaps are given.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum GapWord {
@@ -204,51 +220,69 @@ pub enum SurfaceRecipe {
     /// Model 1.
     Rigid {
         /// ε.
-        restitution: f64,
+        restitution: Given,
     },
     /// Models 2 and 3.
     Resilient {
         /// kf.
         stiffness: StiffnessRecipe,
+        /// Natural frequency of the particle on an untuned surface over that of the clean structure.
+        untuned_ratio: Option<Given>,
         /// cf.
         damping: ContactDampingRecipe,
-        /// True: the contact ends where its force would turn to tension, false (as the study): at zero gap.
+        /// Damping against RMS base acceleration in units of g, for equivalent viscous damping.
+        damping_curve: Option<Given<Curve>>,
+        /// True: the contact ends where its force would turn to tension, false: at zero gap.
         no_tension: bool,
     },
 }
 
 /// Stiffness of a resilient surface.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum StiffnessRecipe {
     /// kf/ks.
     Ratio(Given),
+    /// A stiffness, or what it is tuned to.
+    By(Given<FloorStiffness>),
+}
+
+/// A stiffness, or the frequency ω to which it is tuned, kf = mp ω².
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum FloorStiffness {
     /// kf, N/m.
     Stiffness(f64),
-    /// kf = mp ω₁² of the clean structure.
-    Tuned,
-    /// kf = mp (r ω₁)² with r = [`Assumption::UntunedFrequencyRatio`].
+    /// ω₁ of the clean structure.
+    Clean,
+    /// ω₁ of the structure with its dampers fixed to it.
+    Loaded,
+    /// r ω₁ of the clean structure with r the untuned frequency ratio.
     Untuned,
-    /// By the assumption on floors of beams or of plates.
-    Assumed,
-    /// By this assumption, which is of their kind.
-    By(Assumption),
 }
 
 /// Damping of a resilient surface.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ContactDampingRecipe {
-    /// ζf = cf/(2 √(kf mp)).
-    Ratio(Given),
+    /// ζf = cf/(2 √(kf mp)), or the damping curve in its place.
+    Ratio(Given<ContactDampingRatio>),
     /// cf, N s/m.
-    Damping(f64),
-    /// Equivalent viscous damping by half cycles (s. 3.3), with the assumed curve.
+    Damping(Given),
+}
+
+/// A damping ratio of a contact, or the damping curve in its place.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ContactDampingRatio {
+    /// ζf.
+    Ratio(f64),
+    /// Equivalent viscous damping by half cycles.
     EquivalentViscous,
 }
 
 /// Limit stop.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct StopRecipe {
     /// δ, m.
     pub length: Given,
@@ -257,17 +291,17 @@ pub struct StopRecipe {
 }
 
 /// Soft walls.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct WallRecipe {
     /// kw/ks.
-    pub stiffness_ratio: f64,
+    pub stiffness_ratio: Given,
     /// cw, N s/m.
-    pub damping: f64,
+    pub damping: Given,
     /// mt/m.
-    pub ceiling_mass_ratio: Given,
+    pub ceiling_mass_ratio: Option<Given>,
 }
 
-/// Excitation in the study's parameters.
+/// Excitation in dimensionless parameters or SI.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ExcitationRecipe {
     /// Of which kind.
@@ -278,8 +312,10 @@ pub struct ExcitationRecipe {
     pub strength: StrengthRecipe,
     /// How often; of a single impulse: the cycle that time is counted in.
     pub timing: TimingRecipe,
+    /// Of one mass: whose natural frequency a frequency ratio of 1 means.
+    pub frequency_reference: Given<Carried>,
     /// τ in J = f′ m g τ.
-    pub impulse_time: ImpulseTime,
+    pub impulse_time: ImpulseTimeRecipe,
 }
 
 /// Kind of an excitation.
@@ -297,18 +333,41 @@ pub enum ExcitationKind {
     /// Finite pulses with a period.
     PulseTrain {
         /// s.
-        duration: f64,
+        duration: Given,
         /// How the impulse is spread.
         shape: PulseShape,
     },
+}
+
+/// How the time τ comes about by which a force ratio becomes an impulse, J = f′ m g τ.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ImpulseTimeRecipe {
+    /// A time.
+    By(Given<ImpulseTime>),
+    /// τ = κ/ω.
+    Factor {
+        /// κ.
+        factor: Given,
+        /// Which ω.
+        frequency: Given<ForcingOrNatural>,
+    },
+}
+
+/// Which frequency.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ForcingOrNatural {
+    /// That of the forcing.
+    Forcing,
+    /// The first natural one of the clean structure.
+    Natural,
 }
 
 /// The time τ by which a force ratio becomes an impulse, J = f′ m g τ.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ImpulseTime {
-    /// By assumption: κ/ω for a single mass, [`Assumption::BeamImpulseTime`], [`Assumption::PlateImpulseTime`].
-    Assumed,
     /// s.
     Seconds(f64),
     /// 1/ω of the forcing.
@@ -319,20 +378,14 @@ pub enum ImpulseTime {
     Period,
 }
 
-impl ImpulseTime {
-    /// The readings by their words in YAML.
-    pub const WORDS: [(&'static str, Self); 3] =
-        [("radian", Self::Radian), ("half_sine", Self::HalfSine), ("period", Self::Period)];
-}
-
 /// The strength of an excitation.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum StrengthRecipe {
-    /// f′ = F/(m g): the force amplitude of a harmonic, and for impulses J = κ f′ m g/ω with the assumed κ and ω.
-    ForceRatio(f64),
-    /// a ω²/g, Duncan's base amplitude: F = −m a ω² (harmonic only).
-    BaseAmplitudeRatio(f64),
+    /// f′ = F/(m g): the amplitude of a harmonic force, and for impulses J = f′ m g τ.
+    ForceRatio(Given),
+    /// a ω²/g, the base amplitude: F = −m a ω² (harmonic only).
+    BaseAmplitudeRatio(Given),
     /// J, N s (impulses and pulses only).
     Impulse(Given),
     /// F, N (harmonic only).
@@ -340,30 +393,17 @@ pub enum StrengthRecipe {
 }
 
 /// The timing of an excitation.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum TimingRecipe {
     /// ω′ = ω/ωn.
-    FrequencyRatio(f64),
+    FrequencyRatio(Given),
     /// T, s.
-    Period(f64),
+    Period(Given),
     /// ω, rad/s.
-    AngularFrequency(f64),
+    AngularFrequency(Given),
     /// The clean structure's natural frequency of this number.
     ForcedMode(u32),
-}
-
-/// How a finite pulse spreads its impulse.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum PulseShape {
-    /// Constant force over the duration.
-    Rectangular,
-    /// Impulses with binomial weights, one a millisecond of the duration.
-    Binomial {
-        /// n: impulses a pulse, spaced duration/n, weights C(n−1, i)/2^(n−1).
-        impulses: u32,
-    },
 }
 
 /// Why a recipe has no scene.
@@ -377,9 +417,9 @@ pub enum RecipeError {
         /// What the scene has instead.
         what: &'static str,
     },
-    /// An assumption is needed and absent from the file, or of the wrong kind.
-    #[error("the assumption {0:?} is needed; give it {1} in the assumptions file")]
-    Assumption(Assumption, &'static str),
+    /// An assumption is needed and absent from the file, or of another kind.
+    #[error("the assumption `{0}` is not declared, or is of another kind")]
+    Assumption(AssumptionName),
     /// A value that physics refuses.
     #[error("{0}")]
     OutOfRange(String),
@@ -415,9 +455,14 @@ impl Part {
     }
 }
 
-impl RecipeError {
-    /// A structure that is none.
-    pub(crate) fn structure(message: String) -> Self {
-        Self::Part { part: Part::Structure, message }
+impl From<StructureError> for RecipeError {
+    fn from(error: StructureError) -> Self {
+        Self::Part { part: Part::Structure, message: error.0 }
+    }
+}
+
+impl From<StartError> for RecipeError {
+    fn from(error: StartError) -> Self {
+        Self::Part { part: Part::Start, message: error.0 }
     }
 }

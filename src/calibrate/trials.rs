@@ -1,4 +1,4 @@
-//! Runs experiments under sets of inputs, and never the same twice.
+//! Runs experiments under sets of inputs, each combination once.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
@@ -7,11 +7,11 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use super::rows::Wanted;
 use super::set::Set;
 use crate::experiment::Experiment;
+use crate::experiment::GapWord;
 use crate::measure::SolverChoice;
 use crate::measure::{Evaluated, Rigour};
 use crate::reference::Entry;
-use crate::scene::GapWord;
-use crate::study::{Array, Evaluate, Event, EventHandler, Simulation, Task, ThreadError, Variant, run};
+use crate::study::{Array, Evaluate, Event, EventHandler, RowFailure, Simulation, Task, ThreadError, Variant, run};
 use crate::table::{BASELINE, Table};
 
 /// An entry with the id of its experiment.
@@ -22,30 +22,35 @@ pub(super) type SharedTables = BTreeMap<String, Arc<Table>>;
 /// What a number has to be worth.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Worth {
-    /// One step of a search: the mean of so many runs where the motion is chaotic; 0: a single run, as the study's numbers are.
+    /// One step of a search: the mean of `ensemble` runs where the motion is chaotic; 0: a single run, as the study's numbers are.
     Step { ensemble: u32 },
     /// A result, of an ensemble where the motion is chaotic.
     Result,
 }
 
-/// Where it is run, and who listens.
-pub(super) struct Hands<'a, E> {
+/// The threads, the engine, and the handler of events.
+pub(super) struct Workers<'a, E> {
     pub threads: usize,
     pub evaluate: &'a E,
-    pub handler: &'a Growing<'a>,
+    pub handler: &'a CumulativeEvents<'a>,
 }
 
 /// The experiments that entries read, ready to be run under any inputs.
-pub(super) struct Bench<'a, E> {
-    hands: &'a Hands<'a, E>,
+pub(super) struct TrialRunner<'a, E> {
+    workers: &'a Workers<'a, E>,
     worth: Worth,
     experiments: Vec<Experiment>,
-    /// By experiment and all that its numbers lean on.
+    /// By experiment and all that its numbers depend on.
     known: BTreeMap<(usize, String), Arc<Table>>,
 }
 
-impl<'a, E: Evaluate> Bench<'a, E> {
-    pub(super) fn new(hands: &'a Hands<'a, E>, worth: Worth, experiments: &[&Experiment], asked: &[Asked<'_>]) -> Self {
+impl<'a, E: Evaluate> TrialRunner<'a, E> {
+    pub(super) fn new(
+        workers: &'a Workers<'a, E>,
+        worth: Worth,
+        experiments: &[&Experiment],
+        asked: &[Asked<'_>],
+    ) -> Self {
         let mut wanted: BTreeMap<String, Wanted> = BTreeMap::new();
         for (home, entry) in asked {
             let read: BTreeSet<String> = entry.readings(home).into_iter().map(|reading| reading.experiment).collect();
@@ -60,7 +65,7 @@ impl<'a, E: Evaluate> Bench<'a, E> {
             }
             Some(part)
         };
-        Self { hands, worth, experiments: experiments.iter().filter_map(part).collect(), known: BTreeMap::new() }
+        Self { workers, worth, experiments: experiments.iter().filter_map(part).collect(), known: BTreeMap::new() }
     }
 
     /// The tables under each of the sets.
@@ -75,7 +80,7 @@ impl<'a, E: Evaluate> Bench<'a, E> {
             self.run_new(sets.iter().filter(|set| set.solver == solver), solver)?;
         }
         let of = |set: &Set| {
-            let known = |index: usize| self.known.get(&(index, self.leaning(index, set))).cloned();
+            let known = |index: usize| self.known.get(&(index, self.dependencies(index, set))).cloned();
             let each = (0..self.experiments.len()).filter_map(|index| Some((index, known(index)?)));
             each.map(|(index, table)| (self.experiments[index].id.to_string(), table)).collect()
         };
@@ -86,7 +91,7 @@ impl<'a, E: Evaluate> Bench<'a, E> {
         let mut new: BTreeMap<(usize, String), [Variant; 1]> = BTreeMap::new();
         for set in sets {
             for index in 0..self.experiments.len() {
-                let key = (index, self.leaning(index, set));
+                let key = (index, self.dependencies(index, set));
                 if !self.known.contains_key(&key) {
                     let assumptions = set.assumptions.clone();
                     new.entry(key).or_insert([Variant { label: BASELINE.into(), moved: None, assumptions }]);
@@ -98,53 +103,53 @@ impl<'a, E: Evaluate> Bench<'a, E> {
             .iter()
             .map(|((index, _), variants)| Task::new(&self.experiments[*index], variants, &metadata))
             .collect();
-        let evaluate = Under { evaluate: self.hands.evaluate, solver, worth: self.worth };
+        let evaluate = Substituted { evaluate: self.workers.evaluate, solver, worth: self.worth };
         let tables =
-            run(&tasks, self.hands.threads, &evaluate, self.hands.handler, |_, finished| Arc::new(finished.table))?;
+            run(&tasks, self.workers.threads, &evaluate, self.workers.handler, |_, finished| Arc::new(finished.table))?;
         self.known.extend(new.into_keys().zip(tables));
         Ok(())
     }
 
     /// All that the numbers of an experiment depend on under this set.
-    fn leaning(&self, index: usize, set: &Set) -> String {
+    fn dependencies(&self, index: usize, set: &Set) -> String {
         let used = self.experiments[index].assumptions_under(&set.assumptions);
         let values: Vec<_> = set.assumptions.values.iter().filter(|(name, _)| used.contains(name)).collect();
         format!("{:?} {values:?}", set.solver)
     }
 }
 
-/// Another solver in the place of the exact one, and single runs for steps.
-struct Under<'a, E> {
+/// Substitutes another solver for the exact one, and single runs for steps.
+struct Substituted<'a, E> {
     evaluate: &'a E,
     solver: SolverChoice,
     worth: Worth,
 }
 
-impl<E> Under<'_, E> {
+impl<E> Substituted<'_, E> {
     fn simulation<'s>(&self, it: &Simulation<'s>) -> Simulation<'s> {
         let solver = if it.solver == SolverChoice::EventDriven { self.solver } else { it.solver };
         Simulation { solver, rigour: self.worth.rigour(it.rigour), ..*it }
     }
 }
 
-impl<E: Evaluate> Evaluate for Under<'_, E> {
-    fn evaluate(&self, it: &Simulation<'_>) -> Result<Evaluated, String> {
+impl<E: Evaluate> Evaluate for Substituted<'_, E> {
+    fn evaluate(&self, it: &Simulation<'_>) -> Result<Evaluated, RowFailure> {
         self.evaluate.evaluate(&self.simulation(it))
     }
 
-    fn array<'a>(&'a self, it: Simulation<'a>, word: GapWord) -> Result<Box<dyn Array + 'a>, String> {
+    fn array<'a>(&'a self, it: Simulation<'a>, word: GapWord) -> Result<Box<dyn Array + 'a>, RowFailure> {
         let array = self.evaluate.array(self.simulation(&it), word)?;
-        Ok(Box::new(ArrayUnder { array, worth: self.worth }))
+        Ok(Box::new(SubstitutedArray { array, worth: self.worth }))
     }
 }
 
-struct ArrayUnder<'a> {
+struct SubstitutedArray<'a> {
     array: Box<dyn Array + 'a>,
     worth: Worth,
 }
 
-impl Array for ArrayUnder<'_> {
-    fn evaluate(&self, gaps: &[f64], rigour: Rigour) -> Result<Evaluated, String> {
+impl Array for SubstitutedArray<'_> {
+    fn evaluate(&self, gaps: &[f64], rigour: Rigour) -> Result<Evaluated, RowFailure> {
         self.array.evaluate(gaps, self.worth.rigour(rigour))
     }
 }
@@ -159,26 +164,26 @@ impl Worth {
     }
 }
 
-/// Passes on what many runs tell as if they were one, whose size comes out as it goes on.
-pub(super) struct Growing<'a> {
+/// Passes on the events of many runs as those of one, whose size is known only at the end.
+pub(super) struct CumulativeEvents<'a> {
     handler: &'a dyn EventHandler,
     simulations: AtomicU64,
 }
 
-impl<'a> Growing<'a> {
+impl<'a> CumulativeEvents<'a> {
     pub(super) fn new(handler: &'a dyn EventHandler) -> Self {
         Self { handler, simulations: AtomicU64::new(0) }
     }
 }
 
-impl EventHandler for Growing<'_> {
+impl EventHandler for CumulativeEvents<'_> {
     fn on_event(&self, event: &Event<'_>) {
         match event {
             Event::Begun { experiments, simulations } => {
                 let simulations = self.simulations.fetch_add(*simulations, Ordering::Relaxed) + simulations;
                 self.handler.on_event(&Event::Begun { experiments: *experiments, simulations });
             }
-            // Whoever runs them says when the last one is over.
+            // The end of one run is not the end of all.
             Event::Ended | Event::Finished { .. } => {}
             other => self.handler.on_event(other),
         }

@@ -1,0 +1,51 @@
+//! How large the residuals of a run may be if nothing but rounding is in them.
+//!
+//! Every event and every cycle rounds the state once, and a rounding enters the balance with the ratio of the longest to the
+//! shortest time in the run (the forcing period, the period of the fastest motion, the shortest stretch of the force), and of
+//! the heaviest particle to what carries it:
+//!
+//! bound = 64 ε (events + cycles) longest/shortest max(1, mp φᵀM⁻¹φ),   at most one part in a million.
+
+use super::{HybridSystem, Options, Proof, Response};
+
+/// Roundings of a cycle or an event that may fall together.
+const ROUNDINGS: f64 = 64.0;
+/// Beyond it a balance proves nothing, however hard the run.
+const LARGEST: f64 = 1e-6;
+
+/// Enters the bound of an audited run into its proof.
+pub(super) fn enter(system: &HybridSystem, options: &Options, response: &mut Response) {
+    if options.audit {
+        let roundings = ROUNDINGS * (response.proof.events as f64 + options.cycles() as f64);
+        let times = [system.drive.period, std::f64::consts::TAU / response.highest_frequency];
+        let stretches =
+            system.drive.ticks.windows(2).map(|pair| pair[1].time - pair[0].time).filter(|time| *time > 0.0);
+        let shortest = stretches.chain(times).fold(f64::INFINITY, f64::min);
+        let spread = times.into_iter().fold(0.0, f64::max) / shortest;
+        let bound = f64::EPSILON * roundings * spread * heaviest(system);
+        // Also where the spread is no number.
+        response.proof.residual_bound = if bound < LARGEST { bound } else { LARGEST };
+    }
+}
+
+/// mp φᵀM⁻¹φ of the heaviest particle, by the diagonal of M; 1 at least.
+fn heaviest(system: &HybridSystem) -> f64 {
+    let n = system.mass.order;
+    let carried = |row: &[f64]| (0..n).map(|i| row[i] * row[i] / system.mass.entries[i * n + i]).sum::<f64>();
+    system.particles.iter().map(|particle| particle.mass * carried(&particle.floor.row)).fold(1.0, f64::max)
+}
+
+impl Proof {
+    /// The larger of both residuals; NaN if one of them is.
+    #[must_use]
+    pub fn residual(&self) -> f64 {
+        let (momentum, energy) = (self.momentum_residual.abs(), self.energy_residual.abs());
+        if momentum.is_nan() || energy.is_nan() { f64::NAN } else { momentum.max(energy) }
+    }
+
+    /// The balances of an audited run close to within rounding.
+    #[must_use]
+    pub fn is_balanced(&self) -> bool {
+        self.residual() <= self.residual_bound
+    }
+}

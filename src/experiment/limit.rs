@@ -1,0 +1,122 @@
+//! The limit of a row, `{events: 1e8, time: 10 min}`, and the same on a command line, `1e8 events, 10 min`.
+
+use std::str::FromStr;
+use std::time::Duration;
+
+use super::diagnostic::Findings;
+use super::quantity::{Dimension, parse_number, parse_quantity};
+use super::reader::{Fields, scalar};
+use super::yaml::Node;
+use crate::dynamics::Limit;
+
+/// Longest time that can be asked for: a year.
+const LONGEST: f64 = 31_557_600.0;
+
+/// A limit of which parts may be left as they are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct RowLimit {
+    /// Events of a simulation.
+    pub events: Option<u64>,
+    /// Processor time of a row.
+    pub time: Option<Duration>,
+}
+
+/// A text that is no limit.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("`{0}` is no limit of a row; write for example `1e8 events`, `10 min`, or both with a comma between them")]
+pub struct NoLimit(String);
+
+impl RowLimit {
+    /// This limit, and what it leaves open as in `usual`.
+    #[must_use]
+    pub fn over(self, usual: Limit) -> Limit {
+        Limit { events: self.events.unwrap_or(usual.events), time: self.time.unwrap_or(usual.time) }
+    }
+}
+
+impl FromStr for RowLimit {
+    type Err = NoLimit;
+
+    fn from_str(text: &str) -> Result<Self, NoLimit> {
+        let mut limit = Self::default();
+        for part in text.split(',').map(str::trim) {
+            let taken = match (events(part), time(part)) {
+                (Some(events), _) => limit.events.replace(events).is_some(),
+                (_, Some(time)) => limit.time.replace(time).is_some(),
+                _ => true,
+            };
+            if taken {
+                return Err(NoLimit(text.into()));
+            }
+        }
+        Ok(limit)
+    }
+}
+
+/// Reads the mapping of an experiment.
+pub(super) fn read_limit(node: &Node, findings: &Findings) -> Option<Limit> {
+    let fields = Fields::open(node, "a limit", findings)?;
+    let part = |node: &Node, what: &str, example: &str| {
+        let text = scalar(node, findings)?;
+        findings.report::<()>(
+            node.span,
+            format!("`{text}` is not {what}"),
+            Some(format!("write for example {example}")),
+        )
+    };
+    let events = fields.optional("events", |node| {
+        let read = scalar(node, findings).map(events)?;
+        read.or_else(|| {
+            part(node, "a number of events, one at least", "1e8");
+            None
+        })
+    });
+    let time = fields.optional("time", |node| {
+        let read = scalar(node, findings).map(time)?;
+        read.or_else(|| {
+            part(node, "a time up to a year", "10 min, 30 s or 2 h");
+            None
+        })
+    });
+    fields.close()?;
+    Some(RowLimit { events: events?, time: time? }.over(Limit::default()))
+}
+
+/// `1e8`, `100000`, with or without its noun.
+fn events(text: &str) -> Option<u64> {
+    let digits = text.trim().trim_end_matches("events").trim();
+    let number = parse_number(digits).ok()?;
+    // Whole numbers of this size are exact.
+    (number >= 1.0 && number <= 1e15 && number.fract() == 0.0).then_some(number as u64)
+}
+
+/// `10 min`, `2 h`, or seconds with any prefix.
+fn time(text: &str) -> Option<Duration> {
+    let text = text.trim();
+    let in_units = |unit: &str, seconds: f64| {
+        let number = parse_number(text.strip_suffix(unit)?.trim()).ok()?;
+        Some(number * seconds)
+    };
+    let seconds = in_units("min", 60.0)
+        .or_else(|| in_units("h", 3600.0))
+        .or_else(|| parse_quantity(text, Dimension::Time).ok())?;
+    (seconds > 0.0 && seconds <= LONGEST).then(|| Duration::from_secs_f64(seconds))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_limit_is_written_in_events_or_in_time_or_in_both() {
+        let limit = |text: &str| text.parse::<RowLimit>();
+        let time = |seconds| Some(Duration::from_secs(seconds));
+        assert_eq!(limit("1e7 events"), Ok(RowLimit { events: Some(10_000_000), time: None }));
+        assert_eq!(limit("30 s"), Ok(RowLimit { events: None, time: time(30) }));
+        assert_eq!(limit("5min, 1000"), Ok(RowLimit { events: Some(1000), time: time(300) }));
+        assert_eq!(limit("2 h"), Ok(RowLimit { events: None, time: time(7200) }));
+        for wrong in ["", "0", "-1 s", "0 s", "1.5 events", "1e300 s", "soon", "1 s, 2 s", "nan", "inf h"] {
+            assert!(limit(wrong).is_err(), "{wrong}");
+        }
+    }
+}

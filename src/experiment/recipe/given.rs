@@ -1,0 +1,219 @@
+//! Assumptions in force, and what of a recipe they stand for.
+//!
+//! A slot of a recipe is [`Given`]: stated, or the name of an assumption. [`Inputs`] turns it into its value and records the
+//! name, so that what a scene depends on is what was read while it was resolved.
+
+use std::cell::RefCell;
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
+
+use serde::{Deserialize, Serialize};
+
+use super::parts::RecipeError;
+use crate::experiment::assumption_sheet::AssumptionSheet;
+use crate::experiment::word::from_word;
+use crate::scene::{Curve, FieldValue, Take, whole};
+
+/// The name of an assumption, as the assumptions file declares it.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(into = "String", from = "String")]
+pub struct AssumptionName(Arc<str>);
+
+impl AssumptionName {
+    /// The word in YAML, in tables and in reports.
+    #[must_use]
+    pub fn as_str(&self) -> &str {
+        &self.0
+    }
+}
+
+impl From<String> for AssumptionName {
+    fn from(name: String) -> Self {
+        Self(name.into())
+    }
+}
+
+impl From<&str> for AssumptionName {
+    fn from(name: &str) -> Self {
+        Self(name.into())
+    }
+}
+
+impl From<AssumptionName> for String {
+    fn from(name: AssumptionName) -> Self {
+        name.0.as_ref().into()
+    }
+}
+
+impl std::fmt::Display for AssumptionName {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(&self.0)
+    }
+}
+
+/// The value of one assumption.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum AssumptionValue {
+    /// A number, SI or dimensionless.
+    Number(f64),
+    /// One of named readings of the source.
+    Choice(String),
+    /// A curve through points.
+    Curve(Curve),
+}
+
+/// The assumptions in force: a value for each, and the sheet that declares them.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Assumptions {
+    /// The values.
+    pub values: BTreeMap<AssumptionName, AssumptionValue>,
+    /// Where they are declared.
+    pub sheet: Arc<AssumptionSheet>,
+}
+
+/// A value that an experiment states, or the name of the assumption that stands for it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Given<T = f64> {
+    /// Stated; a number is SI or dimensionless.
+    Stated(T),
+    /// By assumption.
+    Assumed(AssumptionName),
+}
+
+impl<T> From<T> for Given<T> {
+    fn from(value: T) -> Self {
+        Self::Stated(value)
+    }
+}
+
+/// What an assumption can stand for.
+pub trait Assumable: Clone {
+    /// The value that this assumption stands for; nothing if it is of another kind.
+    fn of(value: &AssumptionValue) -> Option<Self>;
+}
+
+impl Assumable for f64 {
+    fn of(value: &AssumptionValue) -> Option<Self> {
+        if let AssumptionValue::Number(number) = value { Some(*number) } else { None }
+    }
+}
+
+impl Assumable for Curve {
+    fn of(value: &AssumptionValue) -> Option<Self> {
+        if let AssumptionValue::Curve(curve) = value { Some(curve.clone()) } else { None }
+    }
+}
+
+impl Assumable for FieldValue {
+    fn of(value: &AssumptionValue) -> Option<Self> {
+        match value {
+            AssumptionValue::Number(number) => Some(Self::Number(*number)),
+            AssumptionValue::Choice(word) => Some(Self::Word(word.clone())),
+            AssumptionValue::Curve(_) => None,
+        }
+    }
+}
+
+/// A number of modes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Count(pub u32);
+
+impl Assumable for Count {
+    fn of(value: &AssumptionValue) -> Option<Self> {
+        if let AssumptionValue::Number(number) = value { whole(*number).ok().map(Self) } else { None }
+    }
+}
+
+/// Readings whose words are their names in snake case.
+macro_rules! readings {
+    ($($Type:ty),*) => {
+        $(impl Assumable for $Type {
+            fn of(value: &AssumptionValue) -> Option<Self> {
+                if let AssumptionValue::Choice(word) = value { from_word(word) } else { None }
+            }
+        })*
+    };
+}
+readings!(
+    Take,
+    super::Carried,
+    super::Reference,
+    super::MassReading,
+    super::ForcingOrNatural,
+    crate::measure::Comparison
+);
+
+impl Assumable for super::FloorStiffness {
+    fn of(value: &AssumptionValue) -> Option<Self> {
+        match value {
+            AssumptionValue::Number(stiffness) => Some(Self::Stiffness(*stiffness)),
+            AssumptionValue::Choice(word) => from_word(word),
+            AssumptionValue::Curve(_) => None,
+        }
+    }
+}
+
+impl Assumable for super::ImpulseTime {
+    fn of(value: &AssumptionValue) -> Option<Self> {
+        match value {
+            AssumptionValue::Number(seconds) => Some(Self::Seconds(*seconds)),
+            AssumptionValue::Choice(word) => from_word(word),
+            AssumptionValue::Curve(_) => None,
+        }
+    }
+}
+
+impl Assumable for super::ContactDampingRatio {
+    fn of(value: &AssumptionValue) -> Option<Self> {
+        match value {
+            AssumptionValue::Number(ratio) => Some(Self::Ratio(*ratio)),
+            AssumptionValue::Choice(word) => from_word(word),
+            AssumptionValue::Curve(_) => None,
+        }
+    }
+}
+
+/// The assumptions in force while a recipe is resolved, with a record of those that were read.
+#[derive(Debug)]
+pub(super) struct Inputs<'a> {
+    values: &'a BTreeMap<AssumptionName, AssumptionValue>,
+    read: RefCell<BTreeSet<AssumptionName>>,
+}
+
+impl<'a> Inputs<'a> {
+    pub(super) fn new(assumptions: &'a Assumptions) -> Self {
+        Self { values: &assumptions.values, read: RefCell::default() }
+    }
+
+    /// What was read.
+    pub(super) fn read(self) -> BTreeSet<AssumptionName> {
+        self.read.into_inner()
+    }
+
+    /// The value of a slot.
+    ///
+    /// # Errors
+    /// If its assumption is absent, or of another kind.
+    pub(super) fn get<T: Assumable>(&self, given: &Given<T>) -> Result<T, RecipeError> {
+        match given {
+            Given::Stated(value) => Ok(value.clone()),
+            Given::Assumed(name) => {
+                if !self.read.borrow().contains(name) {
+                    self.read.borrow_mut().insert(name.clone());
+                }
+                let value = self.values.get(name).and_then(T::of);
+                value.ok_or_else(|| RecipeError::Assumption(name.clone()))
+            }
+        }
+    }
+
+    /// The value of a slot that the scene needs although its file need not name it.
+    ///
+    /// # Errors
+    /// If there is none: `missing` says what to write.
+    pub(super) fn needed<T: Assumable>(&self, given: Option<&Given<T>>, missing: &str) -> Result<T, RecipeError> {
+        self.get(given.ok_or_else(|| RecipeError::OutOfRange(missing.into()))?)
+    }
+}

@@ -1,0 +1,25 @@
+//! Recipes: scenes as experiments name them, in dimensionless parameters and with assumptions, and how they become SI.
+//!
+//! A [`Recipe`] holds what the file says. [`Recipe::set`] gives a swept parameter its value, [`Recipe::resolve`] makes the
+//! [`crate::scene::Scene`], and [`Recipe::dependencies`] says which assumptions were read for it.
+
+mod drive;
+mod given;
+mod parameter;
+mod parts;
+mod place;
+mod resolve;
+mod slot;
+mod structure;
+
+pub use given::{Assumable, AssumptionName, AssumptionValue, Assumptions, Given};
+pub use parameter::{Parameter, ParameterValue};
+pub use parts::{
+    ArrayRecipe, Carried, ContactDampingRatio, ContactDampingRecipe, DamperRecipe, ExcitationKind, ExcitationRecipe,
+    Filling, FloorStiffness, ForcingOrNatural, GapRecipe, GapWord, ImpulseTime, ImpulseTimeRecipe, MassReading,
+    MassRecipe, ObserveRecipe, Part, PointsRecipe, Recipe, RecipeError, Reference, StiffnessRecipe, StopRecipe,
+    StrengthRecipe, SurfaceRecipe, TimingRecipe, WallRecipe,
+};
+pub use place::{Coordinate, PlaceRecipe};
+pub use slot::Slot;
+pub use structure::StructureRecipe;

@@ -1,0 +1,240 @@
+//! The measures: one row a measure below is all that the program knows of it besides its formula.
+//!
+//! From the rows come the words in YAML and in tables, the JSON Schema, `docs/tables.md`, what an experiment must keep, and
+//! what a run has to record. [`super::reading`] holds the formulas.
+
+use serde::{Deserialize, Serialize};
+
+use crate::scene::Excitation;
+
+/// What is known of a measure.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Facts {
+    /// Unit symbol, empty when dimensionless.
+    pub unit: &'static str,
+    /// Symbol of the field, empty if it has none.
+    pub symbol: &'static str,
+    /// Its name for people, without unit and symbol; empty where the word in YAML with spaces serves.
+    pub words: &'static str,
+    /// What it is, in one line.
+    pub about: &'static str,
+    /// What it is read off.
+    pub from: ReadOff,
+    /// Which runs it takes.
+    pub runs: Runs,
+    /// Under what excitation it has a meaning.
+    pub under: Under,
+}
+
+/// What a measure is read off.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ReadOff {
+    /// Velocities averaged over the window.
+    Velocity,
+    /// Displacements averaged over the window.
+    Displacement,
+    /// Largest and smallest values in the window.
+    Extremes,
+    /// Kinetic energies at the impulses.
+    Energies,
+    /// Numbers of events, or properties of the run itself: they tend to no limit as a run gets more exact.
+    Run,
+    /// Single events in the window.
+    Events,
+    /// The state at the end of the run.
+    End,
+    /// The time history that is kept.
+    Trace,
+    /// The model: no run is needed.
+    Model,
+    /// The shape that is kept.
+    Shape,
+}
+
+/// Which runs a measure takes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Runs {
+    /// The scene as it is.
+    Own,
+    /// The scene without dampers as well.
+    Both,
+}
+
+/// Under what excitation a measure has a meaning.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Under {
+    /// Any, or none.
+    Any,
+    /// A harmonic force.
+    Harmonic,
+    /// Impulses or pulses.
+    Impulses,
+}
+
+macro_rules! measures {
+    ($($Name:ident: $unit:literal, $symbol:literal, $words:literal, $about:literal, $From:ident, $Runs:ident, $Under:ident;)*) => {
+        /// What can be measured. The same word in YAML (`velocity_ratio`) and as a table column.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+        #[serde(rename_all = "snake_case")]
+        pub enum Measure {
+            $(#[doc = $about] $Name,)*
+        }
+
+        impl Measure {
+            /// All measures.
+            pub const ALL: &[Self] = &[$(Self::$Name,)*];
+
+            /// What is known of it.
+            #[must_use]
+            pub const fn facts(self) -> Facts {
+                match self {
+                    $(Self::$Name => Facts {
+                        unit: $unit,
+                        symbol: $symbol,
+                        words: $words,
+                        about: $about,
+                        from: ReadOff::$From,
+                        runs: Runs::$Runs,
+                        under: Under::$Under,
+                    },)*
+                }
+            }
+        }
+    };
+}
+
+measures! {
+    VelocityRatio: "", "ψ", "", "RMS velocity without dampers over the one with them", Velocity, Both, Any;
+    DisplacementRatio: "", "η", "", "standard deviation of the displacement without dampers over the one with them", Displacement, Both, Any;
+    RmsVelocity: "m/s", "", "RMS velocity", "RMS velocity of the structure", Velocity, Own, Any;
+    StdDisplacement: "m", "", "standard deviation of the displacement", "standard deviation of the displacement", Displacement, Own, Any;
+    MeanDisplacement: "m", "", "", "mean displacement", Displacement, Own, Any;
+    UndampedRmsVelocity: "m/s", "", "RMS velocity without damper", "RMS velocity without dampers", Velocity, Both, Any;
+    FloorImpacts: "", "", "", "contacts made with the floor", Run, Own, Any;
+    CeilingImpacts: "", "", "", "contacts made with the ceiling", Run, Own, Any;
+    StopImpacts: "", "", "", "impacts on a limit stop", Run, Own, Any;
+    Separations: "", "", "", "contacts lost with the floor", Run, Own, Any;
+    FloorCompression: "m", "", "", "largest compression of the floor in the time history", Trace, Own, Any;
+    CeilingCompression: "m", "", "", "largest compression of the ceiling in the time history", Trace, Own, Any;
+    LastPeak: "m", "", "", "largest displacement in the last cycle of the time history", Trace, Own, Any;
+    PeakVariation: "", "", "", "(largest − smallest)/mean of the time history's positive peaks", Trace, Own, Any;
+    PeakDecayError: "", "", "", "largest relative departure of the time history's peaks from exp(−c′ ωₙ t), the first one as reference", Trace, Own, Any;
+    Drift: "", "", "", "RMS velocity of the first half of the window over that of the second, less 1: zero once transients are gone", Run, Own, Any;
+    FloorImpactLag: "s", "", "", "shortest time between an impulse and a floor contact in the time history", Trace, Own, Any;
+    CeilingImpactLag: "s", "", "", "shortest time between an impulse and a ceiling contact in the time history", Trace, Own, Any;
+    HighestFrequency: "Hz", "", "", "highest natural frequency of the contact states", Run, Own, Any;
+    ShortestPeriod: "s", "", "", "its period", Run, Own, Any;
+    DisplacementAmplitude: "m", "", "", "half the peak-to-peak of the observed displacement, from the extrema of the exact motion", Extremes, Own, Any;
+    VelocityAmplitude: "m/s", "", "", "half the peak-to-peak of the observed velocity", Extremes, Own, Any;
+    DisplacementPerForce: "m/N", "", "", "displacement amplitude over the amplitude of the harmonic force", Extremes, Own, Harmonic;
+    VelocityPerForce: "m/(N s)", "", "", "velocity amplitude over the amplitude of the harmonic force", Extremes, Own, Harmonic;
+    DisplacementPerImpulse: "m/(N s)", "", "", "displacement amplitude over the impulse", Extremes, Own, Impulses;
+    VelocityPerImpulse: "1/kg", "", "", "velocity amplitude over the impulse", Extremes, Own, Impulses;
+    DisplacementAmplitudeRatio: "", "", "", "displacement amplitude without dampers over the one with them", Extremes, Both, Any;
+    VelocityAmplitudeRatio: "", "", "", "velocity amplitude without dampers over the one with them", Extremes, Both, Any;
+    UndampedDisplacementAmplitude: "m", "", "", "displacement amplitude without dampers", Extremes, Both, Any;
+    UndampedVelocityAmplitude: "m/s", "", "", "velocity amplitude without dampers", Extremes, Both, Any;
+    NaturalFrequency: "rad/s", "ωₙ", "", "natural frequency of the scene's `mode`, dampers on board and particles at rest on their floors", Model, Own, Any;
+    CleanNaturalFrequency: "rad/s", "ωₙ", "", "the same of the model without dampers", Model, Own, Any;
+    ExactNaturalFrequency: "rad/s", "ωₙ", "", "the same of the continuous structure", Model, Own, Any;
+    ModeCount: "", "", "", "modes of the model: what a velocity just after an impulse depends on", Model, Own, Any;
+    Mac: "", "", "", "modal assurance criterion of the shape that is kept: a mode's against the exact one, a deflection's against the forced mode's", Shape, Own, Any;
+    DampingMeasure: "", "", "", "share of the structure's kinetic energy that is lost from just after an impulse to just before the next, mean over the cycles", Energies, Both, Any;
+    MassMeasure: "", "", "", "kinetic energy at the impulses, compared with that of the clean structure, mean over the cycles", Energies, Both, Any;
+    FloorImpactTime: "s", "", "", "first contact of the first particle with its floor in the window, from the start of the run", Events, Own, Any;
+    FloorImpactInterval: "s", "", "", "time between its last two floor contacts", Events, Own, Any;
+    FloorIntervalChange: "s", "", "", "by how much that time differs from the one before", Events, Own, Any;
+    FloorImpactSpeed: "m/s", "", "", "relative speed just before its last floor contact", Events, Own, Any;
+    FloorImpactPhase: "rad", "", "", "ω t of its last floor contact, from the start of the forcing cycle", Events, Own, Any;
+    FloorReboundSpeed: "m/s", "", "", "relative speed at the end of its last floor contact that has ended", Events, Own, Any;
+    FloorRestitution: "", "", "", "that speed over the one at the begin of the same contact", Events, Own, Any;
+    FloorContactTime: "s", "", "", "duration of the same contact", Events, Own, Any;
+    FloorReleaseTime: "s", "", "", "first release of the first particle from its floor in the window, from the start of the run", Events, Own, Any;
+    ChatterEndTime: "s", "", "", "end of the first complete chatter of the first particle in the window, from the start of the run", Events, Own, Any;
+    FinalDisplacement: "m", "", "", "displacement of the structure at the end of the run", End, Own, Any;
+    FinalVelocity: "m/s", "", "", "velocity of the structure at the end of the run", End, Own, Any;
+    FinalHeight: "m", "", "", "height of the first particle over its floor at the end of the run", End, Own, Any;
+}
+
+impl Measure {
+    /// Unit symbol, empty when dimensionless.
+    #[must_use]
+    pub fn unit(self) -> &'static str {
+        self.facts().unit
+    }
+
+    /// Symbol of the field, empty if it has none.
+    #[must_use]
+    pub fn symbol(self) -> &'static str {
+        self.facts().symbol
+    }
+
+    /// Read off a time history, which an experiment must keep then.
+    #[must_use]
+    pub fn needs_trace(self) -> bool {
+        self.facts().from == ReadOff::Trace
+    }
+
+    /// Read off the shape that is kept.
+    #[must_use]
+    pub fn needs_shape(self) -> bool {
+        self.facts().from == ReadOff::Shape
+    }
+
+    pub(super) fn needs_displacement(self) -> bool {
+        self.facts().from == ReadOff::Displacement
+    }
+
+    pub(super) fn needs_extremes(self) -> bool {
+        self.facts().from == ReadOff::Extremes
+    }
+
+    /// Read off single events.
+    pub(super) fn needs_events(self) -> bool {
+        self.facts().from == ReadOff::Events
+    }
+
+    /// Read off the velocities at the ends of cycles.
+    #[must_use]
+    pub fn needs_energies(self) -> bool {
+        self.facts().from == ReadOff::Energies
+    }
+
+    /// Compares with the run without dampers, or is of it.
+    #[must_use]
+    pub fn needs_undamped(self) -> bool {
+        self.facts().runs == Runs::Both
+    }
+
+    /// Known without a run.
+    pub(super) fn is_modal(self) -> bool {
+        matches!(self.facts().from, ReadOff::Model | ReadOff::Shape)
+    }
+
+    /// A number that tends to its limit as a run gets more exact: no count, no difference that should be zero, no sample.
+    pub(super) fn converges(self) -> bool {
+        matches!(self.facts().from, ReadOff::Velocity | ReadOff::Displacement | ReadOff::Extremes | ReadOff::Energies)
+    }
+}
+
+impl Under {
+    /// What it admits, in words.
+    #[must_use]
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::Any => "any excitation",
+            Self::Harmonic => "a harmonic force",
+            Self::Impulses => "impulses",
+        }
+    }
+
+    /// It admits this excitation.
+    pub(super) fn admits(self, excitation: &Excitation) -> bool {
+        let harmonic = matches!(excitation, Excitation::Harmonic { .. });
+        match self {
+            Self::Any => true,
+            Self::Harmonic => harmonic,
+            Self::Impulses => !harmonic,
+        }
+    }
+}

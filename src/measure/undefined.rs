@@ -1,0 +1,69 @@
+//! Numbers that are none: a ratio of nothing to nothing is undefined, and says so; one that left the range of numbers is an error.
+
+use super::{EvaluateError, Evaluated, Measure, ReadOff};
+use crate::scene::Scene;
+
+impl Measure {
+    /// Why this measure has no number where nothing went wrong.
+    #[must_use]
+    pub fn why_undefined(self) -> &'static str {
+        match self {
+            Self::LastPeak | Self::PeakVariation | Self::PeakDecayError => "the time history has no crest",
+            Self::NaturalFrequency | Self::CleanNaturalFrequency | Self::ExactNaturalFrequency | Self::Mac => {
+                "there is no such mode"
+            }
+            Self::Drift => "nothing moves",
+            Self::FinalHeight => "there is no particle",
+            _ if self.needs_events() => "there is no such event",
+            _ if self.needs_undamped() => "neither run moves",
+            _ => "nothing excites the structure",
+        }
+    }
+
+    /// A ratio of the run without dampers to the one with them.
+    fn compares(self) -> bool {
+        matches!(
+            self,
+            Self::VelocityRatio
+                | Self::DisplacementRatio
+                | Self::VelocityAmplitudeRatio
+                | Self::DisplacementAmplitudeRatio
+        )
+    }
+
+    /// It is a number wherever something excites the structure; an event may fail to happen, and a scene may have no particle.
+    fn needs_motion(self) -> bool {
+        !matches!(self.facts().from, ReadOff::Trace | ReadOff::Model | ReadOff::Shape | ReadOff::Events)
+            && self != Self::FinalHeight
+    }
+}
+
+/// What was evaluated, if every number is one, or undefined for a reason that has a name.
+///
+/// # Errors
+/// [`EvaluateError::OutOfRange`] for the first number that left the range of numbers.
+pub(super) fn in_range(
+    scene: &Scene,
+    measures: &[Measure],
+    mut evaluated: Evaluated,
+) -> Result<Evaluated, EvaluateError> {
+    for (measure, measured) in measures.iter().zip(&mut evaluated.measured) {
+        if measure.compares() && scene.is_at_rest() {
+            // Steps leave rounding of the rest where nothing moves; a ratio of that is none.
+            measured.value = f64::NAN;
+        }
+        let value = measured.value;
+        let fine = match measure {
+            // Infinite where nothing is hit.
+            Measure::FloorImpactLag | Measure::CeilingImpactLag => !value.is_nan(),
+            // Of a run that does not leave the rest that it starts from.
+            Measure::ShortestPeriod => value > 0.0,
+            _ if value.is_nan() => !measure.needs_motion() || scene.excitation.is_silent(),
+            _ => value.is_finite(),
+        };
+        if !fine {
+            return Err(EvaluateError::OutOfRange { measure: *measure, value });
+        }
+    }
+    Ok(evaluated)
+}

@@ -1,0 +1,180 @@
+//! Placeholders in explanations: a number in prose is the one that the table gives, so that it cannot go stale.
+//!
+//! | written | shown |
+//! |---|---|
+//! | `{here}` | the first number of what came out for this entry, with its unit: `628 mm/s` |
+//! | `{here 2}` | the second one; conditions in brackets do not count |
+//! | `{off}` | how far a number is from the published one: `21 % less`, `13 % more` |
+//! | `{here: uniform}`, `{off: uniform}` | of another entry of the same experiment |
+//! | `{here: ch6-plate-c1-light/uniform}` | of an entry of another experiment; the reasons of assumptions name all entries so |
+//! | `{here: crossing, plate_damper_mass=total}` | with one assumption moved |
+
+use super::verdict::Judged;
+
+/// Letters that units are made of.
+const UNITS: [&str; 13] = ["rad/s", "m/(N s)", "mm/s", "m/s", "1/kg", "N s", "mm", "ms", "Hz", "%", "m", "s", "g"];
+
+/// A text in pieces.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Prose {
+    pieces: Vec<Piece>,
+}
+
+#[derive(Debug, Clone, PartialEq, Eq)]
+enum Piece {
+    Text(String),
+    Placeholder(Placeholder),
+}
+
+/// A number that is filled in.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Placeholder {
+    what: Wanted,
+    /// The entry, `ch3-gap/order` or `order`; `None` for the one that is explained.
+    pub entry: Option<String>,
+    /// The assumption that is moved, as its variant is named.
+    moved: Option<String>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Wanted {
+    /// The n-th number of what came out, from 1.
+    Here(usize),
+    /// Its distance from the published one.
+    Off,
+}
+
+/// Why a text is no prose.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum ProseError {
+    /// No `}`.
+    #[error("an opening `{{` without its `}}`")]
+    Open,
+    /// None of the known forms.
+    #[error(
+        "the unknown placeholder `{{{0}}}`: write `{{here}}`, `{{here 2}}`, `{{here: ENTRY}}`, `{{here: ENTRY, assumption=value}}` or `{{off}}`"
+    )]
+    Unknown(String),
+}
+
+impl Prose {
+    /// Reads a text with its placeholders.
+    ///
+    /// # Errors
+    /// The first placeholder that is none.
+    pub fn parse(text: &str) -> Result<Self, ProseError> {
+        let mut pieces = Vec::new();
+        let mut rest = text;
+        while let Some((before, after)) = rest.split_once('{') {
+            let (inner, behind) = after.split_once('}').ok_or(ProseError::Open)?;
+            pieces.push(Piece::Text(before.into()));
+            pieces.push(Piece::Placeholder(Placeholder::parse(inner)?));
+            rest = behind;
+        }
+        pieces.push(Piece::Text(rest.into()));
+        Ok(Self { pieces })
+    }
+
+    /// Its placeholders.
+    pub fn placeholders(&self) -> impl Iterator<Item = &Placeholder> {
+        self.pieces.iter().filter_map(|piece| match piece {
+            Piece::Placeholder(placeholder) => Some(placeholder),
+            Piece::Text(_) => None,
+        })
+    }
+
+    /// The text with the numbers of the entries that `entry` finds; what has no number yet is `n/a`.
+    #[must_use]
+    pub fn filled<'a>(&self, entry: impl Fn(Option<&str>) -> Option<&'a Judged>) -> String {
+        let piece = |piece: &Piece| match piece {
+            Piece::Text(text) => text.clone(),
+            Piece::Placeholder(placeholder) => entry(placeholder.entry.as_deref())
+                .and_then(|judged| placeholder.of(judged))
+                .unwrap_or_else(|| "n/a".into()),
+        };
+        self.pieces.iter().map(piece).collect()
+    }
+}
+
+impl Placeholder {
+    fn parse(inner: &str) -> Result<Self, ProseError> {
+        let unknown = || ProseError::Unknown(inner.into());
+        let (what, of) = inner.split_once(':').map_or((inner, None), |(what, of)| (what, Some(of.trim())));
+        let what = match what.trim().split_once(' ').map_or((what.trim(), ""), |(word, n)| (word, n.trim())) {
+            ("here", "") => Wanted::Here(1),
+            ("here", n) => Wanted::Here(n.parse().ok().filter(|n| *n > 0).ok_or_else(unknown)?),
+            ("off", "") => Wanted::Off,
+            _ => return Err(unknown()),
+        };
+        let (entry, moved) = match of.map(|of| of.split_once(',').map_or((of, None), |(of, moved)| (of, Some(moved)))) {
+            None => (None, None),
+            Some((entry, moved)) => (Some(entry.trim().to_owned()), moved.map(|moved| moved.trim().to_owned())),
+        };
+        if entry.as_ref().is_some_and(String::is_empty) || moved.as_ref().is_some_and(|moved| !moved.contains('=')) {
+            return Err(unknown());
+        }
+        Ok(Self { what, entry, moved })
+    }
+
+    fn of(&self, judged: &Judged) -> Option<String> {
+        if let Some(variant) = &self.moved {
+            return Some(judged.moved.iter().find(|moved| moved.variant == *variant)?.found.clone());
+        }
+        match self.what {
+            Wanted::Here(n) => numbers(&judged.found).into_iter().nth(n - 1),
+            Wanted::Off => {
+                let comparison = judged.comparison.as_ref()?;
+                let side = if comparison.error() < 0.0 { "less" } else { "more" };
+                Some(format!("{} {side}", super::text::percent(comparison.error().abs() / comparison.published.abs())))
+            }
+        }
+    }
+}
+
+/// The numbers of what came out, each with its unit; uncertainties and what stands in brackets do not count.
+#[must_use]
+pub fn numbers(found: &str) -> Vec<String> {
+    let mut text = String::new();
+    let mut depth = 0_u32;
+    for letter in found.chars() {
+        match letter {
+            '(' if !text.ends_with("m/") => depth += 1,
+            ')' if depth > 0 => depth -= 1,
+            _ if depth == 0 => text.push(letter),
+            _ => {}
+        }
+    }
+    let is_digit = |letter: char| letter.is_ascii_digit() || matches!(letter, '.' | '\u{202f}');
+    let mut numbers = Vec::new();
+    let mut rest = text.as_str();
+    let mut before = ' ';
+    while let Some(letter) = rest.chars().next() {
+        let sign = if matches!(letter, '−' | '+') { letter.len_utf8() } else { 0 };
+        let starts = rest[sign..].starts_with(|letter: char| letter.is_ascii_digit());
+        if !starts || before.is_alphanumeric() || matches!(before, '-' | '_') {
+            before = letter;
+            rest = &rest[letter.len_utf8()..];
+            continue;
+        }
+        let mut end = sign + rest[sign..].find(|letter| !is_digit(letter)).unwrap_or(rest.len() - sign);
+        if let Some(exponent) = rest[end..].strip_prefix('e') {
+            let digits = exponent.trim_start_matches(['-', '−']);
+            let length = digits.find(|letter: char| !letter.is_ascii_digit()).unwrap_or(digits.len());
+            end = if length > 0 { rest.len() - digits.len() + length } else { end };
+        }
+        let number = rest[..end].trim_end_matches('.');
+        rest = &rest[number.len()..];
+        if let Some(uncertainty) = rest.strip_prefix(" ± ") {
+            let end = uncertainty.find(|letter| !is_digit(letter)).unwrap_or(uncertainty.len());
+            rest = &uncertainty[end..];
+        }
+        let unit = rest.strip_prefix(' ').and_then(|behind| {
+            let ends = |unit: &&&str| !behind[unit.len()..].starts_with(|letter: char| letter.is_alphanumeric());
+            UNITS.iter().filter(|unit| behind.starts_with(**unit)).find(ends)
+        });
+        rest = &rest[unit.map_or(0, |unit| unit.len() + 1)..];
+        numbers.push(unit.map_or_else(|| number.to_owned(), |unit| format!("{number} {unit}")));
+        before = ' ';
+    }
+    numbers
+}

@@ -1,0 +1,136 @@
+//! The findings in a paragraph: what stands, what does not, and what the lost inputs prevent, counted from the verdicts.
+
+use std::collections::BTreeMap;
+
+use crate::reference::{Judged, Role, Verdict};
+
+use super::comparison::{anchor, name};
+use super::markdown::{counted, one_line};
+use super::tally::{Kind, Tally, agrees, kind};
+use super::view::ExperimentView;
+
+/// Experiments or inputs that are named one by one.
+const NAMED: usize = 6;
+
+/// The first paragraphs of the index.
+pub(super) fn section(experiments: &[ExperimentView<'_>]) -> String {
+    let all: Vec<&Judged> = experiments.iter().flat_map(|view| view.judged).collect();
+    let mut text = counts(&all);
+    text += &stands(experiments);
+    text += &differs(experiments);
+    text += &undecided(&all);
+    text + "\n"
+}
+
+fn counts(all: &[&Judged]) -> String {
+    let of = |wanted: Kind| Tally::of(all.iter().copied().filter(|one| kind(one) == wanted));
+    let (numbers, claims) = (of(Kind::Number), of(Kind::Claim));
+    let mut sentences: Vec<String> = Vec::new();
+    for (tally, one, many) in [(numbers, "number", "numbers"), (claims, "claim", "claims")] {
+        if tally.total() > 0 {
+            sentences.push(format!("**{}**: {}.", counted(tally.total(), one, many), tally.describe()));
+        }
+    }
+    let held_out: Vec<_> = all.iter().filter(|one| one.role == Role::HeldOut).collect();
+    if !held_out.is_empty() {
+        let agree = held_out.iter().filter(|one| agrees(one.verdict)).count();
+        sentences.push(format!("**Held out** of all fits: {agree} of {} agree.", held_out.len()));
+    }
+    sentences.push(match all.iter().filter(|one| !one.as_expected()).count() {
+        0 => "Every verdict is the expected one.".to_owned(),
+        1 => "**One verdict is not the expected one.**".to_owned(),
+        more => format!("**{more} verdicts are not the expected ones.**"),
+    });
+    sentences.join(" ") + "\n\n"
+}
+
+/// Experiments all of whose statements agree, those with most evidence first.
+fn stands(experiments: &[ExperimentView<'_>]) -> String {
+    let evidence =
+        |view: &ExperimentView<'_>| view.judged.iter().filter(|one| one.verdict == Verdict::Reproduced).count();
+    let whole = |view: &&ExperimentView<'_>| evidence(view) > 0 && view.judged.iter().all(|one| agrees(one.verdict));
+    let mut standing: Vec<_> = experiments.iter().filter(whole).collect();
+    if standing.is_empty() {
+        return String::new();
+    }
+    standing.sort_by_key(|view| std::cmp::Reverse(evidence(view)));
+    let links = standing.iter().map(|view| format!("{} ({})", link(view), evidence(view)));
+    format!(
+        "- **Stands:** every statement agrees in {} of {}: {}.\n",
+        standing.len(),
+        counted(experiments.len(), "experiment", "experiments"),
+        some(links.collect())
+    )
+}
+
+/// Experiments with statements that differ, those with most first, and the numbers that are farthest off.
+fn differs(experiments: &[ExperimentView<'_>]) -> String {
+    let of = |view: &ExperimentView<'_>| view.judged.iter().filter(|one| one.verdict == Verdict::Differs).count();
+    let mut differing: Vec<_> = experiments.iter().filter(|view| of(view) > 0).collect();
+    if differing.is_empty() {
+        return String::new();
+    }
+    differing.sort_by_key(|view| std::cmp::Reverse(of(view)));
+    let count: usize = differing.iter().map(|view| of(view)).sum();
+    let links = differing.iter().map(|view| format!("{} ({} of {})", link(view), of(view), view.judged.len()));
+    let mut text = format!(
+        "- **Does not stand:** {} in {}, most in {}.",
+        counted(count, "statement differs", "statements differ"),
+        counted(differing.len(), "experiment", "experiments"),
+        some(links.collect())
+    );
+    let numbers = differing.iter().flat_map(|view| view.judged.iter().map(move |one| (*view, one)));
+    let off = |one: &Judged| one.comparison.as_ref().map_or(0.0, |c| libm::log(c.simulated / c.published).abs());
+    let mut numbers: Vec<_> =
+        numbers.filter(|(_, one)| one.verdict == Verdict::Differs && off(one).is_finite() && off(one) > 0.0).collect();
+    numbers.sort_by(|a, b| off(b.1).total_cmp(&off(a.1)));
+    let farthest = numbers
+        .iter()
+        .take(3)
+        .map(|(view, one)| format!("[{}]({}#{}), {}", one.id, view.page, anchor(name(one)), one_line(&one.found)));
+    let farthest: Vec<String> = farthest.collect();
+    if !farthest.is_empty() {
+        text += &format!(" Farthest off: {}.", farthest.join("; "));
+    }
+    text + "\n"
+}
+
+/// What cannot be decided, and the inputs that are missing.
+fn undecided(all: &[&Judged]) -> String {
+    let count = |verdict: Verdict| all.iter().filter(|one| one.verdict == verdict).count();
+    let (blocked, undecidable) = (count(Verdict::Blocked), count(Verdict::Undecidable));
+    let mut sentences = Vec::new();
+    if blocked > 0 {
+        let mut inputs = BTreeMap::<&str, usize>::new();
+        for one in all.iter().filter(|one| one.verdict == Verdict::Blocked) {
+            for input in one.blocked_by.iter().flat_map(|inputs| inputs.split(" and ")) {
+                *inputs.entry(input.trim_start_matches("the ")).or_default() += 1;
+            }
+        }
+        let mut inputs: Vec<_> = inputs.into_iter().collect();
+        inputs.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
+        let inputs: Vec<String> = inputs.into_iter().map(|(input, count)| format!("{input} ({count})")).collect();
+        let inputs = if inputs.is_empty() { String::new() } else { format!(": {}", some(inputs)) };
+        let depends = counted(blocked, "number depends", "numbers depend");
+        sentences.push(format!("{depends} on inputs that the study does not state{inputs}."));
+    }
+    if undecidable > 0 {
+        let lie = counted(undecidable, "statement lies", "statements lie");
+        sentences.push(format!("{lie} within the chaotic spread or the grid of the sweep."));
+    }
+    if sentences.is_empty() { String::new() } else { format!("- **Cannot be decided:** {}\n", sentences.join(" ")) }
+}
+
+fn link(view: &ExperimentView<'_>) -> String {
+    format!("[{}]({})", one_line(&view.experiment.title), view.page)
+}
+
+/// The first few, and how many more there are.
+fn some(mut list: Vec<String>) -> String {
+    let more = list.len().saturating_sub(NAMED);
+    if more > 1 {
+        list.truncate(NAMED);
+        list.push(format!("and {more} more"));
+    }
+    list.join(", ")
+}

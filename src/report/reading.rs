@@ -1,0 +1,48 @@
+//! What every page would otherwise explain again: how to read it, once.
+
+use super::tally::{VERDICTS, mark, meaning, word};
+
+const SYMBOLS: &str = "\
+| Symbol | Meaning |
+| --- | --- |
+| ψ | velocity ratio: RMS velocity without damper over RMS velocity with it; above 1 the damper helps |
+| η | displacement ratio: the same with the standard deviation of the displacement |
+| f′ = F/(m g) | dimensionless forcing amplitude: force F over the weight of the base mass m |
+| ω′ = ω/ωn | frequency ratio: forcing frequency over the natural frequency ωn = √(ks/m) |
+| m′ = mp/m | mass ratio: particle mass over base mass |
+| c′ = c/(2 √(ks m)) | structural damping ratio |
+| cf/(2 √(kf mp)) | damping ratio of the resilient floor and ceiling under the particle |
+| kf/ks, kw/ks | stiffness of floor and ceiling, and of the soft walls, over that of the structure |
+| h′ = h ωn²/g | dimensionless gap clearance: free height h between floor and ceiling; ∞ without a ceiling |
+| a ω²/g | dimensionless base amplitude of a harmonic force F = m a ω² |
+";
+
+const TEXT: &str = "\
+A page opens with its result. Its table has one row for each statement of the study: a *number*, or a *claim* in words. The \
+study’s own curves are not available; an open diamond in a figure is a number that its text quotes.
+
+**Numbers** are compared after ASME V&V 20. S is the number here, D the published one, E = S − D, and \
+u_val = √(u_num² + u_input² + u_D²): u_num covers discretisation, the grid of the sweep and the spread of the ensemble, u_input \
+the inputs that the study does not state, u_D half a unit of the last printed digit. The two agree if |E| ≤ 2 u_val. \
+**± is 2 u_val** wherever a number is compared with the study. A tolerance set by hand replaces 2 u_val and is shown beside the \
+verdict. Agreement is *reproduced* only if it could have failed: where ± alone is wider than a tenth of D (and than the printed \
+digits allow), the number is blocked or undecidable. **Claims** are decided over the whole table.
+
+**Fitted** entries were used to choose an unstated input, so their agreement proves nothing. **Held out** entries were kept aside \
+by a calibration to test it. Only entries that are held out or neither are evidence.
+
+**Runs.** *Event-driven* runs follow the exact motion from one contact to the next; *fixed step* runs repeat the study’s scheme, \
+which looks for contacts once a step. Impact dampers are chaotic in wide ranges: there the mean of an *ensemble* of slightly \
+perturbed starts is shown, and the band is its standard deviation. Every run is checked by its balances of momentum and energy; \
+the *smallest margin* is the distance by which a surface would have to move to change the order of contacts, and *ties* are \
+simultaneous events.
+";
+
+/// The section of the index.
+pub(super) fn section() -> String {
+    let mut text = format!("## How to read\n\n{TEXT}\n| | Verdict | Meaning |\n| --- | --- | --- |\n");
+    for verdict in VERDICTS {
+        text += &format!("| {} | {} | {} |\n", mark(verdict), word(verdict), meaning(verdict));
+    }
+    format!("{text}\n<details><summary>Symbols</summary>\n\n{SYMBOLS}\n</details>\n\n")
+}

@@ -1,0 +1,76 @@
+//! What drives a structure.
+
+use serde::{Deserialize, Serialize};
+
+/// What drives the structure. `period` is the forcing cycle.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Excitation {
+    /// One impulse at t = 0; `cycle` is only the unit in which time is counted.
+    SingleImpulse {
+        /// J, N s.
+        impulse: f64,
+        /// s.
+        cycle: f64,
+    },
+    /// J at t = 0, T, 2T, …
+    ImpulseTrain {
+        /// J, N s.
+        impulse: f64,
+        /// T, s.
+        period: f64,
+    },
+    /// F sin(ω t), T = 2π/ω.
+    Harmonic {
+        /// F, N; negative turns the phase by π.
+        force: f64,
+        /// ω, rad/s.
+        angular_frequency: f64,
+    },
+    /// Pulses of finite duration with impulse J, one a period.
+    PulseTrain {
+        /// J, N s.
+        impulse: f64,
+        /// T, s.
+        period: f64,
+        /// s.
+        duration: f64,
+        /// How the impulse is spread over the duration.
+        shape: PulseShape,
+    },
+}
+
+impl Excitation {
+    /// It does not move anything.
+    #[must_use]
+    pub fn is_silent(&self) -> bool {
+        match self {
+            Self::Harmonic { force, .. } => *force == 0.0,
+            Self::SingleImpulse { impulse, .. }
+            | Self::ImpulseTrain { impulse, .. }
+            | Self::PulseTrain { impulse, .. } => *impulse == 0.0,
+        }
+    }
+
+    /// The forcing cycle, s.
+    #[must_use]
+    pub fn period(&self) -> f64 {
+        match self {
+            Self::SingleImpulse { cycle, .. } => *cycle,
+            Self::ImpulseTrain { period, .. } | Self::PulseTrain { period, .. } => *period,
+            Self::Harmonic { angular_frequency, .. } => std::f64::consts::TAU / angular_frequency,
+        }
+    }
+}
+
+/// How a finite pulse spreads its impulse.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum PulseShape {
+    /// Constant force over the duration.
+    Rectangular,
+    /// Impulses with binomial weights, one a millisecond of the duration.
+    Binomial {
+        /// n: impulses a pulse, spaced duration/n, weights C(n−1, i)/2^(n−1).
+        impulses: u32,
+    },
+}

@@ -1,0 +1,33 @@
+//! What a table says of rows whose numbers are to be doubted: columns that are there only where some row gives cause.
+
+use crate::dynamics::Proof;
+use crate::measure::{Measure, Measured};
+use crate::table::{Column, Data};
+use crate::text::words;
+
+pub(super) use crate::table::RESIDUAL_BOUND;
+use crate::table::UNDEFINED;
+
+/// The bound that the residuals of a row exceed; NaN in rows that balance.
+pub(super) fn residual_bounds(proofs: impl Iterator<Item = Option<Proof>>) -> Option<Column> {
+    let exceeded = |proof: Option<Proof>| {
+        proof.filter(|proof| !proof.is_balanced()).map_or(f64::NAN, |proof| proof.residual_bound)
+    };
+    let bounds: Vec<f64> = proofs.map(exceeded).collect();
+    bounds.iter().any(|bound| !bound.is_nan()).then(|| Column::new(RESIDUAL_BOUND, Data::Float(bounds)))
+}
+
+/// Which numbers of a row are undefined, and why; empty in other rows.
+pub(super) fn undefined<'a>(
+    measures: &[Measure],
+    rows: impl Iterator<Item = Option<&'a [Measured]>>,
+) -> Option<Column> {
+    let of_row = |measured: Option<&[Measured]>| {
+        let undefined = measures.iter().zip(measured.unwrap_or_default()).filter(|(_, one)| one.value.is_nan());
+        let names =
+            undefined.map(|(measure, _)| format!("{} undefined: {}", words::of_key(measure), measure.why_undefined()));
+        names.collect::<Vec<_>>().join("; ")
+    };
+    let texts: Vec<String> = rows.map(of_row).collect();
+    texts.iter().any(|text| !text.is_empty()).then(|| Column::new(UNDEFINED, Data::Text(texts)))
+}

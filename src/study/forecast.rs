@@ -1,0 +1,95 @@
+//! What the scenes of an experiment say of the length of its run before it begins: warnings where a bound tells.
+
+use std::time::{Duration, Instant};
+
+use crate::experiment::Assumptions;
+use crate::experiment::Experiment;
+use crate::measure::SolverChoice;
+use crate::scene::{Scene, Surface};
+use crate::text::number::significant;
+
+/// Fixed steps that take about a second.
+const STEPS_A_SECOND: f64 = 3e7;
+/// Time of a run that is worth a warning, s.
+const LONG: f64 = 60.0;
+/// Dampers whose contact states are no longer few.
+const MANY_DAMPERS: usize = 12;
+/// Coordinates of a structure beyond which a contact state takes seconds to set up.
+const MANY_MODES: usize = 100;
+/// Restitution from which on a particle takes very many bounces to come to rest.
+const ELASTIC: f64 = 0.999;
+/// Cases are looked at no longer than this.
+const PATIENCE: Duration = Duration::from_millis(300);
+
+/// Warnings, each once, with the first case that it is about.
+#[must_use]
+pub fn forecast(experiment: &Experiment, assumptions: &Assumptions) -> Vec<String> {
+    let begun = Instant::now();
+    let mut warnings: Vec<(Cause, String)> = Vec::new();
+    for case in &experiment.cases {
+        if begun.elapsed() > PATIENCE {
+            break;
+        }
+        let recipes = experiment.recipe_of(case).and_then(|recipe| experiment.recipes_in(&recipe)).unwrap_or_default();
+        // The settings of a mean hardly differ in what they take.
+        let Some(scene) = recipes.first().and_then(|recipe| recipe.resolve(assumptions).ok()) else { continue };
+        let of_case = of_scene(experiment, &scene, &case.solvers);
+        for (cause, warning) in of_case {
+            if warnings.iter().all(|(known, _)| *known != cause) {
+                let place = case.describe();
+                let place = if place.is_empty() { String::new() } else { format!(" ({place})") };
+                warnings.push((cause, format!("{warning}{place}")));
+            }
+        }
+    }
+    warnings.into_iter().map(|(_, warning)| warning).collect()
+}
+
+/// Of what a warning is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Cause {
+    Silence,
+    Steps,
+    Dampers,
+    Modes,
+    Bounces,
+}
+
+fn of_scene(experiment: &Experiment, scene: &Scene, solvers: &[SolverChoice]) -> Vec<(Cause, String)> {
+    let mut warnings = Vec::new();
+    if scene.is_at_rest() && experiment.measures.iter().any(|measure| measure.needs_undamped()) {
+        warnings.push((Cause::Silence, "the excitation is zero: nothing moves, and every ratio is undefined".into()));
+    }
+    let cycles = f64::from(experiment.settings.skip) + f64::from(experiment.settings.average);
+    for solver in solvers {
+        let SolverChoice::FixedStep { time_step } = solver else { continue };
+        let steps = cycles * scene.excitation.period() / time_step;
+        let seconds = steps / STEPS_A_SECOND;
+        if seconds > LONG {
+            let (steps, minutes) = (significant(steps, 2), significant(seconds / 60.0, 2));
+            warnings.push((Cause::Steps, format!("{steps} fixed steps take about {minutes} min a run")));
+        }
+    }
+    let count = scene.dampers.len();
+    if count >= MANY_DAMPERS {
+        let warning = format!("{count} dampers can be in 2^{count} contact states, each set up at its first visit");
+        warnings.push((Cause::Dampers, warning));
+    }
+    let modes = scene.structure.model().natural_frequencies().len();
+    if modes >= MANY_MODES {
+        warnings.push((Cause::Modes, format!("{modes} modes: each contact state takes seconds to set up")));
+    }
+    for damper in &scene.dampers {
+        if let Surface::Rigid { restitution } = damper.floor
+            && restitution >= ELASTIC
+        {
+            let gap = if damper.gap.is_finite() { significant(damper.gap, 2) + " m" } else { "no end".into() };
+            let warning = format!(
+                "restitution {restitution} with a gap of {gap}: a particle that loses next to nothing may bounce without end"
+            );
+            warnings.push((Cause::Bounces, warning));
+            break;
+        }
+    }
+    warnings
+}

@@ -1,0 +1,114 @@
+//! Well-formed scenes at the ends of what numbers can be: each ends in an answer, in a reason, or at a limit that is told, and
+//! `edge_scenes.txt` says in which.
+
+use std::collections::BTreeMap;
+use std::fmt::Write;
+use std::time::{Duration, Instant};
+
+use rayon::prelude::*;
+use shotdamp::dynamics::Limit;
+use shotdamp::experiment::Assumptions;
+use shotdamp::experiment::{load_assumptions, parse_experiment};
+use shotdamp::study::{Engine, Finished, IgnoreEvents, Task, Variant, run};
+use shotdamp::table::UNDEFINED;
+
+/// Scenes by name, with a place for each value.
+const BASES: &str = include_str!("edge_scenes/bases.txt");
+/// `base | changes | answer`.
+const SCENES: &str = include_str!("edge_scenes/scenes.txt");
+
+/// What a row may take here; a scene without an answer has none in an hour either.
+const LIMIT: Limit = Limit { events: 30_000, time: Duration::from_millis(400) };
+
+/// A base: its text with `«name»` in the place of each value, and the usual values.
+struct Base<'a> {
+    text: String,
+    usual: BTreeMap<&'a str, &'a str>,
+}
+
+fn bases() -> BTreeMap<&'static str, Base<'static>> {
+    let of = |part: &'static str| {
+        let (head, text) = part.split_once('\n').unwrap();
+        let (name, values) = head.split_once('|').unwrap();
+        let text = format!("title: Edge\nsource: {{chapter: 3, section: '3'}}\nabout: At the edge.\n{text}");
+        (name.trim(), Base { text, usual: changes(values).collect() })
+    };
+    BASES.split("\n== ").filter(|part| part.contains('|')).map(|part| of(part.trim_start_matches("== "))).collect()
+}
+
+fn changes(text: &str) -> impl Iterator<Item = (&str, &str)> {
+    text.split(';').map(|change| {
+        let (name, value) = change.split_once('=').unwrap_or_else(|| panic!("{change}"));
+        (name.trim(), value.trim())
+    })
+}
+
+impl Base<'_> {
+    fn text(&self, changed: &str) -> String {
+        let mut values = self.usual.clone();
+        for (name, value) in changes(changed) {
+            assert!(values.insert(name, value).is_some(), "no `{name}` in this base");
+        }
+        values.iter().fold(self.text.clone(), |text, (name, value)| text.replace(&format!("«{name}»"), value))
+    }
+}
+
+fn assumptions() -> Assumptions {
+    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("experiments");
+    load_assumptions(&folder.join("assumptions.yaml")).unwrap_or_else(|problems| panic!("{problems}")).assumptions()
+}
+
+/// In which of its ways a scene ends.
+fn answer(text: &str, assumptions: &Assumptions) -> (String, Duration) {
+    let begun = Instant::now();
+    let experiment = match parse_experiment(&"ch3-edge".parse().unwrap(), "ch3-edge.yaml", text, assumptions) {
+        Ok(experiment) => experiment,
+        Err(problems) => return (format!("refused: {}", problems.list[0].message), begun.elapsed()),
+    };
+    let variants = [Variant { label: "baseline".into(), moved: None, assumptions: assumptions.clone() }];
+    let metadata = BTreeMap::new();
+    let task = Task { limit: LIMIT, ..Task::new(&experiment, &variants, &metadata) };
+    let Finished { table, failures, .. } =
+        run(&[task], 1, &Engine, &IgnoreEvents, |_, finished| finished).unwrap().remove(0);
+    let answer = if failures.rows > 0 {
+        failures.first
+    } else if table.is_unbalanced(0) {
+        "unbalanced".into()
+    } else if let Some(undefined) = table.texts(UNDEFINED) {
+        undefined[0].clone()
+    } else {
+        let measures = ["velocity_ratio", "displacement_ratio", "rms_velocity"];
+        let values: Vec<f64> = measures.iter().filter_map(|name| Some(table.floats(name)?[0])).collect();
+        assert!(values.len() == 3 && values.iter().all(|value| value.is_finite()), "{values:?}");
+        "numbers".into()
+    };
+    (answer, begun.elapsed())
+}
+
+/// With `SHOTDAMP_EDGE_SCENES=all` it prints every answer and how long it took.
+#[test]
+fn every_scene_ends_in_an_answer_a_reason_or_a_limit() {
+    let assumptions = assumptions();
+    let bases = bases();
+    let scenes: Vec<Vec<&str>> = SCENES
+        .lines()
+        .filter(|line| !line.is_empty() && !line.starts_with('#'))
+        .map(|line| line.splitn(3, '|').map(str::trim).collect())
+        .collect();
+    let answers: Vec<(String, Duration)> =
+        scenes.par_iter().map(|scene| answer(&bases[scene[0]].text(scene[1]), &assumptions)).collect();
+    let (mut wrong, mut kinds) = (String::new(), BTreeMap::<&str, u32>::new());
+    for (scene, (got, took)) in scenes.iter().zip(&answers) {
+        let expected = scene.get(2).copied().unwrap_or("nothing");
+        if std::env::var_os("SHOTDAMP_EDGE_SCENES").is_some() {
+            println!("{} | {} | {got} | {took:.2?}", scene[0], scene[1]);
+        }
+        *kinds.entry(expected.split([':', ' ']).next().unwrap()).or_default() += 1;
+        if !got.contains(expected) {
+            writeln!(wrong, "{} | {}: {got}, expected {expected}", scene[0], scene[1]).unwrap();
+        }
+    }
+    let longest = answers.iter().map(|(_, took)| *took).max().unwrap();
+    println!("{} scenes, {kinds:?}; the longest took {longest:.2?}", scenes.len());
+    assert!(wrong.is_empty(), "{wrong}");
+}
