@@ -12,8 +12,8 @@ use std::time::Instant;
 
 use common::{BEAM, SINGLE, experiment, system};
 use shotdamp::dynamics::{Contact, EventKind, HybridSystem, Options, Response, event_driven};
-use shotdamp::experiment::{Axis, AxisScale, Drawing, FigureSpec, Panel};
-use shotdamp::figure::draw;
+use shotdamp::experiment::{Axis, AxisScale, Band, Drawing, FigureSpec, Panel};
+use shotdamp::figure::{Beside, draw};
 use shotdamp::study::Machine;
 use shotdamp::table::{BASELINE, Column, Data, Table};
 
@@ -59,9 +59,10 @@ fn main() {
          ![Cost against modes](speed.png)\n\nCost on the beam against the number of modes, with four dampers."
     );
     let reports = Path::new(env!("CARGO_MANIFEST_DIR")).join("reports");
-    let picture =
-        draw(&experiment(&single), &figure(), &table(&curve), &[]).expect("the table has what the figure names");
-    std::fs::write(reports.join("speed.png"), picture).expect("the folder of reports can be written");
+    let picture = draw(&experiment(&single), &figure(), &table(&curve), Beside::default())
+        .expect("the table has what the figure names");
+    std::fs::write(reports.join("speed.svg"), picture.svg).expect("the folder of reports can be written");
+    std::fs::write(reports.join("speed.png"), picture.png).expect("the folder of reports can be written");
     std::fs::write(reports.join("speed.md"), &page).expect("the folder of reports can be written");
     print!("{page}");
 }
@@ -159,12 +160,14 @@ fn figure() -> FigureSpec {
     };
     FigureSpec {
         name: String::new(),
+        only: None,
         caption: "Cost on the beam against the number of modes.".into(),
         drawing: Drawing::Lines(vec![Panel {
             x: axis("modes", "Modes"),
             y: vec![axis("event", "An event"), axis("state", "A contact state's first visit")],
             by: Vec::new(),
-            band: false,
+            band: Band::None,
+            over_first: false,
             guides: Vec::new(),
             markers: true,
             peaks: None,

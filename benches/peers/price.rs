@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use shotdamp::accuracy::Times;
 use shotdamp::dynamics::{Options, Response, event_driven, fixed_step};
-use shotdamp::figure::{draw, work_precision};
+use shotdamp::figure::{Beside, draw, work_precision};
 use shotdamp::table::{BASELINE, Column, Data, Table};
 use shotdamp::text::number::{quantity, significant};
 
@@ -128,8 +128,9 @@ pub fn picture(scene: &str, answers: &[Priced]) -> Vec<u8> {
     };
     let times = found.iter().map(|(_, found)| found.median);
     let times = times.fold([f64::INFINITY, 0.0], |[low, high], time: f64| [time.min(low), time.max(high)]);
-    draw(&common::experiment(scene), &work_precision(times, None, false), &table, &[])
+    draw(&common::experiment(scene), &work_precision(times, None, false), &table, Beside::default())
         .expect("there is something to draw")
+        .png
 }
 
 /// How much longer each peer takes than the event-driven solver, which has all digits, for an error.

@@ -10,6 +10,7 @@ mod page;
 pub mod precise;
 mod publish;
 mod representative;
+mod scatter;
 mod timing;
 mod verdict_price;
 

@@ -142,7 +142,8 @@ pub(super) fn seconds(value: f64) -> String {
 #[must_use]
 pub fn accuracy_summary(views: &[AccuracyView]) -> String {
     let mut text = String::from(
-        "# What accuracy costs\n\n[All experiments](README.md) · written by `shotdamp accuracy --all`\n\n",
+        "# What accuracy costs\n\n[All experiments](README.md) · written by `shotdamp accuracy --all`\n\n\
+         ![Error against time of every experiment](accuracy.svg)\n\n",
     );
     let mut machines: Vec<&Machine> = views.iter().map(|view| &view.machine).collect();
     machines.sort();
@@ -221,7 +222,7 @@ pub(super) struct Over {
     pub time: f64,
 }
 
-fn over(cases: &[&CaseAccuracy], contender: Contender) -> Option<Over> {
+pub(super) fn over(cases: &[&CaseAccuracy], contender: Contender) -> Option<Over> {
     let points: Vec<&Point> =
         cases.iter().filter_map(|case| case.points.iter().find(|point| point.contender == contender)).collect();
     (points.len() == cases.len() && !points.is_empty()).then(|| Over {

@@ -4,16 +4,19 @@
 use std::collections::BTreeMap;
 use std::fs;
 
-use super::measured::{Accuracy, Contender};
+use super::measured::{Accuracy, CaseAccuracy, Contender};
 use super::page::{AccuracyView, DIVERGED, accuracy_page, accuracy_summary};
+use super::scatter::scatter;
 use super::verdict_price::VerdictPrice;
 use crate::atomic::{self, FileError};
 use crate::experiment::Experiment;
-use crate::figure::{draw, work_precision};
+use crate::figure::{Beside, Picture, draw, work_precision};
 use crate::measure::SolverChoice;
 use crate::reference::Judged;
 use crate::study::{Layout, Machine, runs_of_a_row};
 use crate::table::{BASELINE, Column, Data, Table};
+use crate::text::number::compact;
+use crate::text::words;
 
 /// Smallest error that a logarithmic axis shows: what is exact to the last digit stands here.
 const LEAST: f64 = 1e-16;
@@ -39,8 +42,8 @@ pub fn publish_accuracy(
     let seconds = table.floats("time").unwrap_or_default();
     let times = seconds.iter().fold([f64::INFINITY, 0.0], |[low, high], time| [time.min(low), time.max(high)]);
     // A diagram without a single error to show has no picture; the table says so.
-    if let Ok(picture) = draw(experiment, &work_precision(times, floor, events), &table, &[]) {
-        atomic::write_if_changed(&layout.path(&format!("reports/accuracy/{id}.png")), &picture)?;
+    if let Ok(picture) = draw(experiment, &work_precision(times, floor, events), &table, Beside::default()) {
+        write_picture(layout, &format!("reports/accuracy/{id}"), &picture)?;
     }
     let factor = runs_of_a_row(experiment);
     let view = AccuracyView {
@@ -70,9 +73,33 @@ pub fn publish_accuracy_summary(layout: &Layout) -> Result<String, FileError> {
             views.insert(view.id.clone(), view);
         }
     }
-    let text = accuracy_summary(&views.into_values().collect::<Vec<_>>());
+    let views: Vec<AccuracyView> = views.into_values().collect();
+    // Nothing measured, nothing to show.
+    if let Ok(picture) = scatter(&views) {
+        write_picture(layout, "reports/accuracy", &picture)?;
+    }
+    let text = accuracy_summary(&views);
     atomic::write(&layout.path("reports/accuracy.md"), text.as_bytes())?;
     Ok(text)
+}
+
+/// A case by what sets it apart; by its number where nothing does.
+fn case_name(case: &CaseAccuracy, number: usize) -> String {
+    if case.description.is_empty() {
+        return format!("case {}", number + 1);
+    }
+    let part = |part: &str| {
+        let Some((name, value)) = part.split_once(" = ") else { return part.to_owned() };
+        let value = value.parse::<f64>().map_or_else(|_| value.to_owned(), |value| compact(value, 3));
+        format!("{} {value}", words::of_column(name))
+    };
+    case.description.split(", ").map(part).collect::<Vec<_>>().join(", ")
+}
+
+fn write_picture(layout: &Layout, stem: &str, picture: &Picture) -> Result<(), FileError> {
+    atomic::write_if_changed(&layout.path(&format!("{stem}.svg")), picture.svg.as_bytes())?;
+    atomic::write_if_changed(&layout.path(&format!("{stem}.png")), &picture.png)?;
+    Ok(())
 }
 
 /// A row a point, as the diagram wants it.
@@ -97,7 +124,7 @@ fn table(accuracy: &Accuracy) -> Table {
         columns: vec![
             texts("variant", points().map(|_| BASELINE.into()).collect()),
             texts("solver", points().map(|(_, point)| solver(point.contender)).collect()),
-            texts("case", points().map(|(number, _)| format!("case {}", number + 1)).collect()),
+            texts("case", points().map(|(number, _)| case_name(&accuracy.cases[number], number)).collect()),
             floats("time", "s", points().map(|(_, point)| point.times.median).collect()),
             floats("error", "", points().map(|(_, point)| shown(point.error)).collect()),
             floats(

@@ -31,7 +31,7 @@ pub(super) fn update(layout: &Layout, args: &RunArgs, common: &Args) -> Result<E
     super::start_threads(common);
     let _lock = Lock::of_study(layout, held(args.no_wait))?;
     // Read again: another run may have ended before this one got the lock.
-    let mut study = open_stale(layout, &args.choice, args.force)?;
+    let mut study = open_stale(layout, &args.choice, args.force || args.verify)?;
     let chosen = choose(&study, &args.choice)?;
     print_unread(chosen.unread.iter().copied());
     let todo = todo(&chosen, args);
@@ -49,11 +49,11 @@ pub(super) fn update(layout: &Layout, args: &RunArgs, common: &Args) -> Result<E
     conclude(&study, &args.choice, done)
 }
 
-/// The study, in which only the experiments are planned that are not known to be up to date, or are chosen and `forced`.
-pub(super) fn open_stale(layout: &Layout, choice: &Choice, forced: bool) -> Result<Study, CliError> {
+/// The study, in which only the experiments are planned that are not known to be up to date, or are chosen and to be looked at `anyway`.
+pub(super) fn open_stale(layout: &Layout, choice: &Choice, anyway: bool) -> Result<Study, CliError> {
     let texts = Texts::read(layout)?;
     let mut known = Snapshot::current(layout, &texts).experiments;
-    known.retain(|_, known| !forced || !choice.admits_known(known));
+    known.retain(|_, known| !anyway || !choice.admits_known(known));
     Ok(Study::beside(layout.clone(), texts, known))
 }
 
@@ -65,10 +65,11 @@ fn nothing_to_do(snapshot: &Snapshot, ids: &BTreeSet<&str>) -> Result<Exit, CliE
     Ok(Exit::of_verdicts(judgement.verdicts.values().flatten()))
 }
 
-/// The verdicts in words; nothing where there are none.
+/// The verdicts in words, where there are any, and the rows whose numbers do not count.
 fn verdicts_of(judgement: &Judgement, ids: &BTreeSet<&str>) -> String {
     let judged = ids.iter().any(|id| judgement.verdicts.get(*id).is_some_and(|judged| !judged.is_empty()));
-    if judged { summary_of(judgement, ids) + &doubts(judgement, ids) } else { String::new() }
+    let summary = if judged { summary_of(judgement, ids) } else { String::new() };
+    summary + &doubts(judgement, ids)
 }
 
 /// What was done before the verdicts.

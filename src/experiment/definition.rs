@@ -286,8 +286,19 @@ pub struct FigureSpec {
     pub name: String,
     /// One line under the picture.
     pub caption: String,
+    /// Rows to draw: a column of words, and those of its words that count; all rows if absent.
+    pub only: Option<Only>,
     /// What is drawn.
     pub drawing: Drawing,
+}
+
+/// Rows of a table by the words of a column.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Only {
+    /// Which column.
+    pub column: String,
+    /// The words.
+    pub words: Vec<String>,
 }
 
 /// What a figure draws.
@@ -298,6 +309,8 @@ pub enum Drawing {
     Lines(Vec<Panel>),
     /// A quantity over two others, as colours, in panels of one colour scale.
     Map(Box<MapSpec>),
+    /// The gaps of an optimised array as bars: the study's beside the best found.
+    Gaps,
 }
 
 /// A map. Its three columns hold a number a row (a cell a row, drawn as such) or a list a row (a field a row, drawn with
@@ -356,14 +369,29 @@ pub struct Panel {
     pub y: Vec<Axis>,
     /// Columns that split the rows into lines, one colour or dash each (`gap_ratio`, `solver`, `stop`).
     pub by: Vec<String>,
-    /// Draw the ensemble's spread as a band.
-    pub band: bool,
+    /// What is drawn as a band about the lines.
+    pub band: Band,
+    /// Draw each line over the first one, point by point: what differs by little is told apart.
+    pub over_first: bool,
     /// Levels to draw as thin guides, with their labels.
     pub guides: Vec<Level>,
     /// Markers on the points (few points) instead of a line alone.
     pub markers: bool,
     /// Which peaks of the curves to mark with their place on the x axis.
     pub peaks: Option<PeakMarks>,
+}
+
+/// A band about a line.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Band {
+    /// None.
+    #[default]
+    None,
+    /// One standard deviation of the ensemble to either side.
+    Spread,
+    /// From the least to the largest of the searches that differ in their seed; the line is their median, in steps.
+    Seeds,
 }
 
 /// Which peaks of a curve to mark.

@@ -1,7 +1,7 @@
 //! The `figure` (or `figures`) of an experiment, checked against the columns that its table will have.
 
 use super::columns::{Columns, Role};
-use super::definition::{Axis, AxisScale, Drawing, FigureSpec, Level, Panel, PeakMarks};
+use super::definition::{Axis, AxisScale, Band, Drawing, FigureSpec, Level, Only, Panel, PeakMarks};
 use super::diagnostic::{Findings, Span};
 use super::reader::{Choice, Fields, boolean, count, list, number, one_or_more, scalar, text, unknown, word};
 use super::sweep::is_name;
@@ -48,17 +48,29 @@ impl<'t> FigureReader<'t> {
         let fields = Fields::open(node, "a figure", self.findings)?;
         let name = fields.optional("name", |node| self.name(node));
         let caption = fields.required("caption", |node| text(node, self.findings));
+        let only = fields.optional("only", |node| self.only(node));
         if let Some(node) = fields.get("map") {
             let map = self.map(node);
-            let misplaced = ["x", "y", "by", "band", "markers", "panels", "guides", "peaks"].map(|key| fields.get(key));
+            let misplaced = ["x", "y", "by", "band", "over_first", "markers", "panels", "guides", "peaks"]
+                .map(|key| fields.get(key));
             fields.close()?;
             if let Some(node) = misplaced.into_iter().flatten().next() {
-                return self.findings.wrong(node.span, "beside `map`, a figure has `name` and `caption` alone");
+                return self.findings.wrong(node.span, "beside `map`, a figure has `name`, `caption` and `only` alone");
             }
             return Some(FigureSpec {
                 name: name?.unwrap_or_default(),
                 caption: caption?,
+                only: only?,
                 drawing: Drawing::Map(map?),
+            });
+        }
+        if fields.get("gaps").is_some_and(|node| boolean(node, self.findings) == Some(true)) {
+            fields.close()?;
+            return Some(FigureSpec {
+                name: name?.unwrap_or_default(),
+                caption: caption?,
+                only: only?,
+                drawing: Drawing::Gaps,
             });
         }
         let shared = Shared {
@@ -77,7 +89,21 @@ impl<'t> FigureReader<'t> {
             None => self.panel(&fields, &shared).map(|panel| vec![panel]),
         };
         fields.close()?;
-        Some(FigureSpec { name: name?.unwrap_or_default(), caption: caption?, drawing: Drawing::Lines(panels?) })
+        Some(FigureSpec {
+            name: name?.unwrap_or_default(),
+            caption: caption?,
+            only: only?,
+            drawing: Drawing::Lines(panels?),
+        })
+    }
+
+    /// `{column: sweep, words: [point_1, point_2]}`.
+    fn only(&self, node: &'t Node) -> Option<Only> {
+        let fields = Fields::open(node, "rows to draw", self.findings)?;
+        let column = fields.required("column", |node| self.split(node));
+        let words = fields.required("words", |node| one_or_more(node, self.findings, |node| text(node, self.findings)));
+        fields.close()?;
+        Some(Only { column: column?, words: words? })
     }
 
     fn name(&self, node: &Node) -> Option<String> {
@@ -98,11 +124,16 @@ impl<'t> FigureReader<'t> {
         };
         let y = fields.required("y", |node| one_or_more(node, self.findings, |node| self.axis(node)));
         let by = by.map_or(Some(Vec::new()), |node| one_or_more(node, self.findings, |node| self.split(node)));
-        let band = band.map_or(Some(false), |node| {
-            Choice::read(node, "a band", &["spread", "none"], self.findings)?
-                .bare(self.findings)
-                .map(|band| band == "spread")
+        let band = band.map_or(Some(Band::None), |node| {
+            let word =
+                Choice::read(node, "a band", &["spread", "none", "seeds"], self.findings)?.bare(self.findings)?;
+            Some(match word {
+                "spread" => Band::Spread,
+                "seeds" => Band::Seeds,
+                _ => Band::None,
+            })
         });
+        let over_first = fields.optional("over_first", |node| boolean(node, self.findings));
         let guides = fields.optional("guides", |node| list(node, self.findings, |node| self.level(node)));
         let markers = markers.map_or(Some(false), |node| boolean(node, self.findings));
         let peaks = fields.optional("peaks", |node| self.peaks(node));
@@ -123,6 +154,7 @@ impl<'t> FigureReader<'t> {
             y,
             by: by?,
             band: band?,
+            over_first: over_first?.unwrap_or(false),
             guides: guides?.unwrap_or_default(),
             markers: markers?,
             peaks: peaks?,

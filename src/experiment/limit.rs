@@ -87,7 +87,7 @@ fn events(text: &str) -> Option<u64> {
     let digits = text.trim().trim_end_matches("events").trim();
     let number = parse_number(digits).ok()?;
     // Whole numbers of this size are exact.
-    (number >= 1.0 && number <= 1e15 && number.fract() == 0.0).then_some(number as u64)
+    ((1.0..=1e15).contains(&number) && number.fract() == 0.0).then_some(number as u64)
 }
 
 /// `10 min`, `2 h`, or seconds with any prefix.

@@ -41,7 +41,7 @@ pub(super) const LONGEST: usize = 1 << 20;
 
 /// What is wrong with a longer one.
 pub(super) fn too_long(bytes: u64) -> String {
-    format!("has {} KiB, and {} KiB are the most that is read", bytes.div_ceil(1024), LONGEST >> 10)
+    format!("has {} KiB; at most {} KiB are read", bytes.div_ceil(1024), LONGEST >> 10)
 }
 
 /// Most keys of one mapping.

@@ -27,6 +27,8 @@ impl Extent {
         let Self { least, largest } = self;
         let (low, high) = (least.min(at), largest.max(at));
         let (below, above) = match scale {
+            // What cannot be negative has no room below zero.
+            AxisScale::Linear if low >= 0.0 => ((at - ROOM * (high - low)).max(0.0), at + ROOM * (high - low)),
             AxisScale::Linear => (at - ROOM * (high - low), at + ROOM * (high - low)),
             AxisScale::Log if at > 0.0 => {
                 let room = libm::pow(high / low, ROOM);
@@ -40,6 +42,18 @@ impl Extent {
         } else {
             Self { least: low, largest: high.max(above) }
         }
+    }
+}
+
+impl Extent {
+    /// The smallest that holds both.
+    pub(super) fn union(self, other: Self) -> Self {
+        Self { least: self.least.min(other.least), largest: self.largest.max(other.largest) }
+    }
+
+    /// With one more number.
+    pub(super) fn with(self, at: f64, scale: AxisScale) -> Self {
+        Self::of(std::iter::once(at), scale).map_or(self, |other| self.union(other))
     }
 }
 

@@ -1,36 +1,34 @@
-//! A sheet to draw on, in pixels of the finished picture. The only file that names plotters.
+//! A sheet to draw on, in pixels of the finished picture: plotters on [`super::backend`].
 //!
-//! plotters rounds to whole pixels, so it draws an SVG [`ZOOM`] times larger than the picture, which
-//! [`super::raster`] scales down.
+//! Coordinates are whole tenths of a pixel, and paths are relative: a point of a curve takes about six bytes. Points that
+//! would not move a line by a tenth of a pixel are left out.
 
+use std::cell::RefCell;
+use std::rc::Rc;
 use std::sync::LazyLock;
 
 use plotters::coord::Shift;
-use plotters::drawing::{DrawingArea, DrawingAreaErrorKind, IntoDrawingArea};
+use plotters::drawing::{DrawingArea, IntoDrawingArea};
 use plotters::element::{Circle, Drawable, PathElement, PointCollection, Polygon, Rectangle, Text};
-use plotters::prelude::SVGBackend;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
-use plotters::style::{
-    Color as _, FontDesc, FontFamily, FontStyle, FontTransform, RGBColor, ShapeStyle, register_font,
-};
+use plotters::style::{Color as _, FontDesc, FontFamily, FontStyle, FontTransform, RGBColor, ShapeStyle};
+use ttf_parser::Face;
 
-use super::geometry::{Point, Rect, dashed};
+use super::backend::Writer;
+use super::geometry::{Point, Rect, dashed, simplified};
 use super::raster::{FAMILY, FONT};
 use super::style::{Color, PAPER};
 
-/// How much larger the SVG is than the picture.
-pub(super) const ZOOM: u32 = 6;
+/// Units of the SVG in a pixel of the picture.
+const UNITS: f64 = 10.0;
+/// How far a line may be from the points that it stands for, in pixels.
+const DEVIATION: f64 = 0.1;
+/// Where the baseline has to lie for digits and capitals to be centred on their place, in em.
+const CENTRE: f64 = 0.365;
+/// Families with glyphs about as wide, for where the first is not installed.
+const FALLBACK: &str = "Verdana, sans-serif";
 
-/// plotters writes font sizes into the SVG divided by this.
-const SVG_FONT_SIZE: f64 = 1.24;
-/// Height of DejaVu Sans from descender to ascender in em, the unit in which plotters measures it.
-const FONT_HEIGHT: f64 = 1.164;
-/// Where plotters puts the baseline of centred text below its anchor, in em.
-const SVG_CENTRE: f64 = 0.25;
-/// Where the baseline has to lie for digits and capitals to be centred on the anchor, in em.
-const TRUE_CENTRE: f64 = 0.365;
-
-static FONT_REGISTERED: LazyLock<bool> = LazyLock::new(|| register_font(FAMILY, FontStyle::Normal, FONT).is_ok());
+static FACE: LazyLock<Option<Face<'static>>> = LazyLock::new(|| Face::parse(FONT, 0).ok());
 
 /// A line's pen.
 #[derive(Debug, Clone, Copy)]
@@ -65,42 +63,30 @@ pub(super) struct Lettering<'a> {
     pub color: Color,
 }
 
-/// What a drawing step leaves behind: nothing, or plotters' complaint.
-pub(super) type Drawn = Result<(), String>;
-
 /// A sheet of paper.
-pub(super) struct Sheet<'a> {
-    area: DrawingArea<SVGBackend<'a>, Shift>,
+pub(super) struct Sheet {
+    area: DrawingArea<Writer, Shift>,
 }
 
 /// Paints on a white sheet of this size; returns the SVG.
-///
-/// # Errors
-/// plotters' complaint, in words.
-pub(super) fn svg(width: f64, height: f64, paint: impl FnOnce(&Sheet<'_>) -> Drawn) -> Result<String, String> {
-    if !*FONT_REGISTERED {
-        return Err("the built-in font cannot be read".into());
-    }
-    let mut text = String::new();
-    let side = |length: f64| whole(length).unsigned_abs();
-    let sheet = Sheet { area: SVGBackend::with_string(&mut text, (side(width), side(height))).into_drawing_area() };
-    sheet.area.fill(&rgb(PAPER)).map_err(words)?;
-    paint(&sheet)?;
-    sheet.area.present().map_err(words)?;
-    drop(sheet);
-    // Sharp bends of a curve are rounded, not spiked, and neighbouring cells show no seam; plotters has no words for it.
-    Ok(text
-        .replacen("<svg ", "<svg stroke-linejoin=\"round\" ", 1)
-        .replace("<rect ", "<rect shape-rendering=\"crispEdges\" "))
+pub(super) fn svg(width: f64, height: f64, paint: impl FnOnce(&Sheet)) -> String {
+    let [wide, high] = [width, height].map(|length| whole(length).unsigned_abs());
+    let text = Rc::new(RefCell::new(format!(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width:.0}\" height=\"{height:.0}\" \
+         viewBox=\"0 0 {wide} {high}\" font-family=\"{FAMILY}, {FALLBACK}\" stroke-linejoin=\"round\">\n"
+    )));
+    let sheet = Sheet { area: Writer { size: (wide, high), text: Rc::clone(&text) }.into_drawing_area() };
+    sheet.cell(&Rect { left: 0.0, top: 0.0, right: width, bottom: height }, PAPER);
+    paint(&sheet);
+    text.take() + "</svg>\n"
 }
 
 /// Width of a text in pixels of the picture.
 pub(super) fn text_width(text: &str, size: f64) -> f64 {
-    if !*FONT_REGISTERED {
-        return 0.0;
-    }
-    let width = font(size).box_size(text).map_or(0, |(width, _)| width);
-    f64::from(width) * FONT_HEIGHT / SVG_FONT_SIZE / f64::from(ZOOM)
+    let Some(face) = FACE.as_ref() else { return 0.0 };
+    let advance = |letter: char| face.glyph_index(letter).and_then(|glyph| face.glyph_hor_advance(glyph)).unwrap_or(0);
+    let units: u32 = text.chars().map(|letter| u32::from(advance(letter))).sum();
+    f64::from(units) / f64::from(face.units_per_em()) * size
 }
 
 /// A text broken between words into lines of at most this width; a single word may be wider.
@@ -118,82 +104,95 @@ pub(super) fn wrapped(text: &str, size: f64, width: f64) -> Vec<String> {
     lines
 }
 
-impl<'a> Sheet<'a> {
+impl Sheet {
     /// A polyline.
-    pub(super) fn line(&self, points: &[Point], pen: Pen) -> Drawn {
-        let style = ShapeStyle {
-            color: rgb(pen.color).to_rgba(),
-            filled: false,
-            stroke_width: whole(pen.width).unsigned_abs(),
-        };
-        for stretch in dashed(points, pen.dash) {
-            self.put(&PathElement::new(pixels(&stretch), style))?;
+    pub(super) fn line(&self, points: &[Point], pen: Pen) {
+        let points = simplified(points, DEVIATION);
+        if points.len() < 2 {
+            return;
         }
-        Ok(())
+        for stretch in dashed(&points, pen.dash) {
+            self.put(&PathElement::new(places(&stretch), pen.style()));
+        }
     }
 
     /// A filled polygon.
-    pub(super) fn fill(&self, corners: &[Point], color: Color, opacity: f64) -> Drawn {
-        self.put(&Polygon::new(pixels(corners), rgb(color).mix(opacity).filled()))
+    pub(super) fn fill(&self, corners: &[Point], color: Color, opacity: f64) {
+        self.put(&Polygon::new(places(&simplified(corners, DEVIATION)), rgb(color).mix(opacity).filled()));
     }
 
     /// A filled rectangle whose edges meet its neighbours' without a seam.
-    pub(super) fn cell(&self, place: &Rect, color: Color) -> Drawn {
-        let corners = [pixel(place.at(0.0, 1.0)), pixel(place.at(1.0, 0.0))];
-        self.put(&Rectangle::new(corners, rgb(color).filled()))
+    pub(super) fn cell(&self, place: &Rect, color: Color) {
+        let corners = [(whole(place.left), whole(place.top)), (whole(place.right), whole(place.bottom))];
+        self.put(&Rectangle::new(corners, rgb(color).filled()));
+    }
+
+    /// As [`Sheet::cell`], of one colour.
+    pub(super) fn cells(&self, places: &[Rect], color: Color) {
+        places.iter().for_each(|place| self.cell(place, color));
     }
 
     /// A filled disc.
-    pub(super) fn disc(&self, centre: Point, radius: f64, color: Color) -> Drawn {
-        self.put(&Circle::new(pixel(centre), whole(radius), rgb(color).filled()))
+    pub(super) fn disc(&self, centre: Point, radius: f64, color: Color) {
+        self.put(&Circle::new(place(centre), whole(radius), rgb(color).filled()));
+    }
+
+    /// A circle.
+    pub(super) fn ring(&self, centre: Point, radius: f64, pen: Pen) {
+        self.put(&Circle::new(place(centre), whole(radius), pen.style()));
     }
 
     /// A text.
-    pub(super) fn text(&self, at: Point, lettering: &Lettering<'_>) -> Drawn {
-        let turn = if lettering.upright { FontTransform::Rotate270 } else { FontTransform::None };
-        let h_pos = match lettering.anchor {
+    pub(super) fn text(&self, at: Point, lettering: &Lettering<'_>) {
+        let Lettering { text, size, anchor, upright, color } = *lettering;
+        let down = CENTRE * size;
+        let (at, turn) = if upright {
+            (Point { x: at.x + down, ..at }, FontTransform::Rotate270)
+        } else {
+            (Point { y: at.y + down, ..at }, FontTransform::None)
+        };
+        let h_pos = match anchor {
             Anchor::Left => HPos::Left,
             Anchor::Centre => HPos::Center,
             Anchor::Right => HPos::Right,
         };
-        let mut style = font(lettering.size).transform(turn).color(&rgb(lettering.color));
-        style.pos = Pos::new(h_pos, VPos::Center);
-        let down = (TRUE_CENTRE - SVG_CENTRE) * lettering.size;
-        let at = if lettering.upright { Point { x: at.x + down, ..at } } else { Point { y: at.y + down, ..at } };
-        self.put(&Text::new(lettering.text, pixel(at), style))
+        let font = FontDesc::new(FontFamily::Name(FAMILY), f64::from(whole(size)), FontStyle::Normal).transform(turn);
+        let mut style = font.color(&rgb(color));
+        style.pos = Pos::new(h_pos, VPos::Bottom);
+        self.put(&Text::new(text, place(at), style));
     }
 
-    fn put<'b, E>(&self, element: &'b E) -> Drawn
+    fn put<'b, E>(&self, element: &'b E)
     where
         &'b E: PointCollection<'b, (i32, i32)>,
-        E: Drawable<SVGBackend<'a>>,
+        E: Drawable<Writer>,
     {
-        self.area.draw(element).map_err(words)
+        let drawn = self.area.draw(element);
+        debug_assert!(drawn.is_ok(), "writing into memory cannot fail");
     }
 }
 
-fn font(size: f64) -> FontDesc<'static> {
-    FontDesc::new(FontFamily::Name(FAMILY), size * SVG_FONT_SIZE * f64::from(ZOOM), FontStyle::Normal)
+impl Pen {
+    fn style(self) -> ShapeStyle {
+        let stroke_width = whole(self.width).unsigned_abs();
+        ShapeStyle { color: rgb(self.color).to_rgba(), filled: false, stroke_width }
+    }
 }
 
 fn rgb(color: Color) -> RGBColor {
     RGBColor(color.0, color.1, color.2)
 }
 
-fn words<E: std::error::Error + Send + Sync>(error: DrawingAreaErrorKind<E>) -> String {
-    error.to_string()
+fn places(points: &[Point]) -> Vec<(i32, i32)> {
+    points.iter().copied().map(place).collect()
 }
 
-fn pixels(points: &[Point]) -> Vec<(i32, i32)> {
-    points.iter().copied().map(pixel).collect()
-}
-
-fn pixel(point: Point) -> (i32, i32) {
+fn place(point: Point) -> (i32, i32) {
     (whole(point.x), whole(point.y))
 }
 
-/// Pixels of the picture to whole pixels of the SVG.
-#[expect(clippy::cast_possible_truncation, reason = "a cast saturates, and a sheet is some 10 000 pixels wide")]
+/// Pixels of the picture to units of the SVG.
+#[expect(clippy::cast_possible_truncation, reason = "a cast saturates, and a sheet is some 10 000 units wide")]
 fn whole(length: f64) -> i32 {
-    (length * f64::from(ZOOM)).round() as i32
+    (length * UNITS).round() as i32
 }

@@ -1,5 +1,7 @@
 //! Why there is no figure.
 
+pub use super::raster::RasterError;
+
 /// Why a figure cannot be drawn.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum FigureError {
@@ -64,11 +66,11 @@ pub enum FigureError {
         figure: String,
     },
     /// The drawing itself failed.
-    #[error("figure {figure} cannot be drawn: {reason}")]
+    #[error("figure {figure} cannot be drawn: {source}")]
     Drawing {
         /// Which figure.
         figure: String,
-        /// What the drawing library says.
-        reason: String,
+        /// Why.
+        source: RasterError,
     },
 }

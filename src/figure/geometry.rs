@@ -40,6 +40,16 @@ impl Rect {
         }
     }
 
+    /// The corners, around.
+    pub(super) fn corners(&self) -> [Point; 4] {
+        [self.at(0.0, 0.0), self.at(0.0, 1.0), self.at(1.0, 1.0), self.at(1.0, 0.0)]
+    }
+
+    /// True if all of it lies inside `frame`.
+    pub(super) fn lies_within(&self, frame: &Self) -> bool {
+        self.left >= frame.left && self.right <= frame.right && self.top >= frame.top && self.bottom <= frame.bottom
+    }
+
     /// True if the two overlap.
     pub(super) fn overlaps(&self, other: &Self) -> bool {
         self.left < other.right && other.left < self.right && self.top < other.bottom && other.top < self.bottom
@@ -63,6 +73,33 @@ impl Rect {
         }
         enter <= leave
     }
+}
+
+/// The fewest of these points whose polyline stays within `deviation` of all of them (Ramer, Douglas and Peucker).
+pub(super) fn simplified(points: &[Point], deviation: f64) -> Vec<Point> {
+    let [first, _, ..] = points else { return points.to_vec() };
+    let mut kept = vec![*first];
+    // What lies between the last point kept and this one is settled when it leaves the stack.
+    let mut stretches = vec![(0, points.len() - 1)];
+    while let Some((from, to)) = stretches.pop() {
+        let (a, b) = (points[from], points[to]);
+        let off = |at: usize| distance(points[at], a, b);
+        let farthest = (from + 1..to).max_by(|&i, &j| off(i).total_cmp(&off(j)));
+        match farthest {
+            Some(at) if off(at) > deviation => stretches.extend([(at, to), (from, at)]),
+            _ => kept.push(b),
+        }
+    }
+    kept
+}
+
+/// How far a point is from the straight stretch between two others.
+fn distance(point: Point, a: Point, b: Point) -> f64 {
+    let (dx, dy) = (b.x - a.x, b.y - a.y);
+    let length = dx * dx + dy * dy;
+    let along =
+        if length > 0.0 { (((point.x - a.x) * dx + (point.y - a.y) * dy) / length).clamp(0.0, 1.0) } else { 0.0 };
+    libm::hypot(point.x - a.x - along * dx, point.y - a.y - along * dy)
 }
 
 /// A polyline cut into the drawn stretches of a dash pattern (lengths drawn and left out, by turns); empty is solid.

@@ -5,11 +5,12 @@ use crate::table::{Column, Data};
 use crate::text::{number, words};
 
 /// A column as an axis or a legend names it, without unit: `velocity ratio ψ`, `maximum velocity ratio ψ`.
-pub(super) fn of_column(experiment: &Experiment, column: &Column) -> String {
+pub(super) fn of_column(experiment: Option<&Experiment>, column: &Column) -> String {
     let name = words::of_column(&column.name);
     let named = if column.symbol.is_empty() { name } else { format!("{name} {}", column.symbol) };
-    let maximised =
-        experiment.maximise.as_ref().is_some_and(|maximise| words::of_key(&maximise.measure) == column.name);
+    let maximised = experiment
+        .and_then(|experiment| experiment.maximise.as_ref())
+        .is_some_and(|maximise| words::of_key(&maximise.measure) == column.name);
     if maximised { format!("maximum {named}") } else { named }
 }
 
@@ -26,6 +27,9 @@ pub(super) fn of_cell(column: &Column, row: usize) -> Option<String> {
         Data::FloatList(_) => return None,
     };
     Some(match (column.name.as_str(), column.symbol.as_str()) {
+        ("damper_count", _) if value == "1" => "1 damper".into(),
+        ("damper_count", _) => format!("{value} dampers"),
+        ("modes", _) => format!("{value} modes"),
         ("pulse_duration", _) => format!("{value} pulse"),
         (name, "") => format!("{} {value}", words::of_column(name)),
         (_, symbol) => format!("{symbol} = {value}"),

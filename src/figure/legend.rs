@@ -1,11 +1,15 @@
 //! Legends: what each line means, at a place where no data lies.
 
-use super::canvas::{Anchor, Drawn, Lettering, Pen, Sheet, text_width};
+use crate::experiment::{Band, Level, Panel};
+
+use super::canvas::{Anchor, Lettering, Pen, Sheet, text_width};
 use super::geometry::{Point, Rect};
 use super::line::Curve;
 use super::paint;
+use super::quoted::{self, Quoted};
 use super::style::{
-    BAND_OPACITY, CURVE, Color, GREY, INK, LEGEND_LINE, LEGEND_ROW, LEGEND_TEXT, Look, Marker, PAPER, QUOTED, SPACE,
+    BAND_OPACITY, CURVE, Color, GREY, GUIDE, GUIDE_DASH, INK, LEGEND_LINE, LEGEND_ROW, LEGEND_TEXT, Look, Marker,
+    PAPER, QUOTED, QUOTED_OPACITY, SPACE,
 };
 
 /// What is drawn before a legend's text.
@@ -14,6 +18,10 @@ enum Sign {
     Line { look: Look, marker: bool },
     Band(Color),
     Quoted,
+    Tolerance,
+    Guide,
+    Bar,
+    Impulse,
 }
 
 /// One row of a legend.
@@ -27,6 +35,8 @@ struct Entry {
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct Legend {
     entries: Vec<Entry>,
+    /// Room before the rows of a legend above a frame, for a panel's letter.
+    pub indent: f64,
 }
 
 /// What a legend must not cover.
@@ -49,9 +59,11 @@ impl Obstacles {
 
 impl Legend {
     /// Of these curves; empty where there is nothing to tell apart.
-    pub(super) fn new(curves: &[Curve], markers: bool, band: bool, quoted: &[&str]) -> Self {
+    pub(super) fn new(curves: &[Curve], panel: &Panel, band: bool, quoted: &[&Quoted]) -> Self {
         let mut entries = Vec::new();
-        if curves.len() > 1 || band || !quoted.is_empty() {
+        let markers = panel.markers || panel.band == Band::Seeds;
+        let points = quoted.iter().any(|one| one.is_point());
+        if curves.len() > 1 || band || points {
             entries.extend(by_trait(curves, markers).unwrap_or_else(|| {
                 let line = |curve: &Curve| Entry {
                     sign: Sign::Line { look: curve.look, marker: markers },
@@ -65,14 +77,33 @@ impl Legend {
                 [one] => one.look.color,
                 _ => GREY,
             };
-            entries.push(Entry { sign: Sign::Band(color), text: "± 1 s.d. of the ensemble".into() });
+            let seeds = curves.iter().map(|curve| curve.seeds).max().unwrap_or(0);
+            let text = match panel.band {
+                Band::Seeds => format!("median and range of {seeds} seeds"),
+                Band::None | Band::Spread => "± 1 s.d. of the ensemble".into(),
+            };
+            entries.push(Entry { sign: Sign::Band(color), text });
         }
-        for &text in quoted {
-            if !entries.iter().any(|entry| entry.sign == Sign::Quoted && entry.text == text) {
-                entries.push(Entry { sign: Sign::Quoted, text: text.to_owned() });
-            }
+        if points {
+            entries.push(Entry { sign: Sign::Quoted, text: "study ± 2 u_val".into() });
         }
-        Self { entries }
+        if quoted.iter().any(|one| !one.is_point() && one.tolerance.is_some()) {
+            entries.push(Entry { sign: Sign::Tolerance, text: "study ± 2 u_val".into() });
+        }
+        Self { entries, indent: 0.0 }
+    }
+
+    /// Names the signs of contacts and impulses.
+    pub(super) fn name_instants(&mut self, contacts: bool, impulses: bool) {
+        let signs = [(contacts, Sign::Bar, "contact"), (impulses, Sign::Impulse, "impulse")];
+        let shown = signs.into_iter().filter(|(shown, ..)| *shown);
+        self.entries.extend(shown.map(|(_, sign, text)| Entry { sign, text: text.into() }));
+    }
+
+    /// Names guides beside the lines.
+    pub(super) fn name_guides(&mut self, guides: &[Level]) {
+        let named = guides.iter().filter(|guide| !guide.label.is_empty());
+        self.entries.extend(named.map(|guide| Entry { sign: Sign::Guide, text: guide.label.clone() }));
     }
 
     pub(super) fn is_empty(&self) -> bool {
@@ -121,32 +152,30 @@ impl Legend {
 
     /// Height above a frame of this width, where no place within is free.
     pub(super) fn height_above(&self, width: f64) -> f64 {
-        rows_high(self.rows(width).len()) + SPACE
+        rows_high(self.rows(width - self.indent).len()) + SPACE
     }
 
     /// Draws the entries one below the other.
-    pub(super) fn draw_column(&self, sheet: &Sheet<'_>, place: &Rect) -> Drawn {
+    pub(super) fn draw_column(&self, sheet: &Sheet, place: &Rect) {
         let corners = [place.at(0.0, 0.0), place.at(0.0, 1.0), place.at(1.0, 1.0), place.at(1.0, 0.0)];
-        sheet.fill(&corners, PAPER, 0.85)?;
+        sheet.fill(&corners, PAPER, 0.85);
         let mut middle = Point { x: place.left + SPACE, y: place.top + SPACE / 2.0 + LEGEND_ROW / 2.0 };
         for entry in &self.entries {
-            entry.draw(sheet, middle)?;
+            entry.draw(sheet, middle);
             middle.y += LEGEND_ROW;
         }
-        Ok(())
     }
 
     /// Draws the entries in rows above a frame.
-    pub(super) fn draw_above(&self, sheet: &Sheet<'_>, frame: &Rect) -> Drawn {
+    pub(super) fn draw_above(&self, sheet: &Sheet, frame: &Rect) {
         let top = frame.top - self.height_above(frame.width()) + SPACE;
-        for (index, row) in (0_u32..).zip(self.rows(frame.width())) {
-            let mut at = Point { x: frame.left, y: top + LEGEND_ROW * (f64::from(index) + 0.5) };
+        for (index, row) in (0_u32..).zip(self.rows(frame.width() - self.indent)) {
+            let mut at = Point { x: frame.left + self.indent, y: top + LEGEND_ROW * (f64::from(index) + 0.5) };
             for entry in row {
-                entry.draw(sheet, at)?;
+                entry.draw(sheet, at);
                 at.x += entry.width() + 3.0 * SPACE;
             }
         }
-        Ok(())
     }
 
     fn rows(&self, width: f64) -> Vec<&[Entry]> {
@@ -196,23 +225,42 @@ impl Entry {
         LEGEND_LINE + SPACE + text_width(&self.text, LEGEND_TEXT)
     }
 
-    fn draw(&self, sheet: &Sheet<'_>, at: Point) -> Drawn {
+    fn draw(&self, sheet: &Sheet, at: Point) {
         let end = Point { x: at.x + LEGEND_LINE, ..at };
         let middle = Point { x: at.x + LEGEND_LINE / 2.0, ..at };
         match self.sign {
             Sign::Line { look, marker } => {
-                sheet.line(&[at, end], Pen { color: look.color, width: look.width, dash: look.dash })?;
+                sheet.line(&[at, end], Pen { color: look.color, width: look.width, dash: look.dash });
                 if marker {
-                    paint::marker(sheet, middle, look)?;
+                    paint::marker(sheet, middle, look);
                 }
             }
             Sign::Band(color) => {
                 let half = LEGEND_ROW * 0.3;
                 let place = Rect { left: at.x, top: at.y - half, right: end.x, bottom: at.y + half };
                 let corners = [place.at(0.0, 0.0), place.at(0.0, 1.0), place.at(1.0, 1.0), place.at(1.0, 0.0)];
-                sheet.fill(&corners, color, BAND_OPACITY)?;
+                sheet.fill(&corners, color, BAND_OPACITY);
             }
-            Sign::Quoted => paint::quoted(sheet, middle, QUOTED)?,
+            Sign::Quoted => {
+                let bar = [-0.45, 0.45].map(|down| Point { y: at.y + down * LEGEND_ROW, ..middle });
+                sheet.line(&bar, Pen::solid(INK, GUIDE));
+                quoted::diamond(sheet, middle, 0.8 * QUOTED);
+            }
+            Sign::Tolerance => {
+                let half = LEGEND_ROW * 0.3;
+                let place = Rect { left: at.x, top: at.y - half, right: end.x, bottom: at.y + half };
+                sheet.fill(&place.corners(), INK, QUOTED_OPACITY);
+                sheet.line(&[at, end], Pen { color: INK, width: GUIDE, dash: quoted::DASH });
+            }
+            Sign::Bar => {
+                let place = Rect { left: at.x, top: at.y - 6.0, right: end.x, bottom: at.y + 6.0 };
+                sheet.cell(&place, GREY);
+            }
+            Sign::Impulse => {
+                let ends = [-0.4, 0.4].map(|down| Point { y: at.y + down * LEGEND_ROW, ..middle });
+                sheet.line(&ends, Pen { color: GREY, width: CURVE, dash: &[3.0, 7.0] });
+            }
+            Sign::Guide => sheet.line(&[at, end], Pen { color: GREY, width: GUIDE, dash: GUIDE_DASH }),
         }
         let at = Point { x: end.x + SPACE, ..at };
         let lettering =

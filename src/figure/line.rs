@@ -3,12 +3,13 @@
 //! Every combination of the levels of the `by` columns and of the y columns is one line. The first thing that varies
 //! among them shows as colour, the rest as dashes; where only one thing varies it shows as both.
 
-use crate::experiment::{Experiment, Panel};
+use crate::experiment::{Band, Experiment, Panel};
 use crate::table::{Column, Data, Table};
 
 use super::error::FigureError;
 use super::group::{Group, number};
 use super::label;
+use super::searches;
 use super::style::Look;
 
 /// One point of a curve; NaN in y is a gap.
@@ -16,8 +17,24 @@ use super::style::Look;
 pub(super) struct Sample {
     pub x: f64,
     pub y: f64,
-    /// Half width of the band around y; 0 without one.
-    pub spread: f64,
+    /// Least and largest of the band around y; both y without one.
+    pub band: [f64; 2],
+}
+
+impl Sample {
+    /// Without a band.
+    pub(super) fn bare(x: f64, y: f64) -> Self {
+        Self { x, y, band: [y, y] }
+    }
+
+    /// Between two stretches of one line.
+    fn gap() -> Self {
+        Self::bare(f64::NAN, f64::NAN)
+    }
+
+    fn divided_by(self, one: f64) -> Self {
+        Self { x: self.x, y: self.y / one, band: self.band.map(|edge| edge / one) }
+    }
 }
 
 /// The value that a curve takes at infinite x.
@@ -53,6 +70,8 @@ pub(super) struct Curve {
     pub look: Look,
     /// Sorted by x unless it is a time history.
     pub samples: Vec<Sample>,
+    /// How many searches the band spans; 0 where it is none of theirs.
+    pub seeds: usize,
     pub at_infinity: Option<AtInfinity>,
 }
 
@@ -66,7 +85,8 @@ impl Curve {
 /// The table behind a figure, asked for columns by name.
 #[derive(Clone, Copy)]
 pub(super) struct Source<'a> {
-    pub experiment: &'a Experiment,
+    /// Whose table it is.
+    pub experiment: Option<&'a Experiment>,
     /// Only the rows to draw.
     pub table: &'a Table,
     /// What the figure is called in messages.
@@ -98,9 +118,11 @@ pub(super) fn curves(source: Source<'_>, panel: &Panel) -> Result<Vec<Curve>, Fi
     let mut curves = Vec::new();
     for (index, axis) in panel.y.iter().enumerate() {
         let y = source.column(&axis.column)?;
-        let spread = source.table.floats(&format!("{}_spread", y.name)).filter(|_| panel.band);
+        let spread = source.table.floats(&format!("{}_spread", y.name)).filter(|_| panel.band == Band::Spread);
+        // Only what shows takes a colour.
+        let shown: Vec<&Group> = groups.iter().filter(|group| group.rows.iter().any(|&row| holds(y, row))).collect();
         for group in &groups {
-            let traits = Traits::new(index, panel.y.len(), &groups, group);
+            let traits = Traits::new(index, panel.y.len(), &shown, group);
             let mut words = if panel.y.len() > 1 { vec![source.label(axis)?] } else { Vec::new() };
             words.extend(group.varying_words(&groups));
             let name = match words.split_first() {
@@ -108,17 +130,50 @@ pub(super) fn curves(source: Source<'_>, panel: &Panel) -> Result<Vec<Curve>, Fi
                 Some((hue, rest)) => Name { hue: hue.clone(), dash: (!rest.is_empty()).then(|| rest.join(", ")) },
             };
             let look = Look::of_path(&y.name).filter(|_| groups.len() == 1).unwrap_or_else(|| traits.look());
-            let mut curve = Curve { name, look, samples: Vec::new(), at_infinity: None };
-            fill(&mut curve, source.figure, x, y, spread.as_deref(), &group.rows)?;
+            let mut curve = Curve { name, look, samples: Vec::new(), seeds: 0, at_infinity: None };
+            match (panel.band, &x.data, &y.data) {
+                (Band::Seeds, Data::FloatList(steps), Data::FloatList(values)) => {
+                    let search = |&row: &usize| Some((steps.get(row)?.as_slice(), values.get(row)?.as_slice()));
+                    let searches: Vec<_> =
+                        group.rows.iter().filter_map(search).filter(|one| !one.0.is_empty()).collect();
+                    curve.samples = searches::median(&searches);
+                    curve.seeds = searches.len();
+                }
+                _ => fill(&mut curve, source.figure, x, y, spread.as_deref(), &group.rows)?,
+            }
             if curve.shows() {
                 curves.push(curve);
             }
         }
     }
+    if panel.over_first {
+        over_first(&mut curves);
+    }
     if curves.is_empty() {
         return Err(FigureError::Nothing { figure: source.figure.to_owned() });
     }
     Ok(curves)
+}
+
+/// Every curve over the first one, at the places that both have.
+fn over_first(curves: &mut [Curve]) {
+    let Some(first) = curves.first().map(|first| first.samples.clone()) else { return };
+    for curve in curves {
+        let over = |sample: Sample| {
+            let below = first.iter().find(|one| one.x.total_cmp(&sample.x).is_eq())?;
+            Some(sample.divided_by(below.y))
+        };
+        curve.samples = curve.samples.iter().copied().filter_map(over).collect();
+        curve.at_infinity = None;
+    }
+}
+
+/// Whether a cell has something to draw.
+fn holds(column: &Column, row: usize) -> bool {
+    match &column.data {
+        Data::FloatList(cells) => cells.get(row).is_some_and(|cell| !cell.is_empty()),
+        _ => number(column, row).is_some_and(f64::is_finite),
+    }
 }
 
 fn fill(
@@ -137,9 +192,9 @@ fn fill(
         (Data::FloatList(times), Data::FloatList(values)) => {
             for (&row, last) in rows.iter().zip((0..rows.len()).rev()) {
                 let history = times.get(row).into_iter().flatten().zip(values.get(row).into_iter().flatten());
-                curve.samples.extend(history.map(|(&x, &y)| Sample { x, y, spread: 0.0 }));
+                curve.samples.extend(history.map(|(&x, &y)| Sample::bare(x, y)));
                 if last > 0 {
-                    curve.samples.push(Sample { x: f64::NAN, y: f64::NAN, spread: 0.0 });
+                    curve.samples.push(Sample::gap());
                 }
             }
             Ok(())
@@ -152,7 +207,7 @@ fn fill(
                 let (Some(at), Some(y)) = (number(x, row), number(y, row)) else { continue };
                 let spread = spread.and_then(|cells| cells.get(row)).copied().filter(|s| s.is_finite()).unwrap_or(0.0);
                 if at.is_finite() {
-                    curve.samples.push(Sample { x: at, y, spread });
+                    curve.samples.push(Sample { x: at, y, band: [y - spread, y + spread] });
                 } else if at == f64::INFINITY && y.is_finite() {
                     let label = label::of_cell(x, row).unwrap_or_default();
                     curve.at_infinity = Some(AtInfinity { y, label });
@@ -166,7 +221,7 @@ fn fill(
 
 impl Group {
     /// For each `by` column that varies: which of how many levels this group has.
-    fn levels(&self, groups: &[Self]) -> Vec<Level> {
+    fn levels(&self, groups: &[&Self]) -> Vec<Level> {
         let level = |index: usize| {
             let mut seen: Vec<&Option<String>> = Vec::new();
             for group in groups {
@@ -174,7 +229,10 @@ impl Group {
                     seen.push(&group.words[index]);
                 }
             }
-            Level { index: seen.iter().position(|word| **word == self.words[index]).unwrap_or(0), count: seen.len() }
+            let fixed: Vec<Option<usize>> =
+                seen.iter().map(|word| word.as_deref().and_then(Look::hue_of_word)).collect();
+            let at = seen.iter().position(|word| **word == self.words[index]).unwrap_or(0);
+            Level { index: at, count: seen.len(), hue: hue(&fixed, at) }
         };
         (0..self.words.len()).map(level).filter(|level| level.count > 1).collect()
     }
@@ -184,6 +242,17 @@ impl Group {
 struct Level {
     index: usize,
     count: usize,
+    /// Which of the named colours.
+    hue: usize,
+}
+
+/// The colour of level `at`: its own where its word has one, else the next that no word has.
+fn hue(fixed: &[Option<usize>], at: usize) -> usize {
+    if let Some(hue) = fixed.get(at).copied().flatten() {
+        return hue;
+    }
+    let before = fixed[..at.min(fixed.len())].iter().filter(|hue| hue.is_none()).count();
+    (0..).filter(|hue| !fixed.contains(&Some(*hue))).nth(before).unwrap_or(at)
 }
 
 /// How a line differs from the others of its panel.
@@ -197,17 +266,17 @@ struct Traits {
 }
 
 impl Traits {
-    fn new(y: usize, ys: usize, groups: &[Group], group: &Group) -> Self {
+    fn new(y: usize, ys: usize, groups: &[&Group], group: &Group) -> Self {
         let mut levels = group.levels(groups);
         if ys > 1 {
-            levels.insert(0, Level { index: y, count: ys });
+            levels.insert(0, Level { index: y, count: ys, hue: y });
         }
         match levels.as_slice() {
             [] => Self { hue: 0, hues: 1, dash: 0, beneath: false },
-            [only] => Self { hue: only.index, hues: only.count, dash: only.index, beneath: false },
+            [only] => Self { hue: only.hue, hues: only.count, dash: only.index, beneath: false },
             [first, rest @ ..] => {
                 let dash = rest.iter().fold(0, |dash, level| dash * level.count + level.index);
-                Self { hue: first.index, hues: first.count, dash, beneath: y + 1 < ys }
+                Self { hue: first.hue, hues: first.count, dash, beneath: y + 1 < ys }
             }
         }
     }

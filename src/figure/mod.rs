@@ -1,16 +1,20 @@
-//! Figures: a stored table to a PNG that a journal would print at column width.
+//! Figures: a stored table to an SVG and a PNG that a journal would print at column width.
 //!
 //! table → curves (rows split into lines, gaps kept) or fields (rows split into maps) → axes, legend and colour bar laid out
-//! in pixels → SVG on a canvas far larger than the picture → PNG. The font is built in, so that the same table gives the
+//! in pixels → SVG → PNG. The font is built in, so that the same table gives the
 //! same picture on any machine.
 
 mod axis;
+mod backend;
+mod bars;
 mod canvas;
 mod colormap;
+mod contact;
 mod contour;
 mod error;
 mod field;
 mod geometry;
+mod glyph;
 mod group;
 mod label;
 mod layout;
@@ -22,11 +26,16 @@ mod map_paint;
 mod paint;
 mod panel;
 mod peak;
+mod quoted;
 mod raster;
 mod render;
+mod searches;
+mod sketch;
 mod style;
 mod work_precision;
 
 pub use error::FigureError;
-pub use render::{QuotedPoint, draw};
+pub use quoted::{Known, Quoted, QuotedAt};
+pub use render::{Beside, Picture, draw, draw_table};
+pub use sketch::sketch;
 pub use work_precision::work_precision;

@@ -1,20 +1,19 @@
 //! A panel put on the sheet: grid, bands, curves, markers, frame, numbers, legend, in this order.
 
+use crate::experiment::Band;
 use crate::text::number::compact;
 
-use super::canvas::{Anchor, Drawn, Lettering, Pen, Sheet, text_width};
+use super::canvas::{Anchor, Lettering, Pen, Sheet, text_width};
+use super::contact;
 use super::geometry::{Point, Rect};
 use super::layout::{Place, line_height};
 use super::legend::Obstacles;
 use super::panel::Panel;
 use super::peak::peaks;
 use super::style::{
-    BAND_OPACITY, CURVE, Color, FRAME, GREY, GRID, GUIDE, INK, LABEL_TEXT, Look, MARKER, MINOR_TICK, Marker, NOTE_TEXT,
-    PALE, PAPER, QUOTED, SPACE, TICK, TICK_TEXT,
+    BAND_OPACITY, CURVE, Color, FRAME, GREY, GRID, GUIDE, GUIDE_DASH, INK, LABEL_TEXT, Look, MARKER, MINOR_TICK,
+    Marker, NOTE_TEXT, PALE, PAPER, SPACE, TICK, TICK_TEXT,
 };
-
-/// Dash of guides and of what stands for a missing coordinate.
-const GUIDE_DASH: &[f64] = &[10.0, 8.0];
 
 /// Where a panel's legend goes.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -26,89 +25,120 @@ pub(super) enum LegendPlace {
 
 /// Draws a panel into its frame.
 pub(super) fn panel(
-    sheet: &Sheet<'_>,
+    sheet: &Sheet,
     panel: &Panel<'_>,
     place: &Place,
     legend: LegendPlace,
     letter: Option<char>,
     x_labels: bool,
-) -> Drawn {
+) {
     let frame = &place.frame;
     let mut taken = panel.obstacles(frame);
     if let LegendPlace::Within(place) = legend {
         taken.boxes.push(place);
     }
-    grid(sheet, panel, frame)?;
+    grid(sheet, panel, frame);
     for curve in &panel.curves {
         for band in panel.bands(frame, curve) {
-            sheet.fill(&band, curve.look.color, BAND_OPACITY)?;
+            sheet.fill(&band, curve.look.color, BAND_OPACITY);
         }
     }
+    for one in &panel.quoted {
+        one.uncertainty(sheet, panel, frame);
+    }
     for guide in &panel.spec.guides {
-        level(sheet, panel, frame, guide.at, &guide.label, GREY, &mut taken)?;
+        // A legend names it.
+        let label = if panel.legend.is_empty() { guide.label.as_str() } else { "" };
+        level(sheet, panel, frame, guide.at, label, GREY, &mut taken);
     }
     for curve in &panel.curves {
         if let Some(limit) = &curve.at_infinity {
-            level(sheet, panel, frame, limit.y, &limit.label, curve.look.color, &mut taken)?;
+            level(sheet, panel, frame, limit.y, &limit.label, curve.look.color, &mut taken);
         }
     }
-    curves(sheet, panel, frame)?;
-    peak_marks(sheet, panel, frame, &mut taken)?;
-    quoted_points(sheet, panel, frame)?;
-    axes(sheet, panel, frame, x_labels)?;
-    y_label(sheet, place)?;
+    contact::draw(sheet, panel, frame);
+    curves(sheet, panel, frame);
+    peak_marks(sheet, panel, frame, &mut taken);
+    for one in &panel.quoted {
+        one.draw(sheet, panel, frame);
+    }
+    for one in &panel.quoted {
+        one.write(sheet, panel, frame, &mut taken);
+    }
+    axes(sheet, panel, frame, x_labels);
+    y_label(sheet, place);
     if let Some(letter) = letter {
-        let at = Point { x: frame.left - 2.0 * SPACE, y: frame.top - SPACE - LABEL_TEXT / 2.0 };
-        write(sheet, at, &format!("({letter})"), LABEL_TEXT, Anchor::Right, INK)?;
+        // Clear of the numbers at the y axis.
+        let at = Point { x: frame.left, y: frame.top - SPACE - LABEL_TEXT / 2.0 };
+        write(sheet, at, &format!("({letter})"), LABEL_TEXT, Anchor::Left, INK);
     }
     match legend {
-        LegendPlace::None => Ok(()),
+        LegendPlace::None => {}
         LegendPlace::Within(place) => panel.legend.draw_column(sheet, &place),
         LegendPlace::Above => panel.legend.draw_above(sheet, frame),
     }
 }
 
-fn grid(sheet: &Sheet<'_>, panel: &Panel<'_>, frame: &Rect) -> Drawn {
+fn grid(sheet: &Sheet, panel: &Panel<'_>, frame: &Rect) {
     for tick in panel.x_ticks().iter().filter(|tick| !tick.label.is_empty()) {
-        sheet.line(&[frame.at(tick.at, 0.0), frame.at(tick.at, 1.0)], Pen::solid(PALE, GRID))?;
+        sheet.line(&[frame.at(tick.at, 0.0), frame.at(tick.at, 1.0)], Pen::solid(PALE, GRID));
     }
     for tick in panel.y_ticks().iter().filter(|tick| !tick.label.is_empty()) {
-        sheet.line(&[frame.at(0.0, tick.at), frame.at(1.0, tick.at)], Pen::solid(PALE, GRID))?;
+        sheet.line(&[frame.at(0.0, tick.at), frame.at(1.0, tick.at)], Pen::solid(PALE, GRID));
     }
-    Ok(())
 }
 
-fn curves(sheet: &Sheet<'_>, panel: &Panel<'_>, frame: &Rect) -> Drawn {
+fn curves(sheet: &Sheet, panel: &Panel<'_>, frame: &Rect) {
     for curve in &panel.curves {
         let pen = Pen { color: curve.look.color, width: curve.look.width, dash: curve.look.dash };
         for stretch in panel.stretches(frame, curve) {
             // A point between two gaps would be no line at all.
             if let [alone] = stretch.as_slice() {
-                sheet.disc(*alone, CURVE, curve.look.color)?;
+                sheet.disc(*alone, CURVE, curve.look.color);
             }
-            sheet.line(&stretch, pen)?;
-            if panel.spec.markers {
-                for &at in &stretch {
-                    marker(sheet, at, curve.look)?;
+            sheet.line(&stretch, pen);
+            let marked = match (panel.spec.markers, panel.spec.band) {
+                (true, _) => stretch.as_slice(),
+                // Where a search ended.
+                (false, Band::Seeds) => &stretch[stretch.len() - 1..],
+                (false, _) => &[],
+            };
+            if !marked.is_empty() {
+                for &at in marked {
+                    marker(sheet, at, curve.look);
                 }
             }
         }
     }
-    Ok(())
 }
 
 /// A triangle on each peak, with its place on the x axis where there is room for the number.
-fn peak_marks(sheet: &Sheet<'_>, panel: &Panel<'_>, frame: &Rect, taken: &mut Obstacles) -> Drawn {
-    let Some(marks) = panel.spec.peaks else { return Ok(()) };
+fn peak_marks(sheet: &Sheet, panel: &Panel<'_>, frame: &Rect, taken: &mut Obstacles) {
+    let Some(marks) = panel.spec.peaks else { return };
     for curve in &panel.curves {
         for sample in peaks(curve, &panel.y, marks) {
             let Some(top) = panel.place(frame, sample.x, sample.y) else { continue };
             let at = Point { y: top.y - 1.4 * MARKER, ..top };
-            marker(sheet, at, Look { marker: Marker::Down, ..curve.look })?;
+            marker(sheet, at, Look { marker: Marker::Down, ..curve.look });
             let text = compact(panel.x.displayed(sample.x), 4);
             let (width, half) = (text_width(&text, NOTE_TEXT), NOTE_TEXT / 2.0);
             let (up, aside) = (half + MARKER + SPACE / 2.0, width / 2.0 + MARKER + SPACE / 2.0);
-            let places = [(0.0, up), (aside, 0.0), (-aside, 0.0), (aside, up), (-aside, up)];
+            let higher = |rows: f64| up + rows * NOTE_TEXT;
+            let places = [
+                (0.0, up),
+                (aside, 0.0),
+                (-aside, 0.0),
+                (aside, up),
+                (-aside, up),
+                (0.0, higher(1.0)),
+                (aside, higher(1.0)),
+                (-aside, higher(1.0)),
+                (0.0, higher(2.0)),
+                (1.6 * aside, 0.0),
+                (-1.6 * aside, 0.0),
+                (aside, -up),
+                (-aside, -up),
+            ];
             let place = places.map(|(right, up)| {
                 let (x, y) = (at.x + right, at.y - up);
                 Rect { left: x - width / 2.0, top: y - half, right: x + width / 2.0, bottom: y + half }
@@ -117,109 +147,82 @@ fn peak_marks(sheet: &Sheet<'_>, panel: &Panel<'_>, frame: &Rect, taken: &mut Ob
             let free = place.into_iter().find(|place| within(place) && taken.leave_free(&place.grown(2.0)));
             taken.boxes.push(Rect { left: at.x, top: at.y, right: at.x, bottom: at.y }.grown(1.2 * MARKER));
             if let Some(place) = free {
-                write(sheet, place.at(0.5, 0.5), &text, NOTE_TEXT, Anchor::Centre, curve.look.color)?;
+                write(sheet, place.at(0.5, 0.5), &text, NOTE_TEXT, Anchor::Centre, curve.look.color);
                 taken.boxes.push(place);
             }
         }
     }
-    Ok(())
 }
 
 /// A labelled horizontal line; the label stands at an end where nothing is in its way.
-fn level(
-    sheet: &Sheet<'_>,
-    panel: &Panel<'_>,
-    frame: &Rect,
-    y: f64,
-    label: &str,
-    color: Color,
-    taken: &mut Obstacles,
-) -> Drawn {
-    let Some(ends) = panel.level(frame, y) else { return Ok(()) };
-    sheet.line(&ends, Pen { color, width: GUIDE, dash: GUIDE_DASH })?;
+fn level(sheet: &Sheet, panel: &Panel<'_>, frame: &Rect, y: f64, label: &str, color: Color, taken: &mut Obstacles) {
+    let Some(ends) = panel.level(frame, y) else { return };
+    sheet.line(&ends, Pen { color, width: GUIDE, dash: GUIDE_DASH });
     if label.is_empty() {
-        return Ok(());
+        return;
     }
     let (width, half) = (text_width(label, NOTE_TEXT), NOTE_TEXT / 2.0);
-    let places = [(1.0, -1.0), (1.0, 1.0), (0.0, -1.0), (0.0, 1.0), (0.5, -1.0), (0.5, 1.0)].map(|(across, down)| {
-        let left = frame.left + SPACE + across * (frame.width() - 2.0 * SPACE - width);
-        let middle = ends[0].y + down * (half + SPACE / 2.0);
-        Rect { left, top: middle - half, right: left + width, bottom: middle + half }
-    });
+    let across = [20_u8, 0, 10, 19, 1, 18, 2, 17, 3, 16, 4, 15, 5, 14, 6, 13, 7, 12, 8, 11, 9];
+    let places: Vec<Rect> = across
+        .into_iter()
+        .flat_map(|step| [-1.0, 1.0].map(|down| (f64::from(step) / 20.0, down)))
+        .map(|(across, down)| {
+            let left = frame.left + SPACE + across * (frame.width() - 2.0 * SPACE - width);
+            let middle = ends[0].y + down * (half + SPACE / 2.0);
+            Rect { left, top: middle - half, right: left + width, bottom: middle + half }
+        })
+        .collect();
     let fits =
         |place: &Rect| place.top > frame.top && place.bottom < frame.bottom && taken.leave_free(&place.grown(-2.0));
     let place = places.iter().find(|place| fits(place)).unwrap_or(&places[0]);
     taken.boxes.push(*place);
-    let corners = [place.at(0.0, 0.0), place.at(0.0, 1.0), place.at(1.0, 1.0), place.at(1.0, 0.0)];
-    sheet.fill(&corners, PAPER, 0.85)?;
+    sheet.fill(&place.corners(), PAPER, 0.85);
     write(sheet, place.at(0.0, 0.5), label, NOTE_TEXT, Anchor::Left, color)
 }
 
-fn quoted_points(sheet: &Sheet<'_>, panel: &Panel<'_>, frame: &Rect) -> Drawn {
-    for point in &panel.quoted {
-        let at = frame.at(panel.x.share_clamped(point.x), panel.y.share_clamped(point.y));
-        let pen = Pen { color: INK, width: GUIDE, dash: GUIDE_DASH };
-        let at = if point.y.is_nan() {
-            let line = [Point { y: frame.bottom, ..at }, Point { y: frame.top, ..at }];
-            sheet.line(&line, pen)?;
-            Point { y: frame.top + QUOTED + SPACE, ..at }
-        } else if point.x.is_nan() {
-            let line = [Point { x: frame.left, ..at }, Point { x: frame.right, ..at }];
-            sheet.line(&line, pen)?;
-            Point { x: frame.left + QUOTED + SPACE, ..at }
-        } else {
-            at
-        };
-        quoted(sheet, at, QUOTED)?;
-    }
-    Ok(())
-}
-
-fn axes(sheet: &Sheet<'_>, panel: &Panel<'_>, frame: &Rect, x_labels: bool) -> Drawn {
+fn axes(sheet: &Sheet, panel: &Panel<'_>, frame: &Rect, x_labels: bool) {
     let pen = Pen::solid(INK, FRAME);
     let corners = [frame.at(0.0, 0.0), frame.at(1.0, 0.0), frame.at(1.0, 1.0), frame.at(0.0, 1.0)];
-    sheet.line(&[corners[0], corners[1], corners[2], corners[3], corners[0], corners[1]], pen)?;
+    sheet.line(&[corners[0], corners[1], corners[2], corners[3], corners[0], corners[1]], pen);
     for tick in panel.x_ticks() {
         let length = if tick.label.is_empty() { MINOR_TICK } else { TICK };
         for (end, inwards) in [(0.0, -length), (1.0, length)] {
             let from = frame.at(tick.at, end);
-            sheet.line(&[from, Point { y: from.y + inwards, ..from }], pen)?;
+            sheet.line(&[from, Point { y: from.y + inwards, ..from }], pen);
         }
         if x_labels {
             let at = frame.at(tick.at, 0.0);
             let at = Point { y: at.y + SPACE + TICK_TEXT / 2.0, ..at };
-            write(sheet, at, &tick.label, TICK_TEXT, Anchor::Centre, INK)?;
+            write(sheet, at, &tick.label, TICK_TEXT, Anchor::Centre, INK);
         }
     }
     for tick in panel.y_ticks() {
         let length = if tick.label.is_empty() { MINOR_TICK } else { TICK };
         for (end, inwards) in [(0.0, length), (1.0, -length)] {
             let from = frame.at(end, tick.at);
-            sheet.line(&[from, Point { x: from.x + inwards, ..from }], pen)?;
+            sheet.line(&[from, Point { x: from.x + inwards, ..from }], pen);
         }
         let at = frame.at(0.0, tick.at);
-        write(sheet, Point { x: at.x - SPACE, ..at }, &tick.label, TICK_TEXT, Anchor::Right, INK)?;
+        write(sheet, Point { x: at.x - SPACE, ..at }, &tick.label, TICK_TEXT, Anchor::Right, INK);
     }
     if x_labels {
         let at = frame.at(0.5, 0.0);
         let at = Point { y: at.y + 2.0 * SPACE + TICK_TEXT + LABEL_TEXT / 2.0, ..at };
-        write(sheet, at, &panel.x_label, LABEL_TEXT, Anchor::Centre, INK)?;
+        write(sheet, at, &panel.x_label, LABEL_TEXT, Anchor::Centre, INK);
     }
-    Ok(())
 }
 
-fn y_label(sheet: &Sheet<'_>, place: &Place) -> Drawn {
+fn y_label(sheet: &Sheet, place: &Place) {
     let mut at = Point { x: SPACE + LABEL_TEXT / 2.0, y: place.frame.at(0.0, 0.5).y };
     for text in &place.y_label {
         let line = Lettering { text, size: LABEL_TEXT, anchor: Anchor::Centre, upright: true, color: INK };
-        sheet.text(at, &line)?;
+        sheet.text(at, &line);
         at.x += line_height();
     }
-    Ok(())
 }
 
 /// A curve's marker.
-pub(super) fn marker(sheet: &Sheet<'_>, at: Point, look: Look) -> Drawn {
+pub(super) fn marker(sheet: &Sheet, at: Point, look: Look) {
     let corner = |dx: f64, dy: f64| Point { x: at.x + dx * MARKER, y: at.y + dy * MARKER };
     match look.marker {
         Marker::Circle => sheet.disc(at, MARKER, look.color),
@@ -232,18 +235,9 @@ pub(super) fn marker(sheet: &Sheet<'_>, at: Point, look: Look) -> Drawn {
     }
 }
 
-/// The open diamond of a number that the study quotes.
-pub(super) fn quoted(sheet: &Sheet<'_>, at: Point, size: f64) -> Drawn {
-    let corner = |dx: f64, dy: f64| Point { x: at.x + dx * size, y: at.y + dy * size };
-    let corners = [corner(0.0, -1.0), corner(0.8, 0.0), corner(0.0, 1.0), corner(-0.8, 0.0)];
-    sheet.fill(&corners, PAPER, 1.0)?;
-    let closed = [corners[0], corners[1], corners[2], corners[3], corners[0], corners[1]];
-    sheet.line(&closed, Pen::solid(INK, CURVE * 0.8))
-}
-
-fn write(sheet: &Sheet<'_>, at: Point, text: &str, size: f64, anchor: Anchor, color: Color) -> Drawn {
+fn write(sheet: &Sheet, at: Point, text: &str, size: f64, anchor: Anchor, color: Color) {
     if text.is_empty() {
-        return Ok(());
+        return;
     }
     sheet.text(at, &Lettering { text, size, anchor, upright: false, color })
 }

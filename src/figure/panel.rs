@@ -1,17 +1,19 @@
 //! A panel: curves and axes made ready, before its place on the sheet is known.
 
-use crate::experiment;
+use crate::experiment::{self, AxisScale};
 
 use super::axis::{Axis, Extent, Room, Tick};
 use super::canvas::text_width;
+use super::contact::{self, Contact, contacts};
 use super::error::FigureError;
 use super::geometry::{Point, Rect};
 use super::label;
 use super::layout::Needs;
 use super::legend::{Legend, Obstacles};
 use super::line::{Curve, Sample, Source, curves};
-use super::render::QuotedPoint;
-use super::style::{QUOTED, SPACE, TICK_TEXT};
+use super::quoted::Quoted;
+use super::render::Beside;
+use super::style::{CURVE, TICK_TEXT};
 
 /// How many numbers an axis carries at most.
 const MOST_X_TICKS: u32 = 8;
@@ -22,15 +24,61 @@ const VISIBLE_SPREAD: f64 = 0.004;
 /// Room for the numbers at peaks, as a share of the axis.
 const PEAK_ROOM: f64 = 0.07;
 
+/// How far an axis has to reach.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Reach {
+    extent: Extent,
+    room: Room,
+}
+
+impl Reach {
+    /// As far as both.
+    pub(super) fn union(self, other: Self) -> Self {
+        let room = if self.room == Room::Airy { self.room } else { other.room };
+        Self { extent: self.extent.union(other.extent), room }
+    }
+
+    fn axis(self, scale: AxisScale, unit: &str) -> Axis {
+        Axis::new(scale, self.extent, self.room, unit)
+    }
+}
+
+/// Curves that agree to the width of a line: all but the last are drawn wide enough to be seen beneath it.
+fn widen_hidden(curves: &mut [Curve], y: &Axis) {
+    for index in 0..curves.len() {
+        let (here, above) = curves.split_at(index + 1);
+        let Some(curve) = here.last() else { continue };
+        let hidden = above.iter().any(|other| agrees(&curve.samples, &other.samples, y));
+        if hidden && curve.look.width < 1.7 * CURVE {
+            curves[index].look.width *= 1.7;
+        }
+    }
+}
+
+/// Whether two curves over the same places lie on each other for the greater part.
+fn agrees(one: &[Sample], other: &[Sample], y: &Axis) -> bool {
+    const LINE: f64 = 0.006;
+    let close = |(a, b): &(&Sample, &Sample)| {
+        let apart = y.share(a.y).zip(y.share(b.y)).map(|(a, b)| (a - b).abs());
+        a.x.total_cmp(&b.x).is_eq() && apart.is_some_and(|apart| apart < LINE)
+    };
+    one.len() == other.len() && 2 * one.iter().zip(other).filter(close).count() > one.len()
+}
+
 /// One pair of axes with its curves.
 pub(super) struct Panel<'a> {
     pub spec: &'a experiment::Panel,
     pub curves: Vec<Curve>,
+    x_reach: Reach,
+    x_unit: String,
     pub x: Axis,
     pub y: Axis,
     pub x_label: String,
     pub y_label: String,
-    pub quoted: Vec<&'a QuotedPoint>,
+    pub quoted: Vec<&'a Quoted>,
+    pub contacts: Vec<Contact>,
+    /// Period of the impulses, s, where the panel shows their moments.
+    pub impulses: Option<f64>,
     pub legend: Legend,
 }
 
@@ -38,55 +86,82 @@ impl<'a> Panel<'a> {
     pub(super) fn new(
         source: Source<'_>,
         spec: &'a experiment::Panel,
-        quoted: &'a [QuotedPoint],
+        beside: Beside<'a>,
     ) -> Result<Self, FigureError> {
-        let curves = curves(source, spec)?;
-        let quoted: Vec<&QuotedPoint> =
-            quoted.iter().filter(|point| spec.y.iter().any(|axis| axis.column == point.column)).collect();
+        let mut curves = curves(source, spec)?;
         let nothing = || FigureError::Nothing { figure: source.figure.to_owned() };
+        let (x_scale, y_scale) = (spec.x.scale, spec.y.first().ok_or_else(nothing)?.scale);
+        let (x_unit, y_unit) = (&source.column(&spec.x.column)?.unit, &source.column(&spec.y[0].column)?.unit);
 
-        let x_column = source.column(&spec.x.column)?;
         let samples = || curves.iter().flat_map(|curve| &curve.samples);
-        let seen = samples().filter(|sample| sample.y.is_finite()).map(|sample| sample.x);
-        let wanted = quoted.iter().map(|point| point.x).chain(spec.x.reach.into_iter().flatten());
-        let x_extent = Extent::of(seen.chain(wanted), spec.x.scale).ok_or_else(nothing)?;
-        let x_room = if spec.markers || !quoted.is_empty() { Room::Airy } else { Room::Tight };
-        let x = Axis::new(spec.x.scale, x_extent, x_room, &x_column.unit);
-
-        let unit = match spec.y.first() {
-            Some(axis) => source.column(&axis.column)?.unit.clone(),
-            None => return Err(nothing()),
-        };
-        let scale = spec.y[0].scale;
-        let ends = samples().flat_map(|sample| [sample.y, sample.y - sample.spread, sample.y + sample.spread]);
+        let ends = samples().flat_map(|sample| [sample.y, sample.band[0], sample.band[1]]);
         let limits = curves.iter().filter_map(|curve| curve.at_infinity.as_ref()).map(|limit| limit.y);
+        let marks = spec.y[0].reach.into_iter().flatten();
+        let y_extent = Extent::of(ends.chain(limits).chain(marks), y_scale).ok_or_else(nothing)?;
+        let quoted: Vec<&Quoted> =
+            beside.quoted.iter().filter(|one| one.fits(spec) && one.leaves_room(y_extent, y_scale)).collect();
 
-        let marks = quoted.iter().map(|point| point.y).chain(spec.y[0].reach.into_iter().flatten());
-        let mut y_extent = Extent::of(ends.chain(limits).chain(marks), scale).ok_or_else(nothing)?;
-        for guide in &spec.guides {
-            y_extent = y_extent.with_guide(guide.at, scale);
-        }
-        if spec.peaks.is_some() {
-            y_extent = y_extent.with_headroom(PEAK_ROOM, scale);
-        }
-        let y = Axis::new(scale, y_extent, Room::Airy, &unit);
+        let seen = samples().filter(|sample| sample.y.is_finite()).map(|sample| sample.x);
+        let wanted = quoted.iter().filter_map(|one| one.x()).chain(spec.x.reach.into_iter().flatten());
+        let x_reach = Reach {
+            extent: Extent::of(seen.chain(wanted), x_scale).ok_or_else(nothing)?,
+            room: if spec.markers || quoted.iter().any(|one| one.is_point()) { Room::Airy } else { Room::Tight },
+        };
+        let x = x_reach.axis(x_scale, x_unit);
 
-        let x_name = source.label(&spec.x)?;
-        let y_names = spec.y.iter().map(|axis| source.label(axis)).collect::<Result<Vec<_>, _>>()?;
         // A spread that nobody can see needs no word in the legend.
         let visible = VISIBLE_SPREAD * (y_extent.largest - y_extent.least);
-        let band = samples().any(|sample| sample.spread > visible);
-        let quoted_labels: Vec<&str> = quoted.iter().map(|point| point.label.as_str()).collect();
+        let band = samples().any(|sample| sample.band[1] - sample.band[0] > 2.0 * visible);
+        let mut legend = Legend::new(&curves, spec, band, &quoted);
+        let contacts = contacts(source, spec)?;
+        let impulses = beside.impulses.filter(|_| !contacts.is_empty());
+        legend.name_instants(!contacts.is_empty(), impulses.is_some());
+        let mut y_extent = quoted.iter().filter_map(|one| one.y()).fold(y_extent, |extent, y| extent.with(y, y_scale));
+        for guide in &spec.guides {
+            // Beside other lines a guide is named in the legend, where it needs no room of its own.
+            y_extent = if legend.is_empty() || guide.label.is_empty() {
+                y_extent.with_guide(guide.at, y_scale)
+            } else {
+                y_extent.with(guide.at, y_scale)
+            };
+        }
+        if !legend.is_empty() {
+            legend.name_guides(&spec.guides);
+        }
+        if spec.peaks.is_some() {
+            y_extent = y_extent.with_headroom(PEAK_ROOM, y_scale);
+        }
+        let y = Axis::new(y_scale, y_extent, Room::Airy, y_unit);
+        widen_hidden(&mut curves, &y);
+        let x_name = source.label(&spec.x)?;
+        let mut y_names = spec.y.iter().map(|axis| source.label(axis)).collect::<Result<Vec<_>, _>>()?;
+        if let (true, Some(first)) = (spec.over_first, curves.first()) {
+            y_names.iter_mut().for_each(|name| *name = format!("{name} over that of {}", first.name.full()));
+        }
         Ok(Self {
             spec,
             x_label: label::with_unit(&x_name, &x.unit),
-            y_label: label::with_unit(&label::shared(&y_names, &unit), &y.unit),
-            legend: Legend::new(&curves, spec.markers, band, &quoted_labels),
+            y_label: label::with_unit(&label::shared(&y_names, y_unit), &y.unit),
+            legend,
             curves,
+            x_reach,
+            x_unit: x_unit.clone(),
             x,
             y,
             quoted,
+            contacts,
+            impulses,
         })
+    }
+
+    /// How far the x axis has to reach, if it is this column's.
+    pub(super) fn x_reach(&self, column: &str) -> Option<Reach> {
+        (self.spec.x.column == column).then_some(self.x_reach)
+    }
+
+    /// Panels above each other share the limits of their axis.
+    pub(super) fn reach_in_x(&mut self, reach: Reach) {
+        self.x = reach.axis(self.spec.x.scale, &self.x_unit);
     }
 
     pub(super) fn x_ticks(&self) -> Vec<Tick> {
@@ -125,13 +200,13 @@ impl<'a> Panel<'a> {
     /// The outlines of a curve's band: along its upper edge and back along the lower one.
     pub(super) fn bands(&self, frame: &Rect, curve: &Curve) -> Vec<Vec<Point>> {
         let edge = |sample: &Sample, sign: f64| {
-            let up = self.y.share_clamped(sample.y + sign * sample.spread);
+            let up = self.y.share_clamped(sample.band[usize::from(sign > 0.0)]);
             Some(frame.at(self.x.share(sample.x)?, up))
         };
         curve
             .samples
             .split(|sample| self.place(frame, sample.x, sample.y).is_none())
-            .filter(|stretch| stretch.len() > 1 && stretch.iter().any(|sample| sample.spread > 0.0))
+            .filter(|stretch| stretch.len() > 1 && stretch.iter().any(|sample| sample.band[1] > sample.band[0]))
             .map(|stretch| {
                 let upper = stretch.iter().filter_map(|sample| edge(sample, 1.0));
                 let lower = stretch.iter().rev().filter_map(|sample| edge(sample, -1.0));
@@ -159,17 +234,12 @@ impl<'a> Panel<'a> {
         for guide in &self.spec.guides {
             obstacles.lines.extend(self.level(frame, guide.at).map(Vec::from));
         }
-        for point in &self.quoted {
-            let at = frame.at(self.x.share_clamped(point.x), self.y.share_clamped(point.y));
-            let spot = Rect { left: at.x, top: at.y, right: at.x, bottom: at.y };
-            obstacles.boxes.push(spot.grown(QUOTED + SPACE));
-            // Where only one coordinate is quoted, a line stands for the other.
-            if point.y.is_nan() {
-                obstacles.lines.push(vec![Point { y: frame.top, ..at }, Point { y: frame.bottom, ..at }]);
-            }
-            if point.x.is_nan() {
-                obstacles.lines.push(vec![Point { x: frame.left, ..at }, Point { x: frame.right, ..at }]);
-            }
+        if !self.contacts.is_empty() {
+            let (top, bottom) = (frame.top + contact::BAR, frame.bottom - contact::BAR);
+            obstacles.boxes.extend([Rect { bottom: top, ..*frame }, Rect { top: bottom, ..*frame }]);
+        }
+        for one in &self.quoted {
+            one.obstacle(self, frame, &mut obstacles);
         }
         obstacles
     }

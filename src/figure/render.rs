@@ -3,7 +3,8 @@
 use crate::experiment::{self, Drawing, Experiment, FigureSpec};
 use crate::table::Table;
 
-use super::canvas::{ZOOM, svg};
+use super::bars::bars;
+use super::canvas::svg;
 use super::error::FigureError;
 use super::layout::{Needs, Place, figure_height, places};
 use super::line::Source;
@@ -11,21 +12,43 @@ use super::map::Map;
 use super::map_layout::MapLayout;
 use super::map_paint;
 use super::paint::{self, LegendPlace};
-use super::panel::Panel;
+use super::panel::{Panel, Reach};
+use super::quoted::Quoted;
 use super::raster;
-use super::style::WIDTH;
+use super::style::{LETTER, WIDTH};
 
-/// A number that the study's text quotes, drawn as an open diamond. The curves of its lost figures are not quoted.
+/// Pixels of the PNG to a pixel of the SVG: enough for a screen of two dots to a pixel, on which a figure is about 900 wide.
+const DENSITY: f32 = 1.25;
+
+/// A figure in both its forms.
 #[derive(Debug, Clone, PartialEq)]
-pub struct QuotedPoint {
-    /// The y column that it belongs to; it appears in the panels that draw this column.
-    pub column: String,
-    /// In the table's unit; NaN if the study quotes only y: a line then stands for it.
-    pub x: f64,
-    /// In the table's unit; NaN if the study quotes only x.
-    pub y: f64,
-    /// In the legend: `study`.
-    pub label: String,
+pub struct Picture {
+    /// Sharp at any size.
+    pub svg: String,
+    /// The same, for what shows no SVG.
+    pub png: Vec<u8>,
+}
+
+impl Picture {
+    /// From an SVG.
+    ///
+    /// # Errors
+    /// [`FigureError::Drawing`] if it cannot be made a PNG.
+    pub(super) fn of(svg: String, figure: &str) -> Result<Self, FigureError> {
+        match raster::png(&svg, DENSITY) {
+            Ok(png) => Ok(Self { svg, png }),
+            Err(source) => Err(FigureError::Drawing { figure: figure.to_owned(), source }),
+        }
+    }
+}
+
+/// What is drawn beside the table.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Beside<'a> {
+    /// What the study's text quotes.
+    pub quoted: &'a [Quoted],
+    /// Period of the impulses, s: a time history with contacts shows their moments.
+    pub impulses: Option<f64>,
 }
 
 /// Draws a figure of an experiment from the rows under the assumptions in force. The same input gives the same bytes.
@@ -36,41 +59,75 @@ pub fn draw(
     experiment: &Experiment,
     figure: &FigureSpec,
     table: &Table,
-    quoted: &[QuotedPoint],
-) -> Result<Vec<u8>, FigureError> {
+    beside: Beside<'_>,
+) -> Result<Picture, FigureError> {
     let name =
         if figure.name.is_empty() { experiment.id.to_string() } else { format!("{}-{}", experiment.id, figure.name) };
-    let baseline = table.baseline();
-    let source = Source { experiment, table: &baseline, figure: &name };
+    drawn(Some(experiment), &name, figure, table, beside)
+}
+
+/// Draws a table that is no experiment's; `name` is for messages.
+///
+/// # Errors
+/// As [`draw`].
+pub fn draw_table(name: &str, figure: &FigureSpec, table: &Table) -> Result<Picture, FigureError> {
+    drawn(None, name, figure, table, Beside::default())
+}
+
+fn drawn(
+    experiment: Option<&Experiment>,
+    name: &str,
+    figure: &FigureSpec,
+    table: &Table,
+    beside: Beside<'_>,
+) -> Result<Picture, FigureError> {
+    let table = chosen(figure, &table.baseline());
+    let source = Source { experiment, table: &table, figure: name };
     let svg = match &figure.drawing {
-        Drawing::Lines(panels) => lines(source, panels, quoted)?,
+        Drawing::Lines(panels) => lines(source, panels, beside)?,
+        Drawing::Gaps => match experiment.and_then(|experiment| experiment.optimise.as_ref()) {
+            Some(optimise) => bars(source, optimise)?,
+            None => return Err(FigureError::Nothing { figure: name.to_owned() }),
+        },
         Drawing::Map(spec) => {
             let map = Map::new(source, spec)?;
             let layout = MapLayout::new(&map);
             svg(WIDTH, layout.height, |sheet| map_paint::map(sheet, &map, &layout))
         }
     };
-    svg.and_then(|svg| raster::png(&svg, ZOOM)).map_err(|reason| FigureError::Drawing { figure: name.clone(), reason })
+    Picture::of(svg, name)
 }
 
-/// The panels one above the other, as SVG; the inner error is the drawing's.
-fn lines(
-    source: Source<'_>,
-    panels: &[experiment::Panel],
-    quoted: &[QuotedPoint],
-) -> Result<Result<String, String>, FigureError> {
-    let panels = panels.iter().map(|spec| Panel::new(source, spec, quoted)).collect::<Result<Vec<_>, _>>()?;
+/// The rows that a figure draws.
+fn chosen(figure: &FigureSpec, table: &Table) -> Table {
+    let Some(only) = &figure.only else { return table.clone() };
+    let rows: Vec<usize> = only.words.iter().flat_map(|word| table.rows_where(&only.column, word)).collect();
+    table.select(&rows)
+}
+
+/// The panels one above the other, as SVG.
+fn lines(source: Source<'_>, specs: &[experiment::Panel], beside: Beside<'_>) -> Result<String, FigureError> {
+    let mut panels = specs.iter().map(|spec| Panel::new(source, spec, beside)).collect::<Result<Vec<_>, _>>()?;
     if panels.is_empty() {
         return Err(FigureError::Nothing { figure: source.figure.to_owned() });
     }
+    for spec in specs {
+        let reaches = panels.iter().filter_map(|panel| panel.x_reach(&spec.x.column));
+        if let Some(reach) = reaches.reduce(Reach::union) {
+            let over = |panel: &&mut Panel<'_>| panel.x_reach(&spec.x.column).is_some();
+            panels.iter_mut().filter(over).for_each(|panel| panel.reach_in_x(reach));
+        }
+    }
+    if panels.len() > 1 {
+        panels.iter_mut().for_each(|panel| panel.legend.indent = LETTER);
+    }
     let arranged = arranged(&panels);
-    let paint = |sheet: &super::canvas::Sheet<'_>| {
+    let paint = |sheet: &super::canvas::Sheet| {
         let letters = ('a'..='z').map(Some).chain(std::iter::repeat(None));
         for (arranged, (panel, letter)) in arranged.iter().zip(panels.iter().zip(letters)) {
             let letter = letter.filter(|_| panels.len() > 1);
-            paint::panel(sheet, panel, &arranged.place, arranged.legend, letter, arranged.x_labels)?;
+            paint::panel(sheet, panel, &arranged.place, arranged.legend, letter, arranged.x_labels);
         }
-        Ok(())
     };
     Ok(svg(WIDTH, figure_height(panels.len()), paint))
 }

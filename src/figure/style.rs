@@ -14,6 +14,8 @@ pub(super) const NOTE_TEXT: f64 = 32.0;
 pub(super) const FRAME: f64 = 2.5;
 pub(super) const GRID: f64 = 1.5;
 pub(super) const GUIDE: f64 = 2.5;
+/// Dash of guides.
+pub(super) const GUIDE_DASH: &[f64] = &[10.0, 8.0];
 pub(super) const CURVE: f64 = 5.0;
 pub(super) const THIN_CURVE: f64 = 3.0;
 pub(super) const TICK: f64 = 13.0;
@@ -22,6 +24,8 @@ pub(super) const MARKER: f64 = 10.0;
 pub(super) const QUOTED: f64 = 17.0;
 /// Space between neighbours: a tick and its label, a label and the edge.
 pub(super) const SPACE: f64 = 14.0;
+/// Width of a panel's letter, with space beside it.
+pub(super) const LETTER: f64 = 90.0;
 /// Length of the line drawn in a legend.
 pub(super) const LEGEND_LINE: f64 = 84.0;
 /// Height of a legend's row.
@@ -35,6 +39,8 @@ pub(super) const CONTOUR: f64 = 2.0;
 /// Height that a map does not exceed.
 pub(super) const TALLEST_MAP: f64 = 1500.0;
 pub(super) const BAND_OPACITY: f64 = 0.22;
+/// Of the band of 2 u_val about a place or a value that the study quotes.
+pub(super) const QUOTED_OPACITY: f64 = 0.1;
 
 /// Height of a figure with so many panels.
 pub(super) fn height(panels: usize) -> f64 {
@@ -45,14 +51,28 @@ pub(super) fn height(panels: usize) -> f64 {
     }
 }
 
+/// Width of a sketch.
+pub(super) const SKETCH_WIDTH: f64 = 1100.0;
+/// Where the particle of a sketch stands.
+pub(super) const PLACE: f64 = 340.0;
+
 /// Red, green, blue.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Color(pub u8, pub u8, pub u8);
+
+impl std::fmt::Display for Color {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "#{:02x}{:02x}{:02x}", self.0, self.1, self.2)
+    }
+}
 
 pub(super) const INK: Color = Color(0x1A, 0x1A, 0x1A);
 pub(super) const GREY: Color = Color(0x70, 0x70, 0x70);
 pub(super) const PALE: Color = Color(0xE4, 0xE4, 0xE4);
 pub(super) const PAPER: Color = Color(0xFF, 0xFF, 0xFF);
+
+pub(super) const VERMILION: Color = OKABE_ITO[1];
+pub(super) const BLUE_INK: Color = OKABE_ITO[0];
 
 /// Okabe and Ito's colours, told apart by readers with any colour vision; without the yellow, which paper swallows.
 const OKABE_ITO: [Color; 7] = [
@@ -106,6 +126,26 @@ impl Look {
     pub(super) fn new(hue: usize, hues: usize, dash: usize) -> Self {
         let color = if hues <= OKABE_ITO.len() { OKABE_ITO[hue % OKABE_ITO.len()] } else { ramp(hue, hues) };
         Self { color, width: CURVE, dash: DASHES[dash % DASHES.len()], marker: MARKERS[dash % MARKERS.len()] }
+    }
+
+    /// The named colour of what has the same one in every figure, whichever others are drawn.
+    pub(super) fn hue_of_word(word: &str) -> Option<usize> {
+        const BLUE: usize = 0;
+        const VERMILION: usize = 1;
+        const GREEN: usize = 2;
+        const PURPLE: usize = 3;
+        const ORANGE: usize = 4;
+        const BLACK: usize = 6;
+        Some(match word {
+            "clean" => BLACK,
+            "event-driven" | "genetic algorithm" | "optimised gaps" | "light" | "with stop" => BLUE,
+            "2-opt" | "uniform gaps" | "heavy" | "without stop" => VERMILION,
+            "untuned" | "damper" => VERMILION,
+            "tuned" | "CMA-ES" => GREEN,
+            "dense search" => PURPLE,
+            "study genetic after 2-opt" | "study two opt" => ORANGE,
+            _ => return None,
+        })
     }
 
     /// The fixed look of a path in a time history: the same in every figure, whichever other paths are drawn.

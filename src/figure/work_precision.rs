@@ -1,6 +1,6 @@
 //! Work-precision diagrams: error against wall time, both logarithmic.
 
-use crate::experiment::{Axis, AxisScale, Drawing, FigureSpec, Level, Panel};
+use crate::experiment::{Axis, AxisScale, Band, Drawing, FigureSpec, Level, Panel};
 
 /// The figure of a table with the columns `solver`, `case`, `time` (s), `error` and `event_error`; all panels show the `times` from the
 /// first to the second; `floor` is the error below which chaos leaves no meaning.
@@ -16,7 +16,8 @@ pub fn work_precision(times: [f64; 2], floor: Option<f64>, events: bool) -> Figu
         x: axis("time", "Wall time of a run", Some(times)),
         y: vec![axis(column, label, None)],
         by: vec!["solver".into(), "case".into()],
-        band: false,
+        band: Band::None,
+        over_first: false,
         guides,
         markers: true,
         peaks: None,
@@ -26,5 +27,10 @@ pub fn work_precision(times: [f64; 2], floor: Option<f64>, events: bool) -> Figu
     if events {
         panels.push(panel("event_error", "Error of event times / T", Vec::new()));
     }
-    FigureSpec { name: String::new(), caption: "Error against wall time.".into(), drawing: Drawing::Lines(panels) }
+    FigureSpec {
+        name: String::new(),
+        only: None,
+        caption: "Error against wall time.".into(),
+        drawing: Drawing::Lines(panels),
+    }
 }

@@ -367,7 +367,7 @@ fn rounded_subject(subject: Subject, settings: &Settings) -> Subject {
 }
 
 /// The forcing period rounded to whole steps, if the experiment asks for it.
-pub(super) fn rounded(mut scene: Scene, settings: &Settings) -> Scene {
+pub fn rounded(mut scene: Scene, settings: &Settings) -> Scene {
     let Some(step) = settings.round_period_to else { return scene };
     let round = |period: f64| (period / step).round().max(1.0) * step;
     match &mut scene.excitation {

@@ -18,7 +18,7 @@ mod subject;
 mod trial;
 mod undefined;
 
-pub use evaluate::{Prepared, Request, evaluate};
+pub use evaluate::{Prepared, Request, evaluate, rounded};
 pub use measures::{Facts, Measure, ReadOff, Runs, Under};
 pub use request::{EnergySpec, Settings, ShapeOf, ShapeSpec, SolverChoice, TraceSpec};
 pub use subject::{Comparison, Needs, Subject};

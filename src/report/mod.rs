@@ -31,6 +31,7 @@ mod proof;
 mod prose;
 mod publication;
 mod pull_request;
+mod quoted;
 mod reading;
 mod ro_crate;
 mod run;

@@ -5,13 +5,14 @@ use std::fs;
 
 use rayon::prelude::*;
 
-use super::figures::{figure_name, png, shown};
+use super::figures::{Said, figure_stem, picture, scene_name, shown};
 use super::publication::{inputs, publication_reasons};
 use super::verdicts::Judgement;
 use super::views;
 use crate::atomic::{self, FileError};
-use crate::experiment::FigureSpec;
-use crate::figure::FigureError;
+use crate::experiment::{Experiment, FigureSpec};
+use crate::figure::{FigureError, Picture, sketch};
+use crate::measure::rounded;
 use crate::reference::{Judged, ReferenceFile};
 use crate::study::Study;
 use crate::study::{FileHash, Heading, Item, Publication, Record, State, Summary, record_name, stem, table_name};
@@ -106,8 +107,13 @@ pub(super) fn render(study: &Study, judgement: &Judgement) -> BTreeMap<String, R
     let mut files = BTreeMap::new();
     for page in &pages {
         let id = &page.item.source.experiment.id;
-        for (figure, bytes) in figures.remove(id.0.as_str()).unwrap_or_default() {
-            files.insert(name(page, figure), bytes);
+        for (figure, picture) in figures.remove(id.0.as_str()).unwrap_or_default() {
+            for (name, form) in names(page, figure) {
+                files.insert(name, picture.as_ref().map(|picture| form.of(picture).to_vec()).map_err(Clone::clone));
+            }
+        }
+        if let Some((name, drawing)) = scene(study, page) {
+            files.insert(name, Ok(drawing.into_bytes()));
         }
         let text = views::page(study, judgement, page.item);
         files.insert(format!("{}/{id}.md", page.folder), Ok(text.into_bytes()));
@@ -130,9 +136,46 @@ fn jobs<'a>(page: &'a Page<'a>) -> impl Iterator<Item = (&'a Page<'a>, &'a Figur
     page.item.source.experiment.figures.iter().map(move |figure| (page, figure))
 }
 
-/// A figure's name within the study.
-fn name(page: &Page<'_>, figure: &FigureSpec) -> String {
-    format!("{}/{}", page.folder, figure_name(&page.item.source.experiment, figure))
+/// The forms in which a figure is written.
+#[derive(Clone, Copy)]
+enum Form {
+    Svg,
+    Png,
+}
+
+impl Form {
+    fn of(self, picture: &Picture) -> &[u8] {
+        match self {
+            Self::Svg => picture.svg.as_bytes(),
+            Self::Png => &picture.png,
+        }
+    }
+}
+
+/// A figure's files within the study.
+fn names(page: &Page<'_>, figure: &FigureSpec) -> [(String, Form); 2] {
+    let stem = figure_stem(&page.item.source.experiment, figure);
+    [(Form::Svg, "svg"), (Form::Png, "png")].map(|(form, ending)| (format!("{}/{stem}.{ending}", page.folder), form))
+}
+
+/// The drawing of what is simulated, by its name within the study.
+fn scene(study: &Study, page: &Page<'_>) -> Option<(String, String)> {
+    let experiment = &page.item.source.experiment;
+    Some((format!("{}/{}", page.folder, scene_name(experiment)), sketch(&views::scenes(study, experiment))?))
+}
+
+/// What the study says of an experiment, and what became of it.
+fn said<'a>(study: &'a Study, judgement: &'a Judgement, experiment: &Experiment) -> Said<'a> {
+    let id = experiment.id.0.as_str();
+    // Moments are shown in time histories alone, and those are of one case.
+    let scene = || views::scenes(study, experiment).pop();
+    let impulses =
+        experiment.trace.as_ref().and_then(|_| rounded(scene()?, &experiment.settings).excitation.impulse_period());
+    Said {
+        reference: study.references.get(id),
+        judged: judgement.verdicts.get(id).map_or(&[], Vec::as_slice),
+        impulses,
+    }
 }
 
 /// What a figure would show; `None` without a table.
@@ -140,22 +183,24 @@ fn shows(study: &Study, judgement: &Judgement, page: &Page<'_>, figure: &FigureS
     let experiment = &page.item.source.experiment;
     let id = experiment.id.0.as_str();
     let table = judgement.tables.get(id)?;
-    Some(shown(experiment, figure, table, &page.record.table, study.references.get(id)))
+    Some(shown(experiment, figure, table, &page.record.table, said(study, judgement, experiment)))
 }
 
 /// True if the figure is on disk and shows what it would show.
 fn is_drawn(study: &Study, judgement: &Judgement, page: &Page<'_>, figure: &FigureSpec) -> bool {
-    let name = name(page, figure);
+    let shows = shows(study, judgement, page, figure);
     page.record.publication.as_ref().is_some_and(|old| {
-        let known = old.shown.get(&name);
-        known.is_some()
-            && known == shows(study, judgement, page, figure).as_ref()
-            && old.files.get(&name).is_some_and(|hash| hash.matches(&study.layout.path(&name)))
+        names(page, figure).iter().all(|(name, _)| {
+            let known = old.shown.get(name);
+            known.is_some()
+                && known == shows.as_ref()
+                && old.files.get(name).is_some_and(|hash| hash.matches(&study.layout.path(name)))
+        })
     })
 }
 
-/// A figure and its bytes, or why there are none.
-type Drawn<'a> = Vec<(&'a FigureSpec, Result<Vec<u8>, NotDrawn>)>;
+/// A figure, or why there is none.
+type Drawn<'a> = Vec<(&'a FigureSpec, Result<Picture, NotDrawn>)>;
 
 /// Draws side by side; each picture is one thread's work alone.
 fn draw<'a>(
@@ -169,15 +214,16 @@ fn draw<'a>(
         .map(|(page, figure)| {
             let experiment = &page.item.source.experiment;
             let id = experiment.id.0.as_str();
-            let bytes = judgement.tables.get(id).ok_or(NotDrawn::NoTable).and_then(|table| {
-                png(experiment, figure, table, study.references.get(id)).map_err(|error| NotDrawn::of(error, table))
+            let picture = judgement.tables.get(id).ok_or(NotDrawn::NoTable).and_then(|table| {
+                picture(experiment, figure, table, said(study, judgement, experiment))
+                    .map_err(|error| NotDrawn::of(error, table))
             });
-            (id, *figure, bytes)
+            (id, *figure, picture)
         })
         .collect();
     let mut by_id = BTreeMap::<&str, Drawn<'_>>::new();
-    for (id, figure, bytes) in drawn {
-        by_id.entry(id).or_default().push((figure, bytes));
+    for (id, figure, picture) in drawn {
+        by_id.entry(id).or_default().push((figure, picture));
     }
     by_id
 }
@@ -231,21 +277,25 @@ fn write_page(
     let mut whole = true;
     // Those that were not drawn now are there already.
     for (_, figure) in jobs(page) {
-        let name = name(page, figure);
-        if let Some(old) = old
-            && let (Some(hash), false) = (old.files.get(&name), drawn.iter().any(|(other, _)| *other == figure))
-        {
-            shown.extend(old.shown.get(&name).map(|shows| (name.clone(), shows.clone())));
-            files.insert(name, hash.clone());
+        for (name, _) in names(page, figure) {
+            if let Some(old) = old
+                && let (Some(hash), false) = (old.files.get(&name), drawn.iter().any(|(other, _)| *other == figure))
+            {
+                shown.extend(old.shown.get(&name).map(|shows| (name.clone(), shows.clone())));
+                files.insert(name, hash.clone());
+            }
         }
     }
-    for (figure, bytes) in drawn {
-        let name = name(page, figure);
-        match bytes {
-            Ok(bytes) => {
-                published.written += usize::from(atomic::write_if_changed(&layout.path(&name), &bytes)?);
-                shown.extend(shows(study, judgement, page, figure).map(|shows| (name.clone(), shows)));
-                files.insert(name, FileHash::of(&bytes));
+    for (figure, picture) in drawn {
+        match picture {
+            Ok(picture) => {
+                let shows = shows(study, judgement, page, figure);
+                for (name, form) in names(page, figure) {
+                    let bytes = form.of(&picture);
+                    published.written += usize::from(atomic::write_if_changed(&layout.path(&name), bytes)?);
+                    shown.extend(shows.iter().map(|shows| (name.clone(), shows.clone())));
+                    files.insert(name, FileHash::of(bytes));
+                }
             }
             Err(why) => {
                 whole = false;
@@ -255,6 +305,10 @@ fn write_page(
                 }
             }
         }
+    }
+    if let Some((name, drawing)) = scene(study, page) {
+        published.written += usize::from(atomic::write_if_changed(&layout.path(&name), drawing.as_bytes())?);
+        files.insert(name, FileHash::of(drawing.as_bytes()));
     }
     let text = views::page(study, judgement, page.item);
     let name = format!("{}/{id}.md", page.folder);

@@ -114,7 +114,7 @@ impl Crate {
         let mut results = vec![self.file(&name, &format!("Table: {}", experiment.title), bytes)];
         self.describe(&name, "variableMeasured", columns);
         for (name, hash) in record.publication.iter().flat_map(|publication| &publication.files) {
-            let kind = if name.ends_with(".png") { "Figure" } else { "Page" };
+            let kind = if name.ends_with(".md") { "Page" } else { "Figure" };
             let bytes = read_as_recorded(study, name, hash)?;
             results.push(self.file(name, &format!("{kind}: {}", experiment.title), bytes));
         }
@@ -144,6 +144,7 @@ impl Crate {
         let format = match name.rsplit('.').next() {
             Some("parquet") => "application/vnd.apache.parquet",
             Some("png") => "image/png",
+            Some("svg") => "image/svg+xml",
             Some("md") => "text/markdown",
             _ => "application/yaml",
         };

@@ -2,13 +2,14 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::figures::figure_name;
+use super::figures::{figure_name, scene_name};
 use super::index::{OVERVIEW, STRIP};
 use super::other_pages::PAGES;
 use super::prose;
 use super::verdicts::Judgement;
 use crate::experiment::AssumptionName;
 use crate::experiment::{Experiment, FigureSpec};
+use crate::figure::sketch;
 use crate::reference::Judged;
 use crate::report::{
     self, AccuracyLinks, AssumptionView, CheckView, CheckedEntry, ExperimentView, FigureView, PageView, Trouble,
@@ -28,7 +29,7 @@ pub(super) fn page(study: &Study, judgement: &Judgement, item: &Item) -> String 
         judged: judged(judgement, &experiment.id.0),
         assumptions: &assumptions(study, judgement, &|name| item.used.contains(name), &|_| Vec::new()),
         effects: &effects(&scenes(study, experiment)),
-        figures: &figures(experiment),
+        figures: &[figures(experiment), scene(study, experiment)].concat(),
         table_name: &table_name(&experiment.id),
         accuracy: accuracy(study, item, &up),
         to_reports: &up,
@@ -150,6 +151,13 @@ fn figures(experiment: &Experiment) -> Vec<FigureView> {
     let view =
         |figure: &FigureSpec| FigureView { link: figure_name(experiment, figure), caption: figure.caption.clone() };
     experiment.figures.iter().map(view).collect()
+}
+
+/// The drawing of what is simulated, where there is one.
+fn scene(study: &Study, experiment: &Experiment) -> Vec<FigureView> {
+    let caption = "What is simulated; of a sweep its first case, with all places of dampers and forces.".into();
+    let drawn = sketch(&scenes(study, experiment)).is_some();
+    drawn.then(|| FigureView { link: scene_name(experiment), caption }).into_iter().collect()
 }
 
 /// Ids of the entries whose experiments depend on an assumption.

@@ -51,6 +51,15 @@ impl Excitation {
         }
     }
 
+    /// Time from one impulse to the next, s; `None` where there is no train of them.
+    #[must_use]
+    pub fn impulse_period(&self) -> Option<f64> {
+        match self {
+            Self::ImpulseTrain { period, .. } => Some(*period),
+            Self::SingleImpulse { .. } | Self::Harmonic { .. } | Self::PulseTrain { .. } => None,
+        }
+    }
+
     /// The forcing cycle, s.
     #[must_use]
     pub fn period(&self) -> f64 {

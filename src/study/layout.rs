@@ -151,9 +151,7 @@ fn read_text(path: &Path) -> Result<Vec<u8>, FileError> {
     if bytes.len() as u64 > LONGEST_TEXT {
         let length = fs::metadata(path).map_or(LONGEST_TEXT, |meta| meta.len());
         let (length, most) = (length.div_ceil(1024), LONGEST_TEXT >> 10);
-        return Err(fail(std::io::Error::other(format!(
-            "it has {length} KiB, and {most} KiB are the most that is read"
-        ))));
+        return Err(fail(std::io::Error::other(format!("it has {length} KiB; at most {most} KiB are read"))));
     }
     Ok(bytes)
 }

@@ -86,7 +86,7 @@ pub fn of_level(column: &str, level: &str) -> String {
 pub fn of_unit(unit: &str) -> &'static str {
     match unit {
         "m" => "displacement",
-        "s" => "time",
+        "s" | "ms" | "µs" => "time",
         "m/s" => "velocity",
         "m/s^2" | "m/s²" | "g" => "acceleration",
         "N s/m" => "damping",

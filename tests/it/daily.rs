@@ -172,8 +172,8 @@ fn what_a_deleted_experiment_left_is_removed() {
     let dry = shotdamp(&desk, &["clean", "--orphans", "--dry-run"]);
     assert_eq!(
         dry.out,
-        "reports/ch3/ch3-gap.md\nreports/ch3/ch3-gap.png\nresults/ch3-gap.json\nresults/ch3-gap.parquet\n\
-         results/earlier/ch3-gap/0.parquet\nresults/times/ch3-gap.json\n6 files would be removed\n"
+        "reports/ch3/ch3-gap-scene.svg\nreports/ch3/ch3-gap.md\nreports/ch3/ch3-gap.png\nreports/ch3/ch3-gap.svg\nresults/ch3-gap.json\nresults/ch3-gap.parquet\n\
+         results/earlier/ch3-gap/0.parquet\nresults/times/ch3-gap.json\n8 files would be removed\n"
     );
     assert_eq!((names(&desk, "results"), names(&desk, "reports/ch3")), before);
     assert_eq!(shotdamp(&desk, &["clean", "--orphans"]).code, 0);
@@ -182,7 +182,7 @@ fn what_a_deleted_experiment_left_is_removed() {
         (names(&desk, "results/earlier"), names(&desk, "results/times")),
         (vec!["ch3-stop".into()], vec!["ch3-stop.json".into()])
     );
-    assert_eq!(names(&desk, "reports/ch3"), ["ch3-stop.md", "ch3-stop.png"]);
+    assert_eq!(names(&desk, "reports/ch3"), ["ch3-stop-scene.svg", "ch3-stop.md", "ch3-stop.png", "ch3-stop.svg"]);
 }
 
 #[test]

@@ -278,10 +278,13 @@ fn a_tolerance_judges_again_and_a_figure_is_drawn_when_it_shows_something_else()
         desk.put("reference/ch3/ch3-stop.yaml", &format!("{}    {more}\n", text.trim_start_matches('\n')));
     };
     let (before, stamp) = (page(), fs::metadata(&picture).unwrap().modified().unwrap());
-    reference("1.75", "tolerance: {absolute: 5, reason: to see whether it is loose}");
+    reference("1.75", "explanation: It was looked at again.");
     assert_eq!((simulations(&desk), drawn(&desk)), (0, 0));
-    assert_ne!(page(), before, "another verdict");
+    assert_ne!(page(), before, "another explanation");
     assert_eq!(fs::metadata(&picture).unwrap().modified().unwrap(), stamp, "the file was not touched");
+
+    reference("1.75", "tolerance: {absolute: 5, reason: to see whether it is loose}");
+    assert_eq!((simulations(&desk), drawn(&desk)), (0, 1), "the tolerance is drawn about the quoted point");
     let whole = desk.bytes("reports/ch3/ch3-stop.png");
 
     reference("1.85", "");

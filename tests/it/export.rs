@@ -35,6 +35,7 @@ fn a_crate_holds_and_describes_every_file_and_the_unit_of_every_column() {
         "reference/ch3/ch3-gap.yaml",
         "results/ch3-stop.parquet",
         "reports/ch3/ch3-gap.png",
+        "reports/ch3/ch3-gap.svg",
     ] {
         let held = fs::read(folder.join(name)).unwrap();
         assert!(held == desk.bytes(name) && ids.contains(name), "{name}");

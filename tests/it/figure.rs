@@ -1,40 +1,48 @@
 //! Figures. Each test leaves its picture in `target/tmp`, to be looked at.
 
-use shotdamp::experiment::{AxisScale, Experiment, FigureSpec, Level, Maximise, Panel, Parameter, PeakMarks};
-use shotdamp::figure::{FigureError, QuotedPoint, draw};
+use shotdamp::experiment::{AxisScale, Band, Experiment, FigureSpec, Level, Maximise, Panel, Parameter, PeakMarks};
+use shotdamp::figure::{Beside, FigureError, Known, Picture, Quoted, QuotedAt, draw};
 use shotdamp::measure::Measure;
 use shotdamp::table::{Column, Data, Table};
 
 use crate::made_up::{axis, figure, hump, limit_stop, limit_stop_table, log_range, numbers, panel, texts};
 
 /// Draws, keeps the picture and checks what holds for any of them.
-fn picture(name: &str, experiment: &Experiment, spec: &FigureSpec, table: &Table, quoted: &[QuotedPoint]) -> Vec<u8> {
-    let png = draw(experiment, spec, table, quoted).unwrap();
-    std::fs::write(format!("{}/{name}.png", env!("CARGO_TARGET_TMPDIR")), &png).unwrap();
+fn picture(name: &str, experiment: &Experiment, spec: &FigureSpec, table: &Table, quoted: &[Quoted]) -> Picture {
+    let picture = draw(experiment, spec, table, Beside { quoted, impulses: None }).unwrap();
+    let png = &picture.png;
+    std::fs::write(format!("{}/{name}.svg", env!("CARGO_TARGET_TMPDIR")), &picture.svg).unwrap();
+    std::fs::write(format!("{}/{name}.png", env!("CARGO_TARGET_TMPDIR")), png).unwrap();
     assert_eq!(&png[..8], b"\x89PNG\r\n\x1a\n");
     assert!(png.len() < 250_000, "{name}: {} bytes are too many to commit", png.len());
-    png
+    assert!(picture.svg.len() < 120_000, "{name}: {} bytes of SVG are too many to commit", picture.svg.len());
+    picture
 }
 
-fn size(png: &[u8]) -> (u32, u32) {
-    let number = |at: usize| u32::from_be_bytes(png[at..at + 4].try_into().unwrap());
-    (number(16), number(20))
+/// Width and height in pixels of the SVG.
+fn size(picture: &Picture) -> (u32, u32) {
+    let side = |name: &str| {
+        let (_, from) = picture.svg.split_once(&format!(" {name}=\"")).unwrap();
+        from.split_once('"').unwrap().0.parse().unwrap()
+    };
+    (side("width"), side("height"))
 }
 
 fn amplitude_panel() -> Panel {
     let by = vec!["stop".into(), "solver".into()];
-    Panel { by, band: true, ..panel("force_ratio", AxisScale::Log, &["velocity_ratio"]) }
+    Panel { by, band: Band::Spread, ..panel("force_ratio", AxisScale::Log, &["velocity_ratio"]) }
 }
 
-fn study(column: &str, x: f64, y: f64) -> QuotedPoint {
-    QuotedPoint { column: column.into(), x, y, label: "study".into() }
+fn study(column: &str, over: &str, at: QuotedAt) -> Quoted {
+    let label = "study: 2.5".into();
+    Quoted { column: column.into(), over: Some(over.into()), at, label, u_data: 0.01, tolerance: Some(0.1) }
 }
 
 #[test]
 fn four_lines_with_the_spread_of_the_ensemble() {
     let guides = vec![Level { at: 1.0, label: "no effect".into() }];
     let spec = figure(vec![Panel { guides, ..amplitude_panel() }]);
-    let quoted = [study("velocity_ratio", 2.5, f64::NAN)];
+    let quoted = [study("velocity_ratio", "force_ratio", QuotedAt::Place(2.5))];
     let png = picture("amplitude", &limit_stop(), &spec, &limit_stop_table(), &quoted);
     assert_eq!(size(&png), (1440, 960));
 }
@@ -42,11 +50,11 @@ fn four_lines_with_the_spread_of_the_ensemble() {
 #[test]
 fn the_same_table_gives_the_same_bytes() {
     let (experiment, spec, table) = (limit_stop(), figure(vec![amplitude_panel()]), limit_stop_table());
-    let first = draw(&experiment, &spec, &table, &[]).unwrap();
+    let first = draw(&experiment, &spec, &table, Beside::default()).unwrap();
     let threads: Vec<_> = (0..2)
         .map(|_| {
             let (experiment, spec, table) = (experiment.clone(), spec.clone(), table.clone());
-            std::thread::spawn(move || draw(&experiment, &spec, &table, &[]).unwrap())
+            std::thread::spawn(move || draw(&experiment, &spec, &table, Beside::default()).unwrap())
         })
         .collect();
     assert!(threads.into_iter().all(|thread| thread.join().unwrap() == first));
@@ -59,7 +67,10 @@ fn runs_with_an_assumption_moved_are_not_drawn() {
     let without = with_variant.select(&with_variant.rows_where("variant", "baseline"));
     assert!(without.rows() < with_variant.rows());
     let experiment = limit_stop();
-    assert_eq!(draw(&experiment, &spec, &with_variant, &[]), draw(&experiment, &spec, &without, &[]));
+    assert_eq!(
+        draw(&experiment, &spec, &with_variant, Beside::default()),
+        draw(&experiment, &spec, &without, Beside::default())
+    );
 }
 
 /// Base, particle, resilient and rigid surfaces over three forcing cycles.
@@ -136,7 +147,13 @@ fn few_points_carry_markers() {
         markers: true,
         ..panel("mass_ratio", AxisScale::Linear, &["velocity_ratio", "displacement_ratio"])
     }]);
-    picture("markers", &experiment, &spec, &table, &[study("velocity_ratio", 0.05, 1.516)]);
+    picture(
+        "markers",
+        &experiment,
+        &spec,
+        &table,
+        &[study("velocity_ratio", "mass_ratio", QuotedAt::Point { x: 0.05, y: 1.516, known: Known::Y })],
+    );
 }
 
 /// h′ = 10, 50, 90 and infinity against base amplitude.
@@ -210,7 +227,7 @@ fn a_flat_or_tiny_curve_still_has_an_axis() {
 fn a_figure_that_cannot_be_drawn_says_why() {
     let experiment = limit_stop();
     let table = limit_stop_table();
-    let attempt = |panel: Panel| draw(&experiment, &figure(vec![panel]), &table, &[]).unwrap_err();
+    let attempt = |panel: Panel| draw(&experiment, &figure(vec![panel]), &table, Beside::default()).unwrap_err();
 
     let unknown = attempt(panel("force_ratio", AxisScale::Log, &["velocity"]));
     assert!(matches!(&unknown, FigureError::UnknownColumn { column, .. } if column == "velocity"));
@@ -219,11 +236,11 @@ fn a_figure_that_cannot_be_drawn_says_why() {
 
     let nothing = table.select(&[50]);
     let spec = figure(vec![amplitude_panel()]);
-    assert!(matches!(draw(&experiment, &spec, &nothing, &[]), Err(FigureError::Nothing { .. })));
+    assert!(matches!(draw(&experiment, &spec, &nothing, Beside::default()), Err(FigureError::Nothing { .. })));
     let lists = history();
     let mixed = lists.with(numbers("velocity_ratio", "ψ", "", vec![1.0]));
     let spec = figure(vec![panel("time", AxisScale::Linear, &["velocity_ratio"])]);
-    assert!(matches!(draw(&experiment, &spec, &mixed, &[]), Err(FigureError::Mixed { .. })));
+    assert!(matches!(draw(&experiment, &spec, &mixed, Beside::default()), Err(FigureError::Mixed { .. })));
 }
 
 #[test]

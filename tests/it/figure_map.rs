@@ -1,7 +1,7 @@
 //! Maps: a quantity over two others, as colours. Each test leaves its picture in `target/tmp`, to be looked at.
 
 use shotdamp::experiment::{AxisScale, Best, Drawing, MapSpec, Mark};
-use shotdamp::figure::{FigureError, draw};
+use shotdamp::figure::{Beside, FigureError, Picture, draw};
 use shotdamp::table::{Column, Data, Table};
 
 use crate::made_up::{axis, drawn, limit_stop, log_range, numbers};
@@ -22,7 +22,9 @@ fn map(x: &str, y: &str, value: &str) -> MapSpec {
 }
 
 fn picture(name: &str, spec: MapSpec, table: &Table) -> Vec<u8> {
-    let png = draw(&limit_stop(), &drawn(Drawing::Map(spec.into())), table, &[]).unwrap();
+    let Picture { svg, png } =
+        draw(&limit_stop(), &drawn(Drawing::Map(spec.into())), table, Beside::default()).unwrap();
+    assert!(svg.len() < 250_000, "{name}: {} bytes of SVG are too many to commit", svg.len());
     std::fs::write(format!("{}/{name}.png", env!("CARGO_TARGET_TMPDIR")), &png).unwrap();
     assert!(png.len() < 250_000, "{name}: {} bytes are too many to commit", png.len());
     png
@@ -149,8 +151,9 @@ fn shapes_of_a_plate_show_their_nodal_lines() {
 
 #[test]
 fn a_map_that_cannot_be_drawn_says_why() {
-    let attempt =
-        |spec: MapSpec, table: &Table| draw(&limit_stop(), &drawn(Drawing::Map(spec.into())), table, &[]).unwrap_err();
+    let attempt = |spec: MapSpec, table: &Table| {
+        draw(&limit_stop(), &drawn(Drawing::Map(spec.into())), table, Beside::default()).unwrap_err()
+    };
     let plate = plate();
     let overlaid = attempt(map("damper_x", "damper_y", "velocity_ratio"), &plate);
     assert!(matches!(overlaid, FigureError::Twice { .. }) && overlaid.to_string().contains("`by`"), "{overlaid}");

@@ -2,10 +2,10 @@
 
 use shotdamp::dynamics::Limit;
 use shotdamp::experiment::{
-    Axis, AxisScale, Carried, Case, ContactDampingRecipe, DamperRecipe, Drawing, ExcitationKind, ExcitationRecipe,
-    Experiment, ExperimentId, FigureSpec, ForcingOrNatural, GapRecipe, Given, ImpulseTimeRecipe, MassReading,
-    MassRecipe, ObserveRecipe, Panel, Parameter, PlaceRecipe, PointsRecipe, Recipe, Reference, Source, StiffnessRecipe,
-    StopRecipe, StrengthRecipe, StructureRecipe, SurfaceRecipe, TimingRecipe,
+    Axis, AxisScale, Band, Carried, Case, ContactDampingRecipe, DamperRecipe, Drawing, ExcitationKind,
+    ExcitationRecipe, Experiment, ExperimentId, FigureSpec, ForcingOrNatural, GapRecipe, Given, ImpulseTimeRecipe,
+    MassReading, MassRecipe, ObserveRecipe, Panel, Parameter, PlaceRecipe, PointsRecipe, Recipe, Reference, Source,
+    StiffnessRecipe, StopRecipe, StrengthRecipe, StructureRecipe, SurfaceRecipe, TimingRecipe,
 };
 use shotdamp::measure::{Comparison, Measure, Settings, SolverChoice};
 use shotdamp::scene::Take;
@@ -86,7 +86,12 @@ pub fn figure(panels: Vec<Panel>) -> FigureSpec {
 }
 
 pub fn drawn(drawing: Drawing) -> FigureSpec {
-    FigureSpec { name: String::new(), caption: "Effect of the limit stop on the velocity ratio.".into(), drawing }
+    FigureSpec {
+        name: String::new(),
+        only: None,
+        caption: "Effect of the limit stop on the velocity ratio.".into(),
+        drawing,
+    }
 }
 
 pub fn axis(column: &str, scale: AxisScale) -> Axis {
@@ -99,7 +104,8 @@ pub fn panel(x: &str, scale: AxisScale, y: &[&str]) -> Panel {
         x: axis(x, scale),
         y: y.iter().map(|column| axis(column, AxisScale::Linear)).collect(),
         by: Vec::new(),
-        band: false,
+        band: Band::None,
+        over_first: false,
         guides: Vec::new(),
         markers: false,
         peaks: None,

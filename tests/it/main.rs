@@ -24,6 +24,7 @@ mod export;
 mod faults;
 mod figure;
 mod figure_map;
+mod figure_study;
 mod fixed;
 mod guide;
 mod limits;

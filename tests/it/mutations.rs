@@ -163,8 +163,8 @@ fn changed(bytes: &[u8], dice: &mut Dice) -> Vec<u8> {
         4 => drop(lines.remove(one)),
         5 => lines.insert(one, lines[other]),
         6 => lines.swap(one, other),
-        7 if !numbers.is_empty() => bytes = put(*dice.of(&numbers), *dice.of(NUMBERS)),
-        8 if !words.is_empty() => bytes = put(*dice.of(&words), *dice.of(UNITS)),
+        7 if !numbers.is_empty() => bytes = put(*dice.of(&numbers), dice.of::<&str>(NUMBERS)),
+        8 if !words.is_empty() => bytes = put(*dice.of(&words), dice.of::<&str>(UNITS)),
         9 if !words.is_empty() => {
             let (from, to) = *dice.of(&words);
             bytes = put(*dice.of(&words), &text[from..to]);

@@ -201,7 +201,7 @@ pub(crate) fn all_mistakes_of_a_file_come_at_once_with_their_places() {
             "13:51 `many` is not a number of points | write for example 25 points",
             "15:55 `-1 cycles` is not a number of cycles | write for example 25 cycles",
             "16:27 `ceiling_impact` is not a measure | did you mean `ceiling_impacts`?",
-            "17:61 a band has no form `wide` | known are `spread`, `none`",
+            "17:61 a band has no form `wide` | known are `spread`, `none`, `seeds`",
         ]
     );
     let plain = problems.to_string();
@@ -330,7 +330,7 @@ pub(crate) fn yaml_from_strangers_is_refused_before_anything_grows() {
     assert_eq!(parse(&many_mistakes).expect_err("no measure of that name").list.len(), 100);
     let keys: String = (0..100_000).map(|i| format!("a{i}: 1\n")).collect();
     assert_eq!(only_problem(&keys), "1001:1 more than 1000 keys in one place");
-    assert_eq!(only_problem(&"#\n".repeat(1 << 20)), "1:1 the file is longer than 1024 KiB");
+    assert_eq!(only_problem(&"#\n".repeat(1 << 20)), "1:1 the file has 2048 KiB; at most 1024 KiB are read");
     let sweep = |range: &str| only_problem(&with("{log: {from: 0.1, to: 100, points: 61}}", range));
     assert_eq!(
         sweep("{log: {from: 0.1, to: 100, points: 1000000000}}"),

@@ -43,11 +43,15 @@ pub(super) fn definitions() -> Vec<(String, Value)> {
     vec![("column".into(), column), ("axis".into(), axis), ("figure".into(), figure())]
 }
 
+/// What a band shows.
+const BAND: &str =
+    "spread: standard deviation of the ensemble; seeds: least to largest of searches that differ in their seed";
+
 fn shared(object: Object) -> Object {
     object
         .optional("x", reference("axis"))
         .optional("by", one_or_more("Columns that split rows into lines", reference("column")))
-        .optional("band", one_of_words("Standard deviation of the ensemble as a band", &["spread", "none"]))
+        .optional("band", one_of_words(BAND, &["spread", "none", "seeds"]))
         .optional("markers", boolean("A mark at each point"))
 }
 
@@ -59,6 +63,7 @@ fn own(object: Object) -> Object {
         .optional("most", count("Peaks at most", "peaks", 0, 50));
     object
         .optional("y", one_or_more("What is drawn", reference("axis")))
+        .optional("over_first", boolean("Each line over the first one"))
         .optional("guides", list("Levels", guide.schema()))
         .optional("peaks", peaks.schema())
 }
@@ -68,14 +73,19 @@ fn figure() -> Value {
     panel["required"] = json!(["y"]);
     let name =
         json!({"description": "Name of the file after the id; none for the first", "type": "string", "pattern": NAME});
+    let only = Object::new("The rows to draw")
+        .required("column", reference("column"))
+        .required("words", one_or_more("The column's words that count", text("A word")));
     own(shared(Object::new("A figure")))
         .optional("name", name)
         .required("caption", text("One line under it"))
+        .optional("only", only.schema())
         .optional("panels", list("Panels above each other", panel))
         .optional("map", map())
+        .optional("gaps", boolean("The gaps of an optimised array as bars"))
         .rule(json!({
-            "if": {"required": ["map"]},
-            "then": {"propertyNames": {"enum": ["name", "caption", "map"]}},
+            "if": {"anyOf": [{"required": ["map"]}, {"required": ["gaps"]}]},
+            "then": {"propertyNames": {"enum": ["name", "caption", "only", "map", "gaps"]}},
             "else": {"anyOf": [{"required": ["panels"]}, {"required": ["x", "y"]}]},
         }))
         .schema()
