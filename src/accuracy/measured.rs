@@ -196,7 +196,7 @@ fn case(description: String, trial: &Trial<'_>, longest: Duration) -> Result<Cas
     let (reference, bare, origin) = reference(trial, &recorded, longest)?;
     let truth = trial.read(&reference, &bare)?;
     let own = event_driven(&trial.system, &trial.options)?;
-    let floor = floor(trial, &own, &event_driven(&trial.undamped, &trial.options)?)?;
+    let floor = floor(trial, &own, &event_driven(&trial.undamped, &trial.undamped_options)?)?;
     let mut points = Vec::new();
     let mut skipped = Vec::new();
     let compared = Compared { trial, recorded: &recorded, truth: &truth, events: &reference.events };
@@ -242,7 +242,7 @@ impl Compared<'_> {
         let begin = Instant::now();
         let response = contender.run(&trial.system, recorded)?;
         let times = Times::once(begin.elapsed());
-        let values = trial.read(&response, &contender.run(&trial.undamped, &trial.options)?)?;
+        let values = trial.read(&response, &contender.run(&trial.undamped, &trial.undamped_options)?)?;
         let (worst, error) = worst(&trial.measures, &values, truth);
         let events = compare(&response.events, events, trial.system.drive.period);
         Ok(Point { contender, error, worst, events, times })
@@ -268,7 +268,7 @@ fn reference(
     let patience = MOST_PATIENCE.max(20 * longest);
     let both = precise(&trial.system, recorded, patience).and_then(|with| {
         let left = patience.saturating_sub(begun.elapsed());
-        Ok((with, precise(&trial.undamped, &trial.options, left)?))
+        Ok((with, precise(&trial.undamped, &trial.undamped_options, left)?))
     });
     match both {
         Ok((with, without)) => Ok((with, without, Origin::ManyDigits)),
@@ -276,7 +276,7 @@ fn reference(
             let other = |system, options: &Options| {
                 event_driven(system, &Options { window_factor: STAND_IN, ..options.clone() })
             };
-            let (with, without) = (other(&trial.system, recorded)?, other(&trial.undamped, &trial.options)?);
+            let (with, without) = (other(&trial.system, recorded)?, other(&trial.undamped, &trial.undamped_options)?);
             Ok((with, without, Origin::StandIn(error.to_string())))
         }
     }

@@ -38,7 +38,7 @@ pub fn representative(experiment: &Experiment, assumptions: &Assumptions) -> Res
             let Some(candidate) = part.get(eighth * part.len() / 8 + third) else { continue };
             let trial = trial(&candidate.1, experiment, assumptions)?;
             let own = event_driven(&trial.system, &trial.options)?;
-            let bare = event_driven(&trial.undamped, &trial.options)?;
+            let bare = event_driven(&trial.undamped, &trial.undamped_options)?;
             if own.proof.events > 0 && !is_chaotic(&trial, &own, &bare)? {
                 wanted = Some(candidate);
                 break;

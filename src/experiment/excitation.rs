@@ -18,8 +18,7 @@ impl<'t> SceneReader<'t> {
         let names = ["single_impulse", "impulse_train", "harmonic", "pulse_train", "none"];
         let choice = Choice::read(node, "the excitation", &names, self.findings)?;
         if choice.name == "none" {
-            let reference = self.left_out(Slot::FrequencyReference, kind, Carried::Base);
-            return choice.bare(self.findings).map(|_| ExcitationRecipe::silent(reference));
+            return self.silence(&choice, kind);
         }
         let fields = choice.fields("the excitation", self.findings)?;
         let at = self.at(&fields, kind, [Parameter::ForceX, Parameter::ForceY]);
@@ -66,6 +65,18 @@ impl<'t> SceneReader<'t> {
             frequency_reference: reference?.unwrap_or_else(|| self.left_out(reference_slot, kind, Carried::Base)),
             impulse_time: impulse_time?.unwrap_or_else(|| self.usual_impulse_time(kind)),
         })
+    }
+
+    /// `none`, or `{none: {period: 1 s}}` where time is not counted in natural cycles: a mass without spring has none.
+    fn silence(&self, choice: &Choice<'t>, kind: &'static Kind) -> Option<ExcitationRecipe> {
+        let silent = ExcitationRecipe::silent(self.left_out(Slot::FrequencyReference, kind, Carried::Base));
+        if choice.content.is_none() {
+            return Some(silent);
+        }
+        let fields = choice.fields("the cycle that time is counted in", self.findings)?;
+        let timing = fields.required("period", |node| self.timing("period", node));
+        fields.close()?;
+        Some(ExcitationRecipe { timing: timing?, ..silent })
     }
 
     /// A time, a reading, an assumption, or `{factor: κ, frequency: forcing}`.

@@ -28,6 +28,7 @@ mod scaffold;
 mod scene;
 mod schema;
 mod solver;
+mod start;
 mod structure;
 mod sweep;
 mod typed;

@@ -59,7 +59,7 @@ pub(super) struct SceneReader<'t> {
     assumptions: &'t Assumptions,
     pub(super) swept: RefCell<Vec<(Parameter, Span)>>,
     optimised: RefCell<Vec<Span>>,
-    parts: RefCell<Vec<(Part, Span)>>,
+    pub(super) parts: RefCell<Vec<(Part, Span)>>,
 }
 
 impl<'t> SceneReader<'t> {
@@ -84,6 +84,7 @@ impl<'t> SceneReader<'t> {
             self.parts.borrow_mut().push((Part::Excitation, node.span));
             self.excitation(node, kind)
         });
+        let start = fields.optional("start", |node| self.start(node));
         let observe = fields.optional("observe", |node| {
             self.parts.borrow_mut().push((Part::Observe, node.span));
             self.observe(node, kind)
@@ -97,6 +98,7 @@ impl<'t> SceneReader<'t> {
             dampers: dampers?.unwrap_or_default(),
             without_dampers: false,
             excitation: excitation?,
+            start: start?,
             observe: observe?.unwrap_or_else(|| self.usual_observation(kind)),
             mode: None,
         })

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::assumption_sheet::{Quantity, Takes};
 use super::quantity::Dimension;
-use super::reader::{Choice, above_zero, count, list, ratio, scalar, unknown};
+use super::reader::{Choice, above_zero, count, list, ratio, scalar, unknown, zero_or_more};
 use super::recipe::{Given, Parameter, Slot, StructureRecipe};
 use super::scene::{SceneReader, is_word};
 use super::word::from_word;
@@ -72,7 +72,9 @@ fn read_value<'t>(
     match form {
         Form::Length => size(Dimension::Length),
         Form::Mass => size(Dimension::Mass),
-        Form::Stiffness => size(Dimension::Stiffness),
+        Form::Stiffness => reader.given(node, Takes::quantity(Dimension::Stiffness), |node| {
+            zero_or_more(node, Dimension::Stiffness, findings).map(FieldValue::Number)
+        }),
         Form::Stress => size(Dimension::Stress),
         Form::Density => size(Dimension::Density),
         Form::Ratio => reader.given(node, Takes::ratio(), |node| ratio(node, findings).map(FieldValue::Number)),

@@ -61,13 +61,15 @@ impl Request<'_> {
             || self.deflection().is_some()
     }
 
-    /// A run without an audit and without a history.
-    pub(super) fn options(&self, settings: &Settings) -> Options {
+    /// A run of a scene without an audit and without a history.
+    pub(super) fn options(&self, scene: &Scene, settings: &Settings) -> Options {
         Options {
+            start: scene.start_state(),
             skip: settings.skip,
             average: settings.average,
             displacement: self.any(Measure::needs_displacement) || self.deflection().is_some(),
             extremes: self.any(Measure::needs_extremes),
+            record_events: if self.any(Measure::needs_events) { usize::MAX } else { 0 },
             cycle_rates: self.energies.is_some() || self.any(Measure::needs_energies),
             ..Options::default()
         }
@@ -107,7 +109,7 @@ impl<'a> Prepared<'a> {
         let subject = rounded_subject(subject, settings);
         let system = compile(&subject.scene)?;
         let request = Request { measures, trace: None, energies: None, shape: None, rigour: Rigour::Look };
-        let reference = reference(&subject, &request, &request.options(settings), solver)?;
+        let reference = reference(&subject, &request, settings, solver)?;
         let units = subject.scene.dampers.iter().map(|damper| damper.gap).collect();
         Ok(Self { subject, settings, measures, solver, system, reference, units })
     }
@@ -125,7 +127,8 @@ impl<'a> Prepared<'a> {
         let request = Request { measures: self.measures, trace: None, energies: None, shape: None, rigour };
         let Self { subject, settings, .. } = self;
         let case = Case { subject, settings, request: &request, scene: &scene };
-        let evaluated = case.run(&system, self.reference.as_ref(), self.solver, &request.options(settings))?;
+        let plain = request.options(&scene, settings);
+        let evaluated = case.run(&system, self.reference.as_ref(), self.solver, &plain)?;
         in_range(&scene, self.measures, evaluated)
     }
 }
@@ -149,8 +152,8 @@ pub fn evaluate(
     if request.deflection().is_some() {
         shape::watch_products(&mut system);
     }
-    let plain = request.options(settings);
-    let reference = reference(&subject, request, &plain, solver)?;
+    let plain = request.options(&subject.scene, settings);
+    let reference = reference(&subject, request, settings, solver)?;
     in_range(&subject.scene, request.measures, case.run(&system, reference.as_ref(), solver, &plain)?)
 }
 
@@ -158,11 +161,13 @@ pub fn evaluate(
 fn reference(
     subject: &Subject,
     request: &Request<'_>,
-    options: &Options,
+    settings: &Settings,
     solver: SolverChoice,
 ) -> Result<Option<Response>, EvaluateError> {
     match &subject.undamped {
-        Some(bare) if request.needs().undamped => Ok(Some(solve(&compile(bare)?, options, solver)?)),
+        Some(bare) if request.needs().undamped => {
+            Ok(Some(solve(&compile(bare)?, &request.options(bare, settings), solver)?))
+        }
         _ => Ok(None),
     }
 }
@@ -294,7 +299,16 @@ impl Case<'_> {
         undamped: Option<&'r Response>,
         mac: Option<f64>,
     ) -> Reading<'r> {
-        Reading { scene: self.scene, mode: self.subject.mode, response, undamped, history: None, energies: None, mac }
+        Reading {
+            scene: self.scene,
+            mode: self.subject.mode,
+            response,
+            undamped,
+            history: None,
+            energies: None,
+            skip: self.settings.skip,
+            mac,
+        }
     }
 
     /// All measures, and the lists; of a run of an ensemble (not `whole`) only what is averaged.
@@ -312,7 +326,10 @@ impl Case<'_> {
             Some(spec) => Some(shape::of_deflection(self.scene, response, spec, self.subject.mode as usize)),
             None => self.mode_shape()?,
         };
-        let history = request.trace.filter(|_| whole).map(|_| History { response, scene: self.scene });
+        let history = request.trace.filter(|_| whole).map(|trace| {
+            let cycles = u64::from(trace.from_cycle)..u64::from(trace.to_cycle);
+            History { response, scene: self.scene, cycles }
+        });
         let mac = shape.as_ref().map(|shape| shape.mac);
         let mut reading = self.reading(Some(response), undamped, mac);
         reading.history = history;

@@ -1,14 +1,18 @@
 //! What is read off a time history: peaks, compressions, lags between impulses and impacts; and its columns.
 
+use std::ops::Range;
+
 use super::TraceColumn;
 use super::evaluate::decay;
-use crate::dynamics::{EventKind, Response, Sample};
+use crate::dynamics::{Event, EventKind, Response, Sample};
 use crate::scene::Scene;
 
 /// A response with a trace, and the scene it is of.
 pub(super) struct History<'a> {
     pub(super) response: &'a Response,
     pub(super) scene: &'a Scene,
+    /// The cycles that it holds.
+    pub(super) cycles: Range<u64>,
 }
 
 /// A crest of the base displacement.
@@ -64,7 +68,8 @@ impl History<'_> {
     /// steps ends its cycles up to one step late: what happens there happens with the start of the next.
     pub(super) fn lag(&self, kind: EventKind) -> f64 {
         let period = self.scene.excitation.period();
-        let lags = self.response.events.iter().filter(|event| event.kind == kind);
+        let here = |event: &&Event| event.kind == kind && self.cycles.contains(&event.cycle);
+        let lags = self.response.events.iter().filter(here);
         lags.map(|event| event.time.min(period - event.time).max(0.0)).fold(f64::INFINITY, f64::min)
     }
 }
@@ -112,7 +117,6 @@ pub(super) fn columns(history: &History<'_>) -> Vec<TraceColumn> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dynamics::Event;
     use crate::scene::{Excitation, SingleMass};
 
     #[test]
@@ -130,7 +134,7 @@ mod tests {
         };
         let lag = |times: &[f64]| {
             let response = Response { events: times.iter().map(|&time| at(time)).collect(), ..Response::default() };
-            History { response: &response, scene: &scene }.lag(EventKind::FloorContact)
+            History { response: &response, scene: &scene, cycles: 3..4 }.lag(EventKind::FloorContact)
         };
         // The study's 199 steps of 1 ms.
         assert_eq!(lag(&[0.05, 0.198_999]), 0.0);

@@ -39,6 +39,10 @@ pub enum ReadOff {
     Energies,
     /// Numbers of events, or properties of the run itself: they tend to no limit as a run gets more exact.
     Run,
+    /// Single events in the window.
+    Events,
+    /// The state at the end of the run.
+    End,
     /// The time history that is kept.
     Trace,
     /// The model: no run is needed.
@@ -137,6 +141,19 @@ measures! {
     Mac: "", "", "", "modal assurance criterion of the shape that is kept: a mode's against the exact one, a deflection's against the forced mode's", Shape, Own, Any;
     DampingMeasure: "", "", "", "share of the structure's kinetic energy that is lost from just after an impulse to just before the next, mean over the cycles", Energies, Both, Any;
     MassMeasure: "", "", "", "kinetic energy at the impulses, compared with that of the clean structure, mean over the cycles", Energies, Both, Any;
+    FloorImpactTime: "s", "", "", "first contact of the first particle with its floor in the window, from the start of the run", Events, Own, Any;
+    FloorImpactInterval: "s", "", "", "time between its last two floor contacts", Events, Own, Any;
+    FloorIntervalChange: "s", "", "", "by how much that time differs from the one before", Events, Own, Any;
+    FloorImpactSpeed: "m/s", "", "", "relative speed just before its last floor contact", Events, Own, Any;
+    FloorImpactPhase: "rad", "", "", "ω t of its last floor contact, from the start of the forcing cycle", Events, Own, Any;
+    FloorReboundSpeed: "m/s", "", "", "relative speed at the end of its last floor contact that has ended", Events, Own, Any;
+    FloorRestitution: "", "", "", "that speed over the one at the begin of the same contact", Events, Own, Any;
+    FloorContactTime: "s", "", "", "duration of the same contact", Events, Own, Any;
+    FloorReleaseTime: "s", "", "", "first release of the first particle from its floor in the window, from the start of the run", Events, Own, Any;
+    ChatterEndTime: "s", "", "", "end of the first complete chatter of the first particle in the window, from the start of the run", Events, Own, Any;
+    FinalDisplacement: "m", "", "", "displacement of the structure at the end of the run", End, Own, Any;
+    FinalVelocity: "m/s", "", "", "velocity of the structure at the end of the run", End, Own, Any;
+    FinalHeight: "m", "", "", "height of the first particle over its floor at the end of the run", End, Own, Any;
 }
 
 impl Measure {
@@ -170,6 +187,11 @@ impl Measure {
 
     pub(super) fn needs_extremes(self) -> bool {
         self.facts().from == ReadOff::Extremes
+    }
+
+    /// Read off single events.
+    pub(super) fn needs_events(self) -> bool {
+        self.facts().from == ReadOff::Events
     }
 
     /// Read off the velocities at the ends of cycles.

@@ -9,6 +9,7 @@ use std::borrow::Cow;
 mod energy;
 mod evaluate;
 mod history;
+mod impact;
 mod measures;
 mod reading;
 mod request;

@@ -4,6 +4,7 @@ use std::f64::consts::TAU;
 
 use super::energy::Energies;
 use super::history::History;
+use super::impact::Impacts;
 use super::{EvaluateError, Measure};
 use crate::dynamics::{EventKind, Observed, Response, Sums};
 use crate::scene::{Excitation, Scene, Take};
@@ -18,6 +19,8 @@ pub(super) struct Reading<'a> {
     pub(super) undamped: Option<&'a Response>,
     pub(super) history: Option<History<'a>>,
     pub(super) energies: Option<&'a Energies>,
+    /// Cycles left out of the window.
+    pub(super) skip: u32,
     /// Modal assurance criterion of the shape, if there is one.
     pub(super) mac: Option<f64>,
 }
@@ -69,6 +72,21 @@ impl Reading<'_> {
             Measure::UndampedVelocityAmplitude => self.velocity_amplitude(undamped()?),
             Measure::DampingMeasure => self.energies.ok_or(EvaluateError::NoRun(measure))?.damping_measure(),
             Measure::MassMeasure => self.energies.ok_or(EvaluateError::NoRun(measure))?.mass_measure(),
+            Measure::FinalDisplacement => response.final_displacement,
+            Measure::FinalVelocity => response.final_velocity,
+            Measure::FinalHeight => {
+                response.final_particles.first().map_or(f64::NAN, |[y, _]| y - response.final_displacement)
+            }
+            Measure::FloorImpactTime
+            | Measure::FloorImpactInterval
+            | Measure::FloorIntervalChange
+            | Measure::FloorImpactSpeed
+            | Measure::FloorImpactPhase
+            | Measure::FloorReboundSpeed
+            | Measure::FloorRestitution
+            | Measure::FloorContactTime
+            | Measure::FloorReleaseTime
+            | Measure::ChatterEndTime => Impacts::of(response, self.scene, self.skip).read(measure),
             Measure::NaturalFrequency
             | Measure::CleanNaturalFrequency
             | Measure::ExactNaturalFrequency

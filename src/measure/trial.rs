@@ -25,6 +25,8 @@ pub struct Trial<'a> {
     pub undamped: HybridSystem,
     /// How it is run.
     pub options: Options,
+    /// How the same without dampers is run.
+    pub undamped_options: Options,
 }
 
 impl<'a> Trial<'a> {
@@ -42,10 +44,11 @@ impl<'a> Trial<'a> {
         }
         let request =
             Request { measures: &measures, trace: None, energies: None, shape: None, rigour: Rigour::default() };
-        let options = request.options(settings);
-        let system = compile(&scene)?;
-        let undamped = compile(&rounded(undamped, settings))?;
-        Ok(Self { settings, mode, comparison, measures, scene, system, undamped, options })
+        let bare = rounded(undamped, settings);
+        let options = request.options(&scene, settings);
+        let undamped_options = request.options(&bare, settings);
+        let (system, undamped) = (compile(&scene)?, compile(&bare)?);
+        Ok(Self { settings, mode, comparison, measures, scene, system, undamped, options, undamped_options })
     }
 
     /// The measures, in their order, of a run and its companion without dampers.
@@ -64,6 +67,7 @@ impl<'a> Trial<'a> {
             response: Some(response),
             undamped: Some(undamped),
             history: None,
+            skip: self.settings.skip,
             energies: energies.as_ref(),
             mac: None,
         };

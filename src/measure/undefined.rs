@@ -1,6 +1,6 @@
 //! Numbers that are none: a ratio of nothing to nothing is undefined, and says so; one that left the range of numbers is an error.
 
-use super::{EvaluateError, Evaluated, Measure};
+use super::{EvaluateError, Evaluated, Measure, ReadOff};
 use crate::scene::Scene;
 
 impl Measure {
@@ -13,6 +13,8 @@ impl Measure {
                 "there is no such mode"
             }
             Self::Drift => "nothing moves",
+            Self::FinalHeight => "there is no particle",
+            _ if self.needs_events() => "there is no such event",
             _ if self.needs_undamped() => "neither run moves",
             _ => "nothing excites the structure",
         }
@@ -29,9 +31,10 @@ impl Measure {
         )
     }
 
-    /// It is no number where nothing excites the structure.
+    /// It is a number wherever something excites the structure; an event may fail to happen, and a scene may have no particle.
     fn needs_motion(self) -> bool {
-        !self.needs_trace() && !self.is_modal()
+        !matches!(self.facts().from, ReadOff::Trace | ReadOff::Model | ReadOff::Shape | ReadOff::Events)
+            && self != Self::FinalHeight
     }
 }
 
@@ -45,7 +48,7 @@ pub(super) fn in_range(
     mut evaluated: Evaluated,
 ) -> Result<Evaluated, EvaluateError> {
     for (measure, measured) in measures.iter().zip(&mut evaluated.measured) {
-        if measure.compares() && scene.excitation.is_silent() {
+        if measure.compares() && scene.is_at_rest() {
             // Steps leave rounding of the rest where nothing moves; a ratio of that is none.
             measured.value = f64::NAN;
         }

@@ -27,11 +27,13 @@ pub enum PrintedError {
 }
 
 /// Units by dimension, with their factor to the first of the dimension.
-const UNITS: [(&str, &[(&str, f64)]); 6] = [
+const UNITS: [(&str, &[(&str, f64)]); 8] = [
     ("a length", &[("m", 1.0), ("mm", 1e-3), ("cm", 1e-2)]),
     ("a velocity", &[("m/s", 1.0), ("mm/s", 1e-3)]),
     ("a time", &[("s", 1.0), ("ms", 1e-3)]),
     ("a frequency", &[("Hz", 1.0), ("rad/s", 1.0 / std::f64::consts::TAU)]),
+    ("a force", &[("N", 1.0)]),
+    ("an angle", &[("rad", 1.0)]),
     ("an acceleration", &[("m/s²", 1.0), ("g", 9.81)]),
     ("dimensionless", &[("", 1.0)]),
 ];

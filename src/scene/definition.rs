@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Damper, Excitation, Point, SingleMass, Structure};
+use super::{Damper, Excitation, Point, SingleMass, Start, Structure};
 
 /// A scene in SI units: everything a simulation needs, and only the effects that it names.
 #[derive(Debug, Clone, PartialEq)]
@@ -19,6 +19,8 @@ pub struct Scene {
     pub force_at: Point,
     /// Where the motion is observed.
     pub observed: Observation,
+    /// Initial conditions; static equilibrium without them.
+    pub start: Option<Start>,
 }
 
 impl Scene {
@@ -32,6 +34,7 @@ impl Scene {
             excitation,
             force_at: Point::default(),
             observed: Observation { points: vec![Point::default()], take: Take::Largest },
+            start: None,
         }
     }
 }

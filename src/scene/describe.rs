@@ -1,13 +1,15 @@
 //! A scene in words and SI units, for a person who asks what is simulated.
 
-use super::{ContactDamping, ContactEnd, Damper, Excitation, Observation, Point, PulseShape, Scene, Surface, Take};
+use super::{
+    ContactDamping, ContactEnd, Damper, Excitation, Observation, Point, PulseShape, Scene, Start, Surface, Take,
+};
 use crate::text::number::{compact, quantity};
 
 /// Significant digits.
 const DIGITS: usize = 5;
 
 impl Scene {
-    /// One line a part: structure, gravity, each damper, excitation.
+    /// One line a part: structure, gravity, each damper, excitation, initial conditions.
     #[must_use]
     pub fn describe(&self) -> Vec<String> {
         let model = self.structure.model();
@@ -23,6 +25,7 @@ impl Scene {
         if !sides.is_empty() {
             lines.push(self.observed.describe(&sides));
         }
+        lines.extend(self.start.as_ref().map(Start::describe));
         lines
     }
 }

@@ -9,6 +9,7 @@ mod describe;
 mod effect;
 mod excitation;
 mod normal_modes;
+mod start;
 mod structure;
 mod switch;
 
@@ -18,6 +19,7 @@ pub use definition::{Observation, Scene, Take};
 pub use effect::{EffectUse, effects};
 pub use excitation::{Excitation, PulseShape};
 pub use normal_modes::{NormalMode, add_square, normal_modes};
+pub use start::{ParticleStart, Start, StartError};
 pub use structure::{
     CantileverBeam, ClampedBeam, Field, FieldValue, Form, KINDS, Kind, Matrices, Model, Point, SingleMass, Structure,
     StructureError, SupportedPlate, Values, whole,

@@ -57,7 +57,7 @@ enum Cause {
 
 fn of_scene(experiment: &Experiment, scene: &Scene, solvers: &[SolverChoice]) -> Vec<(Cause, String)> {
     let mut warnings = Vec::new();
-    if scene.excitation.is_silent() && experiment.measures.iter().any(|measure| measure.needs_undamped()) {
+    if scene.is_at_rest() && experiment.measures.iter().any(|measure| measure.needs_undamped()) {
         warnings.push((Cause::Silence, "the excitation is zero: nothing moves, and every ratio is undefined".into()));
     }
     let cycles = f64::from(experiment.settings.skip) + f64::from(experiment.settings.average);

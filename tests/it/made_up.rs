@@ -59,6 +59,7 @@ pub fn limit_stop() -> Experiment {
                     frequency: Given::Stated(ForcingOrNatural::Forcing),
                 },
             },
+            start: None,
             observe: ObserveRecipe { points: PointsRecipe::Usual, take: Given::Stated(Take::Largest) },
             mode: None,
         },

@@ -10,6 +10,7 @@ mod accuracy;
 mod architecture;
 mod calibrate;
 mod check;
+mod classics;
 mod clean;
 mod cli;
 mod daily;

@@ -125,11 +125,12 @@ fn here(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join(name)
 }
 
-/// The YAML files of a folder of chapters.
+/// The YAML files of a folder of chapters, and those of the same folder of the classics.
 fn shipped(folder: &str) -> Vec<(String, String)> {
     let mut found = Vec::new();
-    for chapter in fs::read_dir(here(folder)).unwrap().flatten().filter(|entry| entry.path().is_dir()) {
-        for file in fs::read_dir(chapter.path()).unwrap().flatten() {
+    let chapters = fs::read_dir(here(folder)).unwrap().flatten().map(|entry| entry.path());
+    for chapter in chapters.filter(|path| path.is_dir()).chain([here("examples/classics").join(folder)]) {
+        for file in fs::read_dir(chapter).unwrap().flatten() {
             let name = file.file_name().into_string().unwrap();
             found.push((name, fs::read_to_string(file.path()).unwrap()));
         }

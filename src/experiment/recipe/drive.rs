@@ -70,6 +70,14 @@ impl ExcitationRecipe {
 
     fn angular_frequency(&self, base: &Base<'_>, carried: f64) -> Result<f64, RecipeError> {
         let inputs = base.inputs;
+        if matches!(self.timing, TimingRecipe::FrequencyRatio(_)) && base.natural() == 0.0 {
+            let instead = if self.is_silent() {
+                "state how long the cycle is that time is counted in: `excitation: {none: {period: 1 s}}`"
+            } else {
+                "write `angular_frequency` or `period` instead of `frequency_ratio`"
+            };
+            return Err(RecipeError::OutOfRange(format!("a mass without spring has no natural frequency: {instead}")));
+        }
         Ok(match (&self.timing, base.structure) {
             (TimingRecipe::FrequencyRatio(ratio), Structure::SingleMass(mass)) => {
                 let carried = match inputs.get(&self.frequency_reference)? {

@@ -9,7 +9,7 @@ use super::parameter::Parameter;
 use super::place::PlaceRecipe;
 use super::structure::StructureRecipe;
 use crate::measure::Comparison;
-use crate::scene::{Curve, PulseShape, StructureError, Take};
+use crate::scene::{Curve, PulseShape, Start, StartError, StructureError, Take};
 
 /// A scene as an experiment names it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -28,6 +28,9 @@ pub struct Recipe {
     pub without_dampers: bool,
     /// What drives it.
     pub excitation: ExcitationRecipe,
+    /// Where it starts; in static equilibrium unless it is stated.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub start: Option<Start>,
     /// Where its motion is observed.
     pub observe: ObserveRecipe,
     /// Which mode natural frequencies and mode shapes are of, from 1; the forced one unless it is stated.
@@ -441,6 +444,8 @@ pub enum Part {
     Excitation,
     /// What is observed.
     Observe,
+    /// Initial conditions.
+    Start,
 }
 
 impl Part {
@@ -453,5 +458,11 @@ impl Part {
 impl From<StructureError> for RecipeError {
     fn from(error: StructureError) -> Self {
         Self::Part { part: Part::Structure, message: error.0 }
+    }
+}
+
+impl From<StartError> for RecipeError {
+    fn from(error: StartError) -> Self {
+        Self::Part { part: Part::Start, message: error.0 }
     }
 }

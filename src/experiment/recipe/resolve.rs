@@ -16,8 +16,8 @@ use super::parts::{
 use super::place::{PlaceRecipe, Places};
 use crate::measure::{Needs, Subject};
 use crate::scene::{
-    ContactDamping, ContactEnd, Damper, Kind, LimitStop, Observation, Point, Scene, Structure, Surface, Take, Walls,
-    add_square, normal_modes,
+    ContactDamping, ContactEnd, Damper, Kind, LimitStop, Observation, Point, Scene, Start, Structure, Surface, Take,
+    Walls, add_square, normal_modes,
 };
 
 /// What the parts of a recipe refer to.
@@ -128,7 +128,10 @@ impl Recipe {
         let silent = self.excitation.is_silent() && self.excitation.at.0.is_empty();
         let force_at = if silent { Point::default() } else { places.point(&self.excitation.at, Part::Excitation)? };
         let observed = self.observe.resolve(&base, &places)?;
-        Ok(Scene { structure, gravity, dampers, excitation, force_at, observed })
+        let start = self.start.clone().map(|start| if self.without_dampers { start.of_structure() } else { start });
+        let scene = Scene { structure, gravity, dampers, excitation, force_at, observed, start };
+        scene.check_start()?;
+        Ok(scene)
     }
 
     /// The scene of the run without dampers: same excitation. A beam or plate is then clean; one mass weighs what
@@ -141,6 +144,7 @@ impl Recipe {
             base.mass += scene.dampers.iter().map(|damper| damper.particle_mass + damper.enclosure_mass).sum::<f64>();
         }
         scene.dampers.clear();
+        scene.start = scene.start.map(Start::of_structure);
         Ok(scene)
     }
 }
@@ -265,6 +269,11 @@ impl Placed<'_> {
                 true => base.natural(),
                 false => frequency(inputs.get(&self.recipe.gap_frequency)?),
             };
+            if natural == 0.0 {
+                return Err(RecipeError::OutOfRange(
+                    "a mass without spring has no natural frequency: write `gap` instead of `gap_ratio`".into(),
+                ));
+            }
             Ok::<_, RecipeError>(ratio * base.gravity / (natural * natural))
         };
         let each = |list: &[f64]| {

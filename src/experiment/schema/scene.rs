@@ -59,6 +59,7 @@ pub(super) fn scene() -> Value {
         .optional("mass_measure", reading(Slot::MassMeasure))
         .optional("dampers", dampers)
         .required("excitation", excitation())
+        .optional("start", start())
         .optional("observe", observe())
         // Where there are no sides there are no places; elsewhere there have to be.
         .rule(json!({
@@ -247,7 +248,11 @@ fn excitation() -> Value {
         ("harmonic", harmonic.schema()),
         ("pulse_train", pulses.schema()),
     ]);
-    any_of("What drives the structure", vec![forms.schema(), word("none")])
+    let cycle = Object::new("Nothing, and the cycle that time is counted in")
+        .required("period", quantity("Period", Dimension::Time))
+        .schema();
+    let nothing = form("none", "Nothing drives it", cycle);
+    any_of("What drives the structure", vec![forms.schema(), word("none"), nothing])
 }
 
 fn timing() -> Vec<(&'static str, Value)> {
@@ -266,6 +271,20 @@ fn impulse_time() -> Value {
         .optional("frequency", reading(Slot::ImpulseFrequency));
     let readings = one_of_words(about, Slot::ImpulseTime.takes().readings);
     slot(any_of(about, vec![readings, quantity("A time", Dimension::Time), factor.schema()]))
+}
+
+fn start() -> Value {
+    let velocity = |about| quantity(about, Dimension::Velocity);
+    let particle = Object::new("A particle in flight")
+        .required("height", quantity("Height over its floor", Dimension::Length))
+        .required("velocity", velocity("Velocity relative to its floor"))
+        .schema();
+    let particle = any_of("A particle", vec![particle, word("on_floor")]);
+    Object::new("Initial conditions; static equilibrium without them")
+        .optional("displacement", quantity("Displacement of the mass", Dimension::Length))
+        .optional("velocity", velocity("Velocity of the mass"))
+        .optional("particles", list("One a damper", particle))
+        .schema()
 }
 
 fn observe() -> Value {

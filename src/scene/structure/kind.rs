@@ -62,7 +62,7 @@ pub enum Form {
     Length,
     /// kg, above zero.
     Mass,
-    /// N/m, above zero.
+    /// N/m, zero or more.
     Stiffness,
     /// Pa, above zero.
     Stress,
