@@ -97,18 +97,22 @@ fn every_scene_ends_in_an_answer_a_reason_or_a_limit() {
         .collect();
     let answers: Vec<(String, Duration)> =
         scenes.par_iter().map(|scene| answer(&bases[scene[0]].text(scene[1]), &assumptions)).collect();
-    let (mut wrong, mut kinds) = (String::new(), BTreeMap::<&str, u32>::new());
+    let (mut wrong, mut kinds, mut stopped) = (String::new(), BTreeMap::<&str, u32>::new(), 0);
     for (scene, (got, took)) in scenes.iter().zip(&answers) {
         let expected = scene.get(2).copied().unwrap_or("nothing");
         if std::env::var_os("SHOTDAMP_EDGE_SCENES").is_some() {
             println!("{} | {} | {got} | {took:.2?}", scene[0], scene[1]);
         }
         *kinds.entry(expected.split([':', ' ']).next().unwrap()).or_default() += 1;
-        if !got.contains(expected) {
+        // How far a scene gets in its time is the machine's business; that the limit is told is not.
+        let ran_out_of_time = got.starts_with("stopped at the limit of") && got.contains("processor time");
+        stopped += usize::from(ran_out_of_time);
+        if !got.contains(expected) && !ran_out_of_time {
             writeln!(wrong, "{} | {}: {got}, expected {expected}", scene[0], scene[1]).unwrap();
         }
     }
     let longest = answers.iter().map(|(_, took)| *took).max().unwrap();
     println!("{} scenes, {kinds:?}; the longest took {longest:.2?}", scenes.len());
     assert!(wrong.is_empty(), "{wrong}");
+    assert!(stopped < scenes.len() / 3, "{stopped} scenes ran out of time");
 }
