@@ -72,7 +72,8 @@ impl DrawingBackend for Writer {
         let open = format!("<path fill=\"{}\" shape-rendering=\"crispEdges\" d=\"", hex(style.color()));
         let mut text = self.text.borrow_mut();
         // Neighbouring cells of one colour are one path: a map has thousands.
-        if text.rfind("<path ").is_some_and(|at| text[at..].starts_with(&open)) {
+        let last = text.trim_end().rfind('\n').map_or(0, |end| end + 1);
+        if text[last..].starts_with(&open) {
             let end = text.len() - "\"/>\n".len();
             text.insert_str(end, &rect);
         } else {
