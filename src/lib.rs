@@ -44,7 +44,7 @@
     doc = "
 5. [`experiment`] reads YAML into validated experiments: units resolved, every mistake reported with line and column.
 6. [`study`] plans, runs in parallel and stores one [`table::Table`] per experiment.
-7. [`reference`] holds each published number and claim and gives its verdict; [`figure`] draws; [`report`] writes.
+7. [`mod@reference`] holds each published number and claim and gives its verdict; [`figure`] draws; [`report`] writes.
 8. [`accuracy`] measures error against time; [`calibrate`] searches sets of assumptions.
 "
 )]

@@ -2,7 +2,7 @@
 //!
 //! Each one asks for a batch of points and is told their scores ([`Optimiser`]); [`minimise`] goes between it and the
 //! function until a [`Stopping`] condition is met. The caller may evaluate a batch on as many threads as it likes: random
-//! numbers depend on seed, generation and individual alone ([`random`]), so the same seed gives the same result.
+//! numbers depend on seed, generation and individual alone (`random`), so the same seed gives the same result.
 //!
 //! - [`Genetic`]: the genetic algorithm; [`CmaEs`]: the peer that it is judged against;
 //! - [`two_opt`]: swaps of pairs, after a search; [`dense`]: every point of a grid, where there are few coordinates;
