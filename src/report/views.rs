@@ -23,13 +23,14 @@ use crate::study::{Study, Unread};
 pub(super) fn page(study: &Study, judgement: &Judgement, item: &Item) -> String {
     let experiment = &item.source.experiment;
     let up = to_reports(item);
+    let scenes = scenes(study, experiment);
     report::page(&PageView {
         experiment,
         table: judgement.tables.get(&experiment.id.0),
         judged: judged(judgement, &experiment.id.0),
         assumptions: &assumptions(study, judgement, &|name| item.used.contains(name), &|_| Vec::new()),
-        effects: &effects(&scenes(study, experiment)),
-        figures: &[figures(experiment), scene(study, experiment)].concat(),
+        effects: &effects(&scenes),
+        figures: &[figures(experiment), scene(experiment, &scenes)].concat(),
         table_name: &table_name(&experiment.id),
         accuracy: accuracy(study, item, &up),
         to_reports: &up,
@@ -154,9 +155,9 @@ fn figures(experiment: &Experiment) -> Vec<FigureView> {
 }
 
 /// The drawing of what is simulated, where there is one.
-fn scene(study: &Study, experiment: &Experiment) -> Vec<FigureView> {
+fn scene(experiment: &Experiment, scenes: &[Scene]) -> Vec<FigureView> {
     let caption = "What is simulated; of a sweep its first case, with all places of dampers and forces.".into();
-    let drawn = sketch(&scenes(study, experiment)).is_some();
+    let drawn = sketch(scenes).is_some();
     drawn.then(|| FigureView { link: scene_name(experiment), caption }).into_iter().collect()
 }
 
