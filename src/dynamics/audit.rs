@@ -172,7 +172,7 @@ impl Audit {
         // Σ w c over all nodes: where nothing but the blocks moves, their mean is all that positions and rates need.
         let mut sum = vec![0.0; start.len()];
         while t0 < length && !budget::spend(2) {
-            let h = dissipation.panel(flow, |i| from[i].abs()).min(length - t0);
+            let h = dissipation.panel(system, &flow.modes, |i| from[i].abs()).min(length - t0);
             nodes.set(flow, h);
             for ([x, weight], kernels) in GAUSS.iter().zip(&nodes.within) {
                 flow.move_blocks(kernels, &from, &mut c);

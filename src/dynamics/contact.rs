@@ -10,8 +10,8 @@
 
 use super::system::{Contact, EventKind, Face, Law, Particle, Stop};
 
-/// Below this relative speed a particle sticks to a rigid face (the study's tolerance); what it would still have bounced is
-/// added to the time at which the chatter ends.
+/// Below this relative speed, m/s, a particle sticks to a rigid face; what it would still have bounced is added to the time at
+/// which the chatter ends.
 pub(crate) const STICKING_SPEED: f64 = 1e-9;
 
 /// Where a guard leads.
@@ -42,6 +42,28 @@ pub(crate) struct Relative {
     pub(crate) gap: f64,
     /// Its rate, m/s.
     pub(crate) rate: f64,
+}
+
+impl Contact {
+    /// The face in contact, if any, and whether it holds the particle rigidly.
+    pub(crate) fn face(self, particle: &Particle) -> Option<&Face> {
+        match self {
+            Self::Floor | Self::FloorStop => Some(&particle.floor),
+            Self::Ceiling | Self::CeilingStop => particle.ceiling.as_ref(),
+            Self::Flight | Self::FloorReleased | Self::CeilingReleased => None,
+        }
+    }
+
+    /// Pressed into a resilient face.
+    pub(crate) fn presses(self, particle: &Particle) -> bool {
+        matches!(self, Self::Floor | Self::Ceiling)
+            && matches!(self.face(particle).map(|face| face.law), Some(Law::Resilient { .. }))
+    }
+
+    /// Held: moves as one with the face.
+    pub(crate) fn holds(self, particle: &Particle) -> bool {
+        self.face(particle).is_some() && !self.presses(particle)
+    }
 }
 
 /// Which side of the enclosure.

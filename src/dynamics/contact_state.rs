@@ -9,7 +9,7 @@
 
 use super::EngineError;
 use super::cholesky::Cholesky;
-use super::flow::Load;
+use super::load::Load;
 use super::spectral::Spectral;
 use super::system::{Contact, Face, HybridSystem, Law, Matrix, dot};
 
@@ -64,7 +64,7 @@ impl Modes {
         }
         let mut falls = modes.answer(system, &weight);
         falls[n..].iter_mut().for_each(|fall| *fall -= system.gravity);
-        modes.gravity = Load::new(&falls, &modes);
+        modes.gravity = Load::new(&falls, &modes.spectral, &modes.accelerations);
         Ok(modes)
     }
 

@@ -3,8 +3,8 @@
 //! Between two instants they take [zᵀPz] with BᵀP + PB = Q, block by block. Where two eigenvalues nearly cancel (next to no
 //! damping) that P loses digits, and the motion itself is integrated, by Gauss-Legendre panels.
 
-use super::block::{form, pairs};
-use super::flow::Flow;
+use super::block::{Block, form, pairs};
+use super::contact_state::Modes;
 use super::lyapunov::{Lyapunov, NEARLY_NEUTRAL};
 use super::system::{HybridSystem, dot};
 
@@ -26,18 +26,19 @@ pub(crate) struct Dissipation {
 }
 
 impl Dissipation {
-    pub(crate) fn new(system: &HybridSystem, flow: &Flow) -> Self {
+    /// `free` where nothing moves but the blocks.
+    pub(crate) fn new(system: &HybridSystem, modes: &Modes, free: bool) -> Self {
         let columns: Vec<Vec<f64>> =
-            flow.modes.columns.chunks_exact(2 * flow.order).map(|c| c[flow.order..].to_vec()).collect();
-        let damped: Vec<Vec<f64>> = columns.iter().map(|rate| against(system, flow, rate)).collect();
+            modes.columns.chunks_exact(2 * modes.order).map(|c| c[modes.order..].to_vec()).collect();
+        let damped: Vec<Vec<f64>> = columns.iter().map(|rate| against(system, modes, rate)).collect();
         let largest = columns.iter().map(|rate| rate.iter().fold(0.0_f64, |most, x| most.max(x.abs()))).collect();
         let form = |(k, l): (usize, usize)| {
             let twice = if k == l { 1.0 } else { 2.0 };
             [(0, 0), (0, 1), (1, 0), (1, 1)].map(|(a, b)| twice * dot(&columns[2 * k + a], &damped[2 * l + b]))
         };
-        let power: Vec<[f64; 4]> = pairs(flow.own).map(form).collect();
-        let solved = |((k, l), q): ((usize, usize), &[f64; 4])| solve(flow, k, l, *q);
-        let taken = flow.is_free().then(|| pairs(flow.own).zip(&power).map(solved).collect()).flatten();
+        let power: Vec<[f64; 4]> = pairs(modes.spectral.blocks.len()).map(form).collect();
+        let solved = |((k, l), q): ((usize, usize), &[f64; 4])| solve(modes, k, l, *q);
+        let taken = free.then(|| pairs(modes.spectral.blocks.len()).zip(&power).map(solved).collect()).flatten();
         Self { columns, largest, power, taken }
     }
 
@@ -64,21 +65,21 @@ impl Dissipation {
         self.power.iter().zip(second).map(each).sum()
     }
 
-    /// Length of a quadrature panel: short against the force, and against every block that still moves visibly; `size` is
+    /// Length of a quadrature panel: short against the drive, and against every block that still moves visibly; `size` is
     /// the modulus of a coordinate.
-    pub(crate) fn panel(&self, flow: &Flow, size: impl Fn(usize) -> f64) -> f64 {
+    pub(crate) fn panel(&self, system: &HybridSystem, modes: &Modes, size: impl Fn(usize) -> f64) -> f64 {
         // With what turns into it: a block at rest away from its place has no rate yet.
         let of = |k: usize| {
-            let ([p, q, r, s], radius) = (flow.modes.spectral.matrices[k], flow.blocks[k].radius);
+            let ([p, q, r, s], radius) = (modes.spectral.matrices[k], modes.spectral.blocks[k].radius);
             let (x, y) = (size(2 * k), size(2 * k + 1));
             let turned = |a: f64, b: f64| if radius > 0.0 { (a.abs() * x + b.abs() * y) / radius } else { 0.0 };
             self.largest[2 * k] * (x + turned(p, q)) + self.largest[2 * k + 1] * (y + turned(r, s))
         };
-        let total: f64 = (0..flow.own).map(of).sum();
-        let driven = flow.blocks.get(flow.own).map_or(0.0, |block| block.radius);
-        let fastest = (0..flow.own)
+        let total: f64 = (0..modes.spectral.blocks.len()).map(of).sum();
+        let driven = system.drive.harmonic.map_or(0.0, |drive| Block::harmonic(drive.angular_frequency).radius);
+        let fastest = (0..modes.spectral.blocks.len())
             .filter(|&k| of(k) > UNSEEN * total)
-            .fold(driven, |fastest, k| fastest.max(flow.blocks[k].radius));
+            .fold(driven, |fastest, k| fastest.max(modes.spectral.blocks[k].radius));
         if fastest > 0.0 { TURN / fastest } else { f64::INFINITY }
     }
 
@@ -86,34 +87,34 @@ impl Dissipation {
     pub(crate) fn beside(
         &self,
         system: &HybridSystem,
-        flow: &Flow,
+        modes: &Modes,
         rate: &[f64],
         first: &[[f64; 2]],
         count: f64,
     ) -> f64 {
-        let damped = against(system, flow, rate);
+        let damped = against(system, modes, rate);
         let each = |(column, first): (&Vec<f64>, &f64)| first * dot(column, &damped);
         count * dot(rate, &damped) + 2.0 * self.columns.iter().zip(first.as_flattened()).map(each).sum::<f64>()
     }
 }
 
 /// P of BₖᵀP + P Bₗ = Q.
-fn solve(flow: &Flow, k: usize, l: usize, q: [f64; 4]) -> Option<[f64; 4]> {
+fn solve(modes: &Modes, k: usize, l: usize, q: [f64; 4]) -> Option<[f64; 4]> {
     if q == [0.0; 4] {
         return Some(q);
     }
-    let (one, other) = (&flow.blocks[k], &flow.blocks[l]);
+    let (one, other) = (&modes.spectral.blocks[k], &modes.spectral.blocks[l]);
     if !one.keeps_apart(other, NEARLY_NEUTRAL) {
         return None;
     }
-    let matrices = &flow.modes.spectral.matrices;
+    let matrices = &modes.spectral.matrices;
     Lyapunov::new(matrices[k], matrices[l]).map(|equation| equation.solve(q))
 }
 
 /// What the dashpots push against rates p′.
-fn against(system: &HybridSystem, flow: &Flow, rate: &[f64]) -> Vec<f64> {
+fn against(system: &HybridSystem, modes: &Modes, rate: &[f64]) -> Vec<f64> {
     let n = system.mass.order;
     let mut force = system.damping.times(&rate[..n]);
-    force.extend(flow.modes.attached.iter().zip(&rate[n..]).map(|(&j, rate)| flow.modes.damping[j] * rate));
+    force.extend(modes.attached.iter().zip(&rate[n..]).map(|(&j, rate)| modes.damping[j] * rate));
     force
 }

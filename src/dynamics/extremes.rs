@@ -3,9 +3,8 @@
 //! A segment is walked in steps short against everything that still moves; where a derivative changes its sign within a step, the
 //! instant is closed in on. A pair of extrema within one step, which escapes that, differs by far less than the range.
 
-use super::Extremes;
 use super::block::{Block, Phase};
-use super::flow::Parabola;
+use super::parabola::Parabola;
 
 /// Steps a radian of the fastest block that moves visibly.
 const STEPS_A_RADIAN: f64 = 4.0;
@@ -16,6 +15,31 @@ const MOST_STEPS: f64 = 1e6;
 
 /// Displacement, velocity, acceleration and its rate.
 type Motion = [f64; 4];
+
+/// The range of an observed motion; lowest and highest value, NaN where nobody looked.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Extremes {
+    /// m.
+    pub displacement: [f64; 2],
+    /// m/s.
+    pub velocity: [f64; 2],
+}
+
+impl Default for Extremes {
+    fn default() -> Self {
+        Self { displacement: [f64::NAN; 2], velocity: [f64::NAN; 2] }
+    }
+}
+
+impl Extremes {
+    /// Takes an instant into the range.
+    pub(crate) fn take(&mut self, displacement: f64, velocity: f64) {
+        // The smaller of NaN and a number is the number.
+        for (range, value) in [(&mut self.displacement, displacement), (&mut self.velocity, velocity)] {
+            *range = [range[0].min(value), range[1].max(value)];
+        }
+    }
+}
 
 /// Takes the segment of `length` seconds that starts with these phases into the range.
 pub(crate) fn take(extremes: &mut Extremes, blocks: &[Block], start: &[Phase], rest: Parabola, length: f64) {

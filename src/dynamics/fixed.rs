@@ -1,11 +1,11 @@
-//! The study's own scheme: exact propagators of one time step, the contact state checked once a step.
+//! The fixed-step scheme of a published study: exact propagators of one time step, the contact state checked once a step.
 //!
 //! s(k+1) = A_d s(k) + a_d + B_d F(k) with the propagators of the contact state in force ([`propagator`]), and at the end
 //! of each step the question whether that state still holds ([`contact`]). Between two checks the motion is exact; a contact
 //! is noticed up to a step late, so that all results are off by the first order in Δt. That error is what this solver is for.
 //! [`schedule`] says which steps impulses and cycles fall on, [`record`] what is kept of a run.
 //!
-//! The study leaves details open. Those chosen here are the simplest that give what it says of its Fig. 14 (Model 1 under
+//! Its text leaves details open. Those chosen here are the simplest that give what it says of its Fig. 14 (Model 1 under
 //! harmonic force, driven at √(ks/(m+mp)), against a run with the particle fixed to the base; 40 amplitudes a decade):
 //!
 //! | detail | choice | Fig. 14 at Δt = 10 ms otherwise |
@@ -20,7 +20,7 @@
 //! and nowhere lower.
 //!
 //! A particle that a rigid face cannot hold is let go a step after it struck, and counts as released; exact events let it go
-//! at once. Beyond the study: a held particle from which an impulse pulls its face away is let go at once (its share of the impulse
+//! at once. Beyond that text: a held particle from which an impulse pulls its face away is let go at once (its share of the impulse
 //! would not vanish with Δt), and damping, stop and release without tension follow the event-driven driver's rules at the
 //! end of each step. What [`super::Proof`] holds then: the residuals of momentum and energy by trapezoidal sums (they show the
 //! scheme's own error: a spring that is noticed compressed has got that energy from nowhere), no ties, and NaN for the

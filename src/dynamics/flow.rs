@@ -6,17 +6,17 @@
 use std::cell::OnceCell;
 use std::rc::Rc;
 
-use nalgebra::DMatrix;
-
 use super::EngineError;
 use super::bank::Bank;
 use super::block::Block;
 use super::contact_state::Modes;
 use super::dissipation::Dissipation;
 use super::gains::Closed;
+use super::load::{Load, Steady};
+use super::parabola::Parabola;
 use super::series::Series;
 use super::signals::{Row, Rows, Signals};
-use super::system::{Contact, Face, HybridSystem, Law, dot};
+use super::system::{Contact, HybridSystem, dot};
 
 /// One contact state, ready to be propagated.
 pub(crate) struct Flow {
@@ -45,71 +45,6 @@ pub(crate) struct Flow {
     dissipation: OnceCell<Dissipation>,
 }
 
-/// Answer of a contact state to a constant load: p = rest + rest_rate·t, p′ = rest_rate, and slope·t + bend·t² in the
-/// coordinates of the blocks that drift.
-#[derive(Default)]
-pub(crate) struct Load {
-    rest: Vec<f64>,
-    rest_rate: Vec<f64>,
-    slope: Vec<[f64; 2]>,
-    bend: Vec<[f64; 2]>,
-}
-
-/// Steady answer to a harmonic force.
-struct Steady {
-    omega: f64,
-    cosine: Vec<f64>,
-    sine: Vec<f64>,
-}
-
-/// A polynomial part of a signal: p₀ + p₁ t + p₂ t².
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub(crate) struct Parabola {
-    pub(crate) p0: f64,
-    pub(crate) p1: f64,
-    pub(crate) p2: f64,
-}
-
-impl Parabola {
-    pub(crate) fn at(self, t: f64) -> f64 {
-        self.p0 + t * (self.p1 + t * self.p2)
-    }
-
-    pub(crate) fn rate(self, t: f64) -> f64 {
-        self.p1 + 2.0 * self.p2 * t
-    }
-
-    pub(crate) fn times(self, factor: f64) -> Self {
-        Self { p0: factor * self.p0, p1: factor * self.p1, p2: factor * self.p2 }
-    }
-
-    pub(crate) fn negative(self) -> Self {
-        self.times(-1.0)
-    }
-}
-
-impl Contact {
-    /// The face in contact, if any, and whether it holds the particle rigidly.
-    pub(crate) fn face(self, particle: &super::system::Particle) -> Option<&Face> {
-        match self {
-            Self::Floor | Self::FloorStop => Some(&particle.floor),
-            Self::Ceiling | Self::CeilingStop => particle.ceiling.as_ref(),
-            Self::Flight | Self::FloorReleased | Self::CeilingReleased => None,
-        }
-    }
-
-    /// Pressed into a resilient face.
-    pub(crate) fn presses(self, particle: &super::system::Particle) -> bool {
-        matches!(self, Self::Floor | Self::Ceiling)
-            && matches!(self.face(particle).map(|face| face.law), Some(Law::Resilient { .. }))
-    }
-
-    /// Held: moves as one with the face.
-    pub(crate) fn holds(self, particle: &super::system::Particle) -> bool {
-        self.face(particle).is_some() && !self.presses(particle)
-    }
-}
-
 impl Flow {
     /// Builds the flow of a contact state with the contact damping now in force.
     pub(crate) fn build(system: &HybridSystem, contacts: &[Contact], damping: &[f64]) -> Result<Self, EngineError> {
@@ -119,7 +54,7 @@ impl Flow {
     /// The flow of a contact state whose modes are known, under the drive of `system`.
     pub(crate) fn driven(system: &HybridSystem, modes: Rc<Modes>) -> Result<Self, EngineError> {
         let push = modes.answer(system, &system.force_row);
-        let force = Load::new(&push, &modes);
+        let force = Load::new(&push, &modes.spectral, &modes.accelerations);
         let mut blocks = modes.spectral.blocks.clone();
         let own = blocks.len();
         let harmonic = match system.drive.harmonic {
@@ -132,7 +67,7 @@ impl Flow {
         let mut flow = Self {
             bank: Bank::new(&blocks),
             series: Series::new(&blocks),
-            drifts: blocks[..own].iter().any(|block| block.determinant == 0.0),
+            drifts: modes.spectral.drifts(),
             blocks,
             own,
             order: modes.order,
@@ -143,7 +78,7 @@ impl Flow {
             closed: None,
             dissipation: OnceCell::new(),
         };
-        flow.rows = Rows::new(system, &flow);
+        flow.rows = Rows::new(system, &flow.modes, &flow.blocks, |row| flow.row(row));
         let omega = flow.harmonic.as_ref().map(|steady| steady.omega);
         flow.closed = Closed::new(&flow.blocks, &flow.modes.spectral.matrices, omega);
         Ok(flow)
@@ -315,80 +250,6 @@ pub(crate) struct DrivePhase {
     pub(crate) sine: f64,
 }
 
-impl Load {
-    pub(crate) fn new(load: &[f64], modes: &Modes) -> Self {
-        let order = load.len();
-        let spectral = &modes.spectral;
-        let size = spectral.width();
-        let count = spectral.blocks.len();
-        let still = |rest: Vec<f64>| Self {
-            rest,
-            rest_rate: vec![0.0; order],
-            slope: vec![[0.0; 2]; count],
-            bend: vec![[0.0; 2]; count],
-        };
-        if spectral.blocks.iter().all(|block| block.determinant != 0.0) {
-            // Static answer: the stiffness part of the accelerations against the load.
-            let k = DMatrix::from_fn(order, order, |i, j| -modes.accelerations[i][j]);
-            if let Some(rest) = k.lu().solve(&nalgebra::DVector::from_column_slice(load)) {
-                return still(rest.iter().copied().collect());
-            }
-        }
-        // Block by block.
-        let mut answer = still(vec![0.0; order]);
-        for (k, (block, matrix)) in spectral.blocks.iter().zip(&spectral.matrices).enumerate() {
-            let in_block = |row: usize| {
-                (0..order).fold(0.0, |sum, i| sum + spectral.to_blocks[(order + i) * size + row] * load[i])
-            };
-            let (offset, slope, bend) = block.answer(*matrix, [in_block(2 * k), in_block(2 * k + 1)]);
-            (answer.slope[k], answer.bend[k]) = (slope, bend);
-            for i in 0..order {
-                let by = |row: usize| {
-                    spectral.from_blocks[row * size + 2 * k] * offset[0]
-                        + spectral.from_blocks[row * size + 2 * k + 1] * offset[1]
-                };
-                answer.rest[i] += by(i);
-                answer.rest_rate[i] += by(order + i);
-            }
-        }
-        answer
-    }
-}
-
-/// Steady amplitudes above this, in units of F/(m ω²), would cost more digits than they may.
-const LARGEST_RESONANCE: f64 = 1e8;
-
-impl Steady {
-    /// (−ω² + stiffness) cosine + ω damping sine = 0, … : the complex amplitude as a real system of twice the order.
-    fn new(omega: f64, push: &[f64], accelerations: &[Vec<f64>], order: usize) -> Result<Self, EngineError> {
-        let mut system = DMatrix::zeros(2 * order, 2 * order);
-        let mut load = nalgebra::DVector::zeros(2 * order);
-        for i in 0..order {
-            // p″ = S p + D p′ + push·sin ω t, with p = c cos + s sin.
-            for j in 0..order {
-                let (stiff, damped) = (accelerations[i][j], accelerations[i][order + j]);
-                system[(i, j)] = -stiff;
-                system[(i, order + j)] = -omega * damped;
-                system[(order + i, order + j)] = -stiff;
-                system[(order + i, j)] = omega * damped;
-            }
-            system[(i, i)] -= omega * omega;
-            system[(order + i, order + i)] -= omega * omega;
-            load[order + i] = push[i];
-        }
-        let solution = system.lu().solve(&load).filter(|x| x.iter().all(|v| v.is_finite()));
-        // A steady answer far above what the force does in a cycle is taken off again by the free motion, with its digits.
-        let most = push.iter().fold(0.0_f64, |most, a| most.max(a.abs())) / (omega * omega) * LARGEST_RESONANCE;
-        let solution =
-            solution.filter(|x| x.iter().all(|v| v.abs() <= most)).ok_or(EngineError::UndampedResonance { omega })?;
-        Ok(Self {
-            omega,
-            cosine: solution.iter().take(order).copied().collect(),
-            sine: solution.iter().skip(order).copied().collect(),
-        })
-    }
-}
-
 impl Flow {
     /// The harmonic drive's phase `t` seconds later.
     pub(crate) fn drive_after(&self, drive: DrivePhase, t: f64) -> DrivePhase {
@@ -417,6 +278,6 @@ impl Flow {
 
     /// What its dashpots take; worked out at the first audit.
     pub(crate) fn dissipation(&self, system: &HybridSystem) -> &Dissipation {
-        self.dissipation.get_or_init(|| Dissipation::new(system, self))
+        self.dissipation.get_or_init(|| Dissipation::new(system, &self.modes, self.is_free()))
     }
 }

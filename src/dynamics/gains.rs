@@ -170,8 +170,8 @@ impl Integrated {
 #[cfg(test)]
 mod tests {
     use super::super::block::Phase;
-    use super::super::flow::Parabola;
     use super::super::integral::quadrature;
+    use super::super::parabola::Parabola;
     use super::*;
 
     #[test]

@@ -9,9 +9,10 @@
 
 use super::block::Phase;
 use super::contact::{Crossing, Relative, Side};
-use super::flow::{Flow, Parabola};
+use super::flow::Flow;
+use super::parabola::Parabola;
 use super::search::{Guard, Search};
-use super::signals::{Signals, spring_and_dashpot};
+use super::signals::Signals;
 use super::system::{Contact, HybridSystem, Law, Particle, dot};
 use super::window::Start;
 
@@ -252,7 +253,7 @@ fn released(
             crossing: Crossing::Again,
             signal: rows.second,
             sign: -away,
-            parabola: spring_and_dashpot(path, stiffness, damping).times(away),
+            parabola: path.spring_and_dashpot(stiffness, damping).times(away),
             start: force_start(state.particles[j], stiffness, damping, state.smooth[j], signals.of(rows.second).0),
             distance: false,
         });

@@ -4,7 +4,7 @@
 use super::Sums;
 use super::block::{Block, Phase};
 use super::budget;
-use super::flow::Parabola;
+use super::parabola::Parabola;
 
 /// Times the slowest turn of a contact state: stretches shorter than this leave next to nothing of the differences of end values
 /// that the closed forms are made of.

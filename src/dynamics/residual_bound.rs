@@ -6,7 +6,9 @@
 //!
 //! bound = 64 ε (events + cycles) longest/shortest max(1, mp φᵀM⁻¹φ),   at most one part in a million.
 
-use super::{HybridSystem, Options, Proof, Response};
+use super::options::Options;
+use super::response::Response;
+use super::system::HybridSystem;
 
 /// Roundings of a cycle or an event that may fall together.
 const ROUNDINGS: f64 = 64.0;
@@ -33,19 +35,4 @@ fn heaviest(system: &HybridSystem) -> f64 {
     let n = system.mass.order;
     let carried = |row: &[f64]| (0..n).map(|i| row[i] * row[i] / system.mass.entries[i * n + i]).sum::<f64>();
     system.particles.iter().map(|particle| particle.mass * carried(&particle.floor.row)).fold(1.0, f64::max)
-}
-
-impl Proof {
-    /// The larger of both residuals; NaN if one of them is.
-    #[must_use]
-    pub fn residual(&self) -> f64 {
-        let (momentum, energy) = (self.momentum_residual.abs(), self.energy_residual.abs());
-        if momentum.is_nan() || energy.is_nan() { f64::NAN } else { momentum.max(energy) }
-    }
-
-    /// The balances of an audited run close to within rounding.
-    #[must_use]
-    pub fn is_balanced(&self) -> bool {
-        self.residual() <= self.residual_bound
-    }
 }

@@ -19,11 +19,12 @@ use super::bank::Bank;
 use super::block::{Block, Kernel, Phase};
 use super::budget;
 use super::contact::Crossing;
-use super::flow::{Flow, Parabola};
+use super::flow::Flow;
+use super::parabola::Parabola;
 use super::polynomial::nearest_root;
-use super::series::Series;
+use super::series::{Series, Span};
 use super::signals::Signals;
-use super::window::{Span, Start, Verdict, Window};
+use super::window::{Start, Verdict, Window};
 
 /// radius·Δ of a first window: half a turn and a little, since that is how long a face holds a particle. The remainder is
 /// then 3.7¹²/12! of the amplitude, about a hundredth.

@@ -4,7 +4,6 @@
 //! in units of the fastest block's time 1/ρ, a signal's series is a product of rows: no recurrence, one pass, any window.
 
 use super::block::{Block, Phase};
-use super::window::Span;
 
 /// Coefficients kept: degree eleven.
 const TERMS: usize = 12;
@@ -144,9 +143,26 @@ impl Terms {
     }
 }
 
+/// The stretch of time of a window.
+pub(crate) struct Span {
+    /// Seconds from the segment's start.
+    pub(crate) from: f64,
+    /// Δ, s.
+    pub(crate) length: f64,
+    /// Powers of ρΔ.
+    pub(crate) powers: [f64; 16],
+}
+
+impl Span {
+    #[inline]
+    pub(crate) fn new(series: &Series, from: f64, length: f64) -> Self {
+        Self { from, length, powers: powers(series.pace * length) }
+    }
+}
+
 /// x⁰ … x¹³, and zeros: in pairs, as they are read.
 #[inline(always)]
-pub(crate) fn powers(x: f64) -> [f64; PADDED] {
+fn powers(x: f64) -> [f64; PADDED] {
     let mut powers = [0.0; PADDED];
     let (x2, x4) = (x * x, (x * x) * (x * x));
     let steps = [1.0, x2, x4, x4 * x2, x4 * x4, (x4 * x4) * x2, (x4 * x4) * x4];

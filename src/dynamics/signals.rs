@@ -5,7 +5,8 @@
 
 use super::block::{Block, Kernel, Phase};
 use super::contact::Side;
-use super::flow::{Flow, Parabola};
+use super::contact_state::Modes;
+use super::parabola::Parabola;
 use super::system::{Contact, HybridSystem, Law, Particle};
 
 /// One signal: two weights of each block's coordinates for its value, two for its rate; then what constant loads add.
@@ -95,7 +96,7 @@ impl Row {
             let (x, y) = (of(v0, r0), of(v1, r1));
             [x.0, y.0, x.1, y.1]
         });
-        let mix = |load: Parabola| spring_and_dashpot(load, stiffness, damping);
+        let mix = |load: Parabola| load.spring_and_dashpot(stiffness, damping);
         Self { weights: weights.collect(), gravity: mix(self.gravity), force: mix(self.force) }
     }
 
@@ -113,53 +114,43 @@ impl Row {
 }
 
 /// φ_c·q − φ_f·q, and what the compression of the face that particle j is at adds to the way across.
-fn across(flow: &Flow, j: usize, particle: &Particle) -> Option<Row> {
+fn across(modes: &Modes, j: usize, particle: &Particle) -> Option<Vec<f64>> {
     let ceiling = particle.ceiling.as_ref().filter(|ceiling| ceiling.row != particle.floor.row)?;
-    let contact = flow.modes.contacts[j];
+    let contact = modes.contacts[j];
     contact.face(particle)?;
     let mut row: Vec<f64> = ceiling.row.iter().zip(&particle.floor.row).map(|(above, below)| above - below).collect();
     let structure = row.len();
-    row.resize(flow.modes.order, 0.0);
-    if let Some(slot) = flow.modes.attached.iter().position(|&a| a == j) {
+    row.resize(modes.order, 0.0);
+    if let Some(slot) = modes.attached.iter().position(|&a| a == j) {
         row[structure + slot] = -contact.side().away();
     }
-    Some(flow.row(&row))
-}
-
-/// k·p + c·p′.
-pub(crate) fn spring_and_dashpot(p: Parabola, stiffness: f64, damping: f64) -> Parabola {
-    Parabola {
-        p0: stiffness * p.p0 + damping * p.p1,
-        p1: stiffness * p.p1 + 2.0 * damping * p.p2,
-        p2: stiffness * p.p2,
-    }
+    Some(row)
 }
 
 impl Rows {
-    /// What a contact state needs.
-    pub(crate) fn new(system: &HybridSystem, flow: &Flow) -> Self {
+    /// What a contact state needs; `blocks` are its own and the drive's, `signal` gives r·p of a row r.
+    pub(crate) fn new(system: &HybridSystem, modes: &Modes, blocks: &[Block], signal: impl Fn(&[f64]) -> Row) -> Self {
         let mut all = Self::default();
-        let blocks = &flow.blocks;
         let padded = |row: &[f64]| {
             let mut padded = row.to_vec();
-            padded.resize(flow.order, 0.0);
-            flow.row(&padded)
+            padded.resize(modes.order, 0.0);
+            signal(&padded)
         };
         if let (Some(row), Some(_)) = (system.observed_rows.first(), &system.drive.half_cycles) {
             let first = all.place(padded(row));
             all.bend = Some(all.place(all.rows[first].acceleration(blocks)));
         }
         let compression = |j: usize| {
-            let mut unit = vec![0.0; flow.order];
-            unit[system.mass.order + flow.modes.attached.iter().position(|&a| a == j)?] = 1.0;
-            Some(flow.row(&unit))
+            let mut unit = vec![0.0; modes.order];
+            unit[system.mass.order + modes.attached.iter().position(|&a| a == j)?] = 1.0;
+            Some(signal(&unit))
         };
         for (j, particle) in system.particles.iter().enumerate() {
-            let contact = flow.modes.contacts[j];
+            let contact = modes.contacts[j];
             let side = contact.side();
             let face = padded(&side.face(particle).row);
             let force = |row: &Row| match side.face(particle).law {
-                Law::Resilient { stiffness, .. } => row.mixed(blocks, stiffness, flow.modes.damping[j]),
+                Law::Resilient { stiffness, .. } => row.mixed(blocks, stiffness, modes.damping[j]),
                 Law::Rigid { .. } => row.clone(),
             };
             let (first, second) = match contact {
@@ -183,7 +174,7 @@ impl Rows {
                     }
                 },
             };
-            let across = across(flow, j, particle).map(|row| all.place(row));
+            let across = across(modes, j, particle).map(|row| all.place(signal(&row)));
             let rows = GuardRows { first: all.place(first), second: all.place(second), across };
             all.guards.push(rows);
         }

@@ -51,6 +51,11 @@ impl Spectral {
         2 * self.blocks.len()
     }
 
+    /// Some block has an eigenvalue zero, so that a constant load sets it moving.
+    pub(crate) fn drifts(&self) -> bool {
+        self.blocks.iter().any(|block| block.determinant == 0.0)
+    }
+
     /// Splits `matrix` (row by row, of even `order`).
     pub(crate) fn split(order: usize, matrix: &[f64]) -> Result<Self, EngineError> {
         if order == 2 {

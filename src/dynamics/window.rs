@@ -1,9 +1,9 @@
 //! One guard over one window: its polynomial with a bound on what that leaves out, and what the two prove.
 
 use super::block::Phase;
-use super::flow::Parabola;
+use super::parabola::Parabola;
 use super::polynomial::{Coefficients, DEGREE, bernstein, evaluate};
-use super::series::{Bounds, Series, powers};
+use super::series::{Bounds, Series, Span};
 
 /// How a guard starts.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -29,23 +29,6 @@ pub(crate) enum Verdict {
     Until { sigma: f64 },
     /// Nothing.
     Unsure,
-}
-
-/// The stretch of time of a window.
-pub(crate) struct Span {
-    /// Seconds from the segment's start.
-    pub(crate) from: f64,
-    /// Δ, s.
-    pub(crate) length: f64,
-    /// Powers of ρΔ.
-    pub(crate) powers: [f64; 16],
-}
-
-impl Span {
-    #[inline]
-    pub(crate) fn new(series: &Series, from: f64, length: f64) -> Self {
-        Self { from, length, powers: powers(series.pace * length) }
-    }
 }
 
 /// A guard over one window.

@@ -106,8 +106,8 @@ impl<V: Vector> Run<'_, V> {
         }
     }
 
-    /// An impact on something rigid, where the particle is. It sticks below the study's relative speed if both then move
-    /// the same way; whether the face can hold it is asked at the end of the next step.
+    /// An impact on something rigid, where the particle is. It sticks below [`STICKING_SPEED`] if both then move the
+    /// same way; whether the face can hold it is asked at the end of the next step.
     fn strike(&mut self, j: usize, side: Side, restitution: f64) -> Result<(), EngineError> {
         let face = side.face(&self.system.particles[j]);
         let stop = face.law.stop();

@@ -1,7 +1,7 @@
 //! Propagators: one contact state over one time step, as a matrix.
 //!
 //! The state is s = (q, u, q′, u′): the structure and, for every particle, the gap u to its floor. A particle in flight is
-//! part of it (u″ = −g − φ·q″ is the study's parabola, seen from the floor), and so is one that is held, so that every
+//! part of it (u″ = −g − φ·q″ is the parabola of free flight, seen from the floor), and so is one that is held, so that every
 //! contact state has the same coordinates. With s′ = A s + a + b F, a step of length Δt under a force held constant is
 //!
 //! s(k+1) = A_d s(k) + a_d + B_d F(k),   where exp([A a b; 0 0 0; 0 0 0] Δt) = [A_d a_d B_d; …].

@@ -1,6 +1,6 @@
 //! The clock of the fixed step: which step a forcing cycle, a jump of the force or a sample falls on.
 //!
-//! An impulse has to fall on a step, so the period of a train is rounded to whole steps (the study's 199 steps of 1 ms). A
+//! An impulse has to fall on a step, so the period of a train is rounded to whole steps (199 steps of 1 ms for a natural period of 0.1987 s). A
 //! harmonic force has no such instant: it is read off sin ω t at the start of each step, and its period stays what it is.
 
 use crate::dynamics::EngineError;
@@ -139,7 +139,7 @@ mod tests {
     }
 
     #[test]
-    fn the_study_s_impulses_fall_on_its_steps() {
+    fn impulses_fall_on_whole_steps() {
         let once = || vec![Tick { time: 0.0, impulse: 1.0, level: 0.0 }];
         let natural = 1000_f64.sqrt();
         for (ratio, steps, cycle, named) in [(1.0, 199, 1, 0.199), (0.5351, 371, 141, 52.31), (0.4314, 461, 114, 52.55)]

@@ -31,7 +31,7 @@ pub(super) fn pass(system: &HybridSystem, flow: &Flow, answer: &[f64], cycle: &C
             let squares: Vec<[f64; 4]> =
                 pairs(flow.own).zip(there.second()).filter(|((k, l), _)| k == l).map(|(_, moment)| moment).collect();
             let size = |i: usize| squares[i / 2][3 * (i % 2)].max(0.0).sqrt();
-            let h = dissipation.panel(flow, size).min(segment.length - t0);
+            let h = dissipation.panel(system, &flow.modes, size).min(segment.length - t0);
             for [x, weight] in GAUSS {
                 let t = t0 + x * h;
                 let moments = start.moved(&Affine::flow(flow, t));
@@ -48,7 +48,7 @@ pub(super) fn pass(system: &HybridSystem, flow: &Flow, answer: &[f64], cycle: &C
                 let mut dissipated = dissipation.of_moments(&moments.second());
                 if system.drive.harmonic.is_some() {
                     let (_, driven) = leave(flow, &vec![0.0; 2 * flow.order], 0.0, drive);
-                    dissipated += dissipation.beside(system, flow, &driven, &moments.first(), moments.count);
+                    dissipated += dissipation.beside(system, &flow.modes, &driven, &moments.first(), moments.count);
                 }
                 passed.dissipated += weight * h * dissipated;
             }

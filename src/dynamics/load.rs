@@ -1,0 +1,98 @@
+//! What a contact state answers to a load for ever: to a constant one a place to rest, or a drift; to a harmonic one an
+//! amplitude.
+
+use nalgebra::DMatrix;
+
+use super::error::EngineError;
+use super::spectral::Spectral;
+
+/// Answer of a contact state to a constant load: p = rest + rest_rate·t, p′ = rest_rate, and slope·t + bend·t² in the
+/// coordinates of the blocks that drift.
+#[derive(Default)]
+pub(crate) struct Load {
+    pub(crate) rest: Vec<f64>,
+    pub(crate) rest_rate: Vec<f64>,
+    pub(crate) slope: Vec<[f64; 2]>,
+    pub(crate) bend: Vec<[f64; 2]>,
+}
+
+impl Load {
+    /// `load` and `accelerations` are those of p, `spectral` its blocks.
+    pub(crate) fn new(load: &[f64], spectral: &Spectral, accelerations: &[Vec<f64>]) -> Self {
+        let order = load.len();
+        let size = spectral.width();
+        let count = spectral.blocks.len();
+        let still = |rest: Vec<f64>| Self {
+            rest,
+            rest_rate: vec![0.0; order],
+            slope: vec![[0.0; 2]; count],
+            bend: vec![[0.0; 2]; count],
+        };
+        if !spectral.drifts() {
+            // Static answer: the stiffness part of the accelerations against the load.
+            let k = DMatrix::from_fn(order, order, |i, j| -accelerations[i][j]);
+            if let Some(rest) = k.lu().solve(&nalgebra::DVector::from_column_slice(load)) {
+                return still(rest.iter().copied().collect());
+            }
+        }
+        // Block by block.
+        let mut answer = still(vec![0.0; order]);
+        for (k, (block, matrix)) in spectral.blocks.iter().zip(&spectral.matrices).enumerate() {
+            let in_block = |row: usize| {
+                (0..order).fold(0.0, |sum, i| sum + spectral.to_blocks[(order + i) * size + row] * load[i])
+            };
+            let (offset, slope, bend) = block.answer(*matrix, [in_block(2 * k), in_block(2 * k + 1)]);
+            (answer.slope[k], answer.bend[k]) = (slope, bend);
+            for i in 0..order {
+                let by = |row: usize| {
+                    spectral.from_blocks[row * size + 2 * k] * offset[0]
+                        + spectral.from_blocks[row * size + 2 * k + 1] * offset[1]
+                };
+                answer.rest[i] += by(i);
+                answer.rest_rate[i] += by(order + i);
+            }
+        }
+        answer
+    }
+}
+
+/// Steady answer to a harmonic force.
+pub(crate) struct Steady {
+    pub(crate) omega: f64,
+    pub(crate) cosine: Vec<f64>,
+    pub(crate) sine: Vec<f64>,
+}
+
+/// Steady amplitudes above this, in units of F/(m ω²), would cost more digits than they may.
+const LARGEST_RESONANCE: f64 = 1e8;
+
+impl Steady {
+    /// (−ω² + stiffness) cosine + ω damping sine = 0, … : the complex amplitude as a real system of twice the order.
+    pub(crate) fn new(omega: f64, push: &[f64], accelerations: &[Vec<f64>], order: usize) -> Result<Self, EngineError> {
+        let mut system = DMatrix::zeros(2 * order, 2 * order);
+        let mut load = nalgebra::DVector::zeros(2 * order);
+        for i in 0..order {
+            // p″ = S p + D p′ + push·sin ω t, with p = c cos + s sin.
+            for j in 0..order {
+                let (stiff, damped) = (accelerations[i][j], accelerations[i][order + j]);
+                system[(i, j)] = -stiff;
+                system[(i, order + j)] = -omega * damped;
+                system[(order + i, order + j)] = -stiff;
+                system[(order + i, j)] = omega * damped;
+            }
+            system[(i, i)] -= omega * omega;
+            system[(order + i, order + i)] -= omega * omega;
+            load[order + i] = push[i];
+        }
+        let solution = system.lu().solve(&load).filter(|x| x.iter().all(|v| v.is_finite()));
+        // A steady answer far above what the force does in a cycle is taken off again by the free motion, with its digits.
+        let most = push.iter().fold(0.0_f64, |most, a| most.max(a.abs())) / (omega * omega) * LARGEST_RESONANCE;
+        let solution =
+            solution.filter(|x| x.iter().all(|v| v.abs() <= most)).ok_or(EngineError::UndampedResonance { omega })?;
+        Ok(Self {
+            omega,
+            cosine: solution.iter().take(order).copied().collect(),
+            sine: solution.iter().skip(order).copied().collect(),
+        })
+    }
+}

@@ -1,0 +1,80 @@
+//! How a system is run: which cycles, from where, and what is kept of them.
+
+use super::system::Contact;
+use super::trace::TraceRequest;
+
+/// How a system is run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Options {
+    /// Cycles left out as transient.
+    pub skip: u32,
+    /// Cycles averaged over.
+    pub average: u32,
+    /// Where it starts.
+    pub start: StartState,
+    /// An impulse added at the start, relative to the drive's own, to see whether neighbouring runs stay neighbours.
+    pub kick: f64,
+    /// Measure displacements too, not velocities alone.
+    pub displacement: bool,
+    /// Look for the largest and smallest values of the observed motions.
+    pub extremes: bool,
+    /// Keep the structure's velocities at both ends of every cycle.
+    pub cycle_rates: bool,
+    /// Balance momentum and energy.
+    pub audit: bool,
+    /// How many events to keep, from the first.
+    pub record_events: usize,
+    /// Time history to keep.
+    pub trace: Option<TraceRequest>,
+    /// Search windows are shorter by this factor; 1 as a rule, less for a second accuracy.
+    pub window_factor: f64,
+}
+
+impl Options {
+    /// Cycles to run: the averaged window, and as far as a time history asks for.
+    pub(crate) fn cycles(&self) -> u64 {
+        let window = u64::from(self.skip) + u64::from(self.average);
+        window.max(self.trace.map_or(0, |trace| trace.to_cycle))
+    }
+
+    /// The cycle belongs to the averaged window.
+    pub(crate) fn averages(&self, cycle: u64) -> bool {
+        let first = u64::from(self.skip);
+        (first..first + u64::from(self.average)).contains(&cycle)
+    }
+}
+
+impl Default for Options {
+    /// 25 cycles skipped and 100 averaged, from static equilibrium; velocities and displacements only.
+    fn default() -> Self {
+        Self {
+            skip: 25,
+            average: 100,
+            start: StartState::StaticEquilibrium,
+            kick: 0.0,
+            displacement: true,
+            extremes: false,
+            cycle_rates: false,
+            audit: false,
+            record_events: 0,
+            trace: None,
+            window_factor: 1.0,
+        }
+    }
+}
+
+/// Where a run starts.
+#[derive(Debug, Clone, PartialEq)]
+pub enum StartState {
+    /// At rest, every particle on its floor.
+    StaticEquilibrium,
+    /// Anywhere.
+    Given {
+        /// Coordinates of the structure.
+        q: Vec<f64>,
+        /// Their rates.
+        rate: Vec<f64>,
+        /// Contact, gap coordinate and relative rate of each particle; at a ceiling relative to that.
+        particles: Vec<(Contact, f64, f64)>,
+    },
+}

@@ -1,0 +1,105 @@
+//! What a run leaves behind: integrals of the observed motions, counts of events, the proof, and what was asked to be kept.
+
+use super::extremes::Extremes;
+use super::proof::Proof;
+use super::sums::Sums;
+use super::system::{Event, EventKind};
+use super::trace::Sample;
+
+/// How a response came about.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Method {
+    /// From event to event.
+    #[default]
+    Simulated,
+    /// No event can happen: by powers of the map of one cycle.
+    ClosedForm,
+}
+
+/// What a run leaves behind.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Response {
+    /// How it came about.
+    pub method: Method,
+    /// What was observed, in the order of [`HybridSystem::observed_rows`].
+    pub observed: Vec<Observed>,
+    /// The structure's velocities at both ends of every cycle, if asked for.
+    pub cycle_rates: Vec<CycleRates>,
+    /// Events in the averaged window.
+    pub counts: Counts,
+    /// What proves the run.
+    pub proof: Proof,
+    /// Events kept.
+    pub events: Vec<Event>,
+    /// Time history.
+    pub trace: Vec<Sample>,
+    /// Observed displacement at the end, m.
+    pub final_displacement: f64,
+    /// Observed velocity at the end, m/s.
+    pub final_velocity: f64,
+    /// y and y′ of each particle at the end.
+    pub final_particles: Vec<[f64; 2]>,
+    /// Highest natural frequency among the contact states visited, rad/s.
+    pub highest_frequency: f64,
+}
+
+impl Response {
+    /// The averaged window of the first observed motion.
+    #[must_use]
+    pub fn window(&self) -> Sums {
+        self.observed.first().map(Observed::window).unwrap_or_default()
+    }
+}
+
+/// One observed motion over the averaged window.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Observed {
+    /// Integrals over the first and the second half.
+    pub halves: [Sums; 2],
+    /// Largest and smallest values, if asked for.
+    pub extremes: Extremes,
+}
+
+impl Observed {
+    /// Both halves of the averaged window.
+    #[must_use]
+    pub fn window(&self) -> Sums {
+        let [mut whole, second] = self.halves;
+        whole.add(second);
+        whole
+    }
+}
+
+/// The structure's velocities q′ at both ends of a cycle.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct CycleRates {
+    /// Just after the impulse that opens it.
+    pub after: Vec<f64>,
+    /// Just before the impulse that opens the next one.
+    pub before: Vec<f64>,
+}
+
+/// Events in the averaged window.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Counts {
+    /// Contacts made with a floor.
+    pub floor_contacts: u64,
+    /// Contacts lost with a floor.
+    pub floor_releases: u64,
+    /// Contacts made with a ceiling.
+    pub ceiling_contacts: u64,
+    /// Impacts on a limit stop.
+    pub stops: u64,
+}
+
+impl Counts {
+    pub(crate) fn add(&mut self, kind: EventKind) {
+        match kind {
+            EventKind::FloorContact => self.floor_contacts += 1,
+            EventKind::FloorRelease => self.floor_releases += 1,
+            EventKind::CeilingContact => self.ceiling_contacts += 1,
+            EventKind::FloorStop | EventKind::CeilingStop => self.stops += 1,
+            EventKind::CeilingRelease | EventKind::StopRelease | EventKind::ChatterEnd => {}
+        }
+    }
+}

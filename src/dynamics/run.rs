@@ -1,0 +1,52 @@
+//! The ways to run a system: from event to event, in closed form where no event can happen, or step by step.
+
+use super::error::EngineError;
+use super::options::Options;
+use super::response::Response;
+use super::states::States;
+use super::steady_state::SteadyState;
+use super::system::HybridSystem;
+use super::{budget, fixed, linear, march, residual_bound};
+
+/// Runs a system from event to event; where it is proved that there is none, in closed form.
+///
+/// # Errors
+/// [`EngineError`] with the reason.
+pub fn event_driven(system: &HybridSystem, options: &Options) -> Result<Response, EngineError> {
+    budget::within(|| {
+        let states = States::of(system);
+        let mut response = match linear::attempt(system, options, &states)? {
+            linear::Attempt::Solved(response) => *response,
+            linear::Attempt::Open => march::march(system, options, states)?,
+        };
+        residual_bound::enter(system, options, &mut response);
+        Ok(response)
+    })
+}
+
+/// True where it is proved, without a simulation, that no particle leaves its floor in the run: it is then in closed form, and
+/// what only a particle in flight can meet is skipped.
+///
+/// # Errors
+/// [`EngineError`] with the reason.
+pub fn is_linear(system: &HybridSystem, options: &Options) -> Result<bool, EngineError> {
+    let attempt = budget::within(|| linear::attempt(system, options, &States::of(system)))?;
+    Ok(matches!(attempt, linear::Attempt::Solved(_)))
+}
+
+/// The steady state in closed form: what is left once all transients are gone. `None` unless it is proved that no particle
+/// leaves its floor in it, and where undamped modes never settle.
+///
+/// # Errors
+/// [`EngineError`] with the reason.
+pub fn steady_state(system: &HybridSystem) -> Result<Option<SteadyState>, EngineError> {
+    budget::within(|| linear::steady_state(system))
+}
+
+/// Runs a system with a fixed time step, s: exact propagators of one step, the contact state checked once a step.
+///
+/// # Errors
+/// [`EngineError`] with the reason.
+pub fn fixed_step(system: &HybridSystem, options: &Options, time_step: f64) -> Result<Response, EngineError> {
+    budget::within(|| fixed::run(system, options, time_step))
+}
