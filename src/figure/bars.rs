@@ -1,4 +1,4 @@
-//! The gaps of an array as bars, one group a damper: those that the study found beside the best that was found here.
+//! The gaps of an array as bars, one group a damper: the candidates that the experiment names beside the best that was found.
 
 use super::axis::{Axis, Extent, Room};
 use super::canvas::{Anchor, Lettering, Pen, Sheet, svg, text_width};
@@ -18,8 +18,8 @@ const HEIGHT: f64 = 640.0;
 /// Share of a group that its bars take.
 const FILLED: f64 = 0.7;
 const MOST_TICKS: u32 = 6;
-/// The study's bars, in the order of the table.
-const STUDY: [Color; 3] = [INK, GREY, Color(0xB0, 0xB0, 0xB0)];
+/// Bars of named candidates, in the order of the table.
+const NAMED: [Color; 3] = [INK, GREY, Color(0xB0, 0xB0, 0xB0)];
 
 /// Bars of one colour.
 struct Series {
@@ -40,7 +40,7 @@ pub(super) fn bars(source: Source<'_>, optimise: &Optimise) -> Result<String, Fi
     Ok(svg(WIDTH, HEIGHT, |sheet| paint(sheet, &series, &y, &label::with_unit("gap clearance", &y.unit))))
 }
 
-/// The candidates of the study that are no uniform gaps, and the best of the searches.
+/// The named candidates that are no uniform gaps, and the best of the searches.
 fn series(source: Source<'_>, optimise: &Optimise) -> Result<Vec<Series>, FigureError> {
     let word = words::of_key(&optimise.gaps);
     let columns = (1..=optimise.bounds.len())
@@ -53,14 +53,16 @@ fn series(source: Source<'_>, optimise: &Optimise) -> Result<Vec<Series>, Figure
     let value = source.column(&words::of_key(&optimise.measure))?;
     let gaps = |row: usize| columns.iter().map(|column| number(column, row).unwrap_or(f64::NAN)).collect::<Vec<f64>>();
     let own = |name: &str| optimise.candidates.iter().any(|candidate| candidate.name == name);
+    // What starts from one is a search beside it, not one from nothing.
+    let from_own = |name: &str| name.strip_suffix("_two_opt").is_some_and(own);
     let differ = |row: &usize| gaps(*row).windows(2).any(|pair| pair[0] != pair[1]);
     let mut series: Vec<Series> = Vec::new();
     for (row, name) in names.iter().enumerate().filter(|(row, name)| own(name) && differ(row)) {
-        let color = STUDY[series.len().min(STUDY.len() - 1)];
+        let color = NAMED[series.len().min(NAMED.len() - 1)];
         series.push(Series { name: words::of_level("candidate", name), gaps: gaps(row), color });
     }
     let sign = if optimise.goal == Goal::Minimise { 1.0 } else { -1.0 };
-    let searched = |row: &usize| !names[*row].is_empty() && !names[*row].starts_with("study") && !own(&names[*row]);
+    let searched = |row: &usize| !names[*row].is_empty() && !own(&names[*row]) && !from_own(&names[*row]);
     let fitness = |row: &usize| number(value, *row).filter(|fitness| fitness.is_finite()).map(|fitness| sign * fitness);
     let best = (0..names.len())
         .filter(searched)

@@ -14,7 +14,7 @@ pub(super) const DASH: &[f64] = &[16.0, 8.0];
 /// A value far outside of the curves would leave them no room: how many times their own range it may take.
 const STRETCH: f64 = 3.0;
 
-/// A number that the study's text quotes. The curves of its lost figures are not quoted.
+/// A number that the study's text quotes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Quoted {
     /// The y column that it belongs to; it appears in the panels that draw this column.

@@ -1,6 +1,8 @@
 //! From an experiment's table to the finished picture.
 
-use crate::experiment::{self, Drawing, Experiment, FigureSpec};
+use std::collections::BTreeMap;
+
+use crate::experiment::{self, Drawing, Experiment, FigureSpec, LineColour};
 use crate::table::Table;
 
 use super::bars::bars;
@@ -10,12 +12,11 @@ use super::layout::{Needs, Place, figure_height, places};
 use super::line::Source;
 use super::map::Map;
 use super::map_layout::MapLayout;
-use super::map_paint;
 use super::paint::{self, LegendPlace};
 use super::panel::{Panel, Reach};
 use super::quoted::Quoted;
-use super::raster;
 use super::style::{LETTER, WIDTH};
+use super::{map_paint, raster};
 
 /// Pixels of the PNG to a pixel of the SVG: enough for a screen of two dots to a pixel, on which a figure is about 900 wide.
 const DENSITY: f32 = 1.25;
@@ -49,6 +50,8 @@ pub struct Beside<'a> {
     pub quoted: &'a [Quoted],
     /// Period of the impulses, s: a time history with contacts shows their moments.
     pub impulses: Option<f64>,
+    /// Colours of lines by name, as the study has them.
+    pub colours: Option<&'a BTreeMap<String, LineColour>>,
 }
 
 /// Draws a figure of an experiment from the rows under the assumptions in force. The same input gives the same bytes.
@@ -82,7 +85,7 @@ fn drawn(
     beside: Beside<'_>,
 ) -> Result<Picture, FigureError> {
     let table = chosen(figure, &table.baseline());
-    let source = Source { experiment, table: &table, figure: name };
+    let source = Source { experiment, table: &table, figure: name, colours: beside.colours };
     let svg = match &figure.drawing {
         Drawing::Lines(panels) => lines(source, panels, beside)?,
         Drawing::Gaps => match experiment.and_then(|experiment| experiment.optimise.as_ref()) {

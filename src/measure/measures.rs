@@ -6,6 +6,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::scene::Excitation;
+use crate::text::words;
 
 /// What is known of a measure.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -156,6 +157,19 @@ measures! {
     FinalHeight: "m", "", "", "height of the first particle over its floor at the end of the run", End, Own, Any;
 }
 
+/// A column's name in words: a measure's, or those of [`words::of_column`].
+#[must_use]
+pub fn column_words(name: &str) -> String {
+    if let Some(over) = name.strip_suffix("_at_maximum") {
+        return format!("{} at the maximum", column_words(over));
+    }
+    let measure = Measure::ALL.iter().find(|measure| words::of_key(measure) == name);
+    match measure.map(|measure| measure.facts().words) {
+        None | Some("") => words::of_column(name),
+        Some(words) => words.into(),
+    }
+}
+
 impl Measure {
     /// Unit symbol, empty when dimensionless.
     #[must_use]
@@ -206,8 +220,9 @@ impl Measure {
         self.facts().runs == Runs::Both
     }
 
-    /// Known without a run.
-    pub(super) fn is_modal(self) -> bool {
+    /// Known without a run, as long as a shape that is kept is a mode's.
+    #[must_use]
+    pub fn is_modal(self) -> bool {
         matches!(self.facts().from, ReadOff::Model | ReadOff::Shape)
     }
 

@@ -1,9 +1,11 @@
 //! Figures of one experiment.
 
+use std::collections::BTreeMap;
+
 use serde_json::json;
 
 use super::quoted::quoted;
-use crate::experiment::{Experiment, FigureSpec};
+use crate::experiment::{Experiment, FigureSpec, LineColour};
 use crate::figure::{Beside, FigureError, Picture, draw};
 use crate::reference::{Judged, ReferenceFile};
 use crate::study::{FileHash, PRESENTATION_VERSION, fingerprint};
@@ -34,6 +36,8 @@ pub(super) struct Said<'a> {
     pub judged: &'a [Judged],
     /// Period of the impulses, s.
     pub impulses: Option<f64>,
+    /// Colours of lines by name, as the study has them.
+    pub colours: Option<&'a BTreeMap<String, LineColour>>,
 }
 
 /// One figure, with the numbers that the study quotes.
@@ -44,7 +48,7 @@ pub(super) fn picture(
     said: Said<'_>,
 ) -> Result<Picture, FigureError> {
     let quoted = quoted(experiment, figure, table, said);
-    draw(experiment, figure, table, Beside { quoted: &quoted, impulses: said.impulses })
+    draw(experiment, figure, table, Beside { quoted: &quoted, impulses: said.impulses, colours: said.colours })
 }
 
 /// Hash of all that one figure shows: the table of this hash, how it is drawn, and the numbers that the study quotes with their
@@ -64,6 +68,7 @@ pub(super) fn shown(
         "maximised": experiment.maximise.as_ref().map(|maximise| maximise.measure),
         "quoted": quoted,
         "impulses": said.impulses,
+        "colours": said.colours,
         "table": table_hash.blake3,
         "presentation_version": PRESENTATION_VERSION,
     }))

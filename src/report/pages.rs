@@ -14,8 +14,9 @@ use crate::experiment::{Experiment, FigureSpec};
 use crate::figure::{FigureError, Picture, sketch};
 use crate::measure::rounded;
 use crate::reference::{Judged, ReferenceFile};
-use crate::study::Study;
-use crate::study::{FileHash, Heading, Item, Publication, Record, State, Summary, record_name, stem, table_name};
+use crate::study::{
+    FileHash, Heading, Item, Publication, Record, State, Study, Summary, record_name, stem, table_name,
+};
 use crate::table::{Table, UNDEFINED};
 
 /// The verdicts for programs, within the study.
@@ -175,6 +176,7 @@ fn said<'a>(study: &'a Study, judgement: &'a Judgement, experiment: &Experiment)
         reference: study.references.get(id),
         judged: judgement.verdicts.get(id).map_or(&[], Vec::as_slice),
         impulses,
+        colours: Some(&study.about.colours),
     }
 }
 

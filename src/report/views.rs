@@ -7,8 +7,7 @@ use super::index::{OVERVIEW, STRIP};
 use super::other_pages::PAGES;
 use super::prose;
 use super::verdicts::Judgement;
-use crate::experiment::AssumptionName;
-use crate::experiment::{Experiment, FigureSpec};
+use crate::experiment::{AssumptionName, Experiment, FigureSpec};
 use crate::figure::sketch;
 use crate::reference::Judged;
 use crate::report::{
@@ -16,8 +15,7 @@ use crate::report::{
     value_in_words,
 };
 use crate::scene::{Scene, effects};
-use crate::study::{Heading, Item, RunTimes, table_name};
-use crate::study::{Study, Unread};
+use crate::study::{Heading, Item, RunTimes, Study, Unread, table_name};
 
 /// The page of an experiment.
 pub(super) fn page(study: &Study, judgement: &Judgement, item: &Item) -> String {
@@ -77,7 +75,7 @@ fn index(study: &Study, views: &[ExperimentView<'_>], times: Option<&RunTimes>) 
         .chain(calibrations)
         .filter(|(_, page)| study.layout.path(&format!("reports/{page}")).exists())
         .collect();
-    report::index(views, &others, times.map(|times| &times.machine))
+    report::index(&study.about, views, &others, times.map(|times| &times.machine))
 }
 
 fn listed<'a>(

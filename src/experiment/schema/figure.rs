@@ -6,19 +6,18 @@ use super::parts::{
     Object, any_of, between, boolean, count, list, number, one_of_words, one_or_more, reference, text, words_of,
 };
 use super::sweep::NAME;
-use crate::experiment::columns::{ENERGIES, HISTORIES};
 use crate::experiment::definition::{AxisScale, Best};
 use crate::experiment::recipe::Parameter;
 use crate::experiment::word::words;
-use crate::measure::Measure;
+use crate::measure::{Measure, energy_columns, trace_columns};
 
 /// The definitions that figures share.
 pub(super) fn definitions() -> Vec<(String, Value)> {
     // Offered for completion; which columns there are depends on the rest of the file.
     let mut known: Vec<&str> = words::<Parameter>().to_vec();
     known.extend(words::<Measure>());
-    known.extend(HISTORIES);
-    known.extend(ENERGIES);
+    known.extend(trace_columns());
+    known.extend(energy_columns());
     known.extend(["sweep", "solver", "variant", "candidate"]);
     let mut offered: Vec<&str> = Vec::new();
     for name in known {
