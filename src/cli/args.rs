@@ -64,6 +64,8 @@ pub(super) enum Command {
     Run(RunArgs),
     /// Join the tables of all shards, check that each row occurs once, and continue as `run`
     Gather(GatherArgs),
+    /// Write the whole study as one HTML file, from the tables on disk; simulates nothing
+    Report(ReportArgs),
     /// Export the study as an RO-Crate: experiments, reference, tables, figures and pages
     Export(ExportArgs),
     /// List the experiments
@@ -211,6 +213,20 @@ pub(super) struct ExportArgs {
     /// Date of publication in its metadata; defaults to that of this version of the program
     #[arg(long, value_name = "YYYY-MM-DD", value_parser = date, default_value = RELEASED)]
     pub published: String,
+}
+
+#[derive(Debug, clap::Args)]
+#[command(after_help = "\
+The file needs no network and no other file: pages, figures with values under the pointer, and all verdicts to sort and filter.
+Its address names a page or an entry: study.html#ch3-limit-stop, study.html#ch3-limit-stop/parting.
+
+Examples:
+  shotdamp report --html study.html
+  shotdamp --root examples/classics report --html classics.html")]
+pub(super) struct ReportArgs {
+    /// The file to write
+    #[arg(long, value_name = "FILE")]
+    pub html: PathBuf,
 }
 
 #[derive(Debug, thiserror::Error)]

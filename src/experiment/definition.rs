@@ -317,6 +317,15 @@ pub enum Drawing {
     Map(Box<MapSpec>),
     /// The gaps of an optimised array as bars: those that the file names beside the best found.
     Gaps,
+    /// The motion of damper and particle, row by row of the table, slowed down.
+    Animation(AnimationSpec),
+}
+
+/// An animation of time histories.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct AnimationSpec {
+    /// Columns that tell the rows apart.
+    pub by: Vec<String>,
 }
 
 /// A map. Its three columns hold a number a row (a cell a row, drawn as such) or a list a row (a field a row, drawn with

@@ -43,8 +43,8 @@ pub use assumption_reader::parse_assumptions;
 pub use assumption_sheet::{AssumptionEntry, AssumptionKind, AssumptionSheet, Cycles, Moved, Quantity, Takes};
 pub use calibration::{Calibration, CalibrationInput, CalibrationSearch, Tried, load_calibration, parse_calibration};
 pub use definition::{
-    Axis, AxisScale, Band, Best, Case, Drawing, Experiment, ExperimentId, FigureSpec, IdError, Level, MapSpec, Mark,
-    Maximise, Only, Panel, PeakMarks, Refinement, Source,
+    AnimationSpec, Axis, AxisScale, Band, Best, Case, Drawing, Experiment, ExperimentId, FigureSpec, IdError, Level,
+    MapSpec, Mark, Maximise, Only, Panel, PeakMarks, Refinement, Source,
 };
 pub use diagnostic::{Place, Problem, Problems, Severity};
 pub(crate) use edit::{Written, set_keys};

@@ -31,8 +31,9 @@ pub(super) fn in_short(judged: &[Judged]) -> String {
         closed(&one_line(&lead.statement)),
         closed(&one_line(&lead.found))
     );
-    if !agrees(lead.verdict) {
-        text += &format!("- Why: {}\n", first_sentence(&explanation(lead)));
+    let why = first_sentence(&explanation(lead));
+    if !agrees(lead.verdict) && closed(&why) != closed(&one_line(&lead.found)) {
+        text += &format!("- Why: {why}\n");
     }
     text + "\n"
 }

@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use serde_json::json;
 
 use super::quoted::quoted;
-use crate::experiment::{Experiment, FigureSpec, LineColour};
-use crate::figure::{Beside, FigureError, Picture, draw};
+use crate::experiment::{Drawing, Experiment, FigureSpec, LineColour};
+use crate::figure::{Beside, FigureError, Picture, draw, draw_svg};
 use crate::reference::{Judged, ReferenceFile};
 use crate::study::{FileHash, PRESENTATION_VERSION, fingerprint};
 use crate::table::Table;
@@ -23,10 +23,11 @@ pub fn scene_name(experiment: &Experiment) -> String {
     format!("{}-scene.svg", experiment.id)
 }
 
-/// File name of a figure's PNG.
+/// File name of a figure as pages show it: PNG, or SVG where it moves.
 #[must_use]
 pub fn figure_name(experiment: &Experiment, figure: &FigureSpec) -> String {
-    format!("{}.png", figure_stem(experiment, figure))
+    let ending = if matches!(figure.drawing, Drawing::Animation(_)) { "svg" } else { "png" };
+    format!("{}.{ending}", figure_stem(experiment, figure))
 }
 
 /// What the study says of an experiment, and what became of it.
@@ -49,6 +50,17 @@ pub(super) fn picture(
 ) -> Result<Picture, FigureError> {
     let quoted = quoted(experiment, figure, table, said);
     draw(experiment, figure, table, Beside { quoted: &quoted, impulses: said.impulses, colours: said.colours })
+}
+
+/// As [`picture`], as SVG alone.
+pub(super) fn vector(
+    experiment: &Experiment,
+    figure: &FigureSpec,
+    table: &Table,
+    said: Said<'_>,
+) -> Result<String, FigureError> {
+    let quoted = quoted(experiment, figure, table, said);
+    draw_svg(experiment, figure, table, Beside { quoted: &quoted, impulses: said.impulses, colours: said.colours })
 }
 
 /// Hash of all that one figure shows: the table of this hash, how it is drawn, and the numbers that the study quotes with their

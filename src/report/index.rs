@@ -12,8 +12,17 @@ use super::{chapter, headline, reading, strip};
 pub(super) const STRIP: &str = "verdicts.svg";
 pub(super) const OVERVIEW: &str = "overview.svg";
 
-/// `reports/README.md`. `about` is what the study says of itself; `experiments` in the order in which the index lists them; `others` are further pages: title and link;
-/// `machine` is where times were taken, if they were.
+/// What the study and the index are.
+pub(super) fn head(about: &AboutStudy) -> String {
+    let mut text = String::from("# The study in one page\n\n");
+    if let Some(opening) = &about.about {
+        text += &format!("{}\n\n", one_line(opening));
+    }
+    text
+}
+
+/// `reports/README.md`. `about` is what the study says of itself; `experiments` in the order in which the index lists them;
+/// `others` are further pages: title and link; `machine` is where times were taken, if they were.
 #[must_use]
 pub fn index(
     about: &AboutStudy,
@@ -21,18 +30,15 @@ pub fn index(
     others: &[(&str, &str)],
     machine: Option<&Machine>,
 ) -> String {
-    let mut text = String::from("# The study in one page\n\n");
-    if let Some(opening) = &about.about {
-        text += &format!("{}\n\n", one_line(opening));
-    }
+    let mut text = head(about);
     text += &headline::section(experiments);
-    text += "## Every verdict\n\nOne cell for each number or claim; a symbol below links to its experiment, bold where the entry is held out.\n\n";
-    text += &format!("![Every verdict]({STRIP})\n\n");
+    text += &reading::section();
+    text += "## Every verdict\n\nOne cell for each number or claim; below, each that does not agree is linked, bold where it is held out.\n\n";
+    text += &format!("![Verdicts by chapter]({STRIP})\n\n");
     text += &strip::links(about, experiments);
     text += &format!(
-        "<details open><summary>All numbers: S/D with bars of ± 2 u_val/D, and |E|/u_val</summary>\n\n![Numbers of the study]({OVERVIEW})\n\n</details>\n\n"
+        "<details open><summary>All numbers: S/D with bars of ± tolerance/D, and |E|/u_val</summary>\n\n![Numbers of the study]({OVERVIEW})\n\n</details>\n\n"
     );
-    text += &reading::section();
     text += &chapter::tables(about, experiments);
     let total: f64 = experiments.iter().filter_map(|view| view.seconds).sum();
     if let Some(Machine { processor, threads, system, build }) = machine {

@@ -55,7 +55,12 @@ pub fn overview_svg(experiments: &[ExperimentView<'_>]) -> String {
         svg.line([x, top], [x, top + height], if strong { "#444" } else { "#ddd" }, if strong { 1.5 } else { 1.0 });
         svg.text(x, top - 6.0, "middle", &format!("{tick}"));
     }
-    svg.text((LEFT + RIGHT) / 2.0, 13.0, "middle", "S/D: here over published, bars ± 2 u_val/D");
+    svg.text(
+        (LEFT + RIGHT) / 2.0,
+        13.0,
+        "middle",
+        "S/D: here over published, bars ± tolerance/D (2 u_val, or set by hand)",
+    );
     svg.text(WIDTH - 12.0, top - 6.0, "end", "|E|/u_val");
     let mut y = top;
     for (chapter, rows) in &chapters {
@@ -84,7 +89,7 @@ fn draw(svg: &mut Svg, axis: &Axis, row: &Row<'_>, y: f64) {
     if !(ratio.is_finite() && ratio > 0.0) {
         return;
     }
-    let reach = (row.comparison.derived_tolerance() / row.comparison.published).abs();
+    let reach = (row.comparison.tolerance() / row.comparison.published).abs();
     let (from, to) = (axis.x(ratio - reach), axis.x(ratio + reach));
     svg.line([from, y], [to, y], colour(row.verdict), 1.4);
     svg.verdict(axis.x(ratio), y, row.verdict);

@@ -2,9 +2,10 @@
 //! picture in Markdown cannot hold.
 
 use super::chapter::{by_chapter, label};
-use super::markdown::{html, one_line};
+use super::comparison::{anchor, name};
+use super::markdown::html;
 use super::svg::{Svg, colour};
-use super::tally::{VERDICTS, mark, word};
+use super::tally::{VERDICTS, agrees, mark, word};
 use super::view::ExperimentView;
 use crate::experiment::AboutStudy;
 use crate::reference::{Judged, Role};
@@ -19,16 +20,26 @@ const APART: f64 = 3.0;
 pub(super) fn links(about: &AboutStudy, experiments: &[ExperimentView<'_>]) -> String {
     let mut text = String::new();
     for (chapter, views) in by_chapter(experiments) {
-        let cells = views.iter().filter(|view| !view.judged.is_empty()).map(|view| {
-            let cells: String = view.judged.iter().map(cell).collect();
-            format!("[{cells}]({} \"{}\")", view.page, one_line(&view.experiment.title).replace('"', "”"))
-        });
+        let cells = views.iter().filter(|view| !view.judged.is_empty()).map(|view| cells(view));
         text += &format!("{}: {}\n\n", about.heading(chapter), cells.collect::<Vec<_>>().join(" "));
     }
     text
 }
 
-fn cell(one: &Judged) -> String {
+/// The symbols of a page: what agrees is linked to it as a whole, everything else to its entry.
+fn cells(view: &ExperimentView<'_>) -> String {
+    let together = |a: &Judged, b: &Judged| agrees(a.verdict) && agrees(b.verdict);
+    let link = |entries: &[Judged]| {
+        let marks: String = entries.iter().map(symbol).collect();
+        match entries {
+            [one] if !agrees(one.verdict) => format!("[{marks}]({}#{})", view.page, anchor(name(one))),
+            _ => format!("[{marks}]({})", view.page),
+        }
+    };
+    view.judged.chunk_by(together).map(link).collect()
+}
+
+fn symbol(one: &Judged) -> String {
     let mark = mark(one.verdict);
     if one.role == Role::HeldOut { format!("<b>{mark}</b>") } else { mark.to_owned() }
 }

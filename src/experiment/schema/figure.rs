@@ -75,6 +75,8 @@ fn figure() -> Value {
     let only = Object::new("The rows to draw")
         .required("column", reference("column"))
         .required("words", one_or_more("The column's words that count", text("A word")));
+    let animation = Object::new("The motion of damper and particle from the trace, slowed down")
+        .optional("by", one_or_more("A row for each", reference("column")));
     own(shared(Object::new("A figure")))
         .optional("name", name)
         .required("caption", text("One line under it"))
@@ -82,9 +84,10 @@ fn figure() -> Value {
         .optional("panels", list("Panels above each other", panel))
         .optional("map", map())
         .optional("gaps", boolean("The gaps of an optimised array as bars"))
+        .optional("animation", animation.schema())
         .rule(json!({
-            "if": {"anyOf": [{"required": ["map"]}, {"required": ["gaps"]}]},
-            "then": {"propertyNames": {"enum": ["name", "caption", "only", "map", "gaps"]}},
+            "if": {"anyOf": [{"required": ["map"]}, {"required": ["gaps"]}, {"required": ["animation"]}]},
+            "then": {"propertyNames": {"enum": ["name", "caption", "only", "map", "gaps", "animation"]}},
             "else": {"anyOf": [{"required": ["panels"]}, {"required": ["x", "y"]}]},
         }))
         .schema()
