@@ -4,7 +4,7 @@
 //! defaults:
 //!   run: {skip: 25 cycles, average: 100 cycles}   # of experiments that do not say
 //!   gravity: gravity                 # which assumption stands where one says `assumed` or leaves the slot out: on every structure
-//!   modes: {cantilever_beam: beam_modes, supported_plate: plate_modes}
+//!   modes: {cantilever_beam: eight_modes, supported_plate: six_a_side}
 //! gravity: {quantity: acceleration, value: 9.81 m/s^2, range: [9.80665 m/s^2], reason: The usual rounding.}
 //! ```
 //!

@@ -7,10 +7,10 @@
 //! search: {coordinate: {starts: 2, budget: 110 sets}}                 # every combination if absent
 //! ensemble: 4 members                                                # of chaotic points; single runs if absent
 //! calibrate:
-//!   plate_contact_damping_ratio: [0.1, 0.2, equivalent_viscous]       # values of an assumption
-//!   curve_height: {scales: equivalent_damping_curve, by: [0.5, 1, 2]} # factors of one
-//!   damper_mass: {moves: [beam_damper_mass, plate_damper_mass], values: [total, modal]}   # several at once
-//!   impulse: {moves: [impulse_factor, plate_impulse_time], values: [[1, radian], [2, half_sine]]}
+//!   damping_ratio_of_floors: [0.1, 0.2, equivalent_viscous]           # values of an assumption
+//!   curve_height: {scales: curve_of_the_foam, by: [0.5, 1, 2]}      # factors of one
+//!   damper_mass: {moves: [mass_on_beams, mass_on_plates], values: [total, modal]}   # several at once
+//!   impulse: {moves: [factor_of_impulses, time_of_impulses], values: [[1, radian], [2, half_sine]]}
 //!   solver: [event_driven, {fixed_step: {time_step: 1 ms}}]
 //! fit: [ch5-impulse-ratio/tuned-184]
 //! hold_out: [ch5-mass-crossing/*]

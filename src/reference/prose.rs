@@ -7,7 +7,7 @@
 //! | `{off}` | how far a number is from the published one: `21 % less`, `13 % more` |
 //! | `{here: uniform}`, `{off: uniform}` | of another entry of the same experiment |
 //! | `{here: ch6-plate-c1-light/uniform}` | of an entry of another experiment; the reasons of assumptions name all entries so |
-//! | `{here: crossing, plate_damper_mass=total}` | with one assumption moved |
+//! | `{here: crossing, mass_on_plates=total}` | with one assumption moved |
 
 use super::verdict::Judged;
 
