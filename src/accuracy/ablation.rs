@@ -7,8 +7,7 @@ use super::representative::{is_chaotic, representative, trial, worst};
 use super::timing::Times;
 use crate::dynamics::{EngineError, HybridSystem, Method, Options, Response, event_driven, is_linear};
 use crate::experiment::{Assumptions, Experiment, Given, Parameter, ParameterValue, Recipe, Slot, StopRecipe};
-use crate::measure::Settings;
-use crate::measure::{Measure, Trial};
+use crate::measure::{Measure, Settings, Trial};
 use crate::scene::{EffectUse, LimitStop, Scene, Switching, compile, effects, switched};
 
 /// How long the median of a run may take to settle.

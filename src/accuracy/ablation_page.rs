@@ -1,6 +1,7 @@
 //! What each effect changes and costs, as text.
 
 use super::ablation::{Ablation, Outcome, Switched};
+use crate::measure::column_words;
 use crate::text::number::{quantity, significant};
 use crate::text::words;
 
@@ -64,7 +65,7 @@ fn row(Switched { effect, in_force, outcome }: &Switched, case: &Ablation) -> [S
                 scene,
                 if *in_force { "off" } else { "on" }.into(),
                 change,
-                words::of_column(&words::of_key(worst)),
+                column_words(&words::of_key(worst)),
                 format!("{events}"),
                 format!("{}, × {}", seconds(times.median), significant(times.median / case.times.median, 2)),
             ]

@@ -38,7 +38,7 @@ pub enum Contender {
         /// See [`Options::window_factor`].
         window_factor: f64,
     },
-    /// The study's scheme.
+    /// Steps of one length.
     FixedStep {
         /// s.
         time_step: f64,

@@ -1,15 +1,14 @@
 //! What accuracy costs: the page of one experiment, and the summary of all.
 
-use crate::measure::SolverChoice;
+use crate::measure::{SolverChoice, column_words};
 use crate::study::Machine;
 
 use super::measured::{Accuracy, CaseAccuracy, Contender, Origin, Point};
 use crate::text::number::{quantity, significant};
-use crate::text::words;
+use crate::text::words::{self, counted};
 
 use super::verdict_price::{self, VerdictPrice};
 use crate::report::markdown::{Align, MarkdownTable, one_line};
-use crate::text::words::counted;
 
 /// Errors that somebody may want to reach.
 const GOALS: [(f64, &str); 3] = [(1e-2, "1 %"), (1e-4, "1e-4"), (1e-8, "1e-8")];
@@ -100,7 +99,7 @@ fn section(number: usize, case: &CaseAccuracy) -> String {
         rows.row([
             name(point.contender),
             error(point.error),
-            words::of_column(&words::of_key(&point.worst)),
+            column_words(&words::of_key(&point.worst)),
             format!("{} of {}", of.right, of.of),
             of.error.map_or_else(String::new, error),
             seconds(point.times.median),

@@ -11,12 +11,11 @@ use super::verdict_price::VerdictPrice;
 use crate::atomic::{self, FileError};
 use crate::experiment::Experiment;
 use crate::figure::{Beside, Picture, draw, work_precision};
-use crate::measure::SolverChoice;
+use crate::measure::{SolverChoice, column_words};
 use crate::reference::Judged;
 use crate::study::{Layout, Machine, runs_of_a_row};
 use crate::table::{BASELINE, Column, Data, Table};
 use crate::text::number::compact;
-use crate::text::words;
 
 /// Smallest error that a logarithmic axis shows: what is exact to the last digit stands here.
 const LEAST: f64 = 1e-16;
@@ -91,7 +90,7 @@ fn case_name(case: &CaseAccuracy, number: usize) -> String {
     let part = |part: &str| {
         let Some((name, value)) = part.split_once(" = ") else { return part.to_owned() };
         let value = value.parse::<f64>().map_or_else(|_| value.to_owned(), |value| compact(value, 3));
-        format!("{} {value}", words::of_column(name))
+        format!("{} {value}", column_words(name))
     };
     case.description.split(", ").map(part).collect::<Vec<_>>().join(", ")
 }

@@ -3,8 +3,7 @@
 use super::measured::NoAccuracy;
 use crate::dynamics::{Method, Options, Response, event_driven};
 use crate::experiment::{Assumptions, Case, Experiment, ParameterValue, Recipe};
-use crate::measure::SolverChoice;
-use crate::measure::{Measure, Needs, Trial};
+use crate::measure::{Measure, Needs, SolverChoice, Trial};
 use crate::text::words;
 
 /// Cases of an experiment.

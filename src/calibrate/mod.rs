@@ -2,7 +2,7 @@
 //! and what becomes of entries that were held out.
 //!
 //! A set of inputs is one value of each. The experiments whose tables the fitted entries read are run under every set that
-//! the search asks for, of each experiment only the rows that are read (`rows`), each as a single run, as the study's were;
+//! the search asks for, of each experiment only the rows that are read (`rows`), each as a single run unless an ensemble is asked for;
 //! experiments that do not depend on the inputs that differ are not re-run (`trials`). The search is a full grid, or goes along one
 //! input after the other from several starts (`search`). All sets stay in the count: the profile of an input is the least
 //! residual that was found with each of its values, exact on a full grid and an upper bound otherwise.

@@ -3,8 +3,7 @@
 use super::fit::{Read, read};
 use super::set::Set;
 use super::trials::{Asked, CumulativeEvents, TrialRunner, Workers, Worth};
-use crate::experiment::Experiment;
-use crate::experiment::{AssumptionName, AssumptionValue, Assumptions};
+use crate::experiment::{AssumptionName, AssumptionValue, Assumptions, Experiment};
 use crate::study::{Evaluate, Event, EventHandler, ThreadError};
 
 /// Members of the ensemble of a chaotic point: as for the other values of assumptions in a run.

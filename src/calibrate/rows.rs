@@ -1,7 +1,6 @@
 //! Of an experiment the rows that entries read, so that no others are simulated.
 
-use crate::experiment::ParameterValue;
-use crate::experiment::{Case, Experiment, curves};
+use crate::experiment::{Case, Experiment, ParameterValue, curves};
 use crate::measure::SolverChoice;
 use crate::reference::{Entry, Reading, Selection};
 use crate::table::Data;
@@ -25,7 +24,7 @@ impl Wanted {
         self.every_solver |= entry.names_solver();
     }
 
-    /// The experiment with these rows only, and without the searches of an optimisation: gaps that the study names are
+    /// The experiment with these rows only, and without the searches of an optimisation: gaps that the file names are
     /// evaluated, none are looked for.
     pub(super) fn of(&self, experiment: &Experiment) -> Experiment {
         let mut part = experiment.clone();

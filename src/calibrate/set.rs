@@ -1,7 +1,6 @@
 //! A set of inputs: the value that each free input takes, and what that makes of the assumptions.
 
-use crate::experiment::{AssumptionValue, Assumptions};
-use crate::experiment::{Calibration, CalibrationInput, Tried};
+use crate::experiment::{AssumptionValue, Assumptions, Calibration, CalibrationInput, Tried};
 use crate::measure::SolverChoice;
 
 /// Substituted what experiments run.

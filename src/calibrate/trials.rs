@@ -6,10 +6,8 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use super::rows::Wanted;
 use super::set::Set;
-use crate::experiment::Experiment;
-use crate::experiment::GapWord;
-use crate::measure::SolverChoice;
-use crate::measure::{Evaluated, Rigour};
+use crate::experiment::{Experiment, GapWord};
+use crate::measure::{Evaluated, Rigour, SolverChoice};
 use crate::reference::Entry;
 use crate::study::{Array, Evaluate, Event, EventHandler, RowFailure, Simulation, Task, ThreadError, Variant, run};
 use crate::table::{BASELINE, Table};
@@ -22,7 +20,7 @@ pub(super) type SharedTables = BTreeMap<String, Arc<Table>>;
 /// What a number has to be worth.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Worth {
-    /// One step of a search: the mean of `ensemble` runs where the motion is chaotic; 0: a single run, as the study's numbers are.
+    /// One step of a search: the mean of `ensemble` runs where the motion is chaotic; 0: a single run, as published numbers mostly are.
     Step { ensemble: u32 },
     /// A result, of an ensemble where the motion is chaotic.
     Result,

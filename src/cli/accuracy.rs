@@ -20,7 +20,7 @@ pub(super) fn measure(layout: &Layout, args: &AccuracyArgs) -> Result<Exit, CliE
     }
     let study = open(layout)?;
     let patterns = if args.all { Vec::new() } else { args.patterns.clone() };
-    let chosen = choose(&study, &Choice { patterns, chapter: None })?;
+    let chosen = choose(&study, &Choice { patterns, folder: None })?;
     print_unread(chosen.unread.iter().copied());
     let assumptions = study.sheet.assumptions();
     let longest = Duration::try_from_secs_f64(args.longest).unwrap_or(Duration::MAX / 32);

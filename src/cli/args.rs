@@ -64,6 +64,8 @@ pub(super) enum Command {
     Run(RunArgs),
     /// Join the tables of all shards, check that each row occurs once, and continue as `run`
     Gather(GatherArgs),
+    /// Write the whole study as one HTML file, from the tables on disk; simulates nothing
+    Report(ReportArgs),
     /// Export the study as an RO-Crate: experiments, reference, tables, figures and pages
     Export(ExportArgs),
     /// List the experiments
@@ -136,9 +138,9 @@ pub(super) struct Choice {
     /// Ids, or patterns with * and ? [default: all]
     #[arg(value_name = "PATTERN")]
     pub patterns: Vec<String>,
-    /// Only this chapter of the study
-    #[arg(long, value_name = "N")]
-    pub chapter: Option<u32>,
+    /// Only experiments in this folder of `experiments/`
+    #[arg(long, value_name = "DIR")]
+    pub folder: Option<String>,
 }
 
 #[derive(Debug, Default, clap::Args)]
@@ -147,7 +149,7 @@ Examples:
   shotdamp run                                all that is stale
   shotdamp run ch3-limit-stop                 one experiment; --force to simulate it again
   shotdamp run 'ch3-gap*' --dry-run           what a pattern would simulate
-  shotdamp run --chapter 4 --jobs 1
+  shotdamp run --folder ch4 --jobs 1
   shotdamp run --force --times                all of it from nothing, and what it took")]
 pub(super) struct RunArgs {
     #[command(flatten)]
@@ -201,7 +203,7 @@ pub(super) struct GatherArgs {
 #[command(after_help = "\
 Examples:
   shotdamp export --ro-crate study-crate
-  shotdamp export --ro-crate chapter-3 --chapter 3")]
+  shotdamp export --ro-crate chapter-3 --folder ch3")]
 pub(super) struct ExportArgs {
     #[command(flatten)]
     pub choice: Choice,
@@ -211,6 +213,20 @@ pub(super) struct ExportArgs {
     /// Date of publication in its metadata; defaults to that of this version of the program
     #[arg(long, value_name = "YYYY-MM-DD", value_parser = date, default_value = RELEASED)]
     pub published: String,
+}
+
+#[derive(Debug, clap::Args)]
+#[command(after_help = "\
+The file needs no network and no other file: pages, figures with values under the pointer, and all verdicts to sort and filter.
+Its address names a page or an entry: study.html#ch3-limit-stop, study.html#ch3-limit-stop/parting.
+
+Examples:
+  shotdamp report --html study.html
+  shotdamp --root examples/classics report --html classics.html")]
+pub(super) struct ReportArgs {
+    /// The file to write
+    #[arg(long, value_name = "FILE")]
+    pub html: PathBuf,
 }
 
 #[derive(Debug, thiserror::Error)]
@@ -303,7 +319,7 @@ pub(super) struct CheckArgs {
     #[arg(long)]
     pub reports: bool,
     /// Change the expected verdict of this entry (experiment/entry) in its file to the one that it got
-    #[arg(long, value_name = "ID", requires = "reason", conflicts_with_all = ["patterns", "chapter"])]
+    #[arg(long, value_name = "ID", requires = "reason", conflicts_with_all = ["patterns", "folder"])]
     pub accept: Option<String>,
     /// Why; becomes the explanation of the entry
     #[arg(long, value_name = "TEXT", requires = "accept")]
@@ -340,11 +356,11 @@ Examples:
   shotdamp new ch3-my-idea
   shotdamp new ch5-thin-plate --structure supported_plate")]
 pub(super) struct NewArgs {
-    /// Its id: small letters, digits and hyphens; `ch3-…` puts it into chapter 3
+    /// Its id: small letters, digits and hyphens
     pub id: String,
-    /// Chapter of the study [default: the one in the id]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..100))]
-    pub chapter: Option<u32>,
+    /// Folder of `experiments/` [default: one whose name the id begins with, if there is one]
+    #[arg(long, value_name = "DIR")]
+    pub folder: Option<String>,
     /// Kind of structure
     #[arg(long, value_name = "KIND", default_value = "single_mass")]
     pub structure: String,
@@ -367,6 +383,7 @@ pub(super) struct SchemaArgs {
 /// The kinds of file that have a schema.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub(super) enum SchemaOf {
+    Study,
     Experiment,
     Assumptions,
     Reference,

@@ -5,12 +5,13 @@ use std::path::{Path, PathBuf};
 use super::args::CheckArgs;
 use super::error::CliError;
 use super::exit::Exit;
-use super::output::{print, print_document, print_error, print_unread};
+use super::output::{print, print_document, print_error, print_unread, print_warnings};
 use super::select::{Chosen, choose, open};
 use crate::atomic::{self, FileError};
 use crate::reference;
-use crate::report::{self, CheckView, Standing};
-use crate::report::{Judgement, check_view, departures, doubts, judge_all, self_test_all, summary_of};
+use crate::report::{
+    self, CheckView, Judgement, Standing, check_view, departures, doubts, judge_all, self_test_all, summary_of,
+};
 use crate::study::{Layout, Study};
 
 /// Where GitHub wants the summary of a step.
@@ -21,6 +22,7 @@ pub(super) fn check(layout: &Layout, args: &CheckArgs) -> Result<Exit, CliError>
     let study = open(layout)?;
     let chosen = choose(&study, &args.choice)?;
     print_unread(chosen.unread.iter().copied());
+    print_warnings(study.warnings().as_ref());
     let judgement = judge_all(&study);
     if let (Some(id), Some(reason)) = (&args.accept, &args.reason) {
         return accept(&study, &judgement, id, reason);

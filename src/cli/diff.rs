@@ -9,8 +9,7 @@ use super::error::CliError;
 use super::exit::Exit;
 use super::output::print;
 use super::select::open;
-use crate::report::{self, Detail, Movement, Standing};
-use crate::report::{VERDICTS, judge_tables};
+use crate::report::{self, Detail, Movement, Standing, VERDICTS, judge_tables};
 use crate::study::Layout;
 use crate::table::{Table, parquet};
 

@@ -8,7 +8,7 @@ use super::select::choose;
 use super::update::{open_stale, todo};
 use crate::study::{Extent, KnownRows, Layout, forecast};
 use crate::text::number::compact;
-use crate::text::words::capitalised;
+use crate::text::words::{capitalised, counted};
 
 /// Prints it, and writes nothing.
 pub(super) fn dry_run(layout: &Layout, args: &RunArgs, common: &Args) -> Result<Exit, CliError> {
@@ -23,7 +23,10 @@ pub(super) fn dry_run(layout: &Layout, args: &RunArgs, common: &Args) -> Result<
         text += &format!("{}: {}", item.source.experiment.id, rows(&extent));
         if extent.to_do > 0 {
             let ahead = wall(&extent, threads).map_or_else(|| "time not known".into(), about);
-            text += &format!(", {} simulations at most, {ahead}", extent.simulations);
+            text += &format!(
+                ", {} at most, {ahead}",
+                counted(usize::try_from(extent.simulations).unwrap_or(usize::MAX), "simulation", "simulations")
+            );
         }
         text += "\n";
         if extent.to_do > 0 {
@@ -33,7 +36,12 @@ pub(super) fn dry_run(layout: &Layout, args: &RunArgs, common: &Args) -> Result<
         }
         total.add(&extent, threads);
     }
-    text += &format!("{} of {} experiments would be simulated{}\n", total.simulated, chosen.count(), total.rest());
+    text += &format!(
+        "{} of {} would be simulated{}\n",
+        total.simulated,
+        counted(chosen.count(), "experiment", "experiments"),
+        total.rest()
+    );
     if let Some(ahead) = total.time(threads) {
         text += &format!("{ahead} on {threads} threads\n");
     }

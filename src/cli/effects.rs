@@ -11,7 +11,7 @@ use crate::study::Layout;
 /// What each effect of an experiment changes and costs; writes nothing.
 pub(super) fn effects(layout: &Layout, id: &str) -> Result<Exit, CliError> {
     let study = open(layout)?;
-    let chosen = choose(&study, &Choice { patterns: vec![id.into()], chapter: None })?;
+    let chosen = choose(&study, &Choice { patterns: vec![id.into()], folder: None })?;
     print_unread(chosen.unread.iter().copied());
     let mut exit = if chosen.unread.is_empty() { Exit::AsExpected } else { Exit::CouldNot };
     for item in &chosen.items {

@@ -22,16 +22,18 @@ pub(super) enum CliError {
     NoMatch { pattern: String, known: String },
     #[error("`shotdamp {0}` needs the id of an experiment, or --all")]
     NothingChosen(&'static str),
-    #[error("no experiment belongs to chapter {0}")]
-    NoChapter(u32),
+    #[error("no experiment lies in experiments/{folder}; there are {known}")]
+    NoFolder { folder: String, known: String },
+    #[error(
+        "`{0}` cannot name a folder of experiments/: write names of letters, digits, `-` and `_`, with `/` between them"
+    )]
+    Folder(String),
     #[error("there is no entry `{0}`; entries are named experiment/entry, as `shotdamp check` shows them")]
     NoEntry(String),
     #[error("{} holds neither tables (*.parquet) nor verdicts (verdicts.json)", from_here(.0))]
     NoResults(PathBuf),
     #[error("cannot compare {}: {problem}", from_here(.path))]
     Unreadable { path: PathBuf, problem: String },
-    #[error("{0}")]
-    Id(String),
     #[error("there is an experiment `{0}` already")]
     Exists(String),
     #[error("there is no structure `{given}`; known are {known}")]

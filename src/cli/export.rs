@@ -7,6 +7,7 @@ use super::output::{print, print_unread};
 use super::select::{choose, open};
 use crate::report::{CrateError, export_crate};
 use crate::study::Layout;
+use crate::text::words::counted;
 
 /// Writes the chosen experiments with all their results into a folder for others.
 pub(super) fn export(layout: &Layout, args: &ExportArgs) -> Result<Exit, CliError> {
@@ -18,6 +19,7 @@ pub(super) fn export(layout: &Layout, args: &ExportArgs) -> Result<Exit, CliErro
         return Err(CrateError::NotUpToDate(files).into());
     }
     let files = export_crate(&study, &chosen.items, &args.ro_crate, &args.published)?;
-    print(&format!("{}: {} experiments, {files} files\n", args.ro_crate.display(), chosen.items.len()))?;
+    let experiments = counted(chosen.items.len(), "experiment", "experiments");
+    print(&format!("{}: {experiments}, {files} files\n", args.ro_crate.display()))?;
     Ok(Exit::AsExpected)
 }

@@ -17,7 +17,7 @@ pub(super) fn list(layout: &Layout) -> Result<Exit, CliError> {
         .map(|item| {
             let experiment = &item.source.experiment;
             let source = &experiment.source;
-            let place = format!("s. {}", source.section);
+            let place = source.section.as_ref().map_or_else(String::new, |section| format!("s. {section}"));
             vec![experiment.id.to_string(), place, source.shown_in.join(", "), experiment.title.clone()]
         })
         .collect();

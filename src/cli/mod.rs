@@ -16,6 +16,7 @@ mod gather;
 mod list;
 mod new;
 mod output;
+mod report;
 mod schema;
 mod select;
 mod shard;
@@ -63,6 +64,10 @@ fn dispatch(args: &Args) -> Result<Exit, CliError> {
             Some(shard) => shard::run_shard(&layout, run, shard, args),
             None => update::update(&layout, run, args),
         },
+        Some(Command::Report(report)) => {
+            start_threads(args);
+            report::report(&layout, report)
+        }
         Some(Command::Export(export)) => export::export(&layout, export),
         Some(Command::Gather(gather)) => {
             start_threads(args);

@@ -5,25 +5,42 @@ use super::error::CliError;
 use super::exit::Exit;
 use super::output::print;
 use super::schema::write_all;
-use super::select::{chapter_of, open};
+use super::select::open;
 use crate::atomic;
-use crate::experiment::{ExperimentId, IdError, scaffold, structures};
+use crate::experiment::{ExperimentId, scaffold, structures};
 use crate::study::Layout;
 
 /// Writes an experiment to begin with, and the schemas by which an editor completes and checks it.
 pub(super) fn new(layout: &Layout, args: &NewArgs) -> Result<Exit, CliError> {
-    let id: ExperimentId = args.id.parse().map_err(|error: IdError| CliError::Id(error.to_string()))?;
-    let chapter = args.chapter.unwrap_or_else(|| chapter_of(&id.0));
-    let name = format!("experiments/ch{chapter}/{id}.yaml");
+    let id: ExperimentId = args.id.parse()?;
+    let folder = match &args.folder {
+        Some(folder) => named(folder)?,
+        None => known_folder(layout, &id),
+    };
+    let name = format!("experiments/{folder}{id}.yaml");
     let taken = open(layout)?.items.iter().any(|item| item.source.experiment.id == id);
     if taken || layout.path(&name).exists() {
         return Err(CliError::Exists(id.to_string()));
     }
-    let schema = format!("../../{}", SchemaOf::Experiment.file());
-    let text = scaffold(&id, chapter, &args.structure, &schema)
+    let schema = format!("{}{}", "../".repeat(name.matches('/').count()), SchemaOf::Experiment.file());
+    let text = scaffold(&id, &args.structure, &schema)
         .ok_or_else(|| CliError::NoStructure { given: args.structure.clone(), known: structures().join(", ") })?;
     write_all(layout)?;
     atomic::write(&layout.path(&name), text.as_bytes())?;
     print(&format!("{name}\nNext: shotdamp show {id}; shotdamp run {id}\n"))?;
     Ok(Exit::AsExpected)
+}
+
+/// The folder that was asked for, with a slash behind it.
+fn named(folder: &str) -> Result<String, CliError> {
+    let folder = folder.trim_end_matches('/');
+    let is_name = |part: &str| !part.is_empty() && part.chars().all(|c| c.is_ascii_alphanumeric() || "-_".contains(c));
+    if folder.split('/').all(is_name) { Ok(format!("{folder}/")) } else { Err(CliError::Folder(folder.into())) }
+}
+
+/// The folder whose name an id begins with, `ch3/` for `ch3-gap`; empty if there is none.
+fn known_folder(layout: &Layout, id: &ExperimentId) -> String {
+    let first = id.0.split('-').next().unwrap_or_default();
+    let there = layout.path(&format!("experiments/{first}")).is_dir();
+    if there { format!("{first}/") } else { String::new() }
 }

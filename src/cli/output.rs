@@ -4,7 +4,7 @@ use std::io::{self, IsTerminal, Write};
 use std::sync::OnceLock;
 
 use super::args::Colour;
-use crate::study::Refused;
+use crate::experiment::Problems;
 use crate::study::Unread;
 
 /// How this process prints; set once, from its arguments.
@@ -63,14 +63,20 @@ pub(super) fn print_error(text: &str) {
 pub(super) fn print_unread<'a>(unread: impl IntoIterator<Item = &'a Unread>) {
     let colour = style().colour;
     for one in unread {
-        match one {
-            Unread::Experiment(Refused::Text(problems)) if colour || io::stderr().is_terminal() => {
-                print_error(&problems.fancy(colour));
-            }
-            Unread::Experiment(Refused::Text(problems)) => print_error(&problems.to_string()),
-            other => print_error(&format!("error: {other}\n")),
+        match one.problems() {
+            Some(problems) if colour || io::stderr().is_terminal() => print_error(&problems.fancy(colour)),
+            Some(problems) => print_error(&problems.to_string()),
+            None => print_error(&format!("error: {one}\n")),
         }
     }
+}
+
+/// Prints warnings, unless nothing but errors is wanted; framed on a terminal.
+pub(super) fn print_warnings(warnings: Option<&Problems>) {
+    let Some(warnings) = warnings.filter(|_| !style().quiet) else { return };
+    let colour = style().colour;
+    let text = if colour || io::stderr().is_terminal() { warnings.fancy(colour) } else { warnings.to_string() };
+    print_error(&text);
 }
 
 /// A table of text without lines: columns as wide as they need to be.

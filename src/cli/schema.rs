@@ -5,25 +5,27 @@ use super::error::CliError;
 use super::exit::Exit;
 use super::output::{print, print_document};
 use crate::atomic::{self, FileError};
-use crate::experiment::{assumptions_schema, experiment_schema};
+use crate::experiment::{AssumptionSheet, assumptions_schema, experiment_schema, load_assumptions, study_schema};
 use crate::reference::reference_schema;
-use crate::study::Layout;
+use crate::study::{ASSUMPTIONS, Layout};
 
 impl SchemaOf {
-    pub const ALL: [Self; 3] = [Self::Experiment, Self::Assumptions, Self::Reference];
+    pub const ALL: [Self; 4] = [Self::Study, Self::Experiment, Self::Assumptions, Self::Reference];
 
     /// Where it stands within the study.
     pub fn file(self) -> &'static str {
         match self {
+            Self::Study => "schema/study.json",
             Self::Experiment => "schema/experiment.json",
             Self::Assumptions => "schema/assumptions.json",
             Self::Reference => "schema/reference.json",
         }
     }
 
-    fn text(self) -> String {
+    fn text(self, sheet: &AssumptionSheet) -> String {
         let schema = match self {
-            Self::Experiment => experiment_schema(),
+            Self::Experiment => experiment_schema(sheet),
+            Self::Study => study_schema(),
             Self::Assumptions => assumptions_schema(),
             Self::Reference => reference_schema(),
         };
@@ -31,9 +33,9 @@ impl SchemaOf {
     }
 }
 
-/// Prints one schema; needs no study.
+/// Prints one schema; needs no study, and so offers no names of assumptions.
 pub(super) fn print_one(of: SchemaOf) -> Result<Exit, CliError> {
-    print_document(&of.text())?;
+    print_document(&of.text(&AssumptionSheet::default()))?;
     Ok(Exit::AsExpected)
 }
 
@@ -48,10 +50,11 @@ pub(super) fn schema(layout: &Layout, args: &SchemaArgs) -> Result<Exit, CliErro
     Ok(Exit::AsExpected)
 }
 
-/// Writes those that are not what they should be.
+/// Writes those that are not what they should be; while the assumptions cannot be read, without their names.
 pub(super) fn write_all(layout: &Layout) -> Result<(), FileError> {
+    let sheet = load_assumptions(&layout.path(ASSUMPTIONS)).unwrap_or_default();
     for of in SchemaOf::ALL {
-        atomic::write_if_changed(&layout.path(of.file()), of.text().as_bytes())?;
+        atomic::write_if_changed(&layout.path(of.file()), of.text(&sheet).as_bytes())?;
     }
     Ok(())
 }

@@ -7,7 +7,7 @@ use super::args::Choice;
 use super::error::CliError;
 use super::exit::Exit;
 use crate::report::Judgement;
-use crate::study::{ASSUMPTIONS, Item, Layout, Snapshot, Study, Summary, Texts, Unread, stem};
+use crate::study::{ASSUMPTIONS, Item, Layout, STUDY, Snapshot, Study, Summary, Texts, Unread, folder_of, stem};
 
 /// The study that is meant.
 pub(super) fn layout(root: Option<&Path>) -> Result<Layout, CliError> {
@@ -27,14 +27,16 @@ pub(super) fn open(layout: &Layout) -> Result<Study, CliError> {
 impl Choice {
     /// True for an experiment that is known to be up to date.
     pub fn admits_known(&self, known: &Summary) -> bool {
-        self.admits(&known.heading.id.0, known.heading.source.chapter)
+        self.admits(&known.heading.id.0, &known.folder)
     }
 
-    fn admits(&self, id: &str, chapter: u32) -> bool {
-        self.chapter.is_none_or(|wanted| wanted == chapter) && self.admits_any_chapter(id)
+    fn admits(&self, id: &str, folder: &str) -> bool {
+        let within =
+            |wanted: &str| folder.strip_prefix(wanted).is_some_and(|rest| rest.is_empty() || rest.starts_with('/'));
+        self.folder.as_deref().is_none_or(|wanted| within(wanted.trim_end_matches('/'))) && self.admits_any_folder(id)
     }
 
-    fn admits_any_chapter(&self, id: &str) -> bool {
+    fn admits_any_folder(&self, id: &str) -> bool {
         self.patterns.is_empty() || self.patterns.iter().any(|pattern| matches(pattern, id))
     }
 }
@@ -55,8 +57,8 @@ pub(super) struct Chosen<'a> {
 pub(super) fn matched<'a>(snapshot: &'a Snapshot, texts: &'a Texts, choice: &Choice) -> Option<BTreeSet<&'a str>> {
     let admitted = |id: &&str| match snapshot.experiments.get(*id) {
         Some(known) => choice.admits_known(known),
-        // Of one that has to be read first the chapter is not known.
-        None => choice.admits_any_chapter(id),
+        // One that has to be read first is known by its id alone.
+        None => choice.admits_any_folder(id),
     };
     let ids: BTreeSet<&str> = texts.stems().into_iter().filter(admitted).collect();
     let is_known = |id: &&str| snapshot.experiments.contains_key(*id);
@@ -68,7 +70,7 @@ pub(super) fn matched<'a>(snapshot: &'a Snapshot, texts: &'a Texts, choice: &Cho
 /// What `choice` means in this study.
 ///
 /// # Errors
-/// A pattern or a chapter that nothing answers to: it would otherwise pass for success.
+/// A pattern or a folder that nothing answers to: it would otherwise pass for success.
 pub(super) fn choose<'a>(study: &'a Study, choice: &Choice) -> Result<Chosen<'a>, CliError> {
     if study.items.is_empty() && study.known.is_empty() && study.unread.is_empty() {
         return Err(CliError::NoExperiments);
@@ -77,14 +79,15 @@ pub(super) fn choose<'a>(study: &'a Study, choice: &Choice) -> Result<Chosen<'a>
         items: study
             .items
             .iter()
-            .filter(|item| choice.admits(&item.source.experiment.id.0, item.source.experiment.source.chapter))
+            .filter(|item| choice.admits(&item.source.experiment.id.0, item.source.folder()))
             .collect(),
         known: study.known.values().filter(|known| choice.admits_known(known)).collect(),
         unread: study
             .unread
             .iter()
             .filter(|unread| {
-                unread.file() == ASSUMPTIONS || choice.admits(stem(unread.file()), chapter_of(unread.file()))
+                [ASSUMPTIONS, STUDY].contains(&unread.file())
+                    || choice.admits(stem(unread.file()), folder_of(unread.file()))
             })
             .collect(),
         ids: BTreeSet::new(),
@@ -96,13 +99,15 @@ pub(super) fn choose<'a>(study: &'a Study, choice: &Choice) -> Result<Chosen<'a>
     if let Some(pattern) = choice.patterns.iter().find(|pattern| !blind && !answers(pattern)) {
         return Err(CliError::NoMatch { pattern: pattern.clone(), known: known(study) });
     }
-    if let Some(chapter) = choice.chapter.filter(|_| chosen.is_empty()) {
-        return Err(CliError::NoChapter(chapter));
+    if let Some(folder) = choice.folder.clone().filter(|_| chosen.is_empty()) {
+        return Err(CliError::NoFolder { folder, known: folders(study) });
     }
     // A reference without its experiment is missing it, and must not be passed over.
     let planned: BTreeSet<&str> = study.items.iter().map(|item| item.source.experiment.id.0.as_str()).collect();
     let orphans = study.references.keys().map(String::as_str).filter(|id| !planned.contains(id));
-    let ids = chosen.ids().chain(orphans.filter(|id| choice.admits(id, chapter_of(id)))).collect();
+    let names = study.reference_names();
+    let folder = |id: &str| names.get(id).map_or("", |name| folder_of(name));
+    let ids = chosen.ids().chain(orphans.filter(|id| choice.admits(id, folder(id)))).collect();
     Ok(Chosen { ids, ..chosen })
 }
 
@@ -141,13 +146,12 @@ fn known(study: &Study) -> String {
     }
 }
 
-/// The chapter in a name, `ch3-gap` or `experiments/ch3/…`; 0 if none.
-pub(super) fn chapter_of(name: &str) -> u32 {
-    let chapter = |part: &str| -> Option<u32> {
-        let digits: String = part.strip_prefix("ch")?.chars().take_while(char::is_ascii_digit).collect();
-        digits.parse().ok()
-    };
-    name.split('/').find_map(chapter).unwrap_or(0)
+/// The folders of `experiments/` that hold some.
+fn folders(study: &Study) -> String {
+    let planned = study.items.iter().map(|item| item.source.folder());
+    let folders = planned.chain(study.known.values().map(|known| known.folder.as_str()));
+    let folders: BTreeSet<&str> = folders.filter(|folder| !folder.is_empty()).collect();
+    if folders.is_empty() { "no folders".into() } else { folders.into_iter().collect::<Vec<_>>().join(", ") }
 }
 
 /// `*` stands for any letters, `?` for one.

@@ -10,10 +10,10 @@ use super::select::{choose, open};
 use crate::accuracy::idle_cases;
 use crate::dynamics::{Allowance, Limit};
 use crate::experiment::Experiment;
-use crate::report::scenes;
-use crate::report::value_in_words;
+use crate::report::{scenes, value_in_words};
 use crate::scene::{Scene, effects};
 use crate::study::{Item, Layout, State, Study, forecast};
+use crate::text::words::counted;
 
 /// How long the proof that particles stay on their floors may take; cases beyond it count as not proved.
 const PATIENCE: Duration = Duration::from_millis(500);
@@ -21,7 +21,7 @@ const PATIENCE: Duration = Duration::from_millis(500);
 /// Prints all that is known of an experiment before it runs.
 pub(super) fn show(layout: &Layout, id: &str) -> Result<Exit, CliError> {
     let study = open(layout)?;
-    let chosen = choose(&study, &Choice { patterns: vec![id.into()], chapter: None })?;
+    let chosen = choose(&study, &Choice { patterns: vec![id.into()], folder: None })?;
     print_unread(chosen.unread.iter().copied());
     let texts: Vec<String> = chosen.items.iter().map(|item| describe(&study, item)).collect();
     print(&texts.join("\n"))?;
@@ -31,14 +31,11 @@ pub(super) fn show(layout: &Layout, id: &str) -> Result<Exit, CliError> {
 fn describe(study: &Study, item: &Item) -> String {
     let experiment = &item.source.experiment;
     let source = &experiment.source;
+    let section = source.section.as_ref().map(|section| format!("s. {section}"));
+    let place: Vec<String> = section.into_iter().chain(source.shown_in.iter().cloned()).collect();
+    let place = if place.is_empty() { String::new() } else { place.join(", ") + "; " };
     let mut text = format!("{}: {}\n", experiment.id, experiment.title);
-    text += &format!(
-        "s. {}, {}; {}\n\n{}\n",
-        source.section,
-        source.shown_in.join(", "),
-        item.source.file,
-        experiment.about
-    );
+    text += &format!("{place}{}\n\n{}\n", item.source.file, experiment.about);
 
     let scenes = scenes(study, experiment);
     let first = experiment.cases.first().map(|case| case.describe()).filter(|case| !case.is_empty());
@@ -53,7 +50,7 @@ fn describe(study: &Study, item: &Item) -> String {
             let state = match effect.in_force {
                 0 => format!("left out: {}", effect.why_not),
                 n if n == effect.cases => "in force".into(),
-                n => format!("in force in {n} of {} cases", effect.cases),
+                n => format!("in force in {n} of {}", counted(effect.cases, "case", "cases")),
             };
             vec![format!("  {}", effect.name), state]
         })
@@ -61,13 +58,10 @@ fn describe(study: &Study, item: &Item) -> String {
     text += &columns(&rows);
     text += &idle(experiment, &scenes);
 
-    text += "\nAssumptions\n";
+    text += if item.used.is_empty() { "" } else { "\nAssumptions\n" };
     for (name, entry) in study.sheet.iter().filter(|(name, _)| item.used.contains(*name)) {
         text += &format!("  {name} = {}\n", value_in_words(entry.kind.unit(), &entry.value));
         text += &wrapped(&entry.reason, "      ", 100);
-    }
-    if item.used.is_empty() {
-        text += "  none\n";
     }
 
     text += "\nCases\n";
@@ -78,12 +72,17 @@ fn describe(study: &Study, item: &Item) -> String {
         }
     }
     let (rows, simulations) = item.size();
-    text += &format!("  {} cases, under {}\n", experiment.cases.len(), solvers.join(" and "));
+    let cases = counted(experiment.cases.len(), "case", "cases");
+    text += &format!("  {cases}, under {}\n", solvers.join(" and "));
     if item.variants.len() > 1 {
         let ends: Vec<&str> = item.variants.iter().skip(1).map(|variant| variant.label.as_str()).collect();
         text += &format!("  and event-driven with each of {}\n", ends.join(", "));
     }
-    text += &format!("  {rows} rows, {simulations} simulations at most\n");
+    text += &format!(
+        "  {}, {} at most\n",
+        counted(rows, "row", "rows"),
+        counted(usize::try_from(simulations).unwrap_or(usize::MAX), "simulation", "simulations")
+    );
     for warning in forecast(experiment, &study.sheet.assumptions()) {
         text += &format!("  warning: {warning}\n");
     }
@@ -102,9 +101,9 @@ fn idle(experiment: &Experiment, scenes: &[Scene]) -> String {
     match Allowance::new(limit).simulate(|| idle_cases(experiment, scenes)) {
         0 => String::new(),
         count => format!(
-            "  In {count} of {} cases it is proved that no particle leaves its floor: ceilings, stops and impacts are idle \
+            "  In {count} of {} it is proved that no particle leaves its floor: ceilings, stops and impacts are idle \
              there and skipped.\n",
-            scenes.len()
+            counted(scenes.len(), "case", "cases")
         ),
     }
 }

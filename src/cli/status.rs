@@ -4,7 +4,7 @@ use super::args::StatusArgs;
 use super::dry_run::rows;
 use super::error::CliError;
 use super::exit::Exit;
-use super::output::{print, print_unread};
+use super::output::{print, print_unread, print_warnings};
 use super::select::{Chosen, choose, matched};
 use crate::experiment::line_of;
 use crate::report::publication_reasons;
@@ -36,12 +36,14 @@ pub(super) fn status(layout: &Layout, args: &StatusArgs) -> Result<Exit, CliErro
     let texts = Texts::read(layout)?;
     let snapshot = Snapshot::current(layout, &texts);
     if let Some(ids) = matched(&snapshot, &texts, &args.choice) {
+        print_warnings(snapshot.warnings(&texts).as_ref());
         print(&total(ids.len(), 0, 0))?;
         return Ok(Exit::AsExpected);
     }
     let study = Study::beside(layout.clone(), texts, snapshot.experiments);
     let chosen = choose(&study, &args.choice)?;
     print_unread(chosen.unread.iter().copied());
+    print_warnings(study.warnings().as_ref());
     let stale = stale(&study, &chosen);
     let width = stale.iter().map(|(item, ..)| item.source.experiment.id.0.len()).max().unwrap_or(0);
     let mut text = String::new();

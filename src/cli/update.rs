@@ -6,7 +6,7 @@ use super::args::{Args, Choice, RunArgs};
 use super::dry_run::dry_run;
 use super::error::CliError;
 use super::exit::Exit;
-use super::output::{print, print_error, print_unread};
+use super::output::{print, print_error, print_unread, print_warnings};
 use super::select::{Chosen, choose, matched};
 use super::simulate::{How, Ran, held, print_failures, simulate};
 use crate::report::{Judgement, Published, doubts, judge_all, publish, summary_of};
@@ -21,6 +21,7 @@ pub(super) fn update(layout: &Layout, args: &RunArgs, common: &Args) -> Result<E
         let snapshot = Snapshot::current(layout, &texts);
         if let Some(ids) = matched(&snapshot, &texts, &args.choice) {
             snapshot.settle(layout);
+            print_warnings(snapshot.warnings(&texts).as_ref());
             return nothing_to_do(&snapshot, &ids);
         }
     }
@@ -34,6 +35,7 @@ pub(super) fn update(layout: &Layout, args: &RunArgs, common: &Args) -> Result<E
     let mut study = open_stale(layout, &args.choice, args.force || args.verify)?;
     let chosen = choose(&study, &args.choice)?;
     print_unread(chosen.unread.iter().copied());
+    print_warnings(study.warnings().as_ref());
     let todo = todo(&chosen, args);
     let row_limit = args.row_limit.unwrap_or_default();
     let how = How { threads: common.threads(), quiet: common.quiet, shard: None, row_limit, from_scratch: args.force };

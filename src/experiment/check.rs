@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::recipe::{Assumptions, ExcitationKind, Parameter, ParameterValue, Part, RecipeError};
-use crate::measure::{Measure, Under};
+use crate::measure::{EnergySpec, Measure, Settings, ShapeSpec, SolverChoice, TraceSpec, Under};
 use crate::scene::Scene;
 
 use super::definition::{Case, Drawing, Experiment, FigureSpec, Maximise, Panel, Refinement};
@@ -13,7 +13,6 @@ use super::refined::curves;
 use super::scene::ReadScene;
 use super::sweep::ReadSweep;
 use super::word::word_of;
-use crate::measure::{EnergySpec, Settings, ShapeSpec, SolverChoice, TraceSpec};
 
 /// Most runs of a whole experiment, ensembles not counted.
 const MOST_RUNS: usize = 1_000_000;
@@ -316,23 +315,40 @@ impl From<RecipeError> for Refusal {
     }
 }
 
+/// Why a run cannot go in steps.
+#[derive(Debug, thiserror::Error)]
+enum StepError {
+    #[error("a forcing period of {period} s rounds to no step of {step} s at all")]
+    RoundsToNone { period: f64, step: f64 },
+    #[error("a time step of {time_step} s is longer than the forcing period of {period} s")]
+    LongerThanPeriod { time_step: f64, period: f64 },
+    #[error("a time step of {time_step} s makes more than {MOST_STEPS:e} steps a run")]
+    TooMany { time_step: f64 },
+}
+
+impl From<StepError> for Refusal {
+    fn from(error: StepError) -> Self {
+        error.to_string().into()
+    }
+}
+
 /// What a scene asks of the steps of its run.
-fn steps(scene: &Scene, case: &Case, settings: &Settings) -> Result<(), String> {
+fn steps(scene: &Scene, case: &Case, settings: &Settings) -> Result<(), StepError> {
     let period = scene.excitation.period();
     let in_a_period = |step: f64| (period / step).round();
     if let Some(step) = settings.round_period_to
         && in_a_period(step) < 1.0
     {
-        return Err(format!("a forcing period of {period} s rounds to no step of {step} s at all"));
+        return Err(StepError::RoundsToNone { period, step });
     }
     for solver in &case.solvers {
         let SolverChoice::FixedStep { time_step } = *solver else { continue };
         if in_a_period(time_step) < 1.0 {
-            return Err(format!("a time step of {time_step} s is longer than the forcing period of {period} s"));
+            return Err(StepError::LongerThanPeriod { time_step, period });
         }
         let cycles = f64::from(settings.skip) + f64::from(settings.average);
         if in_a_period(time_step) * cycles > MOST_STEPS {
-            return Err(format!("a time step of {time_step} s makes more than {MOST_STEPS:e} steps a run"));
+            return Err(StepError::TooMany { time_step });
         }
     }
     Ok(())

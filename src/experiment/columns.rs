@@ -1,11 +1,10 @@
 //! The columns that an experiment's table will have, known before anything runs.
 
 use super::recipe::{GapWord, Parameter};
-use crate::measure::Measure;
 
 use super::definition::Maximise;
 use super::word::word_of;
-use crate::measure::{ShapeOf, ShapeSpec};
+use crate::measure::{Measure, PROOF, trace_columns};
 
 /// What a column holds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -18,53 +17,11 @@ pub(super) enum Role {
     History,
 }
 
-/// Names of proof columns.
-const PROOF: [&str; 7] =
-    ["momentum_residual", "energy_residual", "events", "smallest_margin", "ties", "chaotic", "members"];
-
-/// Names of time histories, as documented at [`super::TraceSpec`].
-pub(super) const HISTORIES: [&str; 13] = [
-    "time",
-    "base_displacement",
-    "base_velocity",
-    "base_acceleration",
-    "particle_displacement",
-    "floor_displacement",
-    "ceiling_displacement",
-    "rigid_floor",
-    "rigid_ceiling",
-    "contact_damping",
-    "rms_acceleration",
-    "event_time",
-    "event_kind",
-];
-
-/// Names of the lists of kinetic energies, as documented at [`super::EnergySpec`].
-pub(super) const ENERGIES: [&str; 7] = [
-    "cycle",
-    "kinetic_energy_after",
-    "kinetic_energy_before",
-    "undamped_kinetic_energy_after",
-    "undamped_kinetic_energy_before",
-    "damping_measure_of_cycle",
-    "mass_measure_of_cycle",
-];
-
 /// Names of what became of a candidate.
 const OUTCOME: [&str; 4] = ["fitness_in_search", "improvement", "improvement_num", "evaluations"];
 
 /// Names of the lists of an optimisation: the best fitness after so many evaluations, and the fitness along one gap.
 const SEARCHES: [&str; 4] = ["evaluation", "best_so_far", "along_gap", "fitness_along"];
-
-/// Names of the lists of a shape, as documented at [`super::ShapeSpec`].
-pub(super) fn shape_lists(shape: &ShapeSpec) -> Vec<&'static str> {
-    let sides = if shape.points.len() > 1 { &["x", "y"][..] } else { &["x"] };
-    let values = match shape.of {
-        ShapeOf::Mode => &["shape", "exact_shape"][..],
-        ShapeOf::Deflection => &["shape", "rms_displacement", "mode_shape"],
-    };
-    [sides, values].concat()
-}
 
 /// Columns with what they hold, in the order of the table.
 pub(super) struct Columns {
@@ -98,7 +55,7 @@ impl Columns {
         if let Some(maximise) = maximise {
             list.push((format!("{}_at_maximum", word_of(maximise.over)), Role::Number));
         }
-        list.extend(PROOF.map(|name| (name.into(), Role::Number)));
+        list.extend(PROOF.map(|column| (column.name.into(), Role::Number)));
         list.extend(lists.iter().map(|name| ((*name).into(), Role::History)));
         Self { list }
     }
@@ -115,7 +72,7 @@ impl Columns {
         }
         list.extend(OUTCOME.map(|name| (name.into(), Role::Number)));
         list.push(("stopped".into(), Role::Label));
-        list.extend(PROOF.map(|name| (name.into(), Role::Number)));
+        list.extend(PROOF.map(|column| (column.name.into(), Role::Number)));
         list.extend(SEARCHES.map(|name| (name.into(), Role::History)));
         Self { list }
     }
@@ -132,6 +89,6 @@ impl Columns {
 
     /// True for a name that a kept time history would have.
     pub fn is_history(name: &str) -> bool {
-        HISTORIES.contains(&name)
+        trace_columns().contains(&name)
     }
 }

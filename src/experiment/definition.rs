@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 
 use serde::{Deserialize, Serialize};
 
-use super::recipe::{AssumptionName, Assumptions, Parameter, ParameterValue, Recipe, RecipeError};
+use super::recipe::{AssumptionName, AssumptionValue, Assumptions, Parameter, ParameterValue, Recipe, RecipeError};
 use crate::dynamics::Limit;
 use crate::measure::{EnergySpec, Measure, Needs, Settings, ShapeSpec, SolverChoice, TraceSpec};
 
@@ -39,14 +39,14 @@ impl std::fmt::Display for ExperimentId {
     }
 }
 
-/// One row of the study.
+/// An experiment: what is simulated, measured and drawn.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Experiment {
     /// Id, from the file's name.
     pub id: ExperimentId,
-    /// Title, as a reader of the study would call it.
+    /// Title, as a reader would call it.
     pub title: String,
-    /// Where it stands in the study.
+    /// Where a publication shows it.
     pub source: Source,
     /// One or two sentences: what is shown and how. Markdown.
     pub about: String,
@@ -96,7 +96,7 @@ impl Experiment {
         self.cases.iter().flat_map(|case| case.solvers.iter().map(move |solver| (case, *solver)))
     }
 
-    /// The scene of one case, still in the study's parameters.
+    /// The scene of one case, still in the parameters of the file.
     ///
     /// # Errors
     /// Only for a case that is not this experiment's: validation has tried all of them.
@@ -132,9 +132,15 @@ impl Experiment {
     /// The assumptions that a number of this experiment may depend on, under the values in force or with one of them moved.
     #[must_use]
     pub fn assumptions_used(&self, sheet: &AssumptionSheet) -> BTreeSet<AssumptionName> {
-        let mut used = self.assumptions_under(&sheet.assumptions());
+        let in_force = sheet.assumptions();
+        let mut used = self.assumptions_under(&in_force);
         for moved in sheet.variants(&used) {
-            used.extend(self.assumptions_under(&moved.assumptions));
+            // Which assumptions are read depends on readings and on what is zero, never on how large a number is.
+            let values = [&in_force, &moved.assumptions].map(|assumptions| assumptions.values.get(&moved.name));
+            let branches = !matches!(values, [Some(AssumptionValue::Number(a)), Some(AssumptionValue::Number(b))] if *a != 0.0 && *b != 0.0);
+            if branches {
+                used.extend(self.assumptions_under(&moved.assumptions));
+            }
         }
         used
     }
@@ -204,14 +210,14 @@ fn json(data: &impl Serialize) -> serde_json::Value {
     serde_json::to_value(data).unwrap_or_else(|error| unreachable!("plain data has a JSON form: {error}"))
 }
 
-/// Place in the study.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+/// Where a publication shows it; each part may be absent.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Source {
-    /// Chapter number.
-    pub chapter: u32,
+    /// Number of the chapter.
+    pub chapter: Option<u32>,
     /// `3.6.3`.
-    pub section: String,
-    /// `Fig. 18`, `Figs 20, 21`, `Table 2`; as a reader would cite it.
+    pub section: Option<String>,
+    /// `Fig. 18`, `Figs 20, 21`, `Table 2`, or a citation; as a reader would cite it.
     pub shown_in: Vec<String>,
 }
 
@@ -309,8 +315,17 @@ pub enum Drawing {
     Lines(Vec<Panel>),
     /// A quantity over two others, as colours, in panels of one colour scale.
     Map(Box<MapSpec>),
-    /// The gaps of an optimised array as bars: the study's beside the best found.
+    /// The gaps of an optimised array as bars: those that the file names beside the best found.
     Gaps,
+    /// The motion of damper and particle, row by row of the table, slowed down.
+    Animation(AnimationSpec),
+}
+
+/// An animation of time histories.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct AnimationSpec {
+    /// Columns that tell the rows apart.
+    pub by: Vec<String>,
 }
 
 /// A map. Its three columns hold a number a row (a cell a row, drawn as such) or a list a row (a field a row, drawn with

@@ -15,9 +15,20 @@ pub(super) struct Span {
     pub end: usize,
 }
 
+/// Whether something is wrong, or only hardly meant.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Severity {
+    /// The file cannot be used as it is.
+    Error,
+    /// It can.
+    Warning,
+}
+
 /// One mistake.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Problem {
+    /// How bad it is.
+    pub severity: Severity,
     /// What is wrong, in words.
     pub message: String,
     /// What would be right.
@@ -27,7 +38,7 @@ pub struct Problem {
 }
 
 /// A place in a text file.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Place {
     /// Line, counted from 1.
     pub line: usize,
@@ -50,7 +61,35 @@ pub struct Problems {
 impl Problems {
     /// A file that could not be read at all.
     pub(super) fn unreadable(file: &str, message: String, help: Option<String>) -> Self {
-        Self { file: file.into(), list: vec![Problem { message, help, place: None }], text: String::new() }
+        Self {
+            file: file.into(),
+            list: vec![Problem { severity: Severity::Error, message, help, place: None }],
+            text: String::new(),
+        }
+    }
+
+    /// One mistake at a line and column, counted from 1, or of the file as a whole.
+    #[must_use]
+    pub fn at(file: &str, text: &str, at: Option<(u64, u64)>, message: String) -> Self {
+        let place = at.map(|(line, column)| place(text, span_at(text, line, column)));
+        let problem = Problem { severity: Severity::Error, message: harmless(&message), help: None, place };
+        Self { file: file.into(), list: vec![problem], text: harmless(text) }
+    }
+
+    /// What is hardly meant in a file that can be used.
+    pub(super) fn warnings(
+        file: &str,
+        text: &str,
+        list: impl Iterator<Item = (Place, String, String)>,
+    ) -> Option<Self> {
+        let warning = |(place, message, help): (Place, String, String)| Problem {
+            severity: Severity::Warning,
+            message,
+            help: Some(help),
+            place: Some(place),
+        };
+        let list: Vec<Problem> = list.map(warning).collect();
+        (!list.is_empty()).then(|| Self { file: file.into(), list, text: harmless(text) })
     }
 
     /// The same for a person at a terminal: framed source snippets, in colour if asked for.
@@ -70,7 +109,11 @@ impl Problems {
     }
 
     fn write_plain(&self, problem: &Problem, out: &mut impl fmt::Write) -> fmt::Result {
-        writeln!(out, "error: {}", problem.message)?;
+        let severity = match problem.severity {
+            Severity::Error => "error",
+            Severity::Warning => "warning",
+        };
+        writeln!(out, "{severity}: {}", problem.message)?;
         if let Some(place) = problem.place {
             writeln!(out, "  --> {}:{}:{}", self.file, place.line, place.column)?;
             let line = self.text.lines().nth(place.line - 1).unwrap_or_default();
@@ -125,6 +168,13 @@ impl fmt::Display for Shown<'_> {
 impl std::error::Error for Shown<'_> {}
 
 impl miette::Diagnostic for Shown<'_> {
+    fn severity(&self) -> Option<miette::Severity> {
+        Some(match self.problem.severity {
+            Severity::Error => miette::Severity::Error,
+            Severity::Warning => miette::Severity::Warning,
+        })
+    }
+
     fn help<'a>(&'a self) -> Option<Box<dyn fmt::Display + 'a>> {
         self.problem.help.as_ref().map(|help| Box::new(help) as Box<dyn fmt::Display>)
     }
@@ -184,7 +234,12 @@ impl Findings {
         list.dedup();
         let list = list
             .into_iter()
-            .map(|(span, message, help)| Problem { message, help, place: Some(place(text, span)) })
+            .map(|(span, message, help)| Problem {
+                severity: Severity::Error,
+                message,
+                help,
+                place: Some(place(text, span)),
+            })
             .collect();
         Err(Problems { file: file.into(), list, text: harmless(text) })
     }
@@ -201,6 +256,19 @@ fn harmless(text: &str) -> String {
         }
     }
     out
+}
+
+/// The word at a line and column, counted from 1.
+fn span_at(text: &str, line: u64, column: u64) -> Span {
+    let before = |count: u64| usize::try_from(count.saturating_sub(1)).unwrap_or(usize::MAX);
+    let lines = text.split_inclusive('\n').scan(0, |start, line| {
+        *start += line.len();
+        Some((*start - line.len(), line))
+    });
+    let (start, line) = lines.take(before(line).saturating_add(1)).last().unwrap_or_default();
+    let offset = line.char_indices().nth(before(column)).map_or(0, |(offset, _)| offset);
+    let word = line[offset..].split(|c: char| c.is_whitespace() || ":,{}[]".contains(c)).next().unwrap_or_default();
+    Span { start: start + offset, end: start + offset + word.len().max(1) }
 }
 
 pub(super) fn place(text: &str, span: Span) -> Place {

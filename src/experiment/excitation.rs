@@ -2,8 +2,7 @@
 
 use super::assumption_sheet::Takes;
 use super::quantity::Dimension;
-use super::reader::ratio;
-use super::reader::{Choice, Fields, above_zero, count, quantity};
+use super::reader::{Choice, Fields, above_zero, count, quantity, ratio};
 use super::recipe::{
     Carried, ExcitationKind, ExcitationRecipe, ForcingOrNatural, Given, ImpulseTime, ImpulseTimeRecipe, Parameter,
     Slot, StrengthRecipe, TimingRecipe,

@@ -1,7 +1,7 @@
 //! The `figure` (or `figures`) of an experiment, checked against the columns that its table will have.
 
 use super::columns::{Columns, Role};
-use super::definition::{Axis, AxisScale, Band, Drawing, FigureSpec, Level, Only, Panel, PeakMarks};
+use super::definition::{AnimationSpec, Axis, AxisScale, Band, Drawing, FigureSpec, Level, Only, Panel, PeakMarks};
 use super::diagnostic::{Findings, Span};
 use super::reader::{Choice, Fields, boolean, count, list, number, one_or_more, scalar, text, unknown, word};
 use super::sweep::is_name;
@@ -73,6 +73,16 @@ impl<'t> FigureReader<'t> {
                 drawing: Drawing::Gaps,
             });
         }
+        if let Some(node) = fields.get("animation") {
+            let animation = self.animation(node);
+            fields.close()?;
+            return Some(FigureSpec {
+                name: name?.unwrap_or_default(),
+                caption: caption?,
+                only: only?,
+                drawing: Drawing::Animation(animation?),
+            });
+        }
         let shared = Shared {
             x: fields.get("x"),
             by: fields.get("by"),
@@ -104,6 +114,15 @@ impl<'t> FigureReader<'t> {
         let words = fields.required("words", |node| one_or_more(node, self.findings, |node| text(node, self.findings)));
         fields.close()?;
         Some(Only { column: column?, words: words? })
+    }
+
+    /// `{by: gap_ratio}`; the time history has to be kept.
+    fn animation(&self, node: &'t Node) -> Option<AnimationSpec> {
+        let fields = Fields::open(node, "an animation", self.findings)?;
+        let by = fields.optional("by", |node| one_or_more(node, self.findings, |node| self.split(node)));
+        fields.close()?;
+        self.column("particle_displacement", node.span, |role| role == Role::History)?;
+        Some(AnimationSpec { by: by?.unwrap_or_default() })
     }
 
     fn name(&self, node: &Node) -> Option<String> {

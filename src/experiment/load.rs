@@ -7,7 +7,8 @@ use std::path::Path;
 use super::recipe::Assumptions;
 use crate::atomic::from_here;
 
-use super::assumption_sheet::{AssumptionSheet, parse_assumptions};
+use super::assumption_reader::parse_assumptions;
+use super::assumption_sheet::AssumptionSheet;
 use super::definition::{Experiment, ExperimentId};
 use super::diagnostic::Problems;
 use super::validate::parse_experiment;

@@ -3,6 +3,8 @@
 //! text → a tree of nodes that know where they stand → [`Experiment`] (units resolved, defaults filled, no places).
 //! Every reader goes on after a mistake, so a file's problems come together: see [`Problems`].
 
+mod about_study;
+mod assumption_reader;
 mod assumption_sheet;
 mod calibration;
 mod check;
@@ -36,15 +38,15 @@ mod validate;
 mod word;
 mod yaml;
 
-pub use assumption_sheet::{
-    AssumptionEntry, AssumptionKind, AssumptionSheet, Moved, Quantity, Takes, parse_assumptions,
-};
+pub use about_study::{AboutStudy, LineColour, Publication, PublicationKind, parse_study};
+pub use assumption_reader::parse_assumptions;
+pub use assumption_sheet::{AssumptionEntry, AssumptionKind, AssumptionSheet, Cycles, Moved, Quantity, Takes};
 pub use calibration::{Calibration, CalibrationInput, CalibrationSearch, Tried, load_calibration, parse_calibration};
 pub use definition::{
-    Axis, AxisScale, Band, Best, Case, Drawing, Experiment, ExperimentId, FigureSpec, IdError, Level, MapSpec, Mark,
-    Maximise, Only, Panel, PeakMarks, Refinement, Source,
+    AnimationSpec, Axis, AxisScale, Band, Best, Case, Drawing, Experiment, ExperimentId, FigureSpec, IdError, Level,
+    MapSpec, Mark, Maximise, Only, Panel, PeakMarks, Refinement, Source,
 };
-pub use diagnostic::{Place, Problem, Problems};
+pub use diagnostic::{Place, Problem, Problems, Severity};
 pub(crate) use edit::{Written, set_keys};
 pub use limit::{NoLimit, RowLimit};
 pub use line::line_of;
@@ -61,7 +63,7 @@ pub use recipe::{
 pub(crate) use refined::{Curve, curves};
 pub use scaffold::{scaffold, structures};
 pub(crate) use schema::{Object, list, text, words_of};
-pub use schema::{assumptions_schema, experiment_schema};
+pub use schema::{assumptions_schema, experiment_schema, study_schema};
 pub use typed::{Located, from_yaml};
 pub(crate) use typed::{Spanned, position};
 pub use validate::parse_experiment;

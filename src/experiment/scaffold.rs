@@ -13,7 +13,7 @@ pub fn structures() -> Vec<&'static str> {
 /// The text of an experiment on this structure; `schema` is where its JSON Schema stands, as seen from its file. `None` if there
 /// is no such structure.
 #[must_use]
-pub fn scaffold(id: &ExperimentId, chapter: u32, structure: &str, schema: &str) -> Option<String> {
+pub fn scaffold(id: &ExperimentId, structure: &str, schema: &str) -> Option<String> {
     let kind = KINDS.iter().find(|kind| kind.name == structure)?;
     let fields: Vec<String> = kind
         .fields
@@ -37,7 +37,6 @@ pub fn scaffold(id: &ExperimentId, chapter: u32, structure: &str, schema: &str) 
         "\
 # yaml-language-server: $schema={schema}
 title: {title}
-source: {{chapter: {chapter}, section: \"{chapter}\"}}
 about: >-
   One or two sentences: what is varied, and what is looked at.
 scene:

@@ -2,7 +2,8 @@
 
 use std::cell::RefCell;
 
-use super::assumption_sheet::{Takes, fits, read_curve};
+use super::assumption_reader::{fits, read_curve};
+use super::assumption_sheet::Takes;
 use super::diagnostic::{Findings, Span};
 use super::quantity::Dimension;
 use super::reader::{Choice, Fields, above_zero, boolean, list, number, quantity, ratio};

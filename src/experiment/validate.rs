@@ -7,10 +7,12 @@ use std::collections::BTreeSet;
 
 use super::recipe::{AssumptionName, Assumptions, Parameter, ParameterValue, Recipe};
 use crate::dynamics::Limit;
-use crate::measure::Measure;
 
+use super::about_study::MOST_CHAPTERS;
+use super::assumption_reader::{MOST_CYCLES, read_average, read_skip};
+use super::assumption_sheet::Cycles;
 use super::check::Checks;
-use super::columns::{Columns, ENERGIES, HISTORIES, shape_lists};
+use super::columns::Columns;
 use super::definition::{Case, Experiment, ExperimentId, Maximise, Source};
 use super::diagnostic::{Findings, Problems, Span};
 use super::figure::FigureReader;
@@ -25,10 +27,11 @@ use super::solver::read_solver;
 use super::sweep::{ReadSweep, read_sweep};
 use super::word::{from_word, words};
 use super::yaml::{Node, Value, read_tree};
-use crate::measure::{EnergySpec, Settings, ShapeOf, ShapeSpec, SolverChoice, TraceSpec};
+use crate::measure::{
+    EnergySpec, Measure, Settings, ShapeOf, ShapeSpec, SolverChoice, TraceSpec, energy_columns, shape_columns,
+    trace_columns,
+};
 
-/// Most forcing cycles of a run.
-pub(super) const MOST_CYCLES: u32 = 10_000_000;
 /// Most samples of a time history.
 const MOST_SAMPLES: u64 = 1_000_000;
 
@@ -62,11 +65,27 @@ struct Run {
     moved: Option<BTreeSet<AssumptionName>>,
 }
 
+/// A run as an experiment states it.
+#[derive(Default)]
+struct GivenRun {
+    span: Span,
+    solvers: Option<Vec<SolverChoice>>,
+    skip: Option<u32>,
+    average: Option<u32>,
+    round_period_to: Option<f64>,
+    ensemble: Option<u32>,
+    limit: Option<Limit>,
+    moved: Option<BTreeSet<AssumptionName>>,
+}
+
+/// Perturbed starts of a chaotic point, unless an experiment says.
+const USUAL_ENSEMBLE: u32 = 32;
+
 impl<'t> ExperimentReader<'t> {
     fn experiment(&self, id: &ExperimentId, root: &'t Node) -> Option<Experiment> {
         let fields = Fields::open(root, "an experiment", self.findings)?;
         let title = fields.required("title", |node| text(node, self.findings));
-        let source = fields.required("source", |node| self.source(node));
+        let source = fields.optional("source", |node| self.source(node));
         let about = fields.required("about", |node| text(node, self.findings));
         let scene = fields.required("scene", |node| read_scene(node, self.assumptions, self.findings));
         let sweep = fields.optional("sweep", |node| read_sweep(node, self.findings));
@@ -74,10 +93,13 @@ impl<'t> ExperimentReader<'t> {
         let measures = fields.required("measure", |node| self.measures(node));
         let maximise = fields.optional("maximise", |node| self.maximise(node));
         let optimise = fields.optional("optimise", |node| OptimiseReader { findings: self.findings }.read(node));
-        let run = fields.optional("run", |node| self.run(node)).map(|run| run.unwrap_or_else(Run::default));
         let trace = fields.optional("trace", |node| self.trace(node));
         let energies = fields.optional("energies", |node| self.energies(node));
         let shape = fields.optional("shape", |node| self.shape(node));
+        let lists = matches!(trace, Some(Some(_))) || matches!(energies, Some(Some(_)));
+        let deflection = matches!(&shape, Some(Some(shape)) if shape.of == ShapeOf::Deflection);
+        let of_model = measures.as_ref().is_some_and(|measures| measures.iter().all(|(measure, _)| measure.is_modal()));
+        let run = self.run(&fields, of_model && !lists && !deflection);
         let one_list = self.one_list(&fields);
         let alone = self.optimised_alone(&fields);
         let whole = self.averaged_alone(&fields);
@@ -88,9 +110,9 @@ impl<'t> ExperimentReader<'t> {
 
         let kept = match (&trace, &energies, &shape) {
             (Some(trace), Some(energies), Some(shape)) => Some(match (trace, energies, shape) {
-                (Some(_), _, _) => HISTORIES.to_vec(),
-                (_, Some(_), _) => ENERGIES.to_vec(),
-                (_, _, Some(shape)) => shape_lists(shape),
+                (Some(_), _, _) => trace_columns(),
+                (_, Some(_), _) => energy_columns(),
+                (_, _, Some(shape)) => shape_columns(shape),
                 _ => Vec::new(),
             }),
             _ => None,
@@ -156,7 +178,7 @@ impl<'t> ExperimentReader<'t> {
         let experiment = Experiment {
             id: id.clone(),
             title: title?,
-            source: source?,
+            source: source?.unwrap_or_default(),
             about: about?,
             recipe: scene.recipe,
             solvers: all_solvers(&cases),
@@ -186,8 +208,8 @@ impl<'t> ExperimentReader<'t> {
 
     fn source(&self, node: &'t Node) -> Option<Source> {
         let fields = Fields::open(node, "a source", self.findings)?;
-        let chapter = fields.required("chapter", |node| count(node, "", 99, self.findings));
-        let section = fields.required("section", |node| text(node, self.findings));
+        let chapter = fields.optional("chapter", |node| count(node, "", MOST_CHAPTERS, self.findings));
+        let section = fields.optional("section", |node| text(node, self.findings));
         let shown_in =
             fields.optional("shown_in", |node| one_or_more(node, self.findings, |node| text(node, self.findings)));
         fields.close()?;
@@ -314,16 +336,42 @@ impl<'t> ExperimentReader<'t> {
         Some(Maximise { measure: measure?, over: over?, grid, refine: refine?.unwrap_or(0) })
     }
 
-    fn run(&self, node: &'t Node) -> Option<Run> {
+    /// What stands under `run`; what it leaves out is the study's, or the same for every study. What is read off the model alone
+    /// needs no cycles.
+    fn run(&self, experiment: &Fields<'t>, of_model: bool) -> Option<Run> {
+        let given = match experiment.get("run") {
+            Some(node) => self.given_run(node)?,
+            None => GivenRun { span: experiment.span(), ..GivenRun::default() },
+        };
+        let no_run = of_model.then_some(Cycles { skip: 0, average: 1 });
+        let (span, usual) = (given.span, self.assumptions.sheet.cycles().or(no_run));
+        let cycles = |key: &str, given: Option<u32>, usual: Option<u32>| {
+            let help = "write `run: {skip: 25 cycles, average: 100 cycles}`, here or, for all experiments, under \
+                        `defaults` in the assumptions file";
+            let message = || format!("a run lacks `{key}`, and the study has no default for it");
+            given.or(usual).or_else(|| self.findings.report(span, message(), Some(help.into())))
+        };
+        let skip = cycles("skip", given.skip, usual.map(|usual| usual.skip));
+        let average = cycles("average", given.average, usual.map(|usual| usual.average));
+        Some(Run {
+            solvers: given.solvers.unwrap_or_else(|| vec![SolverChoice::EventDriven]),
+            settings: Settings {
+                skip: skip?,
+                average: average?,
+                round_period_to: given.round_period_to,
+                ensemble: given.ensemble.unwrap_or(USUAL_ENSEMBLE),
+            },
+            limit: given.limit.unwrap_or_default(),
+            moved: given.moved,
+        })
+    }
+
+    fn given_run(&self, node: &'t Node) -> Option<GivenRun> {
         let fields = Fields::open(node, "a run", self.findings)?;
         let solvers =
             fields.optional("solver", |node| one_or_more(node, self.findings, |node| read_solver(node, self.findings)));
-        let cycles = |node: &'t Node| count(node, "cycles", MOST_CYCLES, self.findings);
-        let skip = fields.optional("skip", cycles);
-        let average = fields.optional("average", |node| {
-            let average = cycles(node)?;
-            if average > 0 { Some(average) } else { self.findings.wrong(node.span, "one cycle at least is averaged") }
-        });
+        let skip = fields.optional("skip", |node| read_skip(node, self.findings));
+        let average = fields.optional("average", |node| read_average(node, self.findings));
         let round_period_to =
             fields.optional("round_period_to", |node| above_zero(node, Dimension::Time, self.findings));
         let ensemble = fields.optional("ensemble", |node| match &node.value {
@@ -337,16 +385,14 @@ impl<'t> ExperimentReader<'t> {
         });
         let limit = fields.optional("limit", |node| read_limit(node, self.findings));
         fields.close()?;
-        let usual = Run::default();
-        Some(Run {
-            solvers: solvers?.unwrap_or(usual.solvers),
-            settings: Settings {
-                skip: skip?.unwrap_or(usual.settings.skip),
-                average: average?.unwrap_or(usual.settings.average),
-                round_period_to: round_period_to?,
-                ensemble: ensemble?.unwrap_or(usual.settings.ensemble),
-            },
-            limit: limit?.unwrap_or_default(),
+        Some(GivenRun {
+            span: node.span,
+            solvers: solvers?,
+            skip: skip?,
+            average: average?,
+            round_period_to: round_period_to?,
+            ensemble: ensemble?,
+            limit: limit?,
             moved: moved?,
         })
     }
@@ -417,18 +463,6 @@ impl<'t> ExperimentReader<'t> {
                 .wrong(node.span, format!("a shape has {MOST_POINTS} points at most, along two sides"));
         }
         Some(ShapeSpec { of, points })
-    }
-}
-
-impl Default for Run {
-    /// 25 cycles skipped, 100 averaged, exactly solved.
-    fn default() -> Self {
-        Self {
-            solvers: vec![SolverChoice::EventDriven],
-            settings: Settings { skip: 25, average: 100, round_period_to: None, ensemble: 32 },
-            limit: Limit::default(),
-            moved: None,
-        }
     }
 }
 

@@ -167,6 +167,12 @@ impl Axis {
         number / self.factor
     }
 
+    /// Its scale and its ends as displayed, for programs: `log 0.1 100`.
+    pub(super) fn in_words(&self) -> String {
+        let scale = if self.scale == AxisScale::Log { "log" } else { "linear" };
+        format!("{scale} {} {}", self.displayed(self.number(0.0)), self.displayed(self.number(1.0)))
+    }
+
     /// As [`Axis::share`], with what lies outside moved to the nearer end.
     pub(super) fn share_clamped(&self, number: f64) -> f64 {
         self.share(number).unwrap_or(0.0).clamp(0.0, 1.0)
@@ -247,7 +253,12 @@ struct Displayed {
 
 impl Displayed {
     fn choose(size: f64, unit: &str) -> Self {
-        let Prefix { symbol, factor } = Prefix::of(size, unit);
+        // Velocities below 1 m/s are quoted in mm/s.
+        let Prefix { symbol, factor } = if unit == "m/s" && (1e-3..1.0).contains(&size) {
+            Prefix { symbol: "m", factor: 1e-3 }
+        } else {
+            Prefix::of(size, unit)
+        };
         if factor != 1.0 || (1e-2..1e5).contains(&size) || size == 0.0 {
             return Self { factor, unit: format!("{symbol}{unit}") };
         }

@@ -10,6 +10,8 @@ use plotters_backend::{
     BackendColor, BackendCoord, BackendStyle, BackendTextStyle, DrawingBackend, DrawingErrorKind, FontTransform,
 };
 
+use super::attributes::escaped;
+
 /// What a drawing step leaves behind; writing into memory cannot fail.
 type Drawn = Result<(), DrawingErrorKind<Infallible>>;
 
@@ -103,7 +105,7 @@ impl DrawingBackend for Writer {
             FontTransform::Rotate270 => format!(" transform=\"rotate(-90 {x} {y})\""),
             _ => String::new(),
         };
-        let text = text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;");
+        let text = escaped(text);
         let (size, color) = (style.size(), hex(style.color()));
         self.put(format_args!(
             "<text x=\"{x}\" y=\"{y}\" font-size=\"{size}\" fill=\"{color}\"{anchor}{turn}>{text}</text>\n"

@@ -1,5 +1,6 @@
-//! The gaps of an array as bars, one group a damper: those that the study found beside the best that was found here.
+//! The gaps of an array as bars, one group a damper: the candidates that the experiment names beside the best that was found.
 
+use super::attributes::Attributes;
 use super::axis::{Axis, Extent, Room};
 use super::canvas::{Anchor, Lettering, Pen, Sheet, svg, text_width};
 use super::error::FigureError;
@@ -12,14 +13,18 @@ use super::style::{
 };
 use crate::experiment::{AxisScale, Goal, Optimise};
 use crate::table::Data;
+use crate::text::number::compact;
 use crate::text::words;
 
-const HEIGHT: f64 = 640.0;
+/// Without the legend.
+const HEIGHT: f64 = 590.0;
+/// From a sign of the legend to its text.
+const ASIDE: f64 = 54.0;
 /// Share of a group that its bars take.
 const FILLED: f64 = 0.7;
 const MOST_TICKS: u32 = 6;
-/// The study's bars, in the order of the table.
-const STUDY: [Color; 3] = [INK, GREY, Color(0xB0, 0xB0, 0xB0)];
+/// Bars of named candidates, in the order of the table.
+const NAMED: [Color; 3] = [INK, GREY, Color(0xB0, 0xB0, 0xB0)];
 
 /// Bars of one colour.
 struct Series {
@@ -37,10 +42,22 @@ pub(super) fn bars(source: Source<'_>, optimise: &Optimise) -> Result<String, Fi
     let bounds = optimise.bounds.iter().flat_map(|[low, high]| [*low, *high]);
     let all = series.iter().flat_map(|one| one.gaps.iter().copied()).chain(bounds);
     let y = Axis::new(AxisScale::Log, Extent::of(all, AxisScale::Log).ok_or_else(nothing)?, Room::Airy, &unit);
-    Ok(svg(WIDTH, HEIGHT, |sheet| paint(sheet, &series, &y, &label::with_unit("gap clearance", &y.unit))))
+    let y_label = label::with_unit("gap clearance", &y.unit);
+    let numbers = y.ticks(MOST_TICKS).iter().map(|tick| text_width(&tick.label, TICK_TEXT)).fold(0.0, f64::max);
+    let left = numbers + LABEL_TEXT + 4.0 * SPACE;
+    let signs = signs(&series, left);
+    let top = signs.last().map_or(0.0, |sign| sign.y + LEGEND_ROW / 2.0) + SPACE;
+    let frame = Rect { left, top, right: WIDTH - 2.0 * SPACE, bottom: top + HEIGHT - TICK_TEXT - 4.0 * SPACE };
+    Ok(svg(WIDTH, top + HEIGHT, |sheet| {
+        paint(sheet, &series, &frame, &y, &y_label);
+        for (one, at) in series.iter().zip(signs) {
+            sheet.cell(&Rect { left: at.x, top: at.y - 14.0, right: at.x + 40.0, bottom: at.y + 14.0 }, one.color);
+            write(sheet, Point { x: at.x + ASIDE, ..at }, &one.name, LEGEND_TEXT, Anchor::Left, false);
+        }
+    }))
 }
 
-/// The candidates of the study that are no uniform gaps, and the best of the searches.
+/// The named candidates, uniform gaps only where there are no others, and the best of the searches.
 fn series(source: Source<'_>, optimise: &Optimise) -> Result<Vec<Series>, FigureError> {
     let word = words::of_key(&optimise.gaps);
     let columns = (1..=optimise.bounds.len())
@@ -53,14 +70,18 @@ fn series(source: Source<'_>, optimise: &Optimise) -> Result<Vec<Series>, Figure
     let value = source.column(&words::of_key(&optimise.measure))?;
     let gaps = |row: usize| columns.iter().map(|column| number(column, row).unwrap_or(f64::NAN)).collect::<Vec<f64>>();
     let own = |name: &str| optimise.candidates.iter().any(|candidate| candidate.name == name);
+    // What starts from one is a search beside it, not one from nothing.
+    let from_own = |name: &str| name.strip_suffix("_two_opt").is_some_and(own);
     let differ = |row: &usize| gaps(*row).windows(2).any(|pair| pair[0] != pair[1]);
     let mut series: Vec<Series> = Vec::new();
-    for (row, name) in names.iter().enumerate().filter(|(row, name)| own(name) && differ(row)) {
-        let color = STUDY[series.len().min(STUDY.len() - 1)];
+    let named = || names.iter().enumerate().filter(|(_, name)| own(name));
+    let uniform = named().all(|(row, _)| !differ(&row));
+    for (row, name) in named().filter(|(row, _)| uniform || differ(row)) {
+        let color = NAMED[series.len().min(NAMED.len() - 1)];
         series.push(Series { name: words::of_level("candidate", name), gaps: gaps(row), color });
     }
     let sign = if optimise.goal == Goal::Minimise { 1.0 } else { -1.0 };
-    let searched = |row: &usize| !names[*row].is_empty() && !names[*row].starts_with("study") && !own(&names[*row]);
+    let searched = |row: &usize| !names[*row].is_empty() && !own(&names[*row]) && !from_own(&names[*row]);
     let fitness = |row: &usize| number(value, *row).filter(|fitness| fitness.is_finite()).map(|fitness| sign * fitness);
     let best = (0..names.len())
         .filter(searched)
@@ -73,20 +94,32 @@ fn series(source: Source<'_>, optimise: &Optimise) -> Result<Vec<Series>, Figure
     Ok(series)
 }
 
-fn paint(sheet: &Sheet, series: &[Series], y: &Axis, y_label: &str) {
-    let ticks = y.ticks(MOST_TICKS);
-    let numbers = ticks.iter().map(|tick| text_width(&tick.label, TICK_TEXT)).fold(0.0, f64::max);
-    let left = numbers + LABEL_TEXT + 4.0 * SPACE;
-    let bottom = HEIGHT - TICK_TEXT - 3.0 * SPACE;
-    let frame = Rect { left, top: LEGEND_ROW + 2.0 * SPACE, right: WIDTH - 2.0 * SPACE, bottom };
-    let write = |at: Point, text: &str, size: f64, anchor: Anchor, upright: bool| {
-        sheet.text(at, &Lettering { text, size, anchor, upright, color: INK });
+/// Where the signs of the legend are, row by row.
+fn signs(series: &[Series], left: f64) -> Vec<Point> {
+    let mut at = Point { x: left, y: SPACE + LEGEND_ROW / 2.0 };
+    let place = |one: &Series| {
+        let width = ASIDE + text_width(&one.name, LEGEND_TEXT);
+        if at.x > left && at.x + width > WIDTH - SPACE {
+            at = Point { x: left, y: at.y + LEGEND_ROW };
+        }
+        let here = at;
+        at.x += width + 3.0 * SPACE;
+        here
     };
+    series.iter().map(place).collect()
+}
+
+fn write(sheet: &Sheet, at: Point, text: &str, size: f64, anchor: Anchor, upright: bool) {
+    sheet.text(at, &Lettering { text, size, anchor, upright, color: INK });
+}
+
+fn paint(sheet: &Sheet, series: &[Series], frame: &Rect, y: &Axis, y_label: &str) {
+    let ticks = y.ticks(MOST_TICKS);
     for tick in ticks.iter().filter(|tick| !tick.label.is_empty()) {
         sheet.line(&[frame.at(0.0, tick.at), frame.at(1.0, tick.at)], Pen::solid(PALE, GRID));
         let at = frame.at(0.0, tick.at);
         sheet.line(&[at, Point { x: at.x + TICK, ..at }], Pen::solid(INK, FRAME));
-        write(Point { x: at.x - SPACE, ..at }, &tick.label, TICK_TEXT, Anchor::Right, false);
+        write(sheet, Point { x: at.x - SPACE, ..at }, &tick.label, TICK_TEXT, Anchor::Right, false);
     }
     let count = |n: usize| u32::try_from(n).map_or(1.0, f64::from).max(1.0);
     let gaps = series.iter().map(|one| one.gaps.len()).max().unwrap_or(0);
@@ -98,19 +131,23 @@ fn paint(sheet: &Sheet, series: &[Series], y: &Axis, y_label: &str) {
             let Some(share) = one.gaps.get(gap).and_then(|gap| y.share(*gap)) else { continue };
             let from = start + f64::from(index) * bar;
             let (low, high) = (frame.at(from + 0.06 * bar, 0.0), frame.at(from + 0.94 * bar, share.clamp(0.0, 1.0)));
-            sheet.cell(&Rect { left: low.x, top: high.y, right: high.x, bottom: low.y }, one.color);
+            let note = format!("{}, gap {}: {} {}", one.name, gap + 1, compact(y.displayed(one.gaps[gap]), 4), y.unit);
+            sheet.group(&Attributes::note(note.trim_end()), || {
+                sheet.cell(&Rect { left: low.x, top: high.y, right: high.x, bottom: low.y }, one.color);
+            });
         }
         let middle = frame.at(start + 0.5 * FILLED * group, 0.0);
         let at = Point { y: middle.y + SPACE + TICK_TEXT / 2.0, ..middle };
-        write(at, &format!("gap {}", gap + 1), TICK_TEXT, Anchor::Centre, false);
+        write(sheet, at, &format!("gap {}", gap + 1), TICK_TEXT, Anchor::Centre, false);
     }
     let corners = frame.corners();
     sheet.line(&[corners[0], corners[1], corners[2], corners[3], corners[0], corners[1]], Pen::solid(INK, FRAME));
-    write(Point { x: SPACE + LABEL_TEXT / 2.0, y: frame.at(0.0, 0.5).y }, y_label, LABEL_TEXT, Anchor::Centre, true);
-    let mut at = Point { x: frame.left, y: SPACE + LEGEND_ROW / 2.0 };
-    for one in series {
-        sheet.cell(&Rect { left: at.x, top: at.y - 14.0, right: at.x + 40.0, bottom: at.y + 14.0 }, one.color);
-        write(Point { x: at.x + 54.0, ..at }, &one.name, LEGEND_TEXT, Anchor::Left, false);
-        at.x += 54.0 + text_width(&one.name, LEGEND_TEXT) + 3.0 * SPACE;
-    }
+    write(
+        sheet,
+        Point { x: SPACE + LABEL_TEXT / 2.0, y: frame.at(0.0, 0.5).y },
+        y_label,
+        LABEL_TEXT,
+        Anchor::Centre,
+        true,
+    );
 }

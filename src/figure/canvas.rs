@@ -14,13 +14,14 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 use plotters::style::{Color as _, FontDesc, FontFamily, FontStyle, FontTransform, RGBColor, ShapeStyle};
 use ttf_parser::Face;
 
+use super::attributes::Attributes;
 use super::backend::Writer;
 use super::geometry::{Point, Rect, dashed, simplified};
 use super::raster::{FAMILY, FONT};
 use super::style::{Color, PAPER};
 
 /// Units of the SVG in a pixel of the picture.
-const UNITS: f64 = 10.0;
+pub(super) const UNITS: f64 = 10.0;
 /// How far a line may be from the points that it stands for, in pixels.
 const DEVIATION: f64 = 0.1;
 /// Where the baseline has to lie for digits and capitals to be centred on their place, in em.
@@ -66,6 +67,8 @@ pub(super) struct Lettering<'a> {
 /// A sheet of paper.
 pub(super) struct Sheet {
     area: DrawingArea<Writer, Shift>,
+    /// The SVG so far.
+    text: Rc<RefCell<String>>,
 }
 
 /// Paints on a white sheet of this size; returns the SVG.
@@ -75,9 +78,11 @@ pub(super) fn svg(width: f64, height: f64, paint: impl FnOnce(&Sheet)) -> String
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width:.0}\" height=\"{height:.0}\" \
          viewBox=\"0 0 {wide} {high}\" font-family=\"{FAMILY}, {FALLBACK}\" stroke-linejoin=\"round\">\n"
     )));
-    let sheet = Sheet { area: Writer { size: (wide, high), text: Rc::clone(&text) }.into_drawing_area() };
+    let area = Writer { size: (wide, high), text: Rc::clone(&text) }.into_drawing_area();
+    let sheet = Sheet { area, text: Rc::clone(&text) };
     sheet.cell(&Rect { left: 0.0, top: 0.0, right: width, bottom: height }, PAPER);
     paint(&sheet);
+    drop(sheet);
     text.take() + "</svg>\n"
 }
 
@@ -105,6 +110,13 @@ pub(super) fn wrapped(text: &str, size: f64, width: f64) -> Vec<String> {
 }
 
 impl Sheet {
+    /// What is painted as one group with these attributes.
+    pub(super) fn group(&self, attributes: &Attributes, paint: impl FnOnce()) {
+        self.text.borrow_mut().push_str(&format!("<g{attributes}>\n"));
+        paint();
+        self.text.borrow_mut().push_str("</g>\n");
+    }
+
     /// A polyline.
     pub(super) fn line(&self, points: &[Point], pen: Pen) {
         let points = simplified(points, DEVIATION);

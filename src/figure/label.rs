@@ -1,12 +1,13 @@
 //! What stands at axes and in legends: units and the field's symbols, words instead of column names.
 
 use crate::experiment::Experiment;
+use crate::measure::column_words;
 use crate::table::{Column, Data};
 use crate::text::{number, words};
 
 /// A column as an axis or a legend names it, without unit: `velocity ratio ψ`, `maximum velocity ratio ψ`.
 pub(super) fn of_column(experiment: Option<&Experiment>, column: &Column) -> String {
-    let name = words::of_column(&column.name);
+    let name = column_words(&column.name);
     let named = if column.symbol.is_empty() { name } else { format!("{name} {}", column.symbol) };
     let maximised = experiment
         .and_then(|experiment| experiment.maximise.as_ref())
@@ -31,7 +32,7 @@ pub(super) fn of_cell(column: &Column, row: usize) -> Option<String> {
         ("damper_count", _) => format!("{value} dampers"),
         ("modes", _) => format!("{value} modes"),
         ("pulse_duration", _) => format!("{value} pulse"),
-        (name, "") => format!("{} {value}", words::of_column(name)),
+        (name, "") => format!("{} {value}", column_words(name)),
         (_, symbol) => format!("{symbol} = {value}"),
     })
 }

@@ -49,11 +49,16 @@ pub(super) struct Obstacles {
 impl Obstacles {
     /// True if nothing lies in this place.
     pub(super) fn leave_free(&self, place: &Rect) -> bool {
-        !self.boxes.iter().any(|taken| taken.overlaps(place))
+        self.leave_boxes_free(place)
             && !self.lines.iter().any(|line| {
                 line.windows(2).any(|pair| place.meets(pair[0], pair[1]))
                     || matches!(line.as_slice(), [one] if place.meets(*one, *one))
             })
+    }
+
+    /// True if no box lies in this place; lines may.
+    pub(super) fn leave_boxes_free(&self, place: &Rect) -> bool {
+        !self.boxes.iter().any(|taken| taken.overlaps(place))
     }
 }
 

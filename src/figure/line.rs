@@ -3,14 +3,15 @@
 //! Every combination of the levels of the `by` columns and of the y columns is one line. The first thing that varies
 //! among them shows as colour, the rest as dashes; where only one thing varies it shows as both.
 
-use crate::experiment::{Band, Experiment, Panel};
+use std::collections::BTreeMap;
+
+use crate::experiment::{Band, Experiment, LineColour, Panel};
 use crate::table::{Column, Data, Table};
 
 use super::error::FigureError;
 use super::group::{Group, number};
-use super::label;
-use super::searches;
 use super::style::Look;
+use super::{label, searches};
 
 /// One point of a curve; NaN in y is a gap.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -91,6 +92,8 @@ pub(super) struct Source<'a> {
     pub table: &'a Table,
     /// What the figure is called in messages.
     pub figure: &'a str,
+    /// Colours of lines by name, as the study has them.
+    pub colours: Option<&'a BTreeMap<String, LineColour>>,
 }
 
 impl<'a> Source<'a> {
@@ -122,7 +125,7 @@ pub(super) fn curves(source: Source<'_>, panel: &Panel) -> Result<Vec<Curve>, Fi
         // Only what shows takes a colour.
         let shown: Vec<&Group> = groups.iter().filter(|group| group.rows.iter().any(|&row| holds(y, row))).collect();
         for group in &groups {
-            let traits = Traits::new(index, panel.y.len(), &shown, group);
+            let traits = Traits::new(source, index, panel.y.len(), &shown, group);
             let mut words = if panel.y.len() > 1 { vec![source.label(axis)?] } else { Vec::new() };
             words.extend(group.varying_words(&groups));
             let name = match words.split_first() {
@@ -221,7 +224,7 @@ fn fill(
 
 impl Group {
     /// For each `by` column that varies: which of how many levels this group has.
-    fn levels(&self, groups: &[&Self]) -> Vec<Level> {
+    fn levels(&self, source: Source<'_>, groups: &[&Self]) -> Vec<Level> {
         let level = |index: usize| {
             let mut seen: Vec<&Option<String>> = Vec::new();
             for group in groups {
@@ -229,8 +232,8 @@ impl Group {
                     seen.push(&group.words[index]);
                 }
             }
-            let fixed: Vec<Option<usize>> =
-                seen.iter().map(|word| word.as_deref().and_then(Look::hue_of_word)).collect();
+            let named = |word: &&Option<String>| Look::hue_of_word(word.as_deref()?, source.colours);
+            let fixed: Vec<Option<usize>> = seen.iter().map(named).collect();
             let at = seen.iter().position(|word| **word == self.words[index]).unwrap_or(0);
             Level { index: at, count: seen.len(), hue: hue(&fixed, at) }
         };
@@ -266,8 +269,8 @@ struct Traits {
 }
 
 impl Traits {
-    fn new(y: usize, ys: usize, groups: &[&Group], group: &Group) -> Self {
-        let mut levels = group.levels(groups);
+    fn new(source: Source<'_>, y: usize, ys: usize, groups: &[&Group], group: &Group) -> Self {
+        let mut levels = group.levels(source, groups);
         if ys > 1 {
             levels.insert(0, Level { index: y, count: ys, hue: y });
         }

@@ -1,7 +1,8 @@
 //! A map put on the sheet: colours, contours, frames and numbers, marks, headings, colour bar.
 
+use super::attributes::{Attributes, Labelled};
 use super::axis::Tick;
-use super::canvas::{Anchor, Lettering, Pen, Sheet, text_width};
+use super::canvas::{Anchor, Lettering, Pen, Sheet, UNITS, text_width};
 use super::contour::{Node, contours};
 use super::field::{Field, cell_edges, shares};
 use super::geometry::{Point, Rect};
@@ -25,12 +26,14 @@ const BELOW: &[f64] = &[12.0, 8.0];
 /// Draws a map.
 pub(super) fn map(sheet: &Sheet, map: &Map<'_>, layout: &MapLayout) {
     for (index, (panel, frame)) in map.panels.iter().zip(&layout.frames).enumerate() {
-        if map.is_smooth() {
-            bands(sheet, map, &panel.field, frame);
-            lines(sheet, map, &panel.field, frame);
-        } else {
-            cells(sheet, map, &panel.field, frame);
-        }
+        sheet.group(&values(map, &panel.field, frame), || {
+            if map.is_smooth() {
+                bands(sheet, map, &panel.field, frame);
+                lines(sheet, map, &panel.field, frame);
+            } else {
+                cells(sheet, map, &panel.field, frame);
+            }
+        });
         axes(sheet, layout, index, frame);
         marks(sheet, map, panel, frame);
         heading(sheet, layout, index, frame);
@@ -40,6 +43,18 @@ pub(super) fn map(sheet: &Sheet, map: &Map<'_>, layout: &MapLayout) {
     if let Some(top) = layout.legend {
         legend(sheet, map, Point { x: layout.frames[0].left, y: top + LEGEND_ROW / 2.0 });
     }
+}
+
+/// The numbers behind the colours.
+fn values(map: &Map<'_>, field: &Field, frame: &Rect) -> Attributes {
+    let x = Labelled { axis: &map.x, label: &map.x_label };
+    let y = Labelled { axis: &map.y, label: &map.y_label };
+    let rows = (0..field.y.len()).flat_map(|row| (0..field.x.len()).map(move |column| field.at(column, row)));
+    Attributes::frame(frame, UNITS, x, y)
+        .with("value-label", &map.value_label)
+        .with_numbers("columns", field.x.iter().map(|x| map.x.displayed(*x)))
+        .with_numbers("rows", field.y.iter().map(|y| map.y.displayed(*y)))
+        .with_numbers("values", rows.map(|value| map.shades.axis.displayed(value)))
 }
 
 fn cells(sheet: &Sheet, map: &Map<'_>, field: &Field, frame: &Rect) {

@@ -4,6 +4,8 @@
 //! in pixels → SVG → PNG. The font is built in, so that the same table gives the
 //! same picture on any machine.
 
+mod animation;
+mod attributes;
 mod axis;
 mod backend;
 mod bars;
@@ -36,6 +38,6 @@ mod work_precision;
 
 pub use error::FigureError;
 pub use quoted::{Known, Quoted, QuotedAt};
-pub use render::{Beside, Picture, draw, draw_table};
+pub use render::{Beside, Picture, draw, draw_svg, draw_table};
 pub use sketch::sketch;
 pub use work_precision::work_precision;

@@ -3,11 +3,13 @@
 use crate::experiment::Band;
 use crate::text::number::compact;
 
-use super::canvas::{Anchor, Lettering, Pen, Sheet, text_width};
+use super::attributes::{Attributes, Labelled};
+use super::canvas::{Anchor, Lettering, Pen, Sheet, UNITS, text_width};
 use super::contact;
 use super::geometry::{Point, Rect};
 use super::layout::{Place, line_height};
 use super::legend::Obstacles;
+use super::line::Curve;
 use super::panel::Panel;
 use super::peak::peaks;
 use super::style::{
@@ -57,7 +59,8 @@ pub(super) fn panel(
         }
     }
     contact::draw(sheet, panel, frame);
-    curves(sheet, panel, frame);
+    let [x, y] = [(&panel.x, &panel.x_label), (&panel.y, &panel.y_label)].map(|(axis, label)| Labelled { axis, label });
+    sheet.group(&Attributes::frame(frame, UNITS, x, y), || curves(sheet, panel, frame));
     peak_marks(sheet, panel, frame, &mut taken);
     for one in &panel.quoted {
         one.draw(sheet, panel, frame);
@@ -89,25 +92,27 @@ fn grid(sheet: &Sheet, panel: &Panel<'_>, frame: &Rect) {
 }
 
 fn curves(sheet: &Sheet, panel: &Panel<'_>, frame: &Rect) {
-    for curve in &panel.curves {
-        let pen = Pen { color: curve.look.color, width: curve.look.width, dash: curve.look.dash };
-        for stretch in panel.stretches(frame, curve) {
-            // A point between two gaps would be no line at all.
-            if let [alone] = stretch.as_slice() {
-                sheet.disc(*alone, CURVE, curve.look.color);
-            }
-            sheet.line(&stretch, pen);
-            let marked = match (panel.spec.markers, panel.spec.band) {
-                (true, _) => stretch.as_slice(),
-                // Where a search ended.
-                (false, Band::Seeds) => &stretch[stretch.len() - 1..],
-                (false, _) => &[],
-            };
-            if !marked.is_empty() {
-                for &at in marked {
-                    marker(sheet, at, curve.look);
-                }
-            }
+    for one in &panel.curves {
+        sheet.group(&Attributes::name(&one.name.full()), || curve(sheet, panel, frame, one));
+    }
+}
+
+fn curve(sheet: &Sheet, panel: &Panel<'_>, frame: &Rect, curve: &Curve) {
+    let pen = Pen { color: curve.look.color, width: curve.look.width, dash: curve.look.dash };
+    for stretch in panel.stretches(frame, curve) {
+        // A point between two gaps would be no line at all.
+        if let [alone] = stretch.as_slice() {
+            sheet.disc(*alone, CURVE, curve.look.color);
+        }
+        sheet.line(&stretch, pen);
+        let marked = match (panel.spec.markers, panel.spec.band) {
+            (true, _) => stretch.as_slice(),
+            // Where a search ended.
+            (false, Band::Seeds) => &stretch[stretch.len() - 1..],
+            (false, _) => &[],
+        };
+        for &at in marked {
+            marker(sheet, at, curve.look);
         }
     }
 }

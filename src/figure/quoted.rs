@@ -14,7 +14,7 @@ pub(super) const DASH: &[f64] = &[16.0, 8.0];
 /// A value far outside of the curves would leave them no room: how many times their own range it may take.
 const STRETCH: f64 = 3.0;
 
-/// A number that the study's text quotes. The curves of its lost figures are not quoted.
+/// A number that the study's text quotes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Quoted {
     /// The y column that it belongs to; it appears in the panels that draw this column.
@@ -182,9 +182,11 @@ impl Quoted {
                 beside.into_iter().flatten().chain(above).collect()
             }
         };
-        let free = |place: &&Rect| place.lies_within(frame) && taken.leave_free(&place.grown(1.0));
-        let inside = |place: &&Rect| place.lies_within(frame);
-        let Some(place) = places.iter().find(free).or_else(|| places.iter().find(inside)).copied() else { return };
+        let inside = || places.iter().filter(|place| place.lies_within(frame));
+        let free = inside().find(|place| taken.leave_free(&place.grown(1.0)));
+        // Over a curve it can be read, over another label it cannot.
+        let legible = || inside().find(|place| taken.leave_boxes_free(&place.grown(1.0)));
+        let Some(place) = free.or_else(legible).or_else(|| inside().next()).copied() else { return };
         taken.boxes.push(place);
         sheet.fill(&place.corners(), PAPER, 0.85);
         let lettering =

@@ -1,8 +1,11 @@
 //! From an experiment's table to the finished picture.
 
-use crate::experiment::{self, Drawing, Experiment, FigureSpec};
+use std::collections::BTreeMap;
+
+use crate::experiment::{self, Drawing, Experiment, FigureSpec, LineColour};
 use crate::table::Table;
 
+use super::animation::{animation, still};
 use super::bars::bars;
 use super::canvas::svg;
 use super::error::FigureError;
@@ -10,12 +13,11 @@ use super::layout::{Needs, Place, figure_height, places};
 use super::line::Source;
 use super::map::Map;
 use super::map_layout::MapLayout;
-use super::map_paint;
 use super::paint::{self, LegendPlace};
 use super::panel::{Panel, Reach};
 use super::quoted::Quoted;
-use super::raster;
 use super::style::{LETTER, WIDTH};
+use super::{map_paint, raster};
 
 /// Pixels of the PNG to a pixel of the SVG: enough for a screen of two dots to a pixel, on which a figure is about 900 wide.
 const DENSITY: f32 = 1.25;
@@ -35,7 +37,7 @@ impl Picture {
     /// # Errors
     /// [`FigureError::Drawing`] if it cannot be made a PNG.
     pub(super) fn of(svg: String, figure: &str) -> Result<Self, FigureError> {
-        match raster::png(&svg, DENSITY) {
+        match raster::png(&still(&svg), DENSITY) {
             Ok(png) => Ok(Self { svg, png }),
             Err(source) => Err(FigureError::Drawing { figure: figure.to_owned(), source }),
         }
@@ -49,6 +51,8 @@ pub struct Beside<'a> {
     pub quoted: &'a [Quoted],
     /// Period of the impulses, s: a time history with contacts shows their moments.
     pub impulses: Option<f64>,
+    /// Colours of lines by name, as the study has them.
+    pub colours: Option<&'a BTreeMap<String, LineColour>>,
 }
 
 /// Draws a figure of an experiment from the rows under the assumptions in force. The same input gives the same bytes.
@@ -61,9 +65,25 @@ pub fn draw(
     table: &Table,
     beside: Beside<'_>,
 ) -> Result<Picture, FigureError> {
-    let name =
-        if figure.name.is_empty() { experiment.id.to_string() } else { format!("{}-{}", experiment.id, figure.name) };
-    drawn(Some(experiment), &name, figure, table, beside)
+    Picture::of(draw_svg(experiment, figure, table, beside)?, &name_of(experiment, figure))
+}
+
+/// As [`draw`], for what shows SVG: the pixels take most of the time.
+///
+/// # Errors
+/// As [`draw`].
+pub fn draw_svg(
+    experiment: &Experiment,
+    figure: &FigureSpec,
+    table: &Table,
+    beside: Beside<'_>,
+) -> Result<String, FigureError> {
+    drawn(Some(experiment), &name_of(experiment, figure), figure, table, beside)
+}
+
+/// What a figure is called in messages.
+fn name_of(experiment: &Experiment, figure: &FigureSpec) -> String {
+    if figure.name.is_empty() { experiment.id.to_string() } else { format!("{}-{}", experiment.id, figure.name) }
 }
 
 /// Draws a table that is no experiment's; `name` is for messages.
@@ -71,7 +91,7 @@ pub fn draw(
 /// # Errors
 /// As [`draw`].
 pub fn draw_table(name: &str, figure: &FigureSpec, table: &Table) -> Result<Picture, FigureError> {
-    drawn(None, name, figure, table, Beside::default())
+    Picture::of(drawn(None, name, figure, table, Beside::default())?, name)
 }
 
 fn drawn(
@@ -80,22 +100,22 @@ fn drawn(
     figure: &FigureSpec,
     table: &Table,
     beside: Beside<'_>,
-) -> Result<Picture, FigureError> {
+) -> Result<String, FigureError> {
     let table = chosen(figure, &table.baseline());
-    let source = Source { experiment, table: &table, figure: name };
-    let svg = match &figure.drawing {
+    let source = Source { experiment, table: &table, figure: name, colours: beside.colours };
+    Ok(match &figure.drawing {
         Drawing::Lines(panels) => lines(source, panels, beside)?,
         Drawing::Gaps => match experiment.and_then(|experiment| experiment.optimise.as_ref()) {
             Some(optimise) => bars(source, optimise)?,
             None => return Err(FigureError::Nothing { figure: name.to_owned() }),
         },
+        Drawing::Animation(spec) => animation(source, spec, beside.impulses)?,
         Drawing::Map(spec) => {
             let map = Map::new(source, spec)?;
             let layout = MapLayout::new(&map);
             svg(WIDTH, layout.height, |sheet| map_paint::map(sheet, &map, &layout))
         }
-    };
-    Picture::of(svg, name)
+    })
 }
 
 /// The rows that a figure draws.

@@ -3,7 +3,7 @@
 //! A single mass is drawn as its mechanical model, a beam or plate from above to scale with the node lines of the mode that is
 //! forced. Several scenes of one experiment are one drawing, with all places that they use.
 
-use super::canvas::{Anchor, Lettering, Pen, Sheet, svg};
+use super::canvas::{Anchor, Lettering, Pen, Sheet, svg, text_width, wrapped};
 use super::contour::contours;
 use super::field::{Field, Spot};
 use super::geometry::{Point as At, Rect};
@@ -20,6 +20,9 @@ const NODES: u32 = 48;
 pub fn sketch(scenes: &[Scene]) -> Option<String> {
     let first = scenes.first()?;
     let sides = first.structure.model().sides();
+    // A place on a plate of another size would be elsewhere.
+    let alike: Vec<Scene> = scenes.iter().filter(|scene| scene.structure.model().sides() == sides).cloned().collect();
+    let scenes = alike.as_slice();
     Some(match (&first.structure, sides.as_slice()) {
         (Structure::SingleMass(_), _) => svg(SKETCH_WIDTH, 620.0, |sheet| mass(sheet, first)),
         (_, [length]) => svg(SKETCH_WIDTH, 330.0, |sheet| beam(sheet, scenes, *length)),
@@ -45,6 +48,29 @@ fn places(scenes: &[Scene], of: impl Fn(&Scene) -> Vec<Point>) -> Vec<Point> {
 
 fn dampers(scene: &Scene) -> Vec<Point> {
     scene.dampers.iter().map(|damper| damper.at).collect()
+}
+
+/// Where forces act that move the structure.
+fn forces(scene: &Scene) -> Vec<Point> {
+    let moves = scene.structure.model().shape(scene.force_at).iter().any(|share| share.abs() > 1e-9);
+    if moves { vec![scene.force_at] } else { Vec::new() }
+}
+
+/// Half the size of a damper's sign, so that neighbours do not cover each other where they need not.
+fn half_size(places: &[At]) -> f64 {
+    let pairs = places.iter().enumerate().flat_map(|(index, a)| places[..index].iter().map(move |b| (a, b)));
+    let apart = pairs.map(|(a, b)| (a.x - b.x).abs().max((a.y - b.y).abs())).fold(f64::INFINITY, f64::min);
+    (0.42 * apart).clamp(6.0, 15.0)
+}
+
+/// What a drawing shows, for its legend.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Sign {
+    Damper,
+    Force,
+    Observed,
+    /// Of the forced mode, by its number.
+    NodeLine(usize),
 }
 
 /// The mode whose natural frequency is nearest to the forcing frequency, from 1.
@@ -75,10 +101,17 @@ fn beam(sheet: &Sheet, scenes: &[Scene], length: f64) {
         hatch(sheet, &Rect { left: right, top: y - 60.0, right: right + 26.0, bottom: y + 60.0 });
     }
     sheet.cell(&Rect { left, top: y - 7.0, right, bottom: y + 7.0 }, INK);
-    for place in places(scenes, dampers) {
-        damper_box(sheet, At { x: at(place.x), y: y - 7.0 });
+    let mut signs = Vec::new();
+    let feet: Vec<At> = places(scenes, dampers).iter().map(|place| At { x: at(place.x), y: y - 7.0 }).collect();
+    let half = half_size(&feet);
+    for foot in &feet {
+        damper_box(sheet, *foot, half);
     }
-    for place in places(scenes, |scene| vec![scene.force_at]) {
+    signs.extend((!feet.is_empty()).then_some(Sign::Damper));
+    let forces = places(scenes, forces);
+    signs.extend((!forces.is_empty()).then_some(Sign::Force));
+    signs.push(Sign::Observed);
+    for place in forces {
         let tip = At { x: at(place.x), y: y + 9.0 };
         arrow(sheet, At { y: tip.y + 54.0, ..tip }, tip, VERMILION);
     }
@@ -88,20 +121,23 @@ fn beam(sheet: &Sheet, scenes: &[Scene], length: f64) {
     if let Some(number) = forced_mode(scene) {
         let (model, mut before) = (scene.structure.model(), 0.0);
         let mode = model.mode(number);
+        let mut nodes = 0;
         for node in 1..=10 * NODES {
             let x = f64::from(node) / f64::from(10 * NODES) * length;
             let here = deflection(model, &mode, Point { x, y: 0.0 });
             if before * here < 0.0 {
                 let ends = [At { x: at(x), y: y - 46.0 }, At { x: at(x), y: y + 46.0 }];
                 sheet.line(&ends, Pen { color: GREY, width: 3.0, dash: &[8.0, 6.0] });
+                nodes += 1;
             }
             before = here;
         }
+        signs.extend((nodes > 0).then_some(Sign::NodeLine(number)));
     }
     for (share, text) in [(0.0, "0".to_owned()), (1.0, quantity(length, "m", 3))] {
         write(sheet, At { x: left + share * (right - left), y: y + 92.0 }, &text, Anchor::Centre, INK);
     }
-    legend(sheet, At { x: left, y: y + 150.0 }, false);
+    legend(sheet, At { x: left, y: y + 150.0 }, &signs, false);
 }
 
 fn plate(sheet: &Sheet, scenes: &[Scene], [wide, long]: [f64; 2], width: f64) {
@@ -109,6 +145,7 @@ fn plate(sheet: &Sheet, scenes: &[Scene], [wide, long]: [f64; 2], width: f64) {
     let at = |place: Point| frame.at(place.x / wide, place.y / long);
     sheet.cell(&frame, PALE);
     let scene = &scenes[0];
+    let mut node_line = None;
     if let Some(number) = forced_mode(scene) {
         let model = scene.structure.model();
         let mode = model.mode(number);
@@ -118,7 +155,9 @@ fn plate(sheet: &Sheet, scenes: &[Scene], [wide, long]: [f64; 2], width: f64) {
             .map(|(x, y)| Spot { x, y, value: deflection(model, &mode, Point { x: x * wide, y: y * long }) })
             .collect();
         if let Ok(field) = Field::of(&spots) {
-            for line in contours(&field, Some, 0.0) {
+            let lines = contours(&field, Some, 0.0);
+            node_line = (!lines.is_empty()).then_some(Sign::NodeLine(number));
+            for line in lines {
                 let place = |node: &super::contour::Node| {
                     frame.at((node.column + 1.0) / f64::from(NODES), (node.row + 1.0) / f64::from(NODES))
                 };
@@ -130,18 +169,25 @@ fn plate(sheet: &Sheet, scenes: &[Scene], [wide, long]: [f64; 2], width: f64) {
     let corners = frame.corners();
     let edge = [corners[0], corners[1], corners[2], corners[3], corners[0], corners[1]];
     sheet.line(&edge, Pen::solid(INK, CURVE));
-    let square = 15.0;
-    for place in places(scenes, dampers) {
-        let at = at(place);
+    let boxes: Vec<At> = places(scenes, dampers).into_iter().map(at).collect();
+    let square = half_size(&boxes);
+    for &at in &boxes {
         let place = Rect { left: at.x, top: at.y, right: at.x, bottom: at.y };
         sheet.cell(&place.grown(square), INK);
-        sheet.cell(&place.grown(square - 4.0), PAPER);
-        sheet.disc(at, 6.0, INK);
+        sheet.cell(&place.grown(0.73 * square), PAPER);
+        sheet.disc(at, 0.4 * square, INK);
     }
     for place in places(scenes, |scene| scene.observed.points.clone()) {
         sheet.ring(at(place), 21.0, Pen::solid(BLUE_INK, CURVE * 0.8));
     }
-    for place in places(scenes, |scene| vec![scene.force_at]) {
+    let forces = places(scenes, forces);
+    let signs = [
+        (!boxes.is_empty()).then_some(Sign::Damper),
+        (!forces.is_empty()).then_some(Sign::Force),
+        Some(Sign::Observed),
+        node_line,
+    ];
+    for place in forces {
         let at = at(place);
         for sign in [-1.0, 1.0] {
             let ends = [-13.0, 13.0].map(|by| At { x: at.x + by, y: at.y + sign * by });
@@ -149,52 +195,63 @@ fn plate(sheet: &Sheet, scenes: &[Scene], [wide, long]: [f64; 2], width: f64) {
         }
     }
     let (x, y) = (frame.right + 60.0, frame.top + 40.0);
-    legend(sheet, At { x, y }, true);
+    let signs: Vec<Sign> = signs.into_iter().flatten().collect();
+    let end = legend(sheet, At { x, y }, &signs, true);
     let size = format!("{} by {}, simply supported", quantity(wide, "m", 3), quantity(long, "m", 3));
-    write(sheet, At { x, y: y + 220.0 }, &size, Anchor::Left, INK);
+    for (row, line) in wrapped(&size, NOTE_TEXT, SKETCH_WIDTH - x - SPACE).iter().enumerate() {
+        write(sheet, At { x, y: end.y + 12.0 + 46.0 * row as f64 }, line, Anchor::Left, INK);
+    }
 }
 
-/// What the signs stand for, in a row or in a column.
-fn legend(sheet: &Sheet, start: At, column: bool) {
-    let words = ["damper", "force", "observed", "node line of the forced mode"];
+/// What the signs stand for, in a row or in a column; returns where the next would stand.
+fn legend(sheet: &Sheet, start: At, signs: &[Sign], column: bool) -> At {
     let mut at = start;
-    for (index, word) in words.into_iter().enumerate() {
+    for sign in signs {
         let centre = At { x: at.x + 16.0, ..at };
-        match index {
-            0 => {
+        let word = match sign {
+            Sign::Damper => "damper".to_owned(),
+            Sign::Force => "force".to_owned(),
+            Sign::Observed => "observed".to_owned(),
+            Sign::NodeLine(mode) => format!("node line, mode {mode}"),
+        };
+        match sign {
+            Sign::Damper => {
                 let place = Rect { left: centre.x, top: centre.y, right: centre.x, bottom: centre.y };
                 sheet.cell(&place.grown(13.0), INK);
                 sheet.cell(&place.grown(9.0), PAPER);
                 sheet.disc(centre, 5.0, INK);
             }
-            1 if column => {
+            Sign::Force if column => {
                 for sign in [-1.0, 1.0] {
                     let ends = [-11.0, 11.0].map(|by| At { x: centre.x + by, y: centre.y + sign * by });
                     sheet.line(&ends, Pen::solid(VERMILION, 1.4 * CURVE));
                 }
             }
-            1 => arrow(sheet, At { y: centre.y + 16.0, ..centre }, At { y: centre.y - 16.0, ..centre }, VERMILION),
-            2 => sheet.ring(centre, 14.0, Pen::solid(BLUE_INK, CURVE * 0.8)),
-            _ => {
+            Sign::Force => {
+                arrow(sheet, At { y: centre.y + 16.0, ..centre }, At { y: centre.y - 16.0, ..centre }, VERMILION)
+            }
+            Sign::Observed => sheet.ring(centre, 14.0, Pen::solid(BLUE_INK, CURVE * 0.8)),
+            Sign::NodeLine(_) => {
                 let ends = [At { y: centre.y - 18.0, ..centre }, At { y: centre.y + 18.0, ..centre }];
                 sheet.line(&ends, Pen { color: GREY, width: 3.0, dash: &[8.0, 6.0] });
             }
         }
-        write(sheet, At { x: at.x + 42.0, ..at }, word, Anchor::Left, INK);
+        write(sheet, At { x: at.x + 42.0, ..at }, &word, Anchor::Left, INK);
         if column {
             at.y += 52.0;
         } else {
-            at.x += 42.0 + super::canvas::text_width(word, NOTE_TEXT) + 3.0 * SPACE;
+            at.x += 42.0 + text_width(&word, NOTE_TEXT) + 3.0 * SPACE;
         }
     }
+    at
 }
 
 /// A damper on a beam: a box with its particle.
-fn damper_box(sheet: &Sheet, foot: At) {
-    let place = Rect { left: foot.x - 15.0, top: foot.y - 46.0, right: foot.x + 15.0, bottom: foot.y };
+fn damper_box(sheet: &Sheet, foot: At, half: f64) {
+    let place = Rect { left: foot.x - half, top: foot.y - 46.0, right: foot.x + half, bottom: foot.y };
     sheet.cell(&place, INK);
-    sheet.cell(&place.grown(-4.0), PAPER);
-    sheet.disc(At { x: foot.x, y: foot.y - 13.0 }, 8.0, INK);
+    sheet.cell(&place.grown(-0.27 * half), PAPER);
+    sheet.disc(At { x: foot.x, y: foot.y - 13.0 }, 0.53 * half, INK);
 }
 
 /// One mass on its spring and dashpot, with the first damper in it.
@@ -205,7 +262,7 @@ fn mass(sheet: &Sheet, scene: &Scene) {
     hatch(sheet, &ground);
     spring(sheet, At { x: 230.0, y: base.bottom }, At { x: 230.0, y: ground.top });
     dashpot(sheet, At { x: 430.0, y: base.bottom }, At { x: 430.0, y: ground.top });
-    write(sheet, At { x: 262.0, y: 502.0 }, &quantity(mass.stiffness, "N/m", 3), Anchor::Left, INK);
+    write(sheet, At { x: 202.0, y: 502.0 }, &quantity(mass.stiffness, "N/m", 3), Anchor::Right, INK);
     write(sheet, At { x: 470.0, y: 502.0 }, &quantity(mass.damping, "N s/m", 3), Anchor::Left, INK);
     sheet.cell(&base, Color(0xD5, 0xDD, 0xE6));
     let corners = base.corners();

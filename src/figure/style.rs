@@ -4,6 +4,10 @@
 //! The picture is 1440 pixels wide. At a journal's column of 88 mm that is 415 dots per inch, and the labels are 7 to 8
 //! points high.
 
+use std::collections::BTreeMap;
+
+use crate::experiment::LineColour;
+
 /// Width of a figure.
 pub(super) const WIDTH: f64 = 1440.0;
 pub(super) const TICK_TEXT: f64 = 38.0;
@@ -85,6 +89,19 @@ const OKABE_ITO: [Color; 7] = [
     Color(0x00, 0x00, 0x00),
 ];
 
+/// The place of a colour among Okabe and Ito's.
+fn index(colour: LineColour) -> usize {
+    match colour {
+        LineColour::Blue => 0,
+        LineColour::Vermilion => 1,
+        LineColour::Green => 2,
+        LineColour::Purple => 3,
+        LineColour::Orange => 4,
+        LineColour::SkyBlue => 5,
+        LineColour::Black => 6,
+    }
+}
+
 /// Viridis from its dark end to where paper begins to swallow it.
 const VIRIDIS: [Color; 6] = [
     Color(0x44, 0x01, 0x54),
@@ -128,24 +145,19 @@ impl Look {
         Self { color, width: CURVE, dash: DASHES[dash % DASHES.len()], marker: MARKERS[dash % MARKERS.len()] }
     }
 
-    /// The named colour of what has the same one in every figure, whichever others are drawn.
-    pub(super) fn hue_of_word(word: &str) -> Option<usize> {
-        const BLUE: usize = 0;
-        const VERMILION: usize = 1;
-        const GREEN: usize = 2;
-        const PURPLE: usize = 3;
-        const ORANGE: usize = 4;
-        const BLACK: usize = 6;
-        Some(match word {
-            "clean" => BLACK,
-            "event-driven" | "genetic algorithm" | "optimised gaps" | "light" | "with stop" => BLUE,
-            "2-opt" | "uniform gaps" | "heavy" | "without stop" => VERMILION,
-            "untuned" | "damper" => VERMILION,
-            "tuned" | "CMA-ES" => GREEN,
-            "dense search" => PURPLE,
-            "study genetic after 2-opt" | "study two opt" => ORANGE,
-            _ => return None,
-        })
+    /// The named colour of what has the same one in every figure, whichever others are drawn: by the study, or what has one in
+    /// every study.
+    pub(super) fn hue_of_word(word: &str, of_the_study: Option<&BTreeMap<String, LineColour>>) -> Option<usize> {
+        let colour = of_the_study.and_then(|colours| colours.get(word)).copied();
+        colour
+            .or(match word {
+                "event-driven" | "genetic algorithm" | "optimised gaps" | "with stop" => Some(LineColour::Blue),
+                "2-opt" | "uniform gaps" | "without stop" => Some(LineColour::Vermilion),
+                "CMA-ES" => Some(LineColour::Green),
+                "dense search" => Some(LineColour::Purple),
+                _ => None,
+            })
+            .map(index)
     }
 
     /// The fixed look of a path in a time history: the same in every figure, whichever other paths are drawn.

@@ -11,24 +11,24 @@
 //! A point impulse gives each mode the same share, so that T just after it grows with the number of modes without limit:
 //! these measures mean something together with that number only.
 
-use super::{Comparison, TraceColumn};
+use super::{Comparison, TraceColumn, kept};
 use crate::dynamics::{Matrix, Response};
 use crate::measure::{EnergySpec, Settings};
 use crate::scene::Scene;
 
 /// Kinetic energies of every cycle, J.
 pub(super) struct Energies {
-    with: Vec<Ends>,
-    without: Vec<Ends>,
+    pub(super) with: Vec<Ends>,
+    pub(super) without: Vec<Ends>,
     comparison: Option<Comparison>,
     averaged: std::ops::Range<usize>,
 }
 
 /// Kinetic energy at the ends of a cycle, J.
 #[derive(Debug, Clone, Copy)]
-struct Ends {
-    after: f64,
-    before: f64,
+pub(super) struct Ends {
+    pub(super) after: f64,
+    pub(super) before: f64,
 }
 
 impl Energies {
@@ -64,12 +64,12 @@ impl Energies {
         self.averaged.clone().map(of).sum::<f64>() / count
     }
 
-    fn damping_of(&self, cycle: usize) -> f64 {
+    pub(super) fn damping_of(&self, cycle: usize) -> f64 {
         let Ends { after, before } = self.with[cycle];
         1.0 - before / after
     }
 
-    fn mass_of(&self, cycle: usize) -> f64 {
+    pub(super) fn mass_of(&self, cycle: usize) -> f64 {
         // It starts at rest.
         let before = |cycles: &[Ends]| cycle.checked_sub(1).map_or(0.0, |last| cycles[last].before);
         let jump = |cycles: &[Ends]| cycles[cycle].after - before(cycles);
@@ -84,17 +84,7 @@ impl Energies {
     /// The list columns.
     pub(super) fn columns(&self, spec: &EnergySpec) -> Vec<TraceColumn> {
         let cycles = spec.from_cycle as usize..(spec.to_cycle as usize).min(self.with.len());
-        let column =
-            |name, unit, of: &dyn Fn(usize) -> f64| TraceColumn::new(name, unit, cycles.clone().map(of).collect());
-        vec![
-            column("cycle", "", &|cycle| cycle as f64),
-            column("kinetic_energy_after", "J", &|cycle| self.with[cycle].after),
-            column("kinetic_energy_before", "J", &|cycle| self.with[cycle].before),
-            column("undamped_kinetic_energy_after", "J", &|cycle| self.without[cycle].after),
-            column("undamped_kinetic_energy_before", "J", &|cycle| self.without[cycle].before),
-            column("damping_measure_of_cycle", "", &|cycle| self.damping_of(cycle)),
-            column("mass_measure_of_cycle", "", &|cycle| self.mass_of(cycle)),
-        ]
+        kept::of_cycles(self, cycles)
     }
 }
 

@@ -3,13 +3,14 @@
 //! Every event-driven case is run three times: as it is, with search windows half as long (the difference is its numerical
 //! uncertainty), and with a kicked start. If the kick of a billionth has grown beyond a millionth, the motion is chaotic and
 //! no single run is a result: an ensemble of kicked starts gives mean and spread. A search makes one run a step, and what it
-//! finds is evaluated as a result afterwards. The fixed step is run once, as the study
-//! ran it: what its step does to the numbers is the result that it is there for.
+//! finds is evaluated as a result afterwards. The fixed step is run once: what its
+//! step does to the numbers is the result that it is there for.
 
 use std::f64::consts::TAU;
 
 use super::energy::Energies;
-use super::history::{History, columns};
+use super::history::History;
+use super::kept;
 use super::reading::Reading;
 use super::shape::{self, Shape};
 use super::undefined::in_range;
@@ -347,7 +348,8 @@ impl Case<'_> {
         let values = request.measures.iter().map(value).collect::<Result<Vec<_>, _>>()?;
         let mut lists = Vec::new();
         if whole {
-            lists.extend(reading.history.iter().flat_map(columns));
+            let trace = |it: &History<'_>| kept::of_trace(&it.response.trace, it.scene.gravity);
+            lists.extend(reading.history.iter().flat_map(trace));
             if let (Some(energies), Some(spec)) = (&energies, request.energies) {
                 lists.extend(energies.columns(spec));
             }

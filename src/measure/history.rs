@@ -1,8 +1,7 @@
-//! What is read off a time history: peaks, compressions, lags between impulses and impacts; and its columns.
+//! What is read off a time history: peaks, compressions, lags between impulses and impacts.
 
 use std::ops::Range;
 
-use super::TraceColumn;
 use super::evaluate::decay;
 use crate::dynamics::{Event, EventKind, Response, Sample};
 use crate::scene::Scene;
@@ -93,27 +92,6 @@ fn crest(a: Sample, b: Sample) -> Peak {
     Peak { time: a.time + low * h, height: hermite(low) }
 }
 
-/// The trace as columns.
-pub(super) fn columns(history: &History<'_>) -> Vec<TraceColumn> {
-    let gravity = history.scene.gravity;
-    let column = |name, unit, of: &dyn Fn(&Sample) -> f64| {
-        TraceColumn::new(name, unit, history.response.trace.iter().map(of).collect())
-    };
-    vec![
-        column("time", "s", &|s| s.time),
-        column("base_displacement", "m", &|s| s.displacement),
-        column("base_velocity", "m/s", &|s| s.velocity),
-        column("base_acceleration", "m/s²", &|s| s.acceleration),
-        column("particle_displacement", "m", &|s| s.particle),
-        column("floor_displacement", "m", &|s| s.floor),
-        column("ceiling_displacement", "m", &|s| s.ceiling),
-        column("rigid_floor", "m", &|s| s.rigid_floor),
-        column("rigid_ceiling", "m", &|s| s.rigid_ceiling),
-        column("contact_damping", "N s/m", &|s| s.damping),
-        column("rms_acceleration", "g", &|s| s.half_cycle_rms / gravity),
-    ]
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -136,7 +114,7 @@ mod tests {
             let response = Response { events: times.iter().map(|&time| at(time)).collect(), ..Response::default() };
             History { response: &response, scene: &scene, cycles: 3..4 }.lag(EventKind::FloorContact)
         };
-        // The study's 199 steps of 1 ms.
+        // 199 steps of 1 ms.
         assert_eq!(lag(&[0.05, 0.198_999]), 0.0);
         assert_eq!(lag(&[0.05, 0.17]), 0.198_69 - 0.17);
         assert_eq!(lag(&[]), f64::INFINITY);

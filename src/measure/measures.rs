@@ -6,6 +6,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::scene::Excitation;
+use crate::text::words;
 
 /// What is known of a measure.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -164,6 +165,19 @@ measures! {
     SettledAfter: "", "", "", "cycles after which the motion comes again to within a millionth", Motion, Own, Any;
 }
 
+/// A column's name in words: a measure's, or those of [`words::of_column`].
+#[must_use]
+pub fn column_words(name: &str) -> String {
+    if let Some(over) = name.strip_suffix("_at_maximum") {
+        return format!("{} at the maximum", column_words(over));
+    }
+    let measure = Measure::ALL.iter().find(|measure| words::of_key(measure) == name);
+    match measure.map(|measure| measure.facts().words) {
+        None | Some("") => words::of_column(name),
+        Some(words) => words.into(),
+    }
+}
+
 impl Measure {
     /// Unit symbol, empty when dimensionless.
     #[must_use]
@@ -237,8 +251,9 @@ impl Measure {
         self.facts().runs == Runs::Both
     }
 
-    /// Known without a run.
-    pub(super) fn is_modal(self) -> bool {
+    /// Known without a run, as long as a shape that is kept is a mode's.
+    #[must_use]
+    pub fn is_modal(self) -> bool {
         matches!(self.facts().from, ReadOff::Model | ReadOff::Shape)
     }
 

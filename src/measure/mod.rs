@@ -1,7 +1,7 @@
-//! Measures: the numbers that the study plots, computed from [`crate::dynamics`] responses.
+//! Measures: the numbers that studies plot, computed from [`crate::dynamics`] responses.
 //!
 //! The velocity ratio ψ is the RMS velocity of the base without damper over the one with it; the displacement ratio η the
-//! same with the standard deviation of the displacement (s. 3.5 of the study). Both are averaged over the forcing cycles
+//! same with the standard deviation of the displacement. Both are averaged over the forcing cycles
 //! after the skipped ones.
 
 use std::borrow::Cow;
@@ -10,6 +10,7 @@ mod energy;
 mod evaluate;
 mod history;
 mod impact;
+mod kept;
 mod measures;
 mod reading;
 mod request;
@@ -19,7 +20,8 @@ mod trial;
 mod undefined;
 
 pub use evaluate::{Prepared, Request, evaluate, rounded};
-pub use measures::{Facts, Measure, ReadOff, Runs, Under};
+pub use kept::{PROOF, ProofColumn, ProofOf, energy_columns, shape_columns, trace_columns};
+pub use measures::{Facts, Measure, ReadOff, Runs, Under, column_words};
 pub use request::{EnergySpec, Settings, ShapeOf, ShapeSpec, SolverChoice, TraceSpec};
 pub use subject::{Comparison, Needs, Subject};
 pub use trial::Trial;

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 pub enum SolverChoice {
     /// Exact propagation between certified events.
     EventDriven,
-    /// The study's scheme.
+    /// Steps of one length, contacts looked for at the end of each.
     FixedStep {
         /// Δt, s.
         time_step: f64,
@@ -33,7 +33,7 @@ pub struct Settings {
     pub skip: u32,
     /// Forcing cycles averaged over.
     pub average: u32,
-    /// The forcing period is rounded to whole steps of this length in every solver, s (the study's 199 steps of 1 ms).
+    /// The forcing period is rounded to whole steps of this length in every solver, s: 0.1987 s become 199 steps of 1 ms.
     pub round_period_to: Option<f64>,
     /// Members of the ensemble of perturbed starts that a chaotic point gets; 0 switches ensembles off.
     pub ensemble: u32,

@@ -4,6 +4,7 @@
 //! window. It comes from the integrals of q_i and of q_i + q_j, so that no point of the shape is simulated on its own.
 
 use super::TraceColumn;
+use super::kept::{DEFLECTION, MODE, SIDES};
 use crate::dynamics::{HybridSystem, Observed, Response, dot};
 use crate::measure::ShapeSpec;
 use crate::scene::{CompileError, Model, Point, Scene};
@@ -43,12 +44,13 @@ impl Grid {
     }
 
     fn columns(&self) -> Vec<TraceColumn> {
-        ["x", "y"]
-            .into_iter()
-            .zip(&self.shares)
-            .map(|(name, shares)| TraceColumn::new(name, "", shares.clone()))
-            .collect()
+        SIDES.into_iter().zip(&self.shares).map(|(name, shares)| TraceColumn::new(name, "", shares.clone())).collect()
     }
+}
+
+fn named<const N: usize>(names: [(&'static str, &'static str); N], lists: [Vec<f64>; N]) -> [TraceColumn; N] {
+    let mut lists = lists.into_iter();
+    names.map(|(name, unit)| TraceColumn::new(name, unit, lists.next().unwrap_or_default()))
 }
 
 /// The shape of a normal mode of the scene, beside that of the continuous structure.
@@ -68,8 +70,7 @@ pub(super) fn of_mode(scene: &Scene, spec: &ShapeSpec, number: usize) -> Result<
     align(&mut exact, &shape);
     let mac = mac(&shape, &exact);
     let mut columns = grid.columns();
-    columns.push(TraceColumn::new("shape", "", shape));
-    columns.push(TraceColumn::new("exact_shape", "", exact));
+    columns.extend(named(MODE, [shape, exact]));
     Ok(Shape { columns, mac })
 }
 
@@ -101,9 +102,7 @@ pub(super) fn of_deflection(scene: &Scene, response: &Response, spec: &ShapeSpec
     align(&mut mode, &shape);
     let mac = mac(&shape, &mode);
     let mut columns = grid.columns();
-    columns.push(TraceColumn::new("shape", "", shape));
-    columns.push(TraceColumn::new("rms_displacement", "m", rms));
-    columns.push(TraceColumn::new("mode_shape", "", mode));
+    columns.extend(named(DEFLECTION, [shape, rms, mode]));
     Shape { columns, mac }
 }
 

@@ -1,7 +1,6 @@
 //! A genetic algorithm over a box.
 //!
-//! The study names a library function and of its settings the stopping conditions alone. This one has the same parts: a
-//! random first population; parents drawn by rank with weights 1/√rank, so that better points are likelier and no point is
+//! It has the parts of the usual library functions: a random first population; parents drawn by rank with weights 1/√rank, so that better points are likelier and no point is
 //! out; scattered crossover (each coordinate from either parent); mutation; and elites, which live on unchanged. Steps of a
 //! mutation are drawn from all magnitudes at once, range·2^(−16u), as in the breeder genetic algorithm of Mühlenbein and
 //! Schlierkamp-Voosen (1993): it needs no schedule, goes on to leave local optima, and still polishes.

@@ -2,8 +2,8 @@
 //!
 //! E = S − D and u_val² = u_num² + u_input² + u_D². |E| ≤ 2 u_val (coverage factor 2) is agreement; more is `differs`.
 //!
-//! - u_num: the run's own error and the grid's, and the whole spread of the ensemble: the study's number is one run, not a
-//!   mean.
+//! - u_num: the run's own error and the grid's, and the whole spread of the ensemble: a published number is one run, not
+//!   a mean.
 //! - u_input: each unstated input moved to the ends of its range; half the range of S, root-sum-square over the inputs.
 //! - u_D: half a unit of the last printed digit.
 //!

@@ -31,11 +31,12 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
+use super::entry_mistake::EntryMistake;
 use super::extraction::Extraction;
 use super::mode_shape::ModeShape;
 use super::predicate::Predicate;
 use super::printed::Printed;
-use super::problem::ReferenceProblem;
+use super::problem::{ReferenceMistake, ReferenceProblem};
 use super::prose::Prose;
 use super::resonance::PrintedPeak;
 use super::selection::Selection;
@@ -204,7 +205,8 @@ pub fn load_reference(path: &Path) -> Result<ReferenceFile, ReferenceError> {
     let file = path.display().to_string();
     let fail = |problem| ReferenceError { file: file.clone(), problems: vec![problem] };
     let experiment = path.file_stem().and_then(|stem| stem.to_str()).unwrap_or_default();
-    let text = std::fs::read_to_string(path).map_err(|error| fail(ReferenceProblem::Unreadable(error.to_string())))?;
+    let text =
+        std::fs::read_to_string(path).map_err(|error| fail(ReferenceMistake::Unreadable(error.to_string()).into()))?;
     parse_reference(experiment, &text).map_err(|problems| ReferenceError { file: file.clone(), problems })
 }
 
@@ -222,23 +224,26 @@ pub fn parse_reference(experiment: &str, text: &str) -> Result<ReferenceFile, Ve
         let name = spanned.value.id.clone();
         let mut found = Vec::new();
         if !ids.insert(name.clone()) {
-            found.push("has the id of an entry above".to_string());
+            found.push(EntryMistake::SameId);
         }
         match spanned.value.validated(experiment) {
             Ok(entry) => entries.push(Entry { line, ..entry }),
             Err(more) => found.extend(more),
         }
-        let problem = |mistake| ReferenceProblem::Entry { line, column, entry: name.clone(), mistake };
+        let problem = |mistake| {
+            let mistake = ReferenceMistake::Entry { entry: name.clone(), mistake };
+            ReferenceProblem { at: Some((line, column)), mistake }
+        };
         problems.extend(found.into_iter().map(problem));
     }
     if entries.is_empty() && problems.is_empty() {
-        problems.push(ReferenceProblem::NoEntry);
+        problems.push(ReferenceProblem::on_line(1, ReferenceMistake::NoEntry));
     }
     for entry in &entries {
         let names = |name: &String| !name.contains('/') && !ids.contains(name);
         for name in entry.prose().placeholders().filter_map(|one| one.entry.clone()).filter(names) {
-            let mistake = format!("has a placeholder of `{name}`, which is no entry here");
-            problems.push(ReferenceProblem::Entry { line: entry.line, column: 1, entry: entry.id.clone(), mistake });
+            let mistake = ReferenceMistake::Entry { entry: entry.id.clone(), mistake: EntryMistake::Placeholder(name) };
+            problems.push(ReferenceProblem::on_line(entry.line, mistake));
         }
     }
     if problems.is_empty() { Ok(ReferenceFile { experiment: experiment.into(), entries }) } else { Err(problems) }
@@ -281,27 +286,27 @@ struct RawTolerance {
 }
 
 impl RawEntry {
-    fn validated(self, experiment: &str) -> Result<Entry, Vec<String>> {
-        let mut wrong: Vec<String> = Vec::new();
+    fn validated(self, experiment: &str) -> Result<Entry, Vec<EntryMistake>> {
+        let mut wrong: Vec<EntryMistake> = Vec::new();
         let filled = |text: &Option<String>| text.as_ref().is_some_and(|text| !text.trim().is_empty());
         if self.id.is_empty() || !self.id.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-') {
-            wrong.push("needs an id of small letters, digits and hyphens".into());
+            wrong.push(EntryMistake::BadId);
         }
         if self.place.trim().is_empty() || self.says.trim().is_empty() {
-            wrong.push("needs a `place` in the source and what it `says`".into());
+            wrong.push(EntryMistake::NoPlace);
         }
         let expected = self.expected.unwrap_or(Verdict::Reproduced);
         if expected == Verdict::Missing {
-            wrong.push("expects `missing`, which is never an expected verdict".into());
+            wrong.push(EntryMistake::ExpectsMissing);
         }
         if expected != Verdict::Reproduced && !filled(&self.explanation) {
-            wrong.push("expects another verdict than `reproduced` and needs an `explanation`".into());
+            wrong.push(EntryMistake::NoExplanation);
         }
         if let Err(error) = Prose::parse(self.explanation.as_deref().unwrap_or_default()) {
-            wrong.push(format!("has in its `explanation` {error}"));
+            wrong.push(EntryMistake::Explanation(error));
         }
         if expected == Verdict::Blocked && self.blocked_by.is_empty() {
-            wrong.push("expects `blocked` and needs `blocked_by`: which input the study does not give".into());
+            wrong.push(EntryMistake::NotBlockedBy);
         }
         let threshold_reason = self.threshold_reason.clone().unwrap_or_default().trim().to_string();
         let kinds = [
@@ -312,58 +317,56 @@ impl RawEntry {
             self.mode_shape.is_some(),
         ];
         if kinds.iter().filter(|given| **given).count() != 1 {
-            wrong.push("needs exactly one of `value` with `from`, `claim`, `peak`, `curve` or `mode_shape`".into());
+            wrong.push(EntryMistake::NotOneKind);
             return Err(wrong);
         }
         let claim = self.claim.or(self.curve.map(Predicate::Curve)).or(self.mode_shape.map(Predicate::ModeShape));
         let check = match (self.value, self.from, claim) {
             (Some(value), Some(from), None) => {
                 if !threshold_reason.is_empty() {
-                    wrong.push("has a `threshold_reason`, which belongs to claims; a `tolerance` has its own".into());
+                    wrong.push(EntryMistake::ThresholdReasonOfValue);
                 }
                 if !from.is_sound() {
-                    wrong.push("has a number in `from` that is not finite, or zero where it cannot be".into());
+                    wrong.push(EntryMistake::UnsoundFrom);
                 }
                 let tolerance = self.tolerance.and_then(|raw| raw.validated(&mut wrong));
                 match Printed::parse(&value) {
                     Ok(published) => Some(Check::Value { published, from, tolerance }),
                     Err(error) => {
-                        wrong.push(format!("has a `value` that cannot be read: {error}"));
+                        wrong.push(EntryMistake::Value(error));
                         None
                     }
                 }
             }
             (None, None, Some(predicate)) => {
                 if let Some(flaw) = predicate.flaw() {
-                    wrong.push(format!("has an unsound claim: {flaw}"));
+                    wrong.push(EntryMistake::Claim(flaw));
                 }
                 if self.tolerance.is_some() {
-                    wrong.push("has a `tolerance`, which belongs to values; a claim has its own thresholds".into());
+                    wrong.push(EntryMistake::ToleranceOfClaim);
                 }
                 if predicate.has_threshold() && threshold_reason.is_empty() {
-                    wrong.push("has a threshold set by hand and needs a `threshold_reason`".into());
+                    wrong.push(EntryMistake::NoThresholdReason);
                 }
                 Some(Check::Claim { predicate, threshold_reason })
             }
             (Some(_), None, None) => {
-                wrong.push("has a `value` and needs `from`: where its counterpart stands in the table".into());
+                wrong.push(EntryMistake::NoFrom);
                 None
             }
             (None, None, None) => self.peak.map(|peak| {
                 if !threshold_reason.is_empty() {
-                    wrong.push("has a `threshold_reason`, which belongs to claims; a `tolerance` has its own".into());
+                    wrong.push(EntryMistake::ThresholdReasonOfValue);
                 }
                 wrong.extend(peak.flaw());
                 let tolerance = self.tolerance.and_then(|raw| raw.validated(&mut wrong));
                 if tolerance.as_ref().is_some_and(|given| matches!(given.size, ToleranceSize::Absolute(_))) {
-                    wrong.push(
-                        "has an absolute `tolerance`, and a peak has numbers of several units: make it relative".into(),
-                    );
+                    wrong.push(EntryMistake::AbsoluteToleranceOfPeak);
                 }
                 Check::Peak { peak, tolerance }
             }),
             _ => {
-                wrong.push("has `from`, which belongs to a `value`".into());
+                wrong.push(EntryMistake::FromWithoutValue);
                 None
             }
         };
@@ -385,21 +388,21 @@ impl RawEntry {
 }
 
 impl RawTolerance {
-    fn validated(self, wrong: &mut Vec<String>) -> Option<Tolerance> {
+    fn validated(self, wrong: &mut Vec<EntryMistake>) -> Option<Tolerance> {
         let size = match (self.relative, self.absolute) {
             (Some(fraction), None) => ToleranceSize::Relative(fraction),
             (None, Some(distance)) => ToleranceSize::Absolute(distance),
             _ => {
-                wrong.push("has a `tolerance` that is neither `relative` nor `absolute`".into());
+                wrong.push(EntryMistake::ToleranceWithoutSize);
                 return None;
             }
         };
         let (ToleranceSize::Relative(amount) | ToleranceSize::Absolute(amount)) = size;
         if !(amount.is_finite() && amount > 0.0) {
-            wrong.push("has a `tolerance` that is not a number above zero".into());
+            wrong.push(EntryMistake::ToleranceNotAboveZero);
         }
         if self.reason.trim().is_empty() {
-            wrong.push("has a `tolerance` set by hand and needs its `reason`".into());
+            wrong.push(EntryMistake::NoToleranceReason);
         }
         Some(Tolerance { size, reason: self.reason.trim().into() })
     }

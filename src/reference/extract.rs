@@ -115,7 +115,7 @@ impl Extraction {
             }
             Self::FirstAbove(word) => {
                 let line = view.line(word.source(), &word.of, &word.over, None)?;
-                Extracted::place(line.onset(word.above)?.1, line.over_unit)
+                Extracted::place(line.onset(word.level)?.1, line.over_unit)
             }
             Self::Parting(word) => word.take(view)?,
             Self::Meeting(word) => word.take(view)?,

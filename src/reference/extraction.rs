@@ -131,7 +131,7 @@ word! {
         /// The parameter.
         over: String,
         /// The level to be exceeded.
-        above: f64,
+        level: f64,
     }
 }
 word! {
@@ -234,7 +234,7 @@ impl Extraction {
         match self {
             Self::Number(x) => x.is_finite(),
             Self::Crossing(word) => word.level.is_finite(),
-            Self::FirstAbove(word) => word.above.is_finite(),
+            Self::FirstAbove(word) => word.level.is_finite(),
             Self::Parting(word) => word.fraction.is_finite() && word.fraction > 0.0,
             Self::NearestPassage(word) => word.to.is_finite(),
             Self::MeanOver(word) | Self::StandardDeviationOver(word) => word.is_sound(),

@@ -11,6 +11,7 @@ mod compare;
 mod damage;
 mod decide;
 mod entry;
+mod entry_mistake;
 mod extract;
 mod extraction;
 mod fit;
@@ -39,6 +40,7 @@ pub use accept::{AcceptError, accept};
 pub use entry::{
     Check, Entry, Reading, ReferenceError, ReferenceFile, Tolerance, ToleranceSize, load_reference, parse_reference,
 };
+pub use entry_mistake::EntryMistake;
 pub use extraction::Extraction;
 pub use fit::{Fit, FitMeasure};
 pub use found::Found;
@@ -46,7 +48,7 @@ pub use judge::judge;
 pub use predicate::Predicate;
 pub use price::Price;
 pub use printed::{Printed, PrintedError};
-pub use problem::ReferenceProblem;
+pub use problem::{ReferenceMistake, ReferenceProblem};
 pub use prose::{Placeholder, Prose, ProseError, numbers};
 pub use resonance::{Feature, PrintedPeak, Which};
 pub use schema::reference_schema;

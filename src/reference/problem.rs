@@ -1,48 +1,45 @@
 //! What is wrong with a reference file, and where.
 
+use super::entry_mistake::EntryMistake;
 use super::prose::ProseError;
-use crate::experiment::AssumptionName;
-use crate::experiment::Located;
+use crate::experiment::{AssumptionName, Located, Problems};
 use crate::text::utf8::NotUtf8;
+
+/// One mistake with its place.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct ReferenceProblem {
+    /// Line and column, counted from 1; `None` for the file as a whole.
+    pub at: Option<(u64, u64)>,
+    /// What is wrong.
+    pub mistake: ReferenceMistake,
+}
 
 /// One mistake.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-pub enum ReferenceProblem {
+pub enum ReferenceMistake {
     /// The text is no YAML, or no reference file.
-    #[error(transparent)]
-    Text(#[from] Located),
+    #[error("{0}")]
+    Text(String),
     /// An entry is unsound.
-    #[error("line {line}, column {column}: entry `{entry}` {mistake}")]
+    #[error("entry `{entry}` {mistake}")]
     Entry {
-        /// The line on which the entry starts, counted from 1.
-        line: u64,
-        /// The column, counted from 1.
-        column: u64,
         /// Its id, as written.
         entry: String,
-        /// What is wrong with it, as the rest of a sentence.
-        mistake: String,
+        /// What is wrong with it.
+        mistake: EntryMistake,
     },
     /// There is no entry.
-    #[error("line 1, column 1: there is no entry")]
+    #[error("there is no entry")]
     NoEntry,
     /// Another ending would be overlooked.
     #[error("rename it to end in .yaml")]
     Ending,
     /// It is no text.
-    #[error("line {line}: this is {error}", line = error.line)]
-    Encoding {
-        /// The first bad byte.
-        error: NotUtf8,
-    },
+    #[error("this is {0}")]
+    Encoding(NotUtf8),
     /// A placeholder of no entry.
-    #[error("line {line}, column 1: a placeholder names `{name}`, which is no entry of the reference")]
-    Placeholder {
-        /// The line, counted from 1.
-        line: u64,
-        /// The entry that it names.
-        name: String,
-    },
+    #[error("a placeholder names `{0}`, which is no entry of the reference")]
+    Placeholder(String),
     /// The reason of an assumption cannot be read.
     #[error("the reason of `{name}` has {error}")]
     Reason {
@@ -60,16 +57,51 @@ pub enum ReferenceProblem {
 }
 
 impl ReferenceProblem {
+    /// At the start of a line.
+    #[must_use]
+    pub fn on_line(line: u64, mistake: ReferenceMistake) -> Self {
+        Self { at: Some((line, 1)), mistake }
+    }
+
     /// The line that it is about, counted from 1; `None` for the file as a whole.
     #[must_use]
     pub fn line(&self) -> Option<u64> {
-        match self {
-            Self::Text(located) => Some(located.line).filter(|line| *line > 0),
-            Self::Entry { line, .. } => Some(*line),
-            Self::NoEntry => Some(1),
-            Self::Encoding { error } => u64::try_from(error.line).ok(),
-            Self::Placeholder { line, .. } => Some(*line),
-            Self::Ending | Self::Reason { .. } | Self::Twice | Self::Unreadable(_) => None,
-        }
+        self.at.map(|(line, _)| line)
+    }
+
+    /// The same as mistakes in experiments are shown: with the line of the text, marked.
+    #[must_use]
+    pub fn shown(&self, file: &str, text: &str) -> Problems {
+        Problems::at(file, text, self.at, self.mistake.to_string())
     }
 }
+
+impl From<ReferenceMistake> for ReferenceProblem {
+    /// Of the file as a whole.
+    fn from(mistake: ReferenceMistake) -> Self {
+        Self { at: None, mistake }
+    }
+}
+
+impl From<Located> for ReferenceProblem {
+    fn from(Located { line, column, message }: Located) -> Self {
+        Self { at: (line > 0).then_some((line, column)), mistake: ReferenceMistake::Text(message) }
+    }
+}
+
+impl From<NotUtf8> for ReferenceProblem {
+    fn from(error: NotUtf8) -> Self {
+        Self::on_line(error.line as u64, ReferenceMistake::Encoding(error))
+    }
+}
+
+impl std::fmt::Display for ReferenceProblem {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        if let Some((line, column)) = self.at {
+            write!(f, "line {line}, column {column}: ")?;
+        }
+        self.mistake.fmt(f)
+    }
+}
+
+impl std::error::Error for ReferenceProblem {}

@@ -6,6 +6,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::entry_mistake::EntryMistake;
 use super::extract::Extracted;
 use super::printed::Printed;
 use super::selection::Selection;
@@ -279,17 +280,16 @@ pub(crate) struct PeakNumber<'a> {
 
 impl PrintedPeak {
     /// What is wrong with it.
-    pub(crate) fn flaw(&self) -> Option<String> {
+    pub(crate) fn flaw(&self) -> Option<EntryMistake> {
         if [&self.at, &self.height, &self.half_power_width].iter().all(|printed| printed.is_none()) {
-            return Some("has a `peak` without a printed number: give `at`, `height` or `half_power_width`".into());
+            return Some(EntryMistake::PeakWithoutNumber);
         }
         match self.which() {
-            None => Some("has a `peak` that needs `which`: {nearest: 26 rad/s}, {number: 1} or highest".into()),
-            Some(Which::Number(0)) => Some("counts peaks from 1".into()),
-            Some(_) if !(0.0..1.0).contains(&self.prominence) => Some(format!(
-                "has a `prominence` of {}, which is no fraction of the peak's height",
-                significant(self.prominence, 3)
-            )),
+            None => Some(EntryMistake::PeakWithoutWhich),
+            Some(Which::Number(0)) => Some(EntryMistake::PeakZero),
+            Some(_) if !(0.0..1.0).contains(&self.prominence) => {
+                Some(EntryMistake::Prominence { given: significant(self.prominence, 3) })
+            }
             Some(_) => None,
         }
     }

@@ -7,9 +7,8 @@ use super::extract::Extracted;
 use super::printed::Printed;
 use super::verdict::Comparison;
 use crate::experiment::Parameter;
-use crate::measure::Measure;
+use crate::measure::{Measure, column_words};
 use crate::text::number;
-use crate::text::words;
 
 /// Digits with which numbers of a list are told apart at first, and at most.
 const LIST_DIGITS: usize = 4;
@@ -60,7 +59,7 @@ pub(crate) fn symbol(column: &str) -> String {
     }
     let parameter = known::<Parameter>(column).map(Parameter::symbol);
     let symbol = parameter.or_else(|| known::<Measure>(column).map(Measure::symbol)).unwrap_or_default();
-    if symbol.is_empty() { words::of_column(column) } else { symbol.into() }
+    if symbol.is_empty() { column_words(column) } else { symbol.into() }
 }
 
 /// What came out beside what is published, in the unit of the publication: `628 ± 65 mm/s, 21 % below 794.8 mm/s`. An instant,

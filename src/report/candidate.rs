@@ -1,13 +1,12 @@
 //! What an optimisation found: every candidate beside the first, and which of the differences are none.
 
-use crate::experiment::GapWord;
-use crate::experiment::{Goal, Optimise};
+use crate::experiment::{GapWord, Goal, Optimise};
+use crate::measure::column_words;
 use crate::table::Table;
 use crate::text::number::{compact, quantity, significant};
-use crate::text::words;
+use crate::text::words::{self, counted};
 
 use super::markdown::{Align, MarkdownTable};
-use crate::text::words::counted;
 
 /// The section on an experiment's page.
 pub(super) fn section(optimise: &Optimise, table: &Table) -> String {
@@ -87,7 +86,7 @@ impl Rows {
     fn best(&self, optimise: &Optimise) -> String {
         let order = |row: &Row| row.order(optimise.goal);
         let Some(best) = self.best_row(optimise) else { return String::new() };
-        let measure = words::of_column(&words::of_key(&optimise.measure));
+        let measure = column_words(&words::of_key(&optimise.measure));
         let mut text = format!(
             "The best {measure} of {} is that of {}, {}: {}.",
             counted(self.list.len(), "candidate", "candidates"),
@@ -112,7 +111,7 @@ impl Rows {
     }
 
     fn table(&self, optimise: &Optimise) -> String {
-        let measure = words::of_column(&words::of_key(&optimise.measure));
+        let measure = column_words(&words::of_key(&optimise.measure));
         let mut table = MarkdownTable::new(&[
             ("Candidate", Align::Left),
             ("Gaps", Align::Left),

@@ -5,35 +5,31 @@ use std::collections::BTreeMap;
 use super::markdown::{Align, MarkdownTable, one_line};
 use super::tally::{Tally, agrees, mark};
 use super::view::ExperimentView;
+use crate::experiment::AboutStudy;
 use crate::text::number::quantity;
 
 /// The experiments of each chapter, in their order.
-pub(super) fn by_chapter<'v, 'a>(experiments: &'v [ExperimentView<'a>]) -> BTreeMap<u32, Vec<&'v ExperimentView<'a>>> {
-    let mut chapters: BTreeMap<u32, Vec<&ExperimentView<'_>>> = BTreeMap::new();
+pub(super) fn by_chapter<'v, 'a>(
+    experiments: &'v [ExperimentView<'a>],
+) -> BTreeMap<Option<u32>, Vec<&'v ExperimentView<'a>>> {
+    let mut chapters: BTreeMap<Option<u32>, Vec<&ExperimentView<'_>>> = BTreeMap::new();
     for view in experiments {
         chapters.entry(view.experiment.source.chapter).or_default().push(view);
     }
     chapters
 }
 
-/// The name of a chapter.
-pub(super) fn title(chapter: u32) -> String {
-    let subject = match chapter {
-        3 => ", one mass, one damper",
-        4 => ", cantilever beam",
-        5 => ", simply supported plate",
-        6 => ", optimised arrays of dampers",
-        _ => "",
-    };
-    format!("Chapter {chapter}{subject}")
+/// The name of a chapter in a picture; nothing for what belongs to none.
+pub(super) fn label(chapter: Option<u32>) -> String {
+    chapter.map_or_else(String::new, |number| format!("Chapter {number}"))
 }
 
 /// A table for each chapter.
-pub(super) fn tables(experiments: &[ExperimentView<'_>]) -> String {
+pub(super) fn tables(about: &AboutStudy, experiments: &[ExperimentView<'_>]) -> String {
     let timed = experiments.iter().any(|view| view.seconds.is_some());
     let mut text = String::from("## Experiments\n\n");
     for (chapter, views) in by_chapter(experiments) {
-        let name = title(chapter);
+        let name = about.heading(chapter);
         let mut header = vec![
             (name.as_str(), Align::Left),
             ("Shown in", Align::Left),

@@ -31,8 +31,9 @@ pub(super) fn in_short(judged: &[Judged]) -> String {
         closed(&one_line(&lead.statement)),
         closed(&one_line(&lead.found))
     );
-    if !agrees(lead.verdict) {
-        text += &format!("- Why: {}\n", first_sentence(&explanation(lead)));
+    let why = first_sentence(&explanation(lead));
+    if !agrees(lead.verdict) && closed(&why) != closed(&one_line(&lead.found)) {
+        text += &format!("- Why: {why}\n");
     }
     text + "\n"
 }
@@ -138,8 +139,8 @@ fn numbers(judged: &[Judged]) -> String {
         let Some(comparison) = &one.comparison else { continue };
         table.row([
             entry(one),
-            compact(comparison.published, 12),
-            significant(comparison.simulated, 6),
+            compact(comparison.published, MOST_DIGITS),
+            significant(comparison.simulated, printed_digits(comparison).clamp(6, MOST_DIGITS)),
             signed(comparison.error(), 2),
             significant(comparison.u_num, 2),
             significant(comparison.u_input, 2),
@@ -185,6 +186,16 @@ fn other_readings(judged: &[Judged]) -> String {
         return table;
     }
     format!("Other values of the assumptions, one moved at a time; bold where the verdict would change:\n\n{table}")
+}
+
+/// Digits of a number of double precision that may mean something.
+const MOST_DIGITS: usize = 15;
+
+/// How many significant digits were printed, by half a unit of the last of them.
+fn printed_digits(comparison: &Comparison) -> usize {
+    let unit = 2.0 * comparison.u_data;
+    let digits = libm::floor(libm::log10(comparison.published.abs())) - libm::round(libm::log10(unit)) + 1.0;
+    if digits.is_finite() && digits > 0.0 { digits as usize } else { 0 }
 }
 
 fn digits(comparison: &Comparison) -> String {

@@ -6,8 +6,7 @@ use super::verdicts::Judgement;
 use crate::experiment::{AssumptionEntry, AssumptionName, AssumptionValue, Tried};
 use crate::reference::{Entry, Judged, Moved};
 use crate::report::{self, EntryView, MoveView};
-use crate::study::Study;
-use crate::study::{Item, Variant};
+use crate::study::{Item, Study, Variant};
 
 /// An assumption that was moved for an entry alone.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,10 +1,12 @@
 //! Figures of one experiment.
 
+use std::collections::BTreeMap;
+
 use serde_json::json;
 
 use super::quoted::quoted;
-use crate::experiment::{Experiment, FigureSpec};
-use crate::figure::{Beside, FigureError, Picture, draw};
+use crate::experiment::{Drawing, Experiment, FigureSpec, LineColour};
+use crate::figure::{Beside, FigureError, Picture, draw, draw_svg};
 use crate::reference::{Judged, ReferenceFile};
 use crate::study::{FileHash, PRESENTATION_VERSION, fingerprint};
 use crate::table::Table;
@@ -21,10 +23,11 @@ pub fn scene_name(experiment: &Experiment) -> String {
     format!("{}-scene.svg", experiment.id)
 }
 
-/// File name of a figure's PNG.
+/// File name of a figure as pages show it: PNG, or SVG where it moves.
 #[must_use]
 pub fn figure_name(experiment: &Experiment, figure: &FigureSpec) -> String {
-    format!("{}.png", figure_stem(experiment, figure))
+    let ending = if matches!(figure.drawing, Drawing::Animation(_)) { "svg" } else { "png" };
+    format!("{}.{ending}", figure_stem(experiment, figure))
 }
 
 /// What the study says of an experiment, and what became of it.
@@ -34,6 +37,8 @@ pub(super) struct Said<'a> {
     pub judged: &'a [Judged],
     /// Period of the impulses, s.
     pub impulses: Option<f64>,
+    /// Colours of lines by name, as the study has them.
+    pub colours: Option<&'a BTreeMap<String, LineColour>>,
 }
 
 /// One figure, with the numbers that the study quotes.
@@ -44,7 +49,18 @@ pub(super) fn picture(
     said: Said<'_>,
 ) -> Result<Picture, FigureError> {
     let quoted = quoted(experiment, figure, table, said);
-    draw(experiment, figure, table, Beside { quoted: &quoted, impulses: said.impulses })
+    draw(experiment, figure, table, Beside { quoted: &quoted, impulses: said.impulses, colours: said.colours })
+}
+
+/// As [`picture`], as SVG alone.
+pub(super) fn vector(
+    experiment: &Experiment,
+    figure: &FigureSpec,
+    table: &Table,
+    said: Said<'_>,
+) -> Result<String, FigureError> {
+    let quoted = quoted(experiment, figure, table, said);
+    draw_svg(experiment, figure, table, Beside { quoted: &quoted, impulses: said.impulses, colours: said.colours })
 }
 
 /// Hash of all that one figure shows: the table of this hash, how it is drawn, and the numbers that the study quotes with their
@@ -64,6 +80,7 @@ pub(super) fn shown(
         "maximised": experiment.maximise.as_ref().map(|maximise| maximise.measure),
         "quoted": quoted,
         "impulses": said.impulses,
+        "colours": said.colours,
         "table": table_hash.blake3,
         "presentation_version": PRESENTATION_VERSION,
     }))

@@ -1,8 +1,10 @@
 //! The index of all reports: the study in one page.
 
+use crate::experiment::AboutStudy;
 use crate::study::Machine;
 use crate::text::number::quantity;
 
+use super::markdown::one_line;
 use super::view::ExperimentView;
 use super::{chapter, headline, reading, strip};
 
@@ -10,23 +12,34 @@ use super::{chapter, headline, reading, strip};
 pub(super) const STRIP: &str = "verdicts.svg";
 pub(super) const OVERVIEW: &str = "overview.svg";
 
-/// `reports/README.md`. `experiments` in the order in which the index lists them; `others` are further pages: title and link;
-/// `machine` is where times were taken, if they were.
+/// What the study and the index are.
+pub(super) fn head(about: &AboutStudy) -> String {
+    let mut text = String::from("# The study in one page\n\n");
+    if let Some(opening) = &about.about {
+        text += &format!("{}\n\n", one_line(opening));
+    }
+    text
+}
+
+/// `reports/README.md`. `about` is what the study says of itself; `experiments` in the order in which the index lists them;
+/// `others` are further pages: title and link; `machine` is where times were taken, if they were.
 #[must_use]
-pub fn index(experiments: &[ExperimentView<'_>], others: &[(&str, &str)], machine: Option<&Machine>) -> String {
-    let mut text = String::from(
-        "# The study in one page\n\nNew simulations of a published study of particle impact dampers, compared with the numbers \
-         and claims of its text.\n\n",
-    );
+pub fn index(
+    about: &AboutStudy,
+    experiments: &[ExperimentView<'_>],
+    others: &[(&str, &str)],
+    machine: Option<&Machine>,
+) -> String {
+    let mut text = head(about);
     text += &headline::section(experiments);
-    text += "## Every verdict\n\nOne cell for each number or claim; a symbol below links to its experiment, bold where the entry is held out.\n\n";
-    text += &format!("![Verdicts by chapter]({STRIP})\n\n");
-    text += &strip::links(experiments);
-    text += &format!(
-        "<details open><summary>All numbers: S/D with bars of ± 2 u_val/D, and |E|/u_val</summary>\n\n![Numbers of the study]({OVERVIEW})\n\n</details>\n\n"
-    );
     text += &reading::section();
-    text += &chapter::tables(experiments);
+    text += "## Every verdict\n\nOne cell for each number or claim; below, each that does not agree is linked, bold where it is held out.\n\n";
+    text += &format!("![Verdicts by chapter]({STRIP})\n\n");
+    text += &strip::links(about, experiments);
+    text += &format!(
+        "<details open><summary>All numbers: S/D with bars of ± tolerance/D, and |E|/u_val</summary>\n\n![Numbers of the study]({OVERVIEW})\n\n</details>\n\n"
+    );
+    text += &chapter::tables(about, experiments);
     let total: f64 = experiments.iter().filter_map(|view| view.seconds).sum();
     if let Some(Machine { processor, threads, system, build }) = machine {
         text += &format!(

@@ -1,6 +1,6 @@
 //! All numbers in one picture: S/D on a logarithmic axis with bars of 2 u_val, by chapter, and |E|/u_val beside it.
 
-use super::chapter::by_chapter;
+use super::chapter::{by_chapter, label};
 use super::svg::{Svg, colour};
 use super::tally::word;
 use super::view::ExperimentView;
@@ -30,7 +30,7 @@ impl Row<'_> {
 /// The picture; numbers without a positive ratio have a row and no mark.
 #[must_use]
 pub fn overview_svg(experiments: &[ExperimentView<'_>]) -> String {
-    let chapters: Vec<(u32, Vec<Row<'_>>)> = by_chapter(experiments)
+    let chapters: Vec<(Option<u32>, Vec<Row<'_>>)> = by_chapter(experiments)
         .into_iter()
         .map(|(chapter, views)| {
             let entries = views.into_iter().flat_map(|view| view.judged);
@@ -43,7 +43,7 @@ pub fn overview_svg(experiments: &[ExperimentView<'_>]) -> String {
             });
             (chapter, rows.collect())
         })
-        .filter(|(_, rows): &(u32, Vec<Row<'_>>)| !rows.is_empty())
+        .filter(|(_, rows): &(Option<u32>, Vec<Row<'_>>)| !rows.is_empty())
         .collect();
     let axis = Axis::of(chapters.iter().flat_map(|(_, rows)| rows).map(Row::ratio));
     let mut svg = Svg::new(WIDTH);
@@ -55,12 +55,17 @@ pub fn overview_svg(experiments: &[ExperimentView<'_>]) -> String {
         svg.line([x, top], [x, top + height], if strong { "#444" } else { "#ddd" }, if strong { 1.5 } else { 1.0 });
         svg.text(x, top - 6.0, "middle", &format!("{tick}"));
     }
-    svg.text((LEFT + RIGHT) / 2.0, 13.0, "middle", "S/D: here over published, bars ± 2 u_val/D");
+    svg.text(
+        (LEFT + RIGHT) / 2.0,
+        13.0,
+        "middle",
+        "S/D: here over published, bars ± tolerance/D (2 u_val, or set by hand)",
+    );
     svg.text(WIDTH - 12.0, top - 6.0, "end", "|E|/u_val");
     let mut y = top;
     for (chapter, rows) in &chapters {
         y += ROW;
-        svg.raw(&format!("<text x=\"8\" y=\"{:.1}\" font-weight=\"bold\">Chapter {chapter}</text>\n", y + 4.0));
+        svg.raw(&format!("<text x=\"8\" y=\"{:.1}\" font-weight=\"bold\">{}</text>\n", y + 4.0, label(*chapter)));
         for row in rows {
             y += ROW;
             draw(&mut svg, &axis, row, y);
@@ -84,7 +89,7 @@ fn draw(svg: &mut Svg, axis: &Axis, row: &Row<'_>, y: f64) {
     if !(ratio.is_finite() && ratio > 0.0) {
         return;
     }
-    let reach = (row.comparison.derived_tolerance() / row.comparison.published).abs();
+    let reach = (row.comparison.tolerance() / row.comparison.published).abs();
     let (from, to) = (axis.x(ratio - reach), axis.x(ratio + reach));
     svg.line([from, y], [to, y], colour(row.verdict), 1.4);
     svg.verdict(axis.x(ratio), y, row.verdict);

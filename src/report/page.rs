@@ -1,6 +1,7 @@
 //! One experiment's page.
 
 use crate::experiment::Source;
+use crate::text::words::capitalised;
 
 use super::markdown::{details, one_line};
 use super::view::{AccuracyLinks, FigureView, PageView};
@@ -32,9 +33,9 @@ pub fn page(view: &PageView<'_>) -> String {
         &(proof::section(view.table) + &accuracy(view.accuracy.as_ref())),
     );
     text += &format!(
-        "{}: `{id}`. All its numbers: `shotdamp run {id}` writes `{}`. [The study in one page]({up}README.md) · \
+        "{}`{id}`. All its numbers: `shotdamp run {id}` writes `{}`. [The study in one page]({up}README.md) · \
          [How to read]({up}README.md#how-to-read)\n",
-        place(&experiment.source),
+        place(&experiment.source).map_or_else(String::new, |place| format!("{place}: ")),
         view.table_name,
         id = experiment.id,
         up = view.to_reports,
@@ -53,11 +54,10 @@ fn figure(figure: &FigureView) -> String {
     format!("![{caption}]({})\n\n", figure.link)
 }
 
-/// `Chapter 3, section 3.6.3, Fig. 18`.
-pub(super) fn place(source: &Source) -> String {
-    let mut text = format!("Chapter {}, section {}", source.chapter, source.section);
-    for shown in &source.shown_in {
-        text += &format!(", {shown}");
-    }
-    text
+/// `Chapter 3, section 3.6.3, Fig. 18`, as far as it is known.
+pub(super) fn place(source: &Source) -> Option<String> {
+    let chapter = source.chapter.map(|number| format!("Chapter {number}"));
+    let section = source.section.as_ref().map(|number| format!("section {number}"));
+    let parts: Vec<String> = chapter.into_iter().chain(section).chain(source.shown_in.iter().cloned()).collect();
+    (!parts.is_empty()).then(|| capitalised(&parts.join(", ")))
 }

@@ -5,7 +5,7 @@ use std::fs;
 
 use rayon::prelude::*;
 
-use super::figures::{Said, figure_stem, picture, scene_name, shown};
+use super::figures::{Said, figure_stem, picture, scene_name, shown, vector};
 use super::publication::{inputs, publication_reasons};
 use super::verdicts::Judgement;
 use super::views;
@@ -14,8 +14,9 @@ use crate::experiment::{Experiment, FigureSpec};
 use crate::figure::{FigureError, Picture, sketch};
 use crate::measure::rounded;
 use crate::reference::{Judged, ReferenceFile};
-use crate::study::Study;
-use crate::study::{FileHash, Heading, Item, Publication, Record, State, Summary, record_name, stem, table_name};
+use crate::study::{
+    FileHash, Heading, Item, Publication, Record, State, Study, Summary, record_name, stem, table_name,
+};
 use crate::table::{Table, UNDEFINED};
 
 /// The verdicts for programs, within the study.
@@ -122,6 +123,29 @@ pub(super) fn render(study: &Study, judgement: &Judgement) -> BTreeMap<String, R
     files
 }
 
+/// Every figure and sketch as SVG, by name within the study: as it is on disk where that is what would be drawn.
+pub(super) fn svgs(study: &Study, judgement: &Judgement) -> BTreeMap<String, Result<String, NotDrawn>> {
+    let pages: Vec<Page<'_>> = study.items.iter().filter_map(|item| page(study, item)).collect();
+    let jobs: Vec<_> = pages.iter().flat_map(jobs).collect();
+    let figures = jobs.par_iter().map(|(page, figure)| {
+        let [(name, _), _] = names(page, figure);
+        let kept = is_drawn(study, judgement, page, figure).then(|| fs::read_to_string(study.layout.path(&name)).ok());
+        let svg = kept.flatten().map_or_else(|| vector_of(study, judgement, page, figure), Ok);
+        (name, svg)
+    });
+    let mut svgs: BTreeMap<_, _> = figures.collect();
+    let sketches: Vec<_> = pages.par_iter().filter_map(|page| scene(study, page)).collect();
+    svgs.extend(sketches.into_iter().map(|(name, svg)| (name, Ok(svg))));
+    svgs
+}
+
+fn vector_of(study: &Study, judgement: &Judgement, page: &Page<'_>, figure: &FigureSpec) -> Result<String, NotDrawn> {
+    let experiment = &page.item.source.experiment;
+    let table = judgement.tables.get(&experiment.id.0).ok_or(NotDrawn::NoTable)?;
+    let said = said(study, judgement, experiment);
+    vector(experiment, figure, table, said).map_err(|error| NotDrawn::of(error, table))
+}
+
 fn page<'a>(study: &Study, item: &'a Item) -> Option<Page<'a>> {
     let record = item.record()?;
     let folder = match item.source.folder() {
@@ -175,6 +199,7 @@ fn said<'a>(study: &'a Study, judgement: &'a Judgement, experiment: &Experiment)
         reference: study.references.get(id),
         judged: judgement.verdicts.get(id).map_or(&[], Vec::as_slice),
         impulses,
+        colours: Some(&study.about.colours),
     }
 }
 

@@ -4,8 +4,7 @@ use std::collections::BTreeMap;
 
 use serde_json::{Value, json};
 
-use crate::study::Study;
-use crate::study::{ASSUMPTIONS, Item, PRESENTATION_VERSION, Reason, Record, differences};
+use crate::study::{ASSUMPTIONS, Item, PRESENTATION_VERSION, Reason, Record, Study, differences};
 
 /// All that figures and report of an experiment depend on, other experiments' verdicts aside: pages are text, made anew
 /// whenever anything at all has changed.

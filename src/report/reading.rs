@@ -18,8 +18,8 @@ const SYMBOLS: &str = "\
 ";
 
 const TEXT: &str = "\
-A page opens with its result. Its table has one row for each statement of the study: a *number*, or a *claim* in words. The \
-study’s own curves are not available; an open diamond in a figure is a number that its text quotes.
+A page opens with its result. Its table has one row for each statement of the study: a *number*, or a *claim* in words. An \
+open diamond in a figure is a number that the study’s text quotes.
 
 **Numbers** are compared after ASME V&V 20. S is the number here, D the published one, E = S − D, and \
 u_val = √(u_num² + u_input² + u_D²): u_num covers discretisation, the grid of the sweep and the spread of the ensemble, u_input \
@@ -31,8 +31,8 @@ digits allow), the number is blocked or undecidable. **Claims** are decided over
 **Fitted** entries were used to choose an unstated input, so their agreement proves nothing. **Held out** entries were kept aside \
 by a calibration to test it. Only entries that are held out or neither are evidence.
 
-**Runs.** *Event-driven* runs follow the exact motion from one contact to the next; *fixed step* runs repeat the study’s scheme, \
-which looks for contacts once a step. Impact dampers are chaotic in wide ranges: there the mean of an *ensemble* of slightly \
+**Runs.** *Event-driven* runs follow the exact motion from one contact to the next; *fixed step* runs follow a scheme that \
+looks for contacts once a step. Impact dampers are chaotic in wide ranges: there the mean of an *ensemble* of slightly \
 perturbed starts is shown, and the band is its standard deviation. Every run is checked by its balances of momentum and energy; \
 the *smallest margin* is the distance by which a surface would have to move to change the order of contacts, and *ties* are \
 simultaneous events.

@@ -12,9 +12,9 @@ use serde_json::{Value, json};
 
 use super::publication::publication_reasons;
 use crate::atomic::{self, FileError};
+use crate::experiment::AboutStudy;
 use crate::reference::ReferenceFile;
-use crate::study::Study;
-use crate::study::{ASSUMPTIONS, FileHash, Item, Record, State, table_name};
+use crate::study::{ASSUMPTIONS, FileHash, Item, Record, State, Study, table_name};
 use crate::table::{ParquetError, Table, parquet};
 
 /// When this version was released; a crate has to say when it was published, and nobody's clock is asked.
@@ -61,7 +61,8 @@ pub fn export_crate(study: &Study, items: &[&Item], folder: &Path, published: &s
     if !stale.is_empty() {
         return Err(CrateError::NotUpToDate(stale));
     }
-    let description = serde_json::to_string_pretty(&crated.metadata(published)).unwrap_or_default() + "\n";
+    let description =
+        serde_json::to_string_pretty(&crated.metadata(&study.about, published)).unwrap_or_default() + "\n";
     crated.files.insert("ro-crate-metadata.json".into(), description.into_bytes());
     write_whole(&crated.files, folder)?;
     Ok(crated.files.len())
@@ -186,7 +187,7 @@ impl Crate {
         single_or_all(columns)
     }
 
-    fn metadata(&self, published: &str) -> Value {
+    fn metadata(&self, about: &AboutStudy, published: &str) -> Value {
         let parts: Vec<Value> = self.files.keys().map(|name| json!({"@id": name})).collect();
         let licences: Vec<Value> = LICENCES.iter().map(|(id, _)| json!({"@id": id})).collect();
         let mut graph = vec![
@@ -199,24 +200,16 @@ impl Crate {
             json!({
                 "@id": "./",
                 "@type": "Dataset",
-                "name": "Reproduction of a study of particle impact dampers",
-                "description": "Experiments, the study's numbers and claims, tables, figures and verdicts of a reproduction \
-                                of a published study of resilient particle impact dampers under periodic impulses.",
+                "name": about.title.as_deref().unwrap_or("A study"),
+                "description": "Experiments with the numbers and claims that they are compared with, tables, figures and verdicts",
                 "datePublished": published,
                 "license": licences,
                 "author": {"@id": "#authors"},
                 "publisher": {"@id": "#authors"},
-                "citation": {"@id": "#study"},
                 "hasPart": parts,
                 "mentions": single_or_all(self.actions.clone()),
             }),
             json!({"@id": "#authors", "@type": "Organization", "name": "The shotdamp authors"}),
-            json!({
-                "@id": "#study",
-                "@type": "Thesis",
-                "name": "The study that is reproduced: a dissertation on arrays of resilient particle impact dampers under \
-                         periodic impulses",
-            }),
             json!({
                 "@id": "#shotdamp",
                 "@type": "SoftwareApplication",
@@ -226,6 +219,10 @@ impl Crate {
                 "version": env!("CARGO_PKG_VERSION"),
             }),
         ];
+        if let Some(source) = &about.source {
+            graph[1]["citation"] = json!({"@id": "#study"});
+            graph.push(json!({"@id": "#study", "@type": source.kind, "name": source.name}));
+        }
         let licence = |(id, name): &(&str, &str)| json!({"@id": id, "@type": "CreativeWork", "name": name});
         graph.extend(LICENCES.iter().map(licence));
         graph.extend(self.entities.values().cloned());

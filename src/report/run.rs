@@ -1,13 +1,10 @@
 //! How an experiment was run, and which effects its scene has.
 
-use crate::experiment::GapWord;
-use crate::experiment::{Experiment, Optimise, Search};
-use crate::measure::SolverChoice;
+use crate::experiment::{Experiment, GapWord, Optimise, Search};
+use crate::measure::{SolverChoice, column_words};
 use crate::scene::EffectUse;
 use crate::text::number::{compact, quantity};
-use crate::text::words;
-
-use crate::text::words::counted;
+use crate::text::words::{self, counted};
 
 /// The section on how it was run.
 pub(super) fn section(experiment: &Experiment) -> String {
@@ -116,7 +113,7 @@ fn ends(optimise: &Optimise) -> String {
 fn averaged(experiment: &Experiment) -> String {
     let mut names: Vec<String> = Vec::new();
     for (parameter, _) in experiment.mean_over.iter().flat_map(|case| &case.values) {
-        let name = words::of_column(&words::of_key(parameter));
+        let name = column_words(&words::of_key(parameter));
         if !names.contains(&name) {
             names.push(name);
         }
@@ -129,8 +126,7 @@ fn averaged(experiment: &Experiment) -> String {
 }
 
 fn cases(experiment: &Experiment) -> String {
-    let names: Vec<String> =
-        experiment.swept.iter().map(|parameter| words::of_column(&words::of_key(parameter))).collect();
+    let names: Vec<String> = experiment.swept.iter().map(|parameter| column_words(&words::of_key(parameter))).collect();
     let over = if names.is_empty() { String::new() } else { format!(" over {}", joined(&names)) };
     let cases = counted(experiment.cases.len(), "case", "cases");
     match &experiment.maximise {
@@ -142,8 +138,8 @@ fn cases(experiment: &Experiment) -> String {
             };
             format!(
                 "{cases}{over}; in each the {} is maximised over the {}{ends}",
-                words::of_column(&words::of_key(&maximise.measure)),
-                words::of_column(&words::of_key(&maximise.over)),
+                column_words(&words::of_key(&maximise.measure)),
+                column_words(&words::of_key(&maximise.over)),
             )
         }
     }
@@ -154,10 +150,9 @@ fn solver_in_words(solver: SolverChoice) -> String {
         SolverChoice::EventDriven => {
             "Solver *event-driven*: the exact motion from one contact event to the next.".to_owned()
         }
-        SolverChoice::FixedStep { time_step } => format!(
-            "Solver *fixed step {}*: the study’s own scheme, which looks for contacts once a step.",
-            quantity(time_step, "s", 3)
-        ),
+        SolverChoice::FixedStep { time_step } => {
+            format!("Solver *fixed step {}*: looks for contacts once a step.", quantity(time_step, "s", 3))
+        }
     }
 }
 

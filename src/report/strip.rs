@@ -1,11 +1,13 @@
 //! The verdict strip: one cell for each entry, by chapter, in the order of the pages. Once as a picture and once as links, which a
 //! picture in Markdown cannot hold.
 
-use super::chapter::{by_chapter, title};
-use super::markdown::{html, one_line};
+use super::chapter::{by_chapter, label};
+use super::comparison::{anchor, name};
+use super::markdown::html;
 use super::svg::{Svg, colour};
-use super::tally::{VERDICTS, mark, word};
+use super::tally::{VERDICTS, agrees, mark, word};
 use super::view::ExperimentView;
+use crate::experiment::AboutStudy;
 use crate::reference::{Judged, Role};
 
 const CELL: f64 = 13.0;
@@ -15,19 +17,29 @@ const WIDTH: f64 = 1240.0;
 const APART: f64 = 3.0;
 
 /// A row of linked symbols for each chapter; bold where the entry is held out.
-pub(super) fn links(experiments: &[ExperimentView<'_>]) -> String {
+pub(super) fn links(about: &AboutStudy, experiments: &[ExperimentView<'_>]) -> String {
     let mut text = String::new();
     for (chapter, views) in by_chapter(experiments) {
-        let cells = views.iter().filter(|view| !view.judged.is_empty()).map(|view| {
-            let cells: String = view.judged.iter().map(cell).collect();
-            format!("[{cells}]({} \"{}\")", view.page, one_line(&view.experiment.title).replace('"', "”"))
-        });
-        text += &format!("{}: {}\n\n", title(chapter), cells.collect::<Vec<_>>().join(" "));
+        let cells = views.iter().filter(|view| !view.judged.is_empty()).map(|view| cells(view));
+        text += &format!("{}: {}\n\n", about.heading(chapter), cells.collect::<Vec<_>>().join(" "));
     }
     text
 }
 
-fn cell(one: &Judged) -> String {
+/// The symbols of a page: what agrees is linked to it as a whole, everything else to its entry.
+fn cells(view: &ExperimentView<'_>) -> String {
+    let together = |a: &Judged, b: &Judged| agrees(a.verdict) && agrees(b.verdict);
+    let link = |entries: &[Judged]| {
+        let marks: String = entries.iter().map(symbol).collect();
+        match entries {
+            [one] if !agrees(one.verdict) => format!("[{marks}]({}#{})", view.page, anchor(name(one))),
+            _ => format!("[{marks}]({})", view.page),
+        }
+    };
+    view.judged.chunk_by(together).map(link).collect()
+}
+
+fn symbol(one: &Judged) -> String {
     let mark = mark(one.verdict);
     if one.role == Role::HeldOut { format!("<b>{mark}</b>") } else { mark.to_owned() }
 }
@@ -38,7 +50,7 @@ pub fn strip_svg(experiments: &[ExperimentView<'_>]) -> String {
     let mut svg = Svg::new(WIDTH);
     let mut y = 8.0;
     for (chapter, views) in by_chapter(experiments) {
-        svg.text(LEFT - 8.0, y + 10.0, "end", &format!("Chapter {chapter}"));
+        svg.text(LEFT - 8.0, y + 10.0, "end", &label(chapter));
         let mut x = LEFT;
         for view in views {
             for one in view.judged {

@@ -6,8 +6,7 @@ use rayon::prelude::*;
 
 use super::prose;
 use crate::reference::{Judged, ReferenceFile, SelfTestFailure, TableState, Tables, judge, self_test};
-use crate::study::Study;
-use crate::study::{Item, State, table_name};
+use crate::study::{Item, State, Study, table_name};
 use crate::table::{Table, parquet};
 
 /// The tables that count, and the verdicts that they give.

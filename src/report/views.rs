@@ -7,8 +7,7 @@ use super::index::{OVERVIEW, STRIP};
 use super::other_pages::PAGES;
 use super::prose;
 use super::verdicts::Judgement;
-use crate::experiment::AssumptionName;
-use crate::experiment::{Experiment, FigureSpec};
+use crate::experiment::{AssumptionName, Experiment, FigureSpec};
 use crate::figure::sketch;
 use crate::reference::Judged;
 use crate::report::{
@@ -16,8 +15,7 @@ use crate::report::{
     value_in_words,
 };
 use crate::scene::{Scene, effects};
-use crate::study::{Heading, Item, RunTimes, table_name};
-use crate::study::{Study, Unread};
+use crate::study::{Heading, Item, RunTimes, Study, Unread, table_name};
 
 /// The page of an experiment.
 pub(super) fn page(study: &Study, judgement: &Judgement, item: &Item) -> String {
@@ -44,15 +42,33 @@ fn accuracy(study: &Study, item: &Item, up: &str) -> Option<AccuracyLinks> {
     exists.then(|| AccuracyLinks { page: format!("{up}{name}") })
 }
 
-/// What is written of the study as a whole, by name within the study.
-pub(super) fn of_the_study(study: &Study, judgement: &Judgement) -> Vec<(String, String)> {
-    let times = RunTimes::read(&study.layout);
+/// The page of an experiment, by name below `reports/`.
+pub(super) fn page_name(item: &Item) -> String {
+    let folder = item.source.folder();
+    let folder = if folder.is_empty() { String::new() } else { format!("{folder}/") };
+    format!("{folder}{}.md", item.source.experiment.id)
+}
+
+/// All experiments in the order of the index.
+pub(super) fn listed<'a>(study: &Study, judgement: &'a Judgement, times: Option<&RunTimes>) -> Vec<ExperimentView<'a>> {
     let planned = study.items.iter().map(|item| (Heading::of(&item.source.experiment), item.source.folder()));
     let known = study.known.values().map(|known| (known.heading.clone(), known.folder.as_str()));
     let mut views: Vec<ExperimentView<'_>> =
-        planned.chain(known).map(|(heading, folder)| listed(judgement, heading, folder, times.as_ref())).collect();
+        planned.chain(known).map(|(heading, folder)| one_listed(judgement, heading, folder, times)).collect();
     views.sort_by(|a, b| a.experiment.id.cmp(&b.experiment.id));
-    let assumptions = assumptions(study, judgement, &|_| true, &|name| entries_that_use(study, name));
+    views
+}
+
+/// All assumptions with the entries that depend on them.
+pub(super) fn all_assumptions(study: &Study, judgement: &Judgement) -> Vec<AssumptionView> {
+    assumptions(study, judgement, &|_| true, &|name| entries_that_use(study, name))
+}
+
+/// What is written of the study as a whole, by name within the study.
+pub(super) fn of_the_study(study: &Study, judgement: &Judgement) -> Vec<(String, String)> {
+    let times = RunTimes::read(&study.layout);
+    let views = listed(study, judgement, times.as_ref());
+    let assumptions = all_assumptions(study, judgement);
     [
         ("README.md", index(study, &views, times.as_ref())),
         (STRIP, report::strip_svg(&views)),
@@ -77,10 +93,10 @@ fn index(study: &Study, views: &[ExperimentView<'_>], times: Option<&RunTimes>) 
         .chain(calibrations)
         .filter(|(_, page)| study.layout.path(&format!("reports/{page}")).exists())
         .collect();
-    report::index(views, &others, times.map(|times| &times.machine))
+    report::index(&study.about, views, &others, times.map(|times| &times.machine))
 }
 
-fn listed<'a>(
+fn one_listed<'a>(
     judgement: &'a Judgement,
     experiment: Heading,
     folder: &str,

@@ -75,7 +75,7 @@ pub enum ContactDamping {
 /// Where a resilient contact ends.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ContactEnd {
-    /// At zero gap, as in the study.
+    /// At zero gap: the contact pulls before it parts.
     ZeroGap,
     /// Where the contact force would turn to tension.
     ZeroForce,

@@ -2,11 +2,10 @@
 
 use crate::dynamics::Proof;
 use crate::measure::{Measure, Measured};
-use crate::table::{Column, Data};
+use crate::table::{Column, Data, UNDEFINED};
 use crate::text::words;
 
 pub(super) use crate::table::RESIDUAL_BOUND;
-use crate::table::UNDEFINED;
 
 /// The bound that the residuals of a row exceed; NaN in rows that balance.
 pub(super) fn residual_bounds(proofs: impl Iterator<Item = Option<Proof>>) -> Option<Column> {

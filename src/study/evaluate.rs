@@ -4,8 +4,10 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use super::row_failure::RowFailure;
 use crate::experiment::{Assumptions, GapWord, Recipe};
-use crate::measure::{self, Evaluated, Measure, Needs, Prepared, Request, Rigour};
-use crate::measure::{EnergySpec, Settings, ShapeSpec, SolverChoice, TraceSpec};
+use crate::measure::{
+    self, EnergySpec, Evaluated, Measure, Needs, Prepared, Request, Rigour, Settings, ShapeSpec, SolverChoice,
+    TraceSpec,
+};
 
 /// One simulation to be made.
 #[derive(Debug, Clone, Copy)]

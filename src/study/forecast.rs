@@ -2,8 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use crate::experiment::Assumptions;
-use crate::experiment::Experiment;
+use crate::experiment::{Assumptions, Experiment};
 use crate::measure::SolverChoice;
 use crate::scene::{Scene, Surface};
 use crate::text::number::significant;

@@ -4,8 +4,7 @@ use super::variant::Variant;
 use std::collections::BTreeSet;
 
 use crate::experiment::{AssumptionName, Case, Experiment, curves};
-use crate::measure::Measure;
-use crate::measure::SolverChoice;
+use crate::measure::{Measure, SolverChoice};
 
 /// A row.
 #[derive(Debug, Clone, Copy, PartialEq)]

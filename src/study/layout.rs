@@ -50,6 +50,9 @@ impl Layout {
     }
 }
 
+/// The name of the file in which a study says what it is.
+pub const STUDY: &str = "study.yaml";
+
 /// The name of the file that holds the assumptions.
 pub const ASSUMPTIONS: &str = "experiments/assumptions.yaml";
 
@@ -71,7 +74,7 @@ pub fn journal_name(id: &crate::experiment::ExperimentId) -> String {
     format!("results/{id}.journal")
 }
 
-/// Every YAML file under `experiments/`, `reference/` and `calibrations/` as it stood at one moment, by its name within the study.
+/// `study.yaml` and every YAML file under `experiments/`, `reference/` and `calibrations/` as it stood at one moment, by its name within the study.
 ///
 /// All that follows, hashes included, is made from these bytes and never from a second look at the disk: a file that is
 /// edited while a study runs is stale afterwards.
@@ -93,6 +96,10 @@ impl Texts {
             if path.is_dir() {
                 texts.walk(&path, folder, DEEPEST)?;
             }
+        }
+        let about = layout.path(STUDY);
+        if about.is_file() {
+            texts.files.insert(STUDY.into(), read_text(&about)?);
         }
         Ok(texts)
     }
@@ -154,6 +161,13 @@ fn read_text(path: &Path) -> Result<Vec<u8>, FileError> {
         return Err(fail(std::io::Error::other(format!("it has {length} KiB; at most {most} KiB are read"))));
     }
     Ok(bytes)
+}
+
+/// The folder of a file below `experiments/`, `reference/` or `calibrations/`: `ch3`; empty for one that stands there itself.
+#[must_use]
+pub fn folder_of(name: &str) -> &str {
+    let below = name.split_once('/').map_or(name, |(_, below)| below);
+    below.rsplit_once('/').map_or("", |(folder, _)| folder)
 }
 
 /// The name of a file without its folder and ending.

@@ -2,15 +2,18 @@
 
 use std::collections::BTreeMap;
 
-use super::layout::{ASSUMPTIONS, Texts, stem};
+use super::layout::{ASSUMPTIONS, STUDY, Texts, folder_of, stem};
 use crate::experiment::{
-    AssumptionSheet, Experiment, ExperimentId, IdError, Problems, parse_assumptions, parse_experiment,
+    AboutStudy, AssumptionSheet, Experiment, ExperimentId, IdError, Problems, parse_assumptions, parse_experiment,
+    parse_study,
 };
 use crate::text::utf8::{NotUtf8, decode};
 
 /// The experiments of a study with the assumptions that they share.
 #[derive(Debug, Default)]
 pub struct Loaded {
+    /// What the study says of itself; nothing if there is no such file.
+    pub about: AboutStudy,
     /// The assumptions; empty if there is no such file.
     pub sheet: AssumptionSheet,
     /// What could be read, by name of the file.
@@ -32,8 +35,7 @@ impl Source {
     /// The folder of the file below `experiments/`: `ch3`; empty for a file that stands there itself.
     #[must_use]
     pub fn folder(&self) -> &str {
-        let below = self.file.strip_prefix("experiments/").unwrap_or(&self.file);
-        below.rsplit_once('/').map_or("", |(folder, _)| folder)
+        folder_of(&self.file)
     }
 }
 
@@ -97,15 +99,16 @@ impl Loaded {
     pub fn chosen(texts: &Texts, wanted: &dyn Fn(&str) -> bool) -> Self {
         let mut loaded = Self::default();
         let mut files_by_id = BTreeMap::<ExperimentId, &str>::new();
-        if let Some(bytes) = texts.files.get(ASSUMPTIONS) {
-            match text(ASSUMPTIONS, bytes).and_then(|text| parse_assumptions(ASSUMPTIONS, text).map_err(Refused::Text))
-            {
-                Ok(sheet) => loaded.sheet = sheet,
-                Err(refused) => {
-                    // Without the assumptions every experiment would only repeat that they are absent.
-                    loaded.refused.push(refused);
-                    return loaded;
-                }
+        match shared(texts, STUDY, parse_study) {
+            Ok(about) => loaded.about = about,
+            Err(refused) => loaded.refused.push(refused),
+        }
+        match shared(texts, ASSUMPTIONS, parse_assumptions) {
+            Ok(sheet) => loaded.sheet = sheet,
+            Err(refused) => {
+                // Without the assumptions every experiment would only repeat that they are absent.
+                loaded.refused.push(refused);
+                return loaded;
             }
         }
         let assumptions = loaded.sheet.assumptions();
@@ -128,6 +131,16 @@ impl Loaded {
         }
         loaded
     }
+}
+
+/// A file that all experiments share; empty if there is none.
+fn shared<T: Default>(
+    texts: &Texts,
+    file: &str,
+    parse: impl FnOnce(&str, &str) -> Result<T, Problems>,
+) -> Result<T, Refused> {
+    let Some(bytes) = texts.files.get(file) else { return Ok(T::default()) };
+    parse(file, text(file, bytes)?).map_err(Refused::Text)
 }
 
 /// The id that a file's name makes.

@@ -7,8 +7,7 @@ use rayon::prelude::*;
 
 use super::evaluate::{Evaluate, Simulation, evaluate_guarded};
 use super::row_failure::RowFailure;
-use crate::experiment::Maximise;
-use crate::experiment::ParameterValue;
+use crate::experiment::{Maximise, ParameterValue};
 use crate::measure::Evaluated;
 use crate::text::words;
 

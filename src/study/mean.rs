@@ -1,7 +1,7 @@
 //! Means over settings that have no column of their own, such as several force points.
 //!
 //! Every measure is the mean of its values. The velocity ratio alone is the ratio of the mean RMS velocities, so that it
-//! belongs to the fitness that the study's optimisation reduces.
+//! is that of the structure at all settings together, which an optimisation reduces.
 
 use rayon::prelude::*;
 

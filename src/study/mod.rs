@@ -43,6 +43,7 @@ mod tabulate;
 mod tabulate_candidates;
 mod untabulate;
 mod variant;
+mod warning;
 mod work;
 
 pub use canonical::{Change, canonical, changes, fingerprint};
@@ -53,7 +54,7 @@ pub use forecast::forecast;
 pub use gather::{GatherError, gather};
 pub use job::runs_of_a_row;
 pub use known_rows::KnownRows;
-pub use layout::{ASSUMPTIONS, Layout, Texts, journal_name, record_name, stem, table_name};
+pub use layout::{ASSUMPTIONS, Layout, STUDY, Texts, folder_of, journal_name, record_name, stem, table_name};
 pub use load::{Loaded, Refused, Source};
 pub use machine::Machine;
 pub use open::{Study, Unread};

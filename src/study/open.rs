@@ -5,8 +5,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use rayon::prelude::*;
 
 use super::load::text;
-use crate::experiment::{AssumptionSheet, Calibration, parse_calibration};
-use crate::reference::{Check, Prose, ReferenceFile, ReferenceProblem, Role, parse_reference};
+use crate::experiment::{AboutStudy, AssumptionSheet, Calibration, Problems, parse_calibration};
+use crate::reference::{Check, Prose, ReferenceFile, ReferenceMistake, ReferenceProblem, Role, parse_reference};
 use crate::study::{ASSUMPTIONS, Item, Layout, Loaded, Refused, Sensitivity, Summary, Texts, stem};
 use crate::text::utf8::decode;
 
@@ -17,6 +17,8 @@ pub struct Study {
     pub layout: Layout,
     /// The texts that all of this was made from.
     pub texts: Texts,
+    /// What it says of itself.
+    pub about: AboutStudy,
     /// The assumptions.
     pub sheet: AssumptionSheet,
     /// The experiments that were planned, in the order of their ids.
@@ -44,10 +46,27 @@ pub enum Unread {
         file: String,
         /// What is wrong with it, with its place.
         problem: ReferenceProblem,
+        /// The same with the line of the text.
+        shown: Box<Problems>,
     },
 }
 
 impl Unread {
+    fn reference(file: &str, text: &str, problem: ReferenceProblem) -> Self {
+        let shown = Box::new(problem.shown(file, text));
+        Self::Reference { file: file.into(), problem, shown }
+    }
+
+    /// The mistakes with their lines, where there are lines.
+    #[must_use]
+    pub fn problems(&self) -> Option<&Problems> {
+        match self {
+            Self::Experiment(Refused::Text(problems)) => Some(problems),
+            Self::Reference { shown, .. } => Some(shown),
+            Self::Experiment(_) => None,
+        }
+    }
+
     /// The line of the first mistake, if it has a place.
     #[must_use]
     pub fn line(&self) -> Option<u64> {
@@ -84,6 +103,7 @@ impl Study {
         let mut study = Self {
             layout,
             texts,
+            about: AboutStudy::default(),
             sheet: AssumptionSheet::default(),
             items: Vec::new(),
             known: BTreeMap::new(),
@@ -127,6 +147,7 @@ impl Study {
                 Item::new(layout, source, &loaded.sheet, sensitivity)
             })
             .collect();
+        self.about = loaded.about;
         self.sheet = loaded.sheet;
         self.references.extend(references);
         self.items.extend(items);
@@ -178,11 +199,11 @@ impl Study {
             let names = prose.placeholders().filter_map(|one| one.entry.as_deref());
             // A name without its experiment was checked with its file; in an assumption's reason it means nothing.
             let unknown = |name: &&str| has(name).map_or(file == ASSUMPTIONS, |has| !has);
-            let problem = |name: &str| ReferenceProblem::Placeholder {
-                line: text.lines().position(|line| line.contains(name)).map_or(1, |line| line as u64 + 1),
-                name: name.into(),
+            let problem = |name: &str| {
+                let line = text.lines().position(|line| line.contains(name)).map_or(1, |line| line as u64 + 1);
+                ReferenceProblem::on_line(line, ReferenceMistake::Placeholder(name.into()))
             };
-            names.filter(unknown).map(|name| Unread::Reference { file: file.into(), problem: problem(name) }).collect()
+            names.filter(unknown).map(|name| Unread::reference(file, &text, problem(name))).collect()
         };
         let mut unread = Vec::new();
         for file in self.texts.files.keys().filter(|file| file.starts_with("reference/")) {
@@ -193,8 +214,10 @@ impl Study {
             match Prose::parse(&assumption.reason) {
                 Ok(prose) => unread.extend(lost(ASSUMPTIONS, &prose)),
                 Err(error) => {
-                    let problem = ReferenceProblem::Reason { name: name.clone(), error };
-                    unread.push(Unread::Reference { file: ASSUMPTIONS.into(), problem });
+                    let mistake = ReferenceMistake::Reason { name: name.clone(), error };
+                    let text = self.texts.files.get(ASSUMPTIONS).map(|bytes| String::from_utf8_lossy(bytes));
+                    let problem = ReferenceProblem::on_line(assumption.place.line as u64, mistake);
+                    unread.push(Unread::reference(ASSUMPTIONS, &text.unwrap_or_default(), problem));
                 }
             }
         }
@@ -253,21 +276,22 @@ fn references(
     let mut references = BTreeMap::<String, ReferenceFile>::new();
     let files = texts.files.iter().filter(|(file, _)| file.starts_with("reference/") && wanted(stem(file)));
     for (file, bytes) in files {
-        let mut refuse = |problem| unread.push(Unread::Reference { file: file.clone(), problem });
+        let text = String::from_utf8_lossy(bytes);
+        let mut refuse = |problem| unread.push(Unread::reference(file, &text, problem));
         let name = file.rsplit('/').next().unwrap_or(file);
         let Some(id) = name.strip_suffix(".yaml") else {
-            refuse(ReferenceProblem::Ending);
+            refuse(ReferenceMistake::Ending.into());
             continue;
         };
         let text = match decode(bytes) {
             Ok(text) => text,
             Err(error) => {
-                refuse(ReferenceProblem::Encoding { error });
+                refuse(error.into());
                 continue;
             }
         };
         match parse_reference(id, text) {
-            Ok(_) if references.contains_key(id) => refuse(ReferenceProblem::Twice),
+            Ok(_) if references.contains_key(id) => refuse(ReferenceMistake::Twice.into()),
             Ok(reference) => {
                 references.insert(id.into(), reference);
             }

@@ -1,7 +1,7 @@
 //! An optimisation while it runs: fitness evaluated batch by batch, the searches one after the other, and in the end every
 //! candidate evaluated once more as a result.
 //!
-//! A search sees one run for each setting, as the study's did: ten times as many evaluations are worth more to it than the
+//! A search sees one run for each setting, not an ensemble: ten times as many evaluations are worth more to it than the
 //! mean of an ensemble. Where the motion is chaotic it may so find luck, and the ensemble of the result says whether it did.
 
 use std::time::Instant;
@@ -17,10 +17,8 @@ use super::row_failure::{RowFailure, SearchError};
 use super::run::{Finished, Task};
 use super::tabulate_candidates::{Candidate, failures, table};
 use super::variant::Variant;
-use crate::experiment::Recipe;
-use crate::experiment::{Experiment, Goal, Optimise, Search, SearchKind, SearchSpacing};
-use crate::measure::SolverChoice;
-use crate::measure::{Evaluated, Measure, Rigour};
+use crate::experiment::{Experiment, Goal, Optimise, Recipe, Search, SearchKind, SearchSpacing};
+use crate::measure::{Evaluated, Measure, Rigour, SolverChoice};
 use crate::optimise::{
     Batch, Bounds, CmaEs, Dense, Found, Genetic, GeneticSettings, Optimiser, Score, Spacing, Stalled, Stopping, dense,
     minimise, sections, two_opt,

@@ -93,7 +93,7 @@ impl Item {
         let pairs = [
             ("experiment", experiment.id.to_string()),
             ("title", experiment.title.clone()),
-            ("section", experiment.source.section.clone()),
+            ("section", experiment.source.section.clone().unwrap_or_default()),
             ("fingerprint", self.fingerprint.clone()),
             ("solver_version", SOLVER_VERSION.to_string()),
             ("program", concat!("shotdamp ", env!("CARGO_PKG_VERSION")).to_owned()),

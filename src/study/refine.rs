@@ -10,8 +10,7 @@
 use rayon::prelude::*;
 
 use super::tabulate::Outcome;
-use crate::experiment::ParameterValue;
-use crate::experiment::{AxisScale, Case, Curve, Experiment, Refinement, curves};
+use crate::experiment::{AxisScale, Case, Curve, Experiment, ParameterValue, Refinement, curves};
 use crate::measure::Measured;
 
 /// Halvings of the first intervals, at most: from 3 rad/s to 0.0002 rad/s.

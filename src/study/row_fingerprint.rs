@@ -11,8 +11,7 @@ use super::job::Job;
 use super::variant::Variant;
 use super::work::asked;
 use crate::dynamics::SOLVER_VERSION;
-use crate::experiment::{Assumptions, ParameterValue, Recipe};
-use crate::experiment::{Case, Experiment};
+use crate::experiment::{Assumptions, Case, Experiment, ParameterValue, Recipe};
 use crate::measure::Rigour;
 use crate::table::RowFingerprint;
 

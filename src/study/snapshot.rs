@@ -18,8 +18,7 @@ use super::record::{PRESENTATION_VERSION, RECORD_FORMAT};
 use super::summary::Summary;
 use crate::atomic::{self, FileError};
 use crate::dynamics::SOLVER_VERSION;
-use crate::experiment::AssumptionName;
-use crate::experiment::{AssumptionSheet, parse_assumptions};
+use crate::experiment::{AssumptionName, AssumptionSheet, parse_assumptions};
 
 /// Name of the file within the study.
 const NAME: &str = "results/snapshot.bin";
@@ -34,6 +33,8 @@ pub struct Snapshot {
     pub experiments: BTreeMap<String, Summary>,
     /// True if index and verdicts are as the last run left them.
     pub index_is_current: bool,
+    /// Assumptions that no experiment used when it was taken.
+    pub unused: BTreeSet<AssumptionName>,
     /// Files that were compared by content, and need not be the next time.
     settled: Option<Box<OnDisk>>,
 }
@@ -51,6 +52,7 @@ struct Seen<T> {
 struct OnDisk {
     program: Program,
     study: Seen<Assumed>,
+    unused: BTreeSet<AssumptionName>,
     experiments: BTreeMap<String, Seen<Summary>>,
 }
 
@@ -85,14 +87,16 @@ struct Assumed {
     each: BTreeMap<AssumptionName, String>,
     /// Ids of the entries that one was fitted to; they are judged differently, whatever they use.
     fitted: BTreeSet<String>,
+    /// Of the defaults, to which any experiment may leave what it does not say.
+    others: String,
 }
 
 impl Assumed {
     fn of(sheet: &AssumptionSheet) -> Self {
-        let hash = |entry| serde_json::to_vec(entry).map_or_else(|_| String::new(), |text| hash(&text));
         Self {
-            each: sheet.iter().map(|(name, entry)| (name.clone(), hash(entry))).collect(),
+            each: sheet.iter().map(|(name, entry)| (name.clone(), hash_of(entry))).collect(),
             fitted: sheet.iter().flat_map(|(_, entry)| entry.fitted_to.iter().cloned()).collect(),
+            others: hash_of(&(sheet.cycles(), sheet.defaults().collect::<Vec<_>>())),
         }
     }
 }
@@ -125,8 +129,9 @@ impl Snapshot {
         let experiments: BTreeMap<_, _> =
             known.experiments.iter().map(|(id, seen)| (id.clone(), seen.content.clone())).collect();
         let all = texts.len() == experiments.len();
+        let unused = known.unused.clone();
         let settled = (look.settled && all && index_is_current).then(|| Box::new(known));
-        Some(Self { experiments, index_is_current, settled })
+        Some(Self { experiments, index_is_current, unused, settled })
     }
 
     /// True if every experiment and every reference file among `texts` is up to date, and the index.
@@ -180,7 +185,9 @@ impl Snapshot {
         let outputs = glances(layout, of_the_study)?;
         let study = Seen { inputs: shared_inputs(texts), outputs, content: Assumed::of(sheet) };
         // Also where it says the same as before: its own time tells which outputs were written later.
-        OnDisk { program: Program::here(), study, experiments }.write(&path)
+        let is_used = |name: &AssumptionName| experiments.values().any(|seen| seen.content.used.contains(name));
+        let unused = sheet.iter().map(|(name, _)| name).filter(|name| !is_used(name)).cloned().collect();
+        OnDisk { program: Program::here(), study, unused, experiments }.write(&path)
     }
 }
 
@@ -203,7 +210,7 @@ impl Seen<Assumed> {
         let text = std::str::from_utf8(texts.files.get(ASSUMPTIONS)?).ok()?;
         let now = Assumed::of(&parse_assumptions(ASSUMPTIONS, text).ok()?);
         let differs = |name: &&AssumptionName| now.each.get(*name) != self.content.each.get(*name);
-        (now.fitted == self.content.fitted)
+        (now.fitted == self.content.fitted && now.others == self.content.others)
             .then(|| now.each.keys().chain(self.content.each.keys()).filter(differs).cloned().collect())
     }
 }
@@ -253,11 +260,15 @@ fn glances(layout: &Layout, names: &BTreeSet<String>) -> Result<BTreeMap<String,
     names.iter().map(glance).collect()
 }
 
+fn hash_of(value: &impl Serialize) -> String {
+    serde_json::to_vec(value).map_or_else(|_| String::new(), |text| hash(&text))
+}
+
 fn hash(bytes: &[u8]) -> String {
     blake3::hash(bytes).to_hex().to_string()
 }
 
-/// Texts that concern the study as a whole: assumptions and calibrations.
+/// Texts that concern the study as a whole: what it says of itself, assumptions and calibrations.
 fn shared_inputs(texts: &Texts) -> Hashes {
     let shared = texts.files.iter().filter(|(name, _)| !Texts::is_of_experiment(name));
     shared.map(|(name, bytes)| (name.clone(), hash(bytes))).collect()

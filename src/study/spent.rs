@@ -12,10 +12,8 @@ use super::evaluate::{Array, Evaluate, Simulation};
 use super::layout::Layout;
 use super::row_failure::RowFailure;
 use crate::atomic;
-use crate::experiment::ExperimentId;
-use crate::experiment::GapWord;
-use crate::measure::SolverChoice;
-use crate::measure::{Evaluated, Rigour};
+use crate::experiment::{ExperimentId, GapWord};
+use crate::measure::{Evaluated, Rigour, SolverChoice};
 
 /// The folder of what was spent, within the study.
 pub(super) const FOLDER: &str = "results/times";

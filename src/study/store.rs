@@ -4,13 +4,12 @@ use std::fs::{self, File, TryLockError};
 use std::io::Write;
 use std::path::Path;
 
-use super::earlier;
 use super::layout::{Layout, journal_name, record_name, table_name};
 use super::plan::Item;
 use super::record::{FileHash, RECORD_FORMAT, Record};
 use super::run::Finished;
 use super::shard::Shard;
-use super::spent;
+use super::{earlier, spent};
 use crate::atomic::{self, FileError};
 use crate::table::{ParquetError, parquet};
 

@@ -5,8 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use serde::{Deserialize, Serialize};
 
-use crate::experiment::AssumptionName;
-use crate::experiment::{Experiment, ExperimentId, Source};
+use crate::experiment::{AssumptionName, Experiment, ExperimentId, Source};
 use crate::reference::Judged;
 
 /// An experiment by name.

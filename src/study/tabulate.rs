@@ -8,9 +8,8 @@ use super::maximise::Place;
 use super::record::Failures;
 use super::row_failure::RowFailure;
 use super::variant::Variant;
-use crate::experiment::Experiment;
-use crate::experiment::{Parameter, ParameterValue};
-use crate::measure::{Evaluated, Measure, TraceColumn};
+use crate::experiment::{Experiment, Parameter, ParameterValue};
+use crate::measure::{Evaluated, Measure, PROOF, ProofOf, TraceColumn};
 use crate::table::{Column, Data, RowFingerprint, Table};
 use crate::text::words;
 
@@ -54,10 +53,6 @@ pub(super) fn table(
     let floats = |cell: &dyn Fn(&Row) -> f64| {
         Data::Float(outcomes.iter().map(|outcome| outcome.as_ref().map_or(f64::NAN, cell)).collect())
     };
-    let counts = |cell: &dyn Fn(&Row) -> u64| {
-        let count = |outcome: &&Outcome| outcome.as_ref().map_or(0, |row| i64::try_from(cell(row)).unwrap_or(i64::MAX));
-        Data::Int(outcomes.iter().map(count).collect())
-    };
     for (index, measure) in experiment.measures.iter().enumerate() {
         let name = words::of_key(measure);
         if measure.is_name() {
@@ -83,15 +78,12 @@ pub(super) fn table(
             columns.push(Column::new(format!("{name}_num"), place(|p| p.within)).with_unit(unit));
         }
     }
-    columns.push(Column::new("momentum_residual", floats(&|row| row.evaluated.proof.momentum_residual)));
-    columns.push(Column::new("energy_residual", floats(&|row| row.evaluated.proof.energy_residual)));
-    let proofs = outcomes.iter().map(|outcome| outcome.as_ref().ok().map(|row| row.evaluated.proof));
-    columns.extend(doubt::residual_bounds(proofs));
-    columns.push(Column::new("events", counts(&|row| row.evaluated.proof.events)));
-    columns.push(Column::new("smallest_margin", floats(&|row| row.evaluated.proof.smallest_margin)).with_unit("m"));
-    columns.push(Column::new("ties", counts(&|row| row.evaluated.proof.ties)));
-    columns.push(Column::new("chaotic", counts(&|row| u64::from(row.evaluated.chaotic))));
-    columns.push(Column::new("members", counts(&|row| u64::from(row.evaluated.members))));
+    let evaluated: Vec<Option<&Evaluated>> =
+        outcomes.iter().map(|outcome| outcome.as_ref().ok().map(|row| &row.evaluated)).collect();
+    let [momentum, energy, others @ ..] = proof(&evaluated);
+    columns.extend([momentum, energy]);
+    columns.extend(doubt::residual_bounds(evaluated.iter().map(|row| row.map(|row| row.proof))));
+    columns.extend(others);
     columns.push(Column::new(
         "failure",
         texts(&|row| outcomes[row].as_ref().err().map(ToString::to_string).unwrap_or_default()),
@@ -100,6 +92,20 @@ pub(super) fn table(
     columns.extend(doubt::undefined(&experiment.measures, measured));
     columns.extend(histories(jobs, outcomes));
     Table { columns, metadata, fingerprints }
+}
+
+/// What proves the rows, in columns; a row without numbers has NaN and 0 there.
+pub(super) fn proof(rows: &[Option<&Evaluated>]) -> [Column; PROOF.len()] {
+    PROOF.map(|column| {
+        let data = match column.of {
+            ProofOf::Number(of) => Data::Float(rows.iter().map(|row| row.map_or(f64::NAN, of)).collect()),
+            ProofOf::Count(of) => {
+                let count = |row: &Option<&Evaluated>| row.map_or(0, |row| i64::try_from(of(row)).unwrap_or(i64::MAX));
+                Data::Int(rows.iter().map(count).collect())
+            }
+        };
+        Column::new(column.name, data).with_unit(column.unit)
+    })
 }
 
 fn swept_column(experiment: &Experiment, jobs: &[Job], parameter: Parameter) -> Column {

@@ -6,10 +6,8 @@ use super::doubt;
 use super::record::Failures;
 use super::row_failure::RowFailure;
 use super::variant::Variant;
-use crate::experiment::GapWord;
-use crate::experiment::{Experiment, Goal, Optimise};
-use crate::measure::SolverChoice;
-use crate::measure::{Evaluated, Measured};
+use crate::experiment::{Experiment, GapWord, Goal, Optimise};
+use crate::measure::{Evaluated, Measured, PROOF, SolverChoice};
 use crate::table::{Column, Data, Table};
 use crate::text::words;
 
@@ -159,23 +157,9 @@ fn outcome(experiment: &Experiment, optimise: &Optimise, candidates: &[Candidate
     ]
 }
 
-fn proof(candidates: &[Candidate]) -> Vec<Column> {
-    let floats = |cell: fn(&Evaluated) -> f64| {
-        Data::Float(candidates.iter().map(|it| it.outcome.as_ref().map_or(f64::NAN, cell)).collect())
-    };
-    let counts = |cell: fn(&Evaluated) -> u64| {
-        let count = |it: &Candidate| it.outcome.as_ref().map_or(0, |one| i64::try_from(cell(one)).unwrap_or(i64::MAX));
-        Data::Int(candidates.iter().map(count).collect())
-    };
-    vec![
-        Column::new("momentum_residual", floats(|one| one.proof.momentum_residual)),
-        Column::new("energy_residual", floats(|one| one.proof.energy_residual)),
-        Column::new("events", counts(|one| one.proof.events)),
-        Column::new("smallest_margin", floats(|one| one.proof.smallest_margin)).with_unit("m"),
-        Column::new("ties", counts(|one| one.proof.ties)),
-        Column::new("chaotic", counts(|one| u64::from(one.chaotic))),
-        Column::new("members", counts(|one| u64::from(one.members))),
-    ]
+fn proof(candidates: &[Candidate]) -> [Column; PROOF.len()] {
+    let rows: Vec<Option<&Evaluated>> = candidates.iter().map(|it| it.outcome.as_ref().ok()).collect();
+    super::tabulate::proof(&rows)
 }
 
 /// Convergence and landscape; of the baseline alone.

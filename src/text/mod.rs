@@ -1,4 +1,4 @@
-//! Words and numbers as a reader of the study meets them: the same formatter and the same vocabulary in figures,
+//! Words and numbers as a reader meets them: the same formatter and the same vocabulary in figures,
 //! reports and on the console.
 
 pub mod number;

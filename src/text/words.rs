@@ -1,4 +1,4 @@
-//! Table words to the words and symbols of the study.
+//! Table words to the words of a reader.
 //!
 //! A table column is called as in the YAML (`gap_ratio`); a reader knows it as the dimensionless gap clearance h′. What
 //! is not listed here is its own name with spaces, so that a new column needs no change.
@@ -16,12 +16,9 @@ pub fn of_key<K: Serialize>(key: &K) -> String {
     }
 }
 
-/// A column's name in words: `velocity ratio`, `dimensionless gap clearance`.
+/// The name in words of a column that is no measure: `dimensionless gap clearance`.
 #[must_use]
 pub fn of_column(name: &str) -> String {
-    if let Some(over) = name.strip_suffix("_at_maximum") {
-        return format!("{} at the maximum", of_column(over));
-    }
     match name {
         "force_ratio" => "dimensionless forcing amplitude",
         "base_amplitude_ratio" => "dimensionless base amplitude",
@@ -30,9 +27,6 @@ pub fn of_column(name: &str) -> String {
         "contact_damping_ratio" => "damping ratio of floor and ceiling",
         "stop" => "limit stop",
         "stop_length" => "limit stop length",
-        "rms_velocity" => "RMS velocity",
-        "undamped_rms_velocity" => "RMS velocity without damper",
-        "std_displacement" => "standard deviation of the displacement",
         "rms_acceleration" => "RMS acceleration",
         "base_displacement" => "base",
         "particle_displacement" => "particle",

@@ -107,6 +107,12 @@ async function goodFiles() {
   }
 }
 
+// The file that says what the study is.
+async function study() {
+  const {diagnostics} = await open(withSchema("study", readFileSync("study.yaml", "utf8")));
+  expect(diagnostics.length === 0, `study.yaml is right, and yet: ${told(diagnostics)}`);
+}
+
 // A mistake stands on a line that says so; the server has to point at it, and at no line that is right.
 async function badFiles() {
   for (const file of files("tests/editor/bad")) {
@@ -139,6 +145,7 @@ async function completions() {
     ["sweep:\n  stop: [w|]", ["with", "without"]],
     ["run:\n  |", ["solver", "skip", "ensemble"]],
     ["figure:\n  x: {column: force_ratio, scale: l|}", ["log", "linear"]],
+    ["scene:\n  gravity: {assumed: |}", ["gravity"]],
   ];
   for (const [text, wanted] of offers) {
     const labels = await offered(text);
@@ -163,7 +170,7 @@ await request("initialize", {
 });
 send({method: "initialized", params: {}});
 send({method: "workspace/didChangeConfiguration", params: {settings}});
-for (const part of [goodFiles, badFiles, completions, hover]) await part();
+for (const part of [goodFiles, study, badFiles, completions, hover]) await part();
 console.log(`tests/editor: ${checks - failures} of ${checks} checks passed`);
 server.kill();
 process.exit(failures > 0 ? 1 : 0);

@@ -1,10 +1,11 @@
 //! Imports go one way: the table of rooms in ARCHITECTURE.md against every path in the sources.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 
 use regex::Regex;
+use shotdamp::experiment::{AssumptionSheet, assumptions_schema, experiment_schema, load_assumptions, parse_study};
 
 /// The rooms in the order of the table, the most basic first.
 fn rooms() -> Vec<String> {
@@ -14,16 +15,20 @@ fn rooms() -> Vec<String> {
 }
 
 fn sources(folder: &Path) -> Vec<PathBuf> {
-    let mut files = Vec::new();
+    files(folder, "rs")
+}
+
+fn files(folder: &Path, ending: &str) -> Vec<PathBuf> {
+    let mut found = Vec::new();
     for entry in fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
         if path.is_dir() {
-            files.extend(sources(&path));
-        } else if path.extension().is_some_and(|ending| ending == "rs") {
-            files.push(path);
+            found.extend(files(&path, ending));
+        } else if path.extension().is_some_and(|own| own == ending) {
+            found.push(path);
         }
     }
-    files
+    found
 }
 
 /// The room of a source file: `src/study/plan.rs` and `src/study.rs` belong to `study`.
@@ -60,6 +65,35 @@ fn imports_go_one_way() {
         }
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+/// What a study calls its things stands in its files. Its names may be words of the language, as `gravity` is.
+#[test]
+fn the_program_knows_no_study() {
+    let sheet = load_assumptions(Path::new("experiments/assumptions.yaml")).unwrap();
+    let (slots, scenes) = (assumptions_schema(), experiment_schema(&AssumptionSheet::default()));
+    let is_a_word = |name: &str| {
+        let parameters = &scenes["definitions"]["sweep"]["properties"];
+        !slots["properties"]["defaults"]["properties"][name].is_null() || !parameters[name].is_null()
+    };
+    let assumptions = sheet.iter().map(|(name, _)| name.as_str()).filter(|name| !is_a_word(name)).map(str::to_owned);
+    let assumptions: Vec<String> = assumptions.collect();
+    let about = parse_study("study.yaml", &fs::read_to_string("study.yaml").unwrap()).unwrap();
+    let titles = about.chapters.values().chain(&about.title).map(|title| format!("\"(, )?{title}\""));
+    // The arrays that chapter 6 optimises are named in the ids of its experiments: `ch6-beam-b1-heavy`.
+    let array = Regex::new(r"^ch6-(?:beam|plate)-([a-z]\d)-").unwrap();
+    let ids = files(Path::new("experiments"), "yaml");
+    let ids = ids.iter().filter_map(|path| path.file_stem()?.to_str());
+    let arrays: BTreeSet<String> = ids.filter_map(|id| Some(array.captures(id)?[1].to_uppercase())).collect();
+    assert!(assumptions.len() > 10 && arrays.len() >= 4, "{arrays:?}");
+    let names: Vec<String> =
+        assumptions.into_iter().chain(arrays).map(|name| format!(r"\b{name}\b")).chain(titles).collect();
+    let known = Regex::new(&names.join("|")).unwrap();
+    for file in sources(Path::new("src")) {
+        let text = fs::read_to_string(&file).unwrap();
+        let code = text.split("#[cfg(test)]").next().unwrap();
+        assert_eq!(known.find(code).map(|found| found.as_str()), None, "{}", file.display());
+    }
 }
 
 #[test]

@@ -33,6 +33,7 @@ fn complaint_of(id: &str, exchanged: &[(&str, &str)]) -> String {
 #[test]
 fn every_classic_is_reproduced_to_its_printed_digits() {
     let folder = tempfile::tempdir().unwrap();
+    fs::copy(study().join("study.yaml"), folder.path().join("study.yaml")).unwrap();
     for part in ["experiments", "reference", "reports"] {
         fs::create_dir(folder.path().join(part)).unwrap();
         for file in fs::read_dir(study().join(part)).unwrap() {

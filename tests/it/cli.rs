@@ -143,7 +143,7 @@ fn what_nothing_answers_to_is_an_error() {
         assert_eq!(said.code, 2, "{arguments:?}");
         assert!(said.err.contains("no experiment matches") && said.err.contains("ch3-gap, ch3-stop"), "{}", said.err);
     }
-    assert_eq!(shotdamp(&desk, &["run", "--chapter", "7"]).code, 2);
+    assert_eq!(shotdamp(&desk, &["run", "--folder", "ch7"]).code, 2);
     assert_eq!(shotdamp(&desk, &["run", "--jobs", "0"]).code, 2);
     assert!(!desk.layout.path("results/ch3-gap.parquet").exists());
     let nowhere = tempfile::tempdir().unwrap();
@@ -153,19 +153,47 @@ fn what_nothing_answers_to_is_an_error() {
 }
 
 #[test]
-fn patterns_and_chapters_choose() {
+fn patterns_and_folders_choose() {
     let desk = Desk::new();
     desk.put("experiments/ch4/ch4-gap.yaml", &GAP.replace("chapter: 3", "chapter: 4"));
     for (arguments, expected) in [
         (&["status", "*-gap"][..], &["ch3-gap", "ch4-gap"][..]),
         (&["status", "ch?-stop", "ch4-gap"], &["ch3-stop", "ch4-gap"]),
-        (&["status", "--chapter", "3"], &["ch3-gap", "ch3-stop"]),
-        (&["status", "*gap", "--chapter", "4"], &["ch4-gap"]),
+        (&["status", "--folder", "ch3"], &["ch3-gap", "ch3-stop"]),
+        (&["status", "*gap", "--folder", "ch4/"], &["ch4-gap"]),
     ] {
         let out = shotdamp(&desk, arguments).out;
         let chosen: Vec<&str> = out.lines().filter_map(|line| line.split("  ").next()).collect();
         assert_eq!(chosen[..chosen.len() - 1], *expected, "{arguments:?}");
     }
+}
+
+/// A warning stands beside the work, once, with its place, and changes no exit code.
+#[test]
+fn an_assumption_that_nothing_uses_is_a_warning() {
+    let desk = simulated();
+    let silent = shotdamp(&desk, &[]);
+    assert_eq!((silent.code, silent.err.as_str()), (0, ""), "all are used");
+    desk.put(
+        "experiments/assumptions.yaml",
+        &format!("{ASSUMPTIONS}spare: {{quantity: ratio, value: 1, reason: none}}\n"),
+    );
+    let line = ASSUMPTIONS.lines().count() + 1;
+    for arguments in [&["status"][..], &["check"], &["run"], &["run"], &["status"]] {
+        let said = shotdamp(&desk, arguments);
+        assert_eq!(said.code, 0, "{arguments:?}: {}", said.err);
+        assert!(
+            said.err.starts_with("warning: no experiment uses the assumption `spare`\n"),
+            "{arguments:?}: {}",
+            said.err
+        );
+        assert!(said.err.contains(&format!("--> experiments/assumptions.yaml:{line}:1\n")), "{}", said.err);
+        assert_eq!(said.err.matches("warning").count(), 1, "{arguments:?}: {}", said.err);
+    }
+    assert_eq!(shotdamp(&desk, &["run", "--quiet"]).err, "");
+    // What cannot be read may use it.
+    desk.put("experiments/ch3/ch3-bad.yaml", "title: x");
+    assert!(!shotdamp(&desk, &["status"]).err.contains("warning"));
 }
 
 /// A mistake in one file: told with its place, nothing written for it, all others done, and the exit code says so.
@@ -186,7 +214,11 @@ fn a_bad_experiment_does_not_stop_the_others() {
     desk.put("reference/ch3/ch3-bad.yaml", "entries: [{id: x}]\n");
     let said = shotdamp(&desk, &["check"]);
     assert_eq!(said.code, 2);
-    assert!(said.err.contains("reference/ch3/ch3-bad.yaml: line 1"), "{}", said.err);
+    assert!(
+        said.err.contains("--> reference/ch3/ch3-bad.yaml:1:12\n  |\n1 | entries: [{id: x}]\n  |            ^^\n"),
+        "{}",
+        said.err
+    );
 
     desk.put("experiments/assumptions.yaml", "gravity: {quantity: acceleration, value: 9.81 s, reason: wrong unit}\n");
     let said = shotdamp(&desk, &["run", "ch3-gap"]);

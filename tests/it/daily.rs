@@ -22,8 +22,19 @@ fn a_new_experiment_runs_as_it_is() {
     assert!(shown.code == 0 && shown.out.contains("31 cases"), "{}{}", shown.out, shown.err);
 
     assert_eq!(shotdamp(&desk, &["new", "ch3-my-idea"]).code, 2, "it would overwrite");
-    assert_eq!(shotdamp(&desk, &["new", "ch3-gap", "--chapter", "4"]).code, 2, "an id is taken once");
+    assert_eq!(shotdamp(&desk, &["new", "ch3-gap", "--folder", "ch4"]).code, 2, "an id is taken once");
     assert_eq!(shotdamp(&desk, &["new", "My idea"]).code, 2);
+    assert_eq!(shotdamp(&desk, &["new", "away", "--folder", "../elsewhere"]).code, 2);
+    for (arguments, file) in [
+        (&["new", "an-idea"][..], "experiments/an-idea.yaml"),
+        (&["new", "ch4-an-idea", "--folder", "beams/short"], "experiments/beams/short/ch4-an-idea.yaml"),
+    ] {
+        assert!(shotdamp(&desk, arguments).out.starts_with(&format!("{file}\n")), "{arguments:?}");
+        let text = fs::read_to_string(desk.layout.path(file)).unwrap();
+        let schema =
+            text.lines().next().and_then(|line| line.strip_prefix("# yaml-language-server: $schema=")).unwrap();
+        assert!(desk.layout.path(file).parent().unwrap().join(schema).is_file(), "{schema}");
+    }
     let typo = shotdamp(&desk, &["new", "ch4-x", "--structure", "beam"]);
     assert!(typo.code == 2 && typo.err.contains("cantilever_beam"), "{}", typo.err);
     assert_eq!(fs::read_to_string(desk.layout.path("experiments/ch3/ch3-my-idea.yaml")).unwrap(), text);

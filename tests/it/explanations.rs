@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use shotdamp::experiment::AboutStudy;
 use shotdamp::reference::{Check, Entry, Judged, Prose, load_reference, numbers, parse_reference};
 use shotdamp::report::{ExperimentView, index};
 use shotdamp::study::{Heading, Layout, Study, Texts};
@@ -137,7 +138,7 @@ fn the_index_of_the_whole_study_loads_at_once() {
             ExperimentView { experiment: Heading::of(experiment), judged, seconds: Some(1.234), page }
         })
         .collect();
-    let index = index(&views, &[], None);
+    let index = index(&AboutStudy::default(), &views, &[], None);
     assert!(index.len() < 30_000, "{} bytes", index.len());
     let numbers = views.iter().flat_map(|view| view.judged).filter(|one| one.comparison.is_some()).count();
     assert!(index.contains(&format!("**{numbers} numbers**")), "{index}");

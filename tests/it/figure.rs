@@ -9,7 +9,7 @@ use crate::made_up::{axis, figure, hump, limit_stop, limit_stop_table, log_range
 
 /// Draws, keeps the picture and checks what holds for any of them.
 fn picture(name: &str, experiment: &Experiment, spec: &FigureSpec, table: &Table, quoted: &[Quoted]) -> Picture {
-    let picture = draw(experiment, spec, table, Beside { quoted, impulses: None }).unwrap();
+    let picture = draw(experiment, spec, table, Beside { quoted, ..Beside::default() }).unwrap();
     let png = &picture.png;
     std::fs::write(format!("{}/{name}.svg", env!("CARGO_TARGET_TMPDIR")), &picture.svg).unwrap();
     std::fs::write(format!("{}/{name}.png", env!("CARGO_TARGET_TMPDIR")), png).unwrap();

@@ -22,7 +22,8 @@ fn quoted(at: QuotedAt) -> Quoted {
 }
 
 fn drawn(name: &str, spec: Panel, table: &Table, quoted: &[Quoted], impulses: Option<f64>) -> Picture {
-    let picture = draw(&limit_stop(), &figure(vec![spec]), table, Beside { quoted, impulses }).unwrap();
+    let picture =
+        draw(&limit_stop(), &figure(vec![spec]), table, Beside { quoted, impulses, ..Beside::default() }).unwrap();
     std::fs::write(format!("{}/{name}.png", env!("CARGO_TARGET_TMPDIR")), &picture.png).unwrap();
     picture
 }

@@ -62,7 +62,7 @@ fn a_row_at_its_limit_fails_with_the_reason_and_a_higher_limit_resumes_there() {
         "experiments/ch3/ch3-long.yaml",
         &LONG.replace("ensemble: none", "ensemble: none, limit: {events: 1e6, time: 2 h}"),
     );
-    assert!(shotdamp(&desk, &["run", "--dry-run"]).out.contains("0 of 1 experiments would be simulated"));
+    assert!(shotdamp(&desk, &["run", "--dry-run"]).out.contains("0 of 1 experiment would be simulated"));
     assert_eq!(shotdamp(&desk, &["run", "--force"]).code, 0);
     assert!(desk.bytes("results/ch3-long.parquet") == whole);
     assert_eq!(shotdamp(&desk, &["run", "--row-limit", "for ever"]).code, 2);

@@ -23,7 +23,7 @@ pub fn limit_stop() -> Experiment {
     Experiment {
         id: ExperimentId("ch3-limit-stop".into()),
         title: "Limit stop".into(),
-        source: Source { chapter: 3, section: "3.6.3".into(), shown_in: vec!["Fig. 18".into()] },
+        source: Source { chapter: Some(3), section: Some("3.6.3".into()), shown_in: vec!["Fig. 18".into()] },
         about: "Velocity ratio against the forcing amplitude, with and without a stop.".into(),
         recipe: Recipe {
             structure: StructureRecipe::single_mass(1.0, 1000.0, 0.05),

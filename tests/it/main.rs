@@ -27,6 +27,7 @@ mod figure_map;
 mod figure_study;
 mod fixed;
 mod guide;
+mod html;
 mod limits;
 mod made_up;
 mod mutations;

@@ -302,7 +302,7 @@ fn numbers_of_a_curve_are_read_as_a_study_quotes_them() {
         ("0", "minimum: {of: velocity_ratio, over: force_ratio}"),
         ("2", "argmax: {of: velocity_ratio, over: force_ratio}"),
         ("1.0", "crossing: {of: velocity_ratio, over: force_ratio, level: 1, direction: increasing}"),
-        ("2", "first_above: {of: velocity_ratio, over: force_ratio, above: 1}"),
+        ("2", "first_above: {of: velocity_ratio, over: force_ratio, level: 1}"),
         ("3", "parting: {of: velocity_ratio, over: force_ratio, by: solver, fraction: 0.1}"),
         ("1.5", "largest_step_back: {of: velocity_ratio, over: force_ratio, direction: increasing}"),
         ("2", "at_maximum: {of: velocity_ratio, over: force_ratio, read: force_ratio}"),
@@ -314,7 +314,7 @@ fn numbers_of_a_curve_are_read_as_a_study_quotes_them() {
         assert!(comparison.error().abs() < 1e-12, "{from}: {}", judged.found);
     }
     // What does not happen is a difference, not a gap in the data.
-    let never = "value: \"2\"\nfrom: {first_above: {of: velocity_ratio, over: force_ratio, above: 7}}";
+    let never = "value: \"2\"\nfrom: {first_above: {of: velocity_ratio, over: force_ratio, level: 7}}";
     assert_eq!(verdict(never, &table), Verdict::Differs);
 }
 

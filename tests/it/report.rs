@@ -2,7 +2,9 @@
 //!
 //! After a wanted change, `GOLDEN=write cargo test` writes the files anew.
 
-use shotdamp::experiment::AssumptionValue;
+use std::collections::BTreeMap;
+
+use shotdamp::experiment::{AboutStudy, AssumptionValue};
 use shotdamp::reference::{Comparison, Judged, Price, Role, Verdict};
 use shotdamp::report::{
     AccuracyLinks, AssumptionView, ExperimentView, FigureView, PageView, assumptions as assumptions_page, index,
@@ -112,6 +114,12 @@ fn assumptions() -> Vec<AssumptionView> {
     ]
 }
 
+fn about() -> AboutStudy {
+    let chapters = BTreeMap::from([(3, "one mass, one damper".to_owned())]);
+    let about = "New simulations of a published study of particle impact dampers, compared with the numbers and claims of its text.";
+    AboutStudy { about: Some(about.into()), chapters, ..AboutStudy::default() }
+}
+
 fn effects() -> Vec<EffectUse> {
     vec![
         EffectUse { name: "gravity", in_force: 122, cases: 122, why_not: "" },
@@ -165,7 +173,7 @@ fn the_index_tells_the_whole_study_at_a_glance() {
     golden("strip.svg", &strip_svg(std::slice::from_ref(&view)));
     golden("overview.svg", &overview_svg(std::slice::from_ref(&view)));
     golden("tolerances.md", &tolerances(std::slice::from_ref(&view)));
-    golden("index.md", &index(std::slice::from_ref(&view), &[("Speed", "speed.md")], Some(&machine)));
+    golden("index.md", &index(&about(), std::slice::from_ref(&view), &[("Speed", "speed.md")], Some(&machine)));
 }
 
 #[test]
@@ -222,7 +230,7 @@ fn the_rule_of_agreement_is_said_once_and_is_the_one_that_judges() {
     let experiment = limit_stop();
     let view =
         ExperimentView { experiment: Heading::of(&experiment), judged: &judged, seconds: None, page: String::new() };
-    let index = index(&[view], &[], None);
+    let index = index(&about(), &[view], &[], None);
     assert!(index.contains("The two agree if |E| ≤ 2 u_val. **± is 2 u_val**"), "{index}");
     let at = |deviation: f64| {
         let comparison = judged[3].comparison.unwrap();
@@ -242,7 +250,7 @@ fn the_headline_separates_numbers_from_claims() {
     let (experiment, judged) = (limit_stop(), judged());
     let view =
         ExperimentView { experiment: Heading::of(&experiment), judged: &judged, seconds: None, page: String::new() };
-    let text = index(&[view], &[], None);
+    let text = index(&about(), &[view], &[], None);
     let counts = "**2 numbers**: 1 fitted, 1 differs. **2 claims**: 1 reproduced, 1 differs. **Held out** of all fits: 0 of 1 agree.";
     assert!(text.contains(counts), "{text}");
 }

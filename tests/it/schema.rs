@@ -8,8 +8,8 @@ use std::path::{Path, PathBuf};
 use regex::Regex;
 use serde_json::{Value, json};
 use shotdamp::experiment::{
-    Dimension, assumptions_schema, experiment_schema, from_yaml, load_assumptions, parse_experiment, parse_quantity,
-    scaffold, structures,
+    AssumptionSheet, Dimension, assumptions_schema, experiment_schema, from_yaml, load_assumptions, parse_experiment,
+    parse_quantity, scaffold, structures, study_schema,
 };
 use shotdamp::reference::{parse_reference, reference_schema};
 
@@ -139,25 +139,40 @@ fn shipped(folder: &str) -> Vec<(String, String)> {
     found
 }
 
+fn sheet() -> AssumptionSheet {
+    load_assumptions(&here("experiments/assumptions.yaml")).unwrap()
+}
+
+/// With the names of the study's assumptions.
+fn of_the_study() -> Value {
+    experiment_schema(&sheet())
+}
+
 #[test]
 fn every_shipped_file_passes_its_schema() {
-    for (schema, folder) in [(experiment_schema(), "experiments"), (reference_schema(), "reference")] {
+    for (schema, folder) in [(of_the_study(), "experiments"), (reference_schema(), "reference")] {
         for (name, text) in shipped(folder) {
             assert_eq!(passes(&schema, &text), Ok(()), "{name}");
         }
     }
     let assumptions = fs::read_to_string(here("experiments/assumptions.yaml")).unwrap();
     assert_eq!(passes(&assumptions_schema(), &assumptions), Ok(()));
+    for study in ["study.yaml", "examples/classics/study.yaml"] {
+        assert_eq!(passes(&study_schema(), &fs::read_to_string(here(study)).unwrap()), Ok(()), "{study}");
+    }
     for text in [STOP, GAP] {
-        assert_eq!(passes(&experiment_schema(), text), Ok(()));
+        assert_eq!(passes(&experiment_schema(&AssumptionSheet::default()), text), Ok(()));
     }
 }
 
 #[test]
 fn committed_schemas_are_those_that_would_be_written() {
-    for (name, schema) in
-        [("experiment", experiment_schema()), ("assumptions", assumptions_schema()), ("reference", reference_schema())]
-    {
+    for (name, schema) in [
+        ("study", study_schema()),
+        ("experiment", of_the_study()),
+        ("assumptions", assumptions_schema()),
+        ("reference", reference_schema()),
+    ] {
         let committed = fs::read_to_string(here(&format!("schema/{name}.json"))).unwrap();
         assert!(committed == format!("{schema:#}\n"), "run `shotdamp schema` and commit schema/{name}.json");
     }
@@ -200,7 +215,7 @@ const MISTAKES: [(&str, &str); 31] = [
 
 #[test]
 fn bad_files_are_refused_by_schema_and_reader_alike() {
-    let schema = experiment_schema();
+    let schema = of_the_study();
     let sheet = load_assumptions(&here("experiments/assumptions.yaml")).unwrap().assumptions();
     for (right, wrong) in MISTAKES {
         assert!(STOP.contains(right), "{right}");
@@ -230,7 +245,7 @@ fn bad_files_are_refused_by_schema_and_reader_alike() {
 /// Whatever key of a shipped file is misspelt, the schema says so: it knows no fewer keys and no more than the reader.
 #[test]
 fn the_schema_knows_the_keys_of_the_reader() {
-    let schema = experiment_schema();
+    let schema = of_the_study();
     let mut misspelt = 0;
     for (name, text) in shipped("experiments") {
         let mut whole: Value = from_yaml(&text).unwrap();
@@ -269,7 +284,7 @@ fn paths(value: &Value) -> Vec<String> {
 
 #[test]
 fn a_quantity_passes_where_the_reader_takes_it() {
-    let schema = experiment_schema();
+    let schema = of_the_study();
     let mass = &schema["properties"]["scene"]["properties"]["structure"]["properties"]["single_mass"]["properties"];
     for (key, dimension) in [("mass", Dimension::Mass), ("stiffness", Dimension::Stiffness)] {
         for text in [
@@ -282,12 +297,23 @@ fn a_quantity_passes_where_the_reader_takes_it() {
     }
 }
 
+/// The schema of a study offers its assumptions where their kind fits, and refuses one of another kind as the reader does.
+#[test]
+fn assumptions_are_offered_by_kind() {
+    let (schema, sheet) = (of_the_study(), sheet().assumptions());
+    for (name, fits) in [("stop_length", true), ("gravity", false), ("no_such_name", false)] {
+        let text = STOP.replace("length: assumed", &format!("length: {{assumed: {name}}}"));
+        assert_eq!(passes(&schema, &text).is_ok(), fits, "{name}");
+        assert_eq!(parse_experiment(&"ch3-x".parse().unwrap(), "x.yaml", &text, &sheet).is_ok(), fits, "{name}");
+    }
+}
+
 #[test]
 fn a_scaffold_is_a_valid_experiment_on_every_structure() {
-    let schema = experiment_schema();
+    let schema = of_the_study();
     let sheet = load_assumptions(&here("experiments/assumptions.yaml")).unwrap().assumptions();
     for structure in structures() {
-        let text = scaffold(&"ch9-an-idea".parse().unwrap(), 9, structure, "../../schema/experiment.json").unwrap();
+        let text = scaffold(&"ch9-an-idea".parse().unwrap(), structure, "../../schema/experiment.json").unwrap();
         assert_eq!(passes(&schema, &text), Ok(()), "{text}");
         let read = parse_experiment(&"ch9-an-idea".parse().unwrap(), "x.yaml", &text, &sheet);
         assert_eq!(read.map(|experiment| experiment.cases.len()).map_err(|problems| problems.to_string()), Ok(31));

@@ -77,7 +77,7 @@ fn describe(problems: &Problems) -> Vec<String> {
 #[test]
 pub(crate) fn an_experiment_says_what_its_file_says() {
     let experiment = good(GOOD);
-    assert_eq!(experiment.source.section, "3.6.3");
+    assert_eq!(experiment.source.section.as_deref(), Some("3.6.3"));
     assert_eq!(experiment.swept, [Parameter::ForceRatio, Parameter::Stop]);
     assert_eq!(experiment.cases.len(), 122);
     assert_eq!(experiment.cases[41].get(Parameter::ForceRatio), Some(ParameterValue::Number(1.0)), "decades are exact");
@@ -552,6 +552,13 @@ zeta: {quantity: ratio, readings: [equivalent_viscous], value: 0.1, reason: none
     );
     // A study without assumptions has the general values: standard gravity, J = f′ m g/ω, the run without damper clean.
     let bare = with("damping_ratio: assumed", "damping_ratio: 0.15");
+    // How long a run is has none.
+    let open = bare.replace("skip: 25 cycles, average: 100 cycles, ", "");
+    let problems = parse_experiment(&"a".parse().unwrap(), "a.yaml", &open, &Assumptions::default()).expect_err("open");
+    let help = "write `run: {skip: 25 cycles, average: 100 cycles}`, here or, for all experiments, under `defaults` in the \
+                assumptions file";
+    let lacks = |key: &str| format!("15:1 a run lacks `{key}`, and the study has no default for it | {help}");
+    assert_eq!(describe(&problems), [lacks("skip"), lacks("average")]);
     let experiment = parse_experiment(&"a".parse().unwrap(), "a.yaml", &bare, &Assumptions::default())
         .unwrap_or_else(|problems| panic!("{problems}"));
     assert!(experiment.assumptions_used(&AssumptionSheet::default()).is_empty());
@@ -562,6 +569,26 @@ zeta: {quantity: ratio, readings: [equivalent_viscous], value: 0.1, reason: none
     assert!((impulse - 9.80665 / 1000_f64.sqrt()).abs() < 1e-15, "{impulse}");
 }
 
+/// What an experiment depends on holds whichever value of its range an assumption takes.
+#[test]
+fn no_variant_depends_on_more_than_is_recorded() {
+    let sheet = sheet();
+    let mut variants = 0;
+    for chapter in std::fs::read_dir(folder()).unwrap().map(|entry| entry.unwrap().path()).filter(|path| path.is_dir())
+    {
+        for file in std::fs::read_dir(chapter).unwrap() {
+            let experiment = load_experiment(&file.unwrap().path(), &sheet.assumptions()).unwrap();
+            let used = experiment.assumptions_used(&sheet);
+            for moved in sheet.variants(&used) {
+                let under = experiment.assumptions_under(&moved.assumptions);
+                assert!(under.is_subset(&used), "{} under {}: {under:?}", experiment.id, moved.label);
+                variants += 1;
+            }
+        }
+    }
+    assert!(variants > 200, "{variants}");
+}
+
 #[test]
 pub(crate) fn every_shipped_experiment_loads_and_resolves_under_every_variant() {
     let sheet = sheet();
@@ -570,7 +597,7 @@ pub(crate) fn every_shipped_experiment_loads_and_resolves_under_every_variant() 
     for file in std::fs::read_dir(folder().join("ch3")).unwrap() {
         let path = file.unwrap().path();
         let experiment = load_experiment(&path, &sheet.assumptions()).unwrap_or_else(|problems| panic!("{problems}"));
-        assert!(!experiment.figures.is_empty() && experiment.source.chapter == 3, "{}", experiment.id);
+        assert!(!experiment.figures.is_empty() && experiment.source.chapter == Some(3), "{}", experiment.id);
         for moved in sheet.variants(&experiment.assumptions_used(&sheet)) {
             assert!(load_experiment(&path, &moved.assumptions).is_ok(), "{} under {}", experiment.id, moved.label);
         }

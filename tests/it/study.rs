@@ -254,6 +254,8 @@ fn the_snapshot_knows_an_experiment_until_one_of_its_inputs_or_outputs_changes()
     let assume = |old: &str, new: &str| desk.put("experiments/assumptions.yaml", &ASSUMPTIONS.replace(old, new));
     assume("60 mm", "61 mm");
     assert_eq!(known(), (false, vec!["ch3-gap".to_owned()]), "only one has a stop");
+    assume("stop_length: stop_length,", "");
+    assert_eq!(known(), (false, vec![]), "whatever an experiment leaves out may be another thing now");
     assume("reason: plastic", "reason: plastic, fitted_to: [ch3-stop/at-two]");
     assert_eq!(known(), (false, vec![]));
     desk.put("experiments/assumptions.yaml", ASSUMPTIONS);

@@ -76,7 +76,7 @@ impl ExcitationRecipe {
             } else {
                 "write `angular_frequency` or `period` instead of `frequency_ratio`"
             };
-            return Err(RecipeError::OutOfRange(format!("a mass without spring has no natural frequency: {instead}")));
+            return Err(base.without_frequency(instead));
         }
         Ok(match (&self.timing, base.structure) {
             (TimingRecipe::FrequencyRatio(ratio), Structure::SingleMass(mass)) => {

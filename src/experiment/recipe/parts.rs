@@ -59,7 +59,7 @@ pub enum PointsRecipe {
     NinePointGrid,
 }
 
-/// One damper, or an array of them, in the study's parameters.
+/// One damper, or an array of them, in the parameters of the file.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct DamperRecipe {
     /// Where it sits.

@@ -175,6 +175,17 @@ impl Base<'_> {
         self.frequencies.first().copied().unwrap_or(0.0)
     }
 
+    /// Why nothing can be stated in units of ω₁, and what to write instead.
+    pub(super) fn without_frequency(&self, instead: &str) -> RecipeError {
+        RecipeError::OutOfRange(if self.kind.is_lumped() {
+            format!("a mass without spring has no natural frequency: {instead}")
+        } else {
+            "the first natural frequency of this structure comes out as zero: look at its dimensions, Young's modulus and \
+             density"
+                .into()
+        })
+    }
+
     /// First natural frequency with particles and enclosures fixed to the structure. One mass has words of its own for that.
     fn loaded_frequency(&self, placed: &[Placed<'_>], places: &Places<'_>) -> f64 {
         if self.kind.is_lumped() {
@@ -270,9 +281,7 @@ impl Placed<'_> {
                 false => frequency(inputs.get(&self.recipe.gap_frequency)?),
             };
             if natural == 0.0 {
-                return Err(RecipeError::OutOfRange(
-                    "a mass without spring has no natural frequency: write `gap` instead of `gap_ratio`".into(),
-                ));
+                return Err(base.without_frequency("write `gap` instead of `gap_ratio`"));
             }
             Ok::<_, RecipeError>(ratio * base.gravity / (natural * natural))
         };

@@ -1,13 +1,18 @@
 //! The assumptions file.
 
+use std::collections::BTreeMap;
+
 use serde_json::{Value, json};
 
-use super::parts::{Object, any_of, form, list, number, one_of_words, quantity, text};
-use crate::experiment::assumption_sheet::COUNTED;
+use super::experiment;
+use super::parts::{Object, any_of, form, list, number, one_of_words, quantity, reference, text};
+use crate::experiment::assumption_reader::COUNTED;
+use crate::experiment::assumption_sheet::{AssumptionSheet, Quantity, Takes};
 use crate::experiment::quantity::Dimension;
 use crate::experiment::recipe::Slot;
-use crate::experiment::word::{word_of, words};
-use crate::scene::KINDS;
+use crate::experiment::word::{from_word, word_of, words};
+use crate::scene::{Form, KINDS};
+use crate::text::words::of_key;
 
 /// JSON Schema of the assumptions file.
 #[must_use]
@@ -48,23 +53,67 @@ pub(super) fn curve() -> Value {
         .schema()
 }
 
-fn defaults() -> Value {
-    Slot::ALL
-        .iter()
-        .fold(
-            Object::new("Which assumption stands where an experiment says assumed or leaves a slot out"),
-            |object, slot| {
-                let by_structure = KINDS.iter().fold(Object::new("By structure"), |object, kind| {
-                    object.optional(kind.name, text("An assumption"))
-                });
-                object
-                    .optional(&word_of(slot), any_of(slot.about(), vec![text("An assumption"), by_structure.schema()]))
-            },
-        )
+/// The cycles of experiments that do not say.
+fn run() -> Value {
+    Object::new("Cycles of experiments that do not say")
+        .required("skip", experiment::skip())
+        .required("average", experiment::average())
         .schema()
 }
 
-/// `{assumed: NAME}`.
-pub(super) fn assumed() -> Value {
-    form("assumed", "By the assumption of this name", text("The name of an assumption"))
+fn defaults() -> Value {
+    let all = Object::new(
+        "Cycles of a run, and which assumption stands where an experiment says assumed or leaves a slot out",
+    )
+    .optional("run", run());
+    Slot::ALL
+        .iter()
+        .fold(all, |object, slot| {
+            let by_structure = KINDS
+                .iter()
+                .fold(Object::new("By structure"), |object, kind| object.optional(kind.name, text("An assumption")));
+            object.optional(&word_of(slot), any_of(slot.about(), vec![text("An assumption"), by_structure.schema()]))
+        })
+        .schema()
+}
+
+/// `{assumed: NAME}` for a place that takes this.
+pub(super) fn assumed(takes: Takes<'_>) -> Value {
+    reference(&definition(takes))
+}
+
+/// What each place that an assumption can stand in takes, and the names of the study's assumptions that fit there.
+pub(super) fn definitions(sheet: &AssumptionSheet) -> Vec<(String, Value)> {
+    let counted = COUNTED.iter().map(|(_, quantity)| *quantity);
+    let quantities = counted.chain(words::<Dimension>().iter().filter_map(|word| from_word(word)).map(Quantity::Of));
+    let quantities = quantities.map(|quantity| Takes { quantity: Some(quantity), readings: &[] });
+    let slots = Slot::ALL.iter().map(|slot| slot.takes());
+    let fields = KINDS.iter().flat_map(|kind| kind.fields).filter_map(|field| match field.form {
+        Form::Word(readings) => Some(Takes { quantity: None, readings }),
+        _ => None,
+    });
+    let all: BTreeMap<String, Takes<'_>> =
+        quantities.chain(slots).chain(fields).map(|takes| (definition(takes), takes)).collect();
+    all.into_iter().map(|(name, takes)| (name, form("assumed", "By an assumption", names(sheet, takes)))).collect()
+}
+
+/// The names that fit; any, where the study declares none of the kind.
+fn names(sheet: &AssumptionSheet, takes: Takes<'_>) -> Value {
+    let names: Vec<&str> =
+        sheet.iter().filter(|(_, entry)| takes.admits(&entry.kind)).map(|(name, _)| name.as_str()).collect();
+    let about = format!("The name of an assumption that is {}", takes.words());
+    if names.is_empty() { text(&about) } else { one_of_words(&about, &names) }
+}
+
+/// Any of them.
+pub(super) fn any(sheet: &AssumptionSheet) -> Value {
+    let names: Vec<&str> = sheet.iter().map(|(name, _)| name.as_str()).collect();
+    if names.is_empty() { text("An assumption") } else { one_of_words("An assumption", &names) }
+}
+
+/// `assumed_length`, `assumed_base_loaded`.
+fn definition(takes: Takes<'_>) -> String {
+    let quantity = takes.quantity.map(|quantity| of_key(&quantity));
+    let words = quantity.iter().map(String::as_str).chain(takes.readings.iter().copied());
+    words.fold("assumed".to_owned(), |name, word| name + "_" + word)
 }

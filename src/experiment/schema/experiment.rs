@@ -5,26 +5,27 @@ use serde_json::{Map, Value, json};
 use super::parts::{
     NUMBER, Object, PREFIX, any_of, count, list, one_or_more, quantity, reference, text, word, words_of,
 };
-use super::{figure, optimise, scene, sweep};
+use super::{assumptions, figure, optimise, scene, sweep};
+use crate::experiment::about_study::MOST_CHAPTERS;
+use crate::experiment::assumption_reader::MOST_CYCLES;
+use crate::experiment::assumption_sheet::AssumptionSheet;
 use crate::experiment::quantity::Dimension;
 use crate::experiment::recipe::Parameter;
-use crate::experiment::validate::MOST_CYCLES;
 use crate::experiment::word::words;
-use crate::measure::Measure;
-use crate::measure::ShapeOf;
+use crate::measure::{Measure, ShapeOf};
 
-/// JSON Schema of an experiment.
+/// JSON Schema of an experiment; of the study's assumptions it offers those that fit a place.
 #[must_use]
-pub fn experiment_schema() -> Value {
+pub fn experiment_schema(sheet: &AssumptionSheet) -> Value {
     let mut definitions = Map::new();
-    let parts = [sweep::definitions(), scene::definitions(), figure::definitions()];
+    let parts = [sweep::definitions(), scene::definitions(), figure::definitions(), assumptions::definitions(sheet)];
     definitions.extend(parts.into_iter().flatten());
     definitions.insert("maximisation".into(), maximisation());
     // Rows of an optimisation are candidates.
     let of_a_row = ["trace", "energies", "shape"].map(|key| json!({"required": [key]}));
-    let mut schema = Object::new("An experiment of the study")
+    let mut schema = Object::new("An experiment")
         .required("title", text("A few words"))
-        .required("source", source())
+        .optional("source", source())
         .required("about", text("One or two sentences"))
         .required("scene", scene::scene())
         .optional("sweep", reference("sweep"))
@@ -32,7 +33,7 @@ pub fn experiment_schema() -> Value {
         .optional("maximise", maximise())
         .optional("optimise", optimise::optimise())
         .required("measure", one_or_more("What is measured", reference("measure")))
-        .optional("run", run())
+        .optional("run", run(sheet))
         .optional("trace", trace())
         .optional("energies", energies())
         .optional("shape", shape())
@@ -51,10 +52,10 @@ pub fn experiment_schema() -> Value {
 }
 
 fn source() -> Value {
-    Object::new("Where the study shows it")
-        .required("chapter", count("Chapter", "", 0, 99))
-        .required("section", text("Section, for example \"3.6.3\""))
-        .optional("shown_in", one_or_more("Figures", text("For example Fig. 18")))
+    Object::new("Where a publication shows it")
+        .optional("chapter", count("Chapter", "", 0, MOST_CHAPTERS))
+        .optional("section", text("Section, for example \"3.6.3\""))
+        .optional("shown_in", one_or_more("Figures, or a citation", text("For example Fig. 18")))
         .schema()
 }
 
@@ -78,13 +79,12 @@ fn maximise() -> Value {
     schema
 }
 
-fn run() -> Value {
-    let cycles = |about, least| count(about, "cycles", least, MOST_CYCLES);
-    let sensitivity = one_or_more("Assumptions that are moved", text("An assumption"));
+fn run(sheet: &AssumptionSheet) -> Value {
+    let sensitivity = one_or_more("Assumptions that are moved", assumptions::any(sheet));
     Object::new("How it is run")
         .optional("solver", one_or_more("Solvers", reference("solver")))
-        .optional("skip", cycles("Cycles before the averaging; 25 unless stated", 0))
-        .optional("average", cycles("Cycles that are averaged; 100 unless stated", 1))
+        .optional("skip", skip())
+        .optional("average", average())
         .optional("round_period_to", quantity("The period is rounded to this", Dimension::Time))
         .optional(
             "ensemble",
@@ -96,6 +96,16 @@ fn run() -> Value {
         .optional("limit", limit())
         .optional("sensitivity", any_of("Assumptions that are moved, or none", vec![sensitivity, word("none")]))
         .schema()
+}
+
+/// Cycles that are left out.
+pub(super) fn skip() -> Value {
+    count("Cycles before the averaging; by default those of the study", "cycles", 0, MOST_CYCLES)
+}
+
+/// Cycles that are averaged over.
+pub(super) fn average() -> Value {
+    count("Cycles that are averaged; by default those of the study", "cycles", 1, MOST_CYCLES)
 }
 
 fn limit() -> Value {

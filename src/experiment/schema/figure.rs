@@ -6,19 +6,18 @@ use super::parts::{
     Object, any_of, between, boolean, count, list, number, one_of_words, one_or_more, reference, text, words_of,
 };
 use super::sweep::NAME;
-use crate::experiment::columns::{ENERGIES, HISTORIES};
 use crate::experiment::definition::{AxisScale, Best};
 use crate::experiment::recipe::Parameter;
 use crate::experiment::word::words;
-use crate::measure::Measure;
+use crate::measure::{Measure, energy_columns, trace_columns};
 
 /// The definitions that figures share.
 pub(super) fn definitions() -> Vec<(String, Value)> {
     // Offered for completion; which columns there are depends on the rest of the file.
     let mut known: Vec<&str> = words::<Parameter>().to_vec();
     known.extend(words::<Measure>());
-    known.extend(HISTORIES);
-    known.extend(ENERGIES);
+    known.extend(trace_columns());
+    known.extend(energy_columns());
     known.extend(["sweep", "solver", "variant", "candidate"]);
     let mut offered: Vec<&str> = Vec::new();
     for name in known {
@@ -76,6 +75,8 @@ fn figure() -> Value {
     let only = Object::new("The rows to draw")
         .required("column", reference("column"))
         .required("words", one_or_more("The column's words that count", text("A word")));
+    let animation = Object::new("The motion of damper and particle from the trace, slowed down")
+        .optional("by", one_or_more("A row for each", reference("column")));
     own(shared(Object::new("A figure")))
         .optional("name", name)
         .required("caption", text("One line under it"))
@@ -83,9 +84,10 @@ fn figure() -> Value {
         .optional("panels", list("Panels above each other", panel))
         .optional("map", map())
         .optional("gaps", boolean("The gaps of an optimised array as bars"))
+        .optional("animation", animation.schema())
         .rule(json!({
-            "if": {"anyOf": [{"required": ["map"]}, {"required": ["gaps"]}]},
-            "then": {"propertyNames": {"enum": ["name", "caption", "only", "map", "gaps"]}},
+            "if": {"anyOf": [{"required": ["map"]}, {"required": ["gaps"]}, {"required": ["animation"]}]},
+            "then": {"propertyNames": {"enum": ["name", "caption", "only", "map", "gaps", "animation"]}},
             "else": {"anyOf": [{"required": ["panels"]}, {"required": ["x", "y"]}]},
         }))
         .schema()

@@ -11,8 +11,10 @@ mod figure;
 mod optimise;
 mod parts;
 mod scene;
+mod study;
 mod sweep;
 
 pub use assumptions::assumptions_schema;
 pub use experiment::experiment_schema;
 pub(crate) use parts::{Object, list, text, words_of};
+pub use study::study_schema;

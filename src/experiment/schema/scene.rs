@@ -6,6 +6,7 @@ use super::assumptions::{assumed, curve};
 use super::parts::{
     Object, any_of, between, boolean, count, form, list, one_of_words, one_or_more, quantity, ratio, reference, word,
 };
+use crate::experiment::assumption_sheet::Takes;
 use crate::experiment::quantity::Dimension;
 use crate::experiment::recipe::Slot;
 use crate::experiment::scene::MOST_DAMPERS;
@@ -24,20 +25,28 @@ fn swept_or(value: Value) -> Value {
 }
 
 /// A value, or `{assumed: NAME}`.
-fn given(value: Value) -> Value {
+fn given(takes: Takes<'_>, value: Value) -> Value {
     let about = value["description"].clone();
-    json!({"description": about, "anyOf": [value, assumed()]})
+    json!({"description": about, "anyOf": [value, assumed(takes)]})
 }
 
-/// The same, or plain `assumed` where the study declares which assumption that is.
-fn slot(value: Value) -> Value {
+fn given_quantity(about: &str, dimension: Dimension) -> Value {
+    given(Takes::quantity(dimension), quantity(about, dimension))
+}
+
+fn given_ratio(about: &str) -> Value {
+    given(Takes::ratio(), ratio(about))
+}
+
+/// The value of a slot, an assumption, or plain `assumed` where the study declares which assumption that is.
+fn slot(slot: Slot, value: Value) -> Value {
     let about = value["description"].clone();
-    json!({"description": about, "anyOf": [value, word("assumed"), assumed()]})
+    json!({"description": about, "anyOf": [value, word("assumed"), assumed(slot.takes())]})
 }
 
 /// A reading of a slot.
-fn reading(slot_of: Slot) -> Value {
-    slot(one_of_words(slot_of.about(), slot_of.takes().readings))
+fn reading(of: Slot) -> Value {
+    slot(of, one_of_words(of.about(), of.takes().readings))
 }
 
 pub(super) fn scene() -> Value {
@@ -54,7 +63,7 @@ pub(super) fn scene() -> Value {
         .collect();
     Object::new("What is simulated")
         .required("structure", structure())
-        .optional("gravity", slot(quantity("Gravity", Dimension::Acceleration)))
+        .optional("gravity", slot(Slot::Gravity, quantity("Gravity", Dimension::Acceleration)))
         .optional("undamped_mass", reading(Slot::UndampedMass))
         .optional("mass_measure", reading(Slot::MassMeasure))
         .optional("dampers", dampers)
@@ -91,17 +100,20 @@ fn of_kind(kind: &Kind) -> Value {
         .fold(Object::new(kind.what), |object, field| {
             let about = field.key.replace('_', " ");
             let value = match field.form {
-                Form::Length => given(quantity(&about, Dimension::Length)),
-                Form::Mass => given(quantity(&about, Dimension::Mass)),
-                Form::Stiffness => given(quantity(&about, Dimension::Stiffness)),
-                Form::Stress => given(quantity(&about, Dimension::Stress)),
-                Form::Density => given(quantity(&about, Dimension::Density)),
-                Form::Ratio => given(ratio(&about)),
-                Form::Modes => slot(one_or_more(
-                    "Number of modes, or one number a side",
-                    count("Number of modes", "modes", 0, MOST_MODES),
-                )),
-                Form::Word(words) => given(one_of_words(&about, words)),
+                Form::Length => given_quantity(&about, Dimension::Length),
+                Form::Mass => given_quantity(&about, Dimension::Mass),
+                Form::Stiffness => given_quantity(&about, Dimension::Stiffness),
+                Form::Stress => given_quantity(&about, Dimension::Stress),
+                Form::Density => given_quantity(&about, Dimension::Density),
+                Form::Ratio => given_ratio(&about),
+                Form::Modes => slot(
+                    Slot::Modes,
+                    one_or_more(
+                        "Number of modes, or one number a side",
+                        count("Number of modes", "modes", 0, MOST_MODES),
+                    ),
+                ),
+                Form::Word(words) => given(Takes { quantity: None, readings: words }, one_of_words(&about, words)),
             };
             let value = if field.swept { swept_or(value) } else { value };
             match field.form {
@@ -127,24 +139,27 @@ fn place() -> Value {
 fn damper() -> Value {
     let length = |about| quantity(about, Dimension::Length);
     let gap_words = [word("infinite"), word("optimised")];
-    let mut ratios = vec![given(ratio("h′ = h ωn²/g")), word("swept"), list("One a damper of the array", ratio("h′"))];
+    let mut ratios = vec![given_ratio("h′ = h ωn²/g"), word("swept"), list("One a damper of the array", ratio("h′"))];
     ratios.extend(gap_words.clone());
     let filled = Object::new("An array filled in one of two ways, which a sweep chooses")
         .required("uniform", length("The gap of all"))
         .required("optimised", list("One a damper", length("A gap")));
-    let mut gaps =
-        vec![given(length("Gap clearance")), list("One a damper of the array", length("A gap")), filled.schema()];
+    let mut gaps = vec![
+        given_quantity("Gap clearance", Dimension::Length),
+        list("One a damper of the array", length("A gap")),
+        filled.schema(),
+    ];
     gaps.extend(gap_words);
-    let share = swept_or(given(ratio("Particle over the whole damper, mass")));
+    let share = swept_or(given_ratio("Particle over the whole damper, mass"));
     Object::new("A particle impact damper")
         .optional("at", reference("place"))
         .optional("array", array())
         .exactly_one(vec![
-            ("mass_ratio", swept_or(given(ratio("m′: mass of the damper over that of the structure")))),
-            ("mass", given(quantity("Mass of the damper", Dimension::Mass))),
+            ("mass_ratio", swept_or(given_ratio("m′: mass of the damper over that of the structure"))),
+            ("mass", given_quantity("Mass of the damper", Dimension::Mass)),
         ])
         .optional("mass_reading", swept_or(reading(Slot::MassReading)))
-        .optional("massless_ratio", slot(ratio(Slot::MasslessRatio.about())))
+        .optional("massless_ratio", slot(Slot::MasslessRatio, ratio(Slot::MasslessRatio.about())))
         .optional("gap_frequency", reading(Slot::GapFrequency))
         .optional("particle_share", share)
         .exactly_one(vec![
@@ -164,7 +179,7 @@ fn array() -> Value {
         .required("count", swept_or(one_or_more("Number of dampers, or one number a side", dampers)))
         .required("spacing", one_or_more("From one to the next", quantity("Spacing", Dimension::Length)))
         .optional("centred", boolean("Around the place, rather than from there on"))
-        .optional("margin", slot(quantity("Kept free at the edge", Dimension::Length)))
+        .optional("margin", slot(Slot::Margin, quantity("Kept free at the edge", Dimension::Length)))
         .schema()
 }
 
@@ -173,23 +188,29 @@ fn restitution() -> Value {
 }
 
 fn surface() -> Value {
-    let rigid = Object::new("A rigid surface").required("restitution", given(restitution())).schema();
+    let rigid = Object::new("A rigid surface").required("restitution", given(Takes::ratio(), restitution())).schema();
     let stiffness = vec![
         quantity("Stiffness", Dimension::Stiffness),
         one_of_words("Tuned to the structure or not", &["tuned", "clean", "loaded", "untuned", "swept"]),
     ];
-    let damping = vec![given(quantity("Damping", Dimension::Damping)), word("equivalent_viscous")];
+    let damping = vec![given_quantity("Damping", Dimension::Damping), word("equivalent_viscous")];
     let resilient = Object::new("A resilient surface")
         .exactly_one(vec![
-            ("stiffness_ratio", slot(swept_or(ratio("kf/ks: stiffness over that of the structure")))),
-            ("stiffness", slot(any_of("Stiffness", stiffness))),
+            (
+                "stiffness_ratio",
+                slot(Slot::StiffnessRatio, swept_or(ratio("kf/ks: stiffness over that of the structure"))),
+            ),
+            ("stiffness", slot(Slot::Stiffness, any_of("Stiffness", stiffness))),
         ])
         .exactly_one(vec![
-            ("damping_ratio", slot(swept_or(ratio("Damping ratio under the particle")))),
+            ("damping_ratio", slot(Slot::DampingRatio, swept_or(ratio("Damping ratio under the particle")))),
             ("damping", any_of("Damping", damping)),
         ])
-        .optional("untuned_frequency_ratio", slot(ratio(Slot::UntunedFrequencyRatio.about())))
-        .optional("damping_curve", slot(curve()))
+        .optional(
+            "untuned_frequency_ratio",
+            slot(Slot::UntunedFrequencyRatio, ratio(Slot::UntunedFrequencyRatio.about())),
+        )
+        .optional("damping_curve", slot(Slot::DampingCurve, curve()))
         .optional("no_tension", boolean("The surface does not pull at a particle that leaves it"))
         .schema();
     Object::new("A surface that the particle lands on")
@@ -199,17 +220,20 @@ fn surface() -> Value {
 
 fn stop() -> Value {
     let stop = Object::new("A limit stop")
-        .required("length", slot(swept_or(quantity("Length of the limit stop", Dimension::Length))))
-        .optional("restitution", slot(restitution()))
+        .required("length", slot(Slot::StopLength, swept_or(quantity("Length of the limit stop", Dimension::Length))))
+        .optional("restitution", slot(Slot::StopRestitution, restitution()))
         .schema();
     any_of("A limit stop", vec![stop, word("assumed")])
 }
 
 fn walls() -> Value {
     Object::new("Soft walls")
-        .required("stiffness_ratio", swept_or(given(ratio("kw/ks: stiffness over that of the structure"))))
-        .required("damping", given(quantity("Damping of the walls", Dimension::Damping)))
-        .optional("ceiling_mass_ratio", slot(ratio("Mass of the ceiling over that of the base")))
+        .required("stiffness_ratio", swept_or(given_ratio("kw/ks: stiffness over that of the structure")))
+        .required("damping", given_quantity("Damping of the walls", Dimension::Damping))
+        .optional(
+            "ceiling_mass_ratio",
+            slot(Slot::CeilingMassRatio, ratio("Mass of the ceiling over that of the base")),
+        )
         .schema()
 }
 
@@ -218,8 +242,8 @@ fn excitation() -> Value {
         Object::new(about)
             .optional("at", reference("place"))
             .exactly_one(vec![
-                ("force_ratio", swept_or(given(ratio("f′ = F/(m g)")))),
-                ("impulse", slot(swept_or(quantity("Impulse", Dimension::Impulse)))),
+                ("force_ratio", swept_or(given_ratio("f′ = F/(m g)"))),
+                ("impulse", slot(Slot::Impulse, swept_or(quantity("Impulse", Dimension::Impulse)))),
             ])
             .optional("impulse_time", impulse_time())
             .optional("frequency_reference", reading(Slot::FrequencyReference))
@@ -227,9 +251,9 @@ fn excitation() -> Value {
     let harmonic = Object::new("A harmonic force")
         .optional("at", reference("place"))
         .exactly_one(vec![
-            ("force_ratio", swept_or(given(ratio("f′ = F/(m g)")))),
-            ("base_amplitude_ratio", swept_or(given(ratio("a ω²/g")))),
-            ("force", slot(swept_or(quantity("Force", Dimension::Force)))),
+            ("force_ratio", swept_or(given_ratio("f′ = F/(m g)"))),
+            ("base_amplitude_ratio", swept_or(given_ratio("a ω²/g"))),
+            ("force", slot(Slot::Force, swept_or(quantity("Force", Dimension::Force)))),
         ])
         .optional("frequency_reference", reading(Slot::HarmonicReference))
         .exactly_one(timing());
@@ -237,7 +261,7 @@ fn excitation() -> Value {
         timing().into_iter().fold(impulses("One impulse"), |object, (key, schema)| object.optional(key, schema));
     let pulses = impulses("Pulses of finite duration")
         .exactly_one(timing())
-        .required("duration", swept_or(given(quantity("Duration of a pulse", Dimension::Time))))
+        .required("duration", swept_or(given_quantity("Duration of a pulse", Dimension::Time)))
         .required("shape", one_of_words("Shape of a pulse", &["rectangular", "binomial"]));
     let forms = Object::new("What drives the structure").exactly_one(vec![
         (
@@ -257,9 +281,9 @@ fn excitation() -> Value {
 
 fn timing() -> Vec<(&'static str, Value)> {
     vec![
-        ("frequency_ratio", swept_or(given(ratio("ω′ = ω/ωn")))),
-        ("period", given(quantity("Period", Dimension::Time))),
-        ("angular_frequency", swept_or(given(quantity("Angular frequency", Dimension::AngularFrequency)))),
+        ("frequency_ratio", swept_or(given_ratio("ω′ = ω/ωn"))),
+        ("period", given_quantity("Period", Dimension::Time)),
+        ("angular_frequency", swept_or(given_quantity("Angular frequency", Dimension::AngularFrequency))),
         ("forced_mode", swept_or(count("Number of the natural frequency that is forced", "", 0, 100_000))),
     ]
 }
@@ -267,10 +291,10 @@ fn timing() -> Vec<(&'static str, Value)> {
 fn impulse_time() -> Value {
     let about = Slot::ImpulseTime.about();
     let factor = Object::new("A factor over an angular frequency")
-        .required("factor", slot(ratio(Slot::ImpulseFactor.about())))
+        .required("factor", slot(Slot::ImpulseFactor, ratio(Slot::ImpulseFactor.about())))
         .optional("frequency", reading(Slot::ImpulseFrequency));
     let readings = one_of_words(about, Slot::ImpulseTime.takes().readings);
-    slot(any_of(about, vec![readings, quantity("A time", Dimension::Time), factor.schema()]))
+    slot(Slot::ImpulseTime, any_of(about, vec![readings, quantity("A time", Dimension::Time), factor.schema()]))
 }
 
 fn start() -> Value {

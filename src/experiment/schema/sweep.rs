@@ -19,12 +19,12 @@ pub(super) const NAME: &str = "^[A-Za-z0-9_-]{1,64}$";
 /// The definitions that sweeps share.
 pub(super) fn definitions() -> Vec<(String, Value)> {
     let solver = any_of(
-        "A solver: event_driven, or the study's own scheme with its time step",
+        "A solver: event_driven, or fixed_step with its time step",
         vec![
             word("event_driven"),
             form(
                 "fixed_step",
-                "The study's own scheme",
+                "Steps of one length, contacts looked for at the end of each",
                 Object::new("Its step").required("time_step", quantity("Time step", Dimension::Time)).schema(),
             ),
         ],

@@ -1,11 +1,11 @@
-//! Cantilever: clamped at x = 0, free at x = L (chapter 4 of the study).
+//! Cantilever: clamped at x = 0, free at x = L.
 //!
 //! Exact modes (Blevins, Formulas for Natural Frequency and Mode Shape): cos β cosh β = −1 and, with ξ = x/L,
 //!
 //! φ = cosh βξ − cos βξ − σ (sinh βξ − sin βξ),   σ = (cosh β + cos β)/(sinh β + sin β),   ∫ φ² dξ = 1.
 //!
 //! The hyperbolic functions are combined into decaying exponentials, so that nothing overflows or cancels, and β is kept as
-//! (n − ½)π + δ. The study's own basis, ξ^(i+1) with i = 1 … N, is [`super::polynomial`].
+//! (n − ½)π + δ. The basis ξ^(i+1), i = 1 … N, is [`super::polynomial`].
 
 use super::beam::{self, Beam, FarEnd, Mode};
 use super::kind::{Field, Form, Kind};

@@ -1,4 +1,4 @@
-//! Beam clamped at both ends; the study has none.
+//! Beam clamped at both ends.
 //!
 //! cos β cosh β = 1 and, with ξ = x/L (Blevins, Formulas for Natural Frequency and Mode Shape),
 //!

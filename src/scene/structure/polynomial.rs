@@ -1,4 +1,4 @@
-//! The study's basis of the cantilever, ξ², ξ³, … ξ^(N+1), spanned so that nothing is lost.
+//! The polynomial basis of the cantilever, ξ², ξ³, … ξ^(N+1), spanned so that nothing is lost.
 //!
 //! In powers of ξ the mass matrix has a condition number of 2·10¹² at N = 8 and no Cholesky factor in double precision at N = 11.
 //! Here the same space is spanned by the twofold integrals ψ_i of Legendre polynomials, which vanish with their slope at the clamp:

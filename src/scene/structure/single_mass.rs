@@ -1,4 +1,4 @@
-//! One mass on a spring and a dashpot: m x″ + c x′ + k x = F (chapter 3 of the study), with c′ = c/(2 √(k m)).
+//! One mass on a spring and a dashpot: m x″ + c x′ + k x = F, with c′ = c/(2 √(k m)).
 
 use super::kind::{Field, Form, Kind};
 use super::model::{Matrices, Model, Point, unit};

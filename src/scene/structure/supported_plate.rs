@@ -1,4 +1,4 @@
-//! Plate simply supported along all four sides (chapter 5 of the study; Leissa, Vibration of Plates, 1969).
+//! Plate simply supported along all four sides (Leissa, Vibration of Plates, 1969).
 //!
 //! φ_mn = 2 sin(m π x/Lx) sin(n π y/Ly),   ω_mn = π² (m²/Lx² + n²/Ly²) √(D/(ρ h)),   D = E h³/(12 (1 − ν²)).
 //!

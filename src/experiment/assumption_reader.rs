@@ -1,0 +1,221 @@
+//! The assumptions file read: the defaults and the assumptions of a study, with every mistake at its place.
+
+use std::sync::Arc;
+
+use super::assumption_sheet::{AssumptionEntry, AssumptionKind, AssumptionSheet, Cycles, Defaults, Quantity, Takes};
+use super::diagnostic::{Findings, Place, Problems, place};
+use super::quantity::Dimension;
+use super::reader::{Fields, above_zero, count, list, no_such, number, ratio, scalar, text, unknown};
+use super::recipe::{AssumptionName, AssumptionValue, Slot};
+use super::word::{from_word, words};
+use super::yaml::{Entry, Node, Value, read_tree};
+use crate::scene::{Curve, KINDS};
+
+/// Reads the assumptions file from its text; `file` only names it in messages.
+///
+/// # Errors
+/// Every mistake of the file, with its place.
+pub fn parse_assumptions(file: &str, text: &str) -> Result<AssumptionSheet, Problems> {
+    let findings = Findings::default();
+    let sheet = read_tree(text, &findings).and_then(|root| read_sheet(&root, text, &findings));
+    findings.finish(file, text, sheet)
+}
+
+fn read_sheet(root: &Node, text: &str, findings: &Findings) -> Option<AssumptionSheet> {
+    let Value::Mapping(entries) = &root.value else {
+        return findings.wrong(root.span, "the assumptions are written as `name: {value: …, reason: …}`");
+    };
+    let mut sheet = AssumptionSheet::default();
+    for Entry { key, key_span, node } in entries.iter().filter(|entry| entry.key != DEFAULTS) {
+        if !is_name(key) {
+            findings.wrong::<()>(*key_span, format!("`{key}` cannot name an assumption: use letters, digits and `_`"));
+        } else if let Some(entry) = read_entry(node, place(text, *key_span), findings) {
+            sheet.entries.push((AssumptionName::from(key.as_str()), Arc::new(entry)));
+        }
+    }
+    if let Some(defaults) = entries.iter().find(|entry| entry.key == DEFAULTS) {
+        read_defaults(&defaults.node, &mut sheet, findings)?;
+    }
+    Some(sheet)
+}
+
+/// The key of the defaults, which no assumption can have for a name.
+const DEFAULTS: &str = "defaults";
+/// The default that is no slot of a scene.
+const RUN: &str = "run";
+
+/// What stands in column names and labels of variants.
+fn is_name(key: &str) -> bool {
+    !key.is_empty() && key.len() <= 64 && key.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')
+}
+
+/// `slot: name` for every structure, or `slot: {structure: name}`.
+fn read_defaults(node: &Node, sheet: &mut AssumptionSheet, findings: &Findings) -> Option<()> {
+    let Value::Mapping(entries) = &node.value else {
+        return findings
+            .wrong(node.span, "defaults are written as `slot: assumption` or `slot: {structure: assumption}`");
+    };
+    let mut defaults = Defaults::new();
+    for Entry { key, key_span, node } in entries {
+        if key == RUN {
+            sheet.cycles = read_cycles(node, findings);
+            continue;
+        }
+        let Some(slot) = from_word::<Slot>(key) else {
+            let known: Vec<&str> = words::<Slot>().iter().copied().chain([RUN]).collect();
+            no_such::<()>(findings, *key_span, "slot of a scene", key, &known);
+            continue;
+        };
+        let name = |node: &Node| {
+            let name = sheet.named(node, findings)?;
+            fits(sheet, &name, node, slot.takes(), &format!("`{key}`"), findings).then_some(name)
+        };
+        if let Value::Mapping(each) = &node.value {
+            for Entry { key, key_span, node } in each {
+                let Some(kind) = KINDS.iter().find(|kind| kind.name == key) else {
+                    let known: Vec<&str> = KINDS.iter().map(|kind| kind.name).collect();
+                    no_such::<()>(findings, *key_span, "structure", key, &known);
+                    continue;
+                };
+                defaults.extend(name(node).map(|name| ((slot, kind.name), name)));
+            }
+        } else if let Some(name) = name(node) {
+            defaults.extend(KINDS.iter().map(|kind| ((slot, kind.name), name.clone())));
+        }
+    }
+    sheet.defaults = Arc::new(defaults);
+    Some(())
+}
+
+/// `{skip: 25 cycles, average: 100 cycles}`.
+fn read_cycles(node: &Node, findings: &Findings) -> Option<Cycles> {
+    let fields = Fields::open(node, "a run", findings)?;
+    let skip = fields.required("skip", |node| read_skip(node, findings));
+    let average = fields.required("average", |node| read_average(node, findings));
+    fields.close()?;
+    Some(Cycles { skip: skip?, average: average? })
+}
+
+/// Most forcing cycles of a run.
+pub(super) const MOST_CYCLES: u32 = 10_000_000;
+
+/// Cycles that are left out.
+pub(super) fn read_skip(node: &Node, findings: &Findings) -> Option<u32> {
+    count(node, "cycles", MOST_CYCLES, findings)
+}
+
+/// Cycles that are averaged over.
+pub(super) fn read_average(node: &Node, findings: &Findings) -> Option<u32> {
+    match read_skip(node, findings)? {
+        0 => findings.wrong(node.span, "one cycle at least is averaged"),
+        average => Some(average),
+    }
+}
+
+/// Whether an assumption is of the kind that a place takes; if it is not, that is reported with the line of both.
+pub(super) fn fits(
+    sheet: &AssumptionSheet,
+    name: &AssumptionName,
+    at: &Node,
+    takes: Takes<'_>,
+    place: &str,
+    findings: &Findings,
+) -> bool {
+    let Some(entry) = sheet.get(name).filter(|entry| !takes.admits(&entry.kind)) else { return true };
+    let message = format!(
+        "{place} takes {}, but the assumption `{name}` (line {} of the assumptions file) is {}",
+        takes.words(),
+        entry.place.line,
+        entry.kind.words()
+    );
+    findings.wrong::<()>(at.span, message);
+    false
+}
+
+fn read_entry(node: &Node, place: Place, findings: &Findings) -> Option<AssumptionEntry> {
+    let fields = Fields::open(node, "an assumption", findings)?;
+    let quantity = fields.optional("quantity", |node| read_quantity(node, findings));
+    let readings =
+        fields.optional("readings", |node| list(node, findings, |node| scalar(node, findings).map(str::to_owned)));
+    let kind = match (quantity, readings) {
+        (Some(None), Some(None)) => {
+            let help = "add `quantity: length`, `quantity: ratio`, …, or `readings: [one, other]`".to_owned();
+            findings.report(node.span, "this assumption has no kind", Some(help))
+        }
+        (Some(quantity), Some(readings)) => Some(AssumptionKind { quantity, readings: readings.unwrap_or_default() }),
+        _ => None,
+    };
+    let value = |node: &Node| read_value(node, kind.as_ref()?, findings);
+    let in_force = fields.required("value", value);
+    let reason = fields.required("reason", |node| text(node, findings));
+    let range = fields.optional("range", |node| list(node, findings, value));
+    let fitted_to = fields.optional("fitted_to", |node| list(node, findings, |node| text(node, findings)));
+    fields.close()?;
+    Some(AssumptionEntry {
+        value: in_force?,
+        reason: reason?,
+        range: range?.unwrap_or_default(),
+        fitted_to: fitted_to?.unwrap_or_default(),
+        place,
+        kind: kind?,
+    })
+}
+
+/// The words that are no dimensions.
+pub(super) const COUNTED: [(&str, Quantity); 3] =
+    [("ratio", Quantity::Ratio), ("count", Quantity::Count), ("damping_curve", Quantity::Curve)];
+
+fn read_quantity(node: &Node, findings: &Findings) -> Option<Quantity> {
+    let word = scalar(node, findings)?;
+    let counted = COUNTED.into_iter().find(|(known, _)| *known == word).map(|(_, quantity)| quantity);
+    counted.or_else(|| from_word::<Dimension>(word).map(Quantity::Of)).or_else(|| {
+        let known: Vec<&str> =
+            COUNTED.iter().map(|(word, _)| *word).chain(words::<Dimension>().iter().copied()).collect();
+        no_such(findings, node.span, "kind of quantity", word, &known)
+    })
+}
+
+pub(super) fn read_value(node: &Node, kind: &AssumptionKind, findings: &Findings) -> Option<AssumptionValue> {
+    if !kind.readings.is_empty() {
+        let word = match (&node.value, kind.quantity) {
+            (Value::Scalar(_), _) | (_, None) => scalar(node, findings)?,
+            _ => "",
+        };
+        if kind.readings.iter().any(|reading| reading == word) {
+            return Some(AssumptionValue::Choice(word.into()));
+        }
+        if kind.quantity.is_none() {
+            let known: Vec<&str> = kind.readings.iter().map(String::as_str).collect();
+            return unknown(findings, node.span, "this assumption", "reading", word, &known);
+        }
+    }
+    match kind.quantity? {
+        Quantity::Of(dimension) => above_zero(node, dimension, findings).map(AssumptionValue::Number),
+        Quantity::Ratio => ratio(node, findings).map(AssumptionValue::Number),
+        Quantity::Count => match count(node, "", MOST_COUNTED, findings)? {
+            0 => findings.wrong(node.span, "a whole number, one or more, is wanted"),
+            count => Some(AssumptionValue::Number(f64::from(count))),
+        },
+        Quantity::Curve => read_curve(node, findings).map(AssumptionValue::Curve),
+    }
+}
+
+/// Most of what an assumption counts.
+pub(super) const MOST_COUNTED: u32 = 1000;
+
+/// `{acceleration_ratio: [0.7, …], damping: [2 N s/m, …]}`: acceleration in units of g, increasing.
+pub(super) fn read_curve(node: &Node, findings: &Findings) -> Option<Curve> {
+    let fields = Fields::open(node, "a curve", findings)?;
+    let abscissae = fields.required("acceleration_ratio", |node| list(node, findings, |node| number(node, findings)));
+    let ordinates =
+        fields.required("damping", |node| list(node, findings, |node| above_zero(node, Dimension::Damping, findings)));
+    fields.close()?;
+    let (abscissae, ordinates) = (abscissae?, ordinates?);
+    if abscissae.len() != ordinates.len() || abscissae.len() < 2 {
+        return findings.wrong(node.span, "a curve has as many ordinates as abscissae, two at least");
+    }
+    if !abscissae.is_sorted_by(|a, b| a < b) {
+        return findings.wrong(node.span, "the abscissae of a curve increase");
+    }
+    Some(abscissae.into_iter().zip(ordinates).map(|(x, y)| [x, y]).collect())
+}

@@ -1,0 +1,124 @@
+//! Columns beside the measures: the lists that a row may keep, and what proves it. One row below is all that a column is; what
+//! makes it, what checks a figure's columns and the JSON Schema follow.
+
+use super::energy::Energies;
+use super::{Evaluated, ShapeOf, ShapeSpec, TraceColumn};
+use crate::dynamics::Sample;
+
+/// A column: its name, its unit, and its number.
+pub(super) struct Kept<F> {
+    pub(super) name: &'static str,
+    pub(super) unit: &'static str,
+    of: F,
+}
+
+const fn kept<F>(name: &'static str, unit: &'static str, of: F) -> Kept<F> {
+    Kept { name, unit, of }
+}
+
+/// Of a sample of the time history, under this gravity.
+type OfSample = fn(&Sample, f64) -> f64;
+
+const TRACE: [Kept<OfSample>; 11] = [
+    kept("time", "s", |s, _| s.time),
+    kept("base_displacement", "m", |s, _| s.displacement),
+    kept("base_velocity", "m/s", |s, _| s.velocity),
+    kept("base_acceleration", "m/s²", |s, _| s.acceleration),
+    kept("particle_displacement", "m", |s, _| s.particle),
+    kept("floor_displacement", "m", |s, _| s.floor),
+    kept("ceiling_displacement", "m", |s, _| s.ceiling),
+    kept("rigid_floor", "m", |s, _| s.rigid_floor),
+    kept("rigid_ceiling", "m", |s, _| s.rigid_ceiling),
+    kept("contact_damping", "N s/m", |s, _| s.damping),
+    kept("rms_acceleration", "g", |s, gravity| s.half_cycle_rms / gravity),
+];
+
+/// Of a cycle.
+type OfCycle = fn(&Energies, usize) -> f64;
+
+const ENERGIES: [Kept<OfCycle>; 7] = [
+    kept("cycle", "", |_, cycle| cycle as f64),
+    kept("kinetic_energy_after", "J", |energies, cycle| energies.with[cycle].after),
+    kept("kinetic_energy_before", "J", |energies, cycle| energies.with[cycle].before),
+    kept("undamped_kinetic_energy_after", "J", |energies, cycle| energies.without[cycle].after),
+    kept("undamped_kinetic_energy_before", "J", |energies, cycle| energies.without[cycle].before),
+    kept("damping_measure_of_cycle", "", Energies::damping_of),
+    kept("mass_measure_of_cycle", "", Energies::mass_of),
+];
+
+/// Places of a shape, one list a side.
+pub(super) const SIDES: [&str; 2] = ["x", "y"];
+/// A mode, and that of the continuous structure.
+pub(super) const MODE: [(&str, &str); 2] = [("shape", ""), ("exact_shape", "")];
+/// A deflection, the RMS displacement of its points, and the mode that it is compared with.
+pub(super) const DEFLECTION: [(&str, &str); 3] = [("shape", ""), ("rms_displacement", "m"), ("mode_shape", "")];
+
+/// Names of the lists of a time history.
+#[must_use]
+pub fn trace_columns() -> Vec<&'static str> {
+    TRACE.iter().map(|column| column.name).collect()
+}
+
+/// Names of the lists of kinetic energies.
+#[must_use]
+pub fn energy_columns() -> Vec<&'static str> {
+    ENERGIES.iter().map(|column| column.name).collect()
+}
+
+/// Names of the lists of a shape.
+#[must_use]
+pub fn shape_columns(shape: &ShapeSpec) -> Vec<&'static str> {
+    let sides = SIDES.iter().take(if shape.points.len() > 1 { 2 } else { 1 }).copied();
+    let values = match shape.of {
+        ShapeOf::Mode => &MODE[..],
+        ShapeOf::Deflection => &DEFLECTION[..],
+    };
+    sides.chain(values.iter().map(|(name, _)| *name)).collect()
+}
+
+/// The lists of a time history.
+pub(super) fn of_trace(samples: &[Sample], gravity: f64) -> Vec<TraceColumn> {
+    let list = |column: &Kept<OfSample>| samples.iter().map(|sample| (column.of)(sample, gravity)).collect();
+    TRACE.iter().map(|column| TraceColumn::new(column.name, column.unit, list(column))).collect()
+}
+
+/// The lists of kinetic energies.
+pub(super) fn of_cycles(energies: &Energies, cycles: std::ops::Range<usize>) -> Vec<TraceColumn> {
+    let list = |column: &Kept<OfCycle>| cycles.clone().map(|cycle| (column.of)(energies, cycle)).collect();
+    ENERGIES.iter().map(|column| TraceColumn::new(column.name, column.unit, list(column))).collect()
+}
+
+/// The number of a proof column in a row.
+#[derive(Debug, Clone, Copy)]
+pub enum ProofOf {
+    /// A number.
+    Number(fn(&Evaluated) -> f64),
+    /// A count.
+    Count(fn(&Evaluated) -> u64),
+}
+
+/// A column of what proves a row.
+#[derive(Debug, Clone, Copy)]
+pub struct ProofColumn {
+    /// Its name.
+    pub name: &'static str,
+    /// Unit symbol, empty when dimensionless.
+    pub unit: &'static str,
+    /// What it holds.
+    pub of: ProofOf,
+}
+
+const fn proof(name: &'static str, unit: &'static str, of: ProofOf) -> ProofColumn {
+    ProofColumn { name, unit, of }
+}
+
+/// What proves a row, in the order of the table.
+pub const PROOF: [ProofColumn; 7] = [
+    proof("momentum_residual", "", ProofOf::Number(|row| row.proof.momentum_residual)),
+    proof("energy_residual", "", ProofOf::Number(|row| row.proof.energy_residual)),
+    proof("events", "", ProofOf::Count(|row| row.proof.events)),
+    proof("smallest_margin", "m", ProofOf::Number(|row| row.proof.smallest_margin)),
+    proof("ties", "", ProofOf::Count(|row| row.proof.ties)),
+    proof("chaotic", "", ProofOf::Count(|row| row.chaotic as u64)),
+    proof("members", "", ProofOf::Count(|row| row.members as u64)),
+];
