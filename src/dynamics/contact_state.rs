@@ -56,14 +56,7 @@ impl Modes {
             gravity: Load::default(),
             carried,
         };
-        let mut weight = vec![0.0; n];
-        for (j, particle) in system.particles.iter().enumerate() {
-            if let (true, Some(face)) = (contacts[j].holds(particle), contacts[j].face(particle)) {
-                weight.iter_mut().zip(&face.row).for_each(|(sum, phi)| *sum -= particle.mass * system.gravity * phi);
-            }
-        }
-        let mut falls = modes.answer(system, &weight);
-        falls[n..].iter_mut().for_each(|fall| *fall -= system.gravity);
+        let falls = modes.falls(system);
         modes.gravity = Load::new(&falls, &modes.spectral, &modes.accelerations);
         Ok(modes)
     }
@@ -76,6 +69,20 @@ impl Modes {
             answer.push(-dot(&face.row, &answer[..force.len()]));
         }
         answer
+    }
+
+    /// p″ under gravity, all springs at rest.
+    pub(crate) fn falls(&self, system: &HybridSystem) -> Vec<f64> {
+        let n = system.mass.order;
+        let mut weight = vec![0.0; n];
+        for (j, particle) in system.particles.iter().enumerate() {
+            if let (true, Some(face)) = (self.contacts[j].holds(particle), self.contacts[j].face(particle)) {
+                weight.iter_mut().zip(&face.row).for_each(|(sum, phi)| *sum -= particle.mass * system.gravity * phi);
+            }
+        }
+        let mut falls = self.answer(system, &weight);
+        falls[n..].iter_mut().for_each(|fall| *fall -= system.gravity);
+        falls
     }
 
     /// Numbers that it keeps.

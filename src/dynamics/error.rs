@@ -60,6 +60,11 @@ pub enum EngineError {
         /// s.
         period: f64,
     },
+    /// A motion that the multipliers cannot follow.
+    #[error(
+        "the motion of a contact with equivalent viscous damping has no name: its damping depends on the half cycle before, which is no part of the state; leave `motion` out"
+    )]
+    DampingWithMemory,
     /// Its allowance was used up first.
     #[error(transparent)]
     Overrun(#[from] Overrun),

@@ -6,6 +6,7 @@
 mod contacts;
 mod half_cycles;
 mod impacts;
+mod taped;
 
 use std::rc::Rc;
 
@@ -20,6 +21,7 @@ use super::flow::{DrivePhase, Flow};
 use super::guards::{self, Contacts};
 use super::integral::{integrals, quadrature};
 use super::mobility::Mobilities;
+use super::motion::{self, Fundamental, Tape};
 use super::parabola::Parabola;
 use super::search::{Clarity, Found, Search};
 use super::signals::{self, Signals};
@@ -34,7 +36,7 @@ use half_cycles::Half;
 const MOST_EVENTS_AT_AN_INSTANT: u32 = 64;
 
 /// A run in progress.
-pub(crate) struct March<'a> {
+pub(crate) struct March<'a, const TAPED: bool> {
     system: &'a HybridSystem,
     options: &'a Options,
     states: States,
@@ -81,9 +83,11 @@ pub(crate) struct March<'a> {
     clarity: Clarity,
     response: Response,
     audit: Option<Audit>,
+    /// What names the motion; kept if `TAPED`, so that other runs have no such code.
+    tape: Tape,
 }
 
-impl<'a> March<'a> {
+impl<'a, const TAPED: bool> March<'a, TAPED> {
     /// A run at its start.
     pub(crate) fn new(system: &'a HybridSystem, options: &'a Options, states: States) -> Result<Self, EngineError> {
         let n = system.mass.order;
@@ -131,7 +135,11 @@ impl<'a> March<'a> {
                 ..Response::default()
             },
             audit: options.audit.then(Audit::default),
+            tape: Tape::default(),
         };
+        if TAPED && system.drive.half_cycles.is_some() {
+            return Err(EngineError::DampingWithMemory);
+        }
         march.place(&options.start)?;
         Ok(march)
     }
@@ -179,11 +187,19 @@ impl<'a> March<'a> {
     }
 
     pub(crate) fn run(mut self) -> Result<Response, EngineError> {
+        self.all_cycles()?;
+        self.finish()
+    }
+
+    fn all_cycles(&mut self) -> Result<(), EngineError> {
         let cycles = self.options.cycles();
         let period = self.system.drive.period;
         for cycle in 0..cycles {
             self.cycle = cycle;
             self.time = 0.0;
+            if TAPED {
+                self.tape.begin_cycle();
+            }
             budget::reach(cycle, cycles);
             if cycle == u64::from(self.options.skip) {
                 self.begin_window();
@@ -206,8 +222,11 @@ impl<'a> March<'a> {
             if let Some(cycle) = self.response.cycle_rates.last_mut() {
                 cycle.before.extend_from_slice(&self.rate[..self.system.mass.order]);
             }
+            if TAPED {
+                self.end_taped_cycle();
+            }
         }
-        self.finish()
+        Ok(())
     }
 
     fn begin_window(&mut self) {
@@ -234,6 +253,9 @@ impl<'a> March<'a> {
         }
         self.response.final_particles = (0..self.particles.len()).map(|j| self.absolute(j)).collect();
         self.response.highest_frequency = self.fastest;
+        if TAPED {
+            self.response.motion = Some(motion::name(self.system, &self.tape, self.options.average as usize)?);
+        }
         if self.response.final_displacement.is_finite() && self.response.final_velocity.is_finite() {
             Ok(self.response)
         } else {
@@ -266,13 +288,21 @@ impl<'a> March<'a> {
 
     /// A jump of the force.
     fn tick(&mut self, tick: Tick, kick: f64) -> Result<(), EngineError> {
+        let held = if TAPED { self.contacts.clone() } else { Vec::new() };
         let stepped = tick.level != self.level;
         self.level = tick.level;
         let impulse = tick.impulse + kick;
         if impulse != 0.0 {
             self.strike_structure(impulse)?;
         }
-        if stepped { self.regrip() } else { Ok(()) }
+        if stepped {
+            self.regrip()?;
+        }
+        if TAPED {
+            self.tape_captures(&held)?;
+            self.tape.timed();
+        }
+        Ok(())
     }
 
     fn record(&mut self, j: usize, kind: EventKind, approach: f64, departure: f64) {
@@ -281,6 +311,9 @@ impl<'a> March<'a> {
 
     fn record_at(&mut self, particle: usize, kind: EventKind, time: f64, approach: f64, departure: f64) {
         self.response.proof.events += 1;
+        if TAPED {
+            self.tape.count(kind);
+        }
         budget::count_event();
         if self.options.averages(self.cycle) {
             self.response.counts.add(kind);
@@ -385,6 +418,9 @@ impl<'a> March<'a> {
         };
         self.flow.advance(&self.search.kernels, &self.c, end_drive, &mut self.c_end);
         self.sum_up(length, drive);
+        if TAPED {
+            self.tape.flow(&self.flow, length);
+        }
         self.sample(length);
         self.arrive(length, end_drive);
         self.time = match found {
@@ -395,7 +431,11 @@ impl<'a> March<'a> {
         if let Found::Event { guard, .. } = found {
             let super::search::Guard { particle, crossing, .. } = self.search.guards[guard];
             self.sudden = length == 0.0;
-            self.cross(particle, crossing)?;
+            if TAPED {
+                self.cross_taped(particle, crossing)?;
+            } else {
+                self.cross(particle, crossing)?;
+            }
         }
         Ok(())
     }
@@ -573,7 +613,21 @@ fn side_stiffness(system: &HybridSystem, contacts: &[Contact], j: usize) -> Opti
 
 /// Runs a system.
 pub(crate) fn march(system: &HybridSystem, options: &Options, states: States) -> Result<Response, EngineError> {
-    March::new(system, options, states)?.run()
+    if options.motion {
+        return March::<true>::new(system, options, states)?.run();
+    }
+    March::<false>::new(system, options, states)?.run()
+}
+
+/// The fundamental matrix of the averaged cycles.
+pub(crate) fn fundamental(
+    system: &HybridSystem,
+    options: &Options,
+    states: States,
+) -> Result<Fundamental, EngineError> {
+    let mut march = March::<true>::new(system, options, states)?;
+    march.all_cycles()?;
+    Fundamental::of(system, &march.tape, options.average as usize)
 }
 
 /// The proof of a run that was never audited.

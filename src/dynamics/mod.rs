@@ -15,6 +15,7 @@
 //! | `contact_state`, `modes`, `spectral`, `cluster`, `schur`, `block`, `bank` | its equations, split into 2 × 2 blocks |
 //! | `gains`, `integral`, `lyapunov` | its integrals in closed form, by quadrature where that would lose digits |
 //! | `audit`, `dissipation`, `residual_bound` | momentum and energy, balanced by other means |
+//! | `motion` | which kind of motion a run ends in: multipliers, exponents |
 //! | `linear` | a run in which no event can happen, in closed form |
 //! | `fixed` | a fixed-step scheme, to show what the time step does to a published result |
 //! | `budget` | what a run may take |
@@ -51,6 +52,7 @@ mod lyapunov;
 mod march;
 mod mobility;
 mod modes;
+mod motion;
 mod options;
 mod parabola;
 mod polynomial;
@@ -75,10 +77,11 @@ mod window;
 pub use budget::{Allowance, Exhausted, Limit, Overrun, in_words};
 pub use error::EngineError;
 pub use extremes::Extremes;
+pub use motion::{Exponent, Fundamental, Motion, MotionKind, Multiplier};
 pub use options::{Options, StartState};
 pub use proof::Proof;
 pub use response::{Counts, CycleRates, Method, Observed, Response};
-pub use run::{event_driven, fixed_step, is_linear, steady_state};
+pub use run::{event_driven, fixed_step, fundamental_matrix, is_linear, steady_state};
 pub use spline::Spline;
 pub use steady_state::{SteadyMotion, SteadyState};
 pub use sums::Sums;

@@ -22,6 +22,8 @@ pub struct Options {
     pub cycle_rates: bool,
     /// Balance momentum and energy.
     pub audit: bool,
+    /// Name the motion that it ends in.
+    pub motion: bool,
     /// How many events to keep, from the first.
     pub record_events: usize,
     /// Time history to keep.
@@ -56,6 +58,7 @@ impl Default for Options {
             extremes: false,
             cycle_rates: false,
             audit: false,
+            motion: false,
             record_events: 0,
             trace: None,
             window_factor: 1.0,

@@ -1,6 +1,7 @@
 //! What a run leaves behind: integrals of the observed motions, counts of events, the proof, and what was asked to be kept.
 
 use super::extremes::Extremes;
+use super::motion::Motion;
 use super::proof::Proof;
 use super::sums::Sums;
 use super::system::{Event, EventKind};
@@ -39,6 +40,8 @@ pub struct Response {
     pub final_velocity: f64,
     /// y and y′ of each particle at the end.
     pub final_particles: Vec<[f64; 2]>,
+    /// The motion that it ends in, if asked for.
+    pub motion: Option<Motion>,
     /// Highest natural frequency among the contact states visited, rad/s.
     pub highest_frequency: f64,
 }

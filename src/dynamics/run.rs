@@ -1,6 +1,7 @@
 //! The ways to run a system: from event to event, in closed form where no event can happen, or step by step.
 
 use super::error::EngineError;
+use super::motion::Fundamental;
 use super::options::Options;
 use super::response::Response;
 use super::states::States;
@@ -15,13 +16,27 @@ use super::{budget, fixed, linear, march, residual_bound};
 pub fn event_driven(system: &HybridSystem, options: &Options) -> Result<Response, EngineError> {
     budget::within(|| {
         let states = States::of(system);
-        let mut response = match linear::attempt(system, options, &states)? {
+        let attempt = match options.motion {
+            // A closed form visits no states that could come again.
+            true => linear::Attempt::Open,
+            false => linear::attempt(system, options, &states)?,
+        };
+        let mut response = match attempt {
             linear::Attempt::Solved(response) => *response,
             linear::Attempt::Open => march::march(system, options, states)?,
         };
         residual_bound::enter(system, options, &mut response);
         Ok(response)
     })
+}
+
+/// The fundamental matrix of the averaged cycles of a run, whether they come again or not: what a small change of the state at
+/// their begin is at their end.
+///
+/// # Errors
+/// [`EngineError`] with the reason.
+pub fn fundamental_matrix(system: &HybridSystem, options: &Options) -> Result<Fundamental, EngineError> {
+    budget::within(|| march::fundamental(system, options, States::of(system)))
 }
 
 /// True where it is proved, without a simulation, that no particle leaves its floor in the run: it is then in closed form, and

@@ -64,6 +64,28 @@ impl Checks<'_> {
         }
     }
 
+    /// A motion has a name in a single run, from certified event to certified event.
+    pub fn motion(
+        &self,
+        measures: &[(Measure, Span)],
+        maximise: Option<&Maximise>,
+        averages: bool,
+        solvers: &[SolverChoice],
+    ) {
+        let Some((measure, span)) = measures.iter().find(|(measure, _)| measure.needs_motion()) else { return };
+        let name = word_of(*measure);
+        let reason = if solvers.iter().any(|solver| matches!(solver, SolverChoice::FixedStep { .. })) {
+            "the event-driven solver alone"
+        } else if averages {
+            "a single run, not of the mean over several"
+        } else if maximise.is_some_and(|maximise| maximise.measure.is_name()) {
+            "a run as it is: a name has no maximum"
+        } else {
+            return;
+        };
+        self.findings.wrong::<()>(*span, format!("`{name}` is measured of {reason}"));
+    }
+
     /// Amplitudes are compared with what drives the scene.
     pub fn excitation(&self, measures: &[(Measure, Span)], excitation: &ExcitationKind) {
         for (measure, span) in measures {
@@ -156,7 +178,7 @@ impl Checks<'_> {
             self.findings.report::<()>(*span, format!("`{name}` is optimised, but not measured"), Some(help));
         }
         for (measure, span) in measures {
-            if measure.needs_trace() || measure.needs_shape() || measure.needs_energies() {
+            if measure.needs_trace() || measure.needs_shape() || measure.needs_energies() || measure.needs_motion() {
                 let message = format!("`{}` is not measured in an optimisation", word_of(*measure));
                 self.findings.wrong::<()>(*span, message);
             }
@@ -177,6 +199,9 @@ impl Checks<'_> {
                     let help = format!("add `{name}` to `measure`");
                     self.findings.report::<()>(*span, format!("`{name}` is refined, but not measured"), Some(help));
                 }
+            }
+            if refinement.measures.iter().any(|measure| measure.is_name()) {
+                self.findings.wrong::<()>(*span, "a name has no curve to be followed");
             }
             if refinement.over == Parameter::Stop {
                 self.findings.wrong::<()>(*span, "only numbers can be refined");

@@ -46,6 +46,10 @@ impl Columns {
         list.extend(labels.into_iter().flatten().map(|name| (name.into(), Role::Label)));
         for measure in measures {
             let name = word_of(*measure);
+            if measure.is_name() {
+                list.push((name, Role::Label));
+                continue;
+            }
             list.extend(["", "_num", "_spread"].map(|suffix| (format!("{name}{suffix}"), Role::Number)));
         }
         if let Some(maximise) = maximise {

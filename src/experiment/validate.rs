@@ -145,6 +145,12 @@ impl<'t> ExperimentReader<'t> {
         let (measures, maximise, trace, run) = (measures?, maximise?, trace?, run?);
         let (energies, shape) = (energies?, shape?);
         checks.measures(&measures, maximise.as_ref(), trace.as_ref(), shape.as_ref());
+        checks.motion(
+            &measures,
+            maximise.as_ref(),
+            mean_over.cases.iter().any(|case| !case.values.is_empty()),
+            &run.solvers,
+        );
         checks.energies(energies.as_ref(), &run.settings, energies_at);
         let (mut scene, sweep) = (scene?, sweep?.unwrap_or_else(ReadSweep::none));
         if let Some(optimise) = &optimise {
@@ -219,7 +225,13 @@ impl<'t> ExperimentReader<'t> {
                 return self.findings.wrong(*span, format!("`{}` is measured twice", super::word::word_of(*measure)));
             }
         }
-        Some(measures)
+        let mut all = Vec::with_capacity(measures.len());
+        for (measure, span) in &measures {
+            all.push((*measure, *span));
+            let named = |companion: &Measure| measures.iter().any(|(other, _)| other == companion);
+            all.extend(measure.companions().filter(|companion| !named(companion)).map(|companion| (companion, *span)));
+        }
+        Some(all)
     }
 
     /// Settings to take the mean over: a sweep without names and without refinement.

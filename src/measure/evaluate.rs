@@ -186,6 +186,7 @@ impl Case<'_> {
         let case = self;
         let main = Options {
             audit: request.rigour == Rigour::Result,
+            motion: request.any(Measure::needs_motion),
             trace: request.trace.map(|trace| TraceRequest {
                 from_cycle: u64::from(trace.from_cycle),
                 to_cycle: u64::from(trace.to_cycle),
@@ -195,6 +196,7 @@ impl Case<'_> {
         };
         let response = solve(system, &main, solver)?;
         let Read { values, lists } = case.read(&response, reference, true)?;
+        let motion = response.motion.as_ref().map(|motion| motion.kind);
         let certain = |numerical: Vec<f64>, chaotic: bool| Evaluated {
             measured: values
                 .iter()
@@ -204,6 +206,7 @@ impl Case<'_> {
             proof: response.proof,
             chaotic,
             members: 1,
+            motion,
             trace: lists.clone(),
         };
         if matches!(solver, SolverChoice::FixedStep { .. }) || system.particles.is_empty() {
@@ -232,7 +235,9 @@ impl Case<'_> {
             // The same events decided in other windows; measures of the history are as exact as its samples.
             let second = event_driven(system, &Options { window_factor: 0.5, audit: false, ..main.clone() })?;
             let again = case.read(&second, reference, true)?.values;
-            let numerical = values.iter().zip(again).map(|(a, b)| (a - b).abs().max(4.0 * f64::EPSILON * a.abs()));
+            let own = request.measures.iter().map(|measure| own_error(*measure, &response));
+            let pairs = values.iter().zip(again).zip(own);
+            let numerical = pairs.map(|((a, b), own)| (a - b).abs().max(4.0 * f64::EPSILON * a.abs()).max(own));
             return Ok(certain(numerical.collect(), chaotic));
         }
 
@@ -247,14 +252,15 @@ impl Case<'_> {
             }
         }
         let measured = sums.iter().zip(request.measures).zip(&values).map(|((sum, measure), own)| {
-            if measure.needs_trace() || measure.is_modal() {
-                return Measured { value: *own, numerical: 4.0 * f64::EPSILON * own.abs(), spread: 0.0 };
+            if measure.is_of_own_run() {
+                let numerical = (4.0 * f64::EPSILON * own.abs()).max(own_error(*measure, &response));
+                return Measured { value: *own, numerical, spread: 0.0 };
             }
             let spread = sum.deviation();
             Measured { value: sum.mean, numerical: spread / f64::from(members).sqrt(), spread }
         });
         let measured = measured.collect();
-        Ok(Evaluated { measured, proof: response.proof, chaotic, members, trace: lists })
+        Ok(Evaluated { measured, proof: response.proof, chaotic, members, motion, trace: lists })
     }
 }
 
@@ -284,6 +290,7 @@ impl Case<'_> {
             proof: Proof::linear(),
             chaotic: false,
             members: 1,
+            motion: None,
             trace: shape.map(|shape| shape.columns).unwrap_or_default(),
         })
     }
@@ -336,7 +343,7 @@ impl Case<'_> {
         reading.history = history;
         reading.energies = energies.as_ref();
         let value = |measure: &Measure| {
-            if !whole && (measure.needs_trace() || measure.is_modal()) { Ok(f64::NAN) } else { reading.read(*measure) }
+            if !whole && measure.is_of_own_run() { Ok(f64::NAN) } else { reading.read(*measure) }
         };
         let values = request.measures.iter().map(value).collect::<Result<Vec<_>, _>>()?;
         let mut lists = Vec::new();
@@ -354,6 +361,12 @@ impl Case<'_> {
     fn rms_velocity(&self, response: &Response) -> f64 {
         self.reading(None, None, None).rms_velocity(response)
     }
+}
+
+/// An error that a measure states of itself: the standard error of an exponent.
+fn own_error(measure: Measure, response: &Response) -> f64 {
+    let exponent = response.motion.as_ref().and_then(|motion| motion.exponent);
+    exponent.filter(|_| measure == Measure::LyapunovExponent).map_or(0.0, |exponent| exponent.error)
 }
 
 fn solve(system: &HybridSystem, options: &Options, solver: SolverChoice) -> Result<Response, EngineError> {

@@ -50,6 +50,8 @@ pub enum ReadOff {
     Model,
     /// The shape that is kept.
     Shape,
+    /// The kind of motion that the run ends in.
+    Motion,
 }
 
 /// Which runs a measure takes.
@@ -155,6 +157,12 @@ measures! {
     FinalDisplacement: "m", "", "", "displacement of the structure at the end of the run", End, Own, Any;
     FinalVelocity: "m/s", "", "", "velocity of the structure at the end of the run", End, Own, Any;
     FinalHeight: "m", "", "", "height of the first particle over its floor at the end of the run", End, Own, Any;
+    Motion: "", "", "", "the kind of motion that the run ends in, in words: `at rest`, `periodic 1:2` (one period of the excitation, two contacts made), `sticking 1:1`, `completed chatter 1:∞`, `quasi-periodic`, `chaotic`, `not settled`; brings the columns below with it", Motion, Own, Any;
+    LargestMultiplier: "", "μ", "", "modulus of the largest Floquet multiplier: what a period of the motion leaves of a small disturbance", Motion, Own, Any;
+    MultiplierAngle: "rad", "", "", "angle of that multiplier: 0 towards a fold, π towards a doubling of the period", Motion, Own, Any;
+    MultiplierResidual: "", "", "", "product of all multipliers against the contraction of dashpots and impacts, relative to the most that it could be", Motion, Own, Any;
+    LyapunovExponent: "", "λ", "", "growth of the logarithm of a small disturbance in a cycle; with its standard error where the motion does not come again", Motion, Own, Any;
+    SettledAfter: "", "", "", "cycles after which the motion comes again to within a millionth", Motion, Own, Any;
 }
 
 /// A column's name in words: a measure's, or those of [`words::of_column`].
@@ -212,6 +220,29 @@ impl Measure {
     #[must_use]
     pub fn needs_energies(self) -> bool {
         self.facts().from == ReadOff::Energies
+    }
+
+    /// Read off the kind of motion that the run ends in.
+    #[must_use]
+    pub fn needs_motion(self) -> bool {
+        self.facts().from == ReadOff::Motion
+    }
+
+    /// A name in place of a number: its column is text, without an error or a spread.
+    #[must_use]
+    pub fn is_name(self) -> bool {
+        self == Self::Motion
+    }
+
+    /// The measures that come with this one.
+    pub fn companions(self) -> impl Iterator<Item = Self> {
+        let all = if self.is_name() { Self::ALL } else { &[] };
+        all.iter().copied().filter(|other| other.needs_motion() && !other.is_name())
+    }
+
+    /// Of the run itself, where others are means over an ensemble of kicked starts.
+    pub(super) fn is_of_own_run(self) -> bool {
+        self.needs_trace() || self.is_modal() || self.needs_motion()
     }
 
     /// Compares with the run without dampers, or is of it.

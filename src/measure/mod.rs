@@ -26,7 +26,7 @@ pub use request::{EnergySpec, Settings, ShapeOf, ShapeSpec, SolverChoice, TraceS
 pub use subject::{Comparison, Needs, Subject};
 pub use trial::Trial;
 
-use crate::dynamics::{EngineError, Proof};
+use crate::dynamics::{EngineError, MotionKind, Proof};
 use crate::scene::CompileError;
 use crate::text::words;
 
@@ -64,6 +64,8 @@ pub struct Evaluated {
     pub chaotic: bool,
     /// Runs averaged.
     pub members: u32,
+    /// The kind of motion, if asked for.
+    pub motion: Option<MotionKind>,
     /// Time history, if asked for: column name, unit, samples.
     pub trace: Vec<TraceColumn>,
 }

@@ -6,7 +6,7 @@ use super::energy::Energies;
 use super::history::History;
 use super::impact::Impacts;
 use super::{EvaluateError, Measure};
-use crate::dynamics::{EventKind, Observed, Response, Sums};
+use crate::dynamics::{EventKind, Motion, Observed, Response, Sums};
 use crate::scene::{Excitation, Scene, Take};
 
 /// What there is to read measures of one run off.
@@ -87,6 +87,14 @@ impl Reading<'_> {
             | Measure::FloorContactTime
             | Measure::FloorReleaseTime
             | Measure::ChatterEndTime => Impacts::of(response, self.scene, self.skip).read(measure),
+            Measure::Motion
+            | Measure::LargestMultiplier
+            | Measure::MultiplierAngle
+            | Measure::MultiplierResidual
+            | Measure::LyapunovExponent
+            | Measure::SettledAfter => {
+                of_motion(response.motion.as_ref().ok_or(EvaluateError::NoRun(measure))?, measure)
+            }
             Measure::NaturalFrequency
             | Measure::CleanNaturalFrequency
             | Measure::ExactNaturalFrequency
@@ -151,6 +159,20 @@ impl Reading<'_> {
             | Excitation::PulseTrain { impulse, .. } => Ok(impulse.abs()),
         }
     }
+}
+
+/// What the motion says of a measure; its name is no number.
+fn of_motion(motion: &Motion, measure: Measure) -> f64 {
+    let largest = motion.multipliers.first();
+    let value = match measure {
+        Measure::LargestMultiplier => largest.map(|it| it.modulus),
+        Measure::MultiplierAngle => largest.map(|it| it.angle),
+        Measure::MultiplierResidual => Some(motion.residual),
+        Measure::LyapunovExponent => motion.exponent.map(|it| it.value),
+        Measure::SettledAfter => motion.settled_after.map(|cycles| cycles as f64),
+        _ => None,
+    };
+    value.unwrap_or(f64::NAN)
 }
 
 fn half_range([low, high]: [f64; 2]) -> f64 {

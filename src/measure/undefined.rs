@@ -14,6 +14,8 @@ impl Measure {
             }
             Self::Drift => "nothing moves",
             Self::FinalHeight => "there is no particle",
+            Self::LyapunovExponent => "nothing is left of a disturbance, or particles are struck at one instant",
+            _ if self.needs_motion() => "the motion does not come again, or particles are struck at one instant",
             _ if self.needs_events() => "there is no such event",
             _ if self.needs_undamped() => "neither run moves",
             _ => "nothing excites the structure",
@@ -32,9 +34,9 @@ impl Measure {
     }
 
     /// It is a number wherever something excites the structure; an event may fail to happen, and a scene may have no particle.
-    fn needs_motion(self) -> bool {
-        !matches!(self.facts().from, ReadOff::Trace | ReadOff::Model | ReadOff::Shape | ReadOff::Events)
-            && self != Self::FinalHeight
+    fn is_of_any_motion(self) -> bool {
+        use ReadOff::{Events, Model, Motion, Shape, Trace};
+        !matches!(self.facts().from, Trace | Model | Shape | Events | Motion) && self != Self::FinalHeight
     }
 }
 
@@ -58,7 +60,7 @@ pub(super) fn in_range(
             Measure::FloorImpactLag | Measure::CeilingImpactLag => !value.is_nan(),
             // Of a run that does not leave the rest that it starts from.
             Measure::ShortestPeriod => value > 0.0,
-            _ if value.is_nan() => !measure.needs_motion() || scene.excitation.is_silent(),
+            _ if value.is_nan() => !measure.is_of_any_motion() || scene.excitation.is_silent(),
             _ => value.is_finite(),
         };
         if !fine {

@@ -22,7 +22,8 @@ pub(super) fn undefined<'a>(
     rows: impl Iterator<Item = Option<&'a [Measured]>>,
 ) -> Option<Column> {
     let of_row = |measured: Option<&[Measured]>| {
-        let undefined = measures.iter().zip(measured.unwrap_or_default()).filter(|(_, one)| one.value.is_nan());
+        let undefined = measures.iter().zip(measured.unwrap_or_default());
+        let undefined = undefined.filter(|(measure, one)| !measure.is_name() && one.value.is_nan());
         let names =
             undefined.map(|(measure, _)| format!("{} undefined: {}", words::of_key(measure), measure.why_undefined()));
         names.collect::<Vec<_>>().join("; ")

@@ -87,6 +87,7 @@ pub(super) fn mean(wanted: &[Measure], measures: &[Measure], each: &[Evaluated])
         },
         chaotic: each.iter().any(|one| one.chaotic),
         members: each.iter().map(|one| one.members).max().unwrap_or(1),
+        motion: None,
         trace: Vec::new(),
     }
 }

@@ -88,7 +88,11 @@ fn values(experiment: &Experiment, rule: &Refinement, outcome: &Outcome) -> Vec<
         .measures
         .iter()
         .zip(&row.evaluated.measured)
-        .filter(|(measure, _)| rule.measures.is_empty() || rule.measures.contains(measure));
+        // Kinds of motion jump from one to the next; only those that are asked for are followed.
+        .filter(|(measure, _)| match rule.measures.as_slice() {
+            [] => !measure.needs_motion(),
+            named => named.contains(measure),
+        });
     wanted
         .map(|(_, Measured { value, spread, .. })| match rule.value_scale {
             AxisScale::Linear => [*value, *spread],

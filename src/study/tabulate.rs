@@ -55,6 +55,14 @@ pub(super) fn table(
     };
     for (index, measure) in experiment.measures.iter().enumerate() {
         let name = words::of_key(measure);
+        if measure.is_name() {
+            let of_row = |row: &Row| row.evaluated.motion.map(|motion| motion.to_string());
+            columns.push(Column::new(
+                &name,
+                texts(&|row| outcomes[row].as_ref().ok().and_then(of_row).unwrap_or_default()),
+            ));
+            continue;
+        }
         let of = |part: fn(&crate::measure::Measured) -> f64| {
             floats(&|row| row.evaluated.measured.get(index).map_or(f64::NAN, part))
         };

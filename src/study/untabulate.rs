@@ -11,8 +11,10 @@ use crate::text::words;
 
 /// The columns of a table that the numbers of an experiment's rows stand in.
 pub(super) struct Cells<'a> {
-    /// Value, numerical error and spread of each measure.
-    measured: Vec<[&'a [f64]; 3]>,
+    /// Value, numerical error and spread of each measure that is a number.
+    measured: Vec<Option<[&'a [f64]; 3]>>,
+    /// The name of the motion, where it is measured.
+    motion: Option<&'a [String]>,
     /// The place of the maximum, and how far off it may be.
     place: Option<[&'a [f64]; 2]>,
     momentum_residual: &'a [f64],
@@ -41,8 +43,13 @@ impl<'a> Cells<'a> {
         };
         let measured = experiment.measures.iter().map(|measure| {
             let name = words::of_key(measure);
-            Some([floats(&name)?, floats(&format!("{name}_num"))?, floats(&format!("{name}_spread"))?])
+            if measure.is_name() {
+                return Some(None);
+            }
+            Some(Some([floats(&name)?, floats(&format!("{name}_num"))?, floats(&format!("{name}_spread"))?]))
         });
+        let named = experiment.measures.iter().find(|measure| measure.is_name());
+        let motion = named.map(|measure| table.texts(&words::of_key(measure)));
         let place = experiment.maximise.as_ref().map(|maximise| {
             let name = format!("{}_at_maximum", words::of_key(&maximise.over));
             Some([floats(&name)?, floats(&format!("{name}_num"))?])
@@ -56,6 +63,10 @@ impl<'a> Cells<'a> {
             // Wanted and absent is not the same as not wanted.
             place: match place {
                 Some(place) => Some(place?),
+                None => None,
+            },
+            motion: match motion {
+                Some(motion) => Some(motion?),
                 None => None,
             },
             momentum_residual: floats("momentum_residual")?,
@@ -76,10 +87,11 @@ impl<'a> Cells<'a> {
         if !self.failure.get(row)?.is_empty() {
             return None;
         }
-        let measured = self.measured.iter().map(|[value, numerical, spread]| Measured {
-            value: value[row],
-            numerical: numerical[row],
-            spread: spread[row],
+        let measured = self.measured.iter().map(|columns| match columns {
+            Some([value, numerical, spread]) => {
+                Measured { value: value[row], numerical: numerical[row], spread: spread[row] }
+            }
+            None => Measured { value: f64::NAN, numerical: f64::NAN, spread: 0.0 },
         });
         let proof = Proof {
             momentum_residual: self.momentum_residual[row],
@@ -95,6 +107,10 @@ impl<'a> Cells<'a> {
             proof,
             chaotic: self.chaotic[row] != 0,
             members: u32::try_from(self.members[row]).ok()?,
+            motion: match self.motion {
+                Some(cells) => Some(cells[row].parse().ok()?),
+                None => None,
+            },
             trace: kept
                 .map(|(column, cells)| TraceColumn::new(column.name.clone(), column.unit.clone(), cells[row].clone()))
                 .collect(),

@@ -7,6 +7,7 @@ use std::process::Command;
 
 use shotdamp::experiment::{Assumptions, ExperimentId, parse_experiment};
 use shotdamp::reference::{Check, Verdict, load_reference};
+use shotdamp::table::parquet;
 
 fn study() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/classics")
@@ -14,11 +15,18 @@ fn study() -> PathBuf {
 
 /// A file of an experiment with one piece of text exchanged, and what is said about it.
 fn complaint(id: &str, from: &str, to: &str) -> String {
+    complaint_of(id, &[(from, to)])
+}
+
+fn complaint_of(id: &str, exchanged: &[(&str, &str)]) -> String {
     let path = study().join(format!("experiments/{id}.yaml"));
-    let text = fs::read_to_string(path).unwrap();
-    assert!(text.contains(from), "{id} has no `{from}`");
+    let mut text = fs::read_to_string(path).unwrap();
+    for (from, to) in exchanged {
+        assert!(text.contains(from), "{id} has no `{from}`");
+        text = text.replacen(from, to, 1);
+    }
     let id: ExperimentId = id.parse().unwrap();
-    let problems = parse_experiment(&id, "mine.yaml", &text.replacen(from, to, 1), &Assumptions::default());
+    let problems = parse_experiment(&id, "mine.yaml", &text, &Assumptions::default());
     problems.expect_err("it is refused").to_string()
 }
 
@@ -102,5 +110,49 @@ fn a_mass_without_spring_says_what_to_write_in_place_of_its_natural_frequency() 
     ] {
         let said = complaint("complete-chatter", from, to);
         assert!(said.contains(what) && said.contains("mine.yaml:"), "{to}: {said}");
+    }
+}
+
+#[test]
+fn a_motion_is_named_in_its_table_and_known_again() {
+    let folder = tempfile::tempdir().unwrap();
+    for part in ["experiments", "reference"] {
+        fs::create_dir(folder.path().join(part)).unwrap();
+    }
+    let file = "experiments/two-impacts-above-resonance.yaml";
+    let text = fs::read_to_string(study().join(file)).unwrap();
+    // The figure's histories are not what this is about.
+    let text = text.split("measure:").next().unwrap().to_owned()
+        + "measure: [motion, rms_velocity]\nfigure: {x: rms_velocity, y: largest_multiplier, by: motion, caption: One motion.}\n";
+    fs::write(folder.path().join(file), text).unwrap();
+    let shotdamp = |command: &[&str]| {
+        let run = Command::new(env!("CARGO_BIN_EXE_shotdamp")).arg("--root").arg(folder.path()).args(command).output();
+        let output = run.unwrap();
+        let said = String::from_utf8([output.stdout, output.stderr].concat()).unwrap();
+        assert!(output.status.success(), "{command:?}\n{said}");
+    };
+    let table = || parquet::read(&folder.path().join("results/two-impacts-above-resonance.parquet")).unwrap();
+    shotdamp(&["run"]);
+    let first = table();
+    assert_eq!(first.texts("motion").unwrap(), ["periodic 1:2"]);
+    // The closed form of the multipliers, as in the engine's own tests.
+    let largest = first.floats("largest_multiplier").unwrap()[0];
+    assert!((largest / 0.846_322_967_149_735_1 - 1.0).abs() < 1e-9, "{largest}");
+    assert!(first.floats("multiplier_residual").unwrap()[0] < 1e-12);
+    assert!(first.column("motion_num").is_none() && first.column("undefined").is_none());
+    // Rows are taken from the table before where only a measure's place has changed, its text among them.
+    shotdamp(&["run", "--force"]);
+    assert_eq!(table(), first);
+}
+
+#[test]
+fn a_motion_that_has_no_name_is_refused_where_it_is_asked_for() {
+    for (from, to, what) in [
+        ("measure: [", "measure: [motion, ", "measured twice"),
+        ("run: {", "run: {solver: {fixed_step: {time_step: 1e-4 s}}, ", "the event-driven solver alone"),
+    ] {
+        let with_motion =
+            complaint_of("two-impacts-above-resonance", &[("measure: [", "measure: [motion, "), (from, to)]);
+        assert!(with_motion.contains(what) && with_motion.contains("mine.yaml:"), "{to}: {with_motion}");
     }
 }

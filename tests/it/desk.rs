@@ -221,6 +221,7 @@ impl Evaluate for MadeUp {
             proof: Proof { events: 490, smallest_margin: 1e-3, ..Proof::default() },
             chaotic: false,
             members: 1,
+            motion: None,
             trace: it.trace.map(|_| vec![TraceColumn::new("time", "s", vec![0.0, 1.0])]).unwrap_or_default(),
         })
     }

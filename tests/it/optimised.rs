@@ -76,6 +76,7 @@ impl Evaluate for Bowl {
             proof: Proof::default(),
             chaotic: self.error > 0.0,
             members: 8,
+            motion: None,
             trace: Vec::new(),
         })
     }

@@ -39,6 +39,7 @@ impl Evaluate for Curve {
             proof: Proof::default(),
             chaotic,
             members: 1,
+            motion: None,
             trace: Vec::new(),
         })
     }

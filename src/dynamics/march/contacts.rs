@@ -10,7 +10,7 @@ use crate::dynamics::system::{Contact, EventKind, Law, dot};
 /// Faces closer to each other than this share of their way have met.
 const CLOSED: f64 = 1e-9;
 
-impl March<'_> {
+impl<const TAPED: bool> March<'_, TAPED> {
     /// What a crossing leads to; the state has arrived there.
     pub(super) fn cross(&mut self, j: usize, crossing: Crossing) -> Result<(), EngineError> {
         if crossing == Crossing::HalfCycle {

@@ -27,7 +27,7 @@ pub(super) struct Half {
     pub(super) idle: bool,
 }
 
-impl March<'_> {
+impl<const TAPED: bool> March<'_, TAPED> {
     /// Starts the first half cycle, and ends one whose acceleration a contact has turned at once.
     pub(super) fn turn_half_cycle(&mut self) -> Result<(), EngineError> {
         let Some(half_cycles) = &self.system.drive.half_cycles else { return Ok(()) };

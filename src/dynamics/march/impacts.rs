@@ -11,16 +11,16 @@ use crate::dynamics::guards::Grip;
 use crate::dynamics::system::{Contact, EventKind, Law, dot};
 
 /// A rigid contact that is closed.
-struct Touch {
-    particle: usize,
-    side: Side,
+pub(super) struct Touch {
+    pub(super) particle: usize,
+    pub(super) side: Side,
     /// On the stop of a resilient face.
     on_stop: bool,
     /// Held until now.
-    held: bool,
+    pub(super) held: bool,
     /// Place of its mobility.
-    mobility: usize,
-    closed: Closed,
+    pub(super) mobility: usize,
+    pub(super) closed: Closed,
 }
 
 /// A particle that its face may hold from now on.
@@ -35,7 +35,7 @@ pub(super) struct Candidate {
     restitution: f64,
 }
 
-impl March<'_> {
+impl<const TAPED: bool> March<'_, TAPED> {
     /// An impulse on the structure: a particle that is held receives its share through the face.
     pub(super) fn strike_structure(&mut self, impulse: f64) -> Result<(), EngineError> {
         let before = self.audit.is_some().then(|| crate::dynamics::audit::energy(self.system, &self.audit_state()));
@@ -143,7 +143,7 @@ impl March<'_> {
     }
 
     /// The rigid contacts that are closed.
-    fn touches(&mut self, arrived: &[(usize, Side)]) -> Result<Vec<Touch>, EngineError> {
+    pub(super) fn touches(&mut self, arrived: &[(usize, Side)]) -> Result<Vec<Touch>, EngineError> {
         let mut touches = Vec::new();
         for (j, particle) in self.system.particles.iter().enumerate() {
             let contact = self.contacts[j];
@@ -189,7 +189,7 @@ impl March<'_> {
     }
 
     /// S of the closed contacts, row by row.
-    fn answers(&self, touches: &[Touch]) -> Vec<f64> {
+    pub(super) fn answers(&self, touches: &[Touch]) -> Vec<f64> {
         let mut answers = Vec::with_capacity(touches.len() * touches.len());
         for at in touches {
             let row = &at.side.face(&self.system.particles[at.particle]).row;
@@ -211,6 +211,9 @@ impl March<'_> {
         let outcomes = if closed.iter().any(Closed::is_struck) {
             let outcomes = collision::collide(&closed, &self.answers(&touches));
             self.exchange(&touches, &outcomes);
+            if TAPED {
+                self.tape_exchange(&touches, &outcomes);
+            }
             self.half.touching = false;
             outcomes
         } else {

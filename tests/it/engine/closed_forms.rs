@@ -53,7 +53,7 @@ pub(crate) fn expected(id: &str) -> Expected {
 }
 
 /// The scene's numbers and the values to be met.
-fn open(id: &str) -> (Case, Expected) {
+pub(super) fn open(id: &str) -> (Case, Expected) {
     (case(id).part("scene"), expected(id))
 }
 
@@ -121,7 +121,7 @@ pub(super) fn an_accelerated_base_is_a_stronger_gravity() {
 }
 
 /// The table x = A sin ωt, A = Γg/ω²: an undamped base on its forced orbit, with a particle without mass.
-fn table(given: &Case, acceleration: f64) -> (Scene, f64) {
+pub(super) fn table(given: &Case, acceleration: f64) -> (Scene, f64) {
     let omega = given.number("angular_frequency");
     let amplitude = acceleration * GRAVITY / (omega * omega);
     let (mass, stiffness) = (given.number("base_mass"), given.number("stiffness"));
@@ -264,9 +264,9 @@ fn backwards(mass: f64, stiffness: f64, damping: f64, force: f64, omega: f64, ph
 }
 
 /// A steady motion that is known at its floor impact.
-struct Steady {
-    scene: Scene,
-    response: Response,
+pub(super) struct Steady {
+    pub(super) scene: Scene,
+    pub(super) response: Response,
     /// Floor impacts.
     impacts: Vec<Event>,
     omega: f64,
@@ -332,7 +332,7 @@ pub(super) fn a_particle_that_lands_every_other_cycle_moves_as_the_closed_form_s
 }
 
 /// Their impact damper in steady motion, from just before a floor impact after which the base has this velocity.
-fn masri_and_caughey(id: &str, velocity: f64) -> Steady {
+pub(super) fn masri_and_caughey(id: &str, velocity: f64) -> Steady {
     let (given, value) = open(id);
     let (mass, particle) = (given.number("base_mass"), given.number("particle_mass"));
     let damper = damper(particle, given.number("gap"), rigid(given.number("restitution")));

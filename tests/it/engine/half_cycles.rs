@@ -6,7 +6,7 @@ use shotdamp::dynamics::{HalfCycles, HybridSystem, Matrix, Options, Response, Sp
 use super::arrays::{Dice, beam, blows, chain, cycles, particle, shape, spring};
 
 /// One mass of 1 kg on 1000 N/m with dampers of any size, and a curve that falls or grows.
-fn on_one_mass(dice: &mut Dice, damping_ratio: f64, dampers: usize) -> HybridSystem {
+pub(super) fn on_one_mass(dice: &mut Dice, damping_ratio: f64, dampers: usize) -> HybridSystem {
     let mut system = chain(&[1.0], 500.0, damping_ratio * 1000.0_f64.sqrt());
     for _ in 0..dampers {
         let law = spring(dice.ratio(1e2, 1e5), 0.0);

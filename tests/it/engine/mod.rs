@@ -13,6 +13,7 @@ mod half_cycles;
 mod hard_cases;
 mod linear;
 mod long_runs;
+mod motion;
 mod precise;
 mod properties;
 mod random_scenes;

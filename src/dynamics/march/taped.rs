@@ -1,0 +1,114 @@
+//! What a run leaves on the tape that its motion is named from; only runs that are asked for it have this code.
+
+use std::rc::Rc;
+
+use super::March;
+use super::impacts::Touch;
+use crate::dynamics::EngineError;
+use crate::dynamics::collision::{self, Closed, Outcome};
+use crate::dynamics::contact::{Crossing, Side};
+use crate::dynamics::motion::{Instant, Jump, Kick};
+use crate::dynamics::system::{Contact, Law};
+
+impl<const TAPED: bool> March<'_, TAPED> {
+    /// An event, with both sides of it.
+    pub(super) fn cross_taped(&mut self, j: usize, crossing: Crossing) -> Result<(), EngineError> {
+        let gap = self.gap_of(j, crossing);
+        let before = self.instant();
+        let held = self.contacts.clone();
+        self.cross(j, crossing)?;
+        self.tape_captures(&held)?;
+        self.choose_flow()?;
+        let after = self.instant();
+        let force = self.level + self.drive_phase(self.time).sine;
+        self.tape.event(gap, before, after, force);
+        Ok(())
+    }
+
+    /// The gap that closes or opens at a crossing; none where a force comes to zero, where nothing jumps.
+    fn gap_of(&self, j: usize, crossing: Crossing) -> Option<(usize, Side)> {
+        match crossing {
+            Crossing::ToFloor => Some((j, Side::Floor)),
+            Crossing::ToCeiling => Some((j, Side::Ceiling)),
+            Crossing::ToStop => Some((j, self.contacts[j].side())),
+            Crossing::Release => {
+                let side = self.contacts[j].side();
+                let at_gap =
+                    matches!(side.face(&self.system.particles[j]).law, Law::Resilient { no_tension: false, .. });
+                (at_gap && !self.contacts[j].holds(&self.system.particles[j])).then_some((j, side))
+            }
+            Crossing::Squeezed | Crossing::Recovered | Crossing::Again | Crossing::HalfCycle => None,
+        }
+    }
+
+    fn instant(&self) -> Instant {
+        let n = self.system.mass.order;
+        let attached = || self.flow.modes.attached.iter().map(|&j| self.particles[j]);
+        let mut p = Vec::with_capacity(self.flow.order);
+        p.extend_from_slice(&self.q[..n]);
+        p.extend(attached().map(|it| it.gap));
+        let mut rate = Vec::with_capacity(self.flow.order);
+        rate.extend_from_slice(&self.rate[..n]);
+        rate.extend(attached().map(|it| it.rate));
+        let particles = (0..self.particles.len()).map(|j| self.absolute(j)[1]).collect();
+        Instant { flow: Rc::clone(&self.flow), p, rate, particles }
+    }
+
+    /// An exchange of momentum among rigid contacts.
+    pub(super) fn tape_exchange(&mut self, touches: &[Touch], outcomes: &[Outcome]) {
+        let pushes: Vec<bool> = outcomes.iter().map(|outcome| outcome.pushed).collect();
+        let jump = self.jump_of(touches, &pushes, |touch| touch.closed.is_struck().then_some(touch.closed.restitution));
+        let arrived = touches.iter().filter(|touch| !touch.held && touch.closed.is_struck()).count();
+        self.tape.jump(jump, arrived);
+    }
+
+    /// Particles that a face holds from now on, whatever brought them there: they move with it, and the momentum of their
+    /// relative speed goes to it.
+    pub(super) fn tape_captures(&mut self, before: &[Contact]) -> Result<(), EngineError> {
+        let holds = |contact: Contact, j: usize| contact.holds(&self.system.particles[j]);
+        if !(0..before.len()).any(|j| holds(self.contacts[j], j) && self.contacts[j] != before[j]) {
+            return Ok(());
+        }
+        let mut touches = self.touches(&[])?;
+        touches.retain(|touch| touch.held);
+        let mut jump = self.jump_of(&touches, &vec![true; touches.len()], |_| None);
+        jump.holds = true;
+        self.tape.jump(jump, 0);
+        Ok(())
+    }
+
+    /// The impulses of the contacts that push, by the speeds before; a struck one leaves with its restitution, others stay.
+    fn jump_of(&self, touches: &[Touch], pushes: &[bool], struck: impl Fn(&Touch) -> Option<f64>) -> Jump {
+        let count = touches.len();
+        let answers = self.answers(touches);
+        let mut impulses = vec![0.0; count * count];
+        for k in (0..count).filter(|&k| pushes[k]) {
+            let speed = |i: usize| if i == k { 1.0 } else { 0.0 };
+            let moved: Vec<Closed> =
+                touches.iter().enumerate().map(|(i, touch)| Closed { speed: speed(i), ..touch.closed }).collect();
+            let wanted: Vec<f64> =
+                touches.iter().enumerate().map(|(i, touch)| -struck(touch).unwrap_or(0.0) * speed(i)).collect();
+            for (i, impulse) in collision::push(&moved, &answers, pushes, &wanted).into_iter().enumerate() {
+                impulses[i * count + k] = impulse;
+            }
+        }
+        let kick = |(touch, pushes): (&Touch, &bool)| Kick {
+            particle: touch.particle,
+            side: touch.side,
+            answer: self.mobilities.answer(touch.mobility).to_vec(),
+            restitution: struck(touch).filter(|_| *pushes),
+        };
+        Jump { kicks: touches.iter().zip(pushes).map(kick).collect(), impulses, holds: false }
+    }
+
+    pub(super) fn end_taped_cycle(&mut self) {
+        let n = self.system.mass.order;
+        let particles: Vec<[f64; 2]> = (0..self.particles.len()).map(|j| self.absolute(j)).collect();
+        let mut state = Vec::with_capacity(2 * (n + particles.len()));
+        state.extend_from_slice(&self.q[..n]);
+        state.extend(particles.iter().map(|[y, _]| y));
+        state.extend_from_slice(&self.rate[..n]);
+        state.extend(particles.iter().map(|[_, rate]| rate));
+        self.tape.end_cycle(state, self.contacts.clone());
+    }
+}

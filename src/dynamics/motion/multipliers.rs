@@ -1,0 +1,136 @@
+//! The fundamental matrix over a period, and its eigenvalues: how much of a disturbance is left after one round.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::recurrence::Scale;
+use super::tangent::Tangent;
+use super::tape::{Cycle, Step, Tape};
+use crate::dynamics::EngineError;
+use crate::dynamics::schur::schur;
+use crate::dynamics::system::HybridSystem;
+
+/// A Floquet multiplier; of a complex pair the one above the axis.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Multiplier {
+    /// |μ|.
+    pub modulus: f64,
+    /// arg μ in [0, π], rad.
+    pub angle: f64,
+}
+
+/// How a change of the state at the begin of some cycles goes on to their end.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Fundamental {
+    /// ∂(q, y, q′, y′) at the end by the same at the begin, row by row; y the absolute places of the particles.
+    pub matrix: Vec<Vec<f64>>,
+    /// Its eigenvalues, largest first.
+    pub multipliers: Vec<Multiplier>,
+    /// Its determinant against the contraction of dashpots and impacts, relative to what it could be at most.
+    pub residual: f64,
+    /// False where particles were struck at one instant: a change may then put them into another order.
+    pub is_unique: bool,
+}
+
+impl Fundamental {
+    /// Of the last cycles of a run.
+    pub(in crate::dynamics) fn of(system: &HybridSystem, tape: &Tape, cycles: usize) -> Result<Self, EngineError> {
+        let scale = Scale::new(system, &tape.ends);
+        let map = Period::new(system, &scale, tape.last(cycles));
+        let size = map.matrix.nrows();
+        let entry = |i: usize, k: usize| map.matrix[(i, k)] * scale.unit(i) / scale.unit(k);
+        Ok(Self {
+            matrix: (0..size).map(|i| (0..size).map(|k| entry(i, k)).collect()).collect(),
+            multipliers: map.multipliers()?,
+            residual: map.residual(),
+            is_unique: !tape.last(cycles).any(|cycle| cycle.blurred),
+        })
+    }
+}
+
+/// The map of a period about the run, in units of the motion.
+pub(super) struct Period {
+    matrix: DMatrix<f64>,
+    /// What its determinant has to be.
+    contraction: f64,
+}
+
+impl Period {
+    pub(super) fn new<'t>(system: &HybridSystem, scale: &Scale, cycles: impl Iterator<Item = &'t Cycle>) -> Self {
+        let mut tangent = Tangent::new(system);
+        let size = tangent.size();
+        let units: Vec<f64> = (0..size).map(|i| scale.unit(i)).collect();
+        let mut columns: Vec<Vec<f64>> =
+            (0..size).map(|i| (0..size).map(|k| if i == k { units[i] } else { 0.0 }).collect()).collect();
+        let mut contraction = 1.0;
+        for step in cycles.flat_map(|cycle| &cycle.steps) {
+            tangent.carry(step, &mut columns);
+            contraction *= expected(system, step);
+        }
+        let matrix = DMatrix::from_fn(size, size, |i, k| columns[k][i] / units[i]);
+        Self { matrix, contraction }
+    }
+
+    /// All multipliers, largest first.
+    pub(super) fn multipliers(&self) -> Result<Vec<Multiplier>, EngineError> {
+        let size = self.matrix.nrows();
+        let [_, t] = schur(self.matrix.clone())?;
+        let mut multipliers = Vec::with_capacity(size);
+        let mut i = 0;
+        while i < size {
+            if i + 1 < size && t[(i + 1, i)] != 0.0 {
+                let (a, b, c, d) = (t[(i, i)], t[(i, i + 1)], t[(i + 1, i)], t[(i + 1, i + 1)]);
+                let (mean, half) = (0.5 * (a + d), 0.5 * (a - d));
+                let square = half * half + b * c;
+                let root = square.abs().sqrt();
+                if square < 0.0 {
+                    multipliers.extend([Multiplier::new(mean, root); 2]);
+                } else {
+                    multipliers.extend([Multiplier::new(mean + root, 0.0), Multiplier::new(mean - root, 0.0)]);
+                }
+                i += 2;
+            } else {
+                multipliers.push(Multiplier::new(t[(i, i)], 0.0));
+                i += 1;
+            }
+        }
+        multipliers.sort_by(|a, b| b.modulus.total_cmp(&a.modulus));
+        Ok(multipliers)
+    }
+
+    /// |det M − e^(∫ tr) Π ε²|, over the product of the columns' lengths: the most that the determinant could be.
+    pub(super) fn residual(&self) -> f64 {
+        let lengths: f64 = self.matrix.column_iter().map(|column| column.norm()).product();
+        let off = (self.matrix.determinant() - self.contraction).abs();
+        if off == 0.0 { 0.0 } else { off / lengths.max(self.contraction) }
+    }
+
+    /// How far the orbit that closes is from a state that misses itself by `miss` after the period: Newton's step.
+    pub(super) fn distance(&self, miss: Vec<f64>) -> Option<f64> {
+        let size = self.matrix.nrows();
+        let step = (DMatrix::identity(size, size) - &self.matrix).lu().solve(&DVector::from_vec(miss))?;
+        Some(step.iter().fold(0.0_f64, |most, x| most.max(x.abs()))).filter(|distance| distance.is_finite())
+    }
+}
+
+impl Multiplier {
+    fn new(real: f64, imaginary: f64) -> Self {
+        Self { modulus: libm::hypot(real, imaginary), angle: libm::atan2(imaginary, real) }
+    }
+}
+
+/// The determinant of a step: e^(tr t) of a flow, ε² of an impact, 0 where a face holds a particle.
+fn expected(system: &HybridSystem, step: &Step) -> f64 {
+    match step {
+        Step::Flow(flow, length) => {
+            let modes = &flow.modes;
+            let holds = modes.contacts.iter().zip(&system.particles).any(|(contact, it)| contact.holds(it));
+            let trace: f64 = (0..modes.order).map(|i| modes.accelerations[i][modes.order + i]).sum();
+            if holds { 0.0 } else { libm::exp(trace * length) }
+        }
+        Step::Timed(_) => 1.0,
+        Step::Event(crossing) => {
+            let kicks = crossing.jumps.iter().flat_map(|jump| &jump.kicks);
+            kicks.filter_map(|kick| kick.restitution).map(|restitution| restitution * restitution).product()
+        }
+    }
+}

@@ -1,0 +1,221 @@
+//! The name of a motion.
+//!
+//! | name | decided by |
+//! |---|---|
+//! | at rest on the floor, periodic, sticking, completed chatter | the last state is within a millionth of the motion of an orbit that closes (Newton's step with the multipliers of the last period) and no multiplier exceeds 1 |
+//! | chaotic | no such period, and a Lyapunov exponent above zero by three standard errors and one in as many cycles as were run |
+//! | quasi-periodic | an exponent of zero within that, and returns that come no closer with time |
+//! | not settled | anything else |
+
+use std::fmt;
+use std::str::FromStr;
+
+use super::exponent::Exponent;
+use super::multipliers::{Multiplier, Period};
+use super::recurrence::{Scale, candidates, closing, settled_after};
+use super::tape::{Step, Tape};
+use crate::dynamics::EngineError;
+use crate::dynamics::contact::Side;
+use crate::dynamics::system::{Contact, HybridSystem};
+
+/// Distance from the orbit, in units of the motion, within which a run has settled.
+const SETTLED: f64 = 1e-6;
+/// The same where impacts at one instant leave no multipliers to prove it: the state itself comes again.
+const REPEATED: f64 = 1e-9;
+/// A multiplier of a motion without damping may round above 1 by this.
+const NEUTRAL: f64 = 1e-9;
+/// Standard errors that make an exponent differ from zero.
+const ERRORS: f64 = 3.0;
+/// Returns of a motion that no longer settles come no closer than this from one half of the run to the other.
+const STEADY: f64 = 0.8;
+
+/// What kind of motion a run ends in.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum MotionKind {
+    /// No contact is made or lost any more; every particle stays on its floor.
+    AtRest,
+    /// It comes again after so many periods of the drive.
+    Periodic {
+        /// Periods of the drive.
+        periods: u32,
+        /// Contacts made in that time, by all particles.
+        contacts: u64,
+    },
+    /// The same, and every particle is held by a face once in that time: it remembers nothing, its multipliers are 0.
+    Sticking {
+        /// Periods of the drive.
+        periods: u32,
+        /// Contacts made in that time.
+        contacts: u64,
+    },
+    /// The same after infinitely many impacts.
+    CompletedChatter {
+        /// Periods of the drive.
+        periods: u32,
+    },
+    /// It never comes again, and neighbours stay neighbours.
+    QuasiPeriodic,
+    /// It never comes again, and neighbours part exponentially.
+    Chaotic,
+    /// The run is too short to say.
+    NotSettled,
+}
+
+/// What is known of the motion that a run ends in.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Motion {
+    /// Its name.
+    pub kind: MotionKind,
+    /// Floquet multipliers of the last period, largest first; empty where nothing comes again, and where particles are struck
+    /// at one instant, so that none exist.
+    pub multipliers: Vec<Multiplier>,
+    /// Their product against the contraction of dashpots and impacts, relative to what it could be at most; NaN without them.
+    pub residual: f64,
+    /// The largest Lyapunov exponent; of what comes again that of its largest multiplier, without an error. `None` where nothing
+    /// is left of a disturbance, and where particles are struck at one instant.
+    pub exponent: Option<Exponent>,
+    /// Cycles after which the motion comes again to within a millionth.
+    pub settled_after: Option<u64>,
+}
+
+impl MotionKind {
+    /// The words in a table.
+    const AT_REST: &str = "at rest";
+    const PERIODIC: &str = "periodic";
+    const STICKING: &str = "sticking";
+    const CHATTER: &str = "completed chatter";
+    const QUASI_PERIODIC: &str = "quasi-periodic";
+    const CHAOTIC: &str = "chaotic";
+    const NOT_SETTLED: &str = "not settled";
+}
+
+impl fmt::Display for MotionKind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::AtRest => f.write_str(Self::AT_REST),
+            Self::Periodic { periods, contacts } => write!(f, "{} {periods}:{contacts}", Self::PERIODIC),
+            Self::Sticking { periods, contacts } => write!(f, "{} {periods}:{contacts}", Self::STICKING),
+            Self::CompletedChatter { periods } => write!(f, "{} {periods}:∞", Self::CHATTER),
+            Self::QuasiPeriodic => f.write_str(Self::QUASI_PERIODIC),
+            Self::Chaotic => f.write_str(Self::CHAOTIC),
+            Self::NotSettled => f.write_str(Self::NOT_SETTLED),
+        }
+    }
+}
+
+/// A text that names no motion.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("`{0}` names no motion")]
+pub struct NoMotion(String);
+
+impl FromStr for MotionKind {
+    type Err = NoMotion;
+
+    fn from_str(text: &str) -> Result<Self, NoMotion> {
+        let none = || NoMotion(text.into());
+        let plain = [
+            (Self::AT_REST, Self::AtRest),
+            (Self::QUASI_PERIODIC, Self::QuasiPeriodic),
+            (Self::CHAOTIC, Self::Chaotic),
+            (Self::NOT_SETTLED, Self::NotSettled),
+        ];
+        if let Some((_, kind)) = plain.into_iter().find(|(word, _)| *word == text) {
+            return Ok(kind);
+        }
+        let (word, ratio) = text.rsplit_once(' ').ok_or_else(none)?;
+        let (periods, contacts) = ratio.split_once(':').ok_or_else(none)?;
+        let periods = periods.parse().map_err(|_| none())?;
+        let count = || contacts.parse().map_err(|_| none());
+        match word {
+            Self::PERIODIC => Ok(Self::Periodic { periods, contacts: count()? }),
+            Self::STICKING => Ok(Self::Sticking { periods, contacts: count()? }),
+            Self::CHATTER if contacts == "∞" => Ok(Self::CompletedChatter { periods }),
+            _ => Err(none()),
+        }
+    }
+}
+
+/// Names the motion that a tape ends in; exponents are of its last `window` cycles.
+pub(in crate::dynamics) fn name(system: &HybridSystem, tape: &Tape, window: usize) -> Result<Motion, EngineError> {
+    let scale = Scale::new(system, &tape.ends);
+    for period in candidates(&scale, &tape.ends) {
+        if let Some(motion) = closes(system, &scale, tape, period)? {
+            return Ok(motion);
+        }
+    }
+    let ends = &tape.ends[tape.ends.len() - window.min(tape.ends.len())..];
+    let blurred = tape.last(window).any(|cycle| cycle.blurred);
+    let exponent = if blurred { None } else { Exponent::of(system, &scale, tape, window) };
+    let kind = match exponent {
+        // Without a drive that comes again there is no cycle to be left out of step with.
+        Some(Exponent { value, error }) if system.drive.repeats => {
+            let zero = ERRORS * error + 1.0 / ends.len() as f64;
+            if value > zero {
+                MotionKind::Chaotic
+            } else if value > -zero && closing(&scale, ends) > STEADY {
+                MotionKind::QuasiPeriodic
+            } else {
+                MotionKind::NotSettled
+            }
+        }
+        _ => MotionKind::NotSettled,
+    };
+    Ok(Motion { kind, multipliers: Vec::new(), residual: f64::NAN, exponent, settled_after: None })
+}
+
+/// The motion, if it comes again after so many cycles.
+fn closes(system: &HybridSystem, scale: &Scale, tape: &Tape, period: usize) -> Result<Option<Motion>, EngineError> {
+    let last = tape.ends.len() - 1;
+    let (begin, end) = (&tape.ends[last - period], &tape.ends[last]);
+    let (multipliers, residual) = if tape.last(period).any(|cycle| cycle.blurred) {
+        if scale.apart(begin, end) > REPEATED {
+            return Ok(None);
+        }
+        (Vec::new(), f64::NAN)
+    } else {
+        let map = Period::new(system, scale, tape.last(period));
+        let multipliers = map.multipliers()?;
+        let stable = multipliers.first().is_none_or(|largest| largest.modulus <= 1.0 + NEUTRAL);
+        let near = map.distance(scale.miss(begin, end)).is_some_and(|distance| distance <= SETTLED);
+        if !(stable && near) {
+            return Ok(None);
+        }
+        (multipliers, map.residual())
+    };
+    let settled_after = settled_after(scale, &tape.ends, period, SETTLED);
+    let left = multipliers.first().map(|largest| largest.modulus).filter(|modulus| *modulus > 0.0);
+    let exponent = left.map(|modulus| Exponent { value: libm::log(modulus) / period as f64, error: 0.0 });
+    Ok(Some(Motion {
+        kind: kind(system, tape, period),
+        multipliers,
+        residual,
+        exponent,
+        settled_after: Some(settled_after as u64),
+    }))
+}
+
+/// What comes again after so many cycles.
+fn kind(system: &HybridSystem, tape: &Tape, period: usize) -> MotionKind {
+    let periods = period as u32;
+    let contacts = tape.last(period).map(|cycle| cycle.contacts).sum();
+    let visited = || {
+        tape.last(period).flat_map(|cycle| &cycle.steps).filter_map(|step| match step {
+            Step::Flow(flow, _) => Some(flow.modes.contacts.as_slice()),
+            Step::Timed(_) | Step::Event(_) => None,
+        })
+    };
+    let on_floor = |contact: &Contact| *contact != Contact::Flight && contact.side() == Side::Floor;
+    let count = system.particles.len();
+    if count > 0 && contacts == 0 && visited().all(|state| state.iter().all(on_floor)) {
+        return MotionKind::AtRest;
+    }
+    let is_held = |j: usize| visited().any(|state| state[j].holds(&system.particles[j]));
+    if count == 0 || !(0..count).all(is_held) {
+        return MotionKind::Periodic { periods, contacts };
+    }
+    if tape.last(period).any(|cycle| cycle.chatter) {
+        MotionKind::CompletedChatter { periods }
+    } else {
+        MotionKind::Sticking { periods, contacts }
+    }
+}

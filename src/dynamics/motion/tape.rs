@@ -1,0 +1,165 @@
+//! What a run leaves behind for its tangent: each flow and its length, each event with both sides of it, each exchange of
+//! momentum as the linear map that it is.
+
+use std::collections::VecDeque;
+use std::rc::Rc;
+
+use crate::dynamics::contact::Side;
+use crate::dynamics::flow::Flow;
+use crate::dynamics::system::{Contact, EventKind};
+
+/// Cycles whose events are kept, counted from the end of the run.
+const KEPT: usize = 4096;
+
+/// The record of a run.
+#[derive(Default)]
+pub(in crate::dynamics) struct Tape {
+    /// The last cycles.
+    pub(super) cycles: VecDeque<Cycle>,
+    /// States at the ends of all cycles.
+    pub(super) ends: Vec<End>,
+    /// Exchanges of momentum in the event under way.
+    jumps: Vec<Jump>,
+}
+
+/// One cycle of the drive.
+#[derive(Default)]
+pub(super) struct Cycle {
+    pub(super) steps: Vec<Step>,
+    /// Contacts made, stops hit among them.
+    pub(super) contacts: u64,
+    /// Infinitely many impacts came to their end.
+    pub(super) chatter: bool,
+    /// Particles struck at one instant: a moved start would put their impacts into one order or the other, and no single
+    /// matrix says what comes of both.
+    pub(super) blurred: bool,
+}
+
+/// What happens to a tangent vector.
+pub(super) enum Step {
+    /// The flow of a contact state, for so many seconds.
+    Flow(Rc<Flow>, f64),
+    /// At an instant that the drive sets.
+    Timed(Vec<Jump>),
+    /// At an instant that the motion sets.
+    Event(Box<Crossing>),
+}
+
+/// An event.
+pub(super) struct Crossing {
+    /// The gap that has closed or opened; none where a force has come to zero.
+    pub(super) gap: Option<(usize, Side)>,
+    pub(super) before: Instant,
+    pub(super) jumps: Vec<Jump>,
+    pub(super) after: Instant,
+    /// Force of the drive, N.
+    pub(super) force: f64,
+}
+
+/// A state with the flow in force.
+pub(in crate::dynamics) struct Instant {
+    pub(in crate::dynamics) flow: Rc<Flow>,
+    /// Coordinates of the flow.
+    pub(in crate::dynamics) p: Vec<f64>,
+    /// Their rates.
+    pub(in crate::dynamics) rate: Vec<f64>,
+    /// y′ of each particle.
+    pub(in crate::dynamics) particles: Vec<f64>,
+}
+
+/// An exchange of momentum: impulses that are linear in the speeds before it.
+pub(in crate::dynamics) struct Jump {
+    pub(in crate::dynamics) kicks: Vec<Kick>,
+    /// Impulses per particle mass, by the speeds along the normals, row by row.
+    pub(in crate::dynamics) impulses: Vec<f64>,
+    /// The faces hold their particles from now on.
+    pub(in crate::dynamics) holds: bool,
+}
+
+/// A contact that takes part in it.
+pub(in crate::dynamics) struct Kick {
+    pub(in crate::dynamics) particle: usize,
+    pub(in crate::dynamics) side: Side,
+    /// M⁻¹φ.
+    pub(in crate::dynamics) answer: Vec<f64>,
+    /// Restitution of a contact that is struck.
+    pub(in crate::dynamics) restitution: Option<f64>,
+}
+
+/// The state at the end of a cycle.
+#[derive(Clone)]
+pub(in crate::dynamics) struct End {
+    /// q, y, q′, y′.
+    pub(super) state: Vec<f64>,
+    pub(super) contacts: Vec<Contact>,
+}
+
+impl Tape {
+    /// A cycle begins.
+    pub(in crate::dynamics) fn begin_cycle(&mut self) {
+        if self.cycles.len() == KEPT {
+            self.cycles.pop_front();
+        }
+        self.cycles.push_back(Cycle::default());
+        // What the start was put right by belongs to none.
+        self.jumps.clear();
+    }
+
+    /// A cycle has ended at the state q, y, q′, y′.
+    pub(in crate::dynamics) fn end_cycle(&mut self, state: Vec<f64>, contacts: Vec<Contact>) {
+        self.ends.push(End { state, contacts });
+    }
+
+    pub(in crate::dynamics) fn flow(&mut self, flow: &Rc<Flow>, length: f64) {
+        self.enter(Step::Flow(Rc::clone(flow), length));
+    }
+
+    pub(in crate::dynamics) fn count(&mut self, kind: EventKind) {
+        let Some(cycle) = self.cycles.back_mut() else { return };
+        match kind {
+            EventKind::FloorContact | EventKind::CeilingContact | EventKind::FloorStop | EventKind::CeilingStop => {
+                cycle.contacts += 1;
+            }
+            EventKind::ChatterEnd => cycle.chatter = true,
+            EventKind::FloorRelease | EventKind::CeilingRelease | EventKind::StopRelease => {}
+        }
+    }
+
+    /// Within an event, or at an impulse of the drive; so many particles have just arrived.
+    pub(in crate::dynamics) fn jump(&mut self, jump: Jump, arrived: usize) {
+        if let Some(cycle) = self.cycles.back_mut() {
+            cycle.blurred |= arrived > 1;
+        }
+        self.jumps.push(jump);
+    }
+
+    /// What was at an instant of the drive.
+    pub(in crate::dynamics) fn timed(&mut self) {
+        let jumps = std::mem::take(&mut self.jumps);
+        if !jumps.is_empty() {
+            self.enter(Step::Timed(jumps));
+        }
+    }
+
+    pub(in crate::dynamics) fn event(
+        &mut self,
+        gap: Option<(usize, Side)>,
+        before: Instant,
+        after: Instant,
+        force: f64,
+    ) {
+        let jumps = std::mem::take(&mut self.jumps);
+        self.enter(Step::Event(Box::new(Crossing { gap, before, jumps, after, force })));
+    }
+
+    fn enter(&mut self, step: Step) {
+        if let Some(cycle) = self.cycles.back_mut() {
+            cycle.steps.push(step);
+        }
+    }
+
+    /// The last `count` cycles that are kept.
+    pub(super) fn last(&self, count: usize) -> impl Iterator<Item = &Cycle> {
+        self.cycles.range(self.cycles.len() - count.min(self.cycles.len())..)
+    }
+}
