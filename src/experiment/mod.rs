@@ -37,7 +37,7 @@ mod word;
 mod yaml;
 
 pub use assumption_sheet::{
-    AssumptionEntry, AssumptionKind, AssumptionSheet, Moved, Quantity, Takes, parse_assumptions,
+    ASSUMPTIONS, AssumptionEntry, AssumptionKind, AssumptionSheet, Moved, Quantity, Takes, parse_assumptions,
 };
 pub use calibration::{Calibration, CalibrationInput, CalibrationSearch, Tried, load_calibration, parse_calibration};
 pub use definition::{
