@@ -11,7 +11,7 @@ use crate::experiment::GapWord;
 use crate::measure::SolverChoice;
 use crate::measure::{Evaluated, Rigour};
 use crate::reference::Entry;
-use crate::study::{Array, Evaluate, Event, EventHandler, RowFailure, Simulation, Task, ThreadError, Variant, run};
+use crate::study::{Array, Evaluate, Event, EventHandler, RowFailure, RunError, Simulation, Task, Variant, run};
 use crate::table::{BASELINE, Table};
 
 /// An entry with the id of its experiment.
@@ -69,7 +69,7 @@ impl<'a, E: Evaluate> TrialRunner<'a, E> {
     }
 
     /// The tables under each of the sets.
-    pub(super) fn tables(&mut self, sets: &[Set]) -> Result<Vec<SharedTables>, ThreadError> {
+    pub(super) fn tables(&mut self, sets: &[Set]) -> Result<Vec<SharedTables>, RunError> {
         let mut solvers: Vec<SolverChoice> = Vec::new();
         for set in sets {
             if !solvers.contains(&set.solver) {
@@ -87,7 +87,7 @@ impl<'a, E: Evaluate> TrialRunner<'a, E> {
         Ok(sets.iter().map(of).collect())
     }
 
-    fn run_new<'s>(&mut self, sets: impl Iterator<Item = &'s Set>, solver: SolverChoice) -> Result<(), ThreadError> {
+    fn run_new<'s>(&mut self, sets: impl Iterator<Item = &'s Set>, solver: SolverChoice) -> Result<(), RunError> {
         let mut new: BTreeMap<(usize, String), [Variant; 1]> = BTreeMap::new();
         for set in sets {
             for index in 0..self.experiments.len() {

@@ -53,7 +53,7 @@ mod trace;
 mod visits;
 mod window;
 
-pub use budget::{Allowance, Exhausted, Limit, Overrun, in_words};
+pub use budget::{Allowance, Exhausted, Limit, Overrun, in_words, interrupt, is_interrupted};
 pub use spline::Spline;
 pub use system::{
     Contact, Drive, Event, EventKind, Face, HalfCycles, Harmonic, HybridSystem, Law, Matrix, Particle, Stop, Tick, dot,
