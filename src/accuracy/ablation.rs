@@ -5,7 +5,7 @@ use std::time::Duration;
 use super::measured::NoAccuracy;
 use super::representative::{is_chaotic, representative, trial, worst};
 use super::timing::Times;
-use crate::dynamics::{EngineError, HybridSystem, Method, Options, Response, event_driven, is_linear};
+use crate::dynamics::{Allowance, EngineError, HybridSystem, Method, Options, Response, event_driven, is_linear};
 use crate::experiment::{Assumptions, Experiment, Given, Parameter, ParameterValue, Recipe, Slot, StopRecipe};
 use crate::measure::{Measure, Settings, Trial};
 use crate::scene::{EffectUse, LimitStop, Scene, Switching, compile, effects, switched};
@@ -65,7 +65,7 @@ pub enum Outcome {
     Not(String),
 }
 
-/// Switches every effect in a few cases that stand for the experiment.
+/// Switches every effect in a few cases that stand for the experiment; all runs of a case together keep to the limit of a row.
 ///
 /// # Errors
 /// [`NoAccuracy`] if a case as it is does not run.
@@ -73,11 +73,15 @@ pub fn ablation(experiment: &Experiment, assumptions: &Assumptions) -> Result<Ve
     if experiment.optimise.is_some() {
         return Err(NoAccuracy::Nothing);
     }
-    let cases = representative(experiment, assumptions)?;
+    let within = || Allowance::new(experiment.limit);
+    let cases = within().simulate(|| representative(experiment, assumptions))?;
     if cases.is_empty() {
         return Err(NoAccuracy::Nothing);
     }
-    cases.into_iter().map(|(description, recipe)| case(description, &recipe, experiment, assumptions)).collect()
+    let case = |(description, recipe): (String, Recipe)| {
+        within().simulate(|| case(description, &recipe, experiment, assumptions))
+    };
+    cases.into_iter().map(case).collect()
 }
 
 /// How many scenes have a particle of which it is proved that it never leaves its floor.

@@ -11,7 +11,9 @@ use serde::{Deserialize, Serialize};
 use super::representative::{floor, representative, trial, worst};
 use super::timing::Times;
 use crate::accuracy::precise::{PreciseError, precise};
-use crate::dynamics::{EngineError, Event, HybridSystem, Method, Options, Response, event_driven, fixed_step};
+use crate::dynamics::{
+    Allowance, EngineError, Event, HybridSystem, Method, Options, Response, event_driven, fixed_step,
+};
 use crate::experiment::{Assumptions, Experiment, RecipeError};
 use crate::measure::{EvaluateError, Measure, Trial};
 use crate::text::number::quantity;
@@ -136,7 +138,7 @@ pub enum NoAccuracy {
 
 /// Runs the contenders on representative cases: errors first, then times, alone on the machine. No run takes much longer than
 /// `longest`: steps that would are left out, and a reference that needs twenty times that, and more than forty seconds, is
-/// given up.
+/// given up; all runs of a case together keep to the limit of a row.
 ///
 /// # Errors
 /// [`NoAccuracy`] with the reason.
@@ -166,11 +168,14 @@ pub fn errors(experiment: &Experiment, assumptions: &Assumptions, longest: Durat
     if experiment.optimise.is_some() {
         return Err(NoAccuracy::Nothing);
     }
-    let chosen = representative(experiment, assumptions)?;
+    let within = || Allowance::new(experiment.limit);
+    let chosen = within().simulate(|| representative(experiment, assumptions))?;
     let cases = chosen.into_par_iter().map(|(description, recipe)| {
-        let trial = trial(&recipe, experiment, assumptions)?;
-        let case = case(description, &trial, longest)?;
-        Ok(CaseErrors { case, system: trial.system, options: trial.options })
+        within().simulate(|| {
+            let trial = trial(&recipe, experiment, assumptions)?;
+            let case = case(description, &trial, longest)?;
+            Ok(CaseErrors { case, system: trial.system, options: trial.options })
+        })
     });
     let cases = cases.collect::<Result<Vec<_>, NoAccuracy>>()?;
     if cases.is_empty() { Err(NoAccuracy::Nothing) } else { Ok(Errors { cases }) }

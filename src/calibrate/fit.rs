@@ -7,7 +7,7 @@ use super::set::{Set, place_in_force};
 use super::trials::{Asked, CumulativeEvents, SharedTables, TrialRunner, Workers, Worth};
 use crate::experiment::{Assumptions, Calibration, CalibrationSearch, Experiment};
 use crate::reference::{Entry, Found, ReferenceFile, TableState, Tables, Verdict, judge};
-use crate::study::{Evaluate, Event, EventHandler, ThreadError};
+use crate::study::{Evaluate, Event, EventHandler, RunError};
 use crate::table::BASELINE;
 
 /// Why there is no calibration.
@@ -16,9 +16,9 @@ pub enum CalibrationError {
     /// An entry that the reference lacks.
     #[error("`{0}` is no entry of an experiment of this study")]
     NoEntry(String),
-    /// No thread.
+    /// A run was not complete.
     #[error(transparent)]
-    Threads(#[from] ThreadError),
+    Run(#[from] RunError),
 }
 
 /// What a calibration found.
@@ -104,7 +104,7 @@ pub fn calibrate(
     let set = |places: &Places| Set::of(calibration, places, in_force);
 
     let mut trials = TrialRunner::new(&workers, Worth::Step { ensemble: calibration.ensemble }, experiments, &fit);
-    let mut residuals = |sets: &[Set]| -> Result<Vec<Option<f64>>, ThreadError> {
+    let mut residuals = |sets: &[Set]| -> Result<Vec<Option<f64>>, RunError> {
         Ok(trials.tables(sets)?.iter().map(|tables| residual(fit.iter().map(|one| found(one, tables)))).collect())
     };
     let residual_in_force = residuals(std::slice::from_ref(&now))?[0];
@@ -141,8 +141,8 @@ pub fn calibrate(
 fn search(
     calibration: &Calibration,
     in_force: &Assumptions,
-    residuals: impl FnMut(&[Places]) -> Result<Vec<Option<f64>>, ThreadError>,
-) -> Result<Trail, ThreadError> {
+    residuals: impl FnMut(&[Places]) -> Result<Vec<Option<f64>>, RunError>,
+) -> Result<Trail, RunError> {
     let counts: Vec<usize> = calibration.inputs.iter().map(|input| input.tried.count()).collect();
     match calibration.search {
         CalibrationSearch::Grid => grid(&counts, residuals),

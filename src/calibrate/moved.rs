@@ -4,7 +4,7 @@ use super::fit::{Read, read};
 use super::set::Set;
 use super::trials::{Asked, CumulativeEvents, TrialRunner, Workers, Worth};
 use crate::experiment::{AssumptionName, AssumptionValue, Assumptions, Experiment};
-use crate::study::{Evaluate, Event, EventHandler, ThreadError};
+use crate::study::{Evaluate, Event, EventHandler, RunError};
 
 /// Members of the ensemble of a chaotic point: as for the other values of assumptions in a run.
 const MEMBERS: u32 = 8;
@@ -13,7 +13,7 @@ const MEMBERS: u32 = 8;
 /// it reads are run.
 ///
 /// # Errors
-/// If the threads cannot be started.
+/// As [`run`].
 pub fn moved_alone(
     asked: Asked<'_>,
     moves: &[(AssumptionName, AssumptionValue)],
@@ -22,7 +22,7 @@ pub fn moved_alone(
     threads: usize,
     evaluate: &impl Evaluate,
     handler: &dyn EventHandler,
-) -> Result<Vec<Read>, ThreadError> {
+) -> Result<Vec<Read>, RunError> {
     let workers = Workers { threads, evaluate, handler: &CumulativeEvents::new(handler) };
     let set = |(name, value): &(AssumptionName, AssumptionValue)| {
         let mut set = Set::in_force(in_force);

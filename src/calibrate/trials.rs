@@ -9,7 +9,7 @@ use super::set::Set;
 use crate::experiment::{Experiment, GapWord};
 use crate::measure::{Evaluated, Rigour, SolverChoice};
 use crate::reference::Entry;
-use crate::study::{Array, Evaluate, Event, EventHandler, RowFailure, Simulation, Task, ThreadError, Variant, run};
+use crate::study::{Array, Evaluate, Event, EventHandler, RowFailure, RunError, Simulation, Task, Variant, run};
 use crate::table::{BASELINE, Table};
 
 /// An entry with the id of its experiment.
@@ -67,7 +67,7 @@ impl<'a, E: Evaluate> TrialRunner<'a, E> {
     }
 
     /// The tables under each of the sets.
-    pub(super) fn tables(&mut self, sets: &[Set]) -> Result<Vec<SharedTables>, ThreadError> {
+    pub(super) fn tables(&mut self, sets: &[Set]) -> Result<Vec<SharedTables>, RunError> {
         let mut solvers: Vec<SolverChoice> = Vec::new();
         for set in sets {
             if !solvers.contains(&set.solver) {
@@ -85,7 +85,7 @@ impl<'a, E: Evaluate> TrialRunner<'a, E> {
         Ok(sets.iter().map(of).collect())
     }
 
-    fn run_new<'s>(&mut self, sets: impl Iterator<Item = &'s Set>, solver: SolverChoice) -> Result<(), ThreadError> {
+    fn run_new<'s>(&mut self, sets: impl Iterator<Item = &'s Set>, solver: SolverChoice) -> Result<(), RunError> {
         let mut new: BTreeMap<(usize, String), [Variant; 1]> = BTreeMap::new();
         for set in sets {
             for index in 0..self.experiments.len() {

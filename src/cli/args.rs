@@ -6,7 +6,7 @@ use clap::{Parser, Subcommand};
 
 use crate::experiment::RowLimit;
 use crate::report::RELEASED;
-use crate::study::Shard;
+use crate::study::{Shard, Study};
 
 /// Reproduces a published study of particle impact dampers.
 ///
@@ -24,7 +24,7 @@ Examples:
   shotdamp new ch3-my-idea                    an experiment to begin with
 
 Exit code: 0 every verdict is the expected one; 1 some verdict is not;
-2 something could not run, is missing, or was asked for wrongly."
+2 something could not run, is missing, or was asked for wrongly; 130 interrupted."
 )]
 pub(super) struct Args {
     /// Folder of the study [default: the nearest parent folder with `experiments`]
@@ -112,6 +112,8 @@ Examples:
     Effects {
         /// Id of the experiment, or a pattern with * and ?
         id: String,
+        #[command(flatten)]
+        limit: LimitArgs,
     },
     /// Measure error against wall time of both solvers; writes reports/accuracy
     Accuracy(AccuracyArgs),
@@ -129,6 +131,8 @@ Examples:
         /// Simulate what the tables lack: every other value of every assumption that the entry depends on, one at a time
         #[arg(long)]
         run: bool,
+        #[command(flatten)]
+        limit: LimitArgs,
     },
 }
 
@@ -141,6 +145,21 @@ pub(super) struct Choice {
     /// Only experiments in this folder of `experiments/`
     #[arg(long, value_name = "DIR")]
     pub folder: Option<String>,
+}
+
+/// How long rows may take.
+#[derive(Debug, Default, Clone, clap::Args)]
+pub(super) struct LimitArgs {
+    /// The most that a row may take, `1e7 events`, `30 s` or `1e7 events, 5 min`, in the place of `run: {limit: …}`
+    #[arg(long, value_name = "LIMIT")]
+    row_limit: Option<RowLimit>,
+}
+
+impl LimitArgs {
+    /// Puts it in the place of the study's own.
+    pub(super) fn apply(&self, study: &mut Study) {
+        study.limit_rows(self.row_limit.unwrap_or_default());
+    }
 }
 
 #[derive(Debug, Default, clap::Args)]
@@ -166,9 +185,8 @@ pub(super) struct RunArgs {
     /// Write the processor time of each experiment to reports/times.json, which the index shows
     #[arg(long, conflicts_with_all = ["dry_run", "shard"])]
     pub times: bool,
-    /// The most that a row may take, `1e7 events`, `30 s` or `1e7 events, 5 min`, in the place of `run: {limit: …}`
-    #[arg(long, value_name = "LIMIT")]
-    pub row_limit: Option<RowLimit>,
+    #[command(flatten)]
+    pub limit: LimitArgs,
     /// Simulate again where what an earlier run left is not what it wrote, and look at every byte of it to know
     #[arg(long)]
     pub verify: bool,
@@ -257,6 +275,8 @@ pub(super) struct AccuracyArgs {
     /// Longest run in seconds; smaller steps are skipped
     #[arg(long, value_name = "SECONDS", default_value_t = 2.0)]
     pub longest: f64,
+    #[command(flatten)]
+    pub limit: LimitArgs,
 }
 
 #[derive(Debug, clap::Args)]
@@ -267,6 +287,8 @@ Examples:
 pub(super) struct CalibrateArgs {
     /// Name of a file in `calibrations/`, without extension
     pub id: String,
+    #[command(flatten)]
+    pub limit: LimitArgs,
 }
 
 #[derive(Debug, clap::Args)]

@@ -13,7 +13,8 @@ use crate::study::{Engine, EventHandler, IgnoreEvents, Layout, Progress};
 /// Runs a calibration, prints what it found, and writes its page.
 pub(super) fn calibrate(layout: &Layout, args: &CalibrateArgs, common: &Args) -> Result<Exit, CliError> {
     let id: ExperimentId = args.id.parse()?;
-    let study = open(layout)?;
+    let mut study = open(layout)?;
+    args.limit.apply(&mut study);
     let calibration = load_calibration(&layout.path(&format!("calibrations/{id}.yaml")), &study.sheet)?;
     print_unread(&study.unread);
     let experiments: Vec<&Experiment> = study.items.iter().map(|item| &item.source.experiment).collect();

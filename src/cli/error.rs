@@ -8,7 +8,7 @@ use crate::calibrate::CalibrationError;
 use crate::experiment::{IdError, Problems};
 use crate::reference::AcceptError;
 use crate::report::CrateError;
-use crate::study::{LockError, ThreadError};
+use crate::study::{LockError, RunError};
 
 #[derive(Debug, thiserror::Error)]
 pub(super) enum CliError {
@@ -57,7 +57,7 @@ pub(super) enum CliError {
     #[error(transparent)]
     Crate(#[from] CrateError),
     #[error(transparent)]
-    Threads(#[from] ThreadError),
+    Run(#[from] RunError),
     #[error("{0}")]
     Output(#[from] io::Error),
 }

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::args::Args;
+use super::args::{Args, LimitArgs};
 use super::error::CliError;
 use super::exit::Exit;
 use super::output::{print, print_unread};
@@ -14,14 +14,21 @@ use crate::report::{Trial, entry, explanations, judge_all, untried};
 use crate::study::{Engine, EventHandler, IgnoreEvents, Layout, Progress, Study};
 use crate::text::number::significant;
 
-/// How sensitive entries are to each assumption: from the tables on disk, and with `run` from simulations made for it.
-pub(super) fn explain(layout: &Layout, pattern: &str, run: bool, common: &Args) -> Result<Exit, CliError> {
-    let study = open(layout)?;
+/// How sensitive entries are to each assumption: from the tables on disk, and with a limit for them from simulations made for
+/// it.
+pub(super) fn explain(
+    layout: &Layout,
+    pattern: &str,
+    simulated: Option<&LimitArgs>,
+    common: &Args,
+) -> Result<Exit, CliError> {
+    let mut study = open(layout)?;
     print_unread(&study.unread);
     let judgement = judge_all(&study);
     let wanted = |id: &str| matches(pattern, id);
     let mut trials = BTreeMap::new();
-    if run {
+    if let Some(limit) = simulated {
+        limit.apply(&mut study);
         for judged in judgement.verdicts.values().flatten().filter(|judged| wanted(&judged.id)) {
             trials.insert(judged.id.clone(), tried(&study, judged, common)?);
         }

@@ -13,6 +13,7 @@ mod exit;
 mod explain;
 mod export;
 mod gather;
+mod interrupt;
 mod list;
 mod new;
 mod output;
@@ -32,14 +33,21 @@ use clap::{CommandFactory, Parser};
 use args::{Args, Command};
 use error::CliError;
 use exit::Exit;
+use interrupt::Kept;
+
+use crate::dynamics::is_interrupted;
 
 /// Reads the arguments, does what they say, and returns the exit code: 0 all as expected, 1 some verdict is not, 2 something
-/// could not run, is missing, or was asked for wrongly.
+/// could not run, is missing, or was asked for wrongly; 130 interrupted.
 #[must_use]
 pub fn main() -> ExitCode {
     let args = Args::parse();
     output::set_style(args.quiet, args.color);
-    match dispatch(&args) {
+    let outcome = dispatch(&args);
+    if is_interrupted() {
+        interrupt::end();
+    }
+    match outcome {
         Ok(exit) => exit.into(),
         // The reader closed the pipe: it has read enough.
         Err(error) if error.is_broken_pipe() => ExitCode::SUCCESS,
@@ -58,6 +66,9 @@ fn dispatch(args: &Args) -> Result<Exit, CliError> {
         _ => {}
     }
     let layout = select::layout(args.root.as_deref())?;
+    if let Some(kept) = Kept::by(args.command.as_ref()) {
+        interrupt::listen(kept);
+    }
     match &args.command {
         None => update::update(&layout, &args::RunArgs::default(), args),
         Some(Command::Run(run)) => match run.shard {
@@ -75,7 +86,7 @@ fn dispatch(args: &Args) -> Result<Exit, CliError> {
         }
         Some(Command::List) => list::list(&layout),
         Some(Command::Show { id }) => show::show(&layout, id),
-        Some(Command::Effects { id }) => effects::effects(&layout, id),
+        Some(Command::Effects { id, limit }) => effects::effects(&layout, id, limit),
         Some(Command::Status(status)) => status::status(&layout, status),
         Some(Command::Check(check)) => {
             start_threads(args);
@@ -88,7 +99,8 @@ fn dispatch(args: &Args) -> Result<Exit, CliError> {
         Some(Command::Completions { shell }) => completions(*shell),
         Some(Command::Accuracy(args)) => accuracy::measure(&layout, args),
         Some(Command::Calibrate(calibrate)) => calibrate::calibrate(&layout, calibrate, args),
-        Some(Command::Explain { entry, run }) => explain::explain(&layout, entry, *run, args),
+        Some(Command::Explain { entry, run: false, .. }) => explain::explain(&layout, entry, None, args),
+        Some(Command::Explain { entry, run: true, limit }) => explain::explain(&layout, entry, Some(limit), args),
     }
 }
 

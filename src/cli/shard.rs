@@ -13,15 +13,14 @@ use crate::study::{Item, Layout, Lock, Shard, State};
 /// A row without numbers is a result like any other; `gather` reports it.
 pub(super) fn run_shard(layout: &Layout, args: &RunArgs, shard: Shard, common: &Args) -> Result<Exit, CliError> {
     let _lock = Lock::of_shard(layout, shard, held(args.no_wait))?;
-    let study = open(layout)?;
+    let mut study = open(layout)?;
+    args.limit.apply(&mut study);
     let chosen = choose(&study, &args.choice)?;
     print_unread(chosen.unread.iter().copied());
     let stale = |item: &&Item| args.force || !matches!(item.state, State::Current(_));
     let part: Vec<&Item> = chosen.items.iter().copied().filter(stale).filter(|item| shard.has_part_of(item)).collect();
     let todo: Vec<&Item> = part.iter().copied().filter(|item| args.force || !shard.has_done(layout, item)).collect();
-    let row_limit = args.row_limit.unwrap_or_default();
-    let how =
-        How { threads: common.threads(), quiet: common.quiet, shard: Some(shard), row_limit, from_scratch: args.force };
+    let how = How { threads: common.threads(), quiet: common.quiet, shard: Some(shard), from_scratch: args.force };
     let Ran { unsaved, .. } = simulate(layout, &todo, how, |item, finished| shard.save(layout, item, finished))?;
     for problem in &unsaved {
         print_error(&format!("error: {problem}\n"));

@@ -1,50 +1,200 @@
-//! `shotdamp show ID`: the experiment in words.
+//! `shotdamp show ID`: the experiment in words, within a bound of processor time whatever its file says.
+//!
+//! A thread makes the sections, the cheapest first; when the time is used up, those that are there are printed and the others
+//! named. Nothing is waited for that cannot be broken off.
 
+use std::collections::BTreeMap;
+use std::sync::mpsc::{self, RecvTimeoutError, Sender};
 use std::time::Duration;
+
+use cpu_time::ProcessTime;
 
 use super::args::Choice;
 use super::error::CliError;
 use super::exit::Exit;
-use super::output::{columns, print, print_unread};
-use super::select::{choose, open};
+use super::output::{columns, print, print_error, print_unread};
+use super::select::{choose, matches};
 use crate::accuracy::idle_cases;
-use crate::dynamics::{Allowance, Limit};
+use crate::dynamics::{Allowance, Limit, in_words};
 use crate::experiment::Experiment;
 use crate::report::{scenes, value_in_words};
 use crate::scene::{Scene, effects};
-use crate::study::{Item, Layout, State, Study, forecast};
+use crate::study::{Item, Layout, State, Study, Texts, forecast};
 use crate::text::words::counted;
 
+/// Processor time of all threads for an experiment.
+const BOUND: Duration = Duration::from_millis(1500);
+/// Between two looks at it.
+const LOOK: Duration = Duration::from_millis(5);
 /// How long the proof that particles stay on their floors may take; cases beyond it count as not proved.
 const PATIENCE: Duration = Duration::from_millis(500);
 
+/// Parts of the text, in its order.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Section {
+    Heading,
+    Scene,
+    Effects,
+    Idle,
+    Assumptions,
+    Cases,
+    Warnings,
+    Fingerprint,
+}
+
+/// The same, as they are made: what takes longest comes last.
+const IN_ORDER_OF_COST: [Section; 8] = [
+    Section::Heading,
+    Section::Assumptions,
+    Section::Scene,
+    Section::Cases,
+    Section::Fingerprint,
+    Section::Warnings,
+    Section::Effects,
+    Section::Idle,
+];
+
+impl Section {
+    /// What is left out with it.
+    fn name(self) -> &'static str {
+        match self {
+            Self::Heading => "heading",
+            Self::Scene => "scene",
+            Self::Effects => "effects in force",
+            Self::Idle => "proof that effects are idle",
+            Self::Assumptions => "assumptions",
+            Self::Cases => "number of cases",
+            Self::Warnings => "warnings of long runs",
+            Self::Fingerprint => "fingerprint",
+        }
+    }
+}
+
+/// What the thread has made.
+enum Made {
+    /// The files are read; so many experiments are to be described.
+    Read { experiments: u32 },
+    /// A section of an experiment.
+    Section(usize, Section, String),
+    /// All is there.
+    All(Result<Exit, CliError>),
+}
+
 /// Prints all that is known of an experiment before it runs.
 pub(super) fn show(layout: &Layout, id: &str) -> Result<Exit, CliError> {
-    let study = open(layout)?;
+    let begun = ProcessTime::now();
+    let (made, inbox) = mpsc::channel();
+    {
+        let (layout, id) = (layout.clone(), id.to_owned());
+        std::thread::spawn(move || {
+            let exit = make(&layout, &id, &made);
+            // Nobody is left to be told when the time was up.
+            let _ = made.send(Made::All(exit));
+        });
+    }
+    let mut texts: BTreeMap<(usize, Section), String> = BTreeMap::new();
+    let mut read = None;
+    let exit = loop {
+        match inbox.recv_timeout(LOOK) {
+            Ok(Made::Read { experiments }) => read = Some(experiments),
+            Ok(Made::Section(index, section, text)) => drop(texts.insert((index, section), text)),
+            Ok(Made::All(exit)) => break exit?,
+            Err(RecvTimeoutError::Disconnected) => break Exit::CouldNot,
+            Err(RecvTimeoutError::Timeout) => {}
+        }
+        if begun.elapsed() > BOUND * read.unwrap_or(1).max(1) {
+            break if read.is_some() { Exit::AsExpected } else { Exit::CouldNot };
+        }
+    };
+    let mut text = String::new();
+    for index in 0..read.unwrap_or(0) as usize {
+        let parts: String =
+            texts.range((index, Section::Heading)..=(index, Section::Fingerprint)).map(|(_, t)| t.as_str()).collect();
+        let missing = IN_ORDER_OF_COST.iter().filter(|section| !texts.contains_key(&(index, **section)));
+        let missing: Vec<&str> = missing.map(|section| section.name()).collect();
+        if !text.is_empty() {
+            text.push('\n');
+        }
+        text += &parts;
+        if !missing.is_empty() {
+            text += &format!("\nLeft out, since it takes more than {}: {}\n", in_words(BOUND), missing.join(", "));
+        }
+    }
+    if read.is_none() {
+        print_error(&format!("error: {id}: checking its cases takes more than {}\n", in_words(BOUND)));
+    }
+    print(&text)?;
+    Ok(exit)
+}
+
+/// Makes all sections of all experiments.
+fn make(layout: &Layout, id: &str, made: &Sender<Made>) -> Result<Exit, CliError> {
+    let texts = Texts::read(layout)?;
+    // A pattern that nothing answers to is told with all that there is.
+    let answered = texts.stems().iter().any(|stem| matches(id, stem));
+    let study = Study::of(layout.clone(), texts, &|stem| !answered || matches(id, stem));
     let chosen = choose(&study, &Choice { patterns: vec![id.into()], folder: None })?;
     print_unread(chosen.unread.iter().copied());
-    let texts: Vec<String> = chosen.items.iter().map(|item| describe(&study, item)).collect();
-    print(&texts.join("\n"))?;
+    let experiments = u32::try_from(chosen.items.len()).unwrap_or(u32::MAX);
+    let _ = made.send(Made::Read { experiments });
+    for (index, item) in chosen.items.iter().enumerate() {
+        let mut all = None;
+        for section in IN_ORDER_OF_COST {
+            let text = describe(&study, item, section, &mut all);
+            let _ = made.send(Made::Section(index, section, text));
+        }
+    }
     Ok(if chosen.unread.is_empty() { Exit::AsExpected } else { Exit::CouldNot })
 }
 
-fn describe(study: &Study, item: &Item) -> String {
+/// A section; `all` keeps the scenes of all cases once they are there.
+fn describe(study: &Study, item: &Item, section: Section, all: &mut Option<Vec<Scene>>) -> String {
+    let experiment = &item.source.experiment;
+    match section {
+        Section::Heading => heading(item),
+        Section::Scene => first_scene(study, experiment),
+        Section::Effects => in_force(all.get_or_insert_with(|| scenes(study, experiment))),
+        Section::Idle => idle(experiment, all.get_or_insert_with(|| scenes(study, experiment))),
+        Section::Assumptions => assumptions(study, item),
+        Section::Cases => cases(item),
+        Section::Warnings => {
+            let warnings = forecast(experiment, &study.sheet.assumptions());
+            warnings.into_iter().map(|warning| format!("  warning: {warning}\n")).collect()
+        }
+        Section::Fingerprint => {
+            let state = match &item.state {
+                State::Current(_) => "up to date",
+                State::Failed(_) => "computed, with failed rows",
+                State::Stale(_) => "stale",
+            };
+            format!("\nFingerprint {}\n({state})\n", item.fingerprint)
+        }
+    }
+}
+
+fn heading(item: &Item) -> String {
     let experiment = &item.source.experiment;
     let source = &experiment.source;
     let section = source.section.as_ref().map(|section| format!("s. {section}"));
     let place: Vec<String> = section.into_iter().chain(source.shown_in.iter().cloned()).collect();
     let place = if place.is_empty() { String::new() } else { place.join(", ") + "; " };
-    let mut text = format!("{}: {}\n", experiment.id, experiment.title);
-    text += &format!("{place}{}\n\n{}\n", item.source.file, experiment.about);
+    format!("{}: {}\n{place}{}\n\n{}\n", experiment.id, experiment.title, item.source.file, experiment.about)
+}
 
-    let scenes = scenes(study, experiment);
-    let first = experiment.cases.first().map(|case| case.describe()).filter(|case| !case.is_empty());
-    text += &format!("\nScene{}\n", first.map_or_else(String::new, |case| format!(" of the first case ({case})")));
-    for line in scenes.first().map(Scene::describe).unwrap_or_default() {
+fn first_scene(study: &Study, experiment: &Experiment) -> String {
+    let assumptions = study.sheet.assumptions();
+    let first = experiment.cases.first();
+    let scene = first.and_then(|case| experiment.recipe_of(case).ok()?.resolve(&assumptions).ok());
+    let case = first.map(|case| case.describe()).filter(|case| !case.is_empty());
+    let mut text = format!("\nScene{}\n", case.map_or_else(String::new, |case| format!(" of the first case ({case})")));
+    for line in scene.as_ref().map(Scene::describe).unwrap_or_default() {
         text += &format!("  {line}\n");
     }
-    text += "\nEffects\n";
-    let rows: Vec<Vec<String>> = effects(&scenes)
+    text
+}
+
+fn in_force(scenes: &[Scene]) -> String {
+    let rows: Vec<Vec<String>> = effects(scenes)
         .into_iter()
         .map(|effect| {
             let state = match effect.in_force {
@@ -55,44 +205,7 @@ fn describe(study: &Study, item: &Item) -> String {
             vec![format!("  {}", effect.name), state]
         })
         .collect();
-    text += &columns(&rows);
-    text += &idle(experiment, &scenes);
-
-    text += if item.used.is_empty() { "" } else { "\nAssumptions\n" };
-    for (name, entry) in study.sheet.iter().filter(|(name, _)| item.used.contains(*name)) {
-        text += &format!("  {name} = {}\n", value_in_words(entry.kind.unit(), &entry.value));
-        text += &wrapped(&entry.reason, "      ", 100);
-    }
-
-    text += "\nCases\n";
-    let mut solvers: Vec<String> = Vec::new();
-    for (_, solver) in experiment.runs() {
-        if !solvers.contains(&solver.label()) {
-            solvers.push(solver.label());
-        }
-    }
-    let (rows, simulations) = item.size();
-    let cases = counted(experiment.cases.len(), "case", "cases");
-    text += &format!("  {cases}, under {}\n", solvers.join(" and "));
-    if item.variants.len() > 1 {
-        let ends: Vec<&str> = item.variants.iter().skip(1).map(|variant| variant.label.as_str()).collect();
-        text += &format!("  and event-driven with each of {}\n", ends.join(", "));
-    }
-    text += &format!(
-        "  {}, {} at most\n",
-        counted(rows, "row", "rows"),
-        counted(usize::try_from(simulations).unwrap_or(usize::MAX), "simulation", "simulations")
-    );
-    for warning in forecast(experiment, &study.sheet.assumptions()) {
-        text += &format!("  warning: {warning}\n");
-    }
-    let state = match &item.state {
-        State::Current(_) => "up to date",
-        State::Failed(_) => "computed, with failed rows",
-        State::Stale(_) => "stale",
-    };
-    text += &format!("\nFingerprint {}\n({state})\n", item.fingerprint);
-    text
+    format!("\nEffects\n{}", columns(&rows))
 }
 
 /// Cases in which what only a particle in flight can meet is named and provably never met.
@@ -106,6 +219,35 @@ fn idle(experiment: &Experiment, scenes: &[Scene]) -> String {
             counted(scenes.len(), "case", "cases")
         ),
     }
+}
+
+fn assumptions(study: &Study, item: &Item) -> String {
+    let mut text = String::from("\nAssumptions\n");
+    for (name, entry) in study.sheet.iter().filter(|(name, _)| item.used.contains(*name)) {
+        text += &format!("  {name} = {}\n", value_in_words(entry.kind.unit(), &entry.value));
+        text += &wrapped(&entry.reason, "      ", 100);
+    }
+    if item.used.is_empty() {
+        text += "  none\n";
+    }
+    text
+}
+
+fn cases(item: &Item) -> String {
+    let experiment = &item.source.experiment;
+    let mut solvers: Vec<String> = Vec::new();
+    for (_, solver) in experiment.runs() {
+        if !solvers.contains(&solver.label()) {
+            solvers.push(solver.label());
+        }
+    }
+    let (rows, simulations) = item.size();
+    let mut text = format!("\nCases\n  {} cases, under {}\n", experiment.cases.len(), solvers.join(" and "));
+    if item.variants.len() > 1 {
+        let ends: Vec<&str> = item.variants.iter().skip(1).map(|variant| variant.label.as_str()).collect();
+        text += &format!("  and event-driven with each of {}\n", ends.join(", "));
+    }
+    text + &format!("  {rows} rows, {simulations} simulations at most\n")
 }
 
 /// The text wrapped at `width` letters, each line after a margin.

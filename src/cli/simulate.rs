@@ -9,10 +9,9 @@ use rayon::prelude::*;
 use super::error::CliError;
 use super::output::print_error;
 use super::select::Chosen;
-use crate::experiment::RowLimit;
 use crate::study::{
     Engine, EventHandler, Finished, Held, IgnoreEvents, Item, KnownRows, Layout, Progress, Shard, Spent, State, Task,
-    journal_name, run,
+    journal_name, keep, run,
 };
 use crate::table::ParquetError;
 
@@ -34,8 +33,6 @@ pub(super) struct How {
     pub threads: usize,
     pub quiet: bool,
     pub shard: Option<Shard>,
-    /// In the place of the limits that the experiments set.
-    pub row_limit: RowLimit,
     /// Simulate also the rows that earlier tables have.
     pub from_scratch: bool,
 }
@@ -49,7 +46,7 @@ pub(super) struct Ran {
     pub unsaved: Vec<String>,
 }
 
-/// Runs the items and has each saved as soon as it is finished.
+/// Runs the items and has each saved as soon as it is finished; of those that an interrupt cuts short the rows are kept.
 pub(super) fn simulate(
     layout: &Layout,
     items: &[&Item],
@@ -78,7 +75,6 @@ pub(super) fn simulate(
         .map(|((item, (metadata, journal)), known)| Task {
             shard: how.shard,
             known: Some(known),
-            limit: how.row_limit.over(item.source.experiment.limit),
             ..item.task(metadata, journal)
         })
         .collect();
@@ -86,10 +82,12 @@ pub(super) fn simulate(
     let handler: &dyn EventHandler = if how.quiet { &IgnoreEvents } else { &progress };
     let unsaved = Mutex::new(BTreeMap::new());
     let restored = run(&tasks, how.threads, &Engine, handler, |index, finished| {
-        if let Err(error) = save(items[index], &finished)
+        let item = items[index];
+        let saved = if finished.interrupted { keep(layout, item, &finished) } else { save(item, &finished) };
+        if let Err(error) = saved
             && let Ok(mut unsaved) = unsaved.lock()
         {
-            unsaved.insert(index, format!("{}: {error}", items[index].source.experiment.id));
+            unsaved.insert(index, format!("{}: {error}", item.source.experiment.id));
         }
         finished.spent.is_nothing()
     })?;

@@ -33,12 +33,12 @@ pub(super) fn update(layout: &Layout, args: &RunArgs, common: &Args) -> Result<E
     let _lock = Lock::of_study(layout, held(args.no_wait))?;
     // Read again: another run may have ended before this one got the lock.
     let mut study = open_stale(layout, &args.choice, args.force || args.verify)?;
+    args.limit.apply(&mut study);
     let chosen = choose(&study, &args.choice)?;
     print_unread(chosen.unread.iter().copied());
     print_warnings(study.warnings().as_ref());
     let todo = todo(&chosen, args);
-    let row_limit = args.row_limit.unwrap_or_default();
-    let how = How { threads: common.threads(), quiet: common.quiet, shard: None, row_limit, from_scratch: args.force };
+    let how = How { threads: common.threads(), quiet: common.quiet, shard: None, from_scratch: args.force };
     let Ran { restored, unsaved } =
         simulate(layout, &todo, how, |item, finished| save(layout, item, finished).map(|_| ()))?;
     if args.times {

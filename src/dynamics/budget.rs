@@ -36,6 +36,20 @@ impl Default for Limit {
     }
 }
 
+/// The process is to end.
+static INTERRUPTED: AtomicBool = AtomicBool::new(false);
+
+/// Ends every simulation of this process, those to come included, within milliseconds: what Ctrl-C asks for.
+pub fn interrupt() {
+    INTERRUPTED.store(true, Ordering::Relaxed);
+}
+
+/// Whether [`interrupt`] was called.
+#[must_use]
+pub fn is_interrupted() -> bool {
+    INTERRUPTED.load(Ordering::Relaxed)
+}
+
 /// What a row has spent of its limit; the threads that work on it share the time.
 #[derive(Debug)]
 pub struct Allowance {
@@ -51,7 +65,7 @@ pub enum Exhausted {
     Events(u64),
     /// The limit of processor time.
     Time(Duration),
-    /// Somebody asked it to stop.
+    /// It was asked to stop, alone or with all others of the process.
     Cancelled,
 }
 
@@ -223,7 +237,8 @@ pub(crate) fn spend(units: u32) -> bool {
 fn look() -> bool {
     if EXHAUSTED.get().is_none() {
         let of = |account: &Account| account.allowance.exhausted(account.elapsed());
-        EXHAUSTED.set(ACCOUNT.with_borrow(|account| account.as_ref().and_then(of)));
+        let of_all = is_interrupted().then_some(Exhausted::Cancelled);
+        EXHAUSTED.set(of_all.or_else(|| ACCOUNT.with_borrow(|account| account.as_ref().and_then(of))));
     }
     let exhausted = EXHAUSTED.get().is_some();
     UNITS.set(if exhausted { 0 } else { UNITS_A_LOOK });

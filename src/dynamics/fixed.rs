@@ -123,7 +123,7 @@ impl<'a, V: Vector> Run<'a, V> {
         let oscillator =
             system.drive.harmonic.map(|drive| Oscillator::new(drive.force, schedule.angle(drive, system.drive.period)));
         let half_cycles = system.drive.half_cycles.as_ref();
-        let (contacts, state) = start(system, options, layout)?;
+        let (contacts, state) = start(system, &options.start, layout)?;
         let mut run = Self {
             system,
             options,
@@ -317,6 +317,9 @@ impl<'a, V: Vector> Run<'a, V> {
             let highest = &mut self.response.highest_frequency;
             *highest = flow.natural_frequencies().fold(*highest, f64::max);
         }
+        let (_, rest) = start(self.system, &StartState::StaticEquilibrium, self.layout)?;
+        let rounding = self.rounding_of(&rest);
+        self.response.observed.iter_mut().for_each(|of| of.rest_below(rounding));
         if self.response.final_displacement.is_finite() && self.response.final_velocity.is_finite() {
             Ok(self.response)
         } else {
@@ -338,10 +341,10 @@ fn without_harmonic(system: &HybridSystem) -> HybridSystem {
 }
 
 /// Contacts and state at the start.
-fn start(system: &HybridSystem, options: &Options, layout: Layout) -> Result<(Vec<Contact>, Vec<f64>), EngineError> {
+fn start(system: &HybridSystem, from: &StartState, layout: Layout) -> Result<(Vec<Contact>, Vec<f64>), EngineError> {
     let (n, positions) = (layout.n, layout.positions());
     let mut state = vec![0.0; layout.size()];
-    match &options.start {
+    match from {
         StartState::StaticEquilibrium => {
             let contacts = vec![Contact::Floor; layout.particles];
             let damping = vec![0.0; layout.particles];

@@ -163,7 +163,8 @@ impl Flow {
             *p = by_gravity + force * by_force;
         }
         rate.fill(0.0);
-        for (c, column) in c[..width].iter().zip(self.modes.columns.chunks_exact(size)) {
+        // There may be more blocks than coordinates; those that `c` has none for are at rest.
+        for (c, column) in c.iter().zip(self.modes.columns.chunks_exact(size)) {
             let (positions, rates) = column.split_at(order);
             p.iter_mut().zip(positions).for_each(|(p, entry)| *p += entry * c);
             rate.iter_mut().zip(rates).for_each(|(rate, entry)| *rate += entry * c);

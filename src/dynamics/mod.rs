@@ -74,7 +74,7 @@ mod trace;
 mod visits;
 mod window;
 
-pub use budget::{Allowance, Exhausted, Limit, Overrun, in_words};
+pub use budget::{Allowance, Exhausted, Limit, Overrun, in_words, interrupt, is_interrupted};
 pub use error::EngineError;
 pub use extremes::Extremes;
 pub use motion::{Exponent, Fundamental, Motion, MotionKind, Multiplier};

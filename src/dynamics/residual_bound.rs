@@ -1,10 +1,17 @@
 //! How large the residuals of a run may be if nothing but rounding is in them.
 //!
-//! Every event and every cycle rounds the state once, and a rounding enters the balance with the ratio of the longest to the
-//! shortest time in the run (the forcing period, the period of the fastest motion, the shortest stretch of the force), and of
-//! the heaviest particle to what carries it:
+//! At every event and every end of a cycle the state changes from the blocks of one contact state to those of another, by way of
+//! the physical coordinates (q, q′): s = V c, c = V⁻¹ s. That costs ε κ(V), relative to the state, and the balances are sums over
+//! states. V is well conditioned but for two scales, whose ratios bound κ:
+//!
+//! - blocks hold (Ω e, e′), physical coordinates (e, e′): their ratio is that of the longest to the shortest time in the run (the
+//!   forcing period, the period of the fastest motion, the shortest stretch of the force);
+//! - a contact joins a particle to what carries it: the mass matrix, scaled to a diagonal of ones, has the condition
+//!   1 + mp φᵀM⁻¹φ, of which the heaviest particle decides.
 //!
 //! bound = 64 ε (events + cycles) longest/shortest max(1, mp φᵀM⁻¹φ),   at most one part in a million.
+//!
+//! All of it is known of any scene; the edge scenes of the tests print residual and bound side by side.
 
 use super::options::Options;
 use super::response::Response;

@@ -42,6 +42,25 @@ impl Spline {
             + ((a * a * a - a) * self.curvature[left] + (b * b * b - b) * self.curvature[right]) * h * h / 6.0
     }
 
+    /// Where the curve is lowest, with its value there; between its points a spline may fall below all of them.
+    #[must_use]
+    pub fn lowest(&self) -> [f64; 2] {
+        let at = |x: f64| [x, self.at(x)];
+        let between = (1..self.x.len()).flat_map(|right| {
+            let left = right - 1;
+            let h = self.x[right] - self.x[left];
+            let [from, to] = [self.curvature[left], self.curvature[right]].map(|curvature| curvature * h * h / 6.0);
+            // y′ h = a b² + b b + c at the share b of the way.
+            let (a, b) = (3.0 * (to - from), 6.0 * from);
+            let c = self.y[right] - self.y[left] - 2.0 * from - to;
+            let root = (b * b - 4.0 * a * c).sqrt();
+            let q = -0.5 * (b + root.copysign(b));
+            [q / a, c / q].into_iter().filter(|b| (0.0..=1.0).contains(b)).map(move |b| self.x[left] + b * h)
+        });
+        let least = |least: [f64; 2], one: [f64; 2]| if one[1] < least[1] || one[1].is_nan() { one } else { least };
+        self.x.iter().copied().chain(between).map(at).fold(at(self.x[0]), least)
+    }
+
     /// The first point: below its abscissa the curve is constant.
     #[must_use]
     pub fn lower_end(&self) -> [f64; 2] {
@@ -117,5 +136,16 @@ mod tests {
         }
         assert_eq!(spline.at(0.1), spline.at(0.7));
         assert_eq!(spline.at(99.0), spline.upper_end());
+    }
+
+    #[test]
+    fn the_lowest_point_is_found_between_the_points() {
+        // A parabola with its minimum −1 at 3.
+        let parabola = |x: f64| (x - 3.0) * (x - 3.0) - 1.0;
+        let points: Vec<[f64; 2]> = [0.0, 1.0, 5.0, 6.0].iter().map(|&x| [x, parabola(x)]).collect();
+        let [x, y] = Spline::through(&points).unwrap().lowest();
+        assert!((x - 3.0).abs() < 1e-12 && (y + 1.0).abs() < 1e-12, "{x} {y}");
+        let line = Spline::through(&[[1.0, 2.0], [3.0, 1.0]]).unwrap();
+        assert_eq!(line.lowest(), [3.0, 1.0]);
     }
 }

@@ -2,14 +2,16 @@
 
 use std::sync::Arc;
 
-use super::assumption_sheet::{AssumptionEntry, AssumptionKind, AssumptionSheet, Cycles, Defaults, Quantity, Takes};
+use super::assumption_sheet::{ASSUMPTIONS, AssumptionEntry, AssumptionKind, AssumptionSheet, Cycles, Defaults, Quantity, Takes};
 use super::diagnostic::{Findings, Place, Problems, place};
 use super::quantity::Dimension;
-use super::reader::{Fields, above_zero, count, list, no_such, number, ratio, scalar, text, unknown};
+use super::reader::{Fields, above_zero, count, list, no_such, ratio, scalar, text, unknown};
 use super::recipe::{AssumptionName, AssumptionValue, Slot};
 use super::word::{from_word, words};
 use super::yaml::{Entry, Node, Value, read_tree};
+use crate::dynamics::Spline;
 use crate::scene::{Curve, KINDS};
+use crate::text::number::significant;
 
 /// Reads the assumptions file from its text; `file` only names it in messages.
 ///
@@ -123,7 +125,7 @@ pub(super) fn fits(
 ) -> bool {
     let Some(entry) = sheet.get(name).filter(|entry| !takes.admits(&entry.kind)) else { return true };
     let message = format!(
-        "{place} takes {}, but the assumption `{name}` (line {} of the assumptions file) is {}",
+        "{place} takes {}, but the assumption `{name}` ({ASSUMPTIONS}, line {}) is {}",
         takes.words(),
         entry.place.line,
         entry.kind.words()
@@ -203,19 +205,42 @@ pub(super) fn read_value(node: &Node, kind: &AssumptionKind, findings: &Findings
 /// Most of what an assumption counts.
 pub(super) const MOST_COUNTED: u32 = 1000;
 
-/// `{acceleration_ratio: [0.7, …], damping: [2 N s/m, …]}`: acceleration in units of g, increasing.
+/// `{acceleration_ratio: [0.7, …], damping: [2 N s/m, …]}`: RMS acceleration in units of g, increasing.
 pub(super) fn read_curve(node: &Node, findings: &Findings) -> Option<Curve> {
     let fields = Fields::open(node, "a curve", findings)?;
-    let abscissae = fields.required("acceleration_ratio", |node| list(node, findings, |node| number(node, findings)));
-    let ordinates =
-        fields.required("damping", |node| list(node, findings, |node| above_zero(node, Dimension::Damping, findings)));
+    let placed = |node: &Node, value: Option<f64>| value.map(|value| (value, node.span));
+    let accelerations = fields.required("acceleration_ratio", |node| {
+        list(node, findings, |node| placed(node, ratio(node, findings))).map(|list| (list, node.span))
+    });
+    let dampings = fields.required("damping", |node| {
+        list(node, findings, |node| placed(node, above_zero(node, Dimension::Damping, findings)))
+    });
     fields.close()?;
-    let (abscissae, ordinates) = (abscissae?, ordinates?);
-    if abscissae.len() != ordinates.len() || abscissae.len() < 2 {
-        return findings.wrong(node.span, "a curve has as many ordinates as abscissae, two at least");
+    let ((accelerations, at), dampings) = (accelerations?, dampings?);
+    if accelerations.len() != dampings.len() || accelerations.len() < 2 {
+        let message = format!(
+            "a curve has one damping for each acceleration, and two points at least; here are {} accelerations and {} \
+             dampings",
+            accelerations.len(),
+            dampings.len()
+        );
+        return findings.wrong(at, message);
     }
-    if !abscissae.is_sorted_by(|a, b| a < b) {
-        return findings.wrong(node.span, "the abscissae of a curve increase");
+    if let Some(pair) = accelerations.windows(2).find(|pair| pair[1].0 <= pair[0].0) {
+        let message = format!("the accelerations of a curve increase, and {} follows {}", pair[1].0, pair[0].0);
+        return findings.wrong(pair[1].1, message);
     }
-    Some(abscissae.into_iter().zip(ordinates).map(|(x, y)| [x, y]).collect())
+    let curve: Curve = accelerations.iter().zip(&dampings).map(|((x, _), (y, _))| [*x, *y]).collect();
+    let [x, y] = Spline::through(&curve)?.lowest();
+    if y >= 0.0 {
+        return Some(curve);
+    }
+    // A dashpot that drives the motion.
+    let after = accelerations.iter().position(|(acceleration, _)| *acceleration >= x).unwrap_or(0);
+    let message = format!(
+        "the spline through this curve falls to {} N s/m at {} g, between its points",
+        significant(y, 2),
+        significant(x, 2)
+    );
+    findings.report(dampings[after].1, message, Some("add a point there".into()))
 }

@@ -21,7 +21,11 @@ use super::diagnostic::{Findings, Place, Problems};
 use super::quantity::Dimension;
 use super::reader::{no_such, scalar};
 use super::recipe::{AssumptionName, AssumptionValue, Assumptions, Slot};
+use super::word::closest;
 use super::yaml::Node;
+
+/// The name of the file within a study.
+pub const ASSUMPTIONS: &str = "experiments/assumptions.yaml";
 
 /// The assumptions with all that the file says of them.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -245,10 +249,14 @@ impl AssumptionSheet {
     /// The declared name that a word is, or a refusal with the nearest one.
     pub(super) fn named(&self, node: &Node, findings: &Findings) -> Option<AssumptionName> {
         let word = scalar(node, findings)?;
-        match self.iter().find(|(name, _)| name.as_str() == word) {
-            Some((name, _)) => Some(name.clone()),
-            None => no_such(findings, node.span, "assumption", word, &self.names()),
+        if let Some((name, _)) = self.iter().find(|(name, _)| name.as_str() == word) {
+            return Some(name.clone());
         }
+        if closest(word, self.names()).is_some() {
+            return no_such(findings, node.span, "assumption", word, &self.names());
+        }
+        let help = format!("declare it in {ASSUMPTIONS}: `{word}: {{quantity: …, value: …, reason: …}}`");
+        findings.report(node.span, format!("`{word}` is not an assumption"), Some(help))
     }
 
     /// A value of this assumption.

@@ -40,7 +40,9 @@ mod yaml;
 
 pub use about_study::{AboutStudy, LineColour, Publication, PublicationKind, parse_study};
 pub use assumption_reader::parse_assumptions;
-pub use assumption_sheet::{AssumptionEntry, AssumptionKind, AssumptionSheet, Cycles, Moved, Quantity, Takes};
+pub use assumption_sheet::{
+    ASSUMPTIONS, AssumptionEntry, AssumptionKind, AssumptionSheet, Cycles, Moved, Quantity, Takes,
+};
 pub use calibration::{Calibration, CalibrationInput, CalibrationSearch, Tried, load_calibration, parse_calibration};
 pub use definition::{
     AnimationSpec, Axis, AxisScale, Band, Best, Case, Drawing, Experiment, ExperimentId, FigureSpec, IdError, Level,

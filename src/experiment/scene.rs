@@ -3,7 +3,7 @@
 use std::cell::RefCell;
 
 use super::assumption_reader::{fits, read_curve};
-use super::assumption_sheet::Takes;
+use super::assumption_sheet::{ASSUMPTIONS, Takes};
 use super::diagnostic::{Findings, Span};
 use super::quantity::Dimension;
 use super::reader::{Choice, Fields, above_zero, boolean, list, number, quantity, ratio};
@@ -369,7 +369,7 @@ impl<'t> SceneReader<'t> {
             return self.by_default(slot, kind).or_else(|| {
                 let message = format!("no assumption stands for `{word}` on {}", kind.what);
                 let help =
-                    format!("write `{{assumed: NAME}}`, or declare one under `defaults: {word}` of the assumptions");
+                    format!("write `{{assumed: NAME}}`, or declare one under `defaults: {word}` in {ASSUMPTIONS}");
                 self.findings.report(node.span, message, Some(help))
             });
         }

@@ -22,17 +22,6 @@ impl Measure {
         }
     }
 
-    /// A ratio of the run without dampers to the one with them.
-    fn compares(self) -> bool {
-        matches!(
-            self,
-            Self::VelocityRatio
-                | Self::DisplacementRatio
-                | Self::VelocityAmplitudeRatio
-                | Self::DisplacementAmplitudeRatio
-        )
-    }
-
     /// It is a number wherever something excites the structure; an event may fail to happen, and a scene may have no particle.
     fn is_of_any_motion(self) -> bool {
         use ReadOff::{Events, Model, Motion, Shape, Trace};
@@ -44,16 +33,8 @@ impl Measure {
 ///
 /// # Errors
 /// [`EvaluateError::OutOfRange`] for the first number that left the range of numbers.
-pub(super) fn in_range(
-    scene: &Scene,
-    measures: &[Measure],
-    mut evaluated: Evaluated,
-) -> Result<Evaluated, EvaluateError> {
-    for (measure, measured) in measures.iter().zip(&mut evaluated.measured) {
-        if measure.compares() && scene.is_at_rest() {
-            // Steps leave rounding of the rest where nothing moves; a ratio of that is none.
-            measured.value = f64::NAN;
-        }
+pub(super) fn in_range(scene: &Scene, measures: &[Measure], evaluated: Evaluated) -> Result<Evaluated, EvaluateError> {
+    for (measure, measured) in measures.iter().zip(&evaluated.measured) {
         let value = measured.value;
         let fine = match measure {
             // Infinite where nothing is hit.

@@ -1,5 +1,5 @@
 //! Tables that an experiment had before: put aside when one of another fingerprint takes their place, so that going back to an
-//! earlier value simulates nothing.
+//! earlier value simulates nothing; and the rows that an interrupted run has left.
 //!
 //! Each is called by the hash of its bytes: one that was cut, edited or exchanged is not what its name says, and counts for
 //! nothing. The last [`KEPT`] are kept.
@@ -10,8 +10,9 @@ use std::time::SystemTime;
 
 use super::layout::{Layout, table_name};
 use super::record::FileHash;
+use crate::atomic;
 use crate::experiment::ExperimentId;
-use crate::table::{Table, parquet};
+use crate::table::{ParquetError, Table, parquet};
 
 /// Earlier tables that are kept of each experiment.
 const KEPT: usize = 8;
@@ -55,6 +56,12 @@ pub(super) fn put_aside(layout: &Layout, id: &ExperimentId, hash: &FileHash) {
     }
     // The file's time is that of its making; they are ordered by when each was last current.
     let _ = File::options().append(true).open(&to).and_then(|file| file.set_modified(SystemTime::now()));
+}
+
+/// Adds a table that was never in force: the rows that an interrupted run has.
+pub(super) fn add(layout: &Layout, id: &ExperimentId, table: &Table) -> Result<(), ParquetError> {
+    let bytes = parquet::to_bytes(table)?;
+    Ok(atomic::write(&path(layout, id, &FileHash::of(&bytes)), &bytes)?)
 }
 
 /// Removes the copy of the table that is current again, and all but the last [`KEPT`] others.

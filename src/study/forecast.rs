@@ -1,6 +1,8 @@
 //! What the scenes of an experiment say of the length of its run before it begins: warnings where a bound tells.
 
-use std::time::{Duration, Instant};
+use std::time::Duration;
+
+use cpu_time::ThreadTime;
 
 use crate::experiment::{Assumptions, Experiment};
 use crate::measure::SolverChoice;
@@ -17,13 +19,13 @@ const MANY_DAMPERS: usize = 12;
 const MANY_MODES: usize = 100;
 /// Restitution from which on a particle takes very many bounces to come to rest.
 const ELASTIC: f64 = 0.999;
-/// Cases are looked at no longer than this.
+/// Processor time for which cases are looked at.
 const PATIENCE: Duration = Duration::from_millis(300);
 
 /// Warnings, each once, with the first case that it is about.
 #[must_use]
 pub fn forecast(experiment: &Experiment, assumptions: &Assumptions) -> Vec<String> {
-    let begun = Instant::now();
+    let begun = ThreadTime::now();
     let mut warnings: Vec<(Cause, String)> = Vec::new();
     for case in &experiment.cases {
         if begun.elapsed() > PATIENCE {

@@ -6,6 +6,7 @@ use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use crate::atomic::FileError;
+pub use crate::experiment::ASSUMPTIONS;
 
 /// No hand-written experiment is longer; a longer file is refused before it is read.
 const LONGEST_TEXT: u64 = 4 << 20;
@@ -52,9 +53,6 @@ impl Layout {
 
 /// The name of the file in which a study says what it is.
 pub const STUDY: &str = "study.yaml";
-
-/// The name of the file that holds the assumptions.
-pub const ASSUMPTIONS: &str = "experiments/assumptions.yaml";
 
 /// The table of an experiment, within the study.
 #[must_use]

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use rayon::prelude::*;
 
 use super::load::text;
-use crate::experiment::{AboutStudy, AssumptionSheet, Calibration, Problems, parse_calibration};
+use crate::experiment::{AboutStudy, AssumptionSheet, Calibration, Problems, RowLimit, parse_calibration};
 use crate::reference::{Check, Prose, ReferenceFile, ReferenceMistake, ReferenceProblem, Role, parse_reference};
 use crate::study::{ASSUMPTIONS, Item, Layout, Loaded, Refused, Sensitivity, Summary, Texts, stem};
 use crate::text::utf8::decode;
@@ -100,7 +100,23 @@ impl Study {
     /// The same, but for the experiments that are `known` to be up to date.
     #[must_use]
     pub fn beside(layout: Layout, texts: Texts, known: BTreeMap<String, Summary>) -> Self {
-        let mut study = Self {
+        let mut study = Self::empty(layout, texts);
+        study.plan(&|id| !known.contains_key(id));
+        study.known = known;
+        study.plan_dependents();
+        study.complete()
+    }
+
+    /// Reads and plans the experiments whose ids are `wanted`, as if there were no others.
+    #[must_use]
+    pub fn of(layout: Layout, texts: Texts, wanted: &(dyn Fn(&str) -> bool + Sync)) -> Self {
+        let mut study = Self::empty(layout, texts);
+        study.plan(wanted);
+        study.complete()
+    }
+
+    fn empty(layout: Layout, texts: Texts) -> Self {
+        Self {
             layout,
             texts,
             about: AboutStudy::default(),
@@ -110,14 +126,15 @@ impl Study {
             references: BTreeMap::new(),
             calibrations: BTreeMap::new(),
             unread: Vec::new(),
-        };
-        study.plan(&|id| !known.contains_key(id));
-        study.known = known;
-        study.plan_dependents();
-        study.calibrations = calibrations(&study.texts, &study.sheet, &mut study.unread);
-        let lost = study.lost_placeholders();
-        study.unread.extend(lost);
-        study
+        }
+    }
+
+    /// Reads what is beside the experiments.
+    fn complete(mut self) -> Self {
+        self.calibrations = calibrations(&self.texts, &self.sheet, &mut self.unread);
+        let lost = self.lost_placeholders();
+        self.unread.extend(lost);
+        self
     }
 
     /// Looks at what is on disk again, after a run.
@@ -125,6 +142,14 @@ impl Study {
         let Self { items, layout, .. } = self;
         items.par_iter_mut().for_each(|item| item.refresh(layout));
         self.plan_dependents();
+    }
+
+    /// Puts a limit in the place of what the experiments say of the limit of a row.
+    pub fn limit_rows(&mut self, limit: RowLimit) {
+        for item in &mut self.items {
+            let experiment = &mut item.source.experiment;
+            experiment.limit = limit.over(experiment.limit);
+        }
     }
 
     /// Reads and plans the experiments whose ids are `wanted`.

@@ -17,6 +17,7 @@ use super::row_failure::{RowFailure, SearchError};
 use super::run::{Finished, Task};
 use super::tabulate_candidates::{Candidate, failures, table};
 use super::variant::Variant;
+use crate::dynamics::is_interrupted;
 use crate::experiment::{Experiment, Goal, Optimise, Recipe, Search, SearchKind, SearchSpacing};
 use crate::measure::{Evaluated, Measure, Rigour, SolverChoice};
 use crate::optimise::{
@@ -123,7 +124,9 @@ pub(super) fn run_optimisation(task: Task<'_>, evaluate: &impl Evaluate, handler
         handler.on_event(&Event::Simulated { experiment: &experiment.id, count: left });
     }
     let table = table(experiment, variants, &evaluated, metadata.clone());
-    Finished { table, failures: failures(&evaluated), ..Finished::default() }
+    let failures = failures(&evaluated);
+    let interrupted = failures.rows > 0 && is_interrupted();
+    Finished { table, failures, interrupted, ..Finished::default() }
 }
 
 /// The candidates of the file, and what the searches find.
@@ -270,8 +273,14 @@ impl Searches<'_> {
             let score = self.score(self.fitness.evaluate(point, Rigour::Step));
             ((*point).clone(), Known { score, seconds: begun.elapsed().as_secs_f64() })
         };
-        let evaluated: Vec<(Vec<f64>, Known)> = new.par_iter().map(evaluate).collect();
+        let mut evaluated: Vec<(Vec<f64>, Known)> = new.par_iter().map(evaluate).collect();
+        let interrupted = is_interrupted();
+        // Without a number is then also what was cut short.
+        evaluated.retain(|(_, known)| !(interrupted && known.score.value.is_nan()));
         self.journal.add(&evaluated);
+        if interrupted {
+            return Err(RowFailure::Interrupted);
+        }
         let known: Vec<Known> = points.iter().filter_map(|point| self.journal.get(point)).collect();
         let scores: Vec<Score> = known.iter().map(|known| known.score).collect();
         if scores.len() < points.len() {

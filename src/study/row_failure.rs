@@ -38,6 +38,9 @@ pub enum RowFailure {
     /// A mistake of this program, which ends this evaluation and no other.
     #[error("the program made a mistake here (panic: {0})")]
     Panic(String),
+    /// The process was asked to end first.
+    #[error("interrupted")]
+    Interrupted,
     /// The row was not evaluated, or not yet.
     #[error("the row was never computed")]
     NotComputed,

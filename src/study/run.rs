@@ -8,6 +8,8 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::mpsc::{self, RecvTimeoutError};
+use std::time::Duration;
 
 use rayon::prelude::*;
 
@@ -23,7 +25,7 @@ use super::shard::Shard;
 use super::spent::{Meter, Metered, Spent};
 use super::variant::Variant;
 use super::work::{Work, outcome};
-use crate::dynamics::Limit;
+use crate::dynamics::{Limit, is_interrupted};
 use crate::experiment::{Case, Experiment};
 use crate::table::Table;
 
@@ -64,13 +66,25 @@ pub struct Finished {
     pub failures: Failures,
     /// What it took.
     pub spent: Spent,
+    /// An interrupt came before some of its rows.
+    pub interrupted: bool,
 }
 
-/// How a run ended that could not even start.
+/// Why a run is not complete.
 #[derive(Debug, thiserror::Error)]
-#[error("cannot start the threads: {0}")]
-pub struct ThreadError(#[from] rayon::ThreadPoolBuildError);
+pub enum RunError {
+    /// It could not even start.
+    #[error("cannot start the threads: {0}")]
+    Threads(#[from] rayon::ThreadPoolBuildError),
+    /// The process was asked to end; what was finished by then has been handed over.
+    #[error("interrupted")]
+    Interrupted,
+}
 
+/// How often the watch looks for an interrupt.
+const LOOK: Duration = Duration::from_millis(20);
+/// How long threads may take to hear of it.
+const GRACE: Duration = Duration::from_millis(200);
 /// Where recursion into other rows' work may end up needs room.
 const STACK: usize = 16 << 20;
 
@@ -78,14 +92,15 @@ const STACK: usize = 16 << 20;
 /// `take`, on the thread that finished it. Returns what `take` returned, in the order of the tasks.
 ///
 /// # Errors
-/// If the threads cannot be started.
+/// If the threads cannot be started, or the process is interrupted: experiments under way are then handed over with the
+/// rows that they have.
 pub fn run<T: Send + Sync>(
     tasks: &[Task<'_>],
     threads: usize,
     evaluate: &impl Evaluate,
     handler: &dyn EventHandler,
     take: impl Fn(usize, Finished) -> T + Sync,
-) -> Result<Vec<T>, ThreadError> {
+) -> Result<Vec<T>, RunError> {
     let (optimised, swept): (Vec<usize>, Vec<usize>) =
         (0..tasks.len()).partition(|&i| tasks[i].experiment.optimise.is_some());
     let (refined, plain): (Vec<usize>, Vec<usize>) =
@@ -110,35 +125,45 @@ pub fn run<T: Send + Sync>(
         });
     };
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).stack_size(STACK).build()?;
-    pool.install(|| {
-        let (work, engine, hand_over) = (&work, &engine, &hand_over);
-        rayon::scope_fifo(|scope| {
-            // Their rounds wait for one another: they begin first.
-            for index in optimised {
-                scope.spawn_fifo(move |_| {
-                    let engine = engine(index);
-                    let limited = Limited::each(&engine, tasks[index].limit);
-                    let finished = run_optimisation(tasks[index], &limited, handler);
-                    hand_over(index, undivided(tasks[index], finished));
-                });
-            }
-            for index in refined {
-                scope.spawn_fifo(move |_| {
-                    let take = |work: &Work<'_>| hand_over(index, undivided(tasks[index], work.finish()));
-                    run_refined(tasks[index], &engine(index), handler, take);
-                });
-            }
-            for (one, row) in order(work) {
-                scope.spawn_fifo(move |_| {
-                    let (index, one) = &work[one];
-                    if one.put(row, one.row(row, &engine(*index), handler)) {
-                        hand_over(*index, one.finish());
-                    }
-                });
-            }
-        });
+    let rescue = || {
+        for (index, one) in work.iter().filter(|(index, one)| taken[*index].get().is_none() && one.has_rows()) {
+            take(*index, one.finish());
+        }
+    };
+    beside(&rescue, || {
+        pool.install(|| {
+            let (work, engine, hand_over) = (&work, &engine, &hand_over);
+            rayon::scope_fifo(|scope| {
+                // Their rounds wait for one another: they begin first.
+                for index in optimised {
+                    scope.spawn_fifo(move |_| {
+                        let engine = engine(index);
+                        let limited = Limited::each(&engine, tasks[index].limit);
+                        let finished = run_optimisation(tasks[index], &limited, handler);
+                        hand_over(index, undivided(tasks[index], finished));
+                    });
+                }
+                for index in refined {
+                    scope.spawn_fifo(move |_| {
+                        let take = |work: &Work<'_>| hand_over(index, undivided(tasks[index], work.finish()));
+                        run_refined(tasks[index], &engine(index), handler, take);
+                    });
+                }
+                for (one, row) in order(work) {
+                    scope.spawn_fifo(move |_| {
+                        let (index, one) = &work[one];
+                        if one.put(row, one.row(row, &engine(*index), handler)) {
+                            hand_over(*index, one.finish());
+                        }
+                    });
+                }
+            });
+        })
     });
     handler.on_event(&Event::Ended);
+    if is_interrupted() {
+        return Err(RunError::Interrupted);
+    }
     Ok(taken
         .into_iter()
         .enumerate()
@@ -148,6 +173,27 @@ pub fn run<T: Send + Sync>(
             None => take(index, Finished::default()),
         })
         .collect())
+}
+
+/// Does the work, with a watch beside it: where an interrupt finds a thread in a computation that asks for none, such as
+/// the decomposition of a large matrix, the watch calls `rescue` while the process still lives.
+fn beside(rescue: &(impl Fn() + Sync), work: impl FnOnce()) {
+    std::thread::scope(|scope| {
+        let (over, wait) = mpsc::channel::<()>();
+        scope.spawn(move || {
+            let goes_on = |time| wait.recv_timeout(time) == Err(RecvTimeoutError::Timeout);
+            while goes_on(LOOK) {
+                if is_interrupted() {
+                    if goes_on(GRACE) {
+                        rescue();
+                    }
+                    return;
+                }
+            }
+        });
+        work();
+        drop(over);
+    });
 }
 
 /// A shard's table of an experiment that it has as a whole.

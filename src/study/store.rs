@@ -46,6 +46,18 @@ pub fn save(layout: &Layout, item: &Item, finished: &Finished) -> Result<Record,
     Ok(record)
 }
 
+/// Keeps the rows of an interrupted experiment for the next run. The table in force and its record stay as they are.
+///
+/// # Errors
+/// [`ParquetError`] if they cannot be written.
+pub fn keep(layout: &Layout, item: &Item, finished: &Finished) -> Result<(), ParquetError> {
+    // What the journal holds of an optimisation says more than its table.
+    if item.source.experiment.optimise.is_some() || finished.failures.rows == finished.table.rows() {
+        return Ok(());
+    }
+    earlier::add(layout, &item.source.experiment.id, &finished.table)
+}
+
 /// Held while files are written; other runs wait. The system gives it back when the process ends, however it ends.
 #[derive(Debug)]
 pub struct Lock {

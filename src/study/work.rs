@@ -18,6 +18,7 @@ use super::shard::{Shard, part};
 use super::spent::Spent;
 use super::tabulate::{self, Outcome, Row};
 use super::variant::Variant;
+use crate::dynamics::is_interrupted;
 use crate::experiment::{Case, Experiment, Recipe};
 use crate::measure::Rigour;
 use crate::table::RowFingerprint;
@@ -65,7 +66,7 @@ impl<'a> Work<'a> {
     }
 
     pub(super) fn finish(&self) -> Finished {
-        let lost: Outcome = Err(RowFailure::NotComputed);
+        let lost: Outcome = Err(if is_interrupted() { RowFailure::Interrupted } else { RowFailure::NotComputed });
         let outcomes: Vec<&Outcome> = self
             .jobs
             .iter()
@@ -78,7 +79,13 @@ impl<'a> Work<'a> {
         if let Some((shard, places)) = &self.part {
             shard.mark(&mut table, places);
         }
-        Finished { table, failures: tabulate::failures(&outcomes), spent: Spent::default() }
+        let interrupted = outcomes.iter().any(|outcome| matches!(outcome, Err(RowFailure::Interrupted)));
+        Finished { table, failures: tabulate::failures(&outcomes), spent: Spent::default(), interrupted }
+    }
+
+    /// Some row has been computed.
+    pub(super) fn has_rows(&self) -> bool {
+        self.outcomes.iter().any(|outcome| matches!(outcome.get(), Some(Ok(_))))
     }
 
     /// What each row was computed from; of one that shares another's numbers, what that was.
@@ -115,6 +122,9 @@ pub(super) fn outcome(
             return Ok(row);
         }
     }
+    if is_interrupted() {
+        return Err(RowFailure::Interrupted);
+    }
     let simulated = AtomicUsize::new(0);
     let done = || {
         simulated.fetch_add(1, Ordering::Relaxed);
@@ -124,7 +134,8 @@ pub(super) fn outcome(
     let outcome = simulate(experiment, case, &task.variants[job.variant], job, &limited, &done);
     let rest = evaluations(experiment, job).saturating_sub(simulated.into_inner() as u64);
     handler.on_event(&Event::Simulated { experiment: &experiment.id, count: rest });
-    outcome
+    // Whatever it says it failed by.
+    if outcome.is_err() && is_interrupted() { Err(RowFailure::Interrupted) } else { outcome }
 }
 
 /// What the engine is asked for a row.

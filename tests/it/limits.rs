@@ -1,7 +1,7 @@
 //! What a person sees of a row that would not end, and of one that says nothing.
 
 use std::fs;
-use std::os::unix::process::ExitStatusExt;
+use std::io::Read;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
@@ -69,21 +69,130 @@ fn a_row_at_its_limit_fails_with_the_reason_and_a_higher_limit_resumes_there() {
 }
 
 #[test]
-fn the_limit_of_time_ends_a_row_and_an_interrupt_ends_the_program() {
+fn the_limit_of_time_ends_a_row() {
     let desk = study(&endless());
     let begun = Instant::now();
     let said = shotdamp(&desk, &["run", "--row-limit", "200 ms"]);
     assert_eq!(said.code, 2);
     assert!(said.err.contains("stopped at the limit of 0.2 s of processor time in cycle "), "{}", said.err);
     assert!(begun.elapsed() < Duration::from_secs(20));
-    let mut running = command(&desk, &["run"]);
-    let mut child = running.stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
-    std::thread::sleep(Duration::from_millis(700));
-    assert!(child.try_wait().unwrap().is_none(), "it runs");
+}
+
+/// What came of a command that was interrupted while it was at work: its exit code, what it said, and how long it took to.
+fn interrupted(desk: &Desk, arguments: &[&str], after: Duration) -> (Option<i32>, String, Duration) {
+    let mut running = command(desk, arguments);
+    let mut child = running.stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap();
+    std::thread::sleep(after);
+    assert!(child.try_wait().unwrap().is_none(), "{arguments:?} is at work");
     let begun = Instant::now();
     Command::new("sh").args(["-c", &format!("kill -INT {}", child.id())]).status().unwrap();
-    assert_eq!(child.wait().unwrap().signal(), Some(2));
-    assert!(begun.elapsed() < Duration::from_secs(1));
+    let mut said = String::new();
+    child.stderr.take().unwrap().read_to_string(&mut said).unwrap();
+    let code = child.wait().unwrap().code();
+    (code, said, begun.elapsed())
+}
+
+const A_MOMENT: Duration = Duration::from_millis(1500);
+
+#[test]
+fn an_interrupted_run_keeps_the_rows_it_has() {
+    // The first row is over in a moment, the second never.
+    let rest =
+        endless().replace("gap_ratio: swept", "gap_ratio: 50").replace("gap_ratio: [50]", "force_ratio: [1e-3, 5]");
+    let desk = study(&rest.replace("force_ratio: 5,", "force_ratio: swept,"));
+    let (code, said, took) = interrupted(&desk, &["run"], A_MOMENT);
+    assert_eq!(code, Some(130), "{said}");
+    assert!(said.lines().last().unwrap().starts_with("interrupted: finished rows are kept"), "{said}");
+    assert!(took < Duration::from_secs(1), "{took:?}");
+    // No table is in force, and the next run has one row to do.
+    assert!(!desk.layout.path("results/ch3-long.parquet").exists());
+    let ahead = shotdamp(&desk, &["run", "--dry-run"]).out;
+    assert!(ahead.contains("1 of 2 rows to simulate"), "{ahead}");
+}
+
+#[test]
+fn an_interrupt_ends_every_command_that_simulates_and_a_limit_its_rows() {
+    let desk = study(&endless());
+    desk.put(
+        "reference/ch3/ch3-long.yaml",
+        "
+entries:
+  - {id: some, place: s. 3, says: Some., value: '1.75', from: {cell: {of: rms_velocity, where: {gap_ratio: 50}}}}
+",
+    );
+    let calibration = "title: T\nabout: A.\ncalibrate: {harmonic_reference: [base, loaded]}\nfit: [ch3-long/some]\n";
+    desk.put("calibrations/it.yaml", calibration);
+    for arguments in [
+        &["accuracy", "ch3-long"][..],
+        &["effects", "ch3-long"],
+        &["calibrate", "it"],
+        &["explain", "--run", "ch3-long/some"],
+    ] {
+        let (code, said, took) = interrupted(&desk, arguments, A_MOMENT);
+        assert_eq!(code, Some(130), "{arguments:?}: {said}");
+        assert!(said.lines().last().unwrap().starts_with("interrupted: "), "{arguments:?}: {said}");
+        assert!(took < Duration::from_secs(1), "{arguments:?}: {took:?}");
+        let limited = shotdamp(&desk, &[arguments, &["--row-limit", "2000 events"]].concat());
+        let told = limited.out + &limited.err;
+        assert!(told.contains("stopped at the limit of 2000 events"), "{arguments:?}: {told}");
+    }
+}
+
+/// A plate whose contact states are matrices of order 872.
+const LARGE: &str = "
+title: Large
+source: {chapter: 3, section: '3'}
+about: A large plate.
+scene:
+  structure: {supported_plate: {length: 1.3333 m, width: 1 m, thickness: 7.91 mm, youngs_modulus: 68.9 GPa, poisson_ratio: 0.33, density: 2700 kg/m^3, rayleigh: 5e-5, modes: [20, 20]}}
+  dampers:
+    - at: [0.5, 0.5]
+      mass_ratio: 0.1
+      particle_share: 0.5
+      gap_ratio: 2
+      floor: {resilient: {stiffness: 1000 N/m, damping_ratio: 0.15}}
+      array: {count: 36, spacing: 1 cm}
+  excitation: {impulse_train: {at: [0.25, 0.375], impulse: 1 N s, frequency_ratio: 1}}
+run: {skip: 5, average: 20, ensemble: none, sensitivity: none}
+measure: [velocity_ratio]
+";
+
+#[test]
+fn an_interrupt_does_not_wait_for_a_large_matrix() {
+    let desk = study(LARGE);
+    let (code, said, took) = interrupted(&desk, &["run"], 4 * A_MOMENT);
+    assert_eq!(
+        (code, said.lines().last().map(|line| line.starts_with("interrupted: "))),
+        (Some(130), Some(true)),
+        "{said}"
+    );
+    assert!(took < Duration::from_secs(1), "{took:?}");
+}
+
+#[test]
+fn show_ends_soon_and_says_what_it_left_out() {
+    let many = LONG.replace("mass_ratio: 0.05, ", "mass_ratio: swept, ").replace(
+        "{gap_ratio: [10, 50, 90]}",
+        "{gap_ratio: {log: {from: 1, to: 100, points: 1000}}, mass_ratio: {log: {from: 0.01, to: 0.1, points: 90}}}",
+    );
+    for text in [many.as_str(), LARGE] {
+        let desk = study(text);
+        let show = command(&desk, &["show", "ch3-long"]);
+        // The shell prints what its children took: the machine may have other work, and the bound is of processor time.
+        let script = r#""$0" "$@" 2>&1; times"#;
+        let said =
+            Command::new("sh").args(["-c", script]).arg(show.get_program()).args(show.get_args()).output().unwrap();
+        let told = String::from_utf8(said.stdout).unwrap();
+        let seconds = |time: &str| {
+            let (minutes, seconds) = time.trim_end_matches('s').split_once('m').unwrap();
+            60.0 * minutes.parse::<f64>().unwrap() + seconds.parse::<f64>().unwrap()
+        };
+        let took: f64 = told.lines().last().unwrap().split_whitespace().map(seconds).sum();
+        assert!(took < 2.0, "{took} s\n{told}");
+        assert!(told.contains("takes more than 1.5 s") || told.contains("Fingerprint"), "{told}");
+    }
+    let said = shotdamp(&study(LONG), &["show", "ch3-long"]);
+    assert!(!said.out.contains("Left out") && said.out.contains("Fingerprint"), "{}", said.out);
 }
 
 #[test]

@@ -516,7 +516,8 @@ defaults: {gravty: stop, stop_restitution: sotp, stop_length: {single_mas: stop}
             "2:12 `gravty` is not a slot of a scene | did you mean `gravity`?",
             "2:44 `sotp` is not an assumption | did you mean `stop`?",
             "2:64 `single_mas` is not a structure | did you mean `single_mass`?",
-            "2:89 `take` takes one of largest, mean, but the assumption `stop` (line 1 of the assumptions file) is a length",
+            "2:89 `take` takes one of largest, mean, but the assumption `stop` (experiments/assumptions.yaml, line 1) is a \
+             length",
         ]
     );
 
@@ -542,13 +543,34 @@ zeta: {quantity: ratio, readings: [equivalent_viscous], value: 0.1, reason: none
     );
     assert_eq!(
         one(&stated.replace("assumed: length", "assumed: zeta")),
-        "10:32 `stop_length` takes a length, but the assumption `zeta` (line 3 of the assumptions file) is a dimensionless \
-         number or one of equivalent_viscous"
+        "10:32 `stop_length` takes a length, but the assumption `zeta` (experiments/assumptions.yaml, line 3) is a \
+         dimensionless number or one of equivalent_viscous"
     );
     assert_eq!(
         one(&GOOD.replace("60 mm", "{assumed: length}")),
         "9:62 no assumption stands for `damping_ratio` on a single mass | write `{assumed: NAME}`, or declare one under \
-         `defaults: damping_ratio` of the assumptions"
+         `defaults: damping_ratio` in experiments/assumptions.yaml"
+    );
+    assert_eq!(
+        one(&stated.replace("assumed: length", "assumed: clearance")),
+        "10:32 `clearance` is not an assumption | declare it in experiments/assumptions.yaml: `clearance: {quantity: …, \
+         value: …, reason: …}`"
+    );
+    let words = "word: {readings: [equivalent_viscous], value: equivalent_viscous, reason: none}\n";
+    let sheet = parse_assumptions("assumptions.yaml", words).unwrap_or_else(|problems| panic!("{problems}"));
+    let needed = with("damping_ratio: assumed", "damping_ratio: {assumed: word}");
+    let one = |text: &str| {
+        let read = parse_experiment(&"ch3-test".parse().unwrap(), "ch3-test.yaml", text, &sheet.assumptions());
+        describe(&read.expect_err("a mistake")).remove(0)
+    };
+    let said = one(&needed);
+    assert!(
+        said.contains(" equivalent viscous damping needs `damping_curve`")
+            && said.starts_with("7:")
+            && said.ends_with(
+                "declare an assumption for it under `defaults: damping_curve` in experiments/assumptions.yaml"
+            ),
+        "{said}"
     );
     // A study without assumptions has the general values: standard gravity, J = f′ m g/ω, the run without damper clean.
     let bare = with("damping_ratio: assumed", "damping_ratio: 0.15");
@@ -587,6 +609,59 @@ fn no_variant_depends_on_more_than_is_recorded() {
         }
     }
     assert!(variants > 200, "{variants}");
+}
+
+#[test]
+pub(crate) fn a_damping_curve_is_refused_where_its_mistake_stands() {
+    const CURVE: &str = "\
+curve:
+  quantity: damping_curve
+  value:
+    acceleration_ratio: [0.7, 2, 3.5, 5]
+    damping: [1 N s/m, 3 N s/m, 4 N s/m, 2 N s/m]
+  reason: none
+";
+    let problem = |old: &str, new: &str| {
+        let problems = parse_assumptions("assumptions.yaml", &CURVE.replace(old, new)).expect_err("a mistake");
+        describe(&problems).remove(0)
+    };
+    assert!(parse_assumptions("assumptions.yaml", CURVE).is_ok());
+    for (old, new, told) in [
+        // A gap.
+        (
+            "2, 3.5, 5]",
+            "2, 5]",
+            "4:5 a curve has one damping for each acceleration, and two points at least; here are 3",
+        ),
+        ("3 N s/m, ", "~, ", "5:24 a single value is wanted here, not nothing"),
+        ("3 N s/m, ", "'', ", "5:24 "),
+        // Negative.
+        ("3 N s/m", "-3 N s/m", "5:24 a damping constant above zero is wanted"),
+        ("3 N s/m", "0 N s/m", "5:24 a damping constant above zero is wanted"),
+        ("0.7", "-0.7", "4:26 this ratio cannot be negative"),
+        // Unsorted, or twice.
+        ("2, 3.5", "3.5, 2", "4:36 the accelerations of a curve increase, and 2 follows 3.5"),
+        ("2, 3.5", "2, 2", "4:34 the accelerations of a curve increase, and 2 follows 2"),
+        // Units mixed.
+        ("3 N s/m", "3", "5:24 `3` is not a damping constant"),
+        ("3 N s/m", "3 N/m", "5:24 `3 N/m` is not a damping constant"),
+        ("2, 3.5", "2 m/s^2, 3.5", "4:31 `2 m/s^2` "),
+        ("4 N s/m", "infinite", "5:33 `infinite` is not "),
+        // A spline that falls below zero between points that do not.
+        (
+            "1 N s/m, 3 N s/m, 4 N s/m, 2 N s/m",
+            "9 N s/m, 0.1 N s/m, 0.1 N s/m, 9 N s/m",
+            "5:35 the spline through this curve falls to ",
+        ),
+    ] {
+        let said = problem(old, new);
+        assert!(said.starts_with(told), "{said}, expected {told}");
+    }
+    // The same where a scene states its own.
+    let inline = "damping_ratio: 0.15, damping_curve: {acceleration_ratio: [1, 2, 3, 4], damping: [9 N s/m, \
+                  0.1 N s/m, 0.1 N s/m, 9 N s/m]}";
+    let said = only_problem(&with("damping_ratio: assumed", inline));
+    assert!(said.starts_with("9:") && said.contains("the spline through this curve falls to"), "{said}");
 }
 
 #[test]

@@ -8,7 +8,23 @@ use crate::dynamics::budget;
 use crate::dynamics::contact::Side;
 use crate::dynamics::system::{Event, EventKind, Law, dot};
 use crate::dynamics::trace::Sample;
-use crate::dynamics::{CycleRates, EngineError, Sums};
+use crate::dynamics::{CycleRates, EngineError, Extremes, Observed, Sums};
+
+impl Observed {
+    /// Motion no faster than what rounding makes is none.
+    pub(super) fn rest_below(&mut self, rounding: f64) {
+        let window = self.window();
+        if !(window.rms_velocity() <= rounding) {
+            return;
+        }
+        for half in &mut self.halves {
+            (half.velocity_square, half.deviation_square) = (0.0, 0.0);
+        }
+        if self.extremes.velocity[0].is_finite() {
+            self.extremes = Extremes { displacement: [window.mean_displacement(); 2], velocity: [0.0; 2] };
+        }
+    }
+}
 
 impl<V: Vector> Run<'_, V> {
     pub(super) fn record(&mut self, particle: usize, kind: EventKind, approach: f64, departure: f64) {
@@ -99,6 +115,14 @@ impl<V: Vector> Run<'_, V> {
             let rate = row.dot(state);
             self.passed.dissipated += weight * rate * rate;
         }
+    }
+
+    /// The velocity, m/s, that steps can build up out of a rest in which nothing moves: every step rounds the accelerations of
+    /// springs that carry weights, ω² x, by a part in ε, and none of it may be lost until the end: ε ω² x T.
+    pub(super) fn rounding_of(&self, rest: &[f64]) -> f64 {
+        let omega = self.response.highest_frequency;
+        let deflection = rest.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+        f64::EPSILON * omega * omega * deflection * self.options.cycles() as f64 * self.system.drive.period
     }
 
     pub(super) fn audit_state(&self) -> State {

@@ -10,8 +10,9 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use super::parts::RecipeError;
-use crate::experiment::assumption_sheet::AssumptionSheet;
-use crate::experiment::word::from_word;
+use super::slot::Slot;
+use crate::experiment::assumption_sheet::{ASSUMPTIONS, AssumptionSheet};
+use crate::experiment::word::{from_word, word_of};
 use crate::scene::{Curve, FieldValue, Take, whole};
 
 /// The name of an assumption, as the assumptions file declares it.
@@ -212,8 +213,21 @@ impl<'a> Inputs<'a> {
     /// The value of a slot that the scene needs although its file need not name it.
     ///
     /// # Errors
-    /// If there is none: `missing` says what to write.
-    pub(super) fn needed<T: Assumable>(&self, given: Option<&Given<T>>, missing: &str) -> Result<T, RecipeError> {
-        self.get(given.ok_or_else(|| RecipeError::OutOfRange(missing.into()))?)
+    /// If there is none: what needs it, and where it belongs.
+    pub(super) fn needed<T: Assumable>(
+        &self,
+        given: Option<&Given<T>>,
+        slot: Slot,
+        needs: &str,
+    ) -> Result<T, RecipeError> {
+        let missing = || {
+            let word = word_of(slot);
+            RecipeError::OutOfRange(format!(
+                "{needs} `{word}`, the {}: write it here, or declare an assumption for it under `defaults: {word}` in \
+                 {ASSUMPTIONS}",
+                slot.about()
+            ))
+        };
+        self.get(given.ok_or_else(missing)?)
     }
 }

@@ -8,6 +8,7 @@ use super::given::{AssumptionName, Given};
 use super::parameter::Parameter;
 use super::place::PlaceRecipe;
 use super::structure::StructureRecipe;
+use crate::experiment::assumption_sheet::ASSUMPTIONS;
 use crate::measure::Comparison;
 use crate::scene::{Curve, PulseShape, Start, StartError, StructureError, Take};
 
@@ -418,7 +419,7 @@ pub enum RecipeError {
         what: &'static str,
     },
     /// An assumption is needed and absent from the file, or of another kind.
-    #[error("the assumption `{0}` is not declared, or is of another kind")]
+    #[error("the assumption `{0}` is not declared in {ASSUMPTIONS}, or is of another kind")]
     Assumption(AssumptionName),
     /// A value that physics refuses.
     #[error("{0}")]

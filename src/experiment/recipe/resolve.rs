@@ -14,6 +14,7 @@ use super::parts::{
     SurfaceRecipe, TimingRecipe,
 };
 use super::place::{PlaceRecipe, Places};
+use super::slot::Slot;
 use crate::measure::{Needs, Subject};
 use crate::scene::{
     ContactDamping, ContactEnd, Damper, Kind, LimitStop, Observation, Point, Scene, Start, Structure, Surface, Take,
@@ -235,10 +236,14 @@ impl DamperRecipe {
         let mass = match &self.mass {
             MassRecipe::Ratio(ratio) => match inputs.get(ratio)? {
                 ratio if base.kind.is_lumped() => {
-                    let missing = "a particle without mass cannot press into a resilient surface: give the damper a \
-                                   mass_ratio above 0, or the massless_ratio that stands for 0";
+                    let needs = "a particle without mass cannot press into a resilient surface: give the damper a \
+                                 mass_ratio above 0, or";
                     let massless = resilient && ratio == 0.0;
-                    let ratio = if massless { inputs.needed(self.massless_ratio.as_ref(), missing)? } else { ratio };
+                    let ratio = if massless {
+                        inputs.needed(self.massless_ratio.as_ref(), Slot::MasslessRatio, needs)?
+                    } else {
+                        ratio
+                    };
                     ratio * base.mass
                 }
                 ratio => ratio * self.reference_mass(base)?,
@@ -313,9 +318,8 @@ impl Placed<'_> {
         let inputs = base.inputs;
         let stiffness_ratio = inputs.get(&walls.stiffness_ratio)?;
         above("wall_stiffness_ratio", stiffness_ratio, 0.0)?;
-        let missing =
-            "soft walls need a ceiling_mass_ratio: the share of the base mass that their ceiling side carries";
-        let ceiling_mass = inputs.needed(walls.ceiling_mass_ratio.as_ref(), missing)? * mass.mass;
+        let share = inputs.needed(walls.ceiling_mass_ratio.as_ref(), Slot::CeilingMassRatio, "soft walls need")?;
+        let ceiling_mass = share * mass.mass;
         if !(ceiling_mass > 0.0 && ceiling_mass < mass.mass) {
             return Err(RecipeError::OutOfRange("the ceiling body's mass must lie between 0 and the base mass".into()));
         }
@@ -349,9 +353,9 @@ impl SurfaceRecipe {
                             ContactDamping::Constant(2.0 * ratio * (stiffness * particle_mass).sqrt())
                         }
                         ContactDampingRatio::EquivalentViscous => {
-                            let missing = "equivalent viscous damping needs a damping_curve: damping against RMS \
-                                           acceleration";
-                            ContactDamping::EquivalentViscous(inputs.needed(damping_curve.as_ref(), missing)?)
+                            let needs = "equivalent viscous damping needs";
+                            let curve = inputs.needed(damping_curve.as_ref(), Slot::DampingCurve, needs)?;
+                            ContactDamping::EquivalentViscous(curve)
                         }
                     },
                 };
@@ -385,9 +389,8 @@ impl StiffnessRecipe {
                 FloorStiffness::Clean => tuned(base.natural()),
                 FloorStiffness::Loaded => tuned(frequency(Reference::Loaded)),
                 FloorStiffness::Untuned => {
-                    let missing = "an untuned surface needs an untuned_frequency_ratio: its frequency over that of the \
-                                   clean structure";
-                    tuned(base.natural() * inputs.needed(untuned_ratio, missing)?)
+                    let needs = "an untuned surface needs";
+                    tuned(base.natural() * inputs.needed(untuned_ratio, Slot::UntunedFrequencyRatio, needs)?)
                 }
             },
         })

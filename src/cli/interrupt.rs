@@ -1,0 +1,89 @@
+//! Ctrl-C: simulations end at their next look at the clock, what they have is kept, and the last line says so.
+//!
+//! A computation that looks at no clock, such as the decomposition of a large matrix, is not waited for: the process ends
+//! within a second of the signal whatever its threads are at. Files are written whole or not at all.
+
+use std::io::{self, IsTerminal};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, OnceLock};
+use std::time::Duration;
+
+use signal_hook::consts::SIGINT;
+
+use super::args::Command;
+use super::output::print_error;
+use crate::dynamics::interrupt;
+
+/// How often the signal is looked for.
+const LOOK: Duration = Duration::from_millis(20);
+/// How long the threads have to end and to write what they have.
+const GRACE: Duration = Duration::from_millis(700);
+/// 128 + SIGINT, as a shell reports a program that was interrupted.
+const EXIT_CODE: i32 = 130;
+
+/// What is left of a command that was interrupted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Kept {
+    /// Rows of tables.
+    Rows,
+    /// Pages of the experiments that were done.
+    Pages,
+    /// What was there before.
+    Nothing,
+}
+
+impl Kept {
+    /// By a command that simulates; the others are ended by the system.
+    pub(super) fn by(command: Option<&Command>) -> Option<Self> {
+        match command {
+            None | Some(Command::Run(_)) => Some(Self::Rows),
+            Some(Command::Accuracy(_)) => Some(Self::Pages),
+            Some(Command::Calibrate(_) | Command::Effects { .. } | Command::Explain { run: true, .. }) => {
+                Some(Self::Nothing)
+            }
+            _ => None,
+        }
+    }
+
+    fn line(self) -> &'static str {
+        match self {
+            Self::Rows => "interrupted: finished rows are kept, and the same command continues from them\n",
+            Self::Pages => "interrupted: the pages of finished experiments are written, all others are as before\n",
+            Self::Nothing => "interrupted: nothing was written\n",
+        }
+    }
+}
+
+static KEPT: OnceLock<Kept> = OnceLock::new();
+
+/// Listens for Ctrl-C from now on.
+pub(super) fn listen(kept: Kept) {
+    let _ = KEPT.set(kept);
+    let asked = Arc::new(AtomicBool::new(false));
+    if signal_hook::flag::register(SIGINT, Arc::clone(&asked)).is_err() {
+        // The system goes on ending the process by itself.
+        return;
+    }
+    std::thread::spawn(move || {
+        while !asked.load(Ordering::Relaxed) {
+            std::thread::sleep(LOOK);
+        }
+        interrupt();
+        std::thread::sleep(GRACE);
+        if io::stderr().is_terminal() {
+            // A progress bar may stand there.
+            print_error("\n");
+        }
+        end();
+    });
+}
+
+/// Ends the process with its last line. Whoever comes second, of the main thread and the one that waits, says nothing more.
+pub(super) fn end() -> ! {
+    static LINE: std::sync::Once = std::sync::Once::new();
+    LINE.call_once(|| {
+        print_error(KEPT.get().copied().unwrap_or(Kept::Nothing).line());
+        std::process::exit(EXIT_CODE);
+    });
+    std::process::exit(EXIT_CODE);
+}
