@@ -2,7 +2,9 @@
 
 use std::sync::Arc;
 
-use super::assumption_sheet::{ASSUMPTIONS, AssumptionEntry, AssumptionKind, AssumptionSheet, Cycles, Defaults, Quantity, Takes};
+use super::assumption_sheet::{
+    ASSUMPTIONS, AssumptionEntry, AssumptionKind, AssumptionSheet, Cycles, Defaults, Quantity, Takes,
+};
 use super::diagnostic::{Findings, Place, Problems, place};
 use super::quantity::Dimension;
 use super::reader::{Fields, above_zero, count, list, no_such, ratio, scalar, text, unknown};

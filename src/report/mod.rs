@@ -43,6 +43,7 @@ mod tolerances;
 mod verdicts;
 mod view;
 mod views;
+mod what_stands;
 
 pub use assumption::{assumptions, value_in_words};
 pub use committed::{Departure, How, departures};
@@ -71,3 +72,4 @@ pub use tolerances::tolerances;
 pub use verdicts::{Judgement, judge_all, judge_tables, self_test_all};
 pub use view::{AccuracyLinks, AssumptionView, ExperimentView, FigureView, PageView};
 pub use views::{check_view, scenes, summary_of};
+pub use what_stands::what_stands;

@@ -7,6 +7,7 @@ use super::index::{OVERVIEW, STRIP};
 use super::other_pages::PAGES;
 use super::prose;
 use super::verdicts::Judgement;
+use super::what_stands::PAGE as WHAT_STANDS;
 use crate::experiment::{AssumptionName, Experiment, FigureSpec};
 use crate::figure::sketch;
 use crate::reference::Judged;
@@ -74,6 +75,7 @@ pub(super) fn of_the_study(study: &Study, judgement: &Judgement) -> Vec<(String,
         (STRIP, report::strip_svg(&views)),
         (OVERVIEW, report::overview_svg(&views)),
         ("assumptions.md", report::assumptions(&assumptions)),
+        (WHAT_STANDS, report::what_stands(&views, &study.sheet, &assumptions)),
         ("tolerances.md", report::tolerances(&views)),
         ("verdicts.json", verdicts(study, judgement)),
     ]

@@ -39,7 +39,8 @@ pub enum Parameter {
     PulseDuration,
     /// All dampers `with` or `without`: the clean structure.
     Dampers,
-    /// Floors and ceilings `tuned` to the clean structure's first natural frequency, or `untuned`.
+    /// Floors and ceilings `tuned` to the clean structure's first natural frequency, or `untuned`: with the stiffness that the
+    /// scene states, else that of the untuned frequency ratio.
     FloorTuning,
     /// Whose mass m′ is a share of: the `total` or the `modal` one.
     MassReading,
@@ -302,11 +303,14 @@ impl DamperRecipe {
                             let ratio = ContactDampingRatio::Ratio(number()?);
                             *damping = ContactDampingRecipe::Ratio(Given::Stated(ratio));
                         }
-                        _ => {
-                            let untuned = value == ParameterValue::Untuned;
-                            let tuning = if untuned { FloorStiffness::Untuned } else { FloorStiffness::Clean };
-                            *stiffness = StiffnessRecipe::By(Given::Stated(tuning));
+                        _ if value == ParameterValue::Tuned => {
+                            *stiffness = StiffnessRecipe::By(Given::Stated(FloorStiffness::Clean));
                         }
+                        // A surface that states a stiffness has it untuned; one that is swept alone, that of its ratio.
+                        _ if *stiffness == StiffnessRecipe::By(Given::Stated(FloorStiffness::Clean)) => {
+                            *stiffness = StiffnessRecipe::By(Given::Stated(FloorStiffness::Untuned));
+                        }
+                        _ => {}
                     }
                 }
             }

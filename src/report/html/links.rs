@@ -4,6 +4,7 @@
 //! as the command names an entry.
 
 use super::super::view::ExperimentView;
+pub(super) use super::super::what_stands::PAGE as WHAT_STANDS;
 use super::Pages;
 
 /// Names below `reports/`.
@@ -18,7 +19,8 @@ pub(super) struct Links {
 
 impl Links {
     pub(super) fn new(experiments: &[ExperimentView<'_>]) -> Self {
-        let own = [(INDEX, "study"), (ASSUMPTIONS, "assumptions"), (TOLERANCES, "tolerances")];
+        let own =
+            [(INDEX, "study"), (WHAT_STANDS, "what-stands"), (ASSUMPTIONS, "assumptions"), (TOLERANCES, "tolerances")];
         let own = own.into_iter().map(|(page, id)| (page.to_owned(), id.to_owned()));
         let experiments = experiments.iter().map(|view| (view.page.clone(), view.experiment.id.to_string()));
         Self { pages: own.chain(experiments).collect() }

@@ -40,7 +40,11 @@ pub fn html(study: &Study, judgement: &Judgement) -> Html {
     let figures = Figures::of(study, judgement);
     let here = |page: &'static str, section: &'static str| Here { page, section, links: &links, figures: &figures };
     let mut sections = vec![
-        Section::new("study", "The study in one page", index_page(&study.about, &experiments, &here(links::INDEX, "study"))),
+        Section::new(
+            "study",
+            "The study in one page",
+            index_page(&study.about, &experiments, &here(links::INDEX, "study")),
+        ),
         Section::new("verdicts", "Verdicts", table::section(&experiments, &here(links::INDEX, "verdicts"))),
     ];
     for item in &study.items {
@@ -53,6 +57,12 @@ pub fn html(study: &Study, judgement: &Judgement) -> Html {
     }
     let assumptions = views::all_assumptions(study, judgement);
     let others = [
+        (
+            links::WHAT_STANDS,
+            "what-stands",
+            "What stands",
+            super::what_stands(&experiments, &study.sheet, &assumptions),
+        ),
         (links::ASSUMPTIONS, "assumptions", "Assumptions", super::assumptions(&assumptions)),
         (links::TOLERANCES, "tolerances", "Tolerances set by hand", tolerances::tolerances(&experiments)),
     ];

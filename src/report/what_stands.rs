@@ -1,0 +1,219 @@
+//! What of the study stands, whatever the inputs are that it does not state.
+//!
+//! Each assumption that an experiment names is moved, alone, to every other value of its range. An entry that agrees under all of
+//! these moves stands, one that differs under all of them does not; any other depends on an input, which is then a question
+//! to the author. Nothing here is written by hand: the page is made from the verdicts.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::assumption::value_in_words;
+use super::comparison::{anchor, name};
+use super::markdown::one_line;
+use super::tally::word;
+use super::view::{AssumptionView, ExperimentView};
+use crate::experiment::{AssumptionName, AssumptionSheet};
+use crate::reference::{Judged, Verdict};
+use crate::text::words::counted;
+
+/// The page's name below `reports/`.
+pub(super) const PAGE: &str = "what-stands.md";
+
+/// Questions that the first lines name.
+const FIRST_QUESTIONS: usize = 3;
+
+/// What becomes of an entry when the unstated inputs are moved.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Robustness {
+    /// Agrees under every move.
+    Stands,
+    /// Differs under every move.
+    Fails,
+    /// Agrees with one value of an input and not with another.
+    Depends,
+    /// Undecidable or blocked, and no move changes that.
+    Open,
+    /// Agrees, and an assumption was chosen by it.
+    Chosen,
+    /// Its experiment uses unstated inputs that have other values, and none of them was moved.
+    NotMoved,
+    /// Without a result.
+    Missing,
+}
+
+/// `reports/what-stands.md`. `assumptions` are all of the sheet, with the entries that use them.
+#[must_use]
+pub fn what_stands(
+    experiments: &[ExperimentView<'_>],
+    sheet: &AssumptionSheet,
+    assumptions: &[AssumptionView],
+) -> String {
+    let movable: BTreeSet<&str> = assumptions
+        .iter()
+        .filter(|one| sheet.iter().any(|(name, entry)| name.as_str() == one.name && !entry.range.is_empty()))
+        .flat_map(|one| one.used_by.iter().map(String::as_str))
+        .collect();
+    let mut groups: BTreeMap<Robustness, Vec<Line<'_>>> = BTreeMap::new();
+    for view in experiments {
+        for judged in view.judged {
+            let robustness = robustness(judged, movable.contains(judged.id.as_str()));
+            groups.entry(robustness).or_default().push(Line { view, judged });
+        }
+    }
+    let questions = questions(groups.get(&Robustness::Depends).map_or(&[], Vec::as_slice), sheet);
+    let group = |robustness: Robustness| groups.get(&robustness).map_or(&[][..], Vec::as_slice);
+    let mut text = String::from("# What stands\n\n[The study in one page](README.md)\n\n");
+    text += &in_short(&group, &questions);
+    text += &section("Stands whatever the unstated inputs are", group(Robustness::Stands));
+    text += &section("Does not stand, whatever they are", group(Robustness::Fails));
+    text += &in_question(&questions);
+    text += &section("Cannot be decided: chaotic, or blocked by what no single input settles", group(Robustness::Open));
+    text += &section("Agrees, but was used to choose an input", group(Robustness::Chosen));
+    text += &section("Not tested: no unstated input of its experiment was moved", group(Robustness::NotMoved));
+    text + &section("No result", group(Robustness::Missing))
+}
+
+/// An entry with its page.
+struct Line<'a> {
+    view: &'a ExperimentView<'a>,
+    judged: &'a Judged,
+}
+
+impl Line<'_> {
+    fn link(&self) -> String {
+        format!("[`{}`]({}#{})", self.judged.id, self.view.page, anchor(name(self.judged)))
+    }
+}
+
+fn robustness(judged: &Judged, movable: bool) -> Robustness {
+    let all = |verdict: Verdict| judged.moved.iter().all(|moved| moved.verdict == verdict);
+    let turns = judged.moved.iter().any(|moved| turned(judged, moved.verdict));
+    match judged.verdict {
+        Verdict::Missing => Robustness::Missing,
+        Verdict::Fitted => Robustness::Chosen,
+        _ if turns => Robustness::Depends,
+        Verdict::Undecidable | Verdict::Blocked => Robustness::Open,
+        _ if judged.moved.is_empty() && movable => Robustness::NotMoved,
+        Verdict::Reproduced if all(Verdict::Reproduced) => Robustness::Stands,
+        Verdict::Differs if all(Verdict::Differs) => Robustness::Fails,
+        Verdict::Reproduced | Verdict::Differs => Robustness::Open,
+    }
+}
+
+/// True where a move makes an entry agree that does not, or differ where it agrees.
+fn turned(judged: &Judged, moved: Verdict) -> bool {
+    let agrees = |verdict: Verdict| matches!(verdict, Verdict::Reproduced | Verdict::Fitted);
+    if agrees(judged.verdict) { moved == Verdict::Differs } else { agrees(moved) }
+}
+
+/// One unstated input and the entries that it decides.
+struct Question<'a> {
+    name: AssumptionName,
+    in_force: String,
+    /// By the other value, in words: the entries that turn with it.
+    turns: BTreeMap<String, Vec<(&'a Line<'a>, Verdict)>>,
+    settles: usize,
+}
+
+/// Those that would settle most entries first.
+fn questions<'a>(depending: &'a [Line<'a>], sheet: &AssumptionSheet) -> Vec<Question<'a>> {
+    let every: BTreeSet<AssumptionName> = sheet.iter().map(|(name, _)| name.clone()).collect();
+    let mut questions: Vec<Question<'a>> = Vec::new();
+    for one in sheet.variants(&every) {
+        let turning = depending.iter().flat_map(|line| {
+            let moves = line.judged.moved.iter().filter(|moved| moved.variant == one.label);
+            moves.filter(|moved| turned(line.judged, moved.verdict)).map(move |moved| (line, moved.verdict))
+        });
+        let turning: Vec<_> = turning.collect();
+        let (Some(entry), Some(value)) = (sheet.get(&one.name), one.assumptions.values.get(&one.name)) else {
+            continue;
+        };
+        if turning.is_empty() {
+            continue;
+        }
+        let unit = entry.kind.unit();
+        let value = value_in_words(unit, value);
+        match questions.iter_mut().find(|question| question.name == one.name) {
+            Some(question) => {
+                question.turns.insert(value, turning);
+            }
+            None => questions.push(Question {
+                name: one.name,
+                in_force: value_in_words(unit, &entry.value),
+                turns: BTreeMap::from([(value, turning)]),
+                settles: 0,
+            }),
+        }
+    }
+    for question in &mut questions {
+        let entries = question.turns.values().flatten().map(|(line, _)| line.judged.id.as_str());
+        question.settles = entries.collect::<BTreeSet<_>>().len();
+    }
+    questions.sort_by(|a, b| b.settles.cmp(&a.settles).then_with(|| a.name.cmp(&b.name)));
+    questions
+}
+
+fn in_short<'a>(group: &dyn Fn(Robustness) -> &'a [Line<'a>], questions: &[Question<'_>]) -> String {
+    let all = [
+        (Robustness::Stands, "agree whatever the unstated inputs are"),
+        (Robustness::Fails, "differ whatever they are"),
+        (Robustness::Depends, "depend on one of them"),
+        (Robustness::Open, "cannot be decided"),
+        (Robustness::Chosen, "were used to choose an input and prove nothing"),
+        (Robustness::NotMoved, "were not tested, as no unstated input of their experiment was moved"),
+        (Robustness::Missing, "have no result"),
+    ];
+    let counts = all.map(|(robustness, words)| (group(robustness).len(), words));
+    let total: usize = counts.iter().map(|(count, _)| count).sum();
+    let counts =
+        counts.into_iter().filter(|(count, _)| *count > 0).map(|(count, words)| format!("**{count}** {words}"));
+    let mut text = format!(
+        "Each unstated input is moved alone, through the values of its range. Of {}: {}.\n\n",
+        counted(total, "entry", "entries"),
+        counts.collect::<Vec<_>>().join("; ")
+    );
+    let first: Vec<String> =
+        questions.iter().take(FIRST_QUESTIONS).map(|one| format!("`{}` ({})", one.name, one.settles)).collect();
+    if !first.is_empty() {
+        text += &format!("The inputs that would settle most entries: {}.\n\n", first.join(", "));
+    }
+    text
+}
+
+fn section(title: &str, lines: &[Line<'_>]) -> String {
+    if lines.is_empty() {
+        return String::new();
+    }
+    let entries: String = lines
+        .iter()
+        .map(|line| {
+            format!("- {}: {} Here: {}\n", line.link(), one_line(&line.judged.statement), one_line(&line.judged.found))
+        })
+        .collect();
+    format!(
+        "## {title}\n\n<details><summary>{}</summary>\n\n{entries}\n</details>\n\n",
+        counted(lines.len(), "entry", "entries")
+    )
+}
+
+fn in_question(questions: &[Question<'_>]) -> String {
+    if questions.is_empty() {
+        return String::new();
+    }
+    let mut text = String::from(
+        "## Depends on an input: questions to the author\n\nThose that would settle most entries first. The value in force comes \
+         first, then what turns with another one.\n\n",
+    );
+    for question in questions {
+        text += &format!(
+            "- **[`{name}`](assumptions.md#{name})**, {} in force; settles {}.\n",
+            question.in_force,
+            counted(question.settles, "entry", "entries"),
+            name = question.name
+        );
+        for (value, turning) in &question.turns {
+            let entries = turning.iter().map(|(line, verdict)| format!("{} {}", line.link(), word(*verdict)));
+            text += &format!("  - {value}: {}\n", entries.collect::<Vec<_>>().join(", "));
+        }
+    }
+    text + "\n"
+}
