@@ -27,7 +27,7 @@ contact_damping_ratio: {value: 0.15, reason: fits, quantity: ratio, readings: [e
 stop_length: {value: 60 mm, range: [50 mm], reason: fits, quantity: length}
 stop_restitution: {value: 0, reason: plastic, quantity: ratio}
 defaults:
-  {gravity: gravity, undamped_mass: undamped_mass, impulse_factor: impulse_factor, impulse_frequency: impulse_frequency,
+  {run: {skip: 25 cycles, average: 100 cycles}, gravity: gravity, undamped_mass: undamped_mass, impulse_factor: impulse_factor, impulse_frequency: impulse_frequency,
    frequency_reference: impulse_reference, harmonic_reference: harmonic_reference, damping_ratio: contact_damping_ratio,
    stop_length: stop_length, stop_restitution: stop_restitution}
 ";

@@ -19,10 +19,11 @@ pub(super) struct Here<'a> {
 /// A page.
 pub(super) fn render(text: &str, here: &Here<'_>) -> String {
     let mut events = Vec::new();
-    let mut source = Parser::new_ext(text, Options::ENABLE_TABLES).peekable();
+    let all: Vec<Event<'_>> = Parser::new_ext(text, Options::ENABLE_TABLES).collect();
+    let mut source = all.iter().cloned().enumerate();
     // Whether the links that are open lead somewhere.
     let mut open = Vec::new();
-    while let Some(event) = source.next() {
+    while let Some((at, event)) = source.next() {
         match event {
             Event::Html(text) | Event::InlineHtml(text) => events.push(Event::Html(safe(&text, here.section).into())),
             Event::Start(Tag::Link { dest_url, title, id, .. }) => {
@@ -38,7 +39,7 @@ pub(super) fn render(text: &str, here: &Here<'_>) -> String {
             }
             Event::Start(Tag::Image { dest_url, .. }) => {
                 let mut caption = String::new();
-                for event in source.by_ref() {
+                for (_, event) in source.by_ref() {
                     match event {
                         Event::End(TagEnd::Image) => break,
                         Event::Text(text) | Event::Code(text) => caption += &text,
@@ -48,17 +49,9 @@ pub(super) fn render(text: &str, here: &Here<'_>) -> String {
                 events.push(Event::Html(here.figures.get(&joined(here.page, &dest_url), &caption).into()));
             }
             Event::Start(Tag::Heading { level, classes, attrs, .. }) => {
-                let mut inner = Vec::new();
-                for event in source.by_ref() {
-                    if matches!(event, Event::End(TagEnd::Heading(_))) {
-                        break;
-                    }
-                    inner.push(event);
-                }
-                let id = (level != HeadingLevel::H1).then(|| marked(here.section, &slug(&inner)).into());
+                let inner = all[at..].iter().take_while(|event| !matches!(event, Event::End(TagEnd::Heading(_))));
+                let id = (level != HeadingLevel::H1).then(|| marked(here.section, &slug(inner)).into());
                 events.push(Event::Start(Tag::Heading { level, id, classes, attrs }));
-                events.extend(inner);
-                events.push(Event::End(TagEnd::Heading(level)));
             }
             Event::Start(Tag::Table(columns)) => {
                 // Wider than a phone: it scrolls by itself, with the keyboard too.
@@ -83,8 +76,8 @@ pub(super) fn inline(text: &str, here: &Here<'_>) -> String {
 }
 
 /// A heading as the target of a link, as GitHub makes it.
-fn slug(inner: &[Event<'_>]) -> String {
-    let text = inner.iter().filter_map(|event| match event {
+fn slug<'a>(inner: impl Iterator<Item = &'a Event<'a>>) -> String {
+    let text = inner.filter_map(|event| match event {
         Event::Text(text) | Event::Code(text) => Some(text),
         _ => None,
     });
@@ -142,6 +135,7 @@ mod tests {
     fn nothing_that_a_study_says_becomes_a_script() {
         for text in [
             "<script>alert(1)</script>",
+            "# A <script>alert(1)</script> title",
             "a <img src=x onerror=alert(1)> b",
             "<details ontoggle=alert(1)>",
             "<a id=\"x\" onclick=\"alert(1)\"></a>",
@@ -154,6 +148,7 @@ mod tests {
             }
         }
         assert_eq!(rendered("[a](javascript:alert(1))"), "<p>a</p>\n");
+        assert_eq!(rendered("# [a](javascript:alert(1))"), "<h1>a</h1>\n");
         assert_eq!(rendered("[a](file:///etc/passwd)"), "<p>a</p>\n");
     }
 
