@@ -19,7 +19,7 @@ const AS_GOOD: f64 = 0.1;
 pub fn calibration(calibration: &Calibration, result: &Calibrated) -> String {
     let mut text = format!("# {}\n\n[All experiments](../README.md)\n\n{}\n\n", calibration.title, calibration.about);
     if !calibration.finding.is_empty() {
-        text += &format!("**What it shows**, in the words of who looked at the result: {}\n\n", calibration.finding);
+        text += &format!("**What it shows** (our interpretation): {}\n\n", calibration.finding);
     }
     text += &format!(
         "{} fitted, {} held out. {}\n\n{}\n\n",

@@ -34,7 +34,7 @@ pub fn index(
     let mut text = head(about);
     text += &headline::section(experiments);
     text += &format!(
-        "[What stands]({WHAT_STANDS}) whatever the unstated inputs are, what does not, and the questions that would settle most.\n\n"
+        "[What stands]({WHAT_STANDS}) when the unstated inputs are moved, what does not, and the questions that would settle most.\n\n"
     );
     text += &reading::section();
     text += "## Every verdict\n\nOne cell for each number or claim; below, each that does not agree is linked, bold where it is held out.\n\n";

@@ -63,8 +63,8 @@ pub fn what_stands(
     let group = |robustness: Robustness| groups.get(&robustness).map_or(&[][..], Vec::as_slice);
     let mut text = String::from("# What stands\n\n[The study in one page](README.md)\n\n");
     text += &in_short(&group, &questions);
-    text += &section("Stands whatever the unstated inputs are", group(Robustness::Stands));
-    text += &section("Does not stand, whatever they are", group(Robustness::Fails));
+    text += &section("Stands: agrees under every move", group(Robustness::Stands));
+    text += &section("Does not stand: differs under every move", group(Robustness::Fails));
     text += &in_question(&questions);
     text += &section("Cannot be decided: chaotic, or blocked by what no single input settles", group(Robustness::Open));
     text += &section("Agrees, but was used to choose an input", group(Robustness::Chosen));
@@ -154,8 +154,8 @@ fn questions<'a>(depending: &'a [Line<'a>], sheet: &AssumptionSheet) -> Vec<Ques
 
 fn in_short<'a>(group: &dyn Fn(Robustness) -> &'a [Line<'a>], questions: &[Question<'_>]) -> String {
     let all = [
-        (Robustness::Stands, "agree whatever the unstated inputs are"),
-        (Robustness::Fails, "differ whatever they are"),
+        (Robustness::Stands, "agree under every move"),
+        (Robustness::Fails, "differ under every move"),
         (Robustness::Depends, "depend on one of them"),
         (Robustness::Open, "cannot be decided"),
         (Robustness::Chosen, "were used to choose an input and prove nothing"),
@@ -167,7 +167,8 @@ fn in_short<'a>(group: &dyn Fn(Robustness) -> &'a [Line<'a>], questions: &[Quest
     let counts =
         counts.into_iter().filter(|(count, _)| *count > 0).map(|(count, words)| format!("**{count}** {words}"));
     let mut text = format!(
-        "Each unstated input is moved alone, through the values of its range. Of {}: {}.\n\n",
+        "The unstated inputs that an experiment names are moved one at a time through the values of their ranges; what was not \
+         moved is not covered. Of {}: {}.\n\n",
         counted(total, "entry", "entries"),
         counts.collect::<Vec<_>>().join("; ")
     );
