@@ -13,7 +13,7 @@ const MEMBERS: u32 = 8;
 /// it reads are run.
 ///
 /// # Errors
-/// As [`run`].
+/// As [`crate::study::run`].
 pub fn moved_alone(
     asked: Asked<'_>,
     moves: &[(AssumptionName, AssumptionValue)],

@@ -22,7 +22,7 @@ pub enum Method {
 pub struct Response {
     /// How it came about.
     pub method: Method,
-    /// What was observed, in the order of [`HybridSystem::observed_rows`].
+    /// What was observed, in the order of [`HybridSystem::observed_rows`](super::HybridSystem::observed_rows).
     pub observed: Vec<Observed>,
     /// The structure's velocities at both ends of every cycle, if asked for.
     pub cycle_rates: Vec<CycleRates>,

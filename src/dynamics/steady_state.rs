@@ -6,7 +6,7 @@ use super::sums::Sums;
 /// The motion that comes again in every cycle.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SteadyState {
-    /// In the order of [`HybridSystem::observed_rows`].
+    /// In the order of [`HybridSystem::observed_rows`](super::HybridSystem::observed_rows).
     pub observed: Vec<SteadyMotion>,
     /// A lower bound on how far, in metres, every particle stays from leaving its floor; infinite where there is none.
     pub margin: f64,

@@ -8,6 +8,7 @@ use super::comparison::{anchor, name};
 use super::markdown::one_line;
 use super::tally::{Kind, Tally, agrees, kind};
 use super::view::ExperimentView;
+use super::what_stands::PAGE as WHAT_STANDS;
 use crate::text::words::counted;
 
 /// Experiments or inputs that are named one by one.
@@ -20,7 +21,10 @@ pub(super) fn section(experiments: &[ExperimentView<'_>]) -> String {
     text += &stands(experiments);
     text += &differs(experiments);
     text += &undecided(&all);
-    text + "\n"
+    text + &format!(
+        "\n[What stands]({WHAT_STANDS}) when the unstated inputs are moved, what does not, and the questions that would settle \
+         most.\n\n"
+    )
 }
 
 fn counts(all: &[&Judged]) -> String {

@@ -6,7 +6,6 @@ use crate::text::number::quantity;
 
 use super::markdown::one_line;
 use super::view::ExperimentView;
-use super::what_stands::PAGE as WHAT_STANDS;
 use super::{chapter, headline, reading, strip};
 
 /// The pictures of the index, by name below `reports/`.
@@ -33,9 +32,6 @@ pub fn index(
 ) -> String {
     let mut text = head(about);
     text += &headline::section(experiments);
-    text += &format!(
-        "[What stands]({WHAT_STANDS}) when the unstated inputs are moved, what does not, and the questions that would settle most.\n\n"
-    );
     text += &reading::section();
     text += "## Every verdict\n\nOne cell for each number or claim; below, each that does not agree is linked, bold where it is held out.\n\n";
     text += &format!("![Verdicts by chapter]({STRIP})\n\n");
