@@ -45,3 +45,4 @@ mod spec_map;
 mod structures;
 mod study;
 mod table;
+mod what_stands;
