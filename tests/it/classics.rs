@@ -151,8 +151,7 @@ fn a_motion_that_has_no_name_is_refused_where_it_is_asked_for() {
         ("measure: [", "measure: [motion, ", "measured twice"),
         ("run: {", "run: {solver: {fixed_step: {time_step: 1e-4 s}}, ", "the event-driven solver alone"),
     ] {
-        let with_motion =
-            complaint_of("two-impacts-above-resonance", &[("measure: [", "measure: [motion, "), (from, to)]);
+        let with_motion = complaint_of("two-impacts-above-resonance", &[(from, to)]);
         assert!(with_motion.contains(what) && with_motion.contains("mine.yaml:"), "{to}: {with_motion}");
     }
 }
