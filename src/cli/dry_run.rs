@@ -3,7 +3,7 @@
 use super::args::{Args, RunArgs};
 use super::error::CliError;
 use super::exit::Exit;
-use super::output::{print, print_unread};
+use super::output::{print, print_unread, simulations};
 use super::select::choose;
 use super::update::{open_stale, todo};
 use crate::study::{Extent, KnownRows, Layout, forecast};
@@ -23,10 +23,7 @@ pub(super) fn dry_run(layout: &Layout, args: &RunArgs, common: &Args) -> Result<
         text += &format!("{}: {}", item.source.experiment.id, rows(&extent));
         if extent.to_do > 0 {
             let ahead = wall(&extent, threads).map_or_else(|| "time not known".into(), about);
-            text += &format!(
-                ", {} at most, {ahead}",
-                counted(usize::try_from(extent.simulations).unwrap_or(usize::MAX), "simulation", "simulations")
-            );
+            text += &format!(", {} at most, {ahead}", simulations(extent.simulations));
         }
         text += "\n";
         if extent.to_do > 0 {

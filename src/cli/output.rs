@@ -6,6 +6,7 @@ use std::sync::OnceLock;
 use super::args::Colour;
 use crate::experiment::Problems;
 use crate::study::Unread;
+use crate::text::words::counted;
 
 /// How this process prints; set once, from its arguments.
 #[derive(Debug, Clone, Copy)]
@@ -93,4 +94,9 @@ pub(super) fn columns(rows: &[Vec<String>]) -> String {
         text.push('\n');
     }
     text
+}
+
+/// `1 simulation`, `12 simulations`.
+pub(super) fn simulations(count: u64) -> String {
+    counted(usize::try_from(count).unwrap_or(usize::MAX), "simulation", "simulations")
 }

@@ -12,7 +12,7 @@ use cpu_time::ProcessTime;
 use super::args::Choice;
 use super::error::CliError;
 use super::exit::Exit;
-use super::output::{columns, print, print_error, print_unread};
+use super::output::{columns, print, print_error, print_unread, simulations};
 use super::select::{choose, matches};
 use crate::accuracy::idle_cases;
 use crate::dynamics::{Allowance, Limit, in_words};
@@ -222,13 +222,10 @@ fn idle(experiment: &Experiment, scenes: &[Scene]) -> String {
 }
 
 fn assumptions(study: &Study, item: &Item) -> String {
-    let mut text = String::from("\nAssumptions\n");
+    let mut text = String::from(if item.used.is_empty() { "" } else { "\nAssumptions\n" });
     for (name, entry) in study.sheet.iter().filter(|(name, _)| item.used.contains(*name)) {
         text += &format!("  {name} = {}\n", value_in_words(entry.kind.unit(), &entry.value));
         text += &wrapped(&entry.reason, "      ", 100);
-    }
-    if item.used.is_empty() {
-        text += "  none\n";
     }
     text
 }
@@ -241,13 +238,14 @@ fn cases(item: &Item) -> String {
             solvers.push(solver.label());
         }
     }
-    let (rows, simulations) = item.size();
-    let mut text = format!("\nCases\n  {} cases, under {}\n", experiment.cases.len(), solvers.join(" and "));
+    let (rows, most) = item.size();
+    let cases = counted(experiment.cases.len(), "case", "cases");
+    let mut text = format!("\nCases\n  {cases}, under {}\n", solvers.join(" and "));
     if item.variants.len() > 1 {
         let ends: Vec<&str> = item.variants.iter().skip(1).map(|variant| variant.label.as_str()).collect();
         text += &format!("  and event-driven with each of {}\n", ends.join(", "));
     }
-    text + &format!("  {rows} rows, {simulations} simulations at most\n")
+    text + &format!("  {}, {} at most\n", counted(rows, "row", "rows"), simulations(most))
 }
 
 /// The text wrapped at `width` letters, each line after a margin.

@@ -38,6 +38,6 @@ mod work_precision;
 
 pub use error::FigureError;
 pub use quoted::{Known, Quoted, QuotedAt};
-pub use render::{Beside, Picture, draw, draw_svg, draw_table};
+pub use render::{Beside, Picture, draw, draw_svg, draw_table, figure_stem};
 pub use sketch::sketch;
 pub use work_precision::work_precision;

@@ -65,7 +65,7 @@ pub fn draw(
     table: &Table,
     beside: Beside<'_>,
 ) -> Result<Picture, FigureError> {
-    Picture::of(draw_svg(experiment, figure, table, beside)?, &name_of(experiment, figure))
+    Picture::of(draw_svg(experiment, figure, table, beside)?, &figure_stem(experiment, figure))
 }
 
 /// As [`draw`], for what shows SVG: the pixels take most of the time.
@@ -78,11 +78,13 @@ pub fn draw_svg(
     table: &Table,
     beside: Beside<'_>,
 ) -> Result<String, FigureError> {
-    drawn(Some(experiment), &name_of(experiment, figure), figure, table, beside)
+    drawn(Some(experiment), &figure_stem(experiment, figure), figure, table, beside)
 }
 
-/// What a figure is called in messages.
-fn name_of(experiment: &Experiment, figure: &FigureSpec) -> String {
+/// What a figure is called, as a file without its ending and in messages: the experiment's id, and the figure's own name if it
+/// is not the first.
+#[must_use]
+pub fn figure_stem(experiment: &Experiment, figure: &FigureSpec) -> String {
     if figure.name.is_empty() { experiment.id.to_string() } else { format!("{}-{}", experiment.id, figure.name) }
 }
 

@@ -6,16 +6,10 @@ use serde_json::json;
 
 use super::quoted::quoted;
 use crate::experiment::{Drawing, Experiment, FigureSpec, LineColour};
-use crate::figure::{Beside, FigureError, Picture, draw, draw_svg};
+use crate::figure::{Beside, FigureError, Picture, Quoted, draw, draw_svg, figure_stem};
 use crate::reference::{Judged, ReferenceFile};
 use crate::study::{FileHash, PRESENTATION_VERSION, fingerprint};
 use crate::table::Table;
-
-/// File name of a figure without its ending: the experiment's id, and the figure's own name if it is not the first.
-#[must_use]
-pub fn figure_stem(experiment: &Experiment, figure: &FigureSpec) -> String {
-    if figure.name.is_empty() { experiment.id.to_string() } else { format!("{}-{}", experiment.id, figure.name) }
-}
 
 /// File name of the drawing of what an experiment simulates.
 #[must_use]
@@ -41,6 +35,13 @@ pub(super) struct Said<'a> {
     pub colours: Option<&'a BTreeMap<String, LineColour>>,
 }
 
+impl<'a> Said<'a> {
+    /// What a figure shows beside its table.
+    fn beside(self, quoted: &'a [Quoted]) -> Beside<'a> {
+        Beside { quoted, impulses: self.impulses, colours: self.colours }
+    }
+}
+
 /// One figure, with the numbers that the study quotes.
 pub(super) fn picture(
     experiment: &Experiment,
@@ -49,7 +50,7 @@ pub(super) fn picture(
     said: Said<'_>,
 ) -> Result<Picture, FigureError> {
     let quoted = quoted(experiment, figure, table, said);
-    draw(experiment, figure, table, Beside { quoted: &quoted, impulses: said.impulses, colours: said.colours })
+    draw(experiment, figure, table, said.beside(&quoted))
 }
 
 /// As [`picture`], as SVG alone.
@@ -60,7 +61,7 @@ pub(super) fn vector(
     said: Said<'_>,
 ) -> Result<String, FigureError> {
     let quoted = quoted(experiment, figure, table, said);
-    draw_svg(experiment, figure, table, Beside { quoted: &quoted, impulses: said.impulses, colours: said.colours })
+    draw_svg(experiment, figure, table, said.beside(&quoted))
 }
 
 /// Hash of all that one figure shows: the table of this hash, how it is drawn, and the numbers that the study quotes with their

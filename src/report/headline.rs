@@ -4,7 +4,6 @@ use std::collections::BTreeMap;
 
 use crate::reference::{Judged, Role, Verdict};
 
-use super::comparison::{anchor, name};
 use super::markdown::one_line;
 use super::tally::{Kind, Tally, agrees, kind};
 use super::view::ExperimentView;
@@ -92,7 +91,7 @@ fn differs(experiments: &[ExperimentView<'_>]) -> String {
     let farthest = numbers
         .iter()
         .take(3)
-        .map(|(view, one)| format!("[{}]({}#{}), {}", one.id, view.page, anchor(name(one)), one_line(&one.found)));
+        .map(|(view, one)| format!("[{}]({}), {}", one.id, view.place_of(one), one_line(&one.found)));
     let farthest: Vec<String> = farthest.collect();
     if !farthest.is_empty() {
         text += &format!(" Farthest off: {}.", farthest.join("; "));

@@ -5,13 +5,13 @@ use std::fs;
 
 use rayon::prelude::*;
 
-use super::figures::{Said, figure_stem, picture, scene_name, shown, vector};
+use super::figures::{Said, picture, scene_name, shown, vector};
 use super::publication::{inputs, publication_reasons};
 use super::verdicts::Judgement;
 use super::views;
 use crate::atomic::{self, FileError};
 use crate::experiment::{Experiment, FigureSpec};
-use crate::figure::{FigureError, Picture, sketch};
+use crate::figure::{FigureError, Picture, figure_stem, sketch};
 use crate::measure::rounded;
 use crate::reference::{Judged, ReferenceFile};
 use crate::study::{

@@ -2,7 +2,6 @@
 //! picture in Markdown cannot hold.
 
 use super::chapter::{by_chapter, label};
-use super::comparison::{anchor, name};
 use super::markdown::html;
 use super::svg::{Svg, colour};
 use super::tally::{VERDICTS, agrees, mark, word};
@@ -32,7 +31,7 @@ fn cells(view: &ExperimentView<'_>) -> String {
     let link = |entries: &[Judged]| {
         let marks: String = entries.iter().map(symbol).collect();
         match entries {
-            [one] if !agrees(one.verdict) => format!("[{marks}]({}#{})", view.page, anchor(name(one))),
+            [one] if !agrees(one.verdict) => format!("[{marks}]({})", view.place_of(one)),
             _ => format!("[{marks}]({})", view.page),
         }
     };

@@ -1,6 +1,6 @@
 //! All tolerances that were set by hand, on a page of their own.
 
-use super::comparison::{anchor, name, tolerance};
+use super::comparison::tolerance;
 use super::view::ExperimentView;
 
 /// `reports/tolerances.md`.
@@ -12,9 +12,7 @@ pub fn tolerances(experiments: &[ExperimentView<'_>]) -> String {
     );
     let entries = experiments.iter().flat_map(|view| view.judged.iter().map(move |one| (view, one)));
     let lines: String = entries
-        .filter_map(|(view, one)| {
-            Some(format!("- [`{}`]({}#{}): {}\n", one.id, view.page, anchor(name(one)), tolerance(one)?))
-        })
+        .filter_map(|(view, one)| Some(format!("- [`{}`]({}): {}\n", one.id, view.place_of(one), tolerance(one)?)))
         .collect();
     text += if lines.is_empty() { "There are none.\n" } else { &lines };
     text

@@ -1,5 +1,6 @@
 //! What reports are written from, gathered by the caller.
 
+use super::comparison::{anchor, name};
 use crate::experiment::Experiment;
 use crate::reference::Judged;
 use crate::scene::EffectUse;
@@ -48,6 +49,13 @@ pub struct ExperimentView<'a> {
     pub seconds: Option<f64>,
     /// Its page, relative to the index.
     pub page: String,
+}
+
+impl ExperimentView<'_> {
+    /// Where one of its entries stands, relative to the index.
+    pub(super) fn place_of(&self, judged: &Judged) -> String {
+        format!("{}#{}", self.page, anchor(name(judged)))
+    }
 }
 
 /// All that one experiment's page tells.

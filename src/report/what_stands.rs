@@ -7,9 +7,8 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::assumption::value_in_words;
-use super::comparison::{anchor, name};
 use super::markdown::one_line;
-use super::tally::word;
+use super::tally::{agrees, word};
 use super::view::{AssumptionView, ExperimentView};
 use crate::experiment::{AssumptionName, AssumptionSheet};
 use crate::reference::{Judged, Verdict};
@@ -80,7 +79,7 @@ struct Line<'a> {
 
 impl Line<'_> {
     fn link(&self) -> String {
-        format!("[`{}`]({}#{})", self.judged.id, self.view.page, anchor(name(self.judged)))
+        format!("[`{}`]({})", self.judged.id, self.view.place_of(self.judged))
     }
 }
 
@@ -101,7 +100,6 @@ fn robustness(judged: &Judged, movable: bool) -> Robustness {
 
 /// True where a move makes an entry agree that does not, or differ where it agrees.
 fn turned(judged: &Judged, moved: Verdict) -> bool {
-    let agrees = |verdict: Verdict| matches!(verdict, Verdict::Reproduced | Verdict::Fitted);
     if agrees(judged.verdict) { moved == Verdict::Differs } else { agrees(moved) }
 }
 
@@ -111,7 +109,14 @@ struct Question<'a> {
     in_force: String,
     /// By the other value, in words: the entries that turn with it.
     turns: BTreeMap<String, Vec<(&'a Line<'a>, Verdict)>>,
-    settles: usize,
+}
+
+impl Question<'_> {
+    /// How many entries turn with it.
+    fn settles(&self) -> usize {
+        let entries = self.turns.values().flatten().map(|(line, _)| line.judged.id.as_str());
+        entries.collect::<BTreeSet<_>>().len()
+    }
 }
 
 /// Those that would settle most entries first.
@@ -140,15 +145,10 @@ fn questions<'a>(depending: &'a [Line<'a>], sheet: &AssumptionSheet) -> Vec<Ques
                 name: one.name,
                 in_force: value_in_words(unit, &entry.value),
                 turns: BTreeMap::from([(value, turning)]),
-                settles: 0,
             }),
         }
     }
-    for question in &mut questions {
-        let entries = question.turns.values().flatten().map(|(line, _)| line.judged.id.as_str());
-        question.settles = entries.collect::<BTreeSet<_>>().len();
-    }
-    questions.sort_by(|a, b| b.settles.cmp(&a.settles).then_with(|| a.name.cmp(&b.name)));
+    questions.sort_by_key(|one| (std::cmp::Reverse(one.settles()), one.name.clone()));
     questions
 }
 
@@ -173,7 +173,7 @@ fn in_short<'a>(group: &dyn Fn(Robustness) -> &'a [Line<'a>], questions: &[Quest
         counts.collect::<Vec<_>>().join("; ")
     );
     let first: Vec<String> =
-        questions.iter().take(FIRST_QUESTIONS).map(|one| format!("`{}` ({})", one.name, one.settles)).collect();
+        questions.iter().take(FIRST_QUESTIONS).map(|one| format!("`{}` ({})", one.name, one.settles())).collect();
     if !first.is_empty() {
         text += &format!("The inputs that would settle most entries: {}.\n\n", first.join(", "));
     }
@@ -208,7 +208,7 @@ fn in_question(questions: &[Question<'_>]) -> String {
         text += &format!(
             "- **[`{name}`](assumptions.md#{name})**, {} in force; settles {}.\n",
             question.in_force,
-            counted(question.settles, "entry", "entries"),
+            counted(question.settles(), "entry", "entries"),
             name = question.name
         );
         for (value, turning) in &question.turns {
