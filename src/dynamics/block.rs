@@ -87,6 +87,11 @@ impl Block {
         Self { decay, determinant, discriminant, root, inverse_root: 1.0 / root, radius }
     }
 
+    /// Its numbers are numbers.
+    pub(crate) fn is_finite(&self) -> bool {
+        [self.decay, self.determinant, self.discriminant, self.radius].iter().all(|x| x.is_finite())
+    }
+
     /// The two eigenvalues sum to nothing: ∫ of the block's signals grows with time.
     pub(crate) fn is_drift(&self) -> bool {
         self.radius == 0.0

@@ -68,6 +68,11 @@ pub enum EngineError {
     /// Its allowance was used up first.
     #[error(transparent)]
     Overrun(#[from] Overrun),
+    /// A block whose numbers overflow.
+    #[error(
+        "a natural frequency, a decay or the frequency of the drive leaves the range of numbers, or the forcing period does"
+    )]
+    RateNotFinite,
     /// Overflow.
     #[error("the motion leaves the range of numbers in cycle {cycle}")]
     NotFinite {

@@ -64,6 +64,9 @@ impl Flow {
                 Some(Steady::new(drive.angular_frequency, &push, &modes.accelerations, modes.order)?)
             }
         };
+        if !(system.drive.period.is_finite() && blocks.iter().all(Block::is_finite)) {
+            return Err(EngineError::RateNotFinite);
+        }
         let mut flow = Self {
             bank: Bank::new(&blocks),
             series: Series::new(&blocks),
@@ -236,6 +239,11 @@ impl Flow {
     /// Seconds for which it may be followed without a new start.
     pub(crate) fn lasts(&self) -> f64 {
         self.modes.spectral.lasts
+    }
+
+    /// The fastest rate of the contact state, of turning or of decay, 1/s.
+    pub(crate) fn fastest_rate(&self) -> f64 {
+        self.blocks[..self.own].iter().fold(0.0, |fastest, block| fastest.max(block.radius))
     }
 
     /// Natural frequencies of the contact state, rad/s (moduli of the complex pairs' eigenvalues).

@@ -42,8 +42,6 @@ pub(crate) struct March<'a, const TAPED: bool> {
     states: States,
     /// The flow in force.
     flow: Rc<Flow>,
-    /// Natural frequency of the fastest one so far, rad/s.
-    fastest: f64,
     // State: structure (with the compressions of the flow in force behind its coordinates), particles, contacts.
     q: Vec<f64>,
     rate: Vec<f64>,
@@ -105,7 +103,6 @@ impl<'a, const TAPED: bool> March<'a, TAPED> {
             options,
             states,
             flow,
-            fastest: 0.0,
             q: vec![0.0; most],
             rate: vec![0.0; most],
             particles: vec![Relative::default(); count],
@@ -252,7 +249,6 @@ impl<'a, const TAPED: bool> March<'a, TAPED> {
             self.response.final_velocity = dot(row, &self.rate);
         }
         self.response.final_particles = (0..self.particles.len()).map(|j| self.absolute(j)).collect();
-        self.response.highest_frequency = self.fastest;
         if TAPED {
             self.response.motion = Some(motion::name(self.system, &self.tape, self.options.average as usize)?);
         }
@@ -349,7 +345,9 @@ impl<'a, const TAPED: bool> March<'a, TAPED> {
             self.c.resize(width, 0.0);
             self.c_end.resize(width, 0.0);
         }
-        self.fastest = self.flow.natural_frequencies().fold(self.fastest, f64::max);
+        let (frequency, rate) = (&mut self.response.highest_frequency, &mut self.response.fastest_rate);
+        *frequency = self.flow.natural_frequencies().fold(*frequency, f64::max);
+        *rate = rate.max(self.flow.fastest_rate());
         Ok(())
     }
 

@@ -44,6 +44,8 @@ pub struct Response {
     pub motion: Option<Motion>,
     /// Highest natural frequency among the contact states visited, rad/s.
     pub highest_frequency: f64,
+    /// Fastest rate among the contact states visited, of turning or of decay, 1/s.
+    pub fastest_rate: f64,
 }
 
 impl Response {
