@@ -194,7 +194,7 @@ fn found((home, entry): &Asked<'_>, tables: &SharedTables) -> Found {
 pub(super) fn read(asked: &Asked<'_>, tables: &SharedTables) -> Read {
     let (home, entry) = *asked;
     let alone = Entry { blocked_by: Vec::new(), ..entry.clone() };
-    let file = ReferenceFile { experiment: home.to_owned(), entries: vec![alone] };
+    let file = ReferenceFile { experiment: home.to_owned(), entries: vec![alone], not_judged: Vec::new() };
     let judged = judge(&file, &states(tables), &BTreeSet::new());
     let verdict = judged.first().map_or(Verdict::Missing, |judged| judged.verdict);
     Read { found: found(asked, tables), verdict }

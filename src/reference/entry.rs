@@ -24,6 +24,10 @@
 //!     where: {mode: 2}
 //!     mode_shape: {of: shape, over: x, like: {cantilever: 2}, mac: {at_least: 0.999}}
 //!     threshold_reason: Lines that differ by a thirtieth of their size lie on each other.
+//! not_judged:
+//!   - place: s. 3.6.1, Fig. 13
+//!     says: Both ratios agree well with those of an earlier study.
+//!     reason: The curves of the figure are lost.
 //! ```
 
 use std::collections::BTreeSet;
@@ -52,6 +56,21 @@ pub struct ReferenceFile {
     pub experiment: String,
     /// In the order of the file.
     pub entries: Vec<Entry>,
+    /// What the study says beside these and nothing here can judge.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub not_judged: Vec<NotJudged>,
+}
+
+/// A statement of the study without an entry.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct NotJudged {
+    /// Where it stands: `s. 3.6.1, Fig. 13`.
+    pub place: String,
+    /// What the study says, in one line.
+    pub says: String,
+    /// Why no entry can judge it.
+    pub reason: String,
 }
 
 /// One published number or claim.
@@ -246,13 +265,28 @@ pub fn parse_reference(experiment: &str, text: &str) -> Result<ReferenceFile, Ve
             problems.push(ReferenceProblem::on_line(entry.line, mistake));
         }
     }
-    if problems.is_empty() { Ok(ReferenceFile { experiment: experiment.into(), entries }) } else { Err(problems) }
+    let mut not_judged = Vec::new();
+    for spanned in raw.not_judged {
+        let NotJudged { place, says, reason } = &spanned.value;
+        if [place, says, reason].iter().any(|text| text.trim().is_empty()) {
+            let at = Some(position(&spanned));
+            problems.push(ReferenceProblem { at, mistake: ReferenceMistake::NotJudged });
+        }
+        not_judged.push(spanned.value);
+    }
+    if problems.is_empty() {
+        Ok(ReferenceFile { experiment: experiment.into(), entries, not_judged })
+    } else {
+        Err(problems)
+    }
 }
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct RawReference {
     entries: Vec<Spanned<RawEntry>>,
+    #[serde(default)]
+    not_judged: Vec<Spanned<NotJudged>>,
 }
 
 #[derive(Deserialize)]

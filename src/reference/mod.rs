@@ -38,7 +38,8 @@ mod view;
 
 pub use accept::{AcceptError, accept};
 pub use entry::{
-    Check, Entry, Reading, ReferenceError, ReferenceFile, Tolerance, ToleranceSize, load_reference, parse_reference,
+    Check, Entry, NotJudged, Reading, ReferenceError, ReferenceFile, Tolerance, ToleranceSize, load_reference,
+    parse_reference,
 };
 pub use entry_mistake::EntryMistake;
 pub use extraction::Extraction;

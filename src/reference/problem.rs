@@ -31,6 +31,9 @@ pub enum ReferenceMistake {
     /// There is no entry.
     #[error("there is no entry")]
     NoEntry,
+    /// A statement without its place, words or reason.
+    #[error("a statement that is not judged needs its `place`, what it `says` and a `reason`")]
+    NotJudged,
     /// Another ending would be overlooked.
     #[error("rename it to end in .yaml")]
     Ending,

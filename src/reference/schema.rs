@@ -46,8 +46,15 @@ pub fn reference_schema() -> Value {
             "then": {"required": ["explanation"]},
         }))
         .schema();
-    let mut schema =
-        Object::new("What the study says of one experiment").required("entries", list("Entries", entry)).schema();
+    let not_judged = Object::new("A statement without an entry")
+        .required("place", text("Where it stands: s. 3.6.1, Fig. 13"))
+        .required("says", text("What the study says, in one line"))
+        .required("reason", text("Why no entry can judge it"))
+        .schema();
+    let mut schema = Object::new("What the study says of one experiment")
+        .required("entries", list("Entries", entry))
+        .optional("not_judged", list("What the study says beside these and nothing here can judge", not_judged))
+        .schema();
     schema["$schema"] = json!("http://json-schema.org/draft-07/schema#");
     schema["title"] = json!("Reference");
     schema

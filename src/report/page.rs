@@ -1,6 +1,7 @@
 //! One experiment's page.
 
 use crate::experiment::Source;
+use crate::reference::NotJudged;
 use crate::text::words::capitalised;
 
 use super::markdown::{details, one_line};
@@ -17,6 +18,7 @@ pub fn page(view: &PageView<'_>) -> String {
         text += &figure(one);
     }
     text += &comparison::statements(view.judged);
+    text += &details("Said, but not judged", &not_judged(view.not_judged));
     if view.table.is_none() {
         text += "There is no result: the experiment has not been run.\n\n";
     }
@@ -41,6 +43,16 @@ pub fn page(view: &PageView<'_>) -> String {
         up = view.to_reports,
     );
     text
+}
+
+/// What the study says without an entry, and why.
+fn not_judged(statements: &[NotJudged]) -> String {
+    let line = |one: &NotJudged| {
+        let [place, says, reason] = [&one.place, &one.says, &one.reason].map(|text| one_line(text));
+        format!("- {says} ({place}) *{reason}*\n")
+    };
+    let lines: String = statements.iter().map(line).collect();
+    if lines.is_empty() { lines } else { lines + "\n" }
 }
 
 /// Times differ from run to run, so that they stand on a page of their own.

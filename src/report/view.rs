@@ -2,7 +2,7 @@
 
 use super::comparison::{anchor, name};
 use crate::experiment::Experiment;
-use crate::reference::Judged;
+use crate::reference::{Judged, NotJudged};
 use crate::scene::EffectUse;
 use crate::study::Heading;
 use crate::table::Table;
@@ -67,6 +67,8 @@ pub struct PageView<'a> {
     pub table: Option<&'a Table>,
     /// Its entries with their verdicts.
     pub judged: &'a [Judged],
+    /// What the study says of it without an entry.
+    pub not_judged: &'a [NotJudged],
     /// The assumptions that it depends on.
     pub assumptions: &'a [AssumptionView],
     /// Effects over its cases.

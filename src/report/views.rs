@@ -27,6 +27,7 @@ pub(super) fn page(study: &Study, judgement: &Judgement, item: &Item) -> String 
         experiment,
         table: judgement.tables.get(&experiment.id.0),
         judged: judged(judgement, &experiment.id.0),
+        not_judged: study.references.get(&experiment.id.0).map_or(&[], |file| &file.not_judged),
         assumptions: &assumptions(study, judgement, &|name| item.used.contains(name), &|_| Vec::new()),
         effects: &effects(&scenes),
         figures: &[figures(experiment), scene(experiment, &scenes)].concat(),
