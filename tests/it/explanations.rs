@@ -147,3 +147,34 @@ fn the_index_of_the_whole_study_loads_at_once() {
         assert!(index.contains(&format!("]({}", view.page)), "no link to {}", view.page);
     }
 }
+
+/// The figures of a printed number, if there are three or more: fewer stand in any text by chance.
+fn figures(printed: &str) -> Option<&str> {
+    let end = printed.find(|c: char| !(c.is_ascii_digit() || c == '.')).unwrap_or(printed.len());
+    let digits = printed[..end].trim_start_matches(['0', '.']).chars().filter(char::is_ascii_digit).count();
+    (digits >= 3).then_some(&printed[..end])
+}
+
+#[test]
+fn an_assumption_whose_reason_quotes_a_number_of_the_study_is_fitted_to_it() {
+    let layout = Layout::new(env!("CARGO_MANIFEST_DIR"));
+    let study = Study::new(layout.clone(), Texts::read(&layout).unwrap());
+    let number = regex::Regex::new(r"\d+(?:\.\d+)?").unwrap();
+    let entries = entries();
+    let mut forgotten = Vec::new();
+    for (name, assumption) in study.sheet.iter() {
+        let quoted: Vec<&str> = number.find_iter(&assumption.reason).map(|found| found.as_str()).collect();
+        for entry in &entries {
+            let printed = match &entry.check {
+                Check::Value { published, .. } => Some(published),
+                Check::Peak { peak, .. } => peak.at.as_ref(),
+                Check::Claim { .. } => None,
+            };
+            let Some(figures) = printed.and_then(|printed| figures(printed.text())) else { continue };
+            if quoted.contains(&figures) && !assumption.fitted_to.contains(&entry.id) {
+                forgotten.push(format!("{name}: {} ({figures})", entry.id));
+            }
+        }
+    }
+    assert!(forgotten.is_empty(), "{forgotten:#?}");
+}

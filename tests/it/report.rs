@@ -140,6 +140,7 @@ fn page_of(table: Option<&Table>, judged: &[Judged]) -> String {
         experiment: &limit_stop(),
         table,
         judged,
+        not_judged: &[],
         assumptions: &assumptions(),
         effects: &effects(),
         figures: &figures(),
