@@ -76,13 +76,16 @@ pub(crate) struct Read {
 
 /// Cells that were looked at. Verdicts look at the same ones many times over: noting them again costs next to nothing.
 #[derive(Debug, Default)]
-pub(crate) struct Reads(RefCell<BTreeMap<String, BTreeMap<(usize, Role), Vec<bool>>>>);
+pub(crate) struct Reads(RefCell<BTreeMap<String, OfTable>>);
+
+/// Of one table: by column and role, whether each row was looked at.
+type OfTable = BTreeMap<(usize, Role), Vec<bool>>;
 
 impl Reads {
     fn note(&self, table: &str, column: usize, role: Role, rows: &[usize]) {
         let mut tables = self.0.borrow_mut();
         if !tables.contains_key(table) {
-            tables.insert(table.to_owned(), BTreeMap::new());
+            tables.insert(table.to_owned(), OfTable::new());
         }
         let Some(columns) = tables.get_mut(table) else { return };
         let seen = columns.entry((column, role)).or_default();
@@ -107,7 +110,7 @@ impl Reads {
 
     /// By experiment, the rows that were looked at for more than to choose rows.
     pub(crate) fn decisive_rows(&self) -> BTreeMap<String, BTreeSet<usize>> {
-        let rows = |columns: &BTreeMap<(usize, Role), Vec<bool>>| -> BTreeSet<usize> {
+        let rows = |columns: &OfTable| -> BTreeSet<usize> {
             let decisive = columns.iter().filter(|((_, role), _)| *role != Role::Filter);
             decisive.flat_map(|(_, seen)| (0..seen.len()).filter(|&row| seen[row])).collect()
         };
