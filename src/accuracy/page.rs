@@ -177,7 +177,7 @@ pub(super) fn seconds(value: f64) -> String {
 #[must_use]
 pub fn accuracy_summary(views: &[AccuracyView]) -> String {
     let mut text = format!(
-        "# What accuracy costs\n\n{}![Error against time of every experiment](accuracy.svg)\n\n",
+        "# What accuracy costs\n\n{}![Error against time of every experiment](accuracy.png)\n\n",
         scatter::in_words(&scatter::points(views))
     );
     text += "Each experiment is a point for the event-driven solver and one for the cheapest fixed step that would do; times are of \

@@ -11,7 +11,7 @@ use super::scatter::scatter;
 use super::verdict_price::VerdictPrice;
 use crate::atomic::{self, FileError};
 use crate::experiment::Experiment;
-use crate::figure::{Beside, Picture, draw, work_precision};
+use crate::figure::{Beside, draw, work_precision};
 use crate::measure::SolverChoice;
 use crate::reference::Judged;
 use crate::study::{Layout, Machine, runs_of_a_row};
@@ -95,17 +95,11 @@ pub fn publish_accuracy(layout: &Layout, experiment: &Experiment, view: &Accurac
 pub fn publish_accuracy_summary(layout: &Layout, views: &[AccuracyView]) -> Result<String, FileError> {
     // Nothing measured, nothing to show.
     if let Ok(picture) = scatter(views) {
-        write_picture(layout, "reports/accuracy", &picture)?;
+        atomic::write_if_changed(&layout.path("reports/accuracy.png"), &picture.png)?;
     }
     let text = accuracy_summary(views);
     atomic::write(&layout.path("reports/accuracy.md"), text.as_bytes())?;
     Ok(text)
-}
-
-fn write_picture(layout: &Layout, stem: &str, picture: &Picture) -> Result<(), FileError> {
-    atomic::write_if_changed(&layout.path(&format!("{stem}.svg")), picture.svg.as_bytes())?;
-    atomic::write_if_changed(&layout.path(&format!("{stem}.png")), &picture.png)?;
-    Ok(())
 }
 
 /// A row a point, as the diagram wants it.
