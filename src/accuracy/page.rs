@@ -4,9 +4,10 @@ use crate::measure::{SolverChoice, column_words};
 use crate::study::Machine;
 
 use super::measured::{Accuracy, CaseAccuracy, Contender, Origin, Point};
-use crate::text::number::{quantity, significant};
+use crate::text::number::{compact, quantity, significant};
 use crate::text::words::{self, counted};
 
+use super::scatter;
 use super::verdict_price::{self, VerdictPrice};
 use crate::report::markdown::{Align, MarkdownTable, one_line};
 
@@ -18,7 +19,7 @@ const SENSELESS: f64 = 0.3;
 pub(super) const DIVERGED: f64 = 10.0;
 
 /// One experiment, measured.
-#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct AccuracyView {
     /// Its id.
     pub id: String,
@@ -36,10 +37,9 @@ pub struct AccuracyView {
 #[must_use]
 pub fn accuracy_page(view: &AccuracyView, picture: &str) -> String {
     let mut text = format!(
-        "# What accuracy costs: {}\n\n[All experiments](../accuracy.md) · written by `shotdamp accuracy {}`\n\n{}",
+        "# What accuracy costs: {}\n\n{}. [All experiments, and how to read](../accuracy.md#how-to-read)\n\n",
         one_line(&view.title),
-        view.id,
-        describe(&view.machine)
+        result(view)
     );
     text += &format!("![Error against wall time]({picture})\n\n");
     text += &verdict_price::section(&view.entries, &view.accuracy);
@@ -49,72 +49,107 @@ pub fn accuracy_page(view: &AccuracyView, picture: &str) -> String {
     text
 }
 
-fn describe(machine: &Machine) -> String {
+/// `Event-driven: 363 µs a run, error 4e-15; fixed step: 401 µs for 1 %, 27.4 ms for 1e-4`.
+fn result(view: &AccuracyView) -> String {
+    let regular: Vec<&CaseAccuracy> = view.accuracy.cases.iter().filter(|case| case.floor.is_none()).collect();
+    let count = regular.len() as f64;
+    let Some(own) = over(&regular, Contender::EventDriven { window_factor: 1.0 }) else {
+        return "Every case is chaotic: neighbouring starts part, and no error has a meaning".into();
+    };
+    let steps = fixed_steps(&regular);
+    let reached = |&(goal, name): &(f64, &str)| match cheapest(&steps, goal) {
+        Some((_, of)) => format!("{} for {name}", seconds(of.time / count)),
+        None => format!("no step tried reaches {name}"),
+    };
+    let goals: Vec<String> = GOALS[..2].iter().map(reached).collect();
     format!(
-        "{}, {} threads, {}; {}; one thread a run, median and shortest of as many runs as it takes for the median to settle.\n\n",
-        machine.processor, machine.threads, machine.system, machine.build
+        "Event-driven: {} a run, error {}; fixed step: {}",
+        seconds(own.time / count),
+        error(own.error),
+        goals.join(", ")
     )
 }
 
+/// The fixed step that takes the least time of those within this error.
+pub(super) fn cheapest(steps: &[(f64, Over)], error: f64) -> Option<(f64, Over)> {
+    let within = steps.iter().filter(|(_, of)| of.error <= error);
+    within.min_by(|a, b| a.1.time.total_cmp(&b.1.time)).copied()
+}
+
+fn describe(machine: &Machine) -> String {
+    format!("{}, {} threads, {}; {}.\n\n", machine.processor, machine.threads, machine.system, machine.build)
+}
+
+/// A case by what sets it apart; by its number where nothing does.
+pub(super) fn case_name(case: &CaseAccuracy, number: usize) -> String {
+    if case.description.is_empty() {
+        return format!("case {}", number + 1);
+    }
+    let part = |part: &str| {
+        let Some((name, value)) = part.split_once(" = ") else { return part.to_owned() };
+        let value = value.parse::<f64>().map_or_else(|_| value.to_owned(), |value| compact(value, 3));
+        format!("{} {value}", column_words(name))
+    };
+    case.description.split(", ").map(part).collect::<Vec<_>>().join(", ")
+}
+
 fn section(number: usize, case: &CaseAccuracy) -> String {
-    let description =
-        if case.description.is_empty() { String::new() } else { format!(": {}", one_line(&case.description)) };
-    let mut text = format!("## Case {number}{description}\n\n");
-    text += &match &case.origin {
-        Origin::ManyDigits => {
-            "Errors are against the same model in arithmetic of 32 digits, by another method.\n".to_owned()
-        }
-        Origin::StandIn(reason) => format!(
+    let mut text = format!("## Case {number}");
+    if !case.description.is_empty() {
+        text += &format!(": {}", one_line(&case_name(case, number)));
+    }
+    text += "\n\n";
+    if let Origin::StandIn(reason) = &case.origin {
+        text += &format!(
             "Errors are against the event-driven run in other search windows, since {reason}: what they say of the event-driven \
              solver is only how well it agrees with itself.\n"
-        ),
-    };
+        );
+    }
     if case.closed_form {
         text += "No particle leaves its floor: the event-driven solver answers in closed form.\n";
     }
     if let Some(floor) = case.floor {
-        text += &format!(
-            "The motion is chaotic: perturbed starts spread by {}, and no smaller error has a meaning.\n",
-            significant(floor, 2)
-        );
+        text += &format!("The motion is chaotic: perturbed starts spread by {}.\n", significant(floor, 2));
     }
-    text.push('\n');
+    if !text.ends_with("\n\n") {
+        text.push('\n');
+    }
     let mut rows = MarkdownTable::new(&[
         ("Solver", Align::Left),
         ("Error of the measures", Align::Right),
         ("Worst", Align::Left),
         ("Events in the right order", Align::Right),
         ("Error of their times / T", Align::Right),
-        ("Median", Align::Right),
-        ("Shortest", Align::Right),
-        ("Runs", Align::Right),
+        ("Time", Align::Right),
     ]);
-    for point in &case.points {
+    let (shown, windows): (Vec<&Point>, Vec<&Point>) =
+        case.points.iter().partition(|point| !is_repeated(point.contender));
+    for point in shown {
         let of = point.events;
-        let runs = if point.times.settled {
-            point.times.runs.to_string()
-        } else {
-            format!("{}, not settled", point.times.runs)
-        };
+        let unsettled = if point.times.settled { "" } else { "*" };
         rows.row([
             name(point.contender),
             error(point.error),
             column_words(&words::of_key(&point.worst)),
             format!("{} of {}", of.right, of.of),
             of.error.map_or_else(String::new, error),
-            seconds(point.times.median),
-            seconds(point.times.least),
-            runs,
+            format!("{}{unsettled}", seconds(point.times.median)),
         ]);
     }
     text += &rows.finish();
+    if let Some(worst) = windows.iter().map(|point| point.error).reduce(f64::max) {
+        text += &format!("Event-driven in shorter search windows: error at most {}.\n", error(worst));
+    }
     for skipped in &case.skipped {
-        text += &format!("- Left out: {}; {}.\n", name(skipped.contender), skipped.reason);
+        text += &format!("Left out: {}; {}.\n", name(skipped.contender), skipped.reason);
     }
-    if !case.skipped.is_empty() {
-        text.push('\n');
-    }
+    text.push('\n');
     text
+}
+
+/// The same solver in windows that change nothing but its time.
+fn is_repeated(contender: Contender) -> bool {
+    matches!(contender, Contender::EventDriven { window_factor } if window_factor != 1.0)
 }
 
 /// `event-driven, windows × 0.5`; `fixed step 10 µs`.
@@ -141,18 +176,27 @@ pub(super) fn seconds(value: f64) -> String {
 /// The summary of all experiments that were measured.
 #[must_use]
 pub fn accuracy_summary(views: &[AccuracyView]) -> String {
-    let mut text = String::from(
-        "# What accuracy costs\n\n[All experiments](README.md) · written by `shotdamp accuracy --all`\n\n\
-         ![Error against time of every experiment](accuracy.svg)\n\n",
+    let mut text = format!(
+        "# What accuracy costs\n\n{}![Error against time of every experiment](accuracy.png)\n\n",
+        scatter::in_words(&scatter::points(views))
     );
+    text += "Each experiment is a point for the event-driven solver and one for the cheapest fixed step that would do; times are of \
+             one run in the mean over its cases that are not chaotic. Each grey line is the u_val of a number, relative: a run \
+             with an error below it is accurate enough for that verdict.\n\n";
     let mut machines: Vec<&Machine> = views.iter().map(|view| &view.machine).collect();
     machines.sort();
     machines.dedup();
+    text += "## How to read\n\nErrors are against the same model in arithmetic of 32 digits, by another method, unless a page says \
+             otherwise. Times are on one thread, the median of as many runs as it takes for it to settle (* where it did not). \
+             A time for a verdict is that of all runs that the entry depends on, at the mean time of a run. Where motion is chaotic, \
+             no error below the spread of perturbed starts has a meaning.\n\n";
+    text += "Written by `shotdamp accuracy --all`; with `--pages` again from the record of what was measured, with the verdicts as \
+             they are. Measured on: ";
     machines.into_iter().for_each(|machine| text += &describe(machine));
-    text += "The cheapest setting of each solver that reaches an error in every case of an experiment that is not chaotic, with \
-             its time over these cases. The event-driven solver has no setting that is less exact: its time is the price of \
-             all digits. Next digit: factor by which the fixed step's time grows for a tenth of the error; empty where no step tried \
-             gains a digit. ✗: no step tried reaches that error.\n\n";
+    text += "## Experiments\n\nThe cheapest setting of each solver that reaches an error in every case of an experiment that is not \
+             chaotic, with its time over these cases. The event-driven solver has no setting that is less exact: its time is \
+             the price of all digits. Next digit: factor by which the fixed step's time grows for a tenth of the error; empty \
+             where no step tried gains a digit. ✗: no step tried reaches that error.\n\n";
     let mut header = vec![("Experiment".to_owned(), Align::Left), ("Event-driven: error".into(), Align::Right)];
     header.push(("time".into(), Align::Right));
     header.extend(GOALS.iter().map(|(_, goal)| (format!("Fixed step: {goal}"), Align::Right)));
@@ -164,6 +208,7 @@ pub fn accuracy_summary(views: &[AccuracyView]) -> String {
         rows.row(row(view));
     }
     text += &rows.finish();
+    text += "[All reports](README.md)\n\n";
     let stand_ins: Vec<&AccuracyView> = views
         .iter()
         .filter(|view| view.accuracy.cases.iter().any(|case| matches!(case.origin, Origin::StandIn(_))))
@@ -188,9 +233,8 @@ fn row(view: &AccuracyView) -> Vec<String> {
     cells.push(exact.map_or_else(String::new, |of| seconds(of.time)));
     let steps = fixed_steps(&regular);
     for (goal, _) in GOALS {
-        let cheapest = steps.iter().filter(|(_, of)| of.error <= goal).min_by(|a, b| a.1.time.total_cmp(&b.1.time));
-        cells.push(match cheapest {
-            Some((step, of)) => format!("{} ({})", seconds(of.time), seconds(*step)),
+        cells.push(match cheapest(&steps, goal) {
+            Some((step, of)) => format!("{} ({})", seconds(of.time), seconds(step)),
             None if regular.is_empty() => String::new(),
             None => "✗".into(),
         });

@@ -1,61 +1,90 @@
-//! Measured errors and times to files: pictures, pages, the summary. Times differ from run to run, so that none of this stands
-//! in a file that is compared.
+//! Measured errors and times to files: a record of what was measured, and from it and the verdicts pages, pictures and summary,
+//! which can so be written again without measuring. Times differ from run to run, so that none of this stands in a file that
+//! is compared.
 
 use std::collections::BTreeMap;
 use std::fs;
 
-use super::measured::{Accuracy, CaseAccuracy, Contender};
-use super::page::{AccuracyView, DIVERGED, accuracy_page, accuracy_summary};
+use super::measured::{Accuracy, Contender};
+use super::page::{AccuracyView, DIVERGED, accuracy_page, accuracy_summary, case_name};
 use super::scatter::scatter;
 use super::verdict_price::VerdictPrice;
 use crate::atomic::{self, FileError};
 use crate::experiment::Experiment;
-use crate::figure::{Beside, Picture, draw, work_precision};
-use crate::measure::{SolverChoice, column_words};
+use crate::figure::{Beside, draw, work_precision};
+use crate::measure::SolverChoice;
 use crate::reference::Judged;
 use crate::study::{Layout, Machine, runs_of_a_row};
 use crate::table::{BASELINE, Column, Data, Table};
-use crate::text::number::compact;
 
 /// Smallest error that a logarithmic axis shows: what is exact to the last digit stands here.
 const LEAST: f64 = 1e-16;
 
-/// Where measurements wait for the summary, within the study.
-const MEASURED: &str = "results/accuracy";
+/// The record, within the study.
+const RECORD: &str = "reports/accuracy.json";
 
-/// Writes the page and the picture of one experiment, with what its verdicts cost, and keeps what was measured for the summary; returns the page.
+/// What was measured of an experiment, and where.
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Measured {
+    /// Where times were taken.
+    pub machine: Machine,
+    /// What was measured.
+    pub accuracy: Accuracy,
+}
+
+/// All that was measured so far, by experiment; what cannot be read counts as nothing.
+#[must_use]
+pub fn read_measured(layout: &Layout) -> BTreeMap<String, Measured> {
+    let bytes = fs::read(layout.path(RECORD)).unwrap_or_default();
+    serde_json::from_slice(&bytes).unwrap_or_default()
+}
+
+/// Adds what was measured of an experiment now to the record.
+///
+/// # Errors
+/// [`FileError`] if it cannot be written.
+pub fn keep_measured(layout: &Layout, experiment: &Experiment, accuracy: Accuracy) -> Result<(), FileError> {
+    let mut record = read_measured(layout);
+    record.insert(experiment.id.to_string(), Measured { machine: Machine::here(), accuracy });
+    let lines: Vec<String> = record
+        .iter()
+        .map(|(id, measured)| format!("\"{id}\": {}", serde_json::to_string(measured).unwrap_or_default()))
+        .collect();
+    atomic::write(&layout.path(RECORD), format!("{{\n{}\n}}\n", lines.join(",\n")).as_bytes())
+}
+
+/// What was measured of an experiment, beside the verdicts on it.
+#[must_use]
+pub fn accuracy_view(experiment: &Experiment, measured: Measured, judged: &[Judged]) -> AccuracyView {
+    let factor = runs_of_a_row(experiment);
+    AccuracyView {
+        id: experiment.id.to_string(),
+        title: experiment.title.clone(),
+        machine: measured.machine,
+        accuracy: measured.accuracy,
+        entries: judged.iter().map(|one| VerdictPrice::of(one, factor)).collect(),
+    }
+}
+
+/// Writes the page and the picture of one experiment; returns the page.
 ///
 /// # Errors
 /// [`FileError`] if a file cannot be written.
-pub fn publish_accuracy(
-    layout: &Layout,
-    experiment: &Experiment,
-    accuracy: Accuracy,
-    judged: &[Judged],
-) -> Result<String, FileError> {
-    let id = experiment.id.to_string();
-    let table = table(&accuracy);
-    let floors: Vec<f64> = accuracy.cases.iter().filter_map(|case| case.floor).collect();
+pub fn publish_accuracy(layout: &Layout, experiment: &Experiment, view: &AccuracyView) -> Result<String, FileError> {
+    let id = &view.id;
+    let table = table(&view.accuracy);
+    let floors: Vec<f64> = view.accuracy.cases.iter().filter_map(|case| case.floor).collect();
     let floor = floors.iter().copied().reduce(f64::min);
     let events = table.floats("event_error").is_some_and(|errors| errors.iter().any(|error| error.is_finite()));
     let seconds = table.floats("time").unwrap_or_default();
     let times = seconds.iter().fold([f64::INFINITY, 0.0], |[low, high], time| [time.min(low), time.max(high)]);
     // A diagram without a single error to show has no picture; the table says so.
     if let Ok(picture) = draw(experiment, &work_precision(times, floor, events), &table, Beside::default()) {
-        write_picture(layout, &format!("reports/accuracy/{id}"), &picture)?;
+        let path = layout.path(&format!("reports/accuracy/{id}.png"));
+        atomic::write_if_changed(&path, &picture.png)?;
     }
-    let factor = runs_of_a_row(experiment);
-    let view = AccuracyView {
-        id: id.clone(),
-        title: experiment.title.clone(),
-        machine: Machine::here(),
-        accuracy,
-        entries: judged.iter().map(|one| VerdictPrice::of(one, factor)).collect(),
-    };
-    let page = accuracy_page(&view, &format!("{id}.png"));
-    atomic::write(&layout.path(&format!("reports/accuracy/{id}.md")), page.as_bytes())?;
-    let kept = serde_json::to_vec(&view).unwrap_or_default();
-    atomic::write(&layout.path(&format!("{MEASURED}/{id}.json")), &kept)?;
+    let page = accuracy_page(view, &format!("{id}.png"));
+    atomic::write_if_changed(&layout.path(&format!("reports/accuracy/{id}.md")), page.as_bytes())?;
     Ok(page)
 }
 
@@ -63,42 +92,14 @@ pub fn publish_accuracy(
 ///
 /// # Errors
 /// [`FileError`] if it cannot be written.
-pub fn publish_accuracy_summary(layout: &Layout) -> Result<String, FileError> {
-    let mut views = BTreeMap::new();
-    for entry in fs::read_dir(layout.path(MEASURED)).into_iter().flatten().flatten() {
-        let bytes = fs::read(entry.path()).unwrap_or_default();
-        // What another version has left does not count.
-        if let Ok(view) = serde_json::from_slice::<AccuracyView>(&bytes) {
-            views.insert(view.id.clone(), view);
-        }
-    }
-    let views: Vec<AccuracyView> = views.into_values().collect();
+pub fn publish_accuracy_summary(layout: &Layout, views: &[AccuracyView]) -> Result<String, FileError> {
     // Nothing measured, nothing to show.
-    if let Ok(picture) = scatter(&views) {
-        write_picture(layout, "reports/accuracy", &picture)?;
+    if let Ok(picture) = scatter(views) {
+        atomic::write_if_changed(&layout.path("reports/accuracy.png"), &picture.png)?;
     }
-    let text = accuracy_summary(&views);
+    let text = accuracy_summary(views);
     atomic::write(&layout.path("reports/accuracy.md"), text.as_bytes())?;
     Ok(text)
-}
-
-/// A case by what sets it apart; by its number where nothing does.
-fn case_name(case: &CaseAccuracy, number: usize) -> String {
-    if case.description.is_empty() {
-        return format!("case {}", number + 1);
-    }
-    let part = |part: &str| {
-        let Some((name, value)) = part.split_once(" = ") else { return part.to_owned() };
-        let value = value.parse::<f64>().map_or_else(|_| value.to_owned(), |value| compact(value, 3));
-        format!("{} {value}", column_words(name))
-    };
-    case.description.split(", ").map(part).collect::<Vec<_>>().join(", ")
-}
-
-fn write_picture(layout: &Layout, stem: &str, picture: &Picture) -> Result<(), FileError> {
-    atomic::write_if_changed(&layout.path(&format!("{stem}.svg")), picture.svg.as_bytes())?;
-    atomic::write_if_changed(&layout.path(&format!("{stem}.png")), &picture.png)?;
-    Ok(())
 }
 
 /// A row a point, as the diagram wants it.

@@ -6,12 +6,12 @@ use crate::reference::{Comparison, Judged, Price, Verdict};
 use crate::text::number::{quantity, significant};
 use crate::text::words;
 
-use super::page::{Over, fixed_steps, name, seconds};
+use super::page::{Over, cheapest, fixed_steps, name, seconds};
 use crate::report::comparison::rests_on;
 use crate::report::markdown::{Align, MarkdownTable};
 
 /// An entry, as far as its price depends on it.
-#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct VerdictPrice {
     /// Its name without its experiment's.
     pub entry: String,
@@ -53,7 +53,7 @@ pub(super) fn section(entries: &[VerdictPrice], accuracy: &Accuracy) -> String {
         ("Verdict", Align::Left),
         ("u_val", Align::Right),
         ("Tolerance", Align::Right),
-        ("Rests on", Align::Right),
+        ("Depends on", Align::Right),
         ("Event-driven", Align::Right),
         ("Cheapest fixed step within the tolerance", Align::Left),
     ]);
@@ -74,11 +74,7 @@ pub(super) fn section(entries: &[VerdictPrice], accuracy: &Accuracy) -> String {
     if table.is_empty() {
         return table;
     }
-    format!(
-        "## What each verdict cost\n\nTime on one thread for the runs that an entry rests on, at what a run of the cases below \
-         takes in the mean. A fixed step counts as within the tolerance where the largest error of the measures in the cases that \
-         are not chaotic is no larger than the entry’s tolerance, both relative.\n\n{table}"
-    )
+    format!("## What each verdict cost\n\n{table}")
 }
 
 /// What a run takes in the mean over cases, s.
@@ -105,11 +101,10 @@ impl Rates {
     }
 
     fn cheapest(&self, tolerance: f64, runs: f64) -> String {
-        let within = self.steps.iter().filter(|(_, of)| of.error <= tolerance);
-        match within.min_by(|a, b| a.1.time.total_cmp(&b.1.time)) {
+        match cheapest(&self.steps, tolerance) {
             Some((time_step, of)) => {
                 let time = of.time / self.regular as f64 * runs;
-                format!("{}, {}", seconds(time), name(Contender::FixedStep { time_step: *time_step }))
+                format!("{}, {}", seconds(time), name(Contender::FixedStep { time_step }))
             }
             None if self.regular == 0 => "every case is chaotic".into(),
             None => "no step tried".into(),

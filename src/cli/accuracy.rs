@@ -1,5 +1,6 @@
 //! `shotdamp accuracy`: error against time.
 
+use std::collections::BTreeSet;
 use std::time::Duration;
 
 use rayon::prelude::*;
@@ -9,13 +10,20 @@ use super::error::CliError;
 use super::exit::Exit;
 use super::output::{print, print_error, print_unread};
 use super::select::{choose, open};
-use crate::accuracy::{Errors, errors, publish_accuracy, publish_accuracy_summary};
+use crate::accuracy::{
+    Errors, accuracy_view, errors, keep_measured, publish_accuracy, publish_accuracy_summary, read_measured,
+};
 use crate::dynamics::is_interrupted;
-use crate::report::judge_all;
-use crate::study::{Layout, RunError, Snapshot};
+use crate::report::{Judgement, judge_all};
+use crate::study::{Layout, RunError, Snapshot, Study};
 
 /// Error against time of the chosen experiments; of all of them, and of what was measured before, the summary.
 pub(super) fn measure(layout: &Layout, args: &AccuracyArgs) -> Result<Exit, CliError> {
+    if args.pages {
+        let study = open(layout)?;
+        publish(&study, &judge_all(&study), |_| true)?;
+        return Ok(Exit::AsExpected);
+    }
     if !args.all && args.patterns.is_empty() {
         return Err(CliError::NothingChosen("accuracy"));
     }
@@ -40,9 +48,10 @@ pub(super) fn measure(layout: &Layout, args: &AccuracyArgs) -> Result<Exit, CliE
         }
         match timed {
             Ok(accuracy) => {
-                let judged = judgement.verdicts.get(&experiment.id.0).map_or(&[][..], Vec::as_slice);
-                let page = publish_accuracy(layout, experiment, accuracy, judged)?;
-                print(&if args.all { format!("{}\n", experiment.id) } else { page })?;
+                keep_measured(layout, experiment, accuracy)?;
+                if args.all {
+                    print(&format!("{}\n", experiment.id))?;
+                }
             }
             // An experiment without a run has no price.
             Err(error) => {
@@ -53,11 +62,39 @@ pub(super) fn measure(layout: &Layout, args: &AccuracyArgs) -> Result<Exit, CliE
             }
         }
     }
-    let summary = publish_accuracy_summary(layout)?;
-    // The next run links the pages.
-    Snapshot::forget(layout)?;
+    let ids: BTreeSet<&str> = chosen.items.iter().map(|item| item.source.experiment.id.0.as_str()).collect();
+    let Published { pages, summary } = publish(&study, &judgement, |id| ids.contains(id))?;
     if args.all {
         print(&summary)?;
+    } else {
+        pages.iter().try_for_each(|page| print(page))?;
     }
     Ok(exit)
+}
+
+struct Published {
+    pages: Vec<String>,
+    summary: String,
+}
+
+/// Writes from what was measured the pages of the experiments that `chosen` admits, and the summary of all.
+fn publish(study: &Study, judgement: &Judgement, chosen: impl Fn(&str) -> bool) -> Result<Published, CliError> {
+    let layout = &study.layout;
+    let mut measured = read_measured(layout);
+    let (mut views, mut pages) = (Vec::new(), Vec::new());
+    for item in &study.items {
+        let experiment = &item.source.experiment;
+        let id = experiment.id.0.as_str();
+        let Some(measured) = measured.remove(id) else { continue };
+        let judged = judgement.verdicts.get(id).map_or(&[][..], Vec::as_slice);
+        let view = accuracy_view(experiment, measured, judged);
+        if chosen(id) {
+            pages.push(publish_accuracy(layout, experiment, &view)?);
+        }
+        views.push(view);
+    }
+    let summary = publish_accuracy_summary(layout, &views)?;
+    // The next run links the pages.
+    Snapshot::forget(layout)?;
+    Ok(Published { pages, summary })
 }

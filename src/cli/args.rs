@@ -272,6 +272,9 @@ pub(super) struct AccuracyArgs {
     /// All experiments, and the summary
     #[arg(long)]
     pub all: bool,
+    /// Measure nothing: write pages and pictures again from what was measured before, with the verdicts as they are
+    #[arg(long, conflicts_with_all = ["all", "patterns"])]
+    pub pages: bool,
     /// Longest run in seconds; smaller steps are skipped
     #[arg(long, value_name = "SECONDS", default_value_t = 2.0)]
     pub longest: f64,

@@ -26,8 +26,8 @@ use super::parabola::Parabola;
 use super::search::{Clarity, Found, Search};
 use super::signals::{self, Signals};
 use super::states::States;
-use super::system::{Contact, Event, EventKind, HybridSystem, Law, Tick, dot};
-use super::trace::Sample;
+use super::system::{Contact, Event, EventKind, HybridSystem, Law, Particle, Tick, dot};
+use super::trace::{Sample, SampledParticle};
 use super::visits::Visits;
 use super::{CycleRates, EngineError, Observed, Options, Proof, Response};
 use half_cycles::Half;
@@ -573,28 +573,28 @@ impl<'a, const TAPED: bool> March<'a, TAPED> {
                 value((&phases, rest))
             };
             let [displacement, velocity, acceleration] = anywhere(flow.rows.observed[0]);
-            let mut sample = Sample {
+            let sampled = |(j, particle): (usize, &Particle)| {
+                let contact = self.contacts[j];
+                let faces = [Side::Floor, Side::Ceiling].map(|side| anywhere(flow.rows.face(j, side))[0]);
+                let gap = match (contact.face(particle), flow.rows.faces[j].compression) {
+                    (None, _) => {
+                        let (phases, here) = (self.signals.of(flow.rows.guards[j].first).0, self.particles[j]);
+                        guards::fly(flow, self.paths[j], phases, here, &kernels, t).gap
+                    }
+                    (Some(_), Some(compression)) => anywhere(compression)[0],
+                    (Some(_), None) => self.particles[j].gap,
+                };
+                SampledParticle::new(particle, contact, faces, gap)
+            };
+            let sample = Sample {
                 time: self.cycle as f64 * period + instant,
                 displacement,
                 velocity,
                 acceleration,
                 damping: self.equivalent.or(self.damping.first().copied()).unwrap_or(0.0),
                 half_cycle_rms: self.half.last,
-                ..Sample::default()
+                particles: self.system.particles.iter().enumerate().map(sampled).collect(),
             };
-            if let Some(particle) = self.system.particles.first() {
-                let contact = self.contacts[0];
-                let faces = [Side::Floor, Side::Ceiling].map(|side| anywhere(flow.rows.face(0, side))[0]);
-                let gap = match (contact.face(particle), flow.rows.faces[0].compression) {
-                    (None, _) => {
-                        let (phases, here) = (self.signals.of(flow.rows.guards[0].first).0, self.particles[0]);
-                        guards::fly(flow, self.paths[0], phases, here, &kernels, t).gap
-                    }
-                    (Some(_), Some(compression)) => anywhere(compression)[0],
-                    (Some(_), None) => self.particles[0].gap,
-                };
-                sample.set_particle(particle, contact, faces, gap);
-            }
             self.response.trace.push(sample);
         }
     }

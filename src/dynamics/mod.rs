@@ -88,7 +88,7 @@ pub use sums::Sums;
 pub use system::{
     Contact, Drive, Event, EventKind, Face, HalfCycles, Harmonic, HybridSystem, Law, Matrix, Particle, Stop, Tick, dot,
 };
-pub use trace::{Sample, TraceRequest};
+pub use trace::{Sample, SampledParticle, TraceRequest};
 
 /// Changes whenever the same scene may give other bits. A test holds the bits of fixed scenes against it.
 pub const SOLVER_VERSION: u32 = 5;

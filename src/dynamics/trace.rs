@@ -30,8 +30,8 @@ impl TraceRequest {
     }
 }
 
-/// The motion at one instant. The particle is the first one; its faces are where they are, compressed or not.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+/// The motion at one instant.
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct Sample {
     /// s.
     pub time: f64,
@@ -41,8 +41,27 @@ pub struct Sample {
     pub velocity: f64,
     /// m/s².
     pub acceleration: f64,
+    /// Every particle between its faces, in the order of the system.
+    pub particles: Vec<SampledParticle>,
+    /// Contact damping in force on the first one, N s/m.
+    pub damping: f64,
+    /// RMS acceleration of the last complete half cycle, m/s².
+    pub half_cycle_rms: f64,
+}
+
+impl Sample {
+    /// The first particle; zeros without any.
+    #[must_use]
+    pub fn first(&self) -> SampledParticle {
+        self.particles.first().copied().unwrap_or_default()
+    }
+}
+
+/// A particle and its faces, which are where they are, compressed or not.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct SampledParticle {
     /// y, m.
-    pub particle: f64,
+    pub height: f64,
     /// Floor and ceiling surface, m.
     pub floor: f64,
     /// m.
@@ -51,29 +70,26 @@ pub struct Sample {
     pub rigid_floor: f64,
     /// m.
     pub rigid_ceiling: f64,
-    /// Contact damping in force, N s/m.
-    pub damping: f64,
-    /// RMS acceleration of the last complete half cycle, m/s².
-    pub half_cycle_rms: f64,
 }
 
-impl Sample {
-    /// Places particle and faces: `floor` and `ceiling` are φ·q of each, `gap` is measured from the one the contact refers to.
-    pub(crate) fn set_particle(&mut self, particle: &Particle, contact: Contact, [floor, ceiling]: [f64; 2], gap: f64) {
+impl SampledParticle {
+    /// `floor` and `ceiling` are φ·q of each, `gap` is measured from the one the contact refers to.
+    pub(crate) fn new(particle: &Particle, contact: Contact, [floor, ceiling]: [f64; 2], gap: f64) -> Self {
         let side = contact.side();
-        let height = if particle.ceiling.is_some() { particle.gap } else { f64::NAN };
-        (self.rigid_floor, self.rigid_ceiling) = (floor, ceiling + height);
-        self.particle = match side {
+        let clearance = if particle.ceiling.is_some() { particle.gap } else { f64::NAN };
+        let (rigid_floor, rigid_ceiling) = (floor, ceiling + clearance);
+        let height = match side {
             Side::Floor => floor + gap,
             Side::Ceiling => ceiling + particle.gap + gap,
         };
-        (self.floor, self.ceiling) = (self.rigid_floor, self.rigid_ceiling);
+        let mut sampled = Self { height, floor: rigid_floor, ceiling: rigid_ceiling, rigid_floor, rigid_ceiling };
         let resilient = contact.face(particle).is_some_and(|face| matches!(face.law, Law::Resilient { .. }));
         if resilient {
             match side {
-                Side::Floor => self.floor = self.particle,
-                Side::Ceiling => self.ceiling = self.particle,
+                Side::Floor => sampled.floor = height,
+                Side::Ceiling => sampled.ceiling = height,
             }
         }
+        sampled
     }
 }

@@ -6,6 +6,8 @@
 //! source: {type: Thesis, name: A dissertation on dampers}                  # what it reproduces
 //! chapters: {3: one mass, 4: beam}                                         # of what it reproduces, by number
 //! colours: {light: blue, heavy: vermilion}                                 # of lines of that name, in every figure
+//! findings:                                                                # its conclusions, and the entries that decide them
+//!   - {says: One damper beats several., entries: [beam-count/one-best]}
 //! ```
 
 use std::collections::BTreeMap;
@@ -13,7 +15,7 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use super::diagnostic::{Findings, Problems};
-use super::reader::{Fields, no_such, text, word};
+use super::reader::{Fields, list, no_such, text, word};
 use super::word::words;
 use super::yaml::{Entry, Node, Value, read_tree};
 
@@ -30,6 +32,17 @@ pub struct AboutStudy {
     pub chapters: BTreeMap<u32, String>,
     /// Colours of lines by name, so that they are the same in every figure.
     pub colours: BTreeMap<String, LineColour>,
+    /// What it concludes.
+    pub findings: Vec<Finding>,
+}
+
+/// A conclusion of the publication.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Finding {
+    /// In a sentence. Markdown.
+    pub says: String,
+    /// Ids of the entries whose verdicts decide it.
+    pub entries: Vec<String>,
 }
 
 /// A publication.
@@ -103,6 +116,7 @@ fn read_about(node: &Node, findings: &Findings) -> Option<AboutStudy> {
     let source = fields.optional("source", |node| read_publication(node, findings));
     let chapters = fields.optional("chapters", |node| read_chapters(node, findings));
     let colours = fields.optional("colours", |node| read_colours(node, findings));
+    let concluded = fields.optional("findings", |node| list(node, findings, |node| read_finding(node, findings)));
     fields.close()?;
     Some(AboutStudy {
         title: title?,
@@ -110,7 +124,16 @@ fn read_about(node: &Node, findings: &Findings) -> Option<AboutStudy> {
         source: source?,
         chapters: chapters?.unwrap_or_default(),
         colours: colours?.unwrap_or_default(),
+        findings: concluded?.unwrap_or_default(),
     })
+}
+
+fn read_finding(node: &Node, findings: &Findings) -> Option<Finding> {
+    let fields = Fields::open(node, "a finding", findings)?;
+    let says = fields.required("says", |node| text(node, findings));
+    let entries = fields.required("entries", |node| list(node, findings, |node| text(node, findings)));
+    fields.close()?;
+    Some(Finding { says: says?, entries: entries? })
 }
 
 fn read_publication(node: &Node, findings: &Findings) -> Option<Publication> {

@@ -4,7 +4,7 @@ use super::recipe::{GapWord, Parameter};
 
 use super::definition::Maximise;
 use super::word::word_of;
-use crate::measure::{Measure, PROOF, trace_columns};
+use crate::measure::{Measure, PROOF, of_another_damper, trace_columns};
 
 /// What a column holds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -21,7 +21,7 @@ pub(super) enum Role {
 const OUTCOME: [&str; 4] = ["fitness_in_search", "improvement", "improvement_num", "evaluations"];
 
 /// Names of the lists of an optimisation: the best fitness after so many evaluations, and the fitness along one gap.
-const SEARCHES: [&str; 4] = ["evaluation", "best_so_far", "along_gap", "fitness_along"];
+const SEARCHES: [&str; 5] = ["evaluation", "best_so_far", "along_gap", "fitness_along", "fitness_along_spread"];
 
 /// Columns with what they hold, in the order of the table.
 pub(super) struct Columns {
@@ -79,7 +79,9 @@ impl Columns {
 
     /// What the column `name` holds, if there is one.
     pub fn role(&self, name: &str) -> Option<Role> {
-        self.list.iter().find(|(column, _)| column == name).map(|(_, role)| *role)
+        let role = |name: &str| self.list.iter().find(|(column, _)| column == name).map(|(_, role)| *role);
+        // How many dampers a row has is known when it is drawn.
+        role(name).or_else(|| role(of_another_damper(name)?))
     }
 
     /// All names.
@@ -89,6 +91,6 @@ impl Columns {
 
     /// True for a name that a kept time history would have.
     pub fn is_history(name: &str) -> bool {
-        trace_columns().contains(&name)
+        trace_columns().contains(&of_another_damper(name).unwrap_or(name))
     }
 }

@@ -38,7 +38,7 @@ mod validate;
 mod word;
 mod yaml;
 
-pub use about_study::{AboutStudy, LineColour, Publication, PublicationKind, parse_study};
+pub use about_study::{AboutStudy, Finding, LineColour, Publication, PublicationKind, parse_study};
 pub use assumption_reader::parse_assumptions;
 pub use assumption_sheet::{
     ASSUMPTIONS, AssumptionEntry, AssumptionKind, AssumptionSheet, Cycles, Moved, Quantity, Takes,

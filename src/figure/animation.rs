@@ -1,4 +1,4 @@
-//! An animation of runs: the enclosure and its particle as they move, beside their paths with a cursor, slowed down.
+//! An animation of runs: each enclosure and its particle as they move, beside their paths with a cursor, slowed down.
 //!
 //! The motion is CSS within the SVG: a part of the drawing follows keyframes of its path, the fewest from which the path departs
 //! by less than a pixel. It stands still where the reader wants less motion, and in a picture of pixels.
@@ -15,9 +15,10 @@ use super::label;
 use super::line::Source;
 use super::style::{
     BLUE_INK, CURVE, Color, FRAME, GREY, GRID, GUIDE, INK, LABEL_TEXT, LEGEND_TEXT, Look, NOTE_TEXT, PALE, SPACE,
-    TICK_TEXT, VERMILION, WIDTH,
+    TICK_TEXT, WIDTH,
 };
 use crate::experiment::{AnimationSpec, AxisScale};
+use crate::measure::column_of_damper;
 use crate::table::Data;
 
 /// Height of a row, and of what stands above and below its frames.
@@ -28,6 +29,8 @@ const BELOW: f64 = 110.0;
 const MODEL: [f64; 2] = [70.0, 430.0];
 const PATHS: [f64; 2] = [620.0, 1400.0];
 const PARTICLE: f64 = 26.0;
+/// Between the enclosures of an array.
+const BETWEEN: f64 = 18.0;
 /// How long it plays at least, s.
 const PLAYS: f64 = 8.0;
 /// How far a keyframe's straight stretches may be from the path, in pixels.
@@ -37,13 +40,20 @@ const DEVIATION: f64 = 0.6;
 struct Run {
     title: String,
     time: Vec<f64>,
-    /// Where the enclosure's floor would be without its spring.
+    dampers: Vec<Damper>,
+}
+
+/// An enclosure and its particle.
+struct Damper {
+    /// Where the floor would be without its spring.
     base: Vec<f64>,
     floor: Vec<f64>,
     ceiling: Vec<f64>,
     particle: Vec<f64>,
     /// Between the faces at rest; not finite without a ceiling.
     gap: f64,
+    /// Of the particle: in an array each has its own.
+    color: Color,
 }
 
 /// The SVG of the rows that the figure draws.
@@ -54,7 +64,8 @@ pub(super) fn animation(
 ) -> Result<String, FigureError> {
     let runs = runs(source, spec)?;
     let nothing = || FigureError::Nothing { figure: source.figure.to_owned() };
-    let heights = runs.iter().flat_map(|run| [&run.base, &run.floor, &run.ceiling, &run.particle]).flatten().copied();
+    let dampers = runs.iter().flat_map(|run| &run.dampers);
+    let heights = dampers.flat_map(|it| [&it.base, &it.floor, &it.ceiling, &it.particle]).flatten().copied();
     let y = Axis::new(AxisScale::Linear, Extent::of(heights, AxisScale::Linear).ok_or_else(nothing)?, Room::Airy, "m");
     let mut style = String::new();
     let rows = f64::from(u32::try_from(runs.len()).unwrap_or(1));
@@ -91,16 +102,25 @@ fn runs(source: Source<'_>, spec: &AnimationSpec) -> Result<Vec<Run>, FigureErro
                 let Data::FloatList(cells) = &source.column(name)?.data else { return Ok(Vec::new()) };
                 Ok(cells.get(row).cloned().unwrap_or_default())
             };
-            let (base, rigid_ceiling) = (list("rigid_floor")?, list("rigid_ceiling")?);
-            let gap = base.first().zip(rigid_ceiling.first()).map_or(f64::NAN, |(floor, ceiling)| ceiling - floor);
+            let moving = |name: &str, index: usize| list(&column_of_damper(name, index));
+            let count = (1..).take_while(|index| moving("rigid_floor", *index).is_ok_and(|path| !path.is_empty()));
+            let count = 1 + count.count();
+            let damper = |index: usize| {
+                let (base, rigid_ceiling) = (moving("rigid_floor", index)?, moving("rigid_ceiling", index)?);
+                let gap = base.first().zip(rigid_ceiling.first()).map_or(f64::NAN, |(floor, ceiling)| ceiling - floor);
+                Ok(Damper {
+                    floor: moving("floor_displacement", index)?,
+                    ceiling: moving("ceiling_displacement", index)?,
+                    particle: moving("particle_displacement", index)?,
+                    base,
+                    gap,
+                    color: particle_color(index),
+                })
+            };
             let run = Run {
                 title: group.varying_words(&groups).join(", "),
                 time: list("time")?,
-                floor: list("floor_displacement")?,
-                ceiling: list("ceiling_displacement")?,
-                particle: list("particle_displacement")?,
-                base,
-                gap,
+                dampers: (0..count).map(damper).collect::<Result<_, FigureError>>()?,
             };
             if run.time.len() > 1 {
                 runs.push(run);
@@ -136,7 +156,7 @@ impl Row<'_> {
         let clock = Clock { first, last, plays: slow * (last - first) };
         let slowed = if slow > 1.0 { format!("slowed {slow} times") } else { "as fast as it is".to_owned() };
         let title = if run.title.is_empty() { slowed } else { format!("{}, {slowed}", run.title) };
-        write(sheet, Point { x: MODEL[0], y: self.top + ABOVE / 2.0 }, &title, LEGEND_TEXT, Anchor::Left, INK);
+        write(sheet, Point { x: MODEL[0], y: self.top + LEGEND_TEXT }, &title, LEGEND_TEXT, Anchor::Left, INK);
         self.axes(sheet, &frame, &x);
         for at in self.impulses.into_iter().flat_map(|period| moments(period, first, last)) {
             let at = frame.at(x.share_clamped(at), 0.0);
@@ -149,12 +169,12 @@ impl Row<'_> {
             for (name, path, color) in run.paths() {
                 let place = |(t, y): (&f64, &f64)| frame.at(x.share_clamped(*t), self.y.share_clamped(*y));
                 let points: Vec<Point> = run.time.iter().zip(path).map(place).collect();
-                sheet.group(&Attributes::name(name), || sheet.line(&points, Pen::solid(color, 0.7 * CURVE)));
+                sheet.group(&Attributes::name(&name), || sheet.line(&points, Pen::solid(color, 0.7 * CURVE)));
             }
         });
-        for (name, _, color) in run.paths() {
-            write(sheet, at, name, LEGEND_TEXT, Anchor::Left, color);
-            at.x += super::canvas::text_width(name, LEGEND_TEXT) + 3.0 * SPACE;
+        for (name, color) in run.legend() {
+            write(sheet, at, &name, LEGEND_TEXT, Anchor::Left, color);
+            at.x += super::canvas::text_width(&name, LEGEND_TEXT) + 3.0 * SPACE;
         }
         let across = [(first, 0.0), (last, frame.width())];
         let cursor = Frames { axis: 'X', offsets: across.map(|(x, y)| Point { x, y }).to_vec() };
@@ -162,21 +182,31 @@ impl Row<'_> {
             let ends = [frame.at(0.0, 0.0), frame.at(0.0, 1.0)];
             sheet.line(&ends, Pen::solid(INK, GUIDE));
         });
-        self.model(sheet, run, &clock, style);
+        self.models(sheet, run, &clock, style);
     }
 
-    /// The enclosure, its faces and the particle, at the heights of their paths.
-    fn model(&self, sheet: &Sheet, run: &Run, clock: &Clock, style: &mut String) {
-        let [left, right] = MODEL;
+    /// The enclosures side by side, their faces and particles, at the heights of their paths.
+    fn models(&self, sheet: &Sheet, run: &Run, clock: &Clock, style: &mut String) {
+        let count = f64::from(u32::try_from(run.dampers.len()).unwrap_or(1));
+        let width = (MODEL[1] - MODEL[0] - BETWEEN * (count - 1.0)) / count;
+        for (index, damper) in (0_u32..).zip(&run.dampers) {
+            let left = MODEL[0] + f64::from(index) * (width + BETWEEN);
+            let number = if run.dampers.len() > 1 { format!("-{}", index + 1) } else { String::new() };
+            self.model(sheet, &Model { left, right: left + width, number, time: &run.time, damper }, clock, style);
+        }
+    }
+
+    fn model(&self, sheet: &Sheet, model: &Model<'_>, clock: &Clock, style: &mut String) {
+        let Model { left, right, ref number, time, damper } = *model;
         let follow = |path: &[f64]| {
             let from = self.up(path[0]);
             let offset = |(t, y): (&f64, &f64)| Point { x: *t, y: self.up(*y) - from };
-            Frames { axis: 'Y', offsets: run.time.iter().zip(path).map(offset).collect() }
+            Frames { axis: 'Y', offsets: time.iter().zip(path).map(offset).collect() }
         };
-        let closed = run.gap.is_finite();
-        let floor = self.up(run.base[0]);
-        let ceiling = if closed { self.up(run.base[0] + run.gap) } else { self.frame(PATHS).top };
-        self.moving(sheet, style, "base", clock, &follow(&run.base), || {
+        let closed = damper.gap.is_finite();
+        let floor = self.up(damper.base[0]);
+        let ceiling = if closed { self.up(damper.base[0] + damper.gap) } else { self.frame(PATHS).top };
+        self.moving(sheet, style, &format!("base{number}"), clock, &follow(&damper.base), || {
             let wall = |x: f64| [Point { x, y: floor }, Point { x, y: ceiling }];
             for side in [wall(left), wall(right)] {
                 sheet.line(&side, Pen::solid(GREY, 1.6 * CURVE));
@@ -185,18 +215,23 @@ impl Row<'_> {
                 sheet.line(&[Point { x: left, y }, Point { x: right, y }], Pen::solid(GREY, 1.6 * CURVE));
             }
         });
-        let faces = [("floor", &run.floor, floor_color()), ("ceiling", &run.ceiling, ceiling_color())];
+        let inset = (right - left) / 12.0;
+        let faces = [("floor", &damper.floor, floor_color()), ("ceiling", &damper.ceiling, ceiling_color())];
         for (name, path, color) in faces.into_iter().take(if closed { 2 } else { 1 }) {
             let y = self.up(path[0]);
-            self.moving(sheet, style, name, clock, &follow(path), || {
-                sheet
-                    .line(&[Point { x: left + 30.0, y }, Point { x: right - 30.0, y }], Pen::solid(color, 1.6 * CURVE));
+            self.moving(sheet, style, &format!("{name}{number}"), clock, &follow(path), || {
+                let ends = [Point { x: left + inset, y }, Point { x: right - inset, y }];
+                sheet.line(&ends, Pen::solid(color, 1.6 * CURVE));
             });
         }
-        let centre = Point { x: (left + right) / 2.0, y: self.up(run.particle[0]) };
-        self.moving(sheet, style, "particle", clock, &follow(&run.particle), || {
-            sheet.disc(centre, PARTICLE, VERMILION);
+        let centre = Point { x: (left + right) / 2.0, y: self.up(damper.particle[0]) };
+        self.moving(sheet, style, &format!("particle{number}"), clock, &follow(&damper.particle), || {
+            sheet.disc(centre, PARTICLE.min((right - left) / 4.0), damper.color);
         });
+        if !number.is_empty() {
+            let at = Point { x: centre.x, y: self.frame(PATHS).bottom + SPACE + TICK_TEXT / 2.0 };
+            write(sheet, at, number.trim_start_matches('-'), TICK_TEXT, Anchor::Centre, INK);
+        }
     }
 
     fn axes(&self, sheet: &Sheet, frame: &Rect, x: &Axis) {
@@ -236,16 +271,45 @@ impl Row<'_> {
     }
 }
 
+/// Where an enclosure is drawn.
+struct Model<'a> {
+    left: f64,
+    right: f64,
+    /// Ends the names of its parts, in an array.
+    number: String,
+    time: &'a [f64],
+    damper: &'a Damper,
+}
+
 impl Run {
     /// The paths to draw, with their names.
-    fn paths(&self) -> impl Iterator<Item = (&'static str, &[f64], Color)> {
-        let all = [
-            ("floor", self.floor.as_slice(), floor_color()),
-            ("ceiling", &self.ceiling, ceiling_color()),
-            ("particle", &self.particle, VERMILION),
-        ];
-        let closed = self.gap.is_finite();
-        all.into_iter().filter(move |(name, ..)| closed || *name != "ceiling")
+    fn paths(&self) -> Vec<(String, &[f64], Color)> {
+        let numbered = |name: &str, index: usize| match self.dampers.len() {
+            1 => name.to_owned(),
+            _ => format!("{name} {}", index + 1),
+        };
+        let mut paths = Vec::new();
+        for (index, damper) in self.dampers.iter().enumerate() {
+            paths.push((numbered("floor", index), damper.floor.as_slice(), floor_color()));
+            if damper.gap.is_finite() {
+                paths.push((numbered("ceiling", index), &damper.ceiling, ceiling_color()));
+            }
+            paths.push((numbered("particle", index), &damper.particle, damper.color));
+        }
+        paths
+    }
+
+    /// Names of what has a colour.
+    fn legend(&self) -> Vec<(String, Color)> {
+        if let [_] = self.dampers.as_slice() {
+            return self.paths().into_iter().map(|(name, _, color)| (name, color)).collect();
+        }
+        let closed = self.dampers.iter().any(|damper| damper.gap.is_finite());
+        let faces = [("floors", floor_color()), ("ceilings", ceiling_color())];
+        let faces = faces.into_iter().take(if closed { 2 } else { 1 }).map(|(name, color)| (name.to_owned(), color));
+        let number = |index: usize| if index == 0 { "particle 1".to_owned() } else { (index + 1).to_string() };
+        let particles = self.dampers.iter().enumerate();
+        faces.chain(particles.map(|(index, damper)| (number(index), damper.color))).collect()
     }
 }
 
@@ -281,6 +345,13 @@ impl Frames {
 fn moments(period: f64, first: f64, last: f64) -> impl Iterator<Item = f64> {
     let start = (first / period).ceil();
     (0..64_u8).map(move |n| (start + f64::from(n)) * period).take_while(move |at| *at <= last)
+}
+
+/// Colours of the particles of an array, none of them that of a face.
+const PARTICLES: [usize; 5] = [1, 3, 4, 5, 6];
+
+fn particle_color(index: usize) -> Color {
+    Look::new(PARTICLES[index % PARTICLES.len()], 1, 0).color
 }
 
 fn floor_color() -> Color {

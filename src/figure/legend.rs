@@ -93,7 +93,8 @@ impl Legend {
             entries.push(Entry { sign: Sign::Quoted, text: "study ± 2 u_val".into() });
         }
         if quoted.iter().any(|one| !one.is_point() && one.tolerance.is_some()) {
-            entries.push(Entry { sign: Sign::Tolerance, text: "study ± 2 u_val".into() });
+            let text = if points { "place or level ± 2 u_val" } else { "study ± 2 u_val" };
+            entries.push(Entry { sign: Sign::Tolerance, text: text.into() });
         }
         Self { entries, indent: 0.0 }
     }

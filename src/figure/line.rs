@@ -28,6 +28,12 @@ impl Sample {
         Self { x, y, band: [y, y] }
     }
 
+    /// Within its spread, if that is known.
+    fn within(x: f64, y: f64, spread: Option<f64>) -> Self {
+        let spread = spread.filter(|spread| spread.is_finite()).unwrap_or(0.0);
+        Self { x, y, band: [y - spread, y + spread] }
+    }
+
     /// Between two stretches of one line.
     fn gap() -> Self {
         Self::bare(f64::NAN, f64::NAN)
@@ -121,7 +127,7 @@ pub(super) fn curves(source: Source<'_>, panel: &Panel) -> Result<Vec<Curve>, Fi
     let mut curves = Vec::new();
     for (index, axis) in panel.y.iter().enumerate() {
         let y = source.column(&axis.column)?;
-        let spread = source.table.floats(&format!("{}_spread", y.name)).filter(|_| panel.band == Band::Spread);
+        let spread = source.table.column(&format!("{}_spread", y.name)).filter(|_| panel.band == Band::Spread);
         // Only what shows takes a colour.
         let shown: Vec<&Group> = groups.iter().filter(|group| group.rows.iter().any(|&row| holds(y, row))).collect();
         for group in &groups {
@@ -142,7 +148,7 @@ pub(super) fn curves(source: Source<'_>, panel: &Panel) -> Result<Vec<Curve>, Fi
                     curve.samples = searches::median(&searches);
                     curve.seeds = searches.len();
                 }
-                _ => fill(&mut curve, source.figure, x, y, spread.as_deref(), &group.rows)?,
+                _ => fill(&mut curve, source.figure, x, y, spread, &group.rows)?,
             }
             if curve.shows() {
                 curves.push(curve);
@@ -184,7 +190,7 @@ fn fill(
     figure: &str,
     x: &Column,
     y: &Column,
-    spread: Option<&[f64]>,
+    spread: Option<&Column>,
     rows: &[usize],
 ) -> Result<(), FigureError> {
     match (&x.data, &y.data) {
@@ -195,7 +201,12 @@ fn fill(
         (Data::FloatList(times), Data::FloatList(values)) => {
             for (&row, last) in rows.iter().zip((0..rows.len()).rev()) {
                 let history = times.get(row).into_iter().flatten().zip(values.get(row).into_iter().flatten());
-                curve.samples.extend(history.map(|(&x, &y)| Sample::bare(x, y)));
+                let spreads = match spread.map(|spread| &spread.data) {
+                    Some(Data::FloatList(cells)) => cells.get(row).map_or(&[][..], Vec::as_slice),
+                    _ => &[],
+                };
+                let sample = |(at, (&x, &y)): (usize, (&f64, &f64))| Sample::within(x, y, spreads.get(at).copied());
+                curve.samples.extend(history.enumerate().map(sample));
                 if last > 0 {
                     curve.samples.push(Sample::gap());
                 }
@@ -208,9 +219,8 @@ fn fill(
         _ => {
             for &row in rows {
                 let (Some(at), Some(y)) = (number(x, row), number(y, row)) else { continue };
-                let spread = spread.and_then(|cells| cells.get(row)).copied().filter(|s| s.is_finite()).unwrap_or(0.0);
                 if at.is_finite() {
-                    curve.samples.push(Sample { x: at, y, band: [y - spread, y + spread] });
+                    curve.samples.push(Sample::within(at, y, spread.and_then(|spread| number(spread, row))));
                 } else if at == f64::INFINITY && y.is_finite() {
                     let label = label::of_cell(x, row).unwrap_or_default();
                     curve.at_infinity = Some(AtInfinity { y, label });

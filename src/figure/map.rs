@@ -48,6 +48,14 @@ pub(super) struct Map<'a> {
     value_unit: String,
 }
 
+/// The largest standard deviation of an ensemble over its mean, where some motion is chaotic.
+fn largest_spread(source: Source<'_>, value: &Column) -> Option<f64> {
+    let spread = source.table.column(&format!("{}_spread", value.name))?;
+    let share = |row: usize| Some((number(spread, row)? / number(value, row)?).abs());
+    let shares = (0..source.table.rows()).filter_map(share);
+    shares.filter(|share| share.is_finite() && *share > 0.0).reduce(f64::max)
+}
+
 impl<'a> Map<'a> {
     pub(super) fn new(source: Source<'_>, spec: &'a MapSpec) -> Result<Self, FigureError> {
         let columns = Columns {
@@ -95,6 +103,8 @@ impl<'a> Map<'a> {
         let steps = if smooth { Steps::Bands } else { Steps::Smooth };
         let shades = Shades::new(spec.value.scale, extent, spec.centre, &columns.value.unit, steps);
         let value_name = source.label(&spec.value)?;
+        let spread = largest_spread(source, columns.value)
+            .map_or_else(String::new, |spread| format!(", s.d. at most {} %", compact(100.0 * spread, 2)));
         let best_word = if spec.best == Best::Lowest { "lowest" } else { "highest" };
         let (x_name, y_name) = (source.label(&spec.x)?, source.label(&spec.y)?);
         Ok(Self {
@@ -103,7 +113,7 @@ impl<'a> Map<'a> {
             y_label: label::with_unit(&y_name, &y.unit),
             x_name,
             y_name,
-            value_label: label::with_unit(&value_name, &shades.axis.unit),
+            value_label: label::with_unit(&value_name, &shades.axis.unit) + &spread,
             best_label: format!("{best_word} {value_name}"),
             panels,
             x,

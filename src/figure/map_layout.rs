@@ -42,7 +42,7 @@ impl MapLayout {
             let (x_ticks, y_ticks) = (map.x.ticks(most), map.y.ticks(most));
             let left = 3.0 * SPACE + line_height() + widest(&y_ticks);
             // Numbers at the ends of neighbouring axes hang over, each by half its width.
-            let gap = widest(&x_ticks) + SPACE;
+            let gap = widest(&x_ticks) + 2.5 * SPACE;
             let width = (WIDTH - left - right - gap * as_f64(columns - 1)) / as_f64(columns);
             (x_ticks, y_ticks, left, gap, width)
         };

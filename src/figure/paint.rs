@@ -148,7 +148,8 @@ fn peak_marks(sheet: &Sheet, panel: &Panel<'_>, frame: &Rect, taken: &mut Obstac
                 let (x, y) = (at.x + right, at.y - up);
                 Rect { left: x - width / 2.0, top: y - half, right: x + width / 2.0, bottom: y + half }
             });
-            let within = |place: &Rect| place.left > frame.left && place.right < frame.right && place.top > frame.top;
+            let room = frame.grown(-SPACE / 2.0);
+            let within = |place: &Rect| place.left > room.left && place.right < room.right && place.top > room.top;
             let free = place.into_iter().find(|place| within(place) && taken.leave_free(&place.grown(2.0)));
             taken.boxes.push(Rect { left: at.x, top: at.y, right: at.x, bottom: at.y }.grown(1.2 * MARKER));
             if let Some(place) = free {

@@ -21,6 +21,9 @@ const MOST_Y_TICKS: u32 = 6;
 /// The smallest spread that shows as a band, as a share of the axis: about the width of a curve.
 const VISIBLE_SPREAD: f64 = 0.004;
 
+/// The shortest contact that shows as a bar, as a share of the axis.
+const VISIBLE_CONTACT: f64 = 0.002;
+
 /// Room for the numbers at peaks, as a share of the axis.
 const PEAK_ROOM: f64 = 0.07;
 
@@ -115,7 +118,8 @@ impl<'a> Panel<'a> {
         let mut legend = Legend::new(&curves, spec, band, &quoted);
         let contacts = contacts(source, spec)?;
         let impulses = beside.impulses.filter(|_| !contacts.is_empty());
-        legend.name_instants(!contacts.is_empty(), impulses.is_some());
+        let visible = VISIBLE_CONTACT * (x_reach.extent.largest - x_reach.extent.least);
+        legend.name_instants(contacts.iter().any(|contact| contact.to - contact.from > visible), impulses.is_some());
         let mut y_extent = quoted.iter().filter_map(|one| one.y()).fold(y_extent, |extent, y| extent.with(y, y_scale));
         for guide in &spec.guides {
             // Beside other lines a guide is named in the legend, where it needs no room of its own.

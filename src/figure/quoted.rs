@@ -175,9 +175,9 @@ impl Quoted {
                 .collect(),
             QuotedAt::Point { .. } => {
                 let away = QUOTED + SPACE / 2.0;
-                let ring = [(0.0, 0.0), (1.0, 0.0), (-1.0, 0.0), (1.5, 0.0), (-1.5, 0.0), (2.5, 0.0), (-2.5, 0.0)];
-                let beside = ring
-                    .map(|(down, _)| [at.x + away, at.x - away - width].map(|x| about(x, at.y + down * 2.0 * half)));
+                let rows = [0.0, 1.0, -1.0, 1.5, -1.5, 2.5, -2.5, 3.5, -3.5, 4.5, -4.5];
+                let beside =
+                    rows.map(|down| [at.x + away, at.x - away - width].map(|x| about(x, at.y + down * 2.0 * half)));
                 let above = [-1.0, 1.0, -2.0, 2.0].map(|down| about(at.x - width / 2.0, at.y + down * (away + half)));
                 beside.into_iter().flatten().chain(above).collect()
             }

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::evaluate::decay;
-use crate::dynamics::{Event, EventKind, Response, Sample};
+use crate::dynamics::{Event, EventKind, Response, Sample, SampledParticle};
 use crate::scene::Scene;
 
 /// A response with a trace, and the scene it is of.
@@ -29,7 +29,7 @@ impl History<'_> {
             .trace
             .windows(2)
             .filter(|pair| rises_then_falls(pair))
-            .map(|pair| crest(pair[0], pair[1]))
+            .map(|pair| crest(&pair[0], &pair[1]))
             .collect()
     }
 
@@ -56,11 +56,16 @@ impl History<'_> {
     }
 
     pub(super) fn floor_compression(&self) -> f64 {
-        self.response.trace.iter().fold(0.0, |deepest, sample| f64::max(deepest, sample.rigid_floor - sample.floor))
+        self.deepest(|it| it.rigid_floor - it.floor)
     }
 
     pub(super) fn ceiling_compression(&self) -> f64 {
-        self.response.trace.iter().fold(0.0, |deepest, sample| f64::max(deepest, sample.ceiling - sample.rigid_ceiling))
+        self.deepest(|it| it.ceiling - it.rigid_ceiling)
+    }
+
+    /// Of the first particle.
+    fn deepest(&self, depth: fn(SampledParticle) -> f64) -> f64 {
+        self.response.trace.iter().fold(0.0, |deepest, sample| f64::max(deepest, depth(sample.first())))
     }
 
     /// Shortest time between the start of a forcing cycle and an event of this kind, s; infinite if there is none. A scheme with
@@ -73,7 +78,7 @@ impl History<'_> {
     }
 }
 
-fn crest(a: Sample, b: Sample) -> Peak {
+fn crest(a: &Sample, b: &Sample) -> Peak {
     let h = b.time - a.time;
     let hermite = |s: f64| {
         let (p, q) = (1.0 - s, s);

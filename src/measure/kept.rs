@@ -3,7 +3,7 @@
 
 use super::energy::Energies;
 use super::{Evaluated, ShapeOf, ShapeSpec, TraceColumn};
-use crate::dynamics::Sample;
+use crate::dynamics::{Sample, SampledParticle};
 
 /// A column: its name, its unit, and its number.
 pub(super) struct Kept<F> {
@@ -19,16 +19,25 @@ const fn kept<F>(name: &'static str, unit: &'static str, of: F) -> Kept<F> {
 /// Of a sample of the time history, under this gravity.
 type OfSample = fn(&Sample, f64) -> f64;
 
-const TRACE: [Kept<OfSample>; 11] = [
+const STRUCTURE: [Kept<OfSample>; 4] = [
     kept("time", "s", |s, _| s.time),
     kept("base_displacement", "m", |s, _| s.displacement),
     kept("base_velocity", "m/s", |s, _| s.velocity),
     kept("base_acceleration", "m/s²", |s, _| s.acceleration),
-    kept("particle_displacement", "m", |s, _| s.particle),
-    kept("floor_displacement", "m", |s, _| s.floor),
-    kept("ceiling_displacement", "m", |s, _| s.ceiling),
-    kept("rigid_floor", "m", |s, _| s.rigid_floor),
-    kept("rigid_ceiling", "m", |s, _| s.rigid_ceiling),
+];
+
+/// Of a particle and its faces; those of the second damper and any further one carry its number, `particle_displacement_2`.
+type OfParticle = fn(&SampledParticle) -> f64;
+
+const PARTICLE: [Kept<OfParticle>; 5] = [
+    kept("particle_displacement", "m", |p| p.height),
+    kept("floor_displacement", "m", |p| p.floor),
+    kept("ceiling_displacement", "m", |p| p.ceiling),
+    kept("rigid_floor", "m", |p| p.rigid_floor),
+    kept("rigid_ceiling", "m", |p| p.rigid_ceiling),
+];
+
+const CONTACT: [Kept<OfSample>; 2] = [
     kept("contact_damping", "N s/m", |s, _| s.damping),
     kept("rms_acceleration", "g", |s, gravity| s.half_cycle_rms / gravity),
 ];
@@ -56,7 +65,23 @@ pub(super) const DEFLECTION: [(&str, &str); 3] = [("shape", ""), ("rms_displacem
 /// Names of the lists of a time history.
 #[must_use]
 pub fn trace_columns() -> Vec<&'static str> {
-    TRACE.iter().map(|column| column.name).collect()
+    let of_samples = |columns: &'static [Kept<OfSample>]| columns.iter().map(|column| column.name);
+    of_samples(&STRUCTURE).chain(PARTICLE.iter().map(|column| column.name)).chain(of_samples(&CONTACT)).collect()
+}
+
+/// The list of a time history that holds `column` of the damper at `index`, counted from 0: `particle_displacement_2`.
+#[must_use]
+pub fn column_of_damper(column: &str, index: usize) -> String {
+    if index == 0 { column.to_owned() } else { format!("{column}_{}", index + 1) }
+}
+
+/// The list of the first damper that this one is of another damper; `None` for any other name.
+#[must_use]
+pub fn of_another_damper(name: &str) -> Option<&'static str> {
+    let (column, number) = name.rsplit_once('_')?;
+    let number: usize = number.parse().ok().filter(|number| *number > 1)?;
+    let known = PARTICLE.iter().find(|known| known.name == column)?;
+    (column_of_damper(column, number - 1) == name).then_some(known.name)
 }
 
 /// Names of the lists of kinetic energies.
@@ -78,8 +103,22 @@ pub fn shape_columns(shape: &ShapeSpec) -> Vec<&'static str> {
 
 /// The lists of a time history.
 pub(super) fn of_trace(samples: &[Sample], gravity: f64) -> Vec<TraceColumn> {
-    let list = |column: &Kept<OfSample>| samples.iter().map(|sample| (column.of)(sample, gravity)).collect();
-    TRACE.iter().map(|column| TraceColumn::new(column.name, column.unit, list(column))).collect()
+    let list = |column: &Kept<OfSample>| {
+        let numbers = samples.iter().map(|sample| (column.of)(sample, gravity)).collect();
+        TraceColumn::new(column.name, column.unit, numbers)
+    };
+    let dampers = samples.first().map_or(0, |sample| sample.particles.len());
+    let of_damper = |index: usize| {
+        PARTICLE.iter().map(move |column| {
+            let number = |sample: &Sample| (column.of)(&sample.particles.get(index).copied().unwrap_or_default());
+            TraceColumn::new(column_of_damper(column.name, index), column.unit, samples.iter().map(number).collect())
+        })
+    };
+    let mut lists: Vec<TraceColumn> = STRUCTURE.iter().map(list).collect();
+    lists.extend(of_damper(0));
+    lists.extend(CONTACT.iter().map(list));
+    lists.extend((1..dampers).flat_map(of_damper));
+    lists
 }
 
 /// The lists of kinetic energies.
@@ -122,3 +161,26 @@ pub const PROOF: [ProofColumn; 7] = [
     proof("chaotic", "", ProofOf::Count(|row| row.chaotic as u64)),
     proof("members", "", ProofOf::Count(|row| row.members as u64)),
 ];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lists_of_further_dampers_carry_their_number_and_those_of_one_damper_none() {
+        let names = |dampers: usize| -> Vec<String> {
+            let sample = Sample { particles: vec![SampledParticle::default(); dampers], ..Sample::default() };
+            of_trace(&[sample], 9.81).into_iter().map(|column| column.name.into_owned()).collect()
+        };
+        // Undamped structures have the lists, too.
+        assert_eq!(names(1), trace_columns());
+        assert_eq!(names(0), trace_columns());
+        assert_eq!(names(3)[trace_columns().len()..][..2], ["particle_displacement_2", "floor_displacement_2"]);
+        assert_eq!(names(3).len(), trace_columns().len() + 2 * PARTICLE.len());
+        for name in &names(3)[trace_columns().len()..] {
+            assert!(of_another_damper(name).is_some_and(|first| trace_columns().contains(&first)), "{name}");
+        }
+        assert_eq!(of_another_damper("particle_displacement_1"), None);
+        assert_eq!(of_another_damper("rigid_floor"), None);
+    }
+}

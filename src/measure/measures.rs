@@ -141,7 +141,7 @@ measures! {
     CleanNaturalFrequency: "rad/s", "ωₙ", "", "the same of the model without dampers", Model, Own, Any;
     ExactNaturalFrequency: "rad/s", "ωₙ", "", "the same of the continuous structure", Model, Own, Any;
     ModeCount: "", "", "", "modes of the model: what a velocity just after an impulse depends on", Model, Own, Any;
-    Mac: "", "", "", "modal assurance criterion of the shape that is kept: a mode's against the exact one, a deflection's against the forced mode's", Shape, Own, Any;
+    Mac: "", "", "modal assurance criterion", "modal assurance criterion of the shape that is kept: a mode's against the exact one, a deflection's against the forced mode's", Shape, Own, Any;
     DampingMeasure: "", "", "", "share of the structure's kinetic energy that is lost from just after an impulse to just before the next, mean over the cycles", Energies, Both, Any;
     MassMeasure: "", "", "", "kinetic energy at the impulses, compared with that of the clean structure, mean over the cycles", Energies, Both, Any;
     FloorImpactTime: "s", "", "", "first contact of the first particle with its floor in the window, from the start of the run", Events, Own, Any;

@@ -20,7 +20,9 @@ mod trial;
 mod undefined;
 
 pub use evaluate::{Prepared, Request, evaluate, rounded};
-pub use kept::{PROOF, ProofColumn, ProofOf, energy_columns, shape_columns, trace_columns};
+pub use kept::{
+    PROOF, ProofColumn, ProofOf, column_of_damper, energy_columns, of_another_damper, shape_columns, trace_columns,
+};
 pub use measures::{Facts, Measure, ReadOff, Runs, Under, column_words};
 pub use request::{EnergySpec, Settings, ShapeOf, ShapeSpec, SolverChoice, TraceSpec};
 pub use subject::{Comparison, Needs, Subject};

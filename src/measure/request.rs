@@ -42,7 +42,8 @@ pub struct Settings {
 /// Which part of the motion to keep as a time history. The list columns are then `time` (s), `base_displacement`,
 /// `base_velocity`, `base_acceleration`, `particle_displacement`, `floor_displacement` and `ceiling_displacement` (the
 /// resilient surfaces where they are), `rigid_floor`, `rigid_ceiling` (where they would be uncompressed),
-/// `contact_damping` (N s/m) and `rms_acceleration` (of the last complete half cycle, in g).
+/// `contact_damping` (N s/m) and `rms_acceleration` (of the last complete half cycle, in g). The lists of particle and faces are
+/// those of the first damper; of the others they carry its number, `particle_displacement_2`.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct TraceSpec {
     /// First forcing cycle, counted from 0.

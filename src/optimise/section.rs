@@ -1,28 +1,27 @@
 //! Sections of a function: its values along each coordinate through a point, the others held.
 
 use super::bounds::{Bounds, Spacing};
-use super::search::{Function, Score};
 
 /// A section along one coordinate.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Section {
+pub struct Section<T> {
     /// Values of the coordinate, the point's own among them.
     pub along: Vec<f64>,
     /// What the function is there.
-    pub scores: Vec<Score>,
+    pub values: Vec<T>,
 }
 
 /// The sections through `centre`, one a coordinate.
 ///
 /// # Errors
 /// What `evaluate` fails with.
-pub fn sections<E>(
+pub fn sections<T, E>(
     bounds: &Bounds,
     centre: &[f64],
     points: usize,
     spacing: Spacing,
-    evaluate: &mut Function<'_, E>,
-) -> Result<Vec<Section>, E> {
+    mut evaluate: impl FnMut(&[Vec<f64>]) -> Result<Vec<T>, E>,
+) -> Result<Vec<Section<T>>, E> {
     let mut sections = Vec::with_capacity(centre.len());
     for side in 0..bounds.size() {
         let mut along = bounds.along(side, points, spacing);
@@ -34,8 +33,8 @@ pub fn sections<E>(
             point[side] = *x;
             point
         };
-        let scores = evaluate(&along.iter().map(moved).collect::<Vec<_>>())?.scores;
-        sections.push(Section { along, scores });
+        let values = evaluate(&along.iter().map(moved).collect::<Vec<_>>())?;
+        sections.push(Section { along, values });
     }
     Ok(sections)
 }

@@ -36,6 +36,9 @@ pub(super) fn labels<'t>(table: &'t Table, name: &str) -> Result<(Found<'t>, &'t
 pub(super) fn parameter<'t>(table: &'t Table, name: &str) -> Result<Found<'t>, Absence> {
     let found = find(table, name)?;
     let Data::Float(cells) = &found.column.data else { return Ok(found) };
+    if !cells.iter().any(|cell| cell.is_nan()) {
+        return Ok(found);
+    }
     let parts = match find_if_any(table, "sweep").map(|sweep| &sweep.column.data) {
         Some(Data::Text(parts)) => Some(parts),
         _ => None,

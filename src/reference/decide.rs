@@ -3,6 +3,7 @@
 use std::cmp::Ordering;
 
 use super::extract::Extracted;
+use super::extraction::Extraction;
 use super::line::{common, lines};
 use super::place::{best_place, grows_towards};
 use super::predicate::{
@@ -14,6 +15,8 @@ use super::shape::{greatest_at_end, levels_off, linear, monotone, onsets, peaks}
 use super::tally::{Decision, Outcome, Tally};
 use super::text::{apart as told_apart, listed, percent, significant, symbol, with_unit};
 use super::view::{Absence, Cell, Line, View};
+use super::words;
+use crate::measure::column_words;
 use crate::text::number::with_uncertainty;
 
 /// Decides a claim over the rows that the view means.
@@ -21,11 +24,7 @@ pub(crate) fn decide(predicate: &Predicate, view: &View<'_>) -> Result<Decision,
     let decided = match predicate {
         Predicate::Monotone(claim) => monotone(claim, view),
         Predicate::Trend(claim) => trend(claim, view),
-        Predicate::GreatestFirst(list) => list
-            .iter()
-            .map(|one| one.take(view))
-            .collect::<Result<Vec<_>, _>>()
-            .and_then(|values| greatest_first(&values)),
+        Predicate::GreatestFirst(list) => greatest_first(list, view),
         Predicate::Equal(claim) => equal(claim, view),
         Predicate::Apart(claim) => apart(claim, view),
         Predicate::Between(claim) => between(claim, view),
@@ -57,6 +56,7 @@ pub(crate) fn decide(predicate: &Predicate, view: &View<'_>) -> Result<Decision,
 fn trend(claim: &Trend, view: &View<'_>) -> Result<Decision, Absence> {
     let rows = view.rows(super::view::Source { table: None, rows: &view.given }, Some(&claim.along))?;
     let levels = view.levels(&rows, &claim.along)?;
+    let along_unit = view.unit(&rows, &claim.along)?;
     let numbers =
         levels.iter().map(|level| claim.of.take(&view.narrowed(&claim.along, level))).collect::<Result<Vec<_>, _>>()?;
     let range = numbers.iter().map(|n| n.value).fold(f64::NEG_INFINITY, f64::max)
@@ -66,10 +66,10 @@ fn trend(claim: &Trend, view: &View<'_>) -> Result<Decision, Absence> {
         .zip(listed(&numbers))
         .enumerate()
         .map(|(i, (level, number))| {
-            if i == 0 {
-                format!("{number} ({} = {level})", symbol(&claim.along))
-            } else {
-                format!("{number} ({level})")
+            let level = words::of_level(&claim.along, level, along_unit);
+            match (i, &level) {
+                (0, level) if claim.along != "sweep" => format!("{number} ({} = {level})", symbol(&claim.along)),
+                (_, level) => format!("{number} ({level})"),
             }
         })
         .collect();
@@ -91,7 +91,8 @@ fn trend(claim: &Trend, view: &View<'_>) -> Result<Decision, Absence> {
     }
     let margin = |i: usize| claim.direction.sign() * (numbers[i + 1].value - numbers[i].value);
     let worst = (0..numbers.len().saturating_sub(1)).min_by(|a, b| margin(*a).total_cmp(&margin(*b)));
-    Ok(Decision { found: shortened(&list, worst.unwrap_or(0)), ..tally.decision()? })
+    let what = words::common(std::slice::from_ref(&claim.of)).unwrap_or_default();
+    Ok(Decision { found: what + &shortened(&list, worst.unwrap_or(0)), ..tally.decision()? })
 }
 
 /// Short lists whole; of long ones both ends and the two numbers from `worst` on.
@@ -114,14 +115,17 @@ fn shortened(list: &[String], worst: usize) -> String {
     text
 }
 
-fn greatest_first(values: &[Extracted]) -> Result<Decision, Absence> {
+fn greatest_first(list: &[Extraction], view: &View<'_>) -> Result<Decision, Absence> {
+    let values = list.iter().map(|one| one.take(view)).collect::<Result<Vec<_>, _>>()?;
     let mut tally = Tally::new();
     for pair in values.windows(2) {
         tally.require_strictly(pair[0].value - pair[1].value, libm::hypot(pair[0].run, pair[1].run), String::new);
     }
     let decision = tally.decision()?;
-    let mut found = String::new();
-    for (i, text) in listed(values).iter().enumerate() {
+    let common = words::common(list);
+    let mut found = common.clone().unwrap_or_default();
+    let shown = listed(&values);
+    for (i, text) in shown.iter().enumerate() {
         if let Some(before) = i.checked_sub(1) {
             found += match values[before].value.total_cmp(&values[i].value) {
                 _ if decision.outcome == Outcome::Undecided => " ≈ ",
@@ -130,7 +134,20 @@ fn greatest_first(values: &[Extracted]) -> Result<Decision, Absence> {
                 Ordering::Less => " < ",
             };
         }
+        if common.is_none()
+            && let Some(what) = list[i].in_words()
+        {
+            found += &format!("{what} ");
+        }
         found += text;
+        // Too close for any number of digits.
+        if let Some(before) = i.checked_sub(1)
+            && shown[before] == *text
+            && values[before].value != values[i].value
+        {
+            let less = values[before].value - values[i].value;
+            found += &format!(" {} {}", if less > 0.0 { '−' } else { '+' }, significant(less.abs(), 1));
+        }
     }
     Ok(Decision { found, ..decision })
 }
@@ -148,7 +165,8 @@ fn equal(claim: &Equal, view: &View<'_>) -> Result<Decision, Absence> {
             );
         }
     }
-    let found = format!("{} ({} allowed)", difference(&values, claim.within), claim.within.words());
+    let what = words::common(&claim.values).unwrap_or_default();
+    let found = format!("{what}{} ({} allowed)", difference(&values, claim.within), claim.within.words());
     Ok(Decision { found, ..tally.decision()? })
 }
 
@@ -165,7 +183,15 @@ fn difference(values: &[Extracted], within: Within) -> String {
         Within::Relative(_) => percent((high - low) / low.abs().max(high.abs())),
         Within::Absolute(_) => significant(high - low, 3),
     };
-    format!("{}, {apart} apart", listed(values).join(" and "))
+    // The outermost two differ to the eye; those between them need not.
+    let ends = told_apart(&[(low, &values[0].unit), (high, &values[0].unit)]);
+    let shown = |one: &Extracted| match one.value {
+        x if x == low => ends[0].clone(),
+        x if x == high => ends[1].clone(),
+        x => with_unit(x, 4, &one.unit),
+    };
+    let shown: Vec<String> = values.iter().map(shown).collect();
+    format!("{}, {apart} apart", shown.join(" and "))
 }
 
 /// Error of a difference of two (value, error). Numbers that are equal to the last bit come from the same motion, chaotic or
@@ -183,7 +209,8 @@ fn apart(claim: &Apart, view: &View<'_>) -> Result<Decision, Absence> {
             tally.require_strictly(apart - claim.by.allows(a.value, b.value), libm::hypot(a.run, b.run), String::new);
         }
     }
-    let found = format!("{} (at least {} required)", difference(&values, claim.by), claim.by.words());
+    let what = words::common(&claim.values).unwrap_or_default();
+    let found = format!("{what}{} (at least {} required)", difference(&values, claim.by), claim.by.words());
     Ok(Decision { found, ..tally.decision()? })
 }
 
@@ -211,7 +238,8 @@ fn between(claim: &Between, view: &View<'_>) -> Result<Decision, Absence> {
     } else {
         with_unit(value.value, 4, &value.unit)
     };
-    let found = format!("{shown} (required: {required})");
+    let what = words::common(std::slice::from_ref(&claim.value)).unwrap_or_default();
+    let found = format!("{what}{shown} (required: {required})");
     Ok(Decision { found, ..tally.decision()? })
 }
 
@@ -226,7 +254,7 @@ fn level(claim: &Level, view: &View<'_>, side: f64) -> Result<Decision, Absence>
             let shown = told_apart(&[(cell.value, unit), (claim.level, unit)]);
             let of =
                 if cells.len() == 1 { String::new() } else { format!(", the {extreme} of {} points", cells.len()) };
-            format!("{}{of} (required: {bound} {})", shown[0], shown[1])
+            format!("{} {}{of} (required: {bound} {})", column_words(&claim.of), shown[0], shown[1])
         });
     }
     tally.decision()

@@ -6,6 +6,7 @@ use super::line::{Position, common, lines};
 use super::selection::same;
 use super::text::{percent, significant};
 use super::view::{Absence, Cell, Source, View};
+use crate::measure::column_words;
 
 /// A number taken out of a table.
 #[derive(Debug, Clone, PartialEq)]
@@ -109,7 +110,11 @@ impl Extraction {
                     Direction::Decreasing => (line.inverted(), -word.level),
                 };
                 let (_, position) = line.crossing_up(level).ok_or_else(|| {
-                    Absence::Nowhere(format!("`{}` does not cross {}", word.of, significant(word.level, 4)))
+                    Absence::Nowhere(format!(
+                        "the {} does not cross {}",
+                        column_words(&word.of),
+                        significant(word.level, 4)
+                    ))
                 })?;
                 Extracted::place(position, line.over_unit)
             }
@@ -233,8 +238,10 @@ impl NearestPassage {
             })
             .collect();
         let nearest = instants.iter().min_by(|a, b| (a.0 - self.to).abs().total_cmp(&(b.0 - self.to).abs()));
-        let &(value, run) = nearest
-            .ok_or_else(|| Absence::Nowhere(format!("`{}` never passes `{}` that way", self.of, self.through)))?;
+        let &(value, run) = nearest.ok_or_else(|| {
+            let [of, through] = [&self.of, &self.through].map(|path| column_words(path));
+            Absence::Nowhere(format!("the {of} never passes the {through} that way"))
+        })?;
         let between = instants.windows(2).map(|pair| pair[1].0 - pair[0].0).reduce(f64::min);
         let scale = between.or(Some(times[times.len() - 1] - times[0]));
         Ok(Extracted { value, run, spread: 0.0, unit: view.unit(&rows, "time")?.into(), scale })

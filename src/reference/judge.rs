@@ -4,7 +4,6 @@
 //! how robust a verdict is: how many of them keep it. A variant that was run and failed leaves the uncertainty unknown, so
 //! the entry is missing; one that was not run for the rows in question is left out.
 
-use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::compare;
@@ -272,7 +271,7 @@ fn u_input(baseline: f64, others: &[(&str, Option<Extracted>)]) -> f64 {
 
 /// Judges one entry and tells which cells of its own table decided it.
 pub(crate) fn judge_noting(entry: &Entry, experiment: &str, tables: &Tables<'_>) -> (Judged, Reads) {
-    let reads = RefCell::default();
+    let reads = Reads::default();
     let judged = judge_entry(entry, experiment, tables, &BTreeSet::new(), &reads);
     (judged, reads)
 }

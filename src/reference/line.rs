@@ -1,8 +1,9 @@
 //! Features of lines: where the top is and how well the grid knows it, where two lines part, how many peaks there are.
 
 use super::selection::{Allowed, same};
-use super::text::significant;
+use super::text::{significant, symbol};
 use super::view::{Absence, Cell, Line, Source, View};
+use crate::measure::column_words;
 
 /// A place on the abscissa: half the bracket that surely holds it is twice its uncertainty.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -117,12 +118,14 @@ impl Line {
     /// The first point above a level, and the bracket that holds the onset.
     pub(crate) fn onset(&self, above: f64) -> Result<(usize, Position), Absence> {
         match self.y.iter().position(|cell| cell.value > above) {
-            None => Err(Absence::Nowhere(format!("`{}` never exceeds {}", self.of, significant(above, 4)))),
+            None => {
+                Err(Absence::Nowhere(format!("the {} never exceeds {}", column_words(&self.of), significant(above, 4))))
+            }
             Some(0) => Err(Absence::Nowhere(format!(
-                "`{}` exceeds {} from the first point on, {} = {}: its onset lies below the sweep",
-                self.of,
+                "the {} exceeds {} from the first point on, {} = {}: its onset lies below the sweep",
+                column_words(&self.of),
                 significant(above, 4),
-                self.over,
+                symbol(&self.over),
                 significant(self.x[0], 4)
             ))),
             Some(i) => Ok((i, Position { x: self.x[i], u: (self.x[i] - self.x[i - 1]) / 2.0 })),

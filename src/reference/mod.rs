@@ -35,6 +35,7 @@ mod text;
 mod tube;
 mod verdict;
 mod view;
+mod words;
 
 pub use accept::{AcceptError, accept};
 pub use entry::{

@@ -9,6 +9,7 @@ use super::selection::{Allowed, Selection, same};
 use super::tally::{Decision, Outcome, Tally};
 use super::text::{percent, significant, with_unit};
 use super::view::{Absence, Cell, Source, View};
+use super::words;
 
 /// A place in a map: a number for each coordinate, or the column that holds it (`damper_x: force_x`).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -151,13 +152,35 @@ pub(crate) fn best_place(claim: &BestPlace, view: &View<'_>) -> Result<Decision,
                 best.words()
             )
         });
-        found.push(format!("{level}{} at {}", with_unit(best.cell.value, 4, &map.unit), best.words()));
+        found.push(Best { level, place: best.words(), value: best.cell.value, unit: map.unit.clone() });
     }
     let decision = tally.decision()?;
     if decision.outcome == Outcome::Holds {
-        return Ok(Decision { found: format!("best {}", found.join("; ")), ..decision });
+        return Ok(Decision { found: best_in_words(&found), ..decision });
     }
     Ok(decision)
+}
+
+/// The best place of one of the maps.
+struct Best {
+    level: String,
+    place: String,
+    value: f64,
+    unit: String,
+}
+
+/// `best point 1: 3.77 at (0.5, 0.5); point 2: …`; a place that all of them share is named once.
+fn best_in_words(found: &[Best]) -> String {
+    let value = |value: f64, unit: &str| with_unit(value, 4, unit);
+    if let [first, .., _] = found
+        && found.iter().all(|one| one.place == first.place)
+    {
+        let extreme = |pick: fn(f64, f64) -> f64| found.iter().map(|one| one.value).reduce(pick).unwrap_or(first.value);
+        let [low, high] = [extreme(f64::min), extreme(f64::max)].map(|x| value(x, &first.unit));
+        return format!("best at {} in all {}, {low} to {high}", first.place, found.len());
+    }
+    let one = |one: &Best| format!("{}{} at {}", one.level, value(one.value, &one.unit), one.place);
+    format!("best {}", found.iter().map(one).collect::<Vec<_>>().join("; "))
 }
 
 pub(crate) fn grows_towards(claim: &GrowsTowards, view: &View<'_>) -> Result<Decision, Absence> {
@@ -257,7 +280,7 @@ fn maps(
     let levels = view.levels(&view.rows(Source { table: None, rows }, Some(each))?, each)?;
     let map = |level: &Allowed| {
         let map = Map::new(&view.narrowed(each, level), rows, of, place)?;
-        Ok((format!("{level}: "), map))
+        Ok((format!("{}: ", words::of_level(each, level, "")), map))
     };
     levels.iter().map(map).collect()
 }

@@ -1,10 +1,8 @@
 //! What a verdict cost: the rows that it rests on, and what was simulated for them.
 
-use std::collections::BTreeMap;
-
 use serde::{Deserialize, Serialize};
 
-use super::view::{Reads, Role, TableState, Tables};
+use super::view::{Reads, TableState, Tables};
 
 /// What was simulated for an entry; the same on every machine.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
@@ -20,15 +18,9 @@ pub struct Price {
 impl Price {
     /// Of the rows whose cells were looked at for more than to choose rows.
     pub(super) fn of(reads: &Reads, tables: &Tables<'_>) -> Self {
-        let mut rows = BTreeMap::<String, Vec<usize>>::new();
-        for read in reads.borrow().iter().filter(|read| read.role != Role::Filter) {
-            rows.entry(read.table.clone()).or_default().push(read.row);
-        }
         let mut price = Self::default();
-        for (id, mut rows) in rows {
+        for (id, rows) in reads.decisive_rows() {
             let Some(TableState::Present(table)) = tables.get(&id) else { continue };
-            rows.sort_unstable();
-            rows.dedup();
             let [events, members, evaluations] =
                 ["events", "members", "evaluations"].map(|name| table.floats(name).unwrap_or_default());
             for row in rows {

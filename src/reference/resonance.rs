@@ -10,8 +10,9 @@ use super::entry_mistake::EntryMistake;
 use super::extract::Extracted;
 use super::printed::Printed;
 use super::selection::Selection;
-use super::text::{significant, with_unit};
+use super::text::{significant, symbol, with_unit};
 use super::view::{Absence, Line, Source, View};
+use crate::measure::column_words;
 
 /// A peak of a response.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -120,7 +121,7 @@ impl Peak {
             (enough && prominence.value > 2.0 * prominence.run).then_some(at)
         };
         let peaks: Vec<usize> = line.prominences().iter().filter_map(stands_out).collect();
-        let none = || Absence::Nowhere(format!("`{}` has no peak over `{}`", self.of, self.over));
+        let none = || Absence::Nowhere(format!("the {} has no peak", column_words(&self.of)));
         match &self.which {
             Which::Highest => {
                 peaks.into_iter().max_by(|&a, &b| line.y[a].value.total_cmp(&line.y[b].value)).ok_or_else(none)
@@ -129,7 +130,7 @@ impl Peak {
                 let wanted = usize::try_from(*n).unwrap_or(usize::MAX);
                 let found = peaks.len();
                 peaks.into_iter().nth(wanted.saturating_sub(1)).ok_or_else(|| {
-                    Absence::Nowhere(format!("`{}` has {found} peaks over `{}`, not {wanted}", self.of, self.over))
+                    Absence::Nowhere(format!("the {} has {found} peaks, not {wanted}", column_words(&self.of)))
                 })
             }
             Which::Nearest(printed) => {
@@ -203,7 +204,7 @@ fn with_errors(line: &Line, at: usize, read: impl Fn(Top) -> f64) -> (f64, f64) 
 fn half_power_width(line: &Line, at: usize) -> Result<(f64, f64), Absence> {
     let (height, u_height) = with_errors(line, at, |top| top.y);
     if height <= 0.0 {
-        return Err(Absence::Nowhere(format!("the peak of `{}` is not above zero", line.of)));
+        return Err(Absence::Nowhere(format!("the peak of the {} is not above zero", column_words(&line.of))));
     }
     let level = height / std::f64::consts::SQRT_2;
     let side = |step: isize| -> Result<(f64, f64), Absence> {
@@ -211,17 +212,17 @@ fn half_power_width(line: &Line, at: usize) -> Result<(f64, f64), Absence> {
         loop {
             let Some(outer) = inner.checked_add_signed(step).filter(|&i| i < line.x.len()) else {
                 return Err(Absence::Nowhere(format!(
-                    "`{}` ends at {} = {} before it falls to half power",
-                    line.of,
-                    line.over,
+                    "the {} ends at {} = {} before it falls to half power",
+                    column_words(&line.of),
+                    symbol(&line.over),
                     with_unit(line.x[inner], 4, &line.over_unit)
                 )));
             };
             if line.y[outer].value > height {
                 return Err(Absence::Nowhere(format!(
-                    "`{}` rises above its peak at {} = {} before it falls to half power",
-                    line.of,
-                    line.over,
+                    "the {} rises above its peak at {} = {} before it falls to half power",
+                    column_words(&line.of),
+                    symbol(&line.over),
                     with_unit(line.x[outer], 4, &line.over_unit)
                 )));
             }

@@ -127,7 +127,7 @@ impl Trial<'_> {
         if judged.verdict == Verdict::Missing {
             return Err(Flaw::Missing(judged.found));
         }
-        let reads = reads.into_inner();
+        let reads = reads.cells();
         if self.measures(&reads).is_empty() {
             return Err(Flaw::NoMeasure);
         }
@@ -294,7 +294,7 @@ impl Trial<'_> {
                 for variant in std::iter::once(BASELINE).chain(self.view(BASELINE, &Reads::default()).variants()) {
                     let own = Reads::default();
                     let Ok(there) = from.take(&self.view(variant, &own)) else { continue };
-                    let own = own.into_inner();
+                    let own = own.cells();
                     let read = self
                         .at_home(&own)
                         .filter(|read| read.role == Role::Value && read.column == column_of(&word.of));
@@ -331,7 +331,7 @@ impl Trial<'_> {
                     // A variant without these rows reads nothing, which is what is wanted of it.
                     let _ = quotient.of.take(&self.view(variant, &above));
                 }
-                for (column, rows) in by_column(self.at_home(&above.borrow()).filter(|read| read.role == Role::Value)) {
+                for (column, rows) in by_column(self.at_home(&above.cells()).filter(|read| read.role == Role::Value)) {
                     alter(table, column, &rows, |x, _| x * to / now);
                 }
             }

@@ -74,7 +74,50 @@ pub(crate) struct Read {
     pub row: usize,
 }
 
-pub(crate) type Reads = RefCell<BTreeSet<Read>>;
+/// Cells that were looked at. Verdicts look at the same ones many times over: noting them again costs next to nothing.
+#[derive(Debug, Default)]
+pub(crate) struct Reads(RefCell<BTreeMap<String, OfTable>>);
+
+/// Of one table: by column and role, whether each row was looked at.
+type OfTable = BTreeMap<(usize, Role), Vec<bool>>;
+
+impl Reads {
+    fn note(&self, table: &str, column: usize, role: Role, rows: &[usize]) {
+        let mut tables = self.0.borrow_mut();
+        if !tables.contains_key(table) {
+            tables.insert(table.to_owned(), OfTable::new());
+        }
+        let Some(columns) = tables.get_mut(table) else { return };
+        let seen = columns.entry((column, role)).or_default();
+        for &row in rows {
+            if seen.len() <= row {
+                seen.resize(row + 1, false);
+            }
+            seen[row] = true;
+        }
+    }
+
+    /// One by one.
+    pub(crate) fn cells(&self) -> BTreeSet<Read> {
+        let of_column = |table: &str, (column, role): (usize, Role), seen: &[bool]| -> Vec<Read> {
+            let rows = (0..seen.len()).filter(|&row| seen[row]);
+            rows.map(|row| Read { table: table.to_owned(), column, role, row }).collect()
+        };
+        let tables = self.0.borrow();
+        let columns = tables.iter().flat_map(|(table, columns)| columns.iter().map(move |it| (table, it)));
+        columns.flat_map(|(table, (key, seen))| of_column(table, *key, seen)).collect()
+    }
+
+    /// By experiment, the rows that were looked at for more than to choose rows.
+    pub(crate) fn decisive_rows(&self) -> BTreeMap<String, BTreeSet<usize>> {
+        let rows = |columns: &OfTable| -> BTreeSet<usize> {
+            let decisive = columns.iter().filter(|((_, role), _)| *role != Role::Filter);
+            decisive.flat_map(|(_, seen)| (0..seen.len()).filter(|&row| seen[row])).collect()
+        };
+        let tables = self.0.borrow();
+        tables.iter().map(|(id, columns)| (id.clone(), rows(columns))).filter(|(_, rows)| !rows.is_empty()).collect()
+    }
+}
 
 /// Which rows of which table: an absent table is the entry's own.
 #[derive(Debug, Clone, Copy)]
@@ -339,8 +382,7 @@ impl<'a> View<'a> {
 
     /// Notes a column in each of the rows.
     fn note_all(&self, rows: &Rows<'_>, found: Found<'_>, role: Role) {
-        let read = |&row| Read { table: rows.id.clone(), column: found.index, role, row };
-        self.reads.borrow_mut().extend(rows.indices.iter().map(read));
+        self.reads.note(&rows.id, found.index, role, &rows.indices);
     }
 }
 

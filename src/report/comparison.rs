@@ -23,7 +23,7 @@ pub(super) fn lead(judged: &[Judged]) -> Option<&Judged> {
 /// What the page says, in a few lines.
 pub(super) fn in_short(judged: &[Judged]) -> String {
     let Some(lead) = lead(judged) else {
-        return "The study makes no claim and quotes no number here that a run could be compared with.\n\n".to_owned();
+        return "**In short.** Nothing to compare: the study makes no claim and quotes no number here.\n\n".to_owned();
     };
     let mut text = format!("**In short.** {}\n\n", conclusion(judged));
     text += &format!(
@@ -40,18 +40,24 @@ pub(super) fn in_short(judged: &[Judged]) -> String {
 
 /// `Stands in part: 2 of 3 statements agree.`
 fn conclusion(judged: &[Judged]) -> String {
-    let tally = Tally::of(judged);
+    let (all, agree) = (judged.len(), judged.iter().filter(|one| agrees(one.verdict)).count());
+    let word = outcome(judged);
+    let tally = Tally::of(judged).describe();
+    format!("{word}: {agree} of {} ({tally}).", counted(all, "statement agrees", "statements agree"))
+}
+
+/// What became of these entries together, in a word or two.
+pub(super) fn outcome(judged: &[Judged]) -> &'static str {
     let (all, agree) = (judged.len(), judged.iter().filter(|one| agrees(one.verdict)).count());
     let has = |verdict: Verdict| judged.iter().any(|one| one.verdict == verdict);
-    let word = match agree {
-        _ if has(Verdict::Missing) => "Not complete",
+    match agree {
+        _ if all == 0 || has(Verdict::Missing) => "Not complete",
         agree if agree == all && !has(Verdict::Reproduced) => "Fitted, not tested",
         agree if agree == all => "Stands",
         0 if !has(Verdict::Differs) => "Cannot be decided",
         0 => "Does not stand",
         _ => "Stands in part",
-    };
-    format!("{word}: {agree} of {} ({}).", counted(all, "statement agrees", "statements agree"), tally.describe())
+    }
 }
 
 fn closed(text: &str) -> String {
@@ -185,7 +191,7 @@ fn other_readings(judged: &[Judged]) -> String {
     if table.is_empty() {
         return table;
     }
-    format!("Other values of the assumptions, one moved at a time; bold where the verdict would change:\n\n{table}")
+    format!("With one assumption moved; bold where the verdict would change:\n\n{table}")
 }
 
 /// Digits of a number of double precision that may mean something.

@@ -2,7 +2,10 @@
 
 use std::collections::BTreeMap;
 
+use crate::experiment::AboutStudy;
 use crate::reference::{Judged, Role, Verdict};
+
+use super::findings;
 
 use super::markdown::one_line;
 use super::tally::{Kind, Tally, agrees, kind};
@@ -14,9 +17,10 @@ use crate::text::words::counted;
 const NAMED: usize = 6;
 
 /// The first paragraphs of the index.
-pub(super) fn section(experiments: &[ExperimentView<'_>]) -> String {
+pub(super) fn section(about: &AboutStudy, experiments: &[ExperimentView<'_>]) -> String {
     let all: Vec<&Judged> = experiments.iter().flat_map(|view| view.judged).collect();
     let mut text = counts(&all);
+    text += &findings::section(about, experiments);
     text += &stands(experiments);
     text += &differs(experiments);
     text += &undecided(&all);

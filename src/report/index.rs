@@ -31,7 +31,7 @@ pub fn index(
     machine: Option<&Machine>,
 ) -> String {
     let mut text = head(about);
-    text += &headline::section(experiments);
+    text += &headline::section(about, experiments);
     text += &reading::section();
     text += "## Every verdict\n\nOne cell for each number or claim; below, each that does not agree is linked, bold where it is held out.\n\n";
     text += &format!("![Verdicts by chapter]({STRIP})\n\n");

@@ -15,6 +15,7 @@ mod explain;
 mod explanations;
 mod figures;
 mod finding;
+mod findings;
 mod github;
 mod headline;
 mod html;

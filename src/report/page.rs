@@ -14,6 +14,10 @@ pub fn page(view: &PageView<'_>) -> String {
     let experiment = view.experiment;
     let mut text = format!("# {}\n\n", one_line(&experiment.title));
     text += &comparison::in_short(view.judged);
+    let about = format!("{}\n\n", one_line(&experiment.about));
+    if view.judged.is_empty() {
+        text += &about;
+    }
     for one in view.figures {
         text += &figure(one);
     }
@@ -27,7 +31,8 @@ pub fn page(view: &PageView<'_>) -> String {
     }
     text += &view.table.map_or_else(String::new, |table| proof::failures(table) + &doubts::section(table));
     text += &details("Uncertainties and sensitivity", &comparison::uncertainties(view.judged));
-    let run = format!("{}\n\n{}{}", one_line(&experiment.about), run::section(experiment), run::effects(view.effects));
+    let about = if view.judged.is_empty() { "" } else { about.as_str() };
+    let run = format!("{about}{}{}", run::section(experiment), run::effects(view.effects));
     text += &details("How it was run", &run);
     text += &details("Assumptions", &assumption::links(view.assumptions, view.to_reports));
     text += &details(

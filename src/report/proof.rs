@@ -4,7 +4,7 @@ use crate::table::Table;
 use crate::text::number::{quantity, significant};
 use crate::text::words;
 
-use super::markdown::{Align, MarkdownTable, escaped};
+use super::markdown::escaped;
 use crate::text::words::counted;
 
 /// The balances on an experiment's page; nothing without a table.
@@ -12,33 +12,25 @@ pub(super) fn section(table: Option<&Table>) -> String {
     let Some(table) = table else { return String::new() };
     let baseline = table.baseline();
     let mut text = String::new();
-    let mut rows = MarkdownTable::new(&[
-        ("Solver", Align::Left),
-        ("Runs", Align::Right),
-        ("Worst momentum residual", Align::Right),
-        ("Worst energy residual", Align::Right),
-        ("Events", Align::Right),
-        ("Smallest margin", Align::Right),
-        ("Ties resolved", Align::Right),
-        ("Chaotic", Align::Right),
-        ("Largest ensemble", Align::Right),
-    ]);
     for solver in solvers(&baseline) {
         let of_solver = baseline.select(&baseline.rows_where("solver", &solver));
         let proof = Proof { table: &of_solver };
-        rows.row([
+        text += &format!(
+            "- {}: {}, events: {}, ties: {}; residual of momentum at most {}, of energy {}; smallest margin {}{}.\n",
             words::of_solver(&solver),
-            of_solver.rows().to_string(),
+            counted(of_solver.rows(), "run", "runs"),
+            proof.total("events"),
+            proof.total("ties"),
             proof.worst("momentum_residual"),
             proof.worst("energy_residual"),
-            proof.total("events"),
             proof.smallest_margin(),
-            proof.total("ties"),
-            proof.total("chaotic"),
-            proof.largest("members"),
-        ]);
+            match proof.total("chaotic").as_str() {
+                "0" => String::new(),
+                chaotic => format!("; chaotic: {chaotic}, ensembles of up to {}", proof.largest("members")),
+            }
+        );
     }
-    text += &rows.finish();
+    text.push('\n');
     let variants = table.rows().saturating_sub(baseline.rows());
     if variants > 0 {
         let runs = counted(variants, "more run has", "more runs have");

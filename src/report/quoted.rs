@@ -40,6 +40,9 @@ pub(super) fn quoted(experiment: &Experiment, figure: &FigureSpec, table: &Table
     found
 }
 
+/// The column that names candidates.
+const CANDIDATE: &str = "candidate";
+
 /// The axes of a panel.
 struct Axes<'a> {
     experiment: &'a Experiment,
@@ -206,7 +209,10 @@ impl Axes<'_> {
             Some(Allowed::Text(level)) => Some(words::of_level(column, level)),
             _ => None,
         };
-        let levels = self.by.iter().filter_map(|column| word(column));
+        // A landscape has no line for each candidate, and yet the number belongs to one.
+        let of_a_candidate = (self.experiment.optimise.is_some() && !self.by.iter().any(|column| column == CANDIDATE))
+            .then_some(CANDIDATE);
+        let levels = self.by.iter().map(String::as_str).chain(of_a_candidate).filter_map(word);
         let line: String = levels.map(|level| format!(", {}", level.trim_start_matches("study "))).collect();
         format!("study: {note}{}{line}", text.replace('-', "−"))
     }

@@ -147,12 +147,8 @@ fn cases(experiment: &Experiment) -> String {
 
 fn solver_in_words(solver: SolverChoice) -> String {
     match solver {
-        SolverChoice::EventDriven => {
-            "Solver *event-driven*: the exact motion from one contact event to the next.".to_owned()
-        }
-        SolverChoice::FixedStep { time_step } => {
-            format!("Solver *fixed step {}*: looks for contacts once a step.", quantity(time_step, "s", 3))
-        }
+        SolverChoice::EventDriven => "Solver: event-driven.".to_owned(),
+        SolverChoice::FixedStep { time_step } => format!("Solver: fixed step of {}.", quantity(time_step, "s", 3)),
     }
 }
 
@@ -169,17 +165,9 @@ pub(super) fn effects(effects: &[EffectUse]) -> String {
     if effects.is_empty() {
         return String::new();
     }
-    let mut text = String::new();
     let in_force: Vec<String> = effects.iter().filter(|effect| effect.in_force > 0).map(in_force).collect();
-    if !in_force.is_empty() {
-        text += &format!("In force: {}.\n\n", in_force.join(", "));
-    }
-    let left_out: Vec<&EffectUse> = effects.iter().filter(|effect| effect.in_force == 0).collect();
-    if !left_out.is_empty() {
-        let names: Vec<&str> = left_out.iter().map(|effect| effect.name).collect();
-        text += &format!("Not in this scene: {}.\n\n", names.join(", "));
-    }
-    text
+    let names = if in_force.is_empty() { "none".to_owned() } else { in_force.join(", ") };
+    format!("Effects in force: {names}.\n\n")
 }
 
 fn in_force(effect: &EffectUse) -> String {

@@ -15,7 +15,7 @@ use super::known_rows::KnownRows;
 use super::mean::{mean, measures_of_each};
 use super::row_failure::{RowFailure, SearchError};
 use super::run::{Finished, Task};
-use super::tabulate_candidates::{Candidate, failures, table};
+use super::tabulate_candidates::{AlongGap, Candidate, failures, table};
 use super::variant::Variant;
 use crate::dynamics::is_interrupted;
 use crate::experiment::{Experiment, Goal, Optimise, Recipe, Search, SearchKind, SearchSpacing};
@@ -329,6 +329,23 @@ impl Searches<'_> {
         }
     }
 
+    /// Fitness and its spread: unlike a search, which sees one run, a landscape shows what chaotic motion makes of it. NaN where
+    /// there is none.
+    fn looks(&mut self, points: &[Vec<f64>]) -> Result<Vec<(f64, f64)>, RowFailure> {
+        let look = |point: &Vec<f64>| {
+            let fitness = self.fitness.evaluate(point, Rigour::Look).ok()?.measured.get(self.measure).copied()?;
+            Some((fitness.value, fitness.spread))
+        };
+        let looks: Vec<Option<(f64, f64)>> = points.par_iter().map(look).collect();
+        if is_interrupted() {
+            return Err(RowFailure::Interrupted);
+        }
+        let count = points.len() as u64;
+        self.handler.on_event(&Event::Simulated { experiment: &self.experiment.id, count });
+        self.evaluations += count;
+        Ok(looks.into_iter().map(|look| look.unwrap_or((f64::NAN, f64::NAN))).collect())
+    }
+
     /// Sections through the best candidate as the searches saw it.
     fn landscape(&mut self, found: &mut Vec<Candidate>) -> Result<(), RowFailure> {
         let Some(landscape) = self.optimise.landscape else { return Ok(()) };
@@ -341,16 +358,12 @@ impl Searches<'_> {
         let centre = best.map(|best| points[best].clone()).ok_or(SearchError::NoCandidates)?;
         let bounds = self.bounds.clone();
         let count = landscape.points as usize;
-        let mut done = 0;
-        let cut = sections(&bounds, &centre, count, spaced(landscape.spacing), &mut |points| {
-            done += points.len() as u64;
-            self.batch(points, &name, done - points.len() as u64)
-        })?;
+        let cut = sections(&bounds, &centre, count, spaced(landscape.spacing), |points| self.looks(points))?;
         for (varied, section) in cut.into_iter().enumerate() {
-            let scores = section.along.iter().zip(&section.scores);
+            let points = section.along.into_iter().zip(section.values);
             found.push(Candidate {
                 varied: Some(varied + 1),
-                section: scores.map(|(x, score)| [*x, self.signed(score.value)]).collect(),
+                section: points.map(|(gap, (fitness, spread))| AlongGap { gap, fitness, spread }).collect(),
                 ..Candidate::named(&words::of_key(&SearchKind::Landscape), centre.clone())
             });
         }

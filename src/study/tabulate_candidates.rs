@@ -26,12 +26,21 @@ pub(super) struct Candidate {
     pub stopped: String,
     /// Evaluations and best fitness after each batch.
     pub trail: Vec<[f64; 2]>,
-    /// Gap and fitness along a section.
-    pub section: Vec<[f64; 2]>,
+    /// Fitness along a section.
+    pub section: Vec<AlongGap>,
     /// Index of the variant.
     pub variant: usize,
     /// What came of it; not computed: not evaluated yet, or a section.
     pub outcome: Result<Evaluated, RowFailure>,
+}
+
+/// A point of a section.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct AlongGap {
+    pub gap: f64,
+    /// The mean of an ensemble where the motion is chaotic, and its standard deviation.
+    pub fitness: f64,
+    pub spread: f64,
 }
 
 impl Candidate {
@@ -169,12 +178,13 @@ fn lists(optimise: &Optimise, candidates: &[Candidate]) -> Vec<Column> {
         Data::FloatList(candidates.iter().map(of).collect())
     };
     let trail = |part: usize| lists(&|it| it.trail.iter().map(|step| step[part]).collect());
-    let section = |part: usize| lists(&|it| it.section.iter().map(|point| point[part]).collect());
+    let section = |part: fn(&AlongGap) -> f64| lists(&|it| it.section.iter().map(part).collect());
     let fitness = optimise.measure.unit();
     vec![
         Column::new("evaluation", trail(0)),
         Column::new("best_so_far", trail(1)).with_unit(fitness),
-        Column::new("along_gap", section(0)).with_unit(unit(optimise.gaps)),
-        Column::new("fitness_along", section(1)).with_unit(fitness),
+        Column::new("along_gap", section(|point| point.gap)).with_unit(unit(optimise.gaps)),
+        Column::new("fitness_along", section(|point| point.fitness)).with_unit(fitness),
+        Column::new("fitness_along_spread", section(|point| point.spread)).with_unit(fitness),
     ]
 }

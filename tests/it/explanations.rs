@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use shotdamp::experiment::AboutStudy;
+use shotdamp::experiment::{AboutStudy, parse_study};
 use shotdamp::reference::{Check, Entry, Judged, Prose, load_reference, numbers, parse_reference};
 use shotdamp::report::{ExperimentView, index};
 use shotdamp::study::{Heading, Layout, Study, Texts};
@@ -59,6 +59,17 @@ fn entries() -> Vec<Entry> {
     }
     files.sort();
     files.iter().flat_map(|file| load_reference(file).unwrap().entries).collect()
+}
+
+#[test]
+fn the_conclusions_of_the_study_name_entries_of_the_reference() {
+    let text = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("study.yaml")).unwrap();
+    let known: Vec<String> = entries().into_iter().map(|entry| entry.id).collect();
+    let findings = parse_study("study.yaml", &text).unwrap().findings;
+    assert!(!findings.is_empty());
+    for id in findings.iter().flat_map(|finding| &finding.entries) {
+        assert!(known.contains(id), "no entry `{id}`");
+    }
 }
 
 #[test]

@@ -87,6 +87,20 @@ fn six_places_of_the_force_share_one_scale_of_colours() {
 }
 
 #[test]
+fn a_map_of_ensembles_says_how_far_they_spread() {
+    let spread = |share: f64| {
+        let spreads = plate().floats("velocity_ratio").unwrap().iter().map(|ratio| share * ratio).collect();
+        plate().with(numbers("velocity_ratio_spread", "", "", spreads))
+    };
+    let spec = MapSpec { by: vec!["sweep".into()], ..map("damper_x", "damper_y", "velocity_ratio") };
+    let svg = |table: &Table| {
+        draw(&limit_stop(), &drawn(Drawing::Map(Box::new(spec.clone()))), table, Beside::default()).unwrap().svg
+    };
+    assert!(svg(&spread(0.013)).contains(", s.d. at most 1.3 %"));
+    assert!(!svg(&spread(0.0)).contains("s.d.") && !svg(&plate()).contains("s.d."));
+}
+
+#[test]
 fn one_map_names_its_best_place() {
     let places = steps(0.1, 1.0, 10);
     let rows: Vec<(f64, f64)> = places.iter().flat_map(|y| places.iter().map(|x| (*x, *y))).collect();

@@ -1,6 +1,6 @@
 //! What the study says, drawn: values, places, instants, searches.
 
-use shotdamp::experiment::{AxisScale, Band, Panel};
+use shotdamp::experiment::{AnimationSpec, AxisScale, Band, Drawing, FigureSpec, Panel};
 use shotdamp::figure::{Beside, Known, Picture, Quoted, QuotedAt, draw};
 use shotdamp::table::{Column, Data, Table};
 
@@ -70,6 +70,45 @@ fn contacts_and_impulses_are_marked_in_a_time_history() {
     let paths = panel("time", AxisScale::Linear, &["floor_displacement", "particle_displacement"]);
     let picture = drawn("study-instants", paths, &table, &[], Some(0.371));
     assert!(picture.svg.contains(">contact<") && picture.svg.contains(">impulse<"));
+}
+
+#[test]
+fn every_damper_of_an_array_moves_in_its_animation() {
+    let time: Vec<f64> = (0..=40).map(|i| 0.01 * f64::from(i)).collect();
+    let list = |name: &str, of: &dyn Fn(f64) -> f64| {
+        Column::new(name, Data::FloatList(vec![time.iter().map(|t| of(*t)).collect()])).with_unit("m")
+    };
+    let floor = |t: f64| 1e-3 * (20.0 * t).sin();
+    let mut table = Table::default().with(texts("variant", ["baseline"])).with(list("time", &|t| t));
+    for (number, gap) in [("", 4e-3), ("_2", 2e-3)] {
+        for (name, height) in
+            [("floor_displacement", 0.0), ("rigid_floor", 0.0), ("ceiling_displacement", gap), ("rigid_ceiling", gap)]
+        {
+            table = table.with(list(&format!("{name}{number}"), &|t| floor(t) + height));
+        }
+        table = table.with(list(&format!("particle_displacement{number}"), &|t| gap * (0.5 + 0.4 * (30.0 * t).cos())));
+    }
+    let animation = Drawing::Animation(AnimationSpec { by: Vec::new() });
+    let picture = draw(&limit_stop(), &FigureSpec { drawing: animation, ..figure(vec![]) }, &table, Beside::default());
+    let svg = picture.unwrap().svg;
+    for part in ["base-1", "particle-1", "base-2", "particle-2"] {
+        assert!(svg.contains(&format!("-0-{part}\"")) && svg.contains(&format!("-0-{part}{{")), "{part} moves");
+    }
+    assert!(svg.contains("data-name=\"particle 2\"") && !svg.contains("-0-base-3"));
+}
+
+#[test]
+fn a_landscape_shows_the_spread_of_the_ensemble() {
+    let list = |name: &str, cells: [f64; 3]| Column::new(name, Data::FloatList(vec![cells.to_vec()]));
+    let table = Table::default()
+        .with(texts("variant", ["baseline"]))
+        .with(list("along_gap", [1.0, 2.0, 3.0]))
+        .with(list("fitness_along", [5.0, 4.0, 6.0]))
+        .with(list("fitness_along_spread", [0.0, 0.5, 1.0]));
+    let along = panel("along_gap", AxisScale::Linear, &["fitness_along"]);
+    let spread = drawn("study-landscape", Panel { band: Band::Spread, ..along.clone() }, &table, &[], None);
+    assert!(spread.svg.contains("± 1 s.d. of the ensemble"));
+    assert!(!drawn("study-section", along, &table, &[], None).svg.contains("s.d."));
 }
 
 #[test]

@@ -197,9 +197,9 @@ fn samples_are_the_states_at_the_steps_nearest_to_the_instants_asked_for() {
         assert!((a.time - b.time).abs() <= 0.5e-5 + 1e-12);
         for (a, b) in [
             (a.displacement, b.displacement),
-            (a.particle, b.particle),
-            (a.floor, b.floor),
-            (a.rigid_ceiling, b.rigid_ceiling),
+            (a.first().height, b.first().height),
+            (a.first().floor, b.first().floor),
+            (a.first().rigid_ceiling, b.first().rigid_ceiling),
         ] {
             assert!((a - b).abs() < 2e-4, "{a} {b}");
         }

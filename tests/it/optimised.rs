@@ -124,6 +124,7 @@ fn every_candidate_is_a_row_with_gaps_fitness_and_what_it_cost() {
     assert_eq!(*column("best_so_far")[2].last().unwrap(), table.floats("fitness_in_search").unwrap()[2]);
     let (along, landscape) = (column("along_gap"), column("fitness_along"));
     assert!(along[9].len() >= 5 && along[9].len() == landscape[9].len() && along[2].is_empty());
+    assert_eq!(column("fitness_along_spread")[9].len(), along[9].len(), "with what chaotic motion makes of it");
     assert_eq!(table.floats("varied").unwrap()[9..], [1.0, 2.0, 3.0]);
     assert!(!desk.layout.path("results/ch6-gaps.journal").exists(), "what is done keeps no journal");
     assert_eq!(desk.run(1, &Bowl::default(), &IgnoreEvents), [""; 0]);

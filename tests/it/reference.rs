@@ -318,6 +318,35 @@ fn numbers_of_a_curve_are_read_as_a_study_quotes_them() {
     assert_eq!(verdict(never, &table), Verdict::Differs);
 }
 
+#[test]
+fn what_a_claim_found_says_what_its_numbers_are() {
+    let table = lines(&[("event_driven", [1.0, 1.5, 2.0, 1.5, 1.0])]);
+    let line = "of: velocity_ratio, over: force_ratio";
+    for (claim, found) in [
+        ("claim: {above: {of: velocity_ratio, level: 0.99}}".to_owned(), "true: velocity ratio 1, the lowest"),
+        (
+            format!(
+                "claim: {{between: {{value: {{maximum: {{{line}}}}}, from: 1, to: 3}}}}\nthreshold_reason: for the test"
+            ),
+            "true: largest velocity ratio 2 (required: 1 to 3)",
+        ),
+        (
+            format!("claim: {{greatest_first: [{{maximum: {{{line}}}}}, {{end: {{{line}, end: high}}}}]}}"),
+            "true: largest velocity ratio 2 > velocity ratio 1",
+        ),
+        (
+            format!("claim: {{greatest_first: [{{maximum: {{{line}}}}}, {{number: 1.5}}]}}"),
+            "true: largest velocity ratio 2 > 1.5",
+        ),
+    ] {
+        assert!(judged(&claim, &table).found.starts_with(found), "{claim}: {}", judged(&claim, &table).found);
+    }
+    // Two numbers that no sensible number of digits tells apart are shown with what lies between them.
+    let close = lines(&[("event_driven", [1.0, 1.0, 1.0 + 4e-13, 1.0, 1.0])]);
+    let claim = format!("claim: {{greatest_first: [{{maximum: {{{line}}}}}, {{end: {{{line}, end: high}}}}]}}");
+    assert!(judged(&claim, &close).found.contains("velocity ratio 1 − 4e-13"), "{}", judged(&claim, &close).found);
+}
+
 /// Claims over lines of five points, with the verdict on each line.
 #[test]
 fn claims_hold_fail_and_stay_open_as_their_margins_say() {

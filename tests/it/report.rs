@@ -4,7 +4,7 @@
 
 use std::collections::BTreeMap;
 
-use shotdamp::experiment::{AboutStudy, AssumptionValue};
+use shotdamp::experiment::{AboutStudy, AssumptionValue, Finding};
 use shotdamp::reference::{Comparison, Judged, Price, Role, Verdict};
 use shotdamp::report::{
     AccuracyLinks, AssumptionView, ExperimentView, FigureView, PageView, assumptions as assumptions_page, index,
@@ -175,6 +175,38 @@ fn the_index_tells_the_whole_study_at_a_glance() {
     golden("overview.svg", &overview_svg(std::slice::from_ref(&view)));
     golden("tolerances.md", &tolerances(std::slice::from_ref(&view)));
     golden("index.md", &index(&about(), std::slice::from_ref(&view), &[("Speed", "speed.md")], Some(&machine)));
+}
+
+#[test]
+fn a_conclusion_stands_as_far_as_its_entries_do() {
+    let judged = judged();
+    let view = ExperimentView {
+        experiment: Heading::of(&limit_stop()),
+        judged: &judged,
+        seconds: None,
+        page: "ch3/ch3-limit-stop.md".into(),
+    };
+    let agree = |one: &&Judged| matches!(one.verdict, Verdict::Reproduced);
+    let good: Vec<String> = judged.iter().filter(agree).map(|one| one.id.clone()).collect();
+    let bad = judged.iter().find(|one| one.verdict == Verdict::Differs).unwrap();
+    let finding = |says: &str, entries: Vec<String>| Finding { says: says.into(), entries };
+    let about = AboutStudy {
+        findings: vec![
+            finding("Good.", vec![good[0].clone()]),
+            finding("Mixed.", vec![good[0].clone(), bad.id.clone()]),
+            finding("Bad.", vec![bad.id.clone()]),
+            finding("Misspelt.", vec!["ch3-limit-stop/partng".into()]),
+        ],
+        ..about()
+    };
+    let index = index(&about, std::slice::from_ref(&view), &[], None);
+    let row = |says: &str| index.lines().find(|line| line.starts_with(&format!("| {says}"))).unwrap_or_default();
+    assert!(row("Good.").contains("**stands** [●](ch3/ch3-limit-stop.md#entry-"), "{index}");
+    assert!(row("Mixed.").contains("**stands in part**, 1 of 2 [●]"), "{index}");
+    assert!(row("Bad.").contains("**does not stand** [✕]"), "{index}");
+    let why = bad.explanation.split(". ").next().unwrap();
+    assert!(row("Bad.").contains(why.trim_end_matches('.')), "the reason stands beside it: {index}");
+    assert!(row("Misspelt.").contains("no entry `ch3-limit-stop/partng`"), "{index}");
 }
 
 #[test]

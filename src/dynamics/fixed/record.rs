@@ -6,8 +6,8 @@ use super::vector::Vector;
 use crate::dynamics::audit::State;
 use crate::dynamics::budget;
 use crate::dynamics::contact::Side;
-use crate::dynamics::system::{Event, EventKind, Law, dot};
-use crate::dynamics::trace::Sample;
+use crate::dynamics::system::{Event, EventKind, Law, Particle, dot};
+use crate::dynamics::trace::{Sample, SampledParticle};
 use crate::dynamics::{CycleRates, EngineError, Extremes, Observed, Sums};
 
 impl Observed {
@@ -147,20 +147,20 @@ impl<V: Vector> Run<'_, V> {
     pub(super) fn sample(&mut self) {
         let (n, positions) = (self.layout.n, self.layout.positions());
         let state = self.motion.state.values();
-        let mut sample = Sample {
+        let sampled = |(j, particle): (usize, &Particle)| {
+            let side = self.contacts[j].side();
+            let faces = [Side::Floor, Side::Ceiling].map(|side| dot(&side.face(particle).row, &state[..n]));
+            SampledParticle::new(particle, self.contacts[j], faces, self.relative(j, side).gap)
+        };
+        let sample = Sample {
             time: self.step as f64 * self.time_step,
             displacement: dot(&self.system.observed_rows[0], &state[..n]),
             velocity: dot(&self.system.observed_rows[0], &state[positions..positions + n]),
             acceleration: self.propagators[self.now].acceleration.at(&self.motion.state, self.motion.force()),
             damping: if self.contacts.is_empty() { 0.0 } else { self.damping(0) },
             half_cycle_rms: self.motion.half.map_or(0.0, |half| half.last),
-            ..Sample::default()
+            particles: self.system.particles.iter().enumerate().map(sampled).collect(),
         };
-        if let Some(particle) = self.system.particles.first() {
-            let side = self.contacts[0].side();
-            let faces = [Side::Floor, Side::Ceiling].map(|side| dot(&side.face(particle).row, &state[..n]));
-            sample.set_particle(particle, self.contacts[0], faces, self.relative(0, side).gap);
-        }
         self.response.trace.push(sample);
         self.seek_sample(self.step + 1);
     }

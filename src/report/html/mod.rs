@@ -72,7 +72,7 @@ pub fn html(study: &Study, judgement: &Judgement) -> Html {
 
 /// The index, with the strip as links to the entries in the place of its picture.
 fn index_page(about: &AboutStudy, experiments: &[ExperimentView<'_>], here: &Here<'_>) -> String {
-    let mut page = render(&format!("{}{}", index::head(about), headline::section(experiments)), here);
+    let mut page = render(&format!("{}{}", index::head(about), headline::section(about, experiments)), here);
     page += &render(&reading::section(), here);
     page += &strip::section(about, experiments);
     page += "<h2 id=\"study/numbers\">All numbers</h2>\n";
