@@ -161,8 +161,8 @@ measures! {
     LargestMultiplier: "", "μ", "", "modulus of the largest Floquet multiplier: what a period of the motion leaves of a small disturbance", Motion, Own, Any;
     MultiplierAngle: "rad", "", "", "angle of that multiplier: 0 towards a fold, π towards a doubling of the period", Motion, Own, Any;
     MultiplierResidual: "", "", "", "product of all multipliers against the contraction of dashpots and impacts, relative to the most that it could be", Motion, Own, Any;
-    LyapunovExponent: "", "λ", "", "growth of the logarithm of a small disturbance in a cycle; with its standard error where the motion does not come again", Motion, Own, Any;
-    SettledAfter: "", "", "", "cycles after which the motion comes again to within a millionth", Motion, Own, Any;
+    LyapunovExponent: "1/cycle", "λ", "", "growth of the logarithm of a small disturbance in a cycle; with its standard error where the motion does not come again", Motion, Own, Any;
+    SettledAfter: "cycles", "", "", "cycles after which the motion comes again to within a millionth", Motion, Own, Any;
 }
 
 /// A column's name in words: a measure's, or those of [`words::of_column`].

@@ -3,8 +3,8 @@
 //! | name | decided by |
 //! |---|---|
 //! | at rest on the floor, periodic, sticking, completed chatter | the last state is within a millionth of the motion of an orbit that closes (Newton's step with the multipliers of the last period) and no multiplier exceeds 1 |
-//! | chaotic | no such period, and a Lyapunov exponent above zero by three standard errors and one in as many cycles as were run |
-//! | quasi-periodic | an exponent of zero within that, and returns that come no closer with time |
+//! | chaotic | no such period, and a Lyapunov exponent above zero by three standard errors |
+//! | quasi-periodic | no such period, an exponent of zero within its standard error, which is small, and returns that come no closer with time |
 //! | not settled | anything else |
 
 use std::fmt;
@@ -24,10 +24,12 @@ const SETTLED: f64 = 1e-6;
 const REPEATED: f64 = 1e-9;
 /// A multiplier of a motion without damping may round above 1 by this.
 const NEUTRAL: f64 = 1e-9;
-/// Standard errors that make an exponent differ from zero.
+/// Standard errors that make an exponent positive.
 const ERRORS: f64 = 3.0;
 /// Returns of a motion that no longer settles come no closer than this from one half of the run to the other.
 const STEADY: f64 = 0.8;
+/// A standard error above this, a cycle, does not tell zero from weak chaos.
+const SHARP: f64 = 0.05;
 
 /// What kind of motion a run ends in.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -81,6 +83,15 @@ pub struct Motion {
 impl MotionKind {
     /// The words in a table.
     const AT_REST: &str = "at rest";
+    /// It comes again after some periods of the drive.
+    #[must_use]
+    pub fn repeats(self) -> bool {
+        match self {
+            Self::AtRest | Self::Periodic { .. } | Self::Sticking { .. } | Self::CompletedChatter { .. } => true,
+            Self::QuasiPeriodic | Self::Chaotic | Self::NotSettled => false,
+        }
+    }
+
     const PERIODIC: &str = "periodic";
     const STICKING: &str = "sticking";
     const CHATTER: &str = "completed chatter";
@@ -149,10 +160,10 @@ pub(in crate::dynamics) fn name(system: &HybridSystem, tape: &Tape, window: usiz
     let kind = match exponent {
         // Without a drive that comes again there is no cycle to be left out of step with.
         Some(Exponent { value, error }) if system.drive.repeats => {
-            let zero = ERRORS * error + 1.0 / ends.len() as f64;
-            if value > zero {
+            let is_zero = value.abs() <= error && error <= SHARP;
+            if value > ERRORS * error {
                 MotionKind::Chaotic
-            } else if value > -zero && closing(&scale, ends) > STEADY {
+            } else if is_zero && closing(&scale, ends) > STEADY {
                 MotionKind::QuasiPeriodic
             } else {
                 MotionKind::NotSettled
