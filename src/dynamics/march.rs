@@ -85,6 +85,8 @@ pub(crate) struct March<'a, const TAPED: bool> {
     audit: Option<Audit>,
     /// What names the motion; kept if `TAPED`, so that other runs have no such code.
     tape: Tape,
+    /// Contacts before what may capture particles; kept if `TAPED`.
+    held: Vec<Contact>,
 }
 
 impl<'a, const TAPED: bool> March<'a, TAPED> {
@@ -136,6 +138,7 @@ impl<'a, const TAPED: bool> March<'a, TAPED> {
             },
             audit: options.audit.then(Audit::default),
             tape: Tape::default(),
+            held: Vec::new(),
         };
         if TAPED && system.drive.half_cycles.is_some() {
             return Err(EngineError::DampingWithMemory);
@@ -288,7 +291,9 @@ impl<'a, const TAPED: bool> March<'a, TAPED> {
 
     /// A jump of the force.
     fn tick(&mut self, tick: Tick, kick: f64) -> Result<(), EngineError> {
-        let held = if TAPED { self.contacts.clone() } else { Vec::new() };
+        if TAPED {
+            self.held.clone_from(&self.contacts);
+        }
         let stepped = tick.level != self.level;
         self.level = tick.level;
         let impulse = tick.impulse + kick;
@@ -299,7 +304,7 @@ impl<'a, const TAPED: bool> March<'a, TAPED> {
             self.regrip()?;
         }
         if TAPED {
-            self.tape_captures(&held)?;
+            self.tape_captures()?;
             self.tape.timed();
         }
         Ok(())

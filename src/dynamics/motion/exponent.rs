@@ -30,7 +30,7 @@ impl Exponent {
         let mut growths = Vec::new();
         let mut length = norm(scale, &vectors[0]);
         for cycle in tape.last(count) {
-            cycle.steps.iter().for_each(|step| tangent.carry(step, &mut vectors));
+            cycle.steps.iter().for_each(|step| tangent.carry(cycle, step, &mut vectors));
             let now = norm(scale, &vectors[0]);
             if !(now > 0.0 && now.is_finite()) {
                 return None;

@@ -53,9 +53,9 @@ impl Scale {
     }
 
     /// From one state to another.
-    pub(super) fn miss(&self, from: &End, to: &End) -> Vec<f64> {
+    pub(super) fn miss(&self, from: &End, to: &End) -> impl Iterator<Item = f64> {
         let pairs = from.state.iter().zip(&to.state).enumerate();
-        pairs.map(|(i, (from, to))| (to - from) / self.unit(i)).collect()
+        pairs.map(|(i, (from, to))| (to - from) / self.unit(i))
     }
 
     /// The largest part of the way from one state to another; infinite between different contacts.
@@ -63,7 +63,7 @@ impl Scale {
         if one.contacts != other.contacts {
             return f64::INFINITY;
         }
-        self.miss(one, other).iter().fold(0.0, |most, x| most.max(x.abs()))
+        self.miss(one, other).fold(0.0, |most, x| most.max(x.abs()))
     }
 }
 
