@@ -29,7 +29,7 @@ use super::states::States;
 use super::system::{Contact, Event, EventKind, HybridSystem, Law, Tick, dot};
 use super::trace::Sample;
 use super::visits::Visits;
-use super::{CycleRates, EngineError, Observed, Options, Proof, Response};
+use super::{Averaged, CycleRates, EngineError, Observed, Options, Proof, Response, Until};
 use half_cycles::Half;
 
 /// Events at one instant beyond which the contact is declared undecidable.
@@ -55,6 +55,7 @@ pub(crate) struct March<'a, const TAPED: bool> {
     equivalent: Option<f64>,
     /// The last contact began or ended smoothly: u = u′ = u″ = 0, it leaves with u‴; or its push grows from zero.
     smooth: Vec<bool>,
+    averaged: Averaged,
     // Clock.
     cycle: u64,
     time: f64,
@@ -115,6 +116,7 @@ impl<'a, const TAPED: bool> March<'a, TAPED> {
             damping,
             equivalent,
             smooth: vec![false; count],
+            averaged: options.averaged(),
             cycle: 0,
             time: 0.0,
             level: 0.0,
@@ -195,17 +197,18 @@ impl<'a, const TAPED: bool> March<'a, TAPED> {
     }
 
     fn all_cycles(&mut self) -> Result<(), EngineError> {
-        let cycles = self.options.cycles();
+        let mut cycles = self.options.cycles();
+        let audited = self.first_audited();
         let period = self.system.drive.period;
-        for cycle in 0..cycles {
-            self.cycle = cycle;
+        while self.cycle < cycles {
+            let cycle = self.cycle;
             self.time = 0.0;
             if TAPED {
                 self.tape.begin_cycle();
             }
             budget::reach(cycle, cycles);
-            if cycle == u64::from(self.options.skip) {
-                self.begin_window();
+            if cycle == audited {
+                self.begin_audit();
             }
             let single = [Tick { time: 0.0, impulse: 0.0, level: 0.0 }];
             let ticks: &[Tick] =
@@ -227,12 +230,24 @@ impl<'a, const TAPED: bool> March<'a, TAPED> {
             }
             if TAPED {
                 self.end_taped_cycle();
+                if let Some(settled) = self.settle_down()? {
+                    cycles = settled.end().max(self.options.trace.map_or(0, |trace| trace.to_cycle));
+                }
             }
+            self.cycle += 1;
         }
         Ok(())
     }
 
-    fn begin_window(&mut self) {
+    /// The first cycle that momentum and energy are balanced in; which ones a run that settles will average is not known before.
+    fn first_audited(&self) -> u64 {
+        match self.options.until {
+            Until::Cycles => self.averaged.first,
+            Until::Settled => 0,
+        }
+    }
+
+    fn begin_audit(&mut self) {
         if self.audit.is_some() {
             let state = self.audit_state();
             if let Some(audit) = &mut self.audit {
@@ -256,7 +271,7 @@ impl<'a, const TAPED: bool> March<'a, TAPED> {
         }
         self.response.final_particles = (0..self.particles.len()).map(|j| self.absolute(j)).collect();
         self.response.highest_frequency = self.fastest;
-        if TAPED {
+        if TAPED && self.options.motion {
             self.response.motion = Some(motion::name(self.system, &self.tape, self.options.average as usize)?);
         }
         if self.response.final_displacement.is_finite() && self.response.final_velocity.is_finite() {
@@ -320,7 +335,7 @@ impl<'a, const TAPED: bool> March<'a, TAPED> {
             self.tape.count(kind);
         }
         budget::count_event();
-        if self.options.averages(self.cycle) {
+        if self.averaged.holds(self.cycle) {
             self.response.counts.add(kind);
         }
         let wanted = self.response.events.len() < self.options.record_events
@@ -490,11 +505,11 @@ impl<'a, const TAPED: bool> March<'a, TAPED> {
 
     /// Adds the segment to the measures, and to the audit if there is one.
     fn sum_up(&mut self, length: f64, drive: DrivePhase) {
-        if self.options.averages(self.cycle) {
-            let second_half = 2 * (self.cycle - u64::from(self.options.skip)) >= u64::from(self.options.average);
-            if self.visits.half != usize::from(second_half) || self.visits.is_full() {
+        if self.averaged.holds(self.cycle) {
+            let half = self.averaged.half(self.cycle);
+            if self.visits.half != half || self.visits.is_full() {
                 self.pay_out();
-                self.visits.half = usize::from(second_half);
+                self.visits.half = half;
             }
             let closed = self.has_closed_forms();
             if closed {
@@ -505,8 +520,9 @@ impl<'a, const TAPED: bool> March<'a, TAPED> {
             }
         }
         let flow = &self.flow;
+        let first_audited = self.first_audited();
         if let Some(audit) = &mut self.audit
-            && self.cycle >= u64::from(self.options.skip)
+            && self.cycle >= first_audited
         {
             audit.segment(self.system, flow, &self.c, &self.search.kernels, Force { level: self.level, drive }, length);
         }
@@ -618,7 +634,7 @@ fn side_stiffness(system: &HybridSystem, contacts: &[Contact], j: usize) -> Opti
 
 /// Runs a system.
 pub(crate) fn march(system: &HybridSystem, options: &Options, states: States) -> Result<Response, EngineError> {
-    if options.motion {
+    if options.is_taped() {
         return March::<true>::new(system, options, states)?.run();
     }
     March::<false>::new(system, options, states)?.run()

@@ -16,8 +16,8 @@ use super::{budget, fixed, linear, march, residual_bound};
 pub fn event_driven(system: &HybridSystem, options: &Options) -> Result<Response, EngineError> {
     budget::within(|| {
         let states = States::of(system);
-        let attempt = match options.motion {
-            // A closed form visits no states that could come again.
+        // A closed form visits no states that could come again.
+        let attempt = match options.is_taped() {
             true => linear::Attempt::Open,
             false => linear::attempt(system, options, &states)?,
         };

@@ -2,11 +2,11 @@
 
 use super::March;
 use super::impacts::Touch;
-use crate::dynamics::EngineError;
 use crate::dynamics::collision::{self, Closed, Outcome};
 use crate::dynamics::contact::{Crossing, Side};
-use crate::dynamics::motion::{Instant, Jump, Kick};
+use crate::dynamics::motion::{self, Instant, Jump, Kick};
 use crate::dynamics::system::{Contact, Law, dot};
+use crate::dynamics::{Averaged, Counts, EngineError, Observed, Until};
 
 impl<const TAPED: bool> March<'_, TAPED> {
     /// An event, with both sides of it.
@@ -105,5 +105,20 @@ impl<const TAPED: bool> March<'_, TAPED> {
         state.extend_from_slice(&self.rate[..n]);
         state.extend((0..count).map(|j| self.absolute(j)[1]));
         self.tape.end_cycle(state, self.contacts.clone());
+    }
+
+    /// At the end of a cycle: the period that is averaged from now on, if the run was to settle and just did.
+    pub(super) fn settle_down(&mut self) -> Result<Option<Averaged>, EngineError> {
+        if self.options.until == Until::Cycles || self.response.settled.is_some() {
+            return Ok(None);
+        }
+        let Some(cycles) = motion::settled(self.system, &self.tape)? else { return Ok(None) };
+        // What was averaged so far is not asked for.
+        self.pay_out();
+        self.response.observed.fill(Observed::default());
+        self.response.counts = Counts::default();
+        self.averaged = Averaged { first: self.cycle + 1, cycles };
+        self.response.settled = Some(self.averaged);
+        Ok(self.response.settled)
     }
 }

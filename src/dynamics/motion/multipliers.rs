@@ -34,7 +34,7 @@ pub struct Fundamental {
 impl Fundamental {
     /// Of the last cycles of a run.
     pub(in crate::dynamics) fn of(system: &HybridSystem, tape: &Tape, cycles: usize) -> Result<Self, EngineError> {
-        let scale = Scale::new(system, &tape.ends);
+        let scale = Scale::new(system, &tape.reach);
         let map = Period::new(system, &scale, tape.last(cycles));
         let size = map.matrix.nrows();
         let entry = |i: usize, k: usize| map.matrix[(i, k)] * scale.unit(i) / scale.unit(k);

@@ -18,6 +18,8 @@ use crate::dynamics::EngineError;
 use crate::dynamics::contact::Side;
 use crate::dynamics::system::{Contact, HybridSystem};
 
+/// Share of the motion within which a state may be on its way to come again.
+const NEAR: f64 = 1e-3;
 /// Distance from the orbit, in units of the motion, within which a run has settled.
 const SETTLED: f64 = 1e-6;
 /// The same where impacts at one instant leave no multipliers to prove it: the state itself comes again.
@@ -26,10 +28,10 @@ const REPEATED: f64 = 1e-9;
 const NEUTRAL: f64 = 1e-9;
 /// Standard errors that make an exponent positive.
 const ERRORS: f64 = 3.0;
-/// Returns of a motion that no longer settles come no closer than this from one half of the run to the other.
-const STEADY: f64 = 0.8;
 /// A standard error above this, a cycle, does not tell zero from weak chaos.
 const SHARP: f64 = 0.05;
+/// Returns of a motion that no longer settles come no closer than this from one half of the run to the other.
+const STEADY: f64 = 0.8;
 
 /// What kind of motion a run ends in.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -83,6 +85,13 @@ pub struct Motion {
 impl MotionKind {
     /// The words in a table.
     const AT_REST: &str = "at rest";
+    const PERIODIC: &str = "periodic";
+    const STICKING: &str = "sticking";
+    const CHATTER: &str = "completed chatter";
+    const QUASI_PERIODIC: &str = "quasi-periodic";
+    const CHAOTIC: &str = "chaotic";
+    const NOT_SETTLED: &str = "not settled";
+
     /// It comes again after some periods of the drive.
     #[must_use]
     pub fn repeats(self) -> bool {
@@ -91,13 +100,6 @@ impl MotionKind {
             Self::QuasiPeriodic | Self::Chaotic | Self::NotSettled => false,
         }
     }
-
-    const PERIODIC: &str = "periodic";
-    const STICKING: &str = "sticking";
-    const CHATTER: &str = "completed chatter";
-    const QUASI_PERIODIC: &str = "quasi-periodic";
-    const CHAOTIC: &str = "chaotic";
-    const NOT_SETTLED: &str = "not settled";
 }
 
 impl fmt::Display for MotionKind {
@@ -148,8 +150,8 @@ impl FromStr for MotionKind {
 
 /// Names the motion that a tape ends in; exponents are of its last `window` cycles.
 pub(in crate::dynamics) fn name(system: &HybridSystem, tape: &Tape, window: usize) -> Result<Motion, EngineError> {
-    let scale = Scale::new(system, &tape.ends);
-    for period in candidates(&scale, &tape.ends) {
+    let scale = Scale::new(system, &tape.reach);
+    for period in candidates(&scale, &tape.ends, NEAR) {
         if let Some(motion) = closes(system, &scale, tape, period)? {
             return Ok(motion);
         }

@@ -18,6 +18,8 @@ pub(in crate::dynamics) struct Tape {
     pub(super) cycles: VecDeque<Cycle>,
     /// States at the ends of all cycles.
     pub(super) ends: Vec<End>,
+    /// What they reach.
+    pub(super) reach: Reach,
     /// Exchanges of momentum in the event under way.
     jumps: Vec<Jump>,
 }
@@ -104,6 +106,24 @@ pub(in crate::dynamics) struct End {
     pub(super) contacts: Vec<Contact>,
 }
 
+/// The least and the largest of each number of the states so far.
+#[derive(Default)]
+pub(super) struct Reach(Vec<[f64; 2]>);
+
+impl Reach {
+    fn take(&mut self, state: &[f64]) {
+        self.0.resize(state.len(), [f64::INFINITY, f64::NEG_INFINITY]);
+        for ([low, high], x) in self.0.iter_mut().zip(state) {
+            (*low, *high) = (low.min(*x), high.max(*x));
+        }
+    }
+
+    /// Of number `i` of a state.
+    pub(super) fn of(&self, i: usize) -> [f64; 2] {
+        self.0.get(i).copied().unwrap_or_default()
+    }
+}
+
 impl Cycle {
     /// An instant of this cycle, in a system of so many particles.
     pub(super) fn at<'a>(&'a self, instant: &'a Instant, particles: usize) -> At<'a> {
@@ -133,6 +153,7 @@ impl Tape {
 
     /// A cycle has ended at the state q, y, q′, y′.
     pub(in crate::dynamics) fn end_cycle(&mut self, state: Vec<f64>, contacts: Vec<Contact>) {
+        self.reach.take(&state);
         self.ends.push(End { state, contacts });
     }
 
