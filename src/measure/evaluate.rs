@@ -252,7 +252,9 @@ impl Case<'_> {
 
         if response.method == Method::ClosedForm {
             // Linear: neighbouring starts stay neighbours, and there is no window to be halved.
-            return Ok(Some(certain(values.iter().map(|value| CLOSED_FORM * value.abs()).collect(), false)));
+            let own = request.measures.iter().map(|measure| own_error(*measure, &response));
+            let errors = values.iter().zip(own).map(|(value, own)| (CLOSED_FORM * value.abs()).max(own));
+            return Ok(Some(certain(errors.collect(), false)));
         }
         let exact = || values.iter().map(|value| 4.0 * f64::EPSILON * value.abs()).collect();
         if request.rigour == Rigour::Step {

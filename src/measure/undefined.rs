@@ -6,15 +6,17 @@ use crate::scene::Scene;
 use crate::text::words;
 
 impl Evaluated {
-    /// Which numbers are undefined, and why, each reason once: `multipliers, settled_after undefined: the motion does not come
-    /// again`. Empty if all are defined.
+    /// Which numbers are undefined, and why, each reason once: `multipliers, lyapunov_exponent undefined: …`. Empty if all are
+    /// defined.
     #[must_use]
     pub fn undefined(&self, measures: &[Measure]) -> String {
         // A table that is read again knows the motion only where it has the column.
         let motion = self.motion.filter(|_| measures.contains(&Measure::Motion));
         let mut reasons: Vec<(&str, Vec<String>)> = Vec::new();
         for (measure, one) in measures.iter().zip(&self.measured) {
-            if measure.is_name() || !one.value.is_nan() {
+            let is_named = measure.is_of_a_period() && motion.is_some_and(|kind| !kind.repeats());
+            // The name of the motion says that there is no period.
+            if measure.is_name() || is_named || !one.value.is_nan() {
                 continue;
             }
             let (why, name) = (measure.why_undefined(motion), measure.name_undefined());
@@ -30,6 +32,11 @@ impl Evaluated {
 }
 
 impl Measure {
+    /// Of the period of a motion that comes again.
+    fn is_of_a_period(self) -> bool {
+        self.needs_motion() && self != Self::LyapunovExponent
+    }
+
     /// What it is called where it is undefined: multipliers are so together.
     fn name_undefined(self) -> String {
         match self {
@@ -51,9 +58,8 @@ impl Measure {
                 Some(false) => "particles are struck at one instant, or the cycles are too few",
                 _ => "nothing is left of a disturbance, or particles are struck at one instant",
             },
-            _ if self.needs_motion() => match motion.map(MotionKind::repeats) {
-                Some(true) => "particles are struck at one instant",
-                Some(false) => "the motion does not come again",
+            _ if self.is_of_a_period() => match motion {
+                Some(_) => "particles are struck at one instant",
                 None => "the motion does not come again, or particles are struck at one instant",
             },
             _ if self.needs_events() => "there is no such event",
