@@ -83,6 +83,7 @@ fn figure() -> FigureSpec {
         guides: Vec::new(),
         markers: true,
         peaks: None,
+        strip: None,
     };
     FigureSpec {
         name: String::new(),

@@ -109,6 +109,7 @@ pub fn panel(x: &str, scale: AxisScale, y: &[&str]) -> Panel {
         guides: Vec::new(),
         markers: false,
         peaks: None,
+        strip: None,
     }
 }
 
