@@ -92,6 +92,20 @@ impl MotionKind {
     const CHAOTIC: &str = "chaotic";
     const NOT_SETTLED: &str = "not settled";
 
+    /// Its name without numbers.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::AtRest => Self::AT_REST,
+            Self::Periodic { .. } => Self::PERIODIC,
+            Self::Sticking { .. } => Self::STICKING,
+            Self::CompletedChatter { .. } => Self::CHATTER,
+            Self::QuasiPeriodic => Self::QUASI_PERIODIC,
+            Self::Chaotic => Self::CHAOTIC,
+            Self::NotSettled => Self::NOT_SETTLED,
+        }
+    }
+
     /// It comes again after some periods of the drive.
     #[must_use]
     pub fn repeats(self) -> bool {
@@ -105,13 +119,11 @@ impl MotionKind {
 impl fmt::Display for MotionKind {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::AtRest => f.write_str(Self::AT_REST),
-            Self::Periodic { periods, contacts } => write!(f, "{} {periods}:{contacts}", Self::PERIODIC),
-            Self::Sticking { periods, contacts } => write!(f, "{} {periods}:{contacts}", Self::STICKING),
-            Self::CompletedChatter { periods } => write!(f, "{} {periods}:∞", Self::CHATTER),
-            Self::QuasiPeriodic => f.write_str(Self::QUASI_PERIODIC),
-            Self::Chaotic => f.write_str(Self::CHAOTIC),
-            Self::NotSettled => f.write_str(Self::NOT_SETTLED),
+            Self::Periodic { periods, contacts } | Self::Sticking { periods, contacts } => {
+                write!(f, "{} {periods}:{contacts}", self.word())
+            }
+            Self::CompletedChatter { periods } => write!(f, "{} {periods}:∞", self.word()),
+            Self::AtRest | Self::QuasiPeriodic | Self::Chaotic | Self::NotSettled => f.write_str(self.word()),
         }
     }
 }
