@@ -6,7 +6,7 @@ use crate::measure::Measure;
 use crate::table::Table;
 use crate::text::words::{counted, of_key};
 
-/// The part of an experiment's page; nothing where the motion is not measured.
+/// The part of an experiment's page; nothing where the motion is not measured, or of one row alone.
 pub(super) fn section(experiment: &Experiment, table: &Table) -> String {
     let baseline = table.baseline();
     let names = baseline.texts(&of_key(&Measure::Motion)).unwrap_or_default();
@@ -18,7 +18,7 @@ pub(super) fn section(experiment: &Experiment, table: &Table) -> String {
             None => tally.push((kind.word(), 1)),
         }
     }
-    if tally.is_empty() {
+    if kinds.len() < 2 {
         return String::new();
     }
     tally.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
