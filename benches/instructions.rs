@@ -9,8 +9,18 @@ use shotdamp::scene::{
 };
 
 /// Nothing but a resilient damper under impulses; the same with one effect named that cannot do anything; the same with it
-/// at work.
-const SCENES: [&str; 6] = ["plain", "idle_stop", "stop", "no_tension", "stiff_walls", "equivalent_damping"];
+/// at work. The same with its motion named; and chaotic, without and with its name.
+const SCENES: [&str; 9] = [
+    "plain",
+    "idle_stop",
+    "stop",
+    "no_tension",
+    "stiff_walls",
+    "equivalent_damping",
+    "motion",
+    "chaotic",
+    "chaotic_motion",
+];
 
 fn scene(name: &str) -> Scene {
     let damping = 0.6 * 50.0_f64.sqrt();
@@ -38,7 +48,8 @@ fn scene(name: &str) -> Scene {
         _ => {}
     }
     let natural = 1000.0_f64.sqrt();
-    let (impulse, period) = (7.0 * 9.81 / natural, 0.199);
+    let force_ratio = if name.starts_with("chaotic") { 1.0 } else { 7.0 };
+    let (impulse, period) = (force_ratio * 9.81 / natural, 0.199);
     let base = SingleMass { mass: 1.0, stiffness: 1000.0, damping: 0.1 * natural };
     Scene::on_one_mass(base, 9.81, vec![damper], Excitation::ImpulseTrain { impulse, period })
 }
@@ -52,7 +63,7 @@ fn main() {
     };
     assert!(SCENES.contains(&name.as_str()), "no scene `{name}`");
     let system = compile(&scene(name)).expect("the scenes above compile");
-    let options = Options { displacement: false, ..Options::default() };
+    let options = Options { displacement: false, motion: name.ends_with("motion"), ..Options::default() };
     let mut events = 0;
     for _ in 0..runs {
         events = event_driven(std::hint::black_box(&system), &options).expect("the scenes above run").proof.events;

@@ -171,6 +171,7 @@ fn figure() -> FigureSpec {
             guides: Vec::new(),
             markers: true,
             peaks: None,
+            strip: None,
         }]),
     }
 }

@@ -134,6 +134,7 @@ fn figure(wanted: Vec<f64>) -> FigureSpec {
         guides: wanted.into_iter().enumerate().map(guide).collect(),
         markers: true,
         peaks: None,
+        strip: None,
     };
     FigureSpec {
         name: String::new(),

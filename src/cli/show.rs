@@ -15,8 +15,9 @@ use super::exit::Exit;
 use super::output::{columns, print, print_error, print_unread, simulations};
 use super::select::{choose, matches};
 use crate::accuracy::idle_cases;
-use crate::dynamics::{Allowance, Limit, in_words};
+use crate::dynamics::{Allowance, Limit, Until, in_words};
 use crate::experiment::Experiment;
+use crate::measure::Settings;
 use crate::report::{scenes, value_in_words};
 use crate::scene::{Scene, effects};
 use crate::study::{Item, Layout, State, Study, Texts, forecast};
@@ -244,6 +245,10 @@ fn cases(item: &Item) -> String {
     if item.variants.len() > 1 {
         let ends: Vec<&str> = item.variants.iter().skip(1).map(|variant| variant.label.as_str()).collect();
         text += &format!("  and event-driven with each of {}\n", ends.join(", "));
+    }
+    let Settings { skip, average, until, .. } = experiment.settings;
+    if until == Until::Settled {
+        text += &format!("  each run ends where it has settled, or after {skip} + {average} cycles\n");
     }
     text + &format!("  {}, {} at most\n", counted(rows, "row", "rows"), simulations(most))
 }

@@ -62,7 +62,7 @@ pub enum EngineError {
     },
     /// A motion that the multipliers cannot follow.
     #[error(
-        "the motion of a contact with equivalent viscous damping has no name: its damping depends on the half cycle before, which is no part of the state; leave `motion` out"
+        "the motion of a contact with equivalent viscous damping has no name: its damping depends on the half cycle before, which is no part of the state; leave `motion` and `until: settled` out"
     )]
     DampingWithMemory,
     /// Its allowance was used up first.

@@ -29,7 +29,7 @@ use super::states::States;
 use super::system::{Contact, Event, EventKind, HybridSystem, Law, Particle, Tick, dot};
 use super::trace::{Sample, SampledParticle};
 use super::visits::Visits;
-use super::{CycleRates, EngineError, Observed, Options, Proof, Response};
+use super::{Averaged, CycleRates, EngineError, Observed, Options, Proof, Response, Until};
 use half_cycles::Half;
 
 /// Events at one instant beyond which the contact is declared undecidable.
@@ -53,6 +53,7 @@ pub(crate) struct March<'a, const TAPED: bool> {
     equivalent: Option<f64>,
     /// The last contact began or ended smoothly: u = u′ = u″ = 0, it leaves with u‴; or its push grows from zero.
     smooth: Vec<bool>,
+    averaged: Averaged,
     // Clock.
     cycle: u64,
     time: f64,
@@ -83,6 +84,8 @@ pub(crate) struct March<'a, const TAPED: bool> {
     audit: Option<Audit>,
     /// What names the motion; kept if `TAPED`, so that other runs have no such code.
     tape: Tape,
+    /// Contacts before what may capture particles; kept if `TAPED`.
+    held: Vec<Contact>,
 }
 
 impl<'a, const TAPED: bool> March<'a, TAPED> {
@@ -110,6 +113,7 @@ impl<'a, const TAPED: bool> March<'a, TAPED> {
             damping,
             equivalent,
             smooth: vec![false; count],
+            averaged: options.averaged(),
             cycle: 0,
             time: 0.0,
             level: 0.0,
@@ -133,6 +137,7 @@ impl<'a, const TAPED: bool> March<'a, TAPED> {
             },
             audit: options.audit.then(Audit::default),
             tape: Tape::default(),
+            held: Vec::new(),
         };
         if TAPED && system.drive.half_cycles.is_some() {
             return Err(EngineError::DampingWithMemory);
@@ -189,17 +194,18 @@ impl<'a, const TAPED: bool> March<'a, TAPED> {
     }
 
     fn all_cycles(&mut self) -> Result<(), EngineError> {
-        let cycles = self.options.cycles();
+        let mut cycles = self.options.cycles();
+        let audited = self.first_audited();
         let period = self.system.drive.period;
-        for cycle in 0..cycles {
-            self.cycle = cycle;
+        while self.cycle < cycles {
+            let cycle = self.cycle;
             self.time = 0.0;
             if TAPED {
                 self.tape.begin_cycle();
             }
             budget::reach(cycle, cycles);
-            if cycle == u64::from(self.options.skip) {
-                self.begin_window();
+            if cycle == audited {
+                self.begin_audit();
             }
             let single = [Tick { time: 0.0, impulse: 0.0, level: 0.0 }];
             let ticks: &[Tick] =
@@ -221,12 +227,24 @@ impl<'a, const TAPED: bool> March<'a, TAPED> {
             }
             if TAPED {
                 self.end_taped_cycle();
+                if let Some(settled) = self.settle_down()? {
+                    cycles = settled.end().max(self.options.trace.map_or(0, |trace| trace.to_cycle));
+                }
             }
+            self.cycle += 1;
         }
         Ok(())
     }
 
-    fn begin_window(&mut self) {
+    /// The first cycle that momentum and energy are balanced in; which ones a run that settles will average is not known before.
+    fn first_audited(&self) -> u64 {
+        match self.options.until {
+            Until::Cycles => self.averaged.first,
+            Until::Settled => 0,
+        }
+    }
+
+    fn begin_audit(&mut self) {
         if self.audit.is_some() {
             let state = self.audit_state();
             if let Some(audit) = &mut self.audit {
@@ -249,7 +267,7 @@ impl<'a, const TAPED: bool> March<'a, TAPED> {
             self.response.final_velocity = dot(row, &self.rate);
         }
         self.response.final_particles = (0..self.particles.len()).map(|j| self.absolute(j)).collect();
-        if TAPED {
+        if TAPED && self.options.motion {
             self.response.motion = Some(motion::name(self.system, &self.tape, self.options.average as usize)?);
         }
         if self.response.final_displacement.is_finite() && self.response.final_velocity.is_finite() {
@@ -284,7 +302,9 @@ impl<'a, const TAPED: bool> March<'a, TAPED> {
 
     /// A jump of the force.
     fn tick(&mut self, tick: Tick, kick: f64) -> Result<(), EngineError> {
-        let held = if TAPED { self.contacts.clone() } else { Vec::new() };
+        if TAPED {
+            self.held.clone_from(&self.contacts);
+        }
         let stepped = tick.level != self.level;
         self.level = tick.level;
         let impulse = tick.impulse + kick;
@@ -295,7 +315,7 @@ impl<'a, const TAPED: bool> March<'a, TAPED> {
             self.regrip()?;
         }
         if TAPED {
-            self.tape_captures(&held)?;
+            self.tape_captures()?;
             self.tape.timed();
         }
         Ok(())
@@ -311,7 +331,7 @@ impl<'a, const TAPED: bool> March<'a, TAPED> {
             self.tape.count(kind);
         }
         budget::count_event();
-        if self.options.averages(self.cycle) {
+        if self.averaged.holds(self.cycle) {
             self.response.counts.add(kind);
         }
         let wanted = self.response.events.len() < self.options.record_events
@@ -483,11 +503,11 @@ impl<'a, const TAPED: bool> March<'a, TAPED> {
 
     /// Adds the segment to the measures, and to the audit if there is one.
     fn sum_up(&mut self, length: f64, drive: DrivePhase) {
-        if self.options.averages(self.cycle) {
-            let second_half = 2 * (self.cycle - u64::from(self.options.skip)) >= u64::from(self.options.average);
-            if self.visits.half != usize::from(second_half) || self.visits.is_full() {
+        if self.averaged.holds(self.cycle) {
+            let half = self.averaged.half(self.cycle);
+            if self.visits.half != half || self.visits.is_full() {
                 self.pay_out();
-                self.visits.half = usize::from(second_half);
+                self.visits.half = half;
             }
             let closed = self.has_closed_forms();
             if closed {
@@ -498,8 +518,9 @@ impl<'a, const TAPED: bool> March<'a, TAPED> {
             }
         }
         let flow = &self.flow;
+        let first_audited = self.first_audited();
         if let Some(audit) = &mut self.audit
-            && self.cycle >= u64::from(self.options.skip)
+            && self.cycle >= first_audited
         {
             audit.segment(self.system, flow, &self.c, &self.search.kernels, Force { level: self.level, drive }, length);
         }
@@ -611,7 +632,7 @@ fn side_stiffness(system: &HybridSystem, contacts: &[Contact], j: usize) -> Opti
 
 /// Runs a system.
 pub(crate) fn march(system: &HybridSystem, options: &Options, states: States) -> Result<Response, EngineError> {
-    if options.motion {
+    if options.is_taped() {
         return March::<true>::new(system, options, states)?.run();
     }
     March::<false>::new(system, options, states)?.run()

@@ -78,7 +78,7 @@ pub use budget::{Allowance, Exhausted, Limit, Overrun, in_words, interrupt, is_i
 pub use error::EngineError;
 pub use extremes::Extremes;
 pub use motion::{Exponent, Fundamental, Motion, MotionKind, Multiplier};
-pub use options::{Options, StartState};
+pub use options::{Averaged, Options, StartState, Until};
 pub use proof::Proof;
 pub use response::{Counts, CycleRates, Method, Observed, Response};
 pub use run::{event_driven, fixed_step, fundamental_matrix, is_linear, steady_state};

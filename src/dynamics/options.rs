@@ -1,5 +1,7 @@
 //! How a system is run: which cycles, from where, and what is kept of them.
 
+use serde::{Deserialize, Serialize};
+
 use super::system::Contact;
 use super::trace::TraceRequest;
 
@@ -10,6 +12,8 @@ pub struct Options {
     pub skip: u32,
     /// Cycles averaged over.
     pub average: u32,
+    /// When it ends.
+    pub until: Until,
     /// Where it starts.
     pub start: StartState,
     /// An impulse added at the start, relative to the drive's own, to see whether neighbouring runs stay neighbours.
@@ -39,10 +43,57 @@ impl Options {
         window.max(self.trace.map_or(0, |trace| trace.to_cycle))
     }
 
+    /// The run leaves what its motion is named from.
+    pub(crate) fn is_taped(&self) -> bool {
+        self.motion || self.until == Until::Settled
+    }
+
+    /// The averaged window, unless the run settles before.
+    pub(crate) fn averaged(&self) -> Averaged {
+        Averaged { first: u64::from(self.skip), cycles: u64::from(self.average) }
+    }
+
     /// The cycle belongs to the averaged window.
     pub(crate) fn averages(&self, cycle: u64) -> bool {
-        let first = u64::from(self.skip);
-        (first..first + u64::from(self.average)).contains(&cycle)
+        self.averaged().holds(cycle)
+    }
+}
+
+/// When a run ends.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Until {
+    /// After the cycles given.
+    #[default]
+    Cycles,
+    /// With the first period of a motion that comes again and attracts, which alone is averaged; after the cycles given where
+    /// none is found.
+    Settled,
+}
+
+/// Cycles that are averaged over.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Averaged {
+    /// The first of them.
+    pub first: u64,
+    /// How many.
+    pub cycles: u64,
+}
+
+impl Averaged {
+    /// One past the last of them.
+    #[must_use]
+    pub fn end(self) -> u64 {
+        self.first + self.cycles
+    }
+
+    pub(crate) fn holds(self, cycle: u64) -> bool {
+        (self.first..self.end()).contains(&cycle)
+    }
+
+    /// Which half of them a cycle belongs to.
+    pub(crate) fn half(self, cycle: u64) -> usize {
+        usize::from(2 * (cycle - self.first) >= self.cycles)
     }
 }
 
@@ -52,6 +103,7 @@ impl Default for Options {
         Self {
             skip: 25,
             average: 100,
+            until: Until::Cycles,
             start: StartState::StaticEquilibrium,
             kick: 0.0,
             displacement: true,

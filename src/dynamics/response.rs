@@ -2,6 +2,7 @@
 
 use super::extremes::Extremes;
 use super::motion::Motion;
+use super::options::Averaged;
 use super::proof::Proof;
 use super::sums::Sums;
 use super::system::{Event, EventKind};
@@ -42,6 +43,8 @@ pub struct Response {
     pub final_particles: Vec<[f64; 2]>,
     /// The motion that it ends in, if asked for.
     pub motion: Option<Motion>,
+    /// The period that was averaged in the place of the cycles given, if the run was to settle and did.
+    pub settled: Option<Averaged>,
     /// Highest natural frequency among the contact states visited, rad/s.
     pub highest_frequency: f64,
     /// Fastest rate among the contact states visited, of turning or of decay, 1/s.

@@ -2,7 +2,7 @@
 
 use super::error::EngineError;
 use super::motion::Fundamental;
-use super::options::Options;
+use super::options::{Options, Until};
 use super::response::Response;
 use super::states::States;
 use super::steady_state::SteadyState;
@@ -16,12 +16,16 @@ use super::{budget, fixed, linear, march, residual_bound};
 pub fn event_driven(system: &HybridSystem, options: &Options) -> Result<Response, EngineError> {
     budget::within(|| {
         let states = States::of(system);
-        let attempt = match options.motion {
+        let attempt = match options.until {
+            Until::Cycles => linear::attempt(system, options, &states)?,
             // A closed form visits no states that could come again.
-            true => linear::Attempt::Open,
-            false => linear::attempt(system, options, &states)?,
+            Until::Settled => linear::Attempt::Open,
         };
         let mut response = match attempt {
+            linear::Attempt::Solved(response) if options.motion => {
+                let taped = Options { audit: false, trace: None, record_events: 0, ..options.clone() };
+                Response { motion: march::march(system, &taped, states)?.motion, ..*response }
+            }
             linear::Attempt::Solved(response) => *response,
             linear::Attempt::Open => march::march(system, options, states)?,
         };

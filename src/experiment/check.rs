@@ -86,6 +86,32 @@ impl Checks<'_> {
         self.findings.wrong::<()>(*span, format!("`{name}` is measured of {reason}"));
     }
 
+    /// Runs that are to settle: what proves it, and what is read off one period.
+    pub fn settled(&self, measures: &[(Measure, Span)], energies: bool, solvers: &[SolverChoice], at: Span) {
+        if solvers.iter().any(|solver| matches!(solver, SolverChoice::FixedStep { .. })) {
+            self.findings.report::<()>(
+                at,
+                "a fixed step has no multipliers that could prove that a run has settled",
+                Some("`until: settled` goes with `solver: event_driven`".into()),
+            );
+        }
+        if let Some((measure, span)) = measures.iter().find(|(measure, _)| measure.compares_cycles()) {
+            let message =
+                format!("`{}` compares cycles, and a settled run is averaged over one period", word_of(*measure));
+            self.findings.report::<()>(*span, message, Some("leave it or `until: settled` out".into()));
+        } else if energies {
+            let message = "kinetic energies are kept of cycles given, and a run until settled ends by itself";
+            self.findings.report::<()>(at, message, Some("leave `energies` or `until: settled` out".into()));
+        }
+    }
+
+    /// What settles is driven again and again.
+    pub fn repeats(&self, excitation: &ExcitationKind, at: Span) {
+        if matches!(excitation, ExcitationKind::None | ExcitationKind::SingleImpulse) {
+            self.findings.wrong::<()>(at, "no period comes again without an excitation that repeats");
+        }
+    }
+
     /// Amplitudes are compared with what drives the scene.
     pub fn excitation(&self, measures: &[(Measure, Span)], excitation: &ExcitationKind) {
         for (measure, span) in measures {

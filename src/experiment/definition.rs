@@ -394,6 +394,17 @@ pub struct Panel {
     pub markers: bool,
     /// Which peaks of the curves to mark with their place on the x axis.
     pub peaks: Option<PeakMarks>,
+    /// What a strip below the frame shows along the x axis.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub strip: Option<Strip>,
+}
+
+/// What a strip shows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Strip {
+    /// The kind of motion that each point belongs to.
+    Motion,
 }
 
 /// A band about a line.

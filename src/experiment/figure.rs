@@ -1,11 +1,15 @@
 //! The `figure` (or `figures`) of an experiment, checked against the columns that its table will have.
 
 use super::columns::{Columns, Role};
-use super::definition::{AnimationSpec, Axis, AxisScale, Band, Drawing, FigureSpec, Level, Only, Panel, PeakMarks};
+use super::definition::{
+    AnimationSpec, Axis, AxisScale, Band, Drawing, FigureSpec, Level, Only, Panel, PeakMarks, Strip,
+};
 use super::diagnostic::{Findings, Span};
 use super::reader::{Choice, Fields, boolean, count, list, number, one_or_more, scalar, text, unknown, word};
 use super::sweep::is_name;
+use super::word::word_of;
 use super::yaml::{Node, Value};
+use crate::measure::Measure;
 
 /// Reads a figure; `columns` is `None` where the parts that make them were wrong themselves.
 pub(super) struct FigureReader<'t> {
@@ -51,7 +55,7 @@ impl<'t> FigureReader<'t> {
         let only = fields.optional("only", |node| self.only(node));
         if let Some(node) = fields.get("map") {
             let map = self.map(node);
-            let misplaced = ["x", "y", "by", "band", "over_first", "markers", "panels", "guides", "peaks"]
+            let misplaced = ["x", "y", "by", "band", "over_first", "markers", "panels", "guides", "peaks", "strip"]
                 .map(|key| fields.get(key));
             fields.close()?;
             if let Some(node) = misplaced.into_iter().flatten().next() {
@@ -156,7 +160,11 @@ impl<'t> FigureReader<'t> {
         let guides = fields.optional("guides", |node| list(node, self.findings, |node| self.level(node)));
         let markers = markers.map_or(Some(false), |node| boolean(node, self.findings));
         let peaks = fields.optional("peaks", |node| self.peaks(node));
+        let strip = fields.optional("strip", |node| self.strip(node));
         let ((x, x_role), y) = (x?, y?);
+        if let (Some(Some(_)), Some(Role::History), Some(node)) = (strip, x_role, fields.get("strip")) {
+            return self.findings.wrong(node.span, "a strip stands below numbers a row, not below a time history");
+        }
         for (axis, role) in &y {
             if let (Some(role), Some(x_role)) = (role, x_role)
                 && (*role == Role::History) != (x_role == Role::History)
@@ -177,7 +185,22 @@ impl<'t> FigureReader<'t> {
             guides: guides?.unwrap_or_default(),
             markers: markers?,
             peaks: peaks?,
+            strip: strip?,
         })
+    }
+
+    /// `motion`, which has to be measured.
+    fn strip(&self, node: &'t Node) -> Option<Strip> {
+        let strip = word::<Strip>(node, "strip", self.findings)?;
+        let measured = self.columns.is_none_or(|columns| columns.role(&word_of(Measure::Motion)).is_some());
+        if measured {
+            return Some(strip);
+        }
+        self.findings.report(
+            node.span,
+            "the kind of motion is not measured in this experiment",
+            Some("add `motion` to `measure`".into()),
+        )
     }
 
     fn peaks(&self, node: &'t Node) -> Option<PeakMarks> {

@@ -46,7 +46,7 @@ pub use assumption_sheet::{
 pub use calibration::{Calibration, CalibrationInput, CalibrationSearch, Tried, load_calibration, parse_calibration};
 pub use definition::{
     AnimationSpec, Axis, AxisScale, Band, Best, Case, Drawing, Experiment, ExperimentId, FigureSpec, IdError, Level,
-    MapSpec, Mark, Maximise, Only, Panel, PeakMarks, Refinement, Source,
+    MapSpec, Mark, Maximise, Only, Panel, PeakMarks, Refinement, Source, Strip,
 };
 pub use diagnostic::{Place, Problem, Problems, Severity};
 pub(crate) use edit::{Written, set_keys};

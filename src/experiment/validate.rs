@@ -6,7 +6,7 @@
 use std::collections::BTreeSet;
 
 use super::recipe::{AssumptionName, Assumptions, Parameter, ParameterValue, Recipe};
-use crate::dynamics::Limit;
+use crate::dynamics::{Limit, Until};
 
 use super::about_study::MOST_CHAPTERS;
 use super::assumption_reader::{MOST_CYCLES, read_average, read_skip};
@@ -61,6 +61,8 @@ struct ExperimentReader<'t> {
 struct Run {
     solvers: Vec<SolverChoice>,
     settings: Settings,
+    /// Where it says that runs are to settle.
+    settled_at: Option<Span>,
     limit: Limit,
     moved: Option<BTreeSet<AssumptionName>>,
 }
@@ -72,6 +74,7 @@ struct GivenRun {
     solvers: Option<Vec<SolverChoice>>,
     skip: Option<u32>,
     average: Option<u32>,
+    until: Option<(Until, Span)>,
     round_period_to: Option<f64>,
     ensemble: Option<u32>,
     limit: Option<Limit>,
@@ -100,6 +103,10 @@ impl<'t> ExperimentReader<'t> {
         let deflection = matches!(&shape, Some(Some(shape)) if shape.of == ShapeOf::Deflection);
         let of_model = measures.as_ref().is_some_and(|measures| measures.iter().all(|(measure, _)| measure.is_modal()));
         let run = self.run(&fields, of_model && !lists && !deflection);
+        let measures = match (measures, &run) {
+            (Some(measures), Some(Run { settled_at: Some(at), .. })) => Some(with_the_end(measures, *at)),
+            (measures, _) => measures,
+        };
         let one_list = self.one_list(&fields);
         let alone = self.optimised_alone(&fields);
         let whole = self.averaged_alone(&fields);
@@ -152,11 +159,17 @@ impl<'t> ExperimentReader<'t> {
             &run.solvers,
         );
         checks.energies(energies.as_ref(), &run.settings, energies_at);
+        if let Some(at) = run.settled_at {
+            checks.settled(&measures, energies.is_some(), &run.solvers, at);
+        }
         let (mut scene, sweep) = (scene?, sweep?.unwrap_or_else(ReadSweep::none));
         if let Some(optimise) = &optimise {
             checks.optimise(optimise, &measures, &run.solvers, optimise_at);
         }
         checks.excitation(&measures, &scene.recipe.excitation.kind);
+        if let Some(at) = run.settled_at {
+            checks.repeats(&scene.recipe.excitation.kind, at);
+        }
         let mut places = sweep.places;
         checks.mean_over(&mean_over, &places, maximise.as_ref());
         let inner = mean_over.cases.first().filter(|case| !case.values.is_empty()).map(|_| mean_over.cases.clone());
@@ -358,9 +371,11 @@ impl<'t> ExperimentReader<'t> {
             settings: Settings {
                 skip: skip?,
                 average: average?,
+                until: given.until.map_or(Until::Cycles, |(until, _)| until),
                 round_period_to: given.round_period_to,
                 ensemble: given.ensemble.unwrap_or(USUAL_ENSEMBLE),
             },
+            settled_at: given.until.filter(|(until, _)| *until == Until::Settled).map(|(_, at)| at),
             limit: given.limit.unwrap_or_default(),
             moved: given.moved,
         })
@@ -372,6 +387,8 @@ impl<'t> ExperimentReader<'t> {
             fields.optional("solver", |node| one_or_more(node, self.findings, |node| read_solver(node, self.findings)));
         let skip = fields.optional("skip", |node| read_skip(node, self.findings));
         let average = fields.optional("average", |node| read_average(node, self.findings));
+        let until =
+            fields.optional("until", |node| word::<Until>(node, "end", self.findings).map(|until| (until, node.span)));
         let round_period_to =
             fields.optional("round_period_to", |node| above_zero(node, Dimension::Time, self.findings));
         let ensemble = fields.optional("ensemble", |node| match &node.value {
@@ -390,6 +407,7 @@ impl<'t> ExperimentReader<'t> {
             solvers: solvers?,
             skip: skip?,
             average: average?,
+            until: until?,
             round_period_to: round_period_to?,
             ensemble: ensemble?,
             limit: limit?,
@@ -464,6 +482,16 @@ impl<'t> ExperimentReader<'t> {
         }
         Some(ShapeSpec { of, points })
     }
+}
+
+/// With what tells how a run that is to settle ended.
+fn with_the_end(mut measures: Vec<(Measure, Span)>, settled_at: Span) -> Vec<(Measure, Span)> {
+    for measure in Measure::of_settled_runs() {
+        if measures.iter().all(|(other, _)| *other != measure) {
+            measures.push((measure, settled_at));
+        }
+    }
+    measures
 }
 
 fn words_only(measures: &[(Measure, Span)]) -> Vec<Measure> {

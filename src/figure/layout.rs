@@ -15,6 +15,8 @@ pub(super) struct Needs {
     pub y_label: String,
     /// Whether numbers and label of the x axis stand below.
     pub x_labels: bool,
+    /// Height of strips below the frame.
+    pub strips: f64,
     /// Width that the last number of the x axis takes beyond the frame.
     pub beyond: f64,
 }
@@ -36,7 +38,8 @@ pub(super) fn figure_height(panels: usize) -> f64 {
 /// The panels' places.
 pub(super) fn places(needs: &[Needs]) -> Vec<Place> {
     let letter = if needs.len() > 1 { LABEL_TEXT + SPACE } else { 2.0 * SPACE };
-    let below = |need: &Needs| if need.x_labels { TICK_TEXT + LABEL_TEXT + 4.0 * SPACE } else { SPACE };
+    let labels = |need: &Needs| if need.x_labels { TICK_TEXT + LABEL_TEXT + 4.0 * SPACE } else { SPACE };
+    let below = |need: &Needs| need.strips + labels(need);
     let above = |need: &Needs| need.above.max(letter);
     let taken: f64 = needs.iter().map(|need| above(need) + below(need)).sum();
     let panels = u32::try_from(needs.len().max(1)).map_or(1.0, f64::from);

@@ -8,8 +8,8 @@ use super::line::Curve;
 use super::paint;
 use super::quoted::{self, Quoted};
 use super::style::{
-    BAND_OPACITY, CURVE, Color, GREY, GUIDE, GUIDE_DASH, INK, LEGEND_LINE, LEGEND_ROW, LEGEND_TEXT, Look, Marker,
-    PAPER, QUOTED, QUOTED_OPACITY, SPACE,
+    BAND_OPACITY, CURVE, Color, GREY, GUIDE, GUIDE_DASH, INK, KindOfMotion, LEGEND_LINE, LEGEND_ROW, LEGEND_TEXT, Look,
+    Marker, PAPER, QUOTED, QUOTED_OPACITY, SPACE,
 };
 
 /// What is drawn before a legend's text.
@@ -22,6 +22,7 @@ enum Sign {
     Guide,
     Bar,
     Impulse,
+    Motion(KindOfMotion),
 }
 
 /// One row of a legend.
@@ -104,6 +105,12 @@ impl Legend {
         let signs = [(contacts, Sign::Bar, "contact"), (impulses, Sign::Impulse, "impulse")];
         let shown = signs.into_iter().filter(|(shown, ..)| *shown);
         self.entries.extend(shown.map(|(_, sign, text)| Entry { sign, text: text.into() }));
+    }
+
+    /// Names the colours of strips.
+    pub(super) fn name_motions(&mut self, classes: &[KindOfMotion]) {
+        let named = classes.iter().map(|class| Entry { sign: Sign::Motion(*class), text: class.words().into() });
+        self.entries.extend(named);
     }
 
     /// Names guides beside the lines.
@@ -257,6 +264,9 @@ impl Entry {
                 let place = Rect { left: at.x, top: at.y - half, right: end.x, bottom: at.y + half };
                 sheet.fill(&place.corners(), INK, QUOTED_OPACITY);
                 sheet.line(&[at, end], Pen { color: INK, width: GUIDE, dash: quoted::DASH });
+            }
+            Sign::Motion(class) => {
+                sheet.cell(&Rect { left: at.x, top: at.y - 12.0, right: end.x, bottom: at.y + 12.0 }, class.color());
             }
             Sign::Bar => {
                 let place = Rect { left: at.x, top: at.y - 6.0, right: end.x, bottom: at.y + 6.0 };

@@ -33,6 +33,7 @@ mod raster;
 mod render;
 mod searches;
 mod sketch;
+mod strip;
 mod style;
 mod work_precision;
 

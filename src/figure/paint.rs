@@ -12,6 +12,7 @@ use super::legend::Obstacles;
 use super::line::Curve;
 use super::panel::Panel;
 use super::peak::peaks;
+use super::strip;
 use super::style::{
     BAND_OPACITY, CURVE, Color, FRAME, GREY, GRID, GUIDE, GUIDE_DASH, INK, LABEL_TEXT, Look, MARKER, MINOR_TICK,
     Marker, NOTE_TEXT, PALE, PAPER, SPACE, TICK, TICK_TEXT,
@@ -69,6 +70,7 @@ pub(super) fn panel(
         one.write(sheet, panel, frame, &mut taken);
     }
     axes(sheet, panel, frame, x_labels);
+    strip::draw(sheet, panel, frame);
     y_label(sheet, place);
     if let Some(letter) = letter {
         // Clear of the numbers at the y axis.
@@ -188,6 +190,7 @@ fn level(sheet: &Sheet, panel: &Panel<'_>, frame: &Rect, y: f64, label: &str, co
 
 fn axes(sheet: &Sheet, panel: &Panel<'_>, frame: &Rect, x_labels: bool) {
     let pen = Pen::solid(INK, FRAME);
+    let below = strip::height(&panel.strips);
     let corners = [frame.at(0.0, 0.0), frame.at(1.0, 0.0), frame.at(1.0, 1.0), frame.at(0.0, 1.0)];
     sheet.line(&[corners[0], corners[1], corners[2], corners[3], corners[0], corners[1]], pen);
     for tick in panel.x_ticks() {
@@ -198,7 +201,7 @@ fn axes(sheet: &Sheet, panel: &Panel<'_>, frame: &Rect, x_labels: bool) {
         }
         if x_labels {
             let at = frame.at(tick.at, 0.0);
-            let at = Point { y: at.y + SPACE + TICK_TEXT / 2.0, ..at };
+            let at = Point { y: at.y + below + SPACE + TICK_TEXT / 2.0, ..at };
             write(sheet, at, &tick.label, TICK_TEXT, Anchor::Centre, INK);
         }
     }
@@ -213,7 +216,7 @@ fn axes(sheet: &Sheet, panel: &Panel<'_>, frame: &Rect, x_labels: bool) {
     }
     if x_labels {
         let at = frame.at(0.5, 0.0);
-        let at = Point { y: at.y + 2.0 * SPACE + TICK_TEXT + LABEL_TEXT / 2.0, ..at };
+        let at = Point { y: at.y + below + 2.0 * SPACE + TICK_TEXT + LABEL_TEXT / 2.0, ..at };
         write(sheet, at, &panel.x_label, LABEL_TEXT, Anchor::Centre, INK);
     }
 }

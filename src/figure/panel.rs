@@ -13,6 +13,7 @@ use super::legend::{Legend, Obstacles};
 use super::line::{Curve, Sample, Source, curves};
 use super::quoted::Quoted;
 use super::render::Beside;
+use super::strip::{self, Strip};
 use super::style::{CURVE, TICK_TEXT};
 
 /// How many numbers an axis carries at most.
@@ -82,6 +83,7 @@ pub(super) struct Panel<'a> {
     pub contacts: Vec<Contact>,
     /// Period of the impulses, s, where the panel shows their moments.
     pub impulses: Option<f64>,
+    pub strips: Vec<Strip>,
     pub legend: Legend,
 }
 
@@ -120,6 +122,8 @@ impl<'a> Panel<'a> {
         let impulses = beside.impulses.filter(|_| !contacts.is_empty());
         let visible = VISIBLE_CONTACT * (x_reach.extent.largest - x_reach.extent.least);
         legend.name_instants(contacts.iter().any(|contact| contact.to - contact.from > visible), impulses.is_some());
+        let strips = strip::strips(source, spec, &curves)?;
+        legend.name_motions(&strip::classes(&strips));
         let mut y_extent = quoted.iter().filter_map(|one| one.y()).fold(y_extent, |extent, y| extent.with(y, y_scale));
         for guide in &spec.guides {
             // Beside other lines a guide is named in the legend, where it needs no room of its own.
@@ -155,6 +159,7 @@ impl<'a> Panel<'a> {
             quoted,
             contacts,
             impulses,
+            strips,
         })
     }
 
@@ -183,7 +188,7 @@ impl<'a> Panel<'a> {
         let beyond =
             self.x_ticks().iter().filter(|tick| tick.at > 0.95).map(|tick| width(tick) / 2.0).fold(0.0, f64::max);
         let y_numbers = self.y_ticks().iter().map(width).fold(0.0, f64::max);
-        Needs { above, y_numbers, y_label: self.y_label.clone(), x_labels, beyond }
+        Needs { above, y_numbers, y_label: self.y_label.clone(), x_labels, strips: strip::height(&self.strips), beyond }
     }
 
     /// Where a sample lies; `None` for a gap.

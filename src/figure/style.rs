@@ -73,6 +73,8 @@ impl std::fmt::Display for Color {
 pub(super) const INK: Color = Color(0x1A, 0x1A, 0x1A);
 pub(super) const GREY: Color = Color(0x70, 0x70, 0x70);
 pub(super) const PALE: Color = Color(0xE4, 0xE4, 0xE4);
+/// A particle that rests on its floor.
+const REST: Color = Color(0xB8, 0xB8, 0xB8);
 pub(super) const PAPER: Color = Color(0xFF, 0xFF, 0xFF);
 
 pub(super) const VERMILION: Color = OKABE_ITO[1];
@@ -88,6 +90,45 @@ const OKABE_ITO: [Color; 7] = [
     Color(0x56, 0xB4, 0xE9),
     Color(0x00, 0x00, 0x00),
 ];
+
+/// Kinds of motion as a strip tells them apart.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum KindOfMotion {
+    AtRest,
+    OneToOne,
+    OtherPeriodic,
+    QuasiPeriodic,
+    Chaotic,
+    NotSettled,
+}
+
+impl KindOfMotion {
+    pub(super) const ALL: [Self; 6] =
+        [Self::AtRest, Self::OneToOne, Self::OtherPeriodic, Self::QuasiPeriodic, Self::Chaotic, Self::NotSettled];
+
+    pub(super) fn color(self) -> Color {
+        match self {
+            Self::AtRest => REST,
+            Self::OneToOne => OKABE_ITO[5],
+            Self::OtherPeriodic => OKABE_ITO[0],
+            Self::QuasiPeriodic => OKABE_ITO[2],
+            Self::Chaotic => OKABE_ITO[1],
+            Self::NotSettled => OKABE_ITO[4],
+        }
+    }
+
+    /// In a legend.
+    pub(super) fn words(self) -> &'static str {
+        match self {
+            Self::AtRest => "at rest",
+            Self::OneToOne => "periodic 1:1",
+            Self::OtherPeriodic => "other periodic",
+            Self::QuasiPeriodic => "quasi-periodic",
+            Self::Chaotic => "chaotic",
+            Self::NotSettled => "not settled",
+        }
+    }
+}
 
 /// The place of a colour among Okabe and Ito's.
 fn index(colour: LineColour) -> usize {

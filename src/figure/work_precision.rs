@@ -21,6 +21,7 @@ pub fn work_precision(times: [f64; 2], floor: Option<f64>, events: bool) -> Figu
         guides,
         markers: true,
         peaks: None,
+        strip: None,
     };
     let guide = floor.map(|at| Level { at, label: "spread of the chaotic motion".into() });
     let mut panels = vec![panel("error", "Relative error", guide.into_iter().collect())];

@@ -5,6 +5,8 @@
 //! no single run is a result: an ensemble of kicked starts gives mean and spread. A search makes one run a step, and what it
 //! finds is evaluated as a result afterwards. The fixed step is run once: what its
 //! step does to the numbers is the result that it is there for.
+//!
+//! Where runs are to settle, all of a case are made so; if one of them does not, the case is evaluated as if it had not been asked.
 
 use std::f64::consts::TAU;
 
@@ -15,7 +17,7 @@ use super::reading::Reading;
 use super::shape::{self, Shape};
 use super::undefined::in_range;
 use super::{EvaluateError, Evaluated, Measure, Measured, Needs, Rigour, Subject, TraceColumn};
-use crate::dynamics::{EngineError, HybridSystem, Method, Options, Proof, Response, TraceRequest, event_driven};
+use crate::dynamics::{EngineError, HybridSystem, Method, Options, Proof, Response, TraceRequest, Until, event_driven};
 use crate::measure::{EnergySpec, Settings, ShapeOf, ShapeSpec, SolverChoice, TraceSpec};
 use crate::scene::{Excitation, Scene, SingleMass, Structure, compile};
 
@@ -91,7 +93,7 @@ pub struct Prepared<'a> {
     measures: &'a [Measure],
     solver: SolverChoice,
     system: HybridSystem,
-    reference: Option<Response>,
+    reference: References,
     /// The gap of each damper, m, that is one in the word by which gaps are given.
     units: Vec<f64>,
 }
@@ -110,7 +112,7 @@ impl<'a> Prepared<'a> {
         let subject = rounded_subject(subject, settings);
         let system = compile(&subject.scene)?;
         let request = Request { measures, trace: None, energies: None, shape: None, rigour: Rigour::Look };
-        let reference = reference(&subject, &request, settings, solver)?;
+        let reference = References::of(&subject, &request, settings, solver)?;
         let units = subject.scene.dampers.iter().map(|damper| damper.gap).collect();
         Ok(Self { subject, settings, measures, solver, system, reference, units })
     }
@@ -128,9 +130,7 @@ impl<'a> Prepared<'a> {
         let request = Request { measures: self.measures, trace: None, energies: None, shape: None, rigour };
         let Self { subject, settings, .. } = self;
         let case = Case { subject, settings, request: &request, scene: &scene };
-        let plain = request.options(&scene, settings);
-        let evaluated = case.run(&system, self.reference.as_ref(), self.solver, &plain)?;
-        in_range(&scene, self.measures, evaluated)
+        in_range(&scene, self.measures, case.run(&system, &self.reference, self.solver)?)
     }
 }
 
@@ -153,35 +153,68 @@ pub fn evaluate(
     if request.deflection().is_some() {
         shape::watch_products(&mut system);
     }
-    let plain = request.options(&subject.scene, settings);
-    let reference = reference(&subject, request, settings, solver)?;
-    in_range(&subject.scene, request.measures, case.run(&system, reference.as_ref(), solver, &plain)?)
+    let reference = References::of(&subject, request, settings, solver)?;
+    in_range(&subject.scene, request.measures, case.run(&system, &reference, solver)?)
 }
 
-/// The run without dampers, where something is compared with it.
-fn reference(
-    subject: &Subject,
-    request: &Request<'_>,
-    settings: &Settings,
-    solver: SolverChoice,
-) -> Result<Option<Response>, EvaluateError> {
-    match &subject.undamped {
-        Some(bare) if request.needs().undamped => {
-            Ok(Some(solve(&compile(bare)?, &request.options(bare, settings), solver)?))
-        }
-        _ => Ok(None),
+/// The run without dampers, where something is compared with it, by how it ends.
+#[derive(Debug)]
+struct References {
+    /// After the cycles given.
+    of_cycles: Option<Response>,
+    /// Where runs are to settle, and it has.
+    settled: Option<Response>,
+    /// Runs are to settle, and there is none without dampers that has not.
+    may_settle: bool,
+}
+
+impl References {
+    fn of(
+        subject: &Subject,
+        request: &Request<'_>,
+        settings: &Settings,
+        solver: SolverChoice,
+    ) -> Result<Self, EvaluateError> {
+        let wanted = settings.until == Until::Settled;
+        let Some(bare) = subject.undamped.as_ref().filter(|_| request.needs().undamped) else {
+            return Ok(Self { of_cycles: None, settled: None, may_settle: wanted });
+        };
+        let (system, plain) = (compile(bare)?, request.options(bare, settings));
+        let of_cycles = Some(solve(&system, &plain, solver)?);
+        let settles = || solve(&system, &Options { until: Until::Settled, ..plain.clone() }, solver);
+        let settled = if wanted { Some(settles()?).filter(|run| run.settled.is_some()) } else { None };
+        Ok(Self { of_cycles, may_settle: settled.is_some(), settled })
     }
 }
 
 impl Case<'_> {
-    /// Runs the system as often as it takes. `plain` is how a run without an audit and without a history is made.
+    /// Runs the system as often as it takes.
     fn run(
+        &self,
+        system: &HybridSystem,
+        reference: &References,
+        solver: SolverChoice,
+    ) -> Result<Evaluated, EvaluateError> {
+        // A run without an audit and without a history.
+        let plain = self.request.options(self.scene, self.settings);
+        if reference.may_settle {
+            let settles = Options { until: Until::Settled, ..plain.clone() };
+            if let Some(evaluated) = self.run_until(system, reference.settled.as_ref(), solver, &settles)? {
+                return Ok(evaluated);
+            }
+        }
+        let evaluated = self.run_until(system, reference.of_cycles.as_ref(), solver, &plain)?;
+        Ok(evaluated.unwrap_or_else(|| unreachable!("only a run that is to settle can fail to")))
+    }
+
+    /// The same under `plain` options. `None` where runs are to settle and one does not.
+    fn run_until(
         &self,
         system: &HybridSystem,
         reference: Option<&Response>,
         solver: SolverChoice,
         plain: &Options,
-    ) -> Result<Evaluated, EvaluateError> {
+    ) -> Result<Option<Evaluated>, EvaluateError> {
         let Self { settings, request, .. } = *self;
         let case = self;
         let main = Options {
@@ -194,7 +227,11 @@ impl Case<'_> {
             }),
             ..plain.clone()
         };
+        let unsettled = |run: &Response| plain.until == Until::Settled && run.settled.is_none();
         let response = solve(system, &main, solver)?;
+        if unsettled(&response) {
+            return Ok(None);
+        }
         let Read { values, lists } = case.read(&response, reference, true)?;
         let motion = response.motion.as_ref().map(|motion| motion.kind);
         let certain = |numerical: Vec<f64>, chaotic: bool| Evaluated {
@@ -210,35 +247,43 @@ impl Case<'_> {
             trace: lists.clone(),
         };
         if matches!(solver, SolverChoice::FixedStep { .. }) || system.particles.is_empty() {
-            return Ok(certain(vec![0.0; values.len()], false));
+            return Ok(Some(certain(vec![0.0; values.len()], false)));
         }
 
         if response.method == Method::ClosedForm {
             // Linear: neighbouring starts stay neighbours, and there is no window to be halved.
-            return Ok(certain(values.iter().map(|value| CLOSED_FORM * value.abs()).collect(), false));
+            let own = request.measures.iter().map(|measure| own_error(*measure, &response));
+            let errors = values.iter().zip(own).map(|(value, own)| (CLOSED_FORM * value.abs()).max(own));
+            return Ok(Some(certain(errors.collect(), false)));
         }
         let exact = || values.iter().map(|value| 4.0 * f64::EPSILON * value.abs()).collect();
         if request.rigour == Rigour::Step {
-            return Ok(certain(exact(), false));
+            return Ok(Some(certain(exact(), false)));
         }
         let rms = case.rms_velocity(&response);
         let twin = event_driven(system, &Options { kick: TWIN_KICK, ..plain.clone() })?;
+        if unsettled(&twin) {
+            return Ok(None);
+        }
         let chaotic = (case.rms_velocity(&twin) - rms).abs() > CHAOS * rms;
         let members = match request.rigour {
             Rigour::Result => settings.ensemble,
             Rigour::Look | Rigour::Step => settings.ensemble.min(MEMBERS_OF_A_LOOK),
         };
         if !chaotic && request.rigour == Rigour::Look {
-            return Ok(certain(exact(), false));
+            return Ok(Some(certain(exact(), false)));
         }
         if !chaotic || members < 2 {
             // The same events decided in other windows; measures of the history are as exact as its samples.
             let second = event_driven(system, &Options { window_factor: 0.5, audit: false, ..main.clone() })?;
+            if unsettled(&second) {
+                return Ok(None);
+            }
             let again = case.read(&second, reference, true)?.values;
             let own = request.measures.iter().map(|measure| own_error(*measure, &response));
             let pairs = values.iter().zip(again).zip(own);
             let numerical = pairs.map(|((a, b), own)| (a - b).abs().max(4.0 * f64::EPSILON * a.abs()).max(own));
-            return Ok(certain(numerical.collect(), chaotic));
+            return Ok(Some(certain(numerical.collect(), chaotic)));
         }
 
         let mut sums = vec![Welford::default(); request.measures.len()];
@@ -246,6 +291,9 @@ impl Case<'_> {
             let place = (f64::from(member) + 0.5) / f64::from(members) * 2.0 - 1.0;
             // Time histories, shapes and their measures stay those of the unkicked run.
             let kicked = event_driven(system, &Options { kick: ENSEMBLE_KICK * place, ..plain.clone() })?;
+            if unsettled(&kicked) {
+                return Ok(None);
+            }
             let of_member = case.read(&kicked, reference, false)?.values;
             for (sum, value) in sums.iter_mut().zip(of_member) {
                 sum.add(value);
@@ -260,7 +308,7 @@ impl Case<'_> {
             Measured { value: sum.mean, numerical: spread / f64::from(members).sqrt(), spread }
         });
         let measured = measured.collect();
-        Ok(Evaluated { measured, proof: response.proof, chaotic, members, motion, trace: lists })
+        Ok(Some(Evaluated { measured, proof: response.proof, chaotic, members, motion, trace: lists }))
     }
 }
 
@@ -315,6 +363,7 @@ impl Case<'_> {
             history: None,
             energies: None,
             skip: self.settings.skip,
+            average: self.settings.average,
             mac,
         }
     }

@@ -22,9 +22,9 @@ struct Contact<'a> {
 }
 
 impl<'a> Impacts<'a> {
-    /// Of a run whose first `skip` cycles are left out.
-    pub(super) fn of(response: &'a Response, scene: &Scene, skip: u32) -> Self {
-        let kept = |event: &&Event| event.cycle >= u64::from(skip) && event.particle == 0;
+    /// Of a run from its cycle `first` on.
+    pub(super) fn of(response: &'a Response, scene: &Scene, first: u64) -> Self {
+        let kept = |event: &&Event| event.cycle >= first && event.particle == 0;
         Self { events: response.events.iter().filter(kept).collect(), period: scene.excitation.period() }
     }
 

@@ -52,6 +52,8 @@ pub enum ReadOff {
     Shape,
     /// The kind of motion that the run ends in.
     Motion,
+    /// How the run ended.
+    Ending,
 }
 
 /// Which runs a measure takes.
@@ -161,8 +163,10 @@ measures! {
     LargestMultiplier: "", "μ", "", "modulus of the largest Floquet multiplier: what a period of the motion leaves of a small disturbance", Motion, Own, Any;
     MultiplierAngle: "rad", "", "", "angle of that multiplier: 0 towards a fold, π towards a doubling of the period", Motion, Own, Any;
     MultiplierResidual: "", "", "", "product of all multipliers against the contraction of dashpots and impacts, relative to the most that it could be", Motion, Own, Any;
-    LyapunovExponent: "", "λ", "", "growth of the logarithm of a small disturbance in a cycle; with its standard error where the motion does not come again", Motion, Own, Any;
-    SettledAfter: "", "", "", "cycles after which the motion comes again to within a millionth", Motion, Own, Any;
+    LyapunovExponent: "1/cycle", "λ", "", "growth of the logarithm of a small disturbance in a cycle; with its standard error where the motion does not come again", Motion, Own, Any;
+    SettledAfter: "cycles", "", "", "cycles after which the motion comes again to within a millionth", Motion, Own, Any;
+    Settled: "", "", "", "1 where the run ended with a period that comes again and attracts, and its averages are of that period; 0 where they are of the cycles given; comes with `until: settled`", Ending, Own, Any;
+    AveragedCycles: "cycles", "", "", "cycles averaged over: those of the period where the run has settled, the cycles given otherwise; comes with `until: settled`", Ending, Own, Any;
 }
 
 /// A column's name in words: a measure's, or those of [`words::of_column`].
@@ -232,6 +236,23 @@ impl Measure {
     #[must_use]
     pub fn is_name(self) -> bool {
         self == Self::Motion
+    }
+
+    /// The measures that come with a run that ends where it has settled.
+    pub fn of_settled_runs() -> impl Iterator<Item = Self> {
+        Self::ALL.iter().copied().filter(|measure| measure.facts().from == ReadOff::Ending)
+    }
+
+    /// It compares cycles of a run with each other or with those of another one: of a single period there are none.
+    #[must_use]
+    pub fn compares_cycles(self) -> bool {
+        self == Self::Drift || self.needs_energies()
+    }
+
+    /// It changes from one kind of motion to the next, and is constant or without meaning between.
+    #[must_use]
+    pub fn jumps(self) -> bool {
+        matches!(self.facts().from, ReadOff::Motion | ReadOff::Ending)
     }
 
     /// The measures that come with this one.

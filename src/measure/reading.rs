@@ -21,6 +21,8 @@ pub(super) struct Reading<'a> {
     pub(super) energies: Option<&'a Energies>,
     /// Cycles left out of the window.
     pub(super) skip: u32,
+    /// Cycles of the window.
+    pub(super) average: u32,
     /// Modal assurance criterion of the shape, if there is one.
     pub(super) mac: Option<f64>,
 }
@@ -86,7 +88,14 @@ impl Reading<'_> {
             | Measure::FloorRestitution
             | Measure::FloorContactTime
             | Measure::FloorReleaseTime
-            | Measure::ChatterEndTime => Impacts::of(response, self.scene, self.skip).read(measure),
+            | Measure::ChatterEndTime => {
+                let first = response.settled.map_or(u64::from(self.skip), |settled| settled.first);
+                Impacts::of(response, self.scene, first).read(measure)
+            }
+            Measure::Settled => f64::from(u8::from(response.settled.is_some())),
+            Measure::AveragedCycles => {
+                response.settled.map_or(f64::from(self.average), |settled| settled.cycles as f64)
+            }
             Measure::Motion
             | Measure::LargestMultiplier
             | Measure::MultiplierAngle

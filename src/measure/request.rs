@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::dynamics::Until;
+
 /// Which solver.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -33,10 +35,17 @@ pub struct Settings {
     pub skip: u32,
     /// Forcing cycles averaged over.
     pub average: u32,
+    /// When a run ends: after these cycles, or with the first period of a motion that has settled.
+    #[serde(default, skip_serializing_if = "is_usual")]
+    pub until: Until,
     /// The forcing period is rounded to whole steps of this length in every solver, s: 0.1987 s become 199 steps of 1 ms.
     pub round_period_to: Option<f64>,
     /// Members of the ensemble of perturbed starts that a chaotic point gets; 0 switches ensembles off.
     pub ensemble: u32,
+}
+
+fn is_usual(until: &Until) -> bool {
+    *until == Until::default()
 }
 
 /// Which part of the motion to keep as a time history. The list columns are then `time` (s), `base_displacement`,

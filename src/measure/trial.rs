@@ -68,6 +68,7 @@ impl<'a> Trial<'a> {
             undamped: Some(undamped),
             history: None,
             skip: self.settings.skip,
+            average: self.settings.average,
             energies: energies.as_ref(),
             mac: None,
         };

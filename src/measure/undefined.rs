@@ -1,12 +1,52 @@
 //! Numbers that are none: a ratio of nothing to nothing is undefined, and says so; one that left the range of numbers is an error.
 
 use super::{EvaluateError, Evaluated, Measure, ReadOff};
+use crate::dynamics::MotionKind;
 use crate::scene::Scene;
+use crate::text::words;
+
+impl Evaluated {
+    /// Which numbers are undefined, and why, each reason once: `multipliers, lyapunov_exponent undefined: …`. Empty if all are
+    /// defined.
+    #[must_use]
+    pub fn undefined(&self, measures: &[Measure]) -> String {
+        // A table that is read again knows the motion only where it has the column.
+        let motion = self.motion.filter(|_| measures.contains(&Measure::Motion));
+        let mut reasons: Vec<(&str, Vec<String>)> = Vec::new();
+        for (measure, one) in measures.iter().zip(&self.measured) {
+            let is_named = measure.is_of_a_period() && motion.is_some_and(|kind| !kind.repeats());
+            // The name of the motion says that there is no period.
+            if measure.is_name() || is_named || !one.value.is_nan() {
+                continue;
+            }
+            let (why, name) = (measure.why_undefined(motion), measure.name_undefined());
+            match reasons.iter_mut().find(|(known, _)| *known == why) {
+                Some((_, names)) if names.contains(&name) => {}
+                Some((_, names)) => names.push(name),
+                None => reasons.push((why, vec![name])),
+            }
+        }
+        let texts = reasons.iter().map(|(why, names)| format!("{} undefined: {why}", names.join(", ")));
+        texts.collect::<Vec<_>>().join("; ")
+    }
+}
 
 impl Measure {
-    /// Why this measure has no number where nothing went wrong.
-    #[must_use]
-    pub fn why_undefined(self) -> &'static str {
+    /// Of the period of a motion that comes again.
+    fn is_of_a_period(self) -> bool {
+        self.needs_motion() && self != Self::LyapunovExponent
+    }
+
+    /// What it is called where it is undefined: multipliers are so together.
+    fn name_undefined(self) -> String {
+        match self {
+            Self::LargestMultiplier | Self::MultiplierAngle | Self::MultiplierResidual => "multipliers".into(),
+            _ => words::of_key(&self),
+        }
+    }
+
+    /// Why this measure has no number where nothing went wrong, in a run of this motion, if it is known.
+    fn why_undefined(self, motion: Option<MotionKind>) -> &'static str {
         match self {
             Self::LastPeak | Self::PeakVariation | Self::PeakDecayError => "the time history has no crest",
             Self::NaturalFrequency | Self::CleanNaturalFrequency | Self::ExactNaturalFrequency | Self::Mac => {
@@ -14,8 +54,14 @@ impl Measure {
             }
             Self::Drift => "nothing moves",
             Self::FinalHeight => "there is no particle",
-            Self::LyapunovExponent => "nothing is left of a disturbance, or particles are struck at one instant",
-            _ if self.needs_motion() => "the motion does not come again, or particles are struck at one instant",
+            Self::LyapunovExponent => match motion.map(MotionKind::repeats) {
+                Some(false) => "particles are struck at one instant, or the cycles are too few",
+                _ => "nothing is left of a disturbance, or particles are struck at one instant",
+            },
+            _ if self.is_of_a_period() => match motion {
+                Some(_) => "particles are struck at one instant",
+                None => "the motion does not come again, or particles are struck at one instant",
+            },
             _ if self.needs_events() => "there is no such event",
             _ if self.needs_undamped() => "neither run moves",
             _ => "nothing excites the structure",

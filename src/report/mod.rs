@@ -24,6 +24,7 @@ mod index;
 mod json;
 mod junit;
 pub(crate) mod markdown;
+mod motions;
 mod movement;
 mod other_pages;
 mod overview;

@@ -6,7 +6,7 @@ use crate::text::words::capitalised;
 
 use super::markdown::{details, one_line};
 use super::view::{AccuracyLinks, FigureView, PageView};
-use super::{assumption, candidate, comparison, doubts, proof, run};
+use super::{assumption, candidate, comparison, doubts, motions, proof, run};
 
 /// The page of an experiment, Markdown: its answer first, then the figure and a row for each statement; all else is closed.
 #[must_use]
@@ -30,6 +30,7 @@ pub fn page(view: &PageView<'_>) -> String {
         text += &candidate::section(optimise, table);
     }
     text += &view.table.map_or_else(String::new, |table| proof::failures(table) + &doubts::section(table));
+    text += &view.table.map_or_else(String::new, |table| motions::section(experiment, table));
     text += &details("Uncertainties and sensitivity", &comparison::uncertainties(view.judged));
     let about = if view.judged.is_empty() { "" } else { about.as_str() };
     let run = format!("{about}{}{}", run::section(experiment), run::effects(view.effects));

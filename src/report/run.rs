@@ -1,5 +1,6 @@
 //! How an experiment was run, and which effects its scene has.
 
+use crate::dynamics::Until;
 use crate::experiment::{Experiment, GapWord, Optimise, Search};
 use crate::measure::{SolverChoice, column_words};
 use crate::scene::EffectUse;
@@ -20,11 +21,15 @@ pub(super) fn section(experiment: &Experiment) -> String {
     for solver in &experiment.solvers {
         text += &format!("- {}\n", solver_in_words(*solver));
     }
-    text += &format!(
-        "- Averages run over {} after {} left out as transient.\n",
-        counted(settings.average as usize, "forcing cycle", "forcing cycles"),
-        settings.skip
-    );
+    let cycles = counted(settings.average as usize, "forcing cycle", "forcing cycles");
+    text += &match settings.until {
+        Until::Cycles => format!("- Averages run over {cycles} after {} left out as transient.\n", settings.skip),
+        Until::Settled => format!(
+            "- A run ends with the first period that comes again and attracts, and its averages are of that period; where there is \
+             none after {} + {} cycles, averages run over {cycles} after {} left out as transient.\n",
+            settings.skip, settings.average, settings.skip
+        ),
+    };
     if let Some(step) = settings.round_period_to {
         text += &format!("- The forcing period is rounded to whole steps of {}.\n", quantity(step, "s", 4));
     }

@@ -1,9 +1,8 @@
 //! What a table says of rows whose numbers are to be doubted: columns that are there only where some row gives cause.
 
 use crate::dynamics::Proof;
-use crate::measure::{Measure, Measured};
+use crate::measure::{Evaluated, Measure};
 use crate::table::{Column, Data, UNDEFINED};
-use crate::text::words;
 
 pub(super) use crate::table::RESIDUAL_BOUND;
 
@@ -17,17 +16,7 @@ pub(super) fn residual_bounds(proofs: impl Iterator<Item = Option<Proof>>) -> Op
 }
 
 /// Which numbers of a row are undefined, and why; empty in other rows.
-pub(super) fn undefined<'a>(
-    measures: &[Measure],
-    rows: impl Iterator<Item = Option<&'a [Measured]>>,
-) -> Option<Column> {
-    let of_row = |measured: Option<&[Measured]>| {
-        let undefined = measures.iter().zip(measured.unwrap_or_default());
-        let undefined = undefined.filter(|(measure, one)| !measure.is_name() && one.value.is_nan());
-        let names =
-            undefined.map(|(measure, _)| format!("{} undefined: {}", words::of_key(measure), measure.why_undefined()));
-        names.collect::<Vec<_>>().join("; ")
-    };
-    let texts: Vec<String> = rows.map(of_row).collect();
+pub(super) fn undefined<'a>(measures: &[Measure], rows: impl Iterator<Item = Option<&'a Evaluated>>) -> Option<Column> {
+    let texts: Vec<String> = rows.map(|row| row.map_or_else(String::new, |row| row.undefined(measures))).collect();
     texts.iter().any(|text| !text.is_empty()).then(|| Column::new(UNDEFINED, Data::Text(texts)))
 }

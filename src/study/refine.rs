@@ -90,7 +90,7 @@ fn values(experiment: &Experiment, rule: &Refinement, outcome: &Outcome) -> Vec<
         .zip(&row.evaluated.measured)
         // Kinds of motion jump from one to the next; only those that are asked for are followed.
         .filter(|(measure, _)| match rule.measures.as_slice() {
-            [] => !measure.needs_motion(),
+            [] => !measure.jumps(),
             named => named.contains(measure),
         });
     wanted

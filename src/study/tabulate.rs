@@ -88,8 +88,7 @@ pub(super) fn table(
         "failure",
         texts(&|row| outcomes[row].as_ref().err().map(ToString::to_string).unwrap_or_default()),
     ));
-    let measured = outcomes.iter().map(|outcome| outcome.as_ref().ok().map(|row| row.evaluated.measured.as_slice()));
-    columns.extend(doubt::undefined(&experiment.measures, measured));
+    columns.extend(doubt::undefined(&experiment.measures, evaluated.iter().copied()));
     columns.extend(histories(jobs, outcomes));
     Table { columns, metadata, fingerprints }
 }

@@ -1,6 +1,8 @@
 //! Figures. Each test leaves its picture in `target/tmp`, to be looked at.
 
-use shotdamp::experiment::{AxisScale, Band, Experiment, FigureSpec, Level, Maximise, Panel, Parameter, PeakMarks};
+use shotdamp::experiment::{
+    AxisScale, Band, Experiment, FigureSpec, Level, Maximise, Panel, Parameter, PeakMarks, Strip,
+};
 use shotdamp::figure::{Beside, FigureError, Known, Picture, Quoted, QuotedAt, draw};
 use shotdamp::measure::Measure;
 use shotdamp::table::{Column, Data, Table};
@@ -262,6 +264,34 @@ fn measures_that_agree_can_both_be_seen() {
 }
 
 /// Two resonances of a clean beam and of one with a damper, with the peaks at 1/k of them that impulses add.
+#[test]
+fn a_strip_below_the_frame_says_which_motion_each_point_belongs_to() {
+    let kinds =
+        ["at rest", "periodic 1:1", "periodic 1:2", "periodic 1:2", "chaotic", "", "not settled", "sticking 2:2"];
+    let count = kinds.len();
+    let x: Vec<f64> = (0..count).map(|i| 1.0 + i as f64).collect();
+    let columns = vec![
+        Column::new("variant", Data::Text(vec!["baseline".into(); count])),
+        Column::new("force_ratio", Data::Float(x.clone())),
+        Column::new("velocity_ratio", Data::Float(x.iter().map(|x| 1.0 / x).collect())),
+        Column::new("motion", Data::Text(kinds.map(String::from).into())),
+    ];
+    let table = Table { columns, ..Table::default() };
+    let plain = panel("force_ratio", AxisScale::Linear, &["velocity_ratio"]);
+    let svg = |strip: Option<Strip>| {
+        picture("strip", &limit_stop(), &figure(vec![Panel { strip, ..plain.clone() }]), &table, &[]).svg
+    };
+    assert!(!svg(None).contains("data-note"));
+    let drawn = svg(Some(Strip::Motion));
+    // Neighbours of one kind are one cell; a row without a motion has none; a legend names the classes that are there.
+    let notes: Vec<&str> = drawn.split("data-note=\"").skip(1).filter_map(|rest| rest.split('"').next()).collect();
+    assert_eq!(notes, ["at rest", "periodic 1:1", "periodic 1:2", "chaotic", "not settled", "sticking 2:2"]);
+    for named in ["at rest", "periodic 1:1", "other periodic", "chaotic", "not settled"] {
+        assert!(drawn.contains(&format!(">{named}<")), "{named}: {drawn}");
+    }
+    assert!(!drawn.contains(">quasi-periodic<"));
+}
+
 #[test]
 fn peaks_of_a_frequency_response_carry_their_places() {
     let frequencies: Vec<f64> = (0..351).map(|i| 5.0 + 0.5 * f64::from(i)).collect();

@@ -1,6 +1,6 @@
 //! An experiment and tables made by hand, for rooms that only read them.
 
-use shotdamp::dynamics::Limit;
+use shotdamp::dynamics::{Limit, Until};
 use shotdamp::experiment::{
     Axis, AxisScale, Band, Carried, Case, ContactDampingRecipe, DamperRecipe, Drawing, ExcitationKind,
     ExcitationRecipe, Experiment, ExperimentId, FigureSpec, ForcingOrNatural, GapRecipe, Given, ImpulseTimeRecipe,
@@ -66,7 +66,7 @@ pub fn limit_stop() -> Experiment {
         cases: vec![Case::default()],
         swept: vec![Parameter::ForceRatio, Parameter::Stop],
         solvers: vec![SolverChoice::EventDriven, SolverChoice::FixedStep { time_step: 1e-4 }],
-        settings: Settings { skip: 25, average: 100, round_period_to: None, ensemble: 32 },
+        settings: Settings { skip: 25, average: 100, until: Until::Cycles, round_period_to: None, ensemble: 32 },
         limit: Limit::default(),
         maximise: None,
         refined: Vec::new(),
@@ -109,6 +109,7 @@ pub fn panel(x: &str, scale: AxisScale, y: &[&str]) -> Panel {
         guides: Vec::new(),
         markers: false,
         peaks: None,
+        strip: None,
     }
 }
 

@@ -179,7 +179,7 @@ fn committed_schemas_are_those_that_would_be_written() {
 }
 
 /// What a person gets wrong, each one change away from a file that is right.
-const MISTAKES: [(&str, &str); 31] = [
+const MISTAKES: [(&str, &str); 32] = [
     ("title: Limit stop", "titel: Limit stop"),
     ("title: Limit stop\n", "\n"),
     ("chapter: 3", "chapter: three"),
@@ -209,6 +209,7 @@ const MISTAKES: [(&str, &str); 31] = [
     ("event_driven,", "event_drive,"),
     ("time_step: 0.1 ms", "time_step: 0.1"),
     ("average: 100 cycles", "average: 100 seconds"),
+    ("average: 100 cycles", "average: 100 cycles, until: soon"),
     ("measure: [velocity_ratio]", "measure: [velocity]"),
     ("caption: Two curves.", "caption: Two curves., colour: red"),
 ];

@@ -126,6 +126,41 @@ pub(crate) fn a_new_caption_does_not_make_a_simulation_stale() {
 }
 
 #[test]
+pub(crate) fn a_run_until_settled_says_how_it_ended_and_is_refused_where_nothing_could_prove_it() {
+    let run = "run: {solver: event_driven, skip: 25 cycles, average: 100 cycles, ";
+    let settled = with(run, &format!("{run}until: settled, "));
+    let experiment = good(&settled);
+    assert_eq!(
+        experiment.measures,
+        [Measure::VelocityRatio, Measure::CeilingImpacts, Measure::Settled, Measure::AveragedCycles]
+    );
+    assert_ne!(experiment.simulation_json(), good(GOOD).simulation_json());
+    assert_eq!(good(&with(run, &format!("{run}until: cycles, "))).simulation_json(), good(GOOD).simulation_json());
+    for (old, new, problem) in [
+        ("until: settled", "until: setled", "15:74 `setled` is not an end | did you mean `settled`?"),
+        (
+            "solver: event_driven",
+            "solver: {fixed_step: {time_step: 0.1 ms}}",
+            "15:95 a fixed step has no multipliers that could prove that a run has settled | `until: settled` goes with \
+             `solver: event_driven`",
+        ),
+        (
+            "ceiling_impacts",
+            "drift",
+            "16:27 `drift` compares cycles, and a settled run is averaged over one period | leave it or `until: settled` out",
+        ),
+        (
+            "impulse_train: {force_ratio: swept, frequency_ratio: 1}",
+            "single_impulse: {force_ratio: swept, frequency_ratio: 1}",
+            "15:74 no period comes again without an excitation that repeats",
+        ),
+    ] {
+        assert!(settled.contains(old), "{old}");
+        assert_eq!(only_problem(&settled.replace(old, new)), problem);
+    }
+}
+
+#[test]
 pub(crate) fn quantities_are_read_into_si_to_the_last_bit() {
     let cases = [
         ("5 mm", Dimension::Length, 0.005),

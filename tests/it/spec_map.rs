@@ -71,6 +71,8 @@ fn mistakes_in_a_map_are_told_where_they_stand() {
             "above zero",
         ),
         ("figure: {caption: It., x: gap_ratio, y: velocity_ratio, peaks: {prominence: ‹2›}}".into(), "between 0 and 1"),
+        ("figure: {caption: It., x: gap_ratio, y: velocity_ratio, strip: ‹chaos›}".into(), "is not a strip"),
+        ("figure: {caption: It., x: gap_ratio, y: velocity_ratio, strip: ‹motion›}".into(), "is not measured"),
     ] {
         let column = figure.chars().position(|c| c == '‹').unwrap() + 1;
         let problems = read(&figure.replace(['‹', '›'], "")).expect_err(&figure);

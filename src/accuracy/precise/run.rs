@@ -285,7 +285,7 @@ impl<'a> Run<'a> {
         if !self.options.averages(self.cycle) || span.near() <= 0.0 {
             return;
         }
-        let half = usize::from(2 * (self.cycle - u64::from(self.options.skip)) >= u64::from(self.options.average));
+        let half = self.options.averaged().half(self.cycle);
         for (i, row) in self.system.observed_rows.iter().enumerate() {
             let x = scaled(&along(row, &series.q), span.near());
             let v: Vec<Double> = (1..TERMS).map(|k| x[k] * (k as f64) / span).collect();

@@ -77,8 +77,7 @@ impl<V: Vector> Run<'_, V> {
                 of.extremes.take(range.displacement[0], range.velocity[0]);
                 of.extremes.take(range.displacement[1], range.velocity[1]);
             }
-            let second_half = 2 * (self.cycle - u64::from(self.options.skip)) >= u64::from(self.options.average);
-            let half = usize::from(second_half);
+            let half = self.options.averaged().half(self.cycle);
             let summed = |displacement: f64, [square, velocity_square]: [f64; 2]| {
                 let seen = if self.options.displacement { [displacement * weight, square * weight] } else { [0.0; 2] };
                 Sums::of_raw(tally.steps as f64 * weight, seen[0], seen[1], velocity_square * weight)

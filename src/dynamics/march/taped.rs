@@ -1,23 +1,21 @@
 //! What a run leaves on the tape that its motion is named from; only runs that are asked for it have this code.
 
-use std::rc::Rc;
-
 use super::March;
 use super::impacts::Touch;
-use crate::dynamics::EngineError;
 use crate::dynamics::collision::{self, Closed, Outcome};
 use crate::dynamics::contact::{Crossing, Side};
-use crate::dynamics::motion::{Instant, Jump, Kick};
-use crate::dynamics::system::{Contact, Law};
+use crate::dynamics::motion::{self, Instant, Jump, Kick};
+use crate::dynamics::system::{Contact, Law, dot};
+use crate::dynamics::{Averaged, Counts, EngineError, Observed, Until};
 
 impl<const TAPED: bool> March<'_, TAPED> {
     /// An event, with both sides of it.
     pub(super) fn cross_taped(&mut self, j: usize, crossing: Crossing) -> Result<(), EngineError> {
         let gap = self.gap_of(j, crossing);
         let before = self.instant();
-        let held = self.contacts.clone();
+        self.held.clone_from(&self.contacts);
         self.cross(j, crossing)?;
-        self.tape_captures(&held)?;
+        self.tape_captures()?;
         self.choose_flow()?;
         let after = self.instant();
         let force = self.level + self.drive_phase(self.time).sine;
@@ -41,17 +39,14 @@ impl<const TAPED: bool> March<'_, TAPED> {
         }
     }
 
-    fn instant(&self) -> Instant {
-        let n = self.system.mass.order;
-        let attached = || self.flow.modes.attached.iter().map(|&j| self.particles[j]);
-        let mut p = Vec::with_capacity(self.flow.order);
-        p.extend_from_slice(&self.q[..n]);
-        p.extend(attached().map(|it| it.gap));
-        let mut rate = Vec::with_capacity(self.flow.order);
-        rate.extend_from_slice(&self.rate[..n]);
-        rate.extend(attached().map(|it| it.rate));
-        let particles = (0..self.particles.len()).map(|j| self.absolute(j)[1]).collect();
-        Instant { flow: Rc::clone(&self.flow), p, rate, particles }
+    fn instant(&mut self) -> Instant {
+        let Self { system, flow, q, rate, particles, contacts, tape, .. } = self;
+        let (n, attached) = (system.mass.order, &flow.modes.attached);
+        let places = q[..n].iter().copied().chain(attached.iter().map(|&j| particles[j].gap));
+        let rates = rate[..n].iter().copied().chain(attached.iter().map(|&j| particles[j].rate));
+        let row = |j: usize| &contacts[j].side().face(&system.particles[j]).row;
+        let absolute = (0..particles.len()).map(|j| dot(row(j), rate) + particles[j].rate);
+        tape.instant(flow, places.chain(rates).chain(absolute))
     }
 
     /// An exchange of momentum among rigid contacts.
@@ -64,9 +59,9 @@ impl<const TAPED: bool> March<'_, TAPED> {
 
     /// Particles that a face holds from now on, whatever brought them there: they move with it, and the momentum of their
     /// relative speed goes to it.
-    pub(super) fn tape_captures(&mut self, before: &[Contact]) -> Result<(), EngineError> {
+    pub(super) fn tape_captures(&mut self) -> Result<(), EngineError> {
         let holds = |contact: Contact, j: usize| contact.holds(&self.system.particles[j]);
-        if !(0..before.len()).any(|j| holds(self.contacts[j], j) && self.contacts[j] != before[j]) {
+        if !(0..self.held.len()).any(|j| holds(self.contacts[j], j) && self.contacts[j] != self.held[j]) {
             return Ok(());
         }
         let mut touches = self.touches(&[])?;
@@ -103,12 +98,27 @@ impl<const TAPED: bool> March<'_, TAPED> {
 
     pub(super) fn end_taped_cycle(&mut self) {
         let n = self.system.mass.order;
-        let particles: Vec<[f64; 2]> = (0..self.particles.len()).map(|j| self.absolute(j)).collect();
-        let mut state = Vec::with_capacity(2 * (n + particles.len()));
+        let count = self.particles.len();
+        let mut state = Vec::with_capacity(2 * (n + count));
         state.extend_from_slice(&self.q[..n]);
-        state.extend(particles.iter().map(|[y, _]| y));
+        state.extend((0..count).map(|j| self.absolute(j)[0]));
         state.extend_from_slice(&self.rate[..n]);
-        state.extend(particles.iter().map(|[_, rate]| rate));
+        state.extend((0..count).map(|j| self.absolute(j)[1]));
         self.tape.end_cycle(state, self.contacts.clone());
+    }
+
+    /// At the end of a cycle: the period that is averaged from now on, if the run was to settle and just did.
+    pub(super) fn settle_down(&mut self) -> Result<Option<Averaged>, EngineError> {
+        if self.options.until == Until::Cycles || self.response.settled.is_some() {
+            return Ok(None);
+        }
+        let Some(cycles) = motion::settled(self.system, &self.tape)? else { return Ok(None) };
+        // What was averaged so far is not asked for.
+        self.pay_out();
+        self.response.observed.fill(Observed::default());
+        self.response.counts = Counts::default();
+        self.averaged = Averaged { first: self.cycle + 1, cycles };
+        self.response.settled = Some(self.averaged);
+        Ok(self.response.settled)
     }
 }

@@ -16,7 +16,7 @@ const TURNING: f64 = 0.1;
 pub struct Exponent {
     /// Mean growth of ln |δx| in a cycle of the drive.
     pub value: f64,
-    /// Standard error of it.
+    /// Standard error of it: from the scatter of the cycles and their number.
     pub error: f64,
 }
 
@@ -30,7 +30,7 @@ impl Exponent {
         let mut growths = Vec::new();
         let mut length = norm(scale, &vectors[0]);
         for cycle in tape.last(count) {
-            cycle.steps.iter().for_each(|step| tangent.carry(step, &mut vectors));
+            cycle.steps.iter().for_each(|step| tangent.carry(cycle, step, &mut vectors));
             let now = norm(scale, &vectors[0]);
             if !(now > 0.0 && now.is_finite()) {
                 return None;
@@ -49,7 +49,10 @@ impl Exponent {
         let value = mean(&means);
         let square: f64 = means.iter().map(|x| (x - value) * (x - value)).sum();
         let count = BATCHES as f64;
-        Some(Self { value, error: (square / (count * (count - 1.0))).sqrt() })
+        let scatter = (square / (count * (count - 1.0))).sqrt();
+        // What a vector that only gets longer and shorter by e leaves of the mean.
+        let resolution = 1.0 / (batch as f64 * count);
+        Some(Self { value, error: libm::hypot(scatter, resolution) })
     }
 }
 

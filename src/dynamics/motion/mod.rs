@@ -21,11 +21,13 @@
 //! | `recurrence` | which periods come again, and since when |
 //! | `exponent` | the largest Lyapunov exponent |
 //! | `name` | the decision |
+//! | `settled` | while it runs: whether it has settled |
 
 mod exponent;
 mod multipliers;
 mod name;
 mod recurrence;
+mod settled;
 mod tangent;
 mod tape;
 
@@ -34,4 +36,5 @@ pub use multipliers::{Fundamental, Multiplier};
 pub use name::{Motion, MotionKind};
 
 pub(super) use name::name;
+pub(super) use settled::settled;
 pub(super) use tape::{Instant, Jump, Kick, Tape};

@@ -34,7 +34,7 @@ pub struct Fundamental {
 impl Fundamental {
     /// Of the last cycles of a run.
     pub(in crate::dynamics) fn of(system: &HybridSystem, tape: &Tape, cycles: usize) -> Result<Self, EngineError> {
-        let scale = Scale::new(system, &tape.ends);
+        let scale = Scale::new(system, &tape.reach);
         let map = Period::new(system, &scale, tape.last(cycles));
         let size = map.matrix.nrows();
         let entry = |i: usize, k: usize| map.matrix[(i, k)] * scale.unit(i) / scale.unit(k);
@@ -62,8 +62,8 @@ impl Period {
         let mut columns: Vec<Vec<f64>> =
             (0..size).map(|i| (0..size).map(|k| if i == k { units[i] } else { 0.0 }).collect()).collect();
         let mut contraction = 1.0;
-        for step in cycles.flat_map(|cycle| &cycle.steps) {
-            tangent.carry(step, &mut columns);
+        for (cycle, step) in cycles.flat_map(|cycle| cycle.steps.iter().map(move |step| (cycle, step))) {
+            tangent.carry(cycle, step, &mut columns);
             contraction *= expected(system, step);
         }
         let matrix = DMatrix::from_fn(size, size, |i, k| columns[k][i] / units[i]);
@@ -105,9 +105,9 @@ impl Period {
     }
 
     /// How far the orbit that closes is from a state that misses itself by `miss` after the period: Newton's step.
-    pub(super) fn distance(&self, miss: Vec<f64>) -> Option<f64> {
+    pub(super) fn distance(&self, miss: impl Iterator<Item = f64>) -> Option<f64> {
         let size = self.matrix.nrows();
-        let step = (DMatrix::identity(size, size) - &self.matrix).lu().solve(&DVector::from_vec(miss))?;
+        let step = (DMatrix::identity(size, size) - &self.matrix).lu().solve(&DVector::from_iterator(size, miss))?;
         Some(step.iter().fold(0.0_f64, |most, x| most.max(x.abs()))).filter(|distance| distance.is_finite())
     }
 }

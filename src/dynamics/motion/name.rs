@@ -3,8 +3,8 @@
 //! | name | decided by |
 //! |---|---|
 //! | at rest on the floor, periodic, sticking, completed chatter | the last state is within a millionth of the motion of an orbit that closes (Newton's step with the multipliers of the last period) and no multiplier exceeds 1 |
-//! | chaotic | no such period, and a Lyapunov exponent above zero by three standard errors and one in as many cycles as were run |
-//! | quasi-periodic | an exponent of zero within that, and returns that come no closer with time |
+//! | chaotic | no such period, and a Lyapunov exponent above zero by three standard errors |
+//! | quasi-periodic | no such period, an exponent of zero within its standard error, which is small, and returns that come no closer with time |
 //! | not settled | anything else |
 
 use std::fmt;
@@ -18,14 +18,18 @@ use crate::dynamics::EngineError;
 use crate::dynamics::contact::Side;
 use crate::dynamics::system::{Contact, HybridSystem};
 
+/// Share of the motion within which a state may be on its way to come again.
+const NEAR: f64 = 1e-3;
 /// Distance from the orbit, in units of the motion, within which a run has settled.
 const SETTLED: f64 = 1e-6;
 /// The same where impacts at one instant leave no multipliers to prove it: the state itself comes again.
 const REPEATED: f64 = 1e-9;
 /// A multiplier of a motion without damping may round above 1 by this.
 const NEUTRAL: f64 = 1e-9;
-/// Standard errors that make an exponent differ from zero.
+/// Standard errors that make an exponent positive.
 const ERRORS: f64 = 3.0;
+/// A standard error above this, a cycle, does not tell zero from weak chaos.
+const SHARP: f64 = 0.05;
 /// Returns of a motion that no longer settles come no closer than this from one half of the run to the other.
 const STEADY: f64 = 0.8;
 
@@ -87,18 +91,39 @@ impl MotionKind {
     const QUASI_PERIODIC: &str = "quasi-periodic";
     const CHAOTIC: &str = "chaotic";
     const NOT_SETTLED: &str = "not settled";
+
+    /// Its name without numbers.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::AtRest => Self::AT_REST,
+            Self::Periodic { .. } => Self::PERIODIC,
+            Self::Sticking { .. } => Self::STICKING,
+            Self::CompletedChatter { .. } => Self::CHATTER,
+            Self::QuasiPeriodic => Self::QUASI_PERIODIC,
+            Self::Chaotic => Self::CHAOTIC,
+            Self::NotSettled => Self::NOT_SETTLED,
+        }
+    }
+
+    /// It comes again after some periods of the drive.
+    #[must_use]
+    pub fn repeats(self) -> bool {
+        match self {
+            Self::AtRest | Self::Periodic { .. } | Self::Sticking { .. } | Self::CompletedChatter { .. } => true,
+            Self::QuasiPeriodic | Self::Chaotic | Self::NotSettled => false,
+        }
+    }
 }
 
 impl fmt::Display for MotionKind {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::AtRest => f.write_str(Self::AT_REST),
-            Self::Periodic { periods, contacts } => write!(f, "{} {periods}:{contacts}", Self::PERIODIC),
-            Self::Sticking { periods, contacts } => write!(f, "{} {periods}:{contacts}", Self::STICKING),
-            Self::CompletedChatter { periods } => write!(f, "{} {periods}:∞", Self::CHATTER),
-            Self::QuasiPeriodic => f.write_str(Self::QUASI_PERIODIC),
-            Self::Chaotic => f.write_str(Self::CHAOTIC),
-            Self::NotSettled => f.write_str(Self::NOT_SETTLED),
+            Self::Periodic { periods, contacts } | Self::Sticking { periods, contacts } => {
+                write!(f, "{} {periods}:{contacts}", self.word())
+            }
+            Self::CompletedChatter { periods } => write!(f, "{} {periods}:∞", self.word()),
+            Self::AtRest | Self::QuasiPeriodic | Self::Chaotic | Self::NotSettled => f.write_str(self.word()),
         }
     }
 }
@@ -137,8 +162,8 @@ impl FromStr for MotionKind {
 
 /// Names the motion that a tape ends in; exponents are of its last `window` cycles.
 pub(in crate::dynamics) fn name(system: &HybridSystem, tape: &Tape, window: usize) -> Result<Motion, EngineError> {
-    let scale = Scale::new(system, &tape.ends);
-    for period in candidates(&scale, &tape.ends) {
+    let scale = Scale::new(system, &tape.reach);
+    for period in candidates(&scale, &tape.ends, NEAR) {
         if let Some(motion) = closes(system, &scale, tape, period)? {
             return Ok(motion);
         }
@@ -149,10 +174,10 @@ pub(in crate::dynamics) fn name(system: &HybridSystem, tape: &Tape, window: usiz
     let kind = match exponent {
         // Without a drive that comes again there is no cycle to be left out of step with.
         Some(Exponent { value, error }) if system.drive.repeats => {
-            let zero = ERRORS * error + 1.0 / ends.len() as f64;
-            if value > zero {
+            let is_zero = value.abs() <= error && error <= SHARP;
+            if value > ERRORS * error {
                 MotionKind::Chaotic
-            } else if value > -zero && closing(&scale, ends) > STEADY {
+            } else if is_zero && closing(&scale, ends) > STEADY {
                 MotionKind::QuasiPeriodic
             } else {
                 MotionKind::NotSettled

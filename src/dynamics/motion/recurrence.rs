@@ -2,13 +2,11 @@
 
 use std::f64::consts::TAU;
 
-use super::tape::End;
+use super::tape::{End, Reach};
 use crate::dynamics::system::HybridSystem;
 
 /// Longest period that is looked for, in cycles of the drive.
 const LONGEST: usize = 32;
-/// Share of the motion within which a state may be on its way to come again.
-const NEAR: f64 = 1e-3;
 /// Periods that are tried by their multipliers.
 const TRIED: usize = 4;
 
@@ -24,17 +22,16 @@ pub(super) struct Scale {
 }
 
 impl Scale {
-    pub(super) fn new(system: &HybridSystem, ends: &[End]) -> Self {
+    pub(super) fn new(system: &HybridSystem, reach: &Reach) -> Self {
         let order = system.mass.order;
         let half = order + system.particles.len();
         let reach = |first: usize, count: usize| {
             let (mut length, mut speed) = (0.0_f64, 0.0_f64);
             for i in first..first + count {
-                let places = ends.iter().map(|end| end.state[i]);
-                let (low, high) =
-                    places.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
+                let [low, high] = reach.of(i);
                 length = length.max(high - low);
-                speed = ends.iter().fold(speed, |most, end| most.max(end.state[half + i].abs()));
+                let [low, high] = reach.of(half + i);
+                speed = speed.max(high.max(-low));
             }
             let turn = system.drive.period / TAU;
             length = length.max(speed * turn);
@@ -53,9 +50,9 @@ impl Scale {
     }
 
     /// From one state to another.
-    pub(super) fn miss(&self, from: &End, to: &End) -> Vec<f64> {
+    pub(super) fn miss(&self, from: &End, to: &End) -> impl Iterator<Item = f64> {
         let pairs = from.state.iter().zip(&to.state).enumerate();
-        pairs.map(|(i, (from, to))| (to - from) / self.unit(i)).collect()
+        pairs.map(|(i, (from, to))| (to - from) / self.unit(i))
     }
 
     /// The largest part of the way from one state to another; infinite between different contacts.
@@ -63,15 +60,15 @@ impl Scale {
         if one.contacts != other.contacts {
             return f64::INFINITY;
         }
-        self.miss(one, other).iter().fold(0.0, |most, x| most.max(x.abs()))
+        self.miss(one, other).fold(0.0, |most, x| most.max(x.abs()))
     }
 }
 
-/// Periods after which the last state has nearly come again, the shortest first.
-pub(super) fn candidates(scale: &Scale, ends: &[End]) -> Vec<usize> {
+/// Periods after which the last state has come again to within `near`, the shortest first.
+pub(super) fn candidates(scale: &Scale, ends: &[End], near: f64) -> Vec<usize> {
     let Some((last, before)) = ends.split_last() else { return Vec::new() };
-    let near = before.iter().rev().take(LONGEST).enumerate().filter(|(_, end)| scale.apart(end, last) <= NEAR);
-    near.map(|(i, _)| i + 1).take(TRIED).collect()
+    let close = before.iter().rev().take(LONGEST).enumerate().filter(|(_, end)| scale.apart(end, last) <= near);
+    close.map(|(i, _)| i + 1).take(TRIED).collect()
 }
 
 /// The cycle after which every state comes again after `period` cycles, to within `tolerance`.

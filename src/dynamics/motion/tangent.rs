@@ -5,7 +5,8 @@
 
 use std::rc::Rc;
 
-use super::tape::{Crossing, Instant, Jump, Step};
+use super::tape::{At, Crossing, Cycle, Jump, Step};
+use crate::dynamics::block::Kernel;
 use crate::dynamics::contact::Side;
 use crate::dynamics::flow::Flow;
 use crate::dynamics::system::{HybridSystem, dot};
@@ -19,11 +20,23 @@ pub(super) struct Tangent<'a> {
     c: Vec<f64>,
     c_end: Vec<f64>,
     p: Vec<f64>,
+    kernels: Vec<Kernel>,
+    bends: Vec<f64>,
+    derivatives: [Vec<f64>; 2],
 }
 
 impl<'a> Tangent<'a> {
     pub(super) fn new(system: &'a HybridSystem) -> Self {
-        Self { system, loads: Vec::new(), c: Vec::new(), c_end: Vec::new(), p: Vec::new() }
+        Self {
+            system,
+            loads: Vec::new(),
+            c: Vec::new(),
+            c_end: Vec::new(),
+            p: Vec::new(),
+            kernels: Vec::new(),
+            bends: Vec::new(),
+            derivatives: Default::default(),
+        }
     }
 
     /// Numbers of a vector.
@@ -31,7 +44,8 @@ impl<'a> Tangent<'a> {
         2 * (self.system.mass.order + self.system.particles.len())
     }
 
-    pub(super) fn carry(&mut self, step: &Step, vectors: &mut [Vec<f64>]) {
+    /// Through a step of a cycle.
+    pub(super) fn carry(&mut self, cycle: &Cycle, step: &Step, vectors: &mut [Vec<f64>]) {
         match step {
             Step::Flow(flow, length) => self.flow(flow, *length, vectors),
             Step::Timed(jumps) => {
@@ -39,7 +53,7 @@ impl<'a> Tangent<'a> {
                     jumps.iter().for_each(|jump| self.jump(jump, vector));
                 }
             }
-            Step::Event(crossing) => self.cross(crossing, vectors),
+            Step::Event(crossing) => self.cross(cycle, crossing, vectors),
         }
     }
 
@@ -48,7 +62,8 @@ impl<'a> Tangent<'a> {
         let half = n + self.system.particles.len();
         let spectral = &flow.modes.spectral;
         let width = spectral.width();
-        let kernels: Vec<_> = flow.blocks[..flow.own].iter().map(|block| block.kernel(length)).collect();
+        self.kernels.clear();
+        self.kernels.extend(flow.blocks[..flow.own].iter().map(|block| block.kernel(length)));
         self.c.resize(width, 0.0);
         self.c_end.resize(width, 0.0);
         self.p.resize(2 * order, 0.0);
@@ -64,7 +79,7 @@ impl<'a> Tangent<'a> {
             for (p, column) in self.p.iter().zip(spectral.to_blocks.chunks_exact(width.max(1))) {
                 self.c.iter_mut().zip(column).for_each(|(c, entry)| *c += entry * p);
             }
-            flow.move_blocks(&kernels, &self.c, &mut self.c_end);
+            flow.move_blocks(&self.kernels, &self.c, &mut self.c_end);
             self.p.fill(0.0);
             for (c, column) in self.c_end.iter().zip(flow.modes.columns.chunks_exact(2 * order)) {
                 self.p.iter_mut().zip(column).for_each(|(p, entry)| *p += entry * c);
@@ -88,11 +103,13 @@ impl<'a> Tangent<'a> {
         }
     }
 
-    fn cross(&mut self, crossing: &Crossing, vectors: &mut [Vec<f64>]) {
+    fn cross(&mut self, cycle: &Cycle, crossing: &Crossing, vectors: &mut [Vec<f64>]) {
         let n = self.system.mass.order;
+        let [before, after] =
+            [&crossing.before, &crossing.after].map(|instant| cycle.at(instant, self.system.particles.len()));
         let timing = crossing.gap.and_then(|(j, side)| {
             let row = &side.face(&self.system.particles[j]).row;
-            let speed = crossing.before.particles[j] - dot(row, &crossing.before.rate[..n]);
+            let speed = before.particles[j] - dot(row, &before.rate[..n]);
             (speed != 0.0).then_some((j, row, speed))
         });
         let Some((j, row, speed)) = timing else {
@@ -101,14 +118,18 @@ impl<'a> Tangent<'a> {
             }
             return;
         };
-        let before = self.derivative(&crossing.before, crossing.force);
-        let after = self.derivative(&crossing.after, crossing.force);
+        let mut derivatives = std::mem::take(&mut self.derivatives);
+        for (derivative, at) in derivatives.iter_mut().zip([before, after]) {
+            self.derivative(at, crossing.force, derivative);
+        }
+        let [before, after] = &derivatives;
         for vector in vectors {
             let late = -(vector[n + j] - dot(row, &vector[..n])) / speed;
-            vector.iter_mut().zip(&before).for_each(|(x, f)| *x += late * f);
+            vector.iter_mut().zip(before).for_each(|(x, f)| *x += late * f);
             crossing.jumps.iter().for_each(|jump| self.jump(jump, vector));
-            vector.iter_mut().zip(&after).for_each(|(x, f)| *x -= late * f);
+            vector.iter_mut().zip(after).for_each(|(x, f)| *x -= late * f);
         }
+        self.derivatives = derivatives;
     }
 
     fn jump(&self, jump: &Jump, vector: &mut [f64]) {
@@ -134,25 +155,25 @@ impl<'a> Tangent<'a> {
     }
 
     /// x′ at an instant.
-    fn derivative(&mut self, at: &Instant, force: f64) -> Vec<f64> {
+    fn derivative(&mut self, at: At<'_>, force: f64, derivative: &mut Vec<f64>) {
         let (n, order) = (self.system.mass.order, at.flow.order);
         let modes = &at.flow.modes;
-        let known = self.loads.iter().position(|(flow, ..)| Rc::ptr_eq(flow, &at.flow));
+        let known = self.loads.iter().position(|(flow, ..)| Rc::ptr_eq(flow, at.flow));
         let place = known.unwrap_or_else(|| {
             let push = modes.answer(self.system, &self.system.force_row);
-            self.loads.push((Rc::clone(&at.flow), modes.falls(self.system), push));
+            self.loads.push((Rc::clone(at.flow), modes.falls(self.system), push));
             self.loads.len() - 1
         });
         let (_, falls, push) = &self.loads[place];
-        let bends: Vec<f64> = (0..order)
-            .map(|i| {
-                let (by_place, by_rate) = modes.accelerations[i].split_at(order);
-                dot(by_place, &at.p) + dot(by_rate, &at.rate) + falls[i] + force * push[i]
-            })
-            .collect();
-        let mut derivative = Vec::with_capacity(self.size());
+        self.bends.clear();
+        self.bends.extend((0..order).map(|i| {
+            let (by_place, by_rate) = modes.accelerations[i].split_at(order);
+            dot(by_place, at.p) + dot(by_rate, at.rate) + falls[i] + force * push[i]
+        }));
+        let bends = &self.bends;
+        derivative.clear();
         derivative.extend_from_slice(&at.rate[..n]);
-        derivative.extend_from_slice(&at.particles);
+        derivative.extend_from_slice(at.particles);
         derivative.extend_from_slice(&bends[..n]);
         for (j, particle) in self.system.particles.iter().enumerate() {
             derivative.push(match modes.contacts[j].face(particle) {
@@ -163,6 +184,5 @@ impl<'a> Tangent<'a> {
                 }
             });
         }
-        derivative
     }
 }

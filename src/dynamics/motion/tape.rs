@@ -18,6 +18,8 @@ pub(in crate::dynamics) struct Tape {
     pub(super) cycles: VecDeque<Cycle>,
     /// States at the ends of all cycles.
     pub(super) ends: Vec<End>,
+    /// What they reach.
+    pub(super) reach: Reach,
     /// Exchanges of momentum in the event under way.
     jumps: Vec<Jump>,
 }
@@ -26,6 +28,8 @@ pub(in crate::dynamics) struct Tape {
 #[derive(Default)]
 pub(super) struct Cycle {
     pub(super) steps: Vec<Step>,
+    /// Numbers of its instants, one after the other: a list of its own for each would cost more than the run.
+    numbers: Vec<f64>,
     /// Contacts made, stops hit among them.
     pub(super) contacts: u64,
     /// Infinitely many impacts came to their end.
@@ -42,7 +46,7 @@ pub(super) enum Step {
     /// At an instant that the drive sets.
     Timed(Vec<Jump>),
     /// At an instant that the motion sets.
-    Event(Box<Crossing>),
+    Event(Crossing),
 }
 
 /// An event.
@@ -56,15 +60,23 @@ pub(super) struct Crossing {
     pub(super) force: f64,
 }
 
-/// A state with the flow in force.
+/// A state with the flow in force; its numbers stand in the cycle.
 pub(in crate::dynamics) struct Instant {
-    pub(in crate::dynamics) flow: Rc<Flow>,
+    flow: Rc<Flow>,
+    /// Where they begin.
+    from: usize,
+}
+
+/// An instant with its numbers.
+#[derive(Clone, Copy)]
+pub(super) struct At<'a> {
+    pub(super) flow: &'a Rc<Flow>,
     /// Coordinates of the flow.
-    pub(in crate::dynamics) p: Vec<f64>,
+    pub(super) p: &'a [f64],
     /// Their rates.
-    pub(in crate::dynamics) rate: Vec<f64>,
+    pub(super) rate: &'a [f64],
     /// y′ of each particle.
-    pub(in crate::dynamics) particles: Vec<f64>,
+    pub(super) particles: &'a [f64],
 }
 
 /// An exchange of momentum: impulses that are linear in the speeds before it.
@@ -94,19 +106,54 @@ pub(in crate::dynamics) struct End {
     pub(super) contacts: Vec<Contact>,
 }
 
+/// The least and the largest of each number of the states so far.
+#[derive(Default)]
+pub(super) struct Reach(Vec<[f64; 2]>);
+
+impl Reach {
+    fn take(&mut self, state: &[f64]) {
+        self.0.resize(state.len(), [f64::INFINITY, f64::NEG_INFINITY]);
+        for ([low, high], x) in self.0.iter_mut().zip(state) {
+            (*low, *high) = (low.min(*x), high.max(*x));
+        }
+    }
+
+    /// Of number `i` of a state.
+    pub(super) fn of(&self, i: usize) -> [f64; 2] {
+        self.0.get(i).copied().unwrap_or_default()
+    }
+}
+
+impl Cycle {
+    /// An instant of this cycle, in a system of so many particles.
+    pub(super) fn at<'a>(&'a self, instant: &'a Instant, particles: usize) -> At<'a> {
+        let order = instant.flow.order;
+        let (p, others) = self.numbers[instant.from..].split_at(order);
+        let (rate, others) = others.split_at(order);
+        At { flow: &instant.flow, p, rate, particles: &others[..particles] }
+    }
+}
+
 impl Tape {
     /// A cycle begins.
     pub(in crate::dynamics) fn begin_cycle(&mut self) {
+        // About as long as the last one.
+        let (steps, numbers) = self.cycles.back().map_or((0, 0), |last| (last.steps.len(), last.numbers.len()));
         if self.cycles.len() == KEPT {
             self.cycles.pop_front();
         }
-        self.cycles.push_back(Cycle::default());
+        self.cycles.push_back(Cycle {
+            steps: Vec::with_capacity(steps),
+            numbers: Vec::with_capacity(numbers),
+            ..Cycle::default()
+        });
         // What the start was put right by belongs to none.
         self.jumps.clear();
     }
 
     /// A cycle has ended at the state q, y, q′, y′.
     pub(in crate::dynamics) fn end_cycle(&mut self, state: Vec<f64>, contacts: Vec<Contact>) {
+        self.reach.take(&state);
         self.ends.push(End { state, contacts });
     }
 
@@ -141,6 +188,16 @@ impl Tape {
         }
     }
 
+    /// An instant by its numbers: coordinates of the flow, their rates, and y′ of each particle.
+    pub(in crate::dynamics) fn instant(&mut self, flow: &Rc<Flow>, numbers: impl Iterator<Item = f64>) -> Instant {
+        let mut from = 0;
+        if let Some(cycle) = self.cycles.back_mut() {
+            from = cycle.numbers.len();
+            cycle.numbers.extend(numbers);
+        }
+        Instant { flow: Rc::clone(flow), from }
+    }
+
     pub(in crate::dynamics) fn event(
         &mut self,
         gap: Option<(usize, Side)>,
@@ -149,7 +206,7 @@ impl Tape {
         force: f64,
     ) {
         let jumps = std::mem::take(&mut self.jumps);
-        self.enter(Step::Event(Box::new(Crossing { gap, before, jumps, after, force })));
+        self.enter(Step::Event(Crossing { gap, before, jumps, after, force }));
     }
 
     fn enter(&mut self, step: Step) {

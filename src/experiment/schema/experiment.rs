@@ -6,6 +6,7 @@ use super::parts::{
     NUMBER, Object, PREFIX, any_of, count, list, one_or_more, quantity, reference, text, word, words_of,
 };
 use super::{assumptions, figure, optimise, scene, sweep};
+use crate::dynamics::Until;
 use crate::experiment::about_study::MOST_CHAPTERS;
 use crate::experiment::assumption_reader::MOST_CYCLES;
 use crate::experiment::assumption_sheet::AssumptionSheet;
@@ -85,6 +86,7 @@ fn run(sheet: &AssumptionSheet) -> Value {
         .optional("solver", one_or_more("Solvers", reference("solver")))
         .optional("skip", skip())
         .optional("average", average())
+        .optional("until", words_of::<Until>("When it ends: after these cycles, or where it has settled before"))
         .optional("round_period_to", quantity("The period is rounded to this", Dimension::Time))
         .optional(
             "ensemble",

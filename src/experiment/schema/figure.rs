@@ -6,7 +6,7 @@ use super::parts::{
     Object, any_of, between, boolean, count, list, number, one_of_words, one_or_more, reference, text, words_of,
 };
 use super::sweep::NAME;
-use crate::experiment::definition::{AxisScale, Best};
+use crate::experiment::definition::{AxisScale, Best, Strip};
 use crate::experiment::recipe::Parameter;
 use crate::experiment::word::words;
 use crate::measure::{Measure, energy_columns, trace_columns};
@@ -65,6 +65,7 @@ fn own(object: Object) -> Object {
         .optional("over_first", boolean("Each line over the first one"))
         .optional("guides", list("Levels", guide.schema()))
         .optional("peaks", peaks.schema())
+        .optional("strip", words_of::<Strip>("What a strip below the frame shows along the x axis"))
 }
 
 fn figure() -> Value {

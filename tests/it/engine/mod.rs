@@ -19,6 +19,7 @@ mod properties;
 mod random_scenes;
 mod reference_cases;
 mod search;
+mod settled;
 mod walls;
 
 pub use bench::note;

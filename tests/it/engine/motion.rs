@@ -4,8 +4,8 @@
 use std::f64::consts::{PI, TAU};
 
 use shotdamp::dynamics::{
-    Contact, EngineError, EventKind, HybridSystem, Motion, MotionKind, Multiplier, Options, StartState, event_driven,
-    fundamental_matrix,
+    Contact, EngineError, EventKind, Exponent, HybridSystem, Law, Motion, MotionKind, Multiplier, Options, StartState,
+    Stop, event_driven, fundamental_matrix,
 };
 use shotdamp::scene::{Damper, Excitation, LimitStop, Scene};
 
@@ -284,38 +284,35 @@ fn start(system: &HybridSystem, state: &[f64]) -> Options {
     Options { skip: 0, average: 2, start: given, ..Options::default() }
 }
 
-#[test]
-fn a_moved_start_ends_where_the_fundamental_matrix_says() {
-    let (mut compared, mut scenes, mut exchanges) = (0, 0, [0_u64; 2]);
-    for seed in 0..60 {
-        let system = any_scene(seed);
-        if system.particles.iter().any(|particle| particle.gap < 1e-3) {
-            continue;
-        }
-        let mut dice = Dice(seed ^ 0x1234);
-        let (n, count) = (system.mass.order, system.particles.len());
-        let half = n + count;
-        let mut state: Vec<f64> =
-            (0..2 * half).map(|i| dice.between(-1.0, 1.0) * if i < half { 1e-3 } else { 0.1 }).collect();
-        for (j, particle) in system.particles.iter().enumerate() {
-            let floor: f64 = particle.floor.row.iter().zip(&state).map(|(a, b)| a * b).sum();
-            state[n + j] = floor + particle.gap * dice.between(0.2, 0.8);
-        }
-        let options = start(&system, &state);
-        let map = fundamental_matrix(&system, &options).expect("it runs");
+/// What was compared: entries, scenes, and how often events of some kinds happened.
+#[derive(Default)]
+struct Compared {
+    entries: usize,
+    scenes: usize,
+    strikes: usize,
+    releases: usize,
+    stops: usize,
+}
+
+impl Compared {
+    /// The fundamental matrix of two cycles from `state` against differences of runs from states beside it.
+    fn add(&mut self, seed: u64, system: &HybridSystem, state: &[f64]) {
+        let half = state.len() / 2;
+        let options = start(system, state);
+        let map = fundamental_matrix(system, &options).expect("it runs");
         note("product of the multipliers", map.residual, 1e-10);
         assert!(map.residual < 1e-10, "seed {seed}: {:e}", map.residual);
         if !map.is_unique {
-            continue;
+            return;
         }
-        scenes += 1;
+        self.scenes += 1;
         let unit = |i: usize| if i < half { 1e-3 } else { 3e-2 };
         for k in 0..2 * half {
             let difference = |step: f64| -> Vec<f64> {
                 let moved = |by: f64| {
-                    let mut moved = state.clone();
+                    let mut moved = state.to_vec();
                     moved[k] += by * unit(k);
-                    after(&system, &moved)
+                    after(system, &moved)
                 };
                 moved(step).iter().zip(moved(-step)).map(|(a, b)| (a - b) / (2.0 * step)).collect()
             };
@@ -327,7 +324,7 @@ fn a_moved_start_ends_where_the_fundamental_matrix_says() {
                 if doubt > 1e-3 * most {
                     continue;
                 }
-                compared += 1;
+                self.entries += 1;
                 let got = map.matrix[i][k] * unit(k);
                 let error = (got - fine[i]).abs();
                 assert!(
@@ -337,13 +334,100 @@ fn a_moved_start_ends_where_the_fundamental_matrix_says() {
                 );
             }
         }
-        let events = event_driven(&system, &Options { record_events: usize::MAX, ..options }).expect("it runs").events;
-        let kinds = |wanted: &[EventKind]| events.iter().filter(|event| wanted.contains(&event.kind)).count() as u64;
-        exchanges[0] += kinds(&[EventKind::FloorContact, EventKind::CeilingContact]);
-        exchanges[1] += kinds(&[EventKind::FloorRelease, EventKind::CeilingRelease]);
+        let events = event_driven(system, &Options { record_events: usize::MAX, ..options }).expect("it runs").events;
+        let kinds = |wanted: &[EventKind]| events.iter().filter(|event| wanted.contains(&event.kind)).count();
+        self.strikes += kinds(&[EventKind::FloorContact, EventKind::CeilingContact]);
+        self.releases += kinds(&[EventKind::FloorRelease, EventKind::CeilingRelease]);
+        self.stops += kinds(&[EventKind::FloorStop, EventKind::CeilingStop]);
     }
-    println!("{compared} entries of {scenes} scenes, {exchanges:?} events");
-    assert!(compared > 1000 && exchanges.iter().all(|count| *count > 20));
+
+    fn print(&self) {
+        let Self { entries, scenes, strikes, releases, stops } = self;
+        println!("{entries} entries of {scenes} scenes; {strikes} strikes, {releases} releases, {stops} stops");
+    }
+}
+
+/// Any state with every particle in flight.
+fn any_flight(seed: u64, system: &HybridSystem) -> Vec<f64> {
+    let mut dice = Dice(seed ^ 0x1234);
+    let n = system.mass.order;
+    let half = n + system.particles.len();
+    let mut state: Vec<f64> =
+        (0..2 * half).map(|i| dice.between(-1.0, 1.0) * if i < half { 1e-3 } else { 0.1 }).collect();
+    for (j, particle) in system.particles.iter().enumerate() {
+        let floor: f64 = particle.floor.row.iter().zip(&state).map(|(a, b)| a * b).sum();
+        state[n + j] = floor + particle.gap * dice.between(0.2, 0.8);
+    }
+    state
+}
+
+#[test]
+fn a_moved_start_ends_where_the_fundamental_matrix_says() {
+    let mut compared = Compared::default();
+    for seed in 0..60 {
+        let system = any_scene(seed);
+        if system.particles.iter().all(|particle| particle.gap >= 1e-3) {
+            compared.add(seed, &system, &any_flight(seed, &system));
+        }
+    }
+    compared.print();
+    assert!(compared.entries > 1000 && compared.strikes > 20 && compared.releases > 20);
+}
+
+#[test]
+fn a_moved_start_ends_there_through_impacts_on_stops_too() {
+    let mut compared = Compared::default();
+    for seed in 100..160 {
+        let mut system = any_scene(seed);
+        let mut dice = Dice(seed ^ 0x5678);
+        for particle in &mut system.particles {
+            for face in std::iter::once(&mut particle.floor).chain(&mut particle.ceiling) {
+                let stop = Some(Stop { length: dice.ratio(3e-5, 1e-3), restitution: dice.between(0.1, 0.9) });
+                face.law = Law::Resilient {
+                    stiffness: dice.ratio(1e2, 1e4),
+                    damping: dice.between(0.0, 2.0),
+                    no_tension: dice.chance(0.4),
+                    stop,
+                };
+            }
+        }
+        if system.particles.iter().all(|particle| particle.gap >= 1e-3) {
+            compared.add(seed, &system, &any_flight(seed, &system));
+        }
+    }
+    // A mass on a stop that does not move: a particle that no impact moves.
+    for seed in 0..10 {
+        let mut dice = Dice(seed);
+        let stiffness = dice.ratio(300.0, 3000.0);
+        let stands = Damper::between(rigid(dice.between(0.2, 0.9)), 1e18, f64::INFINITY);
+        let force = Excitation::Harmonic { force: 20.0, angular_frequency: 0.9 * stiffness.sqrt() };
+        let fixed = scene(base(1.0, stiffness, dice.between(0.0, 3.0)), 0.0, stands, force);
+        let place = [dice.between(-1e-3, 1e-3), dice.between(1e-3, 5e-3)];
+        compared.add(seed, &system(&fixed), &[place[0], place[1], dice.between(0.0, 1.0), 0.0]);
+    }
+    compared.print();
+    assert!(compared.entries > 1000 && compared.stops > 50);
+}
+
+#[test]
+fn a_name_never_contradicts_its_exponent() {
+    // Through doublings and chaos into windows and back, in runs as short as a study's.
+    let mut seen = Vec::new();
+    for i in 0..120 {
+        let table = Table::new(0.1 + 0.2 * f64::from(i % 4), 1.0 + 0.06 * f64::from(i));
+        let found = motion(&table.scene(), table.start(0.01), 25, 100);
+        let Some(Exponent { value, error }) = found.exponent else { continue };
+        let at = format!("Γ = {}: {} at {value} ± {error}", 1.0 + 0.06 * f64::from(i), found.kind);
+        match found.kind {
+            MotionKind::Chaotic => assert!(value > 3.0 * error, "{at}"),
+            MotionKind::QuasiPeriodic => assert!(value.abs() <= error, "{at}"),
+            kind if kind.repeats() => assert!(value <= 1e-9, "{at}"),
+            _ => {}
+        }
+        seen.push(std::mem::discriminant(&found.kind));
+    }
+    seen.dedup();
+    assert!(seen.len() > 10, "the motion changes its kind along the way: {}", seen.len());
 }
 
 #[test]

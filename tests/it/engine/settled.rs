@@ -1,0 +1,98 @@
+//! Runs that end where they have settled: their averages against closed forms and long runs, and what becomes of those that
+//! do not settle.
+
+use shotdamp::dynamics::{Options, Response, StartState, Until};
+use shotdamp::measure::{Evaluated, Measure, Request, Rigour, Settings, SolverChoice, Subject, evaluate};
+use shotdamp::scene::{ContactDamping, ContactEnd, Damper, Excitation, Scene, Surface};
+
+use super::bench::{GRAVITY, base, close, in_flight, run, within};
+use super::closed_forms::{expected, masri_and_caughey};
+
+fn settle(scene: &Scene, start: StartState, most: u32) -> Response {
+    run(scene, &Options { skip: 0, average: most, start, until: Until::Settled, audit: true, ..Options::default() })
+}
+
+/// One mass with a resilient damper under impulses, the study's kind.
+fn under_impulses(force_ratio: f64) -> Scene {
+    let natural = 1000.0_f64.sqrt();
+    let surface = Surface::Resilient {
+        stiffness: 1000.0,
+        damping: ContactDamping::Constant(0.3 * 50.0_f64.sqrt()),
+        ends: ContactEnd::ZeroGap,
+    };
+    let train = Excitation::ImpulseTrain { impulse: force_ratio * 2.1 * GRAVITY / natural, period: 0.199 };
+    Scene::on_one_mass(base(1.0, 1000.0, 0.1 * natural), GRAVITY, vec![Damper::between(surface, 0.05, 0.4905)], train)
+}
+
+#[test]
+fn a_settled_run_has_the_averages_of_the_closed_form() {
+    for (id, velocity) in [
+        ("masri-caughey-two-impacts-a", 1.030_216_589_546_725_5),
+        ("masri-caughey-two-impacts-b", 0.246_499_927_843_622_73),
+    ] {
+        let value = expected(id);
+        let steady = masri_and_caughey(id, velocity);
+        let [y, w] = steady.response.final_particles[0];
+        let (x, v) = (steady.response.final_displacement + 1e-4, steady.response.final_velocity);
+        let response = settle(&steady.scene, in_flight([x, v], [y - x, w - v]), 2000);
+        let settled = response.settled.expect("it attracts");
+        println!("{id}: settled in cycle {}", settled.first);
+        assert!(settled.cycles == 1 && (20..2000).contains(&settled.first), "{settled:?}");
+        let rms = response.window().rms_velocity();
+        close(&format!("{id}, RMS velocity"), rms, value[4], 1e-11);
+        assert_eq!([response.counts.floor_contacts, response.counts.ceiling_contacts], [1, 1]);
+        assert!(response.proof.energy_residual < 1e-11 && response.proof.momentum_residual < 1e-11);
+
+        let mut bare = steady.scene.clone();
+        bare.dampers.clear();
+        let alone = settle(&bare, StartState::StaticEquilibrium, 2000);
+        assert!(alone.settled.is_some());
+        close(&format!("{id}, velocity ratio"), alone.window().rms_velocity() / rms, value[5], 1e-11);
+    }
+}
+
+#[test]
+fn a_settled_run_has_the_averages_of_a_long_one() {
+    let mut periods = Vec::new();
+    for force_ratio in [0.05, 0.15, 0.188, 0.266, 3.162, 3.5, 10.0, 25.0, 80.0] {
+        let scene = under_impulses(force_ratio);
+        let response = settle(&scene, StartState::StaticEquilibrium, 1000);
+        let Some(settled) = response.settled else { continue };
+        let long = run(&scene, &Options { skip: 2000, average: 32, ..Options::default() });
+        let [ours, theirs] = [&response, &long].map(Response::window);
+        close(&format!("f′ = {force_ratio}: RMS velocity"), ours.rms_velocity(), theirs.rms_velocity(), 1e-11);
+        let reach = theirs.std_displacement();
+        within("mean displacement", ours.mean_displacement(), theirs.mean_displacement(), 1e-11 * reach);
+        assert_eq!(response.counts.floor_contacts * (32 / settled.cycles), long.counts.floor_contacts);
+        periods.push(settled.cycles);
+    }
+    println!("{periods:?}");
+    assert!(periods.len() >= 6 && periods.contains(&1) && periods.contains(&2));
+}
+
+fn measured(scene: &Scene, until: Until, average: u32) -> Evaluated {
+    let bare = Scene { dampers: Vec::new(), ..scene.clone() };
+    let subject = Subject { scene: scene.clone(), undamped: Some(bare), comparison: None, mode: 1 };
+    let settings = Settings { skip: 25, average, until, round_period_to: None, ensemble: 8 };
+    let measures =
+        [Measure::VelocityRatio, Measure::FloorImpacts, Measure::Settled, Measure::AveragedCycles, Measure::Motion];
+    let request = Request { measures: &measures, trace: None, energies: None, shape: None, rigour: Rigour::Result };
+    evaluate(subject, SolverChoice::EventDriven, &settings, &request).expect("it runs")
+}
+
+#[test]
+fn what_does_not_settle_is_averaged_as_if_it_had_not_been_asked_and_says_so() {
+    let value = |evaluated: &Evaluated, i: usize| evaluated.measured[i].value;
+    // Chaotic; and periodic, but not settled within so few cycles.
+    for (force_ratio, average, chaotic) in [(0.5, 100, true), (3.5, 20, false)] {
+        let scene = under_impulses(force_ratio);
+        let [plain, tried] = [Until::Cycles, Until::Settled].map(|until| measured(&scene, until, average));
+        assert_eq!(plain.chaotic, chaotic, "f′ = {force_ratio}");
+        assert_eq!(tried.measured[..3], plain.measured[..3]);
+        assert_eq!([value(&tried, 2), value(&tried, 3)], [0.0, f64::from(average)]);
+        assert_eq!(tried.motion, plain.motion);
+    }
+    let settled = measured(&under_impulses(3.5), Until::Settled, 1000);
+    assert_eq!([value(&settled, 2), value(&settled, 3)], [1.0, 1.0]);
+    assert!(settled.motion.expect("it was asked for").repeats() && !settled.chaotic);
+}
