@@ -36,9 +36,10 @@ pub(super) fn section(experiment: &Experiment, table: &Table) -> String {
     let late = settled.iter().filter(|cycles| **cycles > skip).count();
     if late > 0 && experiment.settings.until == Until::Cycles {
         let longest = settled.iter().copied().fold(0.0, f64::max);
+        let which = if late == settled.len() { "All".into() } else { format!("{late} of the") };
         text += &format!(
-            " {late} of the {} whose motion comes again settle to a millionth only after the {} left out, the last after {longest}: \
-             what is left of the transient is in their averages.",
+            " {which} {} whose motion comes again settle to a millionth only after the {} left out, the last after {longest}: what \
+             is left of the transient is in their averages.",
             settled.len(),
             counted(experiment.settings.skip as usize, "cycle", "cycles"),
         );
