@@ -241,11 +241,6 @@ impl Flow {
         self.modes.spectral.lasts
     }
 
-    /// The fastest rate of the contact state, of turning or of decay, 1/s.
-    pub(crate) fn fastest_rate(&self) -> f64 {
-        self.blocks[..self.own].iter().fold(0.0, |fastest, block| fastest.max(block.radius))
-    }
-
     /// Natural frequencies of the contact state, rad/s (moduli of the complex pairs' eigenvalues).
     pub(crate) fn natural_frequencies(&self) -> impl Iterator<Item = f64> {
         self.blocks[..self.own].iter().filter(|block| block.oscillates()).map(|block| block.determinant.sqrt())

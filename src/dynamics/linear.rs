@@ -238,7 +238,6 @@ impl<'a> Run<'a> {
             observed: vec![Observed::default(); rows.len()],
             proof: Proof { smallest_margin: margin, ..Proof::default() },
             highest_frequency: flow.natural_frequencies().fold(0.0, f64::max),
-            fastest_rate: flow.fastest_rate(),
             ..Response::default()
         };
         for half in 0..2 {

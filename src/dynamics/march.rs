@@ -365,9 +365,8 @@ impl<'a, const TAPED: bool> March<'a, TAPED> {
             self.c.resize(width, 0.0);
             self.c_end.resize(width, 0.0);
         }
-        let (frequency, rate) = (&mut self.response.highest_frequency, &mut self.response.fastest_rate);
-        *frequency = self.flow.natural_frequencies().fold(*frequency, f64::max);
-        *rate = rate.max(self.flow.fastest_rate());
+        let highest = &mut self.response.highest_frequency;
+        *highest = self.flow.natural_frequencies().fold(*highest, f64::max);
         Ok(())
     }
 

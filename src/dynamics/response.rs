@@ -47,8 +47,6 @@ pub struct Response {
     pub settled: Option<Averaged>,
     /// Highest natural frequency among the contact states visited, rad/s.
     pub highest_frequency: f64,
-    /// Fastest rate among the contact states visited, of turning or of decay, 1/s.
-    pub fastest_rate: f64,
 }
 
 impl Response {
