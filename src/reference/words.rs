@@ -8,8 +8,13 @@ use crate::measure::column_words;
 use crate::text::words;
 
 impl Extraction {
-    /// `mean velocity ratio`; nothing for a fixed number, and where it would take a sentence.
+    /// `mean velocity ratio`; nothing for a fixed number, where it would take a sentence, and where a figure in the words, as in
+    /// `gap 1`, would be taken for the number.
     pub(crate) fn in_words(&self) -> Option<String> {
+        self.words().filter(|words| !words.contains(|c: char| c.is_ascii_digit()))
+    }
+
+    fn words(&self) -> Option<String> {
         let of = |how: &str, column: &str| Some(format!("{how}{}", column_words(column)));
         match self {
             Self::Cell(word) => of("", &word.of),

@@ -345,6 +345,10 @@ fn what_a_claim_found_says_what_its_numbers_are() {
     let close = lines(&[("event_driven", [1.0, 1.0, 1.0 + 4e-13, 1.0, 1.0])]);
     let claim = format!("claim: {{greatest_first: [{{maximum: {{{line}}}}}, {{end: {{{line}, end: high}}}}]}}");
     assert!(judged(&claim, &close).found.contains("velocity ratio 1 − 4e-13"), "{}", judged(&claim, &close).found);
+    // A figure in the name of a column is no number of the claim: explanations count the numbers that they cite.
+    let gaps = complete(vec![float("gap_1", &[0.002]), float("gap_3", &[0.005])]);
+    let found = judged("claim: {greatest_first: [{cell: {of: gap_1}}, {cell: {of: gap_3}}]}", &gaps).found;
+    assert_eq!(found, "false: 0.002 < 0.005");
 }
 
 /// Claims over lines of five points, with the verdict on each line.
