@@ -189,3 +189,22 @@ fn an_assumption_whose_reason_quotes_a_number_of_the_study_is_fitted_to_it() {
     }
     assert!(forgotten.is_empty(), "{forgotten:#?}");
 }
+
+#[test]
+fn a_number_that_an_input_was_chosen_by_is_no_evidence_in_another_entry_either() {
+    let layout = Layout::new(env!("CARGO_MANIFEST_DIR"));
+    let study = Study::new(layout.clone(), Texts::read(&layout).unwrap());
+    let is_fitted = |entry: &&Entry| study.sheet.iter().any(|(_, assumption)| assumption.fitted_to.contains(&entry.id));
+    for reference in study.references.values() {
+        let printed = |entry: &Entry| match &entry.check {
+            Check::Value { published, .. } => figures(published.text()).map(|_| published.text().to_owned()),
+            _ => None,
+        };
+        let (fitted, free): (Vec<&Entry>, Vec<&Entry>) = reference.entries.iter().partition(is_fitted);
+        let used: Vec<String> = fitted.into_iter().filter_map(printed).collect();
+        for entry in free {
+            let repeated = printed(entry).is_some_and(|number| used.contains(&number));
+            assert!(!repeated, "{} repeats a number that an input was chosen by", entry.id);
+        }
+    }
+}
