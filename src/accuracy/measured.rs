@@ -47,6 +47,11 @@ pub enum Contender {
     },
 }
 
+impl Contender {
+    /// The event-driven solver as it is used.
+    pub(super) const EXACT: Self = Self::EventDriven { window_factor: 1.0 };
+}
+
 /// Error and price of one contender.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Point {
@@ -114,6 +119,13 @@ pub struct CaseAccuracy {
 pub struct Accuracy {
     /// Its cases.
     pub cases: Vec<CaseAccuracy>,
+}
+
+impl Accuracy {
+    /// The cases that are not chaotic: in the others no error below the spread has a meaning.
+    pub(super) fn regular(&self) -> Vec<&CaseAccuracy> {
+        self.cases.iter().filter(|case| case.floor.is_none()).collect()
+    }
 }
 
 /// Why there is no diagram.

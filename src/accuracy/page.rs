@@ -17,6 +17,8 @@ const GOALS: [(f64, &str); 3] = [(1e-2, "1 %"), (1e-4, "1e-4"), (1e-8, "1e-8")];
 const SENSELESS: f64 = 0.3;
 /// A run that is off by ten times the number has diverged; by how much says nothing and would only stretch an axis.
 pub(super) const DIVERGED: f64 = 10.0;
+/// Smallest error that a logarithmic axis shows: what is exact to the last digit stands here.
+pub(super) const LEAST: f64 = 1e-16;
 
 /// One experiment, measured.
 #[derive(Debug, Clone, PartialEq)]
@@ -51,9 +53,9 @@ pub fn accuracy_page(view: &AccuracyView, picture: &str) -> String {
 
 /// `Event-driven: 363 µs a run, error 4e-15; fixed step: 401 µs for 1 %, 27.4 ms for 1e-4`.
 fn result(view: &AccuracyView) -> String {
-    let regular: Vec<&CaseAccuracy> = view.accuracy.cases.iter().filter(|case| case.floor.is_none()).collect();
+    let regular = view.accuracy.regular();
     let count = regular.len() as f64;
-    let Some(own) = over(&regular, Contender::EventDriven { window_factor: 1.0 }) else {
+    let Some(own) = over(&regular, Contender::EXACT) else {
         return "Every case is chaotic: neighbouring starts part, and no error has a meaning".into();
     };
     let steps = fixed_steps(&regular);
@@ -149,7 +151,7 @@ fn section(number: usize, case: &CaseAccuracy) -> String {
 
 /// The same solver in windows that change nothing but its time.
 fn is_repeated(contender: Contender) -> bool {
-    matches!(contender, Contender::EventDriven { window_factor } if window_factor != 1.0)
+    matches!(contender, Contender::EventDriven { .. }) && contender != Contender::EXACT
 }
 
 /// `event-driven, windows × 0.5`; `fixed step 10 µs`.
@@ -226,9 +228,9 @@ pub fn accuracy_summary(views: &[AccuracyView]) -> String {
 
 fn row(view: &AccuracyView) -> Vec<String> {
     let cases = &view.accuracy.cases;
-    let regular: Vec<&CaseAccuracy> = cases.iter().filter(|case| case.floor.is_none()).collect();
+    let regular = view.accuracy.regular();
     let mut cells = vec![format!("[`{0}`](accuracy/{0}.md)", view.id)];
-    let exact = over(&regular, Contender::EventDriven { window_factor: 1.0 });
+    let exact = over(&regular, Contender::EXACT);
     cells.push(exact.map_or_else(String::new, |of| error(of.error)));
     cells.push(exact.map_or_else(String::new, |of| seconds(of.time)));
     let steps = fixed_steps(&regular);

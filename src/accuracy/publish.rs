@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use std::fs;
 
 use super::measured::{Accuracy, Contender};
-use super::page::{AccuracyView, DIVERGED, accuracy_page, accuracy_summary, case_name};
+use super::page::{AccuracyView, DIVERGED, LEAST, accuracy_page, accuracy_summary, case_name};
 use super::scatter::scatter;
 use super::verdict_price::VerdictPrice;
 use crate::atomic::{self, FileError};
@@ -16,9 +16,6 @@ use crate::measure::SolverChoice;
 use crate::reference::Judged;
 use crate::study::{Layout, Machine, runs_of_a_row};
 use crate::table::{BASELINE, Column, Data, Table};
-
-/// Smallest error that a logarithmic axis shows: what is exact to the last digit stands here.
-const LEAST: f64 = 1e-16;
 
 /// The record, within the study.
 const RECORD: &str = "reports/accuracy.json";
@@ -39,12 +36,16 @@ pub fn read_measured(layout: &Layout) -> BTreeMap<String, Measured> {
     serde_json::from_slice(&bytes).unwrap_or_default()
 }
 
-/// Adds what was measured of an experiment now to the record.
+/// Adds what was measured of an experiment now to the record, and writes it.
 ///
 /// # Errors
 /// [`FileError`] if it cannot be written.
-pub fn keep_measured(layout: &Layout, experiment: &Experiment, accuracy: Accuracy) -> Result<(), FileError> {
-    let mut record = read_measured(layout);
+pub fn keep_measured(
+    layout: &Layout,
+    record: &mut BTreeMap<String, Measured>,
+    experiment: &Experiment,
+    accuracy: Accuracy,
+) -> Result<(), FileError> {
     record.insert(experiment.id.to_string(), Measured { machine: Machine::here(), accuracy });
     let lines: Vec<String> = record
         .iter()

@@ -1,16 +1,14 @@
 //! All experiments in one picture: the error of a run against its time, event-driven and with the cheapest fixed step that would do
 //! for every verdict; a line at the u_val of each number, from which on a run is accurate enough.
 
-use super::measured::{CaseAccuracy, Contender};
-use super::page::{AccuracyView, cheapest, fixed_steps, over};
+use super::measured::Contender;
+use super::page::{AccuracyView, LEAST, Over, cheapest, fixed_steps, over};
 use crate::experiment::{Axis, AxisScale, Band, Drawing, FigureSpec, Level, Panel};
 use crate::figure::{FigureError, Picture, draw_table};
 use crate::table::{BASELINE, Column, Data, Table};
 use crate::text::number::significant;
 use crate::text::words::counted;
 
-/// Least error shown: what is exact to the last digit.
-const LEAST: f64 = 1e-16;
 /// What a run has to reach for entries that are claims, without a tolerance of their own.
 const FOR_CLAIMS: f64 = 0.01;
 
@@ -37,11 +35,11 @@ pub(super) struct Compared {
 /// The experiments that have a case that is not chaotic, and entries.
 pub(super) fn points(views: &[AccuracyView]) -> Vec<Compared> {
     let compared = |view: &AccuracyView| {
-        let regular: Vec<&CaseAccuracy> = view.accuracy.cases.iter().filter(|case| case.floor.is_none()).collect();
-        let own = over(&regular, Contender::EventDriven { window_factor: 1.0 }).filter(|_| !view.entries.is_empty())?;
+        let regular = view.accuracy.regular();
+        let own = over(&regular, Contender::EXACT).filter(|_| !view.entries.is_empty())?;
         let tolerance = view.entries.iter().filter_map(|entry| entry.tolerance).reduce(f64::min);
         let step = cheapest(&fixed_steps(&regular), tolerance.unwrap_or(FOR_CLAIMS));
-        let a_run = |of: super::page::Over| Run { time: of.time / regular.len() as f64, error: of.error.max(LEAST) };
+        let a_run = |of: Over| Run { time: of.time / regular.len() as f64, error: of.error.max(LEAST) };
         Some(Compared {
             event_driven: a_run(own),
             fixed_step: step.map(|(_, of)| a_run(of)),

@@ -87,10 +87,9 @@ struct Rates {
 
 impl Rates {
     fn of(accuracy: &Accuracy) -> Self {
-        let regular: Vec<&CaseAccuracy> = accuracy.cases.iter().filter(|case| case.floor.is_none()).collect();
+        let regular = accuracy.regular();
         let exact = |case: &CaseAccuracy| -> Option<Times> {
-            let wanted = Contender::EventDriven { window_factor: 1.0 };
-            case.points.iter().find(|point| point.contender == wanted).map(|point| point.times)
+            case.points.iter().find(|point| point.contender == Contender::EXACT).map(|point| point.times)
         };
         let times: Vec<f64> = accuracy.cases.iter().filter_map(exact).map(|times| times.median).collect();
         Self {

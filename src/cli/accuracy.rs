@@ -1,6 +1,6 @@
 //! `shotdamp accuracy`: error against time.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::time::Duration;
 
 use rayon::prelude::*;
@@ -11,7 +11,7 @@ use super::exit::Exit;
 use super::output::{print, print_error, print_unread};
 use super::select::{choose, open};
 use crate::accuracy::{
-    Errors, accuracy_view, errors, keep_measured, publish_accuracy, publish_accuracy_summary, read_measured,
+    Errors, Measured, accuracy_view, errors, keep_measured, publish_accuracy, publish_accuracy_summary, read_measured,
 };
 use crate::dynamics::is_interrupted;
 use crate::report::{Judgement, judge_all};
@@ -21,7 +21,7 @@ use crate::study::{Layout, RunError, Snapshot, Study};
 pub(super) fn measure(layout: &Layout, args: &AccuracyArgs) -> Result<Exit, CliError> {
     if args.pages {
         let study = open(layout)?;
-        publish(&study, &judge_all(&study), |_| true)?;
+        publish(&study, &judge_all(&study), read_measured(layout), |_| true)?;
         return Ok(Exit::AsExpected);
     }
     if !args.all && args.patterns.is_empty() {
@@ -36,6 +36,7 @@ pub(super) fn measure(layout: &Layout, args: &AccuracyArgs) -> Result<Exit, CliE
     let longest = Duration::try_from_secs_f64(args.longest).unwrap_or(Duration::MAX / 32);
     let mut exit = if chosen.unread.is_empty() { Exit::AsExpected } else { Exit::CouldNot };
     let judgement = judge_all(&study);
+    let mut measured = read_measured(layout);
     // Errors side by side, times one after the other with nothing beside them.
     let prepared: Vec<_> =
         chosen.items.par_iter().map(|item| errors(&item.source.experiment, &assumptions, longest)).collect();
@@ -48,7 +49,7 @@ pub(super) fn measure(layout: &Layout, args: &AccuracyArgs) -> Result<Exit, CliE
         }
         match timed {
             Ok(accuracy) => {
-                keep_measured(layout, experiment, accuracy)?;
+                keep_measured(layout, &mut measured, experiment, accuracy)?;
                 if args.all {
                     print(&format!("{}\n", experiment.id))?;
                 }
@@ -63,7 +64,7 @@ pub(super) fn measure(layout: &Layout, args: &AccuracyArgs) -> Result<Exit, CliE
         }
     }
     let ids: BTreeSet<&str> = chosen.items.iter().map(|item| item.source.experiment.id.0.as_str()).collect();
-    let Published { pages, summary } = publish(&study, &judgement, |id| ids.contains(id))?;
+    let Published { pages, summary } = publish(&study, &judgement, measured, |id| ids.contains(id))?;
     if args.all {
         print(&summary)?;
     } else {
@@ -78,9 +79,13 @@ struct Published {
 }
 
 /// Writes from what was measured the pages of the experiments that `chosen` admits, and the summary of all.
-fn publish(study: &Study, judgement: &Judgement, chosen: impl Fn(&str) -> bool) -> Result<Published, CliError> {
+fn publish(
+    study: &Study,
+    judgement: &Judgement,
+    mut measured: BTreeMap<String, Measured>,
+    chosen: impl Fn(&str) -> bool,
+) -> Result<Published, CliError> {
     let layout = &study.layout;
-    let mut measured = read_measured(layout);
     let (mut views, mut pages) = (Vec::new(), Vec::new());
     for item in &study.items {
         let experiment = &item.source.experiment;

@@ -73,6 +73,8 @@ impl Name {
 /// One line of a panel.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Curve {
+    /// Which of the groups that the rows fall into by `by`.
+    pub group: usize,
     pub name: Name,
     pub look: Look,
     /// Sorted by x unless it is a time history.
@@ -130,7 +132,7 @@ pub(super) fn curves(source: Source<'_>, panel: &Panel) -> Result<Vec<Curve>, Fi
         let spread = source.table.column(&format!("{}_spread", y.name)).filter(|_| panel.band == Band::Spread);
         // Only what shows takes a colour.
         let shown: Vec<&Group> = groups.iter().filter(|group| group.rows.iter().any(|&row| holds(y, row))).collect();
-        for group in &groups {
+        for (number, group) in groups.iter().enumerate() {
             let traits = Traits::new(source, index, panel.y.len(), &shown, group);
             let mut words = if panel.y.len() > 1 { vec![source.label(axis)?] } else { Vec::new() };
             words.extend(group.varying_words(&groups));
@@ -139,7 +141,7 @@ pub(super) fn curves(source: Source<'_>, panel: &Panel) -> Result<Vec<Curve>, Fi
                 Some((hue, rest)) => Name { hue: hue.clone(), dash: (!rest.is_empty()).then(|| rest.join(", ")) },
             };
             let look = Look::of_path(&y.name).filter(|_| groups.len() == 1).unwrap_or_else(|| traits.look());
-            let mut curve = Curve { name, look, samples: Vec::new(), seeds: 0, at_infinity: None };
+            let mut curve = Curve { group: number, name, look, samples: Vec::new(), seeds: 0, at_infinity: None };
             match (panel.band, &x.data, &y.data) {
                 (Band::Seeds, Data::FloatList(steps), Data::FloatList(values)) => {
                     let search = |&row: &usize| Some((steps.get(row)?.as_slice(), values.get(row)?.as_slice()));

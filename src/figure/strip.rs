@@ -42,18 +42,17 @@ pub(super) fn strips(
     let (x, kinds) = (source.column(&panel.x.column)?, source.column(&words::of_key(&Measure::Motion))?);
     let Data::Text(kinds) = &kinds.data else { return Ok(Vec::new()) };
     let groups = Group::split(source.table.rows(), &by);
-    let strip = |group: &Group| {
+    let strip = |(at, group): (usize, &Group)| {
         let point = |&row: &usize| {
             let at = number(x, row).filter(|at| at.is_finite())?;
             Some((at, kinds.get(row)?.parse().ok()?))
         };
         let mut points: Vec<(f64, MotionKind)> = group.rows.iter().filter_map(point).collect();
         points.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let name = group.varying_words(&groups).join(", ");
-        let line = curves.iter().find(|curve| groups.len() > 1 && curve.name.full().ends_with(&name));
+        let line = curves.iter().find(|curve| groups.len() > 1 && curve.group == at);
         Strip { look: line.map(|line| line.look), points }
     };
-    Ok(groups.iter().map(strip).filter(|strip| !strip.points.is_empty()).collect())
+    Ok(groups.iter().enumerate().map(strip).filter(|strip| !strip.points.is_empty()).collect())
 }
 
 /// The classes that strips show, in their order.

@@ -51,8 +51,8 @@ pub(super) fn tables(about: &AboutStudy, experiments: &[ExperimentView<'_>]) -> 
 
 /// `3 of 5`.
 fn agreeing(view: &ExperimentView<'_>) -> String {
-    let agree = view.judged.iter().filter(|one| agrees(one.verdict)).count();
-    if view.judged.is_empty() { String::new() } else { format!("{agree} of {}", view.judged.len()) }
+    let tally = Tally::of(view.judged);
+    if tally.total() == 0 { String::new() } else { format!("{} of {}", tally.agreeing(), tally.total()) }
 }
 
 /// `✕ 1, □ 2`.

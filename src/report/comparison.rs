@@ -8,7 +8,7 @@ use super::tally::{Tally, agrees, role, shown};
 use crate::text::words::counted;
 
 /// The entry that a page leads with: the worst, and of several the first.
-pub(super) fn lead(judged: &[Judged]) -> Option<&Judged> {
+pub(super) fn lead<'a>(judged: impl IntoIterator<Item = &'a Judged>) -> Option<&'a Judged> {
     let rank = |one: &&Judged| match one.verdict {
         Verdict::Missing => 0,
         Verdict::Differs => 1,
@@ -17,7 +17,7 @@ pub(super) fn lead(judged: &[Judged]) -> Option<&Judged> {
         Verdict::Reproduced => 4,
         Verdict::Fitted => 5,
     };
-    judged.iter().min_by_key(rank)
+    judged.into_iter().min_by_key(rank)
 }
 
 /// What the page says, in a few lines.
@@ -40,21 +40,19 @@ pub(super) fn in_short(judged: &[Judged]) -> String {
 
 /// `Stands in part: 2 of 3 statements agree.`
 fn conclusion(judged: &[Judged]) -> String {
-    let (all, agree) = (judged.len(), judged.iter().filter(|one| agrees(one.verdict)).count());
-    let word = outcome(judged);
-    let tally = Tally::of(judged).describe();
-    format!("{word}: {agree} of {} ({tally}).", counted(all, "statement agrees", "statements agree"))
+    let tally = Tally::of(judged);
+    let all = counted(tally.total(), "statement agrees", "statements agree");
+    format!("{}: {} of {all} ({}).", outcome(&tally), tally.agreeing(), tally.describe())
 }
 
 /// What became of these entries together, in a word or two.
-pub(super) fn outcome(judged: &[Judged]) -> &'static str {
-    let (all, agree) = (judged.len(), judged.iter().filter(|one| agrees(one.verdict)).count());
-    let has = |verdict: Verdict| judged.iter().any(|one| one.verdict == verdict);
-    match agree {
-        _ if all == 0 || has(Verdict::Missing) => "Not complete",
-        agree if agree == all && !has(Verdict::Reproduced) => "Fitted, not tested",
+pub(super) fn outcome(tally: &Tally) -> &'static str {
+    let all = tally.total();
+    match tally.agreeing() {
+        _ if all == 0 || tally.has(Verdict::Missing) => "Not complete",
+        agree if agree == all && !tally.has(Verdict::Reproduced) => "Fitted, not tested",
         agree if agree == all => "Stands",
-        0 if !has(Verdict::Differs) => "Cannot be decided",
+        0 if !tally.has(Verdict::Differs) => "Cannot be decided",
         0 => "Does not stand",
         _ => "Stands in part",
     }

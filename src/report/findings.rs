@@ -5,7 +5,7 @@ use crate::reference::Judged;
 
 use super::comparison::{explanation, lead, outcome};
 use super::markdown::{Align, MarkdownTable, first_sentence};
-use super::tally::{agrees, mark};
+use super::tally::{Tally, agrees, mark};
 use super::view::ExperimentView;
 
 /// A row for each conclusion; nothing where the study names none.
@@ -19,25 +19,22 @@ pub(super) fn section(about: &AboutStudy, experiments: &[ExperimentView<'_>]) ->
 }
 
 fn row(finding: &Finding, experiments: &[ExperimentView<'_>]) -> [String; 3] {
-    let find = |id: &String| {
-        let judged = |view: &'_ ExperimentView<'_>| view.judged.iter().position(|one| one.id == *id);
-        experiments.iter().find_map(|view| Some((view, judged(view)?)))
-    };
+    let entries = || experiments.iter().flat_map(|view| view.judged.iter().map(move |one| (view, one)));
     let mut links = String::new();
-    let mut all: Vec<Judged> = Vec::new();
+    let mut all: Vec<&Judged> = Vec::new();
     for id in &finding.entries {
-        match find(id) {
-            Some((view, at)) => {
-                let one = &view.judged[at];
+        match entries().find(|(_, one)| one.id == *id) {
+            Some((view, one)) => {
                 links += &format!("[{}]({})", mark(one.verdict), view.place_of(one));
-                all.push(one.clone());
+                all.push(one);
             }
             None => links += &format!(" no entry `{id}`"),
         }
     }
-    let why = lead(&all).filter(|lead| !agrees(lead.verdict));
+    let why = lead(all.iter().copied()).filter(|lead| !agrees(lead.verdict));
     let why = why.map_or_else(String::new, |lead| first_sentence(&explanation(lead)));
-    let agree = all.iter().filter(|one| agrees(one.verdict)).count();
-    let share = if agree > 0 && agree < all.len() { format!(", {agree} of {}", all.len()) } else { String::new() };
-    [finding.says.clone(), format!("**{}**{share} {links}", outcome(&all).to_lowercase()), why]
+    let tally = Tally::of(all);
+    let (agree, all) = (tally.agreeing(), tally.total());
+    let share = if agree > 0 && agree < all { format!(", {agree} of {all}") } else { String::new() };
+    [finding.says.clone(), format!("**{}**{share} {links}", outcome(&tally).to_lowercase()), why]
 }

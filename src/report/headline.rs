@@ -6,7 +6,6 @@ use crate::experiment::AboutStudy;
 use crate::reference::{Judged, Role, Verdict};
 
 use super::findings;
-
 use super::markdown::one_line;
 use super::tally::{Kind, Tally, agrees, kind};
 use super::view::ExperimentView;
@@ -41,7 +40,7 @@ fn counts(all: &[&Judged]) -> String {
     }
     let held_out: Vec<_> = all.iter().filter(|one| one.role == Role::HeldOut).collect();
     if !held_out.is_empty() {
-        let agree = held_out.iter().filter(|one| agrees(one.verdict)).count();
+        let agree = Tally::of(held_out.iter().copied().copied()).agreeing();
         sentences.push(format!("**Held out** of all fits: {agree} of {} agree.", held_out.len()));
     }
     sentences.push(match all.iter().filter(|one| !one.as_expected()).count() {

@@ -97,6 +97,16 @@ impl Tally {
         self.counts.iter().sum()
     }
 
+    /// How many agree with the study.
+    pub(super) fn agreeing(&self) -> usize {
+        self.each().filter(|(verdict, _)| agrees(*verdict)).map(|(_, count)| count).sum()
+    }
+
+    /// True if some entry has this verdict.
+    pub(super) fn has(&self, verdict: Verdict) -> bool {
+        self.each().any(|(one, count)| one == verdict && count > 0)
+    }
+
     /// Each verdict with its count.
     pub(super) fn each(&self) -> impl Iterator<Item = (Verdict, usize)> {
         VERDICTS.into_iter().zip(self.counts)

@@ -19,7 +19,7 @@ use super::tabulate_candidates::{AlongGap, Candidate, failures, table};
 use super::variant::Variant;
 use crate::dynamics::is_interrupted;
 use crate::experiment::{Experiment, Goal, Optimise, Recipe, Search, SearchKind, SearchSpacing};
-use crate::measure::{Evaluated, Measure, Rigour, SolverChoice};
+use crate::measure::{Evaluated, Measure, Measured, Rigour, SolverChoice};
 use crate::optimise::{
     Batch, Bounds, CmaEs, Dense, Found, Genetic, GeneticSettings, Optimiser, Score, Spacing, Stalled, Stopping, dense,
     minimise, sections, two_opt,
@@ -270,7 +270,9 @@ impl Searches<'_> {
         }
         let evaluate = |point: &&Vec<f64>| {
             let begun = Instant::now();
-            let score = self.score(self.fitness.evaluate(point, Rigour::Step));
+            // Smaller is better to the optimisers; what has no number is the worst.
+            let fitness = self.fitness_of(point, Rigour::Step);
+            let score = Score { value: fitness.map_or(f64::NAN, |fitness| self.signed(fitness.value)) };
             ((*point).clone(), Known { score, seconds: begun.elapsed().as_secs_f64() })
         };
         let mut evaluated: Vec<(Vec<f64>, Known)> = new.par_iter().map(evaluate).collect();
@@ -292,22 +294,25 @@ impl Searches<'_> {
         // The smaller of NaN and a number is the number.
         self.last.1 = scores.iter().map(|score| score.value).fold(self.last.1, f64::min);
         let best = self.last.1;
+        self.count(points);
         let experiment = &self.experiment.id;
         let (evaluations, best) = (before + points.len() as u64, self.signed(best));
         let unit = self.optimise.measure.unit();
-        self.handler.on_event(&Event::Simulated { experiment, count: points.len() as u64 });
         self.handler.on_event(&Event::Searched { experiment, search, evaluations, best, unit });
-        self.evaluations += points.len() as u64;
         let seconds = known.iter().map(|known| known.seconds).sum::<f64>() / rayon::current_num_threads() as f64;
         Ok(Batch { scores, seconds })
     }
 
-    /// Smaller is better to the optimisers; what has no number is the worst.
-    fn score(&self, evaluated: Result<Evaluated, RowFailure>) -> Score {
-        match evaluated.ok().and_then(|evaluated| evaluated.measured.get(self.measure).copied()) {
-            Some(fitness) => Score { value: self.signed(fitness.value) },
-            None => Score { value: f64::NAN },
-        }
+    /// Evaluations that are over.
+    fn count(&mut self, points: &[Vec<f64>]) {
+        let count = points.len() as u64;
+        self.handler.on_event(&Event::Simulated { experiment: &self.experiment.id, count });
+        self.evaluations += count;
+    }
+
+    /// What is to be least or greatest; `None` where it cannot be computed.
+    fn fitness_of(&self, point: &[f64], rigour: Rigour) -> Option<Measured> {
+        self.fitness.evaluate(point, rigour).ok()?.measured.get(self.measure).copied()
     }
 
     fn signed(&self, value: f64) -> f64 {
@@ -329,21 +334,15 @@ impl Searches<'_> {
         }
     }
 
-    /// Fitness and its spread: unlike a search, which sees one run, a landscape shows what chaotic motion makes of it. NaN where
-    /// there is none.
-    fn looks(&mut self, points: &[Vec<f64>]) -> Result<Vec<(f64, f64)>, RowFailure> {
-        let look = |point: &Vec<f64>| {
-            let fitness = self.fitness.evaluate(point, Rigour::Look).ok()?.measured.get(self.measure).copied()?;
-            Some((fitness.value, fitness.spread))
-        };
-        let looks: Vec<Option<(f64, f64)>> = points.par_iter().map(look).collect();
+    /// Fitness with its spread: unlike a search, which sees one run, a landscape shows what chaotic motion makes of it.
+    fn looks(&mut self, points: &[Vec<f64>]) -> Result<Vec<Measured>, RowFailure> {
+        let none = Measured { value: f64::NAN, numerical: f64::NAN, spread: f64::NAN };
+        let looks = points.par_iter().map(|point| self.fitness_of(point, Rigour::Look).unwrap_or(none)).collect();
         if is_interrupted() {
             return Err(RowFailure::Interrupted);
         }
-        let count = points.len() as u64;
-        self.handler.on_event(&Event::Simulated { experiment: &self.experiment.id, count });
-        self.evaluations += count;
-        Ok(looks.into_iter().map(|look| look.unwrap_or((f64::NAN, f64::NAN))).collect())
+        self.count(points);
+        Ok(looks)
     }
 
     /// Sections through the best candidate as the searches saw it.
@@ -363,7 +362,9 @@ impl Searches<'_> {
             let points = section.along.into_iter().zip(section.values);
             found.push(Candidate {
                 varied: Some(varied + 1),
-                section: points.map(|(gap, (fitness, spread))| AlongGap { gap, fitness, spread }).collect(),
+                section: points
+                    .map(|(gap, fitness)| AlongGap { gap, fitness: fitness.value, spread: fitness.spread })
+                    .collect(),
                 ..Candidate::named(&words::of_key(&SearchKind::Landscape), centre.clone())
             });
         }

@@ -18,8 +18,6 @@ const NODES_A_RADIAN: f64 = 2.5;
 const DOUBT: f64 = 1e-3;
 /// Most nodes of a segment by its oscillations.
 const MOST_NODES: f64 = 4000.0;
-/// Most nodes before the first of those: so many lead from the longest time to the shortest one there is.
-const MOST_EARLY: usize = 4200;
 /// A state that changes by less than this share in a cycle is steady.
 const STEADY: f64 = 1e-16;
 
@@ -144,8 +142,12 @@ fn times(flow: &Flow, length: f64) -> Vec<f64> {
     }
     let even = (NODES_A_RADIAN * turning * length).ceil().clamp(8.0, MOST_NODES);
     let mut times: Vec<f64> = (0..=even as u64).map(|i| length * (i as f64 / even)).collect();
-    let early = std::iter::successors(Some(0.7 * length / even), |early| Some(0.7 * early));
-    times.extend(early.take_while(|early| early * fastest > 0.1).take(MOST_EARLY));
+    // This ends, as a flow whose rates are not finite is refused.
+    let mut early = 0.7 * length / even;
+    while early * fastest > 0.1 {
+        times.push(early);
+        early *= 0.7;
+    }
     times.sort_by(f64::total_cmp);
     times
 }

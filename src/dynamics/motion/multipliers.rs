@@ -104,8 +104,22 @@ impl Period {
         if off == 0.0 { 0.0 } else { off / lengths.max(self.contraction) }
     }
 
+    /// The multipliers, if none is above `most` and the orbit that closes is within `near` of a state that misses itself by `miss`
+    /// after the period.
+    pub(super) fn attracting(
+        &self,
+        miss: impl Iterator<Item = f64>,
+        most: f64,
+        near: f64,
+    ) -> Result<Option<Vec<Multiplier>>, EngineError> {
+        let multipliers = self.multipliers()?;
+        let attracts = multipliers.first().is_none_or(|largest| largest.modulus <= most);
+        let is_near = attracts && self.distance(miss).is_some_and(|distance| distance <= near);
+        Ok(is_near.then_some(multipliers))
+    }
+
     /// How far the orbit that closes is from a state that misses itself by `miss` after the period: Newton's step.
-    pub(super) fn distance(&self, miss: impl Iterator<Item = f64>) -> Option<f64> {
+    fn distance(&self, miss: impl Iterator<Item = f64>) -> Option<f64> {
         let size = self.matrix.nrows();
         let step = (DMatrix::identity(size, size) - &self.matrix).lu().solve(&DVector::from_iterator(size, miss))?;
         Some(step.iter().fold(0.0_f64, |most, x| most.max(x.abs()))).filter(|distance| distance.is_finite())

@@ -199,12 +199,9 @@ fn closes(system: &HybridSystem, scale: &Scale, tape: &Tape, period: usize) -> R
         (Vec::new(), f64::NAN)
     } else {
         let map = Period::new(system, scale, tape.last(period));
-        let multipliers = map.multipliers()?;
-        let stable = multipliers.first().is_none_or(|largest| largest.modulus <= 1.0 + NEUTRAL);
-        let near = map.distance(scale.miss(begin, end)).is_some_and(|distance| distance <= SETTLED);
-        if !(stable && near) {
+        let Some(multipliers) = map.attracting(scale.miss(begin, end), 1.0 + NEUTRAL, SETTLED)? else {
             return Ok(None);
-        }
+        };
         (multipliers, map.residual())
     };
     let settled_after = settled_after(scale, &tape.ends, period, SETTLED);

@@ -29,10 +29,8 @@ pub(in crate::dynamics) fn settled(system: &HybridSystem, tape: &Tape) -> Result
             continue;
         }
         let last = tape.ends.len() - 1;
-        let map = Period::new(system, &scale, tape.last(period));
-        let attracts = map.multipliers()?.first().is_none_or(|largest| largest.modulus <= ATTRACTS);
         let miss = scale.miss(&tape.ends[last - period], &tape.ends[last]);
-        if attracts && map.distance(miss).is_some_and(|distance| distance <= SETTLED) {
+        if Period::new(system, &scale, tape.last(period)).attracting(miss, ATTRACTS, SETTLED)?.is_some() {
             return Ok(Some(period as u64));
         }
     }
