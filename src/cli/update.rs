@@ -10,7 +10,7 @@ use super::output::{print, print_error, print_unread, print_warnings};
 use super::select::{Chosen, choose, matched};
 use super::simulate::{How, Ran, held, print_failures, simulate};
 use crate::report::{Judgement, Published, doubts, judge_all, publish, summary_of};
-use crate::study::{Item, Layout, Lock, RunTimes, Snapshot, State, Study, Texts, save};
+use crate::study::{Item, Layout, Lock, RunTimes, Snapshot, State, Study, Texts, remove_journals, save};
 use crate::text::words::counted;
 
 /// Brings the chosen experiments up to date.
@@ -91,6 +91,7 @@ pub(super) struct Done {
 /// Judges, draws, writes and reports; from the texts that were read in the beginning, and the results that are on disk now.
 pub(super) fn conclude(study: &Study, choice: &Choice, done: Done) -> Result<Exit, CliError> {
     let chosen = choose(study, choice)?;
+    remove_journals(&study.layout, &study.items);
     let judgement = judge_all(study);
     // First what went wrong: that nothing can be published may be for the same reason.
     for problem in &done.problems {

@@ -69,6 +69,6 @@ pub use run_times::RunTimes;
 pub use shard::{NotThePart, Shard, ShardError};
 pub use snapshot::Snapshot;
 pub use spent::{Cost, Spent};
-pub use store::{Held, Lock, LockError, keep, save};
+pub use store::{Held, Lock, LockError, keep, remove_journals, save};
 pub use summary::{Heading, Summary};
 pub use variant::{Sensitivity, Variant, variants};

@@ -5,12 +5,13 @@ use std::io::Write;
 use std::path::Path;
 
 use super::layout::{Layout, journal_name, record_name, table_name};
-use super::plan::Item;
+use super::plan::{Item, State};
 use super::record::{FileHash, RECORD_FORMAT, Record};
 use super::run::Finished;
 use super::shard::Shard;
 use super::{earlier, spent};
 use crate::atomic::{self, FileError};
+use crate::experiment::ExperimentId;
 use crate::table::{ParquetError, parquet};
 
 /// Writes an experiment's table and then its record, which is what makes the table count. An earlier
@@ -40,10 +41,21 @@ pub fn save(layout: &Layout, item: &Item, finished: &Finished) -> Result<Record,
     earlier::tidy(layout, id, &record.table);
     finished.spent.keep(layout, id);
     if finished.failures.rows == 0 {
-        // What it was kept for is done; one that cannot be removed is overwritten by the next optimisation.
-        let _ = fs::remove_file(layout.path(&journal_name(id)));
+        remove_journal(layout, id);
     }
     Ok(record)
+}
+
+/// Removes the journals that a killed run left beside tables that it had completed.
+pub fn remove_journals(layout: &Layout, items: &[Item]) {
+    for item in items.iter().filter(|item| matches!(item.state, State::Current(_))) {
+        remove_journal(layout, &item.source.experiment.id);
+    }
+}
+
+/// What it was kept for is done; one that cannot be removed is overwritten by the next optimisation.
+fn remove_journal(layout: &Layout, id: &ExperimentId) {
+    let _ = fs::remove_file(layout.path(&journal_name(id)));
 }
 
 /// Keeps the rows of an interrupted experiment for the next run. The table in force and its record stay as they are.
