@@ -40,7 +40,7 @@ pub(super) fn status(layout: &Layout, args: &StatusArgs) -> Result<Exit, CliErro
         print(&total(ids.len(), 0, 0))?;
         return Ok(Exit::AsExpected);
     }
-    let study = Study::beside(layout.clone(), texts, snapshot.experiments);
+    let study = Study::beside(layout.clone(), texts, snapshot.experiments, snapshot.used);
     let chosen = choose(&study, &args.choice)?;
     print_unread(chosen.unread.iter().copied());
     print_warnings(study.warnings().as_ref());

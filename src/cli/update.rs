@@ -54,9 +54,13 @@ pub(super) fn update(layout: &Layout, args: &RunArgs, common: &Args) -> Result<E
 /// The study, in which only the experiments are planned that are not known to be up to date, or are chosen and to be looked at `anyway`.
 pub(super) fn open_stale(layout: &Layout, choice: &Choice, anyway: bool) -> Result<Study, CliError> {
     let texts = Texts::read(layout)?;
-    let mut known = Snapshot::current(layout, &texts).experiments;
-    known.retain(|_, known| !anyway || !choice.admits_known(known));
-    Ok(Study::beside(layout.clone(), texts, known))
+    let Snapshot { mut experiments, mut used, .. } = Snapshot::current(layout, &texts);
+    if anyway {
+        for (id, known) in experiments.extract_if(.., |_, known| choice.admits_known(known)) {
+            used.insert(id, known.used);
+        }
+    }
+    Ok(Study::beside(layout.clone(), texts, experiments, used))
 }
 
 fn nothing_to_do(snapshot: &Snapshot, ids: &BTreeSet<&str>) -> Result<Exit, CliError> {

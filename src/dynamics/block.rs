@@ -87,6 +87,11 @@ impl Block {
         Self { decay, determinant, discriminant, root, inverse_root: 1.0 / root, radius }
     }
 
+    /// The rate at which the slower of its solutions dies away, 1/s.
+    pub(crate) fn slowest(&self) -> f64 {
+        if self.discriminant < 0.0 { self.decay } else { self.decay - self.root }
+    }
+
     /// Its numbers are numbers.
     pub(crate) fn is_finite(&self) -> bool {
         [self.decay, self.determinant, self.discriminant, self.radius].iter().all(|x| x.is_finite())

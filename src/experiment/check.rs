@@ -72,7 +72,7 @@ impl Checks<'_> {
         averages: bool,
         solvers: &[SolverChoice],
     ) {
-        let Some((measure, span)) = measures.iter().find(|(measure, _)| measure.needs_motion()) else { return };
+        let Some((measure, span)) = measures.iter().find(|(measure, _)| measure.needs_multipliers()) else { return };
         let name = word_of(*measure);
         let reason = if solvers.iter().any(|solver| matches!(solver, SolverChoice::FixedStep { .. })) {
             "the event-driven solver alone"
@@ -204,7 +204,8 @@ impl Checks<'_> {
             self.findings.report::<()>(*span, format!("`{name}` is optimised, but not measured"), Some(help));
         }
         for (measure, span) in measures {
-            if measure.needs_trace() || measure.needs_shape() || measure.needs_energies() || measure.needs_motion() {
+            if measure.needs_trace() || measure.needs_shape() || measure.needs_energies() || measure.needs_multipliers()
+            {
                 let message = format!("`{}` is not measured in an optimisation", word_of(*measure));
                 self.findings.wrong::<()>(*span, message);
             }

@@ -167,7 +167,8 @@ impl<'t> ExperimentReader<'t> {
             checks.optimise(optimise, &measures, &run.solvers, optimise_at);
         }
         checks.excitation(&measures, &scene.recipe.excitation.kind);
-        if let Some(at) = run.settled_at {
+        let of_settled = measures.iter().find(|(measure, _)| measure.needs_settled()).map(|(_, at)| *at);
+        if let Some(at) = run.settled_at.or(of_settled) {
             checks.repeats(&scene.recipe.excitation.kind, at);
         }
         let mut places = sweep.places;

@@ -30,9 +30,9 @@ pub(super) struct Place {
     pub y_label: Vec<String>,
 }
 
-/// Height of a figure with so many panels.
-pub(super) fn figure_height(panels: usize) -> f64 {
-    height(panels)
+/// Height of a figure of panels with strips of these heights, which take nothing from the frames.
+pub(super) fn figure_height(strips: impl ExactSizeIterator<Item = f64>) -> f64 {
+    height(strips.len()) + strips.sum::<f64>()
 }
 
 /// The panels' places.
@@ -43,7 +43,7 @@ pub(super) fn places(needs: &[Needs]) -> Vec<Place> {
     let above = |need: &Needs| need.above.max(letter);
     let taken: f64 = needs.iter().map(|need| above(need) + below(need)).sum();
     let panels = u32::try_from(needs.len().max(1)).map_or(1.0, f64::from);
-    let each = ((figure_height(needs.len()) - taken) / panels).max(1.0);
+    let each = ((figure_height(needs.iter().map(|need| need.strips)) - taken) / panels).max(1.0);
 
     // A label may be a little longer than its frame is high.
     let longest = each + 2.0 * SPACE;

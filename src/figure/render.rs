@@ -16,6 +16,7 @@ use super::map_layout::MapLayout;
 use super::paint::{self, LegendPlace};
 use super::panel::{Panel, Reach};
 use super::quoted::Quoted;
+use super::strip;
 use super::style::{LETTER, WIDTH};
 use super::{map_paint, raster};
 
@@ -151,7 +152,7 @@ fn lines(source: Source<'_>, specs: &[experiment::Panel], beside: Beside<'_>) ->
             paint::panel(sheet, panel, &arranged.place, arranged.legend, letter, arranged.x_labels);
         }
     };
-    Ok(svg(WIDTH, figure_height(panels.len()), paint))
+    Ok(svg(WIDTH, figure_height(panels.iter().map(|panel| strip::height(&panel.strips))), paint))
 }
 
 /// What surrounds a panel.

@@ -17,7 +17,9 @@ use super::reading::Reading;
 use super::shape::{self, Shape};
 use super::undefined::in_range;
 use super::{EvaluateError, Evaluated, Measure, Measured, Needs, Rigour, Subject, TraceColumn};
-use crate::dynamics::{EngineError, HybridSystem, Method, Options, Proof, Response, TraceRequest, Until, event_driven};
+use crate::dynamics::{
+    EngineError, HybridSystem, Method, MotionKind, Options, Proof, Response, TraceRequest, Until, event_driven,
+};
 use crate::measure::{EnergySpec, Settings, ShapeOf, ShapeSpec, SolverChoice, TraceSpec};
 use crate::scene::{Excitation, Scene, SingleMass, Structure, compile};
 
@@ -27,6 +29,8 @@ const TWIN_KICK: f64 = 1e-9;
 const CHAOS: f64 = 1e-6;
 /// What rounding leaves of a number in closed form, relative to it.
 const CLOSED_FORM: f64 = 1e-12;
+/// Cycles in which a motion may settle, over those of a run.
+const LONGER: u32 = 10;
 /// Ensemble of a look.
 const MEMBERS_OF_A_LOOK: u32 = 8;
 /// Largest kick of an ensemble member.
@@ -164,6 +168,8 @@ struct References {
     of_cycles: Option<Response>,
     /// Where runs are to settle, and it has.
     settled: Option<Response>,
+    /// Where it is asked what longer runs settle to, and it has.
+    settled_later: Option<Response>,
     /// Runs are to settle, and there is none without dampers that has not.
     may_settle: bool,
 }
@@ -177,13 +183,14 @@ impl References {
     ) -> Result<Self, EvaluateError> {
         let wanted = settings.until == Until::Settled;
         let Some(bare) = subject.undamped.as_ref().filter(|_| request.needs().undamped) else {
-            return Ok(Self { of_cycles: None, settled: None, may_settle: wanted });
+            return Ok(Self { of_cycles: None, settled: None, settled_later: None, may_settle: wanted });
         };
         let (system, plain) = (compile(bare)?, request.options(bare, settings));
         let of_cycles = Some(solve(&system, &plain, solver)?);
         let settles = || solve(&system, &Options { until: Until::Settled, ..plain.clone() }, solver);
         let settled = if wanted { Some(settles()?).filter(|run| run.settled.is_some()) } else { None };
-        Ok(Self { of_cycles, may_settle: settled.is_some(), settled })
+        let settled_later = if request.any(Measure::needs_settled) { settled_later(&system, &plain)? } else { None };
+        Ok(Self { of_cycles, may_settle: settled.is_some(), settled, settled_later })
     }
 }
 
@@ -199,11 +206,11 @@ impl Case<'_> {
         let plain = self.request.options(self.scene, self.settings);
         if reference.may_settle {
             let settles = Options { until: Until::Settled, ..plain.clone() };
-            if let Some(evaluated) = self.run_until(system, reference.settled.as_ref(), solver, &settles)? {
+            if let Some(evaluated) = self.run_until(system, reference, solver, &settles)? {
                 return Ok(evaluated);
             }
         }
-        let evaluated = self.run_until(system, reference.of_cycles.as_ref(), solver, &plain)?;
+        let evaluated = self.run_until(system, reference, solver, &plain)?;
         Ok(evaluated.unwrap_or_else(|| unreachable!("only a run that is to settle can fail to")))
     }
 
@@ -211,12 +218,16 @@ impl Case<'_> {
     fn run_until(
         &self,
         system: &HybridSystem,
-        reference: Option<&Response>,
+        references: &References,
         solver: SolverChoice,
         plain: &Options,
     ) -> Result<Option<Evaluated>, EvaluateError> {
         let Self { settings, request, .. } = *self;
         let case = self;
+        let reference = match plain.until {
+            Until::Cycles => references.of_cycles.as_ref(),
+            Until::Settled => references.settled.as_ref(),
+        };
         let main = Options {
             audit: request.rigour == Rigour::Result,
             motion: request.any(Measure::needs_motion),
@@ -232,7 +243,11 @@ impl Case<'_> {
         if unsettled(&response) {
             return Ok(None);
         }
-        let Read { values, lists } = case.read(&response, reference, true)?;
+        let Read { mut values, lists } = case.read(&response, reference, true)?;
+        let settled = request.measures.iter().position(|measure| measure.needs_settled());
+        if let Some(place) = settled {
+            values[place] = case.settled_velocity_ratio(system, references, plain, &response)?;
+        }
         let motion = response.motion.as_ref().map(|motion| motion.kind);
         let certain = |numerical: Vec<f64>, chaotic: bool| Evaluated {
             measured: values
@@ -282,7 +297,11 @@ impl Case<'_> {
             let again = case.read(&second, reference, true)?.values;
             let own = request.measures.iter().map(|measure| own_error(*measure, &response));
             let pairs = values.iter().zip(again).zip(own);
-            let numerical = pairs.map(|((a, b), own)| (a - b).abs().max(4.0 * f64::EPSILON * a.abs()).max(own));
+            // A number of other runs is read once, as exact as those settle.
+            let numerical = pairs.enumerate().map(|(place, ((a, b), own))| {
+                let differs = if settled == Some(place) { CLOSED_FORM * a.abs() } else { (a - b).abs() };
+                differs.max(4.0 * f64::EPSILON * a.abs()).max(own)
+            });
             return Ok(Some(certain(numerical.collect(), chaotic)));
         }
 
@@ -365,7 +384,23 @@ impl Case<'_> {
             skip: self.settings.skip,
             average: self.settings.average,
             mac,
+            settled_velocity_ratio: f64::NAN,
         }
+    }
+
+    /// The velocity ratio of the motions that the run and the one without dampers go on to; undefined where one does not settle.
+    fn settled_velocity_ratio(
+        &self,
+        system: &HybridSystem,
+        references: &References,
+        plain: &Options,
+        run: &Response,
+    ) -> Result<f64, EngineError> {
+        let kind = run.motion.as_ref().map(|motion| motion.kind);
+        let never_settles = matches!(kind, Some(MotionKind::QuasiPeriodic | MotionKind::Chaotic));
+        let Some(undamped) = references.settled_later.as_ref().filter(|_| !never_settles) else { return Ok(f64::NAN) };
+        let own = settled_later(system, plain)?;
+        Ok(own.map_or(f64::NAN, |own| self.rms_velocity(undamped) / self.rms_velocity(&own)))
     }
 
     /// All measures, and the lists; of a run of an ensemble (not `whole`) only what is averaged.
@@ -416,6 +451,13 @@ impl Case<'_> {
 fn own_error(measure: Measure, response: &Response) -> f64 {
     let exponent = response.motion.as_ref().and_then(|motion| motion.exponent);
     exponent.filter(|_| measure == Measure::LyapunovExponent).map_or(0.0, |exponent| exponent.error)
+}
+
+/// A longer run, if it settles.
+fn settled_later(system: &HybridSystem, plain: &Options) -> Result<Option<Response>, EngineError> {
+    let average = LONGER * (plain.skip + plain.average);
+    let run = event_driven(system, &Options { until: Until::Settled, average, ..plain.clone() })?;
+    Ok(Some(run).filter(|run| run.settled.is_some()))
 }
 
 fn solve(system: &HybridSystem, options: &Options, solver: SolverChoice) -> Result<Response, EngineError> {

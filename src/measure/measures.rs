@@ -54,6 +54,8 @@ pub enum ReadOff {
     Motion,
     /// How the run ended.
     Ending,
+    /// Longer runs, which end where they have settled.
+    Settled,
 }
 
 /// Which runs a measure takes.
@@ -167,6 +169,7 @@ measures! {
     SettledAfter: "cycles", "", "", "cycles after which the motion comes again to within a millionth", Motion, Own, Any;
     Settled: "", "", "", "1 where the run ended with a period that comes again and attracts, and its averages are of that period; 0 where they are of the cycles given; comes with `until: settled`", Ending, Own, Any;
     AveragedCycles: "cycles", "", "", "cycles averaged over: those of the period where the run has settled, the cycles given otherwise; comes with `until: settled`", Ending, Own, Any;
+    SettledVelocityRatio: "", "ψ", "velocity ratio of the settled motion", "the velocity ratio of the motion that the run goes on to, of one period of it; undefined where none is found in ten times the cycles", Settled, Both, Any;
 }
 
 /// A column's name in words: a measure's, or those of [`words::of_column`].
@@ -232,6 +235,18 @@ impl Measure {
         self.facts().from == ReadOff::Motion
     }
 
+    /// Read off longer runs, which end where they have settled.
+    #[must_use]
+    pub fn needs_settled(self) -> bool {
+        self.facts().from == ReadOff::Settled
+    }
+
+    /// Of one motion, with its multipliers: of single event-driven runs alone.
+    #[must_use]
+    pub fn needs_multipliers(self) -> bool {
+        self.needs_motion() || self.needs_settled()
+    }
+
     /// A name in place of a number: its column is text, without an error or a spread.
     #[must_use]
     pub fn is_name(self) -> bool {
@@ -252,7 +267,7 @@ impl Measure {
     /// It changes from one kind of motion to the next, and is constant or without meaning between.
     #[must_use]
     pub fn jumps(self) -> bool {
-        matches!(self.facts().from, ReadOff::Motion | ReadOff::Ending)
+        matches!(self.facts().from, ReadOff::Motion | ReadOff::Ending | ReadOff::Settled)
     }
 
     /// The measures that come with this one.
@@ -263,7 +278,7 @@ impl Measure {
 
     /// Of the run itself, where others are means over an ensemble of kicked starts.
     pub(super) fn is_of_own_run(self) -> bool {
-        self.needs_trace() || self.is_modal() || self.needs_motion()
+        self.needs_trace() || self.is_modal() || self.needs_multipliers()
     }
 
     /// Compares with the run without dampers, or is of it.

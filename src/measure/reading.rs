@@ -25,6 +25,8 @@ pub(super) struct Reading<'a> {
     pub(super) average: u32,
     /// Modal assurance criterion of the shape, if there is one.
     pub(super) mac: Option<f64>,
+    /// Velocity ratio of the motion that the run settles to, undefined where that is not known.
+    pub(super) settled_velocity_ratio: f64,
 }
 
 impl Reading<'_> {
@@ -104,6 +106,7 @@ impl Reading<'_> {
             | Measure::SettledAfter => {
                 of_motion(response.motion.as_ref().ok_or(EvaluateError::NoRun(measure))?, measure)
             }
+            Measure::SettledVelocityRatio => self.settled_velocity_ratio,
             Measure::NaturalFrequency
             | Measure::CleanNaturalFrequency
             | Measure::ExactNaturalFrequency

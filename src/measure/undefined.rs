@@ -34,7 +34,7 @@ impl Evaluated {
 impl Measure {
     /// Of the period of a motion that comes again.
     fn is_of_a_period(self) -> bool {
-        self.needs_motion() && self != Self::LyapunovExponent
+        self.needs_multipliers() && self != Self::LyapunovExponent
     }
 
     /// What it is called where it is undefined: multipliers are so together.
@@ -62,6 +62,7 @@ impl Measure {
                 Some(_) => "particles are struck at one instant",
                 None => "the motion does not come again, or particles are struck at one instant",
             },
+            Self::SettledVelocityRatio => "the motion does not settle",
             _ if self.needs_events() => "there is no such event",
             _ if self.needs_undamped() => "neither run moves",
             _ => "nothing excites the structure",
@@ -70,8 +71,8 @@ impl Measure {
 
     /// It is a number wherever something excites the structure; an event may fail to happen, and a scene may have no particle.
     fn is_of_any_motion(self) -> bool {
-        use ReadOff::{Events, Model, Motion, Shape, Trace};
-        !matches!(self.facts().from, Trace | Model | Shape | Events | Motion) && self != Self::FinalHeight
+        use ReadOff::{Events, Model, Motion, Settled, Shape, Trace};
+        !matches!(self.facts().from, Trace | Model | Shape | Events | Motion | Settled) && self != Self::FinalHeight
     }
 }
 

@@ -10,7 +10,6 @@ use super::predicate::{
     Apart, Between, ColumnsAgree, Equal, GreatestPoint, Level, LineAbove, LinesAgree, PathMonotone, PathsCross,
     Predicate, Trend, Within,
 };
-use super::selection::Allowed;
 use super::shape::{greatest_at_end, levels_off, linear, monotone, onsets, peaks};
 use super::tally::{Decision, Outcome, Tally};
 use super::text::{apart as told_apart, listed, percent, significant, symbol, with_unit};
@@ -287,18 +286,11 @@ fn lines_agree(claim: &LinesAgree, view: &View<'_>) -> Result<Decision, Absence>
 }
 
 fn line_above(claim: &LineAbove, view: &View<'_>) -> Result<Decision, Absence> {
-    let all = lines(view, claim.source(), &claim.of, &claim.over, &claim.by)?;
-    let line = |level: &String| {
-        let found = all.iter().find(|(allowed, _)| *allowed == Allowed::Text(level.clone()));
-        found.cloned().ok_or_else(|| Absence::NoRow(format!("no line with {} = {level}", claim.by)))
-    };
-    let pair = vec![line(&claim.above)?, line(&claim.below)?];
+    let lead = claim.pair().lead(view, claim.source())?;
     let mut tally = Tally::new();
-    for (x, cells) in common(&pair)? {
-        let (above, below) = (cells[0], cells[1]);
-        let margin = above.value - below.value;
-        tally.require_strictly(margin, libm::hypot(above.run, below.run), || {
-            format!("smallest lead {} at {} = {}", significant(margin, 3), symbol(&claim.over), significant(x, 4))
+    for (x, ahead) in lead.x.iter().zip(&lead.y) {
+        tally.require_strictly(ahead.value, ahead.run, || {
+            format!("smallest lead {} at {} = {}", significant(ahead.value, 3), symbol(&claim.over), significant(*x, 4))
         });
     }
     tally.decision()

@@ -129,6 +129,14 @@ impl Extraction {
                 let line = if word.direction == Direction::Increasing { line } else { line.inverted() };
                 Extracted::cell(line.largest_fall(), &line.unit)
             }
+            Self::LargestLead(word) => {
+                let lead = word.pair().lead(view, word.source())?;
+                Extracted::cell(lead.maximum(), &lead.unit)
+            }
+            Self::ArgmaxLead(word) => {
+                let lead = word.pair().lead(view, word.source())?;
+                Extracted::place(lead.top()?, lead.over_unit)
+            }
             Self::NearestPassage(word) => word.take(view)?,
             Self::Largest(cells) => extreme(cells, view, 1.0)?,
             Self::Smallest(cells) => extreme(cells, view, -1.0)?,
@@ -151,6 +159,19 @@ impl Extraction {
                     run: both(of.run, to.run),
                     spread: both(of.spread, to.spread),
                     unit: String::new(),
+                    scale: None,
+                }
+            }
+            Self::Difference(difference) => {
+                let (of, less) = (difference.of.take(view)?, difference.less.take(view)?);
+                if of.unit != less.unit {
+                    return Err(Absence::Broken(format!("a difference of `{}` and `{}`", of.unit, less.unit)));
+                }
+                Extracted {
+                    value: of.value - less.value,
+                    run: libm::hypot(of.run, less.run),
+                    spread: libm::hypot(of.spread, less.spread),
+                    unit: of.unit,
                     scale: None,
                 }
             }

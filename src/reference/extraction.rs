@@ -4,6 +4,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::average::{Interpolated, Stretch};
+use super::line::Pair;
 use super::resonance::Peak;
 use super::selection::Selection;
 use super::view::Source;
@@ -40,6 +41,10 @@ pub enum Extraction {
     Meeting(Meeting),
     /// The largest fall of a rising line, or rise of a falling one: how much it deviates from monotone.
     LargestStepBack(StepBack),
+    /// By how much one line is ahead of another at most.
+    LargestLead(Lead),
+    /// The parameter where it is.
+    ArgmaxLead(Lead),
     /// Of the instants at which one path of a time history passes another, the one nearest to a given time.
     NearestPassage(NearestPassage),
     /// Largest value of all rows, whatever they are over.
@@ -56,6 +61,8 @@ pub enum Extraction {
     Peak(Peak),
     /// One number over another.
     Ratio(Box<Quotient>),
+    /// One number less another.
+    Difference(Box<Difference>),
     /// A number times a factor.
     Times(Box<Times>),
 }
@@ -163,6 +170,25 @@ word! {
         direction: Direction,
     }
 }
+word! {
+    /// One line ahead of another.
+    Lead {
+        /// The parameter.
+        over: String,
+        /// The column that tells the lines apart.
+        by: String,
+        /// Its level on the line that is ahead.
+        above: String,
+        /// Its level on the other.
+        below: String,
+    }
+}
+
+impl Lead {
+    pub(crate) fn pair(&self) -> Pair<'_> {
+        Pair { of: &self.of, over: &self.over, by: &self.by, above: &self.above, below: &self.below }
+    }
+}
 
 /// An instant in the time history of the one row that is meant.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -189,6 +215,16 @@ pub struct Quotient {
     pub of: Extraction,
     /// Below it.
     pub to: Extraction,
+}
+
+/// A difference.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Difference {
+    /// From this,
+    pub of: Extraction,
+    /// this is taken.
+    pub less: Extraction,
 }
 
 /// A multiple.
@@ -240,6 +276,8 @@ impl Extraction {
             Self::MeanOver(word) | Self::StandardDeviationOver(word) => word.is_sound(),
             Self::Peak(peak) => peak.is_sound(),
             Self::Ratio(quotient) => quotient.of.is_sound() && quotient.to.is_sound(),
+            Self::Difference(difference) => difference.of.is_sound() && difference.less.is_sound(),
+            Self::LargestLead(word) | Self::ArgmaxLead(word) => word.above != word.below,
             Self::Times(times) => times.factor.is_finite() && times.factor != 0.0 && times.of.is_sound(),
             _ => true,
         }
@@ -262,6 +300,8 @@ impl Extraction {
             Self::Parting(word) => word.source(),
             Self::Meeting(word) => word.source(),
             Self::LargestStepBack(word) => word.source(),
+            Self::LargestLead(word) | Self::ArgmaxLead(word) => word.source(),
+            Self::Difference(difference) => return [difference.of.sources(), difference.less.sources()].concat(),
             Self::Ratio(quotient) => return [quotient.of.sources(), quotient.to.sources()].concat(),
             Self::Times(times) => return times.of.sources(),
         };

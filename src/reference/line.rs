@@ -62,6 +62,41 @@ pub(crate) fn common(lines: &Lines) -> Result<Vec<(f64, Vec<Cell>)>, Absence> {
     Ok(shared)
 }
 
+/// Two of the lines into which a column splits the rows.
+pub(crate) struct Pair<'a> {
+    pub of: &'a str,
+    pub over: &'a str,
+    pub by: &'a str,
+    /// Level of the line that is said to be ahead, and of the other.
+    pub above: &'a str,
+    pub below: &'a str,
+}
+
+impl Pair<'_> {
+    /// How far the one is above the other, where they share an abscissa.
+    pub(crate) fn lead(&self, view: &View<'_>, source: Source<'_>) -> Result<Line, Absence> {
+        let all = lines(view, source, self.of, self.over, self.by)?;
+        let line = |level: &str| {
+            let found = all.iter().find(|(allowed, _)| *allowed == Allowed::Text(level.into()));
+            found.cloned().ok_or_else(|| Absence::NoRow(format!("no line with {} = {level}", self.by)))
+        };
+        let pair = vec![line(self.above)?, line(self.below)?];
+        let (x, y) = common(&pair)?.into_iter().map(|(x, cells)| (x, cells[0].less(&cells[1]))).unzip();
+        Ok(Line { x, y, ..pair[0].1.clone() })
+    }
+}
+
+impl Cell {
+    /// The difference to another, with the errors of both.
+    pub(crate) fn less(&self, other: &Self) -> Self {
+        Self {
+            value: self.value - other.value,
+            run: libm::hypot(self.run, other.run),
+            spread: libm::hypot(self.spread, other.spread),
+        }
+    }
+}
+
 impl Line {
     /// Where the top is. Every point that its own error allows to be the highest counts, and the top lies between their
     /// outer neighbours.

@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use super::extraction::{Direction, Extraction, Side};
 use super::fit::Fit;
+use super::line::Pair;
 use super::mode_shape::ModeShape;
 use super::place::{BestPlace, GrowsTowards};
 use super::selection::Selection;
@@ -228,6 +229,12 @@ claim! {
         below: String,
     }
 }
+impl LineAbove {
+    pub(crate) fn pair(&self) -> Pair<'_> {
+        Pair { of: &self.of, over: &self.over, by: &self.by, above: &self.above, below: &self.below }
+    }
+}
+
 claim! {
     /// A straight line.
     Linear {

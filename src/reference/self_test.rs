@@ -325,19 +325,39 @@ impl Trial<'_> {
             Extraction::Times(times) => {
                 return self.steer(table, &times.of, now / times.factor, to / times.factor, reads);
             }
+            // Both are moved by what is read first, in all variants: the sensitivity stays what it is.
             Extraction::Ratio(quotient) => {
-                let above = Reads::default();
-                for variant in std::iter::once(BASELINE).chain(self.view(BASELINE, &above).variants()) {
-                    // A variant without these rows reads nothing, which is what is wanted of it.
-                    let _ = quotient.of.take(&self.view(variant, &above));
-                }
-                for (column, rows) in by_column(self.at_home(&above.cells()).filter(|read| read.role == Role::Value)) {
+                for (column, rows) in self.values_of(&quotient.of) {
                     alter(table, column, &rows, |x, _| x * to / now);
                 }
             }
+            Extraction::Difference(difference) => {
+                for (column, rows) in self.values_of(&difference.of) {
+                    alter(table, column, &rows, |x, _| x + (to - now));
+                }
+            }
+            Extraction::LargestLead(word) => {
+                let is_above =
+                    |row: &usize| self.table.texts(&word.by).is_some_and(|levels| levels[*row] == word.above);
+                let (column, mut rows) = cells(Role::Value, &word.of);
+                rows.retain(is_above);
+                shift((column, rows));
+            }
+            Extraction::ArgmaxLead(word) => shift(cells(Role::Coordinate, &word.over)),
             Extraction::Number(_) => return Err(Flaw::FixedNumber),
         }
         Ok(())
+    }
+
+    /// The cells of measures that an extraction reads in any variant, by column.
+    fn values_of(&self, extraction: &Extraction) -> BTreeMap<usize, Vec<usize>> {
+        let read = Reads::default();
+        for variant in std::iter::once(BASELINE).chain(self.view(BASELINE, &read).variants()) {
+            // A variant without these rows reads nothing, which is what is wanted of it.
+            let _ = extraction.take(&self.view(variant, &read));
+        }
+        let cells = read.cells();
+        by_column(self.at_home(&cells).filter(|read| read.role == Role::Value))
     }
 
     /// True if a shape that is said to be different from another fails when it is that very one: no small damage makes two

@@ -41,6 +41,9 @@ impl Extraction {
             | Self::Parting(_)
             | Self::Meeting(_)
             | Self::LargestStepBack(_)
+            | Self::LargestLead(_)
+            | Self::ArgmaxLead(_)
+            | Self::Difference(_)
             | Self::NearestPassage(_)
             | Self::Ratio(_)
             | Self::Times(_) => None,

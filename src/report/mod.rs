@@ -62,6 +62,7 @@ pub use html::{Html, html};
 pub use index::index;
 pub use json::{Number, Standing, VerdictsError, json, read_json};
 pub use junit::junit;
+pub use motions::what_moves;
 pub use movement::{Moved, Movement, between_tables, between_verdicts, standing};
 pub use overview::overview_svg;
 pub use page::page;

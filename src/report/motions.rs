@@ -1,48 +1,169 @@
-//! What moves how: the kinds of motion that the rows of an experiment end in, and whether the cycles left out are enough.
+//! What moves how: on an experiment's page in a sentence, over the whole study on a page of its own.
 
-use crate::dynamics::{MotionKind, Until};
-use crate::experiment::Experiment;
-use crate::measure::Measure;
-use crate::table::Table;
-use crate::text::words::{counted, of_key};
+use super::markdown::{Align, MarkdownTable, details, one_line};
+use super::view::ExperimentView;
+use crate::dynamics::MotionKind;
+use crate::study::{Motions, Settling};
+use crate::text::number::{compact, significant};
+use crate::text::words::counted;
 
-/// The part of an experiment's page; nothing where the motion is not measured, or of one row alone.
-pub(super) fn section(experiment: &Experiment, table: &Table) -> String {
-    let baseline = table.baseline();
-    let names = baseline.texts(&of_key(&Measure::Motion)).unwrap_or_default();
-    let kinds: Vec<MotionKind> = names.iter().filter_map(|name| name.parse().ok()).collect();
-    let mut tally: Vec<(&str, usize)> = Vec::new();
-    for kind in &kinds {
-        match tally.iter_mut().find(|(word, _)| *word == kind.word()) {
-            Some((_, count)) => *count += 1,
-            None => tally.push((kind.word(), 1)),
-        }
-    }
-    if kinds.len() < 2 {
+/// The page's name below `reports/`.
+pub(super) const PAGE: &str = "what-moves-how.md";
+
+/// Experiments whose rows are listed under the page's table.
+const MOST_LISTED: usize = 8;
+
+/// The part of an experiment's page; nothing of one row alone.
+pub(super) fn section(motions: &Motions) -> String {
+    if motions.rows() < 2 {
         return String::new();
     }
-    tally.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
-    let share = |count: usize| format!("{:.0} %", 100.0 * count as f64 / kinds.len() as f64);
-    let parts: Vec<String> = tally.iter().map(|(word, count)| format!("{count} {word} ({})", share(*count))).collect();
-    let rows = counted(kinds.len(), "row", "rows");
+    let mut kinds: Vec<(&str, usize)> = motions.kinds.iter().map(|(kind, count)| (kind.as_str(), *count)).collect();
+    kinds.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
+    let parts: Vec<String> =
+        kinds.iter().map(|(kind, count)| format!("{count} {kind} ({})", share(*count, motions.rows()))).collect();
+    let rows = counted(motions.rows(), "row", "rows");
     let mut text = format!("**What moves how.** Of {rows}: {}.", parts.join(", "));
-    let settled: Vec<f64> = baseline
-        .floats(&of_key(&Measure::SettledAfter))
-        .unwrap_or_default()
-        .into_iter()
-        .filter(|x| !x.is_nan())
-        .collect();
-    let skip = f64::from(experiment.settings.skip);
-    let late = settled.iter().filter(|cycles| **cycles > skip).count();
-    if late > 0 && experiment.settings.until == Until::Cycles {
-        let longest = settled.iter().copied().fold(0.0, f64::max);
-        let which = if late == settled.len() { "All".into() } else { format!("{late} of the") };
+    let late = motions.late();
+    if let (Some(last), true) = (motions.settled_after.last(), late > 0) {
+        let again = motions.settled_after.len();
+        let which = if late == again { "All".into() } else { format!("{late} of the") };
         text += &format!(
-            " {which} {} whose motion comes again settle to a millionth only after the {} left out, the last after {longest}: what \
-             is left of the transient is in their averages.",
-            settled.len(),
-            counted(experiment.settings.skip as usize, "cycle", "cycles"),
+            " {which} {again} whose motion comes again settle to a millionth only after the {} left out, the last after {last}.",
+            counted(motions.skip as usize, "cycle", "cycles"),
         );
     }
-    text + "\n\n"
+    if let Some(settling) = &motions.settling {
+        text += &format!(" {}", of_settling(settling, motions.skip));
+    }
+    text += "\n\n";
+    text + &motions
+        .settling
+        .as_ref()
+        .map_or_else(String::new, |it| details("Rows that are not what they settle to", &rows_off(it)))
+}
+
+/// `reports/what-moves-how.md`.
+#[must_use]
+pub fn what_moves(experiments: &[ExperimentView<'_>]) -> String {
+    let mut text = String::from("# What moves how\n\n");
+    let all: Vec<(&ExperimentView<'_>, &Motions)> =
+        experiments.iter().filter_map(|view| Some((view, view.motions.as_ref()?))).collect();
+    let total: usize = all.iter().map(|(_, motions)| motions.rows()).sum();
+    if total == 0 {
+        return text + "No experiment measures its motion.\n";
+    }
+    let count = |kind: &str| all.iter().filter_map(|(_, motions)| motions.kinds.get(kind)).sum::<usize>();
+    let parts: Vec<String> = MotionKind::WORDS
+        .iter()
+        .filter(|kind| count(kind) > 0)
+        .map(|kind| format!("{} {kind}", share(count(kind), total)))
+        .collect();
+    let of = counted(all.len(), "experiment", "experiments");
+    text += &format!("Of {total} rows in {of} that name their motion: {}.\n\n", parts.join(", "));
+    let settlings: Vec<&Settling> = all.iter().filter_map(|(_, motions)| motions.settling.as_ref()).collect();
+    if !settlings.is_empty() {
+        let [rows, off] = [settlings.iter().map(|it| it.rows).sum(), settlings.iter().map(|it| it.off).sum::<usize>()];
+        let worst =
+            settlings.iter().filter_map(|it| it.worst.first()).map(|one| one.relative().abs()).fold(0.0, f64::max);
+        text += &format!(
+            "**Are the cycles of a run enough?** {} where the motion settles; there the velocity ratio of the cycles given differs \
+             from the settled one by more than {} in {off} ({}), and by {} at most.\n\n",
+            counted(rows, "row", "rows"),
+            percent(Settling::limit()),
+            share(off, rows),
+            percent(worst),
+        );
+    }
+    text += &table(&all);
+    let mut listed: Vec<_> = all
+        .iter()
+        .filter_map(|(view, motions)| Some((view, motions.settling.as_ref().filter(|it| it.off > 0)?)))
+        .collect();
+    listed.sort_by_key(|(_, settling)| std::cmp::Reverse(settling.off));
+    for (view, settling) in listed.into_iter().take(MOST_LISTED) {
+        let title = one_line(&view.experiment.title);
+        text += &details(&format!("{title}: rows that are not what they settle to"), &rows_off(settling));
+    }
+    text + "The kinds of motion are proved by Floquet multipliers and Lyapunov exponents; the settled motion is that of a run ten \
+            times as long, averaged over one period. [The study in one page](README.md)\n"
+}
+
+fn table(all: &[(&ExperimentView<'_>, &Motions)]) -> String {
+    let mut table = MarkdownTable::new(&[
+        ("Experiment", Align::Left),
+        ("Rows", Align::Right),
+        ("Come again", Align::Right),
+        ("Later than the cycles left out", Align::Right),
+        ("Quasi-periodic", Align::Right),
+        ("Chaotic", Align::Right),
+        ("Off from settled", Align::Right),
+        ("Most", Align::Right),
+    ]);
+    for (view, motions) in all {
+        let of = |kind: &str| motions.kinds.get(kind).copied().unwrap_or(0);
+        let irregular = [MotionKind::QuasiPeriodic, MotionKind::Chaotic].map(|kind| of(kind.word()));
+        let again = motions.rows() - irregular[0] - irregular[1] - of(MotionKind::NotSettled.word());
+        let settling = motions.settling.as_ref();
+        let worst = settling.and_then(|it| it.worst.first()).map(|one| percent(one.relative()));
+        table.row(vec![
+            format!("[{}]({})", one_line(&view.experiment.title), view.page),
+            motions.rows().to_string(),
+            share(again, motions.rows()),
+            if motions.settled_after.is_empty() { String::new() } else { share(motions.late(), again) },
+            share(irregular[0], motions.rows()),
+            share(irregular[1], motions.rows()),
+            settling.map_or_else(String::new, |it| format!("{} of {}", it.off, it.rows)),
+            worst.unwrap_or_default(),
+        ]);
+    }
+    table.finish() + "\n"
+}
+
+/// What the averages of 25 + 100 cycles are worth, in a sentence.
+fn of_settling(settling: &Settling, skip: u32) -> String {
+    let cycles = format!("cycles {} to {}", skip + 1, skip + settling.average);
+    let median = significant(settling.median, 1);
+    match settling.worst.first() {
+        None => format!(
+            "In all {} that settle, the velocity ratio of {cycles} is that of the settled motion to {} (median {median}).",
+            settling.rows,
+            percent(Settling::limit()),
+        ),
+        Some(worst) => format!(
+            "Of the {} that settle, the velocity ratio of {cycles} is off by more than {} in {}: by {} at {} (median of all {median}).",
+            counted(settling.rows, "row", "rows"),
+            percent(Settling::limit()),
+            settling.off,
+            percent(worst.relative()),
+            worst.row,
+        ),
+    }
+}
+
+fn rows_off(settling: &Settling) -> String {
+    if settling.worst.is_empty() {
+        return String::new();
+    }
+    let mut table = MarkdownTable::new(&[
+        ("Row", Align::Left),
+        ("ψ of the cycles given", Align::Right),
+        ("ψ settled", Align::Right),
+        ("Off by", Align::Right),
+    ]);
+    for one in &settling.worst {
+        let [here, settled] = [one.velocity_ratio, one.settled].map(|ratio| significant(ratio, 4));
+        table.row(vec![one.row.clone(), here, settled, percent(one.relative())]);
+    }
+    let rest = settling.off - settling.worst.len();
+    let more = if rest == 0 { String::new() } else { format!("\nand {rest} more, off by less.\n") };
+    table.finish() + &more + "\n"
+}
+
+fn share(count: usize, of: usize) -> String {
+    if of == 0 { String::new() } else { format!("{:.0} %", 100.0 * count as f64 / of as f64) }
+}
+
+fn percent(relative: f64) -> String {
+    format!("{} %", compact(100.0 * relative, 2))
 }

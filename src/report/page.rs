@@ -2,6 +2,7 @@
 
 use crate::experiment::Source;
 use crate::reference::NotJudged;
+use crate::study::Motions;
 use crate::text::words::capitalised;
 
 use super::markdown::{details, one_line};
@@ -30,7 +31,8 @@ pub fn page(view: &PageView<'_>) -> String {
         text += &candidate::section(optimise, table);
     }
     text += &view.table.map_or_else(String::new, |table| proof::failures(table) + &doubts::section(table));
-    text += &view.table.map_or_else(String::new, |table| motions::section(experiment, table));
+    let motions = view.table.and_then(|table| Motions::of(experiment, table));
+    text += &motions.as_ref().map_or_else(String::new, motions::section);
     text += &details("Uncertainties and sensitivity", &comparison::uncertainties(view.judged));
     let about = if view.judged.is_empty() { "" } else { about.as_str() };
     let run = format!("{about}{}{}", run::section(experiment), run::effects(view.effects));

@@ -156,6 +156,7 @@ impl Axes<'_> {
             Extraction::FirstAbove(word) => (&word.of, word.over.as_str(), Where::Place),
             Extraction::Parting(word) => (&word.of, word.over.as_str(), Where::Place),
             Extraction::Meeting(word) => (&word.of, word.over.as_str(), Where::Place),
+            Extraction::ArgmaxLead(word) => (&word.of, word.over.as_str(), Where::Place),
             Extraction::NearestPassage(word) => (&word.of, "time", Where::Place),
             Extraction::Peak(peak) => match peak.read {
                 Feature::Place => (&peak.of, peak.over.as_str(), Where::Place),
@@ -168,7 +169,9 @@ impl Axes<'_> {
             | Extraction::End(_)
             | Extraction::LargestStepBack(_)
             | Extraction::StandardDeviationOver(_)
+            | Extraction::LargestLead(_)
             | Extraction::Ratio(_)
+            | Extraction::Difference(_)
             | Extraction::Times(_) => return None,
         };
         Some((of, over, rows, standing))

@@ -4,7 +4,7 @@ use super::comparison::{anchor, name};
 use crate::experiment::Experiment;
 use crate::reference::{Judged, NotJudged};
 use crate::scene::EffectUse;
-use crate::study::Heading;
+use crate::study::{Heading, Motions};
 use crate::table::Table;
 
 /// An assumption in force, in words.
@@ -47,6 +47,8 @@ pub struct ExperimentView<'a> {
     pub judged: &'a [Judged],
     /// Processor time that its simulations took, s, where somebody has measured it.
     pub seconds: Option<f64>,
+    /// What moves how in it, where that is measured.
+    pub motions: Option<Motions>,
     /// Its page, relative to the index.
     pub page: String,
 }

@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::figures::{figure_name, scene_name};
 use super::index::{OVERVIEW, STRIP};
+use super::motions::PAGE as WHAT_MOVES;
 use super::other_pages::PAGES;
 use super::prose;
 use super::verdicts::Judgement;
@@ -16,7 +17,7 @@ use crate::report::{
     value_in_words,
 };
 use crate::scene::{Scene, effects};
-use crate::study::{Heading, Item, RunTimes, Study, Unread, table_name};
+use crate::study::{Heading, Item, Motions, RunTimes, Study, Unread, table_name};
 
 /// The page of an experiment.
 pub(super) fn page(study: &Study, judgement: &Judgement, item: &Item) -> String {
@@ -53,10 +54,17 @@ pub(super) fn page_name(item: &Item) -> String {
 
 /// All experiments in the order of the index.
 pub(super) fn listed<'a>(study: &Study, judgement: &'a Judgement, times: Option<&RunTimes>) -> Vec<ExperimentView<'a>> {
-    let planned = study.items.iter().map(|item| (Heading::of(&item.source.experiment), item.source.folder()));
-    let known = study.known.values().map(|known| (known.heading.clone(), known.folder.as_str()));
-    let mut views: Vec<ExperimentView<'_>> =
-        planned.chain(known).map(|(heading, folder)| one_listed(judgement, heading, folder, times)).collect();
+    let planned = study.items.iter().map(|item| {
+        let experiment = &item.source.experiment;
+        let table = judgement.tables.get(&experiment.id.0);
+        let motions = table.and_then(|table| Motions::of(experiment, table));
+        one_listed(judgement, Heading::of(experiment), item.source.folder(), motions, times)
+    });
+    let known = study
+        .known
+        .values()
+        .map(|known| one_listed(judgement, known.heading.clone(), &known.folder, known.motions.clone(), times));
+    let mut views: Vec<ExperimentView<'_>> = planned.chain(known).collect();
     views.sort_by(|a, b| a.experiment.id.cmp(&b.experiment.id));
     views
 }
@@ -77,6 +85,7 @@ pub(super) fn of_the_study(study: &Study, judgement: &Judgement) -> Vec<(String,
         (OVERVIEW, report::overview_svg(&views)),
         ("assumptions.md", report::assumptions(&assumptions)),
         (WHAT_STANDS, report::what_stands(&views, &study.sheet, &assumptions)),
+        (WHAT_MOVES, report::what_moves(&views)),
         ("tolerances.md", report::tolerances(&views)),
         ("verdicts.json", verdicts(study, judgement)),
     ]
@@ -103,12 +112,14 @@ fn one_listed<'a>(
     judgement: &'a Judgement,
     experiment: Heading,
     folder: &str,
+    motions: Option<Motions>,
     times: Option<&RunTimes>,
 ) -> ExperimentView<'a> {
     let folder = if folder.is_empty() { String::new() } else { format!("{folder}/") };
     ExperimentView {
         judged: judged(judgement, &experiment.id.0),
         seconds: times.and_then(|times| times.seconds.get(&experiment.id.0)).copied(),
+        motions,
         page: format!("{folder}{}.md", experiment.id),
         experiment,
     }

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use super::load::text;
 use crate::experiment::{AboutStudy, AssumptionSheet, Calibration, Problems, RowLimit, parse_calibration};
 use crate::reference::{Check, Prose, ReferenceFile, ReferenceMistake, ReferenceProblem, Role, parse_reference};
-use crate::study::{ASSUMPTIONS, Item, Layout, Loaded, Refused, Sensitivity, Summary, Texts, stem};
+use crate::study::{ASSUMPTIONS, Item, Layout, Loaded, Refused, Sensitivity, Summary, Texts, Used, stem};
 use crate::text::utf8::decode;
 
 /// The study: what was read and planned, and the experiments that are up to date and need not be.
@@ -94,14 +94,14 @@ impl Study {
     /// Reads and plans the study that the texts make.
     #[must_use]
     pub fn new(layout: Layout, texts: Texts) -> Self {
-        Self::beside(layout, texts, BTreeMap::new())
+        Self::beside(layout, texts, BTreeMap::new(), Used::new())
     }
 
-    /// The same, but for the experiments that are `known` to be up to date.
+    /// The same, but for the experiments that are `known` to be up to date; with the assumptions that others are known to depend on.
     #[must_use]
-    pub fn beside(layout: Layout, texts: Texts, known: BTreeMap<String, Summary>) -> Self {
+    pub fn beside(layout: Layout, texts: Texts, known: BTreeMap<String, Summary>, used: Used) -> Self {
         let mut study = Self::empty(layout, texts);
-        study.plan(&|id| !known.contains_key(id));
+        study.plan(&|id| !known.contains_key(id), used);
         study.known = known;
         study.plan_dependents();
         study.complete()
@@ -111,7 +111,7 @@ impl Study {
     #[must_use]
     pub fn of(layout: Layout, texts: Texts, wanted: &(dyn Fn(&str) -> bool + Sync)) -> Self {
         let mut study = Self::empty(layout, texts);
-        study.plan(wanted);
+        study.plan(wanted, Used::new());
         study.complete()
     }
 
@@ -152,16 +152,19 @@ impl Study {
         }
     }
 
-    /// Reads and plans the experiments whose ids are `wanted`.
-    fn plan(&mut self, wanted: &(dyn Fn(&str) -> bool + Sync)) {
+    /// Reads and plans the experiments whose ids are `wanted`; what the others depend on is worked out.
+    fn plan(&mut self, wanted: &(dyn Fn(&str) -> bool + Sync), mut used: Used) {
         let Self { texts, layout, unread, .. } = self;
         let loaded = Loaded::chosen(texts, wanted);
         unread.extend(loaded.refused.into_iter().map(Unread::from));
         let references = references(texts, wanted, unread);
         let items: Vec<Item> = loaded
             .sources
+            .into_iter()
+            .map(|source| (used.remove(&source.experiment.id.0), source))
+            .collect::<Vec<_>>()
             .into_par_iter()
-            .map(|source| {
+            .map(|(used, source)| {
                 let reference = references.get(&source.experiment.id.0);
                 let asked = source.experiment.moved.is_some();
                 let sensitivity = if asked || reference.is_some_and(has_values) {
@@ -169,7 +172,7 @@ impl Study {
                 } else {
                     Sensitivity::NotWanted
                 };
-                Item::new(layout, source, &loaded.sheet, sensitivity)
+                Item::new(layout, source, used, &loaded.sheet, sensitivity)
             })
             .collect();
         self.about = loaded.about;
@@ -184,11 +187,15 @@ impl Study {
         let tables = self.tables();
         let moved =
             |summary: &Summary| summary.reads.iter().any(|(id, hash)| tables.get(id.as_str()) != Some(&hash.as_str()));
-        let lost: BTreeSet<String> =
-            self.known.iter().filter(|(_, summary)| moved(summary)).map(|(id, _)| id.clone()).collect();
+        let lost: Used = self
+            .known
+            .iter()
+            .filter(|(_, summary)| moved(summary))
+            .map(|(id, summary)| (id.clone(), summary.used.clone()))
+            .collect();
         if !lost.is_empty() {
-            self.known.retain(|id, _| !lost.contains(id));
-            self.plan(&|id| lost.contains(id));
+            self.known.retain(|id, _| !lost.contains_key(id));
+            self.plan(&|id| lost.contains_key(id), lost.clone());
         }
     }
 

@@ -44,10 +44,16 @@ pub enum State {
 }
 
 impl Item {
-    /// Plans one experiment, and looks at what is on disk.
+    /// Plans one experiment, and looks at what is on disk. The assumptions that it depends on are worked out unless they are known.
     #[must_use]
-    pub fn new(layout: &Layout, source: Source, sheet: &AssumptionSheet, sensitivity: Sensitivity) -> Self {
-        let used = source.experiment.assumptions_used(sheet);
+    pub fn new(
+        layout: &Layout,
+        source: Source,
+        used: Option<BTreeSet<AssumptionName>>,
+        sheet: &AssumptionSheet,
+        sensitivity: Sensitivity,
+    ) -> Self {
+        let used = used.unwrap_or_else(|| source.experiment.assumptions_used(sheet));
         let variants = variants(&source.experiment, &used, sheet, sensitivity);
         let simulation = simulation(&source, sheet, &used, &variants, sensitivity);
         let fingerprint = fingerprint(&simulation);

@@ -44,9 +44,6 @@ pub enum RowFailure {
     /// The row was not evaluated, or not yet.
     #[error("the row was never computed")]
     NotComputed,
-    /// What a stand-in for the engine reports.
-    #[error("{0}")]
-    Other(String),
 }
 
 /// Why an optimisation has no result.

@@ -15,7 +15,7 @@ use serde::{Deserialize, Serialize};
 use super::glance::{Glance, Match};
 use super::layout::{ASSUMPTIONS, Layout, Texts, stem};
 use super::record::{PRESENTATION_VERSION, RECORD_FORMAT};
-use super::summary::Summary;
+use super::summary::{Summary, Used};
 use crate::atomic::{self, FileError};
 use crate::dynamics::SOLVER_VERSION;
 use crate::experiment::{AssumptionName, AssumptionSheet, parse_assumptions};
@@ -33,6 +33,9 @@ pub struct Snapshot {
     pub experiments: BTreeMap<String, Summary>,
     /// True if index and verdicts are as the last run left them.
     pub index_is_current: bool,
+    /// The assumptions that experiments depend on which are not up to date, where neither they nor any assumption has changed: an
+    /// explanation has, or a file is gone.
+    pub used: Used,
     /// Assumptions that no experiment used when it was taken.
     pub unused: BTreeSet<AssumptionName>,
     /// Files that were compared by content, and need not be the next time.
@@ -121,17 +124,22 @@ impl Snapshot {
         let unchanged = shared == known.study.inputs;
         let index_is_current = unchanged && look.holds(&mut known.study.outputs);
         let texts = texts_by_experiment(texts);
+        let mut used = Used::new();
         known.experiments.retain(|id, seen| {
-            texts.get(id.as_str()).is_some_and(|texts| *texts == seen.inputs)
-                && seen.content.used.is_disjoint(&changed)
-                && look.holds(&mut seen.outputs)
+            let Some(texts) = texts.get(id.as_str()) else { return false };
+            let holds =
+                *texts == seen.inputs && seen.content.used.is_disjoint(&changed) && look.holds(&mut seen.outputs);
+            if !holds && unchanged && own_text(texts) == own_text(&seen.inputs) {
+                used.insert(id.clone(), seen.content.used.clone());
+            }
+            holds
         });
         let experiments: BTreeMap<_, _> =
             known.experiments.iter().map(|(id, seen)| (id.clone(), seen.content.clone())).collect();
         let all = texts.len() == experiments.len();
         let unused = known.unused.clone();
         let settled = (look.settled && all && index_is_current).then(|| Box::new(known));
-        Some(Self { experiments, index_is_current, unused, settled })
+        Some(Self { experiments, index_is_current, used, unused, settled })
     }
 
     /// True if every experiment and every reference file among `texts` is up to date, and the index.
@@ -275,6 +283,11 @@ fn shared_inputs(texts: &Texts) -> Hashes {
 }
 
 /// The texts of each experiment; two files of one id are both its own, and never those that a run has left.
+/// The hash of the experiment's own file among those that it consists of.
+fn own_text(hashes: &Hashes) -> Option<&String> {
+    hashes.iter().find(|(name, _)| name.starts_with("experiments/")).map(|(_, hash)| hash)
+}
+
 fn texts_by_experiment(texts: &Texts) -> BTreeMap<&str, Hashes> {
     let mut by_id = BTreeMap::<&str, Hashes>::new();
     for (name, bytes) in texts.files.iter().filter(|(name, _)| Texts::is_of_experiment(name)) {

@@ -5,6 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use serde::{Deserialize, Serialize};
 
+use super::motions::Motions;
 use crate::experiment::{AssumptionName, Experiment, ExperimentId, Source};
 use crate::reference::Judged;
 
@@ -27,6 +28,9 @@ impl Heading {
     }
 }
 
+/// The assumptions that experiments depend on, by id.
+pub type Used = BTreeMap<String, BTreeSet<AssumptionName>>;
+
 /// An experiment that is up to date.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Summary {
@@ -44,4 +48,6 @@ pub struct Summary {
     pub judged: Vec<Judged>,
     /// The line of each entry in the reference file.
     pub lines: Vec<u64>,
+    /// What moves how in it.
+    pub motions: Option<Motions>,
 }

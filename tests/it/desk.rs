@@ -207,7 +207,7 @@ impl Evaluate for MadeUp {
         let strength = match scene.excitation {
             Excitation::Harmonic { force, .. } => force.abs() / 9.81,
             Excitation::ImpulseTrain { impulse, .. } => impulse,
-            _ => return Err(RowFailure::Other("not in this test".into())),
+            _ => return Err(RowFailure::NoValue("velocity_ratio".into())),
         };
         let mass = scene.structure.model().total_mass();
         let damper = &scene.dampers[0];

@@ -199,7 +199,7 @@ fn rows_that_failed_are_tried_again_and_no_others() {
     struct Breaks(MadeUp);
     impl Evaluate for Breaks {
         fn evaluate(&self, it: &Simulation<'_>) -> Result<Evaluated, RowFailure> {
-            it.recipe.dampers[0].stop.as_ref().ok_or(RowFailure::Other("too hard without a stop".into()))?;
+            it.recipe.dampers[0].stop.as_ref().ok_or(RowFailure::NoValue("velocity_ratio".into()))?;
             self.0.evaluate(it)
         }
     }

@@ -146,7 +146,7 @@ fn the_index_of_the_whole_study_loads_at_once() {
             let experiment = &item.source.experiment;
             let page = format!("{}/{}.md", item.source.folder(), experiment.id);
             let judged = judged.get(&experiment.id.0).map_or(&[][..], Vec::as_slice);
-            ExperimentView { experiment: Heading::of(experiment), judged, seconds: Some(1.234), page }
+            ExperimentView { experiment: Heading::of(experiment), judged, seconds: Some(1.234), motions: None, page }
         })
         .collect();
     let index = index(&AboutStudy::default(), &views, &[], None);

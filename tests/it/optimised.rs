@@ -58,7 +58,7 @@ impl Evaluate for Bowl {
         self.evaluations.fetch_add(1, Ordering::Relaxed);
         let scene = it.recipe.resolve(it.assumptions)?;
         let Excitation::Harmonic { force, .. } = scene.excitation else {
-            return Err(RowFailure::Other("not in this test".into()));
+            return Err(RowFailure::NoValue("velocity_ratio".into()));
         };
         let off = |(damper, best): (&shotdamp::scene::Damper, f64)| (damper.gap - best) * (damper.gap - best);
         let bowl: f64 = scene.dampers.iter().zip([0.010, 0.070, 0.030]).map(off).sum();
@@ -195,13 +195,13 @@ fn a_search_that_cannot_begin_is_a_failed_row() {
     struct Broken;
     impl Evaluate for Broken {
         fn evaluate(&self, _: &Simulation<'_>) -> Result<Evaluated, RowFailure> {
-            Err(RowFailure::Other("made to fail".into()))
+            Err(RowFailure::NoValue("velocity_ratio".into()))
         }
     }
     let desk = desk();
     desk.run(2, &Broken, &IgnoreEvents);
     let table = desk.table("ch6-gaps");
-    assert!(table.texts("failure").unwrap().contains(&"made to fail".to_owned()));
+    assert!(table.texts("failure").unwrap().contains(&"velocity_ratio has no value".to_owned()));
     assert_eq!(desk.run(2, &Bowl::default(), &IgnoreEvents), ["ch6-gaps"], "it is tried again");
 }
 

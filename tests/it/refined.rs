@@ -31,7 +31,7 @@ impl Evaluate for Curve {
     fn evaluate(&self, it: &Simulation<'_>) -> Result<Evaluated, RowFailure> {
         let scene = it.recipe.resolve(it.assumptions)?;
         let Excitation::Harmonic { angular_frequency, .. } = scene.excitation else {
-            return Err(RowFailure::Other("not in this test".into()));
+            return Err(RowFailure::NoValue("velocity_ratio".into()));
         };
         let (value, spread, chaotic) = (self.0)(angular_frequency / 1000_f64.sqrt(), scene.dampers[0].gap);
         Ok(Evaluated {

@@ -163,6 +163,7 @@ fn the_index_tells_the_whole_study_at_a_glance() {
         experiment: Heading::of(&experiment),
         judged: &judged,
         seconds: Some(12.3),
+        motions: None,
         page: "ch3/ch3-limit-stop.md".into(),
     };
     let machine = Machine {
@@ -184,6 +185,7 @@ fn a_conclusion_stands_as_far_as_its_entries_do() {
         experiment: Heading::of(&limit_stop()),
         judged: &judged,
         seconds: None,
+        motions: None,
         page: "ch3/ch3-limit-stop.md".into(),
     };
     let agree = |one: &&Judged| matches!(one.verdict, Verdict::Reproduced);
@@ -261,8 +263,13 @@ fn a_page_gives_the_first_sentence_of_the_reason_before_all_else() {
 fn the_rule_of_agreement_is_said_once_and_is_the_one_that_judges() {
     let judged = judged();
     let experiment = limit_stop();
-    let view =
-        ExperimentView { experiment: Heading::of(&experiment), judged: &judged, seconds: None, page: String::new() };
+    let view = ExperimentView {
+        experiment: Heading::of(&experiment),
+        judged: &judged,
+        seconds: None,
+        motions: None,
+        page: String::new(),
+    };
     let index = index(&about(), &[view], &[], None);
     assert!(index.contains("The two agree if |E| ≤ 2 u_val. **± is 2 u_val**"), "{index}");
     let at = |deviation: f64| {
@@ -281,8 +288,13 @@ fn a_tolerance_by_hand_stands_beside_the_verdict() {
 #[test]
 fn the_headline_separates_numbers_from_claims() {
     let (experiment, judged) = (limit_stop(), judged());
-    let view =
-        ExperimentView { experiment: Heading::of(&experiment), judged: &judged, seconds: None, page: String::new() };
+    let view = ExperimentView {
+        experiment: Heading::of(&experiment),
+        judged: &judged,
+        seconds: None,
+        motions: None,
+        page: String::new(),
+    };
     let text = index(&about(), &[view], &[], None);
     let counts = "**2 numbers**: 1 fitted, 1 differs. **2 claims**: 1 reproduced, 1 differs. **Held out** of all fits: 0 of 1 agree.";
     assert!(text.contains(counts), "{text}");

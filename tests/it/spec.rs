@@ -158,6 +158,14 @@ pub(crate) fn a_run_until_settled_says_how_it_ended_and_is_refused_where_nothing
         assert!(settled.contains(old), "{old}");
         assert_eq!(only_problem(&settled.replace(old, new)), problem);
     }
+    let later = with("ceiling_impacts]", "ceiling_impacts, settled_velocity_ratio]");
+    assert!(good(&later).measures.contains(&Measure::SettledVelocityRatio));
+    let [stepped, struck] = [
+        later.replace("solver: event_driven", "solver: {fixed_step: {time_step: 0.1 ms}}"),
+        later.replace("impulse_train", "single_impulse"),
+    ];
+    assert_eq!(only_problem(&stepped), "16:44 `settled_velocity_ratio` is measured of the event-driven solver alone");
+    assert_eq!(only_problem(&struck), "16:44 no period comes again without an excitation that repeats");
 }
 
 #[test]

@@ -91,7 +91,7 @@ fn one_bad_case_is_a_row_and_a_panic_is_one_too() {
             };
             if it.recipe.dampers[0].stop.is_none() {
                 assert!(impulse > 1.0, "made to fail");
-                return Err(RowFailure::Other("too hard".into()));
+                return Err(RowFailure::NoValue("velocity_ratio".into()));
             }
             MadeUp::default().evaluate(it)
         }
@@ -102,7 +102,7 @@ fn one_bad_case_is_a_row_and_a_panic_is_one_too() {
     let failure = table.texts("failure").unwrap();
     assert_eq!(failure[0], "");
     assert!(failure[2].contains("made to fail"), "{}", failure[2]);
-    assert!(failure.contains(&"too hard".to_owned()));
+    assert!(failure.contains(&"velocity_ratio has no value".to_owned()));
     assert!(table.floats("velocity_ratio").unwrap()[2].is_nan());
     assert!(desk.table("ch3-gap").texts("failure").unwrap().iter().all(String::is_empty));
     // Failed rows are tried again, and the others are not.
@@ -118,7 +118,7 @@ fn a_maximum_over_a_range_with_a_hole_is_none() {
         fn evaluate(&self, it: &Simulation<'_>) -> Result<Evaluated, RowFailure> {
             match it.recipe.resolve(it.assumptions).unwrap().excitation {
                 Excitation::Harmonic { force, .. } if force.abs() > 50.0 => {
-                    Err(RowFailure::Other("did not settle".into()))
+                    Err(RowFailure::NoValue("velocity_ratio".into()))
                 }
                 _ => MadeUp::default().evaluate(it),
             }
@@ -126,7 +126,10 @@ fn a_maximum_over_a_range_with_a_hole_is_none() {
     }
     let desk = Desk::new();
     desk.run(4, &Hole, &IgnoreEvents);
-    assert_eq!(desk.table("ch3-gap").texts("failure").unwrap()[0], "at base_amplitude_ratio = 10: did not settle");
+    assert_eq!(
+        desk.table("ch3-gap").texts("failure").unwrap()[0],
+        "at base_amplitude_ratio = 10: velocity_ratio has no value"
+    );
 }
 
 #[test]
@@ -292,6 +295,7 @@ fn take_snapshot(desk: &Desk, texts: &Texts) {
         reads: BTreeMap::new(),
         judged: Vec::new(),
         lines: Vec::new(),
+        motions: None,
     };
     let files = |id: &str| {
         let page = format!("reports/ch3/{id}.md");

@@ -4,7 +4,7 @@
 //! |---|---|
 //! | at rest on the floor, periodic, sticking, completed chatter | the last state is within a millionth of the motion of an orbit that closes (Newton's step with the multipliers of the last period) and no multiplier exceeds 1 |
 //! | chaotic | no such period, and a Lyapunov exponent above zero by three standard errors |
-//! | quasi-periodic | no such period, an exponent of zero within its standard error, which is small, and returns that come no closer with time |
+//! | quasi-periodic | no such period, an exponent of zero within its standard error, which is small, and returns that come no closer with time, in a run that is long enough to see the slowest transient die away |
 //! | not settled | anything else |
 
 use std::fmt;
@@ -15,6 +15,7 @@ use super::multipliers::{Multiplier, Period};
 use super::recurrence::{Scale, candidates, closing, settled_after};
 use super::tape::{Step, Tape};
 use crate::dynamics::EngineError;
+use crate::dynamics::block::Block;
 use crate::dynamics::contact::Side;
 use crate::dynamics::system::{Contact, HybridSystem};
 
@@ -91,6 +92,17 @@ impl MotionKind {
     const QUASI_PERIODIC: &str = "quasi-periodic";
     const CHAOTIC: &str = "chaotic";
     const NOT_SETTLED: &str = "not settled";
+
+    /// All names without numbers, from rest to chaos.
+    pub const WORDS: [&str; 7] = [
+        Self::AT_REST,
+        Self::PERIODIC,
+        Self::STICKING,
+        Self::CHATTER,
+        Self::QUASI_PERIODIC,
+        Self::CHAOTIC,
+        Self::NOT_SETTLED,
+    ];
 
     /// Its name without numbers.
     #[must_use]
@@ -177,7 +189,7 @@ pub(in crate::dynamics) fn name(system: &HybridSystem, tape: &Tape, window: usiz
             let is_zero = value.abs() <= error && error <= SHARP;
             if value > ERRORS * error {
                 MotionKind::Chaotic
-            } else if is_zero && closing(&scale, ends) > STEADY {
+            } else if is_zero && closing(&scale, ends) > STEADY && shows_decay(system, tape, window) {
                 MotionKind::QuasiPeriodic
             } else {
                 MotionKind::NotSettled
@@ -186,6 +198,21 @@ pub(in crate::dynamics) fn name(system: &HybridSystem, tape: &Tape, window: usiz
         _ => MotionKind::NotSettled,
     };
     Ok(Motion { kind, multipliers: Vec::new(), residual: f64::NAN, exponent, settled_after: None })
+}
+
+/// True if the last `window` cycles could show that the motion is a transient: the slowest one that their contact states know gets as
+/// much smaller, from one half of them to the other, as [`STEADY`] asks for. Without an event all of it is a transient, but for what the
+/// drive repeats. Nothing dies away without any damping.
+fn shows_decay(system: &HybridSystem, tape: &Tape, window: usize) -> bool {
+    let steps = || tape.last(window).flat_map(|cycle| &cycle.steps);
+    let flows = steps().filter_map(|step| match step {
+        Step::Flow(flow, _) => Some(flow),
+        Step::Timed(_) | Step::Event(_) => None,
+    });
+    let rates = flows.flat_map(|flow| &flow.blocks[..flow.own]).map(Block::slowest).filter(|rate| *rate > 0.0);
+    let Some(slowest) = rates.reduce(f64::min) else { return true };
+    let has_events = steps().any(|step| matches!(step, Step::Event(_)));
+    has_events && libm::exp(-slowest * system.drive.period * (window / 2) as f64) < STEADY
 }
 
 /// The motion, if it comes again after so many cycles.

@@ -3,6 +3,7 @@
 //! A section has the id of its experiment, and what is marked on a page has the id of both: `#ch3-gap`, `#ch3-gap/maximum`,
 //! as the command names an entry.
 
+pub(super) use super::super::motions::PAGE as WHAT_MOVES;
 use super::super::view::ExperimentView;
 pub(super) use super::super::what_stands::PAGE as WHAT_STANDS;
 use super::Pages;
@@ -19,9 +20,8 @@ pub(super) struct Links {
 
 impl Links {
     pub(super) fn new(experiments: &[ExperimentView<'_>]) -> Self {
-        let own =
-            [(INDEX, "study"), (WHAT_STANDS, "what-stands"), (ASSUMPTIONS, "assumptions"), (TOLERANCES, "tolerances")];
-        let own = own.into_iter().map(|(page, id)| (page.to_owned(), id.to_owned()));
+        let own = [INDEX, WHAT_STANDS, WHAT_MOVES, ASSUMPTIONS, TOLERANCES];
+        let own = own.into_iter().map(|page| (page.to_owned(), section_of(page).to_owned()));
         let experiments = experiments.iter().map(|view| (view.page.clone(), view.experiment.id.to_string()));
         Self { pages: own.chain(experiments).collect() }
     }
@@ -36,6 +36,11 @@ impl Links {
         let section = self.pages.get(&page)?;
         Some(if mark.is_empty() { format!("#{section}") } else { format!("#{}", marked(section, mark)) })
     }
+}
+
+/// The id of a page of the study as a whole.
+pub(super) fn section_of(page: &'static str) -> &'static str {
+    if page == INDEX { "study" } else { page.trim_end_matches(".md") }
 }
 
 /// The id of what is marked on a page.

@@ -57,16 +57,15 @@ pub fn html(study: &Study, judgement: &Judgement) -> Html {
     }
     let assumptions = views::all_assumptions(study, judgement);
     let others = [
-        (
-            links::WHAT_STANDS,
-            "what-stands",
-            "What stands",
-            super::what_stands(&experiments, &study.sheet, &assumptions),
-        ),
-        (links::ASSUMPTIONS, "assumptions", "Assumptions", super::assumptions(&assumptions)),
-        (links::TOLERANCES, "tolerances", "Tolerances set by hand", tolerances::tolerances(&experiments)),
+        (links::WHAT_STANDS, "What stands", super::what_stands(&experiments, &study.sheet, &assumptions)),
+        (links::WHAT_MOVES, "What moves how", super::what_moves(&experiments)),
+        (links::ASSUMPTIONS, "Assumptions", super::assumptions(&assumptions)),
+        (links::TOLERANCES, "Tolerances set by hand", tolerances::tolerances(&experiments)),
     ];
-    sections.extend(others.map(|(page, id, title, text)| Section::new(id, title, render(&text, &here(page, id)))));
+    sections.extend(others.map(|(page, title, text)| {
+        let id = links::section_of(page);
+        Section::new(id, title, render(&text, &here(page, id)))
+    }));
     Html { text: shell::document(&sections), problems: figures.problems() }
 }
 

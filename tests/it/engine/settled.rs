@@ -74,8 +74,14 @@ fn measured(scene: &Scene, until: Until, average: u32) -> Evaluated {
     let bare = Scene { dampers: Vec::new(), ..scene.clone() };
     let subject = Subject { scene: scene.clone(), undamped: Some(bare), comparison: None, mode: 1 };
     let settings = Settings { skip: 25, average, until, round_period_to: None, ensemble: 8 };
-    let measures =
-        [Measure::VelocityRatio, Measure::FloorImpacts, Measure::Settled, Measure::AveragedCycles, Measure::Motion];
+    let measures = [
+        Measure::VelocityRatio,
+        Measure::FloorImpacts,
+        Measure::Settled,
+        Measure::AveragedCycles,
+        Measure::Motion,
+        Measure::SettledVelocityRatio,
+    ];
     let request = Request { measures: &measures, trace: None, energies: None, shape: None, rigour: Rigour::Result };
     evaluate(subject, SolverChoice::EventDriven, &settings, &request).expect("it runs")
 }
@@ -95,4 +101,22 @@ fn what_does_not_settle_is_averaged_as_if_it_had_not_been_asked_and_says_so() {
     let settled = measured(&under_impulses(3.5), Until::Settled, 1000);
     assert_eq!([value(&settled, 2), value(&settled, 3)], [1.0, 1.0]);
     assert!(settled.motion.expect("it was asked for").repeats() && !settled.chaotic);
+}
+
+/// The study's cycles against what they tend to: 25 + 20 are not enough here, 2000 + 2 are.
+#[test]
+fn the_settled_velocity_ratio_is_the_one_that_longer_and_longer_runs_tend_to() {
+    let ratio = |evaluated: &Evaluated, i: usize| evaluated.measured[i].value;
+    let scene = under_impulses(3.5);
+    let short = measured(&scene, Until::Cycles, 20);
+    let settled = ratio(&short, 5);
+    let bare = Scene { dampers: Vec::new(), ..scene.clone() };
+    let late = Options { skip: 2000, average: 2, ..Options::default() };
+    let long = [&bare, &scene].map(|scene| run(scene, &late).window().rms_velocity());
+    close("velocity ratio", settled, long[0] / long[1], 1e-11);
+    assert!((ratio(&short, 0) / settled - 1.0).abs() > 1e-4, "{} is settled already", ratio(&short, 0));
+    // Of what is settled, and of what never settles.
+    let at_rest = measured(&scene, Until::Settled, 1000);
+    close("of a settled run", ratio(&at_rest, 5), ratio(&at_rest, 0), 1e-11);
+    assert!(ratio(&measured(&under_impulses(0.5), Until::Cycles, 100), 5).is_nan());
 }

@@ -1,0 +1,138 @@
+//! What moves how in an experiment: the kinds of motion that its rows end in, and how far the averages of its runs are from those
+//! of the motion that each goes on to.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+
+use crate::dynamics::{MotionKind, Until};
+use crate::experiment::Experiment;
+use crate::measure::Measure;
+use crate::table::Table;
+use crate::text::number::compact;
+use crate::text::words::of_key;
+
+/// What a thousandth changes is read off a figure by nobody, and printed by the study with three digits.
+const OFF: f64 = 1e-3;
+
+/// The motions of an experiment.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Motions {
+    /// Rows by kind of motion, in its word.
+    pub kinds: BTreeMap<String, usize>,
+    /// Cycles left out of the averages.
+    pub skip: u32,
+    /// Cycles after which each row that comes again does so to within a millionth, in ascending order; none where runs end when they
+    /// have settled.
+    pub settled_after: Vec<f64>,
+    /// How the averages compare with the settled motion, where that was measured.
+    pub settling: Option<Settling>,
+}
+
+/// Averages of runs over the cycles given against those of the motion that each run goes on to.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Settling {
+    /// Cycles averaged.
+    pub average: u32,
+    /// Rows that settle.
+    pub rows: usize,
+    /// Those whose velocity ratio is off by more than [`Settling::limit`].
+    pub off: usize,
+    /// The middle one of all relative deviations.
+    pub median: f64,
+    /// The rows that are off most, the worst first.
+    pub worst: Vec<Deviation>,
+}
+
+/// A row that is not what it settles to.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Deviation {
+    /// Which row, by what is swept: `f′ = 2.5, h′ = 50`.
+    pub row: String,
+    /// Velocity ratio of the cycles given.
+    pub velocity_ratio: f64,
+    /// Of the settled motion.
+    pub settled: f64,
+}
+
+impl Deviation {
+    /// How far the run is off, relative to the settled motion.
+    #[must_use]
+    pub fn relative(&self) -> f64 {
+        self.velocity_ratio / self.settled - 1.0
+    }
+}
+
+impl Settling {
+    /// The relative deviation that counts as one.
+    #[must_use]
+    pub fn limit() -> f64 {
+        OFF
+    }
+
+    fn of(experiment: &Experiment, table: &Table) -> Option<Self> {
+        let column = |measure: Measure| table.floats(&of_key(&measure));
+        let settled = column(Measure::SettledVelocityRatio)?;
+        let here = column(Measure::VelocityRatio)?;
+        let rows = (0..table.rows()).filter(|&row| !settled[row].is_nan());
+        let mut all: Vec<Deviation> = rows
+            .map(|row| Deviation {
+                row: described(experiment, table, row),
+                velocity_ratio: here[row],
+                settled: settled[row],
+            })
+            .collect();
+        all.sort_by(|a, b| b.relative().abs().total_cmp(&a.relative().abs()));
+        let rows = all.len();
+        let median = all.get(rows / 2)?.relative().abs();
+        let off = all.iter().filter(|one| one.relative().abs() > OFF).count();
+        all.truncate(off.min(10));
+        Some(Self { average: experiment.settings.average, rows, off, median, worst: all })
+    }
+}
+
+impl Motions {
+    /// Of the rows without a moved assumption; `None` where the motion is not measured.
+    #[must_use]
+    pub fn of(experiment: &Experiment, table: &Table) -> Option<Self> {
+        let baseline = table.baseline();
+        let names = baseline.texts(&of_key(&Measure::Motion))?;
+        let mut kinds = BTreeMap::new();
+        for kind in names.iter().filter_map(|name| name.parse::<MotionKind>().ok()) {
+            *kinds.entry(kind.word().to_owned()).or_default() += 1;
+        }
+        let runs_on = experiment.settings.until == Until::Cycles;
+        let cells = baseline.floats(&of_key(&Measure::SettledAfter)).filter(|_| runs_on).unwrap_or_default();
+        let mut settled_after: Vec<f64> = cells.into_iter().filter(|cycles| !cycles.is_nan()).collect();
+        settled_after.sort_by(f64::total_cmp);
+        let settling = runs_on.then(|| Settling::of(experiment, &baseline)).flatten();
+        Some(Self { kinds, skip: experiment.settings.skip, settled_after, settling })
+    }
+
+    /// Rows that come again, but only after the cycles left out.
+    #[must_use]
+    pub fn late(&self) -> usize {
+        self.settled_after.iter().filter(|cycles| **cycles > f64::from(self.skip)).count()
+    }
+
+    /// All rows.
+    #[must_use]
+    pub fn rows(&self) -> usize {
+        self.kinds.values().sum()
+    }
+}
+
+/// A row by what is swept.
+fn described(experiment: &Experiment, table: &Table, row: usize) -> String {
+    let parts = experiment.swept.iter().filter_map(|parameter| {
+        let column = of_key(parameter);
+        let name = if parameter.symbol().is_empty() { column.replace('_', " ") } else { parameter.symbol().into() };
+        let value = match (table.floats(&column), table.texts(&column)) {
+            (Some(numbers), _) => compact(numbers[row], 4),
+            (None, Some(words)) => words[row].clone(),
+            _ => return None,
+        };
+        Some(format!("{name} = {value}"))
+    });
+    parts.collect::<Vec<_>>().join(", ")
+}
