@@ -24,6 +24,8 @@ pub(crate) struct State {
     pub(crate) particles: Vec<[f64; 2]>,
     /// Stiffness and compression of the face each particle presses into.
     pub(crate) compressions: Vec<[f64; 2]>,
+    /// The same of second faces.
+    pub(crate) across: Vec<[f64; 2]>,
 }
 
 /// What has passed since the window began.
@@ -67,6 +69,9 @@ pub(crate) fn energy(system: &HybridSystem, state: &State) -> f64 {
         system.particles.iter().zip(&state.particles).zip(&state.compressions)
     {
         energy += particle.mass * (0.5 * rate * rate + system.gravity * y) + 0.5 * stiffness * w * w;
+    }
+    for [stiffness, v] in &state.across {
+        energy += 0.5 * stiffness * v * v;
     }
     energy
 }
@@ -203,6 +208,10 @@ impl Audit {
         self.dissipated += weight * system.damping.form(&rate[..n], &rate[..n]);
         for (i, &j) in flow.modes.attached.iter().enumerate() {
             self.dissipated += weight * flow.modes.damping[j] * rate[n + i] * rate[n + i];
+        }
+        for across in flow.modes.across.iter().filter(|across| across.presses) {
+            let v = dot(&across.row, &rate);
+            self.dissipated += weight * across.damping * v * v;
         }
         let force = force.level + now.sine;
         self.force += weight * force;

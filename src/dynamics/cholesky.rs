@@ -4,6 +4,7 @@ use super::EngineError;
 use super::system::Matrix;
 
 /// A = L Lᵀ.
+#[derive(Clone)]
 pub(crate) struct Cholesky {
     order: usize,
     lower: Vec<f64>,

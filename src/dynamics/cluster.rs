@@ -24,7 +24,7 @@ const REACH: f64 = 0.03;
 /// N.
 const NODES: usize = 12;
 /// r t up to which the interpolation is exact to rounding: 2·0.35¹²/12! is 1.4e-14 of what turns; and less, as all nodes share it.
-const TURN: f64 = 0.6;
+pub(super) const TURN: f64 = 0.6;
 /// Moduli below this share of the largest entry are rounding.
 const NOTHING: f64 = 64.0 * f64::EPSILON;
 
@@ -146,6 +146,23 @@ fn near(a: C, b: C) -> bool {
     (a - b).norm_sqr() <= NEAR * NEAR * a.norm_sqr().max(b.norm_sqr())
 }
 
+/// The Chebyshev points of a segment.
+pub(super) fn nodes(centre: C, direction: C) -> Vec<C> {
+    let node =
+        |j: usize| centre + direction * libm::cos(std::f64::consts::PI * (2 * j + 1) as f64 / (2 * NODES) as f64);
+    (0..NODES).map(node).collect()
+}
+
+/// Lⱼ(T) times a matrix.
+pub(super) fn lagrange(t: &DMatrix<C>, nodes: &[C], j: usize, mut rows: DMatrix<C>) -> DMatrix<C> {
+    for k in (0..nodes.len()).filter(|&k| k != j) {
+        let mut factor = t.clone();
+        (0..t.nrows()).for_each(|i| factor[(i, i)] -= nodes[k]);
+        rows = product(&factor, &rows) / (nodes[j] - nodes[k]);
+    }
+    rows
+}
+
 /// Blocks as they are found, with their columns of V and rows of W.
 struct Parts {
     order: usize,
@@ -206,21 +223,15 @@ impl Parts {
         self.lasts = self.lasts.min(TURN / radius);
         // Along the axis that keeps the nodes of a pair from growing, or real.
         let direction = if on_axis { C::new(radius, 0.0) } else { C::new(0.0, radius) };
-        let node =
-            |j: usize| centre + direction * libm::cos(std::f64::consts::PI * (2 * j + 1) as f64 / (2 * NODES) as f64);
+        let nodes = nodes(centre, direction);
         let own = t.view((at.start, at.start), (count, count)).into_owned();
         let (columns, rows) = (v.columns(at.start, count), w.rows(at.start, count));
         for j in 0..NODES {
-            let mut rows = rows.into_owned();
-            for k in (0..NODES).filter(|&k| k != j) {
-                let mut factor = own.clone();
-                (0..count).for_each(|i| factor[(i, i)] -= node(k));
-                rows = product(&factor, &rows) / (node(j) - node(k));
-            }
+            let rows = lagrange(&own, &nodes, j, rows.into_owned());
             for i in 0..count {
                 let (column, row) =
                     (columns.column(i).iter().copied().collect(), rows.row(i).iter().copied().collect());
-                self.turning(node(j), if on_axis { 1.0 } else { 2.0 }, column, row);
+                self.turning(nodes[j], if on_axis { 1.0 } else { 2.0 }, column, row);
             }
         }
     }

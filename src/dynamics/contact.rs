@@ -5,6 +5,7 @@
 //! | flight | u > 0 and w < 0 | contact, or a bounce |
 //! | pressed into a resilient face | compressed (or, if it cannot pull, while it pushes), and less than the stop | flight, stop |
 //! | held by a rigid face or a stop | the face can push | flight, or pressed |
+//! | at both faces, which move by themselves | each face by its own guards, as above | the other face alone |
 //!
 //! An impact with restitution ε exchanges the impulse P = −(1 + ε) u′/(1/mp + φ·M⁻¹φ).
 
@@ -24,7 +25,15 @@ pub(crate) enum Crossing {
     /// A face lets go.
     Release,
     /// The face across, which moves by itself, reaches a particle that is still at this one.
-    Squeezed,
+    Meeting,
+    /// At both faces: the one that the state does not refer to lets go.
+    ReleaseAcross,
+    /// The same: it reaches its stop.
+    ToStopAcross,
+    /// The same: released, it is back at its place.
+    RecoveredAcross,
+    /// The same: released, it pushes again.
+    AgainAcross,
     /// A compressed face reaches its stop.
     ToStop,
     /// A released face is back at its place.
@@ -44,20 +53,121 @@ pub(crate) struct Relative {
     pub(crate) rate: f64,
 }
 
+const fn set(contacts: &[Contact]) -> u32 {
+    let (mut set, mut i) = (0, 0);
+    while i < contacts.len() {
+        set |= 1 << contacts[i] as u32;
+        i += 1;
+    }
+    set
+}
+
+/// No face moves the particle.
+const FREE: u32 = {
+    use Contact::{BothReleased, CeilingReleased, Flight, FloorReleased};
+    set(&[Flight, FloorReleased, CeilingReleased, BothReleased])
+};
+/// The state refers to the ceiling.
+const AT_CEILING: u32 = {
+    use Contact::{
+        Ceiling, CeilingFloorReleased, CeilingReleased, CeilingStop, HeldByCeiling, HeldByCeilingFloorReleased,
+    };
+    set(&[Ceiling, CeilingStop, CeilingReleased, CeilingFloorReleased, HeldByCeiling, HeldByCeilingFloorReleased])
+};
+/// Pressed into the face that the state refers to, or held by it if that is rigid.
+const PRESSED: u32 = {
+    use Contact::{Both, Ceiling, CeilingFloorReleased, Floor, FloorCeilingReleased};
+    set(&[Floor, Ceiling, Both, FloorCeilingReleased, CeilingFloorReleased])
+};
+
+/// What one face does to a particle.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Hold {
+    /// It does not touch it.
+    Away,
+    /// Spring and dashpot push.
+    Pressed,
+    /// Rigid, or on its stop.
+    Held,
+    /// It cannot pull, and is still compressed.
+    Released,
+}
+
 impl Contact {
-    /// The face in contact, if any, and whether it holds the particle rigidly.
+    /// The face that the particle moves with: the one that holds it, else the one that it is pressed into, the floor first.
+    #[inline]
     pub(crate) fn face(self, particle: &Particle) -> Option<&Face> {
-        match self {
-            Self::Floor | Self::FloorStop => Some(&particle.floor),
-            Self::Ceiling | Self::CeilingStop => particle.ceiling.as_ref(),
-            Self::Flight | Self::FloorReleased | Self::CeilingReleased => None,
+        if self.is_in(FREE) {
+            None
+        } else if self.is_in(AT_CEILING) {
+            particle.ceiling.as_ref()
+        } else {
+            Some(&particle.floor)
         }
     }
 
     /// Pressed into a resilient face.
+    #[inline]
     pub(crate) fn presses(self, particle: &Particle) -> bool {
-        matches!(self, Self::Floor | Self::Ceiling)
-            && matches!(self.face(particle).map(|face| face.law), Some(Law::Resilient { .. }))
+        self.is_in(PRESSED) && matches!(self.face(particle).map(|face| face.law), Some(Law::Resilient { .. }))
+    }
+
+    /// One of a set, by its place in the list of contacts.
+    #[inline]
+    fn is_in(self, set: u32) -> bool {
+        set >> (self as u32) & 1 == 1
+    }
+
+    /// At both faces.
+    pub(crate) fn is_between(self) -> bool {
+        self >= Self::Both
+    }
+
+    /// What the face across from the one that the state refers to does.
+    pub(crate) fn across(self) -> Hold {
+        match self {
+            Self::Both | Self::HeldByFloor | Self::HeldByCeiling => Hold::Pressed,
+            _ if self.is_between() => Hold::Released,
+            _ => Hold::Away,
+        }
+    }
+
+    /// What the face that the state refers to does; a rigid one that touches holds.
+    fn own(self, particle: &Particle) -> Hold {
+        match self {
+            Self::Flight => Hold::Away,
+            Self::FloorReleased | Self::CeilingReleased | Self::BothReleased => Hold::Released,
+            _ if self.presses(particle) => Hold::Pressed,
+            _ => Hold::Held,
+        }
+    }
+
+    /// What the face on one side does.
+    pub(crate) fn at(self, side: Side, particle: &Particle) -> Hold {
+        if self.side() == side { self.own(particle) } else { self.across() }
+    }
+
+    /// The contact of this floor and this ceiling; `None` for a particle that both hold.
+    pub(crate) fn of(floor: Hold, ceiling: Hold, particle: &Particle) -> Option<Self> {
+        let alone = |hold: Hold, side: Side| match hold {
+            Hold::Away => Self::Flight,
+            Hold::Held if side.face(particle).law.stop().is_some() => side.stopped(),
+            Hold::Pressed | Hold::Held => side.pressed(),
+            Hold::Released => side.released(),
+        };
+        Some(match (floor, ceiling) {
+            (floor, Hold::Away) => alone(floor, Side::Floor),
+            (Hold::Away, ceiling) => alone(ceiling, Side::Ceiling),
+            (Hold::Pressed, Hold::Pressed) => Self::Both,
+            (Hold::Pressed, Hold::Released) => Self::FloorCeilingReleased,
+            (Hold::Released, Hold::Pressed) => Self::CeilingFloorReleased,
+            (Hold::Released, Hold::Released) => Self::BothReleased,
+            (Hold::Held, Hold::Pressed) => Self::HeldByFloor,
+            (Hold::Held, Hold::Released) => Self::HeldByFloorCeilingReleased,
+            (Hold::Pressed, Hold::Held) => Self::HeldByCeiling,
+            (Hold::Released, Hold::Held) => Self::HeldByCeilingFloorReleased,
+            (Hold::Held, Hold::Held) => return None,
+        })
     }
 
     /// Held: moves as one with the face.
@@ -143,10 +253,7 @@ impl Side {
 impl Contact {
     /// The side that a contact refers to; flight refers to the floor.
     pub(crate) fn side(self) -> Side {
-        match self {
-            Self::Flight | Self::Floor | Self::FloorStop | Self::FloorReleased => Side::Floor,
-            Self::Ceiling | Self::CeilingStop | Self::CeilingReleased => Side::Ceiling,
-        }
+        if self.is_in(AT_CEILING) { Side::Ceiling } else { Side::Floor }
     }
 }
 
@@ -155,6 +262,11 @@ impl Particle {
     pub(crate) fn is_enclosed(&self) -> bool {
         let rigid = |face: &Face| matches!(face.law, Law::Rigid { .. });
         self.has_no_gap() && rigid(&self.floor) && self.ceiling.as_ref().is_some_and(rigid)
+    }
+
+    /// Floor and ceiling do not move as one.
+    pub(crate) fn has_walls(&self) -> bool {
+        self.ceiling.as_ref().is_some_and(|ceiling| ceiling.row != self.floor.row)
     }
 
     /// Between faces that move as one, without a gap: what leaves one of them is at the other.

@@ -5,20 +5,85 @@
 //!
 //! q″ = M⁻¹(−K q − C q′ + b F − Σ φ N),   w″ = N/mp − g − φ·q″,   N = −k w − c w′.
 //!
-//! Its matrix is split into 2 × 2 blocks ([`super::modes`]); gap, forcing and time do not enter.
+//! A particle between two faces that move by themselves feels both: a second spring and dashpot along v = row·p + constant, the
+//! distance to the second face ([`Across`]).
+//!
+//! Its matrix is split into 2 × 2 blocks ([`super::modes`]); forcing and time do not enter, the gap only in the constant of v.
 
 use super::EngineError;
 use super::cholesky::Cholesky;
-use super::load::Load;
+use super::contact::{Hold, Side};
+use super::load::{Load, Steady};
 use super::spectral::Spectral;
-use super::system::{Contact, Face, HybridSystem, Law, Matrix, dot};
+use super::system::{Contact, Face, HybridSystem, Law, Matrix, Particle, dot};
+
+/// The second face of a particle that is at both: v is its distance from the particle, negative where it is compressed.
+#[derive(Clone)]
+pub(crate) struct Across {
+    pub(crate) particle: usize,
+    /// Its side.
+    pub(crate) side: Side,
+    /// It pushes; else it was let go.
+    pub(crate) presses: bool,
+    pub(crate) stiffness: f64,
+    pub(crate) damping: f64,
+    /// v = row·p + constant.
+    pub(crate) row: Vec<f64>,
+    pub(crate) constant: f64,
+}
+
+impl Across {
+    /// The second faces of a contact state; `order` coordinates, of which those behind the structure's belong to `attached`.
+    fn all(system: &HybridSystem, contacts: &[Contact], damping: &[f64], attached: &[usize]) -> Vec<Self> {
+        let between = (0..contacts.len()).filter(|&j| contacts[j].is_between());
+        let of = |(j, [damping, constant]): (usize, &[f64; 2])| {
+            let (particle, side) = (&system.particles[j], contacts[j].side().opposite());
+            let Law::Resilient { stiffness, .. } = side.face(particle).law else { return None };
+            Some(Self {
+                particle: j,
+                side,
+                presses: contacts[j].across() == Hold::Pressed,
+                stiffness,
+                damping: *damping,
+                row: way_across(particle, contacts[j], attached.iter().position(|&a| a == j), attached.len()),
+                constant: *constant,
+            })
+        };
+        between.zip(damping[contacts.len()..].as_chunks().0).filter_map(of).collect()
+    }
+
+    /// Its force on the particle, upwards, by the coordinates and by their rates: −away (k v + c v′).
+    fn force(&self) -> [f64; 2] {
+        [self.stiffness, self.damping].map(|size| -self.side.away() * size)
+    }
+}
+
+/// How the way from a particle to the face across from its own changes with the coordinates.
+pub(crate) fn way_across(particle: &Particle, contact: Contact, slot: Option<usize>, slots: usize) -> Vec<f64> {
+    let ceiling = particle.ceiling.as_ref().unwrap_or(&particle.floor);
+    let mut row: Vec<f64> = ceiling.row.iter().zip(&particle.floor.row).map(|(above, below)| above - below).collect();
+    let structure = row.len();
+    row.resize(structure + slots, 0.0);
+    if let Some(slot) = slot {
+        row[structure + slot] = -contact.side().away();
+    }
+    row
+}
+
+/// That way at rest: the gap, and how deep the particle is held in its own face.
+pub(crate) fn constant_across(particle: &Particle, contact: Contact) -> f64 {
+    let stop = contact.side().face(particle).law.stop().filter(|_| contact.holds(particle));
+    particle.gap + stop.map_or(0.0, |stop| stop.length)
+}
 
 /// The modes of one contact state.
 pub(crate) struct Modes {
     /// Contact of each particle.
     pub(crate) contacts: Vec<Contact>,
-    /// Contact damping in force, per particle, N s/m.
+    /// Contact damping in force as [`dampings`] gives it, N s/m.
     pub(crate) damping: Vec<f64>,
+    /// Second faces of the particles that are at both.
+    pub(crate) across: Vec<Across>,
     /// Coordinates: those of the structure, then one per resilient contact.
     pub(crate) order: usize,
     /// Which particle the coordinate `structure + i` belongs to.
@@ -41,13 +106,14 @@ impl Modes {
         let mass = carried_mass(system, contacts);
         let carried = Cholesky::new(&mass)?;
         let face_of = |j: usize| contacts[j].face(&system.particles[j]).expect("a pressing particle has a face");
-        let accelerations = accelerations(system, &carried, &attached, &face_of, damping);
+        let across = Across::all(system, contacts, damping, &attached);
+        let accelerations = accelerations(system, contacts, &carried, &attached, &face_of, damping, &across);
         let spectral = super::modes::split(&accelerations, &mass_of(system, mass, &attached, &face_of))?;
-        let (size, width) = (2 * (n + attached.len()), spectral.width());
-        let columns = (0..size * width).map(|i| spectral.from_blocks[(i % size) * width + i / size]).collect();
+        let columns = by_columns(&spectral, 2 * (n + attached.len()));
         let mut modes = Self {
             contacts: contacts.to_vec(),
             damping: damping.to_vec(),
+            across,
             order: n + attached.len(),
             attached,
             accelerations,
@@ -59,6 +125,25 @@ impl Modes {
         let falls = modes.falls(system);
         modes.gravity = Load::new(&falls, &modes.spectral, &modes.accelerations);
         Ok(modes)
+    }
+
+    /// The same with blocks that take in a harmonic drive, where that is in resonance with some of them; and what is steady then.
+    pub(crate) fn resonant(&self, system: &HybridSystem, push: &[f64], omega: f64) -> Option<(Self, Steady)> {
+        let (spectral, steady) = super::resonance::split(&self.spectral, self.order, push, omega)?;
+        let gravity = Load::new(&self.falls(system), &spectral, &self.accelerations);
+        let modes = Self {
+            contacts: self.contacts.clone(),
+            damping: self.damping.clone(),
+            across: self.across.clone(),
+            order: self.order,
+            attached: self.attached.clone(),
+            accelerations: self.accelerations.clone(),
+            columns: by_columns(&spectral, 2 * self.order),
+            spectral,
+            gravity,
+            carried: self.carried.clone(),
+        };
+        Some((modes, steady))
     }
 
     /// p″ under a force of this row on the structure, all springs at rest.
@@ -80,8 +165,18 @@ impl Modes {
                 weight.iter_mut().zip(&face.row).for_each(|(sum, phi)| *sum -= particle.mass * system.gravity * phi);
             }
         }
+        for across in self.across.iter().filter(|across| across.presses) {
+            let push = across.force()[0] * across.constant;
+            let row = pushed(system, &self.contacts, across);
+            weight.iter_mut().zip(&row).for_each(|(sum, phi)| *sum += push * phi);
+        }
         let mut falls = self.answer(system, &weight);
         falls[n..].iter_mut().for_each(|fall| *fall -= system.gravity);
+        for across in self.across.iter().filter(|across| across.presses) {
+            if let Some(slot) = self.attached.iter().position(|&j| j == across.particle) {
+                falls[n + slot] += across.force()[0] * across.constant / system.particles[across.particle].mass;
+            }
+        }
         falls
     }
 
@@ -93,19 +188,52 @@ impl Modes {
 
 /// Damping of the face that particle j's contact refers to, N s/m; half cycles put another one in its place.
 pub(crate) fn contact_damping(system: &HybridSystem, contacts: &[Contact], j: usize, equivalent: Option<f64>) -> f64 {
-    match contacts[j].side().face(&system.particles[j]).law {
+    face_damping(contacts[j].side().face(&system.particles[j]).law, equivalent)
+}
+
+/// The way back from the blocks to so many coordinates and rates, column by column.
+fn by_columns(spectral: &Spectral, size: usize) -> Vec<f64> {
+    let width = spectral.width();
+    (0..size * width).map(|i| spectral.from_blocks[(i % size) * width + i / size]).collect()
+}
+
+/// The damping of the face that each particle's contact refers to; then, of those at both faces, that of the second one and the
+/// constant of its distance, in which alone the gap enters.
+pub(crate) fn dampings(system: &HybridSystem, contacts: &[Contact], equivalent: Option<f64>, into: &mut Vec<f64>) {
+    into.clear();
+    into.extend((0..contacts.len()).map(|j| contact_damping(system, contacts, j, equivalent)));
+    for (contact, particle) in contacts.iter().zip(&system.particles).filter(|(contact, _)| contact.is_between()) {
+        let law = contact.side().opposite().face(particle).law;
+        into.extend([face_damping(law, equivalent), constant_across(particle, *contact)]);
+    }
+}
+
+fn face_damping(law: Law, equivalent: Option<f64>) -> f64 {
+    match law {
         Law::Resilient { damping, .. } => equivalent.unwrap_or(damping),
         Law::Rigid { .. } => 0.0,
     }
 }
 
+/// Where a second face's force on the particle acts on the structure: at the face itself, and at the one that holds the particle.
+fn pushed(system: &HybridSystem, contacts: &[Contact], across: &Across) -> Vec<f64> {
+    let (particle, contact) = (&system.particles[across.particle], contacts[across.particle]);
+    let mut row: Vec<f64> = across.side.face(particle).row.iter().map(|phi| -phi).collect();
+    if let (true, Some(face)) = (contact.holds(particle), contact.face(particle)) {
+        row.iter_mut().zip(&face.row).for_each(|(sum, phi)| *sum += phi);
+    }
+    row
+}
+
 /// Accelerations of p by (p, p′): order rows of 2·order numbers.
 fn accelerations<'a>(
     system: &HybridSystem,
+    contacts: &[Contact],
     solve: &Cholesky,
     attached: &[usize],
     face_of: &dyn Fn(usize) -> &'a Face,
     damping: &[f64],
+    across: &[Across],
 ) -> Vec<Vec<f64>> {
     let n = system.mass.order;
     let order = n + attached.len();
@@ -129,6 +257,14 @@ fn accelerations<'a>(
             a[row][order + i] += damping[particle] * push[row];
         }
     }
+    for across in across.iter().filter(|across| across.presses) {
+        let push = solve.solve(&pushed(system, contacts, across));
+        for (half, force) in across.force().into_iter().enumerate() {
+            for (column, entry) in across.row.iter().enumerate() {
+                (0..n).for_each(|row| a[row][half * order + column] += push[row] * force * entry);
+            }
+        }
+    }
     for (slot, &particle) in attached.iter().enumerate() {
         let face = face_of(particle);
         let Law::Resilient { stiffness, .. } = face.law else { continue };
@@ -139,6 +275,13 @@ fn accelerations<'a>(
         }
         a[i][i] -= stiffness / system.particles[particle].mass;
         a[i][order + i] -= damping[particle] / system.particles[particle].mass;
+        for across in across.iter().filter(|across| across.presses && across.particle == particle) {
+            for (half, force) in across.force().into_iter().enumerate() {
+                for (column, entry) in across.row.iter().enumerate() {
+                    a[i][half * order + column] += force * entry / system.particles[particle].mass;
+                }
+            }
+        }
     }
     a
 }

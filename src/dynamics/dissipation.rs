@@ -116,5 +116,9 @@ fn against(system: &HybridSystem, modes: &Modes, rate: &[f64]) -> Vec<f64> {
     let n = system.mass.order;
     let mut force = system.damping.times(&rate[..n]);
     force.extend(modes.attached.iter().zip(&rate[n..]).map(|(&j, rate)| modes.damping[j] * rate));
+    for across in modes.across.iter().filter(|across| across.presses) {
+        let push = across.damping * dot(&across.row, rate);
+        force.iter_mut().zip(&across.row).for_each(|(force, by)| *force += push * by);
+    }
     force
 }

@@ -27,9 +27,9 @@ pub enum EngineError {
         /// rad/s.
         omega: f64,
     },
-    /// Floor and ceiling at once.
+    /// Held by floor and ceiling at once.
     #[error(
-        "floor and ceiling meet at particle {particle} in cycle {cycle} at {time} s: there is no contact state for a particle between both; a wider gap or stiffer walls would keep them apart"
+        "floor and ceiling, both rigid or on their stops, meet at particle {particle} in cycle {cycle} at {time} s: a wider gap or stiffer walls would keep them apart, and a resilient face has an answer"
     )]
     Squeezed {
         /// Which.

@@ -12,7 +12,7 @@ use super::block::Block;
 use super::contact_state::Modes;
 use super::dissipation::Dissipation;
 use super::gains::Closed;
-use super::load::{Load, Steady};
+use super::load::{self, Load, Steady};
 use super::parabola::Parabola;
 use super::series::Series;
 use super::signals::{Row, Rows, Signals};
@@ -32,6 +32,8 @@ pub(crate) struct Flow {
     pub(crate) own: usize,
     /// Some block has an eigenvalue zero, so that a constant load sets it moving.
     drifts: bool,
+    /// Some blocks take in the harmonic drive, whose phase they start with.
+    is_resonant: bool,
     /// Coordinates: those of the structure, then one per resilient contact.
     pub(crate) order: usize,
     /// Answer to a unit force at the forcing point.
@@ -54,16 +56,18 @@ impl Flow {
     /// The flow of a contact state whose modes are known, under the drive of `system`.
     pub(crate) fn driven(system: &HybridSystem, modes: Rc<Modes>) -> Result<Self, EngineError> {
         let push = modes.answer(system, &system.force_row);
+        let (modes, harmonic) = match system.drive.harmonic {
+            None => (modes, None),
+            Some(drive) => {
+                let (modes, steady) = answered(system, modes, &push, drive.angular_frequency)?;
+                (modes, Some(steady))
+            }
+        };
         let force = Load::new(&push, &modes.spectral, &modes.accelerations);
         let mut blocks = modes.spectral.blocks.clone();
         let own = blocks.len();
-        let harmonic = match system.drive.harmonic {
-            None => None,
-            Some(drive) => {
-                blocks.push(Block::harmonic(drive.angular_frequency));
-                Some(Steady::new(drive.angular_frequency, &push, &modes.accelerations, modes.order)?)
-            }
-        };
+        blocks.extend(harmonic.as_ref().map(|steady| Block::harmonic(steady.omega)));
+        let is_resonant = modes.spectral.to_blocks.len() > 2 * modes.order * modes.spectral.width();
         if !(system.drive.period.is_finite() && blocks.iter().all(Block::is_finite)) {
             return Err(EngineError::RateNotFinite);
         }
@@ -71,6 +75,7 @@ impl Flow {
             bank: Bank::new(&blocks),
             series: Series::new(&blocks),
             drifts: modes.spectral.drifts(),
+            is_resonant,
             blocks,
             own,
             order: modes.order,
@@ -83,7 +88,9 @@ impl Flow {
         };
         flow.rows = Rows::new(system, &flow.modes, &flow.blocks, |row| flow.row(row));
         let omega = flow.harmonic.as_ref().map(|steady| steady.omega);
-        flow.closed = Closed::new(&flow.blocks, &flow.modes.spectral.matrices, omega);
+        if !is_resonant {
+            flow.closed = Closed::new(&flow.blocks, &flow.modes.spectral.matrices, omega);
+        }
         Ok(flow)
     }
 
@@ -153,6 +160,19 @@ impl Flow {
         }
         if self.harmonic.is_some() {
             c[size..size + 2].copy_from_slice(&[drive.cosine, drive.sine]);
+            if self.is_resonant {
+                self.enter_drive(drive, c);
+            }
+        }
+    }
+
+    /// What the phase of the drive is to the blocks that are in resonance with it.
+    #[cold]
+    fn enter_drive(&self, drive: DrivePhase, c: &mut [f64]) {
+        let size = self.modes.spectral.width();
+        let rows = self.modes.spectral.to_blocks[2 * self.order * size..].chunks_exact(size);
+        for (row, phase) in rows.zip([drive.cosine, drive.sine]) {
+            c.iter_mut().zip(row).for_each(|(c, entry)| *c += entry * phase);
         }
     }
 
@@ -245,6 +265,24 @@ impl Flow {
     pub(crate) fn natural_frequencies(&self) -> impl Iterator<Item = f64> {
         self.blocks[..self.own].iter().filter(|block| block.oscillates()).map(|block| block.determinant.sqrt())
     }
+}
+
+/// The modes and the steady answer of a contact state under a harmonic force of this ω, by which p″ = `push` sin ωt.
+fn answered(
+    system: &HybridSystem,
+    modes: Rc<Modes>,
+    push: &[f64],
+    omega: f64,
+) -> Result<(Rc<Modes>, Steady), EngineError> {
+    let steady = |largest: f64| Steady::new(omega, push, &modes.accelerations, modes.order, largest);
+    if let Some(steady) = steady(load::RESONANCE) {
+        return Ok((modes, steady));
+    }
+    if let Some((modes, steady)) = modes.resonant(system, push, omega) {
+        return Ok((Rc::new(modes), steady));
+    }
+    let steady = steady(load::LARGEST).ok_or(EngineError::UndampedResonance { omega })?;
+    Ok((modes, steady))
 }
 
 /// Phase of the harmonic drive: F cos ω t and F sin ω t.

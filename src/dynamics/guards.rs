@@ -6,13 +6,16 @@
 //! | pressed | compression (or the push, if the face cannot pull), distance to the stop |
 //! | held | push per mass: ±(φ·q″ + g) − kδ/mp |
 //! | released, still compressed | compression, minus the push that would come back |
+//!
+//! Where floor and ceiling do not move as one, the face across has guards too: the way to it, or those of a face that touches.
 
 use super::block::Phase;
-use super::contact::{Crossing, Relative, Side};
+use super::contact::{Crossing, Hold, Relative, Side};
+use super::contact_state::constant_across;
 use super::flow::Flow;
 use super::parabola::Parabola;
 use super::search::{Guard, Search};
-use super::signals::Signals;
+use super::signals::{AcrossRows, Signals};
 use super::system::{Contact, HybridSystem, Law, Particle, dot};
 use super::window::Start;
 
@@ -25,8 +28,18 @@ pub(crate) struct Contacts<'a> {
     pub(crate) damping: &'a [f64],
     /// Let go smoothly: the first derivative that is not zero is of higher order.
     pub(crate) smooth: &'a [bool],
+    /// What has just happened at the face across from that of a particle.
+    pub(crate) slipped: Option<Slipped>,
     pub(crate) q: &'a [f64],
     pub(crate) rate: &'a [f64],
+}
+
+/// The face across has just let a particle go, or pushes it again, where its force or their relative speed is zero.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Slipped {
+    pub(crate) particle: usize,
+    /// The first derivative of their distance that is not zero, where that is zero itself.
+    pub(crate) order: usize,
 }
 
 /// Sets the guards of every particle; remembers the path of those in flight.
@@ -38,14 +51,14 @@ pub(crate) fn set(state: Contacts<'_>, flow: &Flow, signals: &Signals, search: &
         let guards = &mut search.guards;
         match contact {
             Contact::Flight => paths[j] = in_flight(state, j, particle, flow, signals, guards),
-            Contact::FloorReleased | Contact::CeilingReleased => {
+            Contact::FloorReleased | Contact::CeilingReleased | Contact::BothReleased => {
                 paths[j] = released(state, j, particle, flow, signals, guards);
             }
             _ if contact.presses(particle) => pressed(state, j, particle, flow, signals, guards),
             _ => held(state, j, particle, flow, signals, guards),
         }
-        if let Some(signal) = flow.rows.guards[j].across {
-            across(j, particle, signal, signals, &mut search.guards);
+        if let Some(rows) = flow.rows.guards[j].across {
+            across(state, j, particle, flow, signals, rows, &mut search.guards);
         }
     }
 }
@@ -317,19 +330,104 @@ fn pressed(
     }
 }
 
-/// The way to the face across, which moves by itself.
+/// The face across, which moves by itself: the way to it, or what it does to a particle that is at both.
 #[cold]
-fn across(j: usize, particle: &Particle, signal: usize, signals: &Signals, guards: &mut Vec<Guard>) {
-    let (_, rest) = signals.of(signal);
-    guards.push(Guard {
+fn across(
+    state: Contacts<'_>,
+    j: usize,
+    particle: &Particle,
+    flow: &Flow,
+    signals: &Signals,
+    rows: AcrossRows,
+    guards: &mut Vec<Guard>,
+) {
+    let contact = state.contacts[j];
+    let side = contact.side().opposite();
+    let (phases, rest) = signals.of(rows.way);
+    // The distance v to the face, as parabola + sign × signal.
+    let (way, sign, now) = if contact.face(particle).is_some() {
+        let way = Parabola { p0: rest.p0 + constant_across(particle, contact), ..rest };
+        let rate = way.p1 + sum(phases, |phase| phase.rate);
+        (way, 1.0, Relative { gap: way.p0 + sum(phases, |phase| phase.value), rate })
+    } else {
+        let here = seen_from(side, particle, state.particles[j], state.q, state.rate);
+        let away = side.away();
+        let path = flight_path(flow, rest, phases, here, state.system.gravity);
+        (path.times(away), -away, Relative { gap: away * here.gap, rate: away * here.rate })
+    };
+    // What it is the difference of, and the way in the rounding of an instant.
+    let places = magnitude(&particle.floor.row, state.q) + magnitude(&side.face(particle).row, state.q);
+    let size = 4.0 * (particle.gap + places + now.rate.abs() * state.system.drive.period);
+    let slipped = state.slipped.filter(|slipped| slipped.particle == j);
+    let apart = || match slipped {
+        Some(Slipped { order, .. }) => Start::Touching { order, slope: 0.0 },
+        None => start(now.gap, now.rate, false, phases, size),
+    };
+    let guard = |crossing, parabola, sign, start| Guard {
         particle: j,
-        crossing: Crossing::Squeezed,
-        signal,
-        sign: 1.0,
-        parabola: Parabola { p0: rest.p0 + particle.gap, ..rest },
-        start: Start::Apart,
+        crossing,
+        signal: rows.way,
+        sign,
+        parabola,
+        start,
         distance: true,
-    });
+    };
+    let Law::Resilient { stiffness, no_tension, stop, .. } = side.face(particle).law else {
+        guards.push(guard(Crossing::Meeting, way, sign, apart()));
+        return;
+    };
+    let damping = flow.modes.across.iter().find(|across| across.particle == j).map_or(0.0, |across| across.damping);
+    // k v + c v′, zero where the push is: its sign folded in by `pushes`.
+    let force = |crossing, pushes: f64| {
+        let (phases, _) = signals.of(rows.force);
+        Guard {
+            particle: j,
+            crossing,
+            signal: rows.force,
+            sign: -pushes * sign,
+            parabola: way.spring_and_dashpot(stiffness, damping).times(-pushes),
+            start: match force_start(now, stiffness, damping, slipped.is_some(), phases) {
+                Start::Apart
+                    if (stiffness * now.gap + damping * now.rate).abs() < 4.0 * f64::EPSILON * stiffness * size =>
+                {
+                    touching_once(true)
+                }
+                start => start,
+            },
+            distance: false,
+        }
+    };
+    match contact.across() {
+        Hold::Away | Hold::Held => {
+            guards.push(guard(Crossing::Meeting, way, sign, apart()));
+        }
+        Hold::Pressed => {
+            if no_tension {
+                guards.push(force(Crossing::ReleaseAcross, 1.0));
+            } else {
+                let begin = start(-now.gap, -now.rate, false, phases, size);
+                guards.push(guard(Crossing::ReleaseAcross, way.negative(), -sign, begin));
+            }
+            if let Some(stop) = stop {
+                let left = Parabola { p0: way.p0 + stop.length, ..way };
+                let begin = start(now.gap + stop.length, now.rate, false, phases, size + stop.length);
+                guards.push(guard(Crossing::ToStopAcross, left, sign, begin));
+            }
+        }
+        Hold::Released => {
+            guards.push(guard(Crossing::RecoveredAcross, way.negative(), -sign, Start::Apart));
+            guards.push(force(Crossing::AgainAcross, -1.0));
+        }
+    }
+}
+
+/// The state of a particle that refers to the other face, referred to the one on this side.
+pub(crate) fn seen_from(side: Side, particle: &Particle, here: Relative, q: &[f64], q_rate: &[f64]) -> Relative {
+    let Some(ceiling) = particle.ceiling.as_ref() else { return here };
+    let shift = |x: &[f64]| dot(&ceiling.row, x) - dot(&particle.floor.row, x);
+    // Upwards the ceiling lies by gap + shift above the floor.
+    let away = side.away();
+    Relative { gap: here.gap + away * (particle.gap + shift(q)), rate: here.rate + away * shift(q_rate) }
 }
 
 fn held(state: Contacts<'_>, j: usize, particle: &Particle, flow: &Flow, signals: &Signals, guards: &mut Vec<Guard>) {
@@ -338,13 +436,21 @@ fn held(state: Contacts<'_>, j: usize, particle: &Particle, flow: &Flow, signals
     }
     let side = state.contacts[j].side();
     let signal = flow.rows.guards[j].first;
-    let offset = signals.of(signal).1.p0 + state.system.gravity - side.away() * spring_on_stop(particle, side);
+    let rest = signals.of(signal).1;
+    let offset = rest.p0 + state.system.gravity - side.away() * spring_on_stop(particle, side);
+    let mut parabola = Parabola { p0: side.away() * offset, p1: 0.0, p2: 0.0 };
+    if let Some(across) = flow.modes.across.iter().find(|across| across.particle == j && across.presses) {
+        // What the face across pushes.
+        let push = Parabola { p0: across.constant * across.stiffness, ..Parabola::default() };
+        let moving = Parabola { p0: 0.0, ..rest };
+        parabola = parabola.plus(moving.times(side.away())).plus(push.times(-1.0 / particle.mass));
+    }
     guards.push(Guard {
         particle: j,
         crossing: Crossing::Release,
         signal,
         sign: side.away(),
-        parabola: Parabola { p0: side.away() * offset, p1: 0.0, p2: 0.0 },
+        parabola,
         start: touching_once(state.smooth[j]),
         distance: false,
     });
@@ -421,6 +527,12 @@ impl Grip {
             growth: side.away() * growth,
             noise: 64.0 * f64::EPSILON * size,
         }
+    }
+
+    /// With what the other face pushes per mass, and how fast that grows.
+    pub(crate) fn against(self, [push, growth]: [f64; 2]) -> Self {
+        let noise = self.noise + 64.0 * f64::EPSILON * push.abs();
+        Self { push: self.push + push, growth: self.growth + growth, noise }
     }
 
     /// Whether it holds: where the push is nothing but rounding, by what it becomes.

@@ -3,7 +3,6 @@
 
 use nalgebra::DMatrix;
 
-use super::error::EngineError;
 use super::spectral::Spectral;
 
 /// Answer of a contact state to a constant load: p = rest + rest_rate·t, p′ = rest_rate, and slope·t + bend·t² in the
@@ -63,12 +62,20 @@ pub(crate) struct Steady {
     pub(crate) sine: Vec<f64>,
 }
 
-/// Steady amplitudes above this, in units of F/(m ω²), would cost more digits than they may.
-const LARGEST_RESONANCE: f64 = 1e8;
+/// Steady amplitudes above this, in units of F/(m ω²), would cost more digits than they may: those of resonance, and others.
+pub(crate) const RESONANCE: f64 = 1e4;
+pub(crate) const LARGEST: f64 = 1e8;
 
 impl Steady {
-    /// (−ω² + stiffness) cosine + ω damping sine = 0, … : the complex amplitude as a real system of twice the order.
-    pub(crate) fn new(omega: f64, push: &[f64], accelerations: &[Vec<f64>], order: usize) -> Result<Self, EngineError> {
+    /// (−ω² + stiffness) cosine + ω damping sine = 0, … : the complex amplitude as a real system of twice the order. `None` above
+    /// `largest` times what the force does in a cycle: free motion would take that off again, with its digits.
+    pub(crate) fn new(
+        omega: f64,
+        push: &[f64],
+        accelerations: &[Vec<f64>],
+        order: usize,
+        largest: f64,
+    ) -> Option<Self> {
         let mut system = DMatrix::zeros(2 * order, 2 * order);
         let mut load = nalgebra::DVector::zeros(2 * order);
         for i in 0..order {
@@ -85,11 +92,9 @@ impl Steady {
             load[order + i] = push[i];
         }
         let solution = system.lu().solve(&load).filter(|x| x.iter().all(|v| v.is_finite()));
-        // A steady answer far above what the force does in a cycle is taken off again by the free motion, with its digits.
-        let most = push.iter().fold(0.0_f64, |most, a| most.max(a.abs())) / (omega * omega) * LARGEST_RESONANCE;
-        let solution =
-            solution.filter(|x| x.iter().all(|v| v.abs() <= most)).ok_or(EngineError::UndampedResonance { omega })?;
-        Ok(Self {
+        let most = push.iter().fold(0.0_f64, |most, a| most.max(a.abs())) / (omega * omega) * largest;
+        let solution = solution.filter(|x| x.iter().all(|v| v.abs() <= most))?;
+        Some(Self {
             omega,
             cosine: solution.iter().take(order).copied().collect(),
             sine: solution.iter().skip(order).copied().collect(),

@@ -3,6 +3,7 @@
 //! Each segment lies between two instants at which something happens: a jump of the force, or the first event that
 //! [`super::search`] certifies. Its flow is exact, its integrals closed; nothing is sampled unless a time history is asked for.
 
+mod between;
 mod contacts;
 mod half_cycles;
 mod impacts;
@@ -15,10 +16,10 @@ use super::block::Phase;
 use super::budget;
 use super::cholesky::Cholesky;
 use super::contact::{Relative, Side};
-use super::contact_state::contact_damping;
+use super::contact_state::{contact_damping, dampings};
 use super::extremes;
 use super::flow::{DrivePhase, Flow};
-use super::guards::{self, Contacts};
+use super::guards::{self, Contacts, Slipped};
 use super::integral::{integrals, quadrature};
 use super::mobility::Mobilities;
 use super::motion::{self, Fundamental, Tape};
@@ -53,6 +54,10 @@ pub(crate) struct March<'a, const TAPED: bool> {
     equivalent: Option<f64>,
     /// The last contact began or ended smoothly: u = u′ = u″ = 0, it leaves with u‴; or its push grows from zero.
     smooth: Vec<bool>,
+    /// What has just happened at the second face of a particle.
+    slipped: Option<Slipped>,
+    /// Some floor and ceiling do not move as one.
+    has_walls: bool,
     averaged: Averaged,
     // Clock.
     cycle: u64,
@@ -99,7 +104,8 @@ impl<'a, const TAPED: bool> March<'a, TAPED> {
             super::StartState::Given { particles, .. } => particles.iter().map(|(contact, ..)| *contact).collect(),
         };
         let equivalent = system.drive.half_cycles.as_ref().map(|half| half.curve.upper_end());
-        let damping: Vec<f64> = (0..count).map(|j| contact_damping(system, &contacts, j, equivalent)).collect();
+        let mut damping = Vec::new();
+        dampings(system, &contacts, equivalent, &mut damping);
         let flow = states.flow(system, &contacts, &damping)?;
         let mut march = Self {
             system,
@@ -113,6 +119,8 @@ impl<'a, const TAPED: bool> March<'a, TAPED> {
             damping,
             equivalent,
             smooth: vec![false; count],
+            slipped: None,
+            has_walls: system.particles.iter().any(Particle::has_walls),
             averaged: options.averaged(),
             cycle: 0,
             time: 0.0,
@@ -352,8 +360,12 @@ impl<'a, const TAPED: bool> March<'a, TAPED> {
             return Ok(());
         }
         self.changed = false;
-        for j in 0..self.damping.len() {
-            self.damping[j] = self.damping_at(j);
+        if self.has_walls {
+            dampings(self.system, &self.contacts, self.equivalent, &mut self.damping);
+        } else {
+            for j in 0..self.damping.len() {
+                self.damping[j] = self.damping_at(j);
+            }
         }
         if self.equivalent.is_some() {
             // Which of many dampings are still known hangs on the runs before; what is summed up together must not.
@@ -416,6 +428,7 @@ impl<'a, const TAPED: bool> March<'a, TAPED> {
             particles: &self.particles,
             damping: &self.damping,
             smooth: &self.smooth,
+            slipped: self.slipped,
             q: &self.q,
             rate: &self.rate,
         };
@@ -462,6 +475,9 @@ impl<'a, const TAPED: bool> March<'a, TAPED> {
         let n = self.system.mass.order;
         let flow = &self.flow;
         let mut kept = Vec::new();
+        if self.has_walls && length != 0.0 {
+            self.slipped = None;
+        }
         for (j, particle) in self.system.particles.iter().enumerate() {
             let contact = self.contacts[j];
             if contact.face(particle).is_none() {
@@ -567,6 +583,7 @@ impl<'a, const TAPED: bool> March<'a, TAPED> {
                     None => [0.0, 0.0],
                 })
                 .collect(),
+            across: (0..self.particles.len()).filter_map(|j| self.stored_across(j)).collect(),
         }
     }
 

@@ -12,7 +12,7 @@
 //! | `search`, `guards`, `window`, `polynomial` | the first event, certified by Bernstein enclosures |
 //! | `contact`, `collision`, `mobility` | what an event leads to |
 //! | `flow`, `load`, `signals`, `parabola`, `series` | exact motion of one contact state, and what is watched of it |
-//! | `contact_state`, `modes`, `spectral`, `cluster`, `schur`, `block`, `bank` | its equations, split into 2 × 2 blocks |
+//! | `contact_state`, `modes`, `spectral`, `cluster`, `resonance`, `schur`, `block`, `bank` | its equations, split into 2 × 2 blocks |
 //! | `gains`, `integral`, `lyapunov` | its integrals in closed form, by quadrature where that would lose digits |
 //! | `audit`, `dissipation`, `residual_bound` | momentum and energy, balanced by other means |
 //! | `motion` | which kind of motion a run ends in: multipliers, exponents |
@@ -58,6 +58,7 @@ mod parabola;
 mod polynomial;
 mod proof;
 mod residual_bound;
+mod resonance;
 mod response;
 mod run;
 mod schur;

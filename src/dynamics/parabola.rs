@@ -21,6 +21,10 @@ impl Parabola {
         Self { p0: factor * self.p0, p1: factor * self.p1, p2: factor * self.p2 }
     }
 
+    pub(crate) fn plus(self, other: Self) -> Self {
+        Self { p0: self.p0 + other.p0, p1: self.p1 + other.p1, p2: self.p2 + other.p2 }
+    }
+
     pub(crate) fn negative(self) -> Self {
         self.times(-1.0)
     }

@@ -5,7 +5,7 @@
 
 use super::block::{Block, Kernel, Phase};
 use super::contact::Side;
-use super::contact_state::Modes;
+use super::contact_state::{Modes, way_across};
 use super::parabola::Parabola;
 use super::system::{Contact, HybridSystem, Law, Particle};
 
@@ -36,12 +36,22 @@ pub(crate) struct FaceRows {
 /// | pressed | compression | its force, if the face cannot pull |
 /// | held | acceleration of the face | |
 /// | released | the face, as far as it does not drift | its force |
+///
+/// Faces that do not move as one are watched both.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct GuardRows {
     pub(crate) first: usize,
     pub(crate) second: usize,
-    /// How much further away the face across is, where it moves by itself and the particle is at the other one.
-    pub(crate) across: Option<usize>,
+    /// How much further away the face across is, where it moves by itself and the particle is at the other one; of a released
+    /// particle that face itself, as far as it does not drift. And the force of its spring and dashpot, where it touches.
+    pub(crate) across: Option<AcrossRows>,
+}
+
+/// Rows of the face across.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct AcrossRows {
+    pub(crate) way: usize,
+    pub(crate) force: usize,
 }
 
 /// The rows of a flow. Those in front are watched: evaluated in every segment.
@@ -100,6 +110,17 @@ impl Row {
         Self { weights: weights.collect(), gravity: mix(self.gravity), force: mix(self.force) }
     }
 
+    /// Plus `factor` times another.
+    fn plus(&self, other: &Self, factor: f64) -> Self {
+        let weights = self.weights.iter().zip(&other.weights);
+        let sum = |one: Parabola, other: Parabola| one.plus(other.times(factor));
+        Self {
+            weights: weights.map(|(a, b)| [0, 1, 2, 3].map(|i| a[i] + factor * b[i])).collect(),
+            gravity: sum(self.gravity, other.gravity),
+            force: sum(self.force, other.force),
+        }
+    }
+
     #[inline(always)]
     fn evaluate(&self, c: &[f64], force: f64, phases: &mut [Phase]) -> Parabola {
         for ((&[v0, v1, r0, r1], &[x, y]), phase) in self.weights.iter().zip(c.as_chunks::<2>().0).zip(phases) {
@@ -113,18 +134,29 @@ impl Row {
     }
 }
 
-/// φ_c·q − φ_f·q, and what the compression of the face that particle j is at adds to the way across.
-fn across(modes: &Modes, j: usize, particle: &Particle) -> Option<Vec<f64>> {
-    let ceiling = particle.ceiling.as_ref().filter(|ceiling| ceiling.row != particle.floor.row)?;
+/// Rows of the face across from the one that particle j is at, which moves by itself: the way to it, and its force.
+fn across(
+    modes: &Modes,
+    blocks: &[Block],
+    j: usize,
+    particle: &Particle,
+    padded: &impl Fn(&[f64]) -> Row,
+    signal: &impl Fn(&[f64]) -> Row,
+) -> Option<[Row; 2]> {
     let contact = modes.contacts[j];
-    contact.face(particle)?;
-    let mut row: Vec<f64> = ceiling.row.iter().zip(&particle.floor.row).map(|(above, below)| above - below).collect();
-    let structure = row.len();
-    row.resize(modes.order, 0.0);
-    if let Some(slot) = modes.attached.iter().position(|&a| a == j) {
-        row[structure + slot] = -contact.side().away();
-    }
-    Some(row)
+    let way = match (contact, contact.face(particle)) {
+        (Contact::Flight, _) => return None,
+        (_, None) => padded(&contact.side().opposite().face(particle).row).fixed(blocks),
+        (_, Some(_)) => {
+            let slot = modes.attached.iter().position(|&a| a == j);
+            signal(&way_across(particle, contact, slot, modes.attached.len()))
+        }
+    };
+    let force = match modes.across.iter().find(|across| across.particle == j) {
+        Some(across) => way.mixed(blocks, across.stiffness, across.damping),
+        None => way.clone(),
+    };
+    Some([way, force])
 }
 
 impl Rows {
@@ -158,7 +190,7 @@ impl Rows {
                     let ceiling = particle.ceiling.as_ref().map_or(face.clone(), |ceiling| padded(&ceiling.row));
                     (face.fixed(blocks), ceiling.fixed(blocks))
                 }
-                Contact::FloorReleased | Contact::CeilingReleased => {
+                Contact::FloorReleased | Contact::CeilingReleased | Contact::BothReleased => {
                     let fixed = face.fixed(blocks);
                     (fixed.clone(), force(&fixed))
                 }
@@ -169,12 +201,19 @@ impl Rows {
                         (own, second)
                     }
                     None => {
-                        let bend = face.acceleration(blocks);
+                        let mut bend = face.acceleration(blocks);
+                        // What the face across pushes, the face that holds the particle pushes back.
+                        if let Some(across) = modes.across.iter().find(|across| across.particle == j && across.presses)
+                        {
+                            let pull = signal(&across.row).mixed(blocks, across.stiffness, across.damping);
+                            bend = bend.plus(&pull, -side.away() / particle.mass);
+                        }
                         (bend.clone(), bend)
                     }
                 },
             };
-            let across = across(modes, j, particle).map(|row| all.place(signal(&row)));
+            let across = particle.has_walls().then(|| across(modes, blocks, j, particle, &padded, &signal)).flatten();
+            let across = across.map(|[way, force]| AcrossRows { way: all.place(way), force: all.place(force) });
             let rows = GuardRows { first: all.place(first), second: all.place(second), across };
             all.guards.push(rows);
         }

@@ -196,6 +196,23 @@ pub enum Contact {
     FloorReleased,
     /// The same at the ceiling.
     CeilingReleased,
+    // Floor and ceiling at once, where they do not move as one.
+    /// Pressed into floor and ceiling.
+    Both,
+    /// Pressed into the floor; let go by a ceiling that cannot pull, which is still compressed.
+    FloorCeilingReleased,
+    /// Pressed into the ceiling; let go by the floor.
+    CeilingFloorReleased,
+    /// Let go by both, which are still compressed.
+    BothReleased,
+    /// Held by the floor, rigid or on its limit stop, and pressed into the ceiling.
+    HeldByFloor,
+    /// The same, let go by the ceiling.
+    HeldByFloorCeilingReleased,
+    /// Held by the ceiling, and pressed into the floor.
+    HeldByCeiling,
+    /// The same, let go by the floor.
+    HeldByCeilingFloorReleased,
 }
 
 /// What happened.

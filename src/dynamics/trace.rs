@@ -1,6 +1,6 @@
 //! Time histories: the motion at evenly spaced instants of a few cycles, evaluated on the exact flow.
 
-use super::contact::Side;
+use super::contact::{Hold, Side};
 use super::system::{Contact, Law, Particle};
 
 /// Which instants to keep.
@@ -86,6 +86,12 @@ impl SampledParticle {
         let resilient = contact.face(particle).is_some_and(|face| matches!(face.law, Law::Resilient { .. }));
         if resilient {
             match side {
+                Side::Floor => sampled.floor = height,
+                Side::Ceiling => sampled.ceiling = height,
+            }
+        }
+        if contact.across() == Hold::Pressed {
+            match side.opposite() {
                 Side::Floor => sampled.floor = height,
                 Side::Ceiling => sampled.ceiling = height,
             }

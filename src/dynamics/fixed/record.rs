@@ -139,6 +139,7 @@ impl<V: Vector> Run<'_, V> {
             rate: state[positions..positions + n].to_vec(),
             particles: (0..self.contacts.len()).map(|j| self.absolute(j)).collect(),
             compressions: (0..self.contacts.len()).map(compression).collect(),
+            across: Vec::new(),
         }
     }
 

@@ -61,8 +61,7 @@ pub(super) fn pass(system: &HybridSystem, flow: &Flow, answer: &[f64], cycle: &C
 /// The physical state, every particle on its floor.
 pub(super) fn state(system: &HybridSystem, flow: &Flow, p: &[f64], rate: &[f64]) -> State {
     let n = system.mass.order;
-    let mut state =
-        State { q: p[..n].to_vec(), rate: rate[..n].to_vec(), particles: Vec::new(), compressions: Vec::new() };
+    let mut state = State { q: p[..n].to_vec(), rate: rate[..n].to_vec(), ..State::default() };
     for (j, particle) in system.particles.iter().enumerate() {
         let slot = flow.modes.attached.iter().position(|&other| other == j);
         let [gap, speed] = slot.map_or([0.0; 2], |slot| [p[n + slot], rate[n + slot]]);

@@ -59,6 +59,7 @@ impl Watch<'_> {
         for (particle, rows) in self.system.particles.iter().zip(&self.flow.rows.guards) {
             let guard =
                 |row, sign, constant, is_distance| Guard { row: Row::new(self.flow, row), sign, constant, is_distance };
+            guards.extend(rows.across.map(|across| guard(across.way, 1.0, particle.gap, true)));
             match particle.floor.law {
                 Law::Resilient { no_tension, stop, .. } => {
                     let holds = if no_tension { rows.second } else { rows.first };

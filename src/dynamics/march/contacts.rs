@@ -3,11 +3,16 @@
 
 use super::March;
 use crate::dynamics::EngineError;
-use crate::dynamics::contact::{Crossing, Relative, Side};
+use crate::dynamics::contact::{Crossing, Hold, Relative, Side};
 use crate::dynamics::guards;
-use crate::dynamics::system::{Contact, EventKind, Law, dot};
+use crate::dynamics::system::{Contact, EventKind, Face, Law, dot};
 
-/// Faces closer to each other than this share of their way have met.
+/// How far a face can be compressed to its stop.
+fn depth(face: &Face) -> f64 {
+    face.law.stop().map_or(0.0, |stop| stop.length)
+}
+
+/// Rigid faces closer to each other than this share of their way have met.
 const CLOSED: f64 = 1e-9;
 
 impl<const TAPED: bool> March<'_, TAPED> {
@@ -21,6 +26,9 @@ impl<const TAPED: bool> March<'_, TAPED> {
         }
         self.half.touching = false;
         self.smooth[j] = false;
+        if self.contacts[j].is_between() || crossing == Crossing::Meeting {
+            return self.cross_between(j, crossing);
+        }
         let side = self.contacts[j].side();
         let particle = &self.system.particles[j];
         // The push of a dashpot sets in at once, and with it accelerations elsewhere jump.
@@ -89,28 +97,34 @@ impl<const TAPED: bool> March<'_, TAPED> {
                 self.slip(j, side);
                 self.smooth[j] = !self.sudden;
             }
-            Crossing::Squeezed => {
-                return Err(EngineError::Squeezed { particle: j, cycle: self.cycle, time: self.time });
-            }
-            Crossing::HalfCycle => {}
+            Crossing::Meeting
+            | Crossing::ReleaseAcross
+            | Crossing::ToStopAcross
+            | Crossing::RecoveredAcross
+            | Crossing::AgainAcross
+            | Crossing::HalfCycle => {}
         }
         self.meet_at_once()?;
         if jumps { self.hold_on() } else { self.choose_flow() }
     }
 
-    /// Why the contact does not settle: faces that move by themselves and have met, or nobody knows.
+    /// Why the contact does not settle: two rigid faces that move by themselves and have met, or nobody knows.
     #[cold]
     pub(super) fn no_progress(&self) -> EngineError {
         let (cycle, time) = (self.cycle, self.time);
         let between = |j: &usize| {
             let particle = &self.system.particles[*j];
-            particle.ceiling.as_ref().is_some_and(|ceiling| {
-                let rows = || ceiling.row.iter().zip(&particle.floor.row).zip(&self.q);
-                let way = rows().fold(particle.gap, |sum, ((above, below), q)| sum + (above - below) * q);
-                let size =
-                    rows().fold(particle.gap, |sum, ((above, below), q)| sum + (above * q).abs() + (below * q).abs());
-                ceiling.row != particle.floor.row && way <= CLOSED * size
-            })
+            let yields = |face: &Face| matches!(face.law, Law::Resilient { stop: None, .. });
+            particle.has_walls()
+                && !yields(&particle.floor)
+                && particle.ceiling.as_ref().is_some_and(|ceiling| {
+                    let rows = || ceiling.row.iter().zip(&particle.floor.row).zip(&self.q);
+                    let rest = particle.gap + [&particle.floor, ceiling].iter().map(|face| depth(face)).sum::<f64>();
+                    let way = rows().fold(rest, |sum, ((above, below), q)| sum + (above - below) * q);
+                    let size =
+                        rows().fold(rest, |sum, ((above, below), q)| sum + (above * q).abs() + (below * q).abs());
+                    !yields(ceiling) && way <= CLOSED * size
+                })
         };
         match (0..self.particles.len()).find(between) {
             Some(particle) => EngineError::Squeezed { particle, cycle, time },
@@ -119,7 +133,7 @@ impl<const TAPED: bool> March<'_, TAPED> {
     }
 
     /// A particle in flight that is at a face and moves into it has met it: where there is no gap to cross.
-    fn meet_at_once(&mut self) -> Result<(), EngineError> {
+    pub(super) fn meet_at_once(&mut self) -> Result<(), EngineError> {
         let mut arrived = Vec::new();
         for j in 0..self.particles.len() {
             if let Some(side) = self.meets(j) {
@@ -157,6 +171,9 @@ impl<const TAPED: bool> March<'_, TAPED> {
     /// After a jump of velocities: decides the contact of a particle with a resilient face, as far as velocities do.
     pub(super) fn press_or_part(&mut self, j: usize) {
         let contact = self.contacts[j];
+        if contact.is_between() {
+            return self.press_or_part_between(j);
+        }
         let particle = &self.system.particles[j];
         let side = contact.side();
         let Relative { gap, rate } = self.particles[j];
@@ -199,7 +216,7 @@ impl<const TAPED: bool> March<'_, TAPED> {
         let side = match contact {
             Contact::Flight if at_rest(here) => Side::Floor,
             Contact::Flight if self.ceiling_relative(j).is_some_and(at_rest) => Side::Ceiling,
-            _ if contact.presses(particle) && at_rest(here) => contact.side(),
+            _ if contact.presses(particle) && at_rest(here) && !contact.is_between() => contact.side(),
             _ => return Ok(()),
         };
         if let Law::Rigid { .. } = side.face(particle).law {
@@ -255,15 +272,15 @@ impl<const TAPED: bool> March<'_, TAPED> {
     }
 
     /// The face that a particle presses into is compressed by more than rounding.
-    fn is_compressed(&self, j: usize, side: Side) -> bool {
-        let here = self.particles[j];
+    pub(super) fn is_compressed(&self, j: usize, side: Side) -> bool {
+        let here = self.relative_to(j, side);
         here.gap != 0.0 && here.gap.abs() > self.noise(j, side, here)
     }
 
     /// A face loses its particle.
     pub(super) fn let_go(&mut self, j: usize, side: Side) {
         let rate = self.particles[j].rate;
-        let stopped = self.contacts[j] == side.stopped();
+        let stopped = self.is_on_stop(j, side);
         self.record(j, if stopped { EventKind::StopRelease } else { side.lost() }, rate, rate);
         self.part(j, side, stopped);
     }
@@ -271,6 +288,12 @@ impl<const TAPED: bool> March<'_, TAPED> {
     /// Puts a particle off a rigid face or a stop, without an event.
     pub(super) fn part(&mut self, j: usize, side: Side, from_stop: bool) {
         self.changed = true;
+        if self.touches_across(j, side) {
+            let hold = if from_stop { Hold::Pressed } else { Hold::Away };
+            // A face that lets go leaves the other one alone.
+            let _always = self.turn(j, side, hold);
+            return;
+        }
         if from_stop {
             self.contacts[j] = side.pressed();
             return;
@@ -289,7 +312,7 @@ impl<const TAPED: bool> March<'_, TAPED> {
     }
 
     /// A face that cannot pull lets go while compressed, or pushes again: the energy of its spring goes and comes.
-    fn slip(&mut self, j: usize, side: Side) {
+    pub(super) fn slip(&mut self, j: usize, side: Side) {
         let rate = self.particles[j].rate;
         let pressed = self.contacts[j] == side.pressed();
         self.record(j, if pressed { side.lost() } else { side.made() }, rate, rate);

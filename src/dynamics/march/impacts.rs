@@ -6,8 +6,8 @@
 use super::March;
 use crate::dynamics::EngineError;
 use crate::dynamics::collision::{self, Closed, Outcome};
-use crate::dynamics::contact::{Relative, STICKING_SPEED, Side};
-use crate::dynamics::guards::Grip;
+use crate::dynamics::contact::{Hold, Relative, STICKING_SPEED, Side};
+use crate::dynamics::guards::{Grip, Slipped};
 use crate::dynamics::system::{Contact, EventKind, Law, dot};
 
 /// A rigid contact that is closed.
@@ -104,7 +104,12 @@ impl<const TAPED: bool> March<'_, TAPED> {
     /// are at a rigid face, pressed ones at its stop.
     pub(super) fn settle(&mut self, arrived: &[(usize, Side)]) -> Result<(), EngineError> {
         let candidates = self.collide(arrived)?;
-        (0..self.particles.len()).for_each(|j| self.press_or_part(j));
+        for j in 0..self.particles.len() {
+            // Whose state refers to a rigid face already.
+            if !candidates.iter().any(|candidate| candidate.particle == j && !candidate.on_stop) {
+                self.press_or_part(j);
+            }
+        }
         self.hold(candidates)?;
         for j in 0..self.particles.len() {
             self.rest(j)?;
@@ -137,8 +142,8 @@ impl<const TAPED: bool> March<'_, TAPED> {
     }
 
     fn candidate(&self, j: usize) -> Candidate {
-        let (contact, side) = (self.contacts[j], self.contacts[j].side());
-        let on_stop = contact == side.stopped();
+        let side = self.contacts[j].side();
+        let on_stop = self.is_on_stop(j, side);
         Candidate { particle: j, side, on_stop, held: true, speed: 0.0, restitution: 0.0 }
     }
 
@@ -221,6 +226,7 @@ impl<const TAPED: bool> March<'_, TAPED> {
         };
         let mut candidates = Vec::new();
         for (touch, outcome) in touches.iter().zip(&outcomes) {
+            let slow = if self.has_walls { self.slow(touch) } else { STICKING_SPEED };
             let Touch { particle: j, side, on_stop, held, closed, .. } = *touch;
             let away = side.away();
             let gap = if on_stop { self.particles[j].gap } else { 0.0 };
@@ -232,7 +238,7 @@ impl<const TAPED: bool> March<'_, TAPED> {
             self.changed = true;
             self.smooth[j] = false;
             self.particles[j] = Relative { gap, rate: away * outcome.speed };
-            if outcome.speed <= STICKING_SPEED {
+            if outcome.speed <= slow {
                 let (speed, restitution) = (outcome.speed, closed.restitution);
                 candidates.push(Candidate { particle: j, side, on_stop, held: held && !struck, speed, restitution });
             } else if held && !struck {
@@ -242,6 +248,18 @@ impl<const TAPED: bool> March<'_, TAPED> {
             }
         }
         Ok(candidates)
+    }
+
+    /// Relative speed below which a particle sticks to a face beside another one.
+    #[cold]
+    fn slow(&self, touch: &Touch) -> f64 {
+        let Touch { particle: j, side, closed, mobility, .. } = *touch;
+        if !self.touches_across(j, side) {
+            return STICKING_SPEED;
+        }
+        let row = &side.face(&self.system.particles[j]).row;
+        let carried = 1.0 + closed.mass * dot(row, self.mobilities.answer(mobility));
+        self.slow_between(j, side, closed.restitution, carried)
     }
 
     /// Gives the impulses of a collision to the structure; the faces of all particles that are not part of it move along.
@@ -302,7 +320,7 @@ impl<const TAPED: bool> March<'_, TAPED> {
             let (j, side) = (candidate.particle, candidate.side);
             let at_rest = grip.outweighs(candidate.speed);
             self.smooth[j] = at_rest && (grip.is_nothing() || *turns > 1);
-            if at_rest {
+            if at_rest && self.contacts[j].side() == side {
                 self.particles[j].rate = 0.0;
             }
             if *holds {
@@ -316,6 +334,11 @@ impl<const TAPED: bool> March<'_, TAPED> {
                     self.record(j, kind, 0.0, 0.0);
                 }
                 self.part(j, side, candidate.on_stop);
+                if at_rest && self.contacts[j].side() != side && self.touches_across(j, side) {
+                    // The state refers to the other face now.
+                    let order = if std::mem::take(&mut self.smooth[j]) { 3 } else { 2 };
+                    self.slipped = Some(Slipped { particle: j, order });
+                }
             }
         }
         self.choose_flow()
@@ -325,6 +348,16 @@ impl<const TAPED: bool> March<'_, TAPED> {
     fn fix(&mut self, candidate: &Candidate, holds: bool) {
         let Candidate { particle: j, side, on_stop, .. } = *candidate;
         self.changed = true;
+        if self.touches_across(j, side) {
+            let hold = match (on_stop, holds) {
+                (_, true) => Hold::Held,
+                (true, false) => Hold::Pressed,
+                (false, false) => Hold::Away,
+            };
+            // The face across does not hold it: that was refused where they met.
+            let _always = self.turn(j, side, hold);
+            return;
+        }
         self.contacts[j] = match (on_stop, holds) {
             (true, true) => side.stopped(),
             (true, false) | (false, true) => side.pressed(),
@@ -373,7 +406,8 @@ impl<const TAPED: bool> March<'_, TAPED> {
         let flow = &self.flow;
         let row = flow.rows.face(j, side);
         let (phases, rest) = flow.rows.evaluate(row, &self.c, self.level, flow.blocks.len());
-        Grip::of(self.system, flow, &phases, rest, j, side, on_stop)
+        let grip = Grip::of(self.system, flow, &phases, rest, j, side, on_stop);
+        if self.touches_across(j, side) { grip.against(self.push_across(j, side)) } else { grip }
     }
 }
 

@@ -35,7 +35,18 @@ impl<const TAPED: bool> March<'_, TAPED> {
                     matches!(side.face(&self.system.particles[j]).law, Law::Resilient { no_tension: false, .. });
                 (at_gap && !self.contacts[j].holds(&self.system.particles[j])).then_some((j, side))
             }
-            Crossing::Squeezed | Crossing::Recovered | Crossing::Again | Crossing::HalfCycle => None,
+            Crossing::Meeting | Crossing::ToStopAcross => Some((j, self.contacts[j].side().opposite())),
+            Crossing::ReleaseAcross => {
+                let side = self.contacts[j].side().opposite();
+                let at_gap =
+                    matches!(side.face(&self.system.particles[j]).law, Law::Resilient { no_tension: false, .. });
+                at_gap.then_some((j, side))
+            }
+            Crossing::Recovered
+            | Crossing::Again
+            | Crossing::RecoveredAcross
+            | Crossing::AgainAcross
+            | Crossing::HalfCycle => None,
         }
     }
 

@@ -186,14 +186,14 @@ pub(super) fn apart(a: &Response, b: &Response) -> f64 {
 }
 
 /// Absolute coordinates (q, y) and their rates under springs and dashpots of the faces: no contact state, no event.
-struct Plain<'a> {
+pub(super) struct Plain<'a> {
     system: &'a HybridSystem,
     inverse: Vec<f64>,
 }
 
 impl<'a> Plain<'a> {
     /// For a diagonal mass matrix.
-    fn new(system: &'a HybridSystem) -> Self {
+    pub(super) fn new(system: &'a HybridSystem) -> Self {
         Self { system, inverse: (0..system.mass.order).map(|i| 1.0 / system.mass.at(i, i)).collect() }
     }
 
@@ -207,10 +207,13 @@ impl<'a> Plain<'a> {
             let ceiling = particle.ceiling.as_ref().expect("a ceiling");
             for (face, offset, away) in [(&particle.floor, 0.0, 1.0), (ceiling, particle.gap, -1.0)] {
                 let u = y[j] - dot(&face.row, q) - offset;
-                if let Law::Resilient { stiffness, damping, .. } = face.law
+                if let Law::Resilient { stiffness, damping, no_tension, .. } = face.law
                     && away * u < 0.0
                 {
                     let push = -stiffness * u - damping * (w[j] - dot(&face.row, v));
+                    if no_tension && away * push < 0.0 {
+                        continue;
+                    }
                     falls[j] += push / particle.mass;
                     force.iter_mut().zip(&face.row).for_each(|(force, phi)| *force -= phi * push);
                 }
@@ -220,16 +223,23 @@ impl<'a> Plain<'a> {
         v.iter().chain(w).copied().chain(accelerations).chain(falls).collect()
     }
 
-    /// Which faces are touched: where this changes within a step, the step is halved until it is negligible.
-    fn touched(&self, z: &[f64]) -> Vec<i8> {
-        let n = self.system.mass.order;
-        let place = |(j, particle): (usize, &Particle)| {
-            let u = z[n + j] - dot(&particle.floor.row, &z[..n]);
+    /// Which faces push: where this changes within a step, the step is halved until it is negligible.
+    fn touched(&self, z: &[f64]) -> Vec<bool> {
+        let (n, p) = (self.system.mass.order, self.system.particles.len());
+        let push = |(j, particle): (usize, &Particle)| {
             let ceiling = particle.ceiling.as_ref().expect("a ceiling");
-            let above = z[n + j] - dot(&ceiling.row, &z[..n]) - particle.gap;
-            i8::from(above > 0.0) - i8::from(u < 0.0)
+            [(&particle.floor, 0.0, 1.0), (ceiling, particle.gap, -1.0)].map(|(face, offset, away)| {
+                let u = away * (z[n + j] - dot(&face.row, &z[..n]) - offset);
+                let rate = away * (z[2 * n + p + j] - dot(&face.row, &z[n + p..2 * n + p]));
+                match face.law {
+                    Law::Resilient { stiffness, damping, no_tension: true, .. } => {
+                        u < 0.0 && stiffness * u + damping * rate < 0.0
+                    }
+                    _ => u < 0.0,
+                }
+            })
         };
-        self.system.particles.iter().enumerate().map(place).collect()
+        self.system.particles.iter().enumerate().flat_map(push).collect()
     }
 
     fn step(&self, z: &[f64], h: f64) -> Vec<f64> {
@@ -241,7 +251,7 @@ impl<'a> Plain<'a> {
         (0..z.len()).map(|i| z[i] + h / 6.0 * (k1[i] + 2.0 * k2[i] + 2.0 * k3[i] + k4[i])).collect()
     }
 
-    fn advance(&self, z: &[f64], h: f64) -> Vec<f64> {
+    pub(super) fn advance(&self, z: &[f64], h: f64) -> Vec<f64> {
         let next = self.step(z, h);
         if h > 1e-12 && self.touched(z) != self.touched(&next) {
             return self.advance(&self.advance(z, 0.5 * h), 0.5 * h);

@@ -9,7 +9,7 @@ use std::path::Path;
 use super::bench::{Ledger, listened};
 use super::{
     arrays, averages, closed_forms, equal_modes, event_cases, extremes, floating, half_cycles, long_runs, precise,
-    properties, reference_cases, walls,
+    properties, reference_cases, resonance, walls,
 };
 use crate::{spec, structures};
 
@@ -242,9 +242,30 @@ const HARD_CASES: &[HardCase] = &[
     },
     HardCase {
         name: "Particle pressed by floor and ceiling at once",
+        checks: "state at the end; momentum and energy",
+        reference: "closed form of the oscillator; Runge-Kutta; limit of no gap; conservation",
+        tests: &[
+            walls::a_mass_between_two_springs_and_dashpots_is_an_oscillator_of_both,
+            walls::springs_of_faces_that_meet_a_particle_at_once_push_as_a_runge_kutta_integration_says,
+            walls::a_gap_that_vanishes_is_no_gap,
+            walls::between_walls_of_any_kind_momentum_and_energy_close_unless_both_faces_are_rigid,
+        ],
+    },
+    HardCase {
+        name: "Structure without damping, driven at its own frequency, and 1e-15 to 5e-3 apart from it",
+        checks: "place and velocity after up to 1000 cycles; momentum and energy",
+        reference: "closed form; 32-digit arithmetic; conservation",
+        tests: &[
+            resonance::at_resonance_and_next_to_it_the_motion_grows_as_its_closed_form,
+            resonance::each_mode_of_a_structure_has_its_resonance,
+            resonance::no_structure_is_refused_at_its_own_frequency,
+        ],
+    },
+    HardCase {
+        name: "Particle held by two rigid faces that move by themselves",
         checks: "refused by name",
         reference: "—",
-        tests: &[walls::a_particle_that_both_faces_meet_is_refused_by_name],
+        tests: &[walls::rigid_faces_that_would_both_hold_a_particle_are_refused_by_name],
     },
     HardCase {
         name: "NaN, negative mass, gap below zero, unknown key, wrong unit, huge and empty sweeps",

@@ -18,6 +18,7 @@ mod precise;
 mod properties;
 mod random_scenes;
 mod reference_cases;
+mod resonance;
 mod search;
 mod settled;
 mod walls;

@@ -1,0 +1,244 @@
+//! A particle at floor and ceiling at once, where they do not move as one (walls of finite stiffness).
+//!
+//! Each face goes on by its own law: it presses, holds, lets go, pushes again. The state refers to the face that holds the
+//! particle, else to one that presses, and is referred anew where that changes. Two faces that would both hold it are refused.
+
+use super::March;
+use crate::dynamics::EngineError;
+use crate::dynamics::contact::{Crossing, Hold, Relative, STICKING_SPEED, Side};
+use crate::dynamics::guards::{self, Slipped};
+use crate::dynamics::system::{Contact, Law};
+
+/// Roundings of a distance that a bounce has to rise above.
+const SEVERAL: f64 = 16.0;
+
+/// What happens at one of the faces.
+#[derive(Clone, Copy)]
+enum Change {
+    Meets,
+    Releases,
+    Stops,
+    Recovers,
+    PushesAgain,
+}
+
+impl<const TAPED: bool> March<'_, TAPED> {
+    /// A crossing of a particle that is at both faces, or comes to be.
+    pub(super) fn cross_between(&mut self, j: usize, crossing: Crossing) -> Result<(), EngineError> {
+        let own = self.contacts[j].side();
+        let across = own.opposite();
+        let (side, change) = match crossing {
+            Crossing::Meeting => (across, Change::Meets),
+            Crossing::Release => (own, Change::Releases),
+            Crossing::ReleaseAcross => (across, Change::Releases),
+            Crossing::ToStop => (own, Change::Stops),
+            Crossing::ToStopAcross => (across, Change::Stops),
+            Crossing::Recovered => (own, Change::Recovers),
+            Crossing::RecoveredAcross => (across, Change::Recovers),
+            Crossing::Again => (own, Change::PushesAgain),
+            Crossing::AgainAcross => (across, Change::PushesAgain),
+            // Of flight alone, and of no particle.
+            Crossing::ToFloor | Crossing::ToCeiling | Crossing::HalfCycle => return Ok(()),
+        };
+        let particle = &self.system.particles[j];
+        let law = side.face(particle).law;
+        let here = self.relative_to(j, side);
+        // The push of a dashpot sets in at once, and with it accelerations elsewhere jump.
+        let mut jumps = false;
+        match change {
+            // A rounding has put the particle behind a face that it is leaving.
+            Change::Meets if side.away() * here.rate >= 0.0 => {}
+            Change::Meets => match law {
+                Law::Rigid { .. } => return self.strike_across(j, side),
+                Law::Resilient { .. } => {
+                    self.record(j, side.made(), here.rate, here.rate);
+                    self.turn(j, side, Hold::Pressed)?;
+                    if self.contacts[j].side() == side {
+                        self.particles[j].gap = 0.0;
+                    }
+                    jumps = true;
+                }
+            },
+            Change::Stops => return self.strike_across(j, side),
+            Change::Releases if self.contacts[j].at(side, particle) == Hold::Held => {
+                if self.sudden {
+                    return self.hold_on();
+                }
+                self.particles[j].rate = 0.0;
+                self.let_go(j, side);
+                self.is_smooth(j, side);
+            }
+            Change::Releases
+                if matches!(law, Law::Resilient { no_tension: true, .. }) && self.is_compressed(j, side) =>
+            {
+                self.slip_between(j, side)?;
+            }
+            Change::Releases => {
+                self.record(j, side.lost(), here.rate, here.rate);
+                self.turn(j, side, Hold::Away)?;
+                jumps = true;
+            }
+            Change::Recovers => self.turn(j, side, Hold::Away)?,
+            Change::PushesAgain => self.slip_between(j, side)?,
+        }
+        self.meet_at_once()?;
+        if jumps { self.hold_on() } else { self.choose_flow() }
+    }
+
+    /// A rigid face, or a stop, meets a particle that the other face presses: it holds it until the exchange of momentum says
+    /// otherwise.
+    fn strike_across(&mut self, j: usize, side: Side) -> Result<(), EngineError> {
+        self.turn(j, side, Hold::Held)?;
+        self.strike(j, side)
+    }
+
+    /// What one face does to a particle changes; its state goes on referring to the face that its contact names.
+    pub(super) fn turn(&mut self, j: usize, side: Side, hold: Hold) -> Result<(), EngineError> {
+        let particle = &self.system.particles[j];
+        let (before, across) = (self.contacts[j], self.contacts[j].at(side.opposite(), particle));
+        let [floor, ceiling] = if side == Side::Floor { [hold, across] } else { [across, hold] };
+        let Some(after) = Contact::of(floor, ceiling, particle) else {
+            return Err(EngineError::Squeezed { particle: j, cycle: self.cycle, time: self.time });
+        };
+        if before.side() != after.side() {
+            self.particles[j] = self.relative_to(j, after.side());
+        }
+        if hold == Hold::Held {
+            self.particles[j].gap = -side.away() * side.face(particle).law.stop().map_or(0.0, |stop| stop.length);
+        }
+        self.changed = true;
+        self.contacts[j] = after;
+        Ok(())
+    }
+
+    /// Where a particle is relative to the face on one side.
+    pub(super) fn relative_to(&self, j: usize, side: Side) -> Relative {
+        let here = self.particles[j];
+        if self.contacts[j].side() == side {
+            return here;
+        }
+        guards::seen_from(side, &self.system.particles[j], here, &self.q, &self.rate)
+    }
+
+    /// The face across from this side touches the particle too, or alone.
+    #[inline]
+    pub(super) fn touches_across(&self, j: usize, side: Side) -> bool {
+        let contact = self.contacts[j];
+        let particle = &self.system.particles[j];
+        self.has_walls && contact.at(side.opposite(), particle) != Hold::Away
+    }
+
+    /// Held on the stop of the face on this side.
+    #[inline]
+    pub(super) fn is_on_stop(&self, j: usize, side: Side) -> bool {
+        let (contact, particle) = (self.contacts[j], &self.system.particles[j]);
+        let both = || side.face(particle).law.stop().is_some() && contact.side() == side && contact.holds(particle);
+        contact == side.stopped() || (contact.is_between() && both())
+    }
+
+    /// A force comes to zero at one of the faces: its guard begins there.
+    fn is_smooth(&mut self, j: usize, side: Side) {
+        if self.sudden {
+        } else if self.contacts[j].side() == side {
+            self.smooth[j] = true;
+        } else {
+            self.slipped = Some(Slipped { particle: j, order: 3 });
+        }
+    }
+
+    /// A face that cannot pull lets go while compressed, or pushes again.
+    fn slip_between(&mut self, j: usize, side: Side) -> Result<(), EngineError> {
+        let particle = &self.system.particles[j];
+        let pressed = self.contacts[j].at(side, particle) == Hold::Pressed;
+        let here = self.relative_to(j, side);
+        self.record(j, if pressed { side.lost() } else { side.made() }, here.rate, here.rate);
+        self.turn(j, side, if pressed { Hold::Released } else { Hold::Pressed })?;
+        self.is_smooth(j, side);
+        if let (Some(audit), Law::Resilient { stiffness, .. }) = (&mut self.audit, side.face(particle).law) {
+            let stored = 0.5 * stiffness * here.gap * here.gap;
+            audit.loss(if pressed { stored } else { -stored });
+        }
+        Ok(())
+    }
+
+    /// After a jump of velocities: whether each of the two faces goes on as it did.
+    pub(super) fn press_or_part_between(&mut self, j: usize) {
+        for side in [Side::Floor, Side::Ceiling] {
+            let particle = &self.system.particles[j];
+            let Law::Resilient { stiffness, no_tension, .. } = side.face(particle).law else { continue };
+            let (here, away) = (self.relative_to(j, side), side.away());
+            let push = -away * (stiffness * here.gap + self.damping_on(j, side) * here.rate);
+            // None of these makes a second face hold the particle.
+            let _always = match self.contacts[j].at(side, particle) {
+                Hold::Pressed if no_tension && push < 0.0 && self.is_compressed(j, side) => self.slip_between(j, side),
+                Hold::Pressed if (no_tension && push < 0.0) || (here.gap == 0.0 && away * here.rate > 0.0) => {
+                    self.record(j, side.lost(), here.rate, here.rate);
+                    self.turn(j, side, Hold::Away)
+                }
+                Hold::Released if push > 0.0 => self.slip_between(j, side),
+                Hold::Pressed | Hold::Released | Hold::Held | Hold::Away => Ok(()),
+            };
+        }
+    }
+
+    /// A bounce so low that the distance to this face, a difference of places, does not show it: the other face, which pushes the
+    /// particle back, gives it u² = 2 a δ for a rounding δ of that distance, and what is left of this after many bounces is none.
+    pub(super) fn slow_between(&self, j: usize, side: Side, restitution: f64, carried: f64) -> f64 {
+        let (particle, other) = (&self.system.particles[j], side.opposite());
+        let here = self.relative_to(j, other);
+        let Law::Resilient { stiffness, .. } = other.face(particle).law else { return STICKING_SPEED };
+        let push = (stiffness * here.gap).abs() + (self.damping_on(j, other) * here.rate).abs();
+        let back = (push / particle.mass + self.system.gravity) * carried;
+        let rounding = self.noise(j, side, here).max(self.noise(j, other, here));
+        let lasting = 1.0 - restitution * restitution;
+        STICKING_SPEED.max((SEVERAL * back * rounding / lasting.max(f64::EPSILON)).sqrt())
+    }
+
+    /// Damping of a face, N s/m.
+    fn damping_on(&self, j: usize, side: Side) -> f64 {
+        match side.face(&self.system.particles[j]).law {
+            Law::Resilient { damping, .. } => self.equivalent.unwrap_or(damping),
+            Law::Rigid { .. } => 0.0,
+        }
+    }
+
+    /// What the face across from this side pushes per mass, and how fast that grows, in the flow in force.
+    pub(super) fn push_across(&self, j: usize, side: Side) -> [f64; 2] {
+        let (flow, particle, contact) = (&self.flow, &self.system.particles[j], self.contacts[j]);
+        let other = side.opposite();
+        let row = if contact.side() == other {
+            flow.rows.faces[j].compression
+        } else {
+            flow.rows.guards[j].across.map(|rows| rows.way)
+        };
+        let (Law::Resilient { stiffness, .. }, Some(row), Hold::Pressed) =
+            (other.face(particle).law, row, contact.at(other, particle))
+        else {
+            return [0.0; 2];
+        };
+        let (phases, rest) = flow.rows.evaluate(row, &self.c, self.level, flow.blocks.len());
+        let mut bend = 2.0 * rest.p2;
+        for (block, phase) in flow.blocks.iter().zip(&phases) {
+            bend += block.acceleration(*phase).value;
+        }
+        // The way across counts from the particle to the face, as away from the face.
+        let bend = if contact.side() == other { other.away() * bend } else { bend };
+        let (here, damping) = (self.relative_to(j, other), self.damping_on(j, other));
+        let push = -other.away() * (stiffness * here.gap + damping * here.rate);
+        let growth = -other.away() * stiffness * here.rate - damping * bend;
+        [push / particle.mass, growth / particle.mass]
+    }
+
+    /// Stiffness and compression of a second face that presses.
+    pub(super) fn stored_across(&self, j: usize) -> Option<[f64; 2]> {
+        let contact = self.contacts[j];
+        if contact.across() != Hold::Pressed {
+            return None;
+        }
+        let side = contact.side().opposite();
+        match side.face(&self.system.particles[j]).law {
+            Law::Resilient { stiffness, .. } => Some([stiffness, self.relative_to(j, side).gap]),
+            Law::Rigid { .. } => None,
+        }
+    }
+}
