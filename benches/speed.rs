@@ -11,7 +11,9 @@ use std::path::Path;
 use std::time::Instant;
 
 use common::{BEAM, SINGLE, experiment, system};
-use shotdamp::dynamics::{Contact, EventKind, HybridSystem, Options, Response, event_driven};
+use shotdamp::dynamics::{
+    Along, Branch, Contact, EventKind, HybridSystem, Options, Orbit, Response, StartState, event_driven,
+};
 use shotdamp::experiment::{Axis, AxisScale, Band, Drawing, FigureSpec, Panel};
 use shotdamp::figure::{Beside, draw};
 use shotdamp::study::Machine;
@@ -52,6 +54,7 @@ fn main() {
         page += &cost.row(&format!("Beam, {modes} modes, 4 dampers"));
     }
     page += &Cost::of(&system(PLATE)).row("Plate, 16 modes, 9 dampers");
+    page += &periodic(&system(&single));
     let error = (reference.response.window().rms_velocity() / REFERENCE_RMS - 1.0).abs();
     let _ = writeln!(
         page,
@@ -122,6 +125,51 @@ impl Cost {
             self.states,
         )
     }
+}
+
+/// Points of the branch that is timed.
+const POINTS: usize = 200;
+
+/// What periodic motions of the scene of reference cost.
+fn periodic(system: &HybridSystem) -> String {
+    let run = event_driven(system, &Options::default()).expect("the scenes above run");
+    let [y, w] = run.final_particles[0];
+    let (x, v) = (run.final_displacement, run.final_velocity);
+    let last = StartState::Given { q: vec![x], rate: vec![v], particles: vec![(Contact::Flight, y - x, w - v)] };
+    let orbit = || Orbit::near(std::hint::black_box(system), &last, 1).expect("the run has settled");
+    let first = orbit();
+    let stronger = |times: f64| {
+        let mut system = system.clone();
+        system.drive.ticks.iter_mut().for_each(|tick| tick.impulse *= times);
+        Ok::<_, std::convert::Infallible>(system)
+    };
+    let along = Along { from: 1.0, to: 1e3, step: 0.004, points: POINTS };
+    let branch = || Branch::follow(stronger, &first, along).expect("it has a first orbit");
+    let timed = |work: &dyn Fn()| {
+        let times = sorted(
+            || {
+                let begin = Instant::now();
+                work();
+                begin.elapsed().as_secs_f64()
+            },
+            5,
+        );
+        (times[0], times[times.len() / 2])
+    };
+    let ((orbit_least, orbit_median), (least, median)) =
+        (timed(&|| drop(std::hint::black_box(orbit()))), timed(&|| drop(std::hint::black_box(branch()))));
+    let followed = branch();
+    let specials = followed.points.iter().filter(|point| point.special.is_some()).count();
+    format!(
+        "\n| Periodic motion of the first scene | Least | Median |\n| --- | ---: | ---: |\n\
+         | One orbit by Newton's method from the last cycle of a run | {:.0} µs | {:.0} µs |\n\
+         | A branch of {} points in the impulse, with its {specials} special points | {:.1} ms | {:.1} ms |\n",
+        1e6 * orbit_least,
+        1e6 * orbit_median,
+        followed.points.len(),
+        1e3 * least,
+        1e3 * median,
+    )
 }
 
 /// Times in ascending order: for a second or so, but no fewer than `least`.

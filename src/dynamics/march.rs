@@ -196,7 +196,7 @@ impl<'a, const TAPED: bool> March<'a, TAPED> {
         Ok(())
     }
 
-    pub(crate) fn run(mut self) -> Result<Response, EngineError> {
+    fn run(mut self) -> Result<Response, EngineError> {
         self.all_cycles()?;
         self.finish()
     }
@@ -275,9 +275,6 @@ impl<'a, const TAPED: bool> March<'a, TAPED> {
             self.response.final_velocity = dot(row, &self.rate);
         }
         self.response.final_particles = (0..self.particles.len()).map(|j| self.absolute(j)).collect();
-        if TAPED && self.options.motion {
-            self.response.motion = Some(motion::name(self.system, &self.tape, self.options.average as usize)?);
-        }
         if self.response.final_displacement.is_finite() && self.response.final_velocity.is_finite() {
             Ok(self.response)
         } else {
@@ -649,7 +646,7 @@ fn side_stiffness(system: &HybridSystem, contacts: &[Contact], j: usize) -> Opti
 /// Runs a system.
 pub(crate) fn march(system: &HybridSystem, options: &Options, states: States) -> Result<Response, EngineError> {
     if options.is_taped() {
-        return March::<true>::new(system, options, states)?.run();
+        return Ok(taped(system, options, states)?.0);
     }
     March::<false>::new(system, options, states)?.run()
 }
@@ -663,6 +660,15 @@ pub(crate) fn fundamental(
     let mut march = March::<true>::new(system, options, states)?;
     march.all_cycles()?;
     Fundamental::of(system, &march.tape, options.average as usize)
+}
+
+/// Runs a system and keeps its tape.
+pub(crate) fn taped(system: &HybridSystem, options: &Options, states: States) -> Result<(Response, Tape), EngineError> {
+    let mut march = March::<true>::new(system, options, states)?;
+    march.all_cycles()?;
+    let motion = if options.motion { Some(motion::name(system, &march.tape, options.average as usize)?) } else { None };
+    let tape = std::mem::take(&mut march.tape);
+    Ok((Response { motion, ..march.finish()? }, tape))
 }
 
 /// The proof of a run that was never audited.

@@ -16,6 +16,7 @@
 //! | `gains`, `integral`, `lyapunov` | its integrals in closed form, by quadrature where that would lose digits |
 //! | `audit`, `dissipation`, `residual_bound` | momentum and energy, balanced by other means |
 //! | `motion` | which kind of motion a run ends in: multipliers, exponents |
+//! | `orbit` | periodic motions, stable or not, and branches of them |
 //! | `linear` | a run in which no event can happen, in closed form |
 //! | `fixed` | a fixed-step scheme, to show what the time step does to a published result |
 //! | `budget` | what a run may take |
@@ -54,6 +55,7 @@ mod mobility;
 mod modes;
 mod motion;
 mod options;
+mod orbit;
 mod parabola;
 mod polynomial;
 mod proof;
@@ -80,6 +82,7 @@ pub use error::EngineError;
 pub use extremes::Extremes;
 pub use motion::{Exponent, Fundamental, Motion, MotionKind, Multiplier};
 pub use options::{Averaged, Options, StartState, Until};
+pub use orbit::{Along, Branch, BranchEnd, BranchError, BranchPoint, Orbit, OrbitError, Special};
 pub use proof::Proof;
 pub use response::{Counts, CycleRates, Method, Observed, Response};
 pub use run::{event_driven, fixed_step, fundamental_matrix, is_linear, steady_state};

@@ -35,6 +35,8 @@ pub use exponent::Exponent;
 pub use multipliers::{Fundamental, Multiplier};
 pub use name::{Motion, MotionKind};
 
-pub(super) use name::name;
+pub(super) use multipliers::Period;
+pub(super) use name::{kind, name};
+pub(super) use recurrence::{Scale, candidates, closest};
 pub(super) use settled::settled;
-pub(super) use tape::{Instant, Jump, Kick, Tape};
+pub(super) use tape::{End, Instant, Jump, Kick, Tape};

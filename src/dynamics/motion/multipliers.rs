@@ -48,14 +48,18 @@ impl Fundamental {
 }
 
 /// The map of a period about the run, in units of the motion.
-pub(super) struct Period {
-    matrix: DMatrix<f64>,
+pub(in crate::dynamics) struct Period {
+    pub(in crate::dynamics) matrix: DMatrix<f64>,
     /// What its determinant has to be.
     contraction: f64,
 }
 
 impl Period {
-    pub(super) fn new<'t>(system: &HybridSystem, scale: &Scale, cycles: impl Iterator<Item = &'t Cycle>) -> Self {
+    pub(in crate::dynamics) fn new<'t>(
+        system: &HybridSystem,
+        scale: &Scale,
+        cycles: impl Iterator<Item = &'t Cycle>,
+    ) -> Self {
         let mut tangent = Tangent::new(system);
         let size = tangent.size();
         let units: Vec<f64> = (0..size).map(|i| scale.unit(i)).collect();
@@ -71,7 +75,7 @@ impl Period {
     }
 
     /// All multipliers, largest first.
-    pub(super) fn multipliers(&self) -> Result<Vec<Multiplier>, EngineError> {
+    pub(in crate::dynamics) fn multipliers(&self) -> Result<Vec<Multiplier>, EngineError> {
         let size = self.matrix.nrows();
         let [_, t] = schur(self.matrix.clone())?;
         let mut multipliers = Vec::with_capacity(size);
@@ -98,7 +102,7 @@ impl Period {
     }
 
     /// |det M − e^(∫ tr) Π ε²|, over the product of the columns' lengths: the most that the determinant could be.
-    pub(super) fn residual(&self) -> f64 {
+    pub(in crate::dynamics) fn residual(&self) -> f64 {
         let lengths: f64 = self.matrix.column_iter().map(|column| column.norm()).product();
         let off = (self.matrix.determinant() - self.contraction).abs();
         if off == 0.0 { 0.0 } else { off / lengths.max(self.contraction) }

@@ -244,7 +244,7 @@ fn closes(system: &HybridSystem, scale: &Scale, tape: &Tape, period: usize) -> R
 }
 
 /// What comes again after so many cycles.
-fn kind(system: &HybridSystem, tape: &Tape, period: usize) -> MotionKind {
+pub(in crate::dynamics) fn kind(system: &HybridSystem, tape: &Tape, period: usize) -> MotionKind {
     let periods = period as u32;
     let contacts = tape.last(period).map(|cycle| cycle.contacts).sum();
     let visited = || {

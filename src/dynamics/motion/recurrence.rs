@@ -10,8 +10,12 @@ const LONGEST: usize = 32;
 /// Periods that are tried by their multipliers.
 const TRIED: usize = 4;
 
+/// Share of the units of structure and particles that those of the other are at least: a stop is a particle that does not move.
+const LEAST: f64 = 1e-2;
+
 /// The motion's own units: what its lengths and speeds reach, of structure and particles each.
-pub(super) struct Scale {
+#[derive(Debug, Clone)]
+pub(in crate::dynamics) struct Scale {
     /// Coordinates of the structure.
     order: usize,
     /// Coordinates of structure and particles.
@@ -22,7 +26,7 @@ pub(super) struct Scale {
 }
 
 impl Scale {
-    pub(super) fn new(system: &HybridSystem, reach: &Reach) -> Self {
+    pub(in crate::dynamics) fn new(system: &HybridSystem, reach: &Reach) -> Self {
         let order = system.mass.order;
         let half = order + system.particles.len();
         let reach = |first: usize, count: usize| {
@@ -43,20 +47,37 @@ impl Scale {
         Self { order, half, structure: one(some(structure, particles)), particles: one(some(particles, structure)) }
     }
 
+    /// Of one period, whose ends say little: the structure moves at `speed` on average.
+    pub(in crate::dynamics) fn of_period(system: &HybridSystem, reach: &Reach, speed: f64) -> Self {
+        let mut scale = Self::new(system, reach);
+        let moves = [speed * system.drive.period / TAU, speed];
+        for ((structure, particles), least) in scale.structure.iter_mut().zip(&mut scale.particles).zip(moves) {
+            *structure = structure.max(least).max(LEAST * *particles);
+            *particles = particles.max(LEAST * *structure);
+        }
+        scale
+    }
+
     /// The unit of number `i` of a state.
-    pub(super) fn unit(&self, i: usize) -> f64 {
+    pub(in crate::dynamics) fn unit(&self, i: usize) -> f64 {
         let of = if i % self.half < self.order { self.structure } else { self.particles };
         of[i / self.half]
     }
 
+    /// The unit that number `i` of a state rounds in, relative to its own: particles and structure move with each other.
+    pub(in crate::dynamics) fn rounds(&self, i: usize) -> f64 {
+        let kind = i / self.half;
+        self.structure[kind].max(self.particles[kind]) / self.unit(i)
+    }
+
     /// From one state to another.
-    pub(super) fn miss(&self, from: &End, to: &End) -> impl Iterator<Item = f64> {
+    pub(in crate::dynamics) fn miss(&self, from: &End, to: &End) -> impl Iterator<Item = f64> {
         let pairs = from.state.iter().zip(&to.state).enumerate();
         pairs.map(|(i, (from, to))| (to - from) / self.unit(i))
     }
 
     /// The largest part of the way from one state to another; infinite between different contacts.
-    pub(super) fn apart(&self, one: &End, other: &End) -> f64 {
+    pub(in crate::dynamics) fn apart(&self, one: &End, other: &End) -> f64 {
         if one.contacts != other.contacts {
             return f64::INFINITY;
         }
@@ -65,10 +86,17 @@ impl Scale {
 }
 
 /// Periods after which the last state has come again to within `near`, the shortest first.
-pub(super) fn candidates(scale: &Scale, ends: &[End], near: f64) -> Vec<usize> {
+pub(in crate::dynamics) fn candidates(scale: &Scale, ends: &[End], near: f64) -> Vec<usize> {
     let Some((last, before)) = ends.split_last() else { return Vec::new() };
     let close = before.iter().rev().take(LONGEST).enumerate().filter(|(_, end)| scale.apart(end, last) <= near);
     close.map(|(i, _)| i + 1).take(TRIED).collect()
+}
+
+/// The period after which the last state comes closest to itself, and how close.
+pub(in crate::dynamics) fn closest(scale: &Scale, ends: &[End]) -> Option<(usize, f64)> {
+    let (last, before) = ends.split_last()?;
+    let returns = before.iter().rev().take(LONGEST).enumerate().map(|(i, end)| (i + 1, scale.apart(end, last)));
+    returns.min_by(|a, b| a.1.total_cmp(&b.1))
 }
 
 /// The cycle after which every state comes again after `period` cycles, to within `tolerance`.
@@ -81,9 +109,7 @@ pub(super) fn settled_after(scale: &Scale, ends: &[End], period: usize, toleranc
 /// How much closer the states of the second half of a run come to their own past than those of the first, over the period of
 /// the closest return: 1 where the motion goes on as it is, less where it still settles.
 pub(super) fn closing(scale: &Scale, ends: &[End]) -> f64 {
-    let Some((last, before)) = ends.split_last() else { return f64::NAN };
-    let recent = before.iter().rev().take(LONGEST).enumerate().map(|(i, end)| (i + 1, scale.apart(end, last)));
-    let Some((period, _)) = recent.min_by(|a, b| a.1.total_cmp(&b.1)) else { return f64::NAN };
+    let Some((period, _)) = closest(scale, ends) else { return f64::NAN };
     let returns: Vec<f64> = (period..ends.len()).map(|i| scale.apart(&ends[i - period], &ends[i])).collect();
     let (first, second) = returns.split_at(returns.len() / 2);
     let mean = |part: &[f64]| part.iter().sum::<f64>() / part.len() as f64;

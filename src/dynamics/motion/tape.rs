@@ -15,28 +15,28 @@ const KEPT: usize = 4096;
 #[derive(Default)]
 pub(in crate::dynamics) struct Tape {
     /// The last cycles.
-    pub(super) cycles: VecDeque<Cycle>,
+    cycles: VecDeque<Cycle>,
     /// States at the ends of all cycles.
-    pub(super) ends: Vec<End>,
+    pub(in crate::dynamics) ends: Vec<End>,
     /// What they reach.
-    pub(super) reach: Reach,
+    pub(in crate::dynamics) reach: Reach,
     /// Exchanges of momentum in the event under way.
     jumps: Vec<Jump>,
 }
 
 /// One cycle of the drive.
 #[derive(Default)]
-pub(super) struct Cycle {
+pub(in crate::dynamics) struct Cycle {
     pub(super) steps: Vec<Step>,
     /// Numbers of its instants, one after the other: a list of its own for each would cost more than the run.
     numbers: Vec<f64>,
     /// Contacts made, stops hit among them.
-    pub(super) contacts: u64,
+    pub(in crate::dynamics) contacts: u64,
     /// Infinitely many impacts came to their end.
-    pub(super) chatter: bool,
+    pub(in crate::dynamics) chatter: bool,
     /// Particles struck at one instant: a moved start would put their impacts into one order or the other, and no single
     /// matrix says what comes of both.
-    pub(super) blurred: bool,
+    pub(in crate::dynamics) blurred: bool,
 }
 
 /// What happens to a tangent vector.
@@ -99,19 +99,19 @@ pub(in crate::dynamics) struct Kick {
 }
 
 /// The state at the end of a cycle.
-#[derive(Clone)]
+#[derive(Debug, Clone, PartialEq)]
 pub(in crate::dynamics) struct End {
     /// q, y, q′, y′.
-    pub(super) state: Vec<f64>,
-    pub(super) contacts: Vec<Contact>,
+    pub(in crate::dynamics) state: Vec<f64>,
+    pub(in crate::dynamics) contacts: Vec<Contact>,
 }
 
 /// The least and the largest of each number of the states so far.
 #[derive(Default)]
-pub(super) struct Reach(Vec<[f64; 2]>);
+pub(in crate::dynamics) struct Reach(Vec<[f64; 2]>);
 
 impl Reach {
-    fn take(&mut self, state: &[f64]) {
+    pub(in crate::dynamics) fn take(&mut self, state: &[f64]) {
         self.0.resize(state.len(), [f64::INFINITY, f64::NEG_INFINITY]);
         for ([low, high], x) in self.0.iter_mut().zip(state) {
             (*low, *high) = (low.min(*x), high.max(*x));
@@ -209,6 +209,26 @@ impl Tape {
         self.enter(Step::Event(Crossing { gap, before, jumps, after, force }));
     }
 
+    /// What the states at the ends of cycles and at their events reach, as far as those are known.
+    pub(in crate::dynamics) fn reach_with_events(&self, order: usize, particles: usize) -> Reach {
+        let mut reach = Reach::default();
+        self.ends.iter().for_each(|end| reach.take(&end.state));
+        for cycle in &self.cycles {
+            let events = cycle.steps.iter().filter_map(|step| match step {
+                Step::Event(crossing) => Some([&crossing.before, &crossing.after]),
+                Step::Flow(..) | Step::Timed(_) => None,
+            });
+            for at in events.flatten().map(|instant| cycle.at(instant, particles)) {
+                let mut state = vec![f64::NAN; 2 * (order + particles)];
+                state[..order].copy_from_slice(&at.p[..order]);
+                state[order + particles..2 * order + particles].copy_from_slice(&at.rate[..order]);
+                state[2 * order + particles..].copy_from_slice(at.particles);
+                reach.take(&state);
+            }
+        }
+        reach
+    }
+
     fn enter(&mut self, step: Step) {
         if let Some(cycle) = self.cycles.back_mut() {
             cycle.steps.push(step);
@@ -216,7 +236,7 @@ impl Tape {
     }
 
     /// The last `count` cycles that are kept.
-    pub(super) fn last(&self, count: usize) -> impl Iterator<Item = &Cycle> {
+    pub(in crate::dynamics) fn last(&self, count: usize) -> impl Iterator<Item = &Cycle> {
         self.cycles.range(self.cycles.len() - count.min(self.cycles.len())..)
     }
 }

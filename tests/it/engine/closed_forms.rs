@@ -313,15 +313,22 @@ impl Steady {
     }
 }
 
-#[test]
-pub(super) fn a_particle_that_lands_every_other_cycle_moves_as_the_closed_form_says() {
+/// A particle that lands every other cycle, in steady motion.
+pub(super) fn one_floor_impact() -> Steady {
     let (given, value) = open("one-floor-impact-per-2-period-b");
     let (mass, particle, e) = (given.number("base_mass"), given.number("particle_mass"), given.number("restitution"));
     let ball = damper(particle, f64::INFINITY, rigid(e));
     // Stated after the impact; before it the impulse is still in the particle.
     let impulse = value[2];
     let before = [value[3], 0.360_350_057_062_876_4 + impulse / mass, 1.146_568_363_381_879_4 - impulse / particle];
-    let steady = settle(&given, [30.0, GRAVITY], ball, value[0], before, 500);
+    settle(&given, [30.0, GRAVITY], ball, value[0], before, 500)
+}
+
+#[test]
+pub(super) fn a_particle_that_lands_every_other_cycle_moves_as_the_closed_form_says() {
+    let (given, value) = open("one-floor-impact-per-2-period-b");
+    let (mass, particle) = (given.number("base_mass"), given.number("particle_mass"));
+    let steady = one_floor_impact();
     let last = steady.last();
     close("phase", steady.omega * last.time, value[0], 1e-11);
     close("relative velocity before", last.approach, value[1], 1e-11);
@@ -363,13 +370,18 @@ pub(super) fn the_impact_damper_of_masri_and_caughey_moves_as_they_say() {
     }
 }
 
+/// An oscillator that hits a fixed stop once a cycle, in steady motion.
+pub(super) fn fixed_stop(given: &Case, value: &Expected, place: f64) -> Steady {
+    // A particle too heavy to be moved is the stop; 1e15 kg would recede by 2e-12 m in these hundred impacts.
+    let stop = damper(1e18, f64::INFINITY, rigid(given.number("restitution")));
+    settle(given, [20.0, 0.0], stop, value[1], [place, value[0], 0.0], 0)
+}
+
 #[test]
 pub(super) fn an_oscillator_that_hits_a_fixed_stop_moves_as_the_closed_form_says() {
     for (id, place) in [("fixed-stop-one-impact-b", 0.01), ("fixed-stop-one-impact-d", 0.0)] {
         let (given, value) = open(id);
-        // A particle too heavy to be moved is the stop; 1e15 kg would recede by 2e-12 m in these hundred impacts.
-        let stop = damper(1e18, f64::INFINITY, rigid(given.number("restitution")));
-        let steady = settle(&given, [20.0, 0.0], stop, value[1], [place, value[0], 0.0], 0);
+        let steady = fixed_stop(&given, &value, place);
         let last = steady.last();
         close(&format!("{id}, speed before"), -last.approach, value[0], 1e-11);
         close(&format!("{id}, phase"), steady.omega * last.time, value[1], 1e-11);

@@ -14,6 +14,7 @@ mod hard_cases;
 mod linear;
 mod long_runs;
 mod motion;
+mod orbits;
 mod precise;
 mod properties;
 mod random_scenes;

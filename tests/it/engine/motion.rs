@@ -30,7 +30,7 @@ fn motion(scene: &Scene, start: StartState, skip: u32, average: u32) -> Motion {
 }
 
 /// Real parts, summed, and moduli, multiplied.
-fn trace_and_product(multipliers: &[Multiplier]) -> [f64; 2] {
+pub(super) fn trace_and_product(multipliers: &[Multiplier]) -> [f64; 2] {
     let trace = multipliers.iter().map(|it| it.modulus * it.angle.cos()).sum();
     [trace, multipliers.iter().map(|it| it.modulus).product()]
 }
@@ -73,49 +73,49 @@ fn a_ball_on_a_table_has_the_trace_and_determinant_of_the_impact_map() {
 }
 
 /// A table so heavy that a ball does not move it, damped to half of its critical damping, on its forced orbit.
-struct Table {
-    omega: f64,
+pub(super) struct Table {
+    pub(super) omega: f64,
     /// Of its motion A sin(ω t − δ).
     amplitude: f64,
-    lag: f64,
+    pub(super) lag: f64,
     restitution: f64,
     damping: f64,
 }
 
 impl Table {
-    fn new(restitution: f64, acceleration: f64) -> Self {
+    pub(super) fn new(restitution: f64, acceleration: f64) -> Self {
         let (omega, stiffness): (f64, f64) = (60.0, 1000.0);
         let damping = stiffness.sqrt();
         let lag = (damping * omega).atan2(stiffness - omega * omega);
         Self { omega, amplitude: acceleration * GRAVITY / (omega * omega), lag, restitution, damping }
     }
 
-    fn period(&self) -> f64 {
+    pub(super) fn period(&self) -> f64 {
         TAU / self.omega
     }
 
     /// The table's place, velocity and acceleration.
-    fn at(&self, t: f64) -> [f64; 3] {
+    pub(super) fn at(&self, t: f64) -> [f64; 3] {
         let phase = self.omega * t - self.lag;
         let (a, w) = (self.amplitude, self.omega);
         [a * phase.sin(), a * w * phase.cos(), -a * w * w * phase.sin()]
     }
 
-    fn scene(&self) -> Scene {
+    pub(super) fn scene(&self) -> Scene {
         let force = self.amplitude * (1000.0 - self.omega * self.omega).hypot(self.damping * self.omega);
         let drive = Excitation::Harmonic { force, angular_frequency: self.omega };
         scene(base(1.0, 1000.0, self.damping), GRAVITY, damper(0.0, f64::INFINITY, rigid(self.restitution)), drive)
     }
 
     /// The ball so high above it, at rest relative to it.
-    fn start(&self, height: f64) -> StartState {
+    pub(super) fn start(&self, height: f64) -> StartState {
         let [x, v, _] = self.at(0.0);
         in_flight([x, v], [height, 0.0])
     }
 
     /// On its way to the impact of the orbit with one flight a period, `off` beside it: X″ falls there, and A cos φ ω =
     /// (1 − ε)/(1 + ε) gT/2.
-    fn on_orbit(&self, off: f64) -> StartState {
+    pub(super) fn on_orbit(&self, off: f64) -> StartState {
         let e = self.restitution;
         let half = 0.5 * GRAVITY * self.period();
         let phase = ((1.0 - e) / (1.0 + e) * half / (self.amplitude * self.omega)).acos();
@@ -126,7 +126,7 @@ impl Table {
     }
 
     /// What the table's own damping leaves of a disturbance in a period.
-    fn own_multiplier(&self) -> f64 {
+    pub(super) fn own_multiplier(&self) -> f64 {
         (-0.5 * self.damping * self.period()).exp()
     }
 

@@ -1,0 +1,358 @@
+//! A branch of periodic motions: from point to point, with its special points, until it ends.
+
+use super::corrector::{At, Path, length};
+use super::newton::closed;
+use super::shot::{Shot, absolute};
+use super::special::{self, Special};
+use super::{Orbit, OrbitError};
+use crate::dynamics::system::HybridSystem;
+
+/// A step below this share of the longest leads nowhere.
+const SHORTEST: f64 = 1e-11;
+/// A step grows by this after a point that was found.
+const GROWTH: f64 = 1.5;
+/// Points closer than this share of the longest step are not kept.
+const KEPT: f64 = 0.06;
+/// Tangents of neighbours differ by less than this cosine.
+const STRAIGHT: f64 = 0.9;
+/// Share of the way to the graze of a contact that slows down, that one step may go.
+const TOWARDS: f64 = 0.5;
+/// A contact slower than this, in units of the motion, is about to graze.
+const GRAZES: f64 = 1e-3;
+/// Halvings between a sequence of contacts and the next.
+const HALVINGS: usize = 60;
+/// Clearance in units of the motion, of a branch that ends where a contact begins.
+const TOUCHES: f64 = 1e-7;
+/// Points that the zero of the impact speed is extrapolated from.
+const EXTRAPOLATED: usize = 5;
+
+/// What a branch is followed along.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Along {
+    /// The parameter of its first orbit.
+    pub from: f64,
+    /// Where it ends at the latest.
+    pub to: f64,
+    /// The longest step, as a share of `from` to `to` and of the motion.
+    pub step: f64,
+    /// Points beyond which it is not followed.
+    pub points: usize,
+}
+
+/// Orbits side by side.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Branch<E> {
+    /// In the order of the branch.
+    pub points: Vec<BranchPoint>,
+    /// How it ends.
+    pub end: BranchEnd<E>,
+}
+
+/// An orbit of a branch.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BranchPoint {
+    /// The parameter.
+    pub parameter: f64,
+    /// The orbit there.
+    pub orbit: Orbit,
+    /// What happens there.
+    pub special: Option<Special>,
+}
+
+/// Why a branch goes no further than its last point.
+#[derive(Debug, Clone, PartialEq)]
+pub enum BranchEnd<E> {
+    /// It has come to an end of the range: to `to`, or back to `from`.
+    Range,
+    /// A contact begins or ends without speed here; the last point is as close to it as orbits are found.
+    Graze {
+        /// The parameter of the graze.
+        parameter: f64,
+    },
+    /// A contact has come to the instant at which the cycles of the drive begin: with the impulse given there, the motion after it
+    /// is another one; under a harmonic force, orbits are followed beyond it from another start.
+    CycleStart,
+    /// As many points as were asked for.
+    Points,
+    /// No orbit is found beyond the last point.
+    Orbit(OrbitError),
+    /// There is no system beyond the last point.
+    System(E),
+}
+
+/// Why there is no branch.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum BranchError<E> {
+    /// There is no orbit.
+    #[error(transparent)]
+    Orbit(#[from] OrbitError),
+    /// There is no system.
+    #[error("{0}")]
+    System(E),
+}
+
+impl<E> Branch<E> {
+    /// Follows an orbit in the parameter of `system_at`.
+    ///
+    /// # Errors
+    /// [`BranchError`], if there is no first point; beyond it nothing that was found is lost ([`BranchEnd`]).
+    pub fn follow(
+        system_at: impl FnMut(f64) -> Result<HybridSystem, E>,
+        orbit: &Orbit,
+        along: Along,
+    ) -> Result<Self, BranchError<E>> {
+        let mut path = Path { system_at, cycles: orbit.cycles, from: along.from, to: along.to };
+        let system = path.system(0.0)?;
+        let none = || OrbitError::NoConvergence { cycles: orbit.cycles, miss: f64::INFINITY };
+        let start = absolute(&system, &orbit.start).ok_or_else(none)?;
+        let (shot, distance) = closed(&system, start, orbit.cycles)?;
+        let at = path.begin(shot, distance)?;
+        Follower::new(path, along).run(at)
+    }
+
+    /// Follows the motion of twice the period that begins at a period doubling, from there to `along.to`; it exists on one side of the
+    /// doubling, and where that is not the side of `along.to` nothing is found but the doubling itself.
+    ///
+    /// # Errors
+    /// As [`Branch::follow`].
+    pub fn doubled(
+        system_at: impl FnMut(f64) -> Result<HybridSystem, E>,
+        doubling: &BranchPoint,
+        along: Along,
+    ) -> Result<Self, BranchError<E>> {
+        let cycles = doubling.orbit.cycles;
+        let mut path = Path { system_at, cycles: 2 * cycles, from: doubling.parameter, to: along.to };
+        let system = path.system(0.0)?;
+        let none = || OrbitError::NoConvergence { cycles, miss: f64::INFINITY };
+        let start = absolute(&system, &doubling.orbit.start).ok_or_else(none)?;
+        let (single, distance) = closed(&system, start, cycles)?;
+        // Neighbours of the doubled motion differ by the vector of the multiplier −1, and by no parameter.
+        let mut tangent = single.flipping().ok_or_else(none)?;
+        tangent.push(0.0);
+        let shot = Shot::new(&system, single.start.clone(), 2 * cycles, Some(&single.scale))?;
+        Follower::new(path, along).run(At { share: 0.0, shot, distance, tangent })
+    }
+}
+
+/// A branch under way.
+struct Follower<F> {
+    path: Path<F>,
+    along: Along,
+    points: Vec<BranchPoint>,
+    /// Share of the range and speed of the slowest contact at the last points, while it slows down.
+    slowing: Vec<[f64; 2]>,
+    /// Arc since the last point that was kept.
+    since: f64,
+    /// The present point is not among those that were kept.
+    pending: bool,
+    /// The present point is beyond a graze, where a branch may turn back with another sequence of contacts (a fold without a tangent).
+    turns: bool,
+}
+
+/// What comes after a point.
+enum Next<E> {
+    At(Box<At>),
+    /// The same point: the branch goes on to its other side.
+    Turn,
+    End(BranchEnd<E>),
+}
+
+impl<E, F: FnMut(f64) -> Result<HybridSystem, E>> Follower<F> {
+    fn new(path: Path<F>, along: Along) -> Self {
+        Self { path, along, points: Vec::new(), slowing: Vec::new(), since: 0.0, pending: false, turns: false }
+    }
+
+    fn run(mut self, mut at: At) -> Result<Branch<E>, BranchError<E>> {
+        let mut step = self.along.step;
+        self.keep(&at, None)?;
+        self.watch(&at);
+        loop {
+            if self.points.len() >= self.along.points {
+                return self.end(&at, BranchEnd::Points);
+            }
+            let tried = self.limited(&at, step);
+            match self.advance(&at, tried)? {
+                Ok(Next::At(next)) => {
+                    self.watch(&next);
+                    at = *next;
+                    step = (GROWTH * tried).min(self.along.step);
+                    if let Some(parameter) = self.graze(&at) {
+                        return self.end(&at, BranchEnd::Graze { parameter });
+                    }
+                }
+                Ok(Next::Turn) => at.tangent.iter_mut().for_each(|t| *t = -*t),
+                Ok(Next::End(end)) => return self.end(&at, end),
+                Err(_) if tried > SHORTEST * self.along.step => step = 0.5 * tried,
+                Err(BranchError::System(error)) => return self.end(&at, BranchEnd::System(error)),
+                Err(BranchError::Orbit(error)) => {
+                    let touches = at.shot.margin() <= TOUCHES;
+                    let parameter = self.path.parameter(at.share);
+                    let period = self.path.system(at.share)?.drive.period;
+                    let end = match error {
+                        _ if touches => BranchEnd::Graze { parameter },
+                        _ if at.shot.meets_its_ends(period) => BranchEnd::CycleStart,
+                        error => BranchEnd::Orbit(error),
+                    };
+                    return self.end(&at, end);
+                }
+            }
+        }
+    }
+
+    /// A step from a point; the error inside says that it was too long.
+    fn advance(&mut self, at: &At, step: f64) -> Result<Result<Next<E>, BranchError<E>>, BranchError<E>> {
+        let next = match self.path.correct(at, step) {
+            Ok(next) => next,
+            Err(error) => return Ok(Err(error)),
+        };
+        if next.shot.contacts() != at.shot.contacts() {
+            return self.change(at, next, step);
+        }
+        if turn(at, &next) < STRAIGHT {
+            let miss = next.shot.misses_by();
+            return Ok(Err(BranchError::Orbit(OrbitError::NoConvergence { cycles: self.path.cycles, miss })));
+        }
+        let specials = match special::between(&mut self.path, at, &next, step) {
+            Ok(specials) => specials,
+            Err(error) => return Ok(Err(error)),
+        };
+        let beyond = (next.share > 1.0).then_some(1.0).or((next.share < 0.0).then_some(0.0));
+        let inside = |at: &At| (0.0..=1.0).contains(&at.share);
+        for (special, at) in specials.iter().filter(|(_, at)| inside(at)) {
+            self.keep(at, Some(*special))?;
+        }
+        if let Some(end) = beyond {
+            let ends = [at.share - end, next.share - end];
+            let last = match special::zero(&mut self.path, at, step, ends, |at| Ok(at.share - end)) {
+                Ok(Some((_, last))) => last,
+                Ok(None) => return Ok(Ok(Next::End(BranchEnd::Range))),
+                Err(error) => return Ok(Err(error)),
+            };
+            let system = self.path.system(end)?;
+            let (shot, distance) = closed(&system, last.shot.start, self.path.cycles)?;
+            let orbit = shot.orbit(&system, distance)?;
+            self.pending = false;
+            self.points.push(BranchPoint { parameter: self.path.parameter(end), orbit, special: None });
+            return Ok(Ok(Next::End(BranchEnd::Range)));
+        }
+        self.since += step;
+        (self.pending, self.turns) = (true, false);
+        if self.since >= KEPT * self.along.step {
+            self.keep(&next, None)?;
+        }
+        Ok(Ok(Next::At(Box::new(next))))
+    }
+
+    /// The sequence of contacts changes within a step: where, and whether the branch goes on.
+    fn change(&mut self, at: &At, beyond: At, step: f64) -> Result<Result<Next<E>, BranchError<E>>, BranchError<E>> {
+        let contacts = at.shot.contacts();
+        let [mut low, mut high] = [0.0, step];
+        let (mut last, mut first) = (None, Some(beyond));
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (low + high);
+            if middle <= low || middle >= high {
+                break;
+            }
+            match self.path.correct(at, middle) {
+                Ok(point) if point.shot.contacts() == contacts => (low, last) = (middle, Some(point)),
+                Ok(point) => (high, first) = (middle, Some(point)),
+                Err(BranchError::Orbit(_)) => (high, first) = (middle, None),
+                Err(error) => return Ok(Err(error)),
+            }
+        }
+        if last.is_none() && self.turns {
+            self.turns = false;
+            return Ok(Ok(Next::Turn));
+        }
+        let edge = last.as_ref().unwrap_or(at);
+        match first {
+            Some(beyond) if turn(edge, &beyond) > 0.0 => {
+                let is_slow = |at: &At| slow_share(at).is_some_and(|share| share <= GRAZES);
+                // Else a contact passes the instant at which the period begins.
+                self.turns = is_slow(edge) || is_slow(&beyond);
+                if self.turns {
+                    self.keep(edge, Some(Special::Graze))?;
+                }
+                self.slowing.clear();
+                self.pending = true;
+                Ok(Ok(Next::At(Box::new(beyond))))
+            }
+            // Approached by shorter steps, from the side where it exists.
+            _ => Ok(Err(BranchError::Orbit(OrbitError::Grazes {
+                cycles: self.path.cycles,
+                miss: edge.shot.misses_by(),
+            }))),
+        }
+    }
+
+    /// Enters a point.
+    fn keep(&mut self, at: &At, special: Option<Special>) -> Result<(), BranchError<E>> {
+        let system = self.path.system(at.share)?;
+        let orbit = at.shot.orbit(&system, at.distance)?;
+        self.points.push(BranchPoint { parameter: self.path.parameter(at.share), orbit, special });
+        if special.is_none() {
+            (self.since, self.pending) = (0.0, false);
+        }
+        Ok(())
+    }
+
+    fn end(mut self, at: &At, end: BranchEnd<E>) -> Result<Branch<E>, BranchError<E>> {
+        let grazed = self.points.last().is_some_and(|last| last.special == Some(Special::Graze));
+        if self.pending && !(grazed && matches!(end, BranchEnd::Graze { .. })) {
+            self.keep(at, None)?;
+        }
+        if let (BranchEnd::Graze { .. }, Some(last)) = (&end, self.points.last_mut()) {
+            last.special = Some(Special::Graze);
+        }
+        Ok(Branch { points: self.points, end })
+    }
+
+    /// Remembers how a contact slows down.
+    fn watch(&mut self, at: &At) {
+        let Some(slowest) = at.shot.slowest() else { return self.slowing.clear() };
+        let speed = slowest.approach.abs();
+        if self.slowing.last().is_some_and(|[_, last]| speed >= *last) {
+            self.slowing.clear();
+        }
+        self.slowing.push([at.share, speed]);
+        if self.slowing.len() > EXTRAPOLATED {
+            self.slowing.remove(0);
+        }
+    }
+
+    /// A step that does not go all the way to the graze of a contact that slows down.
+    fn limited(&self, at: &At, step: f64) -> f64 {
+        let [.., before, last] = self.slowing[..] else { return step };
+        let along = (last[0] - before[0]).abs() / at.tangent[at.tangent.len() - 1].abs().max(f64::EPSILON);
+        let left = along * last[1] / (before[1] - last[1]);
+        if left > 0.0 { step.min((TOWARDS * left).max(SHORTEST * self.along.step)) } else { step }
+    }
+
+    /// The parameter at which the slowest contact has no speed left, once it is slow.
+    fn graze(&self, at: &At) -> Option<f64> {
+        let points = &self.slowing;
+        let is_slow = |[_, speed]: &[f64; 2]| at.shot.share_of_speed(*speed) <= GRAZES;
+        (points.len() == EXTRAPOLATED && points.last().is_some_and(is_slow)).then(|| {
+            let share = points.iter().enumerate().fold(0.0, |sum, (i, own)| {
+                let others = points.iter().enumerate().filter(|(k, _)| *k != i);
+                sum + others.fold(own[0], |weight, (_, other)| weight * other[1] / (other[1] - own[1]))
+            });
+            self.path.parameter(share)
+        })
+    }
+}
+
+/// Speed of the slowest contact, as a share of the motion's.
+fn slow_share(at: &At) -> Option<f64> {
+    at.shot.slowest().map(|contact| at.shot.share_of_speed(contact.approach))
+}
+
+/// Cosine of the angle between the tangents of two points.
+fn turn(one: &At, other: &At) -> f64 {
+    let count = one.tangent.len() - 1;
+    let here: Vec<f64> = (0..count)
+        .map(|i| one.tangent[i] * one.shot.scale.unit(i) / other.shot.scale.unit(i))
+        .chain([one.tangent[count]])
+        .collect();
+    here.iter().zip(&other.tangent).fold(0.0, |sum, (a, b)| sum + a * b) / length(&here)
+}

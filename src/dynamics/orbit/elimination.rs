@@ -1,0 +1,74 @@
+//! Linear equations by elimination with complete pivoting. Where they are singular, unknowns that they leave open are zero: a stop that
+//! nothing moves would do as well elsewhere, and stays where it is.
+
+use std::ops::Range;
+
+use nalgebra::DMatrix;
+
+/// Pivots below this share of the largest are none.
+const SINGULAR: f64 = 1e-11;
+
+/// A column that rather stays open is a pivot where it is larger than all others by this.
+const LATE: f64 = 1e-4;
+
+/// x of A x = b; `None` where a number is not finite. Of the unknowns that could be left open, those are that come `late`.
+pub(super) fn solve(mut a: DMatrix<f64>, mut b: Vec<f64>, late: &Range<usize>) -> Option<Vec<f64>> {
+    let size = b.len();
+    let mut order: Vec<usize> = (0..size).collect();
+    let mut rank = 0;
+    let mut largest: f64 = 0.0;
+    while rank < size {
+        let (mut most, mut place) = (0.0, (rank, rank));
+        for column in rank..size {
+            let weight = if late.contains(&order[column]) { LATE } else { 1.0 };
+            for row in rank..size {
+                let entry = a[(row, column)].abs();
+                if !entry.is_finite() {
+                    return None;
+                }
+                if rank == 0 {
+                    largest = entry.max(largest);
+                }
+                if entry > SINGULAR * largest && weight * entry > most {
+                    (most, place) = (weight * entry, (row, column));
+                }
+            }
+        }
+        if most == 0.0 {
+            break;
+        }
+        a.swap_rows(rank, place.0);
+        b.swap(rank, place.0);
+        a.swap_columns(rank, place.1);
+        order.swap(rank, place.1);
+        for row in rank + 1..size {
+            let factor = a[(row, rank)] / a[(rank, rank)];
+            if factor != 0.0 {
+                (rank..size).for_each(|column| a[(row, column)] -= factor * a[(rank, column)]);
+                b[row] -= factor * b[rank];
+            }
+        }
+        rank += 1;
+    }
+    let mut x = vec![0.0; size];
+    for row in (0..rank).rev() {
+        let rest = (row + 1..rank).fold(b[row], |rest, column| rest - a[(row, column)] * x[order[column]]);
+        x[order[row]] = rest / a[(row, row)];
+    }
+    x.iter().all(|x| x.is_finite()).then_some(x)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_equations_leave_open_is_zero() {
+        let free = DMatrix::from_row_slice(3, 3, &[2.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 3.0]);
+        assert_eq!(solve(free, vec![5.0, 0.0, 5.0], &(0..0)), Some(vec![2.0, 0.0, 1.0]));
+        let either = DMatrix::from_row_slice(2, 2, &[2.0, 4.0, 2.0, 4.0]);
+        assert_eq!(solve(either.clone(), vec![8.0, 8.0], &(0..1)), Some(vec![0.0, 2.0]));
+        assert_eq!(solve(either, vec![8.0, 8.0], &(1..2)), Some(vec![4.0, 0.0]));
+        assert_eq!(solve(DMatrix::from_element(1, 1, f64::NAN), vec![1.0], &(0..0)), None);
+    }
+}

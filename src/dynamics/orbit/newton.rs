@@ -1,0 +1,139 @@
+//! One orbit: Newton's method from a state next to it.
+
+use super::shot::{Shot, absolute};
+use super::{Orbit, OrbitError};
+use crate::dynamics::march;
+use crate::dynamics::motion::{End, MotionKind, Scale, candidates, closest};
+use crate::dynamics::states::States;
+use crate::dynamics::system::HybridSystem;
+use crate::dynamics::{EngineError, Options, StartState, budget};
+
+/// Distance from the orbit, in units of the motion, within which a state is on it.
+pub(super) const CLOSED: f64 = 1e-12;
+/// A step below this is rounding.
+const ROUNDING: f64 = 1e-15;
+/// Runs over the period.
+const MOST_RUNS: usize = 60;
+/// Halvings of a step that leads away.
+const HALVINGS: usize = 5;
+/// Share of the motion within which a state may be on its way to come again.
+const NEAR: f64 = 1e-2;
+/// Two states of a period are the same within this.
+const SAME: f64 = 1e-9;
+
+/// The orbit of so many cycles next to a state.
+pub(super) fn near(system: &HybridSystem, start: &StartState, cycles: u32) -> Result<Orbit, OrbitError> {
+    let start = match absolute(system, start) {
+        Some(start) => start,
+        // At rest: where a cycle of the run takes it.
+        None => last_of(system, &Options { skip: 0, average: cycles, ..Options::default() })?,
+    };
+    find(system, start, cycles)
+}
+
+/// The orbit that a run ends next to.
+pub(super) fn after(system: &HybridSystem, options: &Options) -> Result<Orbit, OrbitError> {
+    repeats(system)?;
+    let named = Options { motion: true, ..options.clone() };
+    let (response, tape) = budget::within(|| march::taped(system, &named, States::of(system)))?;
+    let scale = Scale::new(system, &tape.reach);
+    let mut error = match response.motion {
+        Some(motion) if motion.kind == MotionKind::Chaotic && motion.exponent.is_some() => {
+            motion.exponent.map(|exponent| OrbitError::Chaotic { exponent })
+        }
+        _ => None,
+    };
+    if error.is_none() {
+        for period in candidates(&scale, &tape.ends, NEAR) {
+            let last = tape.ends[tape.ends.len() - 1].clone();
+            match find(system, last, u32::try_from(period).unwrap_or(u32::MAX)) {
+                Ok(orbit) => return Ok(orbit),
+                Err(first) => error = error.or(Some(first)),
+            }
+        }
+    }
+    let (cycles, miss) = closest(&scale, &tape.ends).unwrap_or((0, f64::INFINITY));
+    Err(error.unwrap_or(OrbitError::NeverRepeats { cycles, miss }))
+}
+
+fn last_of(system: &HybridSystem, options: &Options) -> Result<End, EngineError> {
+    let (_, tape) = budget::within(|| march::taped(system, options, States::of(system)))?;
+    Ok(tape.ends.last().expect("a run has one cycle at least").clone())
+}
+
+fn repeats(system: &HybridSystem) -> Result<(), OrbitError> {
+    if system.drive.repeats { Ok(()) } else { Err(OrbitError::NoPeriod) }
+}
+
+/// The orbit next to a state, in its shortest period.
+pub(super) fn find(system: &HybridSystem, start: End, cycles: u32) -> Result<Orbit, OrbitError> {
+    repeats(system)?;
+    let (shot, distance) = closed(system, start, cycles)?;
+    let same = |part: &u32| {
+        cycles.is_multiple_of(*part) && shot.scale.apart(&shot.start, &shot.ends()[*part as usize - 1]) <= SAME
+    };
+    if let Some(part) = (1..cycles).find(same) {
+        let (shot, distance) = closed(system, shot.start, part)?;
+        return shot.orbit(system, distance);
+    }
+    shot.orbit(system, distance)
+}
+
+/// The run that closes, and how far it is from doing so.
+pub(super) fn closed(system: &HybridSystem, start: End, cycles: u32) -> Result<(Shot, f64), OrbitError> {
+    let mut shot = Shot::new(system, start, cycles, None)?;
+    let mut contacts = shot.contacts();
+    let (mut best, mut changed) = (f64::INFINITY, 0);
+    let mut runs = 1;
+    while runs < MOST_RUNS {
+        let miss = shot.misses_by();
+        best = best.min(miss);
+        let step = if miss.is_finite() { shot.step() } else { None };
+        let distance = step.as_ref().map_or(f64::INFINITY, |step| size(step));
+        if distance <= ROUNDING {
+            return Ok((shot, distance));
+        }
+        let mut next = None;
+        if let Some(step) = step {
+            let mut share = 1.0;
+            for _ in 0..HALVINGS {
+                runs += 1;
+                let part: Vec<f64> = step.iter().map(|x| share * x).collect();
+                if let Ok(tried) = Shot::new(system, shot.moved(&part), cycles, None) {
+                    // What rounding makes of it no longer shrinks.
+                    if distance <= CLOSED {
+                        let left = tried.step().map_or(f64::INFINITY, |step| size(&step));
+                        return Ok(if left < distance { (tried, left) } else { (shot, distance) });
+                    }
+                    if tried.misses_by() < (1.0 - 0.25 * share) * miss {
+                        next = Some(tried);
+                        break;
+                    }
+                }
+                share *= 0.5;
+            }
+        }
+        // Where no step leads nearer, the motion itself may.
+        let next = match next {
+            Some(next) => next,
+            None => {
+                runs += 1;
+                Shot::new(system, shot.end().clone(), cycles, None)?
+            }
+        };
+        let now = next.contacts();
+        changed += usize::from(now != contacts);
+        contacts = now;
+        shot = next;
+    }
+    // A sequence that settles does so at once; one that goes on changing is that of no orbit.
+    if changed > MOST_RUNS / 10 {
+        return Err(OrbitError::Grazes { cycles, miss: best });
+    }
+    Err(OrbitError::NoConvergence { cycles, miss: best })
+}
+
+/// The largest part of a step.
+pub(super) fn size(step: &[f64]) -> f64 {
+    step.iter().fold(0.0, |most, x| most.max(x.abs()))
+}

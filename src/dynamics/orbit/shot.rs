@@ -1,0 +1,255 @@
+//! One run over the period from a state at phase 0: by how much it misses itself, and the map about it.
+
+use std::ops::Range;
+
+use nalgebra::DMatrix;
+
+use super::{Orbit, OrbitError, elimination};
+use crate::dynamics::march;
+use crate::dynamics::motion::{End, Period, Scale, Tape, kind};
+use crate::dynamics::states::States;
+use crate::dynamics::system::{Contact, Event, EventKind, HybridSystem, Law, dot};
+use crate::dynamics::{Options, Response, StartState, budget};
+
+/// Away from the multiplier −1, so that the equations have a solution.
+const SHIFT: f64 = 1e-9;
+/// Each leaves a billionth of all other vectors.
+const INVERSE_ITERATIONS: usize = 3;
+
+/// Instants that are one, as a share of a cycle.
+const COINCIDES: f64 = 1e-6;
+
+/// A run over the period.
+pub(super) struct Shot {
+    pub(super) start: End,
+    pub(super) scale: Scale,
+    pub(super) map: Period,
+    /// P(x) − x in units of the motion.
+    pub(super) miss: Vec<f64>,
+    response: Response,
+    tape: Tape,
+}
+
+impl Shot {
+    /// From a state, in the given units or in those of the motion itself.
+    pub(super) fn new(
+        system: &HybridSystem,
+        start: End,
+        cycles: u32,
+        scale: Option<&Scale>,
+    ) -> Result<Self, OrbitError> {
+        let (response, tape) = shoot(system, &start, cycles)?;
+        if tape.last(cycles as usize).any(|cycle| cycle.blurred) {
+            return Err(OrbitError::StruckAtOnce);
+        }
+        let scale = scale.map_or_else(|| own_scale(system, &start, &response, &tape), Clone::clone);
+        Ok(Self::in_units(system, start, scale, response, tape))
+    }
+
+    fn in_units(system: &HybridSystem, start: End, scale: Scale, response: Response, tape: Tape) -> Self {
+        let map = Period::new(system, &scale, tape.last(tape.ends.len()));
+        let miss = scale.miss(&start, end(&tape)).collect();
+        Self { start, scale, map, miss, response, tape }
+    }
+
+    /// The same in units of this motion.
+    pub(super) fn in_own_units(self, system: &HybridSystem) -> Self {
+        let scale = own_scale(system, &self.start, &self.response, &self.tape);
+        Self::in_units(system, self.start, scale, self.response, self.tape)
+    }
+
+    /// Where it ends.
+    pub(super) fn end(&self) -> &End {
+        end(&self.tape)
+    }
+
+    /// States at the ends of its cycles.
+    pub(super) fn ends(&self) -> &[End] {
+        &self.tape.ends
+    }
+
+    /// The largest part of the miss; infinite where it ends in other contacts than it starts in.
+    pub(super) fn misses_by(&self) -> f64 {
+        self.scale.apart(&self.start, self.end())
+    }
+
+    /// Numbers of a state that are the particles' places.
+    pub(super) fn places(&self) -> Range<usize> {
+        let half = self.miss.len() / 2;
+        half - self.start.contacts.len()..half
+    }
+
+    /// 1 − M.
+    pub(super) fn closing(&self) -> DMatrix<f64> {
+        let size = self.miss.len();
+        DMatrix::identity(size, size) - &self.map.matrix
+    }
+
+    /// Newton's step to the orbit that closes.
+    pub(super) fn step(&self) -> Option<Vec<f64>> {
+        elimination::solve(self.closing(), self.miss.clone(), &self.places())
+    }
+
+    /// The vector that a period turns into its opposite, of length 1: that of the multiplier next to −1, by inverse iteration.
+    pub(super) fn flipping(&self) -> Option<Vec<f64>> {
+        let size = self.miss.len();
+        let shifted = DMatrix::identity(size, size) * (1.0 + SHIFT) + &self.map.matrix;
+        let mut vector = vec![1.0; size];
+        for _ in 0..INVERSE_ITERATIONS {
+            vector = elimination::solve(shifted.clone(), vector, &(0..0))?;
+            let length = dot(&vector, &vector).sqrt();
+            vector.iter_mut().for_each(|x| *x /= length);
+        }
+        Some(vector)
+    }
+
+    /// The start moved by a step in units of the motion.
+    pub(super) fn moved(&self, step: &[f64]) -> End {
+        let state = self.start.state.iter().zip(step).enumerate().map(|(i, (x, step))| x + step * self.scale.unit(i));
+        End { state: state.collect(), contacts: self.start.contacts.clone() }
+    }
+
+    pub(super) fn contacts(&self) -> Contacts {
+        contacts(&self.response)
+    }
+
+    /// The slowest contact with its speed; none after infinitely many.
+    pub(super) fn slowest(&self) -> Option<Event> {
+        if self.response.events.iter().any(|event| event.kind == EventKind::ChatterEnd) {
+            return None;
+        }
+        let made = |event: &&Event| match event.kind {
+            EventKind::FloorContact | EventKind::CeilingContact | EventKind::FloorStop | EventKind::CeilingStop => true,
+            EventKind::FloorRelease | EventKind::CeilingRelease | EventKind::StopRelease | EventKind::ChatterEnd => {
+                false
+            }
+        };
+        let events = self.response.events.iter().filter(made);
+        events.copied().min_by(|a, b| a.approach.abs().total_cmp(&b.approach.abs()))
+    }
+
+    /// A speed as a share of the motion's.
+    pub(super) fn share_of_speed(&self, speed: f64) -> f64 {
+        let half = self.miss.len() / 2;
+        speed.abs() / self.scale.unit(half).max(self.scale.unit(2 * half - 1))
+    }
+
+    /// A contact begins or ends as the period does: there it cannot be followed from one period to the next.
+    pub(super) fn meets_its_ends(&self, period: f64) -> bool {
+        let last = self.tape.ends.len() as u64 - 1;
+        self.response.events.iter().any(|event| {
+            (event.cycle == 0 && event.time <= COINCIDES * period)
+                || (event.cycle == last && event.time >= (1.0 - COINCIDES) * period)
+        })
+    }
+
+    /// By how much a surface would have to move for another sequence of contacts, as a share of the motion's length.
+    pub(super) fn margin(&self) -> f64 {
+        let half = self.miss.len() / 2;
+        self.response.proof.smallest_margin / self.scale.unit(0).max(self.scale.unit(half - 1))
+    }
+
+    /// The orbit that it closes to.
+    pub(super) fn orbit(&self, system: &HybridSystem, distance: f64) -> Result<Orbit, OrbitError> {
+        let cycles = self.tape.ends.len();
+        Ok(Orbit {
+            start: start_at(system, &self.start),
+            cycles: cycles as u32,
+            contacts: self.tape.last(cycles).map(|cycle| cycle.contacts).sum(),
+            kind: kind(system, &self.tape, cycles),
+            multipliers: self.map.multipliers()?,
+            residual: self.map.residual(),
+            distance,
+            response: self.response.clone(),
+        })
+    }
+}
+
+/// What is met, and by which particle, in any order: an event that moves across phase 0 changes nothing of it.
+pub(super) type Contacts = Vec<(usize, EventKind)>;
+
+fn contacts(response: &Response) -> Contacts {
+    let mut contacts: Contacts = response.events.iter().map(|event| (event.particle, event.kind)).collect();
+    contacts.sort_unstable();
+    contacts
+}
+
+/// P(x): the state so many cycles later, and the contacts on the way.
+pub(super) fn state_after(system: &HybridSystem, start: &End, cycles: u32) -> Result<(End, Contacts), OrbitError> {
+    let (response, tape) = shoot(system, start, cycles)?;
+    Ok((end(&tape).clone(), contacts(&response)))
+}
+
+/// What the motion of a period reaches.
+fn own_scale(system: &HybridSystem, start: &End, response: &Response, tape: &Tape) -> Scale {
+    let mut reach = tape.reach_with_events(system.mass.order, system.particles.len());
+    reach.take(&start.state);
+    let row = system.observed_rows.first().map_or(0.0, |row| row.iter().fold(0.0, |most: f64, x| most.max(x.abs())));
+    let speed = if row > 0.0 { response.window().rms_velocity() / row } else { 0.0 };
+    Scale::of_period(system, &reach, speed)
+}
+
+fn shoot(system: &HybridSystem, start: &End, cycles: u32) -> Result<(Response, Tape), OrbitError> {
+    let options = Options {
+        skip: 0,
+        average: cycles,
+        start: start_at(system, start),
+        record_events: usize::MAX,
+        ..Options::default()
+    };
+    Ok(budget::within(|| march::taped(system, &options, States::of(system)))?)
+}
+
+fn end(tape: &Tape) -> &End {
+    tape.ends.last().expect("a run has one cycle at least")
+}
+
+/// The state that a run starts from: relative to the faces, whose contacts follow from which side of them a particle is.
+pub(super) fn start_at(system: &HybridSystem, at: &End) -> StartState {
+    let n = system.mass.order;
+    let (places, rates) = at.state.split_at(n + system.particles.len());
+    let particles = system.particles.iter().enumerate().map(|(j, particle)| {
+        let relative = |contact: Contact| {
+            let side = contact.side();
+            let row = &side.face(particle).row;
+            let offset =
+                if contact.face(particle).is_some() && side != Contact::Floor.side() { particle.gap } else { 0.0 };
+            (places[n + j] - dot(row, &places[..n]) - offset, rates[n + j] - dot(row, &rates[..n]))
+        };
+        let mut contact = at.contacts[j];
+        let (mut gap, mut rate) = relative(contact);
+        let away = contact.side().away();
+        if contact.holds(particle) {
+            let stop = contact.side().face(particle).law.stop();
+            (gap, rate) = (stop.map_or(0.0, |stop| -away * stop.length), 0.0);
+        } else if contact.presses(particle) && away * gap > 0.0 {
+            contact = Contact::Flight;
+            (gap, rate) = relative(contact);
+        } else if contact == Contact::Flight {
+            let inside = |face: Contact| {
+                let resilient = matches!(face.face(particle).map(|face| face.law), Some(Law::Resilient { .. }));
+                resilient && face.side().away() * relative(face).0 < 0.0
+            };
+            if let Some(face) = [Contact::Floor, Contact::Ceiling].into_iter().find(|face| inside(*face)) {
+                contact = face;
+                (gap, rate) = relative(contact);
+            }
+        }
+        (contact, gap, rate)
+    });
+    StartState::Given { q: places[..n].to_vec(), rate: rates[..n].to_vec(), particles: particles.collect() }
+}
+
+/// The same state at rest in space: absolute places and rates.
+pub(super) fn absolute(system: &HybridSystem, start: &StartState) -> Option<End> {
+    let StartState::Given { q, rate, particles } = start else { return None };
+    let mut state = q.clone();
+    let sides = || particles.iter().zip(&system.particles).map(|(at, particle)| (at, at.0.side(), particle));
+    state.extend(sides().map(|((contact, gap, _), side, particle)| {
+        let offset = if *contact != Contact::Flight && side != Contact::Floor.side() { particle.gap } else { 0.0 };
+        dot(&side.face(particle).row, q) + offset + gap
+    }));
+    state.extend(rate);
+    state.extend(sides().map(|((.., speed), side, particle)| dot(&side.face(particle).row, rate) + speed));
+    Some(End { state, contacts: particles.iter().map(|(contact, ..)| *contact).collect() })
+}
