@@ -139,7 +139,9 @@ impl<const TAPED: bool> March<'_, TAPED> {
     /// A force comes to zero at one of the faces: its guard begins there.
     fn is_smooth(&mut self, j: usize, side: Side) {
         if self.sudden {
-        } else if self.contacts[j].side() == side {
+            return;
+        }
+        if self.contacts[j].side() == side {
             self.smooth[j] = true;
         } else {
             self.slipped = Some(Slipped { particle: j, order: 3 });
@@ -162,14 +164,13 @@ impl<const TAPED: bool> March<'_, TAPED> {
     }
 
     /// After a jump of velocities: whether each of the two faces goes on as it did.
-    pub(super) fn press_or_part_between(&mut self, j: usize) {
+    pub(super) fn press_or_part_between(&mut self, j: usize) -> Result<(), EngineError> {
         for side in [Side::Floor, Side::Ceiling] {
             let particle = &self.system.particles[j];
             let Law::Resilient { stiffness, no_tension, .. } = side.face(particle).law else { continue };
             let (here, away) = (self.relative_to(j, side), side.away());
             let push = -away * (stiffness * here.gap + self.damping_on(j, side) * here.rate);
-            // None of these makes a second face hold the particle.
-            let _always = match self.contacts[j].at(side, particle) {
+            match self.contacts[j].at(side, particle) {
                 Hold::Pressed if no_tension && push < 0.0 && self.is_compressed(j, side) => self.slip_between(j, side),
                 Hold::Pressed if (no_tension && push < 0.0) || (here.gap == 0.0 && away * here.rate > 0.0) => {
                     self.record(j, side.lost(), here.rate, here.rate);
@@ -177,8 +178,9 @@ impl<const TAPED: bool> March<'_, TAPED> {
                 }
                 Hold::Released if push > 0.0 => self.slip_between(j, side),
                 Hold::Pressed | Hold::Released | Hold::Held | Hold::Away => Ok(()),
-            };
+            }?;
         }
+        Ok(())
     }
 
     /// A bounce so low that the distance to this face, a difference of places, does not show it: the other face, which pushes the

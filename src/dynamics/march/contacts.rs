@@ -169,7 +169,7 @@ impl<const TAPED: bool> March<'_, TAPED> {
     }
 
     /// After a jump of velocities: decides the contact of a particle with a resilient face, as far as velocities do.
-    pub(super) fn press_or_part(&mut self, j: usize) {
+    pub(super) fn press_or_part(&mut self, j: usize) -> Result<(), EngineError> {
         let contact = self.contacts[j];
         if contact.is_between() {
             return self.press_or_part_between(j);
@@ -205,6 +205,7 @@ impl<const TAPED: bool> March<'_, TAPED> {
             }
             _ => {}
         }
+        Ok(())
     }
 
     /// A particle that lies at a resilient face without moving against it: what brings it there keeps it there.

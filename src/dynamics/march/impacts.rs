@@ -107,7 +107,7 @@ impl<const TAPED: bool> March<'_, TAPED> {
         for j in 0..self.particles.len() {
             // Whose state refers to a rigid face already.
             if !candidates.iter().any(|candidate| candidate.particle == j && !candidate.on_stop) {
-                self.press_or_part(j);
+                self.press_or_part(j)?;
             }
         }
         self.hold(candidates)?;
