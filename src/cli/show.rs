@@ -168,7 +168,7 @@ fn describe(study: &Study, item: &Item, section: Section, all: &mut Option<Vec<S
                 State::Failed(_) => "computed, with failed rows",
                 State::Stale(_) => "stale",
             };
-            format!("\nFingerprint {}\n({state})\n", item.fingerprint)
+            format!("\nFingerprint {}\n({state})\n", item.fingerprint())
         }
     }
 }

@@ -45,9 +45,12 @@ pub(super) fn update(layout: &Layout, args: &RunArgs, common: &Args) -> Result<E
         let known = study.known.values().map(|known| &known.heading.id);
         RunTimes::of(layout, study.items.iter().map(|item| &item.source.experiment.id).chain(known)).write(layout)?;
     }
-    let experiments = todo.len() - restored;
+    let (experiments, simulated) = (todo.len() - restored, !todo.is_empty());
     let done = Done { verb: "simulated", experiments, restored, problems: unsaved, tables_only: args.tables };
-    study.refresh();
+    // What was looked at while planning is still so where nothing was simulated.
+    if simulated {
+        study.refresh();
+    }
     conclude(&study, &args.choice, done)
 }
 

@@ -3,10 +3,9 @@
 //!
 //! Points are rounded to 13 significant digits: decades come out exactly, and on every machine alike.
 
-use super::recipe::{Parameter, ParameterValue};
+use super::recipe::{Parameter, ParameterValue, Takes};
 
 use super::diagnostic::{Findings, Span};
-use super::quantity::Dimension;
 use super::reader::{Choice, all, count, quantity, ratio, scalar};
 use super::word::word_of;
 use super::yaml::{Node, Value};
@@ -71,48 +70,33 @@ pub(super) fn value(node: &Node, parameter: Parameter, findings: &Findings) -> O
         Value::Scalar(text) => text.as_str(),
         _ => "",
     };
-    match (parameter, word) {
-        (Parameter::GapRatio | Parameter::WallStiffnessRatio, "infinite") => Some(ParameterValue::Infinite),
-        _ if !parameter.words().is_empty() => {
-            let known = parameter.words().iter().find(|known| word_of(**known) == word);
-            known.copied().or_else(|| {
-                let [one, other] = describe(parameter);
-                findings.wrong(node.span, format!("`{}` is neither {one} nor {other}", scalar(node, findings)?))
-            })
-        }
+    match parameter.takes() {
+        Takes::RatioOrInfinite if word == "infinite" => Some(ParameterValue::Infinite),
+        Takes::Words(known) => known.iter().copied().find(|known| word_of(*known) == word).or_else(|| {
+            let [one, other] = describe(known);
+            findings.wrong(node.span, format!("`{}` is neither {one} nor {other}", scalar(node, findings)?))
+        }),
         _ => size(node, parameter, findings).map(ParameterValue::Number),
     }
 }
 
 /// A value of a parameter that is a number, in SI.
 pub(super) fn size(node: &Node, parameter: Parameter, findings: &Findings) -> Option<f64> {
-    match dimension(parameter) {
-        Some(dimension) => quantity(node, dimension, findings),
-        None => ratio(node, findings),
-    }
-}
-
-/// What the numbers of a parameter are; `None` where they have no unit.
-pub(super) fn dimension(parameter: Parameter) -> Option<Dimension> {
-    match parameter {
-        Parameter::StopLength | Parameter::Length | Parameter::Width | Parameter::Thickness => Some(Dimension::Length),
-        Parameter::PulseDuration => Some(Dimension::Time),
-        Parameter::Force => Some(Dimension::Force),
-        Parameter::Impulse => Some(Dimension::Impulse),
-        Parameter::AngularFrequency => Some(Dimension::AngularFrequency),
-        _ => None,
+    match parameter.takes() {
+        Takes::Quantity(dimension) => quantity(node, dimension, findings),
+        Takes::Words(_) | Takes::Ratio | Takes::RatioOrInfinite => ratio(node, findings),
     }
 }
 
 /// The two words of a parameter that takes words.
-fn describe(parameter: Parameter) -> [String; 2] {
-    let word = |i: usize| parameter.words().get(i).map_or_else(String::new, |known| format!("`{}`", word_of(*known)));
+fn describe(words: &[ParameterValue]) -> [String; 2] {
+    let word = |i: usize| words.get(i).map_or_else(String::new, |known| format!("`{}`", word_of(*known)));
     [word(0), word(1)]
 }
 
 fn range(node: &Node, parameter: Parameter, findings: &Findings) -> Option<Vec<ParameterValue>> {
-    if !parameter.words().is_empty() {
-        let [one, other] = describe(parameter).map(|word| word.replace('`', ""));
+    if let Takes::Words(words) = parameter.takes() {
+        let [one, other] = describe(words).map(|word| word.replace('`', ""));
         return findings.wrong(node.span, format!("`{}` is swept over [{one}, {other}]", word_of(parameter)));
     }
     let choice = Choice::read(node, "a range", &["linear", "log", "step"], findings)?;

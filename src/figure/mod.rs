@@ -40,5 +40,5 @@ mod work_precision;
 pub use error::FigureError;
 pub use quoted::{Known, Quoted, QuotedAt};
 pub use render::{Beside, Picture, draw, draw_svg, draw_table, figure_stem};
-pub use sketch::sketch;
+pub use sketch::{is_sketched, sketch};
 pub use work_precision::work_precision;

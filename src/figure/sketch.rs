@@ -15,6 +15,15 @@ use crate::text::number::quantity;
 /// Nodes along a side, for node lines.
 const NODES: u32 = 48;
 
+/// True if there is something to draw: a single mass, or a structure with sides.
+#[must_use]
+pub fn is_sketched(scenes: &[Scene]) -> bool {
+    let drawn = |scene: &Scene| {
+        matches!(scene.structure, Structure::SingleMass(_)) || !scene.structure.model().sides().is_empty()
+    };
+    scenes.first().is_some_and(drawn)
+}
+
 /// The SVG of the scenes of an experiment; `None` without any.
 #[must_use]
 pub fn sketch(scenes: &[Scene]) -> Option<String> {

@@ -5,7 +5,7 @@ use super::extraction::{Along, Cells, Direction, Extraction, Meeting, NearestPas
 use super::line::{Position, common, lines};
 use super::selection::same;
 use super::text::{percent, significant};
-use super::view::{Absence, Cell, Source, View};
+use super::view::{Absence, Cell, Line, Source, View};
 use crate::measure::column_words;
 
 /// A number taken out of a table.
@@ -47,6 +47,7 @@ impl Extraction {
     /// Takes the number.
     pub(crate) fn take(&self, view: &View<'_>) -> Result<Extracted, Absence> {
         let line = |along: &Along| view.line(along.source(), &along.of, &along.over, None);
+        let at_top = |along: &Along, line: &Line| view.note_place(along.source(), &along.over, line.x[line.highest()]);
         Ok(match self {
             Self::Number(x) => Extracted { value: *x, run: 0.0, spread: 0.0, unit: String::new(), scale: None },
             Self::Cell(cells) => {
@@ -76,24 +77,29 @@ impl Extraction {
             }
             Self::Maximum(along) => {
                 let line = line(along)?;
+                at_top(along, &line);
                 Extracted::cell(line.maximum(), &line.unit)
             }
             Self::Minimum(along) => {
                 let line = line(along)?.inverted();
+                at_top(along, &line);
                 Extracted::cell(line.maximum(), &line.unit).times(-1.0)
             }
             Self::Argmax(along) => {
                 let line = line(along)?;
+                at_top(along, &line);
                 Extracted::place(line.top()?, line.over_unit)
             }
             Self::Argmin(along) => {
                 let line = line(along)?.inverted();
+                at_top(along, &line);
                 Extracted::place(line.top()?, line.over_unit)
             }
             Self::AtMaximum(word) => {
                 let line = view.line(word.source(), &word.of, &word.over, None)?;
                 let other = view.line(word.source(), &word.read, &word.over, None)?;
                 let top = line.x[line.highest()];
+                view.note_place(word.source(), &word.over, top);
                 let at = other.x.iter().position(|&x| same(x, top));
                 let at = at.ok_or_else(|| Absence::NoRow(format!("no `{}` at the maximum", word.read)))?;
                 Extracted::cell(other.y[at], &other.unit)
@@ -131,10 +137,12 @@ impl Extraction {
             }
             Self::LargestLead(word) => {
                 let lead = word.pair().lead(view, word.source())?;
+                view.note_place(word.source(), &word.over, lead.x[lead.highest()]);
                 Extracted::cell(lead.maximum(), &lead.unit)
             }
             Self::ArgmaxLead(word) => {
                 let lead = word.pair().lead(view, word.source())?;
+                view.note_place(word.source(), &word.over, lead.x[lead.highest()]);
                 Extracted::place(lead.top()?, lead.over_unit)
             }
             Self::NearestPassage(word) => word.take(view)?,

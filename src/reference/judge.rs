@@ -12,6 +12,7 @@ use super::entry::{Check, Entry, ReferenceFile, Tolerance, ToleranceSize};
 use super::extract::Extracted;
 use super::extraction::Extraction;
 use super::fit::Fit;
+use super::motion_behind::MotionBehind;
 use super::price::Price;
 use super::printed::Printed;
 use super::resonance::PrintedPeak;
@@ -28,7 +29,7 @@ pub fn judge(file: &ReferenceFile, tables: &Tables<'_>, fitted: &BTreeSet<String
     let priced = |entry: &Entry| {
         let reads = Reads::default();
         let judged = judge_entry(entry, &file.experiment, tables, fitted, &reads);
-        Judged { price: Price::of(&reads, tables), ..judged }
+        Judged { price: Price::of(&reads, tables), motion: MotionBehind::of(&reads, tables), ..judged }
     };
     file.entries.iter().map(priced).collect()
 }
@@ -101,6 +102,7 @@ pub(crate) fn judge_entry(
         robust: judgement.robust,
         moved: judgement.moved,
         price: Price::default(),
+        motion: MotionBehind::default(),
         role: Role::Neither,
     }
 }

@@ -55,6 +55,9 @@ pub(crate) fn monotone(claim: &Monotone, view: &View<'_>) -> Result<Decision, Ab
             reached = cell;
         }
     }
+    if largest.0 > 0.0 {
+        view.note_place(claim.source(), &claim.over, largest.1);
+    }
     let mut decision = tally.decision()?;
     if decision.outcome == Outcome::Holds {
         decision.found = if largest.0 > 0.0 {

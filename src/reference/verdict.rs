@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::fit::Fit;
+use super::motion_behind::MotionBehind;
 use super::price::Price;
 
 /// What became of an entry.
@@ -135,6 +136,9 @@ pub struct Judged {
     pub moved: Vec<Moved>,
     /// What was simulated for it.
     pub price: Price,
+    /// What moves how in the rows that decided it.
+    #[serde(default)]
+    pub motion: MotionBehind,
     /// Whether it had a say in the choice of inputs.
     pub role: Role,
 }

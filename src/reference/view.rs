@@ -76,14 +76,27 @@ pub(crate) struct Read {
 
 /// Cells that were looked at. Verdicts look at the same ones many times over: noting them again costs next to nothing.
 #[derive(Debug, Default)]
-pub(crate) struct Reads(RefCell<BTreeMap<String, OfTable>>);
+pub(crate) struct Reads {
+    tables: RefCell<BTreeMap<String, OfTable>>,
+    places: RefCell<Vec<Place>>,
+}
+
+/// A point of a curve that an entry speaks of.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Place {
+    /// The experiment whose table the curve stands in.
+    pub table: String,
+    /// What the curve is over.
+    pub over: String,
+    pub x: f64,
+}
 
 /// Of one table: by column and role, whether each row was looked at.
 type OfTable = BTreeMap<(usize, Role), Vec<bool>>;
 
 impl Reads {
     fn note(&self, table: &str, column: usize, role: Role, rows: &[usize]) {
-        let mut tables = self.0.borrow_mut();
+        let mut tables = self.tables.borrow_mut();
         if !tables.contains_key(table) {
             tables.insert(table.to_owned(), OfTable::new());
         }
@@ -97,13 +110,18 @@ impl Reads {
         }
     }
 
+    /// The points of curves that were spoken of, each once.
+    pub(crate) fn places(&self) -> Vec<Place> {
+        self.places.borrow().clone()
+    }
+
     /// One by one.
     pub(crate) fn cells(&self) -> BTreeSet<Read> {
         let of_column = |table: &str, (column, role): (usize, Role), seen: &[bool]| -> Vec<Read> {
             let rows = (0..seen.len()).filter(|&row| seen[row]);
             rows.map(|row| Read { table: table.to_owned(), column, role, row }).collect()
         };
-        let tables = self.0.borrow();
+        let tables = self.tables.borrow();
         let columns = tables.iter().flat_map(|(table, columns)| columns.iter().map(move |it| (table, it)));
         columns.flat_map(|(table, (key, seen))| of_column(table, *key, seen)).collect()
     }
@@ -114,7 +132,7 @@ impl Reads {
             let decisive = columns.iter().filter(|((_, role), _)| *role != Role::Filter);
             decisive.flat_map(|(_, seen)| (0..seen.len()).filter(|&row| seen[row])).collect()
         };
-        let tables = self.0.borrow();
+        let tables = self.tables.borrow();
         tables.iter().map(|(id, columns)| (id.clone(), rows(columns))).filter(|(_, rows)| !rows.is_empty()).collect()
     }
 }
@@ -377,6 +395,15 @@ impl<'a> View<'a> {
             Some(TableState::Stale) => Err(Absence::Broken(format!("the table of `{id}` is stale: run it again"))),
             Some(TableState::Failed(reason)) => Err(Absence::Broken(format!("`{id}` failed: {reason}"))),
             Some(TableState::NotRun) | None => Err(Absence::Broken(format!("`{id}` has not been run"))),
+        }
+    }
+
+    /// Notes that what the entry says of a curve is of this point.
+    pub(crate) fn note_place(&self, source: Source<'_>, over: &str, x: f64) {
+        let place = Place { table: source.table.unwrap_or(self.home).to_owned(), over: over.to_owned(), x };
+        let mut places = self.reads.places.borrow_mut();
+        if self.variant == BASELINE && !places.contains(&place) {
+            places.push(place);
         }
     }
 

@@ -1,6 +1,6 @@
 //! What the study says beside what came out.
 
-use crate::reference::{Comparison, Judged, Moved, Price, Role, Verdict};
+use crate::reference::{Comparison, Judged, MotionBehind, Moved, Price, Role, Verdict};
 use crate::text::number::{compact, signed, significant};
 
 use super::markdown::{Align, MarkdownTable, first_sentence, one_line};
@@ -74,9 +74,40 @@ pub(super) fn statements(judged: &[Judged]) -> String {
         let statement = format!("<a id=\"{}\"></a>{}", anchor(name(one)), one.statement);
         let why =
             if one.explanation.trim().is_empty() && agrees(one.verdict) { String::new() } else { explanation(one) };
-        table.row([statement, one.found.clone(), verdict(one), why]);
+        table.row([statement, here(one), verdict(one), why]);
     }
     table.finish()
+}
+
+/// What came out; where that decides nothing, with the motion that it is of.
+fn here(one: &Judged) -> String {
+    match one.motion.at.as_slice() {
+        at if one.verdict == Verdict::Undecidable && !at.is_empty() => {
+            format!("{}; motion at {}", one.found, at.join("; at "))
+        }
+        _ => one.found.clone(),
+    }
+}
+
+/// The motion behind a verdict: at the points that it speaks of, else of all rows that it reads.
+fn motion(one: &Judged) -> String {
+    let MotionBehind { kinds, at } = &one.motion;
+    if !at.is_empty() {
+        return format!("at {}", at.join("; at "));
+    }
+    let mut kinds: Vec<_> = kinds.iter().collect();
+    kinds.sort_by_key(|(_, rows)| std::cmp::Reverse(**rows));
+    match kinds.as_slice() {
+        [] => String::new(),
+        [(kind, rows)] => {
+            format!("{kind} in {}", if **rows == 1 { "its row".into() } else { format!("all {rows} rows") })
+        }
+        _ => kinds
+            .iter()
+            .map(|(kind, rows)| format!("{kind} in {}", counted(**rows as usize, "row", "rows")))
+            .collect::<Vec<_>>()
+            .join(", "),
+    }
 }
 
 /// The verdict with all that a reader has to know to believe it.
@@ -100,18 +131,22 @@ pub(super) fn uncertainties(judged: &[Judged]) -> String {
 }
 
 fn entries(judged: &[Judged]) -> String {
-    let mut table = MarkdownTable::new(&[
+    let mut columns = vec![
         ("Entry", Align::Left),
         ("Where", Align::Left),
         ("Used in fits", Align::Left),
         ("Depends on", Align::Left),
         ("Verdict kept with one assumption moved", Align::Left),
-    ]);
+    ];
+    let named = judged.iter().any(|one| !one.motion.kinds.is_empty());
+    columns.extend(named.then_some(("Motion", Align::Left)));
+    let mut table = MarkdownTable::new(&columns);
     for one in judged {
         let kept = one
             .robust
             .map_or_else(String::new, |(kept, run)| format!("in {kept} of {}", counted(run as usize, "run", "runs")));
-        table.row([entry(one), one.place.clone(), role(one).into(), rests_on(one.price), kept]);
+        let cells = [entry(one), one.place.clone(), role(one).into(), rests_on(one.price), kept];
+        table.row(cells.into_iter().chain(named.then(|| motion(one))));
     }
     table.finish()
 }

@@ -4,9 +4,10 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 
 use rayon::prelude::*;
+use serde_json::Value;
 
 use super::figures::{Said, picture, scene_name, shown, vector};
-use super::publication::{inputs, publication_reasons};
+use super::publication::{inputs, reasons_beside, shows_same_scene};
 use super::verdicts::Judgement;
 use super::views;
 use crate::atomic::{self, FileError};
@@ -72,6 +73,8 @@ struct Page<'a> {
     item: &'a Item,
     record: &'a Record,
     folder: String,
+    /// What figures and report depend on.
+    inputs: Value,
     stale: bool,
 }
 
@@ -152,7 +155,9 @@ fn page<'a>(study: &Study, item: &'a Item) -> Option<Page<'a>> {
         "" => "reports".to_owned(),
         folder => format!("reports/{folder}"),
     };
-    Some(Page { item, record, folder, stale: !publication_reasons(study, item).is_empty() })
+    let inputs = inputs(study, item, record);
+    let stale = !reasons_beside(study, item, record, &inputs).is_empty();
+    Some(Page { item, record, folder, inputs, stale })
 }
 
 /// The figures of a page.
@@ -182,10 +187,21 @@ fn names(page: &Page<'_>, figure: &FigureSpec) -> [(String, Form); 2] {
     [(Form::Svg, "svg"), (Form::Png, "png")].map(|(form, ending)| (format!("{}/{stem}.{ending}", page.folder), form))
 }
 
+/// Name of the drawing of what is simulated, within the study.
+fn scene_of(page: &Page<'_>) -> String {
+    format!("{}/{}", page.folder, scene_name(&page.item.source.experiment))
+}
+
 /// The drawing of what is simulated, by its name within the study.
 fn scene(study: &Study, page: &Page<'_>) -> Option<(String, String)> {
-    let experiment = &page.item.source.experiment;
-    Some((format!("{}/{}", page.folder, scene_name(experiment)), sketch(&views::scenes(study, experiment))?))
+    Some((scene_of(page), sketch(&views::scenes(study, &page.item.source.experiment))?))
+}
+
+/// The same as it is on disk, where it would come out the same.
+fn kept_scene(study: &Study, page: &Page<'_>) -> Option<(String, FileHash)> {
+    let old = page.record.publication.as_ref().filter(|old| shows_same_scene(old, &page.inputs))?;
+    let (name, hash) = old.files.get_key_value(&scene_of(page))?;
+    hash.matches(&study.layout.path(name)).then(|| (name.clone(), hash.clone()))
 }
 
 /// What the study says of an experiment, and what became of it.
@@ -332,7 +348,9 @@ fn write_page(
             }
         }
     }
-    if let Some((name, drawing)) = scene(study, page) {
+    if let Some((name, hash)) = kept_scene(study, page) {
+        files.insert(name, hash);
+    } else if let Some((name, drawing)) = scene(study, page) {
         published.written += usize::from(atomic::write_if_changed(&layout.path(&name), drawing.as_bytes())?);
         files.insert(name, FileHash::of(drawing.as_bytes()));
     }
@@ -354,8 +372,7 @@ fn write_page(
         let outputs = files.keys().cloned().chain([table_name(id), record_name(id)]).collect();
         published.experiments.insert(id.0.clone(), (outputs, summary));
     }
-    let inputs = inputs(study, page.item, page.record);
-    let publication = whole.then_some(Publication { inputs, files, shown });
+    let publication = whole.then(|| Publication { inputs: page.inputs.clone(), files, shown });
     let record = Record { publication, ..page.record.clone() };
     record.write(&layout.path(&record_name(id)))
 }

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use serde_json::{Value, json};
 
-use crate::study::{ASSUMPTIONS, Item, PRESENTATION_VERSION, Reason, Record, Study, differences};
+use crate::study::{ASSUMPTIONS, Item, PRESENTATION_VERSION, Publication, Reason, Record, Study, differences};
 
 /// All that figures and report of an experiment depend on, other experiments' verdicts aside: pages are text, made anew
 /// whenever anything at all has changed.
@@ -23,10 +23,14 @@ pub(super) fn inputs(study: &Study, item: &Item, record: &Record) -> Value {
 /// Why figures and report have to be made again; empty if they need not, or cannot because there is no table yet.
 #[must_use]
 pub fn publication_reasons(study: &Study, item: &Item) -> Vec<Reason> {
-    let Some(record) = item.record() else { return Vec::new() };
+    item.record().map_or_else(Vec::new, |record| reasons_beside(study, item, record, &inputs(study, item, record)))
+}
+
+/// The same, of what they depend on now.
+pub(super) fn reasons_beside(study: &Study, item: &Item, record: &Record, inputs: &Value) -> Vec<Reason> {
     let Some(publication) = &record.publication else { return vec![Reason::NeverPublished] };
     let id = &item.source.experiment.id;
-    let mut reasons = differences(&publication.inputs, &inputs(study, item, record), &|path| match path {
+    let mut reasons = differences(&publication.inputs, inputs, &|path| match path {
         ["experiment", ..] => item.source.file.clone(),
         ["assumptions", ..] => ASSUMPTIONS.into(),
         ["reference", ..] => format!("reference of {id}"),
@@ -42,4 +46,10 @@ pub fn publication_reasons(study: &Study, item: &Item) -> Vec<Reason> {
         }
     }
     reasons
+}
+
+/// True if the drawing of what is simulated is on disk and comes out the same: it depends on the scenes alone, and on how they
+/// are drawn.
+pub(super) fn shows_same_scene(old: &Publication, inputs: &Value) -> bool {
+    ["experiment", "assumptions", "presentation_version"].iter().all(|key| old.inputs[*key] == inputs[*key])
 }

@@ -128,7 +128,7 @@ impl Crate {
             "instrument": {"@id": "#shotdamp"},
             "object": inputs,
             "result": results,
-            "identifier": item.fingerprint,
+            "identifier": item.fingerprint(),
         });
         self.entities.insert(action.clone(), run);
         self.actions.push(json!({"@id": action}));

@@ -10,7 +10,7 @@ use super::prose;
 use super::verdicts::Judgement;
 use super::what_stands::PAGE as WHAT_STANDS;
 use crate::experiment::{AssumptionName, Experiment, FigureSpec};
-use crate::figure::sketch;
+use crate::figure::is_sketched;
 use crate::reference::Judged;
 use crate::report::{
     self, AccuracyLinks, AssumptionView, CheckView, CheckedEntry, ExperimentView, FigureView, PageView, Trouble,
@@ -187,7 +187,7 @@ fn figures(experiment: &Experiment) -> Vec<FigureView> {
 /// The drawing of what is simulated, where there is one.
 fn scene(experiment: &Experiment, scenes: &[Scene]) -> Vec<FigureView> {
     let caption = "What is simulated; of a sweep its first case, with all places of dampers and forces.".into();
-    let drawn = sketch(scenes).is_some();
+    let drawn = is_sketched(scenes);
     drawn.then(|| FigureView { link: scene_name(experiment), caption }).into_iter().collect()
 }
 

@@ -1,6 +1,6 @@
 //! Validated inputs as canonical JSON: equal inputs give equal text and equal hash; and the leaves in which two differ.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 
 use serde_json::Value;
 
@@ -13,19 +13,42 @@ pub fn fingerprint(inputs: &Value) -> String {
 /// One text for equal inputs: keys sorted, no space, shortest digits that read back to the same bits.
 #[must_use]
 pub fn canonical(inputs: &Value) -> String {
+    let mut text = String::new();
+    write_canonical(inputs, &mut text);
+    text
+}
+
+fn write_canonical(inputs: &Value, text: &mut String) {
     match inputs {
-        Value::Array(items) => format!("[{}]", items.iter().map(canonical).collect::<Vec<_>>().join(",")),
+        Value::Array(items) => {
+            text.push('[');
+            for (i, item) in items.iter().enumerate() {
+                text.push_str(if i == 0 { "" } else { "," });
+                write_canonical(item, text);
+            }
+            text.push(']');
+        }
         Value::Object(map) => {
             // Sorted here, whatever map the JSON crate was built with.
-            let sorted: BTreeMap<_, _> = map.iter().collect();
-            let pairs: Vec<_> = sorted
-                .into_iter()
-                .map(|(key, value)| format!("{}:{}", Value::from(key.as_str()), canonical(value)))
-                .collect();
-            format!("{{{}}}", pairs.join(","))
+            let mut sorted: Vec<_> = map.iter().collect();
+            sorted.sort_unstable_by_key(|(key, _)| *key);
+            text.push('{');
+            for (i, (key, value)) in sorted.into_iter().enumerate() {
+                text.push_str(if i == 0 { "" } else { "," });
+                write_leaf(&Value::from(key.as_str()), text);
+                text.push(':');
+                write_canonical(value, text);
+            }
+            text.push('}');
         }
-        leaf => leaf.to_string(),
+        leaf => write_leaf(leaf, text),
     }
+}
+
+fn write_leaf(leaf: &Value, text: &mut String) {
+    use std::fmt::Write;
+    // Writing to a text does not fail.
+    let _ = write!(text, "{leaf}");
 }
 
 /// A leaf in which two inputs differ.

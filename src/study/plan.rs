@@ -26,8 +26,6 @@ pub struct Item {
     pub variants: Vec<Variant>,
     /// All that its numbers depend on.
     pub simulation: Value,
-    /// Hash of [`Item::simulation`].
-    pub fingerprint: String,
     /// Whether it is to be simulated.
     pub state: State,
 }
@@ -56,9 +54,14 @@ impl Item {
         let used = used.unwrap_or_else(|| source.experiment.assumptions_used(sheet));
         let variants = variants(&source.experiment, &used, sheet, sensitivity);
         let simulation = simulation(&source, sheet, &used, &variants, sensitivity);
-        let fingerprint = fingerprint(&simulation);
         let state = state(layout, &source, &simulation);
-        Self { source, variants, used, simulation, fingerprint, state }
+        Self { source, variants, used, simulation, state }
+    }
+
+    /// Hash of [`Item::simulation`].
+    #[must_use]
+    pub fn fingerprint(&self) -> String {
+        fingerprint(&self.simulation)
     }
 
     /// Looks at what is on disk again.
@@ -100,7 +103,7 @@ impl Item {
             ("experiment", experiment.id.to_string()),
             ("title", experiment.title.clone()),
             ("section", experiment.source.section.clone().unwrap_or_default()),
-            ("fingerprint", self.fingerprint.clone()),
+            ("fingerprint", self.fingerprint()),
             ("solver_version", SOLVER_VERSION.to_string()),
             ("program", concat!("shotdamp ", env!("CARGO_PKG_VERSION")).to_owned()),
         ];

@@ -161,7 +161,7 @@ impl Shard {
             Some(shard) => return Err(NotThePart::OfAnotherShard(shard.clone())),
             None => return Err(NotThePart::OfNoShard),
         }
-        if table.metadata.get("fingerprint") != Some(&item.fingerprint) {
+        if table.metadata.get("fingerprint") != Some(&item.fingerprint()) {
             return Err(NotThePart::OtherInputs);
         }
         if item.source.experiment.optimise.is_none() && table.fingerprints.len() < table.rows() {

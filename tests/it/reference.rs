@@ -4,8 +4,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use shotdamp::reference::{
-    Judged, Price, Printed, ReferenceFile, TableState, Tables, Verdict, judge, load_reference, parse_reference,
-    self_test,
+    Judged, MotionBehind, Price, Printed, ReferenceFile, TableState, Tables, Verdict, judge, load_reference,
+    parse_reference, self_test,
 };
 use shotdamp::table::{Column, Data, Table};
 
@@ -138,6 +138,20 @@ fn a_verdict_tells_what_was_simulated_for_it() {
     let below = format!("where: {{force_ratio: {{to: 2.5}}}}\n{OPTIMUM}");
     assert_eq!(judged(&below, &table).price, Price { rows: 11, runs: 11, events: 110 });
     assert_eq!(judged_as(&entry(CELL), TableState::NotRun, &[]).price, Price::default());
+}
+
+#[test]
+fn a_maximum_tells_what_motion_it_is_of() {
+    let mut table = peak();
+    let rows = table.rows();
+    let top = table.floats("force_ratio").unwrap().iter().position(|x| (x - 2.5).abs() < 0.01).unwrap();
+    let motion = |row: usize| if row == top { "periodic 1:2" } else { "chaotic" };
+    table.columns.push(column("motion", "", Data::Text((0..rows).map(|row| motion(row).into()).collect())));
+    table.columns.push(column("largest_multiplier", "", Data::Float(vec![0.72; rows])));
+    let found = judged(OPTIMUM, &table).motion;
+    assert_eq!(found.kinds, [("chaotic".to_owned(), 20), ("periodic".to_owned(), 1)].into());
+    assert_eq!(found.at, ["f′ = 2.5: periodic 1:2, largest multiplier 0.72"]);
+    assert_eq!(judged(OPTIMUM, &peak()).motion, MotionBehind::default(), "where no motion was measured");
 }
 
 #[test]

@@ -13,7 +13,7 @@ mod slot;
 mod structure;
 
 pub use given::{Assumable, AssumptionName, AssumptionValue, Assumptions, Given};
-pub use parameter::{Parameter, ParameterValue};
+pub use parameter::{Parameter, ParameterValue, Takes};
 pub use parts::{
     ArrayRecipe, Carried, ContactDampingRatio, ContactDampingRecipe, DamperRecipe, ExcitationKind, ExcitationRecipe,
     Filling, FloorStiffness, ForcingOrNatural, GapRecipe, GapWord, ImpulseTime, ImpulseTimeRecipe, MassReading,

@@ -7,6 +7,7 @@ use super::parts::{
     ContactDampingRatio, ContactDampingRecipe, DamperRecipe, ExcitationKind, Filling, FloorStiffness, GapRecipe,
     MassReading, MassRecipe, Part, Recipe, RecipeError, StiffnessRecipe, StrengthRecipe, SurfaceRecipe, TimingRecipe,
 };
+use crate::experiment::quantity::Dimension;
 use crate::scene::{PulseShape, whole};
 
 /// What a sweep may vary. The earlier one varies slower.
@@ -106,90 +107,110 @@ pub enum ParameterValue {
     Optimised,
 }
 
+/// What a parameter is: one row of this table; reader, JSON Schema, table columns and pages follow from it.
+struct Description {
+    takes: Takes,
+    /// Symbol of the field, empty if it has none.
+    symbol: &'static str,
+    /// The part of a scene that it belongs to.
+    of: Option<Part>,
+}
+
+/// What values a parameter takes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Takes {
+    /// These words and no number.
+    Words(&'static [ParameterValue]),
+    /// Numbers with a unit.
+    Quantity(Dimension),
+    /// Dimensionless numbers.
+    Ratio,
+    /// Dimensionless numbers, or `infinite`.
+    RatioOrInfinite,
+}
+
+/// Of dampers the first stands for all.
+const DAMPER: Option<Part> = Some(Part::Damper(0));
+const STRUCTURE: Option<Part> = Some(Part::Structure);
+const EXCITATION: Option<Part> = Some(Part::Excitation);
+
 impl Parameter {
+    fn description(self) -> Description {
+        use Dimension::{AngularFrequency, Force, Impulse, Length, Time};
+        use ParameterValue as Value;
+        use Takes::{Quantity, Ratio, RatioOrInfinite, Words};
+        let (symbol, takes, of) = match self {
+            Self::ForceRatio => ("f′", Ratio, EXCITATION),
+            Self::BaseAmplitudeRatio => ("aω²/g", Ratio, EXCITATION),
+            Self::FrequencyRatio => ("ω′", Ratio, EXCITATION),
+            Self::MassRatio => ("m′", Ratio, DAMPER),
+            Self::GapRatio => ("h′", RatioOrInfinite, DAMPER),
+            Self::DampingRatio => ("c′", Ratio, STRUCTURE),
+            Self::FloorStiffnessRatio => ("kf/ks", Ratio, DAMPER),
+            Self::ContactDampingRatio => ("ζf", Ratio, DAMPER),
+            Self::WallStiffnessRatio => ("kw/ks", RatioOrInfinite, DAMPER),
+            Self::Stop => ("", Words(&[Value::With, Value::Without]), DAMPER),
+            Self::StopLength => ("δ", Quantity(Length), DAMPER),
+            Self::PulseDuration => ("", Quantity(Time), EXCITATION),
+            Self::Dampers => ("", Words(&[Value::With, Value::Without]), None),
+            Self::FloorTuning => ("", Words(&[Value::Tuned, Value::Untuned]), DAMPER),
+            Self::MassReading => ("", Words(&[Value::Total, Value::Modal]), DAMPER),
+            Self::Mode => ("", Ratio, None),
+            Self::ForcedMode => ("", Ratio, EXCITATION),
+            Self::Modes => ("", Ratio, STRUCTURE),
+            Self::Length | Self::Width | Self::Thickness => ("", Quantity(Length), STRUCTURE),
+            Self::Rayleigh => ("λ", Ratio, STRUCTURE),
+            Self::DamperCount | Self::ParticleShare => ("", Ratio, DAMPER),
+            Self::ForceX => ("xF/Lx", Ratio, EXCITATION),
+            Self::ForceY => ("yF/Ly", Ratio, EXCITATION),
+            Self::DamperX => ("x/Lx", Ratio, DAMPER),
+            Self::DamperY => ("y/Ly", Ratio, DAMPER),
+            Self::Force => ("F", Quantity(Force), EXCITATION),
+            Self::Impulse => ("J", Quantity(Impulse), EXCITATION),
+            Self::AngularFrequency => ("ω", Quantity(AngularFrequency), EXCITATION),
+            Self::Filling => ("", Words(&[Value::Uniform, Value::Optimised]), DAMPER),
+        };
+        Description { takes, symbol, of }
+    }
+
+    /// What values it takes.
+    #[must_use]
+    pub fn takes(self) -> Takes {
+        self.description().takes
+    }
+
     /// The words that it takes instead of numbers; none as a rule.
     #[must_use]
     pub fn words(self) -> &'static [ParameterValue] {
-        use ParameterValue as Value;
-        match self {
-            Self::Stop | Self::Dampers => &[Value::With, Value::Without],
-            Self::FloorTuning => &[Value::Tuned, Value::Untuned],
-            Self::MassReading => &[Value::Total, Value::Modal],
-            Self::Filling => &[Value::Uniform, Value::Optimised],
-            _ => &[],
+        match self.takes() {
+            Takes::Words(words) => words,
+            Takes::Quantity(_) | Takes::Ratio | Takes::RatioOrInfinite => &[],
         }
     }
 
     /// Unit symbol of its numbers, empty when dimensionless.
     #[must_use]
     pub fn unit(self) -> &'static str {
-        match self {
-            Self::StopLength | Self::Length | Self::Width | Self::Thickness => "m",
-            Self::PulseDuration => "s",
-            Self::Force => "N",
-            Self::Impulse => "N s",
-            Self::AngularFrequency => "rad/s",
-            _ => "",
+        match self.takes() {
+            Takes::Quantity(dimension) => dimension.unit(),
+            Takes::Words(_) | Takes::Ratio | Takes::RatioOrInfinite => "",
         }
     }
 
     /// Symbol of the field, empty if it has none.
     #[must_use]
     pub fn symbol(self) -> &'static str {
-        match self {
-            Self::ForceRatio => "f′",
-            Self::BaseAmplitudeRatio => "aω²/g",
-            Self::FrequencyRatio => "ω′",
-            Self::MassRatio => "m′",
-            Self::GapRatio => "h′",
-            Self::DampingRatio => "c′",
-            Self::FloorStiffnessRatio => "kf/ks",
-            Self::ContactDampingRatio => "ζf",
-            Self::WallStiffnessRatio => "kw/ks",
-            Self::StopLength => "δ",
-            Self::Rayleigh => "λ",
-            Self::ForceX => "xF/Lx",
-            Self::ForceY => "yF/Ly",
-            Self::DamperX => "x/Lx",
-            Self::DamperY => "y/Ly",
-            Self::Force => "F",
-            Self::Impulse => "J",
-            Self::AngularFrequency => "ω",
-            _ => "",
-        }
+        self.description().symbol
     }
 
     /// The part of a scene that it belongs to; of dampers the first stands for all.
     pub(crate) fn part(self) -> Option<Part> {
-        match self {
-            Self::Mode | Self::Dampers => None,
-            Self::DampingRatio | Self::Modes | Self::Length | Self::Width | Self::Thickness | Self::Rayleigh => {
-                Some(Part::Structure)
-            }
-            _ if self.is_of_dampers() => Some(Part::Damper(0)),
-            _ => Some(Part::Excitation),
-        }
+        self.description().of
     }
 
     /// True for what a clean structure has no use for.
     pub(crate) fn is_of_dampers(self) -> bool {
-        matches!(
-            self,
-            Self::MassRatio
-                | Self::GapRatio
-                | Self::FloorStiffnessRatio
-                | Self::ContactDampingRatio
-                | Self::WallStiffnessRatio
-                | Self::Stop
-                | Self::StopLength
-                | Self::FloorTuning
-                | Self::MassReading
-                | Self::Filling
-                | Self::DamperCount
-                | Self::ParticleShare
-                | Self::DamperX
-                | Self::DamperY
-        )
+        self.part() == DAMPER
     }
 }
 

@@ -7,8 +7,8 @@ use super::parts::{
 };
 use crate::experiment::definition::AxisScale;
 use crate::experiment::quantity::Dimension;
-use crate::experiment::range::{MOST_POINTS, dimension};
-use crate::experiment::recipe::Parameter;
+use crate::experiment::range::MOST_POINTS;
+use crate::experiment::recipe::{Parameter, Takes};
 use crate::experiment::refined;
 use crate::experiment::word::{from_word, word_of, words};
 use crate::measure::Measure;
@@ -91,9 +91,9 @@ fn paired() -> Value {
     not_empty(by_parameter("Ranges of equal length that go in step", Values::fixed))
 }
 
-fn by_parameter(about: &str, definition: impl Fn(&Values) -> String) -> Object {
+fn by_parameter(about: &str, definition: impl Fn(Values) -> String) -> Object {
     parameters().fold(Object::new(about), |object, (name, parameter)| {
-        let values = reference(&definition(&Values::of(parameter)));
+        let values = reference(&definition(Values::of(parameter)));
         // Beside a reference a description would not count.
         object.optional(name, json!({"description": describe(name), "allOf": [values]}))
     })
@@ -114,74 +114,59 @@ fn describe(name: &str) -> String {
     format!("{name}: {}", crate::text::words::of_column(name))
 }
 
-/// What values a parameter takes.
-enum Values {
-    Words(Vec<String>),
-    Quantity(Dimension),
-    Ratio,
-    RatioOrInfinite,
-}
+/// The definitions that values of one kind have: of one, of fixed ones, and of those that may be refined.
+#[derive(Clone, Copy)]
+struct Values(Takes);
 
 impl Values {
     fn of(parameter: Parameter) -> Self {
-        if !parameter.words().is_empty() {
-            return Self::Words(parameter.words().iter().map(|word| word_of(*word)).collect());
-        }
-        match (dimension(parameter), parameter) {
-            (Some(dimension), _) => Self::Quantity(dimension),
-            (None, Parameter::GapRatio | Parameter::WallStiffnessRatio) => Self::RatioOrInfinite,
-            (None, _) => Self::Ratio,
-        }
+        Self(parameter.takes())
     }
 
     /// The name of the definition of one value.
-    fn one(&self) -> String {
-        match self {
-            Self::Words(words) => words.join("_or_"),
-            Self::Quantity(dimension) => dimension.name().replace(' ', "_"),
-            Self::Ratio => "a_ratio".into(),
-            Self::RatioOrInfinite => "a_ratio_or_infinite".into(),
+    fn one(self) -> String {
+        match self.0 {
+            Takes::Words(words) => words.iter().map(|word| word_of(*word)).collect::<Vec<_>>().join("_or_"),
+            Takes::Quantity(dimension) => dimension.name().replace(' ', "_"),
+            Takes::Ratio => "a_ratio".into(),
+            Takes::RatioOrInfinite => "a_ratio_or_infinite".into(),
         }
     }
 
     /// Of fixed values.
-    fn fixed(&self) -> String {
+    fn fixed(self) -> String {
         format!("values_{}", self.one())
     }
 
     /// Of values that may also be refined.
-    fn any(&self) -> String {
+    fn any(self) -> String {
         format!("swept_{}", self.one())
     }
 
-    fn value(&self) -> Value {
-        match self {
-            Self::Words(words) => one_of_words("One of these", words),
-            Self::RatioOrInfinite => any_of("A ratio, or infinite", vec![self.size(), word("infinite")]),
-            Self::Quantity(_) | Self::Ratio => self.size(),
-        }
-    }
-
-    fn size(&self) -> Value {
-        match self {
-            Self::Quantity(dimension) => quantity("A value", *dimension),
-            _ => ratio("A ratio"),
+    fn value(self) -> Value {
+        match self.0 {
+            Takes::Words(words) => {
+                one_of_words("One of these", &words.iter().map(|word| word_of(*word)).collect::<Vec<_>>())
+            }
+            Takes::RatioOrInfinite => any_of("A ratio, or infinite", vec![ratio("A ratio"), word("infinite")]),
+            Takes::Quantity(dimension) => quantity("A value", dimension),
+            Takes::Ratio => ratio("A ratio"),
         }
     }
 
     /// One that is a number, by reference.
-    fn number(&self) -> Value {
-        match self {
-            Self::RatioOrInfinite => reference(&Self::Ratio.one()),
-            other => reference(&other.one()),
+    fn number(self) -> Value {
+        match self.0 {
+            Takes::RatioOrInfinite => reference(&Self(Takes::Ratio).one()),
+            _ => reference(&self.one()),
         }
     }
 
     /// One value, a range, or a list of both.
-    fn values(&self, may_be_refined: bool) -> Value {
+    fn values(self, may_be_refined: bool) -> Value {
         let about = "A value, a range, or a list of both";
         let mut forms = vec![reference(&self.one())];
-        let is_number = !matches!(self, Self::Words(_));
+        let is_number = !matches!(self.0, Takes::Words(_));
         if is_number {
             forms.push(range(&self.number()));
         }
