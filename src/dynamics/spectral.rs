@@ -336,7 +336,17 @@ pub(super) fn product<T: ComplexField + Copy>(a: &DMatrix<T>, b: &DMatrix<T>) ->
     let mut product = DMatrix::from_element(rows, b.ncols(), T::zero());
     let columns = product.as_mut_slice().chunks_exact_mut(rows.max(1));
     for (sums, factors) in columns.zip(b.as_slice().chunks_exact(b.nrows().max(1))) {
-        for (column, &factor) in a.as_slice().chunks_exact(rows.max(1)).zip(factors) {
+        let (fours, rest) = factors.as_chunks::<4>();
+        let (many, few) = a.as_slice().split_at(4 * fours.len() * rows);
+        // Four terms of a sum while it is at hand; in the order of all terms.
+        for (columns, &[e, f, g, h]) in many.chunks_exact(4 * rows.max(1)).zip(fours) {
+            let (front, back) = columns.split_at(2 * rows);
+            let ((p, q), (r, s)) = (front.split_at(rows), back.split_at(rows));
+            for ((((sum, &p), &q), &r), &s) in sums.iter_mut().zip(p).zip(q).zip(r).zip(s) {
+                *sum = *sum + p * e + q * f + r * g + s * h;
+            }
+        }
+        for (column, &factor) in few.chunks_exact(rows.max(1)).zip(rest) {
             sums.iter_mut().zip(column).for_each(|(sum, &entry)| *sum += entry * factor);
         }
     }
