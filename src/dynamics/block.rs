@@ -135,11 +135,11 @@ impl Block {
 
     /// No eigenvalue of this block and one of the other sum to less than this share of the larger.
     pub(crate) fn keeps_apart(&self, other: &Self, share: f64) -> bool {
+        let square = |[x, y]: [f64; 2]| x * x + y * y;
         self.eigenvalues().iter().all(|a| {
             other.eigenvalues().iter().all(|b| {
-                let sum = libm::hypot(a[0] + b[0], a[1] + b[1]);
-                let larger = libm::hypot(a[0], a[1]).max(libm::hypot(b[0], b[1]));
-                sum > share * larger
+                let larger = square(*a).max(square(*b));
+                square([a[0] + b[0], a[1] + b[1]]) > share * share * larger
             })
         })
     }

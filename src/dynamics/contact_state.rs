@@ -14,6 +14,7 @@ use super::EngineError;
 use super::cholesky::Cholesky;
 use super::contact::{Hold, Side};
 use super::load::{Load, Steady};
+use super::schur::Iteration;
 use super::spectral::Spectral;
 use super::system::{Contact, Face, HybridSystem, Law, Matrix, Particle, dot};
 
@@ -108,7 +109,9 @@ impl Modes {
         let face_of = |j: usize| contacts[j].face(&system.particles[j]).expect("a pressing particle has a face");
         let across = Across::all(system, contacts, damping, &attached);
         let accelerations = accelerations(system, contacts, &carried, &attached, &face_of, damping, &across);
-        let spectral = super::modes::split(&accelerations, &mass_of(system, mass, &attached, &face_of))?;
+        let stated = |j: &usize| face_damping(face_of(*j).law, None) == damping[*j];
+        let iteration = if attached.iter().all(stated) { Iteration::Library } else { Iteration::Own };
+        let spectral = super::modes::split(&accelerations, &mass_of(system, mass, &attached, &face_of), iteration)?;
         let columns = by_columns(&spectral, 2 * (n + attached.len()));
         let mut modes = Self {
             contacts: contacts.to_vec(),
@@ -186,9 +189,12 @@ impl Modes {
     }
 }
 
-/// Damping of the face that particle j's contact refers to, N s/m; half cycles put another one in its place.
+/// Damping of the face that particle j's contact refers to, N s/m; half cycles put another one in its place, while it is compressed:
+/// what moves freely, or is held, goes on in the contact state that it is in.
 pub(crate) fn contact_damping(system: &HybridSystem, contacts: &[Contact], j: usize, equivalent: Option<f64>) -> f64 {
-    face_damping(contacts[j].side().face(&system.particles[j]).law, equivalent)
+    let (particle, side) = (&system.particles[j], contacts[j].side());
+    let compressed = |_: &f64| matches!(contacts[j].at(side, particle), Hold::Pressed | Hold::Released);
+    face_damping(side.face(particle).law, equivalent.filter(compressed))
 }
 
 /// The way back from the blocks to so many coordinates and rates, column by column.

@@ -42,8 +42,8 @@ pub(crate) struct Flow {
     harmonic: Option<Steady>,
     /// Signals that are watched or measured.
     pub(crate) rows: Rows,
-    /// Closed forms of its integrals, where they keep their digits.
-    pub(crate) closed: Option<Closed>,
+    /// Closed forms of its integrals, where they keep their digits; worked out when they are asked for.
+    closed: OnceCell<Option<Closed>>,
     dissipation: OnceCell<Dissipation>,
 }
 
@@ -83,14 +83,10 @@ impl Flow {
             force,
             harmonic,
             rows: Rows::default(),
-            closed: None,
+            closed: OnceCell::new(),
             dissipation: OnceCell::new(),
         };
         flow.rows = Rows::new(system, &flow.modes, &flow.blocks, |row| flow.row(row));
-        let omega = flow.harmonic.as_ref().map(|steady| steady.omega);
-        if !is_resonant {
-            flow.closed = Closed::new(&flow.blocks, &flow.modes.spectral.matrices, omega);
-        }
         Ok(flow)
     }
 
@@ -98,8 +94,16 @@ impl Flow {
     pub(crate) fn size(&self) -> usize {
         self.modes.size()
             + self.rows.size()
-            + self.closed.as_ref().map_or(0, Closed::size)
+            + self.closed.get().and_then(Option::as_ref).map_or(0, Closed::size)
             + self.dissipation.get().map_or(0, Dissipation::size)
+    }
+
+    /// Closed forms of its integrals, where they keep their digits.
+    #[inline]
+    pub(crate) fn closed(&self) -> Option<&Closed> {
+        let omega = || self.harmonic.as_ref().map(|steady| steady.omega);
+        let solved = || Closed::new(&self.blocks, &self.modes.spectral.matrices, omega());
+        self.closed.get_or_init(|| if self.is_resonant { None } else { solved() }).as_ref()
     }
 
     /// The signal r·p.

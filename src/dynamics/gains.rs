@@ -169,6 +169,7 @@ impl Integrated {
 
 #[cfg(test)]
 mod tests {
+    use super::super::bank::Bank;
     use super::super::block::Phase;
     use super::super::integral::quadrature;
     use super::super::parabola::Parabola;
@@ -191,7 +192,7 @@ mod tests {
             Phase { value: v0 * x + v1 * y, rate: r0 * x + r1 * y }
         };
         let phases: Vec<Phase> = row.weights.iter().enumerate().map(phase).collect();
-        let sampled = quadrature(&blocks, &phases, parabola(-0.01 + level * 0.002), duration);
+        let sampled = quadrature(&blocks, &Bank::new(&blocks), &phases, parabola(-0.01 + level * 0.002), duration);
 
         let end = |(k, [p, q, r, s]): (usize, [f64; 4])| {
             let (kernel, a) = (blocks[k].kernel(duration), blocks[k].decay);

@@ -2,7 +2,8 @@
 //! without damping and for brief stretches, where the closed forms of [`super::gains`] lose their digits.
 
 use super::Sums;
-use super::block::{Block, Phase};
+use super::bank::Bank;
+use super::block::{Block, Kernel, Phase};
 use super::budget;
 use super::parabola::Parabola;
 
@@ -11,10 +12,14 @@ use super::parabola::Parabola;
 pub(crate) const BRIEF: f64 = 0.05;
 
 /// The measures of a signal with its parabola, by panels that are exact to rounding.
-pub(crate) fn quadrature(blocks: &[Block], start: &[Phase], rest: Parabola, duration: f64) -> Sums {
+pub(crate) fn quadrature(blocks: &[Block], bank: &Bank, start: &[Phase], rest: Parabola, duration: f64) -> Sums {
     // About a place on the way: the mean would do as well.
     let place = start.iter().fold(rest.p0, |sum, phase| sum + phase.value);
-    let [moved, square, velocity_square] = integrals(blocks, start, rest, duration, place);
+    sums(place, duration, integrals(blocks, bank, start, rest, duration, place))
+}
+
+/// The measures of a signal from its integrals about a place.
+pub(crate) fn sums(place: f64, duration: f64, [moved, square, velocity_square]: [f64; 3]) -> Sums {
     Sums {
         duration,
         displacement: place * duration + moved,
@@ -23,10 +28,58 @@ pub(crate) fn quadrature(blocks: &[Block], start: &[Phase], rest: Parabola, dura
     }
 }
 
+/// A signal to be integrated.
+pub(crate) struct Integrand {
+    /// Its shares, at the start.
+    pub(crate) shares: Vec<Phase>,
+    pub(crate) rest: Parabola,
+    pub(crate) place: f64,
+}
+
+/// The integrals of several signals over a few panels, which share the kernels of their nodes: shares move on from panel to panel.
+pub(crate) fn together(blocks: &[Block], bank: &Bank, signals: &mut [Integrand], duration: f64) -> Vec<[f64; 3]> {
+    let (count, places) = (panels(blocks, duration), bank.places());
+    let h = duration / count as f64;
+    let mut kernels = vec![Kernel::NONE; (GAUSS.len() + 1) * places];
+    let nodes = GAUSS.iter().map(|[x, _]| *x).chain([1.0]);
+    kernels.chunks_exact_mut(places).zip(nodes).for_each(|(kernels, x)| bank.kernels(blocks, x * h, kernels));
+    let (within, end) = kernels.split_at(GAUSS.len() * places);
+    let mut sums = vec![[0.0; 3]; signals.len()];
+    for (signal, sum) in signals.iter_mut().zip(&mut sums) {
+        for panel in 0..count {
+            if budget::spend(1) {
+                break;
+            }
+            for ([x, weight], kernels) in GAUSS.iter().zip(within.chunks_exact(places)) {
+                let t = (panel as f64 + x) * h;
+                let (mut value, mut rate) = (signal.rest.at(t) - signal.place, signal.rest.rate(t));
+                for ((block, phase), kernel) in blocks.iter().zip(&signal.shares).zip(kernels) {
+                    let now = block.advance(*phase, *kernel);
+                    value += now.value;
+                    rate += now.rate;
+                }
+                sum[0] += weight * h * value;
+                sum[1] += weight * h * value * value;
+                sum[2] += weight * h * rate * rate;
+            }
+            let moved = blocks.iter().zip(&mut signal.shares).zip(end);
+            moved.for_each(|((block, phase), kernel)| *phase = block.advance(*phase, *kernel));
+        }
+    }
+    sums
+}
+
 /// ∫ (s − place), ∫ (s − place)² and ∫ s′² of a signal.
-pub(crate) fn integrals(blocks: &[Block], start: &[Phase], rest: Parabola, duration: f64, place: f64) -> [f64; 3] {
-    let radius = blocks.iter().fold(0.0_f64, |largest, block| largest.max(block.radius));
-    let count = panels(radius, duration);
+pub(crate) fn integrals(
+    blocks: &[Block],
+    bank: &Bank,
+    start: &[Phase],
+    rest: Parabola,
+    duration: f64,
+    place: f64,
+) -> [f64; 3] {
+    let count = panels(blocks, duration);
+    let mut kernels = vec![Kernel::NONE; bank.places()];
     let h = duration / count as f64;
     let mut sum = [0.0; 3];
     for panel in 0..count {
@@ -36,8 +89,9 @@ pub(crate) fn integrals(blocks: &[Block], start: &[Phase], rest: Parabola, durat
         for [x, weight] in GAUSS {
             let t = (panel as f64 + x) * h;
             let (mut value, mut rate) = (rest.at(t) - place, rest.rate(t));
-            for (block, phase) in blocks.iter().zip(start) {
-                let now = block.advance(*phase, block.kernel(t));
+            bank.kernels(blocks, t, &mut kernels);
+            for ((block, phase), kernel) in blocks.iter().zip(start).zip(&kernels) {
+                let now = block.advance(*phase, *kernel);
                 value += now.value;
                 rate += now.rate;
             }
@@ -76,7 +130,8 @@ pub(crate) const GAUSS: [[f64; 2]; 10] = {
 };
 
 /// How many panels make the ten-point rule exact to rounding over `duration`: radius·panel ≤ 1.5.
-fn panels(radius: f64, duration: f64) -> usize {
+pub(crate) fn panels(blocks: &[Block], duration: f64) -> usize {
+    let radius = blocks.iter().fold(0.0_f64, |largest, block| largest.max(block.radius));
     // A squared signal turns twice as fast; a cap, since far beyond it the fast blocks have died away.
     ((2.0 * radius * duration / 3.0).ceil()).clamp(1.0, 20_000.0) as usize
 }

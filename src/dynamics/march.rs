@@ -20,7 +20,7 @@ use super::contact_state::{contact_damping, dampings};
 use super::extremes;
 use super::flow::{DrivePhase, Flow};
 use super::guards::{self, Contacts, Slipped};
-use super::integral::{integrals, quadrature};
+use super::integral::{self, quadrature};
 use super::mobility::Mobilities;
 use super::motion::{self, Fundamental, Tape};
 use super::parabola::Parabola;
@@ -35,6 +35,20 @@ use half_cycles::Half;
 
 /// Events at one instant beyond which the contact is declared undecidable.
 const MOST_EVENTS_AT_AN_INSTANT: u32 = 64;
+
+/// Panels that an integral may take before closed forms are cheaper, where a contact state is hardly ever visited twice.
+const FEW_PANELS: usize = 16;
+
+/// How the observed signals are integrated over a segment.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Integration {
+    /// From the ends of the visits of a contact state.
+    ByEnds,
+    /// Each by panels.
+    ByPanels,
+    /// By the few panels that half cycles integrate the acceleration by.
+    Together,
+}
 
 /// A run in progress.
 pub(crate) struct March<'a, const TAPED: bool> {
@@ -521,11 +535,11 @@ impl<'a, const TAPED: bool> March<'a, TAPED> {
                 self.pay_out();
                 self.visits.half = half;
             }
-            let closed = self.has_closed_forms();
-            if closed {
+            let integration = self.integration(length);
+            if integration == Integration::ByEnds {
                 self.visits.of(&self.flow).visit(&self.c, &self.c_end, self.level, length);
             }
-            if !closed || self.options.extremes {
+            if integration == Integration::ByPanels || self.options.extremes {
                 self.look_along(length);
             }
         }
@@ -536,28 +550,33 @@ impl<'a, const TAPED: bool> March<'a, TAPED> {
         {
             audit.segment(self.system, flow, &self.c, &self.search.kernels, Force { level: self.level, drive }, length);
         }
-        if let (Some(bend), false) = (flow.rows.bend, self.half.idle) {
-            let bends = self.signals.of(bend).0;
-            self.half.square += integrals(&flow.blocks, bends, Parabola::default(), length, 0.0)[1];
-            self.half.length += length;
+        if flow.rows.bend.is_some() {
+            self.sum_up_half_cycle(length);
         }
     }
 
     /// The integrals are differences of end values: not of motion without damping, nor between jumps of the force that follow
-    /// each other within a small part of the slowest turn.
-    fn has_closed_forms(&self) -> bool {
+    /// each other within a small part of the slowest turn; nor over the few turns for which half cycles leave a contact state as
+    /// it is, where panels are cheaper than the equations of its blocks.
+    fn integration(&self, length: f64) -> Integration {
         let drive = &self.system.drive;
-        self.flow.closed.is_some() && !self.flow.is_brief(drive.period / drive.ticks.len().max(1) as f64)
+        if self.equivalent.is_some() && integral::panels(&self.flow.blocks, length) <= FEW_PANELS {
+            Integration::Together
+        } else if self.flow.closed().is_some() && !self.flow.is_brief(drive.period / drive.ticks.len().max(1) as f64) {
+            Integration::ByEnds
+        } else {
+            Integration::ByPanels
+        }
     }
 
     /// What has to be taken from the observed signals themselves.
     fn look_along(&mut self, length: f64) {
-        let sampled = length > 0.0 && !self.has_closed_forms();
+        let sampled = length > 0.0 && self.integration(length) == Integration::ByPanels;
         let flow = &self.flow;
         for (of, &row) in self.response.observed.iter_mut().zip(&flow.rows.observed) {
             let (observed, rest) = flow.rows.evaluate(row, &self.c, self.level, flow.blocks.len());
             if sampled {
-                of.halves[self.visits.half].add(quadrature(&flow.blocks, &observed, rest, length));
+                of.halves[self.visits.half].add(quadrature(&flow.blocks, &flow.bank, &observed, rest, length));
             }
             if self.options.extremes {
                 extremes::take(&mut of.extremes, &flow.blocks, &observed, rest, length);

@@ -8,12 +8,13 @@
 use super::EngineError;
 use super::block::Block;
 use super::cholesky::Cholesky;
+use super::schur::Iteration;
 use super::spectral::Spectral;
 use super::system::Matrix;
 
 /// Splits (p, p′) with p″ = (`accelerations`) (p, p′) and the mass matrix `mass` of p into blocks: V, row by row, and
 /// W = V⁻¹, column by column.
-pub(crate) fn split(accelerations: &[Vec<f64>], mass: &Matrix) -> Result<Spectral, EngineError> {
+pub(crate) fn split(accelerations: &[Vec<f64>], mass: &Matrix, iteration: Iteration) -> Result<Spectral, EngineError> {
     let order = accelerations.len();
     let size = 2 * order;
     let free = |i: usize| accelerations.iter().all(|row| row[i] == 0.0 && row[order + i] == 0.0);
@@ -30,7 +31,7 @@ pub(crate) fn split(accelerations: &[Vec<f64>], mass: &Matrix) -> Result<Spectra
             matrix[(count + i) * 2 * count + count + j] = accelerations[row][order + column];
         }
     }
-    let inner = if count > 0 { Spectral::split(2 * count, &matrix)? } else { Spectral::default() };
+    let inner = if count > 0 { Spectral::split(2 * count, &matrix, iteration)? } else { Spectral::default() };
 
     let (within, width) = (inner.width(), inner.width() + 2 * rigid.len());
     let mut modes = Spectral {

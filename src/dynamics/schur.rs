@@ -14,15 +14,28 @@ const SWEEPS: usize = 30;
 /// Every so many sweeps without a result the shift is another one.
 const PATIENCE: usize = 10;
 
+/// Which iteration comes first.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Iteration {
+    /// The library's.
+    Library,
+    /// The one here, in fewer instructions: for contact states that are visited once.
+    Own,
+}
+
 /// Q and T.
-pub(super) fn schur(a: DMatrix<f64>) -> Result<[DMatrix<f64>; 2], EngineError> {
+pub(super) fn schur(a: DMatrix<f64>, first: Iteration) -> Result<[DMatrix<f64>; 2], EngineError> {
     let order = a.nrows();
-    if let Some(form) = Schur::try_new(a.clone(), f64::EPSILON, SWEEPS * order) {
-        let (q, t) = form.unpack();
-        return Ok([q, t]);
-    }
-    let (q, t) = Hessenberg::new(a).unpack();
-    Francis { q, t }.run().ok_or(EngineError::NoSchurForm { order })
+    let library = |a: DMatrix<f64>| Schur::try_new(a, f64::EPSILON, SWEEPS * order).map(|form| form.unpack().into());
+    let own = |a: DMatrix<f64>| {
+        let (q, t) = Hessenberg::new(a).unpack();
+        Francis { q, t }.run()
+    };
+    let form = match first {
+        Iteration::Library => library(a.clone()).or_else(|| own(a)),
+        Iteration::Own => own(a.clone()).or_else(|| library(a)),
+    };
+    form.ok_or(EngineError::NoSchurForm { order })
 }
 
 /// The iteration on a Hessenberg form.
@@ -88,7 +101,11 @@ impl Francis {
             if k > begin {
                 axis = [0, 1, 2].map(|i| if i < size { self.t[(k + i, k - 1)] } else { 0.0 });
             }
-            self.reflect(k, &axis[..size], end);
+            if size == 3 {
+                self.reflect(k, axis, end)
+            } else {
+                self.reflect(k, [axis[0], axis[1]], end)
+            }
             if k > begin {
                 (1..size).for_each(|i| self.t[(k + i, k - 1)] = 0.0);
             }
@@ -96,23 +113,28 @@ impl Francis {
     }
 
     /// Reflects the rows and columns from `k` on so that `axis` points along the first of them.
-    fn reflect(&mut self, k: usize, axis: &[f64], end: usize) {
+    fn reflect<const SIZE: usize>(&mut self, k: usize, axis: [f64; SIZE], end: usize) {
         let largest = axis.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
         if largest == 0.0 {
             return;
         }
-        let mut v: Vec<f64> = axis.iter().map(|x| x / largest).collect();
+        let mut v = axis.map(|x| x / largest);
         let length = v.iter().fold(0.0, |sum, x| sum + x * x).sqrt();
         v[0] += if v[0] < 0.0 { -length } else { length };
         let factor = 2.0 / v.iter().fold(0.0, |sum, x| sum + x * x);
-        for column in k.saturating_sub(1)..self.t.ncols() {
-            let share = factor * v.iter().enumerate().fold(0.0, |sum, (i, v)| sum + v * self.t[(k + i, column)]);
-            v.iter().enumerate().for_each(|(i, v)| self.t[(k + i, column)] -= share * v);
+        let order = self.t.nrows();
+        for column in self.t.as_mut_slice().chunks_exact_mut(order).skip(k.saturating_sub(1)) {
+            let entries = &mut column[k..k + SIZE];
+            let share = factor * v.iter().zip(&*entries).fold(0.0, |sum, (v, entry)| sum + v * entry);
+            entries.iter_mut().zip(v).for_each(|(entry, v)| *entry -= share * v);
         }
-        for (matrix, rows) in [(&mut self.t, end.min(k + 4)), (&mut self.q, usize::MAX)] {
-            for row in 0..rows.min(matrix.nrows()) {
-                let share = factor * v.iter().enumerate().fold(0.0, |sum, (i, v)| sum + v * matrix[(row, k + i)]);
-                v.iter().enumerate().for_each(|(i, v)| matrix[(row, k + i)] -= share * v);
+        for (matrix, rows) in [(&mut self.t, order.min(end.min(k + 4))), (&mut self.q, order)] {
+            let mut columns = matrix.as_mut_slice()[k * order..(k + SIZE) * order].chunks_exact_mut(order);
+            let mut columns: [&mut [f64]; SIZE] =
+                std::array::from_fn(|_| &mut columns.next().expect("one for each entry")[..rows]);
+            for row in 0..rows {
+                let share = factor * v.iter().zip(&columns).fold(0.0, |sum, (v, column)| sum + v * column[row]);
+                columns.iter_mut().zip(v).for_each(|(column, v)| column[row] -= share * v);
             }
         }
     }
@@ -125,7 +147,7 @@ impl Francis {
         if discriminant >= 0.0 {
             // (T − λ)(x, 1) = 0 in the second row, λ the eigenvalue nearer to the first entry.
             let x = half + discriminant.sqrt().copysign(half);
-            self.reflect(i, &[x, c], i + 2);
+            self.reflect(i, [x, c], i + 2);
             self.t[(i + 1, i)] = 0.0;
         }
     }
@@ -171,7 +193,7 @@ mod tests {
             }
             let (q, t) = Hessenberg::new(matrix.clone()).unpack();
             let largest = matrix.amax();
-            for [q, t] in [schur(matrix.clone()).unwrap(), Francis { q, t }.run().unwrap()] {
+            for [q, t] in [schur(matrix.clone(), Iteration::Library).unwrap(), Francis { q, t }.run().unwrap()] {
                 assert!((&q * q.transpose() - DMatrix::identity(2 * count, 2 * count)).amax() < 1e-13);
                 assert!((&q * &t * q.transpose() - &matrix).amax() < 1e-13 * largest, "seed {seed}");
                 for i in 2..2 * count {

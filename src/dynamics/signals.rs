@@ -177,19 +177,24 @@ impl Rows {
             unit[system.mass.order + modes.attached.iter().position(|&a| a == j)?] = 1.0;
             Some(signal(&unit))
         };
+        let faces = |particle: &Particle| {
+            let floor = padded(&particle.floor.row);
+            let ceiling = particle.ceiling.as_ref().filter(|_| particle.has_walls());
+            let ceiling = ceiling.map_or_else(|| floor.clone(), |face| padded(&face.row));
+            [floor, ceiling]
+        };
+        let faces: Vec<[Row; 2]> = system.particles.iter().map(faces).collect();
         for (j, particle) in system.particles.iter().enumerate() {
             let contact = modes.contacts[j];
             let side = contact.side();
-            let face = padded(&side.face(particle).row);
+            let [floor, ceiling] = &faces[j];
+            let face = if side == Side::Floor { floor } else { ceiling };
             let force = |row: &Row| match side.face(particle).law {
                 Law::Resilient { stiffness, .. } => row.mixed(blocks, stiffness, modes.damping[j]),
                 Law::Rigid { .. } => row.clone(),
             };
             let (first, second) = match contact {
-                Contact::Flight => {
-                    let ceiling = particle.ceiling.as_ref().map_or(face.clone(), |ceiling| padded(&ceiling.row));
-                    (face.fixed(blocks), ceiling.fixed(blocks))
-                }
+                Contact::Flight => (face.fixed(blocks), ceiling.fixed(blocks)),
                 Contact::FloorReleased | Contact::CeilingReleased | Contact::BothReleased => {
                     let fixed = face.fixed(blocks);
                     (fixed.clone(), force(&fixed))
@@ -222,9 +227,8 @@ impl Rows {
             let place = all.place(padded(row));
             all.observed.push(place);
         }
-        for (j, particle) in system.particles.iter().enumerate() {
-            let floor = all.place(padded(&particle.floor.row));
-            let ceiling = particle.ceiling.as_ref().map_or(floor, |face| all.place(padded(&face.row)));
+        for (j, [floor, ceiling]) in faces.into_iter().enumerate() {
+            let [floor, ceiling] = [all.place(floor), all.place(ceiling)];
             let compression = compression(j).map(|row| all.place(row));
             all.faces.push(FaceRows { floor, ceiling, compression });
         }

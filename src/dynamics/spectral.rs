@@ -8,7 +8,7 @@ use nalgebra::{ComplexField, DMatrix};
 
 use super::EngineError;
 use super::block::Block;
-use super::schur::schur;
+use super::schur::{Iteration, schur};
 
 /// e^(At) = V diag(e^(Bₖt)) W, with W = V⁻¹ where there are as many blocks as coordinates ask for.
 pub(crate) struct Spectral {
@@ -57,14 +57,14 @@ impl Spectral {
     }
 
     /// Splits `matrix` (row by row, of even `order`).
-    pub(crate) fn split(order: usize, matrix: &[f64]) -> Result<Self, EngineError> {
+    pub(crate) fn split(order: usize, matrix: &[f64], iteration: Iteration) -> Result<Self, EngineError> {
         if order == 2 {
             return Ok(Self::single(matrix));
         }
         let a = DMatrix::from_row_slice(order, order, matrix);
         let creeps = a.column_iter().any(|column| column.iter().all(|entry| *entry == 0.0));
         let norm = a.iter().fold(0.0_f64, |largest, x| largest.max(x.abs()));
-        let [mut q, mut t] = schur(a)?;
+        let [mut q, mut t] = schur(a, iteration)?;
         let firsts = gather(&mut q, &mut t);
         let (x, y) = decouple(&t, &firsts);
         if !(largest(&x) * largest(&y) < WORST_CONDITION) {
@@ -233,13 +233,16 @@ fn invert_again(v: &DMatrix<f64>, w: &mut DMatrix<f64>) {
 fn decouple(t: &DMatrix<f64>, firsts: &[usize]) -> (DMatrix<f64>, DMatrix<f64>) {
     let order = t.nrows();
     let mut x = DMatrix::identity(order, order);
+    let rows = t.transpose();
     for (j, &right) in firsts.iter().enumerate() {
         for &left in firsts[..j].iter().rev() {
             // T_ll X_lr − X_lr T_rr = −Σ T_lk X_kr over the blocks k between, and the right one itself.
             let mut load = [[0.0; 2]; 2];
             for (a, row) in load.iter_mut().enumerate() {
+                let between = &column(&rows, left + a)[left + 2..right + 2];
                 for (b, cell) in row.iter_mut().enumerate() {
-                    *cell = (left + 2..right + 2).fold(0.0, |sum, k| sum - t[(left + a, k)] * x[(k, right + b)]);
+                    let known = &column(&x, right + b)[left + 2..right + 2];
+                    *cell = between.iter().zip(known).fold(0.0, |sum, (t, x)| sum - t * x);
                 }
             }
             let pieces = [left, right].map(|first| Piece { first, size: 2 });
@@ -272,7 +275,11 @@ fn sylvester(t: &DMatrix<f64>, [left, right]: &[Piece; 2], load: &[[f64; 2]; 2])
             system[equation][4] = load[a][b];
         }
     }
-    let solution = solve_small(order, &mut system);
+    let solution = match order {
+        4 => solve_small::<4>(&mut system),
+        2 => solve_small::<2>(&mut system),
+        _ => solve_small::<1>(&mut system),
+    };
     let mut x = [[0.0; 2]; 2];
     for a in 0..rows {
         for b in 0..columns {
@@ -283,24 +290,24 @@ fn sylvester(t: &DMatrix<f64>, [left, right]: &[Piece; 2], load: &[[f64; 2]; 2])
 }
 
 /// Gaussian elimination with partial pivoting; a singular system gives infinities, which the condition check refuses.
-fn solve_small(order: usize, system: &mut [[f64; 5]; 4]) -> [f64; 4] {
-    for column in 0..order {
-        let pivot = (column..order)
+fn solve_small<const ORDER: usize>(system: &mut [[f64; 5]; 4]) -> [f64; 4] {
+    for column in 0..ORDER {
+        let pivot = (column..ORDER)
             .max_by(|&i, &j| system[i][column].abs().total_cmp(&system[j][column].abs()))
             .unwrap_or(column);
         system.swap(column, pivot);
-        for row in column + 1..order {
+        for row in column + 1..ORDER {
             let factor = system[row][column] / system[column][column];
-            for k in column..order {
+            for k in column..ORDER {
                 system[row][k] -= factor * system[column][k];
             }
             system[row][4] -= factor * system[column][4];
         }
     }
     let mut solution = [0.0; 4];
-    for row in (0..order).rev() {
+    for row in (0..ORDER).rev() {
         let mut sum = system[row][4];
-        for k in row + 1..order {
+        for k in row + 1..ORDER {
             sum -= system[row][k] * solution[k];
         }
         solution[row] = sum / system[row][row];
@@ -323,21 +330,47 @@ fn settle([p, q, r, s]: [f64; 4], norm: f64, creeps: bool) -> [f64; 4] {
     if q.abs() >= r.abs() { [0.0, q, 0.0, 0.0] } else { [0.0, 0.0, r, 0.0] }
 }
 
-/// Own loops: the library's product picks its kernel, and with it the last bit, by processor.
+/// Own loops, column by column: the library's product picks its kernel, and with it the last bit, by processor.
 pub(super) fn product<T: ComplexField + Copy>(a: &DMatrix<T>, b: &DMatrix<T>) -> DMatrix<T> {
-    DMatrix::from_fn(a.nrows(), b.ncols(), |i, j| (0..a.ncols()).fold(T::zero(), |sum, k| sum + a[(i, k)] * b[(k, j)]))
+    let rows = a.nrows();
+    let mut product = DMatrix::from_element(rows, b.ncols(), T::zero());
+    let columns = product.as_mut_slice().chunks_exact_mut(rows.max(1));
+    for (sums, factors) in columns.zip(b.as_slice().chunks_exact(b.nrows().max(1))) {
+        let (fours, rest) = factors.as_chunks::<4>();
+        let (many, few) = a.as_slice().split_at(4 * fours.len() * rows);
+        // Four terms of a sum while it is at hand; in the order of all terms.
+        for (columns, &[e, f, g, h]) in many.chunks_exact(4 * rows.max(1)).zip(fours) {
+            let (front, back) = columns.split_at(2 * rows);
+            let ((p, q), (r, s)) = (front.split_at(rows), back.split_at(rows));
+            for ((((sum, &p), &q), &r), &s) in sums.iter_mut().zip(p).zip(q).zip(r).zip(s) {
+                *sum = *sum + p * e + q * f + r * g + s * h;
+            }
+        }
+        for (column, &factor) in few.chunks_exact(rows.max(1)).zip(rest) {
+            sums.iter_mut().zip(column).for_each(|(sum, &entry)| *sum += entry * factor);
+        }
+    }
+    product
 }
 
 /// The inverse of a unit upper triangular matrix, column by column.
 pub(super) fn inverse_of_unit_upper<T: ComplexField + Copy>(x: &DMatrix<T>) -> DMatrix<T> {
     let order = x.nrows();
     let mut y = DMatrix::identity(order, order);
+    let rows = x.transpose();
     for j in 0..order {
         for i in (0..j).rev() {
-            y[(i, j)] = (i + 1..=j).fold(T::zero(), |sum, k| sum - x[(i, k)] * y[(k, j)]);
+            let terms = column(&rows, i)[i + 1..=j].iter().zip(&column(&y, j)[i + 1..=j]);
+            y[(i, j)] = terms.fold(T::zero(), |sum, (x, y)| sum - *x * *y);
         }
     }
     y
+}
+
+/// A column, as numbers that follow each other.
+fn column<T>(matrix: &DMatrix<T>, j: usize) -> &[T] {
+    let rows = matrix.nrows();
+    &matrix.as_slice()[j * rows..][..rows]
 }
 
 fn largest(m: &DMatrix<f64>) -> f64 {

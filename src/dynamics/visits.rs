@@ -46,7 +46,7 @@ impl Visits {
     /// Adds the integrals of all visits to the measures, and forgets them.
     pub(crate) fn pay_out(&mut self, displacement: bool, observed: &mut [Observed]) {
         for (flow, gains) in self.states.drain(..) {
-            let Some(closed) = &flow.closed else { continue };
+            let Some(closed) = flow.closed() else { continue };
             let integrated = closed.solve(&gains);
             for (of, &row) in observed.iter_mut().zip(&flow.rows.observed) {
                 of.halves[self.half].add(integrated.of(flow.rows.row(row), displacement));

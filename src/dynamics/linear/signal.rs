@@ -92,7 +92,7 @@ pub(super) fn integrals(
         let end_drive = drive_at(system, segment.begin + segment.length);
         let ends = [At { moments: &start, drive: segment.drive }, At { moments: &end, drive: end_drive }];
         let gained = |closed: &Closed| closed.solve(&gains(flow, ends, segment.level, segment.length));
-        let integrated = flow.closed.as_ref().filter(|_| !flow.is_brief(segment.length)).map(gained);
+        let integrated = flow.closed().filter(|_| !flow.is_brief(segment.length)).map(gained);
         for (row, sum) in rows.iter().zip(&mut sums) {
             sum.add(match &integrated {
                 Some(integrated) => integrated.of(flow.rows.row(row.index), displacement),

@@ -1,7 +1,9 @@
 //! Equivalent viscous damping: the half cycles of the observed acceleration, each of which sets the next one's dashpots.
 
-use super::March;
+use super::{Integration, March};
 use crate::dynamics::EngineError;
+use crate::dynamics::integral::{self, Integrand};
+use crate::dynamics::parabola::Parabola;
 
 /// An acceleration below this share of what it may become is zero: the crossing that ended the half cycle was smooth.
 const SMOOTH: f64 = 1e-9;
@@ -104,6 +106,32 @@ impl<const TAPED: bool> March<'_, TAPED> {
         };
         let places = self.q.iter().zip(flow.modes.spectral.to_blocks.chunks_exact(size)).take(flow.order);
         places.fold(0.0, |sum, (place, entries)| sum + ROUNDING * place.abs() * answer(entries))
+    }
+
+    /// Adds a segment to the half cycle, and to the measures what is integrated together with it.
+    #[cold]
+    pub(super) fn sum_up_half_cycle(&mut self, length: f64) {
+        let flow = &self.flow;
+        let together = self.integration(length) == Integration::Together;
+        let averaged = together && length > 0.0 && self.averaged.holds(self.cycle);
+        let follows = flow.rows.bend.filter(|_| !self.half.idle);
+        let bend = |row| Integrand { shares: self.signals.of(row).0.to_vec(), rest: Parabola::default(), place: 0.0 };
+        let observed = |row: &usize| {
+            let (shares, rest) = flow.rows.evaluate(*row, &self.c, self.level, flow.blocks.len());
+            let place = shares.iter().fold(rest.p0, |sum, share| sum + share.value);
+            Integrand { shares, rest, place }
+        };
+        let rows = flow.rows.observed.iter().filter(|_| averaged);
+        let mut signals: Vec<Integrand> = follows.map(bend).into_iter().chain(rows.map(observed)).collect();
+        let of = integral::together(&flow.blocks, &flow.bank, &mut signals, length);
+        let mut of = signals.iter().zip(of);
+        if follows.is_some() {
+            self.half.square += of.next().map_or(0.0, |(_, integrals)| integrals[1]);
+            self.half.length += length;
+        }
+        for (observed, (signal, integrals)) in self.response.observed.iter_mut().zip(of) {
+            observed.halves[self.visits.half].add(integral::sums(signal.place, length, integrals));
+        }
     }
 
     /// The RMS of a finished half cycle sets the damping of the next.

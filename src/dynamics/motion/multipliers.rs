@@ -6,7 +6,7 @@ use super::recurrence::Scale;
 use super::tangent::Tangent;
 use super::tape::{Cycle, Step, Tape};
 use crate::dynamics::EngineError;
-use crate::dynamics::schur::schur;
+use crate::dynamics::schur::{Iteration, schur};
 use crate::dynamics::system::HybridSystem;
 
 /// A Floquet multiplier; of a complex pair the one above the axis.
@@ -77,7 +77,7 @@ impl Period {
     /// All multipliers, largest first.
     pub(in crate::dynamics) fn multipliers(&self) -> Result<Vec<Multiplier>, EngineError> {
         let size = self.matrix.nrows();
-        let [_, t] = schur(self.matrix.clone())?;
+        let [_, t] = schur(self.matrix.clone(), Iteration::Library)?;
         let mut multipliers = Vec::with_capacity(size);
         let mut i = 0;
         while i < size {

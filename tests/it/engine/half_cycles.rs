@@ -12,12 +12,13 @@ pub(super) fn on_one_mass(dice: &mut Dice, damping_ratio: f64, dampers: usize) -
         let law = spring(dice.ratio(1e2, 1e5), 0.0);
         system.particles.push(particle(dice.ratio(0.005, 0.3), dice.ratio(1e-3, 0.5), vec![1.0], [law, law]));
     }
-    renewed(&mut system, [[0.0, dice.ratio(0.2, 20.0)], [dice.ratio(0.3, 10.0), dice.ratio(0.2, 20.0)]]);
+    let curve = [[0.0, dice.ratio(0.2, 20.0)], [dice.ratio(0.3, 10.0), dice.ratio(0.2, 20.0)]];
+    renewed(&mut system, &curve);
     system
 }
 
-fn renewed(system: &mut HybridSystem, curve: [[f64; 2]; 2]) {
-    system.drive.half_cycles = Some(HalfCycles { curve: Spline::through(&curve).expect("a curve") });
+fn renewed(system: &mut HybridSystem, curve: &[[f64; 2]]) {
+    system.drive.half_cycles = Some(HalfCycles { curve: Spline::through(curve).expect("a curve") });
 }
 
 fn settled(what: &str, system: &HybridSystem, options: &Options) -> Response {
@@ -33,7 +34,7 @@ pub(super) fn a_base_without_damping_counts_its_half_cycles() {
     let law = spring(1000.0, 0.0);
     system.particles.push(particle(0.05, 0.49, vec![1.0], [law, law]));
     system.drive = blows(0.2, 0.1);
-    renewed(&mut system, [[0.0, 2.0], [10.0, 0.5]]);
+    renewed(&mut system, &[[0.0, 2.0], [10.0, 0.5]]);
     settled("the plain one", &system, &cycles(125));
     for seed in 0..60 {
         let mut dice = Dice(seed);
@@ -94,7 +95,34 @@ pub(super) fn arrays_of_equal_light_dampers_have_contact_states_of_any_order() {
         let [first, last] = [dice.ratio(0.1, 50.0), dice.ratio(0.1, 50.0)];
         let curve = [[0.0, first], [dice.ratio(1.0, 30.0), last]];
         system.drive = blows(dice.between(0.05, 0.4), dice.ratio(0.01, 1.0) * (modes as f64).sqrt());
-        renewed(&mut system, curve);
+        renewed(&mut system, &curve);
         settled(&format!("seed {seed}"), &system, &cycles(3));
+    }
+}
+
+#[test]
+pub(super) fn no_array_is_refused_and_all_balance_whatever_their_order() {
+    // Contact states of order 8 to 40; curves through four and five points of 4 to 12 N s/m.
+    for seed in 0..400 {
+        let mut dice = Dice(1_000_000 + seed);
+        let (modes, count) = (2 + dice.between(0.0, 8.99) as usize, 2 + dice.between(0.0, 8.99) as usize);
+        let mut system = beam(modes, dice.ratio(10.0, 200.0), dice.between(0.0, 0.05));
+        let alike = dice.chance(0.5);
+        let any = |dice: &mut Dice| [dice.ratio(1e-3, 0.1), dice.ratio(3e2, 1e5), dice.ratio(1e-4, 0.1)];
+        let all = any(&mut dice);
+        for i in 0..count {
+            let place = if alike { (i + 1) as f64 / (count + 1) as f64 } else { dice.between(0.05, 0.95) };
+            let [mass, stiffness, gap] = if alike { all } else { any(&mut dice) };
+            let law = spring(stiffness, 0.0);
+            system.particles.push(particle(mass, gap, shape(modes, place), [law, law]));
+        }
+        let points = if dice.chance(0.5) { 4 } else { 5 };
+        let curve: Vec<[f64; 2]> = (0..points).map(|i| [0.2 + 2.0 * f64::from(i), dice.ratio(4.0, 12.0)]).collect();
+        system.drive = blows(dice.between(0.03, 0.1), dice.ratio(0.03, 1.0) * (modes as f64).sqrt());
+        renewed(&mut system, &curve);
+        let what = format!("seed {seed}, {modes} modes, {count} dampers");
+        let end = event_driven(&system, &cycles(2)).unwrap_or_else(|error| panic!("{what}: {error}"));
+        let balance = end.proof.momentum_residual.max(end.proof.energy_residual);
+        assert!(balance < 1e-9, "{what}: {:?}", end.proof);
     }
 }

@@ -223,6 +223,7 @@ const HARD_CASES: &[HardCase] = &[
             half_cycles::a_base_without_damping_counts_its_half_cycles,
             half_cycles::half_cycles_end_where_motion_has_died_away,
             half_cycles::arrays_of_equal_light_dampers_have_contact_states_of_any_order,
+            half_cycles::no_array_is_refused_and_all_balance_whatever_their_order,
         ],
     },
     HardCase {
