@@ -134,6 +134,13 @@ fn cases(experiment: &Experiment) -> String {
     let names: Vec<String> = experiment.swept.iter().map(|parameter| column_words(&words::of_key(parameter))).collect();
     let over = if names.is_empty() { String::new() } else { format!(" over {}", joined(&names)) };
     let cases = counted(experiment.cases.len(), "case", "cases");
+    let over = match experiment.continued.first() {
+        Some(continued) => {
+            let along = column_words(&words::of_key(&continued.along));
+            format!("{over}; along the {along} each starts from the last state of the one before it")
+        }
+        None => over,
+    };
     match &experiment.maximise {
         None => format!("{cases}{over}"),
         Some(maximise) => {

@@ -55,6 +55,7 @@ fn measured(experiment: &Experiment) -> Vec<Evaluated> {
             energies: experiment.energies.as_ref(),
             shape: experiment.shape.as_ref(),
             rigour: Rigour::Result,
+            ..Request::default()
         };
         let subject = recipe.subject(&assumptions(), request.needs()).unwrap();
         evaluate(subject, SolverChoice::EventDriven, &experiment.settings, &request).unwrap()
