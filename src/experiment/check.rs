@@ -238,13 +238,7 @@ impl Checks<'_> {
     }
 
     /// Rows that start where others ended: single event-driven runs, one after the other.
-    pub fn continued(
-        &self,
-        continued: &[(Continuation, Span)],
-        cases: &[Case],
-        is_run: bool,
-        unordered: Option<(&str, Span)>,
-    ) {
+    pub fn continued(&self, continued: &[(Continuation, Span)], cases: &[Case], unordered: Option<(&str, Span)>) {
         let Some((_, at)) = continued.first() else { return };
         if let Some((what, at)) = unordered {
             let message = format!("{what} has no state that the next row could start from");
@@ -258,10 +252,6 @@ impl Checks<'_> {
                 "under a fixed step a cycle ends up to a step late, and its state is not that of the next cycle's start",
                 Some("`from: last` goes with `solver: event_driven`".into()),
             );
-        }
-        if !is_run {
-            self.findings
-                .wrong::<()>(*at, "what is measured here is read off the model: there is no run to go on from");
         }
     }
 

@@ -107,7 +107,8 @@ impl<'t> ExperimentReader<'t> {
             matches!(trace, Some(Some(_))) || matches!(energies, Some(Some(_))) || matches!(each_cycle, Some(Some(_)));
         let deflection = matches!(&shape, Some(Some(shape)) if shape.of == ShapeOf::Deflection);
         let of_model = measures.as_ref().is_some_and(|measures| measures.iter().all(|(measure, _)| measure.is_modal()));
-        let run = self.run(&fields, of_model && !lists && !deflection);
+        let no_run = of_model && !lists && !deflection;
+        let run = self.run(&fields, no_run);
         let measures = match (measures, &run) {
             (Some(measures), Some(Run { settled_at: Some(at), .. })) => Some(with_the_end(measures, *at)),
             (measures, _) => measures,
@@ -194,8 +195,11 @@ impl<'t> ExperimentReader<'t> {
         let inner = inner.unwrap_or_default();
         let cases = with_solvers(sweep.cases, &run.solvers);
         checks.refined(&sweep.refined, &measures);
-        let is_run = !measures.iter().all(|(measure, _)| measure.is_modal()) || lists || deflection;
-        checks.continued(&sweep.continued, &cases, is_run, unordered);
+        checks.continued(&sweep.continued, &cases, unordered);
+        if let (true, Some((_, at))) = (no_run, sweep.continued.first()) {
+            self.findings
+                .wrong::<()>(*at, "what is measured here is read off the model: there is no run to go on from");
+        }
         checks.coverage(&scene, &cases, &places, &mean_over, maximise.as_ref());
         checks.amount(&cases, &sweep.refined, maximise.as_ref(), inner.len(), scene_at);
         fill_placeholders(&mut scene.recipe, &cases, &sweep.swept, maximise.as_ref());

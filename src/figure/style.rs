@@ -26,9 +26,9 @@ pub(super) const TICK: f64 = 13.0;
 pub(super) const MINOR_TICK: f64 = 7.0;
 pub(super) const MARKER: f64 = 10.0;
 /// Width of a dot of a cloud.
-const DOT: f64 = 4.0;
+const DOT: f64 = 3.5;
 /// By how much those of the cloud beneath are wider: where two agree, both are seen.
-const DOT_BENEATH: f64 = 3.5;
+const DOT_BENEATH: f64 = 3.0;
 pub(super) const QUOTED: f64 = 17.0;
 /// Space between neighbours: a tick and its label, a label and the edge.
 pub(super) const SPACE: f64 = 14.0;

@@ -137,7 +137,11 @@ fn cases(experiment: &Experiment) -> String {
     let over = match experiment.continued.first() {
         Some(continued) => {
             let along = column_words(&words::of_key(&continued.along));
-            format!("{over}; along the {along} each starts from the last state of the one before it")
+            let mut directions: Vec<_> = experiment.cases.iter().filter_map(|case| case.direction).collect();
+            directions.sort_unstable();
+            directions.dedup();
+            let directions: Vec<String> = directions.iter().map(words::of_key).collect();
+            format!("{over}; {} the {along}, each starts from the last state of the one before it", joined(&directions))
         }
         None => over,
     };

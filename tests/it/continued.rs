@@ -8,6 +8,7 @@ use shotdamp::dynamics::{Contact, Options, Proof, StartState, event_driven};
 use shotdamp::experiment::{
     Assumptions, Experiment, ExperimentId, Given, StrengthRecipe, load_assumptions, parse_experiment,
 };
+use shotdamp::figure::{Beside, draw};
 use shotdamp::measure::{
     CycleSpec, CycleValue, Evaluated, Link, Measured, Request, SolverChoice, TraceColumn, evaluate,
 };
@@ -15,7 +16,7 @@ use shotdamp::scene::compile;
 use shotdamp::study::{Evaluate, IgnoreEvents, RowFailure, Shard, Simulation};
 use shotdamp::table::Table;
 
-use crate::desk::{Desk, shotdamp};
+use crate::desk::Desk;
 
 const RELAY: &str = "title: Up and down
 source: {chapter: 3, section: 3.6.3}
@@ -233,7 +234,7 @@ fn what_cannot_be_followed_is_refused_where_it_stands() {
             "leave it or `from: last` out",
         ),
         ("each_cycle: impact_speed\n", "mean_over: {gap_ratio: [10, 20]}\n", "14:", "leave it or `from: last` out"),
-        ("damping_ratio: assumed", "damping_ratio: equivalent_viscous", "9:", "equivalent viscous damping"),
+        ("damping_ratio: assumed", "damping: equivalent_viscous", "9:", "equivalent viscous damping"),
         ("each_cycle: impact_speed", "each_cycle: impact_sped", "14:", "did you mean `impact_speed`?"),
         (
             "each_cycle: impact_speed",
@@ -300,7 +301,7 @@ fn phases_and_speeds_of_a_bouncing_ball_obey_the_closed_form_of_its_flight() {
         if speed[0] < 1e-3 {
             continue;
         }
-        // y = −a sin ωt of the table and the parabola of the ball; whole cycles between the impacts are not told by the phases.
+        // The table moves as a sin ωt, the ball on a parabola; phases do not say how many whole cycles lie between.
         let (begin, leaves) = (phase[0], restitution * speed[0]);
         let relative = |cycles: f64| {
             let angle = phase[1] - begin + std::f64::consts::TAU * cycles;
@@ -323,7 +324,7 @@ fn phases_and_speeds_of_a_bouncing_ball_obey_the_closed_form_of_its_flight() {
 #[test]
 fn a_run_that_is_cut_ends_where_the_whole_one_ends() {
     for (id, cycles) in
-        [("two-impacts-at-resonance", 40), ("impact-pair", 30), ("resting-particle", 20), ("limit-stop", 3)]
+        [("two-impacts-at-resonance", 40), ("impact-pair", 30), ("resting-particle", 20), ("fixed-stop", 30)]
     {
         let experiment = classic(id, &[]);
         let recipe = experiment.recipe_of(&experiment.cases[0]).unwrap();
@@ -359,9 +360,9 @@ fn a_run_that_is_cut_ends_where_the_whole_one_ends() {
 fn values_of_each_cycle_are_drawn_as_points_that_no_line_joins() {
     let desk = desk(RELAY);
     desk.run(2, &relay(), &IgnoreEvents);
-    let said = shotdamp(&desk, &["report"]);
-    assert_eq!(said.code, 0, "{}{}", said.out, said.err);
-    let svg = String::from_utf8(desk.bytes("reports/ch3/ch3-relay.svg")).unwrap();
+    let item = &desk.plan()["ch3-relay"];
+    let experiment = &item.source.experiment;
+    let svg = draw(experiment, &experiment.figures[0], &desk.table("ch3-relay"), Beside::default()).unwrap().svg;
     let dots: Vec<&str> = svg.lines().filter(|line| line.contains("stroke-linecap=\"round\"")).collect();
     assert_eq!(dots.len(), 2, "a cloud each for up and down");
     // Five rows of two values each.
