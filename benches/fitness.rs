@@ -5,8 +5,7 @@ use std::path::Path;
 
 use divan::Bencher;
 use shotdamp::experiment::{Experiment, load_assumptions, parse_experiment};
-use shotdamp::measure::Rigour;
-use shotdamp::measure::SolverChoice;
+use shotdamp::measure::{Link, Rigour, SolverChoice};
 use shotdamp::study::{Array, Engine, Evaluate, Simulation};
 
 fn main() {
@@ -40,6 +39,8 @@ fn evaluation(bencher: Bencher<'_, '_>, id: &str, which: usize) {
                 trace: None,
                 energies: None,
                 shape: None,
+                each_cycle: None,
+                link: Link::None,
                 rigour: Rigour::Step,
             };
             Engine.array(simulation, optimise.gaps).expect("its scenes compile")

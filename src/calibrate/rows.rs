@@ -45,6 +45,11 @@ impl Wanted {
                 curve.cases[first..=last].iter().for_each(|&case| kept[case] = true);
             }
         }
+        // A row that starts where another ended takes all rows before it along.
+        for chain in experiment.chains() {
+            let last = chain.iter().rposition(|&case| kept[case]);
+            chain[..last.map_or(0, |last| last + 1)].iter().for_each(|&case| kept[case] = true);
+        }
         let narrowed = |case: &Case| {
             let event_driven = case.solvers.contains(&SolverChoice::EventDriven);
             let filled_in = !asked(case, None);
@@ -77,6 +82,7 @@ fn admits(rows: &Selection, case: &Case, solver: Option<SolverChoice>) -> bool {
     rows.0.iter().all(|(column, allowed)| {
         let cell = match column.as_str() {
             "sweep" => Some(Data::Text(vec![case.sweep.clone()])),
+            "direction" => Some(Data::Text(vec![case.direction.as_ref().map(words::of_key).unwrap_or_default()])),
             "solver" => solver.map(|solver| Data::Text(vec![solver.label()])),
             name => cell(case, name),
         };

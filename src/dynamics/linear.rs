@@ -261,6 +261,7 @@ impl<'a> Run<'a> {
         let (end, level) = self.before(options.cycles());
         let (p, rate) = leave(flow, &end, level, drive_at(system, 0.0));
         let last = balance::state(system, flow, &p, &rate);
+        response.final_state = options.final_state.then(|| on_floors(system, flow, &p, &rate));
         if options.audit {
             let (begin, level) = self.before(skip);
             let (p, rate) = leave(flow, &begin, level, drive_at(system, 0.0));
@@ -284,6 +285,16 @@ impl<'a> Run<'a> {
             Err(EngineError::NotFinite { cycle: options.cycles() })
         }
     }
+}
+
+/// A state with every particle on its floor, as a run may start from it; a rigid floor has no place of its own in the flow.
+fn on_floors(system: &HybridSystem, flow: &Flow, p: &[f64], rate: &[f64]) -> StartState {
+    let n = system.mass.order;
+    let mut particles = vec![(Contact::Floor, 0.0, 0.0); system.particles.len()];
+    for (i, &j) in flow.modes.attached.iter().enumerate() {
+        particles[j] = (Contact::Floor, p[n + i], rate[n + i]);
+    }
+    StartState::Given { q: p[..n].to_vec(), rate: rate[..n].to_vec(), particles }
 }
 
 /// The cycle that repeats, after one that ended with the force `before`.

@@ -289,10 +289,22 @@ impl<'a, const TAPED: bool> March<'a, TAPED> {
             self.response.final_velocity = dot(row, &self.rate);
         }
         self.response.final_particles = (0..self.particles.len()).map(|j| self.absolute(j)).collect();
+        self.response.final_state = self.options.final_state.then(|| self.state());
         if self.response.final_displacement.is_finite() && self.response.final_velocity.is_finite() {
             Ok(self.response)
         } else {
             Err(EngineError::NotFinite { cycle: self.cycle })
+        }
+    }
+
+    /// The state between two cycles, as a run may start from it.
+    fn state(&self) -> super::StartState {
+        let n = self.system.mass.order;
+        let particles = self.contacts.iter().zip(&self.particles).map(|(contact, at)| (*contact, at.gap, at.rate));
+        super::StartState::Given {
+            q: self.q[..n].to_vec(),
+            rate: self.rate[..n].to_vec(),
+            particles: particles.collect(),
         }
     }
 

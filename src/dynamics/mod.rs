@@ -5,7 +5,7 @@
 //!
 //! | files | hold |
 //! |---|---|
-//! | `system`, `options`, `trace`, `spline` | what is run, and how |
+//! | `system`, `options`, `carried`, `trace`, `spline` | what is run, from where, and how |
 //! | `run` | the ways to run it |
 //! | `response`, `sums`, `extremes`, `steady_state`, `proof`, `error` | what comes out |
 //! | `march`, `states`, `visits` | from event to event; the contact states on the way and how long each was in force |
@@ -32,6 +32,7 @@ mod audit;
 mod bank;
 mod block;
 mod budget;
+mod carried;
 mod cholesky;
 mod cluster;
 mod collision;

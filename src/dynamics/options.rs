@@ -24,6 +24,8 @@ pub struct Options {
     pub extremes: bool,
     /// Keep the structure's velocities at both ends of every cycle.
     pub cycle_rates: bool,
+    /// Keep the state at the end, from which another run may start.
+    pub final_state: bool,
     /// Balance momentum and energy.
     pub audit: bool,
     /// Name the motion that it ends in.
@@ -109,6 +111,7 @@ impl Default for Options {
             displacement: true,
             extremes: false,
             cycle_rates: false,
+            final_state: false,
             audit: false,
             motion: false,
             record_events: 0,

@@ -2,7 +2,7 @@
 
 use super::extremes::Extremes;
 use super::motion::Motion;
-use super::options::Averaged;
+use super::options::{Averaged, StartState};
 use super::proof::Proof;
 use super::sums::Sums;
 use super::system::{Event, EventKind};
@@ -41,6 +41,8 @@ pub struct Response {
     pub final_velocity: f64,
     /// y and y′ of each particle at the end.
     pub final_particles: Vec<[f64; 2]>,
+    /// The state at the end of the last cycle, if asked for; a fixed step, whose cycles end up to a step late, has none.
+    pub final_state: Option<StartState>,
     /// The motion that it ends in, if asked for.
     pub motion: Option<Motion>,
     /// The period that was averaged in the place of the cycles given, if the run was to settle and did.

@@ -3,9 +3,10 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::recipe::{Assumptions, ExcitationKind, Parameter, ParameterValue, Part, RecipeError};
-use crate::measure::{EnergySpec, Measure, Settings, ShapeSpec, SolverChoice, TraceSpec, Under};
+use crate::measure::{CycleSpec, EnergySpec, Measure, Settings, ShapeSpec, SolverChoice, TraceSpec, Under};
 use crate::scene::Scene;
 
+use super::continued::Continuation;
 use super::definition::{Case, Drawing, Experiment, FigureSpec, Maximise, Panel, Refinement};
 use super::diagnostic::{Findings, Span};
 use super::optimise::Optimise;
@@ -236,6 +237,32 @@ impl Checks<'_> {
         }
     }
 
+    /// Rows that start where others ended: single event-driven runs, one after the other.
+    pub fn continued(&self, continued: &[(Continuation, Span)], cases: &[Case], unordered: Option<(&str, Span)>) {
+        let Some((_, at)) = continued.first() else { return };
+        if let Some((what, at)) = unordered {
+            let message = format!("{what} has no state that the next row could start from");
+            self.findings.report::<()>(at, message, Some("leave it or `from: last` out".into()));
+        }
+        let ordered = |case: &Case| case.direction.is_some();
+        let stepped = |solver: &SolverChoice| matches!(solver, SolverChoice::FixedStep { .. });
+        if cases.iter().any(|case| ordered(case) && case.solvers.iter().any(stepped)) {
+            self.findings.report::<()>(
+                *at,
+                "under a fixed step a cycle ends up to a step late, and its state is not that of the next cycle's start",
+                Some("`from: last` goes with `solver: event_driven`".into()),
+            );
+        }
+    }
+
+    /// Values are kept of cycles that are averaged.
+    pub fn each_cycle(&self, each_cycle: Option<&CycleSpec>, settings: &Settings, at: Span) {
+        let averaged = settings.average;
+        if each_cycle.is_some_and(|each| each.last.is_some_and(|last| last > averaged)) {
+            self.findings.wrong::<()>(at, format!("values are kept of the {averaged} cycles that are averaged"));
+        }
+    }
+
     /// The number of runs is bounded.
     pub fn amount(
         &self,
@@ -301,7 +328,9 @@ impl Checks<'_> {
             all.extend(experiment.recipes_in(recipe)?);
         }
         for recipe in all {
-            steps(&recipe.resolve(self.assumptions)?, case, &experiment.settings)?;
+            let scene = recipe.resolve(self.assumptions)?;
+            steps(&scene, case, &experiment.settings)?;
+            remembers(&scene, case)?;
         }
         Ok(())
     }
@@ -357,6 +386,16 @@ impl From<StepError> for Refusal {
     fn from(error: StepError) -> Self {
         error.to_string().into()
     }
+}
+
+/// A run whose damping follows from the half cycle before has more to carry on than places and rates.
+fn remembers(scene: &Scene, case: &Case) -> Result<(), Refusal> {
+    if case.direction.is_some() && scene.has_equivalent_viscous_damping() {
+        let message =
+            "equivalent viscous damping follows from the half cycle before, which `from: last` does not carry on";
+        return Err(String::from(message).into());
+    }
+    Ok(())
 }
 
 /// What a scene asks of the steps of its run.

@@ -15,6 +15,14 @@ pub(super) enum Role {
     Label,
     /// A time history a row.
     History,
+    /// Values of each cycle: points above a number a row.
+    Cloud,
+}
+
+/// Lists that rows keep, and what they hold.
+pub(super) struct Lists {
+    pub names: Vec<&'static str>,
+    pub role: Role,
 }
 
 /// Names of what became of a candidate.
@@ -32,18 +40,18 @@ impl Columns {
     /// The columns of an experiment made of these parts.
     pub fn of(
         swept: &[Parameter],
-        union: bool,
+        split: &[&str],
         measures: &[Measure],
         maximise: Option<&Maximise>,
-        lists: &[&str],
+        lists: &Lists,
     ) -> Self {
         let mut list: Vec<(String, Role)> = Vec::new();
         for parameter in swept {
             let role = if parameter.words().is_empty() { Role::Number } else { Role::Label };
             list.push((word_of(*parameter), role));
         }
-        let labels = [union.then_some("sweep"), Some("solver"), Some("variant")];
-        list.extend(labels.into_iter().flatten().map(|name| (name.into(), Role::Label)));
+        let labels = split.iter().chain(&["solver", "variant"]);
+        list.extend(labels.map(|name| (String::from(*name), Role::Label)));
         for measure in measures {
             let name = word_of(*measure);
             if measure.is_name() {
@@ -56,7 +64,7 @@ impl Columns {
             list.push((format!("{}_at_maximum", word_of(maximise.over)), Role::Number));
         }
         list.extend(PROOF.map(|column| (column.name.into(), Role::Number)));
-        list.extend(lists.iter().map(|name| ((*name).into(), Role::History)));
+        list.extend(lists.names.iter().map(|name| ((*name).into(), lists.role)));
         Self { list }
     }
 

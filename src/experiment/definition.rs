@@ -7,9 +7,10 @@ use serde::{Deserialize, Serialize};
 
 use super::recipe::{AssumptionName, AssumptionValue, Assumptions, Parameter, ParameterValue, Recipe, RecipeError};
 use crate::dynamics::Limit;
-use crate::measure::{EnergySpec, Measure, Needs, Settings, ShapeSpec, SolverChoice, TraceSpec};
+use crate::measure::{CycleSpec, EnergySpec, Measure, Needs, Settings, ShapeSpec, SolverChoice, TraceSpec};
 
 use super::assumption_sheet::AssumptionSheet;
+use super::continued::{Continuation, Direction, chains};
 use super::optimise::Optimise;
 use super::word::word_of;
 
@@ -68,6 +69,9 @@ pub struct Experiment {
     /// Sweeps whose curves get more points where they bend; the cases hold the points that they start with.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub refined: Vec<Refinement>,
+    /// Sweeps whose rows start where the row before ended.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub continued: Vec<Continuation>,
     /// What every number is a mean over: settings of parameters that no column tells apart, such as force points. Empty as a
     /// rule. A velocity ratio is then that of the mean RMS velocities.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -84,8 +88,11 @@ pub struct Experiment {
     pub trace: Option<TraceSpec>,
     /// Kinetic energies to keep with each row.
     pub energies: Option<EnergySpec>,
-    /// Shape to keep with each row. At most one of the three is kept: the lists of a row are of one length.
+    /// Shape to keep with each row.
     pub shape: Option<ShapeSpec>,
+    /// Value of each cycle to keep with each row. At most one of the four is kept: the lists of a row are of one length.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub each_cycle: Option<CycleSpec>,
     /// The figures; never part of what makes a simulation stale.
     pub figures: Vec<FigureSpec>,
 }
@@ -94,6 +101,11 @@ impl Experiment {
     /// Every run in the order of the table's rows: cases, and each under its solvers.
     pub fn runs(&self) -> impl Iterator<Item = (&Case, SolverChoice)> {
         self.cases.iter().flat_map(|case| case.solvers.iter().map(move |solver| (case, *solver)))
+    }
+
+    /// The cases of continued sweeps, chain by chain in the order in which they follow each other, by their index.
+    pub(crate) fn chains(&self) -> Vec<Vec<usize>> {
+        chains(&self.cases, &self.continued)
     }
 
     /// The scene of one case, still in the parameters of the file.
@@ -188,6 +200,12 @@ impl Experiment {
         if !self.mean_over.is_empty() {
             meaning["mean_over"] = json(&self.mean_over);
         }
+        if !self.continued.is_empty() {
+            meaning["continued"] = json(&self.continued);
+        }
+        if let Some(each_cycle) = &self.each_cycle {
+            meaning["each_cycle"] = json(each_cycle);
+        }
         if let Some(optimise) = &self.optimise {
             meaning["optimise"] = json(optimise);
         }
@@ -228,6 +246,9 @@ pub struct Case {
     pub values: Vec<(Parameter, ParameterValue)>,
     /// The name of the sweep within a union; empty otherwise.
     pub sweep: String,
+    /// The way in which the rows of a continued sweep follow each other.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub direction: Option<Direction>,
     /// The solvers it runs under: those of the experiment, unless its named sweep has its own.
     pub solvers: Vec<SolverChoice>,
 }
@@ -249,7 +270,8 @@ impl Case {
             };
             format!("{} = {value}", word_of(*parameter))
         });
-        description.collect::<Vec<_>>().join(", ")
+        let direction = self.direction.map(|direction| format!("direction = {}", word_of(direction)));
+        description.chain(direction).collect::<Vec<_>>().join(", ")
     }
 }
 

@@ -165,6 +165,20 @@ impl<'t> FigureReader<'t> {
         if let (Some(Some(_)), Some(Role::History), Some(node)) = (strip, x_role, fields.get("strip")) {
             return self.findings.wrong(node.span, "a strip stands below numbers a row, not below a time history");
         }
+        let clouds = y.iter().filter(|(_, role)| *role == Some(Role::Cloud)).count();
+        if x_role == Some(Role::Cloud) {
+            return self
+                .findings
+                .wrong(fields.span(), format!("`{}` holds a list a row: it stands under `y`", x.column));
+        }
+        if clouds > 0 && clouds < y.len() {
+            return self
+                .findings
+                .wrong(fields.span(), "values of each cycle are points: they have a panel of their own");
+        }
+        if let (1.., Some(node)) = (clouds, fields.get("peaks").or(fields.get("over_first"))) {
+            return self.findings.wrong(node.span, "values of each cycle are points, which no line joins");
+        }
         for (axis, role) in &y {
             if let (Some(role), Some(x_role)) = (role, x_role)
                 && (*role == Role::History) != (x_role == Role::History)
@@ -253,7 +267,7 @@ impl<'t> FigureReader<'t> {
     /// A column that splits rows into lines.
     pub(super) fn split(&self, node: &Node) -> Option<String> {
         let column = scalar(node, self.findings)?;
-        self.column(column, node.span, |role| role != Role::History)?;
+        self.column(column, node.span, |role| matches!(role, Role::Number | Role::Label))?;
         Some(column.into())
     }
 

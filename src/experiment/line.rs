@@ -33,7 +33,7 @@ fn written(key: &str) -> &str {
     match key {
         "recipe" => "scene",
         "settings" => "run",
-        "cases" | "swept" | "refined" => "sweep",
+        "cases" | "swept" | "refined" | "continued" => "sweep",
         "measures" => "measure",
         // `stop_length=0.05` stands for an end of its range.
         _ => key.split_once('=').map_or(key, |(name, _)| name),

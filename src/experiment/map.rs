@@ -31,7 +31,7 @@ impl<'t> FigureReader<'t> {
         });
         fields.close()?;
         let ((x, x_role), (y, y_role), (value, value_role)) = (x?, y?, value?);
-        let lists = |role: Option<Role>| role.map(|role| role == Role::History);
+        let lists = |role: Option<Role>| role.map(|role| matches!(role, Role::History | Role::Cloud));
         for (axis, role) in [(&y, y_role), (&value, value_role)] {
             if let (Some(one), Some(other)) = (lists(x_role), lists(role))
                 && one != other

@@ -9,6 +9,7 @@ mod assumption_sheet;
 mod calibration;
 mod check;
 mod columns;
+mod continued;
 mod definition;
 mod diagnostic;
 mod edit;
@@ -44,6 +45,7 @@ pub use assumption_sheet::{
     ASSUMPTIONS, AssumptionEntry, AssumptionKind, AssumptionSheet, Cycles, Moved, Quantity, Takes,
 };
 pub use calibration::{Calibration, CalibrationInput, CalibrationSearch, Tried, load_calibration, parse_calibration};
+pub use continued::{Continuation, Direction};
 pub use definition::{
     AnimationSpec, Axis, AxisScale, Band, Best, Case, Drawing, Experiment, ExperimentId, FigureSpec, IdError, Level,
     MapSpec, Mark, Maximise, Only, Panel, PeakMarks, Refinement, Source, Strip,

@@ -8,13 +8,14 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::recipe::{Parameter, ParameterValue};
 
+use super::continued::{Continuation, Continued, Direction, KEYS, chains};
 use super::definition::{Case, Refinement};
 use super::diagnostic::{Findings, Span};
 use super::range::{MOST_POINTS, too_many, value, values};
 use super::reader::{Fields, all, list, one_or_more, unknown};
 use super::refined::{is_refined, refined};
 use super::solver::read_solver;
-use super::word::{from_word, words};
+use super::word::{from_word, word_of, words};
 use super::yaml::{Entry, Node, Value};
 use crate::measure::SolverChoice;
 
@@ -28,12 +29,20 @@ pub(super) struct ReadSweep {
     pub places: BTreeMap<Parameter, Span>,
     /// Rules of refined ranges, and where they stand.
     pub refined: Vec<(Refinement, Span)>,
+    /// Sweeps whose rows start where the row before ended, and where they say so.
+    pub continued: Vec<(Continuation, Span)>,
 }
 
 impl ReadSweep {
     /// Where nothing is swept there is one case.
     pub fn none() -> Self {
-        Self { cases: vec![Case::default()], swept: Vec::new(), places: BTreeMap::new(), refined: Vec::new() }
+        Self {
+            cases: vec![Case::default()],
+            swept: Vec::new(),
+            places: BTreeMap::new(),
+            refined: Vec::new(),
+            continued: Vec::new(),
+        }
     }
 }
 
@@ -41,7 +50,7 @@ type Point = BTreeMap<Parameter, ParameterValue>;
 
 /// Reads the node under `sweep`.
 pub(super) fn read_sweep(node: &Node, findings: &Findings) -> Option<ReadSweep> {
-    let mut reader = SweepReader { findings, places: BTreeMap::new(), refined: Vec::new() };
+    let mut reader = SweepReader { findings, places: BTreeMap::new(), refined: Vec::new(), continued: Vec::new() };
     let mut cases = Vec::new();
     if let Value::Mapping(entries) = &node.value
         && let Some(union) = entries.iter().find(|entry| entry.key == "union")
@@ -50,29 +59,53 @@ pub(super) fn read_sweep(node: &Node, findings: &Findings) -> Option<ReadSweep> 
         fields.get("union");
         let named = reader.union(&union.node);
         fields.close()?;
-        for (name, (points, solvers)) in named? {
-            cases.extend(points.into_iter().map(|point| case(point, &name, &solvers)));
+        for (name, product) in named? {
+            product.add(&name, &mut cases);
         }
     } else {
-        let (points, _) = reader.product(node, false)?;
-        cases.extend(points.into_iter().map(|point| case(point, "", &[])));
+        reader.product(node, false)?.add("", &mut cases);
     }
     if cases.len() > MOST_POINTS as usize {
         return too_many(node.span, cases.len() as f64, findings);
     }
     let swept: BTreeSet<_> =
         cases.iter().flat_map(|case| case.values.iter().map(|(parameter, _)| *parameter)).collect();
-    Some(ReadSweep { cases, swept: swept.into_iter().collect(), places: reader.places, refined: reader.refined })
+    for (continuation, at) in &reader.continued {
+        if chains(&cases, std::slice::from_ref(continuation)).iter().any(|chain| chain.len() < 2) {
+            let message = format!("`{}` has one value here, and no row follows another", word_of(continuation.along));
+            return findings.wrong(*at, message);
+        }
+    }
+    let SweepReader { places, refined, continued, .. } = reader;
+    Some(ReadSweep { cases, swept: swept.into_iter().collect(), places, refined, continued })
 }
 
-fn case(point: Point, sweep: &str, solvers: &[SolverChoice]) -> Case {
-    Case { values: point.into_iter().collect(), sweep: sweep.into(), solvers: solvers.to_vec() }
+/// The points of a sweep, the same for each direction in which they are gone through.
+struct Product {
+    points: Vec<Point>,
+    directions: Vec<Option<Direction>>,
+    solvers: Vec<SolverChoice>,
+}
+
+impl Product {
+    fn add(self, sweep: &str, cases: &mut Vec<Case>) {
+        let Self { points, directions, solvers } = self;
+        for direction in directions {
+            cases.extend(points.iter().map(|point| Case {
+                values: point.iter().map(|(parameter, value)| (*parameter, *value)).collect(),
+                sweep: sweep.into(),
+                direction,
+                solvers: solvers.clone(),
+            }));
+        }
+    }
 }
 
 struct SweepReader<'f> {
     findings: &'f Findings,
     places: BTreeMap<Parameter, Span>,
     refined: Vec<(Refinement, Span)>,
+    continued: Vec<(Continuation, Span)>,
 }
 
 /// What an axis belongs to.
@@ -82,7 +115,7 @@ enum Axis {
     OfPair,
 }
 
-type Named = BTreeMap<String, (Vec<Point>, Vec<SolverChoice>)>;
+type Named = BTreeMap<String, Product>;
 
 impl SweepReader<'_> {
     fn union(&mut self, node: &Node) -> Option<Named> {
@@ -99,13 +132,16 @@ impl SweepReader<'_> {
                     format!("`{}` cannot name a sweep: use letters, digits, `-` and `_`", entry.key),
                 );
             }
-            let known = self.refined.len();
+            let (refined, continued) = (self.refined.len(), self.continued.len());
             match self.product(&entry.node, true) {
                 Some(sweep) => drop(named.insert(entry.key.clone(), sweep)),
                 None => fine = false,
             }
-            for (refinement, _) in &mut self.refined[known..] {
+            for (refinement, _) in &mut self.refined[refined..] {
                 refinement.sweep.clone_from(&entry.key);
+            }
+            for (continuation, _) in &mut self.continued[continued..] {
+                continuation.sweep.clone_from(&entry.key);
             }
         }
         if named.is_empty() && fine {
@@ -114,8 +150,8 @@ impl SweepReader<'_> {
         fine.then_some(named)
     }
 
-    /// A product of parameters, `paired` and `points`; within a union also a `solver`.
-    fn product(&mut self, node: &Node, within_union: bool) -> Option<(Vec<Point>, Vec<SolverChoice>)> {
+    /// A product of parameters, `paired` and `points`, and how its rows follow each other; within a union also a `solver`.
+    fn product(&mut self, node: &Node, within_union: bool) -> Option<Product> {
         let fields = Fields::open(node, "a sweep", self.findings)?;
         let paired = fields.optional("paired", |node| self.paired(node));
         let listed = fields.optional("points", |node| self.listed(node));
@@ -124,25 +160,40 @@ impl SweepReader<'_> {
         } else {
             Some(None)
         };
+        let continued = Continued::read(&fields, self.findings);
         let known = self.refined.len();
         let axes = all(fields.others().map(|entry| self.axis(entry, Axis::OfProduct { within_union })));
         if let [_, (_, second), ..] = self.refined[known..] {
             return self.findings.wrong(second, "one parameter of a sweep is refined, not two");
         }
         let (paired, listed, solvers, axes) = (paired?, listed?, solvers?.unwrap_or_default(), axes?);
+        let (continued, refined) = (continued?, self.refined[known..].first().map(|(_, at)| *at));
         let blocks: Vec<Vec<Point>> = axes
             .into_iter()
             .map(|(parameter, values)| values.into_iter().map(|value| Point::from([(parameter, value)])).collect())
             .chain(paired)
             .chain(listed)
             .collect();
-        Some((self.multiply(node.span, blocks)?, solvers))
+        let points = self.multiply(node.span, blocks)?;
+        let Some(continued) = continued else { return Some(Product { points, directions: vec![None], solvers }) };
+        if let Some(at) = refined {
+            return self.findings.report(
+                at,
+                "rows that start where the row before ended have fixed points: this range is refined",
+                Some("write `linear`, `log` or `step`, or leave `from: last` out".into()),
+            );
+        }
+        let set: Vec<Parameter> = points.first().map(|point| point.keys().copied().collect()).unwrap_or_default();
+        let along = continued.along(&set, self.findings)?;
+        self.continued.push((Continuation { sweep: String::new(), along }, continued.at));
+        Some(Product { points, directions: continued.directions.into_iter().map(Some).collect(), solvers })
     }
 
     fn axis(&mut self, entry: &Entry, axis: Axis) -> Option<(Parameter, Vec<ParameterValue>)> {
         let Some(parameter) = from_word::<Parameter>(&entry.key) else {
             let mut known = words::<Parameter>().to_vec();
             known.extend(["paired", "points", "union"]);
+            known.extend(KEYS);
             known.extend((axis == Axis::OfProduct { within_union: true }).then_some("solver"));
             return unknown(self.findings, entry.key_span, "a sweep", "parameter", &entry.key, &known);
         };

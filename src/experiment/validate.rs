@@ -12,7 +12,7 @@ use super::about_study::MOST_CHAPTERS;
 use super::assumption_reader::{MOST_CYCLES, read_average, read_skip};
 use super::assumption_sheet::Cycles;
 use super::check::Checks;
-use super::columns::Columns;
+use super::columns::{Columns, Lists, Role};
 use super::definition::{Case, Experiment, ExperimentId, Maximise, Source};
 use super::diagnostic::{Findings, Problems, Span};
 use super::figure::FigureReader;
@@ -28,9 +28,12 @@ use super::sweep::{ReadSweep, read_sweep};
 use super::word::{from_word, words};
 use super::yaml::{Node, Value, read_tree};
 use crate::measure::{
-    EnergySpec, Measure, Settings, ShapeOf, ShapeSpec, SolverChoice, TraceSpec, energy_columns, shape_columns,
-    trace_columns,
+    CycleSpec, CycleValue, EnergySpec, Measure, Settings, ShapeOf, ShapeSpec, SolverChoice, TraceSpec, energy_columns,
+    shape_columns, trace_columns,
 };
+
+/// The lists that a row may keep; at most one of them.
+pub(super) const LISTS: [&str; 4] = ["trace", "energies", "shape", "each_cycle"];
 
 /// Most samples of a time history.
 const MOST_SAMPLES: u64 = 1_000_000;
@@ -99,10 +102,13 @@ impl<'t> ExperimentReader<'t> {
         let trace = fields.optional("trace", |node| self.trace(node));
         let energies = fields.optional("energies", |node| self.energies(node));
         let shape = fields.optional("shape", |node| self.shape(node));
-        let lists = matches!(trace, Some(Some(_))) || matches!(energies, Some(Some(_)));
+        let each_cycle = fields.optional("each_cycle", |node| self.each_cycle(node));
+        let lists =
+            matches!(trace, Some(Some(_))) || matches!(energies, Some(Some(_))) || matches!(each_cycle, Some(Some(_)));
         let deflection = matches!(&shape, Some(Some(shape)) if shape.of == ShapeOf::Deflection);
         let of_model = measures.as_ref().is_some_and(|measures| measures.iter().all(|(measure, _)| measure.is_modal()));
-        let run = self.run(&fields, of_model && !lists && !deflection);
+        let no_run = of_model && !lists && !deflection;
+        let run = self.run(&fields, no_run);
         let measures = match (measures, &run) {
             (Some(measures), Some(Run { settled_at: Some(at), .. })) => Some(with_the_end(measures, *at)),
             (measures, _) => measures,
@@ -112,16 +118,24 @@ impl<'t> ExperimentReader<'t> {
         let whole = self.averaged_alone(&fields);
         let energies_at = fields.get("energies").map_or(fields.span(), |node| node.span);
         let place = |key| fields.get(key).map_or(fields.span(), |node| node.span);
+        let each_cycle_at = place("each_cycle");
+        let unordered = [("maximise", "a maximum"), ("mean_over", "a mean over several scenes")];
+        let unordered = unordered.iter().find_map(|(key, what)| fields.get(key).map(|node| (*what, node.span)));
         let (scene_at, optimise_at) = (place("scene"), place("optimise"));
         let figures_at = if fields.get("figure").is_some() { place("figure") } else { place("figures") };
 
-        let kept = match (&trace, &energies, &shape) {
-            (Some(trace), Some(energies), Some(shape)) => Some(match (trace, energies, shape) {
-                (Some(_), _, _) => trace_columns(),
-                (_, Some(_), _) => energy_columns(),
-                (_, _, Some(shape)) => shape_columns(shape),
-                _ => Vec::new(),
-            }),
+        let kept = match (&trace, &energies, &shape, &each_cycle) {
+            (Some(trace), Some(energies), Some(shape), Some(each_cycle)) => {
+                Some(match (trace, energies, shape, each_cycle) {
+                    (Some(_), ..) => Lists { names: trace_columns(), role: Role::History },
+                    (_, Some(_), ..) => Lists { names: energy_columns(), role: Role::History },
+                    (_, _, Some(shape), _) => Lists { names: shape_columns(shape), role: Role::History },
+                    (.., Some(each)) => {
+                        Lists { names: vec![words::<CycleValue>()[each.of as usize]], role: Role::Cloud }
+                    }
+                    _ => Lists { names: Vec::new(), role: Role::History },
+                })
+            }
             _ => None,
         };
         let optimise = match (optimise, &scene, &mean_over) {
@@ -136,8 +150,11 @@ impl<'t> ExperimentReader<'t> {
             }
             (Some(sweep), Some(measures), Some(maximise), Some(kept)) => {
                 let swept = sweep.as_ref().map_or(&[][..], |sweep| &sweep.swept);
-                let union = sweep.as_ref().is_some_and(|sweep| sweep.cases.iter().any(|case| !case.sweep.is_empty()));
-                Some(Columns::of(swept, union, &words_only(measures), maximise.as_ref(), kept))
+                let some = |test: fn(&Case) -> bool| sweep.as_ref().is_some_and(|sweep| sweep.cases.iter().any(test));
+                let mut labels = Vec::new();
+                labels.extend(some(|case| !case.sweep.is_empty()).then_some("sweep"));
+                labels.extend(some(|case| case.direction.is_some()).then_some("direction"));
+                Some(Columns::of(swept, &labels, &words_only(measures), maximise.as_ref(), kept))
             }
             _ => None,
         };
@@ -150,7 +167,7 @@ impl<'t> ExperimentReader<'t> {
         whole?;
         let (mean_over, optimise) = (mean_over?.unwrap_or_else(ReadSweep::none), optimise?);
         let (measures, maximise, trace, run) = (measures?, maximise?, trace?, run?);
-        let (energies, shape) = (energies?, shape?);
+        let (energies, shape, each_cycle) = (energies?, shape?, each_cycle?);
         checks.measures(&measures, maximise.as_ref(), trace.as_ref(), shape.as_ref());
         checks.motion(
             &measures,
@@ -159,6 +176,7 @@ impl<'t> ExperimentReader<'t> {
             &run.solvers,
         );
         checks.energies(energies.as_ref(), &run.settings, energies_at);
+        checks.each_cycle(each_cycle.as_ref(), &run.settings, each_cycle_at);
         if let Some(at) = run.settled_at {
             checks.settled(&measures, energies.is_some(), &run.solvers, at);
         }
@@ -177,6 +195,11 @@ impl<'t> ExperimentReader<'t> {
         let inner = inner.unwrap_or_default();
         let cases = with_solvers(sweep.cases, &run.solvers);
         checks.refined(&sweep.refined, &measures);
+        checks.continued(&sweep.continued, &cases, unordered);
+        if let (true, Some((_, at))) = (no_run, sweep.continued.first()) {
+            self.findings
+                .wrong::<()>(*at, "what is measured here is read off the model: there is no run to go on from");
+        }
         checks.coverage(&scene, &cases, &places, &mean_over, maximise.as_ref());
         checks.amount(&cases, &sweep.refined, maximise.as_ref(), inner.len(), scene_at);
         fill_placeholders(&mut scene.recipe, &cases, &sweep.swept, maximise.as_ref());
@@ -203,12 +226,14 @@ impl<'t> ExperimentReader<'t> {
             moved: run.moved,
             maximise,
             refined: sweep.refined.into_iter().map(|(refinement, _)| refinement).collect(),
+            continued: sweep.continued.into_iter().map(|(continuation, _)| continuation).collect(),
             mean_over: inner,
             optimise,
             measures: words_only(&measures),
             trace,
             energies,
             shape,
+            each_cycle,
             figures,
         };
         let parts = scene.parts;
@@ -254,12 +279,17 @@ impl<'t> ExperimentReader<'t> {
         if sweep.cases.iter().any(|case| !case.sweep.is_empty()) || !sweep.refined.is_empty() {
             return self.findings.wrong(node.span, "a mean is taken over fixed points: neither `union` nor `refined`");
         }
+        if let Some((_, at)) = sweep.continued.first() {
+            return self
+                .findings
+                .wrong(*at, "what a mean is taken over has no order: `from: last` stands under `sweep`");
+        }
         Some(sweep)
     }
 
     /// A mean has no time history.
     fn averaged_alone(&self, fields: &Fields<'t>) -> Option<()> {
-        let lists = ["trace", "energies", "shape"].into_iter().filter_map(|key| fields.get(key)).next();
+        let lists = LISTS.into_iter().filter_map(|key| fields.get(key)).next();
         match (fields.get("mean_over"), lists) {
             (Some(_), Some(list)) => self.findings.report(
                 list.span,
@@ -275,7 +305,7 @@ impl<'t> ExperimentReader<'t> {
         if fields.get("optimise").is_none() {
             return Some(());
         }
-        let others = ["sweep", "maximise", "trace", "energies", "shape"].into_iter().filter_map(|key| fields.get(key));
+        let others = ["sweep", "maximise"].into_iter().chain(LISTS).filter_map(|key| fields.get(key));
         let mut fine = Some(());
         for other in others {
             fine = self.findings.report(
@@ -441,11 +471,11 @@ const MOST_POINTS: u64 = 100_000;
 impl<'t> ExperimentReader<'t> {
     /// All lists of a row are of one length.
     fn one_list(&self, fields: &Fields<'t>) -> Option<()> {
-        let given: Vec<_> = ["trace", "energies", "shape"].into_iter().filter_map(|key| fields.get(key)).collect();
+        let given: Vec<_> = LISTS.into_iter().filter_map(|key| fields.get(key)).collect();
         match given.as_slice() {
             [_, second, ..] => self.findings.report(
                 second.span,
-                "a row keeps lists of one length: one of `trace`, `energies` and `shape`",
+                "a row keeps lists of one length: one of `trace`, `energies`, `shape` and `each_cycle`",
                 Some("give the other an experiment of its own".into()),
             ),
             _ => Some(()),
@@ -462,6 +492,20 @@ impl<'t> ExperimentReader<'t> {
             return self.findings.wrong(node.span, "a span ends after the cycle it begins with");
         }
         Some(EnergySpec { from_cycle, to_cycle })
+    }
+
+    /// `impact_phase`, or `{of: impact_phase, last: 20 cycles}`.
+    fn each_cycle(&self, node: &'t Node) -> Option<CycleSpec> {
+        let value = |node| word::<CycleValue>(node, "value of a cycle", self.findings);
+        let Value::Mapping(_) = node.value else { return Some(CycleSpec { of: value(node)?, last: None }) };
+        let fields = Fields::open(node, "a value of each cycle", self.findings)?;
+        let of = fields.required("of", value);
+        let last = fields.optional("last", |node| match count(node, "cycles", MOST_CYCLES, self.findings)? {
+            0 => self.findings.wrong(node.span, "one cycle at least is kept"),
+            cycles => Some(cycles),
+        });
+        fields.close()?;
+        Some(CycleSpec { of: of?, last: last? })
     }
 
     fn shape(&self, node: &'t Node) -> Option<ShapeSpec> {

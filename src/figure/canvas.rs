@@ -4,6 +4,7 @@
 //! would not move a line by a tenth of a pixel are left out.
 
 use std::cell::RefCell;
+use std::fmt::Write as _;
 use std::rc::Rc;
 use std::sync::LazyLock;
 
@@ -147,6 +148,20 @@ impl Sheet {
     /// A filled disc.
     pub(super) fn disc(&self, centre: Point, radius: f64, color: Color) {
         self.put(&Circle::new(place(centre), whole(radius), rgb(color).filled()));
+    }
+
+    /// Dots as wide as the pen, thousands of them as one path.
+    pub(super) fn dots(&self, centres: &[Point], pen: Pen) {
+        let mut d = String::new();
+        for (x, y) in places(centres) {
+            // A line of a tenth of a pixel with round ends.
+            _ = write!(d, "M{x} {y}h1");
+        }
+        let (color, width) = (pen.color, whole(pen.width));
+        _ = writeln!(
+            self.text.borrow_mut(),
+            "<path fill=\"none\" stroke=\"{color}\" stroke-width=\"{width}\" stroke-linecap=\"round\" d=\"{d}\"/>"
+        );
     }
 
     /// A circle.

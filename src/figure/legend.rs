@@ -4,7 +4,7 @@ use crate::experiment::{Band, Level, Panel};
 
 use super::canvas::{Anchor, Lettering, Pen, Sheet, text_width};
 use super::geometry::{Point, Rect};
-use super::line::Curve;
+use super::line::{Curve, Join};
 use super::paint;
 use super::quoted::{self, Quoted};
 use super::style::{
@@ -16,6 +16,7 @@ use super::style::{
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Sign {
     Line { look: Look, marker: bool },
+    Dot(Look),
     Band(Color),
     Quoted,
     Tolerance,
@@ -72,7 +73,10 @@ impl Legend {
         if curves.len() > 1 || band || points {
             entries.extend(by_trait(curves, markers).unwrap_or_else(|| {
                 let line = |curve: &Curve| Entry {
-                    sign: Sign::Line { look: curve.look, marker: markers },
+                    sign: match curve.join {
+                        Join::Line => Sign::Line { look: curve.look, marker: markers },
+                        Join::Dots => Sign::Dot(curve.look),
+                    },
                     text: curve.name.full(),
                 };
                 curves.iter().map(line).collect()
@@ -248,6 +252,7 @@ impl Entry {
                     paint::marker(sheet, middle, look);
                 }
             }
+            Sign::Dot(look) => sheet.disc(middle, look.width, look.color),
             Sign::Band(color) => {
                 let half = LEGEND_ROW * 0.3;
                 let place = Rect { left: at.x, top: at.y - half, right: end.x, bottom: at.y + half };

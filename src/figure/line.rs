@@ -70,6 +70,15 @@ impl Name {
     }
 }
 
+/// How the samples of a curve are drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Join {
+    /// Joined by a line.
+    Line,
+    /// Each as a dot: values of each cycle, of which a row has many.
+    Dots,
+}
+
 /// One line of a panel.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Curve {
@@ -77,6 +86,7 @@ pub(super) struct Curve {
     pub group: usize,
     pub name: Name,
     pub look: Look,
+    pub join: Join,
     /// Sorted by x unless it is a time history.
     pub samples: Vec<Sample>,
     /// How many searches the band spans; 0 where it is none of theirs.
@@ -136,12 +146,18 @@ pub(super) fn curves(source: Source<'_>, panel: &Panel) -> Result<Vec<Curve>, Fi
             let traits = Traits::new(source, index, panel.y.len(), &shown, group);
             let mut words = if panel.y.len() > 1 { vec![source.label(axis)?] } else { Vec::new() };
             words.extend(group.varying_words(&groups));
+            let join = join(x, y);
             let name = match words.split_first() {
+                // Dots have no dash.
+                Some(_) if join == Join::Dots => Name { hue: words.join(", "), dash: None },
                 None => Name { hue: source.label(axis)?, dash: None },
                 Some((hue, rest)) => Name { hue: hue.clone(), dash: (!rest.is_empty()).then(|| rest.join(", ")) },
             };
-            let look = Look::of_path(&y.name).filter(|_| groups.len() == 1).unwrap_or_else(|| traits.look());
-            let mut curve = Curve { group: number, name, look, samples: Vec::new(), seeds: 0, at_infinity: None };
+            let look = match join {
+                Join::Dots => Look::of_dots(number, groups.len()),
+                Join::Line => Look::of_path(&y.name).filter(|_| groups.len() == 1).unwrap_or_else(|| traits.look()),
+            };
+            let mut curve = Curve { group: number, name, look, join, samples: Vec::new(), seeds: 0, at_infinity: None };
             match (panel.band, &x.data, &y.data) {
                 (Band::Seeds, Data::FloatList(steps), Data::FloatList(values)) => {
                     let search = |&row: &usize| Some((steps.get(row)?.as_slice(), values.get(row)?.as_slice()));
@@ -164,6 +180,14 @@ pub(super) fn curves(source: Source<'_>, panel: &Panel) -> Result<Vec<Curve>, Fi
         return Err(FigureError::Nothing { figure: source.figure.to_owned() });
     }
     Ok(curves)
+}
+
+/// A list a row above a number a row is a cloud.
+fn join(x: &Column, y: &Column) -> Join {
+    match (&x.data, &y.data) {
+        (Data::Float(_) | Data::Int(_), Data::FloatList(_)) => Join::Dots,
+        _ => Join::Line,
+    }
 }
 
 /// Every curve over the first one, at the places that both have.
@@ -215,7 +239,14 @@ fn fill(
             }
             Ok(())
         }
-        (Data::FloatList(_), _) | (_, Data::FloatList(_)) => {
+        (Data::Float(_) | Data::Int(_), Data::FloatList(values)) => {
+            for &row in rows {
+                let Some(at) = number(x, row).filter(|at| at.is_finite()) else { continue };
+                curve.samples.extend(values.get(row).into_iter().flatten().map(|&y| Sample::bare(at, y)));
+            }
+            Ok(())
+        }
+        (Data::FloatList(_), _) => {
             Err(FigureError::Mixed { figure: figure.to_owned(), x: x.name.clone(), y: y.name.clone() })
         }
         _ => {

@@ -9,7 +9,7 @@ use super::contact;
 use super::geometry::{Point, Rect};
 use super::layout::{Place, line_height};
 use super::legend::Obstacles;
-use super::line::Curve;
+use super::line::{Curve, Join};
 use super::panel::Panel;
 use super::peak::peaks;
 use super::strip;
@@ -101,6 +101,9 @@ fn curves(sheet: &Sheet, panel: &Panel<'_>, frame: &Rect) {
 
 fn curve(sheet: &Sheet, panel: &Panel<'_>, frame: &Rect, curve: &Curve) {
     let pen = Pen { color: curve.look.color, width: curve.look.width, dash: curve.look.dash };
+    if curve.join == Join::Dots {
+        return sheet.dots(&panel.dots(frame, curve), pen);
+    }
     for stretch in panel.stretches(frame, curve) {
         // A point between two gaps would be no line at all.
         if let [alone] = stretch.as_slice() {

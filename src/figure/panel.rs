@@ -1,5 +1,7 @@
 //! A panel: curves and axes made ready, before its place on the sheet is known.
 
+use std::collections::BTreeSet;
+
 use crate::experiment::{self, AxisScale};
 
 use super::axis::{Axis, Extent, Room, Tick};
@@ -10,7 +12,7 @@ use super::geometry::{Point, Rect};
 use super::label;
 use super::layout::Needs;
 use super::legend::{Legend, Obstacles};
-use super::line::{Curve, Sample, Source, curves};
+use super::line::{Curve, Join, Sample, Source, curves};
 use super::quoted::Quoted;
 use super::render::Beside;
 use super::strip::{self, Strip};
@@ -51,7 +53,7 @@ impl Reach {
 fn widen_hidden(curves: &mut [Curve], y: &Axis) {
     for index in 0..curves.len() {
         let (here, above) = curves.split_at(index + 1);
-        let Some(curve) = here.last() else { continue };
+        let Some(curve) = here.last().filter(|curve| curve.join == Join::Line) else { continue };
         let hidden = above.iter().any(|other| agrees(&curve.samples, &other.samples, y));
         if hidden && curve.look.width < 1.7 * CURVE {
             curves[index].look.width *= 1.7;
@@ -196,8 +198,19 @@ impl<'a> Panel<'a> {
         Some(frame.at(self.x.share(x)?, self.y.share(y)?))
     }
 
+    /// A curve's dots, those that fall on one place once.
+    pub(super) fn dots(&self, frame: &Rect, curve: &Curve) -> Vec<Point> {
+        let mut seen = BTreeSet::new();
+        let placed = curve.samples.iter().filter_map(|sample| self.place(frame, sample.x, sample.y));
+        #[expect(clippy::cast_possible_truncation, reason = "a sheet is some thousand pixels wide")]
+        placed.filter(|at| seen.insert([at.x, at.y].map(|place| (2.0 * place).round() as i32))).collect()
+    }
+
     /// A curve's unbroken stretches.
     pub(super) fn stretches(&self, frame: &Rect, curve: &Curve) -> Vec<Vec<Point>> {
+        if curve.join == Join::Dots {
+            return self.dots(frame, curve).into_iter().map(|dot| vec![dot]).collect();
+        }
         curve
             .samples
             .split(|sample| self.place(frame, sample.x, sample.y).is_none())

@@ -25,6 +25,10 @@ pub(super) const THIN_CURVE: f64 = 3.0;
 pub(super) const TICK: f64 = 13.0;
 pub(super) const MINOR_TICK: f64 = 7.0;
 pub(super) const MARKER: f64 = 10.0;
+/// Width of a dot of a cloud.
+const DOT: f64 = 3.5;
+/// By how much those of the cloud beneath are wider: where two agree, both are seen.
+const DOT_BENEATH: f64 = 3.0;
 pub(super) const QUOTED: f64 = 17.0;
 /// Space between neighbours: a tick and its label, a label and the edge.
 pub(super) const SPACE: f64 = 14.0;
@@ -184,6 +188,12 @@ impl Look {
     pub(super) fn new(hue: usize, hues: usize, dash: usize) -> Self {
         let color = if hues <= OKABE_ITO.len() { OKABE_ITO[hue % OKABE_ITO.len()] } else { ramp(hue, hues) };
         Self { color, width: CURVE, dash: DASHES[dash % DASHES.len()], marker: MARKERS[dash % MARKERS.len()] }
+    }
+
+    /// The look of the cloud that is number `index` of `count` from below.
+    pub(super) fn of_dots(index: usize, count: usize) -> Self {
+        let above = u32::try_from(count - index - 1).map_or(0.0, f64::from).min(3.0);
+        Self { width: DOT + DOT_BENEATH * above, ..Self::new(index, count, 0) }
     }
 
     /// The named colour of what has the same one in every figure, whichever others are drawn: by the study, or what has one in

@@ -6,10 +6,14 @@
 //! finds is evaluated as a result afterwards. The fixed step is run once: what its
 //! step does to the numbers is the result that it is there for.
 //!
+//! Runs may form a chain: each starts where the one before it ended, with its companions beside it; the run without dampers
+//! starts as the scene says.
+//!
 //! Where runs are to settle, all of a case are made so; if one of them does not, the case is evaluated as if it had not been asked.
 
 use std::f64::consts::TAU;
 
+use super::each_cycle;
 use super::energy::Energies;
 use super::history::History;
 use super::kept;
@@ -18,9 +22,10 @@ use super::shape::{self, Shape};
 use super::undefined::in_range;
 use super::{EvaluateError, Evaluated, Measure, Measured, Needs, Rigour, Subject, TraceColumn};
 use crate::dynamics::{
-    EngineError, HybridSystem, Method, MotionKind, Options, Proof, Response, TraceRequest, Until, event_driven,
+    Averaged, EngineError, HybridSystem, Method, MotionKind, Options, Proof, Response, StartState, TraceRequest, Until,
+    event_driven,
 };
-use crate::measure::{EnergySpec, Settings, ShapeOf, ShapeSpec, SolverChoice, TraceSpec};
+use crate::measure::{CycleSpec, EnergySpec, Settings, ShapeOf, ShapeSpec, SolverChoice, TraceSpec};
 use crate::scene::{Excitation, Scene, SingleMass, Structure, compile};
 
 /// Kick that tells chaos from order, relative to the drive.
@@ -36,8 +41,20 @@ const MEMBERS_OF_A_LOOK: u32 = 8;
 /// Largest kick of an ensemble member.
 const ENSEMBLE_KICK: f64 = 1e-6;
 
+/// Whether a run is one of a chain.
+#[derive(Debug, Clone, Copy, Default)]
+pub enum Link<'a> {
+    /// It is not: it starts as the scene says, and nobody asks where it ends.
+    #[default]
+    None,
+    /// The first of a chain: it starts as the scene says.
+    First,
+    /// It starts where another ended.
+    After(&'a StartState),
+}
+
 /// What is asked of a case.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 pub struct Request<'a> {
     /// What to measure.
     pub measures: &'a [Measure],
@@ -47,8 +64,12 @@ pub struct Request<'a> {
     pub energies: Option<&'a EnergySpec>,
     /// Shape to keep.
     pub shape: Option<&'a ShapeSpec>,
+    /// Value to keep of each cycle.
+    pub each_cycle: Option<&'a CycleSpec>,
     /// What the numbers have to be worth.
     pub rigour: Rigour,
+    /// The place of the run in a chain.
+    pub link: Link<'a>,
 }
 
 impl Request<'_> {
@@ -66,18 +87,21 @@ impl Request<'_> {
             || self.trace.is_some()
             || self.energies.is_some()
             || self.deflection().is_some()
+            || self.each_cycle.is_some()
+            || !matches!(self.link, Link::None)
     }
 
     /// A run of a scene without an audit and without a history.
     pub(super) fn options(&self, scene: &Scene, settings: &Settings) -> Options {
+        let of_cycle = |ends: bool| self.each_cycle.is_some_and(|each| each.of.is_of_ends() == ends);
         Options {
             start: scene.start_state(),
             skip: settings.skip,
             average: settings.average,
             displacement: self.any(Measure::needs_displacement) || self.deflection().is_some(),
             extremes: self.any(Measure::needs_extremes),
-            record_events: if self.any(Measure::needs_events) { usize::MAX } else { 0 },
-            cycle_rates: self.energies.is_some() || self.any(Measure::needs_energies),
+            record_events: if self.any(Measure::needs_events) || of_cycle(false) { usize::MAX } else { 0 },
+            cycle_rates: self.energies.is_some() || self.any(Measure::needs_energies) || of_cycle(true),
             ..Options::default()
         }
     }
@@ -115,7 +139,7 @@ impl<'a> Prepared<'a> {
     ) -> Result<Self, EvaluateError> {
         let subject = rounded_subject(subject, settings);
         let system = compile(&subject.scene)?;
-        let request = Request { measures, trace: None, energies: None, shape: None, rigour: Rigour::Look };
+        let request = Request { measures, rigour: Rigour::Look, ..Request::default() };
         let reference = References::of(&subject, &request, settings, solver)?;
         let units = subject.scene.dampers.iter().map(|damper| damper.gap).collect();
         Ok(Self { subject, settings, measures, solver, system, reference, units })
@@ -131,7 +155,7 @@ impl<'a> Prepared<'a> {
             scene.dampers[i].gap = gap * unit;
             system.particles[i].gap = gap * unit;
         }
-        let request = Request { measures: self.measures, trace: None, energies: None, shape: None, rigour };
+        let request = Request { measures: self.measures, rigour, ..Request::default() };
         let Self { subject, settings, .. } = self;
         let case = Case { subject, settings, request: &request, scene: &scene };
         in_range(&scene, self.measures, case.run(&system, &self.reference, self.solver)?)
@@ -203,7 +227,10 @@ impl Case<'_> {
         solver: SolverChoice,
     ) -> Result<Evaluated, EvaluateError> {
         // A run without an audit and without a history.
-        let plain = self.request.options(self.scene, self.settings);
+        let mut plain = self.request.options(self.scene, self.settings);
+        if let Link::After(state) = self.request.link {
+            plain.start = state.carried_to(system).ok_or(EvaluateError::NotCarried)?;
+        }
         if reference.may_settle {
             let settles = Options { until: Until::Settled, ..plain.clone() };
             if let Some(evaluated) = self.run_until(system, reference, solver, &settles)? {
@@ -231,6 +258,7 @@ impl Case<'_> {
         let main = Options {
             audit: request.rigour == Rigour::Result,
             motion: request.any(Measure::needs_motion),
+            final_state: !matches!(request.link, Link::None),
             trace: request.trace.map(|trace| TraceRequest {
                 from_cycle: u64::from(trace.from_cycle),
                 to_cycle: u64::from(trace.to_cycle),
@@ -239,7 +267,8 @@ impl Case<'_> {
             ..plain.clone()
         };
         let unsettled = |run: &Response| plain.until == Until::Settled && run.settled.is_none();
-        let response = solve(system, &main, solver)?;
+        let mut response = solve(system, &main, solver)?;
+        let end = response.final_state.take();
         if unsettled(&response) {
             return Ok(None);
         }
@@ -260,6 +289,7 @@ impl Case<'_> {
             members: 1,
             motion,
             trace: lists.clone(),
+            end: end.clone(),
         };
         if matches!(solver, SolverChoice::FixedStep { .. }) || system.particles.is_empty() {
             return Ok(Some(certain(vec![0.0; values.len()], false)));
@@ -327,7 +357,7 @@ impl Case<'_> {
             Measured { value: sum.mean, numerical: spread / f64::from(members).sqrt(), spread }
         });
         let measured = measured.collect();
-        Ok(Some(Evaluated { measured, proof: response.proof, chaotic, members, motion, trace: lists }))
+        Ok(Some(Evaluated { measured, proof: response.proof, chaotic, members, motion, trace: lists, end }))
     }
 }
 
@@ -359,6 +389,7 @@ impl Case<'_> {
             members: 1,
             motion: None,
             trace: shape.map(|shape| shape.columns).unwrap_or_default(),
+            end: None,
         })
     }
 
@@ -438,6 +469,11 @@ impl Case<'_> {
                 lists.extend(energies.columns(spec));
             }
             lists.extend(shape.into_iter().flat_map(|shape| shape.columns));
+            if let Some(each) = request.each_cycle {
+                let given = Averaged { first: u64::from(self.settings.skip), cycles: u64::from(self.settings.average) };
+                let averaged = response.settled.unwrap_or(given);
+                lists.push(each_cycle::column(*each, self.scene, response, averaged.first..averaged.end()));
+            }
         }
         Ok(Read { values, lists })
     }

@@ -6,6 +6,7 @@
 
 use std::borrow::Cow;
 
+mod each_cycle;
 mod energy;
 mod evaluate;
 mod history;
@@ -19,16 +20,16 @@ mod subject;
 mod trial;
 mod undefined;
 
-pub use evaluate::{Prepared, Request, evaluate, rounded};
+pub use evaluate::{Link, Prepared, Request, evaluate, rounded};
 pub use kept::{
     PROOF, ProofColumn, ProofOf, column_of_damper, energy_columns, of_another_damper, shape_columns, trace_columns,
 };
 pub use measures::{Facts, Measure, ReadOff, Runs, Under, column_words};
-pub use request::{EnergySpec, Settings, ShapeOf, ShapeSpec, SolverChoice, TraceSpec};
+pub use request::{CycleSpec, CycleValue, EnergySpec, Settings, ShapeOf, ShapeSpec, SolverChoice, TraceSpec};
 pub use subject::{Comparison, Needs, Subject};
 pub use trial::Trial;
 
-use crate::dynamics::{EngineError, MotionKind, Proof};
+use crate::dynamics::{EngineError, MotionKind, Proof, StartState};
 use crate::scene::CompileError;
 use crate::text::words;
 
@@ -70,6 +71,8 @@ pub struct Evaluated {
     pub motion: Option<MotionKind>,
     /// Time history, if asked for: column name, unit, samples.
     pub trace: Vec<TraceColumn>,
+    /// Where the run ended, if another may start there.
+    pub end: Option<StartState>,
 }
 
 /// One column of a time history.
@@ -100,6 +103,11 @@ pub enum EvaluateError {
     /// The engine gave up, with the reason.
     #[error(transparent)]
     Engine(#[from] EngineError),
+    /// The state that it was to start from is one of another scene.
+    #[error(
+        "it cannot start where the row before it ended: the structure has other coordinates, or a face that a particle touches is gone"
+    )]
+    NotCarried,
     /// A measure of the time history, and none was asked for.
     #[error("{0:?} is read off a time history: give the experiment a trace")]
     NeedsTrace(Measure),

@@ -74,6 +74,28 @@ pub struct EnergySpec {
     pub to_cycle: u32,
 }
 
+/// Which value to keep of every averaged cycle, or of the last of them: what a bifurcation diagram shows. The list column carries
+/// its word.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub struct CycleSpec {
+    /// The value.
+    pub of: CycleValue,
+    /// How many cycles; all that are averaged unless it is stated.
+    pub last: Option<u32>,
+}
+
+/// A value of a cycle; of contacts, one for each that is made with a floor or a ceiling.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum CycleValue {
+    /// Velocity of the structure at the end of the cycle, just before an impulse that opens the next.
+    StroboscopicVelocity,
+    /// ω t of a contact, from the start of the cycle.
+    ImpactPhase,
+    /// Relative speed just before a contact.
+    ImpactSpeed,
+}
+
 /// Which shape to keep. The list columns are then `x` and, with two sides, `y` (shares of the sides; x varies fastest), `shape`
 /// (largest modulus 1), and for a mode `exact_shape`, for a deflection `rms_displacement` (m) and `mode_shape`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

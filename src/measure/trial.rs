@@ -3,7 +3,7 @@
 use super::energy::Energies;
 use super::evaluate::rounded;
 use super::reading::Reading;
-use super::{Comparison, EvaluateError, Measure, Request, Rigour, Subject};
+use super::{Comparison, EvaluateError, Measure, Request, Subject};
 use crate::dynamics::{HybridSystem, Options, Response};
 use crate::measure::Settings;
 use crate::scene::{Scene, compile};
@@ -42,8 +42,7 @@ impl<'a> Trial<'a> {
         if measures.is_empty() {
             measures.push(Measure::RmsVelocity);
         }
-        let request =
-            Request { measures: &measures, trace: None, energies: None, shape: None, rigour: Rigour::default() };
+        let request = Request { measures: &measures, ..Request::default() };
         let bare = rounded(undamped, settings);
         let options = request.options(&scene, settings);
         let undamped_options = request.options(&bare, settings);

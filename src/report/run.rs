@@ -134,6 +134,17 @@ fn cases(experiment: &Experiment) -> String {
     let names: Vec<String> = experiment.swept.iter().map(|parameter| column_words(&words::of_key(parameter))).collect();
     let over = if names.is_empty() { String::new() } else { format!(" over {}", joined(&names)) };
     let cases = counted(experiment.cases.len(), "case", "cases");
+    let over = match experiment.continued.first() {
+        Some(continued) => {
+            let along = column_words(&words::of_key(&continued.along));
+            let mut directions: Vec<_> = experiment.cases.iter().filter_map(|case| case.direction).collect();
+            directions.sort_unstable();
+            directions.dedup();
+            let directions: Vec<String> = directions.iter().map(words::of_key).collect();
+            format!("{over}; {} the {along}, each starts from the last state of the one before it", joined(&directions))
+        }
+        None => over,
+    };
     match &experiment.maximise {
         None => format!("{cases}{over}"),
         Some(maximise) => {

@@ -52,15 +52,7 @@ const EFFECTS: [Effect; 13] = [
         |scene| surfaces(scene).any(|surface| matches!(surface, Surface::Resilient { .. })),
         "no surface is resilient",
     ),
-    (
-        "equivalent viscous damping",
-        |scene| {
-            surfaces(scene).any(|surface| {
-                matches!(surface, Surface::Resilient { damping: ContactDamping::EquivalentViscous(_), .. })
-            })
-        },
-        "the dashpots of the surfaces are constant",
-    ),
+    ("equivalent viscous damping", Scene::has_equivalent_viscous_damping, "the dashpots of the surfaces are constant"),
     (
         "contact without tension",
         |scene| {
@@ -88,6 +80,17 @@ const EFFECTS: [Effect; 13] = [
 
 fn surfaces(scene: &Scene) -> impl Iterator<Item = &Surface> {
     scene.dampers.iter().flat_map(|damper| [&damper.floor, &damper.ceiling])
+}
+
+impl Scene {
+    /// The dashpots of some surface follow from the motion of the half cycle before.
+    #[must_use]
+    pub fn has_equivalent_viscous_damping(&self) -> bool {
+        let follows = |surface: &Surface| {
+            matches!(surface, Surface::Resilient { damping: ContactDamping::EquivalentViscous(_), .. })
+        };
+        surfaces(self).any(follows)
+    }
 }
 
 /// The effects over the scenes of all cases.

@@ -5,8 +5,8 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use super::row_failure::RowFailure;
 use crate::experiment::{Assumptions, GapWord, Recipe};
 use crate::measure::{
-    self, EnergySpec, Evaluated, Measure, Needs, Prepared, Request, Rigour, Settings, ShapeSpec, SolverChoice,
-    TraceSpec,
+    self, CycleSpec, EnergySpec, Evaluated, Link, Measure, Needs, Prepared, Request, Rigour, Settings, ShapeSpec,
+    SolverChoice, TraceSpec,
 };
 
 /// One simulation to be made.
@@ -28,6 +28,10 @@ pub struct Simulation<'a> {
     pub energies: Option<&'a EnergySpec>,
     /// Shape to keep.
     pub shape: Option<&'a ShapeSpec>,
+    /// Value to keep of each cycle.
+    pub each_cycle: Option<&'a CycleSpec>,
+    /// The place of the row in a chain of rows.
+    pub link: Link<'a>,
     /// Whether it is a result, or a look on the way to one.
     pub rigour: Rigour,
 }
@@ -88,8 +92,8 @@ pub struct Engine;
 
 impl Evaluate for Engine {
     fn evaluate(&self, it: &Simulation<'_>) -> Result<Evaluated, RowFailure> {
-        let Simulation { measures, trace, energies, shape, rigour, .. } = *it;
-        let request = Request { measures, trace, energies, shape, rigour };
+        let Simulation { measures, trace, energies, shape, each_cycle, rigour, link, .. } = *it;
+        let request = Request { measures, trace, energies, shape, each_cycle, rigour, link };
         let subject = it.recipe.subject(it.assumptions, request.needs())?;
         Ok(measure::evaluate(subject, it.solver, it.settings, &request)?)
     }

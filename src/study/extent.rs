@@ -2,6 +2,7 @@
 
 use std::borrow::Cow;
 
+use super::chain::units;
 use super::job::{self, Job, evaluations, jobs};
 use super::known_rows::KnownRows;
 use super::layout::Layout;
@@ -44,11 +45,11 @@ impl Item {
             };
         }
         let experiment = &self.with_known_points(known);
-        let fingerprints = RowFingerprints::new(experiment);
         let jobs = jobs(experiment, &self.variants);
-        let is_known =
-            |job: &Job| known.has(fingerprints.of(&self.variants[job.variant], &experiment.cases[job.case], job));
-        let to_do: Vec<&Job> = jobs.iter().filter(|job| job.same_as.is_none() && !is_known(job)).collect();
+        let fingerprints = RowFingerprints::new(experiment).all(&self.variants, &jobs);
+        let is_known = |unit: &Vec<usize>| unit.iter().all(|&row| known.has(fingerprints[row]));
+        let units = units(experiment, &jobs).into_iter().filter(|unit| !is_known(unit));
+        let to_do: Vec<&Job> = units.flatten().map(|row| &jobs[row]).collect();
         let all = Extent { to_do: to_do.len(), rows: jobs.len(), open: false, simulations, seconds: None };
         if experiment.refined.is_empty() {
             let simulations = to_do.iter().map(|job| evaluations(experiment, job)).sum();

@@ -1,7 +1,7 @@
 //! Jobs: one row of a table each, a case under one solver in one variant of the assumptions.
 
 use super::variant::Variant;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use crate::experiment::{AssumptionName, Case, Experiment, curves};
 use crate::measure::{Measure, SolverChoice};
@@ -35,7 +35,15 @@ pub(super) fn jobs(experiment: &Experiment, variants: &[Variant]) -> Vec<Job> {
         let recipe = experiment.recipe_of(&experiment.cases[job.case]).ok()?;
         Some(experiment.assumptions_of([recipe], &variants[0].assumptions))
     };
-    let read: Vec<Option<BTreeSet<AssumptionName>>> = event_driven.iter().map(read).collect();
+    let mut read: Vec<Option<BTreeSet<AssumptionName>>> = event_driven.iter().map(read).collect();
+    // What a row of a chain reads, all rows after it depend on; they are computed together or not at all.
+    let row_of: BTreeMap<usize, usize> = event_driven.iter().enumerate().map(|(at, (_, job))| (job.case, at)).collect();
+    for chain in experiment.chains() {
+        let rows: Vec<usize> = chain.iter().filter_map(|case| row_of.get(case).copied()).collect();
+        let each: Option<Vec<BTreeSet<_>>> = rows.iter().map(|&row| read[row].clone()).collect();
+        let all: Option<BTreeSet<_>> = each.map(|each| each.into_iter().flatten().collect());
+        rows.into_iter().for_each(|row| read[row].clone_from(&all));
+    }
     for (variant, Variant { moved, .. }) in variants.iter().enumerate().skip(1) {
         for ((row, job), read) in event_driven.iter().zip(&read) {
             let depends = match (moved, read) {

@@ -117,7 +117,5 @@ fn is_of(item: &Item, table: &Table) -> bool {
 
 fn fingerprints(item: &Item) -> BTreeSet<RowFingerprint> {
     let experiment = &item.source.experiment;
-    let fingerprints = RowFingerprints::new(experiment);
-    let of = |job: &super::job::Job| fingerprints.of(&item.variants[job.variant], &experiment.cases[job.case], job);
-    jobs(experiment, &item.variants).iter().filter(|job| job.same_as.is_none()).map(of).collect()
+    RowFingerprints::new(experiment).all(&item.variants, &jobs(experiment, &item.variants)).into_iter().collect()
 }

@@ -89,5 +89,6 @@ pub(super) fn mean(wanted: &[Measure], measures: &[Measure], each: &[Evaluated])
         members: each.iter().map(|one| one.members).max().unwrap_or(1),
         motion: None,
         trace: Vec::new(),
+        end: None,
     }
 }

@@ -5,6 +5,7 @@
 //! draws or judges: verdicts, figures and reports are made from the tables afterwards.
 
 mod canonical;
+mod chain;
 mod doubt;
 mod earlier;
 mod evaluate;

@@ -134,5 +134,6 @@ fn described(experiment: &Experiment, table: &Table, row: usize) -> String {
         };
         Some(format!("{name} = {value}"))
     });
-    parts.collect::<Vec<_>>().join(", ")
+    let direction = table.texts("direction").map(|words| words[row].clone()).filter(|word| !word.is_empty());
+    parts.chain(direction).collect::<Vec<_>>().join(", ")
 }

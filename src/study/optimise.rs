@@ -19,7 +19,7 @@ use super::tabulate_candidates::{AlongGap, Candidate, failures, table};
 use super::variant::Variant;
 use crate::dynamics::is_interrupted;
 use crate::experiment::{Experiment, Goal, Optimise, Recipe, Search, SearchKind, SearchSpacing};
-use crate::measure::{Evaluated, Measure, Measured, Rigour, SolverChoice};
+use crate::measure::{Evaluated, Link, Measure, Measured, Rigour, SolverChoice};
 use crate::optimise::{
     Batch, Bounds, CmaEs, Dense, Found, Genetic, GeneticSettings, Optimiser, Score, Spacing, Stalled, Stopping, dense,
     minimise, sections, two_opt,
@@ -74,6 +74,8 @@ impl<'a> Fitness<'a> {
                 trace: None,
                 energies: None,
                 shape: None,
+                each_cycle: None,
+                link: Link::None,
                 rigour: Rigour::Step,
             };
             guarded(|| evaluate.array(simulation, optimise.gaps))

@@ -32,6 +32,12 @@ pub enum RowFailure {
     /// A maximum over no points.
     #[error("there is no grid to look for a maximum on")]
     NoGrid,
+    /// A row that was to start where another ended, which did not.
+    #[error("not run: it starts where the row before ended, and the rows break off at {before}")]
+    ChainEnded {
+        /// The last row.
+        before: String,
+    },
     /// The optimisation could not be run.
     #[error(transparent)]
     Search(#[from] SearchError),

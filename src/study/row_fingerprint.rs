@@ -5,8 +5,10 @@
 
 use std::collections::BTreeMap;
 
+use rayon::prelude::*;
 use serde::Serialize;
 
+use super::chain::units;
 use super::job::Job;
 use super::variant::Variant;
 use super::work::asked;
@@ -30,6 +32,32 @@ impl<'a> RowFingerprints<'a> {
         Self { experiment, shared }
     }
 
+    /// Of all rows.
+    pub(super) fn all(&self, variants: &[Variant], jobs: &[Job]) -> Vec<RowFingerprint> {
+        let own = |job: &Job| self.own(variants, job.same_as.map_or(job, |row| &jobs[row]));
+        let mut all: Vec<RowFingerprint> = jobs.par_iter().map(own).collect();
+        for unit in units(self.experiment, jobs) {
+            link(&mut all, &unit);
+        }
+        for (row, job) in jobs.iter().enumerate() {
+            if let Some(same) = job.same_as {
+                all[row] = all[same];
+            }
+        }
+        all
+    }
+
+    /// Of the rows of a chain.
+    pub(super) fn chain(&self, variants: &[Variant], jobs: &[Job], rows: &[usize]) -> Vec<RowFingerprint> {
+        let mut chain: Vec<_> = rows.iter().map(|&row| self.own(variants, &jobs[row])).collect();
+        link(&mut chain, &(0..rows.len()).collect::<Vec<_>>());
+        chain
+    }
+
+    fn own(&self, variants: &[Variant], job: &Job) -> RowFingerprint {
+        self.of(&variants[job.variant], &self.experiment.cases[job.case], job)
+    }
+
     /// Of a row, whose case need not be among the experiment's.
     pub(super) fn of(&self, variant: &Variant, case: &Case, job: &Job) -> RowFingerprint {
         let mut hasher = self.shared.clone();
@@ -38,6 +66,9 @@ impl<'a> RowFingerprints<'a> {
                 let asked = asked(self.experiment, &recipe, variant, job);
                 let is_result = asked.rigour == Rigour::Result;
                 feed(&mut hasher, &(&recipe, asked.solver, is_result, asked.trace, asked.energies, asked.shape));
+                if let Some(each_cycle) = asked.each_cycle {
+                    feed(&mut hasher, &("each_cycle", each_cycle));
+                }
                 feed(&mut hasher, &self.read(&recipe, &variant.assumptions));
             }
             // It has no numbers, and no table gives it any.
@@ -57,6 +88,16 @@ impl<'a> RowFingerprints<'a> {
         }
         let names = self.experiment.assumptions_of(scenes, in_force).into_iter();
         names.filter_map(|name| Some((name.to_string(), in_force.values.get(&name)?))).collect()
+    }
+}
+
+/// The numbers of a row that starts where another ended depend on all that those of the other do.
+fn link(fingerprints: &mut [RowFingerprint], rows: &[usize]) {
+    for pair in rows.windows(2) {
+        let mut hasher = blake3::Hasher::new();
+        let [before, own] = [fingerprints[pair[0]], fingerprints[pair[1]]].map(|one| one.to_string());
+        feed(&mut hasher, &(before, own));
+        fingerprints[pair[1]] = RowFingerprint::of(hasher.finalize());
     }
 }
 

@@ -13,6 +13,7 @@ use std::time::Duration;
 
 use rayon::prelude::*;
 
+use super::chain::units;
 use super::evaluate::Evaluate;
 use super::event::{Event, EventHandler};
 use super::job::{self, cost};
@@ -149,12 +150,14 @@ pub fn run<T: Send + Sync>(
                         run_refined(tasks[index], &engine(index), handler, take);
                     });
                 }
-                for (one, row) in order(work) {
+                for (one, rows) in order(work) {
                     scope.spawn_fifo(move |_| {
                         let (index, one) = &work[one];
-                        if one.put(row, one.row(row, &engine(*index), handler)) {
-                            hand_over(*index, one.finish());
-                        }
+                        one.unit(&rows, &engine(*index), handler, |row, outcome| {
+                            if one.put(row, outcome) {
+                                hand_over(*index, one.finish());
+                            }
+                        });
                     });
                 }
             });
@@ -245,15 +248,16 @@ impl EventHandler for Counting<'_> {
     }
 }
 
-/// Rows in the order in which to start them: the experiment with the longest row first, in it the longest row first.
-fn order(work: &[(usize, Work<'_>)]) -> Vec<(usize, usize)> {
-    let mut order: Vec<(f64, f64, usize, usize)> = Vec::new();
+/// Rows in the order in which to start them, chains of rows as one: the experiment with the longest first, in it the longest first.
+fn order(work: &[(usize, Work<'_>)]) -> Vec<(usize, Vec<usize>)> {
+    let mut order: Vec<(f64, f64, usize, Vec<usize>)> = Vec::new();
     for (index, (_, one)) in work.iter().enumerate() {
-        let costs: Vec<f64> = one.jobs.iter().map(|job| cost(one.task.experiment, one.task.variants, job)).collect();
-        let longest = costs.iter().copied().fold(0.0, f64::max);
-        let real = (0..costs.len()).filter(|&row| one.jobs[row].same_as.is_none());
-        order.extend(real.map(|row| (longest, costs[row], index, row)));
+        let cost = |row: &usize| cost(one.task.experiment, one.task.variants, &one.jobs[*row]);
+        let units = units(one.task.experiment, &one.jobs).into_iter();
+        let units: Vec<(f64, Vec<usize>)> = units.map(|rows| (rows.iter().map(cost).sum(), rows)).collect();
+        let longest = units.iter().map(|(cost, _)| *cost).fold(0.0, f64::max);
+        order.extend(units.into_iter().map(|(cost, rows)| (longest, cost, index, rows)));
     }
     order.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.2.cmp(&b.2)).then(b.1.total_cmp(&a.1)).then(a.3.cmp(&b.3)));
-    order.into_iter().map(|(_, _, index, row)| (index, row)).collect()
+    order.into_iter().map(|(_, _, index, rows)| (index, rows)).collect()
 }

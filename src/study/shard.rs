@@ -1,8 +1,8 @@
 //! Shards: a study's work in n parts for n tasks of a cluster's scheduler, each with tables of its own.
 //!
 //! The plan alone decides which rows belong to which shard, so tasks need no communication: the rows of an
-//! experiment are dealt out, the longest first. Where rows depend on each other (refined curves, searches) the experiment
-//! is one shard's as a whole. A shard's table is that of the experiment with fewer rows and one column more, `row`, the
+//! experiment are dealt out, the longest first, rows that follow each other together. Where all rows depend on each other (refined
+//! curves, searches) the experiment is one shard's as a whole. A shard's table is that of the experiment with fewer rows and one column more, `row`, the
 //! place of each in the whole table.
 
 use std::fmt;
@@ -10,6 +10,7 @@ use std::fs;
 use std::path::PathBuf;
 use std::str::FromStr;
 
+use super::chain::units;
 use super::job::{Job, cost, jobs};
 use super::layout::Layout;
 use super::plan::Item;
@@ -196,7 +197,7 @@ impl FromStr for Shard {
     }
 }
 
-/// False if rows of the experiment depend on each other.
+/// False if all rows of the experiment depend on each other.
 pub(super) fn divisible(experiment: &Experiment) -> bool {
     experiment.optimise.is_none() && experiment.refined.is_empty()
 }
@@ -210,19 +211,16 @@ pub(super) fn owner(of: u32, experiment: &Experiment) -> Shard {
 }
 
 /// The shard of each row. A row that shares another's numbers goes with it.
-pub(super) fn owners(of: u32, experiment: &Experiment, variants: &[Variant], jobs: &[Job]) -> Vec<Shard> {
-    let mut longest: Vec<(f64, usize)> = jobs
-        .iter()
-        .enumerate()
-        .filter(|(_, job)| job.same_as.is_none())
-        .map(|(row, job)| (cost(experiment, variants, job), row))
-        .collect();
+pub(super) fn owners(shards: u32, experiment: &Experiment, variants: &[Variant], jobs: &[Job]) -> Vec<Shard> {
+    let of = |rows: &[usize]| rows.iter().map(|&row| cost(experiment, variants, &jobs[row])).sum::<f64>();
+    let mut longest: Vec<(f64, Vec<usize>)> =
+        units(experiment, jobs).into_iter().map(|rows| (of(&rows), rows)).collect();
     longest.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
-    let first = owner(of, experiment);
+    let first = owner(shards, experiment);
     let mut owners = vec![first; jobs.len()];
-    let deal = (0..of).cycle().skip(first.index as usize);
-    for ((_, row), index) in longest.into_iter().zip(deal) {
-        owners[row] = Shard { index, of };
+    let deal = (0..shards).cycle().skip(first.index as usize);
+    for ((_, rows), index) in longest.into_iter().zip(deal) {
+        rows.into_iter().for_each(|row| owners[row] = Shard { index, of: shards });
     }
     for (row, job) in jobs.iter().enumerate() {
         if let Some(same) = job.same_as {

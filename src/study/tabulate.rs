@@ -47,6 +47,10 @@ pub(super) fn table(
     if experiment.cases.iter().any(|case| !case.sweep.is_empty()) {
         columns.push(Column::new("sweep", texts(&|row| experiment.cases[jobs[row].case].sweep.clone())));
     }
+    if experiment.cases.iter().any(|case| case.direction.is_some()) {
+        let direction = |row: usize| experiment.cases[jobs[row].case].direction.as_ref().map(words::of_key);
+        columns.push(Column::new("direction", texts(&|row| direction(row).unwrap_or_default())));
+    }
     columns.push(Column::new("solver", texts(&|row| jobs[row].solver.label())));
     columns.push(Column::new("variant", texts(&|row| variants[jobs[row].variant].label.clone())));
 

@@ -114,6 +114,7 @@ impl<'a> Cells<'a> {
             trace: kept
                 .map(|(column, cells)| TraceColumn::new(column.name.clone(), column.unit.clone(), cells[row].clone()))
                 .collect(),
+            end: None,
         };
         Some(Row { evaluated, place: self.place.map(|[at, within]| Place { at: at[row], within: within[row] }) })
     }

@@ -3,8 +3,7 @@
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use rayon::prelude::*;
-
+use super::chain;
 use super::evaluate::{Evaluate, Simulation, evaluate_guarded};
 use super::event::{Event, EventHandler};
 use super::job::{Job, evaluations, jobs, keeps_trace, measures_need_trace};
@@ -20,7 +19,7 @@ use super::tabulate::{self, Outcome, Row};
 use super::variant::Variant;
 use crate::dynamics::is_interrupted;
 use crate::experiment::{Case, Experiment, Recipe};
-use crate::measure::Rigour;
+use crate::measure::{Link, Rigour};
 use crate::table::RowFingerprint;
 use crate::text::words;
 
@@ -91,18 +90,27 @@ impl<'a> Work<'a> {
     /// What each row was computed from; of one that shares another's numbers, what that was.
     fn fingerprints(&self) -> Vec<RowFingerprint> {
         let Task { experiment, variants, .. } = self.task;
-        let fingerprints = RowFingerprints::new(experiment);
-        let of = |job: &Job| {
-            let job = job.same_as.map_or(job, |row| &self.jobs[row]);
-            fingerprints.of(&variants[job.variant], &experiment.cases[job.case], job)
-        };
-        self.jobs.par_iter().map(of).collect()
+        RowFingerprints::new(experiment).all(variants, &self.jobs)
     }
 
     /// Computes a row.
     pub(super) fn row(&self, row: usize, evaluate: &impl Evaluate, handler: &dyn EventHandler) -> Outcome {
         let job = &self.jobs[row];
         outcome(self.task, &self.task.experiment.cases[job.case], job, evaluate, handler)
+    }
+
+    /// Computes rows that follow each other, or a single one, and hands each over.
+    pub(super) fn unit(
+        &self,
+        rows: &[usize],
+        evaluate: &impl Evaluate,
+        handler: &dyn EventHandler,
+        put: impl Fn(usize, Outcome),
+    ) {
+        match rows {
+            [only] => put(*only, self.row(*only, evaluate, handler)),
+            chain => chain::run(self.task, &self.jobs, chain, evaluate, handler, put),
+        }
     }
 }
 
@@ -122,6 +130,19 @@ pub(super) fn outcome(
             return Ok(row);
         }
     }
+    computed(task, case, job, Link::None, evaluate, handler)
+}
+
+/// One row, of a case that need not be among the experiment's, at its place in a chain.
+pub(super) fn computed(
+    task: Task<'_>,
+    case: &Case,
+    job: &Job,
+    link: Link<'_>,
+    evaluate: &impl Evaluate,
+    handler: &dyn EventHandler,
+) -> Outcome {
+    let experiment = task.experiment;
     if is_interrupted() {
         return Err(RowFailure::Interrupted);
     }
@@ -131,7 +152,7 @@ pub(super) fn outcome(
         handler.on_event(&Event::Simulated { experiment: &experiment.id, count: 1 });
     };
     let limited = Limited::row(evaluate, task.limit);
-    let outcome = simulate(experiment, case, &task.variants[job.variant], job, &limited, &done);
+    let outcome = simulate(experiment, case, &task.variants[job.variant], job, link, &limited, &done);
     let rest = evaluations(experiment, job).saturating_sub(simulated.into_inner() as u64);
     handler.on_event(&Event::Simulated { experiment: &experiment.id, count: rest });
     // Whatever it says it failed by.
@@ -156,6 +177,8 @@ pub(super) fn asked<'a>(
         // Only the baseline keeps its lists; a measure of a shape needs it everywhere.
         energies: experiment.energies.as_ref().filter(|_| job.variant == 0),
         shape: experiment.shape.as_ref().filter(|_| job.variant == 0 || needs_shape(experiment)),
+        each_cycle: experiment.each_cycle.as_ref().filter(|_| job.variant == 0),
+        link: Link::None,
         rigour: if job.variant == 0 { Rigour::Result } else { Rigour::Look },
     }
 }
@@ -169,12 +192,13 @@ fn simulate(
     case: &Case,
     variant: &Variant,
     job: &Job,
+    link: Link<'_>,
     evaluate: &impl Evaluate,
     done: &(impl Fn() + Sync),
 ) -> Outcome {
     let evaluate = &Averaging { experiment, evaluate };
     let recipe = experiment.recipe_of(case)?;
-    let simulation = asked(experiment, &recipe, variant, job);
+    let simulation = Simulation { link, ..asked(experiment, &recipe, variant, job) };
     let Some(maximise) = &experiment.maximise else {
         let evaluated = evaluate_guarded(evaluate, &simulation);
         done();
@@ -185,7 +209,7 @@ fn simulate(
     // Histories of the points that are not the maximum are not wanted.
     let trace = simulation.trace.filter(|_| measures_need_trace(&experiment.measures));
     let shape = simulation.shape.filter(|_| needs_shape(experiment));
-    let look = Simulation { trace, energies: None, shape, rigour: Rigour::Look, ..simulation };
+    let look = Simulation { trace, energies: None, shape, each_cycle: None, rigour: Rigour::Look, ..simulation };
     let (found, place) = maximum(evaluate, &look, maximise, measure, done)?;
     if job.variant != 0 {
         return Ok(Row { evaluated: found, place: Some(place) });

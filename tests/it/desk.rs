@@ -223,6 +223,7 @@ impl Evaluate for MadeUp {
             members: 1,
             motion: None,
             trace: it.trace.map(|_| vec![TraceColumn::new("time", "s", vec![0.0, 1.0])]).unwrap_or_default(),
+            end: None,
         })
     }
 }

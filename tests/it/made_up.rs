@@ -70,6 +70,8 @@ pub fn limit_stop() -> Experiment {
         limit: Limit::default(),
         maximise: None,
         refined: Vec::new(),
+        continued: Vec::new(),
+        each_cycle: None,
         mean_over: Vec::new(),
         optimise: None,
         moved: None,

@@ -13,6 +13,7 @@ mod check;
 mod classics;
 mod clean;
 mod cli;
+mod continued;
 mod daily;
 mod desk;
 mod diff;

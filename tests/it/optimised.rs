@@ -78,6 +78,7 @@ impl Evaluate for Bowl {
             members: 8,
             motion: None,
             trace: Vec::new(),
+            end: None,
         })
     }
 }
@@ -330,6 +331,8 @@ fn a_scene_that_is_prepared_once_gives_the_bits_of_one_that_is_built_for_its_gap
             trace: None,
             energies: None,
             shape: None,
+            each_cycle: None,
+            link: shotdamp::measure::Link::None,
             rigour: shotdamp::measure::Rigour::Result,
         };
         let built = Engine.evaluate(&simulation).unwrap();

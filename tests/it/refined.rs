@@ -41,6 +41,7 @@ impl Evaluate for Curve {
             members: 1,
             motion: None,
             trace: Vec::new(),
+            end: None,
         })
     }
 }

@@ -55,6 +55,7 @@ fn measured(experiment: &Experiment) -> Vec<Evaluated> {
             energies: experiment.energies.as_ref(),
             shape: experiment.shape.as_ref(),
             rigour: Rigour::Result,
+            ..Request::default()
         };
         let subject = recipe.subject(&assumptions(), request.needs()).unwrap();
         evaluate(subject, SolverChoice::EventDriven, &experiment.settings, &request).unwrap()
@@ -497,7 +498,7 @@ pub(crate) fn what_no_structure_can_be_is_refused_where_it_stands() {
                 &train("1"),
                 "measure: [rms_velocity]\ntrace: {from: 0 cycles, to: 1 cycles, samples_per_cycle: 10}\nshape: {of: mode, points: 9}",
             ),
-            "9:1 a row keeps lists of one length: one of `trace`, `energies` and `shape` | give the other an experiment of its own",
+            "9:1 a row keeps lists of one length: one of `trace`, `energies`, `shape` and `each_cycle` | give the other an experiment of its own",
         ),
     ];
     for (text, expected) in cases {

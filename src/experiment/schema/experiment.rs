@@ -12,8 +12,9 @@ use crate::experiment::assumption_reader::MOST_CYCLES;
 use crate::experiment::assumption_sheet::AssumptionSheet;
 use crate::experiment::quantity::Dimension;
 use crate::experiment::recipe::Parameter;
+use crate::experiment::validate::LISTS;
 use crate::experiment::word::words;
-use crate::measure::{Measure, ShapeOf};
+use crate::measure::{CycleValue, Measure, ShapeOf};
 
 /// JSON Schema of an experiment; of the study's assumptions it offers those that fit a place.
 #[must_use]
@@ -23,7 +24,7 @@ pub fn experiment_schema(sheet: &AssumptionSheet) -> Value {
     definitions.extend(parts.into_iter().flatten());
     definitions.insert("maximisation".into(), maximisation());
     // Rows of an optimisation are candidates.
-    let of_a_row = ["trace", "energies", "shape"].map(|key| json!({"required": [key]}));
+    let of_a_row = LISTS.map(|key| json!({"required": [key]}));
     let mut schema = Object::new("An experiment")
         .required("title", text("A few words"))
         .optional("source", source())
@@ -38,10 +39,11 @@ pub fn experiment_schema(sheet: &AssumptionSheet) -> Value {
         .optional("trace", trace())
         .optional("energies", energies())
         .optional("shape", shape())
+        .optional("each_cycle", each_cycle())
         .optional("figure", reference("figure"))
         .optional("figures", list("Several figures", reference("figure")))
         .exclusive(&["figure", "figures"])
-        .exclusive(&["trace", "energies", "shape"])
+        .exclusive(&LISTS)
         .exclusive(&["optimise", "sweep"])
         .exclusive(&["optimise", "maximise"])
         .rule(json!({"if": {"required": ["optimise"]}, "then": {"not": {"anyOf": of_a_row}}}))
@@ -137,6 +139,14 @@ fn trace() -> Value {
 
 fn energies() -> Value {
     span("Kinetic energies that are kept").schema()
+}
+
+fn each_cycle() -> Value {
+    let value = || words_of::<CycleValue>("A value of a cycle, or of each contact in it");
+    let some = Object::new("The value, of the last cycles")
+        .required("of", value())
+        .optional("last", count("Cycles; all that are averaged unless stated", "cycles", 1, MOST_CYCLES));
+    any_of("A value of each averaged cycle that is kept", vec![value(), some.schema()])
 }
 
 fn shape() -> Value {

@@ -9,7 +9,7 @@ use super::sweep::NAME;
 use crate::experiment::definition::{AxisScale, Best, Strip};
 use crate::experiment::recipe::Parameter;
 use crate::experiment::word::words;
-use crate::measure::{Measure, energy_columns, trace_columns};
+use crate::measure::{CycleValue, Measure, energy_columns, trace_columns};
 
 /// The definitions that figures share.
 pub(super) fn definitions() -> Vec<(String, Value)> {
@@ -18,7 +18,8 @@ pub(super) fn definitions() -> Vec<(String, Value)> {
     known.extend(words::<Measure>());
     known.extend(trace_columns());
     known.extend(energy_columns());
-    known.extend(["sweep", "solver", "variant", "candidate"]);
+    known.extend(words::<CycleValue>());
+    known.extend(["sweep", "direction", "solver", "variant", "candidate"]);
     let mut offered: Vec<&str> = Vec::new();
     for name in known {
         if !offered.contains(&name) {

@@ -5,6 +5,7 @@ use serde_json::{Value, json};
 use super::parts::{
     Object, any_of, count, form, list, one_of_words, one_or_more, quantity, ratio, reference, word, words_of,
 };
+use crate::experiment::continued::{Direction, RowStart};
 use crate::experiment::definition::AxisScale;
 use crate::experiment::quantity::Dimension;
 use crate::experiment::range::MOST_POINTS;
@@ -76,7 +77,14 @@ fn sweep() -> Value {
 fn product(within_union: bool) -> Value {
     let mut object = by_parameter("What varies: the product of its keys", Values::any)
         .optional("paired", reference("paired"))
-        .optional("points", list("Points one by one", reference("point")));
+        .optional("points", list("Points one by one", reference("point")))
+        .optional("along", words_of::<Parameter>("The parameter that runs from row to row"))
+        .optional(
+            "direction",
+            one_or_more("Upwards, downwards, or both", words_of::<Direction>("Up, or down")),
+        )
+        .optional("from", words_of::<RowStart>("Each row starts where the row before ended"))
+        .rule(json!({"if": {"anyOf": [{"required": ["along"]}, {"required": ["direction"]}]}, "then": {"required": ["from"]}}));
     if within_union {
         object = object.optional("solver", one_or_more("Solvers of this sweep", reference("solver")));
     }

@@ -35,7 +35,8 @@
         const curves = [...group.querySelectorAll("[data-name]")].map((one) => ({
           name: one.dataset.name,
           color: one.querySelector("[stroke]")?.getAttribute("stroke"),
-          stretches: [...one.querySelectorAll("path[fill=none]")].map((path) => corners(path.getAttribute("d"))),
+          // Dots are stretches of their own, each from an M on.
+          stretches: [...one.querySelectorAll("path[fill=none]")].flatMap((path) => path.getAttribute("d").split(/(?=M)/).map(corners)),
         }));
         return { group, left, top, right, bottom, curves, x: axis(group.dataset.x), y: axis(group.dataset.y) };
       }));

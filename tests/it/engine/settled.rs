@@ -82,7 +82,7 @@ fn measured(scene: &Scene, until: Until, average: u32) -> Evaluated {
         Measure::Motion,
         Measure::SettledVelocityRatio,
     ];
-    let request = Request { measures: &measures, trace: None, energies: None, shape: None, rigour: Rigour::Result };
+    let request = Request { measures: &measures, rigour: Rigour::Result, ..Request::default() };
     evaluate(subject, SolverChoice::EventDriven, &settings, &request).expect("it runs")
 }
 
