@@ -144,7 +144,7 @@ fn periodic(system: &HybridSystem) -> String {
         Ok::<_, std::convert::Infallible>(system)
     };
     let along = Along { from: 1.0, to: 1e3, step: 0.004, points: POINTS };
-    let branch = || Branch::follow(stronger, &first, along).expect("it has a first orbit");
+    let branch = || Branch::follow(stronger, &first, 1.0, along).expect("it has a first orbit");
     let timed = |work: &dyn Fn()| {
         let times = sorted(
             || {

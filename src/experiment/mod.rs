@@ -9,6 +9,8 @@ mod assumption_sheet;
 mod calibration;
 mod check;
 mod columns;
+mod continuation;
+mod continuation_reader;
 mod definition;
 mod diagnostic;
 mod edit;
@@ -44,9 +46,10 @@ pub use assumption_sheet::{
     ASSUMPTIONS, AssumptionEntry, AssumptionKind, AssumptionSheet, Cycles, Moved, Quantity, Takes,
 };
 pub use calibration::{Calibration, CalibrationInput, CalibrationSearch, Tried, load_calibration, parse_calibration};
+pub use continuation::{BranchColumn, Continuation, RowSource, Stability};
 pub use definition::{
-    AnimationSpec, Axis, AxisScale, Band, Best, Case, Drawing, Experiment, ExperimentId, FigureSpec, IdError, Level,
-    MapSpec, Mark, Maximise, Only, Panel, PeakMarks, Refinement, Source, Strip,
+    AnimationSpec, Axis, AxisScale, Band, Best, Case, Drawing, Experiment, ExperimentId, FigureSpec, IdError, Joined,
+    Level, MapSpec, Mark, Maximise, Only, Panel, PeakMarks, Refinement, Source, Strip,
 };
 pub use diagnostic::{Place, Problem, Problems, Severity};
 pub(crate) use edit::{Written, set_keys};

@@ -1,7 +1,9 @@
 //! Legends: what each line means, at a place where no data lies.
 
+use crate::dynamics::Special;
 use crate::experiment::{Band, Level, Panel};
 
+use super::branch::SpecialPoint;
 use super::canvas::{Anchor, Lettering, Pen, Sheet, text_width};
 use super::geometry::{Point, Rect};
 use super::line::Curve;
@@ -23,6 +25,7 @@ enum Sign {
     Bar,
     Impulse,
     Motion(KindOfMotion),
+    Special(Special),
 }
 
 /// One row of a legend.
@@ -111,6 +114,13 @@ impl Legend {
     pub(super) fn name_motions(&mut self, classes: &[KindOfMotion]) {
         let named = classes.iter().map(|class| Entry { sign: Sign::Motion(*class), text: class.words().into() });
         self.entries.extend(named);
+    }
+
+    /// Names the kinds of special points.
+    pub(super) fn name_special_points(&mut self, points: &[SpecialPoint]) {
+        let shown = |kind: &Special| points.iter().any(|point| point.kind == *kind);
+        let named = Special::ALL.into_iter().filter(shown);
+        self.entries.extend(named.map(|kind| Entry { sign: Sign::Special(kind), text: kind.word().into() }));
     }
 
     /// Names guides beside the lines.
@@ -268,6 +278,7 @@ impl Entry {
             Sign::Motion(class) => {
                 sheet.cell(&Rect { left: at.x, top: at.y - 12.0, right: end.x, bottom: at.y + 12.0 }, class.color());
             }
+            Sign::Special(kind) => paint::marker(sheet, middle, Look::of_special(kind)),
             Sign::Bar => {
                 let place = Rect { left: at.x, top: at.y - 6.0, right: end.x, bottom: at.y + 6.0 };
                 sheet.cell(&place, GREY);

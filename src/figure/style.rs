@@ -6,6 +6,7 @@
 
 use std::collections::BTreeMap;
 
+use crate::dynamics::Special;
 use crate::experiment::LineColour;
 
 /// Width of a figure.
@@ -166,6 +167,18 @@ pub(super) enum Marker {
     Down,
 }
 
+impl Marker {
+    /// Of a special point of a branch.
+    pub(super) fn of_special(kind: Special) -> Self {
+        match kind {
+            Special::Fold => Self::Circle,
+            Special::PeriodDoubling => Self::Square,
+            Special::Torus => Self::Up,
+            Special::Graze => Self::Down,
+        }
+    }
+}
+
 const MARKERS: [Marker; 4] = [Marker::Circle, Marker::Square, Marker::Up, Marker::Down];
 
 /// How one curve is drawn.
@@ -184,6 +197,16 @@ impl Look {
     pub(super) fn new(hue: usize, hues: usize, dash: usize) -> Self {
         let color = if hues <= OKABE_ITO.len() { OKABE_ITO[hue % OKABE_ITO.len()] } else { ramp(hue, hues) };
         Self { color, width: CURVE, dash: DASHES[dash % DASHES.len()], marker: MARKERS[dash % MARKERS.len()] }
+    }
+
+    /// The same line, dashed.
+    pub(super) fn dashed(self) -> Self {
+        Self { dash: DASHES[1], ..self }
+    }
+
+    /// A special point of a branch.
+    pub(super) fn of_special(kind: Special) -> Self {
+        Self { color: INK, width: CURVE, dash: DASHES[0], marker: Marker::of_special(kind) }
     }
 
     /// The named colour of what has the same one in every figure, whichever others are drawn: by the study, or what has one in

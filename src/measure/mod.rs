@@ -12,6 +12,7 @@ mod history;
 mod impact;
 mod kept;
 mod measures;
+mod orbit;
 mod reading;
 mod request;
 mod shape;
@@ -28,7 +29,7 @@ pub use request::{EnergySpec, Settings, ShapeOf, ShapeSpec, SolverChoice, TraceS
 pub use subject::{Comparison, Needs, Subject};
 pub use trial::Trial;
 
-use crate::dynamics::{EngineError, MotionKind, Proof};
+use crate::dynamics::{EngineError, MotionKind, OrbitError, Proof};
 use crate::scene::CompileError;
 use crate::text::words;
 
@@ -100,6 +101,9 @@ pub enum EvaluateError {
     /// The engine gave up, with the reason.
     #[error(transparent)]
     Engine(#[from] EngineError),
+    /// There is no orbit.
+    #[error(transparent)]
+    Orbit(#[from] OrbitError),
     /// A measure of the time history, and none was asked for.
     #[error("{0:?} is read off a time history: give the experiment a trace")]
     NeedsTrace(Measure),

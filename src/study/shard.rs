@@ -1,7 +1,7 @@
 //! Shards: a study's work in n parts for n tasks of a cluster's scheduler, each with tables of its own.
 //!
 //! The plan alone decides which rows belong to which shard, so tasks need no communication: the rows of an
-//! experiment are dealt out, the longest first. Where rows depend on each other (refined curves, searches) the experiment
+//! experiment are dealt out, the longest first. Where rows depend on each other (refined curves, searches, branches) the experiment
 //! is one shard's as a whole. A shard's table is that of the experiment with fewer rows and one column more, `row`, the
 //! place of each in the whole table.
 
@@ -164,7 +164,7 @@ impl Shard {
         if table.metadata.get("fingerprint") != Some(&item.fingerprint) {
             return Err(NotThePart::OtherInputs);
         }
-        if item.source.experiment.optimise.is_none() && table.fingerprints.len() < table.rows() {
+        if !item.source.experiment.is_whole() && table.fingerprints.len() < table.rows() {
             return Err(NotThePart::NoFingerprints);
         }
         Ok(())
@@ -198,7 +198,7 @@ impl FromStr for Shard {
 
 /// False if rows of the experiment depend on each other.
 pub(super) fn divisible(experiment: &Experiment) -> bool {
-    experiment.optimise.is_none() && experiment.refined.is_empty()
+    !experiment.is_whole() && experiment.refined.is_empty()
 }
 
 /// The shard of an experiment that is not divided, and of the first row of another: small experiments do not all go to the

@@ -72,6 +72,7 @@ pub fn limit_stop() -> Experiment {
         refined: Vec::new(),
         mean_over: Vec::new(),
         optimise: None,
+        orbit: None,
         moved: None,
         measures: vec![Measure::VelocityRatio],
         trace: None,
@@ -110,6 +111,7 @@ pub fn panel(x: &str, scale: AxisScale, y: &[&str]) -> Panel {
         markers: false,
         peaks: None,
         strip: None,
+        joined: shotdamp::experiment::Joined::ByX,
     }
 }
 
