@@ -1,7 +1,7 @@
 //! Legends: what each line means, at a place where no data lies.
 
 use crate::dynamics::Special;
-use crate::experiment::{Band, Level, Panel};
+use crate::experiment::{Band, Joined, Level, Panel};
 
 use super::branch::SpecialPoint;
 use super::canvas::{Anchor, Lettering, Pen, Sheet, text_width};
@@ -73,7 +73,7 @@ impl Legend {
         let markers = panel.markers || panel.band == Band::Seeds;
         let points = quoted.iter().any(|one| one.is_point());
         if curves.len() > 1 || band || points {
-            entries.extend(by_trait(curves, markers).unwrap_or_else(|| {
+            entries.extend(by_trait(curves, markers, panel.joined).unwrap_or_else(|| {
                 let line = |curve: &Curve| Entry {
                     sign: Sign::Line { look: curve.look, marker: markers },
                     text: curve.name.full(),
@@ -217,7 +217,7 @@ impl Legend {
 }
 
 /// One entry a colour and one a dash, where every curve is a pair of the two and that says it in fewer words.
-fn by_trait(curves: &[Curve], markers: bool) -> Option<Vec<Entry>> {
+fn by_trait(curves: &[Curve], markers: bool, joined: Joined) -> Option<Vec<Entry>> {
     let mut hues: Vec<Entry> = Vec::new();
     let mut dashes: Vec<Entry> = Vec::new();
     for curve in curves {
@@ -233,8 +233,9 @@ fn by_trait(curves: &[Curve], markers: bool) -> Option<Vec<Entry>> {
             }
         }
     }
-    // Fewer curves than pairs: some pair is missing, and only full names tell which.
-    let complete = hues.len() * dashes.len() == curves.len() && hues.len() > 1 && dashes.len() > 1;
+    // Fewer curves than pairs: some pair is missing, and only full names tell which; a branch need not have both.
+    let all_pairs = joined == Joined::AlongBranches || hues.len() * dashes.len() == curves.len();
+    let complete = all_pairs && hues.len() > 1 && dashes.len() > 1;
     hues.extend(dashes);
     complete.then_some(hues)
 }

@@ -150,7 +150,7 @@ pub(super) fn curves(source: Source<'_>, panel: &Panel) -> Result<Vec<Curve>, Fi
             let look = Look::of_path(&y.name).filter(|_| groups.len() == 1).unwrap_or_else(|| traits.look());
             if let Some(branches) = &branches {
                 for stability in Stability::ALL {
-                    let look = if stability == Stability::Stable { look } else { look.dashed() };
+                    let look = look.with_stability(stability);
                     let samples = branches.samples(x, y, &group.rows, stability);
                     let name = Name::with_stability(&words, stability);
                     let curve = Curve { group: number, name, look, samples, seeds: 0, at_infinity: None };

@@ -7,7 +7,7 @@
 use std::collections::BTreeMap;
 
 use crate::dynamics::Special;
-use crate::experiment::LineColour;
+use crate::experiment::{LineColour, Stability};
 
 /// Width of a figure.
 pub(super) const WIDTH: f64 = 1440.0;
@@ -199,9 +199,13 @@ impl Look {
         Self { color, width: CURVE, dash: DASHES[dash % DASHES.len()], marker: MARKERS[dash % MARKERS.len()] }
     }
 
-    /// The same line, dashed.
-    pub(super) fn dashed(self) -> Self {
-        Self { dash: DASHES[1], ..self }
+    /// The same line, solid where a motion is stable and dashed where it is not.
+    pub(super) fn with_stability(self, stability: Stability) -> Self {
+        let dash = match stability {
+            Stability::Stable => DASHES[0],
+            Stability::Unstable => DASHES[1],
+        };
+        Self { dash, ..self }
     }
 
     /// A special point of a branch.

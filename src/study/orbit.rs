@@ -84,6 +84,13 @@ enum Begin {
     Doubling(Box<BranchPoint>, u32),
 }
 
+/// What is still to be done.
+enum Open {
+    Follow(Begin),
+    /// A doubling from which no other motion was found: unless a branch joins it, that is the result.
+    Lone(Traced),
+}
+
 /// Points of a branch in their order, and why it goes no further at either end; no reason at an end that another branch begins at.
 struct Traced {
     points: Vec<BranchPoint>,
@@ -112,36 +119,48 @@ impl Following<'_> {
         // Where branches have joined the one whose period doubles there, and forcing periods of the joined motion.
         let mut joined: Vec<(f64, u32)> = Vec::new();
         let starts = self.continuation.starts.iter();
-        let mut open: VecDeque<Begin> = starts.map(|start| Begin::Run(self.continuation.share(*start))).collect();
+        let run = |start: &f64| Open::Follow(Begin::Run(self.continuation.share(*start)));
+        let mut open: VecDeque<Open> = starts.map(run).collect();
         let mut number = 0;
-        while let Some(begin) = open.pop_front() {
-            let (parameter, level) = match &begin {
-                Begin::Run(share) => (*share, 0),
-                Begin::Doubling(point, level) => {
-                    let meets = |(other, cycles): &(f64, u32)| {
-                        *cycles == 2 * point.orbit.cycles && (other - point.parameter).abs() <= JOINS
-                    };
-                    // The branch of another doubling has ended here.
-                    if joined.iter().any(meets) {
-                        continue;
+        while let Some(next) = open.pop_front() {
+            // The branch of another doubling has ended here.
+            let is_joined = |parameter: f64, periods: u32| {
+                joined.iter().any(|(other, cycles)| *cycles == periods && (other - parameter).abs() <= JOINS)
+            };
+            let begin = match next {
+                Open::Follow(begin) => begin,
+                Open::Lone(traced) => {
+                    if traced.points.iter().any(|it| !is_joined(it.parameter, it.orbit.cycles)) {
+                        number += 1;
+                        self.enter(number, traced, &mut rows);
                     }
-                    (point.parameter, *level)
+                    continue;
                 }
             };
-            number += 1;
+            let (parameter, level) = match &begin {
+                Begin::Run(share) => (*share, 0),
+                Begin::Doubling(point, _) if is_joined(point.parameter, 2 * point.orbit.cycles) => continue,
+                Begin::Doubling(point, level) => (point.parameter, *level),
+            };
             match guarded(|| self.traced(&begin)) {
+                Ok(traced) if level > 0 && traced.points.len() == 1 => open.push_back(Open::Lone(traced)),
                 Ok(traced) => {
+                    number += 1;
                     if let (Some(BranchEnd::HalfPeriod), Some(last)) = (&traced.ends[1], traced.points.last()) {
                         joined.push((last.parameter, last.orbit.cycles));
                     }
                     if level < self.continuation.doublings {
                         let doubles = |point: &&BranchPoint| point.special == Some(Special::PeriodDoubling);
-                        let next = |point: &BranchPoint| Begin::Doubling(Box::new(point.clone()), level + 1);
+                        let next =
+                            |point: &BranchPoint| Open::Follow(Begin::Doubling(Box::new(point.clone()), level + 1));
                         open.extend(traced.points.iter().filter(doubles).map(next));
                     }
                     self.enter(number, traced, &mut rows);
                 }
-                Err(reason) => rows.push(self.failed(number, parameter, reason)),
+                Err(reason) => {
+                    number += 1;
+                    rows.push(self.failed(number, parameter, reason));
+                }
             }
         }
         rows
