@@ -108,14 +108,12 @@ fn a_table_of_branches_has_every_motion_in_its_place() {
     // Neither threads nor time move a bit, and nothing is computed twice.
     let bytes = || fs::read(study.path().join("results/mine.parquet")).unwrap();
     let before = bytes();
-    assert!(study.shotdamp(&["run"]).1.contains("0 simulated"));
+    assert!(study.shotdamp(&["run"]).1.contains("Nothing to do."));
     assert_eq!(study.shotdamp(&["run", "--force", "--jobs", "1"]).0, Some(0));
     assert_eq!(bytes(), before);
-    let (code, page) = study.shotdamp(&["report"]);
-    assert_eq!(code, Some(0), "{page}");
     let page = fs::read_to_string(study.path().join("reports/mine.md")).unwrap();
     assert!(page.contains("period doubling at 1.5268237"), "{page}");
-    assert!(study.path().join("reports/figures/mine.png").exists() || page.contains(".png"));
+    assert!(study.path().join("reports/mine.png").exists());
 }
 
 #[test]
@@ -137,7 +135,7 @@ fn a_branch_that_ends_early_says_where_and_keeps_its_motions() {
 }
 
 #[test]
-fn where_a_run_leads_to_no_orbit_the_row_says_so_and_a_period_helps() {
+fn where_a_run_leads_to_no_orbit_the_row_says_so() {
     let chaotic = [
         ("restitution: 0.5", "restitution: 0.9"),
         ("from: 1.1, to: 1.6}}, start: 1.2", "from: 7, to: 9}}, start: 8"),
