@@ -205,7 +205,7 @@ impl Look {
             Stability::Stable => DASHES[0],
             Stability::Unstable => DASHES[1],
         };
-        Self { dash, ..self }
+        Self { dash, marker: Marker::Circle, ..self }
     }
 
     /// A special point of a branch.
