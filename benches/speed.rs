@@ -14,7 +14,7 @@ use common::{BEAM, SINGLE, experiment, system};
 use shotdamp::dynamics::{
     Along, Branch, Contact, EventKind, HybridSystem, Options, Orbit, Response, StartState, event_driven,
 };
-use shotdamp::experiment::{Axis, AxisScale, Band, Drawing, FigureSpec, Panel};
+use shotdamp::experiment::{Axis, AxisScale, Band, Drawing, FigureSpec, Joined, Panel};
 use shotdamp::figure::{Beside, draw};
 use shotdamp::study::Machine;
 use shotdamp::table::{BASELINE, Column, Data, Table};
@@ -220,6 +220,7 @@ fn figure() -> FigureSpec {
             markers: true,
             peaks: None,
             strip: None,
+            joined: Joined::ByX,
         }]),
     }
 }

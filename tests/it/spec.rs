@@ -729,7 +729,7 @@ pub(crate) fn every_shipped_experiment_loads_and_resolves_under_every_variant() 
         }
         ids.insert(experiment.id.to_string());
     }
-    assert_eq!(ids.len(), 25, "23 of the study, the motion at two gap clearances, and its kind: {ids:?}");
+    assert_eq!(ids.len(), 26, "23 of the study, the motion at two gap clearances, its kind, and its branches: {ids:?}");
     // At some 15 ns a step: half a minute of one core.
     assert!(fixed_steps < 2e9, "{fixed_steps:e} fixed steps");
 }
