@@ -14,7 +14,7 @@ use common::{BEAM, SINGLE, experiment, system};
 use shotdamp::dynamics::{
     Along, Branch, Contact, EventKind, HybridSystem, Options, Orbit, Response, StartState, event_driven,
 };
-use shotdamp::experiment::{Axis, AxisScale, Band, Drawing, FigureSpec, Panel};
+use shotdamp::experiment::{Axis, AxisScale, Band, Drawing, FigureSpec, Joined, Panel};
 use shotdamp::figure::{Beside, draw};
 use shotdamp::study::Machine;
 use shotdamp::table::{BASELINE, Column, Data, Table};
@@ -144,7 +144,7 @@ fn periodic(system: &HybridSystem) -> String {
         Ok::<_, std::convert::Infallible>(system)
     };
     let along = Along { from: 1.0, to: 1e3, step: 0.004, points: POINTS };
-    let branch = || Branch::follow(stronger, &first, along).expect("it has a first orbit");
+    let branch = || Branch::follow(stronger, &first, 1.0, along).expect("it has a first orbit");
     let timed = |work: &dyn Fn()| {
         let times = sorted(
             || {
@@ -220,6 +220,7 @@ fn figure() -> FigureSpec {
             markers: true,
             peaks: None,
             strip: None,
+            joined: Joined::ByX,
         }]),
     }
 }

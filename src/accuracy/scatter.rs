@@ -3,7 +3,7 @@
 
 use super::measured::Contender;
 use super::page::{AccuracyView, LEAST, Over, cheapest, fixed_steps, over};
-use crate::experiment::{Axis, AxisScale, Band, Drawing, FigureSpec, Level, Panel};
+use crate::experiment::{Axis, AxisScale, Band, Drawing, FigureSpec, Joined, Level, Panel};
 use crate::figure::{FigureError, Picture, draw_table};
 use crate::table::{BASELINE, Column, Data, Table};
 use crate::text::number::significant;
@@ -133,6 +133,7 @@ fn figure(wanted: Vec<f64>) -> FigureSpec {
         markers: true,
         peaks: None,
         strip: None,
+        joined: Joined::ByX,
     };
     FigureSpec {
         name: String::new(),

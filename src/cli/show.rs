@@ -16,12 +16,12 @@ use super::output::{columns, print, print_error, print_unread, simulations};
 use super::select::{choose, matches};
 use crate::accuracy::idle_cases;
 use crate::dynamics::{Allowance, Limit, Until, in_words};
-use crate::experiment::Experiment;
+use crate::experiment::{Continuation, Experiment, RowSource};
 use crate::measure::Settings;
 use crate::report::{scenes, value_in_words};
 use crate::scene::{Scene, effects};
 use crate::study::{Item, Layout, State, Study, Texts, forecast};
-use crate::text::words::counted;
+use crate::text::words::{counted, of_key};
 
 /// Processor time of all threads for an experiment.
 const BOUND: Duration = Duration::from_millis(1500);
@@ -241,7 +241,16 @@ fn cases(item: &Item) -> String {
     }
     let (rows, most) = item.size();
     let cases = counted(experiment.cases.len(), "case", "cases");
-    let mut text = format!("\nCases\n  {cases}, under {}\n", solvers.join(" and "));
+    let mut text = match experiment.row_source() {
+        RowSource::Branches(Continuation { along, from, to, starts, .. }) => {
+            let (along, starts) = (of_key(along), starts.iter().map(f64::to_string).collect::<Vec<_>>());
+            let starts = starts.join(", ");
+            format!(
+                "\nCases\n  branches of periodic motions along {along} from {from} to {to}, begun by runs at {starts}\n"
+            )
+        }
+        RowSource::Cases | RowSource::Search(_) => format!("\nCases\n  {cases}, under {}\n", solvers.join(" and ")),
+    };
     if item.variants.len() > 1 {
         let ends: Vec<&str> = item.variants.iter().skip(1).map(|variant| variant.label.as_str()).collect();
         text += &format!("  and event-driven with each of {}\n", ends.join(", "));

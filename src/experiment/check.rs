@@ -3,10 +3,11 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::recipe::{Assumptions, ExcitationKind, Parameter, ParameterValue, Part, RecipeError};
+use crate::dynamics::Until;
 use crate::measure::{CycleSpec, EnergySpec, Measure, Settings, ShapeSpec, SolverChoice, TraceSpec, Under};
 use crate::scene::Scene;
 
-use super::continued::Continuation;
+use super::continued::ContinuedSweep;
 use super::definition::{Case, Drawing, Experiment, FigureSpec, Maximise, Panel, Refinement};
 use super::diagnostic::{Findings, Span};
 use super::optimise::Optimise;
@@ -103,6 +104,27 @@ impl Checks<'_> {
         } else if energies {
             let message = "kinetic energies are kept of cycles given, and a run until settled ends by itself";
             self.findings.report::<()>(at, message, Some("leave `energies` or `until: settled` out".into()));
+        }
+    }
+
+    /// Orbits are found and measured over one period of the exact motion.
+    pub fn orbit(&self, measures: &[(Measure, Span)], solvers: &[SolverChoice], settings: &Settings, at: Span) {
+        if solvers.iter().any(|solver| *solver != SolverChoice::EventDriven) {
+            let help = Some("leave `solver` out, or write `solver: event_driven`".to_owned());
+            self.findings.report::<()>(at, "a fixed step finds no orbits", help);
+        }
+        if settings.until == Until::Settled {
+            let help = Some("leave `until: settled` out: Newton's method goes on from the end of the run".to_owned());
+            self.findings.report::<()>(at, "an orbit is taken from the last period of a run of the cycles given", help);
+        }
+        for (measure, span) in measures.iter().filter(|(measure, _)| !measure.is_of_one_period()) {
+            let help = if measure.needs_multipliers() {
+                "leave it out: every orbit has its `motion`, `stability` and `largest_multiplier` anyway"
+            } else {
+                "leave it out"
+            };
+            let message = format!("`{}` is not read off one period of an orbit", word_of(*measure));
+            self.findings.report::<()>(*span, message, Some(help.into()));
         }
     }
 
@@ -238,7 +260,7 @@ impl Checks<'_> {
     }
 
     /// Rows that start where others ended: single event-driven runs, one after the other.
-    pub fn continued(&self, continued: &[(Continuation, Span)], cases: &[Case], unordered: Option<(&str, Span)>) {
+    pub fn continued(&self, continued: &[(ContinuedSweep, Span)], cases: &[Case], unordered: Option<(&str, Span)>) {
         let Some((_, at)) = continued.first() else { return };
         if let Some((what, at)) = unordered {
             let message = format!("{what} has no state that the next row could start from");
@@ -320,6 +342,18 @@ impl Checks<'_> {
                 recipes.push(recipe);
             }
         }
+        if let Some(orbit) = &experiment.orbit {
+            let mut periods = Vec::new();
+            for end in [orbit.from, orbit.to] {
+                let mut recipe = recipe.clone();
+                recipe.set(orbit.along, ParameterValue::Number(end))?;
+                periods.push(recipe.resolve(self.assumptions)?.excitation.period());
+                recipes.push(recipe);
+            }
+            if experiment.settings.round_period_to.is_some() && periods[0] != periods[1] {
+                return Err(StepError::RoundsAlong.into());
+            }
+        }
         if recipes.is_empty() {
             recipes.push(recipe);
         }
@@ -376,6 +410,8 @@ impl From<RecipeError> for Refusal {
 enum StepError {
     #[error("a forcing period of {period} s rounds to no step of {step} s at all")]
     RoundsToNone { period: f64, step: f64 },
+    #[error("the forcing period changes along the branch, and `round_period_to` would make it jump: leave that out")]
+    RoundsAlong,
     #[error("a time step of {time_step} s is longer than the forcing period of {period} s")]
     LongerThanPeriod { time_step: f64, period: f64 },
     #[error("a time step of {time_step} s makes more than {MOST_STEPS:e} steps a run")]

@@ -2,7 +2,8 @@
 
 use super::recipe::{GapWord, Parameter};
 
-use super::definition::Maximise;
+use super::continuation::BranchColumn;
+use super::definition::{Joined, Maximise};
 use super::word::word_of;
 use crate::measure::{Measure, PROOF, of_another_damper, trace_columns};
 
@@ -34,6 +35,8 @@ const SEARCHES: [&str; 5] = ["evaluation", "best_so_far", "along_gap", "fitness_
 /// Columns with what they hold, in the order of the table.
 pub(super) struct Columns {
     list: Vec<(String, Role)>,
+    /// How the points of a line are joined.
+    pub joined: Joined,
 }
 
 impl Columns {
@@ -65,7 +68,7 @@ impl Columns {
         }
         list.extend(PROOF.map(|column| (column.name.into(), Role::Number)));
         list.extend(lists.names.iter().map(|name| ((*name).into(), lists.role)));
-        Self { list }
+        Self { list, joined: Joined::ByX }
     }
 
     /// The columns of an optimisation of so many gaps.
@@ -82,7 +85,27 @@ impl Columns {
         list.push(("stopped".into(), Role::Label));
         list.extend(PROOF.map(|column| (column.name.into(), Role::Number)));
         list.extend(SEARCHES.map(|name| (name.into(), Role::History)));
-        Self { list }
+        Self { list, joined: Joined::ByX }
+    }
+
+    /// The columns of branches of periodic motions along a parameter.
+    pub fn of_branches(along: Parameter, measures: &[Measure]) -> Self {
+        let mut list: Vec<(String, Role)> = vec![(word_of(along), Role::Number)];
+        list.extend(
+            BranchColumn::ALL
+                .map(|column| (column.name().into(), if column.is_word() { Role::Label } else { Role::Number })),
+        );
+        list.extend(
+            Measure::OF_AN_ORBIT
+                .map(|measure| (word_of(measure), if measure.is_name() { Role::Label } else { Role::Number })),
+        );
+        list.extend(["solver", "variant"].map(|name| (name.into(), Role::Label)));
+        for measure in measures {
+            let name = word_of(*measure);
+            list.extend(["", "_num", "_spread"].map(|suffix| (format!("{name}{suffix}"), Role::Number)));
+        }
+        list.extend(PROOF.map(|column| (column.name.into(), Role::Number)));
+        Self { list, joined: Joined::AlongBranches }
     }
 
     /// What the column `name` holds, if there is one.

@@ -32,7 +32,7 @@ pub(in crate::experiment) enum RowStart {
 
 /// A sweep whose rows follow each other.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Continuation {
+pub struct ContinuedSweep {
     /// The sweep within a union; empty otherwise.
     pub sweep: String,
     /// The parameter that runs from row to row.
@@ -112,9 +112,9 @@ impl Continued {
 }
 
 /// The cases of continued sweeps in the order in which they follow each other, chain by chain, by their index.
-pub(crate) fn chains(cases: &[Case], continued: &[Continuation]) -> Vec<Vec<usize>> {
+pub(crate) fn chains(cases: &[Case], continued: &[ContinuedSweep]) -> Vec<Vec<usize>> {
     let mut chains: Vec<Vec<usize>> = Vec::new();
-    for Continuation { sweep, along } in continued {
+    for ContinuedSweep { sweep, along } in continued {
         let of_sweep = |&index: &usize| cases[index].sweep == *sweep && cases[index].direction.is_some();
         let first = chains.len();
         let mut known: BTreeMap<String, usize> = BTreeMap::new();

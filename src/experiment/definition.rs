@@ -10,7 +10,8 @@ use crate::dynamics::Limit;
 use crate::measure::{CycleSpec, EnergySpec, Measure, Needs, Settings, ShapeSpec, SolverChoice, TraceSpec};
 
 use super::assumption_sheet::AssumptionSheet;
-use super::continued::{Continuation, Direction, chains};
+use super::continuation::Continuation;
+use super::continued::{ContinuedSweep, Direction, chains};
 use super::optimise::Optimise;
 use super::word::word_of;
 
@@ -71,7 +72,7 @@ pub struct Experiment {
     pub refined: Vec<Refinement>,
     /// Sweeps whose rows start where the row before ended.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub continued: Vec<Continuation>,
+    pub continued: Vec<ContinuedSweep>,
     /// What every number is a mean over: settings of parameters that no column tells apart, such as force points. Empty as a
     /// rule. A velocity ratio is then that of the mean RMS velocities.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -79,6 +80,9 @@ pub struct Experiment {
     /// An optimisation of gaps in the place of a sweep.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub optimise: Option<Optimise>,
+    /// Branches of periodic motions in the place of a sweep; the one case is the scene that the first motion is taken from.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub orbit: Option<Continuation>,
     /// The assumptions that are moved for the sensitivity; `None` for all that the experiment depends on.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub moved: Option<BTreeSet<AssumptionName>>,
@@ -208,6 +212,9 @@ impl Experiment {
         }
         if let Some(optimise) = &self.optimise {
             meaning["optimise"] = json(optimise);
+        }
+        if let Some(orbit) = &self.orbit {
+            meaning["orbit"] = json(orbit);
         }
         meaning
     }
@@ -419,6 +426,25 @@ pub struct Panel {
     /// What a strip below the frame shows along the x axis.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub strip: Option<Strip>,
+    /// How the points of a line are joined.
+    #[serde(default, skip_serializing_if = "is_by_x")]
+    pub joined: Joined,
+}
+
+/// How the points of a line are joined.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Joined {
+    /// In ascending order of x.
+    #[default]
+    ByX,
+    /// In the order of the rows, branch by branch: solid where the column of stability says stable, dashed elsewhere, with a
+    /// marker where the column of special points has a word.
+    AlongBranches,
+}
+
+fn is_by_x(joined: &Joined) -> bool {
+    *joined == Joined::ByX
 }
 
 /// What a strip shows.

@@ -200,6 +200,7 @@ impl<'t> FigureReader<'t> {
             markers: markers?,
             peaks: peaks?,
             strip: strip?,
+            joined: self.columns.map(|columns| columns.joined).unwrap_or_default(),
         })
     }
 

@@ -9,6 +9,8 @@ mod assumption_sheet;
 mod calibration;
 mod check;
 mod columns;
+mod continuation;
+mod continuation_reader;
 mod continued;
 mod definition;
 mod diagnostic;
@@ -45,10 +47,11 @@ pub use assumption_sheet::{
     ASSUMPTIONS, AssumptionEntry, AssumptionKind, AssumptionSheet, Cycles, Moved, Quantity, Takes,
 };
 pub use calibration::{Calibration, CalibrationInput, CalibrationSearch, Tried, load_calibration, parse_calibration};
-pub use continued::{Continuation, Direction};
+pub use continuation::{BranchColumn, Continuation, RowSource, Stability};
+pub use continued::{ContinuedSweep, Direction};
 pub use definition::{
-    AnimationSpec, Axis, AxisScale, Band, Best, Case, Drawing, Experiment, ExperimentId, FigureSpec, IdError, Level,
-    MapSpec, Mark, Maximise, Only, Panel, PeakMarks, Refinement, Source, Strip,
+    AnimationSpec, Axis, AxisScale, Band, Best, Case, Drawing, Experiment, ExperimentId, FigureSpec, IdError, Joined,
+    Level, MapSpec, Mark, Maximise, Only, Panel, PeakMarks, Refinement, Source, Strip,
 };
 pub use diagnostic::{Place, Problem, Problems, Severity};
 pub(crate) use edit::{Written, set_keys};

@@ -8,7 +8,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::recipe::{Parameter, ParameterValue};
 
-use super::continued::{Continuation, Continued, Direction, KEYS, chains};
+use super::continued::{Continued, ContinuedSweep, Direction, KEYS, chains};
 use super::definition::{Case, Refinement};
 use super::diagnostic::{Findings, Span};
 use super::range::{MOST_POINTS, too_many, value, values};
@@ -30,7 +30,7 @@ pub(super) struct ReadSweep {
     /// Rules of refined ranges, and where they stand.
     pub refined: Vec<(Refinement, Span)>,
     /// Sweeps whose rows start where the row before ended, and where they say so.
-    pub continued: Vec<(Continuation, Span)>,
+    pub continued: Vec<(ContinuedSweep, Span)>,
 }
 
 impl ReadSweep {
@@ -105,7 +105,7 @@ struct SweepReader<'f> {
     findings: &'f Findings,
     places: BTreeMap<Parameter, Span>,
     refined: Vec<(Refinement, Span)>,
-    continued: Vec<(Continuation, Span)>,
+    continued: Vec<(ContinuedSweep, Span)>,
 }
 
 /// What an axis belongs to.
@@ -185,7 +185,7 @@ impl SweepReader<'_> {
         }
         let set: Vec<Parameter> = points.first().map(|point| point.keys().copied().collect()).unwrap_or_default();
         let along = continued.along(&set, self.findings)?;
-        self.continued.push((Continuation { sweep: String::new(), along }, continued.at));
+        self.continued.push((ContinuedSweep { sweep: String::new(), along }, continued.at));
         Some(Product { points, directions: continued.directions.into_iter().map(Some).collect(), solvers })
     }
 

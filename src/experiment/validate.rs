@@ -13,6 +13,7 @@ use super::assumption_reader::{MOST_CYCLES, read_average, read_skip};
 use super::assumption_sheet::Cycles;
 use super::check::Checks;
 use super::columns::{Columns, Lists, Role};
+use super::continuation_reader::{ReadContinuation, read_continuation};
 use super::definition::{Case, Experiment, ExperimentId, Maximise, Source};
 use super::diagnostic::{Findings, Problems, Span};
 use super::figure::FigureReader;
@@ -94,7 +95,12 @@ impl<'t> ExperimentReader<'t> {
         let source = fields.optional("source", |node| self.source(node));
         let about = fields.required("about", |node| text(node, self.findings));
         let scene = fields.required("scene", |node| read_scene(node, self.assumptions, self.findings));
-        let sweep = fields.optional("sweep", |node| read_sweep(node, self.findings));
+        let orbit = fields.optional("orbit", |node| read_continuation(node, self.findings));
+        let sweep = match &orbit {
+            Some(Some(orbit)) => Some(Some(orbit.sweep())),
+            Some(None) => fields.optional("sweep", |node| read_sweep(node, self.findings)),
+            None => None,
+        };
         let mean_over = fields.optional("mean_over", |node| self.mean_over(node));
         let measures = fields.required("measure", |node| self.measures(node));
         let maximise = fields.optional("maximise", |node| self.maximise(node));
@@ -114,7 +120,7 @@ impl<'t> ExperimentReader<'t> {
             (measures, _) => measures,
         };
         let one_list = self.one_list(&fields);
-        let alone = self.optimised_alone(&fields);
+        let alone = self.whole_table_alone(&fields);
         let whole = self.averaged_alone(&fields);
         let energies_at = fields.get("energies").map_or(fields.span(), |node| node.span);
         let place = |key| fields.get(key).map_or(fields.span(), |node| node.span);
@@ -144,6 +150,10 @@ impl<'t> ExperimentReader<'t> {
         };
         let columns = match (&sweep, &measures, &maximise, &kept) {
             _ if alone.is_none() || optimise.is_none() => None,
+            (_, Some(measures), ..) if matches!(orbit, Some(Some(_))) => {
+                let of = |it: &ReadContinuation| Columns::of_branches(it.continuation.along, &words_only(measures));
+                orbit.as_ref().and_then(Option::as_ref).map(of)
+            }
             (Some(_), Some(measures), ..) if matches!(optimise, Some(Some(_))) => {
                 let of = |it: &Optimise| Columns::of_candidates(it.bounds.len(), it.gaps, &words_only(measures));
                 optimise.as_ref().and_then(Option::as_ref).map(of)
@@ -181,6 +191,11 @@ impl<'t> ExperimentReader<'t> {
             checks.settled(&measures, energies.is_some(), &run.solvers, at);
         }
         let (mut scene, sweep) = (scene?, sweep?.unwrap_or_else(ReadSweep::none));
+        let orbit = orbit?;
+        if let Some(orbit) = &orbit {
+            checks.orbit(&measures, &run.solvers, &run.settings, orbit.span);
+            checks.repeats(&scene.recipe.excitation.kind, orbit.span);
+        }
         if let Some(optimise) = &optimise {
             checks.optimise(optimise, &measures, &run.solvers, optimise_at);
         }
@@ -229,6 +244,7 @@ impl<'t> ExperimentReader<'t> {
             continued: sweep.continued.into_iter().map(|(continuation, _)| continuation).collect(),
             mean_over: inner,
             optimise,
+            orbit: orbit.map(|orbit| orbit.continuation),
             measures: words_only(&measures),
             trace,
             energies,
@@ -300,19 +316,27 @@ impl<'t> ExperimentReader<'t> {
         }
     }
 
-    /// An optimisation has rows of its own.
-    fn optimised_alone(&self, fields: &Fields<'t>) -> Option<()> {
-        if fields.get("optimise").is_none() {
-            return Some(());
-        }
-        let others = ["sweep", "maximise"].into_iter().chain(LISTS).filter_map(|key| fields.get(key));
+    /// An optimisation has rows of its own, and so has an orbit.
+    fn whole_table_alone(&self, fields: &Fields<'t>) -> Option<()> {
         let mut fine = Some(());
-        for other in others {
-            fine = self.findings.report(
-                other.span,
-                "an optimisation has candidates for rows: neither a sweep nor a list of another kind goes with it",
-                Some("what fitness is a mean over stands under `mean_over`".into()),
-            );
+        let given = |keys: &[&'static str]| -> Vec<_> { keys.iter().filter_map(|key| fields.get(key)).collect() };
+        if fields.get("optimise").is_some() {
+            for other in given(&[&["sweep", "maximise"], LISTS.as_slice()].concat()) {
+                fine = self.findings.report(
+                    other.span,
+                    "an optimisation has candidates for rows: neither a sweep nor a list of another kind goes with it",
+                    Some("what fitness is a mean over stands under `mean_over`".into()),
+                );
+            }
+        }
+        if fields.get("orbit").is_some() {
+            for other in given(&[&["sweep", "mean_over", "maximise", "optimise"], LISTS.as_slice()].concat()) {
+                fine = self.findings.report(
+                    other.span,
+                    "an orbit has the motions of its branches for rows: no sweep, mean, maximum or list goes with it",
+                    Some("give one of the two an experiment of its own".into()),
+                );
+            }
         }
         fine
     }

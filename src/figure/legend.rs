@@ -1,7 +1,9 @@
 //! Legends: what each line means, at a place where no data lies.
 
-use crate::experiment::{Band, Level, Panel};
+use crate::dynamics::Special;
+use crate::experiment::{Band, Joined, Level, Panel};
 
+use super::branch::SpecialPoint;
 use super::canvas::{Anchor, Lettering, Pen, Sheet, text_width};
 use super::geometry::{Point, Rect};
 use super::line::{Curve, Join};
@@ -24,6 +26,7 @@ enum Sign {
     Bar,
     Impulse,
     Motion(KindOfMotion),
+    Special(Special),
 }
 
 /// One row of a legend.
@@ -71,7 +74,7 @@ impl Legend {
         let markers = panel.markers || panel.band == Band::Seeds;
         let points = quoted.iter().any(|one| one.is_point());
         if curves.len() > 1 || band || points {
-            entries.extend(by_trait(curves, markers).unwrap_or_else(|| {
+            entries.extend(by_trait(curves, markers, panel.joined).unwrap_or_else(|| {
                 let line = |curve: &Curve| Entry {
                     sign: match curve.join {
                         Join::Line => Sign::Line { look: curve.look, marker: markers },
@@ -115,6 +118,13 @@ impl Legend {
     pub(super) fn name_motions(&mut self, classes: &[KindOfMotion]) {
         let named = classes.iter().map(|class| Entry { sign: Sign::Motion(*class), text: class.words().into() });
         self.entries.extend(named);
+    }
+
+    /// Names the kinds of special points.
+    pub(super) fn name_special_points(&mut self, points: &[SpecialPoint]) {
+        let shown = |kind: &Special| points.iter().any(|point| point.kind == *kind);
+        let named = Special::ALL.into_iter().filter(shown);
+        self.entries.extend(named.map(|kind| Entry { sign: Sign::Special(kind), text: kind.word().into() }));
     }
 
     /// Names guides beside the lines.
@@ -211,7 +221,7 @@ impl Legend {
 }
 
 /// One entry a colour and one a dash, where every curve is a pair of the two and that says it in fewer words.
-fn by_trait(curves: &[Curve], markers: bool) -> Option<Vec<Entry>> {
+fn by_trait(curves: &[Curve], markers: bool, joined: Joined) -> Option<Vec<Entry>> {
     let mut hues: Vec<Entry> = Vec::new();
     let mut dashes: Vec<Entry> = Vec::new();
     for curve in curves {
@@ -227,8 +237,9 @@ fn by_trait(curves: &[Curve], markers: bool) -> Option<Vec<Entry>> {
             }
         }
     }
-    // Fewer curves than pairs: some pair is missing, and only full names tell which.
-    let complete = hues.len() * dashes.len() == curves.len() && hues.len() > 1 && dashes.len() > 1;
+    // Fewer curves than pairs: some pair is missing, and only full names tell which; a branch need not have both.
+    let all_pairs = joined == Joined::AlongBranches || hues.len() * dashes.len() == curves.len();
+    let complete = all_pairs && hues.len() > 1 && dashes.len() > 1;
     hues.extend(dashes);
     complete.then_some(hues)
 }
@@ -273,6 +284,7 @@ impl Entry {
             Sign::Motion(class) => {
                 sheet.cell(&Rect { left: at.x, top: at.y - 12.0, right: end.x, bottom: at.y + 12.0 }, class.color());
             }
+            Sign::Special(kind) => paint::marker(sheet, middle, Look::of_special(kind)),
             Sign::Bar => {
                 let place = Rect { left: at.x, top: at.y - 6.0, right: end.x, bottom: at.y + 6.0 };
                 sheet.cell(&place, GREY);

@@ -5,9 +5,10 @@
 
 use std::collections::BTreeMap;
 
-use crate::experiment::{Band, Experiment, LineColour, Panel};
+use crate::experiment::{Band, Experiment, LineColour, Panel, Stability};
 use crate::table::{Column, Data, Table};
 
+use super::branch::Branches;
 use super::error::FigureError;
 use super::group::{Group, number};
 use super::style::Look;
@@ -35,7 +36,7 @@ impl Sample {
     }
 
     /// Between two stretches of one line.
-    fn gap() -> Self {
+    pub(super) fn gap() -> Self {
         Self::bare(f64::NAN, f64::NAN)
     }
 
@@ -61,6 +62,15 @@ pub(super) struct Name {
 }
 
 impl Name {
+    /// Of what there is to say of a branch, and its stability.
+    fn with_stability(words: &[String], stability: Stability) -> Self {
+        let stability = stability.word().to_owned();
+        match words {
+            [] => Self { hue: stability, dash: None },
+            words => Self { hue: words.join(", "), dash: Some(stability) },
+        }
+    }
+
     /// In full.
     pub(super) fn full(&self) -> String {
         match &self.dash {
@@ -87,7 +97,7 @@ pub(super) struct Curve {
     pub name: Name,
     pub look: Look,
     pub join: Join,
-    /// Sorted by x unless it is a time history.
+    /// Sorted by x unless it is a time history or runs along a branch.
     pub samples: Vec<Sample>,
     /// How many searches the band spans; 0 where it is none of theirs.
     pub seeds: usize,
@@ -136,6 +146,7 @@ pub(super) fn curves(source: Source<'_>, panel: &Panel) -> Result<Vec<Curve>, Fi
     let by = panel.by.iter().map(|name| source.column(name)).collect::<Result<Vec<_>, _>>()?;
     let groups = Group::split(source.table.rows(), &by);
     let x = source.column(&panel.x.column)?;
+    let branches = Branches::of(source, panel)?;
     let mut curves = Vec::new();
     for (index, axis) in panel.y.iter().enumerate() {
         let y = source.column(&axis.column)?;
@@ -147,15 +158,25 @@ pub(super) fn curves(source: Source<'_>, panel: &Panel) -> Result<Vec<Curve>, Fi
             let mut words = if panel.y.len() > 1 { vec![source.label(axis)?] } else { Vec::new() };
             words.extend(group.varying_words(&groups));
             let join = join(x, y);
+            let look = match join {
+                Join::Dots => Look::of_dots(number, groups.len()),
+                Join::Line => Look::of_path(&y.name).filter(|_| groups.len() == 1).unwrap_or_else(|| traits.look()),
+            };
+            if let Some(branches) = &branches {
+                for stability in Stability::ALL {
+                    let look = look.with_stability(stability);
+                    let samples = branches.samples(x, y, &group.rows, stability);
+                    let name = Name::with_stability(&words, stability);
+                    let curve = Curve { group: number, name, look, join, samples, seeds: 0, at_infinity: None };
+                    curves.extend(Some(curve).filter(Curve::shows));
+                }
+                continue;
+            }
             let name = match words.split_first() {
                 // Dots have no dash.
                 Some(_) if join == Join::Dots => Name { hue: words.join(", "), dash: None },
                 None => Name { hue: source.label(axis)?, dash: None },
                 Some((hue, rest)) => Name { hue: hue.clone(), dash: (!rest.is_empty()).then(|| rest.join(", ")) },
-            };
-            let look = match join {
-                Join::Dots => Look::of_dots(number, groups.len()),
-                Join::Line => Look::of_path(&y.name).filter(|_| groups.len() == 1).unwrap_or_else(|| traits.look()),
             };
             let mut curve = Curve { group: number, name, look, join, samples: Vec::new(), seeds: 0, at_infinity: None };
             match (panel.band, &x.data, &y.data) {

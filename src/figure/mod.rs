@@ -9,6 +9,7 @@ mod attributes;
 mod axis;
 mod backend;
 mod bars;
+mod branch;
 mod canvas;
 mod colormap;
 mod contact;

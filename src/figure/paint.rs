@@ -62,6 +62,11 @@ pub(super) fn panel(
     contact::draw(sheet, panel, frame);
     let [x, y] = [(&panel.x, &panel.x_label), (&panel.y, &panel.y_label)].map(|(axis, label)| Labelled { axis, label });
     sheet.group(&Attributes::frame(frame, UNITS, x, y), || curves(sheet, panel, frame));
+    for point in &panel.special_points {
+        if let Some(at) = panel.place(frame, point.x, point.y) {
+            marker(sheet, at, Look::of_special(point.kind));
+        }
+    }
     peak_marks(sheet, panel, frame, &mut taken);
     for one in &panel.quoted {
         one.draw(sheet, panel, frame);

@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 use crate::experiment::{self, AxisScale};
 
 use super::axis::{Axis, Extent, Room, Tick};
+use super::branch::{SpecialPoint, special_points};
 use super::canvas::text_width;
 use super::contact::{self, Contact, contacts};
 use super::error::FigureError;
@@ -16,7 +17,7 @@ use super::line::{Curve, Join, Sample, Source, curves};
 use super::quoted::Quoted;
 use super::render::Beside;
 use super::strip::{self, Strip};
-use super::style::{CURVE, TICK_TEXT};
+use super::style::{CURVE, MARKER, TICK_TEXT};
 
 /// How many numbers an axis carries at most.
 const MOST_X_TICKS: u32 = 8;
@@ -86,6 +87,7 @@ pub(super) struct Panel<'a> {
     /// Period of the impulses, s, where the panel shows their moments.
     pub impulses: Option<f64>,
     pub strips: Vec<Strip>,
+    pub special_points: Vec<SpecialPoint>,
     pub legend: Legend,
 }
 
@@ -126,6 +128,8 @@ impl<'a> Panel<'a> {
         legend.name_instants(contacts.iter().any(|contact| contact.to - contact.from > visible), impulses.is_some());
         let strips = strip::strips(source, spec, &curves)?;
         legend.name_motions(&strip::classes(&strips));
+        let special_points = special_points(source, spec)?;
+        legend.name_special_points(&special_points);
         let mut y_extent = quoted.iter().filter_map(|one| one.y()).fold(y_extent, |extent, y| extent.with(y, y_scale));
         for guide in &spec.guides {
             // Beside other lines a guide is named in the legend, where it needs no room of its own.
@@ -162,6 +166,7 @@ impl<'a> Panel<'a> {
             contacts,
             impulses,
             strips,
+            special_points,
         })
     }
 
@@ -259,6 +264,12 @@ impl<'a> Panel<'a> {
         if !self.contacts.is_empty() {
             let (top, bottom) = (frame.top + contact::BAR, frame.bottom - contact::BAR);
             obstacles.boxes.extend([Rect { bottom: top, ..*frame }, Rect { top: bottom, ..*frame }]);
+        }
+        for point in &self.special_points {
+            let sign = self.place(frame, point.x, point.y);
+            obstacles
+                .boxes
+                .extend(sign.map(|at| Rect { left: at.x, top: at.y, right: at.x, bottom: at.y }.grown(MARKER)));
         }
         for one in &self.quoted {
             one.obstacle(self, frame, &mut obstacles);

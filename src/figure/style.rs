@@ -6,7 +6,8 @@
 
 use std::collections::BTreeMap;
 
-use crate::experiment::LineColour;
+use crate::dynamics::Special;
+use crate::experiment::{LineColour, Stability};
 
 /// Width of a figure.
 pub(super) const WIDTH: f64 = 1440.0;
@@ -170,6 +171,18 @@ pub(super) enum Marker {
     Down,
 }
 
+impl Marker {
+    /// Of a special point of a branch.
+    pub(super) fn of_special(kind: Special) -> Self {
+        match kind {
+            Special::Fold => Self::Circle,
+            Special::PeriodDoubling => Self::Square,
+            Special::Torus => Self::Up,
+            Special::Graze => Self::Down,
+        }
+    }
+}
+
 const MARKERS: [Marker; 4] = [Marker::Circle, Marker::Square, Marker::Up, Marker::Down];
 
 /// How one curve is drawn.
@@ -194,6 +207,20 @@ impl Look {
     pub(super) fn of_dots(index: usize, count: usize) -> Self {
         let above = u32::try_from(count - index - 1).map_or(0.0, f64::from).min(3.0);
         Self { width: DOT + DOT_BENEATH * above, ..Self::new(index, count, 0) }
+    }
+
+    /// The same line, solid where a motion is stable and dashed where it is not.
+    pub(super) fn with_stability(self, stability: Stability) -> Self {
+        let dash = match stability {
+            Stability::Stable => DASHES[0],
+            Stability::Unstable => DASHES[1],
+        };
+        Self { dash, marker: Marker::Circle, ..self }
+    }
+
+    /// A special point of a branch.
+    pub(super) fn of_special(kind: Special) -> Self {
+        Self { color: INK, width: CURVE, dash: DASHES[0], marker: Marker::of_special(kind) }
     }
 
     /// The named colour of what has the same one in every figure, whichever others are drawn: by the study, or what has one in

@@ -1,6 +1,6 @@
 //! Work-precision diagrams: error against wall time, both logarithmic.
 
-use crate::experiment::{Axis, AxisScale, Band, Drawing, FigureSpec, Level, Panel};
+use crate::experiment::{Axis, AxisScale, Band, Drawing, FigureSpec, Joined, Level, Panel};
 
 /// The figure of a table with the columns `solver`, `case`, `time` (s), `error` and `event_error`; all panels show the `times` from the
 /// first to the second; `floor` is the error below which chaos leaves no meaning.
@@ -22,6 +22,7 @@ pub fn work_precision(times: [f64; 2], floor: Option<f64>, events: bool) -> Figu
         markers: true,
         peaks: None,
         strip: None,
+        joined: Joined::ByX,
     };
     let guide = floor.map(|at| Level { at, label: "spread of the chaotic motion".into() });
     let mut panels = vec![panel("error", "Relative error", guide.into_iter().collect())];

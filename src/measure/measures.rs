@@ -264,6 +264,19 @@ impl Measure {
         self == Self::Drift || self.needs_energies()
     }
 
+    /// What is known of every orbit.
+    pub const OF_AN_ORBIT: [Self; 4] =
+        [Self::Motion, Self::LargestMultiplier, Self::MultiplierAngle, Self::MultiplierResidual];
+
+    /// It has a meaning for one period of a motion that comes again, whatever run led there.
+    #[must_use]
+    pub fn is_of_one_period(self) -> bool {
+        use ReadOff::{End, Events, Extremes, Model, Run, Velocity};
+        let from = self.facts().from;
+        let single = matches!(from, Velocity | ReadOff::Displacement | Extremes | Run | Events | End | Model);
+        single && !self.compares_cycles()
+    }
+
     /// It changes from one kind of motion to the next, and is constant or without meaning between.
     #[must_use]
     pub fn jumps(self) -> bool {

@@ -13,6 +13,7 @@ mod history;
 mod impact;
 mod kept;
 mod measures;
+mod orbit;
 mod reading;
 mod request;
 mod shape;
@@ -29,7 +30,7 @@ pub use request::{CycleSpec, CycleValue, EnergySpec, Settings, ShapeOf, ShapeSpe
 pub use subject::{Comparison, Needs, Subject};
 pub use trial::Trial;
 
-use crate::dynamics::{EngineError, MotionKind, Proof, StartState};
+use crate::dynamics::{EngineError, MotionKind, OrbitError, Proof, StartState};
 use crate::scene::CompileError;
 use crate::text::words;
 
@@ -108,6 +109,9 @@ pub enum EvaluateError {
         "it cannot start where the row before it ended: the structure has other coordinates, or a face that a particle touches is gone"
     )]
     NotCarried,
+    /// There is no orbit.
+    #[error(transparent)]
+    Orbit(#[from] OrbitError),
     /// A measure of the time history, and none was asked for.
     #[error("{0:?} is read off a time history: give the experiment a trace")]
     NeedsTrace(Measure),

@@ -4,6 +4,7 @@
 //! a host or a path beyond the links that the caller passes in.
 
 mod assumption;
+mod branch;
 mod candidate;
 mod chapter;
 mod committed;

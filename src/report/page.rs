@@ -1,13 +1,13 @@
 //! One experiment's page.
 
-use crate::experiment::Source;
+use crate::experiment::{RowSource, Source};
 use crate::reference::NotJudged;
 use crate::study::Motions;
 use crate::text::words::capitalised;
 
 use super::markdown::{details, one_line};
 use super::view::{AccuracyLinks, FigureView, PageView};
-use super::{assumption, candidate, comparison, doubts, motions, proof, run};
+use super::{assumption, branch, candidate, comparison, doubts, motions, proof, run};
 
 /// The page of an experiment, Markdown: its answer first, then the figure and a row for each statement; all else is closed.
 #[must_use]
@@ -27,8 +27,10 @@ pub fn page(view: &PageView<'_>) -> String {
     if view.table.is_none() {
         text += "There is no result: the experiment has not been run.\n\n";
     }
-    if let (Some(optimise), Some(table)) = (&experiment.optimise, view.table) {
-        text += &candidate::section(optimise, table);
+    match (experiment.row_source(), view.table) {
+        (RowSource::Search(optimise), Some(table)) => text += &candidate::section(optimise, table),
+        (RowSource::Branches(continuation), Some(table)) => text += &branch::section(continuation, table),
+        (RowSource::Cases, _) | (_, None) => {}
     }
     text += &view.table.map_or_else(String::new, |table| proof::failures(table) + &doubts::section(table));
     let motions = view.table.and_then(|table| Motions::of(experiment, table));

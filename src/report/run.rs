@@ -1,7 +1,7 @@
 //! How an experiment was run, and which effects its scene has.
 
 use crate::dynamics::Until;
-use crate::experiment::{Experiment, GapWord, Optimise, Search};
+use crate::experiment::{Continuation, Experiment, GapWord, Optimise, RowSource, Search};
 use crate::measure::{SolverChoice, column_words};
 use crate::scene::EffectUse;
 use crate::text::number::{compact, quantity};
@@ -11,10 +11,11 @@ use crate::text::words::{self, counted};
 pub(super) fn section(experiment: &Experiment) -> String {
     let settings = &experiment.settings;
     let mut text = String::new();
-    match &experiment.optimise {
-        Some(optimise) => text += &searches(optimise),
-        None => text += &format!("- {}.\n", cases(experiment)),
-    }
+    text += &match experiment.row_source() {
+        RowSource::Search(optimise) => searches(optimise),
+        RowSource::Branches(continuation) => return text + &branches(experiment, continuation),
+        RowSource::Cases => format!("- {}.\n", cases(experiment)),
+    };
     if !experiment.mean_over.is_empty() {
         text += &format!("- {}\n", averaged(experiment));
     }
@@ -62,6 +63,35 @@ pub(super) fn section(experiment: &Experiment) -> String {
         text += &format!("- The shape is kept at {} points.\n", points.join(" by "));
     }
     text + "\n"
+}
+
+/// Where the first motion comes from, and how it was followed.
+fn branches(experiment: &Experiment, continuation: &Continuation) -> String {
+    let along = column_words(&words::of_key(&continuation.along));
+    let value = |x: f64| quantity(x, continuation.along.unit(), 6);
+    let Continuation { from, to, ref starts, doublings, points, .. } = *continuation;
+    let starts: Vec<String> = starts.iter().map(|start| value(*start)).collect();
+    let settings = &experiment.settings;
+    let periods = continuation.periods.map_or_else(String::new, |periods| {
+        format!(", with {}", counted(periods as usize, "forcing period", "forcing periods"))
+    });
+    let mut text = format!(
+        "- The first motions are those next to the ends of runs of {} + {} cycles at {}{periods}.\n- They are followed along the {along} \
+         from {} to {}, each {points} points to either side at most, by pseudo-arclength on the exact flow.\n",
+        settings.skip,
+        settings.average,
+        joined(&starts),
+        value(from),
+        value(to),
+    );
+    if doublings > 0 {
+        let times = counted(doublings as usize, "time", "times");
+        text += &format!("- At period doublings the motion of twice the period is followed as well, {times} over.\n");
+    }
+    if let Some(step) = settings.round_period_to {
+        text += &format!("- The forcing period is rounded to whole steps of {}.\n", quantity(step, "s", 4));
+    }
+    text + "- Measures are of one period of each motion.\n\n"
 }
 
 /// What was varied, and by what.

@@ -36,11 +36,11 @@ impl Item {
         let experiment = &self.source.experiment;
         let spent = Spent::read(layout, &experiment.id);
         let (rows, simulations) = self.size();
-        if experiment.optimise.is_some() {
+        if experiment.is_whole() {
             let done = Extent { to_do: 0, rows, open: false, simulations: 0, seconds: Some(0.0) };
             return match known.whole() {
                 Some(_) => done,
-                // How soon its searches end is not known before.
+                // How soon its searches or branches end is not known before.
                 None => Extent { to_do: rows, simulations, seconds: spent.total(), ..done },
             };
         }

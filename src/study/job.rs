@@ -3,7 +3,7 @@
 use super::variant::Variant;
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::experiment::{AssumptionName, Case, Experiment, curves};
+use crate::experiment::{AssumptionName, Case, Experiment, RowSource, curves};
 use crate::measure::{Measure, SolverChoice};
 
 /// A row.
@@ -85,8 +85,10 @@ pub fn runs_of_a_row(experiment: &Experiment) -> u64 {
 
 /// Simulations that an experiment takes at most, with all the points that its curves may get.
 pub(super) fn simulations(experiment: &Experiment, variants: &[Variant]) -> u64 {
-    if let Some(optimise) = &experiment.optimise {
-        return super::optimise::evaluations(optimise, variants);
+    match experiment.row_source() {
+        RowSource::Search(optimise) => return super::optimise::evaluations(optimise, variants),
+        RowSource::Branches(continuation) => return super::orbit::points(continuation, variants) as u64,
+        RowSource::Cases => {}
     }
     let mut of_case = vec![0; experiment.cases.len()];
     for job in jobs(experiment, variants) {

@@ -2,8 +2,8 @@
 //! going back to an earlier value computes nothing.
 //!
 //! Their sources are the experiment's table on disk, if it is still the one in its record, and the tables that
-//! it had before ([`super::earlier`]). A damaged table is ignored. Rows of an optimisation depend
-//! on each other: such a table is used as a whole or not at all.
+//! it had before ([`super::earlier`]). A damaged table is ignored. Rows of an optimisation, or of
+//! branches, depend on each other: such a table is used as a whole or not at all.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -42,7 +42,7 @@ impl KnownRows {
         let experiment = &item.source.experiment;
         let mut known = Self::nothing();
         let tables = on_disk(layout, item).into_iter().chain(earlier::tables(layout, &experiment.id));
-        if experiment.optimise.is_some() {
+        if experiment.is_whole() {
             known.whole = tables.into_iter().find(|table| is_of(item, table));
             return known;
         }

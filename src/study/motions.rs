@@ -95,6 +95,10 @@ impl Motions {
     /// Of the rows without a moved assumption; `None` where the motion is not measured.
     #[must_use]
     pub fn of(experiment: &Experiment, table: &Table) -> Option<Self> {
+        // Orbits of a branch are no runs, and most of them nobody would see.
+        if experiment.is_whole() {
+            return None;
+        }
         let baseline = table.baseline();
         let names = baseline.texts(&of_key(&Measure::Motion))?;
         let mut kinds = BTreeMap::new();

@@ -13,7 +13,7 @@ use super::record::{NoRecord, Record};
 use super::run::Task;
 use super::variant::{Sensitivity, Variant, variants};
 use crate::dynamics::SOLVER_VERSION;
-use crate::experiment::{AssumptionName, AssumptionSheet, AssumptionValue};
+use crate::experiment::{AssumptionName, AssumptionSheet, AssumptionValue, RowSource};
 
 /// One experiment as planned.
 #[derive(Debug, Clone, PartialEq)]
@@ -110,13 +110,14 @@ impl Item {
         pairs.into_iter().map(|(key, value)| (key.to_owned(), value)).collect()
     }
 
-    /// The number of rows, those that refined curves will get not counted, and of simulations at most.
+    /// The number of rows, those that refined curves will get not counted, of a branch the most, and of simulations at most.
     #[must_use]
     pub fn size(&self) -> (usize, u64) {
         let experiment = &self.source.experiment;
-        let rows = match &experiment.optimise {
-            Some(optimise) => super::optimise::rows(optimise, &self.variants),
-            None => super::job::jobs(experiment, &self.variants).len(),
+        let rows = match experiment.row_source() {
+            RowSource::Search(optimise) => super::optimise::rows(optimise, &self.variants),
+            RowSource::Branches(continuation) => super::orbit::points(continuation, &self.variants),
+            RowSource::Cases => super::job::jobs(experiment, &self.variants).len(),
         };
         (rows, super::job::simulations(experiment, &self.variants))
     }

@@ -1,5 +1,6 @@
 //! Why a row has no numbers. Its words stand in the table's column `failure`.
 
+use crate::dynamics::OrbitError;
 use crate::experiment::RecipeError;
 use crate::measure::EvaluateError;
 use crate::optimise::BoundsError;
@@ -13,10 +14,13 @@ pub enum RowFailure {
     /// The engine gave up.
     #[error(transparent)]
     Engine(#[from] EvaluateError),
-    /// One point of a maximisation has no number: a maximum over part of a range is none.
+    /// There is no orbit.
+    #[error(transparent)]
+    Orbit(#[from] OrbitError),
+    /// One point of a maximisation has no number, and a maximum over part of a range is none; or a branch cannot begin there.
     #[error("at {parameter} = {at}: {reason}")]
     At {
-        /// The parameter that the maximum is taken over.
+        /// The parameter that is varied.
         parameter: String,
         /// Its value.
         at: f64,

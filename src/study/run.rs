@@ -20,6 +20,7 @@ use super::job::{self, cost};
 use super::known_rows::KnownRows;
 use super::limited::Limited;
 use super::optimise::run_optimisation;
+use super::orbit::run_branches;
 use super::record::Failures;
 use super::refine;
 use super::shard::Shard;
@@ -27,7 +28,7 @@ use super::spent::{Meter, Metered, Spent};
 use super::variant::Variant;
 use super::work::{Work, outcome};
 use crate::dynamics::{Limit, is_interrupted};
-use crate::experiment::{Case, Experiment};
+use crate::experiment::{Case, Experiment, RowSource};
 use crate::table::Table;
 
 /// An experiment to be run.
@@ -102,13 +103,12 @@ pub fn run<T: Send + Sync>(
     handler: &dyn EventHandler,
     take: impl Fn(usize, Finished) -> T + Sync,
 ) -> Result<Vec<T>, RunError> {
-    let (optimised, swept): (Vec<usize>, Vec<usize>) =
-        (0..tasks.len()).partition(|&i| tasks[i].experiment.optimise.is_some());
+    let (whole, swept): (Vec<usize>, Vec<usize>) = (0..tasks.len()).partition(|&i| tasks[i].experiment.is_whole());
     let (refined, plain): (Vec<usize>, Vec<usize>) =
         swept.into_iter().partition(|&i| !tasks[i].experiment.refined.is_empty());
     let work: Vec<(usize, Work<'_>)> = plain.into_iter().map(|index| (index, Work::new(tasks[index]))).collect();
     let of_divided: u64 = work.iter().map(|(_, one)| one.simulations()).sum();
-    let of_others = optimised.iter().chain(&refined).map(|&i| job::simulations(tasks[i].experiment, tasks[i].variants));
+    let of_others = whole.iter().chain(&refined).map(|&i| job::simulations(tasks[i].experiment, tasks[i].variants));
     handler.on_event(&Event::Begun { experiments: tasks.len(), simulations: of_divided + of_others.sum::<u64>() });
     let taken: Vec<OnceLock<T>> = tasks.iter().map(|_| OnceLock::new()).collect();
     let meters: Vec<Meter> = tasks.iter().map(|_| Meter::default()).collect();
@@ -133,15 +133,19 @@ pub fn run<T: Send + Sync>(
     };
     beside(&rescue, || {
         pool.install(|| {
-            let (work, engine, hand_over) = (&work, &engine, &hand_over);
+            let (work, engine, meters, hand_over) = (&work, &engine, &meters, &hand_over);
             rayon::scope_fifo(|scope| {
                 // Their rounds wait for one another: they begin first.
-                for index in optimised {
+                for index in whole {
                     scope.spawn_fifo(move |_| {
-                        let engine = engine(index);
-                        let limited = Limited::each(&engine, tasks[index].limit);
-                        let finished = run_optimisation(tasks[index], &limited, handler);
-                        hand_over(index, undivided(tasks[index], finished));
+                        let task = tasks[index];
+                        let finished = if let RowSource::Branches(_) = task.experiment.row_source() {
+                            run_branches(task, &meters[index], handler)
+                        } else {
+                            let engine = engine(index);
+                            run_optimisation(task, &Limited::each(&engine, task.limit), handler)
+                        };
+                        hand_over(index, undivided(task, finished));
                     });
                 }
                 for index in refined {

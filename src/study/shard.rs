@@ -2,7 +2,7 @@
 //!
 //! The plan alone decides which rows belong to which shard, so tasks need no communication: the rows of an
 //! experiment are dealt out, the longest first, rows that follow each other together. Where all rows depend on each other (refined
-//! curves, searches) the experiment is one shard's as a whole. A shard's table is that of the experiment with fewer rows and one column more, `row`, the
+//! curves, searches, branches) the experiment is one shard's as a whole. A shard's table is that of the experiment with fewer rows and one column more, `row`, the
 //! place of each in the whole table.
 
 use std::fmt;
@@ -165,7 +165,7 @@ impl Shard {
         if table.metadata.get("fingerprint") != Some(&item.fingerprint()) {
             return Err(NotThePart::OtherInputs);
         }
-        if item.source.experiment.optimise.is_none() && table.fingerprints.len() < table.rows() {
+        if !item.source.experiment.is_whole() && table.fingerprints.len() < table.rows() {
             return Err(NotThePart::NoFingerprints);
         }
         Ok(())
@@ -199,7 +199,7 @@ impl FromStr for Shard {
 
 /// False if all rows of the experiment depend on each other.
 pub(super) fn divisible(experiment: &Experiment) -> bool {
-    experiment.optimise.is_none() && experiment.refined.is_empty()
+    !experiment.is_whole() && experiment.refined.is_empty()
 }
 
 /// The shard of an experiment that is not divided, and of the first row of another: small experiments do not all go to the

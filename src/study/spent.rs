@@ -100,7 +100,7 @@ fn kind(solver: SolverChoice, rigour: Rigour) -> String {
 pub(super) struct Meter(Mutex<Spent>);
 
 impl Meter {
-    fn time<T>(&self, solver: SolverChoice, rigour: Rigour, simulate: impl FnOnce() -> T) -> T {
+    pub(super) fn time<T>(&self, solver: SolverChoice, rigour: Rigour, simulate: impl FnOnce() -> T) -> T {
         // A simulation stays on its thread and never waits, so that wall time is processor time.
         let begun = Instant::now();
         let done = simulate();

@@ -63,8 +63,8 @@ fn remove_journal(layout: &Layout, id: &ExperimentId) {
 /// # Errors
 /// [`ParquetError`] if they cannot be written.
 pub fn keep(layout: &Layout, item: &Item, finished: &Finished) -> Result<(), ParquetError> {
-    // What the journal holds of an optimisation says more than its table.
-    if item.source.experiment.optimise.is_some() || finished.failures.rows == finished.table.rows() {
+    // What the journal holds of an optimisation says more than its table, and half a branch is followed again.
+    if item.source.experiment.is_whole() || finished.failures.rows == finished.table.rows() {
         return Ok(());
     }
     earlier::add(layout, &item.source.experiment.id, &finished.table)

@@ -4,6 +4,7 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
+use shotdamp::experiment::BranchColumn;
 use shotdamp::measure::Measure;
 use shotdamp::report::RELEASED;
 use shotdamp::study::Study;
@@ -127,6 +128,13 @@ fn the_table_of_measures_is_that_of_the_program() {
     }
     let text = document("docs/tables.md");
     assert!(text.contains(&expected), "docs/tables.md should hold\n{expected}");
+}
+
+#[test]
+fn the_columns_of_branches_are_those_of_the_program() {
+    let rows: String =
+        BranchColumn::ALL.iter().map(|column| format!("| `{}` | {} |\n", column.name(), column.about())).collect();
+    assert!(document("docs/tables.md").contains(&rows), "docs/tables.md should hold\n{rows}");
 }
 
 #[test]

@@ -74,6 +74,7 @@ pub fn limit_stop() -> Experiment {
         each_cycle: None,
         mean_over: Vec::new(),
         optimise: None,
+        orbit: None,
         moved: None,
         measures: vec![Measure::VelocityRatio],
         trace: None,
@@ -112,6 +113,7 @@ pub fn panel(x: &str, scale: AxisScale, y: &[&str]) -> Panel {
         markers: false,
         peaks: None,
         strip: None,
+        joined: shotdamp::experiment::Joined::ByX,
     }
 }
 

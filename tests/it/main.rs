@@ -8,6 +8,7 @@
 
 mod accuracy;
 mod architecture;
+mod branches;
 mod calibrate;
 mod check;
 mod classics;

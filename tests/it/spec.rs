@@ -731,8 +731,8 @@ pub(crate) fn every_shipped_experiment_loads_and_resolves_under_every_variant() 
     }
     assert_eq!(
         ids.len(),
-        26,
-        "23 of the study, the motion at two gap clearances, its kind, and what coexists: {ids:?}"
+        27,
+        "23 of the study, the motion at two gap clearances, its kind, its branches, and what coexists: {ids:?}"
     );
     // At some 15 ns a step: half a minute of one core.
     assert!(fixed_steps < 2e9, "{fixed_steps:e} fixed steps");

@@ -29,9 +29,9 @@ const EXTRAPOLATED: usize = 5;
 /// What a branch is followed along.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Along {
-    /// The parameter of its first orbit.
+    /// The end of the range that it is followed away from.
     pub from: f64,
-    /// Where it ends at the latest.
+    /// The end that it is followed towards.
     pub to: f64,
     /// The longest step, as a share of `from` to `to` and of the motion.
     pub step: f64,
@@ -62,8 +62,10 @@ pub struct BranchPoint {
 /// Why a branch goes no further than its last point.
 #[derive(Debug, Clone, PartialEq)]
 pub enum BranchEnd<E> {
-    /// It has come to an end of the range: to `to`, or back to `from`.
+    /// It has come to an end of the range: to `to`, or by way of a fold to `from`.
     Range,
+    /// Next to the last point the motion has half the period: the branch of that motion doubles its period there.
+    HalfPeriod,
     /// A contact begins or ends without speed here; the last point is as close to it as orbits are found.
     Graze {
         /// The parameter of the graze.
@@ -92,17 +94,18 @@ pub enum BranchError<E> {
 }
 
 impl<E> Branch<E> {
-    /// Follows an orbit in the parameter of `system_at`.
+    /// Follows the orbit of a parameter's value within the range, in the parameter of `system_at`.
     ///
     /// # Errors
     /// [`BranchError`], if there is no first point; beyond it nothing that was found is lost ([`BranchEnd`]).
     pub fn follow(
         system_at: impl FnMut(f64) -> Result<HybridSystem, E>,
         orbit: &Orbit,
+        parameter: f64,
         along: Along,
     ) -> Result<Self, BranchError<E>> {
-        let mut path = Path { system_at, cycles: orbit.cycles, from: along.from, to: along.to };
-        let system = path.system(0.0)?;
+        let mut path = Path { system_at, cycles: orbit.cycles, from: along.from, to: along.to, begin: parameter };
+        let system = path.system(path.first())?;
         let none = || OrbitError::NoConvergence { cycles: orbit.cycles, miss: f64::INFINITY };
         let start = absolute(&system, &orbit.start).ok_or_else(none)?;
         let (shot, distance) = closed(&system, start, orbit.cycles)?;
@@ -110,8 +113,7 @@ impl<E> Branch<E> {
         Follower::new(path, along).run(at)
     }
 
-    /// Follows the motion of twice the period that begins at a period doubling, from there to `along.to`; it exists on one side of the
-    /// doubling, and where that is not the side of `along.to` nothing is found but the doubling itself.
+    /// Follows the motion of twice the period that begins at a period doubling, on the side of it where that motion exists.
     ///
     /// # Errors
     /// As [`Branch::follow`].
@@ -121,8 +123,10 @@ impl<E> Branch<E> {
         along: Along,
     ) -> Result<Self, BranchError<E>> {
         let cycles = doubling.orbit.cycles;
-        let mut path = Path { system_at, cycles: 2 * cycles, from: doubling.parameter, to: along.to };
-        let system = path.system(0.0)?;
+        let begin = doubling.parameter;
+        let mut path = Path { system_at, cycles: 2 * cycles, from: along.from, to: along.to, begin };
+        let share = path.first();
+        let system = path.system(share)?;
         let none = || OrbitError::NoConvergence { cycles, miss: f64::INFINITY };
         let start = absolute(&system, &doubling.orbit.start).ok_or_else(none)?;
         let (single, distance) = closed(&system, start, cycles)?;
@@ -130,7 +134,7 @@ impl<E> Branch<E> {
         let mut tangent = single.flipping().ok_or_else(none)?;
         tangent.push(0.0);
         let shot = Shot::new(&system, single.start.clone(), 2 * cycles, Some(&single.scale))?;
-        Follower::new(path, along).run(At { share: 0.0, shot, distance, tangent })
+        Follower::new(path, along).run(At { share, shot, distance, tangent })
     }
 }
 
@@ -211,6 +215,9 @@ impl<E, F: FnMut(f64) -> Result<HybridSystem, E>> Follower<F> {
         if turn(at, &next) < STRAIGHT {
             let miss = next.shot.misses_by();
             return Ok(Err(BranchError::Orbit(OrbitError::NoConvergence { cycles: self.path.cycles, miss })));
+        }
+        if at.shot.swaps_halves(&next.shot) {
+            return Ok(Ok(Next::End(BranchEnd::HalfPeriod)));
         }
         let specials = match special::between(&mut self.path, at, &next, step) {
             Ok(specials) => specials,

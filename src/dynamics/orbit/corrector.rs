@@ -49,12 +49,23 @@ pub(super) struct Path<F> {
     pub(super) cycles: u32,
     pub(super) from: f64,
     pub(super) to: f64,
+    /// The parameter of the first point.
+    pub(super) begin: f64,
 }
 
 impl<E, F: FnMut(f64) -> Result<HybridSystem, E>> Path<F> {
-    /// The parameter at a share of the range; its ends are met to the bit.
+    /// The parameter at a share of the range; its ends and the first point are met to the bit.
     pub(super) fn parameter(&self, share: f64) -> f64 {
-        if share == 1.0 { self.to } else { self.from + share * (self.to - self.from) }
+        match share {
+            1.0 => self.to,
+            _ if share == self.first() => self.begin,
+            _ => self.from + share * (self.to - self.from),
+        }
+    }
+
+    /// The share of the range at the first point.
+    pub(super) fn first(&self) -> f64 {
+        (self.begin - self.from) / (self.to - self.from)
     }
 
     pub(super) fn system(&mut self, share: f64) -> Result<HybridSystem, BranchError<E>> {
@@ -66,8 +77,9 @@ impl<E, F: FnMut(f64) -> Result<HybridSystem, E>> Path<F> {
     pub(super) fn begin(&mut self, shot: Shot, distance: f64) -> Result<At, BranchError<E>> {
         let mut onwards = vec![0.0; shot.miss.len() + 1];
         onwards[shot.miss.len()] = 1.0;
-        let tangent = self.tangent(&shot, 0.0, &onwards)?;
-        Ok(At { share: 0.0, shot, distance, tangent })
+        let share = self.first();
+        let tangent = self.tangent(&shot, share, &onwards)?;
+        Ok(At { share, shot, distance, tangent })
     }
 
     /// The point at a step along the tangent.

@@ -71,7 +71,7 @@ const NEUTRAL: f64 = 1e-9;
 ///
 /// // Under stronger impulses its period doubles; the motion with two contacts a cycle goes on, but no longer attracts.
 /// let along = Along { from: 2.0, to: 3.0, step: 0.02, points: 500 };
-/// let branch = Branch::follow(damped, &orbit, along)?;
+/// let branch = Branch::follow(damped, &orbit, 2.0, along)?;
 /// let doubles = branch.points.iter().position(|point| point.special == Some(Special::PeriodDoubling));
 /// assert!(doubles.is_some_and(|at| !branch.points[at + 1].orbit.is_stable()));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -111,6 +111,14 @@ impl Orbit {
     /// [`OrbitError`] with the reason: where the run ends in chaos, say.
     pub fn after(system: &HybridSystem, options: &Options) -> Result<Self, OrbitError> {
         newton::after(system, options)
+    }
+
+    /// The orbit of so many cycles next to the state that a run ends in, whatever its own period: an unstable one amid chaos, say.
+    ///
+    /// # Errors
+    /// [`OrbitError`] with the reason.
+    pub fn beside(system: &HybridSystem, options: &Options, cycles: u32) -> Result<Self, OrbitError> {
+        newton::beside(system, options, cycles)
     }
 
     /// No multiplier exceeds 1.

@@ -56,6 +56,12 @@ pub(super) fn after(system: &HybridSystem, options: &Options) -> Result<Orbit, O
     Err(error.unwrap_or(OrbitError::NeverRepeats { cycles, miss }))
 }
 
+/// The orbit of so many cycles next to the state that a run ends in.
+pub(super) fn beside(system: &HybridSystem, options: &Options, cycles: u32) -> Result<Orbit, OrbitError> {
+    repeats(system)?;
+    find(system, last_of(system, options)?, cycles)
+}
+
 fn last_of(system: &HybridSystem, options: &Options) -> Result<End, EngineError> {
     let (_, tape) = budget::within(|| march::taped(system, options, States::of(system)))?;
     Ok(tape.ends.last().expect("a run has one cycle at least").clone())

@@ -16,6 +16,9 @@ const SHIFT: f64 = 1e-9;
 /// Each leaves a billionth of all other vectors.
 const INVERSE_ITERATIONS: usize = 3;
 
+/// Halves of a period differ, if by more than this, in units of the motion.
+const DIFFERS: f64 = 1e-8;
+
 /// Instants that are one, as a share of a cycle.
 const COINCIDES: f64 = 1e-6;
 
@@ -71,6 +74,19 @@ impl Shot {
     /// The largest part of the miss; infinite where it ends in other contacts than it starts in.
     pub(super) fn misses_by(&self) -> f64 {
         self.scale.apart(&self.start, self.end())
+    }
+
+    /// By how much the second half of the period differs from the first, in units of the motion; `None` of an odd number of cycles.
+    fn halves_differ(&self) -> Option<Vec<f64>> {
+        let cycles = self.tape.ends.len();
+        cycles.is_multiple_of(2).then(|| self.scale.miss(&self.start, &self.tape.ends[cycles / 2 - 1]).collect())
+    }
+
+    /// The halves of the period change places between two neighbours: between them is a motion of half the period.
+    pub(super) fn swaps_halves(&self, next: &Self) -> bool {
+        let (Some(here), Some(there)) = (self.halves_differ(), next.halves_differ()) else { return false };
+        let [own, other] = [&here, &there].map(|difference| dot(difference, difference).sqrt());
+        own.min(other) > DIFFERS && dot(&here, &there) < -0.5 * own * other
     }
 
     /// Numbers of a state that are the particles' places.

@@ -188,6 +188,13 @@ impl Parameter {
         }
     }
 
+    /// It takes numbers, and all between two of them.
+    #[must_use]
+    pub fn varies_smoothly(self) -> bool {
+        let is_counted = matches!(self, Self::Mode | Self::ForcedMode | Self::Modes | Self::DamperCount);
+        self.words().is_empty() && !is_counted
+    }
+
     /// Unit symbol of its numbers, empty when dimensionless.
     #[must_use]
     pub fn unit(self) -> &'static str {

@@ -5,7 +5,7 @@ use serde_json::{Map, Value, json};
 use super::parts::{
     NUMBER, Object, PREFIX, any_of, count, list, one_or_more, quantity, reference, text, word, words_of,
 };
-use super::{assumptions, figure, optimise, scene, sweep};
+use super::{assumptions, continuation, figure, optimise, scene, sweep};
 use crate::dynamics::Until;
 use crate::experiment::about_study::MOST_CHAPTERS;
 use crate::experiment::assumption_reader::MOST_CYCLES;
@@ -23,7 +23,7 @@ pub fn experiment_schema(sheet: &AssumptionSheet) -> Value {
     let parts = [sweep::definitions(), scene::definitions(), figure::definitions(), assumptions::definitions(sheet)];
     definitions.extend(parts.into_iter().flatten());
     definitions.insert("maximisation".into(), maximisation());
-    // Rows of an optimisation are candidates.
+    // Rows of an optimisation are candidates, those of an orbit its branches' motions.
     let of_a_row = LISTS.map(|key| json!({"required": [key]}));
     let mut schema = Object::new("An experiment")
         .required("title", text("A few words"))
@@ -34,6 +34,7 @@ pub fn experiment_schema(sheet: &AssumptionSheet) -> Value {
         .optional("mean_over", reference("sweep"))
         .optional("maximise", maximise())
         .optional("optimise", optimise::optimise())
+        .optional("orbit", continuation::continuation())
         .required("measure", one_or_more("What is measured", reference("measure")))
         .optional("run", run(sheet))
         .optional("trace", trace())
@@ -46,7 +47,14 @@ pub fn experiment_schema(sheet: &AssumptionSheet) -> Value {
         .exclusive(&LISTS)
         .exclusive(&["optimise", "sweep"])
         .exclusive(&["optimise", "maximise"])
-        .rule(json!({"if": {"required": ["optimise"]}, "then": {"not": {"anyOf": of_a_row}}}))
+        .exclusive(&["orbit", "sweep"])
+        .exclusive(&["orbit", "mean_over"])
+        .exclusive(&["orbit", "maximise"])
+        .exclusive(&["orbit", "optimise"])
+        .rule(json!({
+            "if": {"anyOf": [{"required": ["optimise"]}, {"required": ["orbit"]}]},
+            "then": {"not": {"anyOf": of_a_row}},
+        }))
         .schema();
     schema["$schema"] = json!("http://json-schema.org/draft-07/schema#");
     schema["title"] = json!("Experiment");

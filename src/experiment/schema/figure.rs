@@ -6,6 +6,7 @@ use super::parts::{
     Object, any_of, between, boolean, count, list, number, one_of_words, one_or_more, reference, text, words_of,
 };
 use super::sweep::NAME;
+use crate::experiment::continuation::BranchColumn;
 use crate::experiment::definition::{AxisScale, Best, Strip};
 use crate::experiment::recipe::Parameter;
 use crate::experiment::word::words;
@@ -20,6 +21,7 @@ pub(super) fn definitions() -> Vec<(String, Value)> {
     known.extend(energy_columns());
     known.extend(words::<CycleValue>());
     known.extend(["sweep", "direction", "solver", "variant", "candidate"]);
+    known.extend(BranchColumn::ALL.map(BranchColumn::name));
     let mut offered: Vec<&str> = Vec::new();
     for name in known {
         if !offered.contains(&name) {

@@ -6,6 +6,7 @@
 //! everything: a file that it accepts passes the schema, as long as its units are written as people write them.
 
 mod assumptions;
+mod continuation;
 mod experiment;
 mod figure;
 mod optimise;

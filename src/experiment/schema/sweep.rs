@@ -213,6 +213,24 @@ fn refined(size: &Value) -> Value {
     form("refined", "A refined range", object.schema())
 }
 
+/// The parameter that a branch is followed along, with its range.
+pub(super) fn followed() -> Value {
+    let range = |parameter: Parameter| {
+        let size = Values::of(parameter).number();
+        Object::new("Its range")
+            .required("from", size.clone())
+            .required("to", size)
+            .optional("spacing", words_of::<AxisScale>("The scale on which steps are equal"))
+            .schema()
+    };
+    let smooth = parameters().filter(|(_, parameter)| parameter.varies_smoothly());
+    let object = Object::new("The parameter, and its range");
+    let mut schema = smooth.fold(object, |object, (name, parameter)| object.optional(name, range(parameter))).schema();
+    schema["minProperties"] = json!(1);
+    schema["maxProperties"] = json!(1);
+    schema
+}
+
 /// The points of a maximisation over any parameter.
 pub(super) fn any_range() -> Value {
     let any = json!({"type": ["number", "string"]});

@@ -179,7 +179,7 @@ fn follow(
     points: usize,
 ) -> Branch<Infallible> {
     let along = Along { from, to, step: 0.02, points };
-    let branch = Branch::follow(|parameter| Ok(systems(parameter)), orbit, along).expect("it has a first orbit");
+    let branch = Branch::follow(|parameter| Ok(systems(parameter)), orbit, from, along).expect("it has a first orbit");
     println!(
         "{} points to {}, end {:?}",
         branch.points.len(),
@@ -523,7 +523,7 @@ fn the_motion_of_twice_the_period_is_followed_from_its_doubling() {
     let systems = |acceleration: f64| Ok::<_, Infallible>(system(&Table::new(e, acceleration).scene()));
     let orbit = Orbit::near(&systems(begin).expect("it compiles"), &Table::new(e, begin).on_orbit(0.0), 1);
     let along = Along { from: begin, to: end, step: 0.02, points: 500 };
-    let single = Branch::follow(systems, &orbit.expect("it is near"), along).expect("it has a first orbit");
+    let single = Branch::follow(systems, &orbit.expect("it is near"), begin, along).expect("it has a first orbit");
     let at = single.points.iter().find(|point| point.special == Some(Special::PeriodDoubling)).expect("it doubles");
     let double = Branch::doubled(systems, at, along).expect("it begins there");
     assert_eq!(double.end, BranchEnd::Range);
@@ -556,10 +556,10 @@ fn a_branch_says_what_is_in_its_way_and_keeps_what_it_has() {
     let first = systems(begin).expect("it is near");
     let orbit = Orbit::near(&first, &Table::new(0.5, begin).on_orbit(0.0), 1).expect("it is near");
     let along = Along { from: begin, to: 2.0, step: 0.02, points: 500 };
-    let branch = Branch::follow(systems, &orbit, along).expect("it has a first orbit");
+    let branch = Branch::follow(systems, &orbit, begin, along).expect("it has a first orbit");
     assert_eq!(branch.end, BranchEnd::System(TooStrong));
     let last = branch.points.last().expect("it has points");
     assert!(last.parameter <= 1.3 && last.parameter > 1.3 - 1e-5, "{}", last.parameter);
-    let few = Branch::follow(systems, &orbit, Along { points: 4, ..along }).expect("it has a first orbit");
+    let few = Branch::follow(systems, &orbit, begin, Along { points: 4, ..along }).expect("it has a first orbit");
     assert_eq!((few.points.len(), few.end), (4, BranchEnd::Points));
 }

@@ -1,0 +1,92 @@
+//! A periodic motion, measured over one period of it.
+//!
+//! What the structure without dampers is compared with is its own periodic motion: it is linear, so that one step of Newton's method
+//! finds it from rest.
+
+use super::reading::Reading;
+use super::undefined::in_range;
+use super::{EvaluateError, Evaluated, Measure, Measured, Request, Rigour, Subject, rounded};
+use crate::dynamics::{HybridSystem, Options, Orbit, Response, StartState, event_driven};
+use crate::measure::Settings;
+use crate::scene::{Scene, compile};
+
+/// How far an orbit may be from closing, in units of the motion: so far its numbers are known.
+const CLOSED: f64 = 1e-12;
+
+impl Orbit {
+    /// The measures of one period, audited and, for their numerical uncertainty, with search windows half as long.
+    ///
+    /// # Errors
+    /// [`EvaluateError`] with the reason.
+    pub fn measured(
+        &self,
+        subject: Subject,
+        settings: &Settings,
+        measures: &[Measure],
+    ) -> Result<Evaluated, EvaluateError> {
+        let request = Request { measures, rigour: Rigour::Result, ..Request::default() };
+        let scene = rounded(subject.scene, settings);
+        let system = compile(&scene)?;
+        let response = run(&request, &scene, &system, settings, self, 1.0)?;
+        let again = run(&request, &scene, &system, settings, self, 0.5)?;
+        let undamped = match subject.undamped.filter(|_| request.needs().undamped) {
+            Some(bare) => {
+                let bare = rounded(bare, settings);
+                let system = compile(&bare)?;
+                let orbit = Self::near(&system, &StartState::StaticEquilibrium, 1)?;
+                Some(run(&request, &bare, &system, settings, &orbit, 1.0)?)
+            }
+            None => None,
+        };
+        let read = |response| -> Result<Vec<f64>, EvaluateError> {
+            let reading = Reading {
+                scene: &scene,
+                mode: subject.mode,
+                response: Some(response),
+                undamped: undamped.as_ref(),
+                history: None,
+                energies: None,
+                skip: 0,
+                average: self.cycles,
+                mac: None,
+                settled_velocity_ratio: f64::NAN,
+            };
+            measures.iter().map(|measure| reading.read(*measure)).collect()
+        };
+        let (values, others) = (read(&response)?, read(&again)?);
+        let measured = values.into_iter().zip(others).map(|(value, other)| {
+            let numerical = (value - other).abs().max(CLOSED * value.abs());
+            Measured { value, numerical, spread: 0.0 }
+        });
+        let evaluated = Evaluated {
+            measured: measured.collect(),
+            proof: response.proof,
+            chaotic: false,
+            members: 1,
+            motion: Some(self.kind),
+            trace: Vec::new(),
+            end: None,
+        };
+        in_range(&scene, measures, evaluated)
+    }
+}
+
+/// One period of an orbit, with what the measures need.
+fn run(
+    request: &Request<'_>,
+    scene: &Scene,
+    system: &HybridSystem,
+    settings: &Settings,
+    orbit: &Orbit,
+    window_factor: f64,
+) -> Result<Response, EvaluateError> {
+    let options = Options {
+        start: orbit.start.clone(),
+        skip: 0,
+        average: orbit.cycles,
+        audit: window_factor == 1.0,
+        window_factor,
+        ..request.options(scene, settings)
+    };
+    Ok(event_driven(system, &options)?)
+}

@@ -1,0 +1,299 @@
+//! Branches of periodic motions: from the end of each first run to both ends of the range, and from each of their period doublings the
+//! next, as many times over as asked for.
+//!
+//! A branch ends where it ends, and says why in its last row: that is a result. Without a first motion there is one row, which says
+//! why it has no numbers. Every branch is followed by one thread; its points are measured side by side.
+
+use std::collections::VecDeque;
+
+use rayon::prelude::*;
+
+use super::evaluate::guarded;
+use super::event::{Event, EventHandler};
+use super::known_rows::KnownRows;
+use super::row_failure::RowFailure;
+use super::run::{Finished, Task};
+use super::spent::Meter;
+use super::tabulate_branches::{BranchRow, failures, table};
+use super::variant::Variant;
+use crate::dynamics::{
+    Allowance, Along, Branch, BranchEnd, BranchError, BranchPoint, EngineError, HybridSystem, Options, Orbit,
+    OrbitError, Special, is_interrupted,
+};
+use crate::experiment::{Continuation, Experiment, ParameterValue, Recipe, RowSource};
+use crate::measure::{EvaluateError, Evaluated, Needs, Rigour, SolverChoice, rounded};
+use crate::scene::{Scene, compile};
+use crate::table::Table;
+use crate::text::number::compact;
+use crate::text::words;
+
+/// The longest step, as a share of the range and of the motion.
+const STEP: f64 = 0.01;
+/// A branch that ends next to a doubling, by this share of the range, joins it.
+const JOINS: f64 = 1e-3;
+
+/// Points of all branches at most, as far as that is known before: of the first ones.
+pub(super) fn points(continuation: &Continuation, variants: &[Variant]) -> usize {
+    2 * continuation.points as usize * continuation.starts.len() * variants.len()
+}
+
+/// Runs it.
+pub(super) fn run_branches(task: Task<'_>, meter: &Meter, handler: &dyn EventHandler) -> Finished {
+    let Task { experiment, variants, metadata, .. } = task;
+    let RowSource::Branches(continuation) = experiment.row_source() else { return Finished::default() };
+    let all = points(continuation, variants) as u64;
+    if let Some(whole) = task.known.and_then(KnownRows::whole) {
+        handler.on_event(&Event::Simulated { experiment: &experiment.id, count: all });
+        // Its title may have changed since.
+        return Finished { table: Table { metadata: metadata.clone(), ..whole.clone() }, ..Finished::default() };
+    }
+    let within = |it: &(dyn Fn() -> Vec<BranchRow> + Sync)| {
+        let simulate = || Allowance::new(task.limit).simulate(it);
+        meter.time(SolverChoice::EventDriven, Rigour::Result, simulate)
+    };
+    let rows = variants.par_iter().enumerate().flat_map_iter(|(variant, assumed)| {
+        let following = Following { experiment, continuation, variant: assumed, number: variant };
+        within(&|| following.branches())
+    });
+    let mut rows: Vec<BranchRow> = rows.collect();
+    rows.par_iter_mut().for_each(|row| {
+        let following = Following { experiment, continuation, variant: &variants[row.variant], number: row.variant };
+        let measured = || Allowance::new(task.limit).simulate(|| guarded(|| following.measured(row)));
+        row.measured = meter.time(SolverChoice::EventDriven, Rigour::Result, measured);
+        handler.on_event(&Event::Simulated { experiment: &experiment.id, count: 1 });
+    });
+    let left = all.saturating_sub(rows.len() as u64);
+    handler.on_event(&Event::Simulated { experiment: &experiment.id, count: left });
+    let table = table(experiment, continuation, variants, &rows, metadata.clone());
+    Finished { table, failures: failures(&rows), interrupted: is_interrupted(), ..Finished::default() }
+}
+
+/// Branches under one set of assumptions.
+struct Following<'a> {
+    experiment: &'a Experiment,
+    continuation: &'a Continuation,
+    variant: &'a Variant,
+    number: usize,
+}
+
+/// What a branch begins with.
+enum Begin {
+    /// A run, at this share of the range.
+    Run(f64),
+    /// A doubling of the period, and how many there were before it on the way.
+    Doubling(Box<BranchPoint>, u32),
+}
+
+/// What is still to be done.
+enum Open {
+    Follow(Begin),
+    /// A doubling from which no other motion was found: unless a branch joins it, that is the result.
+    Lone(Traced),
+}
+
+/// Points of a branch in their order, and why it goes no further at either end; no reason at an end that another branch begins at.
+struct Traced {
+    points: Vec<BranchPoint>,
+    ends: [Option<BranchEnd<RowFailure>>; 2],
+}
+
+impl Following<'_> {
+    fn recipe(&self, parameter: f64) -> Result<Recipe, RowFailure> {
+        let mut recipe = self.experiment.recipe.clone();
+        recipe.set(self.continuation.along, ParameterValue::Number(parameter))?;
+        Ok(recipe)
+    }
+
+    fn scene(&self, share: f64) -> Result<Scene, RowFailure> {
+        let recipe = self.recipe(self.continuation.at(share))?;
+        Ok(rounded(recipe.resolve(&self.variant.assumptions)?, &self.experiment.settings))
+    }
+
+    fn system(&self, share: f64) -> Result<HybridSystem, RowFailure> {
+        Ok(compile(&self.scene(share)?).map_err(EvaluateError::from)?)
+    }
+
+    /// All branches, a row for each of their points.
+    fn branches(&self) -> Vec<BranchRow> {
+        let mut rows = Vec::new();
+        // Where branches have joined the one whose period doubles there, and forcing periods of the joined motion.
+        let mut joined: Vec<(f64, u32)> = Vec::new();
+        let starts = self.continuation.starts.iter();
+        let run = |start: &f64| Open::Follow(Begin::Run(self.continuation.share(*start)));
+        let mut open: VecDeque<Open> = starts.map(run).collect();
+        let mut number = 0;
+        while let Some(next) = open.pop_front() {
+            // The branch of another doubling has ended here.
+            let is_joined = |parameter: f64, periods: u32| {
+                joined.iter().any(|(other, cycles)| *cycles == periods && (other - parameter).abs() <= JOINS)
+            };
+            let begin = match next {
+                Open::Follow(begin) => begin,
+                Open::Lone(traced) => {
+                    if traced.points.iter().any(|it| !is_joined(it.parameter, it.orbit.cycles)) {
+                        number += 1;
+                        self.enter(number, traced, &mut rows);
+                    }
+                    continue;
+                }
+            };
+            let (parameter, level) = match &begin {
+                Begin::Run(share) => (*share, 0),
+                Begin::Doubling(point, _) if is_joined(point.parameter, 2 * point.orbit.cycles) => continue,
+                Begin::Doubling(point, level) => (point.parameter, *level),
+            };
+            match guarded(|| self.traced(&begin)) {
+                Ok(traced) if level > 0 && traced.points.len() == 1 => open.push_back(Open::Lone(traced)),
+                Ok(traced) => {
+                    number += 1;
+                    if let (Some(BranchEnd::HalfPeriod), Some(last)) = (&traced.ends[1], traced.points.last()) {
+                        joined.push((last.parameter, last.orbit.cycles));
+                    }
+                    if level < self.continuation.doublings {
+                        let doubles = |point: &&BranchPoint| point.special == Some(Special::PeriodDoubling);
+                        let next =
+                            |point: &BranchPoint| Open::Follow(Begin::Doubling(Box::new(point.clone()), level + 1));
+                        open.extend(traced.points.iter().filter(doubles).map(next));
+                    }
+                    self.enter(number, traced, &mut rows);
+                }
+                Err(reason) => {
+                    number += 1;
+                    rows.push(self.failed(number, parameter, reason));
+                }
+            }
+        }
+        rows
+    }
+
+    fn traced(&self, begin: &Begin) -> Result<Traced, RowFailure> {
+        let system = |share| self.system(share);
+        let points = self.continuation.points as usize;
+        let up = Along { from: 0.0, to: 1.0, step: STEP, points };
+        let down = Along { from: 1.0, to: 0.0, ..up };
+        let unfollowed = |error| match error {
+            BranchError::Orbit(error) => error.into(),
+            BranchError::System(error) => error,
+        };
+        let (orbit, start) = match begin {
+            Begin::Run(share) => (self.first(*share)?, *share),
+            Begin::Doubling(point, _) => {
+                let Branch { points, end } = Branch::doubled(system, point, up).map_err(unfollowed)?;
+                return Ok(Traced { points, ends: [None, Some(end)] });
+            }
+        };
+        let follow = |along: Along| Branch::follow(system, &orbit, start, along).map_err(unfollowed);
+        Ok(match start {
+            0.0 => {
+                let Branch { points, end } = follow(up)?;
+                Traced { points, ends: [Some(BranchEnd::Range), Some(end)] }
+            }
+            1.0 => {
+                let Branch { mut points, end } = follow(down)?;
+                points.reverse();
+                Traced { points, ends: [Some(end), Some(BranchEnd::Range)] }
+            }
+            _ => {
+                let (upwards, downwards) = (follow(up)?, follow(down)?);
+                // Both have the first point.
+                let back = downwards.points.into_iter().skip(1).rev();
+                let points = back.chain(upwards.points).collect();
+                Traced { points, ends: [Some(downwards.end), Some(upwards.end)] }
+            }
+        })
+    }
+
+    /// The orbit that a run ends next to.
+    fn first(&self, share: f64) -> Result<Orbit, RowFailure> {
+        let scene = self.scene(share)?;
+        let system = compile(&scene).map_err(EvaluateError::from)?;
+        let settings = &self.experiment.settings;
+        let options = Options {
+            start: scene.start_state(),
+            skip: settings.skip,
+            average: settings.average,
+            ..Options::default()
+        };
+        Ok(match self.continuation.periods {
+            Some(periods) => Orbit::beside(&system, &options, periods)?,
+            None => Orbit::after(&system, &options)?,
+        })
+    }
+
+    /// A row for each point; the reasons of its ends in the first and the last.
+    fn enter(&self, branch: usize, traced: Traced, rows: &mut Vec<BranchRow>) {
+        let Traced { points, ends } = traced;
+        let first = rows.len();
+        rows.extend(points.into_iter().map(|point| BranchRow {
+            variant: self.number,
+            branch,
+            parameter: self.continuation.at(point.parameter),
+            special: point.special,
+            ends: Vec::new(),
+            orbit: Ok(point.orbit),
+            measured: Err(RowFailure::NotComputed),
+        }));
+        let last = rows.len().saturating_sub(1);
+        for (row, end) in [first, last].into_iter().zip(ends) {
+            match end {
+                // To be tried again with more time.
+                Some(BranchEnd::Orbit(OrbitError::Engine(EngineError::Overrun(overrun)))) => {
+                    let share = self.continuation.share(rows[row].parameter);
+                    let reason = OrbitError::Engine(EngineError::Overrun(overrun)).into();
+                    rows.push(self.failed(branch, share, reason));
+                }
+                Some(end) => {
+                    let reason = self.describe(end);
+                    rows[row].ends.push(reason);
+                }
+                None => {}
+            }
+        }
+    }
+
+    fn describe(&self, end: BranchEnd<RowFailure>) -> String {
+        let name = words::of_key(&self.continuation.along);
+        match end {
+            BranchEnd::Range => "end of the range".into(),
+            BranchEnd::HalfPeriod => {
+                "next to it the motion has half the period: it joins the branch that doubles there".into()
+            }
+            BranchEnd::Graze { parameter } => {
+                let at = compact(self.continuation.at(parameter), 12);
+                format!("a contact begins or ends without speed at {name} = {at}")
+            }
+            BranchEnd::CycleStart => "a contact comes to the instant at which the forcing cycle begins".into(),
+            BranchEnd::Points => format!("{} points, as many as were asked for", self.continuation.points),
+            BranchEnd::Orbit(error) => error.to_string(),
+            BranchEnd::System(error) => error.to_string(),
+        }
+    }
+
+    fn failed(&self, branch: usize, share: f64, reason: RowFailure) -> BranchRow {
+        let parameter = self.continuation.at(share);
+        let reason = if is_interrupted() {
+            RowFailure::Interrupted
+        } else {
+            let name = words::of_key(&self.continuation.along);
+            RowFailure::At { parameter: name, at: parameter, reason: Box::new(reason) }
+        };
+        BranchRow {
+            variant: self.number,
+            branch,
+            parameter,
+            special: None,
+            ends: Vec::new(),
+            orbit: Err(reason),
+            measured: Err(RowFailure::NotComputed),
+        }
+    }
+
+    /// What the experiment measures, of one period.
+    fn measured(&self, row: &BranchRow) -> Result<Evaluated, RowFailure> {
+        let Ok(orbit) = &row.orbit else { return Err(RowFailure::NotComputed) };
+        let measures = &self.experiment.measures;
+        let subject = self.recipe(row.parameter)?.subject(&self.variant.assumptions, Needs::of(measures, false))?;
+        let measured = orbit.measured(subject, &self.experiment.settings, measures);
+        if measured.is_err() && is_interrupted() { Err(RowFailure::Interrupted) } else { Ok(measured?) }
+    }
+}

@@ -1,0 +1,176 @@
+//! `orbit` in an experiment: periodic motions as branches, from YAML to the table and the figure.
+
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+
+use shotdamp::table::{Table, parquet};
+use tempfile::TempDir;
+
+/// A ball that bounces once a cycle on a table of dimensionless acceleration `force_ratio`.
+const BALL: &str = "title: Ball
+about: A ball on a table.
+scene:
+  structure: {single_mass: {mass: 1 kg, stiffness: 3600 N/m, damping_ratio: 0.5}}
+  gravity: 9.81 m/s^2
+  dampers: [{mass: 0 kg, gap: infinite, floor: {rigid: {restitution: 0.5}}}]
+  excitation: {harmonic: {force_ratio: swept, frequency_ratio: 1}}
+  start: {displacement: -3.27 mm, velocity: 0 m/s, particles: [{height: 16.78 mm, velocity: -0.1734 m/s}]}
+orbit: {along: {force_ratio: {from: 1.1, to: 1.6}}, start: 1.2, doublings: 1}
+run: {skip: 100 cycles, average: 50 cycles}
+measure: [floor_impact_speed]
+figure: {x: force_ratio, y: largest_multiplier, by: branch, caption: Branches.}
+";
+
+/// A mass below a stop that it reaches when the force is large enough.
+const STOP: &str = "title: Stop
+about: A mass and a stop.
+scene:
+  structure: {single_mass: {mass: 1 kg, stiffness: 1000 N/m, damping_ratio: 0.02}}
+  gravity: 0 m/s^2
+  dampers: [{mass: 1e18 kg, gap: infinite, floor: {rigid: {restitution: 0.6}}}]
+  excitation: {harmonic: {force: swept, frequency_ratio: 0.9}}
+  start: {displacement: 0 mm, velocity: 0 m/s, particles: [{height: 10 mm, velocity: 0 m/s}]}
+orbit: {along: {force: {from: 1 N, to: 3 N}}}
+run: {skip: 500 cycles, average: 50 cycles}
+measure: [rms_velocity, floor_impacts]
+";
+
+/// A study of one experiment.
+struct Study(TempDir);
+
+impl Study {
+    fn new(text: &str, exchanged: &[(&str, &str)]) -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        fs::create_dir(folder.path().join("experiments")).unwrap();
+        let text = exchanged.iter().fold(text.to_owned(), |text, (from, to)| {
+            assert!(text.contains(from), "there is no `{from}`");
+            text.replacen(from, to, 1)
+        });
+        fs::write(folder.path().join("experiments/mine.yaml"), text).unwrap();
+        Self(folder)
+    }
+
+    fn path(&self) -> &Path {
+        self.0.path()
+    }
+
+    /// Exit code, and all that is printed.
+    fn shotdamp(&self, command: &[&str]) -> (Option<i32>, String) {
+        let run = Command::new(env!("CARGO_BIN_EXE_shotdamp")).arg("--root").arg(self.path()).args(command).output();
+        let output = run.unwrap();
+        (output.status.code(), String::from_utf8([output.stdout, output.stderr].concat()).unwrap())
+    }
+
+    fn run(&self) -> Table {
+        let (code, said) = self.shotdamp(&["run"]);
+        assert_eq!(code, Some(0), "{said}");
+        self.table()
+    }
+
+    fn table(&self) -> Table {
+        parquet::read(&self.path().join("results/mine.parquet")).unwrap()
+    }
+}
+
+/// Rows of a branch.
+fn rows_of(table: &Table, branch: f64) -> Vec<usize> {
+    let branches = table.floats("branch").unwrap();
+    (0..table.rows()).filter(|row| branches[*row] == branch).collect()
+}
+
+#[test]
+fn a_table_of_branches_has_every_motion_in_its_place() {
+    let study = Study::new(BALL, &[]);
+    let table = study.run();
+    let (at, stability) = (table.floats("force_ratio").unwrap(), table.texts("stability").unwrap());
+    let (special, ends) = (table.texts("special_point").unwrap(), table.texts("branch_end").unwrap());
+    let [periods, contacts] = ["periods", "contacts"].map(|column| table.floats(column).unwrap());
+    let (first, second) = (rows_of(&table, 1.0), rows_of(&table, 2.0));
+    assert_eq!(first.len() + second.len(), table.rows());
+
+    // The motion of one cycle through the whole range, in order, stable up to its doubling.
+    assert_eq!([at[first[0]], at[*first.last().unwrap()]], [1.1, 1.6]);
+    assert!(first.windows(2).all(|pair| at[pair[0]] < at[pair[1]]) && first.iter().any(|row| at[*row] == 1.2));
+    let doubles = *first.iter().find(|row| special[**row] == "period doubling").unwrap();
+    for row in first.iter().filter(|row| **row != doubles) {
+        assert_eq!(stability[*row], if at[*row] < at[doubles] { "stable" } else { "unstable" });
+        assert_eq!((periods[*row], contacts[*row]), (1.0, 1.0));
+    }
+    // That of two begins there, and attracts.
+    assert_eq!(at[second[0]], at[doubles]);
+    assert!(second[1..].iter().all(|row| (periods[*row], contacts[*row]) == (2.0, 2.0)));
+    assert!(stability[second[1]] == "stable");
+    assert_eq!(ends[first[0]], "end of the range");
+    assert_eq!(ends[*second.last().unwrap()], "end of the range");
+    assert!(first[1..first.len() - 1].iter().all(|row| ends[*row].is_empty()));
+
+    // Neither threads nor time move a bit, and nothing is computed twice.
+    let bytes = || fs::read(study.path().join("results/mine.parquet")).unwrap();
+    let before = bytes();
+    assert!(study.shotdamp(&["run"]).1.contains("Nothing to do."));
+    assert_eq!(study.shotdamp(&["run", "--force", "--jobs", "1"]).0, Some(0));
+    assert_eq!(bytes(), before);
+    let page = fs::read_to_string(study.path().join("reports/mine.md")).unwrap();
+    assert!(page.contains("period doubling at 1.5268237"), "{page}");
+    assert!(study.path().join("reports/mine.png").exists());
+}
+
+#[test]
+fn a_branch_that_ends_early_says_where_and_keeps_its_motions() {
+    // The stop is reached where the amplitude is the distance.
+    let table = Study::new(STOP, &[]).run();
+    let (at, special) = (table.floats("force").unwrap(), table.texts("special_point").unwrap());
+    let graze = at[special.iter().position(|word| word == "graze").expect("it reaches the stop")];
+    let expected = 0.01 * 1000.0 * ((1.0 - 0.81_f64).powi(2) + (0.04 * 0.9_f64).powi(2)).sqrt();
+    assert!((graze / expected - 1.0).abs() < 1e-10, "{graze} instead of {expected}");
+    let last = table.rows() - 1;
+    println!("{:?}", table.texts("branch_end").unwrap()[last]);
+    assert!(!table.texts("branch_end").unwrap()[last].is_empty());
+
+    // No more points than asked for.
+    let few = Study::new(BALL, &[("doublings: 1", "points: 3")]).run();
+    assert_eq!(few.rows(), 5);
+    assert!(few.texts("branch_end").unwrap()[4].contains("3 points"));
+}
+
+#[test]
+fn where_a_run_leads_to_no_orbit_the_row_says_so() {
+    let chaotic = [
+        ("restitution: 0.5", "restitution: 0.9"),
+        ("from: 1.1, to: 1.6}}, start: 1.2", "from: 7, to: 9}}, start: 8"),
+        ("skip: 100", "skip: 250"),
+    ];
+    let study = Study::new(BALL, &chaotic);
+    let (code, said) = study.shotdamp(&["run"]);
+    assert_eq!(code, Some(2), "{said}");
+    assert!(said.contains("at force_ratio = 8") && said.contains("chaos"), "{said}");
+    assert_eq!(study.table().rows(), 1);
+}
+
+#[test]
+fn what_is_wrong_with_an_orbit_is_told_where_it_stands() {
+    let cases: &[(&str, &str, &str, &str)] = &[
+        ("start: 1.2", "start: 2", "outside of the range from 1.1 to 1.6", "9:"),
+        ("{from: 1.1, to: 1.6}", "{from: 1.1, too: 1.6}", "did you mean `to`?", "9:"),
+        ("{from: 1.1, to: 1.6}", "{from: 1.6, to: 1.1}", "ends above its start", "9:"),
+        ("{from: 1.1, to: 1.6}", "{from: 0, to: 1.6, spacing: log}", "starts above zero", "9:"),
+        ("along: {force_ratio", "along: {force_ration", "did you mean `force_ratio`?", "9:"),
+        ("along: {force_ratio", "along: {stop", "takes no values in between", "9:"),
+        ("doublings: 1", "doubling: 1", "did you mean `doublings`?", "9:"),
+        ("run: {", "sweep: {force_ratio: [1, 2]}\nrun: {", "give one of the two an experiment of its own", "10:"),
+        ("[floor_impact_speed]", "[drift]", "not read off one period", "11:"),
+        ("[floor_impact_speed]", "[motion]", "every orbit has its `motion`", "11:"),
+        ("run: {", "run: {until: settled, ", "Newton's method goes on", "9:"),
+        ("run: {", "run: {solver: {fixed_step: {time_step: 1e-4 s}}, ", "finds no orbits", "9:"),
+        ("frequency_ratio: 1}", "frequency_ratio: swept}", "nothing sweeps `frequency_ratio`", "7:"),
+        ("{force_ratio: {from: 1.1, to: 1.6}}, start: 1.2", "{gap_ratio: {from: -1, to: 1.6}}", "negative", "9:"),
+        ("y: largest_multiplier", "y: largest_multipler", "did you mean `largest_multiplier`?", "12:"),
+    ];
+    for (from, to, what, place) in cases {
+        let study = Study::new(BALL, &[(from, to)]);
+        let (code, said) = study.shotdamp(&["check"]);
+        assert_eq!(code, Some(2), "{to}: {said}");
+        assert!(said.contains(what) && said.contains(&format!("mine.yaml:{place}")), "{to}: {said}");
+    }
+}
