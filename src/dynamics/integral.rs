@@ -52,15 +52,7 @@ pub(crate) fn together(blocks: &[Block], bank: &Bank, signals: &mut [Integrand],
             }
             for ([x, weight], kernels) in GAUSS.iter().zip(within.chunks_exact(places)) {
                 let t = (panel as f64 + x) * h;
-                let (mut value, mut rate) = (signal.rest.at(t) - signal.place, signal.rest.rate(t));
-                for ((block, phase), kernel) in blocks.iter().zip(&signal.shares).zip(kernels) {
-                    let now = block.advance(*phase, *kernel);
-                    value += now.value;
-                    rate += now.rate;
-                }
-                sum[0] += weight * h * value;
-                sum[1] += weight * h * value * value;
-                sum[2] += weight * h * rate * rate;
+                add_node(sum, weight * h, blocks, kernels, &signal.shares, about(signal.rest, signal.place, t));
             }
             let moved = blocks.iter().zip(&mut signal.shares).zip(end);
             moved.for_each(|((block, phase), kernel)| *phase = block.advance(*phase, *kernel));
@@ -88,19 +80,30 @@ pub(crate) fn integrals(
         }
         for [x, weight] in GAUSS {
             let t = (panel as f64 + x) * h;
-            let (mut value, mut rate) = (rest.at(t) - place, rest.rate(t));
             bank.kernels(blocks, t, &mut kernels);
-            for ((block, phase), kernel) in blocks.iter().zip(start).zip(&kernels) {
-                let now = block.advance(*phase, *kernel);
-                value += now.value;
-                rate += now.rate;
-            }
-            sum[0] += weight * h * value;
-            sum[1] += weight * h * value * value;
-            sum[2] += weight * h * rate * rate;
+            add_node(&mut sum, weight * h, blocks, &kernels, start, about(rest, place, t));
         }
     }
     sum
+}
+
+/// What is left of a signal beside its shares, about a place.
+fn about(rest: Parabola, place: f64, t: f64) -> Phase {
+    Phase { value: rest.at(t) - place, rate: rest.rate(t) }
+}
+
+/// What a node adds to the integrals: the `shares` moved on by its kernels, upon the `rest` there.
+#[inline]
+fn add_node(sum: &mut [f64; 3], weight: f64, blocks: &[Block], kernels: &[Kernel], shares: &[Phase], rest: Phase) {
+    let Phase { mut value, mut rate } = rest;
+    for ((block, phase), kernel) in blocks.iter().zip(shares).zip(kernels) {
+        let now = block.advance(*phase, *kernel);
+        value += now.value;
+        rate += now.rate;
+    }
+    sum[0] += weight * value;
+    sum[1] += weight * value * value;
+    sum[2] += weight * rate * rate;
 }
 
 /// Nodes and weights of the ten-point Gauss-Legendre rule on [0, 1].

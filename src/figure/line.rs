@@ -159,7 +159,7 @@ pub(super) fn curves(source: Source<'_>, panel: &Panel) -> Result<Vec<Curve>, Fi
             words.extend(group.varying_words(&groups));
             let join = join(x, y);
             let look = match join {
-                Join::Dots => Look::of_dots(number, groups.len()),
+                Join::Dots => Look::of_dots(number, groups.len(), group.rows.len()),
                 Join::Line => Look::of_path(&y.name).filter(|_| groups.len() == 1).unwrap_or_else(|| traits.look()),
             };
             if let Some(branches) = &branches {

@@ -30,6 +30,8 @@ pub(super) const MARKER: f64 = 10.0;
 const DOT: f64 = 3.5;
 /// By how much those of the cloud beneath are wider: where two agree, both are seen.
 const DOT_BENEATH: f64 = 3.0;
+/// Rows below which dots have room to be twice as wide.
+const SPARSE: usize = 100;
 pub(super) const QUOTED: f64 = 17.0;
 /// Space between neighbours: a tick and its label, a label and the edge.
 pub(super) const SPACE: f64 = 14.0;
@@ -203,10 +205,11 @@ impl Look {
         Self { color, width: CURVE, dash: DASHES[dash % DASHES.len()], marker: MARKERS[dash % MARKERS.len()] }
     }
 
-    /// The look of the cloud that is number `index` of `count` from below.
-    pub(super) fn of_dots(index: usize, count: usize) -> Self {
+    /// The look of the cloud of so many `rows` that is number `index` of `count` from below.
+    pub(super) fn of_dots(index: usize, count: usize, rows: usize) -> Self {
         let above = u32::try_from(count - index - 1).map_or(0.0, f64::from).min(3.0);
-        Self { width: DOT + DOT_BENEATH * above, ..Self::new(index, count, 0) }
+        let dot = if rows < SPARSE { 2.0 * DOT } else { DOT };
+        Self { width: dot + DOT_BENEATH * above, ..Self::new(index, count, 0) }
     }
 
     /// The same line, solid where a motion is stable and dashed where it is not.

@@ -102,7 +102,7 @@ pub(crate) fn judge_entry(
         robust: judgement.robust,
         moved: judgement.moved,
         price: Price::default(),
-        motion: MotionBehind::default(),
+        motion: None,
         role: Role::Neither,
     }
 }

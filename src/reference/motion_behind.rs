@@ -13,7 +13,7 @@ use crate::measure::Measure;
 use crate::table::{BASELINE, Table};
 use crate::text::words::of_key;
 
-/// The motion behind a verdict; empty where it was not measured.
+/// The motion behind a verdict.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct MotionBehind {
     /// The rows that decided, by kind of motion, in its word; those with an assumption moved are not counted.
@@ -24,7 +24,8 @@ pub struct MotionBehind {
 }
 
 impl MotionBehind {
-    pub(super) fn of(reads: &Reads, tables: &Tables<'_>) -> Self {
+    /// Of the rows whose cells were looked at for more than to choose rows; `None` where it was not measured.
+    pub(super) fn of(reads: &Reads, tables: &Tables<'_>) -> Option<Self> {
         let mut behind = Self::default();
         for (id, rows) in reads.decisive_rows() {
             let Some(TableState::Present(table)) = tables.get(&id) else { continue };
@@ -38,7 +39,7 @@ impl MotionBehind {
             let places = reads.places().into_iter().filter(|place| place.table == id);
             behind.at.extend(places.filter_map(|place| at(&place, table, &rows)));
         }
-        behind
+        (!behind.kinds.is_empty()).then_some(behind)
     }
 }
 

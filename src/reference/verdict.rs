@@ -136,9 +136,9 @@ pub struct Judged {
     pub moved: Vec<Moved>,
     /// What was simulated for it.
     pub price: Price,
-    /// What moves how in the rows that decided it.
+    /// What moves how in the rows that decided it, where that was measured.
     #[serde(default)]
-    pub motion: MotionBehind,
+    pub motion: Option<MotionBehind>,
     /// Whether it had a say in the choice of inputs.
     pub role: Role,
 }

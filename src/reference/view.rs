@@ -102,12 +102,9 @@ impl Reads {
         }
         let Some(columns) = tables.get_mut(table) else { return };
         let seen = columns.entry((column, role)).or_default();
-        for &row in rows {
-            if seen.len() <= row {
-                seen.resize(row + 1, false);
-            }
-            seen[row] = true;
-        }
+        let height = rows.iter().max().map_or(0, |row| row + 1);
+        seen.resize(height.max(seen.len()), false);
+        rows.iter().for_each(|&row| seen[row] = true);
     }
 
     /// The points of curves that were spoken of, each once.

@@ -81,7 +81,7 @@ pub(super) fn statements(judged: &[Judged]) -> String {
 
 /// What came out; where that decides nothing, with the motion that it is of.
 fn here(one: &Judged) -> String {
-    match one.motion.at.as_slice() {
+    match one.motion.as_ref().map_or(&[][..], |motion| &motion.at) {
         at if one.verdict == Verdict::Undecidable && !at.is_empty() => {
             format!("{}; motion at {}", one.found, at.join("; at "))
         }
@@ -91,7 +91,7 @@ fn here(one: &Judged) -> String {
 
 /// The motion behind a verdict: at the points that it speaks of, else of all rows that it reads.
 fn motion(one: &Judged) -> String {
-    let MotionBehind { kinds, at } = &one.motion;
+    let Some(MotionBehind { kinds, at }) = &one.motion else { return String::new() };
     if !at.is_empty() {
         return format!("at {}", at.join("; at "));
     }
@@ -138,7 +138,7 @@ fn entries(judged: &[Judged]) -> String {
         ("Depends on", Align::Left),
         ("Verdict kept with one assumption moved", Align::Left),
     ];
-    let named = judged.iter().any(|one| !one.motion.kinds.is_empty());
+    let named = judged.iter().any(|one| one.motion.is_some());
     columns.extend(named.then_some(("Motion", Align::Left)));
     let mut table = MarkdownTable::new(&columns);
     for one in judged {

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::fs;
 
 use roxmltree::Document;
-use shotdamp::reference::{Comparison, Judged, MotionBehind, Price, Role, Verdict, accept, parse_reference};
+use shotdamp::reference::{Comparison, Judged, Price, Role, Verdict, accept, parse_reference};
 use shotdamp::report::{CheckView, CheckedEntry, SUMMARY_LIMIT, Trouble, annotations, json, junit, step_summary};
 
 use crate::desk::{Desk, GAP, GAP_REFERENCE, command, said, shotdamp, simulated};
@@ -28,7 +28,7 @@ fn judged(id: &str, verdict: Verdict, expected: Verdict) -> Judged {
         robust: None,
         moved: Vec::new(),
         price: Price::default(),
-        motion: MotionBehind::default(),
+        motion: None,
         role: Role::Neither,
     }
 }

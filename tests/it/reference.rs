@@ -4,8 +4,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use shotdamp::reference::{
-    Judged, MotionBehind, Price, Printed, ReferenceFile, TableState, Tables, Verdict, judge, load_reference,
-    parse_reference, self_test,
+    Judged, Price, Printed, ReferenceFile, TableState, Tables, Verdict, judge, load_reference, parse_reference,
+    self_test,
 };
 use shotdamp::table::{Column, Data, Table};
 
@@ -148,10 +148,10 @@ fn a_maximum_tells_what_motion_it_is_of() {
     let motion = |row: usize| if row == top { "periodic 1:2" } else { "chaotic" };
     table.columns.push(column("motion", "", Data::Text((0..rows).map(|row| motion(row).into()).collect())));
     table.columns.push(column("largest_multiplier", "", Data::Float(vec![0.72; rows])));
-    let found = judged(OPTIMUM, &table).motion;
+    let found = judged(OPTIMUM, &table).motion.unwrap();
     assert_eq!(found.kinds, [("chaotic".to_owned(), 20), ("periodic".to_owned(), 1)].into());
     assert_eq!(found.at, ["f′ = 2.5: periodic 1:2, largest multiplier 0.72"]);
-    assert_eq!(judged(OPTIMUM, &peak()).motion, MotionBehind::default(), "where no motion was measured");
+    assert_eq!(judged(OPTIMUM, &peak()).motion, None, "where no motion was measured");
 }
 
 #[test]

@@ -5,7 +5,7 @@
 use std::collections::BTreeMap;
 
 use shotdamp::experiment::{AboutStudy, AssumptionValue, Finding};
-use shotdamp::reference::{Comparison, Judged, MotionBehind, Price, Role, Verdict};
+use shotdamp::reference::{Comparison, Judged, Price, Role, Verdict};
 use shotdamp::report::{
     AccuracyLinks, AssumptionView, ExperimentView, FigureView, PageView, assumptions as assumptions_page, index,
     overview_svg, page, strip_svg, summary, tolerances, value_in_words,
@@ -45,7 +45,7 @@ fn entry(id: &str, verdict: Verdict) -> Judged {
         robust: Some((5, 6)),
         moved: Vec::new(),
         price: Price { rows: 122, runs: 402, events: 61_180 },
-        motion: MotionBehind::default(),
+        motion: None,
         role: Role::Neither,
     }
 }
