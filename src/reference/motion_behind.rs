@@ -4,8 +4,6 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use super::columns::number;
-use super::selection::same;
 use super::text::{significant, symbol, with_unit};
 use super::view::{Place, Reads, TableState, Tables};
 use crate::dynamics::MotionKind;
@@ -37,20 +35,19 @@ impl MotionBehind {
                 *behind.kinds.entry(kind.word().to_owned()).or_default() += 1;
             }
             let places = reads.places().into_iter().filter(|place| place.table == id);
-            behind.at.extend(places.filter_map(|place| at(&place, table, &rows)));
+            behind.at.extend(places.filter_map(|place| at(&place, table)));
         }
         (!behind.kinds.is_empty()).then_some(behind)
     }
 }
 
 /// The motions of the rows at a point of a curve, in words; `None` where it was not measured there.
-fn at(place: &Place, table: &Table, rows: &[usize]) -> Option<String> {
+fn at(place: &Place, table: &Table) -> Option<String> {
     let over = table.columns.iter().find(|column| column.name == place.over)?;
-    let here = rows.iter().filter(|&&row| number(&over.data, row).is_some_and(|x| same(x, place.x)));
-    let mut motions: Vec<String> = here.filter_map(|&row| in_words(table, row)).collect();
+    let mut motions: Vec<String> = place.rows.iter().filter_map(|&row| in_words(table, row)).collect();
     motions.dedup();
     let x = with_unit(place.x, 4, &over.unit);
-    (!motions.is_empty()).then(|| format!("{} = {x}: {}", symbol(&place.over), motions.join("; ")))
+    (!motions.is_empty()).then(|| format!("{} = {x}: {}", symbol(&place.over), motions.join(" and ")))
 }
 
 /// `periodic 1:2, largest multiplier 0.72`.

@@ -89,6 +89,8 @@ pub(crate) struct Place {
     /// What the curve is over.
     pub over: String,
     pub x: f64,
+    /// The rows of the curve there: one, of a difference of two curves two.
+    pub rows: Vec<usize>,
 }
 
 /// Of one table: by column and role, whether each row was looked at.
@@ -397,9 +399,16 @@ impl<'a> View<'a> {
 
     /// Notes that what the entry says of a curve is of this point.
     pub(crate) fn note_place(&self, source: Source<'_>, over: &str, x: f64) {
-        let place = Place { table: source.table.unwrap_or(self.home).to_owned(), over: over.to_owned(), x };
+        if self.variant != BASELINE {
+            return;
+        }
+        // What was read a moment ago can be read again.
+        let Ok(Rows { id, table, indices }) = self.rows(source, None) else { return };
+        let Ok(along) = parameter(table, over) else { return };
+        let here = |row: &usize| number(&along.column.data, *row).is_some_and(|other| same(other, x));
+        let place = Place { table: id, over: over.to_owned(), x, rows: indices.into_iter().filter(here).collect() };
         let mut places = self.reads.places.borrow_mut();
-        if self.variant == BASELINE && !places.contains(&place) {
+        if !places.contains(&place) {
             places.push(place);
         }
     }
