@@ -1,15 +1,68 @@
 //! What branches of periodic motions did: where each begins and ends, and its special points.
 
-use crate::experiment::{BranchColumn, Continuation, Stability};
+use crate::experiment::{BranchColumn, Continuation, Parameter, Stability};
 use crate::measure::{Measure, column_words};
 use crate::table::Table;
 use crate::text::number::compact;
-use crate::text::words::{self, capitalised};
+use crate::text::words::{self, capitalised, counted};
 
 use super::markdown::{Align, MarkdownTable};
 
 /// Digits of a special point.
 const DIGITS: usize = 8;
+
+/// Stretches that the answer of a page names.
+const MOST_NAMED: usize = 4;
+
+/// Rows of a branch that follow each other with one motion, stable all along.
+struct Stretch<'a> {
+    motion: &'a str,
+    from: f64,
+    to: f64,
+}
+
+/// The answer of the page in a sentence: the longest stretches of the range in which a motion attracts; `None` without any.
+pub(super) fn in_short(continuation: &Continuation, table: &Table) -> Option<String> {
+    let table = table.baseline();
+    let at = table.floats(&words::of_key(&continuation.along))?;
+    let branches = table.floats(BranchColumn::Branch.name())?;
+    let motions = table.texts(&words::of_key(&Measure::Motion))?;
+    let stability = table.texts(BranchColumn::Stability.name())?;
+    let rows: Vec<usize> = (0..table.rows()).collect();
+    let alike = |a: &usize, b: &usize| {
+        branches[*a] == branches[*b] && motions[*a] == motions[*b] && stability[*a] == stability[*b]
+    };
+    let stable = rows.chunk_by(alike).filter(|rows| stability[rows[0]] == Stability::Stable.word());
+    let mut stretches: Vec<Stretch<'_>> = stable
+        .map(|rows| {
+            let (first, last) = (at[rows[0]], at[rows[rows.len() - 1]]);
+            Stretch { motion: &motions[rows[0]], from: first.min(last), to: first.max(last) }
+        })
+        .collect();
+    let length = |one: &Stretch<'_>| continuation.share(one.to) - continuation.share(one.from);
+    stretches.sort_by(|a, b| length(b).total_cmp(&length(a)));
+    let left = stretches.len().saturating_sub(MOST_NAMED);
+    stretches.truncate(MOST_NAMED);
+    stretches.sort_by(|a, b| a.from.total_cmp(&b.from));
+    let name = |one: &Stretch<'_>| format!("{} from {} to {}", one.motion, compact(one.from, 4), compact(one.to, 4));
+    let named: Vec<String> = stretches.iter().map(name).collect();
+    let shorter = if left == 0 {
+        String::new()
+    } else {
+        format!(", and {}", counted(left, "shorter stretch", "shorter stretches"))
+    };
+    let symbol = symbol(continuation.along);
+    (!named.is_empty())
+        .then(|| format!("**In short.** Motions that attract along {symbol}: {}{shorter}.\n\n", named.join(", ")))
+}
+
+/// A parameter as formulas name it; in words where it has no symbol.
+pub(super) fn symbol(along: Parameter) -> String {
+    match along.symbol() {
+        "" => column_words(&words::of_key(&along)),
+        symbol => symbol.into(),
+    }
+}
 
 /// The section on an experiment's page.
 pub(super) fn section(continuation: &Continuation, table: &Table) -> String {

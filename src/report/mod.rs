@@ -7,6 +7,7 @@ mod assumption;
 mod branch;
 mod candidate;
 mod chapter;
+mod coexisting;
 mod committed;
 pub(crate) mod comparison;
 mod console;

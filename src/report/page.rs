@@ -7,14 +7,14 @@ use crate::text::words::capitalised;
 
 use super::markdown::{details, one_line};
 use super::view::{AccuracyLinks, FigureView, PageView};
-use super::{assumption, branch, candidate, comparison, doubts, motions, proof, run};
+use super::{assumption, branch, candidate, coexisting, comparison, doubts, motions, proof, run};
 
 /// The page of an experiment, Markdown: its answer first, then the figure and a row for each statement; all else is closed.
 #[must_use]
 pub fn page(view: &PageView<'_>) -> String {
     let experiment = view.experiment;
     let mut text = format!("# {}\n\n", one_line(&experiment.title));
-    text += &comparison::in_short(view.judged);
+    text += &in_short(view);
     let about = format!("{}\n\n", one_line(&experiment.about));
     if view.judged.is_empty() {
         text += &about;
@@ -53,6 +53,16 @@ pub fn page(view: &PageView<'_>) -> String {
         up = view.to_reports,
     );
     text
+}
+
+/// The answer first: the verdicts; of a page without a statement to judge what its rows show.
+fn in_short(view: &PageView<'_>) -> String {
+    let shown = view.table.filter(|_| view.judged.is_empty()).and_then(|table| match view.experiment.row_source() {
+        RowSource::Branches(continuation) => branch::in_short(continuation, table),
+        RowSource::Cases => coexisting::in_short(view.experiment, table),
+        RowSource::Search(_) => None,
+    });
+    shown.unwrap_or_else(|| comparison::in_short(view.judged))
 }
 
 /// What the study says without an entry, and why.

@@ -168,8 +168,12 @@
       [frame, curve] = all[(now + step[1] + all.length) % all.length];
       share = Math.min(1, Math.max(0, share + step[0] / 50));
       const one = frames(svg)[frame];
-      const x = one.left + share * (one.right - one.left);
-      const [px, py] = above(one.curves[curve]?.stretches ?? [], x) ?? [x, (one.top + one.bottom) / 2];
+      // A curve need not reach over the whole axis.
+      const stretches = one.curves[curve]?.stretches ?? [];
+      const reach = ([from, to], [x]) => [Math.min(from, x), Math.max(to, x)];
+      const [from, to] = stretches.length ? stretches.flat().reduce(reach, [Infinity, -Infinity]) : [one.left, one.right];
+      const x = from + share * (to - from);
+      const [px, py] = above(stretches, x) ?? [x, (one.top + one.bottom) / 2];
       const client = new DOMPoint(px, py).matrixTransform(svg.getScreenCTM());
       show(svg, one, px, py, client, one.curves[curve]);
     });
