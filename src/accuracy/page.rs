@@ -9,6 +9,7 @@ use crate::text::words::{self, counted};
 
 use super::scatter;
 use super::verdict_price::{self, VerdictPrice};
+use crate::reference::symbol;
 use crate::report::markdown::{Align, MarkdownTable, one_line};
 
 /// Errors that somebody may want to reach.
@@ -90,7 +91,7 @@ pub(super) fn case_name(case: &CaseAccuracy, number: usize) -> String {
     let part = |part: &str| {
         let Some((name, value)) = part.split_once(" = ") else { return part.to_owned() };
         let value = value.parse::<f64>().map_or_else(|_| value.to_owned(), |value| compact(value, 3));
-        format!("{} {value}", column_words(name))
+        format!("{} = {value}", symbol(name))
     };
     case.description.split(", ").map(part).collect::<Vec<_>>().join(", ")
 }

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::search::{Places, Trail, coordinate, grid};
 use super::set::{Set, place_in_force};
 use super::trials::{Asked, CumulativeEvents, SharedTables, TrialRunner, Workers, Worth};
-use crate::experiment::{Assumptions, Calibration, CalibrationSearch, Experiment};
+use crate::experiment::{Assumptions, Calibration, CalibrationSearch, Experiment, Residual};
 use crate::reference::{Entry, Found, ReferenceFile, TableState, Tables, Verdict, judge};
 use crate::study::{Evaluate, Event, EventHandler, RunError};
 use crate::table::BASELINE;
@@ -24,7 +24,7 @@ pub enum CalibrationError {
 /// What a calibration found.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Calibrated {
-    /// Root mean square of the fitted entries' relative errors under the inputs in force, as the search sees them; none if one
+    /// Root mean square of the fitted entries' errors under the inputs in force, as the search sees them; none if one
     /// has no number.
     pub in_force: Option<f64>,
     /// The same of the best set; none if no set gives all of them a number.
@@ -105,7 +105,11 @@ pub fn calibrate(
 
     let mut trials = TrialRunner::new(&workers, Worth::Step { ensemble: calibration.ensemble }, experiments, &fit);
     let mut residuals = |sets: &[Set]| -> Result<Vec<Option<f64>>, RunError> {
-        Ok(trials.tables(sets)?.iter().map(|tables| residual(fit.iter().map(|one| found(one, tables)))).collect())
+        Ok(trials
+            .tables(sets)?
+            .iter()
+            .map(|tables| residual(calibration.residual, fit.iter().map(|one| found(one, tables))))
+            .collect())
     };
     let residual_in_force = residuals(std::slice::from_ref(&now))?[0];
     let trail = search(calibration, in_force, |places| residuals(&places.iter().map(set).collect::<Vec<_>>()))?;
@@ -125,8 +129,8 @@ pub fn calibrate(
         in_force: residual_in_force,
         best: best.map(|(_, residual)| residual),
         as_results: [
-            residual(fitted.iter().map(|one| one.in_force.found.clone())),
-            residual(fitted.iter().map(|one| one.best.found.clone())),
+            residual(calibration.residual, fitted.iter().map(|one| one.in_force.found.clone())),
+            residual(calibration.residual, fitted.iter().map(|one| one.best.found.clone())),
         ],
         places: best.map(|(places, _)| places.clone()).unwrap_or_default(),
         profiles: profiles(calibration, &trail),
@@ -200,12 +204,15 @@ pub(super) fn read(asked: &Asked<'_>, tables: &SharedTables) -> Read {
     Read { found: found(asked, tables), verdict }
 }
 
-/// Root mean square of relative errors; a claim that fails counts as an error of the whole, none may lack its number.
-fn residual(found: impl Iterator<Item = Found>) -> Option<f64> {
+/// Root mean square of errors; a claim that fails counts as an error of one, none may lack its number.
+fn residual(kind: Residual, found: impl Iterator<Item = Found>) -> Option<f64> {
     let (mut sum, mut count) = (0.0, 0.0_f64);
     for one in found {
         let error = match one {
-            Found::Number { simulated, published } => (simulated - published) / published,
+            Found::Number { simulated, published } => match kind {
+                Residual::Relative => (simulated - published) / published,
+                Residual::Logarithmic => libm::log(simulated / published),
+            },
             Found::Claim { holds } => f64::from(u8::from(!holds)),
             Found::Nothing(_) => return None,
         };

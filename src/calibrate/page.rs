@@ -1,7 +1,7 @@
 //! The page of a calibration.
 
 use super::{Calibrated, Compared, Profile, Read};
-use crate::experiment::{Calibration, CalibrationInput, CalibrationSearch, Tried};
+use crate::experiment::{Calibration, CalibrationInput, CalibrationSearch, Residual, Tried};
 use crate::measure::SolverChoice;
 use crate::reference::{Found, Verdict};
 use crate::text::{number, words};
@@ -26,7 +26,7 @@ pub fn calibration(calibration: &Calibration, result: &Calibrated) -> String {
         counted(result.fitted.len(), "entry", "entries"),
         result.held_out.len(),
         searched(calibration, result),
-        residuals(result)
+        residuals(calibration, result)
     );
     if result.best.is_none() {
         text += "**No set gives every fitted entry a number**; “best inputs” stands for those in force.\n\n";
@@ -83,10 +83,14 @@ fn searched(calibration: &Calibration, result: &Calibrated) -> String {
     )
 }
 
-fn residuals(result: &Calibrated) -> String {
+fn residuals(calibration: &Calibration, result: &Calibrated) -> String {
     let [in_force, best] = result.as_results.map(share);
+    let errors = match calibration.residual {
+        Residual::Relative => "relative errors",
+        Residual::Logarithmic => "logarithmic errors, ln(here/study)",
+    };
     format!(
-        "Residual: root mean square of the fitted entries’ relative errors, where a claim that fails counts as 100 %. Best: \
+        "Residual: root mean square of the fitted entries’ {errors}, where a claim that fails counts as 100 %. Best: \
          **{}**; with the inputs in force: {}. As results, with ensembles: {best} and {in_force}.",
         share(result.best),
         share(result.in_force),

@@ -46,7 +46,7 @@ fn scale(value: &mut AssumptionValue, factor: f64) {
     match value {
         AssumptionValue::Number(number) => *number *= factor,
         AssumptionValue::Curve(points) => points.iter_mut().for_each(|[_, y]| *y *= factor),
-        AssumptionValue::Choice(_) => {}
+        AssumptionValue::Choice(_) | AssumptionValue::Places(_) => {}
     }
 }
 

@@ -249,6 +249,10 @@ fn cases(item: &Item) -> String {
                 "\nCases\n  branches of periodic motions along {along} from {from} to {to}, begun by runs at {starts}\n"
             )
         }
+        RowSource::Basins(starts) => {
+            let starts = counted(starts.count as usize, "random start", "random starts");
+            format!("\nCases\n  {cases}, each from {starts}; a row for each motion that they end in\n")
+        }
         RowSource::Cases | RowSource::Search(_) => format!("\nCases\n  {cases}, under {}\n", solvers.join(" and ")),
     };
     if item.variants.len() > 1 {

@@ -81,7 +81,7 @@ mod window;
 pub use budget::{Allowance, Exhausted, Limit, Overrun, in_words, interrupt, is_interrupted};
 pub use error::EngineError;
 pub use extremes::Extremes;
-pub use motion::{Exponent, Fundamental, Motion, MotionKind, Multiplier};
+pub use motion::{Exponent, Fundamental, Motion, MotionKind, Multiplier, Recurring};
 pub use options::{Averaged, Options, StartState, Until};
 pub use orbit::{Along, Branch, BranchEnd, BranchError, BranchPoint, Orbit, OrbitError, Special};
 pub use proof::Proof;

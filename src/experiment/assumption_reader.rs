@@ -9,6 +9,7 @@ use super::diagnostic::{Findings, Place, Problems, place};
 use super::quantity::Dimension;
 use super::reader::{Fields, above_zero, count, list, no_such, ratio, scalar, text, unknown};
 use super::recipe::{AssumptionName, AssumptionValue, Slot};
+use super::stated::{STATED, read_chapters};
 use super::word::{from_word, words};
 use super::yaml::{Entry, Node, Value, read_tree};
 use crate::dynamics::Spline;
@@ -30,7 +31,7 @@ fn read_sheet(root: &Node, text: &str, findings: &Findings) -> Option<Assumption
         return findings.wrong(root.span, "the assumptions are written as `name: {value: …, reason: …}`");
     };
     let mut sheet = AssumptionSheet::default();
-    for Entry { key, key_span, node } in entries.iter().filter(|entry| entry.key != DEFAULTS) {
+    for Entry { key, key_span, node } in entries.iter().filter(|entry| entry.key != DEFAULTS && entry.key != STATED) {
         if !is_name(key) {
             findings.wrong::<()>(*key_span, format!("`{key}` cannot name an assumption: use letters, digits and `_`"));
         } else if let Some(entry) = read_entry(node, place(text, *key_span), findings) {
@@ -39,6 +40,9 @@ fn read_sheet(root: &Node, text: &str, findings: &Findings) -> Option<Assumption
     }
     if let Some(defaults) = entries.iter().find(|entry| entry.key == DEFAULTS) {
         read_defaults(&defaults.node, &mut sheet, findings)?;
+    }
+    if let Some(stated) = entries.iter().find(|entry| entry.key == STATED) {
+        sheet.stated = Arc::new(read_chapters(&stated.node, findings)?);
     }
     Some(sheet)
 }
@@ -152,7 +156,11 @@ fn read_entry(node: &Node, place: Place, findings: &Findings) -> Option<Assumpti
     let value = |node: &Node| read_value(node, kind.as_ref()?, findings);
     let in_force = fields.required("value", value);
     let reason = fields.required("reason", |node| text(node, findings));
-    let range = fields.optional("range", |node| list(node, findings, value));
+    let other = |node: &Node| {
+        let other = value(node)?;
+        in_force.as_ref().is_none_or(|one| alike(one, &other, node, findings)).then_some(other)
+    };
+    let range = fields.optional("range", |node| list(node, findings, other));
     let fitted_to = fields.optional("fitted_to", |node| list(node, findings, |node| text(node, findings)));
     fields.close()?;
     Some(AssumptionEntry {
@@ -166,8 +174,12 @@ fn read_entry(node: &Node, place: Place, findings: &Findings) -> Option<Assumpti
 }
 
 /// The words that are no dimensions.
-pub(super) const COUNTED: [(&str, Quantity); 3] =
-    [("ratio", Quantity::Ratio), ("count", Quantity::Count), ("damping_curve", Quantity::Curve)];
+pub(super) const COUNTED: [(&str, Quantity); 4] = [
+    ("ratio", Quantity::Ratio),
+    ("count", Quantity::Count),
+    ("damping_curve", Quantity::Curve),
+    ("places", Quantity::Places),
+];
 
 fn read_quantity(node: &Node, findings: &Findings) -> Option<Quantity> {
     let word = scalar(node, findings)?;
@@ -201,7 +213,35 @@ pub(super) fn read_value(node: &Node, kind: &AssumptionKind, findings: &Findings
             count => Some(AssumptionValue::Number(f64::from(count))),
         },
         Quantity::Curve => read_curve(node, findings).map(AssumptionValue::Curve),
+        Quantity::Places => read_places(node, findings).map(AssumptionValue::Places),
     }
+}
+
+/// `[[0.25, 0.5], …]` on a plate, `[0.25, …]` on a beam: shares of the sides.
+fn read_places(node: &Node, findings: &Findings) -> Option<Vec<Vec<f64>>> {
+    let share = |node: &Node| match ratio(node, findings)? {
+        share if share <= 1.0 => Some(share),
+        share => findings.wrong(node.span, format!("{share} is no share of a side, which lies between 0 and 1")),
+    };
+    let places = list(node, findings, |node| match node.value {
+        Value::Sequence(_) => list(node, findings, share),
+        _ => Some(vec![share(node)?]),
+    })?;
+    match places.iter().find(|place| place.len() != places[0].len() || place.len() > 2) {
+        None => Some(places),
+        Some(_) => findings.wrong(node.span, "each place has one coordinate on a beam, two on a plate"),
+    }
+}
+
+/// Two values of one assumption list as many places, so that each is number n in both; if not, that is reported.
+pub(super) fn alike(one: &AssumptionValue, other: &AssumptionValue, at: &Node, findings: &Findings) -> bool {
+    let (AssumptionValue::Places(one), AssumptionValue::Places(other)) = (one, other) else { return true };
+    let shape = |places: &[Vec<f64>]| (places.len(), places.first().map(Vec::len));
+    if shape(one) == shape(other) {
+        return true;
+    }
+    findings.wrong::<()>(at.span, format!("{} places, where the value in force has {}", other.len(), one.len()));
+    false
 }
 
 /// Most of what an assumption counts.

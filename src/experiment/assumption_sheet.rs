@@ -16,11 +16,12 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use super::assumption_reader::read_value;
+use super::assumption_reader::{alike, read_value};
 use super::diagnostic::{Findings, Place, Problems};
 use super::quantity::Dimension;
 use super::reader::{no_such, scalar};
 use super::recipe::{AssumptionName, AssumptionValue, Assumptions, Slot};
+use super::stated::{StatedByChapter, Statement};
 use super::word::closest;
 use super::yaml::Node;
 
@@ -36,6 +37,8 @@ pub struct AssumptionSheet {
     pub(super) defaults: Arc<Defaults>,
     /// The cycles of experiments that do not say.
     pub(super) cycles: Option<Cycles>,
+    /// What the text states, by chapter.
+    pub(super) stated: Arc<StatedByChapter>,
 }
 
 /// The assumption of each slot that has one, by kind of structure.
@@ -88,6 +91,8 @@ pub enum Quantity {
     /// A damping curve.
     #[serde(rename = "damping_curve")]
     Curve,
+    /// One place or several, as shares of the sides.
+    Places,
     /// Of this dimension.
     #[serde(untagged)]
     Of(Dimension),
@@ -143,7 +148,7 @@ impl AssumptionKind {
         match self.quantity {
             Some(Quantity::Of(dimension)) => dimension.unit(),
             Some(Quantity::Curve) => Dimension::Damping.unit(),
-            Some(Quantity::Ratio | Quantity::Count) | None => "",
+            Some(Quantity::Ratio | Quantity::Count | Quantity::Places) | None => "",
         }
     }
 }
@@ -154,6 +159,7 @@ fn in_words(quantity: Option<Quantity>, readings: &[&str]) -> String {
         Quantity::Ratio => "a dimensionless number",
         Quantity::Count => "a whole number",
         Quantity::Curve => "a damping curve",
+        Quantity::Places => "a list of places",
     });
     let readings = if readings.is_empty() { None } else { Some(format!("one of {}", readings.join(", "))) };
     match (quantity, readings) {
@@ -203,6 +209,11 @@ impl AssumptionSheet {
         self.cycles
     }
 
+    /// What the text of this chapter states of the inputs.
+    pub(super) fn stated(&self, chapter: Option<u32>) -> &[Statement] {
+        chapter.and_then(|number| self.stated.get(&number)).map_or(&[], Vec::as_slice)
+    }
+
     /// The values in force.
     #[must_use]
     pub fn assumptions(&self) -> Assumptions {
@@ -221,6 +232,7 @@ impl AssumptionSheet {
                     AssumptionValue::Number(number) => number.to_string(),
                     AssumptionValue::Choice(word) => word.clone(),
                     AssumptionValue::Curve(_) => format!("curve_{}", index + 1),
+                    AssumptionValue::Places(_) => format!("places_{}", index + 1),
                 };
                 let mut assumptions = in_force.clone();
                 assumptions.values.insert(name.clone(), value.clone());
@@ -261,6 +273,8 @@ impl AssumptionSheet {
 
     /// A value of this assumption.
     pub(super) fn value_of(&self, name: &AssumptionName, node: &Node, findings: &Findings) -> Option<AssumptionValue> {
-        read_value(node, &self.get(name)?.kind, findings)
+        let entry = self.get(name)?;
+        let value = read_value(node, &entry.kind, findings)?;
+        alike(&entry.value, &value, node, findings).then_some(value)
     }
 }

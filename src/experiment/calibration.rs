@@ -6,6 +6,7 @@
 //! finding: What it showed, written by hand when it has been run.     # may be absent
 //! search: {coordinate: {starts: 2, budget: 110 sets}}                 # every combination if absent
 //! ensemble: 4 members                                                # of chaotic points; single runs if absent
+//! residual: logarithmic                                              # of ratios to the printed numbers; of relative errors if absent
 //! calibrate:
 //!   damping_ratio_of_floors: [0.1, 0.2, equivalent_viscous]           # values of an assumption
 //!   curve_height: {scales: curve_of_the_foam, by: [0.5, 1, 2]}      # factors of one
@@ -19,12 +20,14 @@
 use std::collections::BTreeSet;
 use std::path::Path;
 
+use serde::Deserialize;
+
 use super::recipe::{AssumptionName, AssumptionValue};
 
-use super::assumption_sheet::AssumptionSheet;
+use super::assumption_sheet::{AssumptionSheet, Quantity};
 use super::diagnostic::{Findings, Problems};
 use super::load::read;
-use super::reader::{Choice, Fields, all, count, list, no_such, number, text};
+use super::reader::{Choice, Fields, all, count, list, no_such, number, text, word};
 use super::solver::read_solver;
 use super::yaml::{Entry, Node, Value, read_tree};
 use crate::measure::SolverChoice;
@@ -49,6 +52,8 @@ pub struct Calibration {
     pub search: CalibrationSearch,
     /// Members of the ensemble that a chaotic point gets in the search; 0: a single run, as in the study.
     pub ensemble: u32,
+    /// What of a number's error is squared and summed.
+    pub residual: Residual,
     /// Ids of the entries to fit, or `EXPERIMENT/*` for all of an experiment.
     pub fit: Vec<String>,
     /// Ids of the entries held out, or `EXPERIMENT/*` for all that are not fitted.
@@ -67,6 +72,17 @@ pub enum CalibrationSearch {
         /// Most sets that are tried.
         budget: u32,
     },
+}
+
+/// The error of a number that comes out as s where d is printed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Residual {
+    /// (s − d)/d.
+    #[default]
+    Relative,
+    /// ln(s/d): twice and half as much are equally far off.
+    Logarithmic,
 }
 
 /// A free input.
@@ -148,6 +164,7 @@ fn calibration(root: &Node, sheet: &AssumptionSheet, findings: &Findings) -> Opt
     let inputs = fields.required("calibrate", |node| inputs(node, sheet, findings));
     let search = fields.optional("search", |node| search(node, findings));
     let ensemble = fields.optional("ensemble", |node| some(node, "members", findings));
+    let residual = fields.optional("residual", |node| word::<Residual>(node, "residual", findings));
     let ids = |node| list(node, findings, |node| text(node, findings));
     let fit = fields.required("fit", ids);
     let hold_out = fields.optional("hold_out", ids);
@@ -159,6 +176,7 @@ fn calibration(root: &Node, sheet: &AssumptionSheet, findings: &Findings) -> Opt
         inputs: inputs?,
         search: search?.unwrap_or(CalibrationSearch::Grid),
         ensemble: ensemble?.unwrap_or(0),
+        residual: residual?.unwrap_or_default(),
         fit: fit?,
         hold_out: hold_out?.unwrap_or_default(),
     };
@@ -222,7 +240,10 @@ fn input(entry: &Entry, sheet: &AssumptionSheet, findings: &Findings) -> Option<
         return input(Tried::Solvers(list(node, findings, |node| read_solver(node, findings))?));
     }
     let value = |node: &Node, moves: &[AssumptionName]| {
-        let Value::Sequence(each) = &node.value else {
+        let are_places =
+            |name: &AssumptionName| sheet.get(name).is_some_and(|entry| entry.kind.quantity == Some(Quantity::Places));
+        // Places are a list themselves.
+        let (Value::Sequence(each), false) = (&node.value, matches!(moves, [name] if are_places(name))) else {
             return all(moves.iter().map(|name| sheet.value_of(name, node, findings)));
         };
         if each.len() != moves.len() {

@@ -8,11 +8,12 @@ use crate::measure::{CycleSpec, EnergySpec, Measure, Settings, ShapeSpec, Solver
 use crate::scene::Scene;
 
 use super::continued::ContinuedSweep;
-use super::definition::{Case, Drawing, Experiment, FigureSpec, Maximise, Panel, Refinement};
+use super::definition::{Case, Drawing, Experiment, FigureSpec, Maximise, Panel, Refinement, SearchPoint};
 use super::diagnostic::{Findings, Span};
 use super::optimise::Optimise;
 use super::refined::curves;
 use super::scene::ReadScene;
+use super::starts_reader::ReadStarts;
 use super::sweep::ReadSweep;
 use super::word::word_of;
 
@@ -62,7 +63,11 @@ impl Checks<'_> {
         {
             let name = word_of(maximise.measure);
             let help = format!("add `{name}` to `measure`");
-            self.findings.report::<()>(*span, format!("`{name}` is maximised, but not measured"), Some(help));
+            let role = match maximise.wanted {
+                SearchPoint::Maximum => "is maximised",
+                SearchPoint::Onset => "has its onset looked for",
+            };
+            self.findings.report::<()>(*span, format!("`{name}` {role}, but is not measured"), Some(help));
         }
     }
 
@@ -128,6 +133,26 @@ impl Checks<'_> {
         }
     }
 
+    /// Random starts run until they settle, each by itself.
+    pub fn starts(&self, read: &ReadStarts, settles: bool, sweep: &ReadSweep) {
+        if !settles {
+            let help = Some("add `run: {until: settled}`".to_owned());
+            self.findings.report::<()>(read.span, "what a start ends in is known once its run has settled", help);
+        }
+        if let Some((_, at)) = sweep.continued.first() {
+            let help = Some("leave `from: last` or `starts` out".to_owned());
+            self.findings.report::<()>(*at, "rows start at random here, not where the row before ended", help);
+        }
+        if let Some((_, at)) = sweep.refined.first() {
+            let message = "the motions of random starts are no curve that could be refined";
+            self.findings.report::<()>(*at, message, Some("write `linear`, `log` or `step`".into()));
+        }
+        let runs = sweep.cases.len().saturating_mul(read.starts.count as usize);
+        if runs > MOST_RUNS {
+            self.findings.wrong::<()>(read.span, format!("{runs} runs are too many: {MOST_RUNS} at most"));
+        }
+    }
+
     /// What settles is driven again and again.
     pub fn repeats(&self, excitation: &ExcitationKind, at: Span) {
         if matches!(excitation, ExcitationKind::None | ExcitationKind::SingleImpulse) {
@@ -188,7 +213,11 @@ impl Checks<'_> {
         if let Some(over) = maximise.map(|maximise| maximise.over)
             && let Some(place) = places.get(&over)
         {
-            let message = format!("`{}` is swept and maximised over at once", word_of(over));
+            let looked = maximise.map_or("", |maximise| match maximise.wanted {
+                SearchPoint::Maximum => "maximised over",
+                SearchPoint::Onset => "searched for an onset",
+            });
+            let message = format!("`{}` is swept and {looked} at once", word_of(over));
             self.findings.report::<()>(*place, message, Some("take it out of `sweep`".into()));
         }
     }
@@ -365,6 +394,7 @@ impl Checks<'_> {
             let scene = recipe.resolve(self.assumptions)?;
             steps(&scene, case, &experiment.settings)?;
             remembers(&scene, case)?;
+            boxed(&scene, experiment)?;
         }
         Ok(())
     }
@@ -430,6 +460,20 @@ fn remembers(scene: &Scene, case: &Case) -> Result<(), Refusal> {
         let message =
             "equivalent viscous damping follows from the half cycle before, which `from: last` does not carry on";
         return Err(String::from(message).into());
+    }
+    Ok(())
+}
+
+/// The corners of a box of random starts are starts.
+fn boxed(scene: &Scene, experiment: &Experiment) -> Result<(), Refusal> {
+    let Some(starts) = &experiment.starts else { return Ok(()) };
+    let refuse = |message: String| Refusal { message, parameter: None, part: Some(Part::Start) };
+    if starts.endless(scene).is_some() {
+        return Err(refuse("a share of the gap clearance needs a ceiling, and this gap is infinite".into()));
+    }
+    for start in starts.corners(scene) {
+        let scene = Scene { start: Some(start), ..scene.clone() };
+        scene.check_start().map_err(|error| refuse(error.to_string()))?;
     }
     Ok(())
 }

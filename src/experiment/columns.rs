@@ -4,6 +4,7 @@ use super::recipe::{GapWord, Parameter};
 
 use super::continuation::BranchColumn;
 use super::definition::{Joined, Maximise};
+use super::starts::{BasinColumn, Starts};
 use super::word::word_of;
 use crate::measure::{Measure, PROOF, of_another_damper, trace_columns};
 
@@ -18,6 +19,15 @@ pub(super) enum Role {
     History,
     /// Values of each cycle: points above a number a row.
     Cloud,
+    /// A coordinate of each start: points over another one.
+    Scatter,
+}
+
+impl Role {
+    /// Its axis runs over lists.
+    pub fn is_drawn_as_a_list(self) -> bool {
+        matches!(self, Self::History | Self::Scatter)
+    }
 }
 
 /// Lists that rows keep, and what they hold.
@@ -64,11 +74,19 @@ impl Columns {
             list.extend(["", "_num", "_spread"].map(|suffix| (format!("{name}{suffix}"), Role::Number)));
         }
         if let Some(maximise) = maximise {
-            list.push((format!("{}_at_maximum", word_of(maximise.over)), Role::Number));
+            list.push((maximise.column(), Role::Number));
         }
         list.extend(PROOF.map(|column| (column.name.into(), Role::Number)));
         list.extend(lists.names.iter().map(|name| ((*name).into(), lists.role)));
         Self { list, joined: Joined::ByX }
+    }
+
+    /// The same with what is said of the motions that random starts end in.
+    pub fn with_basins(mut self, starts: &Starts) -> Self {
+        let role = |column: BasinColumn| if column.is_word() { Role::Label } else { Role::Number };
+        self.list.extend(BasinColumn::ALL.map(|column| (column.name().into(), role(column))));
+        self.list.extend(starts.lists().into_iter().map(|(name, _)| (name, Role::Scatter)));
+        self
     }
 
     /// The columns of an optimisation of so many gaps.

@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::definition::{AxisScale, Case, Experiment};
 use super::optimise::Optimise;
 use super::recipe::{Parameter, ParameterValue};
+use super::starts::Starts;
 use crate::measure::SolverChoice;
 
 /// Branches of periodic motions in the place of a sweep. Its rows are the motions, branch by branch.
@@ -153,20 +154,23 @@ pub enum RowSource<'a> {
     Search(&'a Optimise),
     /// Orbits of branches.
     Branches(&'a Continuation),
+    /// Motions that random starts of each case end in.
+    Basins(&'a Starts),
 }
 
 impl Experiment {
     /// What its rows come from.
     #[must_use]
     pub fn row_source(&self) -> RowSource<'_> {
-        match (&self.optimise, &self.orbit) {
-            (Some(optimise), _) => RowSource::Search(optimise),
-            (None, Some(orbit)) => RowSource::Branches(orbit),
-            (None, None) => RowSource::Cases,
+        match (&self.optimise, &self.orbit, &self.starts) {
+            (Some(optimise), ..) => RowSource::Search(optimise),
+            (None, Some(orbit), _) => RowSource::Branches(orbit),
+            (None, None, Some(starts)) => RowSource::Basins(starts),
+            (None, None, None) => RowSource::Cases,
         }
     }
 
-    /// Its rows depend on each other: its table is made, and kept, as a whole.
+    /// How many rows it has is known once they are there: its table is made by one task.
     #[must_use]
     pub fn is_whole(&self) -> bool {
         self.row_source() != RowSource::Cases

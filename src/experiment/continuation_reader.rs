@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use super::continuation::Continuation;
 use super::definition::AxisScale;
 use super::diagnostic::{Findings, Span};
-use super::range::size;
+use super::range::{end, in_order, size};
 use super::reader::{Fields, count, no_such, one_or_more, word};
 use super::recipe::Parameter;
 use super::sweep::ReadSweep;
@@ -104,18 +104,12 @@ fn range(node: &Node, findings: &Findings) -> Option<Range> {
         return findings.wrong(entry.key_span, message);
     }
     let fields = Fields::open(&entry.node, "a range", findings)?;
-    let end = |node| Some((size(node, along, findings)?, node.span));
-    let from = fields.required("from", end);
-    let to = fields.required("to", end);
+    let from = fields.required("from", |node| end(node, along, findings));
+    let to = fields.required("to", |node| end(node, along, findings));
     let spacing = fields.optional("spacing", |node| word::<AxisScale>(node, "spacing", findings));
     fields.close()?;
-    let ((from, from_at), (to, to_at), spacing) = (from?, to?, spacing?.unwrap_or_default());
-    if from >= to {
-        return findings.wrong(to_at, "a range ends above its start");
-    }
-    if spacing == AxisScale::Log && from <= 0.0 {
-        return findings.wrong(from_at, "a logarithmic range starts above zero");
-    }
+    let (from, to, spacing) = (from?, to?, spacing?.unwrap_or_default());
+    let [from, to] = in_order(from, to, spacing, findings)?;
     Some(Range { along, from, to, spacing, at: entry.key_span })
 }
 

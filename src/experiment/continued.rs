@@ -2,14 +2,12 @@
 //! a motion is followed up or down a parameter for as long as it attracts; where it is left for another one depends on the
 //! direction (hysteresis).
 
-use std::collections::BTreeMap;
-
 use serde::{Deserialize, Serialize};
 
-use super::definition::Case;
+use super::definition::{Case, differing_in};
 use super::diagnostic::{Findings, Span};
 use super::reader::{Fields, one_or_more, word};
-use super::recipe::{Parameter, ParameterValue};
+use super::recipe::Parameter;
 use super::word::word_of;
 
 /// The way that rows follow each other.
@@ -99,7 +97,8 @@ impl Continued {
         if !set.contains(&along) {
             return findings.report(at, format!("`{name}` is not swept here"), Some(format!("swept are {}", known())));
         }
-        let other_coordinates = matches!(along, Parameter::Modes | Parameter::DamperCount | Parameter::Mode);
+        let other_coordinates =
+            matches!(along, Parameter::Modes | Parameter::DamperCount | Parameter::Mode | Parameter::Place);
         if !along.words().is_empty() || other_coordinates {
             return findings.report(
                 at,
@@ -113,30 +112,16 @@ impl Continued {
 
 /// The cases of continued sweeps in the order in which they follow each other, chain by chain, by their index.
 pub(crate) fn chains(cases: &[Case], continued: &[ContinuedSweep]) -> Vec<Vec<usize>> {
-    let mut chains: Vec<Vec<usize>> = Vec::new();
-    for ContinuedSweep { sweep, along } in continued {
-        let of_sweep = |&index: &usize| cases[index].sweep == *sweep && cases[index].direction.is_some();
-        let first = chains.len();
-        let mut known: BTreeMap<String, usize> = BTreeMap::new();
-        for index in (0..cases.len()).filter(of_sweep) {
-            let Case { values, direction, .. } = &cases[index];
-            let others: Vec<_> = values.iter().filter(|(parameter, _)| parameter != along).collect();
-            let at = *known.entry(format!("{direction:?} {others:?}")).or_insert(chains.len());
-            match chains.get_mut(at) {
-                Some(chain) => chain.push(index),
-                None => chains.push(vec![index]),
-            }
-        }
-        let place = |index: usize| match cases[index].get(*along) {
-            Some(ParameterValue::Number(x)) => x,
-            _ => f64::INFINITY,
-        };
-        for chain in &mut chains[first..] {
+    let of_sweep = |ContinuedSweep { sweep, along }: &ContinuedSweep| {
+        let place = |index: &usize| cases[*index].number(*along).unwrap_or(f64::INFINITY);
+        let mut chains = differing_in(cases, sweep, *along);
+        for chain in &mut chains {
             match cases[chain[0]].direction {
-                Some(Direction::Down) => chain.sort_by(|&a, &b| place(b).total_cmp(&place(a))),
-                _ => chain.sort_by(|&a, &b| place(a).total_cmp(&place(b))),
+                Some(Direction::Down) => chain.sort_by(|a, b| place(b).total_cmp(&place(a))),
+                _ => chain.sort_by(|a, b| place(a).total_cmp(&place(b))),
             }
         }
-    }
-    chains
+        chains
+    };
+    continued.iter().flat_map(of_sweep).collect()
 }

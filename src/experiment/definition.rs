@@ -13,6 +13,7 @@ use super::assumption_sheet::AssumptionSheet;
 use super::continuation::Continuation;
 use super::continued::{ContinuedSweep, Direction, chains};
 use super::optimise::Optimise;
+use super::starts::Starts;
 use super::word::word_of;
 
 /// Id of an experiment: its file name without ending, `ch3-limit-stop`; lower-case letters, digits and hyphens.
@@ -83,6 +84,9 @@ pub struct Experiment {
     /// Branches of periodic motions in the place of a sweep; the one case is the scene that the first motion is taken from.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub orbit: Option<Continuation>,
+    /// Random starts of every case: its rows are then the motions that they end in.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub starts: Option<Starts>,
     /// The assumptions that are moved for the sensitivity; `None` for all that the experiment depends on.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub moved: Option<BTreeSet<AssumptionName>>,
@@ -99,6 +103,9 @@ pub struct Experiment {
     pub each_cycle: Option<CycleSpec>,
     /// The figures; never part of what makes a simulation stale.
     pub figures: Vec<FigureSpec>,
+    /// Inputs that neither the text of the study nor an assumption gives, `key value`; none where no text is stated.
+    #[serde(skip)]
+    pub without_source: Vec<String>,
 }
 
 impl Experiment {
@@ -216,6 +223,9 @@ impl Experiment {
         if let Some(orbit) = &self.orbit {
             meaning["orbit"] = json(orbit);
         }
+        if let Some(starts) = &self.starts {
+            meaning["starts"] = json(starts);
+        }
         meaning
     }
 
@@ -267,6 +277,16 @@ impl Case {
         self.values.iter().find(|(name, _)| *name == parameter).map(|(_, value)| *value)
     }
 
+    /// The same as a number, ∞ where it is `infinite`; `None` of a word too.
+    #[must_use]
+    pub fn number(&self, parameter: Parameter) -> Option<f64> {
+        match self.get(parameter)? {
+            ParameterValue::Number(x) => Some(x),
+            ParameterValue::Infinite => Some(f64::INFINITY),
+            _ => None,
+        }
+    }
+
     /// In words: `gap_ratio = 50, stop = with`; empty when nothing is swept.
     #[must_use]
     pub fn describe(&self) -> String {
@@ -282,7 +302,27 @@ impl Case {
     }
 }
 
-/// Maximum of a measure over one parameter.
+/// The cases of a sweep that differ in this parameter alone, by their index, in the order of their first ones.
+pub(super) fn differing_in(cases: &[Case], sweep: &str, over: Parameter) -> Vec<Vec<usize>> {
+    let others = |case: &Case| -> Vec<ParameterValue> {
+        case.values.iter().filter(|(parameter, _)| *parameter != over).map(|(_, value)| *value).collect()
+    };
+    let mut keys = Vec::new();
+    let mut found: Vec<Vec<usize>> = Vec::new();
+    for (index, case) in cases.iter().enumerate().filter(|(_, case)| case.sweep == sweep && case.get(over).is_some()) {
+        let key = (case.direction, others(case));
+        match keys.iter().position(|known| *known == key) {
+            Some(place) => found[place].push(index),
+            None => {
+                keys.push(key);
+                found.push(vec![index]);
+            }
+        }
+    }
+    found
+}
+
+/// Maximum of a measure over one parameter, or where it ceases to be zero.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Maximise {
     /// Of which measure.
@@ -293,7 +333,49 @@ pub struct Maximise {
     pub grid: Vec<f64>,
     /// Points added around the best one, round by round, to sharpen the maximum.
     pub refine: u32,
+    /// Which point is looked for.
+    #[serde(default, skip_serializing_if = "SearchPoint::is_maximum")]
+    pub wanted: SearchPoint,
 }
+
+/// A point that is looked for over a parameter.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum SearchPoint {
+    /// Where the measure is largest.
+    #[default]
+    Maximum,
+    /// From where on it is above zero: the first event of a kind.
+    Onset,
+}
+
+impl SearchPoint {
+    fn is_maximum(&self) -> bool {
+        *self == Self::Maximum
+    }
+}
+
+impl Maximise {
+    /// The column that says where the point lies: `force_ratio_at_maximum`.
+    pub(crate) fn column(&self) -> String {
+        let point = match self.wanted {
+            SearchPoint::Maximum => "maximum",
+            SearchPoint::Onset => "onset",
+        };
+        format!("{}_at_{point}", word_of(self.over))
+    }
+
+    /// Bisections after the grid, at most.
+    pub(crate) fn bisections(&self) -> u64 {
+        match self.wanted {
+            SearchPoint::Maximum => 2 * u64::from(self.refine),
+            SearchPoint::Onset => MOST_BISECTIONS,
+        }
+    }
+}
+
+/// Bisections that bring any interval below the distance of two numbers that an onset is known by.
+const MOST_BISECTIONS: u64 = 60;
 
 /// Points added to the curves of a sweep, one parameter running, where a straight line between two of them would miss.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -466,6 +548,8 @@ pub enum Band {
     Spread,
     /// From the least to the largest of the searches that differ in their seed; the line is their median, in steps.
     Seeds,
+    /// From the line before to this one, whose values stand on it: shares of a whole.
+    Stacked,
 }
 
 /// Which peaks of a curve to mark.

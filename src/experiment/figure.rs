@@ -148,11 +148,12 @@ impl<'t> FigureReader<'t> {
         let y = fields.required("y", |node| one_or_more(node, self.findings, |node| self.axis(node)));
         let by = by.map_or(Some(Vec::new()), |node| one_or_more(node, self.findings, |node| self.split(node)));
         let band = band.map_or(Some(Band::None), |node| {
-            let word =
-                Choice::read(node, "a band", &["spread", "none", "seeds"], self.findings)?.bare(self.findings)?;
+            let word = Choice::read(node, "a band", &["spread", "none", "seeds", "stacked"], self.findings)?
+                .bare(self.findings)?;
             Some(match word {
                 "spread" => Band::Spread,
                 "seeds" => Band::Seeds,
+                "stacked" => Band::Stacked,
                 _ => Band::None,
             })
         });
@@ -162,7 +163,7 @@ impl<'t> FigureReader<'t> {
         let peaks = fields.optional("peaks", |node| self.peaks(node));
         let strip = fields.optional("strip", |node| self.strip(node));
         let ((x, x_role), y) = (x?, y?);
-        if let (Some(Some(_)), Some(Role::History), Some(node)) = (strip, x_role, fields.get("strip")) {
+        if let (Some(Some(_)), Some(Role::History | Role::Scatter), Some(node)) = (strip, x_role, fields.get("strip")) {
             return self.findings.wrong(node.span, "a strip stands below numbers a row, not below a time history");
         }
         let clouds = y.iter().filter(|(_, role)| *role == Some(Role::Cloud)).count();
@@ -181,11 +182,11 @@ impl<'t> FigureReader<'t> {
         }
         for (axis, role) in &y {
             if let (Some(role), Some(x_role)) = (role, x_role)
-                && (*role == Role::History) != (x_role == Role::History)
+                && role.is_drawn_as_a_list() != x_role.is_drawn_as_a_list()
             {
                 return self.findings.wrong(
                     fields.span(),
-                    format!("`{}` cannot be drawn against `{}`: one is a time history", axis.column, x.column),
+                    format!("`{}` cannot be drawn against `{}`: one is a list a row", axis.column, x.column),
                 );
             }
         }

@@ -34,6 +34,9 @@ mod scene;
 mod schema;
 mod solver;
 mod start;
+mod starts;
+mod starts_reader;
+mod stated;
 mod structure;
 mod sweep;
 mod typed;
@@ -46,12 +49,14 @@ pub use assumption_reader::parse_assumptions;
 pub use assumption_sheet::{
     ASSUMPTIONS, AssumptionEntry, AssumptionKind, AssumptionSheet, Cycles, Moved, Quantity, Takes,
 };
-pub use calibration::{Calibration, CalibrationInput, CalibrationSearch, Tried, load_calibration, parse_calibration};
+pub use calibration::{
+    Calibration, CalibrationInput, CalibrationSearch, Residual, Tried, load_calibration, parse_calibration,
+};
 pub use continuation::{BranchColumn, Continuation, RowSource, Stability};
 pub use continued::{ContinuedSweep, Direction};
 pub use definition::{
     AnimationSpec, Axis, AxisScale, Band, Best, Case, Drawing, Experiment, ExperimentId, FigureSpec, IdError, Joined,
-    Level, MapSpec, Mark, Maximise, Only, Panel, PeakMarks, Refinement, Source, Strip,
+    Level, MapSpec, Mark, Maximise, Only, Panel, PeakMarks, Refinement, SearchPoint, Source, Strip,
 };
 pub use diagnostic::{Place, Problem, Problems, Severity};
 pub(crate) use edit::{Written, set_keys};
@@ -61,7 +66,7 @@ pub use load::{load_assumptions, load_experiment};
 pub use optimise::{Candidate, Goal, Landscape, Optimise, Search, SearchKind, SearchSpacing};
 pub use quantity::{Dimension, QuantityError, parse_number, parse_quantity};
 pub use recipe::{
-    ArrayRecipe, Assumable, AssumptionName, AssumptionValue, Assumptions, Carried, ContactDampingRatio,
+    ArrayOrder, ArrayRecipe, Assumable, AssumptionName, AssumptionValue, Assumptions, Carried, ContactDampingRatio,
     ContactDampingRecipe, Coordinate, DamperRecipe, ExcitationKind, ExcitationRecipe, Filling, FloorStiffness,
     ForcingOrNatural, GapRecipe, GapWord, Given, ImpulseTime, ImpulseTimeRecipe, MassReading, MassRecipe,
     ObserveRecipe, Parameter, ParameterValue, Part, PlaceRecipe, PointsRecipe, Recipe, RecipeError, Reference, Slot,
@@ -71,6 +76,7 @@ pub(crate) use refined::{Curve, curves};
 pub use scaffold::{scaffold, structures};
 pub(crate) use schema::{Object, list, text, words_of};
 pub use schema::{assumptions_schema, experiment_schema, study_schema};
+pub use starts::{BasinColumn, HeightBox, Interval, ParticleBox, Rank, START_LISTS, Starts};
 pub use typed::{Located, from_yaml};
 pub(crate) use typed::{Spanned, position};
 pub use validate::parse_experiment;

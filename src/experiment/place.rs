@@ -1,15 +1,21 @@
 //! Places in a scene: where dampers sit, where the force acts, where the motion is observed; and arrays of dampers.
 
+use super::assumption_sheet::{Quantity, Takes};
 use super::quantity::Dimension;
 use super::reader::{Choice, Fields, boolean, count, list, number, one_or_more, quantity};
-use super::recipe::{ArrayRecipe, Coordinate, Given, ObserveRecipe, Parameter, PlaceRecipe, PointsRecipe, Slot};
-use super::scene::{MOST_DAMPERS, SceneReader, is_word};
+use super::recipe::{
+    ArrayRecipe, AssumptionValue, Coordinate, Given, ObserveRecipe, Parameter, PlaceRecipe, PointsRecipe, Slot,
+};
+use super::scene::{MOST_DAMPERS, SceneReader, is_word, names_assumption};
 use super::yaml::{Node, Value};
 use crate::scene::{Kind, Take};
 
 impl<'t> SceneReader<'t> {
     /// One coordinate a side; `along` are the parameters that may stand for them.
     pub(super) fn place(&self, node: &'t Node, kind: &Kind, along: [Parameter; 2]) -> Option<PlaceRecipe> {
+        if names_assumption(node) {
+            return self.listed(node, kind);
+        }
         let coordinate = |node: &'t Node, parameter: Parameter| {
             if is_word(node, "swept") {
                 self.swept.borrow_mut().push((parameter, node.span));
@@ -31,6 +37,23 @@ impl<'t> SceneReader<'t> {
                 Some("write [0.25, 0.5], or lengths with units".into()),
             ),
         }
+    }
+
+    /// `{assumed: NAME}`: the place that the assumption names, or one of those that it lists.
+    fn listed(&self, node: &'t Node, kind: &Kind) -> Option<PlaceRecipe> {
+        let takes = Takes { quantity: Some(Quantity::Places), readings: &[] };
+        let name = self.named(node, takes, "`at`")?;
+        let Some(AssumptionValue::Places(places)) = self.assumptions.values.get(&name) else { return None };
+        let (sides, given) = (kind.sides.len(), places.first().map_or(0, Vec::len));
+        if given != sides {
+            let message =
+                format!("a place on {} has {sides} coordinates, and those of `{name}` have {given}", kind.what);
+            return self.findings.wrong(node.span, message);
+        }
+        if places.len() > 1 {
+            self.swept.borrow_mut().push((Parameter::Place, node.span));
+        }
+        Some(PlaceRecipe::listed(&name, sides))
     }
 
     /// `0.25`, a share of the side, or `20 cm`.
@@ -111,9 +134,16 @@ impl<'t> SceneReader<'t> {
         let margin = fields.optional("margin", |node| {
             self.slot(node, Slot::Margin, kind, |node| quantity(node, Dimension::Length, self.findings))
         });
+        let order = fields.optional("order", |node| self.reading(node, Slot::Order, kind));
         fields.close()?;
         // A plate's array lies around its place, a beam's begins there.
         let usual = kind.sides.len() > 1;
-        Some(ArrayRecipe { count: count?, spacing: spacing?, centred: centred?.unwrap_or(usual), margin: margin? })
+        Some(ArrayRecipe {
+            count: count?,
+            spacing: spacing?,
+            centred: centred?.unwrap_or(usual),
+            margin: margin?,
+            order: order?,
+        })
     }
 }

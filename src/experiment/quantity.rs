@@ -218,6 +218,32 @@ pub fn parse_number(text: &str) -> Result<f64, QuantityError> {
     }
 }
 
+/// A number with whatever unit it has, in SI.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Amount {
+    value: f64,
+    powers: Powers,
+}
+
+impl Amount {
+    /// The same but for what the last digits of a written number round away.
+    pub(super) fn is(&self, other: &Self) -> bool {
+        let scale = self.value.abs().max(other.value.abs());
+        self.powers == other.powers && (self.value - other.value).abs() <= 1e-9 * scale
+    }
+}
+
+/// Reads a number with any unit; a noun behind a count (`25 cycles`) is none. Nothing if the text is no number.
+pub(super) fn parse_amount(text: &str) -> Option<Amount> {
+    let (number, unit) = split_number(text.trim()).ok()?;
+    let Unit { powers, ten } = parse_unit(unit).ok().filter(|_| !unit.is_empty()).unwrap_or_default();
+    let value = number.value(ten, text).ok()?;
+    Some(match powers {
+        Powers { cycle: 1, .. } => Amount { value: value * TAU, powers: Dimension::AngularFrequency.powers() },
+        _ => Amount { value, powers },
+    })
+}
+
 /// A decimal number in parts, so that a unit can move its exponent.
 struct Decimal<'t> {
     mantissa: &'t str,

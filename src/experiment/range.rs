@@ -5,6 +5,7 @@
 
 use super::recipe::{Parameter, ParameterValue, Takes};
 
+use super::definition::AxisScale;
 use super::diagnostic::{Findings, Span};
 use super::reader::{Choice, all, count, quantity, ratio, scalar};
 use super::word::word_of;
@@ -101,8 +102,8 @@ fn range(node: &Node, parameter: Parameter, findings: &Findings) -> Option<Vec<P
     }
     let choice = Choice::read(node, "a range", &["linear", "log", "step"], findings)?;
     let fields = choice.fields("a range", findings)?;
-    let from = fields.required("from", |node| Some((size(node, parameter, findings)?, node.span)));
-    let to = fields.required("to", |node| Some((size(node, parameter, findings)?, node.span)));
+    let from = fields.required("from", |node| end(node, parameter, findings));
+    let to = fields.required("to", |node| end(node, parameter, findings));
     let spacing = match choice.name {
         "step" => fields
             .required("step", |node| Some((size(node, parameter, findings)?, node.span)))
@@ -110,14 +111,10 @@ fn range(node: &Node, parameter: Parameter, findings: &Findings) -> Option<Vec<P
         name => fields.required("points", |node| points(node, name == "log", findings)),
     };
     fields.close()?;
-    let ((from, from_span), (to, to_span), spacing) = (from?, to?, spacing?);
-    if from >= to {
-        return findings.wrong(to_span, "a range ends above its start");
-    }
+    let (from, to, spacing) = (from?, to?, spacing?);
+    let spaced = if matches!(spacing, Spacing::Log(_)) { AxisScale::Log } else { AxisScale::Linear };
+    let [from, to] = in_order(from, to, spaced, findings)?;
     let points = match spacing {
-        Spacing::Log(_) if from <= 0.0 => {
-            return findings.wrong(from_span, "a logarithmic range starts above zero");
-        }
         Spacing::Step(step, span) => {
             if step <= 0.0 {
                 return findings.wrong(span, "the step must be above zero");
@@ -134,6 +131,27 @@ fn range(node: &Node, parameter: Parameter, findings: &Findings) -> Option<Vec<P
         }
     };
     Some(points.into_iter().map(|point| ParameterValue::Number(rounded(point))).collect())
+}
+
+/// An end of a range, and where it stands.
+pub(super) fn end(node: &Node, parameter: Parameter, findings: &Findings) -> Option<(f64, Span)> {
+    Some((size(node, parameter, findings)?, node.span))
+}
+
+/// Both ends, if they are those of a range.
+pub(super) fn in_order(
+    (from, from_at): (f64, Span),
+    (to, to_at): (f64, Span),
+    spacing: AxisScale,
+    findings: &Findings,
+) -> Option<[f64; 2]> {
+    if from >= to {
+        return findings.wrong(to_at, "a range ends above its start");
+    }
+    if spacing == AxisScale::Log && from <= 0.0 {
+        return findings.wrong(from_at, "a logarithmic range starts above zero");
+    }
+    Some([from, to])
 }
 
 enum Spacing {

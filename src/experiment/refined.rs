@@ -3,9 +3,9 @@
 use super::recipe::{Parameter, ParameterValue};
 use crate::measure::Measure;
 
-use super::definition::{AxisScale, Case, Refinement};
+use super::definition::{AxisScale, Case, Refinement, differing_in};
 use super::diagnostic::Findings;
-use super::range::{between, rounded, size};
+use super::range::{between, end, in_order, rounded};
 use super::reader::{Choice, count, number, one_or_more, scalar, word};
 use super::yaml::{Node, Value};
 
@@ -25,9 +25,8 @@ pub(super) fn refined(
 ) -> Option<(Vec<ParameterValue>, Refinement)> {
     let choice = Choice::read(node, "a range", &["refined"], findings)?;
     let fields = choice.fields("a refined range", findings)?;
-    let end = |node| Some((size(node, parameter, findings)?, node.span));
-    let from = fields.required("from", end);
-    let to = fields.required("to", end);
+    let from = fields.required("from", |node| end(node, parameter, findings));
+    let to = fields.required("to", |node| end(node, parameter, findings));
     let points = |node: &Node| {
         let points = count(node, "points", MOST_POINTS, findings)?;
         if points < 5 {
@@ -44,14 +43,8 @@ pub(super) fn refined(
     let of =
         fields.optional("of", |node| one_or_more(node, findings, |node| word::<Measure>(node, "measure", findings)));
     fields.close()?;
-    let ((from, from_span), (to, to_span)) = (from?, to?);
-    let spacing = spacing?.unwrap_or_default();
-    if from >= to {
-        return findings.wrong(to_span, "a range ends above its start");
-    }
-    if spacing == AxisScale::Log && from <= 0.0 {
-        return findings.wrong(from_span, "a logarithmic range starts above zero");
-    }
+    let (from, to, spacing) = (from?, to?, spacing?.unwrap_or_default());
+    let [from, to] = in_order(from, to, spacing, findings)?;
     let start = start?.unwrap_or(60);
     let refinement = Refinement {
         sweep: String::new(),
@@ -94,27 +87,10 @@ pub(crate) struct Curve<'a> {
 
 /// All curves, in the order of their first cases.
 pub(crate) fn curves<'a>(cases: &[Case], rules: impl IntoIterator<Item = &'a Refinement>) -> Vec<Curve<'a>> {
-    let mut curves: Vec<Curve<'a>> = Vec::new();
-    for rule in rules {
-        let others = |case: &Case| {
-            let others = case.values.iter().filter(|(parameter, _)| *parameter != rule.over);
-            others.map(|(_, value)| *value).collect::<Vec<_>>()
-        };
-        let mut keys: Vec<Vec<ParameterValue>> = Vec::new();
-        let first = curves.len();
-        for (index, case) in cases.iter().enumerate() {
-            if case.sweep != rule.sweep || case.get(rule.over).is_none() {
-                continue;
-            }
-            let key = others(case);
-            let place = keys.iter().position(|known| *known == key).unwrap_or_else(|| {
-                keys.push(key);
-                curves.push(Curve { rule, cases: Vec::new() });
-                keys.len() - 1
-            });
-            curves[first + place].cases.push(index);
-        }
-    }
+    let of_rule = |rule: &'a Refinement| {
+        differing_in(cases, &rule.sweep, rule.over).into_iter().map(move |cases| Curve { rule, cases })
+    };
+    let mut curves: Vec<Curve<'a>> = rules.into_iter().flat_map(of_rule).collect();
     curves.sort_by_key(|curve| curve.cases.first().copied());
     curves
 }

@@ -5,7 +5,7 @@ use std::cell::RefCell;
 use super::assumption_reader::{fits, read_curve};
 use super::assumption_sheet::{ASSUMPTIONS, Takes};
 use super::diagnostic::{Findings, Span};
-use super::quantity::Dimension;
+use super::quantity::{Dimension, parse_number};
 use super::reader::{Choice, Fields, above_zero, boolean, list, number, quantity, ratio};
 use super::recipe::{
     AssumptionName, Assumptions, Carried, ContactDampingRatio, ContactDampingRecipe, DamperRecipe, Filling,
@@ -57,7 +57,7 @@ pub(super) fn read_scene(node: &Node, assumptions: &Assumptions, findings: &Find
 
 pub(super) struct SceneReader<'t> {
     pub(super) findings: &'t Findings,
-    assumptions: &'t Assumptions,
+    pub(super) assumptions: &'t Assumptions,
     pub(super) swept: RefCell<Vec<(Parameter, Span)>>,
     optimised: RefCell<Vec<Span>>,
     pub(super) parts: RefCell<Vec<(Part, Span)>>,
@@ -192,20 +192,27 @@ impl<'t> SceneReader<'t> {
     fn filled(&self, node: &'t Node) -> Option<GapRecipe> {
         let fields = Fields::open(node, "a filling", self.findings)?;
         let length = |node: &'t Node| quantity(node, Dimension::Length, self.findings);
-        let uniform = fields.required("uniform", length);
+        let uniform = fields.required("uniform", |node| self.quantity(node, Dimension::Length));
         let optimised = fields.required("optimised", |node| list(node, self.findings, length));
         self.swept.borrow_mut().push((Parameter::Filling, node.span));
         fields.close()?;
         Some(GapRecipe::Filled { uniform: uniform?, optimised: optimised?, filling: Filling::Uniform })
     }
 
-    /// `total` or `modal`, an assumption, or swept.
+    /// `total`, `modal` or a share, an assumption, or swept.
     fn mass_reading(&self, node: &'t Node, kind: &'static Kind) -> Option<Given<MassReading>> {
         if is_word(node, "swept") {
             self.swept.borrow_mut().push((Parameter::MassReading, node.span));
             return Some(Given::Stated(MassReading::Total));
         }
-        self.reading(node, Slot::MassReading, kind)
+        let share = |node: &'t Node| ratio(node, self.findings).map(MassReading::Share);
+        self.slot(node, Slot::MassReading, kind, |node| match &node.value {
+            Value::Scalar(text) if parse_number(text).is_ok() => share(node),
+            _ => from_word(
+                Choice::read(node, Slot::MassReading.about(), Slot::MassReading.takes().readings, self.findings)?
+                    .bare(self.findings)?,
+            ),
+        })
     }
 
     fn surface(&self, node: &'t Node, kind: &'static Kind) -> Option<SurfaceRecipe> {
@@ -403,7 +410,7 @@ impl<'t> SceneReader<'t> {
     }
 
     /// The assumption that `{assumed: NAME}` names, if it is one that fits.
-    fn named(&self, node: &'t Node, takes: Takes<'_>, place: &str) -> Option<AssumptionName> {
+    pub(super) fn named(&self, node: &'t Node, takes: Takes<'_>, place: &str) -> Option<AssumptionName> {
         let Value::Mapping(entries) = &node.value else { return None };
         let entry = entries.first()?;
         let sheet = &self.assumptions.sheet;
@@ -413,7 +420,7 @@ impl<'t> SceneReader<'t> {
 }
 
 /// It says `{assumed: …}`.
-fn names_assumption(node: &Node) -> bool {
+pub(super) fn names_assumption(node: &Node) -> bool {
     matches!(&node.value, Value::Mapping(entries) if matches!(entries.as_slice(), [entry] if entry.key == "assumed"))
 }
 

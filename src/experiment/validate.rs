@@ -5,7 +5,7 @@
 
 use std::collections::BTreeSet;
 
-use super::recipe::{AssumptionName, Assumptions, Parameter, ParameterValue, Recipe};
+use super::recipe::{AssumptionName, Assumptions, Parameter, ParameterValue, Part, Recipe};
 use crate::dynamics::{Limit, Until};
 
 use super::about_study::MOST_CHAPTERS;
@@ -14,7 +14,7 @@ use super::assumption_sheet::Cycles;
 use super::check::Checks;
 use super::columns::{Columns, Lists, Role};
 use super::continuation_reader::{ReadContinuation, read_continuation};
-use super::definition::{Case, Experiment, ExperimentId, Maximise, Source};
+use super::definition::{Case, Experiment, ExperimentId, Maximise, SearchPoint, Source};
 use super::diagnostic::{Findings, Problems, Span};
 use super::figure::FigureReader;
 use super::limit::read_limit;
@@ -25,8 +25,10 @@ use super::range::numbers;
 use super::reader::{Fields, above_zero, count, no_such, one_or_more, text, word};
 use super::scene::{ReadScene, read_scene};
 use super::solver::read_solver;
+use super::starts_reader::{ReadStarts, read_starts};
+use super::stated::{STATED, read_statements, without_source};
 use super::sweep::{ReadSweep, read_sweep};
-use super::word::{from_word, words};
+use super::word::{from_word, word_of, words};
 use super::yaml::{Node, Value, read_tree};
 use crate::measure::{
     CycleSpec, CycleValue, EnergySpec, Measure, Settings, ShapeOf, ShapeSpec, SolverChoice, TraceSpec, energy_columns,
@@ -96,14 +98,20 @@ impl<'t> ExperimentReader<'t> {
         let about = fields.required("about", |node| text(node, self.findings));
         let scene = fields.required("scene", |node| read_scene(node, self.assumptions, self.findings));
         let orbit = fields.optional("orbit", |node| read_continuation(node, self.findings));
+        let starts = fields.optional("starts", |node| read_starts(node, self.findings));
         let sweep = match &orbit {
             Some(Some(orbit)) => Some(Some(orbit.sweep())),
             Some(None) => fields.optional("sweep", |node| read_sweep(node, self.findings)),
             None => None,
         };
+        let stated = fields.optional(STATED, |node| read_statements(node, self.findings));
         let mean_over = fields.optional("mean_over", |node| self.mean_over(node));
         let measures = fields.required("measure", |node| self.measures(node));
-        let maximise = fields.optional("maximise", |node| self.maximise(node));
+        let maximise = fields.at_most_one(&["maximise", "onset"]).and_then(|given| match given {
+            Some(("onset", node)) => self.onset(node).map(Some),
+            Some((_, node)) => self.maximise(node).map(Some),
+            None => Some(None),
+        });
         let optimise = fields.optional("optimise", |node| OptimiseReader { findings: self.findings }.read(node));
         let trace = fields.optional("trace", |node| self.trace(node));
         let energies = fields.optional("energies", |node| self.energies(node));
@@ -119,13 +127,17 @@ impl<'t> ExperimentReader<'t> {
             (Some(measures), Some(Run { settled_at: Some(at), .. })) => Some(with_the_end(measures, *at)),
             (measures, _) => measures,
         };
+        let measures = match (measures, &starts) {
+            (Some(measures), Some(Some(starts))) => Some(with_the_motion(measures, starts.span)),
+            (measures, _) => measures,
+        };
         let one_list = self.one_list(&fields);
         let alone = self.whole_table_alone(&fields);
         let whole = self.averaged_alone(&fields);
         let energies_at = fields.get("energies").map_or(fields.span(), |node| node.span);
         let place = |key| fields.get(key).map_or(fields.span(), |node| node.span);
         let each_cycle_at = place("each_cycle");
-        let unordered = [("maximise", "a maximum"), ("mean_over", "a mean over several scenes")];
+        let unordered = [("maximise", "a maximum"), ("onset", "an onset"), ("mean_over", "a mean over several scenes")];
         let unordered = unordered.iter().find_map(|(key, what)| fields.get(key).map(|node| (*what, node.span)));
         let (scene_at, optimise_at) = (place("scene"), place("optimise"));
         let figures_at = if fields.get("figure").is_some() { place("figure") } else { place("figures") };
@@ -164,7 +176,12 @@ impl<'t> ExperimentReader<'t> {
                 let mut labels = Vec::new();
                 labels.extend(some(|case| !case.sweep.is_empty()).then_some("sweep"));
                 labels.extend(some(|case| case.direction.is_some()).then_some("direction"));
-                Some(Columns::of(swept, &labels, &words_only(measures), maximise.as_ref(), kept))
+                let columns = Columns::of(swept, &labels, &words_only(measures), maximise.as_ref(), kept);
+                match &starts {
+                    Some(Some(read)) => Some(columns.with_basins(&read.starts)),
+                    Some(None) => Some(columns),
+                    None => None,
+                }
             }
             _ => None,
         };
@@ -196,6 +213,11 @@ impl<'t> ExperimentReader<'t> {
             checks.orbit(&measures, &run.solvers, &run.settings, orbit.span);
             checks.repeats(&scene.recipe.excitation.kind, orbit.span);
         }
+        let starts = starts?;
+        if let Some(starts) = &starts {
+            checks.starts(starts, run.settled_at.is_some(), &sweep);
+            checks.repeats(&scene.recipe.excitation.kind, starts.span);
+        }
         if let Some(optimise) = &optimise {
             checks.optimise(optimise, &measures, &run.solvers, optimise_at);
         }
@@ -226,11 +248,13 @@ impl<'t> ExperimentReader<'t> {
         }
         places.extend(mean_over.places);
         let figures = figures?;
+        let source = source?.unwrap_or_default();
+        let chapter = source.chapter;
         checks.lines(&figures, &cases, figures_at);
         let experiment = Experiment {
             id: id.clone(),
             title: title?,
-            source: source?.unwrap_or_default(),
+            source,
             about: about?,
             recipe: scene.recipe,
             solvers: all_solvers(&cases),
@@ -245,16 +269,27 @@ impl<'t> ExperimentReader<'t> {
             mean_over: inner,
             optimise,
             orbit: orbit.map(|orbit| orbit.continuation),
+            starts: starts.as_ref().map(|read| read.starts.clone()),
             measures: words_only(&measures),
             trace,
             energies,
             shape,
             each_cycle,
             figures,
+            without_source: without_source(
+                root,
+                self.assumptions.sheet.stated(chapter),
+                &stated?.unwrap_or_default(),
+                self.findings,
+            ),
         };
         let parts = scene.parts;
         checks.scenes(&experiment, |parameter, part| {
             let swept = parameter.and_then(|parameter| places.get(&parameter).copied());
+            let of_starts = starts.as_ref().filter(|_| part == Some(Part::Start));
+            if let Some(ReadStarts { particles_at, .. }) = of_starts {
+                return *particles_at;
+            }
             let at_part = || parts.iter().find(|(known, _)| Some(*known) == part).map(|(_, span)| *span);
             swept.or_else(at_part).unwrap_or(scene_at)
         });
@@ -316,12 +351,12 @@ impl<'t> ExperimentReader<'t> {
         }
     }
 
-    /// An optimisation has rows of its own, and so has an orbit.
+    /// An optimisation has rows of its own, and so have an orbit and random starts.
     fn whole_table_alone(&self, fields: &Fields<'t>) -> Option<()> {
         let mut fine = Some(());
         let given = |keys: &[&'static str]| -> Vec<_> { keys.iter().filter_map(|key| fields.get(key)).collect() };
         if fields.get("optimise").is_some() {
-            for other in given(&[&["sweep", "maximise"], LISTS.as_slice()].concat()) {
+            for other in given(&[&["sweep", "maximise", "onset"], LISTS.as_slice()].concat()) {
                 fine = self.findings.report(
                     other.span,
                     "an optimisation has candidates for rows: neither a sweep nor a list of another kind goes with it",
@@ -330,10 +365,19 @@ impl<'t> ExperimentReader<'t> {
             }
         }
         if fields.get("orbit").is_some() {
-            for other in given(&[&["sweep", "mean_over", "maximise", "optimise"], LISTS.as_slice()].concat()) {
+            for other in given(&[&["sweep", "mean_over", "maximise", "onset", "optimise"], LISTS.as_slice()].concat()) {
                 fine = self.findings.report(
                     other.span,
                     "an orbit has the motions of its branches for rows: no sweep, mean, maximum or list goes with it",
+                    Some("give one of the two an experiment of its own".into()),
+                );
+            }
+        }
+        if fields.get("starts").is_some() {
+            for other in given(&[&["mean_over", "maximise", "onset", "optimise", "orbit"], LISTS.as_slice()].concat()) {
+                fine = self.findings.report(
+                    other.span,
+                    "random starts have the motions that they end in for rows: no mean, maximum, orbit or list goes with them",
                     Some("give one of the two an experiment of its own".into()),
                 );
             }
@@ -381,27 +425,56 @@ impl<'t> ExperimentReader<'t> {
     }
 
     fn maximise(&self, node: &'t Node) -> Option<Maximise> {
+        let (measure, fields) =
+            self.looked_for(node, "maximise: {velocity_ratio: {over: …, in: …}}", "a maximisation")?;
+        let over = fields.required("over", |node| word::<Parameter>(node, "parameter", self.findings));
+        let grid = fields.required("in", |node| self.grid(node, over?));
+        let refine = fields.optional("refine", |node| count(node, "rounds", 20, self.findings));
+        fields.close()?;
+        let wanted = SearchPoint::Maximum;
+        Some(Maximise { measure: measure?, over: over?, grid: grid?, refine: refine?.unwrap_or(0), wanted })
+    }
+
+    /// `onset: {ceiling_impacts: {over: force_ratio, in: …}}`.
+    fn onset(&self, node: &'t Node) -> Option<Maximise> {
+        let (measure, fields) = self.looked_for(node, "onset: {ceiling_impacts: {over: …, in: …}}", "an onset")?;
+        let over = fields.required("over", |node| word::<Parameter>(node, "parameter", self.findings));
+        let grid = fields.required("in", |node| self.grid(node, over?));
+        fields.close()?;
+        let (measure, over, grid) = (measure?, over?, grid?);
+        if !measure.is_count() {
+            let message = format!("`{}` has no onset: it is no number of events", word_of(measure));
+            let help = "events are counted by separations, floor_impacts, ceiling_impacts, stop_impacts".to_owned();
+            return self.findings.report(node.span, message, Some(help));
+        }
+        if grid.len() < 2 || !over.varies_smoothly() {
+            return self
+                .findings
+                .wrong(node.span, "an onset lies between two values of a parameter that varies smoothly");
+        }
+        Some(Maximise { measure, over, grid, refine: 0, wanted: SearchPoint::Onset })
+    }
+
+    /// The measure of which a point is looked for, and how.
+    fn looked_for(&self, node: &'t Node, form: &str, what: &'static str) -> Option<(Option<Measure>, Fields<'t>)> {
         let Value::Mapping(entries) = &node.value else {
-            return self.findings.wrong(node.span, "write `maximise: {velocity_ratio: {over: …, in: …}}`");
+            return self.findings.wrong(node.span, format!("write `{form}`"));
         };
         let [entry] = entries.as_slice() else {
-            return self.findings.wrong(node.span, "one measure is maximised at a time");
+            return self.findings.wrong(node.span, format!("{what} is of one measure"));
         };
         let measure = from_word::<Measure>(&entry.key)
             .or_else(|| no_such(self.findings, entry.key_span, "measure", &entry.key, words::<Measure>()));
-        let fields = Fields::open(&entry.node, "a maximisation", self.findings)?;
-        let over = fields.required("over", |node| word::<Parameter>(node, "parameter", self.findings));
-        let grid = fields.required("in", |node| match over {
-            Some(over) => numbers(node, over, self.findings).map(|grid| (grid, node.span)),
-            None => None,
-        });
-        let refine = fields.optional("refine", |node| count(node, "rounds", 20, self.findings));
-        fields.close()?;
-        let (grid, grid_at) = grid?;
+        Some((measure, Fields::open(&entry.node, what, self.findings)?))
+    }
+
+    /// Values of a parameter that increase.
+    fn grid(&self, node: &'t Node, over: Parameter) -> Option<Vec<f64>> {
+        let grid = numbers(node, over, self.findings)?;
         if !grid.is_sorted_by(|a, b| a < b) {
-            return self.findings.wrong(grid_at, "the points of a maximisation increase");
+            return self.findings.wrong(node.span, "the points to look at increase");
         }
-        Some(Maximise { measure: measure?, over: over?, grid, refine: refine?.unwrap_or(0) })
+        Some(grid)
     }
 
     /// What stands under `run`; what it leaves out is the study's, or the same for every study. What is read off the model alone
@@ -558,6 +631,16 @@ fn with_the_end(mut measures: Vec<(Measure, Span)>, settled_at: Span) -> Vec<(Me
     for measure in Measure::of_settled_runs() {
         if measures.iter().all(|(other, _)| *other != measure) {
             measures.push((measure, settled_at));
+        }
+    }
+    measures
+}
+
+/// With the motion that a run ends in.
+fn with_the_motion(mut measures: Vec<(Measure, Span)>, at: Span) -> Vec<(Measure, Span)> {
+    for measure in std::iter::once(Measure::Motion).chain(Measure::Motion.companions()) {
+        if measures.iter().all(|(other, _)| *other != measure) {
+            measures.push((measure, at));
         }
     }
     measures

@@ -1,6 +1,6 @@
 //! What stands at axes and in legends: units and the field's symbols, words instead of column names.
 
-use crate::experiment::Experiment;
+use crate::experiment::{Experiment, SearchPoint};
 use crate::measure::column_words;
 use crate::table::{Column, Data};
 use crate::text::{number, words};
@@ -11,6 +11,7 @@ pub(super) fn of_column(experiment: Option<&Experiment>, column: &Column) -> Str
     let named = if column.symbol.is_empty() { name } else { format!("{name} {}", column.symbol) };
     let maximised = experiment
         .and_then(|experiment| experiment.maximise.as_ref())
+        .filter(|maximise| maximise.wanted == SearchPoint::Maximum)
         .is_some_and(|maximise| words::of_key(&maximise.measure) == column.name);
     if maximised { format!("maximum {named}") } else { named }
 }

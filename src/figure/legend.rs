@@ -18,6 +18,7 @@ use super::style::{
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Sign {
     Line { look: Look, marker: bool },
+    Marker(Look),
     Dot(Look),
     Band(Color),
     Quoted,
@@ -77,6 +78,7 @@ impl Legend {
             entries.extend(by_trait(curves, markers, panel.joined).unwrap_or_else(|| {
                 let line = |curve: &Curve| Entry {
                     sign: match curve.join {
+                        Join::Line if markers && curve.is_of_single_points() => Sign::Marker(curve.look),
                         Join::Line => Sign::Line { look: curve.look, marker: markers },
                         Join::Dots => Sign::Dot(curve.look),
                     },
@@ -85,7 +87,7 @@ impl Legend {
                 curves.iter().map(line).collect()
             }));
         }
-        if band {
+        if band && panel.band != Band::Stacked {
             let color = match curves {
                 [one] => one.look.color,
                 _ => GREY,
@@ -93,7 +95,7 @@ impl Legend {
             let seeds = curves.iter().map(|curve| curve.seeds).max().unwrap_or(0);
             let text = match panel.band {
                 Band::Seeds => format!("median and range of {seeds} seeds"),
-                Band::None | Band::Spread => "± 1 s.d. of the ensemble".into(),
+                Band::None | Band::Spread | Band::Stacked => "± 1 s.d. of the ensemble".into(),
             };
             entries.push(Entry { sign: Sign::Band(color), text });
         }
@@ -135,6 +137,11 @@ impl Legend {
 
     pub(super) fn is_empty(&self) -> bool {
         self.entries.is_empty()
+    }
+
+    /// True if another one would say nothing new beside this one.
+    pub(super) fn says_all_of(&self, other: &Self) -> bool {
+        other.entries.iter().all(|entry| self.entries.contains(entry))
     }
 
     /// A place inside `frame` that the obstacles leave free: corners first, then along the edges.
@@ -263,6 +270,7 @@ impl Entry {
                     paint::marker(sheet, middle, look);
                 }
             }
+            Sign::Marker(look) => paint::marker(sheet, middle, look),
             Sign::Dot(look) => sheet.disc(middle, look.width, look.color),
             Sign::Band(color) => {
                 let half = LEGEND_ROW * 0.3;

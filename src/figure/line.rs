@@ -5,7 +5,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::experiment::{Band, Experiment, LineColour, Panel, Stability};
+use crate::experiment::{Band, Experiment, LineColour, Panel, START_LISTS, Stability};
 use crate::table::{Column, Data, Table};
 
 use super::branch::Branches;
@@ -105,6 +105,12 @@ pub(super) struct Curve {
 }
 
 impl Curve {
+    /// True if no two of its points are joined.
+    pub(super) fn is_of_single_points(&self) -> bool {
+        let seen = |sample: &Sample| sample.x.is_finite() && sample.y.is_finite();
+        self.at_infinity.is_none() && !self.samples.windows(2).any(|pair| pair.iter().all(seen))
+    }
+
     /// True if there is anything to see.
     fn shows(&self) -> bool {
         self.at_infinity.is_some() || self.samples.iter().any(|sample| sample.y.is_finite())
@@ -122,6 +128,8 @@ pub(super) struct Source<'a> {
     pub figure: &'a str,
     /// Colours of lines by name, as the study has them.
     pub colours: Option<&'a BTreeMap<String, LineColour>>,
+    /// All panels of the figure: what shows in one of them looks the same in the others.
+    pub panels: &'a [Panel],
 }
 
 impl<'a> Source<'a> {
@@ -147,12 +155,15 @@ pub(super) fn curves(source: Source<'_>, panel: &Panel) -> Result<Vec<Curve>, Fi
     let groups = Group::split(source.table.rows(), &by);
     let x = source.column(&panel.x.column)?;
     let branches = Branches::of(source, panel)?;
+    let alike = source.panels.iter().filter(|other| other.by == panel.by);
+    let drawn: Vec<&Column> = alike.flat_map(|other| &other.y).filter_map(|y| source.table.column(&y.column)).collect();
+    // Only what shows takes a colour.
+    let shows = |group: &&Group| drawn.iter().any(|y| group.rows.iter().any(|&row| holds(y, row)));
+    let shown: Vec<&Group> = groups.iter().filter(shows).collect();
     let mut curves = Vec::new();
     for (index, axis) in panel.y.iter().enumerate() {
         let y = source.column(&axis.column)?;
         let spread = source.table.column(&format!("{}_spread", y.name)).filter(|_| panel.band == Band::Spread);
-        // Only what shows takes a colour.
-        let shown: Vec<&Group> = groups.iter().filter(|group| group.rows.iter().any(|&row| holds(y, row))).collect();
         for (number, group) in groups.iter().enumerate() {
             let traits = Traits::new(source, index, panel.y.len(), &shown, group);
             let mut words = if panel.y.len() > 1 { vec![source.label(axis)?] } else { Vec::new() };
@@ -197,17 +208,46 @@ pub(super) fn curves(source: Source<'_>, panel: &Panel) -> Result<Vec<Curve>, Fi
     if panel.over_first {
         over_first(&mut curves);
     }
+    if panel.band == Band::Stacked {
+        stack(&mut curves);
+    }
     if curves.is_empty() {
         return Err(FigureError::Nothing { figure: source.figure.to_owned() });
     }
     Ok(curves)
 }
 
-/// A list a row above a number a row is a cloud.
+/// A list a row above a number a row is a cloud, and so are coordinates of starts, which have no order.
 fn join(x: &Column, y: &Column) -> Join {
+    let of_starts = |column: &Column| START_LISTS.iter().any(|(name, _)| column.name.starts_with(name));
     match (&x.data, &y.data) {
         (Data::Float(_) | Data::Int(_), Data::FloatList(_)) => Join::Dots,
+        (Data::FloatList(_), Data::FloatList(_)) if of_starts(x) && of_starts(y) => Join::Dots,
         _ => Join::Line,
+    }
+}
+
+/// Puts each curve on top of those before it, at all places that some curve has; one that is not there has no height.
+fn stack(curves: &mut [Curve]) {
+    let mut places: Vec<f64> = curves.iter().flat_map(|curve| &curve.samples).map(|sample| sample.x).collect();
+    places.retain(|x| x.is_finite());
+    places.sort_by(f64::total_cmp);
+    places.dedup();
+    let mut below = vec![0.0; places.len()];
+    for curve in curves {
+        let height = |x: f64| -> f64 {
+            curve.samples.iter().filter(|sample| sample.x == x && sample.y.is_finite()).map(|one| one.y).sum()
+        };
+        let heights: Vec<f64> = places.iter().map(|&x| height(x)).collect();
+        let near = |i: usize| heights[i.saturating_sub(1)..heights.len().min(i + 2)].iter().any(|height| *height > 0.0);
+        let samples = places.iter().enumerate().map(|(i, &x)| {
+            let foot = below[i];
+            below[i] += heights[i];
+            // Away from where it is there is nothing to draw.
+            if near(i) { Sample { x, y: below[i], band: [foot, below[i]] } } else { Sample::gap() }
+        });
+        curve.samples = samples.collect();
+        curve.look = curve.look.solid();
     }
 }
 

@@ -15,7 +15,7 @@ use super::peak::peaks;
 use super::strip;
 use super::style::{
     BAND_OPACITY, CURVE, Color, FRAME, GREY, GRID, GUIDE, GUIDE_DASH, INK, LABEL_TEXT, Look, MARKER, MINOR_TICK,
-    Marker, NOTE_TEXT, PALE, PAPER, SPACE, TICK, TICK_TEXT,
+    Marker, NOTE_TEXT, PALE, PAPER, SPACE, STACK_OPACITY, TICK, TICK_TEXT,
 };
 
 /// Where a panel's legend goes.
@@ -41,9 +41,10 @@ pub(super) fn panel(
         taken.boxes.push(place);
     }
     grid(sheet, panel, frame);
+    let opacity = if panel.spec.band == Band::Stacked { STACK_OPACITY } else { BAND_OPACITY };
     for curve in &panel.curves {
         for band in panel.bands(frame, curve) {
-            sheet.fill(&band, curve.look.color, BAND_OPACITY);
+            sheet.fill(&band, curve.look.color, opacity);
         }
     }
     for one in &panel.quoted {

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::experiment::{self, Drawing, Experiment, FigureSpec, LineColour};
+use crate::experiment::{Drawing, Experiment, FigureSpec, LineColour};
 use crate::table::Table;
 
 use super::animation::{animation, still};
@@ -10,6 +10,7 @@ use super::bars::bars;
 use super::canvas::svg;
 use super::error::FigureError;
 use super::layout::{Needs, Place, figure_height, places};
+use super::legend::Legend;
 use super::line::Source;
 use super::map::Map;
 use super::map_layout::MapLayout;
@@ -105,9 +106,10 @@ fn drawn(
     beside: Beside<'_>,
 ) -> Result<String, FigureError> {
     let table = chosen(figure, &table.baseline());
-    let source = Source { experiment, table: &table, figure: name, colours: beside.colours };
+    let panels = if let Drawing::Lines(panels) = &figure.drawing { panels.as_slice() } else { &[] };
+    let source = Source { experiment, table: &table, figure: name, colours: beside.colours, panels };
     Ok(match &figure.drawing {
-        Drawing::Lines(panels) => lines(source, panels, beside)?,
+        Drawing::Lines(_) => lines(source, beside)?,
         Drawing::Gaps => match experiment.and_then(|experiment| experiment.optimise.as_ref()) {
             Some(optimise) => bars(source, optimise)?,
             None => return Err(FigureError::Nothing { figure: name.to_owned() }),
@@ -129,7 +131,8 @@ fn chosen(figure: &FigureSpec, table: &Table) -> Table {
 }
 
 /// The panels one above the other, as SVG.
-fn lines(source: Source<'_>, specs: &[experiment::Panel], beside: Beside<'_>) -> Result<String, FigureError> {
+fn lines(source: Source<'_>, beside: Beside<'_>) -> Result<String, FigureError> {
+    let specs = source.panels;
     let mut panels = specs.iter().map(|spec| Panel::new(source, spec, beside)).collect::<Result<Vec<_>, _>>()?;
     if panels.is_empty() {
         return Err(FigureError::Nothing { figure: source.figure.to_owned() });
@@ -139,6 +142,12 @@ fn lines(source: Source<'_>, specs: &[experiment::Panel], beside: Beside<'_>) ->
         if let Some(reach) = reaches.reduce(Reach::union) {
             let over = |panel: &&mut Panel<'_>| panel.x_reach(&spec.x.column).is_some();
             panels.iter_mut().filter(over).for_each(|panel| panel.reach_in_x(reach));
+        }
+    }
+    for index in 1..panels.len() {
+        let (above, here) = panels.split_at_mut(index);
+        if above.iter().any(|panel| panel.legend.says_all_of(&here[0].legend)) {
+            here[0].legend = Legend::default();
         }
     }
     if panels.len() > 1 {
@@ -168,8 +177,8 @@ fn arranged(panels: &[Panel<'_>]) -> Vec<Arranged> {
         .map(|index| panels.get(index + 1).is_none_or(|below| below.x_label != panels[index].x_label))
         .collect();
     let mut above = vec![0.0; panels.len()];
-    // A legend put above makes the other frames lower, so that another one may lose its place. Each round but the last
-    // moves one up at least.
+    // A legend put above makes the other frames lower, so that another one may lose its place, or a label takes two lines and the
+    // frames become narrower. Each round but the last moves or raises one legend at least.
     loop {
         let needs: Vec<Needs> =
             panels.iter().zip(&above).zip(&x_labels).map(|((panel, &above), &x)| panel.needs(above, x)).collect();
@@ -177,16 +186,17 @@ fn arranged(panels: &[Panel<'_>]) -> Vec<Arranged> {
         let mut arranged = Vec::with_capacity(panels.len());
         for (index, (panel, place)) in panels.iter().zip(places(&needs)).enumerate() {
             let frame = place.frame;
-            let legend = if panel.legend.is_empty() {
-                LegendPlace::None
-            } else if above[index] > 0.0 {
-                LegendPlace::Above
-            } else if let Some(within) = panel.legend.place_within(&frame, &panel.obstacles(&frame)) {
-                LegendPlace::Within(within)
-            } else {
-                above[index] = panel.legend.height_above(frame.width());
-                moved = true;
-                LegendPlace::Above
+            let within =
+                if above[index] > 0.0 { None } else { panel.legend.place_within(&frame, &panel.obstacles(&frame)) };
+            let legend = match within {
+                _ if panel.legend.is_empty() => LegendPlace::None,
+                Some(within) => LegendPlace::Within(within),
+                None => {
+                    let wanted = panel.legend.height_above(frame.width());
+                    moved |= wanted > above[index];
+                    above[index] = wanted.max(above[index]);
+                    LegendPlace::Above
+                }
             };
             arranged.push(Arranged { place, legend, x_labels: x_labels[index] });
         }

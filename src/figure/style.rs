@@ -50,6 +50,8 @@ pub(super) const CONTOUR: f64 = 2.0;
 /// Height that a map does not exceed.
 pub(super) const TALLEST_MAP: f64 = 1500.0;
 pub(super) const BAND_OPACITY: f64 = 0.22;
+/// Of lines that stand on each other.
+pub(super) const STACK_OPACITY: f64 = 0.55;
 /// Of the band of 2 u_val about a place or a value that the study quotes.
 pub(super) const QUOTED_OPACITY: f64 = 0.1;
 
@@ -212,6 +214,11 @@ impl Look {
         Self { width: dot + DOT_BENEATH * above, ..Self::new(index, count, 0) }
     }
 
+    /// The same line without gaps.
+    pub(super) fn solid(self) -> Self {
+        Self { dash: DASHES[0], ..self }
+    }
+
     /// The same line, solid where a motion is stable and dashed where it is not.
     pub(super) fn with_stability(self, stability: Stability) -> Self {
         let dash = match stability {
@@ -235,6 +242,9 @@ impl Look {
                 "event-driven" | "genetic algorithm" | "optimised gaps" | "with stop" => Some(LineColour::Blue),
                 "2-opt" | "uniform gaps" | "without stop" => Some(LineColour::Vermilion),
                 "CMA-ES" => Some(LineColour::Green),
+                "chaotic" => Some(LineColour::Vermilion),
+                "not settled" => Some(LineColour::Orange),
+                "at rest" => Some(LineColour::Black),
                 "dense search" => Some(LineColour::Purple),
                 _ => None,
             })

@@ -175,8 +175,10 @@ measures! {
 /// A column's name in words: a measure's, or those of [`words::of_column`].
 #[must_use]
 pub fn column_words(name: &str) -> String {
-    if let Some(over) = name.strip_suffix("_at_maximum") {
-        return format!("{} at the maximum", column_words(over));
+    for point in ["maximum", "onset"] {
+        if let Some(over) = name.strip_suffix(&format!("_at_{point}")) {
+            return format!("{} at the {point}", column_words(over));
+        }
     }
     let measure = Measure::ALL.iter().find(|measure| words::of_key(measure) == name);
     match measure.map(|measure| measure.facts().words) {
@@ -251,6 +253,12 @@ impl Measure {
     #[must_use]
     pub fn is_name(self) -> bool {
         self == Self::Motion
+    }
+
+    /// A number of events in the averaged cycles.
+    #[must_use]
+    pub fn is_count(self) -> bool {
+        matches!(self, Self::Separations | Self::FloorImpacts | Self::CeilingImpacts | Self::StopImpacts)
     }
 
     /// The measures that come with a run that ends where it has settled.

@@ -7,6 +7,7 @@
 use std::borrow::Cow;
 
 mod each_cycle;
+mod ending;
 mod energy;
 mod evaluate;
 mod history;
@@ -21,6 +22,7 @@ mod subject;
 mod trial;
 mod undefined;
 
+pub use ending::{Ending, FromStarts};
 pub use evaluate::{Link, Prepared, Request, evaluate, rounded};
 pub use kept::{
     PROOF, ProofColumn, ProofOf, column_of_damper, energy_columns, of_another_damper, shape_columns, trace_columns,

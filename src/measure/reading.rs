@@ -29,6 +29,24 @@ pub(super) struct Reading<'a> {
     pub(super) settled_velocity_ratio: f64,
 }
 
+impl<'a> Reading<'a> {
+    /// Of a run alone.
+    pub(super) fn of_run(scene: &'a Scene, response: &'a Response) -> Self {
+        Self {
+            scene,
+            mode: 1,
+            response: Some(response),
+            undamped: None,
+            history: None,
+            energies: None,
+            skip: 0,
+            average: 0,
+            mac: None,
+            settled_velocity_ratio: f64::NAN,
+        }
+    }
+}
+
 impl Reading<'_> {
     pub(super) fn read(&self, measure: Measure) -> Result<f64, EvaluateError> {
         if measure.is_modal() {

@@ -29,7 +29,8 @@ pub fn judge(file: &ReferenceFile, tables: &Tables<'_>, fitted: &BTreeSet<String
     let priced = |entry: &Entry| {
         let reads = Reads::default();
         let judged = judge_entry(entry, &file.experiment, tables, fitted, &reads);
-        Judged { price: Price::of(&reads, tables), motion: MotionBehind::of(&reads, tables), ..judged }
+        let rows = reads.decisive_rows();
+        Judged { price: Price::of(&rows, tables), motion: MotionBehind::of(&rows, &reads.places(), tables), ..judged }
     };
     file.entries.iter().map(priced).collect()
 }

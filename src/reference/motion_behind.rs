@@ -1,11 +1,12 @@
 //! What moves how in the rows that decided an entry: a maximum belongs to one motion, a whole curve to many.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use serde::{Deserialize, Serialize};
 
+use super::columns::number;
 use super::text::{significant, symbol, with_unit};
-use super::view::{Place, Reads, TableState, Tables};
+use super::view::{Place, TableState, Tables};
 use crate::dynamics::MotionKind;
 use crate::measure::Measure;
 use crate::table::{BASELINE, Table};
@@ -15,7 +16,7 @@ use crate::text::words::of_key;
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct MotionBehind {
     /// The rows that decided, by kind of motion, in its word; those with an assumption moved are not counted.
-    pub kinds: BTreeMap<String, u64>,
+    pub kinds: BTreeMap<String, usize>,
     /// The motion at each point of a curve that a number or claim speaks of, such as its maximum:
     /// `f′ = 2.512: periodic 1:2, largest multiplier 0.72`.
     pub at: Vec<String>,
@@ -23,19 +24,22 @@ pub struct MotionBehind {
 
 impl MotionBehind {
     /// Of the rows whose cells were looked at for more than to choose rows; `None` where it was not measured.
-    pub(super) fn of(reads: &Reads, tables: &Tables<'_>) -> Option<Self> {
+    pub(super) fn of(
+        decisive: &BTreeMap<String, BTreeSet<usize>>,
+        places: &[Place],
+        tables: &Tables<'_>,
+    ) -> Option<Self> {
         let mut behind = Self::default();
-        for (id, rows) in reads.decisive_rows() {
-            let Some(TableState::Present(table)) = tables.get(&id) else { continue };
+        for (id, rows) in decisive {
+            let Some(TableState::Present(table)) = tables.get(id) else { continue };
             let Some(names) = table.texts(&of_key(&Measure::Motion)) else { continue };
             let variants = table.texts("variant").unwrap_or_default();
-            let in_force = |row: &usize| variants.get(*row).is_none_or(|variant| variant == BASELINE);
-            let rows: Vec<usize> = rows.into_iter().filter(in_force).collect();
-            for kind in rows.iter().filter_map(|&row| names.get(row)?.parse::<MotionKind>().ok()) {
+            let in_force = |row: &&usize| variants.get(**row).is_none_or(|variant| variant == BASELINE);
+            for kind in rows.iter().filter(in_force).filter_map(|row| names.get(*row)?.parse::<MotionKind>().ok()) {
                 *behind.kinds.entry(kind.word().to_owned()).or_default() += 1;
             }
-            let places = reads.places().into_iter().filter(|place| place.table == id);
-            behind.at.extend(places.filter_map(|place| at(&place, table)));
+            let places = places.iter().filter(|place| place.table == *id);
+            behind.at.extend(places.filter_map(|place| at(place, table)));
         }
         (!behind.kinds.is_empty()).then_some(behind)
     }
@@ -43,7 +47,7 @@ impl MotionBehind {
 
 /// The motions of the rows at a point of a curve, in words; `None` where it was not measured there.
 fn at(place: &Place, table: &Table) -> Option<String> {
-    let over = table.columns.iter().find(|column| column.name == place.over)?;
+    let over = table.column(&place.over)?;
     let mut motions: Vec<String> = place.rows.iter().filter_map(|&row| in_words(table, row)).collect();
     motions.dedup();
     let x = with_unit(place.x, 4, &over.unit);
@@ -53,7 +57,7 @@ fn at(place: &Place, table: &Table) -> Option<String> {
 /// `periodic 1:2, largest multiplier 0.72`.
 fn in_words(table: &Table, row: usize) -> Option<String> {
     let kind: MotionKind = table.texts(&of_key(&Measure::Motion))?.get(row)?.parse().ok()?;
-    let cell = |name: String| table.floats(&name)?.get(row).copied().filter(|x| x.is_finite());
+    let cell = |name: String| number(&table.column(&name)?.data, row).filter(|x| x.is_finite());
     let exponent = of_key(&Measure::LyapunovExponent);
     let more = match kind {
         MotionKind::Periodic { .. } => cell(of_key(&Measure::LargestMultiplier))

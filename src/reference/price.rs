@@ -1,8 +1,10 @@
 //! What a verdict cost: the rows that it rests on, and what was simulated for them.
 
+use std::collections::{BTreeMap, BTreeSet};
+
 use serde::{Deserialize, Serialize};
 
-use super::view::{Reads, TableState, Tables};
+use super::view::{TableState, Tables};
 
 /// What was simulated for an entry; the same on every machine.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
@@ -17,14 +19,14 @@ pub struct Price {
 
 impl Price {
     /// Of the rows whose cells were looked at for more than to choose rows.
-    pub(super) fn of(reads: &Reads, tables: &Tables<'_>) -> Self {
+    pub(super) fn of(decisive: &BTreeMap<String, BTreeSet<usize>>, tables: &Tables<'_>) -> Self {
         let mut price = Self::default();
-        for (id, rows) in reads.decisive_rows() {
-            let Some(TableState::Present(table)) = tables.get(&id) else { continue };
+        for (id, rows) in decisive {
+            let Some(TableState::Present(table)) = tables.get(id) else { continue };
             let [events, members, evaluations] =
                 ["events", "members", "evaluations"].map(|name| table.floats(name).unwrap_or_default());
             for row in rows {
-                let count = |column: &[f64]| column.get(row).copied().filter(|count| *count > 0.0).unwrap_or(0.0);
+                let count = |column: &[f64]| column.get(*row).copied().filter(|count| *count > 0.0).unwrap_or(0.0);
                 price.rows += 1;
                 price.runs += whole(count(&members).max(count(&evaluations)).max(1.0));
                 price.events += whole(count(&events));

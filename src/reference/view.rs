@@ -274,12 +274,14 @@ impl<'a> View<'a> {
         rows.indices.iter().map(coordinate).collect()
     }
 
-    /// The columns that say how uncertain a measure is. A measure has all of them, the place of a maximum no spread, and a
+    /// The columns that say how uncertain a measure is. A measure has all of them, the place of a maximum or an onset no spread, and a
     /// parameter none; of those that belong together none may be missing.
     fn errors<'t>(&self, rows: &Rows<'t>, of: &str) -> Result<Errors<'t>, Absence> {
         let companion = |suffix: &str| find_if_any(rows.table, &format!("{of}{suffix}"));
         let (own, spread) = (companion("_num"), companion("_spread"));
-        if spread.is_some() != own.is_some() && !of.ends_with("_at_maximum") {
+        let is_place = ["_at_maximum", "_at_onset"].iter().any(|end| of.ends_with(end));
+        let whole = if is_place { own.is_some() } else { spread.is_some() == own.is_some() };
+        if !whole {
             return Err(Absence::Broken(format!("`{of}` lacks a part of its error: `{of}_num` or `{of}_spread`")));
         }
         let members = if spread.is_some() { Some(find(rows.table, "members")?) } else { None };

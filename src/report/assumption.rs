@@ -19,6 +19,11 @@ pub fn value_in_words(unit: &str, value: &AssumptionValue) -> String {
             }
             _ => "a curve without points".to_owned(),
         },
+        AssumptionValue::Places(places) => {
+            let coordinate = |share: &f64| number::compact(*share, 4);
+            let place = |place: &Vec<f64>| format!("({})", place.iter().map(coordinate).collect::<Vec<_>>().join(", "));
+            places.iter().map(place).collect::<Vec<_>>().join(", ")
+        }
     }
 }
 
@@ -30,6 +35,15 @@ pub(super) fn links(assumptions: &[AssumptionView], to_reports: &str) -> String 
     let link =
         |one: &AssumptionView| format!("[`{name}`]({to_reports}assumptions.md#{name}) {}", one.value, name = one.name);
     assumptions.iter().map(link).collect::<Vec<_>>().join(" · ") + "\n\n"
+}
+
+/// The inputs on an experiment's page that neither the text of the study nor an assumption gives.
+pub(super) fn without_source(inputs: &[String]) -> String {
+    if inputs.is_empty() {
+        return String::new();
+    }
+    let inputs: Vec<String> = inputs.iter().map(|input| format!("`{input}`")).collect();
+    format!("Neither stated in the text of the study nor declared as an assumption: {}.\n\n", inputs.join(" · "))
 }
 
 /// `reports/assumptions.md`: all assumptions with the entries that depend on them.

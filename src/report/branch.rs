@@ -1,7 +1,8 @@
 //! What branches of periodic motions did: where each begins and ends, and its special points.
 
-use crate::experiment::{BranchColumn, Continuation, Parameter, Stability};
+use crate::experiment::{BranchColumn, Continuation, Stability};
 use crate::measure::{Measure, column_words};
+use crate::reference::symbol;
 use crate::table::Table;
 use crate::text::number::compact;
 use crate::text::words::{self, capitalised, counted};
@@ -51,17 +52,9 @@ pub(super) fn in_short(continuation: &Continuation, table: &Table) -> Option<Str
     } else {
         format!(", and {}", counted(left, "shorter stretch", "shorter stretches"))
     };
-    let symbol = symbol(continuation.along);
+    let symbol = symbol(&words::of_key(&continuation.along));
     (!named.is_empty())
         .then(|| format!("**In short.** Motions that attract along {symbol}: {}{shorter}.\n\n", named.join(", ")))
-}
-
-/// A parameter as formulas name it; in words where it has no symbol.
-pub(super) fn symbol(along: Parameter) -> String {
-    match along.symbol() {
-        "" => column_words(&words::of_key(&along)),
-        symbol => symbol.into(),
-    }
 }
 
 /// The section on an experiment's page.

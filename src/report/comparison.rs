@@ -4,6 +4,7 @@ use crate::reference::{Comparison, Judged, MotionBehind, Moved, Price, Role, Ver
 use crate::text::number::{compact, signed, significant};
 
 use super::markdown::{Align, MarkdownTable, first_sentence, one_line};
+use super::motions::by_count;
 use super::tally::{Tally, agrees, role, shown};
 use crate::text::words::counted;
 
@@ -95,16 +96,14 @@ fn motion(one: &Judged) -> String {
     if !at.is_empty() {
         return format!("at {}", at.join("; at "));
     }
-    let mut kinds: Vec<_> = kinds.iter().collect();
-    kinds.sort_by_key(|(_, rows)| std::cmp::Reverse(**rows));
-    match kinds.as_slice() {
+    match by_count(kinds).as_slice() {
         [] => String::new(),
         [(kind, rows)] => {
-            format!("{kind} in {}", if **rows == 1 { "its row".into() } else { format!("all {rows} rows") })
+            format!("{kind} in {}", if *rows == 1 { "its row".into() } else { format!("all {rows} rows") })
         }
-        _ => kinds
+        many => many
             .iter()
-            .map(|(kind, rows)| format!("{kind} in {}", counted(**rows as usize, "row", "rows")))
+            .map(|(kind, rows)| format!("{kind} in {}", counted(*rows, "row", "rows")))
             .collect::<Vec<_>>()
             .join(", "),
     }

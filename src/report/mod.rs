@@ -15,6 +15,7 @@ mod diff;
 mod doubts;
 mod explain;
 mod explanations;
+mod few_rows;
 mod figures;
 mod finding;
 mod findings;

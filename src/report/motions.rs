@@ -1,5 +1,7 @@
 //! What moves how: on an experiment's page in a sentence, over the whole study on a page of its own.
 
+use std::collections::BTreeMap;
+
 use super::markdown::{Align, MarkdownTable, details, one_line};
 use super::view::ExperimentView;
 use crate::dynamics::MotionKind;
@@ -13,17 +15,24 @@ pub(super) const PAGE: &str = "what-moves-how.md";
 /// Experiments whose rows are listed under the page's table.
 const MOST_LISTED: usize = 8;
 
-/// The part of an experiment's page; nothing of one row alone.
-pub(super) fn section(motions: &Motions) -> String {
-    if motions.rows() < 2 {
-        return String::new();
-    }
-    let mut kinds: Vec<(&str, usize)> = motions.kinds.iter().map(|(kind, count)| (kind.as_str(), *count)).collect();
+/// Kinds of motion with their rows, the most frequent first.
+pub(super) fn by_count(kinds: &BTreeMap<String, usize>) -> Vec<(&str, usize)> {
+    let mut kinds: Vec<(&str, usize)> = kinds.iter().map(|(kind, count)| (kind.as_str(), *count)).collect();
     kinds.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
-    let parts: Vec<String> =
-        kinds.iter().map(|(kind, count)| format!("{count} {kind} ({})", share(*count, motions.rows()))).collect();
+    kinds
+}
+
+/// Kinds of motion, and what the averages are worth, in a few sentences; nothing of one row alone.
+pub(super) fn in_words(motions: &Motions) -> Option<String> {
+    if motions.rows() < 2 {
+        return None;
+    }
+    let parts: Vec<String> = by_count(&motions.kinds)
+        .iter()
+        .map(|(kind, count)| format!("{count} {kind} ({})", share(*count, motions.rows())))
+        .collect();
     let rows = counted(motions.rows(), "row", "rows");
-    let mut text = format!("**What moves how.** Of {rows}: {}.", parts.join(", "));
+    let mut text = format!("Of {rows}: {}.", parts.join(", "));
     let late = motions.late();
     if let (Some(last), true) = (motions.settled_after.last(), late > 0) {
         let again = motions.settled_after.len();
@@ -36,11 +45,13 @@ pub(super) fn section(motions: &Motions) -> String {
     if let Some(settling) = &motions.settling {
         text += &format!(" {}", of_settling(settling, motions.skip));
     }
-    text += "\n\n";
-    text + &motions
-        .settling
-        .as_ref()
-        .map_or_else(String::new, |it| details("Rows that are not what they settle to", &rows_off(it)))
+    Some(text)
+}
+
+/// Rows whose averages are off, closed.
+pub(super) fn unsettled(motions: &Motions) -> String {
+    let of = |settling| details("Rows that are not what they settle to", &rows_off(settling));
+    motions.settling.as_ref().map_or_else(String::new, of)
 }
 
 /// `reports/what-moves-how.md`.
@@ -49,8 +60,10 @@ pub fn what_moves(experiments: &[ExperimentView<'_>]) -> String {
     let mut text = String::from("# What moves how\n\n");
     let all: Vec<(&ExperimentView<'_>, &Motions)> =
         experiments.iter().filter_map(|view| Some((view, view.motions.as_ref()?))).collect();
+    let best: Vec<_> = all.iter().filter(|(_, motions)| !motions.best.is_empty()).copied().collect();
+    let all: Vec<_> = all.into_iter().filter(|(_, motions)| motions.rows() > 0).collect();
     let total: usize = all.iter().map(|(_, motions)| motions.rows()).sum();
-    if total == 0 {
+    if total == 0 && best.is_empty() {
         return text + "No experiment measures its motion.\n";
     }
     let count = |kind: &str| all.iter().filter_map(|(_, motions)| motions.kinds.get(kind)).sum::<usize>();
@@ -60,7 +73,9 @@ pub fn what_moves(experiments: &[ExperimentView<'_>]) -> String {
         .map(|kind| format!("{} {kind}", share(count(kind), total)))
         .collect();
     let of = counted(all.len(), "experiment", "experiments");
-    text += &format!("Of {total} rows in {of} that name their motion: {}.\n\n", parts.join(", "));
+    if total > 0 {
+        text += &format!("Of {total} rows in {of} that name their motion: {}.\n\n", parts.join(", "));
+    }
     let settlings: Vec<&Settling> = all.iter().filter_map(|(_, motions)| motions.settling.as_ref()).collect();
     if !settlings.is_empty() {
         let [rows, off] = [settlings.iter().map(|it| it.rows).sum(), settlings.iter().map(|it| it.off).sum::<usize>()];
@@ -76,6 +91,7 @@ pub fn what_moves(experiments: &[ExperimentView<'_>]) -> String {
         );
     }
     text += &table(&all);
+    text += &best_motions(&best);
     let mut listed: Vec<_> = all
         .iter()
         .filter_map(|(view, motions)| Some((view, motions.settling.as_ref().filter(|it| it.off > 0)?)))
@@ -87,6 +103,40 @@ pub fn what_moves(experiments: &[ExperimentView<'_>]) -> String {
     }
     text + "The kinds of motion are proved by Floquet multipliers and Lyapunov exponents; the settled motion is that of a run ten \
             times as long, averaged over one period. [The study in one page](README.md)\n"
+}
+
+/// Of each damper whose starts were drawn at random the best motion that attracts.
+fn best_motions(all: &[(&ExperimentView<'_>, &Motions)]) -> String {
+    let mut text = String::new();
+    for (view, motions) in all {
+        text += &format!(
+            "**Which motion is best, and how likely is it?** [{}]({}): for each damper the motion of the largest velocity ratio among \
+             those that attract, and the share of random starts that end in it.\n\n",
+            one_line(&view.experiment.title),
+            view.page,
+        );
+        let mut table = MarkdownTable::new(&[
+            ("Damper", Align::Left),
+            ("At", Align::Left),
+            ("Motion", Align::Left),
+            ("ψ", Align::Right),
+            ("Share of starts", Align::Right),
+            ("95 %", Align::Right),
+        ]);
+        for one in &motions.best {
+            let [low, high] = one.interval.map(percent);
+            table.row(vec![
+                one.damper.clone(),
+                one.at.clone(),
+                one.motion.clone(),
+                significant(one.velocity_ratio, 4),
+                percent(one.share),
+                format!("{low} to {high}"),
+            ]);
+        }
+        text += &table.finish();
+    }
+    text
 }
 
 fn table(all: &[(&ExperimentView<'_>, &Motions)]) -> String {

@@ -7,14 +7,19 @@ use crate::text::words::capitalised;
 
 use super::markdown::{details, one_line};
 use super::view::{AccuracyLinks, FigureView, PageView};
-use super::{assumption, branch, candidate, coexisting, comparison, doubts, motions, proof, run};
+use super::{assumption, branch, candidate, coexisting, comparison, doubts, few_rows, motions, proof, run};
 
 /// The page of an experiment, Markdown: its answer first, then the figure and a row for each statement; all else is closed.
 #[must_use]
 pub fn page(view: &PageView<'_>) -> String {
     let experiment = view.experiment;
+    let motions = view.table.and_then(|table| Motions::of(experiment, table));
+    let mut motions_in_words = motions.as_ref().and_then(motions::in_words);
     let mut text = format!("# {}\n\n", one_line(&experiment.title));
-    text += &in_short(view);
+    text += &lead(view).unwrap_or_else(|| match motions_in_words.take() {
+        Some(words) => format!("**In short.** {words}\n\n"),
+        None => comparison::in_short(view.judged),
+    });
     let about = format!("{}\n\n", one_line(&experiment.about));
     if view.judged.is_empty() {
         text += &about;
@@ -30,15 +35,19 @@ pub fn page(view: &PageView<'_>) -> String {
     match (experiment.row_source(), view.table) {
         (RowSource::Search(optimise), Some(table)) => text += &candidate::section(optimise, table),
         (RowSource::Branches(continuation), Some(table)) => text += &branch::section(continuation, table),
+        (RowSource::Basins(_), Some(table)) => text += &coexisting::section(experiment, table),
         (RowSource::Cases, _) | (_, None) => {}
     }
     text += &view.table.map_or_else(String::new, |table| proof::failures(table) + &doubts::section(table));
-    let motions = view.table.and_then(|table| Motions::of(experiment, table));
-    text += &motions.as_ref().map_or_else(String::new, motions::section);
+    if let Some(words) = motions_in_words {
+        text += &format!("**What moves how.** {words}\n\n");
+    }
+    text += &motions.as_ref().map_or_else(String::new, motions::unsettled);
     text += &details("Uncertainties and sensitivity", &comparison::uncertainties(view.judged));
     let about = if view.judged.is_empty() { "" } else { about.as_str() };
     let run = format!("{about}{}{}", run::section(experiment), run::effects(view.effects));
     text += &details("How it was run", &run);
+    text += &details("Inputs without a source", &assumption::without_source(&experiment.without_source));
     text += &details("Assumptions", &assumption::links(view.assumptions, view.to_reports));
     text += &details(
         "Proof of the runs, and their cost",
@@ -55,14 +64,22 @@ pub fn page(view: &PageView<'_>) -> String {
     text
 }
 
-/// The answer first: the verdicts; of a page without a statement to judge what its rows show.
-fn in_short(view: &PageView<'_>) -> String {
-    let shown = view.table.filter(|_| view.judged.is_empty()).and_then(|table| match view.experiment.row_source() {
+/// The answer first: the verdicts, or what the rows show where there is no statement to judge; `None` where they show no more than
+/// their motions.
+fn lead(view: &PageView<'_>) -> Option<String> {
+    if !view.judged.is_empty() {
+        return Some(comparison::in_short(view.judged));
+    }
+    let table = view.table?;
+    match view.experiment.row_source() {
         RowSource::Branches(continuation) => branch::in_short(continuation, table),
-        RowSource::Cases => coexisting::in_short(view.experiment, table),
+        RowSource::Cases => {
+            let answers = [coexisting::in_short, few_rows::searched, few_rows::in_short];
+            answers.iter().find_map(|answer| answer(view.experiment, table))
+        }
+        RowSource::Basins(starts) => coexisting::of_starts_in_short(view.experiment, starts, table),
         RowSource::Search(_) => None,
-    });
-    shown.unwrap_or_else(|| comparison::in_short(view.judged))
+    }
 }
 
 /// What the study says without an entry, and why.

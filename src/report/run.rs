@@ -1,7 +1,10 @@
 //! How an experiment was run, and which effects its scene has.
 
 use crate::dynamics::Until;
-use crate::experiment::{Continuation, Experiment, GapWord, Optimise, RowSource, Search};
+use crate::experiment::{
+    Continuation, Experiment, GapWord, HeightBox, Interval, Optimise, ParticleBox, RowSource, Search, SearchPoint,
+    Starts,
+};
 use crate::measure::{SolverChoice, column_words};
 use crate::scene::EffectUse;
 use crate::text::number::{compact, quantity};
@@ -15,6 +18,7 @@ pub(super) fn section(experiment: &Experiment) -> String {
         RowSource::Search(optimise) => searches(optimise),
         RowSource::Branches(continuation) => return text + &branches(experiment, continuation),
         RowSource::Cases => format!("- {}.\n", cases(experiment)),
+        RowSource::Basins(starts) => format!("- {}.\n{}", cases(experiment), of_starts(starts)),
     };
     if !experiment.mean_over.is_empty() {
         text += &format!("- {}\n", averaged(experiment));
@@ -63,6 +67,39 @@ pub(super) fn section(experiment: &Experiment) -> String {
         text += &format!("- The shape is kept at {} points.\n", points.join(" by "));
     }
     text + "\n"
+}
+
+/// The box that starts are drawn from.
+fn of_starts(starts: &Starts) -> String {
+    let within = |interval: Interval, unit: &str| {
+        let value = |x| quantity(x, unit, 4);
+        if interval.varies() {
+            format!("{} to {}", value(interval.from), value(interval.to))
+        } else {
+            value(interval.from)
+        }
+    };
+    let mut parts: Vec<String> = Vec::new();
+    parts.extend(starts.displacement.map(|it| format!("displacement {}", within(it, "m"))));
+    parts.extend(starts.velocity.map(|it| format!("velocity {}", within(it, "m/s"))));
+    for particle in &starts.particles {
+        parts.push(match *particle {
+            ParticleBox::OnFloor => "particle on its floor".into(),
+            ParticleBox::InFlight { height, velocity } => {
+                let height = match height {
+                    HeightBox::Of(interval) => within(interval, "m"),
+                    HeightBox::OfGap(interval) => format!("{} of the gap", within(interval, "")),
+                };
+                format!("particle {height} above its floor with {} relative to it", within(velocity, "m/s"))
+            }
+        });
+    }
+    format!(
+        "- Each case runs from {}, evenly distributed over {} (seed {}); starts are the same in every case.\n",
+        counted(starts.count as usize, "random start", "random starts"),
+        parts.join("; "),
+        starts.seed,
+    )
 }
 
 /// Where the first motion comes from, and how it was followed.
@@ -182,11 +219,16 @@ fn cases(experiment: &Experiment) -> String {
                 (Some(first), Some(last)) => format!(" between {} and {}", compact(*first, 4), compact(*last, 4)),
                 _ => String::new(),
             };
-            format!(
-                "{cases}{over}; in each the {} is maximised over the {}{ends}",
-                column_words(&words::of_key(&maximise.measure)),
-                column_words(&words::of_key(&maximise.over)),
-            )
+            let [measure, along] =
+                [words::of_key(&maximise.measure), words::of_key(&maximise.over)].map(|key| column_words(&key));
+            match maximise.wanted {
+                SearchPoint::Maximum => {
+                    format!("{cases}{over}; in each the {measure} is maximised over the {along}{ends}")
+                }
+                SearchPoint::Onset => {
+                    format!("{cases}{over}; in each the onset of {measure} is looked for over the {along}{ends}")
+                }
+            }
         }
     }
 }

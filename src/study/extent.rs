@@ -11,13 +11,13 @@ use super::refine;
 use super::row_failure::RowFailure;
 use super::row_fingerprint::RowFingerprints;
 use super::spent::Spent;
-use crate::experiment::{Case, Experiment};
+use crate::experiment::{Case, Experiment, RowSource};
 use crate::measure::Rigour;
 
 /// What is to be simulated of an experiment.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Extent {
-    /// Rows to be simulated. A row that shares another's numbers is not.
+    /// Rows to be simulated, of random starts cases. A row that shares another's numbers is not.
     pub to_do: usize,
     /// All rows.
     pub rows: usize,
@@ -36,6 +36,16 @@ impl Item {
         let experiment = &self.source.experiment;
         let spent = Spent::read(layout, &experiment.id);
         let (rows, simulations) = self.size();
+        if let RowSource::Basins(starts) = experiment.row_source() {
+            let jobs = jobs(experiment, &self.variants);
+            let fingerprints = RowFingerprints::new(experiment).all(&self.variants, &jobs);
+            let own = |row: &usize| jobs[*row].same_as.is_none();
+            let to_do = (0..rows).filter(own).filter(|&row| known.group(fingerprints[row]).is_none()).count();
+            let share = to_do as f64 / (0..rows).filter(own).count().max(1) as f64;
+            let seconds = if to_do == 0 { Some(0.0) } else { spent.total().map(|seconds| seconds * share) };
+            let simulations = to_do as u64 * u64::from(starts.count);
+            return Extent { to_do, rows, open: false, simulations, seconds };
+        }
         if experiment.is_whole() {
             let done = Extent { to_do: 0, rows, open: false, simulations: 0, seconds: Some(0.0) };
             return match known.whole() {

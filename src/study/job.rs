@@ -68,9 +68,8 @@ pub(super) fn evaluations(experiment: &Experiment, job: &Job) -> u64 {
         (_, Some(_)) => 0,
         (None, None) => 1,
         (Some(maximise), None) => {
-            let sharpening = 2 * u64::from(maximise.refine);
-            // The maximum of the baseline is simulated once more, as a result.
-            maximise.grid.len() as u64 + sharpening + u64::from(job.variant == 0)
+            // The point of the baseline is simulated once more, as a result.
+            maximise.grid.len() as u64 + maximise.bisections() + u64::from(job.variant == 0)
         }
     }
 }
@@ -78,8 +77,7 @@ pub(super) fn evaluations(experiment: &Experiment, job: &Job) -> u64 {
 /// Runs behind a row of the table, the members of an ensemble and the points of a search for gaps not counted.
 #[must_use]
 pub fn runs_of_a_row(experiment: &Experiment) -> u64 {
-    let points =
-        experiment.maximise.as_ref().map_or(1, |maximise| maximise.grid.len() as u64 + 2 * u64::from(maximise.refine));
+    let points = experiment.maximise.as_ref().map_or(1, |maximise| maximise.grid.len() as u64 + maximise.bisections());
     points * (experiment.mean_over.len() as u64).max(1)
 }
 
@@ -88,6 +86,7 @@ pub(super) fn simulations(experiment: &Experiment, variants: &[Variant]) -> u64 
     match experiment.row_source() {
         RowSource::Search(optimise) => return super::optimise::evaluations(optimise, variants),
         RowSource::Branches(continuation) => return super::orbit::points(continuation, variants) as u64,
+        RowSource::Basins(starts) => return super::basins::simulations(experiment, starts, variants),
         RowSource::Cases => {}
     }
     let mut of_case = vec![0; experiment.cases.len()];

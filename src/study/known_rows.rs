@@ -3,7 +3,7 @@
 //!
 //! Their sources are the experiment's table on disk, if it is still the one in its record, and the tables that
 //! it had before ([`super::earlier`]). A damaged table is ignored. Rows of an optimisation, or of
-//! branches, depend on each other: such a table is used as a whole or not at all.
+//! branches, depend on each other: such a table is used as a whole or not at all. Of random starts a case is known with all its rows.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -15,7 +15,7 @@ use super::record::Record;
 use super::row_fingerprint::RowFingerprints;
 use super::tabulate::Row;
 use super::untabulate::Cells;
-use crate::experiment::Experiment;
+use crate::experiment::{Experiment, RowSource};
 use crate::table::{RowFingerprint, Table, parquet};
 
 /// What is known of an experiment's rows.
@@ -27,6 +27,8 @@ pub struct KnownRows {
     places: BTreeMap<RowFingerprint, (usize, usize)>,
     /// The table of the whole experiment.
     whole: Option<Table>,
+    /// All rows of a case of which there are several, none of them failed.
+    groups: BTreeMap<RowFingerprint, Table>,
 }
 
 impl KnownRows {
@@ -42,6 +44,10 @@ impl KnownRows {
         let experiment = &item.source.experiment;
         let mut known = Self::nothing();
         let tables = on_disk(layout, item).into_iter().chain(earlier::tables(layout, &experiment.id));
+        if let RowSource::Basins(_) = experiment.row_source() {
+            tables.into_iter().for_each(|table| known.take_groups(&table));
+            return known;
+        }
         if experiment.is_whole() {
             known.whole = tables.into_iter().find(|table| is_of(item, table));
             return known;
@@ -55,6 +61,25 @@ impl KnownRows {
             }
         }
         known
+    }
+
+    /// Takes cases that are new.
+    fn take_groups(&mut self, table: &Table) {
+        let Some(failures) = table.texts("failure") else { return };
+        let mut groups: BTreeMap<RowFingerprint, Vec<usize>> = BTreeMap::new();
+        for (row, fingerprint) in table.fingerprints.iter().enumerate() {
+            // Variants that do not depend on what was moved repeat the case.
+            let of_variant = table.texts("variant").map(|variants| &variants[row]);
+            let rows = groups.entry(*fingerprint).or_default();
+            if rows.first().is_none_or(|&first| table.texts("variant").map(|variants| &variants[first]) == of_variant) {
+                rows.push(row);
+            }
+        }
+        for (fingerprint, rows) in groups {
+            if rows.iter().all(|&row| failures[row].is_empty()) {
+                self.groups.entry(fingerprint).or_insert_with(|| table.select(&rows));
+            }
+        }
     }
 
     /// Takes those rows that are wanted and new.
@@ -88,6 +113,11 @@ impl KnownRows {
     /// True if there is a row of this fingerprint.
     pub(super) fn has(&self, fingerprint: RowFingerprint) -> bool {
         self.places.contains_key(&fingerprint)
+    }
+
+    /// All rows of the case of this fingerprint.
+    pub(super) fn group(&self, fingerprint: RowFingerprint) -> Option<&Table> {
+        self.groups.get(&fingerprint)
     }
 
     /// True if no row is known.

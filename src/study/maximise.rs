@@ -1,17 +1,22 @@
-//! The maximum of a measure over one parameter: a grid, then rounds of two points around the best so far.
+//! A point that is looked for over one parameter: the maximum of a measure, or the onset of events.
 //!
-//! Each round halves the two intervals beside the best point, so the place of the maximum is known to within the distance
-//! to its neighbours. Values come from [`Evaluate`] as they are: ensemble means where the motion is chaotic.
+//! For a maximum each round halves the two intervals beside the best point of a grid, so that its place is known to within the
+//! distance to its neighbours. An onset lies between the last point of the grid without an event and the first one with some;
+//! as events are certified, halving that interval closes in on it to [`KNOWN`] of the parameter. Values come from [`Evaluate`]
+//! as they are: ensemble means where the motion is chaotic.
 
 use rayon::prelude::*;
 
 use super::evaluate::{Evaluate, Simulation, evaluate_guarded};
 use super::row_failure::RowFailure;
-use crate::experiment::{Maximise, ParameterValue};
+use crate::experiment::{Maximise, ParameterValue, SearchPoint};
 use crate::measure::Evaluated;
 use crate::text::words;
 
-/// Where a maximum lies.
+/// An onset is known to this share of the parameter.
+const KNOWN: f64 = 1e-12;
+
+/// Where the point lies.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Place {
     /// The parameter's value there.
@@ -27,57 +32,95 @@ struct Tried {
     evaluated: Evaluated,
 }
 
-/// Finds the maximum. `simulation` measures `maximise.measure` at index `measure` of its measures.
-///
-/// # Errors
-/// The reason of the first point that has no number: a maximum over part of a range is none.
-pub(super) fn maximum(
-    evaluate: &impl Evaluate,
-    simulation: &Simulation<'_>,
-    maximise: &Maximise,
-    measure: usize,
-    done: &(impl Fn() + Sync),
-) -> Result<(Evaluated, Place), RowFailure> {
-    let all = |points: &[f64]| {
-        let attempt = |&at: &f64| {
-            let tried = one(evaluate, simulation, maximise, measure, at);
-            done();
-            tried
-        };
-        // Through a list, so that of several failures the first in order is reported, not the first in time.
-        let tried: Vec<_> = points.par_iter().map(attempt).collect();
-        tried.into_iter().collect::<Result<Vec<_>, _>>()
-    };
-    let mut tried = all(&maximise.grid)?;
-    tried.sort_by(|a, b| a.at.total_cmp(&b.at));
-    tried.dedup_by(|a, b| a.at == b.at);
-    for _ in 0..maximise.refine {
-        let best = best(&tried).ok_or(RowFailure::NoGrid)?;
-        let between = neighbours(&tried, best).map(|other| between(tried[best].at, tried[other].at));
-        let new: Vec<f64> = between.filter(|at| tried.iter().all(|known| known.at != *at)).collect();
-        tried.extend(all(&new)?);
-        tried.sort_by(|a, b| a.at.total_cmp(&b.at));
-    }
-    let best = best(&tried).ok_or(RowFailure::NoGrid)?;
-    let at = tried[best].at;
-    let within = neighbours(&tried, best).map(|other| (tried[other].at - at).abs()).fold(0.0, f64::max);
-    Ok((tried.swap_remove(best).evaluated, Place { at, within }))
+/// Where a point is looked for: one case, measured at values of the parameter.
+pub(super) struct Along<'a, E, D> {
+    /// What measures.
+    pub evaluate: &'a E,
+    /// The case; `maximise.measure` stands at index `measure` of its measures.
+    pub simulation: Simulation<'a>,
+    /// Which point is looked for.
+    pub maximise: &'a Maximise,
+    /// See `simulation`.
+    pub measure: usize,
+    /// Told after every point.
+    pub done: D,
 }
 
-fn one(
-    evaluate: &impl Evaluate,
-    simulation: &Simulation<'_>,
-    maximise: &Maximise,
-    measure: usize,
-    at: f64,
-) -> Result<Tried, RowFailure> {
-    let mut recipe = simulation.recipe.clone();
-    let place = |reason| RowFailure::At { parameter: words::of_key(&maximise.over), at, reason: Box::new(reason) };
-    recipe.set(maximise.over, ParameterValue::Number(at)).map_err(|error| place(error.into()))?;
-    let evaluated = evaluate_guarded(evaluate, &Simulation { recipe: &recipe, ..*simulation }).map_err(place)?;
-    match evaluated.measured.get(measure) {
-        Some(measured) if !measured.value.is_nan() => Ok(Tried { at, value: measured.value, evaluated }),
-        _ => Err(place(RowFailure::NoValue(words::of_key(&maximise.measure)))),
+impl<E: Evaluate, D: Fn() + Sync> Along<'_, E, D> {
+    /// The point that is looked for.
+    ///
+    /// # Errors
+    /// The reason of the first point that has no number: a maximum over part of a range is none. [`RowFailure::NoOnset`] where all
+    /// points of the grid, or none, have events.
+    pub(super) fn found(&self) -> Result<(Evaluated, Place), RowFailure> {
+        match self.maximise.wanted {
+            SearchPoint::Maximum => self.maximum(),
+            SearchPoint::Onset => self.onset(),
+        }
+    }
+
+    fn maximum(&self) -> Result<(Evaluated, Place), RowFailure> {
+        let mut tried = self.all(&self.maximise.grid)?;
+        tried.sort_by(|a, b| a.at.total_cmp(&b.at));
+        tried.dedup_by(|a, b| a.at == b.at);
+        for _ in 0..self.maximise.refine {
+            let best = best(&tried).ok_or(RowFailure::NoGrid)?;
+            let between = neighbours(&tried, best).map(|other| between(tried[best].at, tried[other].at));
+            let new: Vec<f64> = between.filter(|at| tried.iter().all(|known| known.at != *at)).collect();
+            tried.extend(self.all(&new)?);
+            tried.sort_by(|a, b| a.at.total_cmp(&b.at));
+        }
+        let best = best(&tried).ok_or(RowFailure::NoGrid)?;
+        let at = tried[best].at;
+        let within = neighbours(&tried, best).map(|other| (tried[other].at - at).abs()).fold(0.0, f64::max);
+        Ok((tried.swap_remove(best).evaluated, Place { at, within }))
+    }
+
+    /// The smallest value of the parameter at which the measure is above zero, as far as the grid tells.
+    fn onset(&self) -> Result<(Evaluated, Place), RowFailure> {
+        let mut tried = self.all(&self.maximise.grid)?;
+        let missed = |before| RowFailure::NoOnset { measure: words::of_key(&self.maximise.measure), before };
+        let first = tried.iter().position(|one| one.value > 0.0).ok_or_else(|| missed(false))?;
+        let mut below = first.checked_sub(1).map(|last| tried[last].at).ok_or_else(|| missed(true))?;
+        let mut above = tried.swap_remove(first);
+        for _ in 0..self.maximise.bisections() {
+            let at = between(below, above.at);
+            if (above.at - below).abs() <= KNOWN * above.at.abs() || at <= below || at >= above.at {
+                break;
+            }
+            let tried = self.one(at)?;
+            if tried.value > 0.0 {
+                above = tried;
+            } else {
+                below = at;
+            }
+        }
+        Ok((above.evaluated, Place { at: above.at, within: above.at - below }))
+    }
+
+    /// Several points; of several failures the first in order is reported, not the first in time.
+    fn all(&self, points: &[f64]) -> Result<Vec<Tried>, RowFailure> {
+        let tried: Vec<_> = points.par_iter().map(|&at| self.one(at)).collect();
+        tried.into_iter().collect()
+    }
+
+    fn one(&self, at: f64) -> Result<Tried, RowFailure> {
+        let tried = self.tried(at);
+        (self.done)();
+        tried
+    }
+
+    fn tried(&self, at: f64) -> Result<Tried, RowFailure> {
+        let Self { simulation, maximise, .. } = self;
+        let mut recipe = simulation.recipe.clone();
+        let place = |reason| RowFailure::At { parameter: words::of_key(&maximise.over), at, reason: Box::new(reason) };
+        recipe.set(maximise.over, ParameterValue::Number(at)).map_err(|error| place(error.into()))?;
+        let evaluated =
+            evaluate_guarded(self.evaluate, &Simulation { recipe: &recipe, ..*simulation }).map_err(place)?;
+        match evaluated.measured.get(self.measure) {
+            Some(measured) if !measured.value.is_nan() => Ok(Tried { at, value: measured.value, evaluated }),
+            _ => Err(place(RowFailure::NoValue(words::of_key(&maximise.measure)))),
+        }
     }
 }
 

@@ -4,6 +4,7 @@
 //! after the last run ([`Snapshot`]) is neither read nor planned. Nothing here
 //! draws or judges: verdicts, figures and reports are made from the tables afterwards.
 
+mod basins;
 mod canonical;
 mod chain;
 mod doubt;
@@ -38,11 +39,13 @@ mod row_fingerprint;
 mod run;
 mod run_times;
 mod shard;
+mod shares;
 mod snapshot;
 mod spent;
 mod store;
 mod summary;
 mod tabulate;
+mod tabulate_basins;
 mod tabulate_branches;
 mod tabulate_candidates;
 mod untabulate;
@@ -61,7 +64,7 @@ pub use known_rows::KnownRows;
 pub use layout::{ASSUMPTIONS, Layout, STUDY, Texts, folder_of, journal_name, record_name, stem, table_name};
 pub use load::{Loaded, Refused, Source};
 pub use machine::Machine;
-pub use motions::{Deviation, Motions, Settling};
+pub use motions::{Deviation, Motions, Settling, row_in_words};
 pub use open::{Study, Unread};
 pub use orphan::{earlier_tables, orphans};
 pub use plan::{Item, State};
@@ -72,6 +75,7 @@ pub use row_failure::{RowFailure, SearchError};
 pub use run::{Finished, RunError, Task, run};
 pub use run_times::RunTimes;
 pub use shard::{NotThePart, Shard, ShardError};
+pub use shares::{Attracting, BestMotion, CaseShares};
 pub use snapshot::Snapshot;
 pub use spent::{Cost, Spent};
 pub use store::{Held, Lock, LockError, keep, remove_journals, save};

@@ -5,9 +5,10 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+use super::shares::BestMotion;
 use crate::dynamics::{MotionKind, Until};
-use crate::experiment::Experiment;
-use crate::measure::Measure;
+use crate::experiment::{Experiment, Parameter, RowSource};
+use crate::measure::{Measure, Settings};
 use crate::table::Table;
 use crate::text::number::compact;
 use crate::text::words::of_key;
@@ -27,6 +28,8 @@ pub struct Motions {
     pub settled_after: Vec<f64>,
     /// How the averages compare with the settled motion, where that was measured.
     pub settling: Option<Settling>,
+    /// Of random starts of several dampers: the best motion that each has.
+    pub best: Vec<BestMotion>,
 }
 
 /// Averages of runs over the cycles given against those of the motion that each run goes on to.
@@ -77,7 +80,7 @@ impl Settling {
         let rows = (0..table.rows()).filter(|&row| !settled[row].is_nan());
         let mut all: Vec<Deviation> = rows
             .map(|row| Deviation {
-                row: described(experiment, table, row),
+                row: row_in_words(experiment, table, row),
                 velocity_ratio: here[row],
                 settled: settled[row],
             })
@@ -95,6 +98,12 @@ impl Motions {
     /// Of the rows without a moved assumption; `None` where the motion is not measured.
     #[must_use]
     pub fn of(experiment: &Experiment, table: &Table) -> Option<Self> {
+        if let RowSource::Basins(_) = experiment.row_source() {
+            // A motion that few starts end in is a row like one that all do.
+            let Settings { skip, .. } = experiment.settings;
+            let (kinds, best) = (BTreeMap::new(), BestMotion::of(experiment, table));
+            return Some(Self { kinds, skip, settled_after: Vec::new(), settling: None, best });
+        }
         // Orbits of a branch are no runs, and most of them nobody would see.
         if experiment.is_whole() {
             return None;
@@ -110,7 +119,7 @@ impl Motions {
         let mut settled_after: Vec<f64> = cells.into_iter().filter(|cycles| !cycles.is_nan()).collect();
         settled_after.sort_by(f64::total_cmp);
         let settling = runs_on.then(|| Settling::of(experiment, &baseline)).flatten();
-        Some(Self { kinds, skip: experiment.settings.skip, settled_after, settling })
+        Some(Self { kinds, skip: experiment.settings.skip, settled_after, settling, best: Vec::new() })
     }
 
     /// Rows that come again, but only after the cycles left out.
@@ -126,9 +135,20 @@ impl Motions {
     }
 }
 
-/// A row by what is swept.
-fn described(experiment: &Experiment, table: &Table, row: usize) -> String {
-    let parts = experiment.swept.iter().filter_map(|parameter| {
+/// A row by what is swept: `f′ = 2.5, h′ = 50`; empty where nothing is.
+#[must_use]
+pub fn row_in_words(experiment: &Experiment, table: &Table, row: usize) -> String {
+    described(experiment, table, row, |_| true)
+}
+
+/// A row by those swept parameters that are wanted.
+pub(super) fn described(
+    experiment: &Experiment,
+    table: &Table,
+    row: usize,
+    wanted: impl Fn(Parameter) -> bool,
+) -> String {
+    let parts = experiment.swept.iter().filter(|parameter| wanted(**parameter)).filter_map(|parameter| {
         let column = of_key(parameter);
         let name = if parameter.symbol().is_empty() { column.replace('_', " ") } else { parameter.symbol().into() };
         let value = match (table.floats(&column), table.texts(&column)) {

@@ -110,14 +110,14 @@ impl Item {
         pairs.into_iter().map(|(key, value)| (key.to_owned(), value)).collect()
     }
 
-    /// The number of rows, those that refined curves will get not counted, of a branch the most, and of simulations at most.
+    /// The number of rows, those that refined curves will get not counted, of a branch the most, of random starts one a case, and of simulations at most.
     #[must_use]
     pub fn size(&self) -> (usize, u64) {
         let experiment = &self.source.experiment;
         let rows = match experiment.row_source() {
             RowSource::Search(optimise) => super::optimise::rows(optimise, &self.variants),
             RowSource::Branches(continuation) => super::orbit::points(continuation, &self.variants),
-            RowSource::Cases => super::job::jobs(experiment, &self.variants).len(),
+            RowSource::Cases | RowSource::Basins(_) => super::job::jobs(experiment, &self.variants).len(),
         };
         (rows, super::job::simulations(experiment, &self.variants))
     }

@@ -16,7 +16,7 @@ use crate::experiment::ExperimentId;
 pub const RECORD_FORMAT: u32 = 2;
 
 /// Raised when figures or reports of the same tables come out differently, so that they are made again.
-pub const PRESENTATION_VERSION: u32 = 6;
+pub const PRESENTATION_VERSION: u32 = 7;
 
 /// What became of one experiment.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -54,6 +54,15 @@ pub struct FileHash {
     pub bytes: u64,
     /// blake3, hexadecimal.
     pub blake3: String,
+}
+
+impl Failures {
+    /// Of the reasons, a row each.
+    pub(super) fn of<R: ToString>(reasons: impl IntoIterator<Item = R>) -> Self {
+        let mut reasons = reasons.into_iter();
+        let Some(first) = reasons.next() else { return Self::default() };
+        Self { rows: 1 + reasons.count(), first: first.to_string() }
+    }
 }
 
 impl FileHash {

@@ -27,12 +27,28 @@ pub enum RowFailure {
         /// What is wrong there.
         reason: Box<Self>,
     },
+    /// One of several starts has no end, and shares of the others would be those of none.
+    #[error("start {number}: {reason}")]
+    Start {
+        /// Its number, from 1.
+        number: usize,
+        /// What is wrong with it.
+        reason: Box<Self>,
+    },
     /// A measure is NaN.
     #[error("{0} has no value")]
     NoValue(String),
     /// A measure is maximised and not among those of the experiment.
     #[error("{0} is to be maximised and not measured")]
     NotMeasured(String),
+    /// No onset lies within the range: `before`, where the first point has events already, or else beyond the last.
+    #[error("{measure}: {}", if *before { "above zero at the first point already; let the range begin below" } else { "zero at every point; widen the range" })]
+    NoOnset {
+        /// What was to be above zero.
+        measure: String,
+        /// Whether all points have events.
+        before: bool,
+    },
     /// A maximum over no points.
     #[error("there is no grid to look for a maximum on")]
     NoGrid,

@@ -29,6 +29,9 @@ impl<'a> RowFingerprints<'a> {
         let Experiment { settings, measures, maximise, mean_over, .. } = experiment;
         let mut shared = blake3::Hasher::new();
         feed(&mut shared, &(SOLVER_VERSION, settings, measures, maximise, mean_over));
+        if let Some(starts) = &experiment.starts {
+            feed(&mut shared, &("starts", starts));
+        }
         Self { experiment, shared }
     }
 

@@ -13,6 +13,7 @@ use std::time::Duration;
 
 use rayon::prelude::*;
 
+use super::basins::run_basins;
 use super::chain::units;
 use super::evaluate::Evaluate;
 use super::event::{Event, EventHandler};
@@ -139,11 +140,12 @@ pub fn run<T: Send + Sync>(
                 for index in whole {
                     scope.spawn_fifo(move |_| {
                         let task = tasks[index];
-                        let finished = if let RowSource::Branches(_) = task.experiment.row_source() {
-                            run_branches(task, &meters[index], handler)
-                        } else {
-                            let engine = engine(index);
-                            run_optimisation(task, &Limited::each(&engine, task.limit), handler)
+                        let (meter, engine) = (&meters[index], engine(index));
+                        let limited = Limited::each(&engine, task.limit);
+                        let finished = match task.experiment.row_source() {
+                            RowSource::Branches(_) => run_branches(task, meter, handler),
+                            RowSource::Basins(_) => run_basins(task, &limited, meter, handler),
+                            RowSource::Cases | RowSource::Search(_) => run_optimisation(task, &limited, handler),
                         };
                         hand_over(index, undivided(task, finished));
                     });

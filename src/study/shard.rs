@@ -2,7 +2,7 @@
 //!
 //! The plan alone decides which rows belong to which shard, so tasks need no communication: the rows of an
 //! experiment are dealt out, the longest first, rows that follow each other together. Where all rows depend on each other (refined
-//! curves, searches, branches) the experiment is one shard's as a whole. A shard's table is that of the experiment with fewer rows and one column more, `row`, the
+//! curves, searches, branches), or how many there are is not known before (random starts), the experiment is one shard's as a whole. A shard's table is that of the experiment with fewer rows and one column more, `row`, the
 //! place of each in the whole table.
 
 use std::fmt;

@@ -63,8 +63,9 @@ fn remove_journal(layout: &Layout, id: &ExperimentId) {
 /// # Errors
 /// [`ParquetError`] if they cannot be written.
 pub fn keep(layout: &Layout, item: &Item, finished: &Finished) -> Result<(), ParquetError> {
-    // What the journal holds of an optimisation says more than its table, and half a branch is followed again.
-    if item.source.experiment.is_whole() || finished.failures.rows == finished.table.rows() {
+    // What the journal holds of an optimisation says more than its table, and half a branch is followed again: neither says what a
+    // row was computed from.
+    if finished.table.fingerprints.is_empty() || finished.failures.rows == finished.table.rows() {
         return Ok(());
     }
     earlier::add(layout, &item.source.experiment.id, &finished.table)

@@ -8,8 +8,8 @@ use super::maximise::Place;
 use super::record::Failures;
 use super::row_failure::RowFailure;
 use super::variant::Variant;
-use crate::experiment::{Experiment, Parameter, ParameterValue};
-use crate::measure::{Evaluated, Measure, PROOF, ProofOf, TraceColumn};
+use crate::experiment::{Experiment, Parameter};
+use crate::measure::{Evaluated, Measure, Measured, PROOF, ProofOf, TraceColumn};
 use crate::table::{Column, Data, RowFingerprint, Table};
 use crate::text::words;
 
@@ -26,8 +26,7 @@ pub(super) struct Row {
 
 /// How many rows have no numbers, and why the first has none.
 pub(super) fn failures(outcomes: &[&Outcome]) -> Failures {
-    let reasons: Vec<&RowFailure> = outcomes.iter().filter_map(|outcome| outcome.as_ref().err()).collect();
-    Failures { rows: reasons.len(), first: reasons.first().map(ToString::to_string).unwrap_or_default() }
+    Failures::of(outcomes.iter().filter_map(|outcome| outcome.as_ref().err()))
 }
 
 /// The table of an experiment. `outcomes` and `fingerprints` stand in the order of `jobs`.
@@ -67,15 +66,10 @@ pub(super) fn table(
             ));
             continue;
         }
-        let of = |part: fn(&crate::measure::Measured) -> f64| {
-            floats(&|row| row.evaluated.measured.get(index).map_or(f64::NAN, part))
-        };
-        let unit = measure.unit();
-        columns.push(Column::new(&name, of(|m| m.value)).with_unit(unit).with_symbol(measure.symbol()));
-        columns.push(Column::new(format!("{name}_num"), of(|m| m.numerical)).with_unit(unit));
-        columns.push(Column::new(format!("{name}_spread"), of(|m| m.spread)).with_unit(unit));
+        let of = |part: fn(&Measured) -> f64| floats(&|row| row.evaluated.measured.get(index).map_or(f64::NAN, part));
+        columns.extend(measured(*measure, of));
         if let Some(maximise) = experiment.maximise.as_ref().filter(|maximise| maximise.measure == *measure) {
-            let name = format!("{}_at_maximum", words::of_key(&maximise.over));
+            let name = maximise.column();
             let place = |part: fn(&Place) -> f64| floats(&|row| row.place.as_ref().map_or(f64::NAN, part));
             let unit = maximise.over.unit();
             columns.push(Column::new(&name, place(|p| p.at)).with_unit(unit).with_symbol(maximise.over.symbol()));
@@ -97,6 +91,16 @@ pub(super) fn table(
     Table { columns, metadata, fingerprints }
 }
 
+/// A measure with its errors.
+pub(super) fn measured(measure: Measure, of: impl Fn(fn(&Measured) -> f64) -> Data) -> [Column; 3] {
+    let (name, unit) = (words::of_key(&measure), measure.unit());
+    [
+        Column::new(&name, of(|it| it.value)).with_unit(unit).with_symbol(measure.symbol()),
+        Column::new(format!("{name}_num"), of(|it| it.numerical)).with_unit(unit),
+        Column::new(format!("{name}_spread"), of(|it| it.spread)).with_unit(unit),
+    ]
+}
+
 /// What proves the rows, in columns; a row without numbers has NaN and 0 there.
 pub(super) fn proof(rows: &[Option<&Evaluated>]) -> [Column; PROOF.len()] {
     PROOF.map(|column| {
@@ -116,11 +120,7 @@ fn swept_column(experiment: &Experiment, jobs: &[Job], parameter: Parameter) -> 
     let data = if !parameter.words().is_empty() {
         Data::Text(jobs.iter().map(|job| value(job).map_or_else(String::new, |word| words::of_key(&word))).collect())
     } else {
-        let number = |job: &Job| match value(job) {
-            Some(ParameterValue::Number(x)) => x,
-            Some(ParameterValue::Infinite) => f64::INFINITY,
-            _ => f64::NAN,
-        };
+        let number = |job: &Job| experiment.cases[job.case].number(parameter).unwrap_or(f64::NAN);
         Data::Float(jobs.iter().map(number).collect())
     };
     Column::new(words::of_key(&parameter), data).with_unit(parameter.unit()).with_symbol(parameter.symbol())

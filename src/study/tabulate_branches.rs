@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use super::doubt;
 use super::record::Failures;
 use super::row_failure::RowFailure;
-use super::tabulate::proof;
+use super::tabulate::{measured, proof};
 use super::variant::Variant;
 use crate::dynamics::{Orbit, Special};
 use crate::experiment::{BranchColumn, Continuation, Experiment, Stability};
@@ -70,8 +70,7 @@ impl BranchRow {
 
 /// Rows without numbers.
 pub(super) fn failures(rows: &[BranchRow]) -> Failures {
-    let reasons: Vec<&RowFailure> = rows.iter().filter_map(BranchRow::failure).collect();
-    Failures { rows: reasons.len(), first: reasons.first().map(ToString::to_string).unwrap_or_default() }
+    Failures::of(rows.iter().filter_map(BranchRow::failure))
 }
 
 /// The table.
@@ -112,10 +111,7 @@ pub(super) fn table(
         let of = |part: fn(&Measured) -> f64| {
             floats(&|row| row.measured.as_ref().map_or(f64::NAN, |it| it.measured.get(index).map_or(f64::NAN, part)))
         };
-        let (name, unit) = (words::of_key(measure), measure.unit());
-        columns.push(Column::new(&name, of(|it| it.value)).with_unit(unit).with_symbol(measure.symbol()));
-        columns.push(Column::new(format!("{name}_num"), of(|it| it.numerical)).with_unit(unit));
-        columns.push(Column::new(format!("{name}_spread"), of(|it| it.spread)).with_unit(unit));
+        columns.extend(measured(*measure, of));
     }
     let evaluated: Vec<Option<&Evaluated>> = rows.iter().map(|row| row.measured.as_ref().ok()).collect();
     columns.extend(proof(&evaluated));

@@ -81,8 +81,7 @@ impl Candidate {
 
 /// Rows without numbers that should have some.
 pub(super) fn failures(candidates: &[Candidate]) -> Failures {
-    let reasons: Vec<String> = candidates.iter().map(Candidate::failure).filter(|reason| !reason.is_empty()).collect();
-    Failures { rows: reasons.len(), first: reasons.first().cloned().unwrap_or_default() }
+    Failures::of(candidates.iter().map(Candidate::failure).filter(|reason| !reason.is_empty()))
 }
 
 /// The table.
@@ -112,11 +111,9 @@ pub(super) fn table(
     columns.push(texts("solver", &|_| solver.label()));
     columns.push(texts("variant", &|it| variants.get(it.variant).map_or_else(String::new, |one| one.label.clone())));
     for (index, measure) in experiment.measures.iter().enumerate() {
-        let name = words::of_key(measure);
-        let value = floats(&name, &|it| it.measured(index).value);
-        columns.push(value.with_unit(measure.unit()).with_symbol(measure.symbol()));
-        columns.push(floats(&format!("{name}_num"), &|it| it.measured(index).numerical).with_unit(measure.unit()));
-        columns.push(floats(&format!("{name}_spread"), &|it| it.measured(index).spread).with_unit(measure.unit()));
+        let of =
+            |part: fn(&Measured) -> f64| Data::Float(candidates.iter().map(|it| part(&it.measured(index))).collect());
+        columns.extend(super::tabulate::measured(*measure, of));
     }
     columns.extend(outcome(experiment, optimise, candidates));
     columns.push(texts("stopped", &|it| it.stopped.clone()));

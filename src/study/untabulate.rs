@@ -51,7 +51,7 @@ impl<'a> Cells<'a> {
         let named = experiment.measures.iter().find(|measure| measure.is_name());
         let motion = named.map(|measure| table.texts(&words::of_key(measure)));
         let place = experiment.maximise.as_ref().map(|maximise| {
-            let name = format!("{}_at_maximum", words::of_key(&maximise.over));
+            let name = maximise.column();
             Some([floats(&name)?, floats(&format!("{name}_num"))?])
         });
         let lists = table.columns.iter().filter_map(|column| match &column.data {

@@ -8,7 +8,7 @@ use super::evaluate::{Evaluate, Simulation, evaluate_guarded};
 use super::event::{Event, EventHandler};
 use super::job::{Job, evaluations, jobs, keeps_trace, measures_need_trace};
 use super::limited::Limited;
-use super::maximise::maximum;
+use super::maximise::Along;
 use super::mean::Averaging;
 use super::row_failure::RowFailure;
 use super::row_fingerprint::RowFingerprints;
@@ -210,15 +210,15 @@ fn simulate(
     let trace = simulation.trace.filter(|_| measures_need_trace(&experiment.measures));
     let shape = simulation.shape.filter(|_| needs_shape(experiment));
     let look = Simulation { trace, energies: None, shape, each_cycle: None, rigour: Rigour::Look, ..simulation };
-    let (found, place) = maximum(evaluate, &look, maximise, measure, done)?;
+    let (found, place) = Along { evaluate, simulation: look, maximise, measure, done }.found()?;
     if job.variant != 0 {
         return Ok(Row { evaluated: found, place: Some(place) });
     }
-    // The row itself is a result: the maximum once more, with all that proves it.
-    let mut at_maximum = recipe.clone();
-    at_maximum.set(maximise.over, crate::experiment::ParameterValue::Number(place.at))?;
+    // The row itself is a result: the point once more, with all that proves it.
+    let mut there = recipe.clone();
+    there.set(maximise.over, crate::experiment::ParameterValue::Number(place.at))?;
     let wanted = simulation.trace.filter(|_| keeps_trace(experiment, job) || trace.is_some());
-    let evaluated = evaluate_guarded(evaluate, &Simulation { recipe: &at_maximum, trace: wanted, ..simulation })?;
+    let evaluated = evaluate_guarded(evaluate, &Simulation { recipe: &there, trace: wanted, ..simulation })?;
     done();
     Ok(Row { evaluated, place: Some(place) })
 }

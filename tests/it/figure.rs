@@ -1,7 +1,7 @@
 //! Figures. Each test leaves its picture in `target/tmp`, to be looked at.
 
 use shotdamp::experiment::{
-    AxisScale, Band, Experiment, FigureSpec, Level, Maximise, Panel, Parameter, PeakMarks, Strip,
+    Axis, AxisScale, Band, Experiment, FigureSpec, Level, Maximise, Panel, Parameter, PeakMarks, SearchPoint, Strip,
 };
 use shotdamp::figure::{Beside, FigureError, Known, Picture, Quoted, QuotedAt, draw};
 use shotdamp::measure::Measure;
@@ -18,7 +18,21 @@ fn picture(name: &str, experiment: &Experiment, spec: &FigureSpec, table: &Table
     assert_eq!(&png[..8], b"\x89PNG\r\n\x1a\n");
     assert!(png.len() < 250_000, "{name}: {} bytes are too many to commit", png.len());
     assert!(picture.svg.len() < 120_000, "{name}: {} bytes of SVG are too many to commit", picture.svg.len());
+    for (text, top) in lines_of_text(&picture.svg) {
+        assert!(top > 0.0, "{name}: `{text}` is cut off at the top");
+    }
     picture
+}
+
+/// The level texts of a drawing with the height of their upper edge.
+fn lines_of_text(svg: &str) -> Vec<(String, f64)> {
+    let number = |text: &str, name: &str| -> f64 {
+        let (_, from) = text.split_once(&format!(" {name}=\"")).unwrap();
+        from.split_once('"').unwrap().0.parse().unwrap()
+    };
+    let level = svg.split("<text").skip(1).filter(|text| !text.contains("rotate("));
+    let named = |text: &str| text.split_once('>').and_then(|(_, rest)| rest.split_once('<')).unwrap().0.to_owned();
+    level.map(|text| (named(text), number(text, "y") - 0.75 * number(text, "font-size"))).collect()
 }
 
 /// Width and height in pixels of the SVG.
@@ -129,6 +143,40 @@ fn panels_stand_above_one_x_axis() {
 }
 
 #[test]
+fn a_legend_above_its_panel_stays_on_the_sheet_and_is_not_said_twice() {
+    let cases = ["m′ = 0.02, aω²/g = 1.73", "m′ = 0.1, aω²/g = 1.73", "m′ = 0.19, aω²/g = 1.73"];
+    let solvers = ["event_driven", "fixed_step"];
+    let times = log_range(1e-4, 1e-1, 11);
+    let rows: Vec<(&str, &str, f64)> = solvers
+        .iter()
+        .flat_map(|solver| cases.iter().flat_map(|case| times.iter().map(|time| (*solver, *case, *time))))
+        .collect();
+    // Points everywhere: no corner is left for a legend.
+    let scattered = |row: usize| 10_f64.powf(-15.0 + f64::from(u32::try_from(row * 37 % 72).unwrap()) / 5.0);
+    let errors: Vec<f64> = (0..rows.len()).map(scattered).collect();
+    // The second case has nothing to show in the lower panel.
+    let events = rows.iter().zip(&errors).map(|(row, error)| if row.1 == cases[1] { f64::NAN } else { *error });
+    let table = Table::default()
+        .with(texts("variant", vec!["baseline"; rows.len()]))
+        .with(texts("solver", rows.iter().map(|row| row.0).collect::<Vec<_>>()))
+        .with(texts("case", rows.iter().map(|row| row.1).collect::<Vec<_>>()))
+        .with(numbers("time", "", "s", rows.iter().map(|row| row.2).collect()))
+        .with(numbers("event_error", "", "", events.collect()))
+        .with(numbers("error", "", "", errors));
+    let one = |column: &str, label: &str| {
+        let y = Axis { label: Some(label.into()), ..axis(column, AxisScale::Log) };
+        let by = vec!["solver".into(), "case".into()];
+        let guides = vec![Level { at: 1e-3, label: "spread of the chaotic motion".into() }];
+        Panel { by, y: vec![y], guides, markers: true, ..panel("time", AxisScale::Log, &[]) }
+    };
+    let below = Panel { guides: Vec::new(), ..one("event_error", "Error of event times / T") };
+    let panels = vec![one("error", "Relative error"), below];
+    let picture = picture("legend-above", &limit_stop(), &figure(panels), &table, &[]);
+    let said = |name: &str| lines_of_text(&picture.svg).iter().filter(|(text, _)| text.ends_with(name)).count();
+    assert_eq!(cases.map(said), [1, 1, 1], "each case once, and no case has another look in the lower panel");
+}
+
+#[test]
 fn few_points_carry_markers() {
     let mass = [0.01, 0.02, 0.05, 0.1, 0.15, 0.2];
     let twice: Vec<f64> = mass.iter().chain(&mass).copied().collect();
@@ -142,8 +190,13 @@ fn few_points_carry_markers() {
         .with(numbers("displacement_ratio", "η", "", eta))
         .with(numbers("velocity_ratio", "ψ", "", psi));
     let mut experiment = limit_stop();
-    experiment.maximise =
-        Some(Maximise { measure: Measure::VelocityRatio, over: Parameter::ForceRatio, grid: Vec::new(), refine: 3 });
+    experiment.maximise = Some(Maximise {
+        measure: Measure::VelocityRatio,
+        over: Parameter::ForceRatio,
+        grid: Vec::new(),
+        refine: 3,
+        wanted: SearchPoint::Maximum,
+    });
     let spec = figure(vec![Panel {
         by: vec!["solver".into()],
         markers: true,

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-use shotdamp::experiment::BranchColumn;
+use shotdamp::experiment::{BasinColumn, BranchColumn};
 use shotdamp::measure::Measure;
 use shotdamp::report::RELEASED;
 use shotdamp::study::Study;
@@ -108,7 +108,7 @@ fn every_column_of_every_experiment_is_explained() {
     }
     let desk = Desk::new();
     desk.run(2, &MadeUp::default(), &IgnoreEvents);
-    let made_of = |name: &str| ["_num", "_spread", "_at_maximum"].iter().any(|end| name.ends_with(end));
+    let made_of = |name: &str| ["_num", "_spread", "_at_maximum", "_at_onset"].iter().any(|end| name.ends_with(end));
     for id in ["ch3-stop", "ch3-gap"] {
         columns.extend(desk.table(id).columns.into_iter().map(|column| column.name).filter(|name| !made_of(name)));
     }
@@ -134,6 +134,13 @@ fn the_table_of_measures_is_that_of_the_program() {
 fn the_columns_of_branches_are_those_of_the_program() {
     let rows: String =
         BranchColumn::ALL.iter().map(|column| format!("| `{}` | {} |\n", column.name(), column.about())).collect();
+    assert!(document("docs/tables.md").contains(&rows), "docs/tables.md should hold\n{rows}");
+}
+
+#[test]
+fn the_columns_of_random_starts_are_those_of_the_program() {
+    let rows: String =
+        BasinColumn::ALL.iter().map(|column| format!("| `{}` | {} |\n", column.name(), column.about())).collect();
     assert!(document("docs/tables.md").contains(&rows), "docs/tables.md should hold\n{rows}");
 }
 

@@ -75,12 +75,14 @@ pub fn limit_stop() -> Experiment {
         mean_over: Vec::new(),
         optimise: None,
         orbit: None,
+        starts: None,
         moved: None,
         measures: vec![Measure::VelocityRatio],
         trace: None,
         energies: None,
         shape: None,
         figures: vec![figure(vec![panel("force_ratio", AxisScale::Log, &["velocity_ratio"])])],
+        without_source: Vec::new(),
     }
 }
 

@@ -8,6 +8,7 @@
 
 mod accuracy;
 mod architecture;
+mod basins;
 mod branches;
 mod calibrate;
 mod check;
@@ -44,6 +45,7 @@ mod shard;
 mod solver_version;
 mod spec;
 mod spec_map;
+mod stated;
 mod structures;
 mod study;
 mod table;

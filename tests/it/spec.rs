@@ -244,7 +244,7 @@ pub(crate) fn all_mistakes_of_a_file_come_at_once_with_their_places() {
             "13:51 `many` is not a number of points | write for example 25 points",
             "15:55 `-1 cycles` is not a number of cycles | write for example 25 cycles",
             "16:27 `ceiling_impact` is not a measure | did you mean `ceiling_impacts`?",
-            "17:61 a band has no form `wide` | known are `spread`, `none`, `seeds`",
+            "17:61 a band has no form `wide` | known are `spread`, `none`, `seeds`, `stacked`",
         ]
     );
     let plain = problems.to_string();
@@ -322,6 +322,14 @@ pub(crate) fn mistakes_that_a_person_makes_are_told_where_they_stand() {
         (
             format!("{GOOD}maximise: {{velocity_ratio: {{over: force_ratio, in: [1, 2]}}}}\n"),
             "13:3 `force_ratio` is swept and maximised over at once | take it out of `sweep`",
+        ),
+        (
+            format!("{GOOD}onset: {{velocity_ratio: {{over: force_ratio, in: [1, 2]}}}}\n"),
+            "18:1 `velocity_ratio` has no onset: it is no number of events | events are counted by separations, floor_impacts, ceiling_impacts, stop_impacts",
+        ),
+        (
+            format!("{GOOD}onset: {{separations: {{over: force_ratio, in: [2]}}}}\n"),
+            "18:1 an onset lies between two values of a parameter that varies smoothly",
         ),
         (
             with("solver: event_driven", "solver: {fixed_step: {time_step: 1 s}}"),
@@ -731,8 +739,9 @@ pub(crate) fn every_shipped_experiment_loads_and_resolves_under_every_variant() 
     }
     assert_eq!(
         ids.len(),
-        27,
-        "23 of the study, the motion at two gap clearances, its kind, its branches, and what coexists: {ids:?}"
+        30,
+        "23 of the study, the motion at two gap clearances, its kind, its branches, what coexists with its shares, a design, and where the \
+         ceiling is met: {ids:?}"
     );
     // At some 15 ns a step: half a minute of one core.
     assert!(fixed_steps < 2e9, "{fixed_steps:e} fixed steps");

@@ -34,6 +34,7 @@ mod tape;
 pub use exponent::Exponent;
 pub use multipliers::{Fundamental, Multiplier};
 pub use name::{Motion, MotionKind};
+pub use recurrence::Recurring;
 
 pub(super) use multipliers::Period;
 pub(super) use name::{kind, name};

@@ -12,7 +12,7 @@ use std::str::FromStr;
 
 use super::exponent::Exponent;
 use super::multipliers::{Multiplier, Period};
-use super::recurrence::{Scale, candidates, closing, settled_after};
+use super::recurrence::{Recurring, Scale, candidates, closing, settled_after};
 use super::tape::{Step, Tape};
 use crate::dynamics::EngineError;
 use crate::dynamics::block::Block;
@@ -81,6 +81,8 @@ pub struct Motion {
     pub exponent: Option<Exponent>,
     /// Cycles after which the motion comes again to within a millionth.
     pub settled_after: Option<u64>,
+    /// Its states at the ends of cycles, by which another run is found to end in the same motion; `None` where nothing comes again.
+    pub recurring: Option<Recurring>,
 }
 
 impl MotionKind {
@@ -197,7 +199,7 @@ pub(in crate::dynamics) fn name(system: &HybridSystem, tape: &Tape, window: usiz
         }
         _ => MotionKind::NotSettled,
     };
-    Ok(Motion { kind, multipliers: Vec::new(), residual: f64::NAN, exponent, settled_after: None })
+    Ok(Motion { kind, multipliers: Vec::new(), residual: f64::NAN, exponent, settled_after: None, recurring: None })
 }
 
 /// True if the last `window` cycles could show that the motion is a transient: the slowest one that their contact states know gets as
@@ -240,6 +242,7 @@ fn closes(system: &HybridSystem, scale: &Scale, tape: &Tape, period: usize) -> R
         residual,
         exponent,
         settled_after: Some(settled_after as u64),
+        recurring: Some(Recurring::new(scale, &tape.ends[last + 1 - period..], SETTLED)),
     }))
 }
 

@@ -14,7 +14,7 @@ const TRIED: usize = 4;
 const LEAST: f64 = 1e-2;
 
 /// The motion's own units: what its lengths and speeds reach, of structure and particles each.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq)]
 pub(in crate::dynamics) struct Scale {
     /// Coordinates of the structure.
     order: usize,
@@ -82,6 +82,34 @@ impl Scale {
             return f64::INFINITY;
         }
         self.miss(one, other).fold(0.0, |most, x| most.max(x.abs()))
+    }
+}
+
+/// A motion that comes again, by its states at the ends of the cycles of one period.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Recurring {
+    scale: Scale,
+    ends: Vec<End>,
+    /// How far the run may be from the orbit that closes, in units of the motion.
+    within: f64,
+}
+
+impl Recurring {
+    pub(super) fn new(scale: &Scale, ends: &[End], within: f64) -> Self {
+        Self { scale: scale.clone(), ends: ends.to_vec(), within }
+    }
+
+    /// Both are the same motion, be it some cycles later: each run is as near to its orbit as its naming asks for, so that two of one
+    /// orbit are no farther apart than both of that together.
+    #[must_use]
+    pub fn is(&self, other: &Self) -> bool {
+        let Some(last) = self.ends.last() else { return false };
+        let unit = |i: usize| self.within * self.scale.unit(i) + other.within * other.scale.unit(i);
+        let meets = |end: &End| {
+            let mut pairs = end.state.iter().zip(&last.state).enumerate();
+            end.contacts == last.contacts && pairs.all(|(i, (a, b))| (a - b).abs() <= unit(i))
+        };
+        self.ends.len() == other.ends.len() && other.ends.iter().any(meets)
     }
 }
 

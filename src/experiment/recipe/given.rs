@@ -62,6 +62,8 @@ pub enum AssumptionValue {
     Choice(String),
     /// A curve through points.
     Curve(Curve),
+    /// Places, each of one coordinate a side, as shares of the sides.
+    Places(Vec<Vec<f64>>),
 }
 
 /// The assumptions in force: a value for each, and the sheet that declares them.
@@ -107,12 +109,32 @@ impl Assumable for Curve {
     }
 }
 
+/// Places that an assumption lists.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct PlaceList(pub Vec<Vec<f64>>);
+
+impl Assumable for PlaceList {
+    fn of(value: &AssumptionValue) -> Option<Self> {
+        if let AssumptionValue::Places(places) = value { Some(Self(places.clone())) } else { None }
+    }
+}
+
+impl Assumable for super::MassReading {
+    fn of(value: &AssumptionValue) -> Option<Self> {
+        match value {
+            AssumptionValue::Number(share) => Some(Self::Share(*share)),
+            AssumptionValue::Choice(word) => from_word(word),
+            AssumptionValue::Curve(_) | AssumptionValue::Places(_) => None,
+        }
+    }
+}
+
 impl Assumable for FieldValue {
     fn of(value: &AssumptionValue) -> Option<Self> {
         match value {
             AssumptionValue::Number(number) => Some(Self::Number(*number)),
             AssumptionValue::Choice(word) => Some(Self::Word(word.clone())),
-            AssumptionValue::Curve(_) => None,
+            AssumptionValue::Curve(_) | AssumptionValue::Places(_) => None,
         }
     }
 }
@@ -141,7 +163,7 @@ readings!(
     Take,
     super::Carried,
     super::Reference,
-    super::MassReading,
+    super::ArrayOrder,
     super::ForcingOrNatural,
     crate::measure::Comparison
 );
@@ -151,7 +173,7 @@ impl Assumable for super::FloorStiffness {
         match value {
             AssumptionValue::Number(stiffness) => Some(Self::Stiffness(*stiffness)),
             AssumptionValue::Choice(word) => from_word(word),
-            AssumptionValue::Curve(_) => None,
+            AssumptionValue::Curve(_) | AssumptionValue::Places(_) => None,
         }
     }
 }
@@ -161,7 +183,7 @@ impl Assumable for super::ImpulseTime {
         match value {
             AssumptionValue::Number(seconds) => Some(Self::Seconds(*seconds)),
             AssumptionValue::Choice(word) => from_word(word),
-            AssumptionValue::Curve(_) => None,
+            AssumptionValue::Curve(_) | AssumptionValue::Places(_) => None,
         }
     }
 }
@@ -171,7 +193,7 @@ impl Assumable for super::ContactDampingRatio {
         match value {
             AssumptionValue::Number(ratio) => Some(Self::Ratio(*ratio)),
             AssumptionValue::Choice(word) => from_word(word),
-            AssumptionValue::Curve(_) => None,
+            AssumptionValue::Curve(_) | AssumptionValue::Places(_) => None,
         }
     }
 }

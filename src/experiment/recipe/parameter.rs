@@ -71,6 +71,8 @@ pub enum Parameter {
     DamperX,
     /// The same along the second side.
     DamperY,
+    /// Which of the places that an assumption lists, from 1, of the force and of every damper that stands at one.
+    Place,
     /// Amplitude of a harmonic force, N.
     Force,
     /// J, N s.
@@ -155,7 +157,7 @@ impl Parameter {
             Self::Dampers => ("", Words(&[Value::With, Value::Without]), None),
             Self::FloorTuning => ("", Words(&[Value::Tuned, Value::Untuned]), DAMPER),
             Self::MassReading => ("", Words(&[Value::Total, Value::Modal]), DAMPER),
-            Self::Mode => ("", Ratio, None),
+            Self::Mode | Self::Place => ("", Ratio, None),
             Self::ForcedMode => ("", Ratio, EXCITATION),
             Self::Modes => ("", Ratio, STRUCTURE),
             Self::Length | Self::Width | Self::Thickness => ("", Quantity(Length), STRUCTURE),
@@ -191,7 +193,7 @@ impl Parameter {
     /// It takes numbers, and all between two of them.
     #[must_use]
     pub fn varies_smoothly(self) -> bool {
-        let is_counted = matches!(self, Self::Mode | Self::ForcedMode | Self::Modes | Self::DamperCount);
+        let is_counted = matches!(self, Self::Mode | Self::ForcedMode | Self::Modes | Self::DamperCount | Self::Place);
         self.words().is_empty() && !is_counted
     }
 
@@ -264,6 +266,16 @@ impl Recipe {
                 _ => return Err(nothing("no pulse")),
             },
             Parameter::Mode => self.mode = Some(whole(number()?)?),
+            Parameter::Place => {
+                let chosen = whole(number()?)?;
+                let mut listed = self.excitation.at.choose(chosen);
+                for damper in &mut self.dampers {
+                    listed |= damper.at.choose(chosen);
+                }
+                if !listed {
+                    return Err(nothing("no list of places: write `at: {assumed: NAME}`"));
+                }
+            }
             Parameter::Dampers => self.without_dampers = value == ParameterValue::Without,
             Parameter::DampingRatio
             | Parameter::Modes

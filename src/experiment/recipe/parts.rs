@@ -101,6 +101,19 @@ pub struct ArrayRecipe {
     /// Distance that it keeps from the ends of the structure, m: one that would come nearer is moved inwards as a whole.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub margin: Option<Given>,
+    /// In which order gaps are given to its dampers; by columns unless it is stated.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub order: Option<Given<ArrayOrder>>,
+}
+
+/// In which order the dampers of an array are counted, from the corner where both sides start.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ArrayOrder {
+    /// Along the second side first.
+    Columns,
+    /// Along the first side first.
+    Rows,
 }
 
 /// Mass of particle and enclosure.
@@ -114,13 +127,15 @@ pub enum MassRecipe {
 }
 
 /// What the mass ratio of a damper on a beam or plate is a share of.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum MassReading {
     /// The structure's mass.
     Total,
     /// Its first modal mass where the largest amplitude is one.
     Modal,
+    /// This share of the structure's mass.
+    Share(f64),
 }
 
 /// A structure without its dampers, or with them fixed to it.
@@ -158,7 +173,7 @@ pub enum GapRecipe {
     /// h of the dampers of an array, m, filled in one of two ways.
     Filled {
         /// The same in all of them.
-        uniform: f64,
+        uniform: Given,
         /// One a damper.
         optimised: Vec<f64>,
         /// Which of the two.

@@ -2,7 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::parts::{ArrayRecipe, Part, RecipeError};
+use super::given::{AssumptionName, Given, Inputs, PlaceList};
+use super::parts::{ArrayOrder, ArrayRecipe, Part, RecipeError};
 use crate::scene::{Kind, Model, Point};
 
 /// A place, one coordinate a side; none on a single mass.
@@ -10,13 +11,22 @@ use crate::scene::{Kind, Model, Point};
 pub struct PlaceRecipe(pub Vec<Coordinate>);
 
 /// One coordinate of a place.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Coordinate {
     /// Share of the side, 0 to 1.
     Share(f64),
     /// m from the side's start.
     Length(f64),
+    /// That of one of the places that an assumption lists, as a share of the side.
+    Listed {
+        /// The assumption.
+        of: AssumptionName,
+        /// Which place, from 1.
+        number: u32,
+        /// Which side, from 0.
+        side: usize,
+    },
 }
 
 impl PlaceRecipe {
@@ -24,6 +34,23 @@ impl PlaceRecipe {
     #[must_use]
     pub fn at_shares(shares: &[f64]) -> Self {
         Self(shares.iter().map(|share| Coordinate::Share(*share)).collect())
+    }
+
+    /// The first of the places that an assumption lists, on a structure of so many sides.
+    #[must_use]
+    pub fn listed(of: &AssumptionName, sides: usize) -> Self {
+        Self((0..sides).map(|side| Coordinate::Listed { of: of.clone(), number: 1, side }).collect())
+    }
+
+    /// Chooses another place of the list; false if this is not a place of one.
+    pub(super) fn choose(&mut self, chosen: u32) -> bool {
+        let mut listed = false;
+        for coordinate in &mut self.0 {
+            if let Coordinate::Listed { number, .. } = coordinate {
+                (*number, listed) = (chosen, true);
+            }
+        }
+        listed
     }
 
     /// Moves one coordinate; false if there is none.
@@ -38,11 +65,12 @@ pub(super) struct Places<'a> {
     kind: &'static Kind,
     sides: Vec<f64>,
     model: &'a dyn Model,
+    inputs: &'a Inputs<'a>,
 }
 
 impl<'a> Places<'a> {
-    pub(super) fn on(kind: &'static Kind, model: &'a dyn Model) -> Self {
-        Self { kind, sides: model.sides(), model }
+    pub(super) fn on(kind: &'static Kind, model: &'a dyn Model, inputs: &'a Inputs<'a>) -> Self {
+        Self { kind, sides: model.sides(), model, inputs }
     }
 
     /// The point of a place.
@@ -91,14 +119,14 @@ impl<'a> Places<'a> {
             }
         }
         let offset = |side: usize, i: u32| start[side] + f64::from(i) * spacing[side];
-        let mut points = Vec::new();
-        for i in 0..count[0] {
-            for j in 0..count.get(1).copied().unwrap_or(1) {
-                let coordinates = (0..sides).map(|side| offset(side, [i, j][side])).collect();
-                points.push(self.checked(coordinates, part)?);
-            }
-        }
-        Ok(points)
+        let (columns, rows) = (count[0], count.get(1).copied().unwrap_or(1));
+        let order = array.order.as_ref().map_or(Ok(ArrayOrder::Columns), |order| self.inputs.get(order))?;
+        let steps: Vec<[u32; 2]> = match order {
+            ArrayOrder::Columns => (0..columns).flat_map(|i| (0..rows).map(move |j| [i, j])).collect(),
+            ArrayOrder::Rows => (0..rows).flat_map(|j| (0..columns).map(move |i| [i, j])).collect(),
+        };
+        let point = |step: &[u32; 2]| self.checked((0..sides).map(|side| offset(side, step[side])).collect(), part);
+        steps.iter().map(point).collect()
     }
 
     fn coordinates(&self, place: &PlaceRecipe, part: Part) -> Result<Vec<f64>, RecipeError> {
@@ -110,15 +138,29 @@ impl<'a> Places<'a> {
             };
             return Err(RecipeError::Part { part, message });
         }
-        Ok(place
-            .0
-            .iter()
-            .zip(&self.sides)
-            .map(|(coordinate, side)| match coordinate {
-                Coordinate::Share(share) => share * side,
-                Coordinate::Length(length) => *length,
-            })
-            .collect())
+        let coordinate = |(coordinate, side): (&Coordinate, &f64)| match coordinate {
+            Coordinate::Share(share) => Ok(share * side),
+            Coordinate::Length(length) => Ok(*length),
+            Coordinate::Listed { of, number, side: along } => Ok(self.listed(of, *number, *along, part)? * side),
+        };
+        place.0.iter().zip(&self.sides).map(coordinate).collect()
+    }
+
+    /// One coordinate of a place that an assumption lists.
+    fn listed(&self, of: &AssumptionName, number: u32, side: usize, part: Part) -> Result<f64, RecipeError> {
+        let PlaceList(places) = self.inputs.get(&Given::Assumed(of.clone()))?;
+        // A list of one place is that place, whichever is chosen of longer ones.
+        let index = if places.len() == 1 { Some(0) } else { number.checked_sub(1) };
+        let share = index.and_then(|index| places.get(index as usize)?.get(side));
+        share.copied().ok_or_else(|| RecipeError::Part {
+            part,
+            message: format!(
+                "`{of}` lists {} places of {} coordinates, and none is number {number} of {}",
+                places.len(),
+                places.first().map_or(0, Vec::len),
+                self.kind.what
+            ),
+        })
     }
 
     fn checked(&self, coordinates: Vec<f64>, part: Part) -> Result<Point, RecipeError> {

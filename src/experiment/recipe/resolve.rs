@@ -110,7 +110,7 @@ impl Recipe {
             let message = format!("there is no mode {mode} in a model of {modes}");
             return Err(RecipeError::Part { part: Part::Structure, message });
         }
-        let places = Places::on(kind, model);
+        let places = Places::on(kind, model, inputs);
         let mut placed = Vec::new();
         for (index, damper) in self.dampers_in_place().iter().enumerate() {
             placed.extend(damper.place(&base, &places, index)?);
@@ -263,6 +263,7 @@ impl DamperRecipe {
         Ok(match base.inputs.get(&self.mass_reading)? {
             MassReading::Total => base.mass,
             MassReading::Modal => base.structure.model().modal_mass(),
+            MassReading::Share(share) => share * base.mass,
         })
     }
 }
@@ -300,7 +301,7 @@ impl Placed<'_> {
             GapRecipe::Gap(gap) => inputs.get(gap)?,
             GapRecipe::Ratios(ratios) => by_ratio(each(ratios)?)?,
             GapRecipe::Gaps(gaps) => each(gaps)?,
-            GapRecipe::Filled { uniform, filling: Filling::Uniform, .. } => *uniform,
+            GapRecipe::Filled { uniform, filling: Filling::Uniform, .. } => inputs.get(uniform)?,
             GapRecipe::Filled { optimised, filling: Filling::Optimised, .. } => each(optimised)?,
             GapRecipe::Infinite => f64::INFINITY,
         };

@@ -52,7 +52,7 @@ slots! {
     UndampedMass: None, &["base", "loaded"], "what one mass weighs in the run without dampers";
     MassMeasure: None, &["jump", "after", "level"], "how the mass measure compares kinetic energies with those of the clean structure";
     Modes: Some(Quantity::Count), &[], "number of modes, along each side of a plate";
-    MassReading: None, &["total", "modal"], "whose mass a mass ratio is a share of";
+    MassReading: RATIO, &["total", "modal"], "whose mass a mass ratio is a share of, or which share of the structure's";
     MasslessRatio: RATIO, &[], "mass ratio that stands for 0 under a resilient surface";
     GapFrequency: None, &["clean", "loaded"], "whose first natural frequency stands in a gap ratio";
     StiffnessRatio: RATIO, &[], "stiffness of a surface over that of the structure's spring";
@@ -63,6 +63,7 @@ slots! {
     StopLength: of(Dimension::Length), &[], "length of a limit stop";
     StopRestitution: RATIO, &[], "restitution of a limit stop";
     CeilingMassRatio: RATIO, &[], "share of the base mass that the ceiling side of soft walls carries";
+    Order: None, &["columns", "rows"], "in which order the dampers of an array are counted";
     Margin: of(Dimension::Length), &[], "distance that an array keeps from the ends of the structure";
     FrequencyReference: None, &["base", "loaded"], "whose natural frequency a frequency ratio of 1 means on one mass, under impulses";
     HarmonicReference: None, &["base", "loaded"], "the same under a harmonic force";

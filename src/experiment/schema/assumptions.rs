@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use serde_json::{Value, json};
 
 use super::experiment;
-use super::parts::{Object, any_of, form, list, number, one_of_words, quantity, reference, text};
+use super::parts::{Object, any_of, form, list, number, one_of_words, quantity, ratio, reference, text};
 use crate::experiment::assumption_reader::COUNTED;
 use crate::experiment::assumption_sheet::{AssumptionSheet, Quantity, Takes};
 use crate::experiment::quantity::Dimension;
@@ -19,10 +19,18 @@ use crate::text::words::of_key;
 pub fn assumptions_schema() -> Value {
     let mut schema = Object::new("Each input that the study uses and does not state, by name")
         .optional("defaults", defaults())
+        .optional("stated", stated())
         .schema();
     schema["additionalProperties"] = entry();
     schema["$schema"] = json!("http://json-schema.org/draft-07/schema#");
     schema["title"] = json!("Assumptions");
+    schema
+}
+
+/// What the text states, by chapter.
+fn stated() -> Value {
+    let mut schema = Object::new("Inputs that the text states, by chapter").schema();
+    schema["additionalProperties"] = experiment::stated();
     schema
 }
 
@@ -42,7 +50,13 @@ fn entry() -> Value {
 
 /// A number with or without unit, a reading, or a curve.
 fn value() -> Value {
-    any_of("A value of its kind", vec![json!({"type": ["number", "string"]}), curve()])
+    any_of("A value of its kind", vec![json!({"type": ["number", "string"]}), curve(), places()])
+}
+
+/// Shares of the sides.
+fn places() -> Value {
+    let share = || ratio("A share of the side");
+    list("Places", any_of("A place", vec![share(), list("One coordinate a side", share())]))
 }
 
 /// Damping against acceleration.

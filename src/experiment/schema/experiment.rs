@@ -5,7 +5,7 @@ use serde_json::{Map, Value, json};
 use super::parts::{
     NUMBER, Object, PREFIX, any_of, count, list, one_or_more, quantity, reference, text, word, words_of,
 };
-use super::{assumptions, continuation, figure, optimise, scene, sweep};
+use super::{assumptions, continuation, figure, optimise, scene, starts, sweep};
 use crate::dynamics::Until;
 use crate::experiment::about_study::MOST_CHAPTERS;
 use crate::experiment::assumption_reader::MOST_CYCLES;
@@ -13,7 +13,7 @@ use crate::experiment::assumption_sheet::AssumptionSheet;
 use crate::experiment::quantity::Dimension;
 use crate::experiment::recipe::Parameter;
 use crate::experiment::validate::LISTS;
-use crate::experiment::word::words;
+use crate::experiment::word::{from_word, words};
 use crate::measure::{CycleValue, Measure, ShapeOf};
 
 /// JSON Schema of an experiment; of the study's assumptions it offers those that fit a place.
@@ -23,18 +23,21 @@ pub fn experiment_schema(sheet: &AssumptionSheet) -> Value {
     let parts = [sweep::definitions(), scene::definitions(), figure::definitions(), assumptions::definitions(sheet)];
     definitions.extend(parts.into_iter().flatten());
     definitions.insert("maximisation".into(), maximisation());
-    // Rows of an optimisation are candidates, those of an orbit its branches' motions.
+    // Rows of an optimisation are candidates, those of an orbit its branches' motions, those of starts the motions they end in.
     let of_a_row = LISTS.map(|key| json!({"required": [key]}));
     let mut schema = Object::new("An experiment")
         .required("title", text("A few words"))
         .optional("source", source())
         .required("about", text("One or two sentences"))
+        .optional("stated", stated())
         .required("scene", scene::scene())
         .optional("sweep", reference("sweep"))
         .optional("mean_over", reference("sweep"))
         .optional("maximise", maximise())
+        .optional("onset", onset())
         .optional("optimise", optimise::optimise())
         .optional("orbit", continuation::continuation())
+        .optional("starts", starts::starts())
         .required("measure", one_or_more("What is measured", reference("measure")))
         .optional("run", run(sheet))
         .optional("trace", trace())
@@ -46,13 +49,19 @@ pub fn experiment_schema(sheet: &AssumptionSheet) -> Value {
         .exclusive(&["figure", "figures"])
         .exclusive(&LISTS)
         .exclusive(&["optimise", "sweep"])
-        .exclusive(&["optimise", "maximise"])
+        .exclusive(&["maximise", "onset", "optimise"])
         .exclusive(&["orbit", "sweep"])
         .exclusive(&["orbit", "mean_over"])
         .exclusive(&["orbit", "maximise"])
+        .exclusive(&["orbit", "onset"])
         .exclusive(&["orbit", "optimise"])
+        .exclusive(&["starts", "mean_over"])
+        .exclusive(&["starts", "maximise"])
+        .exclusive(&["starts", "onset"])
+        .exclusive(&["starts", "optimise"])
+        .exclusive(&["starts", "orbit"])
         .rule(json!({
-            "if": {"anyOf": [{"required": ["optimise"]}, {"required": ["orbit"]}]},
+            "if": {"anyOf": [{"required": ["optimise"]}, {"required": ["orbit"]}, {"required": ["starts"]}]},
             "then": {"not": {"anyOf": of_a_row}},
         }))
         .schema();
@@ -70,6 +79,16 @@ fn source() -> Value {
         .schema()
 }
 
+/// What a text states of the inputs: the place, and the keys with their values.
+pub(super) fn stated() -> Value {
+    let number = || json!({"type": ["number", "string"]});
+    let mut inputs = Object::new("What this table, figure or section states, by key").schema();
+    inputs["additionalProperties"] = any_of("A number, or a list", vec![number(), list("Numbers", number())]);
+    let mut places = Object::new("Inputs that the text states, by table, figure or section").schema();
+    places["additionalProperties"] = inputs;
+    places
+}
+
 fn maximisation() -> Value {
     Object::new("Over which parameter, and where it is looked for")
         .required("over", words_of::<Parameter>("A parameter"))
@@ -79,12 +98,24 @@ fn maximisation() -> Value {
 }
 
 fn maximise() -> Value {
-    let mut schema = words::<Measure>()
-        .iter()
-        .fold(Object::new("The measure whose maximum is looked for"), |object, measure| {
-            object.optional(measure, reference("maximisation"))
-        })
-        .schema();
+    of_one_measure("The measure whose maximum is looked for", |_| true, &reference("maximisation"))
+}
+
+fn onset() -> Value {
+    let onset = Object::new("Over which parameter, and where it is looked for")
+        .required("over", words_of::<Parameter>("A parameter"))
+        .required("in", sweep::any_range());
+    of_one_measure(
+        "The number of events of which it is looked for where it ceases to be zero",
+        Measure::is_count,
+        &onset.schema(),
+    )
+}
+
+fn of_one_measure(about: &str, takes: impl Fn(Measure) -> bool, how: &Value) -> Value {
+    let measures = words::<Measure>().iter().filter(|word| from_word(word).is_some_and(&takes));
+    let mut schema =
+        measures.fold(Object::new(about), |object, measure| object.optional(measure, how.clone())).schema();
     schema["minProperties"] = json!(1);
     schema["maxProperties"] = json!(1);
     schema

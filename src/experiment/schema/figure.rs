@@ -9,6 +9,7 @@ use super::sweep::NAME;
 use crate::experiment::continuation::BranchColumn;
 use crate::experiment::definition::{AxisScale, Best, Strip};
 use crate::experiment::recipe::Parameter;
+use crate::experiment::starts::{BasinColumn, START_LISTS};
 use crate::experiment::word::words;
 use crate::measure::{CycleValue, Measure, energy_columns, trace_columns};
 
@@ -22,6 +23,8 @@ pub(super) fn definitions() -> Vec<(String, Value)> {
     known.extend(words::<CycleValue>());
     known.extend(["sweep", "direction", "solver", "variant", "candidate"]);
     known.extend(BranchColumn::ALL.map(BranchColumn::name));
+    known.extend(BasinColumn::ALL.map(BasinColumn::name));
+    known.extend(START_LISTS.map(|(name, _)| name));
     let mut offered: Vec<&str> = Vec::new();
     for name in known {
         if !offered.contains(&name) {
@@ -46,14 +49,14 @@ pub(super) fn definitions() -> Vec<(String, Value)> {
 }
 
 /// What a band shows.
-const BAND: &str =
-    "spread: standard deviation of the ensemble; seeds: least to largest of searches that differ in their seed";
+const BAND: &str = "spread: standard deviation of the ensemble; seeds: least to largest of searches that differ in their seed; stacked: each \
+     line stands on the one before, and the space between is filled";
 
 fn shared(object: Object) -> Object {
     object
         .optional("x", reference("axis"))
         .optional("by", one_or_more("Columns that split rows into lines", reference("column")))
-        .optional("band", one_of_words(BAND, &["spread", "none", "seeds"]))
+        .optional("band", one_of_words(BAND, &["spread", "none", "seeds", "stacked"]))
         .optional("markers", boolean("A mark at each point"))
 }
 

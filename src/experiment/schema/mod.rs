@@ -12,6 +12,7 @@ mod figure;
 mod optimise;
 mod parts;
 mod scene;
+mod starts;
 mod study;
 mod sweep;
 

@@ -6,7 +6,7 @@ use super::assumptions::{assumed, curve};
 use super::parts::{
     Object, any_of, between, boolean, count, form, list, one_of_words, one_or_more, quantity, ratio, reference, word,
 };
-use crate::experiment::assumption_sheet::Takes;
+use crate::experiment::assumption_sheet::{Quantity, Takes};
 use crate::experiment::quantity::Dimension;
 use crate::experiment::recipe::Slot;
 use crate::experiment::scene::MOST_DAMPERS;
@@ -133,7 +133,11 @@ fn coordinate() -> Value {
 
 fn place() -> Value {
     let both = json!({"type": "array", "items": coordinate(), "minItems": 2, "maxItems": 2});
-    any_of("A place: one coordinate on a beam, [x, y] on a plate", vec![coordinate(), both])
+    let listed = assumed(Takes { quantity: Some(Quantity::Places), readings: &[] });
+    any_of(
+        "A place: one coordinate on a beam, [x, y] on a plate, or those of an assumption",
+        vec![coordinate(), both, listed],
+    )
 }
 
 fn damper() -> Value {
@@ -142,7 +146,7 @@ fn damper() -> Value {
     let mut ratios = vec![given_ratio("h′ = h ωn²/g"), word("swept"), list("One a damper of the array", ratio("h′"))];
     ratios.extend(gap_words.clone());
     let filled = Object::new("An array filled in one of two ways, which a sweep chooses")
-        .required("uniform", length("The gap of all"))
+        .required("uniform", given_quantity("The gap of all", Dimension::Length))
         .required("optimised", list("One a damper", length("A gap")));
     let mut gaps = vec![
         given_quantity("Gap clearance", Dimension::Length),
@@ -158,7 +162,7 @@ fn damper() -> Value {
             ("mass_ratio", swept_or(given_ratio("m′: mass of the damper over that of the structure"))),
             ("mass", given_quantity("Mass of the damper", Dimension::Mass)),
         ])
-        .optional("mass_reading", swept_or(reading(Slot::MassReading)))
+        .optional("mass_reading", swept_or(slot(Slot::MassReading, mass_reading())))
         .optional("massless_ratio", slot(Slot::MasslessRatio, ratio(Slot::MasslessRatio.about())))
         .optional("gap_frequency", reading(Slot::GapFrequency))
         .optional("particle_share", share)
@@ -173,6 +177,14 @@ fn damper() -> Value {
         .schema()
 }
 
+fn mass_reading() -> Value {
+    let about = Slot::MassReading.about();
+    any_of(
+        about,
+        vec![one_of_words(about, Slot::MassReading.takes().readings), ratio("A share of the structure's mass")],
+    )
+}
+
 fn array() -> Value {
     let dampers = count("Number of dampers", "dampers", 1, MOST_DAMPERS as u32);
     Object::new("Dampers side by side")
@@ -180,6 +192,7 @@ fn array() -> Value {
         .required("spacing", one_or_more("From one to the next", quantity("Spacing", Dimension::Length)))
         .optional("centred", boolean("Around the place, rather than from there on"))
         .optional("margin", slot(Slot::Margin, quantity("Kept free at the edge", Dimension::Length)))
+        .optional("order", reading(Slot::Order))
         .schema()
 }
 

@@ -52,6 +52,7 @@ pub(super) fn definitions() -> Vec<(String, Value)> {
                 (kind.one(), kind.value()),
                 (kind.fixed(), kind.values(false)),
                 (kind.any(), kind.values(true)),
+                (kind.along(), kind.followed()),
             ]);
         }
     }
@@ -75,7 +76,7 @@ fn sweep() -> Value {
 }
 
 fn product(within_union: bool) -> Value {
-    let mut object = by_parameter("What varies: the product of its keys", Values::any)
+    let mut object = by_parameter("What varies: the product of its keys", parameters(), Values::any)
         .optional("paired", reference("paired"))
         .optional("points", list("Points one by one", reference("point")))
         .optional("along", words_of::<Parameter>("The parameter that runs from row to row"))
@@ -92,15 +93,19 @@ fn product(within_union: bool) -> Value {
 }
 
 fn point() -> Value {
-    not_empty(by_parameter("A point", Values::one))
+    not_empty(by_parameter("A point", parameters(), Values::one))
 }
 
 fn paired() -> Value {
-    not_empty(by_parameter("Ranges of equal length that go in step", Values::fixed))
+    not_empty(by_parameter("Ranges of equal length that go in step", parameters(), Values::fixed))
 }
 
-fn by_parameter(about: &str, definition: impl Fn(Values) -> String) -> Object {
-    parameters().fold(Object::new(about), |object, (name, parameter)| {
+fn by_parameter(
+    about: &str,
+    parameters: impl Iterator<Item = (&'static str, Parameter)>,
+    definition: impl Fn(Values) -> String,
+) -> Object {
+    parameters.fold(Object::new(about), |object, (name, parameter)| {
         let values = reference(&definition(Values::of(parameter)));
         // Beside a reference a description would not count.
         object.optional(name, json!({"description": describe(name), "allOf": [values]}))
@@ -149,6 +154,20 @@ impl Values {
     /// Of values that may also be refined.
     fn any(self) -> String {
         format!("swept_{}", self.one())
+    }
+
+    /// Of the range that a branch is followed in.
+    fn along(self) -> String {
+        format!("along_{}", self.one())
+    }
+
+    fn followed(self) -> Value {
+        let size = self.number();
+        Object::new("Its range")
+            .required("from", size.clone())
+            .required("to", size)
+            .optional("spacing", words_of::<AxisScale>("The scale on which steps are equal"))
+            .schema()
     }
 
     fn value(self) -> Value {
@@ -215,18 +234,8 @@ fn refined(size: &Value) -> Value {
 
 /// The parameter that a branch is followed along, with its range.
 pub(super) fn followed() -> Value {
-    let range = |parameter: Parameter| {
-        let size = Values::of(parameter).number();
-        Object::new("Its range")
-            .required("from", size.clone())
-            .required("to", size)
-            .optional("spacing", words_of::<AxisScale>("The scale on which steps are equal"))
-            .schema()
-    };
     let smooth = parameters().filter(|(_, parameter)| parameter.varies_smoothly());
-    let object = Object::new("The parameter, and its range");
-    let mut schema = smooth.fold(object, |object, (name, parameter)| object.optional(name, range(parameter))).schema();
-    schema["minProperties"] = json!(1);
+    let mut schema = not_empty(by_parameter("The parameter, and its range", smooth, Values::along));
     schema["maxProperties"] = json!(1);
     schema
 }

@@ -1,0 +1,193 @@
+//! Inputs that a study's text states, with their place, and the numbers of an experiment that neither it nor an assumption gives.
+//!
+//! ```yaml
+//! stated:                                            # in experiments/assumptions.yaml, by chapter
+//!   5:
+//!     Table 6: {length: 1.33 m, width: 1 m}
+//!     s. 5.3.5: {harmonic.at: [0.25, 0.375]}         # keys may be led by those above them
+//! ```
+//!
+//! An experiment states under its own `stated:` what its figure or table alone has. A number of the scene, the run, the sweep or the
+//! optimisation that equals a statement of its key has a source; `{assumed: NAME}` needs none. All others are listed on the page.
+//! Grids (`linear`, `log`, …) are chosen for drawing and are no inputs. Where nothing is stated, nothing is listed.
+
+use std::collections::BTreeMap;
+
+use super::about_study::MOST_CHAPTERS;
+use super::diagnostic::{Findings, Span};
+use super::quantity::{Amount, parse_amount};
+use super::reader::all;
+use super::scene::names_assumption;
+use super::yaml::{Entry, Node, Value};
+
+/// The key of statements, in an experiment and in the assumptions file.
+pub(super) const STATED: &str = "stated";
+
+/// What a text states, by chapter.
+pub(super) type StatedByChapter = BTreeMap<u32, Vec<Statement>>;
+
+/// One input that the text states.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Statement {
+    /// Its key, which may be led by keys above it.
+    key: Vec<String>,
+    /// Its value, or the values that it takes.
+    amounts: Vec<Amount>,
+    span: Span,
+}
+
+/// An input of an experiment.
+#[derive(Debug)]
+struct Input {
+    /// From the experiment's own key down.
+    path: Vec<String>,
+    amounts: Vec<Amount>,
+    text: String,
+}
+
+impl Input {
+    /// The key as a reader of the scene finds it: with the one above it, unless it is a column of the sweep.
+    fn name(&self) -> String {
+        let swept = self.path.first().is_some_and(|part| part == "sweep" || part == "mean_over");
+        self.path[self.path.len().saturating_sub(if swept { 1 } else { 2 })..].join(".")
+    }
+}
+
+impl Statement {
+    /// The input is stated: the same value, or one of several.
+    fn gives(&self, input: &Input) -> bool {
+        let among = matches!(input.amounts.as_slice(), [one] if self.amounts.iter().any(|known| known.is(one)));
+        let same = self.amounts.len() == input.amounts.len()
+            && self.amounts.iter().zip(&input.amounts).all(|(known, amount)| known.is(amount));
+        input.path.ends_with(&self.key) && (among || same)
+    }
+}
+
+/// `chapter: {place: {key: value}}`.
+pub(super) fn read_chapters(node: &Node, findings: &Findings) -> Option<StatedByChapter> {
+    let chapters = entries(node, "statements are written as `chapter: {Table 6: {key: value}}`", findings)?;
+    let chapter = |Entry { key, key_span, node }: &Entry| match key.parse::<u32>() {
+        Ok(number) if number <= MOST_CHAPTERS => Some((number, read_statements(node, findings)?)),
+        _ => findings
+            .wrong(*key_span, format!("`{key}` is not the number of a chapter: write one up to {MOST_CHAPTERS}")),
+    };
+    all(chapters.iter().map(chapter)).map(|chapters| chapters.into_iter().collect())
+}
+
+/// `place: {key: value}`.
+pub(super) fn read_statements(node: &Node, findings: &Findings) -> Option<Vec<Statement>> {
+    let form = "statements are written as `Table 6: {key: value}`";
+    let place = |Entry { node, .. }: &Entry| {
+        let statement = |Entry { key, key_span, node }: &Entry| match leaf(node) {
+            Some((amounts, _)) => {
+                let key = key.split('.').map(str::to_owned).collect();
+                Some(Statement { key, amounts, span: *key_span })
+            }
+            None => findings.wrong(node.span, "what a text states of an input is a number, or a list of numbers"),
+        };
+        all(entries(node, form, findings)?.iter().map(statement))
+    };
+    all(entries(node, form, findings)?.iter().map(place)).map(|statements| statements.concat())
+}
+
+fn entries<'t>(node: &'t Node, form: &str, findings: &Findings) -> Option<&'t [Entry]> {
+    match &node.value {
+        Value::Mapping(entries) => Some(entries),
+        _ => findings.wrong(node.span, form),
+    }
+}
+
+/// The inputs of an experiment that neither the study's statements for its chapter nor its own give, `key value`; none if nothing
+/// is stated. A statement of its own that gives none of its inputs is reported.
+pub(super) fn without_source(
+    root: &Node,
+    of_chapter: &[Statement],
+    own: &[Statement],
+    findings: &Findings,
+) -> Vec<String> {
+    if of_chapter.is_empty() && own.is_empty() {
+        return Vec::new();
+    }
+    let inputs = inputs(root);
+    for statement in own.iter().filter(|statement| !inputs.iter().any(|input| statement.gives(input))) {
+        let key = statement.key.join(".");
+        findings.wrong::<()>(statement.span, format!("no input of this experiment is the `{key}` that is stated here"));
+    }
+    let has_source = |input: &Input| of_chapter.iter().chain(own).any(|statement| statement.gives(input));
+    let mut listed: Vec<(String, Vec<String>)> = Vec::new();
+    for input in inputs.into_iter().filter(|input| !has_source(input)) {
+        let key = input.name();
+        match listed.iter_mut().find(|(known, _)| *known == key) {
+            Some((_, texts)) if texts.contains(&input.text) => {}
+            Some((_, texts)) => texts.push(input.text),
+            None => listed.push((key, vec![input.text])),
+        }
+    }
+    listed.into_iter().map(|(key, texts)| format!("{key} {}", texts.join(", "))).collect()
+}
+
+/// Parts of an experiment with inputs, and which of their keys are meant; all where none is named.
+const PARTS: [(&str, &[&str]); 5] = [
+    ("scene", &[]),
+    ("sweep", &[]),
+    ("mean_over", &[]),
+    // How many members an ensemble has, or what a row may cost, is no input of a study.
+    ("run", &["skip", "average", "solver", "round_period_to"]),
+    ("optimise", &["gaps", "candidates", "genetic", "stop"]),
+];
+
+/// Words of ranges whose points are chosen for drawing.
+const GRIDS: [&str; 5] = ["linear", "log", "step", "refined", "place"];
+
+fn inputs(root: &Node) -> Vec<Input> {
+    let mut found = Vec::new();
+    let Value::Mapping(entries) = &root.value else { return found };
+    for (part, keys) in PARTS {
+        let Some(Value::Mapping(inner)) = entries.iter().find(|entry| entry.key == part).map(|entry| &entry.node.value)
+        else {
+            continue;
+        };
+        for entry in inner.iter().filter(|entry| keys.is_empty() || keys.contains(&entry.key.as_str())) {
+            let alternatives = matches!(part, "sweep" | "mean_over");
+            walk(&entry.node, &mut vec![part.to_owned(), entry.key.clone()], alternatives, &mut found);
+        }
+    }
+    found
+}
+
+/// `alternatives`: a list holds values that are taken one at a time; else it is one value.
+fn walk(node: &Node, path: &mut Vec<String>, alternatives: bool, found: &mut Vec<Input>) {
+    if names_assumption(node) || path.last().is_some_and(|key| GRIDS.contains(&key.as_str())) {
+        return;
+    }
+    let whole = !(alternatives && matches!(node.value, Value::Sequence(_)));
+    if let Some((amounts, text)) = leaf(node).filter(|_| whole) {
+        found.push(Input { path: path.clone(), amounts, text });
+        return;
+    }
+    match &node.value {
+        Value::Sequence(items) => items.iter().for_each(|item| walk(item, path, alternatives, found)),
+        Value::Mapping(entries) => {
+            for entry in entries {
+                path.push(entry.key.clone());
+                walk(&entry.node, path, alternatives, found);
+                path.pop();
+            }
+        }
+        Value::Nothing | Value::Scalar(_) => {}
+    }
+}
+
+/// A number, or a list of nothing but numbers, with its text.
+fn leaf(node: &Node) -> Option<(Vec<Amount>, String)> {
+    match &node.value {
+        Value::Scalar(text) => Some((vec![parse_amount(text)?], text.clone())),
+        Value::Sequence(items) if !items.is_empty() => {
+            let each: Option<Vec<(Vec<Amount>, String)>> =
+                items.iter().map(|item| leaf(item).filter(|_| matches!(item.value, Value::Scalar(_)))).collect();
+            let (amounts, texts): (Vec<_>, Vec<_>) = each?.into_iter().unzip();
+            Some((amounts.concat(), format!("[{}]", texts.join(", "))))
+        }
+        _ => None,
+    }
+}
