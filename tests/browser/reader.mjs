@@ -40,7 +40,8 @@ async function task(name, options, act) {
 }
 
 const shot = (page, name) => page.screenshot({ path: join(folder, `${name}.png`) });
-const shown = (page) => page.locator(".page.here").getAttribute("id");
+// Waited for: the address changes first, and the page follows when the browser tells of it.
+const shows = (page, id) => page.waitForFunction((id) => document.querySelector(".page.here")?.id === id, id);
 const rows = (page) => page.locator("#entries tbody tr:visible");
 const width = (page) => page.evaluate(() => document.documentElement.scrollWidth);
 const background = (page) => page.evaluate(() => getComputedStyle(document.body).backgroundColor);
@@ -68,7 +69,7 @@ const first = await (async () => {
 })();
 
 await task("the first screen says what stands, with links to the experiments", {}, async (page) => {
-  assert.equal(await shown(page), "study");
+  await shows(page, "study");
   assert.match(await page.locator("#study p").nth(1).innerText(), /\d+ (numbers?|claims?)/);
   assert.ok((await page.locator("#study .strip a").count()) > 0);
   await accessible(page, "the study");
@@ -79,8 +80,8 @@ await task("a cell of the strip leads to its entry", {}, async (page) => {
   const cell = page.locator("#study .strip a").first();
   const name = (await cell.getAttribute("aria-label")).split(":")[0];
   await cell.click();
-  assert.equal(decodeURIComponent(new URL(page.url()).hash), `#${name}`);
-  assert.equal(await shown(page), name.split("/")[0]);
+  await shows(page, name.split("/")[0]);
+  assert.equal(decodeURIComponent(await page.evaluate(() => location.hash)), `#${name}`);
   assert.ok(await page.locator("tr.marked").isVisible());
 });
 
@@ -132,11 +133,11 @@ await task("verdicts are found by text, and the address keeps the search", { at:
 });
 
 await task("a link from outside opens the page, and the entry on it", { at: `#${first.entry}` }, async (page) => {
-  assert.equal(await shown(page), first.experiment);
+  await shows(page, first.experiment);
   assert.ok(await page.locator("tr.marked").isVisible());
   await page.goto("about:blank");
   await page.goto(`${address}#${first.experiment}`);
-  assert.equal(await shown(page), first.experiment);
+  await shows(page, first.experiment);
   assert.equal(await page.title(), await page.locator(".page.here").getAttribute("data-title"));
   await accessible(page, first.experiment);
   await shot(page, "experiment-1280");
@@ -158,9 +159,9 @@ await task("every link within the file leads somewhere", {}, async (page) => {
 
 await task("the back key returns to the page before", {}, async (page) => {
   await page.locator("header a[href='#verdicts']").click();
-  assert.equal(await shown(page), "verdicts");
+  await shows(page, "verdicts");
   await page.goBack();
-  assert.equal(await shown(page), "study");
+  await shows(page, "study");
 });
 
 await task("the keyboard alone finds an entry and opens it", {}, async (page) => {
@@ -175,8 +176,8 @@ await task("the keyboard alone finds an entry and opens it", {}, async (page) =>
     if (await page.evaluate(() => document.activeElement.matches("#entries tbody a"))) break;
   }
   await page.keyboard.press("Enter");
-  await page.waitForFunction((id) => location.hash === "#" + id, first.entry);
-  assert.equal(await shown(page), first.experiment);
+  await shows(page, first.experiment);
+  assert.equal(await page.evaluate(() => location.hash), `#${first.entry}`);
 });
 
 await task("a figure shows its values under the pointer and with the arrow keys", { at: `#${first.experiment}` }, async (page) => {
@@ -222,6 +223,7 @@ await task("dark mode is dark, and can be read", { dark: true }, async (page) =>
   await accessible(page, "the study in the dark");
   await shot(page, "study-dark-1280");
   await page.goto(`${address}#${first.experiment}`);
+  await shows(page, first.experiment);
   await accessible(page, "a page in the dark");
   const svg = page.locator(".page.here svg:has([data-frame])").first();
   assert.equal(await svg.evaluate((svg) => getComputedStyle(svg.querySelector("path")).fill), await background(page), "paper of a figure");
