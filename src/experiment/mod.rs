@@ -80,3 +80,4 @@ pub use starts::{BasinColumn, HeightBox, Interval, ParticleBox, Rank, START_LIST
 pub use typed::{Located, from_yaml};
 pub(crate) use typed::{Spanned, position};
 pub use validate::parse_experiment;
+pub(crate) use validate::{Cases, parse_with};

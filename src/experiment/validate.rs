@@ -51,9 +51,29 @@ pub fn parse_experiment(
     text: &str,
     assumptions: &Assumptions,
 ) -> Result<Experiment, Problems> {
+    parse_with(id, file, text, assumptions, Cases::ToTry)
+}
+
+/// Whether the scenes of an experiment's cases are known to resolve.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Cases {
+    /// They are not.
+    ToTry,
+    /// This very text was read before, with these assumptions.
+    Tried,
+}
+
+/// The same of a text whose cases may have been tried.
+pub(crate) fn parse_with(
+    id: &ExperimentId,
+    file: &str,
+    text: &str,
+    assumptions: &Assumptions,
+    cases: Cases,
+) -> Result<Experiment, Problems> {
     let findings = Findings::default();
     let experiment = read_tree(text, &findings).and_then(|root| {
-        let reader = ExperimentReader { findings: &findings, assumptions };
+        let reader = ExperimentReader { findings: &findings, assumptions, cases };
         reader.experiment(id, &root)
     });
     findings.finish(file, text, experiment)
@@ -62,6 +82,7 @@ pub fn parse_experiment(
 struct ExperimentReader<'t> {
     findings: &'t Findings,
     assumptions: &'t Assumptions,
+    cases: Cases,
 }
 
 struct Run {
@@ -283,6 +304,9 @@ impl<'t> ExperimentReader<'t> {
                 self.findings,
             ),
         };
+        if self.cases == Cases::Tried {
+            return Some(experiment);
+        }
         let parts = scene.parts;
         checks.scenes(&experiment, |parameter, part| {
             let swept = parameter.and_then(|parameter| places.get(&parameter).copied());

@@ -1,12 +1,12 @@
 //! What moves how in the rows that decided an entry: a maximum belongs to one motion, a whole curve to many.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
 use super::columns::number;
 use super::text::{significant, symbol, with_unit};
-use super::view::{Place, TableState, Tables};
+use super::view::{Place, RowsByTable, TableState, Tables};
 use crate::dynamics::MotionKind;
 use crate::measure::Measure;
 use crate::table::{BASELINE, Table};
@@ -24,11 +24,7 @@ pub struct MotionBehind {
 
 impl MotionBehind {
     /// Of the rows whose cells were looked at for more than to choose rows; `None` where it was not measured.
-    pub(super) fn of(
-        decisive: &BTreeMap<String, BTreeSet<usize>>,
-        places: &[Place],
-        tables: &Tables<'_>,
-    ) -> Option<Self> {
+    pub(super) fn of(decisive: &RowsByTable, places: &[Place], tables: &Tables<'_>) -> Option<Self> {
         let mut behind = Self::default();
         for (id, rows) in decisive {
             let Some(TableState::Present(table)) = tables.get(id) else { continue };

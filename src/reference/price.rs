@@ -1,10 +1,8 @@
 //! What a verdict cost: the rows that it rests on, and what was simulated for them.
 
-use std::collections::{BTreeMap, BTreeSet};
-
 use serde::{Deserialize, Serialize};
 
-use super::view::{TableState, Tables};
+use super::view::{RowsByTable, TableState, Tables};
 
 /// What was simulated for an entry; the same on every machine.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
@@ -19,7 +17,7 @@ pub struct Price {
 
 impl Price {
     /// Of the rows whose cells were looked at for more than to choose rows.
-    pub(super) fn of(decisive: &BTreeMap<String, BTreeSet<usize>>, tables: &Tables<'_>) -> Self {
+    pub(super) fn of(decisive: &RowsByTable, tables: &Tables<'_>) -> Self {
         let mut price = Self::default();
         for (id, rows) in decisive {
             let Some(TableState::Present(table)) = tables.get(id) else { continue };

@@ -93,6 +93,9 @@ pub(crate) struct Place {
     pub rows: Vec<usize>,
 }
 
+/// Rows of tables, by experiment and in their order.
+pub(crate) type RowsByTable = BTreeMap<String, Vec<usize>>;
+
 /// Of one table: by column and role, whether each row was looked at.
 type OfTable = BTreeMap<(usize, Role), Vec<bool>>;
 
@@ -126,10 +129,14 @@ impl Reads {
     }
 
     /// By experiment, the rows that were looked at for more than to choose rows.
-    pub(crate) fn decisive_rows(&self) -> BTreeMap<String, BTreeSet<usize>> {
-        let rows = |columns: &OfTable| -> BTreeSet<usize> {
-            let decisive = columns.iter().filter(|((_, role), _)| *role != Role::Filter);
-            decisive.flat_map(|(_, seen)| (0..seen.len()).filter(|&row| seen[row])).collect()
+    pub(crate) fn decisive_rows(&self) -> RowsByTable {
+        let rows = |columns: &OfTable| -> Vec<usize> {
+            let mut any: Vec<bool> = Vec::new();
+            for (_, seen) in columns.iter().filter(|((_, role), _)| *role != Role::Filter) {
+                any.resize(any.len().max(seen.len()), false);
+                any.iter_mut().zip(seen).for_each(|(any, seen)| *any |= seen);
+            }
+            (0..any.len()).filter(|&row| any[row]).collect()
         };
         let tables = self.tables.borrow();
         tables.iter().map(|(id, columns)| (id.clone(), rows(columns))).filter(|(_, rows)| !rows.is_empty()).collect()
@@ -194,19 +201,19 @@ impl<'a> View<'a> {
         let table = self.table(id)?;
         let selection = if at_home { self.given.and(source.rows) } else { source.rows.clone() };
         let mut rows = Rows { id: id.into(), table, indices: (0..height(table)).collect() };
-        let mut asked = Vec::new();
-        for (name, allowed) in &selection.0 {
-            let found = parameter(table, name)?;
-            asked.push(found);
-            rows.indices.retain(|&row| allowed.admits(&found.column.data, row));
-        }
         let open = |name: &str| !selection.0.contains_key(name) && by != Some(name);
         let (variant, variants) = labels(table, "variant")?;
-        asked.push(variant);
+        let mut asked = vec![variant];
+        // First, as a table with twenty variants has twenty times the rows.
         if open("variant") {
             let elsewhere = !at_home && !variants.iter().any(|label| label == self.variant);
             let wanted = if elsewhere { BASELINE } else { self.variant };
             rows.indices.retain(|&row| variants[row] == wanted);
+        }
+        for (name, allowed) in &selection.0 {
+            let found = parameter(table, name)?;
+            asked.push(found);
+            rows.indices.retain(|&row| allowed.admits(&found.column.data, row));
         }
         let (solver, solvers) = labels(table, "solver")?;
         asked.push(solver);

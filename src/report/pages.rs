@@ -4,7 +4,6 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 
 use rayon::prelude::*;
-use serde_json::Value;
 
 use super::figures::{Said, picture, scene_name, shown, vector};
 use super::publication::{inputs, reasons_beside, shows_same_scene};
@@ -16,7 +15,7 @@ use crate::figure::{FigureError, Picture, figure_stem, sketch};
 use crate::measure::rounded;
 use crate::reference::{Judged, ReferenceFile};
 use crate::study::{
-    FileHash, Heading, Item, Motions, Publication, Record, State, Study, Summary, record_name, stem, table_name,
+    FileHash, Heading, Inputs, Item, Motions, Publication, Record, State, Study, Summary, record_name, stem, table_name,
 };
 use crate::table::{Table, UNDEFINED};
 
@@ -74,7 +73,7 @@ struct Page<'a> {
     record: &'a Record,
     folder: String,
     /// What figures and report depend on.
-    inputs: Value,
+    inputs: Inputs,
     stale: bool,
 }
 

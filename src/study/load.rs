@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use super::layout::{ASSUMPTIONS, STUDY, Texts, folder_of, stem};
 use crate::experiment::{
-    AboutStudy, AssumptionSheet, Experiment, ExperimentId, IdError, Problems, parse_assumptions, parse_experiment,
-    parse_study,
+    AboutStudy, AssumptionSheet, Cases, Experiment, ExperimentId, IdError, Problems, parse_assumptions, parse_study,
+    parse_with,
 };
 use crate::text::utf8::{NotUtf8, decode};
 
@@ -91,12 +91,12 @@ impl Loaded {
     /// Reads all experiments among `texts`.
     #[must_use]
     pub fn from_texts(texts: &Texts) -> Self {
-        Self::chosen(texts, &|_| true)
+        Self::chosen(texts, &|_| true, &|_| Cases::ToTry)
     }
 
-    /// Reads the assumptions, and the experiments whose ids are `wanted`.
+    /// Reads the assumptions, and the experiments whose ids are `wanted`; the cases of some were tried before.
     #[must_use]
-    pub fn chosen(texts: &Texts, wanted: &dyn Fn(&str) -> bool) -> Self {
+    pub(super) fn chosen(texts: &Texts, wanted: &dyn Fn(&str) -> bool, cases: &dyn Fn(&str) -> Cases) -> Self {
         let mut loaded = Self::default();
         let mut files_by_id = BTreeMap::<ExperimentId, &str>::new();
         match shared(texts, STUDY, parse_study) {
@@ -118,7 +118,7 @@ impl Loaded {
             }
             let source = identify(file, &files_by_id).and_then(|id| {
                 let text = text(file, bytes)?;
-                let experiment = parse_experiment(&id, file, text, &assumptions).map_err(Refused::Text)?;
+                let experiment = parse_with(&id, file, text, &assumptions, cases(&id.0)).map_err(Refused::Text)?;
                 Ok(Source { experiment, file: file.clone() })
             });
             match source {

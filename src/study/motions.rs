@@ -108,6 +108,7 @@ impl Motions {
         if experiment.is_whole() {
             return None;
         }
+        table.column(&of_key(&Measure::Motion))?;
         let baseline = table.baseline();
         let names = baseline.texts(&of_key(&Measure::Motion))?;
         let mut kinds = BTreeMap::new();

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use rayon::prelude::*;
 
 use super::load::text;
-use crate::experiment::{AboutStudy, AssumptionSheet, Calibration, Problems, RowLimit, parse_calibration};
+use crate::experiment::{AboutStudy, AssumptionSheet, Calibration, Cases, Problems, RowLimit, parse_calibration};
 use crate::reference::{Check, Prose, ReferenceFile, ReferenceMistake, ReferenceProblem, Role, parse_reference};
 use crate::study::{ASSUMPTIONS, Item, Layout, Loaded, Refused, Sensitivity, Summary, Texts, Used, stem};
 use crate::text::utf8::decode;
@@ -155,7 +155,9 @@ impl Study {
     /// Reads and plans the experiments whose ids are `wanted`; what the others depend on is worked out.
     fn plan(&mut self, wanted: &(dyn Fn(&str) -> bool + Sync), mut used: Used) {
         let Self { texts, layout, unread, .. } = self;
-        let loaded = Loaded::chosen(texts, wanted);
+        // What an experiment depends on is known where nothing of it has changed.
+        let cases = |id: &str| if used.contains_key(id) { Cases::Tried } else { Cases::ToTry };
+        let loaded = Loaded::chosen(texts, wanted, &cases);
         unread.extend(loaded.refused.into_iter().map(Unread::from));
         let references = references(texts, wanted, unread);
         let items: Vec<Item> = loaded

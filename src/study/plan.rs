@@ -3,9 +3,9 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
-use serde_json::{Value, json};
+use serde_json::json;
 
-use super::canonical::fingerprint;
+use super::inputs::Inputs;
 use super::layout::{ASSUMPTIONS, Layout, record_name, table_name};
 use super::load::Source;
 use super::reason::{Reason, differences};
@@ -25,7 +25,7 @@ pub struct Item {
     /// The assumptions under which it runs; the baseline first.
     pub variants: Vec<Variant>,
     /// All that its numbers depend on.
-    pub simulation: Value,
+    pub simulation: Inputs,
     /// Whether it is to be simulated.
     pub state: State,
 }
@@ -61,7 +61,7 @@ impl Item {
     /// Hash of [`Item::simulation`].
     #[must_use]
     pub fn fingerprint(&self) -> String {
-        fingerprint(&self.simulation)
+        self.simulation.fingerprint()
     }
 
     /// Looks at what is on disk again.
@@ -129,16 +129,16 @@ fn simulation(
     used: &BTreeSet<AssumptionName>,
     variants: &[Variant],
     sensitivity: Sensitivity,
-) -> Value {
+) -> Inputs {
     let assumptions: BTreeMap<_, _> =
         sheet.iter().filter(|(name, _)| used.contains(*name)).map(|(name, entry)| (name, &entry.value)).collect();
     let sensitivity = (sensitivity == Sensitivity::Wanted).then(|| ends(variants));
-    json!({
-        "experiment": source.experiment.simulation_json(),
-        "assumptions": assumptions,
-        "sensitivity": sensitivity,
-        "solver_version": SOLVER_VERSION,
-    })
+    Inputs::of([
+        ("experiment", source.experiment.simulation_json()),
+        ("assumptions", json!(assumptions)),
+        ("sensitivity", json!(sensitivity)),
+        ("solver_version", json!(SOLVER_VERSION)),
+    ])
 }
 
 /// The value that each variant moves its assumption to.
@@ -149,7 +149,7 @@ fn ends(variants: &[Variant]) -> BTreeMap<&str, &AssumptionValue> {
         .collect()
 }
 
-fn state(layout: &Layout, source: &Source, simulation: &Value) -> State {
+fn state(layout: &Layout, source: &Source, simulation: &Inputs) -> State {
     let id = &source.experiment.id;
     let record = match Record::read(&layout.path(&record_name(id)), id) {
         Ok(record) => record,

@@ -4,7 +4,8 @@ use std::fmt;
 
 use serde_json::Value;
 
-use super::canonical::{Change, canonical, changes};
+use super::canonical::{Change, canonical};
+use super::inputs::Inputs;
 use super::record::Failures;
 
 /// One reason.
@@ -45,9 +46,9 @@ const LONGEST: usize = 60;
 
 /// The leaves in which `new` departs from `old`, each with the file that `file_of` finds for its path.
 #[must_use]
-pub fn differences(old: &Value, new: &Value, file_of: &dyn Fn(&[&str]) -> String) -> Vec<Reason> {
+pub fn differences(old: &Inputs, new: &Inputs, file_of: &dyn Fn(&[&str]) -> String) -> Vec<Reason> {
     let mut by_file: Vec<(String, Vec<Change>)> = Vec::new();
-    for mut change in changes(old, new) {
+    for mut change in old.changes_to(new) {
         let file = file_of(&change.path.iter().map(String::as_str).collect::<Vec<_>>());
         if change.path.len() > 1 {
             change.path.remove(0);

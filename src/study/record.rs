@@ -7,8 +7,8 @@ use std::fs;
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
-use serde_json::Value;
 
+use super::inputs::Inputs;
 use crate::atomic::{self, FileError};
 use crate::experiment::ExperimentId;
 
@@ -27,7 +27,7 @@ pub struct Record {
     /// Whose record.
     pub experiment: ExperimentId,
     /// What the table was computed from.
-    pub simulation: Value,
+    pub simulation: Inputs,
     /// The table as it was written.
     pub table: FileHash,
     /// Rows without numbers, and the first reason.
@@ -86,7 +86,7 @@ impl FileHash {
 pub struct Publication {
     /// What they were made from.
     #[serde(rename = "meaning")]
-    pub inputs: Value,
+    pub inputs: Inputs,
     /// The files, by their name within the study.
     pub files: BTreeMap<String, FileHash>,
     /// What each figure among them shows, as a hash: one that would show the same is not drawn again. Absent in records of

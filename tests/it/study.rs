@@ -8,8 +8,8 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use shotdamp::measure::Evaluated;
 use shotdamp::scene::Excitation;
 use shotdamp::study::{
-    Evaluate, Event, EventHandler, Heading, Held, IgnoreEvents, Item, KnownRows, Loaded, Lock, RowFailure, Simulation,
-    Snapshot, Study, Summary, Texts,
+    Evaluate, Event, EventHandler, Heading, Held, IgnoreEvents, Inputs, Item, KnownRows, Loaded, Lock, RowFailure,
+    Simulation, Snapshot, Study, Summary, Texts,
 };
 
 use crate::desk::{ASSUMPTIONS, Desk, GAP, GAP_REFERENCE, MadeUp, STOP};
@@ -23,6 +23,19 @@ fn the_bytes_do_not_depend_on_the_number_of_threads() {
             .map(|id| (desk.bytes(&format!("results/{id}.parquet")), desk.bytes(&format!("results/{id}.json"))))
     });
     assert!(tables[0] == tables[1] && tables[0] == tables[2]);
+}
+
+#[test]
+fn equal_inputs_have_one_fingerprint_in_whatever_order_they_were_written() {
+    let parsed = |text: &str| serde_json::from_str::<serde_json::Value>(text).unwrap();
+    let one = Inputs::of([("scene", parsed(r#"{"gap": 5.0e-3, "mass": 1}"#)), ("solver", 8.into())]);
+    let other = Inputs::of([("solver", 8.into()), ("scene", parsed(r#"{ "mass": 1, "gap": 0.005 }"#))]);
+    assert_eq!(one, other);
+    assert_eq!(one.fingerprint(), other.fingerprint());
+    let third = Inputs::of([("solver", 8.into()), ("scene", parsed(r#"{"mass": 1, "gap": 0.006}"#))]);
+    assert_ne!(one.fingerprint(), third.fingerprint());
+    let changes = one.changes_to(&third);
+    assert_eq!(changes.iter().map(|change| change.path.join(".")).collect::<Vec<_>>(), ["scene.gap"]);
 }
 
 #[test]
