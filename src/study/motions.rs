@@ -9,7 +9,7 @@ use super::shares::BestMotion;
 use crate::dynamics::{MotionKind, Until};
 use crate::experiment::{Experiment, Parameter, RowSource};
 use crate::measure::{Measure, Settings};
-use crate::table::Table;
+use crate::table::{BASELINE, Table};
 use crate::text::number::compact;
 use crate::text::words::of_key;
 
@@ -73,24 +73,22 @@ impl Settling {
         OFF
     }
 
-    fn of(experiment: &Experiment, table: &Table) -> Option<Self> {
+    fn of(experiment: &Experiment, table: &Table, rows: &[usize]) -> Option<Self> {
         let column = |measure: Measure| table.floats(&of_key(&measure));
         let settled = column(Measure::SettledVelocityRatio)?;
         let here = column(Measure::VelocityRatio)?;
-        let rows = (0..table.rows()).filter(|&row| !settled[row].is_nan());
-        let mut all: Vec<Deviation> = rows
-            .map(|row| Deviation {
-                row: row_in_words(experiment, table, row),
-                velocity_ratio: here[row],
-                settled: settled[row],
-            })
-            .collect();
-        all.sort_by(|a, b| b.relative().abs().total_cmp(&a.relative().abs()));
-        let rows = all.len();
-        let median = all.get(rows / 2)?.relative().abs();
-        let off = all.iter().filter(|one| one.relative().abs() > OFF).count();
-        all.truncate(off.min(10));
-        Some(Self { average: experiment.settings.average, rows, off, median, worst: all })
+        let off_by = |row: usize| (here[row] / settled[row] - 1.0).abs();
+        let mut all: Vec<usize> = rows.iter().copied().filter(|&row| !settled[row].is_nan()).collect();
+        all.sort_by(|&a, &b| off_by(b).total_cmp(&off_by(a)));
+        let median = off_by(*all.get(all.len() / 2)?);
+        let off = all.iter().filter(|&&row| off_by(row) > OFF).count();
+        let deviation = |&row: &usize| Deviation {
+            row: row_in_words(experiment, table, row),
+            velocity_ratio: here[row],
+            settled: settled[row],
+        };
+        let worst = all.iter().take(off.min(10)).map(deviation).collect();
+        Some(Self { average: experiment.settings.average, rows: all.len(), off, median, worst })
     }
 }
 
@@ -108,18 +106,18 @@ impl Motions {
         if experiment.is_whole() {
             return None;
         }
-        table.column(&of_key(&Measure::Motion))?;
-        let baseline = table.baseline();
-        let names = baseline.texts(&of_key(&Measure::Motion))?;
+        let names = table.texts(&of_key(&Measure::Motion))?;
+        let rows = table.rows_where("variant", BASELINE);
         let mut kinds = BTreeMap::new();
-        for kind in names.iter().filter_map(|name| name.parse::<MotionKind>().ok()) {
+        for kind in rows.iter().filter_map(|&row| names[row].parse::<MotionKind>().ok()) {
             *kinds.entry(kind.word().to_owned()).or_default() += 1;
         }
         let runs_on = experiment.settings.until == Until::Cycles;
-        let cells = baseline.floats(&of_key(&Measure::SettledAfter)).filter(|_| runs_on).unwrap_or_default();
-        let mut settled_after: Vec<f64> = cells.into_iter().filter(|cycles| !cycles.is_nan()).collect();
+        let cells = table.floats(&of_key(&Measure::SettledAfter)).filter(|_| runs_on);
+        let of_rows = |cells: Vec<f64>| rows.iter().map(|&row| cells[row]).filter(|cycles| !cycles.is_nan()).collect();
+        let mut settled_after: Vec<f64> = cells.map_or_else(Vec::new, of_rows);
         settled_after.sort_by(f64::total_cmp);
-        let settling = runs_on.then(|| Settling::of(experiment, &baseline)).flatten();
+        let settling = runs_on.then(|| Settling::of(experiment, table, &rows)).flatten();
         Some(Self { kinds, skip: experiment.settings.skip, settled_after, settling, best: Vec::new() })
     }
 
