@@ -5,6 +5,7 @@ use std::sync::Arc;
 use super::assumption_sheet::{
     ASSUMPTIONS, AssumptionEntry, AssumptionKind, AssumptionSheet, Cycles, Defaults, Quantity, Takes,
 };
+use super::at::At;
 use super::diagnostic::{Findings, Place, Problems, place};
 use super::quantity::Dimension;
 use super::reader::{Fields, above_zero, count, list, no_such, ratio, scalar, text, unknown};
@@ -42,7 +43,7 @@ fn read_sheet(root: &Node, text: &str, findings: &Findings) -> Option<Assumption
         read_defaults(&defaults.node, &mut sheet, findings)?;
     }
     if let Some(stated) = entries.iter().find(|entry| entry.key == STATED) {
-        sheet.stated = Arc::new(read_chapters(&stated.node, findings)?);
+        sheet.stated = Arc::new(read_chapters(At::Node(&stated.node, findings))?);
     }
     Some(sheet)
 }
@@ -66,7 +67,7 @@ fn read_defaults(node: &Node, sheet: &mut AssumptionSheet, findings: &Findings) 
     let mut defaults = Defaults::new();
     for Entry { key, key_span, node } in entries {
         if key == RUN {
-            sheet.cycles = read_cycles(node, findings);
+            sheet.cycles = read_cycles(At::Node(node, findings));
             continue;
         }
         let Some(slot) = from_word::<Slot>(key) else {
@@ -96,28 +97,28 @@ fn read_defaults(node: &Node, sheet: &mut AssumptionSheet, findings: &Findings) 
 }
 
 /// `{skip: 25 cycles, average: 100 cycles}`.
-fn read_cycles(node: &Node, findings: &Findings) -> Option<Cycles> {
-    let fields = Fields::open(node, "a run", findings)?;
-    let skip = fields.required("skip", |node| read_skip(node, findings));
-    let average = fields.required("average", |node| read_average(node, findings));
-    fields.close()?;
+pub(super) fn read_cycles(at: At<'_>) -> Option<Cycles> {
+    let keys = at.keys("a run")?;
+    let skip = keys.required("skip", SKIP, read_skip);
+    let average = keys.required("average", AVERAGE, read_average);
+    keys.close()?;
     Some(Cycles { skip: skip?, average: average? })
 }
 
 /// Most forcing cycles of a run.
 pub(super) const MOST_CYCLES: u32 = 10_000_000;
+/// What an editor says of the cycles of a run.
+pub(super) const SKIP: &str = "Cycles before the averaging; by default those of the study";
+pub(super) const AVERAGE: &str = "Cycles that are averaged; by default those of the study";
 
 /// Cycles that are left out.
-pub(super) fn read_skip(node: &Node, findings: &Findings) -> Option<u32> {
-    count(node, "cycles", MOST_CYCLES, findings)
+pub(super) fn read_skip(at: At<'_>) -> Option<u32> {
+    at.count("cycles", MOST_CYCLES)
 }
 
 /// Cycles that are averaged over.
-pub(super) fn read_average(node: &Node, findings: &Findings) -> Option<u32> {
-    match read_skip(node, findings)? {
-        0 => findings.wrong(node.span, "one cycle at least is averaged"),
-        average => Some(average),
-    }
+pub(super) fn read_average(at: At<'_>) -> Option<u32> {
+    at.count_from(1, "cycles", MOST_CYCLES, "one cycle at least is averaged")
 }
 
 /// Whether an assumption is of the kind that a place takes; if it is not, that is reported with the line of both.

@@ -25,6 +25,7 @@ use serde::Deserialize;
 use super::recipe::{AssumptionName, AssumptionValue};
 
 use super::assumption_sheet::{AssumptionSheet, Quantity};
+use super::at::At;
 use super::diagnostic::{Findings, Problems};
 use super::load::read;
 use super::reader::{Choice, Fields, all, count, list, no_such, number, text, word};
@@ -237,7 +238,7 @@ fn input(entry: &Entry, sheet: &AssumptionSheet, findings: &Findings) -> Option<
     let Entry { key, key_span, node } = entry;
     let input = |tried| Some(CalibrationInput { name: key.clone(), tried });
     if key == "solver" {
-        return input(Tried::Solvers(list(node, findings, |node| read_solver(node, findings))?));
+        return input(Tried::Solvers(list(node, findings, |node| read_solver(At::Node(node, findings)))?));
     }
     let value = |node: &Node, moves: &[AssumptionName]| {
         let are_places =

@@ -1,12 +1,15 @@
 //! The columns that an experiment's table will have, known before anything runs.
 
+use serde_json::json;
+
 use super::recipe::{GapWord, Parameter};
 
 use super::continuation::BranchColumn;
 use super::definition::{Joined, Maximise};
-use super::starts::{BasinColumn, Starts};
-use super::word::word_of;
-use crate::measure::{Measure, PROOF, of_another_damper, trace_columns};
+use super::schema::parts::any_of;
+use super::starts::{BasinColumn, START_LISTS, Starts};
+use super::word::{word_of, words};
+use crate::measure::{CycleValue, Measure, PROOF, energy_columns, of_another_damper, trace_columns};
 
 /// What a column holds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -50,6 +53,28 @@ pub(super) struct Columns {
 }
 
 impl Columns {
+    /// JSON Schema of the name of one. Those that some table has are offered; which there are depends on the rest of the file.
+    pub fn offered() -> serde_json::Value {
+        let parts: [&[&str]; 6] = [
+            words::<Parameter>(),
+            words::<Measure>(),
+            &trace_columns(),
+            &energy_columns(),
+            words::<CycleValue>(),
+            &["sweep", "direction", "solver", "variant", "candidate"],
+        ];
+        let known = parts.concat().into_iter().chain(BranchColumn::ALL.map(BranchColumn::name));
+        let known = known.chain(BasinColumn::ALL.map(BasinColumn::name)).chain(START_LISTS.map(|(name, _)| name));
+        let mut offered: Vec<&str> = Vec::new();
+        for name in known {
+            if !offered.contains(&name) {
+                offered.push(name);
+            }
+        }
+        let any = json!({"type": "string", "pattern": "^[a-z][a-z0-9_]*$"});
+        any_of("A column of the table", vec![json!({"enum": offered}), any])
+    }
+
     /// The columns of an experiment made of these parts.
     pub fn of(
         swept: &[Parameter],

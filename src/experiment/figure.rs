@@ -1,14 +1,19 @@
 //! The `figure` (or `figures`) of an experiment, checked against the columns that its table will have.
 
+use serde_json::json;
+
+use super::at::At;
 use super::columns::{Columns, Role};
 use super::definition::{
     AnimationSpec, Axis, AxisScale, Band, Drawing, FigureSpec, Level, Only, Panel, PeakMarks, Strip,
 };
 use super::diagnostic::{Findings, Span};
-use super::reader::{Choice, Fields, boolean, count, list, number, one_or_more, scalar, text, unknown, word};
-use super::sweep::is_name;
+use super::keys::Keys;
+use super::reader::{number, scalar, unknown};
+use super::schema::parts;
+use super::sweep::{NAME, is_name};
 use super::word::word_of;
-use super::yaml::{Node, Value};
+use super::yaml::Value;
 use crate::measure::Measure;
 
 /// Reads a figure; `columns` is `None` where the parts that make them were wrong themselves.
@@ -17,175 +22,141 @@ pub(super) struct FigureReader<'t> {
     pub columns: Option<&'t Columns>,
 }
 
-/// What panels take over from their figure.
-struct Shared<'t> {
-    x: Option<&'t Node>,
-    by: Option<&'t Node>,
-    band: Option<&'t Node>,
-    markers: Option<&'t Node>,
-}
-
-impl<'t> FigureReader<'t> {
+impl FigureReader<'_> {
     /// `figure: {…}` or `figures: [{…}, …]`.
-    pub fn figures(&self, fields: &Fields<'t>) -> Option<Vec<FigureSpec>> {
-        let Some((key, node)) = fields.at_most_one(&["figure", "figures"])? else {
-            return Some(Vec::new());
-        };
-        let figures = match key {
-            "figure" => vec![self.figure(node)?],
-            _ => list(node, self.findings, |node| self.figure(node))?,
-        };
-        for (index, figure) in figures.iter().enumerate() {
-            if figures[..index].iter().any(|other| other.name == figure.name) {
-                let name = if figure.name.is_empty() { "(none)" } else { &figure.name };
-                return self.findings.report(
-                    node.span,
-                    format!("two figures have the same name {name}"),
-                    Some("give all but the first a `name` of its own".into()),
-                );
+    pub fn figures(&self, keys: &Keys<'_>) -> Option<Vec<FigureSpec>> {
+        let figure = |at: At<'_>| at.named("figure", "A figure", |at| self.figure(at));
+        let figures = keys.at_most_one(&[("figure", "A figure"), ("figures", "Several figures")], |key, at| {
+            let figures = if key == "figure" { vec![figure(at)?] } else { at.list(figure)? };
+            for (index, figure) in figures.iter().enumerate() {
+                if figures[..index].iter().any(|other| other.name == figure.name) {
+                    let name = if figure.name.is_empty() { "(none)" } else { &figure.name };
+                    return at.report(
+                        format!("two figures have the same name {name}"),
+                        Some("give all but the first a `name` of its own".into()),
+                    );
+                }
             }
-        }
-        Some(figures)
+            Some(figures)
+        });
+        figures.map(Option::unwrap_or_default)
     }
 
-    fn figure(&self, node: &'t Node) -> Option<FigureSpec> {
-        let fields = Fields::open(node, "a figure", self.findings)?;
-        let name = fields.optional("name", |node| self.name(node));
-        let caption = fields.required("caption", |node| text(node, self.findings));
-        let only = fields.optional("only", |node| self.only(node));
-        if let Some(node) = fields.get("map") {
-            let map = self.map(node);
+    fn figure(&self, at: At<'_>) -> Option<FigureSpec> {
+        let keys = at.keys("a figure")?;
+        let name = keys.optional("name", "Name of the file after the id; none for the first", name);
+        let caption = keys.required("caption", "One line under it", |at| at.text());
+        let only = keys.optional("only", "The rows to draw", |at| self.only(at));
+        let with =
+            |drawing| Some(FigureSpec { name: name?.unwrap_or_default(), caption: caption?, only: only?, drawing });
+        let map = keys.optional("map", "Colours over two columns", |at| self.map(at));
+        if !matches!(map, Some(None)) {
             let misplaced = ["x", "y", "by", "band", "over_first", "markers", "panels", "guides", "peaks", "strip"]
-                .map(|key| fields.get(key));
-            fields.close()?;
-            if let Some(node) = misplaced.into_iter().flatten().next() {
-                return self.findings.wrong(node.span, "beside `map`, a figure has `name`, `caption` and `only` alone");
+                .map(|key| keys.get(key));
+            keys.close()?;
+            if let Some(at) = misplaced.into_iter().flatten().next() {
+                return at.wrong("beside `map`, a figure has `name`, `caption` and `only` alone");
             }
-            return Some(FigureSpec {
-                name: name?.unwrap_or_default(),
-                caption: caption?,
-                only: only?,
-                drawing: Drawing::Map(map?),
-            });
+            return with(Drawing::Map(map??));
         }
-        if fields.get("gaps").is_some_and(|node| boolean(node, self.findings) == Some(true)) {
-            fields.close()?;
-            return Some(FigureSpec {
-                name: name?.unwrap_or_default(),
-                caption: caption?,
-                only: only?,
-                drawing: Drawing::Gaps,
-            });
+        let gaps = keys.optional("gaps", "The gaps of an optimised array as bars", |at| at.boolean());
+        if gaps == Some(Some(true)) {
+            keys.close()?;
+            return with(Drawing::Gaps);
         }
-        if let Some(node) = fields.get("animation") {
-            let animation = self.animation(node);
-            fields.close()?;
-            return Some(FigureSpec {
-                name: name?.unwrap_or_default(),
-                caption: caption?,
-                only: only?,
-                drawing: Drawing::Animation(animation?),
-            });
+        let slowed_down = "The motion of damper and particle from the trace, slowed down";
+        let animation = keys.optional("animation", slowed_down, |at| self.animation(at));
+        if !matches!(animation, Some(None)) {
+            keys.close()?;
+            return with(Drawing::Animation(animation??));
         }
-        let shared = Shared {
-            x: fields.get("x"),
-            by: fields.get("by"),
-            band: fields.get("band"),
-            markers: fields.get("markers"),
-        };
-        let panels = match fields.get("panels") {
-            Some(node) => list(node, self.findings, |node| {
-                let fields = Fields::open(node, "a panel", self.findings)?;
-                let panel = self.panel(&fields, &shared);
-                fields.close()?;
+        keys.rule(|| {
+            json!({
+                "if": {"anyOf": [{"required": ["map"]}, {"required": ["gaps"]}, {"required": ["animation"]}]},
+                "then": {"propertyNames": {"enum": ["name", "caption", "only", "map", "gaps", "animation"]}},
+                "else": {"anyOf": [{"required": ["panels"]}, {"required": ["x", "y"]}]},
+            })
+        });
+        // Of several panels these may stand here.
+        for key in ["x", "by", "band", "markers"] {
+            keys.get(key);
+        }
+        let panels = keys.optional("panels", "Panels above each other", |at| {
+            at.list(|at| {
+                let own = at.keys("a panel")?;
+                let panel = self.panel(&own, Some(&keys));
+                own.rule(|| json!({"required": ["y"]}));
+                own.close()?;
                 panel
-            }),
-            None => self.panel(&fields, &shared).map(|panel| vec![panel]),
+            })
+        });
+        let panels = match panels {
+            Some(None) => self.panel(&keys, None).map(|panel| vec![panel]),
+            Some(Some(panels)) => Some(panels),
+            None => None,
         };
-        fields.close()?;
-        Some(FigureSpec {
-            name: name?.unwrap_or_default(),
-            caption: caption?,
-            only: only?,
-            drawing: Drawing::Lines(panels?),
-        })
+        keys.close()?;
+        with(Drawing::Lines(panels?))
     }
 
     /// `{column: sweep, words: [point_1, point_2]}`.
-    fn only(&self, node: &'t Node) -> Option<Only> {
-        let fields = Fields::open(node, "rows to draw", self.findings)?;
-        let column = fields.required("column", |node| self.split(node));
-        let words = fields.required("words", |node| one_or_more(node, self.findings, |node| text(node, self.findings)));
-        fields.close()?;
+    fn only(&self, at: At<'_>) -> Option<Only> {
+        let keys = at.keys("rows to draw")?;
+        let column = keys.required("column", "The column", |at| self.split(at));
+        let words = keys.required("words", "The column's words that count", |at| at.one_or_more(|at| at.text()));
+        keys.close()?;
         Some(Only { column: column?, words: words? })
     }
 
     /// `{by: gap_ratio}`; the time history has to be kept.
-    fn animation(&self, node: &'t Node) -> Option<AnimationSpec> {
-        let fields = Fields::open(node, "an animation", self.findings)?;
-        let by = fields.optional("by", |node| one_or_more(node, self.findings, |node| self.split(node)));
-        fields.close()?;
-        self.column("particle_displacement", node.span, |role| role == Role::History)?;
+    fn animation(&self, at: At<'_>) -> Option<AnimationSpec> {
+        let keys = at.keys("an animation")?;
+        let by = keys.optional("by", "A row for each", |at| at.one_or_more(|at| self.split(at)));
+        keys.close()?;
+        self.column("particle_displacement", at.span(), |role| role == Role::History)?;
         Some(AnimationSpec { by: by?.unwrap_or_default() })
     }
 
-    fn name(&self, node: &Node) -> Option<String> {
-        let name = scalar(node, self.findings)?;
-        if is_name(name) {
-            return Some(name.into());
-        }
-        self.findings.wrong(node.span, format!("`{name}` cannot name a figure: use letters, digits, `-` and `_`"))
-    }
-
-    fn panel(&self, fields: &Fields<'t>, shared: &Shared<'t>) -> Option<Panel> {
-        let own = |key, shared: Option<&'t Node>| fields.get(key).or(shared);
-        let (x, by) = (own("x", shared.x), own("by", shared.by));
-        let (band, markers) = (own("band", shared.band), own("markers", shared.markers));
-        let x = match x {
-            Some(node) => self.axis(node),
-            None => fields.required("x", |node| self.axis(node)),
+    /// What a panel does not say itself it takes over from its figure.
+    fn panel(&self, keys: &Keys<'_>, figure: Option<&Keys<'_>>) -> Option<Panel> {
+        let x = match keys.inherited(figure, "x", "What runs along the x axis", |at| self.axis(at)) {
+            Some(None) => keys.lacks("x"),
+            x => x.flatten(),
         };
-        let y = fields.required("y", |node| one_or_more(node, self.findings, |node| self.axis(node)));
-        let by = by.map_or(Some(Vec::new()), |node| one_or_more(node, self.findings, |node| self.split(node)));
-        let band = band.map_or(Some(Band::None), |node| {
-            let word = Choice::read(node, "a band", &["spread", "none", "seeds", "stacked"], self.findings)?
-                .bare(self.findings)?;
-            Some(match word {
-                "spread" => Band::Spread,
-                "seeds" => Band::Seeds,
-                "stacked" => Band::Stacked,
-                _ => Band::None,
-            })
-        });
-        let over_first = fields.optional("over_first", |node| boolean(node, self.findings));
-        let guides = fields.optional("guides", |node| list(node, self.findings, |node| self.level(node)));
-        let markers = markers.map_or(Some(false), |node| boolean(node, self.findings));
-        let peaks = fields.optional("peaks", |node| self.peaks(node));
-        let strip = fields.optional("strip", |node| self.strip(node));
+        let by = "Columns that split rows into lines";
+        let by = keys.inherited(figure, "by", by, |at| at.one_or_more(|at| self.split(at)));
+        let band = keys.inherited(figure, "band", BAND, read_band);
+        let markers = keys.inherited(figure, "markers", "A mark at each point", |at| at.boolean());
+        let y = match keys.optional("y", "What is drawn", |at| at.one_or_more(|at| self.axis(at))) {
+            Some(None) => keys.lacks("y"),
+            y => y.flatten(),
+        };
+        let over_first = keys.optional("over_first", "Each line over the first one", |at| at.boolean());
+        let guides = keys.optional("guides", "Levels drawn across", |at| at.list(read_level));
+        let peaks = keys.optional("peaks", "Peaks that are marked", read_peaks);
+        let below = "What a strip below the frame shows along the x axis";
+        let strip = keys.optional("strip", below, |at| self.strip(at));
         let ((x, x_role), y) = (x?, y?);
-        if let (Some(Some(_)), Some(Role::History | Role::Scatter), Some(node)) = (strip, x_role, fields.get("strip")) {
-            return self.findings.wrong(node.span, "a strip stands below numbers a row, not below a time history");
+        let strip_at = keys.span_of("strip");
+        if let (Some(Some(_)), Some(Role::History | Role::Scatter), Some(at)) = (strip, x_role, strip_at) {
+            return self.findings.wrong(at, "a strip stands below numbers a row, not below a time history");
         }
         let clouds = y.iter().filter(|(_, role)| *role == Some(Role::Cloud)).count();
         if x_role == Some(Role::Cloud) {
-            return self
-                .findings
-                .wrong(fields.span(), format!("`{}` holds a list a row: it stands under `y`", x.column));
+            return self.findings.wrong(keys.span(), format!("`{}` holds a list a row: it stands under `y`", x.column));
         }
         if clouds > 0 && clouds < y.len() {
-            return self
-                .findings
-                .wrong(fields.span(), "values of each cycle are points: they have a panel of their own");
+            return self.findings.wrong(keys.span(), "values of each cycle are points: they have a panel of their own");
         }
-        if let (1.., Some(node)) = (clouds, fields.get("peaks").or(fields.get("over_first"))) {
-            return self.findings.wrong(node.span, "values of each cycle are points, which no line joins");
+        if let (1.., Some(at)) = (clouds, keys.span_of("peaks").or(keys.span_of("over_first"))) {
+            return self.findings.wrong(at, "values of each cycle are points, which no line joins");
         }
         for (axis, role) in &y {
             if let (Some(role), Some(x_role)) = (role, x_role)
                 && role.is_drawn_as_a_list() != x_role.is_drawn_as_a_list()
             {
                 return self.findings.wrong(
-                    fields.span(),
+                    keys.span(),
                     format!("`{}` cannot be drawn against `{}`: one is a list a row", axis.column, x.column),
                 );
             }
@@ -194,11 +165,11 @@ impl<'t> FigureReader<'t> {
         Some(Panel {
             x,
             y,
-            by: by?,
-            band: band?,
+            by: by?.unwrap_or_default(),
+            band: band?.unwrap_or(Band::None),
             over_first: over_first?.unwrap_or(false),
             guides: guides?.unwrap_or_default(),
-            markers: markers?,
+            markers: markers?.unwrap_or(false),
             peaks: peaks?,
             strip: strip?,
             joined: self.columns.map(|columns| columns.joined).unwrap_or_default(),
@@ -206,79 +177,50 @@ impl<'t> FigureReader<'t> {
     }
 
     /// `motion`, which has to be measured.
-    fn strip(&self, node: &'t Node) -> Option<Strip> {
-        let strip = word::<Strip>(node, "strip", self.findings)?;
+    fn strip(&self, at: At<'_>) -> Option<Strip> {
+        let strip = at.word::<Strip>("strip")?;
         let measured = self.columns.is_none_or(|columns| columns.role(&word_of(Measure::Motion)).is_some());
         if measured {
             return Some(strip);
         }
-        self.findings.report(
-            node.span,
-            "the kind of motion is not measured in this experiment",
-            Some("add `motion` to `measure`".into()),
-        )
-    }
-
-    fn peaks(&self, node: &'t Node) -> Option<PeakMarks> {
-        let fields = Fields::open(node, "peaks", self.findings)?;
-        let prominence = fields.optional("prominence", |node| {
-            let share = number(node, self.findings)?;
-            if share > 0.0 && share < 1.0 {
-                Some(share)
-            } else {
-                self.findings.wrong(node.span, "a prominence is a share of the y axis, between 0 and 1")
-            }
-        });
-        let most = fields.optional("most", |node| count(node, "peaks", 50, self.findings));
-        fields.close()?;
-        Some(PeakMarks { prominence: prominence?.unwrap_or(0.05), most: most?.unwrap_or(8) })
+        at.report("the kind of motion is not measured in this experiment", Some("add `motion` to `measure`".into()))
     }
 
     /// A column's name, or `{column: …, scale: log, label: …, reach: [0, 1]}`.
-    pub(super) fn axis(&self, node: &'t Node) -> Option<(Axis, Option<Role>)> {
-        if !matches!(node.value, Value::Mapping(_)) {
-            let column = scalar(node, self.findings)?;
-            let role = self.column(column, node.span, |role| role != Role::Label)?;
-            return Some((Axis { column: column.into(), label: None, scale: AxisScale::Linear, reach: None }, role));
-        }
-        let fields = Fields::open(node, "an axis", self.findings)?;
-        let fields_span = fields.span();
-        let column = fields.required("column", |node| Some((scalar(node, self.findings)?, node.span)));
-        let label = fields.optional("label", |node| text(node, self.findings));
-        let scale = fields.optional("scale", |node| word::<AxisScale>(node, "scale", self.findings));
-        let reach = fields.optional("reach", |node| self.reach(node));
-        fields.close()?;
+    pub(super) fn axis(&self, at: At<'_>) -> Option<(Axis, Option<Role>)> {
+        let plain = |at: At<'_>| {
+            let (column, span) = column_name(at)?;
+            let role = self.column(&column, span, |role| role != Role::Label)?;
+            Some((Axis { column, label: None, scale: AxisScale::Linear, reach: None }, role))
+        };
+        at.named("axis", "A column, or {column, scale, label, reach}", |at| {
+            at.either(|value| matches!(value, Value::Mapping(_)), |at| self.long_axis(at), plain)
+        })
+    }
+
+    fn long_axis(&self, at: At<'_>) -> Option<(Axis, Option<Role>)> {
+        let keys = at.keys("an axis")?;
+        let column = keys.required("column", "The column", column_name);
+        let label = keys.optional("label", "Its label, in place of the column's own words", |at| at.text());
+        let scale = keys.optional("scale", "Its scale", |at| at.word::<AxisScale>("scale"));
+        let reach = keys.optional("reach", "From one number to a larger one", read_reach);
+        keys.close()?;
         let (column, span) = column?;
-        let role = self.column(column, span, |role| role != Role::Label)?;
-        let axis = Axis { column: column.into(), label: label?, scale: scale?.unwrap_or_default(), reach: reach? };
+        let role = self.column(&column, span, |role| role != Role::Label)?;
+        let axis = Axis { column, label: label?, scale: scale?.unwrap_or_default(), reach: reach? };
         if let (AxisScale::Log, Some([from, _])) = (axis.scale, axis.reach)
             && from <= 0.0
         {
-            return self.findings.wrong(fields_span, "a logarithmic axis reaches from a number above zero");
+            return at.wrong("a logarithmic axis reaches from a number above zero");
         }
         Some((axis, role))
     }
 
-    fn reach(&self, node: &'t Node) -> Option<[f64; 2]> {
-        match list(node, self.findings, |node| number(node, self.findings))?.as_slice() {
-            &[from, to] if from < to => Some([from, to]),
-            _ => self.findings.wrong(node.span, "an axis reaches from one number to a larger one: `reach: [0, 1]`"),
-        }
-    }
-
     /// A column that splits rows into lines.
-    pub(super) fn split(&self, node: &Node) -> Option<String> {
-        let column = scalar(node, self.findings)?;
-        self.column(column, node.span, |role| matches!(role, Role::Number | Role::Label))?;
-        Some(column.into())
-    }
-
-    fn level(&self, node: &Node) -> Option<Level> {
-        let fields = Fields::open(node, "a guide", self.findings)?;
-        let at = fields.required("at", |node| number(node, self.findings));
-        let label = fields.optional("label", |node| text(node, self.findings));
-        fields.close()?;
-        Some(Level { at: at?, label: label?.unwrap_or_default() })
+    pub(super) fn split(&self, at: At<'_>) -> Option<String> {
+        let (column, span) = column_name(at)?;
+        self.column(&column, span, |role| matches!(role, Role::Number | Role::Label))?;
+        Some(column)
     }
 
     #[expect(clippy::option_option, reason = "wrong, and not known because something else is wrong")]
@@ -298,4 +240,71 @@ impl<'t> FigureReader<'t> {
             None => unknown(self.findings, span, "the table of this experiment", "column", name, &columns.names()),
         }
     }
+}
+
+/// What a band shows.
+const BAND: &str = "spread: standard deviation of the ensemble; seeds: least to largest of searches that differ in their seed; \
+     stacked: each line stands on the one before, and the space between is filled";
+
+fn read_band(at: At<'_>) -> Option<Band> {
+    at.choose("a band", &["spread", "none", "seeds", "stacked"].map(|word| (word, "")), |choice| {
+        choice.bare()?;
+        Some(match choice.name() {
+            "spread" => Band::Spread,
+            "seeds" => Band::Seeds,
+            "stacked" => Band::Stacked,
+            _ => Band::None,
+        })
+    })
+}
+
+fn name(at: At<'_>) -> Option<String> {
+    at.form(
+        |node, findings| {
+            let name = scalar(node, findings)?;
+            if is_name(name) {
+                return Some(name.into());
+            }
+            findings.wrong(node.span, format!("`{name}` cannot name a figure: use letters, digits, `-` and `_`"))
+        },
+        |it| json!({"description": it.about(), "type": "string", "pattern": NAME}),
+    )
+}
+
+/// The name of a column, which need not be one of this experiment.
+pub(super) fn column_name(at: At<'_>) -> Option<(String, Span)> {
+    at.named("column", "A column of the table", |at| {
+        at.form(|node, findings| Some((scalar(node, findings)?.to_owned(), node.span)), |_| Columns::offered())
+    })
+}
+
+fn read_reach(at: At<'_>) -> Option<[f64; 2]> {
+    match at.pair(|at| at.number())?.as_slice() {
+        &[from, to] if from < to => Some([from, to]),
+        _ => at.wrong("an axis reaches from one number to a larger one: `reach: [0, 1]`"),
+    }
+}
+
+fn read_level(at: At<'_>) -> Option<Level> {
+    let keys = at.keys("a guide")?;
+    let height = keys.required("at", "Where", |at| at.number());
+    let label = keys.optional("label", "Its label", |at| at.text());
+    keys.close()?;
+    Some(Level { at: height?, label: label?.unwrap_or_default() })
+}
+
+fn read_peaks(at: At<'_>) -> Option<PeakMarks> {
+    let keys = at.keys("peaks")?;
+    let prominence = keys.optional("prominence", "How far one stands out, as a share of the y axis", |at| {
+        at.form(
+            |node, findings| match number(node, findings)? {
+                share if share > 0.0 && share < 1.0 => Some(share),
+                _ => findings.wrong(node.span, "a prominence is a share of the y axis, between 0 and 1"),
+            },
+            |it| parts::inner_share(it.about()),
+        )
+    });
+    let most = keys.optional("most", "Peaks at most", |at| at.count("peaks", 50));
+    keys.close()?;
+    Some(PeakMarks { prominence: prominence?.unwrap_or(0.05), most: most?.unwrap_or(8) })
 }

@@ -3,14 +3,21 @@
 use std::str::FromStr;
 use std::time::Duration;
 
+use serde_json::json;
+
+use super::at::At;
 use super::diagnostic::Findings;
 use super::quantity::{Dimension, parse_number, parse_quantity};
-use super::reader::{Fields, scalar};
+use super::reader::scalar;
+use super::schema::parts::{self, NUMBER, PREFIX};
 use super::yaml::Node;
 use crate::dynamics::Limit;
 
 /// Longest time that can be asked for: a year.
 const LONGEST: f64 = 31_557_600.0;
+
+/// Most events that can be asked for; whole numbers of this size are exact.
+const MOST_EVENTS: f64 = 1e15;
 
 /// A limit of which parts may be left as they are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -54,40 +61,37 @@ impl FromStr for RowLimit {
 }
 
 /// Reads the mapping of an experiment.
-pub(super) fn read_limit(node: &Node, findings: &Findings) -> Option<Limit> {
-    let fields = Fields::open(node, "a limit", findings)?;
-    let part = |node: &Node, what: &str, example: &str| {
-        let text = scalar(node, findings)?;
-        findings.report::<()>(
-            node.span,
-            format!("`{text}` is not {what}"),
-            Some(format!("write for example {example}")),
+pub(super) fn read_limit(at: At<'_>) -> Option<Limit> {
+    let keys = at.keys("a limit")?;
+    let events = keys.optional("events", "Events of a simulation; 1e8 unless stated", |at| {
+        let read =
+            |node: &Node, findings: &Findings| part(node, events, "a number of events, one at least", "1e8", findings);
+        at.form(read, |it| parts::between(it.about(), 1.0, MOST_EVENTS))
+    });
+    let time = keys.optional("time", "Processor time of a row; 10 min unless stated", |at| {
+        let read =
+            |node: &Node, findings: &Findings| part(node, time, "a time up to a year", "10 min, 30 s or 2 h", findings);
+        let pattern = format!(r"^\s*{NUMBER}\s*(h|min|{PREFIX}s)\s*$");
+        at.form(
+            read,
+            |it| json!({"description": it.about(), "type": "string", "pattern": pattern, "examples": ["10 min"]}),
         )
-    };
-    let events = fields.optional("events", |node| {
-        let read = scalar(node, findings).map(events)?;
-        read.or_else(|| {
-            part(node, "a number of events, one at least", "1e8");
-            None
-        })
     });
-    let time = fields.optional("time", |node| {
-        let read = scalar(node, findings).map(time)?;
-        read.or_else(|| {
-            part(node, "a time up to a year", "10 min, 30 s or 2 h");
-            None
-        })
-    });
-    fields.close()?;
+    keys.close()?;
     Some(RowLimit { events: events?, time: time? }.over(Limit::default()))
+}
+
+fn part<T>(node: &Node, read: impl Fn(&str) -> Option<T>, what: &str, example: &str, findings: &Findings) -> Option<T> {
+    let text = scalar(node, findings)?;
+    let help = || Some(format!("write for example {example}"));
+    read(text).or_else(|| findings.report(node.span, format!("`{text}` is not {what}"), help()))
 }
 
 /// `1e8`, `100000`, with or without its noun.
 fn events(text: &str) -> Option<u64> {
     let digits = text.trim().trim_end_matches("events").trim();
     let number = parse_number(digits).ok()?;
-    // Whole numbers of this size are exact.
-    ((1.0..=1e15).contains(&number) && number.fract() == 0.0).then_some(number as u64)
+    ((1.0..=MOST_EVENTS).contains(&number) && number.fract() == 0.0).then_some(number as u64)
 }
 
 /// `10 min`, `2 h`, or seconds with any prefix.

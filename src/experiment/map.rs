@@ -1,35 +1,29 @@
 //! The `map` of a figure: two columns for the place, one for the colour.
 
+use super::at::At;
 use super::columns::Role;
 use super::definition::{Best, MapSpec, Mark};
-use super::figure::FigureReader;
-use super::reader::{Fields, count, number, one_or_more, scalar, text, word};
-use super::yaml::Node;
+use super::figure::{FigureReader, column_name};
 
-impl<'t> FigureReader<'t> {
+impl FigureReader<'_> {
     /// `{x: damper_x, y: damper_y, value: velocity_ratio, by: sweep, mark: {x: force_x, y: force_y, label: force}}`.
-    pub(super) fn map(&self, node: &'t Node) -> Option<Box<MapSpec>> {
-        let fields = Fields::open(node, "a map", self.findings)?;
-        let x = fields.required("x", |node| self.axis(node));
-        let y = fields.required("y", |node| self.axis(node));
-        let value = fields.required("value", |node| self.axis(node));
-        let by = fields.optional("by", |node| one_or_more(node, self.findings, |node| self.split(node)));
-        let mark = fields.optional("mark", |node| self.mark(node));
-        let best = fields.optional("best", |node| word::<Best>(node, "place to mark", self.findings));
-        let centre = fields.optional("centre", |node| number(node, self.findings));
-        let aspect = fields.optional("aspect", |node| {
-            let aspect = number(node, self.findings)?;
-            if (0.1..=10.0).contains(&aspect) {
-                Some(aspect)
-            } else {
-                self.findings.wrong(node.span, "an aspect is the height of a panel over its width, 0.1 to 10")
-            }
+    pub(super) fn map(&self, at: At<'_>) -> Option<Box<MapSpec>> {
+        let keys = at.keys("a map")?;
+        let x = keys.required("x", "What runs along the x axis", |at| self.axis(at));
+        let y = keys.required("y", "What runs along the y axis", |at| self.axis(at));
+        let value = keys.required("value", "What the colours show", |at| self.axis(at));
+        let by = keys.optional("by", "A panel for each", |at| at.one_or_more(|at| self.split(at)));
+        let mark = keys.optional("mark", "A place that is marked", |at| self.mark(at));
+        let best = "The place to mark and to name";
+        let best = keys.optional("best", best, |at| at.word::<Best>("place to mark"));
+        let centre = keys.optional("centre", "The value of the middle of the colours", |at| at.number());
+        let aspect = keys.optional("aspect", "Height of a panel over its width", |at| {
+            at.within([0.1, 10.0], "an aspect is the height of a panel over its width, 0.1 to 10")
         });
-        let columns = fields.optional("columns", |node| match count(node, "panels", 6, self.findings)? {
-            0 => self.findings.wrong(node.span, "a map has one column of panels at least"),
-            columns => Some(columns),
+        let columns = keys.optional("columns", "Panels side by side", |at| {
+            at.count_from(1, "panels", 6, "a map has one column of panels at least")
         });
-        fields.close()?;
+        keys.close()?;
         let ((x, x_role), (y, y_role), (value, value_role)) = (x?, y?, value?);
         let lists = |role: Option<Role>| role.map(|role| matches!(role, Role::History | Role::Cloud));
         for (axis, role) in [(&y, y_role), (&value, value_role)] {
@@ -37,10 +31,7 @@ impl<'t> FigureReader<'t> {
                 && one != other
             {
                 let (a, b) = (&x.column, &axis.column);
-                return self.findings.wrong(
-                    node.span,
-                    format!("`{a}` and `{b}` make no map: one holds a number a row, the other a list"),
-                );
+                return at.wrong(format!("`{a}` and `{b}` make no map: one holds a number a row, the other a list"));
             }
         }
         // A field of lists is a shape: its top is no choice of a place.
@@ -58,17 +49,17 @@ impl<'t> FigureReader<'t> {
         }))
     }
 
-    fn mark(&self, node: &'t Node) -> Option<Mark> {
-        let fields = Fields::open(node, "a mark", self.findings)?;
-        let column = |node: &'t Node| {
-            let name = scalar(node, self.findings)?;
-            self.column(name, node.span, |role| role == Role::Number)?;
-            Some(name.to_owned())
+    fn mark(&self, at: At<'_>) -> Option<Mark> {
+        let keys = at.keys("a mark")?;
+        let column = |at: At<'_>| {
+            let (name, span) = column_name(at)?;
+            self.column(&name, span, |role| role == Role::Number)?;
+            Some(name)
         };
-        let x = fields.required("x", column);
-        let y = fields.required("y", column);
-        let label = fields.required("label", |node| text(node, self.findings));
-        fields.close()?;
+        let x = keys.required("x", "Its place along the x axis", column);
+        let y = keys.required("y", "Its place along the y axis", column);
+        let label = keys.required("label", "What is there", |at| at.text());
+        keys.close()?;
         Some(Mark { x: x?, y: y?, label: label? })
     }
 }

@@ -1,20 +1,24 @@
 //! The `optimise` of an experiment: nodes to [`Optimise`].
 
-use super::recipe::GapWord;
-use crate::measure::Measure;
+use serde_json::json;
 
+use super::at::At;
 use super::diagnostic::{Findings, Span};
+use super::keys::Keys;
 use super::optimise::{Candidate, Goal, Landscape, Optimise, Search, SearchKind, SearchSpacing};
 use super::quantity::Dimension;
-use super::reader::{Fields, above_zero, boolean, count, list, one_or_more, quantity, ratio, text, word};
-use super::sweep::is_name;
+use super::reader::count;
+use super::recipe::GapWord;
+use super::schema::parts;
+use super::sweep::{NAME, is_name};
+use super::validate::read_measure;
 use super::word::word_of;
-use super::yaml::{Node, Value};
+use super::yaml::Value;
 
 /// Most individuals of a population.
-pub(super) const MOST_INDIVIDUALS: u32 = 100_000;
+const MOST_INDIVIDUALS: u32 = 100_000;
 /// Most generations, and evaluations.
-pub(super) const MOST: u32 = 1_000_000_000;
+const MOST: u32 = 1_000_000_000;
 
 /// An optimisation as read: what belongs to each damper still is one value for all, or a list.
 pub(super) struct ReadOptimise {
@@ -27,252 +31,250 @@ pub(super) struct ReadOptimise {
     pub span: Span,
 }
 
-pub(super) struct OptimiseReader<'t> {
-    pub findings: &'t Findings,
+/// Reads what stands under `optimise`.
+pub(super) fn read_optimise(at: At<'_>) -> Option<ReadOptimise> {
+    let keys = at.keys("an optimisation")?;
+    let goals = [("minimise", "The measure that is minimised"), ("maximise", "The measure that is maximised")];
+    let goal = keys.exactly_one(&goals, |key, at| {
+        let goal = if key == "minimise" { Goal::Minimise } else { Goal::Maximise };
+        Some((goal, read_measure(at)?))
+    });
+    let of_gaps = [("gaps", "Bounds of all gaps, or of each"), ("gap_ratios", "Bounds of all h′, or of each")];
+    let gaps = keys.exactly_one(&of_gaps, |key, at| {
+        let word = if key == "gaps" { GapWord::Gap } else { GapWord::GapRatio };
+        let bounds = at.one_or_more(|at| read_bounds(at, word))?;
+        Some((word, bounds, at.span()))
+    });
+    let word = gaps.as_ref().map(|(word, ..)| *word);
+    let candidates =
+        keys.required("candidates", "Gaps that are evaluated as they are, by name", |at| read_candidates(at, word));
+    let compare_with = keys.optional("compare_with", "The candidate that improvements are measured from", |at| {
+        Some((at.text()?, at.span()))
+    });
+    let genetic = keys.optional("genetic", "The genetic algorithm", read_genetic);
+    let cma_es = keys.optional("cma_es", "CMA-ES, the peer", read_cma_es);
+    let dense = keys.optional("dense", "Every point of a grid", read_dense);
+    let improved = "Improve by 2-opt what the genetic algorithm found, or these candidates";
+    let two_opt = keys.optional("two_opt", improved, read_two_opt);
+    let seeds = keys.optional("seeds", "Seeds, each a search of its own", read_seeds);
+    let stop = keys.optional("stop", "What ends a search", read_stop);
+    let landscape = keys.optional("landscape", "Fitness along each gap", read_landscape);
+    keys.close()?;
+    let ((goal, measure), (gaps, bounds, bounds_at)) = (goal?, gaps?);
+    let mut candidates = candidates?;
+    // Keys of a mapping have no order.
+    candidates.sort_by(|(a, _), (b, _)| a.name.cmp(&b.name));
+    if let Some((name, span)) = compare_with? {
+        let Some(first) = candidates.iter().position(|(candidate, _)| candidate.name == name) else {
+            return at.wrong_at(span, format!("`{name}` is none of the candidates"));
+        };
+        candidates[..=first].rotate_right(1);
+    }
+    let (names, candidates_at): (Vec<Candidate>, Vec<Span>) = candidates.into_iter().unzip();
+    let (genetic, cma_es, dense, stop) = (genetic?, cma_es?, dense?, stop?.unwrap_or_default());
+    let (two_opt, two_opt_of) = two_opt?.unwrap_or_default();
+    if let Some(Search::Genetic { start, .. }) = &genetic
+        && let Some(name) = start.iter().find(|name| names.iter().all(|candidate| candidate.name != **name))
+    {
+        return at.wrong(format!("`start` names `{name}`, which is none of the candidates"));
+    }
+    if let Some(name) = two_opt_of.iter().find(|name| names.iter().all(|candidate| candidate.name != **name)) {
+        return at.wrong(format!("`two_opt` names `{name}`, which is none of the candidates"));
+    }
+    if let Some(name) = two_opt_of
+        .iter()
+        .map(|name| format!("{name}_two_opt"))
+        .find(|improved| names.iter().any(|candidate| candidate.name == *improved))
+    {
+        return at.wrong(format!("`{name}` is what 2-opt finds: call the candidate otherwise"));
+    }
+    if genetic.is_none() && two_opt {
+        return at.wrong("2-opt improves what the genetic algorithm has found: add `genetic`");
+    }
+    if (genetic.is_some() && stop.generations.is_none() || cma_es.is_some() && genetic.is_none())
+        && stop.evaluations.is_none()
+    {
+        let help = "add `stop: {generations: …}` or `stop: {evaluations: …}`".to_owned();
+        return at.report("nothing bounds this search", Some(help));
+    }
+    if genetic.is_none() && cma_es.is_none() && dense.is_none() && landscape == Some(None) && names.is_empty() {
+        return at.wrong("there is nothing to evaluate: name candidates or a search");
+    }
+    let optimise = Optimise {
+        goal,
+        measure,
+        gaps,
+        bounds: Vec::new(),
+        candidates: names,
+        searches: [genetic, cma_es, dense].into_iter().flatten().collect(),
+        seeds: seeds?.unwrap_or_else(|| vec![1]),
+        two_opt,
+        two_opt_of,
+        generations: stop.generations,
+        evaluations: stop.evaluations,
+        time: stop.time,
+        tolerance: stop.tolerance,
+        stalled: stop.stalled,
+        landscape: landscape?,
+    };
+    Some(ReadOptimise { optimise, bounds, bounds_at, candidates_at, span: at.span() })
 }
 
-impl<'t> OptimiseReader<'t> {
-    pub fn read(&self, node: &'t Node) -> Option<ReadOptimise> {
-        let findings = self.findings;
-        let fields = Fields::open(node, "an optimisation", findings)?;
-        let goal = fields.exactly_one(&["minimise", "maximise"]).and_then(|(key, node)| {
-            let goal = if key == "minimise" { Goal::Minimise } else { Goal::Maximise };
-            Some((goal, word::<Measure>(node, "measure", findings)?))
-        });
-        let gaps = fields.exactly_one(&["gaps", "gap_ratios"]).and_then(|(key, node)| {
-            let word = if key == "gaps" { GapWord::Gap } else { GapWord::GapRatio };
-            let bounds = one_or_more(node, findings, |node| self.bounds(node, word))?;
-            Some((word, bounds, node.span))
-        });
-        let words = gaps.as_ref().map(|(word, ..)| *word);
-        let candidates = fields.required("candidates", |node| self.candidates(node, words?));
-        let compare_with = fields.optional("compare_with", |node| Some((text(node, findings)?, node.span)));
-        let genetic = fields.optional("genetic", |node| self.genetic(node));
-        let cma_es = fields.optional("cma_es", |node| self.cma_es(node));
-        let dense = fields.optional("dense", |node| self.dense(node));
-        let two_opt = fields.optional("two_opt", |node| self.two_opt(node));
-        let seeds = fields.optional("seeds", |node| self.seeds(node));
-        let stop = fields.optional("stop", |node| self.stop(node));
-        let landscape = fields.optional("landscape", |node| self.landscape(node));
-        fields.close()?;
-        let ((goal, measure), (gaps, bounds, bounds_at)) = (goal?, gaps?);
-        let mut candidates = candidates?;
-        // Keys of a mapping have no order.
-        candidates.sort_by(|(a, _), (b, _)| a.name.cmp(&b.name));
-        if let Some((name, at)) = compare_with? {
-            let Some(first) = candidates.iter().position(|(candidate, _)| candidate.name == name) else {
-                return findings.wrong(at, format!("`{name}` is none of the candidates"));
-            };
-            candidates[..=first].rotate_right(1);
-        }
-        let (names, candidates_at): (Vec<Candidate>, Vec<Span>) = candidates.into_iter().unzip();
-        let (genetic, cma_es, dense, stop) = (genetic?, cma_es?, dense?, stop?.unwrap_or_default());
-        let (two_opt, two_opt_of) = two_opt?.unwrap_or_default();
-        if let Some(Search::Genetic { start, .. }) = &genetic
-            && let Some(name) = start.iter().find(|name| names.iter().all(|candidate| candidate.name != **name))
-        {
-            return findings.wrong(node.span, format!("`start` names `{name}`, which is none of the candidates"));
-        }
-        if let Some(name) = two_opt_of.iter().find(|name| names.iter().all(|candidate| candidate.name != **name)) {
-            return findings.wrong(node.span, format!("`two_opt` names `{name}`, which is none of the candidates"));
-        }
-        if let Some(name) = two_opt_of
-            .iter()
-            .map(|name| format!("{name}_two_opt"))
-            .find(|improved| names.iter().any(|candidate| candidate.name == *improved))
-        {
-            return findings.wrong(node.span, format!("`{name}` is what 2-opt finds: call the candidate otherwise"));
-        }
-        if genetic.is_none() && two_opt {
-            return findings.wrong(node.span, "2-opt improves what the genetic algorithm has found: add `genetic`");
-        }
-        if (genetic.is_some() && stop.generations.is_none() || cma_es.is_some() && genetic.is_none())
-            && stop.evaluations.is_none()
-        {
-            let help = "add `stop: {generations: …}` or `stop: {evaluations: …}`".to_owned();
-            return findings.report(node.span, "nothing bounds this search", Some(help));
-        }
-        if genetic.is_none() && cma_es.is_none() && dense.is_none() && landscape == Some(None) && names.is_empty() {
-            return findings.wrong(node.span, "there is nothing to evaluate: name candidates or a search");
-        }
-        let optimise = Optimise {
-            goal,
-            measure,
-            gaps,
-            bounds: Vec::new(),
-            candidates: names,
-            searches: [genetic, cma_es, dense].into_iter().flatten().collect(),
-            seeds: seeds?.unwrap_or_else(|| vec![1]),
-            two_opt,
-            two_opt_of,
-            generations: stop.generations,
-            evaluations: stop.evaluations,
-            time: stop.time,
-            tolerance: stop.tolerance,
-            stalled: stop.stalled,
-            landscape: landscape?,
+/// A length or a ratio, as the bounds are; in a description either.
+fn read_gap(at: At<'_>, word: Option<GapWord>) -> Option<f64> {
+    if word != Some(GapWord::GapRatio)
+        && let Some(gap) = at.quantity(Dimension::Length)
+    {
+        return if gap >= 0.0 { Some(gap) } else { at.wrong("a gap clearance cannot be negative") };
+    }
+    if word == Some(GapWord::Gap) { None } else { at.ratio() }
+}
+
+fn read_bounds(at: At<'_>, word: GapWord) -> Option<[f64; 2]> {
+    let keys = at.keys("a pair of bounds")?;
+    let from = keys.required("from", "A gap", |at| read_gap(at, Some(word)));
+    let to = keys.required("to", "A larger gap", |at| Some((read_gap(at, Some(word))?, at.span())));
+    keys.close()?;
+    let (from, (to, to_at)) = (from?, to?);
+    if from < to { Some([from, to]) } else { at.wrong_at(to_at, "a range ends above its start") }
+}
+
+fn read_candidates(at: At<'_>, word: Option<GapWord>) -> Option<Vec<(Candidate, Span)>> {
+    if let At::Node(..) = at {
+        word?;
+    }
+    let form = "candidates are written as `name: [gap, gap, …]` lines";
+    at.by_name(json!({"pattern": NAME}), form, |key, key_span, at| {
+        let taken = SearchKind::ALL.iter().any(|kind| word_of(*kind) == key);
+        let named = if taken || !is_name(key) {
+            let why = if taken { "it names a search" } else { "use letters, digits, `-` and `_`" };
+            at.wrong_at(key_span, format!("`{key}` cannot name a candidate: {why}"))
+        } else {
+            Some(())
         };
-        Some(ReadOptimise { optimise, bounds, bounds_at, candidates_at, span: node.span })
-    }
+        let gaps = at.called("One gap for all, or one a damper", |at| at.one_or_more(|at| read_gap(at, word)));
+        named?;
+        Some((Candidate { name: key.to_owned(), gaps: gaps? }, at.span()))
+    })
+}
 
-    fn gap(&self, node: &'t Node, word: GapWord) -> Option<f64> {
-        match word {
-            GapWord::Gap => match quantity(node, Dimension::Length, self.findings)? {
-                gap if gap >= 0.0 => Some(gap),
-                _ => self.findings.wrong(node.span, "a gap clearance cannot be negative"),
-            },
-            GapWord::GapRatio => ratio(node, self.findings),
+/// Fewer have no parents to choose among.
+const FEWEST_INDIVIDUALS: u32 = 4;
+const TOO_FEW: &str = "a population has four individuals at least";
+
+fn read_genetic(at: At<'_>) -> Option<Search> {
+    let keys = at.keys("a genetic algorithm")?;
+    let population = keys.required("population", "Individuals", |at| {
+        // Found too small only if nothing else is wrong here.
+        at.form(
+            |node, findings| Some((count(node, "individuals", MOST_INDIVIDUALS, findings)?, node.span)),
+            |it| parts::count(it.about(), "individuals", FEWEST_INDIVIDUALS, MOST_INDIVIDUALS),
+        )
+    });
+    let elites = keys.optional("elites", "Individuals that live on", |at| {
+        Some((at.count("individuals", MOST_INDIVIDUALS)?, at.span()))
+    });
+    let crossover = keys.optional("crossover", "Share of children by crossover", |at| {
+        at.share("the share of children by crossover lies between 0 and 1")
+    });
+    let start = keys.optional("start", "Candidates to start from, by name", |at| at.one_or_more(|at| at.text()));
+    keys.close()?;
+    let ((population, population_at), elites) = (population?, elites?);
+    if population < FEWEST_INDIVIDUALS {
+        return at.wrong_at(population_at, TOO_FEW);
+    }
+    // A twentieth, as library functions have it.
+    let (elites, elites_at) = elites.unwrap_or((population.div_ceil(20), population_at));
+    if elites >= population {
+        return at.wrong_at(elites_at, "fewer individuals live on than there are");
+    }
+    Some(Search::Genetic {
+        population,
+        elites,
+        crossover: crossover?.unwrap_or(0.8),
+        start: start?.unwrap_or_default(),
+    })
+}
+
+/// `true`, or a list of what is improved: `genetic`, and candidates by name.
+fn read_two_opt(at: At<'_>) -> Option<(bool, Vec<String>)> {
+    let found = |at: At<'_>| at.boolean().map(|genetic| (genetic, Vec::new()));
+    at.either(
+        |value| matches!(value, Value::Scalar(_)),
+        found,
+        |at| {
+            let names = at.list(|at| at.text())?;
+            let genetic = word_of(SearchKind::Genetic);
+            let (found, named): (Vec<String>, Vec<String>) = names.into_iter().partition(|name| *name == genetic);
+            Some((!found.is_empty(), named))
+        },
+    )
+}
+
+fn read_cma_es(at: At<'_>) -> Option<Search> {
+    let keys = at.keys("the peer")?;
+    let population = keys.optional("population", "Individuals", |at| {
+        at.count_from(FEWEST_INDIVIDUALS, "individuals", MOST_INDIVIDUALS, TOO_FEW)
+    });
+    keys.close()?;
+    Some(Search::CmaEs { population: population? })
+}
+
+/// How the points along each gap lie.
+fn points(keys: &Keys<'_>) -> (Option<u32>, Option<SearchSpacing>) {
+    let points = keys.required("points", "Points along each gap", |at| {
+        at.count_from(2, "points", 10_000, "a range has two points at least")
+    });
+    let spacing = keys.optional("spacing", "How points are spaced", |at| at.word::<SearchSpacing>("spacing"));
+    (points, spacing.map(Option::unwrap_or_default))
+}
+
+fn read_dense(at: At<'_>) -> Option<Search> {
+    let keys = at.keys("a dense search")?;
+    let (points, spacing) = points(&keys);
+    let refine = keys.optional("refine", "Finer grids around the best", |at| at.count("rounds", 50));
+    keys.close()?;
+    Some(Search::Dense { points: points?, spacing: spacing?, refine: refine?.unwrap_or(0) })
+}
+
+fn read_landscape(at: At<'_>) -> Option<Landscape> {
+    let keys = at.keys("a landscape")?;
+    let (points, spacing) = points(&keys);
+    keys.close()?;
+    Some(Landscape { points: points?, spacing: spacing? })
+}
+
+fn read_seeds(at: At<'_>) -> Option<Vec<u32>> {
+    let seeds = at.list(|at| Some((at.count("", u32::MAX)?, at.span())))?;
+    for (index, (seed, span)) in seeds.iter().enumerate() {
+        if seeds[..index].iter().any(|(other, _)| other == seed) {
+            return at.wrong_at(*span, format!("seed {seed} is here twice: it would find the same"));
         }
     }
+    Some(seeds.into_iter().map(|(seed, _)| seed).collect())
+}
 
-    fn bounds(&self, node: &'t Node, word: GapWord) -> Option<[f64; 2]> {
-        let fields = Fields::open(node, "a pair of bounds", self.findings)?;
-        let from = fields.required("from", |node| self.gap(node, word));
-        let to = fields.required("to", |node| Some((self.gap(node, word)?, node.span)));
-        fields.close()?;
-        let (from, (to, to_at)) = (from?, to?);
-        if from < to { Some([from, to]) } else { self.findings.wrong(to_at, "a range ends above its start") }
+fn read_stop(at: At<'_>) -> Option<Stop> {
+    let keys = at.keys("a stopping condition")?;
+    let some = |at: At<'_>, noun| at.count_from(1, noun, MOST, "one at least is wanted here");
+    let generations = keys.optional("generations", "Generations", |at| some(at, "generations"));
+    let evaluations = keys.optional("evaluations", "Evaluations", |at| some(at, "evaluations"));
+    let time = keys.optional("time", "Time", |at| at.above_zero(Dimension::Time));
+    let tolerance = keys.optional("tolerance", "Gain below which a generation has stalled", |at| at.ratio());
+    let stalled = "Generations over which the tolerance is taken";
+    let stalled = keys.optional("stalled", stalled, |at| Some((some(at, "generations")?, at.span())));
+    keys.rule(|| json!({"if": {"required": ["stalled"]}, "then": {"required": ["tolerance"]}}));
+    keys.close()?;
+    if let (Some(None), Some(Some((_, span)))) = (&tolerance, &stalled) {
+        return at.wrong_at(*span, "`stalled` says over how many generations `tolerance` is taken: add that");
     }
-
-    fn candidates(&self, node: &'t Node, word: GapWord) -> Option<Vec<(Candidate, Span)>> {
-        let Value::Mapping(entries) = &node.value else {
-            return self.findings.wrong(node.span, "candidates are written as `name: [gap, gap, …]` lines");
-        };
-        let mut candidates = Vec::new();
-        let mut fine = true;
-        for entry in entries {
-            let taken = SearchKind::ALL.iter().any(|kind| word_of(*kind) == entry.key);
-            if taken || !is_name(&entry.key) {
-                let why = if taken { "it names a search" } else { "use letters, digits, `-` and `_`" };
-                let message = format!("`{}` cannot name a candidate: {why}", entry.key);
-                fine = self.findings.wrong::<()>(entry.key_span, message).is_some();
-            }
-            match one_or_more(&entry.node, self.findings, |node| self.gap(node, word)) {
-                Some(gaps) => candidates.push((Candidate { name: entry.key.clone(), gaps }, entry.node.span)),
-                None => fine = false,
-            }
-        }
-        fine.then_some(candidates)
-    }
-
-    fn genetic(&self, node: &'t Node) -> Option<Search> {
-        let fields = Fields::open(node, "a genetic algorithm", self.findings)?;
-        let individuals = |node| Some((count(node, "individuals", MOST_INDIVIDUALS, self.findings)?, node.span));
-        let population = fields.required("population", individuals);
-        let elites = fields.optional("elites", individuals);
-        let crossover = fields.optional("crossover", |node| match ratio(node, self.findings)? {
-            share if share <= 1.0 => Some(share),
-            _ => self.findings.wrong(node.span, "the share of children by crossover lies between 0 and 1"),
-        });
-        let start = fields.optional("start", |node| one_or_more(node, self.findings, |node| text(node, self.findings)));
-        fields.close()?;
-        let ((population, at), elites) = (population?, elites?);
-        if population < 4 {
-            return self.findings.wrong(at, "a population has four individuals at least");
-        }
-        // A twentieth, as library functions have it.
-        let (elites, elites_at) = elites.unwrap_or((population.div_ceil(20), at));
-        if elites >= population {
-            return self.findings.wrong(elites_at, "fewer individuals live on than there are");
-        }
-        Some(Search::Genetic {
-            population,
-            elites,
-            crossover: crossover?.unwrap_or(0.8),
-            start: start?.unwrap_or_default(),
-        })
-    }
-
-    /// `true`, or a list of what is improved: `genetic`, and candidates by name.
-    fn two_opt(&self, node: &'t Node) -> Option<(bool, Vec<String>)> {
-        if let Value::Scalar(_) = node.value {
-            return boolean(node, self.findings).map(|genetic| (genetic, Vec::new()));
-        }
-        let names = list(node, self.findings, |node| text(node, self.findings))?;
-        let genetic = word_of(SearchKind::Genetic);
-        let (found, named): (Vec<String>, Vec<String>) = names.into_iter().partition(|name| *name == genetic);
-        Some((!found.is_empty(), named))
-    }
-
-    fn cma_es(&self, node: &'t Node) -> Option<Search> {
-        let fields = Fields::open(node, "the peer", self.findings)?;
-        let population =
-            fields.optional("population", |node| match count(node, "individuals", MOST_INDIVIDUALS, self.findings)? {
-                0..4 => self.findings.wrong(node.span, "a population has four individuals at least"),
-                population => Some(population),
-            });
-        fields.close()?;
-        Some(Search::CmaEs { population: population? })
-    }
-
-    fn points(&self, node: &'t Node) -> Option<u32> {
-        match count(node, "points", 10_000, self.findings)? {
-            0 | 1 => self.findings.wrong(node.span, "a range has two points at least"),
-            points => Some(points),
-        }
-    }
-
-    fn spacing(&self, fields: &Fields<'t>) -> Option<SearchSpacing> {
-        let spacing = fields.optional("spacing", |node| word::<SearchSpacing>(node, "spacing", self.findings));
-        spacing.map(Option::unwrap_or_default)
-    }
-
-    fn dense(&self, node: &'t Node) -> Option<Search> {
-        let fields = Fields::open(node, "a dense search", self.findings)?;
-        let points = fields.required("points", |node| self.points(node));
-        let spacing = self.spacing(&fields);
-        let refine = fields.optional("refine", |node| count(node, "rounds", 50, self.findings));
-        fields.close()?;
-        Some(Search::Dense { points: points?, spacing: spacing?, refine: refine?.unwrap_or(0) })
-    }
-
-    fn landscape(&self, node: &'t Node) -> Option<Landscape> {
-        let fields = Fields::open(node, "a landscape", self.findings)?;
-        let points = fields.required("points", |node| self.points(node));
-        let spacing = self.spacing(&fields);
-        fields.close()?;
-        Some(Landscape { points: points?, spacing: spacing? })
-    }
-
-    fn seeds(&self, node: &'t Node) -> Option<Vec<u32>> {
-        let seeds = list(node, self.findings, |node| Some((count(node, "", u32::MAX, self.findings)?, node.span)))?;
-        for (index, (seed, span)) in seeds.iter().enumerate() {
-            if seeds[..index].iter().any(|(other, _)| other == seed) {
-                return self.findings.wrong(*span, format!("seed {seed} is here twice: it would find the same"));
-            }
-        }
-        Some(seeds.into_iter().map(|(seed, _)| seed).collect())
-    }
-
-    fn stop(&self, node: &'t Node) -> Option<Stop> {
-        let fields = Fields::open(node, "a stopping condition", self.findings)?;
-        let some = |noun: &'static str| {
-            move |node: &'t Node| match count(node, noun, MOST, self.findings)? {
-                0 => self.findings.wrong(node.span, "one at least is wanted here"),
-                count => Some(count),
-            }
-        };
-        let generations = fields.optional("generations", some("generations"));
-        let evaluations = fields.optional("evaluations", some("evaluations"));
-        let time = fields.optional("time", |node| above_zero(node, Dimension::Time, self.findings));
-        let tolerance = fields.optional("tolerance", |node| ratio(node, self.findings));
-        let stalled = fields.optional("stalled", some("generations"));
-        let misplaced = match (&tolerance, &stalled, fields.get("stalled")) {
-            (Some(None), Some(Some(_)), Some(node)) => Some(node.span),
-            _ => None,
-        };
-        fields.close()?;
-        if let Some(at) = misplaced {
-            return self.findings.wrong(at, "`stalled` says over how many generations `tolerance` is taken: add that");
-        }
-        Some(Stop {
-            generations: generations?,
-            evaluations: evaluations?,
-            time: time?,
-            tolerance: tolerance?,
-            stalled: stalled?.unwrap_or(USUAL_STALLED),
-        })
-    }
+    Some(Stop {
+        generations: generations?,
+        evaluations: evaluations?,
+        time: time?,
+        tolerance: tolerance?,
+        stalled: stalled?.map_or(USUAL_STALLED, |(stalled, _)| stalled),
+    })
 }
 
 /// Generations over which a function tolerance is taken, as library functions have it.

@@ -14,7 +14,7 @@ use super::yaml::{Entry, Node, Value};
 
 /// A mapping while it is read.
 pub(super) struct Fields<'t> {
-    findings: &'t Findings,
+    pub(super) findings: &'t Findings,
     entries: &'t [Entry],
     what: &'static str,
     span: Span,
@@ -48,7 +48,10 @@ impl<'t> Fields<'t> {
     }
 
     fn entry(&self, key: &'static str) -> Option<&'t Entry> {
-        self.asked.borrow_mut().push(key);
+        let mut asked = self.asked.borrow_mut();
+        if !asked.contains(&key) {
+            asked.push(key);
+        }
         self.entries.iter().find(|entry| entry.key == key)
     }
 

@@ -1,19 +1,22 @@
 //! A `solver`: `event_driven`, or `{fixed_step: {time_step: 0.1 ms}}`.
 
-use super::diagnostic::Findings;
+use super::at::At;
 use super::quantity::Dimension;
-use super::reader::{Choice, above_zero};
-use super::yaml::Node;
 use crate::measure::SolverChoice;
 
-pub(super) fn read_solver(node: &Node, findings: &Findings) -> Option<SolverChoice> {
-    let choice = Choice::read(node, "a solver", &["event_driven", "fixed_step"], findings)?;
-    if choice.name == "event_driven" {
-        choice.bare(findings)?;
-        return Some(SolverChoice::EventDriven);
-    }
-    let fields = choice.fields("a fixed step", findings)?;
-    let time_step = fields.required("time_step", |node| above_zero(node, Dimension::Time, findings));
-    fields.close()?;
-    Some(SolverChoice::FixedStep { time_step: time_step? })
+pub(super) fn read_solver(at: At<'_>) -> Option<SolverChoice> {
+    let names = [("event_driven", ""), ("fixed_step", "Steps of one length, contacts looked for at the end of each")];
+    let about = "A solver: event_driven, or fixed_step with its time step";
+    at.named("solver", about, |at| {
+        at.choose("a solver", &names, |choice| {
+            if choice.name() == "event_driven" {
+                choice.bare()?;
+                return Some(SolverChoice::EventDriven);
+            }
+            let keys = choice.keys("a fixed step")?;
+            let time_step = keys.required("time_step", "Time step", |at| at.above_zero(Dimension::Time));
+            keys.close()?;
+            Some(SolverChoice::FixedStep { time_step: time_step? })
+        })
+    })
 }

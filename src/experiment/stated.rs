@@ -13,12 +13,15 @@
 
 use std::collections::BTreeMap;
 
+use serde_json::json;
+
 use super::about_study::MOST_CHAPTERS;
+use super::at::At;
 use super::diagnostic::{Findings, Span};
 use super::quantity::{Amount, parse_amount};
-use super::reader::all;
 use super::scene::names_assumption;
-use super::yaml::{Entry, Node, Value};
+use super::schema::parts;
+use super::yaml::{Node, Value};
 
 /// The key of statements, in an experiment and in the assumptions file.
 pub(super) const STATED: &str = "stated";
@@ -64,37 +67,35 @@ impl Statement {
 }
 
 /// `chapter: {place: {key: value}}`.
-pub(super) fn read_chapters(node: &Node, findings: &Findings) -> Option<StatedByChapter> {
-    let chapters = entries(node, "statements are written as `chapter: {Table 6: {key: value}}`", findings)?;
-    let chapter = |Entry { key, key_span, node }: &Entry| match key.parse::<u32>() {
-        Ok(number) if number <= MOST_CHAPTERS => Some((number, read_statements(node, findings)?)),
-        _ => findings
-            .wrong(*key_span, format!("`{key}` is not the number of a chapter: write one up to {MOST_CHAPTERS}")),
-    };
-    all(chapters.iter().map(chapter)).map(|chapters| chapters.into_iter().collect())
+pub(super) fn read_chapters(at: At<'_>) -> Option<StatedByChapter> {
+    let form = "statements are written as `chapter: {Table 6: {key: value}}`";
+    let chapters = at.by_name(json!({}), form, |key, key_span, at| match key.parse::<u32>() {
+        Ok(number) if number <= MOST_CHAPTERS => Some((number, read_statements(at)?)),
+        _ => at.wrong_at(key_span, format!("`{key}` is not the number of a chapter: write one up to {MOST_CHAPTERS}")),
+    });
+    chapters.map(|chapters| chapters.into_iter().collect())
 }
 
 /// `place: {key: value}`.
-pub(super) fn read_statements(node: &Node, findings: &Findings) -> Option<Vec<Statement>> {
+pub(super) fn read_statements(at: At<'_>) -> Option<Vec<Statement>> {
     let form = "statements are written as `Table 6: {key: value}`";
-    let place = |Entry { node, .. }: &Entry| {
-        let statement = |Entry { key, key_span, node }: &Entry| match leaf(node) {
-            Some((amounts, _)) => {
-                let key = key.split('.').map(str::to_owned).collect();
-                Some(Statement { key, amounts, span: *key_span })
-            }
-            None => findings.wrong(node.span, "what a text states of an input is a number, or a list of numbers"),
-        };
-        all(entries(node, form, findings)?.iter().map(statement))
+    let statement = |key: &str, span, at: At<'_>| {
+        let (amounts, _) = at.form(
+            |node, findings| {
+                let help = "what a text states of an input is a number, or a list of numbers";
+                leaf(node).or_else(|| findings.wrong(node.span, help))
+            },
+            |_| {
+                let number = json!({"type": ["number", "string"]});
+                parts::any_of("A number, or a list", vec![number.clone(), parts::list("Numbers", number)])
+            },
+        )?;
+        Some(Statement { key: key.split('.').map(str::to_owned).collect(), amounts, span })
     };
-    all(entries(node, form, findings)?.iter().map(place)).map(|statements| statements.concat())
-}
-
-fn entries<'t>(node: &'t Node, form: &str, findings: &Findings) -> Option<&'t [Entry]> {
-    match &node.value {
-        Value::Mapping(entries) => Some(entries),
-        _ => findings.wrong(node.span, form),
-    }
+    let place = |_: &str, _, at: At<'_>| {
+        at.called("What this table, figure or section states, by key", |at| at.by_name(json!({}), form, statement))
+    };
+    at.by_name(json!({}), form, place).map(|statements| statements.concat())
 }
 
 /// The inputs of an experiment that neither the study's statements for its chapter nor its own give, `key value`; none if nothing

@@ -8,6 +8,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::recipe::{Parameter, ParameterValue};
 
+use super::at::At;
 use super::continued::{Continued, ContinuedSweep, Direction, KEYS, chains};
 use super::definition::{Case, Refinement};
 use super::diagnostic::{Findings, Span};
@@ -156,7 +157,9 @@ impl SweepReader<'_> {
         let paired = fields.optional("paired", |node| self.paired(node));
         let listed = fields.optional("points", |node| self.listed(node));
         let solvers = if within_union {
-            fields.optional("solver", |node| one_or_more(node, self.findings, |node| read_solver(node, self.findings)))
+            fields.optional("solver", |node| {
+                one_or_more(node, self.findings, |node| read_solver(At::Node(node, self.findings)))
+            })
         } else {
             Some(None)
         };
@@ -290,6 +293,9 @@ impl SweepReader<'_> {
         Some(points)
     }
 }
+
+/// Names of sweeps, candidates and figures, for a schema: see [`is_name`].
+pub(super) const NAME: &str = "^[A-Za-z0-9_-]{1,64}$";
 
 /// Letters, digits, `-` and `_`.
 pub(super) fn is_name(text: &str) -> bool {

@@ -3,43 +3,30 @@
 //! A check runs as soon as the parts it talks about are sound, so a mistake in a figure is reported beside one in the
 //! scene. The last check resolves every case into its scene: what physics refuses is found before anything runs.
 
-use std::collections::BTreeSet;
-
-use super::recipe::{AssumptionName, Assumptions, Parameter, ParameterValue, Part, Recipe};
-use crate::dynamics::{Limit, Until};
-
 use super::about_study::MOST_CHAPTERS;
-use super::assumption_reader::{MOST_CYCLES, read_average, read_skip};
-use super::assumption_sheet::Cycles;
+use super::assumption_sheet::AssumptionSheet;
+use super::at::{At, Definitions, Sketch};
 use super::check::Checks;
 use super::columns::{Columns, Lists, Role};
 use super::continuation_reader::{ReadContinuation, read_continuation};
-use super::definition::{Case, Experiment, ExperimentId, Maximise, SearchPoint, Source};
+use super::definition::{Case, Experiment, ExperimentId, Maximise, Source};
 use super::diagnostic::{Findings, Problems, Span};
+use super::exclusions::{check_lists, check_mean, check_rows};
 use super::figure::FigureReader;
-use super::limit::read_limit;
+use super::lists::{read_each_cycle, read_energies, read_shape, read_trace};
+use super::looked_for::{read_maximise, read_onset};
 use super::optimise::Optimise;
-use super::optimise_reader::{OptimiseReader, ReadOptimise};
-use super::quantity::Dimension;
-use super::range::numbers;
-use super::reader::{Fields, above_zero, count, no_such, one_or_more, text, word};
+use super::optimise_reader::{ReadOptimise, read_optimise};
+use super::recipe::{Assumptions, Parameter, ParameterValue, Part, Recipe};
+use super::run::{Run, read_run};
 use super::scene::{ReadScene, read_scene};
-use super::solver::read_solver;
+use super::schema;
 use super::starts_reader::{ReadStarts, read_starts};
 use super::stated::{STATED, read_statements, without_source};
 use super::sweep::{ReadSweep, read_sweep};
-use super::word::{from_word, word_of, words};
-use super::yaml::{Node, Value, read_tree};
-use crate::measure::{
-    CycleSpec, CycleValue, EnergySpec, Measure, Settings, ShapeOf, ShapeSpec, SolverChoice, TraceSpec, energy_columns,
-    shape_columns, trace_columns,
-};
-
-/// The lists that a row may keep; at most one of them.
-pub(super) const LISTS: [&str; 4] = ["trace", "energies", "shape", "each_cycle"];
-
-/// Most samples of a time history.
-const MOST_SAMPLES: u64 = 1_000_000;
+use super::word::{word_of, words};
+use super::yaml::read_tree;
+use crate::measure::{CycleValue, Measure, ShapeOf, SolverChoice, energy_columns, shape_columns, trace_columns};
 
 /// Reads an experiment from its text; `file` only names it in messages.
 ///
@@ -74,9 +61,20 @@ pub(crate) fn parse_with(
     let findings = Findings::default();
     let experiment = read_tree(text, &findings).and_then(|root| {
         let reader = ExperimentReader { findings: &findings, assumptions, cases };
-        reader.experiment(id, &root)
+        reader.experiment(id, At::Node(&root, &findings))
     });
     findings.finish(file, text, experiment)
+}
+
+/// JSON Schema of an experiment; of the study's assumptions it offers those that fit a place.
+#[must_use]
+pub fn experiment_schema(sheet: &AssumptionSheet) -> serde_json::Value {
+    let (findings, assumptions, definitions) = (Findings::default(), sheet.assumptions(), Definitions::default());
+    let reader = ExperimentReader { findings: &findings, assumptions: &assumptions, cases: Cases::Tried };
+    let any = ExperimentId(String::new());
+    let schema = Sketch::of("An experiment", &definitions, |at| reader.experiment(&any, at));
+    definitions.borrow_mut().extend(schema::experiment::definitions(sheet));
+    schema::of_file("Experiment", schema, definitions)
 }
 
 struct ExperimentReader<'t> {
@@ -85,65 +83,52 @@ struct ExperimentReader<'t> {
     cases: Cases,
 }
 
-struct Run {
-    solvers: Vec<SolverChoice>,
-    settings: Settings,
-    /// Where it says that runs are to settle.
-    settled_at: Option<Span>,
-    limit: Limit,
-    moved: Option<BTreeSet<AssumptionName>>,
-}
-
-/// A run as an experiment states it.
-#[derive(Default)]
-struct GivenRun {
-    span: Span,
-    solvers: Option<Vec<SolverChoice>>,
-    skip: Option<u32>,
-    average: Option<u32>,
-    until: Option<(Until, Span)>,
-    round_period_to: Option<f64>,
-    ensemble: Option<u32>,
-    limit: Option<Limit>,
-    moved: Option<BTreeSet<AssumptionName>>,
-}
-
-/// Perturbed starts of a chaotic point, unless an experiment says.
-const USUAL_ENSEMBLE: u32 = 32;
-
 impl<'t> ExperimentReader<'t> {
-    fn experiment(&self, id: &ExperimentId, root: &'t Node) -> Option<Experiment> {
-        let fields = Fields::open(root, "an experiment", self.findings)?;
-        let title = fields.required("title", |node| text(node, self.findings));
-        let source = fields.optional("source", |node| self.source(node));
-        let about = fields.required("about", |node| text(node, self.findings));
-        let scene = fields.required("scene", |node| read_scene(node, self.assumptions, self.findings));
-        let orbit = fields.optional("orbit", |node| read_continuation(node, self.findings));
-        let starts = fields.optional("starts", |node| read_starts(node, self.findings));
+    fn experiment(&self, id: &ExperimentId, at: At<'_>) -> Option<Experiment> {
+        let keys = at.keys("an experiment")?;
+        let title = keys.required("title", "A few words", |at| at.text());
+        let source = keys.optional("source", "Where a publication shows it", read_source);
+        let about = keys.required("about", "One or two sentences", |at| at.text());
+        let scene = keys.required("scene", "What is simulated", |at| {
+            at.form(|node, findings| read_scene(node, self.assumptions, findings), |_| schema::scene::scene())
+        });
+        let branches = "Branches of periodic motions along a parameter, stable or not";
+        let orbit =
+            keys.optional("orbit", branches, |at| at.form(read_continuation, |_| schema::continuation::continuation()));
+        let box_of_starts =
+            "A box of random starts: the motions that each case may end in, with the share of the box of each";
+        let starts = keys.optional("starts", box_of_starts, read_starts);
+        let sweep_of = |at: At<'_>| at.form(read_sweep, |_| schema::parts::reference("sweep"));
         let sweep = match &orbit {
             Some(Some(orbit)) => Some(Some(orbit.sweep())),
-            Some(None) => fields.optional("sweep", |node| read_sweep(node, self.findings)),
+            Some(None) => keys.optional("sweep", "What varies from row to row", sweep_of),
             None => None,
         };
-        let stated = fields.optional(STATED, |node| read_statements(node, self.findings));
-        let mean_over = fields.optional("mean_over", |node| self.mean_over(node));
-        let measures = fields.required("measure", |node| self.measures(node));
-        let maximise = fields.at_most_one(&["maximise", "onset"]).and_then(|given| match given {
-            Some(("onset", node)) => self.onset(node).map(Some),
-            Some((_, node)) => self.maximise(node).map(Some),
-            None => Some(None),
+        let stated = "Inputs that the text states, by table, figure or section";
+        let stated = keys.optional(STATED, stated, read_statements);
+        let mean_over =
+            keys.optional("mean_over", "Settings that a mean is taken over", |at| mean_over(at, sweep_of(at)?));
+        let measures = keys.required("measure", "What is measured", read_measures);
+        let looked_for = [
+            ("maximise", "The measure whose maximum is looked for"),
+            ("onset", "The number of events of which it is looked for where it ceases to be zero"),
+        ];
+        let maximise = keys.at_most_one(&looked_for, |key, at| match key {
+            "onset" => read_onset(at),
+            _ => read_maximise(at),
         });
-        let optimise = fields.optional("optimise", |node| OptimiseReader { findings: self.findings }.read(node));
-        let trace = fields.optional("trace", |node| self.trace(node));
-        let energies = fields.optional("energies", |node| self.energies(node));
-        let shape = fields.optional("shape", |node| self.shape(node));
-        let each_cycle = fields.optional("each_cycle", |node| self.each_cycle(node));
+        let optimise = keys.optional("optimise", "A search for the best gaps", read_optimise);
+        let trace = keys.optional("trace", "A time history that is kept", read_trace);
+        let energies = keys.optional("energies", "Kinetic energies that are kept", read_energies);
+        let shape = keys.optional("shape", "A shape that is kept", read_shape);
+        let each_cycle = "A value of each averaged cycle that is kept";
+        let each_cycle = keys.optional("each_cycle", each_cycle, read_each_cycle);
         let lists =
             matches!(trace, Some(Some(_))) || matches!(energies, Some(Some(_))) || matches!(each_cycle, Some(Some(_)));
         let deflection = matches!(&shape, Some(Some(shape)) if shape.of == ShapeOf::Deflection);
         let of_model = measures.as_ref().is_some_and(|measures| measures.iter().all(|(measure, _)| measure.is_modal()));
         let no_run = of_model && !lists && !deflection;
-        let run = self.run(&fields, no_run);
+        let run = read_run(&keys, &self.assumptions.sheet, no_run, self.findings);
         let measures = match (measures, &run) {
             (Some(measures), Some(Run { settled_at: Some(at), .. })) => Some(with_the_end(measures, *at)),
             (measures, _) => measures,
@@ -152,16 +137,15 @@ impl<'t> ExperimentReader<'t> {
             (Some(measures), Some(Some(starts))) => Some(with_the_motion(measures, starts.span)),
             (measures, _) => measures,
         };
-        let one_list = self.one_list(&fields);
-        let alone = self.whole_table_alone(&fields);
-        let whole = self.averaged_alone(&fields);
-        let energies_at = fields.get("energies").map_or(fields.span(), |node| node.span);
-        let place = |key| fields.get(key).map_or(fields.span(), |node| node.span);
-        let each_cycle_at = place("each_cycle");
+        let one_list = check_lists(&keys, self.findings);
+        let alone = check_rows(&keys, self.findings);
+        let whole = check_mean(&keys, self.findings);
+        let place = |key| keys.span_of(key).unwrap_or(keys.span());
+        let (energies_at, each_cycle_at) = (place("energies"), place("each_cycle"));
         let unordered = [("maximise", "a maximum"), ("onset", "an onset"), ("mean_over", "a mean over several scenes")];
-        let unordered = unordered.iter().find_map(|(key, what)| fields.get(key).map(|node| (*what, node.span)));
+        let unordered = unordered.iter().find_map(|(key, what)| Some((*what, keys.span_of(key)?)));
         let (scene_at, optimise_at) = (place("scene"), place("optimise"));
-        let figures_at = if fields.get("figure").is_some() { place("figure") } else { place("figures") };
+        let figures_at = place(if keys.span_of("figure").is_some() { "figure" } else { "figures" });
 
         let kept = match (&trace, &energies, &shape, &each_cycle) {
             (Some(trace), Some(energies), Some(shape), Some(each_cycle)) => {
@@ -206,8 +190,8 @@ impl<'t> ExperimentReader<'t> {
             }
             _ => None,
         };
-        let figures = FigureReader { findings: self.findings, columns: columns.as_ref() }.figures(&fields);
-        fields.close();
+        let figures = FigureReader { findings: self.findings, columns: columns.as_ref() }.figures(&keys);
+        keys.close();
 
         let checks = Checks { findings: self.findings, assumptions: self.assumptions };
         one_list?;
@@ -272,6 +256,7 @@ impl<'t> ExperimentReader<'t> {
         let source = source?.unwrap_or_default();
         let chapter = source.chapter;
         checks.lines(&figures, &cases, figures_at);
+        let At::Node(root, _) = at else { return None };
         let experiment = Experiment {
             id: id.clone(),
             title: title?,
@@ -320,95 +305,6 @@ impl<'t> ExperimentReader<'t> {
         Some(experiment)
     }
 
-    fn source(&self, node: &'t Node) -> Option<Source> {
-        let fields = Fields::open(node, "a source", self.findings)?;
-        let chapter = fields.optional("chapter", |node| count(node, "", MOST_CHAPTERS, self.findings));
-        let section = fields.optional("section", |node| text(node, self.findings));
-        let shown_in =
-            fields.optional("shown_in", |node| one_or_more(node, self.findings, |node| text(node, self.findings)));
-        fields.close()?;
-        Some(Source { chapter: chapter?, section: section?, shown_in: shown_in?.unwrap_or_default() })
-    }
-
-    fn measures(&self, node: &'t Node) -> Option<Vec<(Measure, Span)>> {
-        let measures = one_or_more(node, self.findings, |node| {
-            Some((word::<Measure>(node, "measure", self.findings)?, node.span))
-        })?;
-        for (index, (measure, span)) in measures.iter().enumerate() {
-            if measures[..index].iter().any(|(other, _)| other == measure) {
-                return self.findings.wrong(*span, format!("`{}` is measured twice", super::word::word_of(*measure)));
-            }
-        }
-        let mut all = Vec::with_capacity(measures.len());
-        for (measure, span) in &measures {
-            all.push((*measure, *span));
-            let named = |companion: &Measure| measures.iter().any(|(other, _)| other == companion);
-            all.extend(measure.companions().filter(|companion| !named(companion)).map(|companion| (companion, *span)));
-        }
-        Some(all)
-    }
-
-    /// Settings to take the mean over: a sweep without names and without refinement.
-    fn mean_over(&self, node: &'t Node) -> Option<ReadSweep> {
-        let sweep = read_sweep(node, self.findings)?;
-        if sweep.cases.iter().any(|case| !case.sweep.is_empty()) || !sweep.refined.is_empty() {
-            return self.findings.wrong(node.span, "a mean is taken over fixed points: neither `union` nor `refined`");
-        }
-        if let Some((_, at)) = sweep.continued.first() {
-            return self
-                .findings
-                .wrong(*at, "what a mean is taken over has no order: `from: last` stands under `sweep`");
-        }
-        Some(sweep)
-    }
-
-    /// A mean has no time history.
-    fn averaged_alone(&self, fields: &Fields<'t>) -> Option<()> {
-        let lists = LISTS.into_iter().filter_map(|key| fields.get(key)).next();
-        match (fields.get("mean_over"), lists) {
-            (Some(_), Some(list)) => self.findings.report(
-                list.span,
-                "a mean over several scenes has no list of one of them",
-                Some("give one of the scenes an experiment of its own".into()),
-            ),
-            _ => Some(()),
-        }
-    }
-
-    /// An optimisation has rows of its own, and so have an orbit and random starts.
-    fn whole_table_alone(&self, fields: &Fields<'t>) -> Option<()> {
-        let mut fine = Some(());
-        let given = |keys: &[&'static str]| -> Vec<_> { keys.iter().filter_map(|key| fields.get(key)).collect() };
-        if fields.get("optimise").is_some() {
-            for other in given(&[&["sweep", "maximise", "onset"], LISTS.as_slice()].concat()) {
-                fine = self.findings.report(
-                    other.span,
-                    "an optimisation has candidates for rows: neither a sweep nor a list of another kind goes with it",
-                    Some("what fitness is a mean over stands under `mean_over`".into()),
-                );
-            }
-        }
-        if fields.get("orbit").is_some() {
-            for other in given(&[&["sweep", "mean_over", "maximise", "onset", "optimise"], LISTS.as_slice()].concat()) {
-                fine = self.findings.report(
-                    other.span,
-                    "an orbit has the motions of its branches for rows: no sweep, mean, maximum or list goes with it",
-                    Some("give one of the two an experiment of its own".into()),
-                );
-            }
-        }
-        if fields.get("starts").is_some() {
-            for other in given(&[&["mean_over", "maximise", "onset", "optimise", "orbit"], LISTS.as_slice()].concat()) {
-                fine = self.findings.report(
-                    other.span,
-                    "random starts have the motions that they end in for rows: no mean, maximum, orbit or list goes with them",
-                    Some("give one of the two an experiment of its own".into()),
-                );
-            }
-        }
-        fine
-    }
-
     /// The optimisation, with as many gaps as there are dampers. `Some(None)`: there is none.
     #[expect(clippy::option_option, reason = "absent and wrong are two things")]
     fn optimise(
@@ -447,207 +343,48 @@ impl<'t> ExperimentReader<'t> {
             }
         }
     }
-
-    fn maximise(&self, node: &'t Node) -> Option<Maximise> {
-        let (measure, fields) =
-            self.looked_for(node, "maximise: {velocity_ratio: {over: …, in: …}}", "a maximisation")?;
-        let over = fields.required("over", |node| word::<Parameter>(node, "parameter", self.findings));
-        let grid = fields.required("in", |node| self.grid(node, over?));
-        let refine = fields.optional("refine", |node| count(node, "rounds", 20, self.findings));
-        fields.close()?;
-        let wanted = SearchPoint::Maximum;
-        Some(Maximise { measure: measure?, over: over?, grid: grid?, refine: refine?.unwrap_or(0), wanted })
-    }
-
-    /// `onset: {ceiling_impacts: {over: force_ratio, in: …}}`.
-    fn onset(&self, node: &'t Node) -> Option<Maximise> {
-        let (measure, fields) = self.looked_for(node, "onset: {ceiling_impacts: {over: …, in: …}}", "an onset")?;
-        let over = fields.required("over", |node| word::<Parameter>(node, "parameter", self.findings));
-        let grid = fields.required("in", |node| self.grid(node, over?));
-        fields.close()?;
-        let (measure, over, grid) = (measure?, over?, grid?);
-        if !measure.is_count() {
-            let message = format!("`{}` has no onset: it is no number of events", word_of(measure));
-            let help = "events are counted by separations, floor_impacts, ceiling_impacts, stop_impacts".to_owned();
-            return self.findings.report(node.span, message, Some(help));
-        }
-        if grid.len() < 2 || !over.varies_smoothly() {
-            return self
-                .findings
-                .wrong(node.span, "an onset lies between two values of a parameter that varies smoothly");
-        }
-        Some(Maximise { measure, over, grid, refine: 0, wanted: SearchPoint::Onset })
-    }
-
-    /// The measure of which a point is looked for, and how.
-    fn looked_for(&self, node: &'t Node, form: &str, what: &'static str) -> Option<(Option<Measure>, Fields<'t>)> {
-        let Value::Mapping(entries) = &node.value else {
-            return self.findings.wrong(node.span, format!("write `{form}`"));
-        };
-        let [entry] = entries.as_slice() else {
-            return self.findings.wrong(node.span, format!("{what} is of one measure"));
-        };
-        let measure = from_word::<Measure>(&entry.key)
-            .or_else(|| no_such(self.findings, entry.key_span, "measure", &entry.key, words::<Measure>()));
-        Some((measure, Fields::open(&entry.node, what, self.findings)?))
-    }
-
-    /// Values of a parameter that increase.
-    fn grid(&self, node: &'t Node, over: Parameter) -> Option<Vec<f64>> {
-        let grid = numbers(node, over, self.findings)?;
-        if !grid.is_sorted_by(|a, b| a < b) {
-            return self.findings.wrong(node.span, "the points to look at increase");
-        }
-        Some(grid)
-    }
-
-    /// What stands under `run`; what it leaves out is the study's, or the same for every study. What is read off the model alone
-    /// needs no cycles.
-    fn run(&self, experiment: &Fields<'t>, of_model: bool) -> Option<Run> {
-        let given = match experiment.get("run") {
-            Some(node) => self.given_run(node)?,
-            None => GivenRun { span: experiment.span(), ..GivenRun::default() },
-        };
-        let no_run = of_model.then_some(Cycles { skip: 0, average: 1 });
-        let (span, usual) = (given.span, self.assumptions.sheet.cycles().or(no_run));
-        let cycles = |key: &str, given: Option<u32>, usual: Option<u32>| {
-            let help = "write `run: {skip: 25 cycles, average: 100 cycles}`, here or, for all experiments, under \
-                        `defaults` in the assumptions file";
-            let message = || format!("a run lacks `{key}`, and the study has no default for it");
-            given.or(usual).or_else(|| self.findings.report(span, message(), Some(help.into())))
-        };
-        let skip = cycles("skip", given.skip, usual.map(|usual| usual.skip));
-        let average = cycles("average", given.average, usual.map(|usual| usual.average));
-        Some(Run {
-            solvers: given.solvers.unwrap_or_else(|| vec![SolverChoice::EventDriven]),
-            settings: Settings {
-                skip: skip?,
-                average: average?,
-                until: given.until.map_or(Until::Cycles, |(until, _)| until),
-                round_period_to: given.round_period_to,
-                ensemble: given.ensemble.unwrap_or(USUAL_ENSEMBLE),
-            },
-            settled_at: given.until.filter(|(until, _)| *until == Until::Settled).map(|(_, at)| at),
-            limit: given.limit.unwrap_or_default(),
-            moved: given.moved,
-        })
-    }
-
-    fn given_run(&self, node: &'t Node) -> Option<GivenRun> {
-        let fields = Fields::open(node, "a run", self.findings)?;
-        let solvers =
-            fields.optional("solver", |node| one_or_more(node, self.findings, |node| read_solver(node, self.findings)));
-        let skip = fields.optional("skip", |node| read_skip(node, self.findings));
-        let average = fields.optional("average", |node| read_average(node, self.findings));
-        let until =
-            fields.optional("until", |node| word::<Until>(node, "end", self.findings).map(|until| (until, node.span)));
-        let round_period_to =
-            fields.optional("round_period_to", |node| above_zero(node, Dimension::Time, self.findings));
-        let ensemble = fields.optional("ensemble", |node| match &node.value {
-            Value::Scalar(word) if word == "none" => Some(0),
-            _ => count(node, "members", 10_000, self.findings),
-        });
-        let moved = fields.optional("sensitivity", |node| match &node.value {
-            Value::Scalar(word) if word == "none" => Some(BTreeSet::new()),
-            _ => one_or_more(node, self.findings, |node| self.assumptions.sheet.named(node, self.findings))
-                .map(|names| names.into_iter().collect()),
-        });
-        let limit = fields.optional("limit", |node| read_limit(node, self.findings));
-        fields.close()?;
-        Some(GivenRun {
-            span: node.span,
-            solvers: solvers?,
-            skip: skip?,
-            average: average?,
-            until: until?,
-            round_period_to: round_period_to?,
-            ensemble: ensemble?,
-            limit: limit?,
-            moved: moved?,
-        })
-    }
-
-    fn trace(&self, node: &'t Node) -> Option<TraceSpec> {
-        let fields = Fields::open(node, "a trace", self.findings)?;
-        let cycles = |node: &'t Node| count(node, "cycles", MOST_CYCLES, self.findings);
-        let from = fields.required("from", cycles);
-        let to = fields.required("to", cycles);
-        let samples = fields.required("samples_per_cycle", |node| count(node, "samples", 1_000_000, self.findings));
-        fields.close()?;
-        let (from_cycle, to_cycle, samples) = (from?, to?, samples?);
-        if from_cycle >= to_cycle {
-            return self.findings.wrong(node.span, "a trace ends after the cycle it begins with");
-        }
-        let all = u64::from(to_cycle - from_cycle) * u64::from(samples);
-        if all == 0 || all > MOST_SAMPLES {
-            return self.findings.wrong(node.span, format!("a trace has 1 to {MOST_SAMPLES} samples, not {all}"));
-        }
-        Some(TraceSpec { from_cycle, to_cycle, samples })
-    }
 }
 
-/// Most points of a shape.
-const MOST_POINTS: u64 = 100_000;
+fn read_source(at: At<'_>) -> Option<Source> {
+    let keys = at.keys("a source")?;
+    let chapter = keys.optional("chapter", "Chapter", |at| at.count("", MOST_CHAPTERS));
+    let section = keys.optional("section", "Section, for example \"3.6.3\"", |at| at.text());
+    let shown_in =
+        keys.optional("shown_in", "Figures, or a citation, for example Fig. 18", |at| at.one_or_more(|at| at.text()));
+    keys.close()?;
+    Some(Source { chapter: chapter?, section: section?, shown_in: shown_in?.unwrap_or_default() })
+}
 
-impl<'t> ExperimentReader<'t> {
-    /// All lists of a row are of one length.
-    fn one_list(&self, fields: &Fields<'t>) -> Option<()> {
-        let given: Vec<_> = LISTS.into_iter().filter_map(|key| fields.get(key)).collect();
-        match given.as_slice() {
-            [_, second, ..] => self.findings.report(
-                second.span,
-                "a row keeps lists of one length: one of `trace`, `energies`, `shape` and `each_cycle`",
-                Some("give the other an experiment of its own".into()),
-            ),
-            _ => Some(()),
+fn read_measures(at: At<'_>) -> Option<Vec<(Measure, Span)>> {
+    let measures = at.one_or_more(|at| Some((read_measure(at)?, at.span())))?;
+    for (index, (measure, span)) in measures.iter().enumerate() {
+        if measures[..index].iter().any(|(other, _)| other == measure) {
+            return at.wrong_at(*span, format!("`{}` is measured twice", word_of(*measure)));
         }
     }
-
-    fn energies(&self, node: &'t Node) -> Option<EnergySpec> {
-        let fields = Fields::open(node, "a span of cycles", self.findings)?;
-        let cycles = |node: &'t Node| count(node, "cycles", MOST_CYCLES, self.findings);
-        let (from, to) = (fields.required("from", cycles), fields.required("to", cycles));
-        fields.close()?;
-        let (from_cycle, to_cycle) = (from?, to?);
-        if from_cycle >= to_cycle {
-            return self.findings.wrong(node.span, "a span ends after the cycle it begins with");
-        }
-        Some(EnergySpec { from_cycle, to_cycle })
+    let mut all = Vec::with_capacity(measures.len());
+    for (measure, span) in &measures {
+        all.push((*measure, *span));
+        let named = |companion: &Measure| measures.iter().any(|(other, _)| other == companion);
+        all.extend(measure.companions().filter(|companion| !named(companion)).map(|companion| (companion, *span)));
     }
+    Some(all)
+}
 
-    /// `impact_phase`, or `{of: impact_phase, last: 20 cycles}`.
-    fn each_cycle(&self, node: &'t Node) -> Option<CycleSpec> {
-        let value = |node| word::<CycleValue>(node, "value of a cycle", self.findings);
-        let Value::Mapping(_) = node.value else { return Some(CycleSpec { of: value(node)?, last: None }) };
-        let fields = Fields::open(node, "a value of each cycle", self.findings)?;
-        let of = fields.required("of", value);
-        let last = fields.optional("last", |node| match count(node, "cycles", MOST_CYCLES, self.findings)? {
-            0 => self.findings.wrong(node.span, "one cycle at least is kept"),
-            cycles => Some(cycles),
-        });
-        fields.close()?;
-        Some(CycleSpec { of: of?, last: last? })
-    }
+/// The word of a measure.
+pub(super) fn read_measure(at: At<'_>) -> Option<Measure> {
+    at.named("measure", "A number that is measured", |at| at.word::<Measure>("measure"))
+}
 
-    fn shape(&self, node: &'t Node) -> Option<ShapeSpec> {
-        let fields = Fields::open(node, "a shape", self.findings)?;
-        let of = fields.required("of", |node| word::<ShapeOf>(node, "shape", self.findings));
-        let points = fields.required("points", |node| {
-            one_or_more(node, self.findings, |node| match count(node, "points", 100_000, self.findings)? {
-                0 | 1 => self.findings.wrong(node.span, "a shape has two points along a side at least"),
-                points => Some(points),
-            })
-        });
-        fields.close()?;
-        let (of, points) = (of?, points?);
-        let all: u64 = points.iter().map(|count| u64::from(*count)).product();
-        if all > MOST_POINTS || points.len() > 2 {
-            return self
-                .findings
-                .wrong(node.span, format!("a shape has {MOST_POINTS} points at most, along two sides"));
-        }
-        Some(ShapeSpec { of, points })
+/// Settings to take the mean over: a sweep without names and without refinement.
+fn mean_over(at: At<'_>, sweep: ReadSweep) -> Option<ReadSweep> {
+    if sweep.cases.iter().any(|case| !case.sweep.is_empty()) || !sweep.refined.is_empty() {
+        return at.wrong("a mean is taken over fixed points: neither `union` nor `refined`");
     }
+    if let Some((_, from_last)) = sweep.continued.first() {
+        return at.wrong_at(*from_last, "what a mean is taken over has no order: `from: last` stands under `sweep`");
+    }
+    Some(sweep)
 }
 
 /// With what tells how a run that is to settle ended.

@@ -4,12 +4,13 @@ use std::collections::BTreeMap;
 
 use serde_json::{Value, json};
 
-use super::experiment;
 use super::parts::{Object, any_of, form, list, number, one_of_words, quantity, ratio, reference, text};
-use crate::experiment::assumption_reader::COUNTED;
+use crate::experiment::assumption_reader::{COUNTED, read_cycles};
 use crate::experiment::assumption_sheet::{AssumptionSheet, Quantity, Takes};
+use crate::experiment::at::{Definitions, Sketch};
 use crate::experiment::quantity::Dimension;
 use crate::experiment::recipe::Slot;
+use crate::experiment::stated::{STATED, read_chapters};
 use crate::experiment::word::{from_word, word_of, words};
 use crate::scene::{Form, KINDS};
 use crate::text::words::of_key;
@@ -19,18 +20,11 @@ use crate::text::words::of_key;
 pub fn assumptions_schema() -> Value {
     let mut schema = Object::new("Each input that the study uses and does not state, by name")
         .optional("defaults", defaults())
-        .optional("stated", stated())
+        .optional(STATED, Sketch::of("Inputs that the text states, by chapter", &Definitions::default(), read_chapters))
         .schema();
     schema["additionalProperties"] = entry();
     schema["$schema"] = json!("http://json-schema.org/draft-07/schema#");
     schema["title"] = json!("Assumptions");
-    schema
-}
-
-/// What the text states, by chapter.
-fn stated() -> Value {
-    let mut schema = Object::new("Inputs that the text states, by chapter").schema();
-    schema["additionalProperties"] = experiment::stated();
     schema
 }
 
@@ -60,18 +54,10 @@ fn places() -> Value {
 }
 
 /// Damping against acceleration.
-pub(super) fn curve() -> Value {
+pub(in crate::experiment) fn curve() -> Value {
     Object::new("A curve")
         .required("acceleration_ratio", list("In units of g, increasing", number("Acceleration over g")))
         .required("damping", list("As many", quantity("Damping", Dimension::Damping)))
-        .schema()
-}
-
-/// The cycles of experiments that do not say.
-fn run() -> Value {
-    Object::new("Cycles of experiments that do not say")
-        .required("skip", experiment::skip())
-        .required("average", experiment::average())
         .schema()
 }
 
@@ -79,7 +65,7 @@ fn defaults() -> Value {
     let all = Object::new(
         "Cycles of a run, and which assumption stands where an experiment says assumed or leaves a slot out",
     )
-    .optional("run", run());
+    .optional("run", Sketch::of("Cycles of experiments that do not say", &Definitions::default(), read_cycles));
     Slot::ALL
         .iter()
         .fold(all, |object, slot| {
@@ -92,12 +78,12 @@ fn defaults() -> Value {
 }
 
 /// `{assumed: NAME}` for a place that takes this.
-pub(super) fn assumed(takes: Takes<'_>) -> Value {
+pub(in crate::experiment) fn assumed(takes: Takes<'_>) -> Value {
     reference(&definition(takes))
 }
 
 /// What each place that an assumption can stand in takes, and the names of the study's assumptions that fit there.
-pub(super) fn definitions(sheet: &AssumptionSheet) -> Vec<(String, Value)> {
+pub(in crate::experiment) fn definitions(sheet: &AssumptionSheet) -> Vec<(String, Value)> {
     let counted = COUNTED.iter().map(|(_, quantity)| *quantity);
     let quantities = counted.chain(words::<Dimension>().iter().filter_map(|word| from_word(word)).map(Quantity::Of));
     let quantities = quantities.map(|quantity| Takes { quantity: Some(quantity), readings: &[] });
@@ -120,7 +106,7 @@ fn names(sheet: &AssumptionSheet, takes: Takes<'_>) -> Value {
 }
 
 /// Any of them.
-pub(super) fn any(sheet: &AssumptionSheet) -> Value {
+pub(in crate::experiment) fn any(sheet: &AssumptionSheet) -> Value {
     let names: Vec<&str> = sheet.iter().map(|(name, _)| name.as_str()).collect();
     if names.is_empty() { text("An assumption") } else { one_of_words("An assumption", &names) }
 }

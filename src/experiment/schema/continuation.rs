@@ -6,7 +6,7 @@ use super::parts::{Object, count, one_or_more};
 use super::sweep;
 use crate::experiment::continuation_reader::{MOST_DOUBLINGS, MOST_PERIODS, MOST_POINTS};
 
-pub(super) fn continuation() -> Value {
+pub(in crate::experiment) fn continuation() -> Value {
     let start = one_or_more(
         "Where motions are taken from the ends of runs; `from` unless stated",
         json!({"description": "A value within the range", "type": ["number", "string"]}),

@@ -5,18 +5,29 @@
 //! schema cannot say (ranges in order, columns that exist, a scene that physics accepts) the reader says, which is the judge in
 //! everything: a file that it accepts passes the schema, as long as its units are written as people write them.
 
-mod assumptions;
-mod continuation;
-mod experiment;
-mod figure;
-mod optimise;
-mod parts;
-mod scene;
-mod starts;
+pub(super) mod assumptions;
+pub(super) mod continuation;
+pub(super) mod experiment;
+pub(super) mod parts;
+pub(super) mod scene;
 mod study;
-mod sweep;
+pub(super) mod sweep;
+
+use serde_json::{Value, json};
+
+use super::at::Definitions;
 
 pub use assumptions::assumptions_schema;
-pub use experiment::experiment_schema;
 pub(crate) use parts::{Object, list, text, words_of};
 pub use study::study_schema;
+
+/// The schema of a file, with what its places share.
+pub(super) fn of_file(title: &str, mut schema: Value, definitions: Definitions) -> Value {
+    schema["$schema"] = json!("http://json-schema.org/draft-07/schema#");
+    schema["title"] = json!(title);
+    let definitions = definitions.into_inner();
+    if !definitions.is_empty() {
+        schema["definitions"] = Value::Object(definitions);
+    }
+    schema
+}

@@ -7,9 +7,9 @@ use crate::experiment::quantity::Dimension;
 use crate::experiment::word::words;
 
 /// A number as people write it.
-pub(super) const NUMBER: &str = r"[-+]?(\d+(\.\d*)?|\.\d+)([eE][-+]?\d+)?";
+pub(in crate::experiment) const NUMBER: &str = r"[-+]?(\d+(\.\d*)?|\.\d+)([eE][-+]?\d+)?";
 /// Prefixes of units.
-pub(super) const PREFIX: &str = "[nuµμmckMG]?";
+pub(in crate::experiment) const PREFIX: &str = "[nuµμmckMG]?";
 
 /// A mapping: its keys, which must be there, and which exclude each other.
 pub(crate) struct Object {
@@ -24,36 +24,66 @@ impl Object {
         Self { about: about.into(), properties: Map::new(), required: Vec::new(), rules: Vec::new() }
     }
 
-    pub(crate) fn optional(mut self, key: &str, schema: Value) -> Self {
+    /// A key that may be absent.
+    pub(crate) fn add(&mut self, key: &str, schema: Value) {
         self.properties.insert(key.into(), schema);
+    }
+
+    /// A key that must be there.
+    pub(crate) fn require(&mut self, key: &str, schema: Value) {
+        self.required.push(key.into());
+        self.add(key, schema);
+    }
+
+    /// One of these keys must be there, and no other.
+    pub(crate) fn demand_one(&mut self, keys: &[&str]) {
+        match keys {
+            [only] => self.required.push((*only).into()),
+            _ => {
+                let one: Vec<Value> = keys.iter().map(|key| json!({"required": [key]})).collect();
+                self.add_rule(json!({"oneOf": one}));
+            }
+        }
+    }
+
+    /// No two of these keys.
+    pub(crate) fn exclude(&mut self, keys: &[&str]) {
+        for (index, one) in keys.iter().enumerate() {
+            for other in &keys[index + 1..] {
+                self.add_rule(json!({"not": {"required": [one, other]}}));
+            }
+        }
+    }
+
+    /// Whatever else holds of it.
+    pub(crate) fn add_rule(&mut self, rule: Value) {
+        self.rules.push(rule);
+    }
+
+    pub(crate) fn optional(mut self, key: &str, schema: Value) -> Self {
+        self.add(key, schema);
         self
     }
 
     pub(crate) fn required(mut self, key: &str, schema: Value) -> Self {
-        self.required.push(key.into());
-        self.optional(key, schema)
+        self.require(key, schema);
+        self
     }
 
     /// Exactly one of these keys.
     pub(crate) fn exactly_one(mut self, keys: Vec<(&str, Value)>) -> Self {
-        let one: Vec<Value> = keys.iter().map(|(key, _)| json!({"required": [key]})).collect();
-        self.rules.push(json!({"oneOf": one}));
+        self.demand_one(&keys.iter().map(|(key, _)| *key).collect::<Vec<_>>());
         keys.into_iter().fold(self, |object, (key, schema)| object.optional(key, schema))
     }
 
     /// No two of these keys, which are given elsewhere.
     pub(crate) fn exclusive(mut self, keys: &[&str]) -> Self {
-        for (index, one) in keys.iter().enumerate() {
-            for other in &keys[index + 1..] {
-                self.rules.push(json!({"not": {"required": [one, other]}}));
-            }
-        }
+        self.exclude(keys);
         self
     }
 
-    /// Whatever else holds of it.
     pub(crate) fn rule(mut self, rule: Value) -> Self {
-        self.rules.push(rule);
+        self.add_rule(rule);
         self
     }
 
@@ -72,6 +102,14 @@ impl Object {
         }
         schema
     }
+}
+
+/// Exactly one of these keys.
+pub(crate) fn one_of_keys<'k>(about: &str, keys: impl Iterator<Item = (&'k str, Value)>) -> Value {
+    let mut schema = keys.fold(Object::new(about), |object, (key, schema)| object.optional(key, schema)).schema();
+    schema["minProperties"] = json!(1);
+    schema["maxProperties"] = json!(1);
+    schema
 }
 
 /// `{name: schema}`.
@@ -121,6 +159,11 @@ pub(crate) fn ratio(about: &str) -> Value {
 
 pub(crate) fn between(about: &str, low: f64, high: f64) -> Value {
     json!({"description": about, "type": "number", "minimum": low, "maximum": high})
+}
+
+/// A share that is neither nothing nor the whole.
+pub(crate) fn inner_share(about: &str) -> Value {
+    json!({"description": about, "type": "number", "exclusiveMinimum": 0, "exclusiveMaximum": 1})
 }
 
 /// A whole number, alone or with its noun.

@@ -14,7 +14,7 @@ use crate::experiment::structure::MOST_MODES;
 use crate::scene::{Form, KINDS, Kind};
 
 /// The definitions that scenes share.
-pub(super) fn definitions() -> Vec<(String, Value)> {
+pub(in crate::experiment) fn definitions() -> Vec<(String, Value)> {
     vec![("surface".into(), surface()), ("place".into(), place()), ("damper".into(), damper())]
 }
 
@@ -49,7 +49,7 @@ fn reading(of: Slot) -> Value {
     slot(of, one_of_words(of.about(), of.takes().readings))
 }
 
-pub(super) fn scene() -> Value {
+pub(in crate::experiment) fn scene() -> Value {
     let dampers = json!({
         "description": "The dampers",
         "type": "array",

@@ -7,38 +7,21 @@ use super::parts::{
 };
 use crate::experiment::continued::{Direction, RowStart};
 use crate::experiment::definition::AxisScale;
-use crate::experiment::quantity::Dimension;
 use crate::experiment::range::MOST_POINTS;
 use crate::experiment::recipe::{Parameter, Takes};
 use crate::experiment::refined;
+use crate::experiment::sweep::NAME;
 use crate::experiment::word::{from_word, word_of, words};
-use crate::measure::Measure;
-
-/// Names of sweeps and figures.
-pub(super) const NAME: &str = "^[A-Za-z0-9_-]{1,64}$";
 
 /// The definitions that sweeps share.
-pub(super) fn definitions() -> Vec<(String, Value)> {
-    let solver = any_of(
-        "A solver: event_driven, or fixed_step with its time step",
-        vec![
-            word("event_driven"),
-            form(
-                "fixed_step",
-                "Steps of one length, contacts looked for at the end of each",
-                Object::new("Its step").required("time_step", quantity("Time step", Dimension::Time)).schema(),
-            ),
-        ],
-    );
+pub(in crate::experiment) fn definitions() -> Vec<(String, Value)> {
     let percent = json!({"type": "string", "pattern": r"^\s*[0-9.]+\s*%\s*$"});
     let share = any_of(
         "A share, for example 1 %",
         vec![percent, json!({"type": "number", "exclusiveMinimum": 0, "exclusiveMaximum": 1})],
     );
     let mut definitions: Vec<(String, Value)> = vec![
-        ("solver".into(), solver),
         ("share".into(), share),
-        ("measure".into(), words_of::<Measure>("A number that is measured")),
         ("sweep".into(), sweep()),
         ("named_sweep".into(), product(true)),
         ("point".into(), point()),
@@ -233,7 +216,7 @@ fn refined(size: &Value) -> Value {
 }
 
 /// The parameter that a branch is followed along, with its range.
-pub(super) fn followed() -> Value {
+pub(in crate::experiment) fn followed() -> Value {
     let smooth = parameters().filter(|(_, parameter)| parameter.varies_smoothly());
     let mut schema = not_empty(by_parameter("The parameter, and its range", smooth, Values::along));
     schema["maxProperties"] = json!(1);
@@ -241,7 +224,7 @@ pub(super) fn followed() -> Value {
 }
 
 /// The points of a maximisation over any parameter.
-pub(super) fn any_range() -> Value {
+pub(in crate::experiment) fn any_range() -> Value {
     let any = json!({"type": ["number", "string"]});
     let range = range(&any);
     let item = any_of("A value or a range", vec![any.clone(), range.clone()]);

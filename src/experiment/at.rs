@@ -1,0 +1,372 @@
+//! A place of a file that is read or described: one function gives the value that stands there, with every mistake reported, and the JSON
+//! Schema of all that may stand there. A key, its limits and its unit are written once.
+//!
+//! A reader takes an [`At`]. On a node it reads. On a sketch it goes the same way: each building block adds what it would accept
+//! as one more alternative and gives nothing. A reader asks for all of its parts before it gives up, so all of them are in the
+//! sketch.
+
+use std::cell::{Cell, RefCell};
+
+use serde::de::DeserializeOwned;
+use serde_json::{Map, Value as Schema, json};
+
+use super::diagnostic::{Findings, Span};
+use super::keys::Keys;
+use super::quantity::Dimension;
+use super::reader::{self, Fields};
+use super::schema::parts::{self, Object};
+use super::yaml::{Entry, Node, Value};
+
+/// A place that is read, or described.
+#[derive(Clone, Copy)]
+pub(super) enum At<'t> {
+    /// What stands there.
+    Node(&'t Node, &'t Findings),
+    /// What may stand there.
+    Sketch(&'t Sketch<'t>),
+}
+
+/// Definitions that several places share, by name.
+pub(super) type Definitions = RefCell<Map<String, Schema>>;
+
+/// Stands for the names of one's own in a description: one that every such mapping takes, of letters or digits.
+const ANY_NAME: &str = "1";
+
+/// The description of a place while it is made.
+pub(super) struct Sketch<'t> {
+    about: &'t str,
+    alternatives: RefCell<Vec<Schema>>,
+    definitions: &'t Definitions,
+}
+
+impl<'t> Sketch<'t> {
+    /// The schema of what `read` reads.
+    pub fn of<T>(about: &str, definitions: &Definitions, read: impl FnOnce(At<'_>) -> Option<T>) -> Schema {
+        let sketch = Sketch { about, alternatives: RefCell::default(), definitions };
+        read(At::Sketch(&sketch));
+        let mut all = sketch.alternatives.into_inner();
+        if all.len() == 1 { all.remove(0) } else { parts::any_of(about, all) }
+    }
+
+    /// The same of a part of this place.
+    pub fn part<T>(&self, about: &str, read: impl FnOnce(At<'_>) -> Option<T>) -> Schema {
+        Self::of(about, self.definitions, read)
+    }
+
+    /// For an editor's hover.
+    pub fn about(&self) -> &'t str {
+        self.about
+    }
+
+    /// One more that may stand here.
+    pub fn add(&self, schema: Schema) {
+        self.alternatives.borrow_mut().push(schema);
+    }
+
+    /// A reference to what is described once, under `name`.
+    pub fn shared<T>(&self, name: &str, about: &str, read: impl FnOnce(At<'_>) -> Option<T>) -> Schema {
+        if !self.definitions.borrow().contains_key(name) {
+            self.definitions.borrow_mut().insert(name.into(), Schema::Null);
+            let schema = self.part(about, read);
+            self.definitions.borrow_mut().insert(name.into(), schema);
+        }
+        parts::reference(name)
+    }
+}
+
+impl<'t> At<'t> {
+    /// Where it stands.
+    pub fn span(self) -> Span {
+        match self {
+            Self::Node(node, _) => node.span,
+            Self::Sketch(_) => Span::default(),
+        }
+    }
+
+    /// Reports what is wrong here, and what would be right.
+    pub fn report<T>(self, message: impl Into<String>, help: Option<String>) -> Option<T> {
+        match self {
+            Self::Node(node, findings) => findings.report(node.span, message, help),
+            Self::Sketch(_) => None,
+        }
+    }
+
+    /// Reports a problem whose message says all.
+    pub fn wrong<T>(self, message: impl Into<String>) -> Option<T> {
+        self.report(message, None)
+    }
+
+    /// Reports a problem at a key or another part of what stands here.
+    pub fn wrong_at<T>(self, span: Span, message: impl Into<String>) -> Option<T> {
+        match self {
+            Self::Node(_, findings) => findings.wrong(span, message),
+            Self::Sketch(_) => None,
+        }
+    }
+
+    /// A building block: how it is read, and the schema of what it accepts.
+    pub fn form<T>(
+        self,
+        read: impl FnOnce(&'t Node, &'t Findings) -> Option<T>,
+        schema: impl FnOnce(&Sketch<'_>) -> Schema,
+    ) -> Option<T> {
+        match self {
+            Self::Node(node, findings) => read(node, findings),
+            Self::Sketch(sketch) => {
+                sketch.add(schema(sketch));
+                None
+            }
+        }
+    }
+
+    /// What is shared by several places: described once, under `name`.
+    pub fn named<T>(self, name: &str, about: &str, read: impl FnOnce(At<'_>) -> Option<T>) -> Option<T> {
+        match self {
+            Self::Node(..) => read(self),
+            Self::Sketch(sketch) => {
+                sketch.add(sketch.shared(name, about, read));
+                None
+            }
+        }
+    }
+
+    /// In other words than the key's.
+    pub fn called<T>(self, about: &str, read: impl FnOnce(At<'_>) -> Option<T>) -> Option<T> {
+        match self {
+            Self::Node(..) => read(self),
+            Self::Sketch(sketch) => {
+                sketch.add(sketch.part(about, read));
+                None
+            }
+        }
+    }
+
+    /// One of two forms, by what stands here.
+    pub fn either<T>(
+        self,
+        is_one: impl FnOnce(&Value) -> bool,
+        one: impl FnOnce(Self) -> Option<T>,
+        other: impl FnOnce(Self) -> Option<T>,
+    ) -> Option<T> {
+        match self {
+            Self::Node(node, _) if is_one(&node.value) => one(self),
+            Self::Node(..) => other(self),
+            Self::Sketch(_) => {
+                one(self);
+                other(self)
+            }
+        }
+    }
+
+    /// It says this word, which is one that it may say.
+    pub fn is_word(self, word: &str) -> bool {
+        match self {
+            Self::Node(node, _) => matches!(&node.value, Value::Scalar(text) if text == word),
+            Self::Sketch(sketch) => {
+                sketch.add(parts::word(word));
+                false
+            }
+        }
+    }
+
+    /// A quantity in SI.
+    pub fn quantity(self, wanted: Dimension) -> Option<f64> {
+        self.form(
+            |node, findings| reader::quantity(node, wanted, findings),
+            |sketch| parts::quantity(sketch.about, wanted),
+        )
+    }
+
+    /// A quantity above zero.
+    pub fn above_zero(self, wanted: Dimension) -> Option<f64> {
+        let value = self.quantity(wanted)?;
+        if value > 0.0 { Some(value) } else { self.wrong(format!("{} above zero is wanted", wanted.name())) }
+    }
+
+    /// A dimensionless number.
+    pub fn number(self) -> Option<f64> {
+        self.form(reader::number, |sketch| parts::number(sketch.about))
+    }
+
+    /// A dimensionless number that is not negative.
+    pub fn ratio(self) -> Option<f64> {
+        self.form(reader::ratio, |sketch| parts::ratio(sketch.about))
+    }
+
+    /// A share, 0 to 1; `too_large` says what it is a share of.
+    pub fn share(self, too_large: &str) -> Option<f64> {
+        self.form(
+            |node, findings| match reader::ratio(node, findings)? {
+                share if share <= 1.0 => Some(share),
+                _ => findings.wrong(node.span, too_large),
+            },
+            |sketch| parts::between(sketch.about, 0.0, 1.0),
+        )
+    }
+
+    /// A dimensionless number within limits; `otherwise` says which.
+    pub fn within(self, [low, high]: [f64; 2], otherwise: &str) -> Option<f64> {
+        self.form(
+            |node, findings| match reader::number(node, findings)? {
+                value if (low..=high).contains(&value) => Some(value),
+                _ => findings.wrong(node.span, otherwise),
+            },
+            |sketch| parts::between(sketch.about, low, high),
+        )
+    }
+
+    /// A whole number up to `most`, with or without its noun: `25` or `25 cycles`.
+    pub fn count(self, noun: &str, most: u32) -> Option<u32> {
+        self.count_from(0, noun, most, "")
+    }
+
+    /// The same from `least` on.
+    pub fn count_from(self, least: u32, noun: &str, most: u32, too_few: &str) -> Option<u32> {
+        self.form(
+            |node, findings| match reader::count(node, noun, most, findings)? {
+                count if count < least => findings.wrong(node.span, too_few),
+                count => Some(count),
+            },
+            |sketch| parts::count(sketch.about, noun, least, most),
+        )
+    }
+
+    /// A text, not empty.
+    pub fn text(self) -> Option<String> {
+        self.form(reader::text, |sketch| parts::text(sketch.about))
+    }
+
+    /// `true` or `false`.
+    pub fn boolean(self) -> Option<bool> {
+        self.form(reader::boolean, |sketch| parts::boolean(sketch.about))
+    }
+
+    /// One of the words of an enum.
+    pub fn word<T: DeserializeOwned>(self, role: &str) -> Option<T> {
+        self.form(|node, findings| reader::word(node, role, findings), |sketch| parts::words_of::<T>(sketch.about))
+    }
+
+    /// Each item of a list.
+    pub fn list<T>(self, read: impl Fn(At<'_>) -> Option<T>) -> Option<Vec<T>> {
+        self.form(
+            |node, findings| reader::list(node, findings, |node| read(At::Node(node, findings))),
+            |sketch| parts::list(sketch.about, sketch.part(sketch.about, &read)),
+        )
+    }
+
+    /// A list that is meant to have two items; how many it has is for the caller to judge.
+    pub fn pair<T>(self, read: impl Fn(At<'_>) -> Option<T>) -> Option<Vec<T>> {
+        self.form(
+            |node, findings| reader::list(node, findings, |node| read(At::Node(node, findings))),
+            |sketch| {
+                let item = sketch.part(sketch.about, &read);
+                json!({"description": sketch.about, "type": "array", "items": item, "minItems": 2, "maxItems": 2})
+            },
+        )
+    }
+
+    /// A list, or one thing that stands for a list of one.
+    pub fn one_or_more<T>(self, read: impl Fn(At<'_>) -> Option<T>) -> Option<Vec<T>> {
+        self.form(
+            |node, findings| reader::one_or_more(node, findings, |node| read(At::Node(node, findings))),
+            |sketch| parts::one_or_more(sketch.about, sketch.part(sketch.about, &read)),
+        )
+    }
+
+    /// Keys with values; `what` names the mapping in messages (`a damper`).
+    pub fn keys(self, what: &'static str) -> Option<Keys<'t>> {
+        match self {
+            Self::Node(node, findings) => Fields::open(node, what, findings).map(Keys::of),
+            Self::Sketch(sketch) => Some(Keys::outline(sketch)),
+        }
+    }
+
+    /// Values by names of one's own, which `names` describes to a schema; `form` says how they are written.
+    pub fn by_name<T>(
+        self,
+        names: Schema,
+        form: &str,
+        read: impl Fn(&str, Span, At<'_>) -> Option<T>,
+    ) -> Option<Vec<T>> {
+        self.form(
+            |node, findings| {
+                let Value::Mapping(entries) = &node.value else { return findings.wrong(node.span, form) };
+                let one =
+                    |Entry { key, key_span, node }: &Entry| read(key, *key_span, At::Node(node, findings));
+                reader::all(entries.iter().map(one))
+            },
+            |sketch| {
+                let values = sketch.part(sketch.about, |at| read(ANY_NAME, Span::default(), at));
+                json!({"description": sketch.about, "type": "object", "propertyNames": names, "additionalProperties": values})
+            },
+        )
+    }
+
+    /// One of named forms: `rigid`, or `resilient: {…}`. Each name stands with what an editor says of it.
+    pub fn choose<T>(
+        self,
+        what: &'static str,
+        names: &[(&'static str, &str)],
+        read: impl Fn(Choice<'_>) -> Option<T>,
+    ) -> Option<T> {
+        match self {
+            Self::Node(node, findings) => {
+                let words: Vec<&'static str> = names.iter().map(|(name, _)| *name).collect();
+                read(Choice::Read(reader::Choice::read(node, what, &words, findings)?, findings))
+            }
+            Self::Sketch(sketch) => {
+                let (mut words, mut forms) = (Vec::new(), Vec::new());
+                for (name, about) in names {
+                    let bare = Cell::new(false);
+                    let content = Sketch { about, alternatives: RefCell::default(), definitions: sketch.definitions };
+                    read(Choice::Sketch(name, &content, &bare));
+                    words.extend(bare.get().then_some(*name));
+                    let content = content.alternatives.into_inner();
+                    forms.extend(content.into_iter().map(|content| (*name, content)));
+                }
+                if !words.is_empty() {
+                    sketch.add(parts::one_of_words(sketch.about, &words));
+                }
+                if !forms.is_empty() {
+                    sketch.add(Object::new(sketch.about).exactly_one(forms).schema());
+                }
+                None
+            }
+        }
+    }
+}
+
+/// What was chosen among named forms, or one of those that may be chosen.
+pub(super) enum Choice<'t> {
+    Read(reader::Choice<'t>, &'t Findings),
+    Sketch(&'static str, &'t Sketch<'t>, &'t Cell<bool>),
+}
+
+impl<'t> Choice<'t> {
+    /// The name.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Read(choice, _) => choice.name,
+            Self::Sketch(name, ..) => name,
+        }
+    }
+
+    /// The word alone, without values.
+    pub fn bare(&self) -> Option<()> {
+        match self {
+            Self::Read(choice, findings) => choice.bare(findings).map(|_| ()),
+            Self::Sketch(.., bare) => {
+                bare.set(true);
+                None
+            }
+        }
+    }
+
+    /// The mapping behind the colon.
+    pub fn keys(&self, what: &'static str) -> Option<Keys<'t>> {
+        match self {
+            Self::Read(choice, findings) => choice.fields(what, findings).map(Keys::of),
+            Self::Sketch(_, content, _) => Some(Keys::outline(content)),
+        }
+    }
+}

@@ -1,0 +1,114 @@
+//! The `run` of an experiment: solvers, cycles, and what is done besides.
+
+use std::collections::BTreeSet;
+
+use super::assumption_reader::{AVERAGE, SKIP, read_average, read_skip};
+use super::assumption_sheet::{AssumptionSheet, Cycles};
+use super::at::At;
+use super::diagnostic::{Findings, Span};
+use super::keys::Keys;
+use super::limit::read_limit;
+use super::quantity::Dimension;
+use super::recipe::AssumptionName;
+use super::schema::assumptions;
+use super::solver::read_solver;
+use crate::dynamics::{Limit, Until};
+use crate::measure::{Settings, SolverChoice};
+
+/// Perturbed starts of a chaotic point, unless an experiment says.
+const USUAL_ENSEMBLE: u32 = 32;
+
+/// How an experiment is run.
+pub(super) struct Run {
+    pub solvers: Vec<SolverChoice>,
+    pub settings: Settings,
+    /// Where it says that runs are to settle.
+    pub settled_at: Option<Span>,
+    pub limit: Limit,
+    pub moved: Option<BTreeSet<AssumptionName>>,
+}
+
+/// A run as an experiment states it.
+#[derive(Default)]
+struct GivenRun {
+    span: Span,
+    solvers: Option<Vec<SolverChoice>>,
+    skip: Option<u32>,
+    average: Option<u32>,
+    until: Option<(Until, Span)>,
+    round_period_to: Option<f64>,
+    ensemble: Option<u32>,
+    limit: Option<Limit>,
+    moved: Option<BTreeSet<AssumptionName>>,
+}
+
+/// What stands under `run`; what it leaves out is the study's, or the same for every study. What is read off the model alone
+/// needs no cycles.
+pub(super) fn read_run(
+    experiment: &Keys<'_>,
+    sheet: &AssumptionSheet,
+    of_model: bool,
+    findings: &Findings,
+) -> Option<Run> {
+    let given = experiment.optional("run", "How it is run", |at| given_run(at, sheet))?;
+    let given = given.unwrap_or_else(|| GivenRun { span: experiment.span(), ..GivenRun::default() });
+    let no_run = of_model.then_some(Cycles { skip: 0, average: 1 });
+    let (span, usual) = (given.span, sheet.cycles().or(no_run));
+    let cycles = |key: &str, given: Option<u32>, usual: Option<u32>| {
+        let help = "write `run: {skip: 25 cycles, average: 100 cycles}`, here or, for all experiments, under \
+                    `defaults` in the assumptions file";
+        let message = || format!("a run lacks `{key}`, and the study has no default for it");
+        given.or(usual).or_else(|| findings.report(span, message(), Some(help.into())))
+    };
+    let skip = cycles("skip", given.skip, usual.map(|usual| usual.skip));
+    let average = cycles("average", given.average, usual.map(|usual| usual.average));
+    Some(Run {
+        solvers: given.solvers.unwrap_or_else(|| vec![SolverChoice::EventDriven]),
+        settings: Settings {
+            skip: skip?,
+            average: average?,
+            until: given.until.map_or(Until::Cycles, |(until, _)| until),
+            round_period_to: given.round_period_to,
+            ensemble: given.ensemble.unwrap_or(USUAL_ENSEMBLE),
+        },
+        settled_at: given.until.filter(|(until, _)| *until == Until::Settled).map(|(_, at)| at),
+        limit: given.limit.unwrap_or_default(),
+        moved: given.moved,
+    })
+}
+
+fn given_run(at: At<'_>, sheet: &AssumptionSheet) -> Option<GivenRun> {
+    let keys = at.keys("a run")?;
+    let solvers = keys.optional("solver", "Solvers", |at| at.one_or_more(read_solver));
+    let skip = keys.optional("skip", SKIP, read_skip);
+    let average = keys.optional("average", AVERAGE, read_average);
+    let until = keys.optional("until", "When it ends: after these cycles, or where it has settled before", |at| {
+        at.word::<Until>("end").map(|until| (until, at.span()))
+    });
+    let round_period_to =
+        keys.optional("round_period_to", "The period is rounded to this", |at| at.above_zero(Dimension::Time));
+    let perturbed = "Perturbed starts where the motion is chaotic; 32 members unless stated";
+    let ensemble = keys
+        .optional("ensemble", perturbed, |at| if at.is_word("none") { Some(0) } else { at.count("members", 10_000) });
+    let moved = keys.optional("sensitivity", "Assumptions that are moved, or none", |at| {
+        if at.is_word("none") {
+            return Some(BTreeSet::new());
+        }
+        let name = |at: At<'_>| at.form(|node, findings| sheet.named(node, findings), |_| assumptions::any(sheet));
+        at.one_or_more(name).map(|names| names.into_iter().collect())
+    });
+    let most = "The most that a row may take; one that reaches it has failed, with the reason, and the others go on";
+    let limit = keys.optional("limit", most, read_limit);
+    keys.close()?;
+    Some(GivenRun {
+        span: at.span(),
+        solvers: solvers?,
+        skip: skip?,
+        average: average?,
+        until: until?,
+        round_period_to: round_period_to?,
+        ensemble: ensemble?,
+        limit: limit?,
+        moved: moved?,
+    })
+}
