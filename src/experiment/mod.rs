@@ -85,5 +85,5 @@ pub use schema::{assumptions_schema, study_schema};
 pub use starts::{BasinColumn, HeightBox, Interval, ParticleBox, Rank, START_LISTS, Starts};
 pub use typed::{Located, from_yaml};
 pub(crate) use typed::{Spanned, position};
-pub use validate::{experiment_schema, parse_experiment};
 pub(crate) use validate::{Cases, parse_with};
+pub use validate::{experiment_schema, parse_experiment};
