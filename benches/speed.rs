@@ -158,14 +158,21 @@ fn periodic(system: &HybridSystem) -> String {
     };
     let ((orbit_least, orbit_median), (least, median)) =
         (timed(&|| drop(std::hint::black_box(orbit()))), timed(&|| drop(std::hint::black_box(branch()))));
+    let elastic = || first.elasticity(stronger, |run| run.window().rms_velocity()).expect("it is smooth");
+    let (elastic_least, elastic_median) = timed(&|| {
+        std::hint::black_box(elastic());
+    });
     let followed = branch();
     let specials = followed.points.iter().filter(|point| point.special.is_some()).count();
     format!(
         "\n| Periodic motion of the first scene | Least | Median |\n| --- | ---: | ---: |\n\
          | One orbit by Newton's method from the last cycle of a run | {:.0} µs | {:.0} µs |\n\
+         | The elasticity of its RMS velocity in the impulse | {:.0} µs | {:.0} µs |\n\
          | A branch of {} points in the impulse, with its {specials} special points | {:.1} ms | {:.1} ms |\n",
         1e6 * orbit_least,
         1e6 * orbit_median,
+        1e6 * elastic_least,
+        1e6 * elastic_median,
         followed.points.len(),
         1e3 * least,
         1e3 * median,

@@ -83,7 +83,9 @@ pub use error::EngineError;
 pub use extremes::Extremes;
 pub use motion::{Exponent, Fundamental, Motion, MotionKind, Multiplier, Recurring};
 pub use options::{Averaged, Options, StartState, Until};
-pub use orbit::{Along, Branch, BranchEnd, BranchError, BranchPoint, Orbit, OrbitError, Special};
+pub use orbit::{
+    Along, Branch, BranchEnd, BranchError, BranchPoint, Elasticity, ElasticityError, Orbit, OrbitError, Special,
+};
 pub use proof::Proof;
 pub use response::{Counts, CycleRates, Method, Observed, Response};
 pub use run::{event_driven, fixed_step, fundamental_matrix, is_linear, steady_state};

@@ -17,6 +17,7 @@ use super::each_cycle;
 use super::energy::Energies;
 use super::history::History;
 use super::kept;
+use super::later::{Later, settled_later};
 use super::reading::Reading;
 use super::shape::{self, Shape};
 use super::undefined::in_range;
@@ -34,8 +35,6 @@ const TWIN_KICK: f64 = 1e-9;
 const CHAOS: f64 = 1e-6;
 /// What rounding leaves of a number in closed form, relative to it.
 const CLOSED_FORM: f64 = 1e-12;
-/// Cycles in which a motion may settle, over those of a run.
-const LONGER: u32 = 10;
 /// Ensemble of a look.
 const MEMBERS_OF_A_LOOK: u32 = 8;
 /// Largest kick of an ensemble member.
@@ -213,7 +212,10 @@ impl References {
         let of_cycles = Some(solve(&system, &plain, solver)?);
         let settles = || solve(&system, &Options { until: Until::Settled, ..plain.clone() }, solver);
         let settled = if wanted { Some(settles()?).filter(|run| run.settled.is_some()) } else { None };
-        let settled_later = if request.any(Measure::needs_settled) { settled_later(&system, &plain)? } else { None };
+        let settled_later = match request.measures.contains(&Measure::SettledVelocityRatio) {
+            true => settled_later(&system, &plain)?,
+            false => None,
+        };
         Ok(Self { of_cycles, may_settle: settled.is_some(), settled, settled_later })
     }
 }
@@ -273,16 +275,19 @@ impl Case<'_> {
             return Ok(None);
         }
         let Read { mut values, lists } = case.read(&response, reference, true)?;
-        let settled = request.measures.iter().position(|measure| measure.needs_settled());
+        let later = case.later(system, references, plain, &response)?;
+        let elasticities = later.elasticities(request.measures)?;
+        let settled = request.measures.iter().position(|measure| *measure == Measure::SettledVelocityRatio);
         if let Some(place) = settled {
-            values[place] = case.settled_velocity_ratio(system, references, plain, &response)?;
+            values[place] = later.velocity_ratio();
         }
         let motion = response.motion.as_ref().map(|motion| motion.kind);
         let certain = |numerical: Vec<f64>, chaotic: bool| Evaluated {
             measured: values
                 .iter()
                 .zip(numerical)
-                .map(|(value, numerical)| Measured { value: *value, numerical, spread: 0.0 })
+                .zip(&elasticities)
+                .map(|((value, numerical), known)| known.unwrap_or(Measured { value: *value, numerical, spread: 0.0 }))
                 .collect(),
             proof: response.proof,
             chaotic,
@@ -348,14 +353,19 @@ impl Case<'_> {
                 sum.add(value);
             }
         }
-        let measured = sums.iter().zip(request.measures).zip(&values).map(|((sum, measure), own)| {
-            if measure.is_of_own_run() {
-                let numerical = (4.0 * f64::EPSILON * own.abs()).max(own_error(*measure, &response));
-                return Measured { value: *own, numerical, spread: 0.0 };
-            }
-            let spread = sum.deviation();
-            Measured { value: sum.mean, numerical: spread / f64::from(members).sqrt(), spread }
-        });
+        let measured = sums.iter().zip(request.measures).zip(values.iter().zip(&elasticities)).map(
+            |((sum, measure), (own, known))| {
+                if let Some(known) = known {
+                    return *known;
+                }
+                if measure.is_of_own_run() {
+                    let numerical = (4.0 * f64::EPSILON * own.abs()).max(own_error(*measure, &response));
+                    return Measured { value: *own, numerical, spread: 0.0 };
+                }
+                let spread = sum.deviation();
+                Measured { value: sum.mean, numerical: spread / f64::from(members).sqrt(), spread }
+            },
+        );
         let measured = measured.collect();
         Ok(Some(Evaluated { measured, proof: response.proof, chaotic, members, motion, trace: lists, end }))
     }
@@ -415,23 +425,23 @@ impl Case<'_> {
             skip: self.settings.skip,
             average: self.settings.average,
             mac,
-            settled_velocity_ratio: f64::NAN,
         }
     }
 
-    /// The velocity ratio of the motions that the run and the one without dampers go on to; undefined where one does not settle.
-    fn settled_velocity_ratio(
-        &self,
-        system: &HybridSystem,
-        references: &References,
+    /// The motion that the run goes on to, where a measure is read off it.
+    fn later<'c>(
+        &'c self,
+        system: &'c HybridSystem,
+        references: &'c References,
         plain: &Options,
         run: &Response,
-    ) -> Result<f64, EngineError> {
+    ) -> Result<Later<'c>, EngineError> {
         let kind = run.motion.as_ref().map(|motion| motion.kind);
         let never_settles = matches!(kind, Some(MotionKind::QuasiPeriodic | MotionKind::Chaotic));
-        let Some(undamped) = references.settled_later.as_ref().filter(|_| !never_settles) else { return Ok(f64::NAN) };
-        let own = settled_later(system, plain)?;
-        Ok(own.map_or(f64::NAN, |own| self.rms_velocity(undamped) / self.rms_velocity(&own)))
+        let undamped = references.settled_later.as_ref();
+        let is_read = undamped.is_some() || self.request.any(Measure::needs_neighbours);
+        let own = if is_read && !never_settles { settled_later(system, plain)? } else { None };
+        Ok(Later { subject: self.subject, system, own, undamped })
     }
 
     /// All measures, and the lists; of a run of an ensemble (not `whole`) only what is averaged.
@@ -489,13 +499,6 @@ fn own_error(measure: Measure, response: &Response) -> f64 {
     exponent.filter(|_| measure == Measure::LyapunovExponent).map_or(0.0, |exponent| exponent.error)
 }
 
-/// A longer run, if it settles.
-fn settled_later(system: &HybridSystem, plain: &Options) -> Result<Option<Response>, EngineError> {
-    let average = LONGER * (plain.skip + plain.average);
-    let run = event_driven(system, &Options { until: Until::Settled, average, ..plain.clone() })?;
-    Ok(Some(run).filter(|run| run.settled.is_some()))
-}
-
 fn solve(system: &HybridSystem, options: &Options, solver: SolverChoice) -> Result<Response, EngineError> {
     match solver {
         SolverChoice::EventDriven => event_driven(system, options),
@@ -503,7 +506,7 @@ fn solve(system: &HybridSystem, options: &Options, solver: SolverChoice) -> Resu
     }
 }
 
-fn rounded_subject(subject: Subject, settings: &Settings) -> Subject {
+pub(super) fn rounded_subject(subject: Subject, settings: &Settings) -> Subject {
     let undamped = subject.undamped.map(|scene| rounded(scene, settings));
     Subject { scene: rounded(subject.scene, settings), undamped, ..subject }
 }

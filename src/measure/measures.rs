@@ -5,7 +5,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::scene::Excitation;
+use crate::scene::{Design, Excitation};
 use crate::text::words;
 
 /// What is known of a measure.
@@ -56,6 +56,8 @@ pub enum ReadOff {
     Ending,
     /// Longer runs, which end where they have settled.
     Settled,
+    /// Periodic motions beside the one that a longer run settles to.
+    Neighbours,
 }
 
 /// Which runs a measure takes.
@@ -170,6 +172,11 @@ measures! {
     Settled: "", "", "", "1 where the run ended with a period that comes again and attracts, and its averages are of that period; 0 where they are of the cycles given; comes with `until: settled`", Ending, Own, Any;
     AveragedCycles: "cycles", "", "", "cycles averaged over: those of the period where the run has settled, the cycles given otherwise; comes with `until: settled`", Ending, Own, Any;
     SettledVelocityRatio: "", "ψ", "velocity ratio of the settled motion", "the velocity ratio of the motion that the run goes on to, of one period of it; undefined where none is found in ten times the cycles", Settled, Both, Any;
+    GapElasticity: "", "", "elasticity of ψ in the gap clearance", "d ln ψ/d ln h of the periodic motion that the run goes on to: by how many per cent the velocity ratio changes for one per cent of every gap clearance, all else as it is", Neighbours, Both, Any;
+    MassElasticity: "", "", "elasticity of ψ in the particle mass", "the same for the masses of the particles", Neighbours, Both, Any;
+    StiffnessElasticity: "", "", "elasticity of ψ in the floor stiffness", "the same for the stiffnesses of floors and ceilings", Neighbours, Both, Any;
+    DampingElasticity: "", "", "elasticity of ψ in the contact damping", "the same for the dashpots of floors and ceilings; where all are rigid, for their restitution", Neighbours, Both, Any;
+    ForceElasticity: "", "", "elasticity of ψ in the force", "the same for the amplitude of the force, or the impulse", Neighbours, Both, Any;
 }
 
 /// A column's name in words: a measure's, or those of [`words::of_column`].
@@ -240,7 +247,24 @@ impl Measure {
     /// Read off longer runs, which end where they have settled.
     #[must_use]
     pub fn needs_settled(self) -> bool {
-        self.facts().from == ReadOff::Settled
+        matches!(self.facts().from, ReadOff::Settled | ReadOff::Neighbours)
+    }
+
+    /// Read off the periodic motions beside the one that a run settles to.
+    pub(super) fn needs_neighbours(self) -> bool {
+        self.facts().from == ReadOff::Neighbours
+    }
+
+    /// What it is an elasticity in.
+    pub(super) fn elasticity_in(self) -> Option<Design> {
+        Some(match self {
+            Self::GapElasticity => Design::Gap,
+            Self::MassElasticity => Design::ParticleMass,
+            Self::StiffnessElasticity => Design::Stiffness,
+            Self::DampingElasticity => Design::Damping,
+            Self::ForceElasticity => Design::Force,
+            _ => return None,
+        })
     }
 
     /// Of one motion, with its multipliers: of single event-driven runs alone.
@@ -279,16 +303,17 @@ impl Measure {
     /// It has a meaning for one period of a motion that comes again, whatever run led there.
     #[must_use]
     pub fn is_of_one_period(self) -> bool {
-        use ReadOff::{End, Events, Extremes, Model, Run, Velocity};
+        use ReadOff::{End, Events, Extremes, Model, Neighbours, Run, Velocity};
         let from = self.facts().from;
-        let single = matches!(from, Velocity | ReadOff::Displacement | Extremes | Run | Events | End | Model);
+        let single =
+            matches!(from, Velocity | ReadOff::Displacement | Extremes | Run | Events | End | Model | Neighbours);
         single && !self.compares_cycles()
     }
 
     /// It changes from one kind of motion to the next, and is constant or without meaning between.
     #[must_use]
     pub fn jumps(self) -> bool {
-        matches!(self.facts().from, ReadOff::Motion | ReadOff::Ending | ReadOff::Settled)
+        matches!(self.facts().from, ReadOff::Motion | ReadOff::Ending | ReadOff::Settled | ReadOff::Neighbours)
     }
 
     /// The measures that come with this one.

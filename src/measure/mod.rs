@@ -7,12 +7,14 @@
 use std::borrow::Cow;
 
 mod each_cycle;
+mod elasticity;
 mod ending;
 mod energy;
 mod evaluate;
 mod history;
 mod impact;
 mod kept;
+mod later;
 mod measures;
 mod orbit;
 mod reading;

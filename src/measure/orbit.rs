@@ -3,9 +3,10 @@
 //! What the structure without dampers is compared with is its own periodic motion: it is linear, so that one step of Newton's method
 //! finds it from rest.
 
+use super::evaluate::rounded_subject;
 use super::reading::Reading;
 use super::undefined::in_range;
-use super::{EvaluateError, Evaluated, Measure, Measured, Request, Rigour, Subject, rounded};
+use super::{EvaluateError, Evaluated, Measure, Measured, Request, Rigour, Subject, elasticity};
 use crate::dynamics::{HybridSystem, Options, Orbit, Response, StartState, event_driven};
 use crate::measure::Settings;
 use crate::scene::{Scene, compile};
@@ -25,22 +26,22 @@ impl Orbit {
         measures: &[Measure],
     ) -> Result<Evaluated, EvaluateError> {
         let request = Request { measures, rigour: Rigour::Result, ..Request::default() };
-        let scene = rounded(subject.scene, settings);
-        let system = compile(&scene)?;
-        let response = run(&request, &scene, &system, settings, self, 1.0)?;
-        let again = run(&request, &scene, &system, settings, self, 0.5)?;
-        let undamped = match subject.undamped.filter(|_| request.needs().undamped) {
+        let subject = rounded_subject(subject, settings);
+        let scene = &subject.scene;
+        let system = compile(scene)?;
+        let response = run(&request, scene, &system, settings, self, 1.0)?;
+        let again = run(&request, scene, &system, settings, self, 0.5)?;
+        let undamped = match subject.undamped.as_ref().filter(|_| request.needs().undamped) {
             Some(bare) => {
-                let bare = rounded(bare, settings);
-                let system = compile(&bare)?;
+                let system = compile(bare)?;
                 let orbit = Self::near(&system, &StartState::StaticEquilibrium, 1)?;
-                Some(run(&request, &bare, &system, settings, &orbit, 1.0)?)
+                Some(run(&request, bare, &system, settings, &orbit, 1.0)?)
             }
             None => None,
         };
         let read = |response| -> Result<Vec<f64>, EvaluateError> {
             let reading = Reading {
-                scene: &scene,
+                scene,
                 mode: subject.mode,
                 response: Some(response),
                 undamped: undamped.as_ref(),
@@ -49,17 +50,19 @@ impl Orbit {
                 skip: 0,
                 average: self.cycles,
                 mac: None,
-                settled_velocity_ratio: f64::NAN,
             };
             measures.iter().map(|measure| reading.read(*measure)).collect()
         };
         let (values, others) = (read(&response)?, read(&again)?);
-        let measured = values.into_iter().zip(others).map(|(value, other)| {
+        let measured = values.into_iter().zip(others).zip(measures).map(|((value, other), measure)| {
+            if let Some(design) = measure.elasticity_in() {
+                return elasticity::of(&subject, self, design);
+            }
             let numerical = (value - other).abs().max(CLOSED * value.abs());
-            Measured { value, numerical, spread: 0.0 }
+            Ok(Measured { value, numerical, spread: 0.0 })
         });
         let evaluated = Evaluated {
-            measured: measured.collect(),
+            measured: measured.collect::<Result<_, _>>()?,
             proof: response.proof,
             chaotic: false,
             members: 1,
@@ -67,7 +70,7 @@ impl Orbit {
             trace: Vec::new(),
             end: None,
         };
-        in_range(&scene, measures, evaluated)
+        in_range(scene, measures, evaluated)
     }
 }
 

@@ -25,8 +25,6 @@ pub(super) struct Reading<'a> {
     pub(super) average: u32,
     /// Modal assurance criterion of the shape, if there is one.
     pub(super) mac: Option<f64>,
-    /// Velocity ratio of the motion that the run settles to, undefined where that is not known.
-    pub(super) settled_velocity_ratio: f64,
 }
 
 impl<'a> Reading<'a> {
@@ -42,7 +40,6 @@ impl<'a> Reading<'a> {
             skip: 0,
             average: 0,
             mac: None,
-            settled_velocity_ratio: f64::NAN,
         }
     }
 }
@@ -124,7 +121,13 @@ impl Reading<'_> {
             | Measure::SettledAfter => {
                 of_motion(response.motion.as_ref().ok_or(EvaluateError::NoRun(measure))?, measure)
             }
-            Measure::SettledVelocityRatio => self.settled_velocity_ratio,
+            // Of other runs than this one: who makes those enters them.
+            Measure::SettledVelocityRatio
+            | Measure::GapElasticity
+            | Measure::MassElasticity
+            | Measure::StiffnessElasticity
+            | Measure::DampingElasticity
+            | Measure::ForceElasticity => f64::NAN,
             Measure::NaturalFrequency
             | Measure::CleanNaturalFrequency
             | Measure::ExactNaturalFrequency

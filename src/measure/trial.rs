@@ -70,7 +70,6 @@ impl<'a> Trial<'a> {
             average: self.settings.average,
             energies: energies.as_ref(),
             mac: None,
-            settled_velocity_ratio: f64::NAN,
         };
         self.measures.iter().map(|measure| reading.read(*measure)).collect()
     }

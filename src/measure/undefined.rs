@@ -1,6 +1,7 @@
 //! Numbers that are none: a ratio of nothing to nothing is undefined, and says so; one that left the range of numbers is an error.
 
-use super::{EvaluateError, Evaluated, Measure, ReadOff};
+use super::elasticity::Absent;
+use super::{EvaluateError, Evaluated, Measure, Measured, ReadOff};
 use crate::dynamics::MotionKind;
 use crate::scene::Scene;
 use crate::text::words;
@@ -19,7 +20,7 @@ impl Evaluated {
             if measure.is_name() || is_named || !one.value.is_nan() {
                 continue;
             }
-            let (why, name) = (measure.why_undefined(motion), measure.name_undefined());
+            let (why, name) = (measure.why_undefined(motion, one), measure.name_undefined());
             match reasons.iter_mut().find(|(known, _)| *known == why) {
                 Some((_, names)) if names.contains(&name) => {}
                 Some((_, names)) => names.push(name),
@@ -46,7 +47,7 @@ impl Measure {
     }
 
     /// Why this measure has no number where nothing went wrong, in a run of this motion, if it is known.
-    fn why_undefined(self, motion: Option<MotionKind>) -> &'static str {
+    fn why_undefined(self, motion: Option<MotionKind>, one: &Measured) -> &'static str {
         match self {
             Self::LastPeak | Self::PeakVariation | Self::PeakDecayError => "the time history has no crest",
             Self::NaturalFrequency | Self::CleanNaturalFrequency | Self::ExactNaturalFrequency | Self::Mac => {
@@ -58,6 +59,7 @@ impl Measure {
                 Some(false) => "particles are struck at one instant, or the cycles are too few",
                 _ => "nothing is left of a disturbance, or particles are struck at one instant",
             },
+            _ if self.elasticity_in().is_some() => Absent::of(one).why(),
             _ if self.is_of_a_period() => match motion {
                 Some(_) => "particles are struck at one instant",
                 None => "the motion does not come again, or particles are struck at one instant",
@@ -71,8 +73,9 @@ impl Measure {
 
     /// It is a number wherever something excites the structure; an event may fail to happen, and a scene may have no particle.
     fn is_of_any_motion(self) -> bool {
-        use ReadOff::{Events, Model, Motion, Settled, Shape, Trace};
-        !matches!(self.facts().from, Trace | Model | Shape | Events | Motion | Settled) && self != Self::FinalHeight
+        use ReadOff::{Events, Model, Motion, Neighbours, Settled, Shape, Trace};
+        !matches!(self.facts().from, Trace | Model | Shape | Events | Motion | Settled | Neighbours)
+            && self != Self::FinalHeight
     }
 }
 

@@ -31,10 +31,12 @@
 //! | `corrector` | a point of a branch beside another |
 //! | `special` | test functions, and where they vanish |
 //! | `branch` | from point to point, and how a branch ends |
+//! | `elasticity` | the derivative of a number of an orbit in a parameter |
 //! | `elimination` | linear equations, singular ones among them |
 
 mod branch;
 mod corrector;
+mod elasticity;
 mod elimination;
 mod newton;
 mod shot;
@@ -46,6 +48,7 @@ use super::response::Response;
 use super::{EngineError, Options, system::HybridSystem};
 
 pub use branch::{Along, Branch, BranchEnd, BranchError, BranchPoint};
+pub use elasticity::{Elasticity, ElasticityError};
 pub use special::Special;
 
 /// A multiplier of a motion without damping may round above 1 by this.
@@ -119,6 +122,19 @@ impl Orbit {
     /// [`OrbitError`] with the reason.
     pub fn beside(system: &HybridSystem, options: &Options, cycles: u32) -> Result<Self, OrbitError> {
         newton::beside(system, options, cycles)
+    }
+
+    /// By how many per cent a positive number of the run over one period changes for one per cent of a parameter of the system,
+    /// which `system_at` takes as a factor: d ln A/d ln p, the orbit followed.
+    ///
+    /// # Errors
+    /// [`ElasticityError`] with the reason: where the sequence of contacts changes at this very value, say.
+    pub fn elasticity<E>(
+        &self,
+        system_at: impl FnMut(f64) -> Result<HybridSystem, E>,
+        value: impl Fn(&Response) -> f64,
+    ) -> Result<Elasticity, ElasticityError<E>> {
+        elasticity::elasticity(self, system_at, value)
     }
 
     /// No multiplier exceeds 1.

@@ -129,6 +129,17 @@ impl Shot {
         contacts(&self.response)
     }
 
+    /// The run itself.
+    pub(super) fn response(&self) -> &Response {
+        &self.response
+    }
+
+    /// Its events in their order, and between which jumps of the force each lies.
+    pub(super) fn sequence(&self, system: &HybridSystem) -> Sequence {
+        let jumps = |event: &Event| system.drive.ticks.iter().filter(|tick| tick.time <= event.time).count();
+        self.response.events.iter().map(|event| (event.cycle, jumps(event), event.particle, event.kind)).collect()
+    }
+
     /// The slowest contact with its speed; none after infinitely many.
     pub(super) fn slowest(&self) -> Option<Event> {
         if self.response.events.iter().any(|event| event.kind == EventKind::ChatterEnd) {
@@ -180,6 +191,9 @@ impl Shot {
         })
     }
 }
+
+/// Cycle, jumps of the force in it before the event, particle, and what happens.
+pub(super) type Sequence = Vec<(u64, usize, usize, EventKind)>;
 
 /// What is met, and by which particle, in any order: an event that moves across phase 0 changes nothing of it.
 pub(super) type Contacts = Vec<(usize, EventKind)>;

@@ -18,6 +18,7 @@ use super::bench::{
     Case, GRAVITY, base, cases, close, damper, in_flight, instant, nothing, once, only, resilient,
     resilient_without_tension, rigid, run, scene, within,
 };
+use super::elasticities;
 
 fn all() -> Vec<Case> {
     cases(include_str!("../data/closed-form-cases.json"))
@@ -702,6 +703,7 @@ const TESTS: &[fn()] = &[
     a_particle_that_grazes_the_ceiling_is_met_on_both_sides,
     an_accelerated_base_is_a_stronger_gravity,
     a_ball_on_a_vibrating_table_keeps_its_phase,
+    elasticities::the_impact_damper_of_masri_and_caughey_has_the_derivatives_of_its_closed_form,
     the_impact_map_of_a_ball_on_a_table_has_its_multipliers,
     the_orbit_of_masri_and_caughey_has_its_floquet_multipliers,
     just_below_period_doubling_every_flight_is_alike,

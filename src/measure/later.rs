@@ -1,0 +1,56 @@
+//! What is read off the motion that a run goes on to, in a longer run that ends where it has settled.
+
+use super::elasticity::{self, Absent};
+use super::reading::Reading;
+use super::{EvaluateError, Measure, Measured, Subject};
+use crate::dynamics::{EngineError, HybridSystem, Options, Orbit, OrbitError, Response, Until, event_driven};
+
+/// Cycles in which a motion may settle, over those of a run.
+const LONGER: u32 = 10;
+
+/// A run and the one without dampers, as far as they have settled.
+pub(super) struct Later<'a> {
+    pub(super) subject: &'a Subject,
+    pub(super) system: &'a HybridSystem,
+    pub(super) own: Option<Response>,
+    pub(super) undamped: Option<&'a Response>,
+}
+
+impl Later<'_> {
+    /// The velocity ratio of both; undefined where one does not settle.
+    pub(super) fn velocity_ratio(&self) -> f64 {
+        let rms = |run: &Response| Reading::of_run(&self.subject.scene, run).rms_velocity(run);
+        self.undamped.as_ref().zip(self.own.as_ref()).map_or(f64::NAN, |(undamped, own)| rms(undamped) / rms(own))
+    }
+
+    /// Its elasticities; `None` in the place of any other measure.
+    pub(super) fn elasticities(&self, measures: &[Measure]) -> Result<Vec<Option<Measured>>, EvaluateError> {
+        if !measures.iter().any(|measure| measure.needs_neighbours()) {
+            return Ok(vec![None; measures.len()]);
+        }
+        let orbit = self.orbit()?;
+        let of = |design| match &orbit {
+            Ok(orbit) => elasticity::of(self.subject, orbit, design),
+            Err(absent) => Ok(absent.measured()),
+        };
+        measures.iter().map(|measure| measure.elasticity_in().map(of).transpose()).collect()
+    }
+
+    /// The orbit that the run has settled to.
+    fn orbit(&self) -> Result<Result<Orbit, Absent>, EngineError> {
+        let settled = self.own.as_ref().and_then(|own| Some((own.final_state.as_ref()?, own.settled?.cycles)));
+        let Some((state, cycles)) = settled else { return Ok(Err(Absent::NotSettled)) };
+        match Orbit::near(self.system, state, u32::try_from(cycles).unwrap_or(u32::MAX)) {
+            Ok(orbit) => Ok(Ok(orbit)),
+            Err(OrbitError::Engine(overrun @ EngineError::Overrun(_))) => Err(overrun),
+            Err(_) => Ok(Err(Absent::NotSmooth)),
+        }
+    }
+}
+
+/// A longer run with its last state, if it settles.
+pub(super) fn settled_later(system: &HybridSystem, plain: &Options) -> Result<Option<Response>, EngineError> {
+    let average = LONGER * (plain.skip + plain.average);
+    let longer = Options { until: Until::Settled, average, final_state: true, ..plain.clone() };
+    Ok(Some(event_driven(system, &longer)?).filter(|run| run.settled.is_some()))
+}
