@@ -13,11 +13,15 @@
 use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
+use serde_json::json;
 
-use super::diagnostic::{Findings, Problems};
-use super::reader::{Fields, list, no_such, text, word};
+use super::at::{At, Definitions, Sketch};
+use super::diagnostic::{Findings, Problems, Span};
+use super::reader::{no_such, word};
+use super::schema::of_file;
+use super::schema::parts::words_of;
 use super::word::words;
-use super::yaml::{Entry, Node, Value, read_tree};
+use super::yaml::{Value, read_tree};
 
 /// What a study says of itself; every part may be absent.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
@@ -105,19 +109,28 @@ pub(super) const MOST_CHAPTERS: u32 = 99;
 /// Every mistake of the file, with its place.
 pub fn parse_study(file: &str, text: &str) -> Result<AboutStudy, Problems> {
     let findings = Findings::default();
-    let about = read_tree(text, &findings).and_then(|root| read_about(&root, &findings));
+    let about = read_tree(text, &findings).and_then(|root| read_about(At::Node(&root, &findings)));
     findings.finish(file, text, about)
 }
 
-fn read_about(node: &Node, findings: &Findings) -> Option<AboutStudy> {
-    let fields = Fields::open(node, "a study", findings)?;
-    let title = fields.optional("title", |node| text(node, findings));
-    let about = fields.optional("about", |node| text(node, findings));
-    let source = fields.optional("source", |node| read_publication(node, findings));
-    let chapters = fields.optional("chapters", |node| read_chapters(node, findings));
-    let colours = fields.optional("colours", |node| read_colours(node, findings));
-    let concluded = fields.optional("findings", |node| list(node, findings, |node| read_finding(node, findings)));
-    fields.close()?;
+/// JSON Schema of `study.yaml`.
+#[must_use]
+pub fn study_schema() -> serde_json::Value {
+    let definitions = Definitions::default();
+    let schema = Sketch::of("What the study is", &definitions, read_about);
+    of_file("Study", schema, definitions)
+}
+
+fn read_about(at: At<'_>) -> Option<AboutStudy> {
+    let keys = at.keys("a study")?;
+    let title = keys.optional("title", "A few words", |at| at.text());
+    let about = keys.optional("about", "The sentence that opens the index of its reports", |at| at.text());
+    let source = keys.optional("source", "The publication that is reproduced", read_publication);
+    let subjects = "Subjects of the publication's chapters, by number";
+    let chapters = keys.optional("chapters", subjects, read_chapters);
+    let colours = keys.optional("colours", "Colours of lines of these names, in every figure", read_colours);
+    let concluded = keys.optional("findings", "What the publication concludes", |at| at.list(read_finding));
+    keys.close()?;
     Some(AboutStudy {
         title: title?,
         about: about?,
@@ -128,43 +141,51 @@ fn read_about(node: &Node, findings: &Findings) -> Option<AboutStudy> {
     })
 }
 
-fn read_finding(node: &Node, findings: &Findings) -> Option<Finding> {
-    let fields = Fields::open(node, "a finding", findings)?;
-    let says = fields.required("says", |node| text(node, findings));
-    let entries = fields.required("entries", |node| list(node, findings, |node| text(node, findings)));
-    fields.close()?;
+fn read_finding(at: At<'_>) -> Option<Finding> {
+    let keys = at.keys("a finding")?;
+    let says = keys.required("says", "In a sentence", |at| at.text());
+    let decided_by = "The entries whose verdicts decide it, experiment/entry";
+    let entries = keys.required("entries", decided_by, |at| at.list(|at| at.text()));
+    keys.close()?;
     Some(Finding { says: says?, entries: entries? })
 }
 
-fn read_publication(node: &Node, findings: &Findings) -> Option<Publication> {
-    let fields = Fields::open(node, "a publication", findings)?;
-    let kind = fields.required("type", |node| word::<PublicationKind>(node, "kind of publication", findings));
-    let name = fields.required("name", |node| text(node, findings));
-    fields.close()?;
+fn read_publication(at: At<'_>) -> Option<Publication> {
+    let keys = at.keys("a publication")?;
+    let kind = keys.required("type", "What it is", |at| at.word::<PublicationKind>("kind of publication"));
+    let name = keys.required("name", "Its title, or a description", |at| at.text());
+    keys.close()?;
     Some(Publication { kind: kind?, name: name? })
 }
 
-fn read_chapters(node: &Node, findings: &Findings) -> Option<BTreeMap<u32, String>> {
-    let Value::Mapping(entries) = &node.value else {
-        return findings.wrong(node.span, "chapters are written as `number: subject`");
-    };
-    let chapter = |Entry { key, key_span, node }: &Entry| match key.parse::<u32>() {
-        Ok(number) if number <= MOST_CHAPTERS => Some((number, text(node, findings)?)),
-        _ => findings
-            .wrong(*key_span, format!("`{key}` is not the number of a chapter: write one up to {MOST_CHAPTERS}")),
-    };
-    super::reader::all(entries.iter().map(chapter)).map(|chapters| chapters.into_iter().collect())
+fn read_chapters(at: At<'_>) -> Option<BTreeMap<u32, String>> {
+    let form = "chapters are written as `number: subject`";
+    let chapters = at.by_name(json!({"propertyNames": {"pattern": "^[0-9]{1,2}$"}}), form, |key, key_span, at| {
+        Some((chapter_number(key, key_span, at)?, at.text()?))
+    });
+    chapters.map(|chapters| chapters.into_iter().collect())
 }
 
-fn read_colours(node: &Node, findings: &Findings) -> Option<BTreeMap<String, LineColour>> {
-    let Value::Mapping(entries) = &node.value else {
-        let known = words::<LineColour>().join(", ");
-        return findings
-            .wrong(node.span, format!("colours are written as `name of a line: colour`; known are {known}"));
-    };
-    let colour = |entry: &Entry| match &entry.node.value {
-        Value::Scalar(_) => Some((entry.key.clone(), word::<LineColour>(&entry.node, "colour", findings)?)),
-        _ => no_such(findings, entry.node.span, "colour", &entry.key, words::<LineColour>()),
-    };
-    super::reader::all(entries.iter().map(colour)).map(|colours| colours.into_iter().collect())
+/// The number of a chapter that is a key.
+pub(super) fn chapter_number(key: &str, key_span: Span, at: At<'_>) -> Option<u32> {
+    let number = key.parse::<u32>().ok().filter(|number| *number <= MOST_CHAPTERS);
+    number.or_else(|| {
+        at.wrong_at(key_span, format!("`{key}` is not the number of a chapter: write one up to {MOST_CHAPTERS}"))
+    })
+}
+
+fn read_colours(at: At<'_>) -> Option<BTreeMap<String, LineColour>> {
+    let known = words::<LineColour>().join(", ");
+    let form = format!("colours are written as `name of a line: colour`; known are {known}");
+    let colours = at.by_name(json!({}), &form, |key, _, at| {
+        let colour = at.form(
+            |node, findings| match &node.value {
+                Value::Scalar(_) => word::<LineColour>(node, "colour", findings),
+                _ => no_such(findings, node.span, "colour", key, words::<LineColour>()),
+            },
+            |it| words_of::<LineColour>(it.about()),
+        );
+        Some((key.to_owned(), colour?))
+    });
+    colours.map(|colours| colours.into_iter().collect())
 }

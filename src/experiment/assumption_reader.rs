@@ -2,14 +2,17 @@
 
 use std::sync::Arc;
 
+use serde_json::json;
+
 use super::assumption_sheet::{
     ASSUMPTIONS, AssumptionEntry, AssumptionKind, AssumptionSheet, Cycles, Defaults, Quantity, Takes,
 };
 use super::at::At;
 use super::diagnostic::{Findings, Place, Problems, place};
 use super::quantity::Dimension;
-use super::reader::{Fields, above_zero, count, list, no_such, ratio, scalar, text, unknown};
+use super::reader::{above_zero, count, list, no_such, ratio, scalar, unknown};
 use super::recipe::{AssumptionName, AssumptionValue, Slot};
+use super::schema::{assumptions, parts};
 use super::stated::{STATED, read_chapters};
 use super::word::{from_word, words};
 use super::yaml::{Entry, Node, Value, read_tree};
@@ -35,7 +38,7 @@ fn read_sheet(root: &Node, text: &str, findings: &Findings) -> Option<Assumption
     for Entry { key, key_span, node } in entries.iter().filter(|entry| entry.key != DEFAULTS && entry.key != STATED) {
         if !is_name(key) {
             findings.wrong::<()>(*key_span, format!("`{key}` cannot name an assumption: use letters, digits and `_`"));
-        } else if let Some(entry) = read_entry(node, place(text, *key_span), findings) {
+        } else if let Some(entry) = read_entry(At::Node(node, findings), place(text, *key_span)) {
             sheet.entries.push((AssumptionName::from(key.as_str()), Arc::new(entry)));
         }
     }
@@ -141,29 +144,34 @@ pub(super) fn fits(
     false
 }
 
-fn read_entry(node: &Node, place: Place, findings: &Findings) -> Option<AssumptionEntry> {
-    let fields = Fields::open(node, "an assumption", findings)?;
-    let quantity = fields.optional("quantity", |node| read_quantity(node, findings));
-    let readings =
-        fields.optional("readings", |node| list(node, findings, |node| scalar(node, findings).map(str::to_owned)));
+pub(super) fn read_entry(at: At<'_>, place: Place) -> Option<AssumptionEntry> {
+    let keys = at.keys("an assumption")?;
+    let quantity = keys.optional("quantity", "What its numbers are", read_quantity);
+    let readings = keys.optional("readings", "Its readings", |at| {
+        at.list(|at| at.form(|node, findings| scalar(node, findings).map(str::to_owned), |it| parts::text(it.about())))
+    });
     let kind = match (quantity, readings) {
         (Some(None), Some(None)) => {
             let help = "add `quantity: length`, `quantity: ratio`, …, or `readings: [one, other]`".to_owned();
-            findings.report(node.span, "this assumption has no kind", Some(help))
+            at.report("this assumption has no kind", Some(help))
         }
         (Some(quantity), Some(readings)) => Some(AssumptionKind { quantity, readings: readings.unwrap_or_default() }),
         _ => None,
     };
-    let value = |node: &Node| read_value(node, kind.as_ref()?, findings);
-    let in_force = fields.required("value", value);
-    let reason = fields.required("reason", |node| text(node, findings));
-    let other = |node: &Node| {
-        let other = value(node)?;
+    let value = |node: &Node, findings: &Findings| read_value(node, kind.as_ref()?, findings);
+    let in_force = keys.required("value", "A value of its kind", |at| at.form(value, |_| assumptions::value()));
+    let reason = keys.required("reason", "Why this value", |at| at.text());
+    let other = |node: &Node, findings: &Findings| {
+        let other = value(node, findings)?;
         in_force.as_ref().is_none_or(|one| alike(one, &other, node, findings)).then_some(other)
     };
-    let range = fields.optional("range", |node| list(node, findings, other));
-    let fitted_to = fields.optional("fitted_to", |node| list(node, findings, |node| text(node, findings)));
-    fields.close()?;
+    let range = keys.optional("range", "Other values that could be defended", |at| {
+        at.list(|at| at.form(other, |_| assumptions::value()))
+    });
+    let fitted_to = "Entries that the value was chosen by, experiment/entry";
+    let fitted_to = keys.optional("fitted_to", fitted_to, |at| at.list(|at| at.text()));
+    keys.rule(|| json!({"anyOf": [{"required": ["quantity"]}, {"required": ["readings"]}]}));
+    keys.close()?;
     Some(AssumptionEntry {
         value: in_force?,
         reason: reason?,
@@ -175,21 +183,24 @@ fn read_entry(node: &Node, place: Place, findings: &Findings) -> Option<Assumpti
 }
 
 /// The words that are no dimensions.
-pub(super) const COUNTED: [(&str, Quantity); 4] = [
+const COUNTED: [(&str, Quantity); 4] = [
     ("ratio", Quantity::Ratio),
     ("count", Quantity::Count),
     ("damping_curve", Quantity::Curve),
     ("places", Quantity::Places),
 ];
 
-fn read_quantity(node: &Node, findings: &Findings) -> Option<Quantity> {
-    let word = scalar(node, findings)?;
-    let counted = COUNTED.into_iter().find(|(known, _)| *known == word).map(|(_, quantity)| quantity);
-    counted.or_else(|| from_word::<Dimension>(word).map(Quantity::Of)).or_else(|| {
-        let known: Vec<&str> =
-            COUNTED.iter().map(|(word, _)| *word).chain(words::<Dimension>().iter().copied()).collect();
-        no_such(findings, node.span, "kind of quantity", word, &known)
-    })
+fn read_quantity(at: At<'_>) -> Option<Quantity> {
+    let known = || COUNTED.iter().map(|(word, _)| *word).chain(words::<Dimension>().iter().copied()).collect();
+    let read = |node: &Node, findings: &Findings| {
+        let word = scalar(node, findings)?;
+        let counted = COUNTED.into_iter().find(|(known, _)| *known == word).map(|(_, quantity)| quantity);
+        counted.or_else(|| from_word::<Dimension>(word).map(Quantity::Of)).or_else(|| {
+            let known: Vec<&str> = known();
+            no_such(findings, node.span, "kind of quantity", word, &known)
+        })
+    };
+    at.form(read, |it| parts::one_of_words(it.about(), &known()))
 }
 
 pub(super) fn read_value(node: &Node, kind: &AssumptionKind, findings: &Findings) -> Option<AssumptionValue> {
@@ -213,7 +224,7 @@ pub(super) fn read_value(node: &Node, kind: &AssumptionKind, findings: &Findings
             0 => findings.wrong(node.span, "a whole number, one or more, is wanted"),
             count => Some(AssumptionValue::Number(f64::from(count))),
         },
-        Quantity::Curve => read_curve(node, findings).map(AssumptionValue::Curve),
+        Quantity::Curve => read_curve(At::Node(node, findings)).map(AssumptionValue::Curve),
         Quantity::Places => read_places(node, findings).map(AssumptionValue::Places),
     }
 }
@@ -249,17 +260,17 @@ pub(super) fn alike(one: &AssumptionValue, other: &AssumptionValue, at: &Node, f
 pub(super) const MOST_COUNTED: u32 = 1000;
 
 /// `{acceleration_ratio: [0.7, …], damping: [2 N s/m, …]}`: RMS acceleration in units of g, increasing.
-pub(super) fn read_curve(node: &Node, findings: &Findings) -> Option<Curve> {
-    let fields = Fields::open(node, "a curve", findings)?;
-    let placed = |node: &Node, value: Option<f64>| value.map(|value| (value, node.span));
-    let accelerations = fields.required("acceleration_ratio", |node| {
-        list(node, findings, |node| placed(node, ratio(node, findings))).map(|list| (list, node.span))
+pub(super) fn read_curve(at: At<'_>) -> Option<Curve> {
+    let keys = at.keys("a curve")?;
+    let in_g = "Accelerations over g, increasing";
+    let accelerations = keys.required("acceleration_ratio", in_g, |at| {
+        at.list(|at| Some((at.ratio()?, at.span()))).map(|list| (list, at.span()))
     });
-    let dampings = fields.required("damping", |node| {
-        list(node, findings, |node| placed(node, above_zero(node, Dimension::Damping, findings)))
+    let dampings = keys.required("damping", "As many dampings", |at| {
+        at.list(|at| Some((at.above_zero(Dimension::Damping)?, at.span())))
     });
-    fields.close()?;
-    let ((accelerations, at), dampings) = (accelerations?, dampings?);
+    keys.close()?;
+    let ((accelerations, accelerations_at), dampings) = (accelerations?, dampings?);
     if accelerations.len() != dampings.len() || accelerations.len() < 2 {
         let message = format!(
             "a curve has one damping for each acceleration, and two points at least; here are {} accelerations and {} \
@@ -267,11 +278,11 @@ pub(super) fn read_curve(node: &Node, findings: &Findings) -> Option<Curve> {
             accelerations.len(),
             dampings.len()
         );
-        return findings.wrong(at, message);
+        return at.wrong_at(accelerations_at, message);
     }
     if let Some(pair) = accelerations.windows(2).find(|pair| pair[1].0 <= pair[0].0) {
         let message = format!("the accelerations of a curve increase, and {} follows {}", pair[1].0, pair[0].0);
-        return findings.wrong(pair[1].1, message);
+        return at.wrong_at(pair[1].1, message);
     }
     let curve: Curve = accelerations.iter().zip(&dampings).map(|((x, _), (y, _))| [*x, *y]).collect();
     let [x, y] = Spline::through(&curve)?.lowest();
@@ -285,5 +296,5 @@ pub(super) fn read_curve(node: &Node, findings: &Findings) -> Option<Curve> {
         significant(y, 2),
         significant(x, 2)
     );
-    findings.report(dampings[after].1, message, Some("add a point there".into()))
+    at.report_at(dampings[after].1, message, Some("add a point there".into()))
 }

@@ -44,8 +44,13 @@ impl<'t> Sketch<'t> {
     pub fn of<T>(about: &str, definitions: &Definitions, read: impl FnOnce(At<'_>) -> Option<T>) -> Schema {
         let sketch = Sketch { about, alternatives: RefCell::default(), definitions };
         read(At::Sketch(&sketch));
-        let mut all = sketch.alternatives.into_inner();
-        if all.len() == 1 { all.remove(0) } else { parts::any_of(about, all) }
+        sketch.schema().unwrap_or_default()
+    }
+
+    /// What was added; nothing if nothing was.
+    fn schema(self) -> Option<Schema> {
+        let mut all = self.alternatives.into_inner();
+        if all.len() > 1 { Some(parts::any_of(self.about, all)) } else { all.pop() }
     }
 
     /// The same of a part of this place.
@@ -85,10 +90,7 @@ impl<'t> At<'t> {
 
     /// Reports what is wrong here, and what would be right.
     pub fn report<T>(self, message: impl Into<String>, help: Option<String>) -> Option<T> {
-        match self {
-            Self::Node(node, findings) => findings.report(node.span, message, help),
-            Self::Sketch(_) => None,
-        }
+        self.report_at(self.span(), message, help)
     }
 
     /// Reports a problem whose message says all.
@@ -97,11 +99,16 @@ impl<'t> At<'t> {
     }
 
     /// Reports a problem at a key or another part of what stands here.
-    pub fn wrong_at<T>(self, span: Span, message: impl Into<String>) -> Option<T> {
+    pub fn report_at<T>(self, span: Span, message: impl Into<String>, help: Option<String>) -> Option<T> {
         match self {
-            Self::Node(_, findings) => findings.wrong(span, message),
+            Self::Node(_, findings) => findings.report(span, message, help),
             Self::Sketch(_) => None,
         }
+    }
+
+    /// The same where the message says all.
+    pub fn wrong_at<T>(self, span: Span, message: impl Into<String>) -> Option<T> {
+        self.report_at(span, message, None)
     }
 
     /// A building block: how it is read, and the schema of what it accepts.
@@ -158,6 +165,11 @@ impl<'t> At<'t> {
         }
     }
 
+    /// What stands here is of this kind; of a description nothing is known.
+    pub fn holds(self, is_one: impl FnOnce(&Value) -> bool) -> bool {
+        matches!(self, Self::Node(node, _) if is_one(&node.value))
+    }
+
     /// It says this word, which is one that it may say.
     pub fn is_word(self, word: &str) -> bool {
         match self {
@@ -181,6 +193,12 @@ impl<'t> At<'t> {
     pub fn above_zero(self, wanted: Dimension) -> Option<f64> {
         let value = self.quantity(wanted)?;
         if value > 0.0 { Some(value) } else { self.wrong(format!("{} above zero is wanted", wanted.name())) }
+    }
+
+    /// A quantity that is not negative.
+    pub fn zero_or_more(self, wanted: Dimension) -> Option<f64> {
+        let value = self.quantity(wanted)?;
+        if value >= 0.0 { Some(value) } else { self.wrong(format!("{} cannot be negative", wanted.name())) }
     }
 
     /// A dimensionless number.
@@ -281,23 +299,25 @@ impl<'t> At<'t> {
         }
     }
 
-    /// Values by names of one's own, which `names` describes to a schema; `form` says how they are written.
+    /// Values by names of one's own, which `rules` limits in a schema; `form` says how they are written.
     pub fn by_name<T>(
         self,
-        names: Schema,
+        rules: Schema,
         form: &str,
         read: impl Fn(&str, Span, At<'_>) -> Option<T>,
     ) -> Option<Vec<T>> {
         self.form(
             |node, findings| {
                 let Value::Mapping(entries) = &node.value else { return findings.wrong(node.span, form) };
-                let one =
-                    |Entry { key, key_span, node }: &Entry| read(key, *key_span, At::Node(node, findings));
+                let one = |Entry { key, key_span, node }: &Entry| read(key, *key_span, At::Node(node, findings));
                 reader::all(entries.iter().map(one))
             },
             |sketch| {
-                let values = sketch.part(sketch.about, |at| read(ANY_NAME, Span::default(), at));
-                json!({"description": sketch.about, "type": "object", "propertyNames": names, "additionalProperties": values})
+                let mut schema = rules;
+                schema["description"] = json!(sketch.about);
+                schema["type"] = json!("object");
+                schema["additionalProperties"] = sketch.part(sketch.about, |at| read(ANY_NAME, Span::default(), at));
+                schema
             },
         )
     }
@@ -321,8 +341,7 @@ impl<'t> At<'t> {
                     let content = Sketch { about, alternatives: RefCell::default(), definitions: sketch.definitions };
                     read(Choice::Sketch(name, &content, &bare));
                     words.extend(bare.get().then_some(*name));
-                    let content = content.alternatives.into_inner();
-                    forms.extend(content.into_iter().map(|content| (*name, content)));
+                    forms.extend(content.schema().map(|content| (*name, content)));
                 }
                 if !words.is_empty() {
                     sketch.add(parts::one_of_words(sketch.about, &words));
@@ -362,11 +381,30 @@ impl<'t> Choice<'t> {
         }
     }
 
+    /// It is the word alone, which it may be.
+    pub fn is_bare(&self) -> bool {
+        match self {
+            Self::Read(choice, _) => choice.content.is_none(),
+            Self::Sketch(.., bare) => {
+                bare.set(true);
+                false
+            }
+        }
+    }
+
     /// The mapping behind the colon.
     pub fn keys(&self, what: &'static str) -> Option<Keys<'t>> {
         match self {
             Self::Read(choice, findings) => choice.fields(what, findings).map(Keys::of),
             Self::Sketch(_, content, _) => Some(Keys::outline(content)),
+        }
+    }
+
+    /// What stands behind the colon, if anything does.
+    pub fn content(&self) -> Option<At<'t>> {
+        match self {
+            Self::Read(choice, findings) => choice.content.map(|node| At::Node(node, findings)),
+            Self::Sketch(_, content, _) => Some(At::Sketch(content)),
         }
     }
 }

@@ -2,22 +2,24 @@
 
 use std::collections::BTreeMap;
 
+use super::at::At;
 use super::continuation::Continuation;
 use super::definition::AxisScale;
 use super::diagnostic::{Findings, Span};
-use super::range::{end, in_order, size};
-use super::reader::{Fields, count, no_such, one_or_more, word};
+use super::range::{by_kind, end, in_order, size};
+use super::reader::no_such;
 use super::recipe::Parameter;
-use super::sweep::ReadSweep;
+use super::schema::parts;
+use super::sweep::{ReadSweep, about, parameters};
 use super::word::{from_word, word_of, words};
 use super::yaml::{Node, Value};
 
 /// Most points of a branch.
-pub(super) const MOST_POINTS: u32 = 100_000;
+const MOST_POINTS: u32 = 100_000;
 /// Most forcing periods of a motion.
-pub(super) const MOST_PERIODS: u32 = 10_000;
+const MOST_PERIODS: u32 = 10_000;
 /// Most times over that a period doubles.
-pub(super) const MOST_DOUBLINGS: u32 = 10;
+const MOST_DOUBLINGS: u32 = 10;
 /// Points of a branch unless an experiment says.
 const USUAL_POINTS: u32 = 500;
 
@@ -37,19 +39,26 @@ struct Range {
     at: Span,
 }
 
-/// Reads the node under `orbit`.
-pub(super) fn read_continuation(node: &Node, findings: &Findings) -> Option<ReadContinuation> {
-    let fields = Fields::open(node, "an orbit", findings)?;
-    let range = fields.required("along", |node| range(node, findings));
-    let starts = fields.optional("start", |node| {
-        let range = range.as_ref()?;
-        one_or_more(node, findings, |node| start(node, range, findings))
+/// Reads what stands under `orbit`.
+pub(super) fn read_continuation(at: At<'_>) -> Option<ReadContinuation> {
+    let keys = at.keys("an orbit")?;
+    let range = keys.required("along", "The parameter, and its range", range);
+    let start = "Where motions are taken from the ends of runs; `from` unless stated";
+    let starts = keys.optional("start", start, |at| {
+        if let At::Node(..) = at {
+            range.as_ref()?;
+        }
+        at.one_or_more(|at| start_within(at, range.as_ref()))
     });
-    let periods = fields.optional("periods", |node| some(node, "periods", MOST_PERIODS, findings));
-    let doublings = fields.optional("doublings", |node| count(node, "doublings", MOST_DOUBLINGS, findings));
-    let points = fields.optional("points", |node| some(node, "points", MOST_POINTS, findings));
-    fields.close()?;
-    let Range { along, from, to, spacing, at } = range?;
+    let some = |at: At<'_>, noun, most| at.count_from(1, noun, most, "one at least is wanted here");
+    let periods = "Forcing periods of these motions";
+    let periods = keys.optional("periods", periods, |at| some(at, "periods", MOST_PERIODS));
+    let doublings = "How many times over doubled periods are followed";
+    let doublings = keys.optional("doublings", doublings, |at| at.count("doublings", MOST_DOUBLINGS));
+    let points = "Points of a branch to either side of its first";
+    let points = keys.optional("points", points, |at| some(at, "points", MOST_POINTS));
+    keys.close()?;
+    let Range { along, from, to, spacing, at: along_at } = range?;
     let continuation = Continuation {
         along,
         from,
@@ -60,57 +69,66 @@ pub(super) fn read_continuation(node: &Node, findings: &Findings) -> Option<Read
         doublings: doublings?.unwrap_or(0),
         points: points?.unwrap_or(USUAL_POINTS),
     };
-    Some(ReadContinuation { continuation, along_at: at, span: node.span })
+    Some(ReadContinuation { continuation, along_at, span: at.span() })
 }
 
 /// A value within the range.
-fn start(node: &Node, range: &Range, findings: &Findings) -> Option<f64> {
-    let Range { along, from, to, .. } = *range;
-    let start = size(node, along, findings)?;
+fn start_within(at: At<'_>, range: Option<&Range>) -> Option<f64> {
+    let start = size(at, range.map(|range| range.along))?;
+    let Range { along, from, to, .. } = *range?;
     if (from..=to).contains(&start) {
         return Some(start);
     }
-    findings.report(
-        node.span,
+    at.report(
         format!("the start lies outside of the range from {from} to {to} of `{}`", word_of(along)),
         Some("move it into the range, or widen the range".into()),
     )
 }
 
-fn some(node: &Node, noun: &str, most: u32, findings: &Findings) -> Option<u32> {
-    match count(node, noun, most, findings)? {
-        0 => findings.wrong(node.span, "one at least is wanted here"),
-        count => Some(count),
-    }
+/// `{force_ratio: {from: 1, to: 3}}`.
+fn range(at: At<'_>) -> Option<Range> {
+    let read = |node: &Node, findings: &Findings| {
+        let entry = match &node.value {
+            Value::Mapping(entries) => match entries.as_slice() {
+                [entry] => entry,
+                _ => return findings.wrong(node.span, "a branch is followed along one parameter"),
+            },
+            _ => {
+                let help = Some("write `along: {force_ratio: {from: 1, to: 3}}`".to_owned());
+                return findings.report(node.span, "a branch is followed along a parameter with its range", help);
+            }
+        };
+        let Some(along) = from_word::<Parameter>(&entry.key) else {
+            return no_such(findings, entry.key_span, "parameter", &entry.key, words::<Parameter>());
+        };
+        if !along.varies_smoothly() {
+            let message = format!("`{}` takes no values in between: no branch can be followed along it", entry.key);
+            return findings.wrong(entry.key_span, message);
+        }
+        let ([from, to], spacing) = ends(At::Node(&entry.node, findings), along)?;
+        Some(Range { along, from, to, spacing, at: entry.key_span })
+    };
+    at.form(read, |it| {
+        let smooth = parameters().filter(|(_, parameter)| parameter.varies_smoothly());
+        parts::one_of_keys(
+            it.about(),
+            smooth.map(|(name, parameter)| (name, it.part(&about(name), |at| ends(at, parameter)))),
+        )
+    })
 }
 
-/// `{force_ratio: {from: 1, to: 3}}`.
-fn range(node: &Node, findings: &Findings) -> Option<Range> {
-    let entry = match &node.value {
-        Value::Mapping(entries) => match entries.as_slice() {
-            [entry] => entry,
-            _ => return findings.wrong(node.span, "a branch is followed along one parameter"),
-        },
-        _ => {
-            let help = Some("write `along: {force_ratio: {from: 1, to: 3}}`".to_owned());
-            return findings.report(node.span, "a branch is followed along a parameter with its range", help);
-        }
-    };
-    let Some(along) = from_word::<Parameter>(&entry.key) else {
-        return no_such(findings, entry.key_span, "parameter", &entry.key, words::<Parameter>());
-    };
-    if !along.varies_smoothly() {
-        let message = format!("`{}` takes no values in between: no branch can be followed along it", entry.key);
-        return findings.wrong(entry.key_span, message);
-    }
-    let fields = Fields::open(&entry.node, "a range", findings)?;
-    let from = fields.required("from", |node| end(node, along, findings));
-    let to = fields.required("to", |node| end(node, along, findings));
-    let spacing = fields.optional("spacing", |node| word::<AxisScale>(node, "spacing", findings));
-    fields.close()?;
-    let (from, to, spacing) = (from?, to?, spacing?.unwrap_or_default());
-    let [from, to] = in_order(from, to, spacing, findings)?;
-    Some(Range { along, from, to, spacing, at: entry.key_span })
+/// The ends of a range, and its scale.
+fn ends(at: At<'_>, along: Parameter) -> Option<([f64; 2], AxisScale)> {
+    by_kind(at, "along_", Some(along.takes()), |at| {
+        let keys = at.keys("a range")?;
+        let from = keys.required("from", "Where it starts", |at| end(at, Some(along)));
+        let to = keys.required("to", "Where it ends", |at| end(at, Some(along)));
+        let scale = "The scale on which steps are equal";
+        let spacing = keys.optional("spacing", scale, |at| at.word::<AxisScale>("spacing"));
+        keys.close()?;
+        let (from, to, spacing) = (from?, to?, spacing?.unwrap_or_default());
+        Some((in_order(at, from, to, spacing)?, spacing))
+    })
 }
 
 impl ReadContinuation {

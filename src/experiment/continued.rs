@@ -3,10 +3,12 @@
 //! direction (hysteresis).
 
 use serde::{Deserialize, Serialize};
+use serde_json::json;
 
+use super::at::At;
 use super::definition::{Case, differing_in};
-use super::diagnostic::{Findings, Span};
-use super::reader::{Fields, one_or_more, word};
+use super::diagnostic::Span;
+use super::keys::Keys;
 use super::recipe::Parameter;
 use super::word::word_of;
 
@@ -51,31 +53,37 @@ pub(super) struct Continued {
 impl Continued {
     /// `Some(None)`: every row starts as the scene says.
     #[expect(clippy::option_option, reason = "absent and wrong are two things")]
-    pub fn read(fields: &Fields<'_>, findings: &Findings) -> Option<Option<Self>> {
+    pub fn read(keys: &Keys<'_>, at: At<'_>) -> Option<Option<Self>> {
         let [along, direction, from] = KEYS;
-        let along_at = fields.get(along).map(|node| node.span);
-        let direction_at = fields.get(direction).map(|node| node.span);
-        let along = fields
-            .optional(along, |node| word::<Parameter>(node, "parameter", findings).map(|along| (along, node.span)));
-        let directions = fields.optional(direction, |node| {
-            let one = |node| word::<Direction>(node, "direction", findings);
-            let directions = one_or_more(node, findings, one)?;
+        let (along_at, direction_at) = (keys.span_of(along), keys.span_of(direction));
+        keys.rule(|| {
+            json!({
+                "if": {"anyOf": [{"required": [along]}, {"required": [direction]}]},
+                "then": {"required": [from]},
+            })
+        });
+        let along = keys.optional(along, "The parameter that runs from row to row", |at| {
+            at.word::<Parameter>("parameter").map(|along| (along, at.span()))
+        });
+        let directions = keys.optional(direction, "Upwards, downwards, or both", |at| {
+            let directions = at.one_or_more(|at| at.word::<Direction>("direction"))?;
             let twice = (1..directions.len()).find(|&i| directions[..i].contains(&directions[i]));
             match twice {
-                Some(i) => findings.wrong(node.span, format!("`{}` is said twice", word_of(directions[i]))),
+                Some(i) => at.wrong(format!("`{}` is said twice", word_of(directions[i]))),
                 None => Some(directions),
             }
         });
-        let from =
-            fields.optional(from, |node| word::<RowStart>(node, "start", findings).map(|RowStart::Last| node.span));
+        let from = keys.optional(from, "Each row starts where the row before ended", |at| {
+            at.word::<RowStart>("start").map(|RowStart::Last| at.span())
+        });
         let (along, directions, from) = (along?, directions?, from?);
         match (from, along_at.or(direction_at)) {
             (Some(at), _) => {
                 Some(Some(Self { along, directions: directions.unwrap_or_else(|| vec![Direction::Up]), at }))
             }
             (None, None) => Some(None),
-            (None, Some(at)) => findings.report(
-                at,
+            (None, Some(given)) => at.report_at(
+                given,
                 "rows have an order only where each starts where the one before ended",
                 Some("add `from: last`, or leave this out".into()),
             ),
@@ -83,24 +91,24 @@ impl Continued {
     }
 
     /// The parameter that runs, among those that these points set.
-    pub fn along(&self, set: &[Parameter], findings: &Findings) -> Option<Parameter> {
+    pub fn along(&self, set: &[Parameter], within: At<'_>) -> Option<Parameter> {
         let known = || set.iter().map(|one| format!("`{}`", word_of(*one))).collect::<Vec<_>>().join(" or ");
         let (along, at) = match (self.along, set) {
             (Some(given), _) => given,
             (None, [only]) => (*only, self.at),
             (None, _) => {
                 let help = format!("add `along: …` with {}", known());
-                return findings.report(self.at, "several parameters are swept: along which one?", Some(help));
+                return within.report_at(self.at, "several parameters are swept: along which one?", Some(help));
             }
         };
         let name = word_of(along);
         if !set.contains(&along) {
-            return findings.report(at, format!("`{name}` is not swept here"), Some(format!("swept are {}", known())));
+            return within.report_at(at, format!("`{name}` is not swept here"), Some(format!("swept are {}", known())));
         }
         let other_coordinates =
             matches!(along, Parameter::Modes | Parameter::DamperCount | Parameter::Mode | Parameter::Place);
         if !along.words().is_empty() || other_coordinates {
-            return findings.report(
+            return within.report_at(
                 at,
                 format!("no state is carried along `{name}`"),
                 Some("rows follow each other along a number that leaves the coordinates as they are".into()),

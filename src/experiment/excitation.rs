@@ -1,106 +1,138 @@
 //! The excitation of a scene.
 
 use super::assumption_sheet::Takes;
+use super::at::{At, Choice};
+use super::keys::{Key, Keys};
 use super::quantity::Dimension;
-use super::reader::{Choice, Fields, above_zero, count, quantity, ratio};
 use super::recipe::{
     Carried, ExcitationKind, ExcitationRecipe, ForcingOrNatural, Given, ImpulseTime, ImpulseTimeRecipe, Parameter,
     Slot, StrengthRecipe, TimingRecipe,
 };
-use super::scene::{SceneReader, is_word};
+use super::scene::SceneReader;
+use super::schema::parts::one_of_words;
 use super::word::from_word;
-use super::yaml::{Node, Value};
+use super::yaml::Value;
 use crate::scene::{Kind, PulseShape};
 
-impl<'t> SceneReader<'t> {
-    pub(super) fn excitation(&self, node: &'t Node, kind: &'static Kind) -> Option<ExcitationRecipe> {
-        let names = ["single_impulse", "impulse_train", "harmonic", "pulse_train", "none"];
-        let choice = Choice::read(node, "the excitation", &names, self.findings)?;
-        if choice.name == "none" {
-            return self.silence(&choice, kind);
-        }
-        let fields = choice.fields("the excitation", self.findings)?;
-        let at = self.at(&fields, kind, [Parameter::ForceX, Parameter::ForceY]);
-        let strength_keys: &[_] = match choice.name {
-            "harmonic" => &["force_ratio", "base_amplitude_ratio", "force"],
-            _ => &["force_ratio", "impulse"],
+const FORMS: [Key<'static>; 5] = [
+    ("single_impulse", "One impulse"),
+    ("impulse_train", "Impulses one period apart"),
+    ("harmonic", "A harmonic force"),
+    ("pulse_train", "Pulses of finite duration"),
+    ("none", "Nothing, and the cycle that time is counted in"),
+];
+
+const TIMING: [Key<'static>; 4] = [
+    ("frequency_ratio", "ω′ = ω/ωn"),
+    ("period", "Period"),
+    ("angular_frequency", "Angular frequency"),
+    ("forced_mode", "Number of the natural frequency that is forced"),
+];
+
+const FORCE_RATIO: Key<'static> = ("force_ratio", "f′ = F/(m g)");
+
+impl SceneReader<'_> {
+    pub(super) fn excitation(&self, at: At<'_>, kind: &'static Kind) -> Option<ExcitationRecipe> {
+        at.choose("the excitation", &FORMS, |choice| match choice.name() {
+            "none" => self.silence(&choice, kind),
+            name => self.driven(name, choice.keys("the excitation")?, kind),
+        })
+    }
+
+    fn driven(&self, name: &str, keys: Keys<'_>, kind: &'static Kind) -> Option<ExcitationRecipe> {
+        let harmonic = name == "harmonic";
+        let place = self.at(&keys, kind, [Parameter::ForceX, Parameter::ForceY]);
+        let strengths: &[Key<'_>] = if harmonic {
+            &[FORCE_RATIO, ("base_amplitude_ratio", "a ω²/g"), ("force", "Force")]
+        } else {
+            &[FORCE_RATIO, ("impulse", "Impulse")]
         };
-        let strength = fields.exactly_one(strength_keys).and_then(|(key, node)| self.strength(key, node, kind));
-        let impulse_time = match choice.name {
-            "harmonic" => Some(None),
-            _ => fields.optional("impulse_time", |node| self.impulse_time(node, kind)),
-        };
-        let reference_slot = if choice.name == "harmonic" { Slot::HarmonicReference } else { Slot::FrequencyReference };
-        let reference = match kind.is_lumped() {
-            true => fields.optional("frequency_reference", |node| self.reading(node, reference_slot, kind)),
-            false => Some(None),
-        };
-        let timing_keys = ["frequency_ratio", "period", "angular_frequency", "forced_mode"];
-        let timing = match choice.name {
+        let strength = keys.exactly_one(strengths, |key, at| self.strength(key, at, kind));
+        let impulse_time =
+            keys.optional_where(!harmonic, "impulse_time", Slot::ImpulseTime.about(), |at| self.impulse_time(at, kind));
+        let slot = if harmonic { Slot::HarmonicReference } else { Slot::FrequencyReference };
+        let reference = keys
+            .optional_where(kind.is_lumped(), "frequency_reference", slot.about(), |at| self.reading(at, slot, kind));
+        let timing = |key: &'static str, at: At<'_>| self.timing(key, at);
+        let timing = match name {
             // Time is counted in natural cycles unless the file says otherwise.
-            "single_impulse" => fields.at_most_one(&timing_keys).and_then(|given| match given {
-                Some((key, node)) => self.timing(key, node),
-                None => Some(TimingRecipe::FrequencyRatio(Given::Stated(1.0))),
-            }),
-            _ => fields.exactly_one(&timing_keys).and_then(|(key, node)| self.timing(key, node)),
+            "single_impulse" => keys
+                .at_most_one(&TIMING, timing)
+                .map(|given| given.unwrap_or(TimingRecipe::FrequencyRatio(Given::Stated(1.0)))),
+            _ => keys.exactly_one(&TIMING, timing),
         };
-        let pulse = if choice.name == "pulse_train" { Some(self.pulse(&fields)) } else { None };
-        fields.close()?;
+        let pulse = (name == "pulse_train").then(|| self.pulse(&keys));
+        keys.close()?;
         let (strength, timing) = (strength?, timing?);
         let kind_of_excitation = match pulse {
             Some(pulse) => {
                 let (duration, shape) = pulse?;
                 ExcitationKind::PulseTrain { duration, shape }
             }
-            None if choice.name == "harmonic" => ExcitationKind::Harmonic,
-            None if choice.name == "impulse_train" => ExcitationKind::ImpulseTrain,
+            None if harmonic => ExcitationKind::Harmonic,
+            None if name == "impulse_train" => ExcitationKind::ImpulseTrain,
             None => ExcitationKind::SingleImpulse,
         };
         Some(ExcitationRecipe {
             kind: kind_of_excitation,
-            at: at?,
+            at: place?,
             strength,
             timing,
-            frequency_reference: reference?.unwrap_or_else(|| self.left_out(reference_slot, kind, Carried::Base)),
+            frequency_reference: reference?.unwrap_or_else(|| self.left_out(slot, kind, Carried::Base)),
             impulse_time: impulse_time?.unwrap_or_else(|| self.usual_impulse_time(kind)),
         })
     }
 
     /// `none`, or `{none: {period: 1 s}}` where time is not counted in natural cycles: a mass without spring has none.
-    fn silence(&self, choice: &Choice<'t>, kind: &'static Kind) -> Option<ExcitationRecipe> {
+    fn silence(&self, choice: &Choice<'_>, kind: &'static Kind) -> Option<ExcitationRecipe> {
         let silent = ExcitationRecipe::silent(self.left_out(Slot::FrequencyReference, kind, Carried::Base));
-        if choice.content.is_none() {
+        if choice.is_bare() {
             return Some(silent);
         }
-        let fields = choice.fields("the cycle that time is counted in", self.findings)?;
-        let timing = fields.required("period", |node| self.timing("period", node));
-        fields.close()?;
+        let keys = choice.keys("the cycle that time is counted in")?;
+        let timing = keys.required("period", "Period", |at| self.timing("period", at));
+        keys.close()?;
         Some(ExcitationRecipe { timing: timing?, ..silent })
     }
 
     /// A time, a reading, an assumption, or `{factor: κ, frequency: forcing}`.
-    fn impulse_time(&self, node: &'t Node, kind: &'static Kind) -> Option<ImpulseTimeRecipe> {
-        if is_word(node, "assumed") && self.by_default::<()>(Slot::ImpulseFactor, kind).is_some() {
+    fn impulse_time(&self, at: At<'_>, kind: &'static Kind) -> Option<ImpulseTimeRecipe> {
+        let is_usual = |value: &Value| matches!(value, Value::Scalar(word) if word == "assumed");
+        if at.holds(is_usual) && self.by_default::<()>(Slot::ImpulseFactor, kind).is_some() {
             return Some(self.usual_impulse_time(kind));
         }
-        if matches!(&node.value, Value::Mapping(entries) if entries.iter().any(|entry| entry.key == "factor")) {
-            let fields = Fields::open(node, "an impulse time", self.findings)?;
-            let factor = fields.required("factor", |node| {
-                self.slot(node, Slot::ImpulseFactor, kind, |node| ratio(node, self.findings))
-            });
-            let frequency = fields.optional("frequency", |node| self.reading(node, Slot::ImpulseFrequency, kind));
-            fields.close()?;
-            let usual = || self.left_out(Slot::ImpulseFrequency, kind, ForcingOrNatural::Forcing);
-            return Some(ImpulseTimeRecipe::Factor { factor: factor?, frequency: frequency?.unwrap_or_else(usual) });
-        }
-        let time = self.slot(node, Slot::ImpulseTime, kind, |node| {
-            let reading = match &node.value {
-                Value::Scalar(word) if Slot::ImpulseTime.takes().readings.contains(&word.as_str()) => from_word(word),
-                _ => None,
-            };
-            reading.or_else(|| above_zero(node, Dimension::Time, self.findings).map(ImpulseTime::Seconds))
+        let is_factor = |value: &Value| matches!(value, Value::Mapping(entries) if entries.iter().any(|entry| entry.key == "factor"));
+        at.either(
+            is_factor,
+            |at| self.impulse_factor(at, kind),
+            |at| {
+                let time = self.slot(at, Slot::ImpulseTime, kind, |at| {
+                    let readings = Slot::ImpulseTime.takes().readings;
+                    let is_reading =
+                        |value: &Value| matches!(value, Value::Scalar(word) if readings.contains(&word.as_str()));
+                    let reading = |at: At<'_>| {
+                        at.form(
+                            |node, _| if let Value::Scalar(word) = &node.value { from_word(word) } else { None },
+                            |it| one_of_words(it.about(), readings),
+                        )
+                    };
+                    at.either(is_reading, reading, |at| at.above_zero(Dimension::Time).map(ImpulseTime::Seconds))
+                });
+                time.map(ImpulseTimeRecipe::By)
+            },
+        )
+    }
+
+    fn impulse_factor(&self, at: At<'_>, kind: &'static Kind) -> Option<ImpulseTimeRecipe> {
+        let keys = at.keys("an impulse time")?;
+        let factor = keys.required("factor", Slot::ImpulseFactor.about(), |at| {
+            self.slot(at, Slot::ImpulseFactor, kind, |at| at.ratio())
         });
-        time.map(ImpulseTimeRecipe::By)
+        let frequency = keys
+            .optional("frequency", Slot::ImpulseFrequency.about(), |at| self.reading(at, Slot::ImpulseFrequency, kind));
+        keys.close()?;
+        let usual = || self.left_out(Slot::ImpulseFrequency, kind, ForcingOrNatural::Forcing);
+        Some(ImpulseTimeRecipe::Factor { factor: factor?, frequency: frequency?.unwrap_or_else(usual) })
     }
 
     /// J = f′ m g/ω, unless the study declares assumptions for it.
@@ -117,58 +149,54 @@ impl<'t> SceneReader<'t> {
         }
     }
 
-    fn strength(&self, key: &str, node: &'t Node, kind: &'static Kind) -> Option<StrengthRecipe> {
+    fn strength(&self, key: &str, at: At<'_>, kind: &'static Kind) -> Option<StrengthRecipe> {
         let size = |slot: Slot, parameter: Parameter, dimension: Dimension| {
-            self.slot(node, slot, kind, |node| {
-                self.swept_or(node, parameter, |node| quantity(node, dimension, self.findings))
-            })
+            self.slot(at, slot, kind, |at| self.swept_or(at, parameter, |at| at.quantity(dimension)))
         };
         match key {
             "impulse" => size(Slot::Impulse, Parameter::Impulse, Dimension::Impulse).map(StrengthRecipe::Impulse),
             "force" => size(Slot::Force, Parameter::Force, Dimension::Force).map(StrengthRecipe::Force),
             "base_amplitude_ratio" => {
-                self.sweepable(node, Parameter::BaseAmplitudeRatio).map(StrengthRecipe::BaseAmplitudeRatio)
+                self.sweepable(at, Parameter::BaseAmplitudeRatio).map(StrengthRecipe::BaseAmplitudeRatio)
             }
-            _ => self.sweepable(node, Parameter::ForceRatio).map(StrengthRecipe::ForceRatio),
+            _ => self.sweepable(at, Parameter::ForceRatio).map(StrengthRecipe::ForceRatio),
         }
     }
 
-    fn timing(&self, key: &str, node: &'t Node) -> Option<TimingRecipe> {
+    fn timing(&self, key: &str, at: At<'_>) -> Option<TimingRecipe> {
         match key {
             "period" => self
-                .given(node, Takes::quantity(Dimension::Time), |node| above_zero(node, Dimension::Time, self.findings))
+                .given(at, Takes::quantity(Dimension::Time), |at| at.above_zero(Dimension::Time))
                 .map(TimingRecipe::Period),
             "angular_frequency" => self
-                .given(node, Takes::quantity(Dimension::AngularFrequency), |node| {
-                    self.swept_or(node, Parameter::AngularFrequency, |node| {
-                        above_zero(node, Dimension::AngularFrequency, self.findings)
-                    })
+                .given(at, Takes::quantity(Dimension::AngularFrequency), |at| {
+                    self.swept_or(at, Parameter::AngularFrequency, |at| at.above_zero(Dimension::AngularFrequency))
                 })
                 .map(TimingRecipe::AngularFrequency),
-            "forced_mode" if is_word(node, "swept") => {
-                self.swept.borrow_mut().push((Parameter::ForcedMode, node.span));
-                Some(TimingRecipe::ForcedMode(1))
-            }
-            "forced_mode" => count(node, "", 100_000, self.findings).map(TimingRecipe::ForcedMode),
-            _ => self.sweepable(node, Parameter::FrequencyRatio).map(TimingRecipe::FrequencyRatio),
+            "forced_mode" if self.is_swept(at, Parameter::ForcedMode) => Some(TimingRecipe::ForcedMode(1)),
+            "forced_mode" => at.count("", 100_000).map(TimingRecipe::ForcedMode),
+            _ => self.sweepable(at, Parameter::FrequencyRatio).map(TimingRecipe::FrequencyRatio),
         }
     }
 
-    fn pulse(&self, fields: &Fields<'t>) -> Option<(Given, PulseShape)> {
-        let duration = fields.required("duration", |node| {
-            self.given(node, Takes::quantity(Dimension::Time), |node| {
-                self.swept_or(node, Parameter::PulseDuration, |node| above_zero(node, Dimension::Time, self.findings))
+    fn pulse(&self, keys: &Keys<'_>) -> Option<(Given, PulseShape)> {
+        let duration = keys.required("duration", "Duration of a pulse", |at| {
+            self.given(at, Takes::quantity(Dimension::Time), |at| {
+                self.swept_or(at, Parameter::PulseDuration, |at| at.above_zero(Dimension::Time))
             })
         });
-        let shape = fields.required("shape", |node| {
-            Choice::read(node, "a pulse", &["rectangular", "binomial"], self.findings)?.bare(self.findings)
+        let shape = keys.required("shape", "Shape of a pulse", |at| {
+            at.choose("a pulse", &[("rectangular", ""), ("binomial", "")], |choice| {
+                choice.bare()?;
+                Some(choice.name())
+            })
         });
         let (duration, shape) = (duration?, shape?);
         if shape != "binomial" {
             return Some((duration, PulseShape::Rectangular));
         }
         let Given::Stated(seconds) = duration else {
-            return self.findings.wrong(fields.span(), "a binomial pulse has a stated or swept duration");
+            return keys.wrong("a binomial pulse has a stated or swept duration");
         };
         // One impulse a step of 1 ms.
         let impulses = (seconds / 1e-3).round().clamp(1.0, 1e6) as u32;

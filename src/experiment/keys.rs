@@ -6,8 +6,9 @@ use serde_json::{Value as Schema, json};
 
 use super::at::{At, Sketch};
 use super::diagnostic::Span;
-use super::reader::Fields;
+use super::reader::{Fields, all};
 use super::schema::parts::Object;
+use super::yaml::Entry;
 
 /// A mapping. The keys that a reader asks for are the keys that exist.
 pub(super) enum Keys<'t> {
@@ -34,6 +35,14 @@ impl<'t> Keys<'t> {
         match self {
             Self::Read(fields) => fields.span(),
             Self::Outline(..) => Span::default(),
+        }
+    }
+
+    /// Reports a problem of the mapping as a whole.
+    pub fn wrong<T>(&self, message: &str) -> Option<T> {
+        match self {
+            Self::Read(fields) => fields.findings.wrong(fields.span(), message),
+            Self::Outline(..) => None,
         }
     }
 
@@ -75,6 +84,36 @@ impl<'t> Keys<'t> {
                 object.borrow_mut().add(key, part(sketch, about, read));
                 Some(None)
             }
+        }
+    }
+
+    /// A part that there is only where `holds`, and which may be absent there; a schema allows it everywhere.
+    #[expect(clippy::option_option, reason = "absent and wrong are two things")]
+    pub fn optional_where<T>(
+        &self,
+        holds: bool,
+        key: &'static str,
+        about: &str,
+        read: impl FnOnce(At<'_>) -> Option<T>,
+    ) -> Option<Option<T>> {
+        match self {
+            Self::Read(_) if !holds => Some(None),
+            _ => self.optional(key, about, read),
+        }
+    }
+
+    /// A part that there is only where `holds`, and which must be there; a schema allows it everywhere.
+    #[expect(clippy::option_option, reason = "absent and wrong are two things")]
+    pub fn required_where<T>(
+        &self,
+        holds: bool,
+        key: &'static str,
+        about: &str,
+        read: impl FnOnce(At<'_>) -> Option<T>,
+    ) -> Option<Option<T>> {
+        match self {
+            Self::Read(_) if holds => self.required(key, about, read).map(Some),
+            _ => self.optional_where(holds, key, about, read),
         }
     }
 
@@ -170,6 +209,28 @@ impl<'t> Keys<'t> {
     pub fn rule(&self, rule: impl FnOnce() -> Schema) {
         if let Self::Outline(_, object) = self {
             object.borrow_mut().add_rule(rule());
+        }
+    }
+
+    /// All other keys, which ends the mapping; of those in a description `known` says what they are.
+    pub fn others<T>(
+        self,
+        known: impl Iterator<Item = (&'static str, String)>,
+        read: impl Fn(&str, Span, At<'_>) -> Option<T>,
+    ) -> Option<Vec<T>> {
+        match &self {
+            Self::Read(fields) => {
+                let one = |entry: &Entry| read(&entry.key, entry.key_span, At::Node(&entry.node, fields.findings));
+                all(fields.others().map(one))
+            }
+            Self::Outline(sketch, object) => {
+                for (key, about) in known {
+                    let schema = part(sketch, &about, |at| read(key, Span::default(), at));
+                    object.borrow_mut().add(key, schema);
+                }
+                self.close()?;
+                None
+            }
         }
     }
 

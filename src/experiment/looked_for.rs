@@ -5,7 +5,7 @@ use super::definition::{Maximise, SearchPoint};
 use super::range::numbers;
 use super::reader::no_such;
 use super::recipe::Parameter;
-use super::schema::{parts, sweep};
+use super::schema::parts;
 use super::word::{from_word, words};
 use super::yaml::Value;
 use crate::measure::Measure;
@@ -89,7 +89,10 @@ fn of_one_measure<T>(
 
 /// Values of the parameter that increase.
 fn grid(at: At<'_>, over: Option<Parameter>) -> Option<Vec<f64>> {
-    let grid = at.form(|node, findings| numbers(node, over?, findings), |_| sweep::any_range())?;
+    if let At::Node(..) = at {
+        over?;
+    }
+    let grid = numbers(at, over)?;
     if !grid.is_sorted_by(|a, b| a < b) {
         return at.wrong("the points to look at increase");
     }

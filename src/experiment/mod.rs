@@ -50,7 +50,7 @@ mod validate;
 mod word;
 mod yaml;
 
-pub use about_study::{AboutStudy, Finding, LineColour, Publication, PublicationKind, parse_study};
+pub use about_study::{AboutStudy, Finding, LineColour, Publication, PublicationKind, parse_study, study_schema};
 pub use assumption_reader::parse_assumptions;
 pub use assumption_sheet::{
     ASSUMPTIONS, AssumptionEntry, AssumptionKind, AssumptionSheet, Cycles, Moved, Quantity, Takes,
@@ -80,8 +80,8 @@ pub use recipe::{
 };
 pub(crate) use refined::{Curve, curves};
 pub use scaffold::{scaffold, structures};
+pub use schema::assumptions_schema;
 pub(crate) use schema::{Object, list, text, words_of};
-pub use schema::{assumptions_schema, study_schema};
 pub use starts::{BasinColumn, HeightBox, Interval, ParticleBox, Rank, START_LISTS, Starts};
 pub use typed::{Located, from_yaml};
 pub(crate) use typed::{Spanned, position};

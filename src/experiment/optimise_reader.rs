@@ -144,7 +144,7 @@ fn read_candidates(at: At<'_>, word: Option<GapWord>) -> Option<Vec<(Candidate, 
         word?;
     }
     let form = "candidates are written as `name: [gap, gap, …]` lines";
-    at.by_name(json!({"pattern": NAME}), form, |key, key_span, at| {
+    at.by_name(json!({"propertyNames": {"pattern": NAME}}), form, |key, key_span, at| {
         let taken = SearchKind::ALL.iter().any(|kind| word_of(*kind) == key);
         let named = if taken || !is_name(key) {
             let why = if taken { "it names a search" } else { "use letters, digits, `-` and `_`" };

@@ -3,28 +3,32 @@
 //!
 //! Points are rounded to 13 significant digits: decades come out exactly, and on every machine alike.
 
-use super::recipe::{Parameter, ParameterValue, Takes};
+use serde_json::json;
 
+use super::at::At;
 use super::definition::AxisScale;
 use super::diagnostic::{Findings, Span};
-use super::reader::{Choice, all, count, quantity, ratio, scalar};
+use super::reader::scalar;
+use super::recipe::{Parameter, ParameterValue, Takes};
+use super::schema::parts;
 use super::word::word_of;
 use super::yaml::{Node, Value};
 
 /// Most points of all sweeps of a file together.
 pub(super) const MOST_POINTS: u32 = 100_000;
 
-/// The values that `node` gives to `parameter`, at least one.
-pub(super) fn values(node: &Node, parameter: Parameter, findings: &Findings) -> Option<Vec<ParameterValue>> {
-    let parts = match &node.value {
-        Value::Sequence(items) if items.is_empty() => {
-            return findings.wrong(node.span, "this sweep is empty: give it at least one value");
-        }
-        Value::Sequence(items) => all(items.iter().map(|item| Some((item, part(item, parameter, findings)?))))?,
-        _ => vec![(node, part(node, parameter, findings)?)],
-    };
+/// The values of a parameter, at least one. In a description any parameter may be meant.
+pub(super) fn values(at: At<'_>, parameter: Option<Parameter>) -> Option<Vec<ParameterValue>> {
+    if let At::Node(Node { value: Value::Sequence(items), .. }, _) = at
+        && items.is_empty()
+    {
+        return at.wrong("this sweep is empty: give it at least one value");
+    }
+    let placed = |at: At<'_>| Some((at.span(), part(at, parameter)?));
+    let one = |at: At<'_>| placed(at).map(|part| vec![part]);
+    let parts = at.either(|value| matches!(value, Value::Sequence(_)), |at| at.list(placed), one)?;
     let mut values: Vec<ParameterValue> = Vec::new();
-    for (item, part) in parts {
+    for (span, part) in parts {
         let mut part = part.as_slice();
         // A range that begins where the one before ended shares that point with it.
         if part.len() > 1 && values.last() == part.first() {
@@ -32,60 +36,90 @@ pub(super) fn values(node: &Node, parameter: Parameter, findings: &Findings) -> 
         }
         values.extend(part);
         if values.len() > MOST_POINTS as usize {
-            return too_many(item.span, values.len() as f64, findings);
+            return too_many(at, span, values.len() as f64);
         }
     }
     Some(values)
 }
 
 /// The same where only numbers make sense.
-pub(super) fn numbers(node: &Node, parameter: Parameter, findings: &Findings) -> Option<Vec<f64>> {
-    let values = values(node, parameter, findings)?;
+pub(super) fn numbers(at: At<'_>, parameter: Option<Parameter>) -> Option<Vec<f64>> {
+    let values = values(at, parameter)?;
     let numbers = values.iter().map(|value| match value {
         ParameterValue::Number(number) => Some(*number),
-        _ => findings.wrong(node.span, "numbers are wanted here"),
+        _ => at.wrong("numbers are wanted here"),
     });
-    all(numbers)
+    super::reader::all(numbers)
 }
 
-pub(super) fn too_many<T>(at: Span, points: f64, findings: &Findings) -> Option<T> {
+pub(super) fn too_many<T>(at: At<'_>, span: Span, points: f64) -> Option<T> {
     let points = if points < 1e9 { format!("{points:.0}") } else { format!("{points:.1e}") };
-    findings.report(
-        at,
+    at.report_at(
+        span,
         format!("{points} points are too many: {MOST_POINTS} at most"),
         Some("widen the step, or split the experiment".into()),
     )
 }
 
 /// One item of a list: a value, or a range within the list.
-fn part(node: &Node, parameter: Parameter, findings: &Findings) -> Option<Vec<ParameterValue>> {
-    match node.value {
-        Value::Mapping(_) => range(node, parameter, findings),
-        _ => Some(vec![value(node, parameter, findings)?]),
-    }
+fn part(at: At<'_>, parameter: Option<Parameter>) -> Option<Vec<ParameterValue>> {
+    let one = |at: At<'_>| value(at, parameter).map(|value| vec![value]);
+    at.either(|value| matches!(value, Value::Mapping(_)), |at| range(at, parameter), one)
+}
+
+/// Most parameters take the same values: a schema describes them once.
+pub(super) fn by_kind<T>(
+    at: At<'_>,
+    prefix: &str,
+    takes: Option<Takes>,
+    read: impl FnOnce(At<'_>) -> Option<T>,
+) -> Option<T> {
+    let (At::Sketch(_), Some(takes)) = (at, takes) else { return read(at) };
+    let kind = match takes {
+        Takes::Words(words) => words.iter().map(|word| word_of(*word)).collect::<Vec<_>>().join("_or_"),
+        Takes::Quantity(dimension) => dimension.name().replace(' ', "_"),
+        Takes::Ratio => "a_ratio".into(),
+        Takes::RatioOrInfinite => "a_ratio_or_infinite".into(),
+    };
+    let about = if matches!(takes, Takes::Words(_)) { "One of these" } else { "A value" };
+    at.named(&format!("{prefix}{kind}"), about, read)
 }
 
 /// A single value of a parameter.
-pub(super) fn value(node: &Node, parameter: Parameter, findings: &Findings) -> Option<ParameterValue> {
-    let word = match &node.value {
-        Value::Scalar(text) => text.as_str(),
-        _ => "",
-    };
-    match parameter.takes() {
-        Takes::RatioOrInfinite if word == "infinite" => Some(ParameterValue::Infinite),
-        Takes::Words(known) => known.iter().copied().find(|known| word_of(*known) == word).or_else(|| {
-            let [one, other] = describe(known);
-            findings.wrong(node.span, format!("`{}` is neither {one} nor {other}", scalar(node, findings)?))
+pub(super) fn value(at: At<'_>, parameter: Option<Parameter>) -> Option<ParameterValue> {
+    let takes = parameter.map(Parameter::takes);
+    match takes {
+        Some(Takes::Words(known)) => by_kind(at, "", takes, |at| {
+            let read = |node: &Node, findings: &Findings| {
+                let word = if let Value::Scalar(text) = &node.value { text.as_str() } else { "" };
+                known.iter().copied().find(|known| word_of(*known) == word).or_else(|| {
+                    let [one, other] = describe(known);
+                    let given = scalar(node, findings)?;
+                    findings.wrong(node.span, format!("`{given}` is neither {one} nor {other}"))
+                })
+            };
+            let words =
+                |about: &str| parts::one_of_words(about, &known.iter().map(|word| word_of(*word)).collect::<Vec<_>>());
+            at.form(read, |it| words(it.about()))
         }),
-        _ => size(node, parameter, findings).map(ParameterValue::Number),
+        Some(Takes::RatioOrInfinite) => by_kind(at, "", takes, |at| {
+            if at.is_word("infinite") {
+                return Some(ParameterValue::Infinite);
+            }
+            at.ratio().map(ParameterValue::Number)
+        }),
+        _ => size(at, parameter).map(ParameterValue::Number),
     }
 }
 
 /// A value of a parameter that is a number, in SI.
-pub(super) fn size(node: &Node, parameter: Parameter, findings: &Findings) -> Option<f64> {
-    match parameter.takes() {
-        Takes::Quantity(dimension) => quantity(node, dimension, findings),
-        Takes::Words(_) | Takes::Ratio | Takes::RatioOrInfinite => ratio(node, findings),
+pub(super) fn size(at: At<'_>, parameter: Option<Parameter>) -> Option<f64> {
+    match parameter.map(Parameter::takes) {
+        Some(takes @ Takes::Quantity(dimension)) => by_kind(at, "", Some(takes), |at| at.quantity(dimension)),
+        Some(Takes::Words(_) | Takes::Ratio | Takes::RatioOrInfinite) => {
+            by_kind(at, "", Some(Takes::Ratio), |at| at.ratio())
+        }
+        None => at.form(|_, _| None, |_| json!({"type": ["number", "string"]})),
     }
 }
 
@@ -95,61 +129,72 @@ fn describe(words: &[ParameterValue]) -> [String; 2] {
     [word(0), word(1)]
 }
 
-fn range(node: &Node, parameter: Parameter, findings: &Findings) -> Option<Vec<ParameterValue>> {
-    if let Takes::Words(words) = parameter.takes() {
+fn range(at: At<'_>, parameter: Option<Parameter>) -> Option<Vec<ParameterValue>> {
+    if let Some((Takes::Words(words), parameter)) = parameter.map(|parameter| (parameter.takes(), parameter)) {
         let [one, other] = describe(words).map(|word| word.replace('`', ""));
-        return findings.wrong(node.span, format!("`{}` is swept over [{one}, {other}]", word_of(parameter)));
+        return at.wrong(format!("`{}` is swept over [{one}, {other}]", word_of(parameter)));
     }
-    let choice = Choice::read(node, "a range", &["linear", "log", "step"], findings)?;
-    let fields = choice.fields("a range", findings)?;
-    let from = fields.required("from", |node| end(node, parameter, findings));
-    let to = fields.required("to", |node| end(node, parameter, findings));
-    let spacing = match choice.name {
-        "step" => fields
-            .required("step", |node| Some((size(node, parameter, findings)?, node.span)))
-            .map(|(step, span)| Spacing::Step(step, span)),
-        name => fields.required("points", |node| points(node, name == "log", findings)),
-    };
-    fields.close()?;
-    let (from, to, spacing) = (from?, to?, spacing?);
-    let spaced = if matches!(spacing, Spacing::Log(_)) { AxisScale::Log } else { AxisScale::Linear };
-    let [from, to] = in_order(from, to, spaced, findings)?;
-    let points = match spacing {
-        Spacing::Step(step, span) => {
-            if step <= 0.0 {
-                return findings.wrong(span, "the step must be above zero");
+    let forms = [
+        ("linear", "Evenly spaced points"),
+        ("log", "Points evenly spaced in the logarithm"),
+        ("step", "Points a step apart"),
+    ];
+    at.choose("a range", &forms, |choice| {
+        let keys = choice.keys("a range")?;
+        let from = keys.required("from", "Where it starts", |at| end(at, parameter));
+        let to = keys.required("to", "Where it ends", |at| end(at, parameter));
+        let spacing = match choice.name() {
+            "step" => keys
+                .required("step", "From one point to the next", |at| end(at, parameter))
+                .map(|(step, span)| Spacing::Step(step, span)),
+            name => {
+                let points = keys.required("points", "Number of points", |at| {
+                    at.count_from(2, "points", MOST_POINTS, "a range has two points at least")
+                });
+                points.map(if name == "log" { Spacing::Log } else { Spacing::Linear })
             }
-            let steps = ((to - from) / step + 1e-9).floor();
-            if steps >= f64::from(MOST_POINTS) {
-                return too_many(span, steps + 1.0, findings);
+        };
+        keys.close()?;
+        let (from, to, spacing) = (from?, to?, spacing?);
+        let spaced = if matches!(spacing, Spacing::Log(_)) { AxisScale::Log } else { AxisScale::Linear };
+        let [from, to] = in_order(at, from, to, spaced)?;
+        let points = match spacing {
+            Spacing::Step(step, span) => {
+                if step <= 0.0 {
+                    return at.wrong_at(span, "the step must be above zero");
+                }
+                let steps = ((to - from) / step + 1e-9).floor();
+                if steps >= f64::from(MOST_POINTS) {
+                    return too_many(at, span, steps + 1.0);
+                }
+                (0..=steps as u32).map(|i| from + f64::from(i) * step).collect()
             }
-            (0..=steps as u32).map(|i| from + f64::from(i) * step).collect()
-        }
-        Spacing::Linear(points) => between(from, to, points),
-        Spacing::Log(points) => {
-            between(libm::log10(from), libm::log10(to), points).into_iter().map(libm::exp10).collect::<Vec<_>>()
-        }
-    };
-    Some(points.into_iter().map(|point| ParameterValue::Number(rounded(point))).collect())
+            Spacing::Linear(points) => between(from, to, points),
+            Spacing::Log(points) => {
+                between(libm::log10(from), libm::log10(to), points).into_iter().map(libm::exp10).collect::<Vec<_>>()
+            }
+        };
+        Some(points.into_iter().map(|point| ParameterValue::Number(rounded(point))).collect())
+    })
 }
 
 /// An end of a range, and where it stands.
-pub(super) fn end(node: &Node, parameter: Parameter, findings: &Findings) -> Option<(f64, Span)> {
-    Some((size(node, parameter, findings)?, node.span))
+pub(super) fn end(at: At<'_>, parameter: Option<Parameter>) -> Option<(f64, Span)> {
+    Some((size(at, parameter)?, at.span()))
 }
 
 /// Both ends, if they are those of a range.
 pub(super) fn in_order(
+    at: At<'_>,
     (from, from_at): (f64, Span),
     (to, to_at): (f64, Span),
     spacing: AxisScale,
-    findings: &Findings,
 ) -> Option<[f64; 2]> {
     if from >= to {
-        return findings.wrong(to_at, "a range ends above its start");
+        return at.wrong_at(to_at, "a range ends above its start");
     }
     if spacing == AxisScale::Log && from <= 0.0 {
-        return findings.wrong(from_at, "a logarithmic range starts above zero");
+        return at.wrong_at(from_at, "a logarithmic range starts above zero");
     }
     Some([from, to])
 }
@@ -158,14 +203,6 @@ enum Spacing {
     Linear(u32),
     Log(u32),
     Step(f64, Span),
-}
-
-fn points(node: &Node, log: bool, findings: &Findings) -> Option<Spacing> {
-    let points = count(node, "points", MOST_POINTS, findings)?;
-    if points < 2 {
-        return findings.wrong(node.span, "a range has two points at least");
-    }
-    Some(if log { Spacing::Log(points) } else { Spacing::Linear(points) })
 }
 
 pub(super) fn between(from: f64, to: f64, points: u32) -> Vec<f64> {

@@ -206,12 +206,6 @@ pub(super) fn above_zero(node: &Node, wanted: Dimension, findings: &Findings) ->
     if value > 0.0 { Some(value) } else { findings.wrong(node.span, format!("{} above zero is wanted", wanted.name())) }
 }
 
-/// A quantity that is not negative.
-pub(super) fn zero_or_more(node: &Node, wanted: Dimension, findings: &Findings) -> Option<f64> {
-    let value = quantity(node, wanted, findings)?;
-    if value >= 0.0 { Some(value) } else { findings.wrong(node.span, format!("{} cannot be negative", wanted.name())) }
-}
-
 /// A dimensionless number.
 pub(super) fn number(node: &Node, findings: &Findings) -> Option<f64> {
     measured(node, findings, parse_number(scalar(node, findings)?))

@@ -2,22 +2,26 @@
 
 use std::cell::RefCell;
 
+use serde::de::DeserializeOwned;
+use serde_json::json;
+
 use super::assumption_reader::{fits, read_curve};
 use super::assumption_sheet::{ASSUMPTIONS, Takes};
+use super::at::At;
 use super::diagnostic::{Findings, Span};
+use super::keys::Keys;
 use super::quantity::{Dimension, parse_number};
-use super::reader::{Choice, Fields, above_zero, boolean, list, number, quantity, ratio};
 use super::recipe::{
     AssumptionName, Assumptions, Carried, ContactDampingRatio, ContactDampingRecipe, DamperRecipe, Filling,
     FloorStiffness, GapRecipe, Given, MassReading, MassRecipe, Parameter, Part, Recipe, Reference, Slot,
     StiffnessRecipe, StopRecipe, SurfaceRecipe, WallRecipe,
 };
+use super::schema::assumptions;
 use super::structure::read_structure;
 use super::word::{from_word, word_of};
 use super::yaml::{Node, Value};
 use crate::measure::Comparison;
 use crate::scene::{KINDS, Kind};
-use serde::de::DeserializeOwned;
 
 /// Stands where the file says `swept` until the sweep's first case takes its place.
 const PLACEHOLDER: f64 = 1.0;
@@ -37,16 +41,15 @@ pub(super) struct ReadScene {
     pub parts: Vec<(Part, Span)>,
 }
 
-/// Reads the node under `scene`.
-pub(super) fn read_scene(node: &Node, assumptions: &Assumptions, findings: &Findings) -> Option<ReadScene> {
+/// Reads what stands under `scene`.
+pub(super) fn read_scene(at: At<'_>, assumptions: &Assumptions) -> Option<ReadScene> {
     let reader = SceneReader {
-        findings,
         assumptions,
         swept: RefCell::default(),
         optimised: RefCell::default(),
         parts: RefCell::default(),
     };
-    let recipe = reader.recipe(node)?;
+    let recipe = reader.recipe(at)?;
     Some(ReadScene {
         recipe,
         swept: reader.swept.into_inner(),
@@ -56,41 +59,70 @@ pub(super) fn read_scene(node: &Node, assumptions: &Assumptions, findings: &Find
 }
 
 pub(super) struct SceneReader<'t> {
-    pub(super) findings: &'t Findings,
     pub(super) assumptions: &'t Assumptions,
     pub(super) swept: RefCell<Vec<(Parameter, Span)>>,
     optimised: RefCell<Vec<Span>>,
     pub(super) parts: RefCell<Vec<(Part, Span)>>,
 }
 
-impl<'t> SceneReader<'t> {
-    fn recipe(&self, node: &'t Node) -> Option<Recipe> {
-        let fields = Fields::open(node, "the scene", self.findings)?;
-        let structure = fields.required("structure", |node| {
-            self.parts.borrow_mut().push((Part::Structure, node.span));
-            read_structure(node, self)
+// Keys that only one mass has, or only a structure with sides.
+const UNDAMPED_MASS: &str = "undamped_mass";
+const MASSLESS_RATIO: &str = "massless_ratio";
+pub(super) const AT: &str = "at";
+const ARRAY: &str = "array";
+const MASS_READING: &str = "mass_reading";
+const GAP_FREQUENCY: &str = "gap_frequency";
+// A key that only a structure with sides must have.
+const PARTICLE_SHARE: &str = "particle_share";
+
+/// Which keys there are on which structure, for a schema, where no reader asks for them by itself.
+fn by_structure() -> serde_json::Value {
+    let present = |keys: &[&str]| keys.iter().map(|key| json!({"required": [key]})).collect::<Vec<_>>();
+    let dampers = |rule: serde_json::Value| json!({"dampers": {"items": rule}});
+    let lumped = KINDS.iter().filter(|kind| kind.is_lumped());
+    let lumped: Vec<_> = lumped.map(|kind| json!({"properties": {"structure": {"required": [kind.name]}}})).collect();
+    json!({
+        "if": {"required": ["structure"], "anyOf": lumped},
+        "then": {"properties": dampers(json!({
+            "not": {"anyOf": present(&[AT, ARRAY, MASS_READING, GAP_FREQUENCY])},
+        }))},
+        "else": {"not": {"required": [UNDAMPED_MASS]}, "properties": dampers(json!({
+            "required": [AT, PARTICLE_SHARE],
+            "not": {"required": [MASSLESS_RATIO]},
+        }))},
+    })
+}
+
+impl SceneReader<'_> {
+    fn recipe(&self, at: At<'_>) -> Option<Recipe> {
+        let keys = at.keys("the scene")?;
+        let structure = keys.required("structure", "The vibrating structure", |at| {
+            self.parts.borrow_mut().push((Part::Structure, at.span()));
+            read_structure(at, self)
         });
         // What dampers and excitation may say depends on the structure; one that is wrong is taken for a single mass.
         let kind = structure.as_ref().map_or(KINDS[0], |structure| structure.kind);
-        let gravity = fields.optional("gravity", |node| {
-            self.slot(node, Slot::Gravity, kind, |node| quantity(node, Dimension::Acceleration, self.findings))
+        let gravity = keys.optional("gravity", Slot::Gravity.about(), |at| {
+            self.slot(at, Slot::Gravity, kind, |at| at.quantity(Dimension::Acceleration))
         });
-        let undamped_mass = match kind.is_lumped() {
-            true => fields.optional("undamped_mass", |node| self.reading(node, Slot::UndampedMass, kind)),
-            false => Some(None),
-        };
-        let mass_measure = fields.optional("mass_measure", |node| self.reading(node, Slot::MassMeasure, kind));
-        let dampers = fields.optional("dampers", |node| self.dampers(node, kind));
-        let excitation = fields.required("excitation", |node| {
-            self.parts.borrow_mut().push((Part::Excitation, node.span));
-            self.excitation(node, kind)
+        let undamped_mass = keys.optional_where(kind.is_lumped(), UNDAMPED_MASS, Slot::UndampedMass.about(), |at| {
+            self.reading(at, Slot::UndampedMass, kind)
         });
-        let start = fields.optional("start", |node| self.start(node));
-        let observe = fields.optional("observe", |node| {
-            self.parts.borrow_mut().push((Part::Observe, node.span));
-            self.observe(node, kind)
+        let mass_measure =
+            keys.optional("mass_measure", Slot::MassMeasure.about(), |at| self.reading(at, Slot::MassMeasure, kind));
+        let dampers = keys.optional("dampers", "The dampers", |at| self.dampers(at, kind));
+        let excitation = keys.required("excitation", "What drives the structure", |at| {
+            self.parts.borrow_mut().push((Part::Excitation, at.span()));
+            self.excitation(at, kind)
         });
-        fields.close()?;
+        let equilibrium = "Initial conditions; static equilibrium without them";
+        let start = keys.optional("start", equilibrium, |at| self.start(at));
+        let observe = keys.optional("observe", "Where the motion is observed", |at| {
+            self.parts.borrow_mut().push((Part::Observe, at.span()));
+            self.observe(at, kind)
+        });
+        keys.rule(by_structure);
+        keys.close()?;
         Some(Recipe {
             structure: structure?.recipe,
             gravity: gravity?.unwrap_or_else(|| self.left_out(Slot::Gravity, kind, STANDARD_GRAVITY)),
@@ -105,75 +137,73 @@ impl<'t> SceneReader<'t> {
         })
     }
 
-    fn dampers(&self, node: &'t Node, kind: &'static Kind) -> Option<Vec<DamperRecipe>> {
-        match &node.value {
-            Value::Sequence(items) if items.is_empty() => Some(Vec::new()),
-            Value::Sequence(items) if items.len() > MOST_DAMPERS => {
-                self.findings.wrong(node.span, format!("{} dampers: {MOST_DAMPERS} at most", items.len()))
+    fn dampers(&self, at: At<'_>, kind: &'static Kind) -> Option<Vec<DamperRecipe>> {
+        let damper = |at: At<'_>| at.named("damper", "A particle impact damper", |at| self.damper(at, kind));
+        match at {
+            At::Node(Node { value: Value::Sequence(items), .. }, _) => {
+                if items.is_empty() {
+                    return Some(Vec::new());
+                }
+                if items.len() > MOST_DAMPERS {
+                    return at.wrong(format!("{} dampers: {MOST_DAMPERS} at most", items.len()));
+                }
+                let each = items.iter().enumerate().map(|(index, item)| (Part::Damper(index), item.span));
+                self.parts.borrow_mut().extend(each);
+                at.list(damper)
             }
-            Value::Sequence(items) => {
-                let mut parts = self.parts.borrow_mut();
-                parts.extend(items.iter().enumerate().map(|(index, item)| (Part::Damper(index), item.span)));
-                drop(parts);
-                list(node, self.findings, |node| self.damper(node, kind))
+            At::Node(..) => at.list(damper),
+            At::Sketch(it) => {
+                let item = it.part(it.about(), damper);
+                it.add(json!({"description": it.about(), "type": "array", "items": item, "maxItems": MOST_DAMPERS}));
+                None
             }
-            _ => list(node, self.findings, |node| self.damper(node, kind)),
         }
     }
 
-    fn damper(&self, node: &'t Node, kind: &'static Kind) -> Option<DamperRecipe> {
-        let fields = Fields::open(node, "a damper", self.findings)?;
-        let at = self.at(&fields, kind, [Parameter::DamperX, Parameter::DamperY]);
-        let array = if kind.is_lumped() { Some(None) } else { fields.optional("array", |node| self.array(node, kind)) };
-        let mass = fields.exactly_one(&["mass_ratio", "mass"]).and_then(|(key, node)| match key {
-            "mass" => self.quantity(node, Dimension::Mass).map(MassRecipe::Mass),
-            _ => self.sweepable(node, Parameter::MassRatio).map(MassRecipe::Ratio),
-        });
-        let share = |node: &'t Node| self.sweepable(node, Parameter::ParticleShare);
+    fn damper(&self, at: At<'_>, kind: &'static Kind) -> Option<DamperRecipe> {
+        let keys = at.keys("a damper")?;
         // One mass has one mode and no enclosure unless the file names one; on a beam or plate there always is one.
         let lumped = kind.is_lumped();
-        let massless_ratio = match lumped {
-            true => fields.optional("massless_ratio", |node| {
-                self.slot(node, Slot::MasslessRatio, kind, |node| ratio(node, self.findings))
-            }),
-            false => Some(None),
-        };
-        let (mass_reading, gap_frequency, particle_share) = if lumped {
-            let share = fields.optional("particle_share", share);
-            (Some(None), Some(None), share.map(|share| share.unwrap_or(Given::Stated(1.0))))
-        } else {
-            (
-                fields.optional("mass_reading", |node| self.mass_reading(node, kind)),
-                fields.optional("gap_frequency", |node| self.reading(node, Slot::GapFrequency, kind)),
-                fields.required("particle_share", share),
-            )
-        };
-        let gap = fields.exactly_one(&["gap_ratio", "gap"]).and_then(|(key, node)| match key {
-            _ if is_word(node, "infinite") => Some(GapRecipe::Infinite),
-            _ if is_word(node, "optimised") => {
-                self.optimised.borrow_mut().push(node.span);
-                Some(GapRecipe::Gap(Given::Stated(PLACEHOLDER)))
-            }
-            "gap" if names_assumption(node) => self.quantity(node, Dimension::Length).map(GapRecipe::Gap),
-            "gap" if matches!(node.value, Value::Mapping(_)) => self.filled(node),
-            "gap" if matches!(node.value, Value::Sequence(_)) => {
-                list(node, self.findings, |node| quantity(node, Dimension::Length, self.findings)).map(GapRecipe::Gaps)
-            }
-            _ if matches!(node.value, Value::Sequence(_)) => {
-                list(node, self.findings, |node| ratio(node, self.findings)).map(GapRecipe::Ratios)
-            }
-            "gap" => self.quantity(node, Dimension::Length).map(GapRecipe::Gap),
-            _ => self.sweepable(node, Parameter::GapRatio).map(GapRecipe::Ratio),
+        let place = self.at(&keys, kind, [Parameter::DamperX, Parameter::DamperY]);
+        let array = keys.optional_where(!lumped, ARRAY, "Dampers side by side", |at| self.array(at, kind));
+        let masses =
+            [("mass_ratio", "m′: mass of the damper over that of the structure"), ("mass", "Mass of the damper")];
+        let mass = keys.exactly_one(&masses, |key, at| match key {
+            "mass" => self.quantity(at, Dimension::Mass).map(MassRecipe::Mass),
+            _ => self.sweepable(at, Parameter::MassRatio).map(MassRecipe::Ratio),
         });
-        let floor = fields.required("floor", |node| self.surface(node, kind));
-        let ceiling = fields.optional("ceiling", |node| self.surface(node, kind));
-        let stop = fields.optional("stop", |node| self.stop(node, kind));
-        let walls = fields.optional("walls", |node| self.walls(node, kind));
-        fields.close()?;
+        let of_massless = Slot::MasslessRatio.about();
+        let massless_ratio = keys.optional_where(lumped, MASSLESS_RATIO, of_massless, |at| {
+            self.slot(at, Slot::MasslessRatio, kind, |at| at.ratio())
+        });
+        let share = |at: At<'_>| self.sweepable(at, Parameter::ParticleShare);
+        let of_share = "Particle over the whole damper, mass";
+        let lumped_share = if lumped { keys.optional(PARTICLE_SHARE, of_share, share) } else { Some(None) };
+        let mass_reading =
+            keys.optional_where(!lumped, MASS_READING, Slot::MassReading.about(), |at| self.mass_reading(at, kind));
+        let gap_frequency = keys.optional_where(!lumped, GAP_FREQUENCY, Slot::GapFrequency.about(), |at| {
+            self.reading(at, Slot::GapFrequency, kind)
+        });
+        let particle_share = if lumped {
+            lumped_share.map(|share| share.unwrap_or(Given::Stated(1.0)))
+        } else {
+            keys.required(PARTICLE_SHARE, of_share, share)
+        };
+        let gaps = [
+            ("gap_ratio", "h′ = h ωn²/g: dimensionless gap clearance"),
+            ("gap", "Gap clearance between floor and ceiling"),
+        ];
+        let gap = keys.exactly_one(&gaps, |key, at| self.gap(key, at));
+        let floor = keys.required("floor", "The surface that the particle lands on", |at| self.surface(at, kind));
+        let ceiling =
+            keys.optional("ceiling", "The surface above; like the floor unless stated", |at| self.surface(at, kind));
+        let stop = keys.optional("stop", "A limit stop", |at| self.stop(at, kind));
+        let walls = keys.optional("walls", "Soft walls", |at| self.walls(at, kind));
+        keys.close()?;
         let floor = floor?;
         let ceiling = ceiling?.unwrap_or_else(|| floor.clone());
         Some(DamperRecipe {
-            at: at?,
+            at: place?,
             array: array?,
             mass: mass?,
             mass_reading: mass_reading?.unwrap_or_else(|| self.left_out(Slot::MassReading, kind, MassReading::Total)),
@@ -188,71 +218,102 @@ impl<'t> SceneReader<'t> {
         })
     }
 
+    fn gap(&self, key: &str, at: At<'_>) -> Option<GapRecipe> {
+        if at.is_word("infinite") {
+            return Some(GapRecipe::Infinite);
+        }
+        if at.is_word("optimised") {
+            self.optimised.borrow_mut().push(at.span());
+            return Some(GapRecipe::Gap(Given::Stated(PLACEHOLDER)));
+        }
+        let is_list = |value: &Value| matches!(value, Value::Sequence(_));
+        if key != "gap" {
+            let each = |at: At<'_>| at.list(|at| at.ratio()).map(GapRecipe::Ratios);
+            return at.either(is_list, each, |at| self.sweepable(at, Parameter::GapRatio).map(GapRecipe::Ratio));
+        }
+        let each = |at: At<'_>| at.list(|at| at.quantity(Dimension::Length)).map(GapRecipe::Gaps);
+        let is_filling = |value: &Value| matches!(value, Value::Mapping(_)) && !names_assumption_value(value);
+        at.either(
+            is_filling,
+            |at| self.filled(at),
+            |at| at.either(is_list, each, |at| self.quantity(at, Dimension::Length).map(GapRecipe::Gap)),
+        )
+    }
+
     /// An array filled in one of two ways, which a sweep chooses.
-    fn filled(&self, node: &'t Node) -> Option<GapRecipe> {
-        let fields = Fields::open(node, "a filling", self.findings)?;
-        let length = |node: &'t Node| quantity(node, Dimension::Length, self.findings);
-        let uniform = fields.required("uniform", |node| self.quantity(node, Dimension::Length));
-        let optimised = fields.required("optimised", |node| list(node, self.findings, length));
-        self.swept.borrow_mut().push((Parameter::Filling, node.span));
-        fields.close()?;
+    fn filled(&self, at: At<'_>) -> Option<GapRecipe> {
+        let keys = at.keys("a filling")?;
+        let uniform = keys.required("uniform", "The gap of all", |at| self.quantity(at, Dimension::Length));
+        let optimised =
+            keys.required("optimised", "Gaps, one a damper", |at| at.list(|at| at.quantity(Dimension::Length)));
+        self.swept.borrow_mut().push((Parameter::Filling, at.span()));
+        keys.close()?;
         Some(GapRecipe::Filled { uniform: uniform?, optimised: optimised?, filling: Filling::Uniform })
     }
 
     /// `total`, `modal` or a share, an assumption, or swept.
-    fn mass_reading(&self, node: &'t Node, kind: &'static Kind) -> Option<Given<MassReading>> {
-        if is_word(node, "swept") {
-            self.swept.borrow_mut().push((Parameter::MassReading, node.span));
+    fn mass_reading(&self, at: At<'_>, kind: &'static Kind) -> Option<Given<MassReading>> {
+        if self.is_swept(at, Parameter::MassReading) {
             return Some(Given::Stated(MassReading::Total));
         }
-        let share = |node: &'t Node| ratio(node, self.findings).map(MassReading::Share);
-        self.slot(node, Slot::MassReading, kind, |node| match &node.value {
-            Value::Scalar(text) if parse_number(text).is_ok() => share(node),
-            _ => from_word(
-                Choice::read(node, Slot::MassReading.about(), Slot::MassReading.takes().readings, self.findings)?
-                    .bare(self.findings)?,
-            ),
+        let share = |at: At<'_>| at.called("A share of the structure's mass", |at| at.ratio()).map(MassReading::Share);
+        let is_number = |value: &Value| matches!(value, Value::Scalar(text) if parse_number(text).is_ok());
+        self.slot(at, Slot::MassReading, kind, |at| {
+            at.either(is_number, share, |at| one_reading(at, Slot::MassReading))
         })
     }
 
-    fn surface(&self, node: &'t Node, kind: &'static Kind) -> Option<SurfaceRecipe> {
-        let choice = Choice::read(node, "a surface", &["rigid", "resilient"], self.findings)?;
-        if choice.name == "rigid" {
-            let fields = choice.fields("a rigid surface", self.findings)?;
-            let restitution =
-                fields.required("restitution", |node| self.given(node, Takes::ratio(), |node| self.restitution(node)));
-            fields.close()?;
-            return Some(SurfaceRecipe::Rigid { restitution: restitution? });
-        }
-        let fields = choice.fields("a resilient surface", self.findings)?;
-        let stiffness = fields.exactly_one(&["stiffness_ratio", "stiffness"]).and_then(|(key, node)| match key {
-            "stiffness" => self.stiffness(node, kind).map(StiffnessRecipe::By),
+    fn surface(&self, at: At<'_>, kind: &'static Kind) -> Option<SurfaceRecipe> {
+        let forms = [("rigid", "A rigid surface"), ("resilient", "A resilient surface")];
+        at.named("surface", "A surface that the particle lands on", |at| {
+            at.choose("a surface", &forms, |choice| {
+                if choice.name() == "resilient" {
+                    return self.resilient(choice.keys("a resilient surface")?, kind);
+                }
+                let keys = choice.keys("a rigid surface")?;
+                let restitution =
+                    keys.required("restitution", RESTITUTION, |at| self.given(at, Takes::ratio(), restitution));
+                keys.close()?;
+                Some(SurfaceRecipe::Rigid { restitution: restitution? })
+            })
+        })
+    }
+
+    fn resilient(&self, keys: Keys<'_>, kind: &'static Kind) -> Option<SurfaceRecipe> {
+        let stiffnesses = [
+            ("stiffness_ratio", "kf/ks: stiffness over that of the structure"),
+            ("stiffness", "Stiffness, or what it is tuned to"),
+        ];
+        let stiffness = keys.exactly_one(&stiffnesses, |key, at| match key {
+            "stiffness" => self.stiffness(at, kind).map(StiffnessRecipe::By),
             _ => self
-                .slot(node, Slot::StiffnessRatio, kind, |node| self.swept_ratio(node, Parameter::FloorStiffnessRatio))
+                .slot(at, Slot::StiffnessRatio, kind, |at| self.swept_ratio(at, Parameter::FloorStiffnessRatio))
                 .map(StiffnessRecipe::Ratio),
         });
-        let untuned_ratio = fields.optional("untuned_frequency_ratio", |node| {
-            self.slot(node, Slot::UntunedFrequencyRatio, kind, |node| ratio(node, self.findings))
-        });
-        let damping = fields.exactly_one(&["damping_ratio", "damping"]).and_then(|(key, node)| match key {
-            "damping" if is_word(node, "equivalent_viscous") => {
+        let untuned = Slot::UntunedFrequencyRatio;
+        let untuned_ratio = keys
+            .optional("untuned_frequency_ratio", untuned.about(), |at| self.slot(at, untuned, kind, |at| at.ratio()));
+        let dampings = [("damping_ratio", "Damping ratio under the particle"), ("damping", "Damping")];
+        let damping = keys.exactly_one(&dampings, |key, at| match key {
+            "damping" if at.is_word("equivalent_viscous") => {
                 Some(ContactDampingRecipe::Ratio(Given::Stated(ContactDampingRatio::EquivalentViscous)))
             }
-            "damping" => self.quantity(node, Dimension::Damping).map(ContactDampingRecipe::Damping),
+            "damping" => self.quantity(at, Dimension::Damping).map(ContactDampingRecipe::Damping),
             _ => self
-                .slot(node, Slot::DampingRatio, kind, |node| {
-                    self.swept_ratio(node, Parameter::ContactDampingRatio).map(ContactDampingRatio::Ratio)
+                .slot(at, Slot::DampingRatio, kind, |at| {
+                    self.swept_ratio(at, Parameter::ContactDampingRatio).map(ContactDampingRatio::Ratio)
                 })
                 .map(ContactDampingRecipe::Ratio),
         });
-        let damping_curve = fields.optional("damping_curve", |node| {
-            self.slot(node, Slot::DampingCurve, kind, |node| read_curve(node, self.findings))
+        let damping_curve = keys.optional("damping_curve", Slot::DampingCurve.about(), |at| {
+            self.slot(at, Slot::DampingCurve, kind, read_curve)
         });
-        let no_tension = fields.optional("no_tension", |node| boolean(node, self.findings));
-        fields.close()?;
+        let pull = "The surface does not pull at a particle that leaves it";
+        let no_tension = keys.optional("no_tension", pull, |at| at.boolean());
+        keys.close()?;
         Some(SurfaceRecipe::Resilient {
             stiffness: stiffness?,
-            untuned_ratio: untuned_ratio?.or_else(|| self.by_default(Slot::UntunedFrequencyRatio, kind)),
+            untuned_ratio: untuned_ratio?.or_else(|| self.by_default(untuned, kind)),
             damping: damping?,
             damping_curve: damping_curve?.or_else(|| self.by_default(Slot::DampingCurve, kind)),
             no_tension: no_tension?.unwrap_or(false),
@@ -260,62 +321,50 @@ impl<'t> SceneReader<'t> {
     }
 
     /// A stiffness, what it is tuned to, an assumption, or swept between `tuned` and `untuned`.
-    fn stiffness(&self, node: &'t Node, kind: &'static Kind) -> Option<Given<FloorStiffness>> {
+    fn stiffness(&self, at: At<'_>, kind: &'static Kind) -> Option<Given<FloorStiffness>> {
         let tunings = [
             ("tuned", FloorStiffness::Clean),
             ("clean", FloorStiffness::Clean),
             ("loaded", FloorStiffness::Loaded),
             ("untuned", FloorStiffness::Untuned),
         ];
-        if let Some((_, tuning)) = tunings.into_iter().find(|(word, _)| is_word(node, word)) {
+        if let Some((_, tuning)) = tunings.into_iter().find(|(word, _)| at.is_word(word)) {
             return Some(Given::Stated(tuning));
         }
-        if is_word(node, "swept") {
-            self.swept.borrow_mut().push((Parameter::FloorTuning, node.span));
+        if self.is_swept(at, Parameter::FloorTuning) {
             return Some(Given::Stated(FloorStiffness::Clean));
         }
-        self.slot(node, Slot::Stiffness, kind, |node| {
-            above_zero(node, Dimension::Stiffness, self.findings).map(FloorStiffness::Stiffness)
-        })
+        self.slot(at, Slot::Stiffness, kind, |at| at.above_zero(Dimension::Stiffness).map(FloorStiffness::Stiffness))
     }
 
-    fn restitution(&self, node: &'t Node) -> Option<f64> {
-        let value = number(node, self.findings)?;
-        if (0.0..=1.0).contains(&value) {
-            Some(value)
-        } else {
-            self.findings.wrong(node.span, "a coefficient of restitution lies between 0 and 1")
-        }
-    }
-
-    fn stop(&self, node: &'t Node, kind: &'static Kind) -> Option<StopRecipe> {
+    fn stop(&self, at: At<'_>, kind: &'static Kind) -> Option<StopRecipe> {
         let rebound = || self.left_out(Slot::StopRestitution, kind, 0.0);
-        if is_word(node, "assumed") {
-            let length = self.slot(node, Slot::StopLength, kind, |_| None)?;
+        if at.is_word("assumed") {
+            let length = self.slot(at, Slot::StopLength, kind, |_| None)?;
             return Some(StopRecipe { length, restitution: rebound() });
         }
-        let fields = Fields::open(node, "a limit stop", self.findings)?;
-        let length = fields.required("length", |node| {
-            self.slot(node, Slot::StopLength, kind, |node| {
-                self.swept_or(node, Parameter::StopLength, |node| above_zero(node, Dimension::Length, self.findings))
+        let keys = at.keys("a limit stop")?;
+        let length = keys.required("length", "Length of the limit stop", |at| {
+            self.slot(at, Slot::StopLength, kind, |at| {
+                self.swept_or(at, Parameter::StopLength, |at| at.above_zero(Dimension::Length))
             })
         });
-        let restitution = fields.optional("restitution", |node| {
-            self.slot(node, Slot::StopRestitution, kind, |node| self.restitution(node))
-        });
-        fields.close()?;
-        Some(StopRecipe { length: length?, restitution: restitution?.unwrap_or_else(rebound) })
+        let rebounds =
+            keys.optional("restitution", RESTITUTION, |at| self.slot(at, Slot::StopRestitution, kind, restitution));
+        keys.close()?;
+        Some(StopRecipe { length: length?, restitution: rebounds?.unwrap_or_else(rebound) })
     }
 
-    fn walls(&self, node: &'t Node, kind: &'static Kind) -> Option<WallRecipe> {
-        let fields = Fields::open(node, "a pair of soft walls", self.findings)?;
-        let stiffness_ratio =
-            fields.required("stiffness_ratio", |node| self.sweepable(node, Parameter::WallStiffnessRatio));
-        let damping = fields.required("damping", |node| self.quantity(node, Dimension::Damping));
-        let mass = fields.optional("ceiling_mass_ratio", |node| {
-            self.slot(node, Slot::CeilingMassRatio, kind, |node| ratio(node, self.findings))
+    fn walls(&self, at: At<'_>, kind: &'static Kind) -> Option<WallRecipe> {
+        let keys = at.keys("a pair of soft walls")?;
+        let stiffness_ratio = keys.required("stiffness_ratio", "kw/ks: stiffness over that of the structure", |at| {
+            self.sweepable(at, Parameter::WallStiffnessRatio)
         });
-        fields.close()?;
+        let damping = keys.required("damping", "Damping of the walls", |at| self.quantity(at, Dimension::Damping));
+        let mass = keys.optional("ceiling_mass_ratio", "Mass of the ceiling over that of the base", |at| {
+            self.slot(at, Slot::CeilingMassRatio, kind, |at| at.ratio())
+        });
+        keys.close()?;
         Some(WallRecipe {
             stiffness_ratio: stiffness_ratio?,
             damping: damping?,
@@ -324,79 +373,76 @@ impl<'t> SceneReader<'t> {
     }
 
     /// A dimensionless parameter, `swept`, or an assumption.
-    pub(super) fn sweepable(&self, node: &'t Node, parameter: Parameter) -> Option<Given> {
-        self.given(node, Takes::ratio(), |node| self.swept_ratio(node, parameter))
+    pub(super) fn sweepable(&self, at: At<'_>, parameter: Parameter) -> Option<Given> {
+        self.given(at, Takes::ratio(), |at| self.swept_ratio(at, parameter))
     }
 
-    fn swept_ratio(&self, node: &'t Node, parameter: Parameter) -> Option<f64> {
-        self.swept_or(node, parameter, |node| ratio(node, self.findings))
+    fn swept_ratio(&self, at: At<'_>, parameter: Parameter) -> Option<f64> {
+        self.swept_or(at, parameter, |at| at.ratio())
     }
 
-    pub(super) fn swept_or(
-        &self,
-        node: &'t Node,
-        parameter: Parameter,
-        read: impl FnOnce(&'t Node) -> Option<f64>,
-    ) -> Option<f64> {
-        if is_word(node, "swept") {
-            self.swept.borrow_mut().push((parameter, node.span));
-            return Some(PLACEHOLDER);
+    /// It says `swept`, which is noted.
+    pub(super) fn is_swept(&self, at: At<'_>, parameter: Parameter) -> bool {
+        let swept = at.is_word("swept");
+        if swept {
+            self.swept.borrow_mut().push((parameter, at.span()));
         }
-        read(node)
+        swept
+    }
+
+    pub(super) fn swept_or<'n>(
+        &self,
+        at: At<'n>,
+        parameter: Parameter,
+        read: impl FnOnce(At<'n>) -> Option<f64>,
+    ) -> Option<f64> {
+        if self.is_swept(at, parameter) { Some(PLACEHOLDER) } else { read(at) }
     }
 
     /// A quantity, or an assumption.
-    pub(super) fn quantity(&self, node: &'t Node, dimension: Dimension) -> Option<Given> {
-        self.given(node, Takes::quantity(dimension), |node| quantity(node, dimension, self.findings))
+    pub(super) fn quantity(&self, at: At<'_>, dimension: Dimension) -> Option<Given> {
+        self.given(at, Takes::quantity(dimension), |at| at.quantity(dimension))
     }
 
     /// A value, or `{assumed: NAME}`.
-    pub(super) fn given<T>(
+    pub(super) fn given<'n, T>(
         &self,
-        node: &'t Node,
+        at: At<'n>,
         takes: Takes<'_>,
-        read: impl FnOnce(&'t Node) -> Option<T>,
+        read: impl FnOnce(At<'n>) -> Option<T>,
     ) -> Option<Given<T>> {
-        if names_assumption(node) {
-            return self.named(node, takes, "this key").map(Given::Assumed);
+        match self.assumption(at, takes, || "this key".into()) {
+            Some(name) => name.map(Given::Assumed),
+            None => read(at).map(Given::Stated),
         }
-        read(node).map(Given::Stated)
     }
 
     /// A value, `{assumed: NAME}`, or `assumed` where the study declares which assumption that is.
-    pub(super) fn slot<T>(
+    pub(super) fn slot<'n, T>(
         &self,
-        node: &'t Node,
+        at: At<'n>,
         slot: Slot,
         kind: &'static Kind,
-        read: impl FnOnce(&'t Node) -> Option<T>,
+        read: impl FnOnce(At<'n>) -> Option<T>,
     ) -> Option<Given<T>> {
-        let word = word_of(slot);
-        if is_word(node, "assumed") {
+        if at.is_word("assumed") {
             return self.by_default(slot, kind).or_else(|| {
+                let word = word_of(slot);
                 let message = format!("no assumption stands for `{word}` on {}", kind.what);
                 let help =
                     format!("write `{{assumed: NAME}}`, or declare one under `defaults: {word}` in {ASSUMPTIONS}");
-                self.findings.report(node.span, message, Some(help))
+                at.report(message, Some(help))
             });
         }
-        if names_assumption(node) {
-            return self.named(node, slot.takes(), &format!("`{word}`")).map(Given::Assumed);
+        match self.assumption(at, slot.takes(), || format!("`{}`", word_of(slot))) {
+            Some(name) => name.map(Given::Assumed),
+            None => read(at).map(Given::Stated),
         }
-        read(node).map(Given::Stated)
     }
 
     /// One of the named readings of a slot.
-    pub(super) fn reading<T: DeserializeOwned>(
-        &self,
-        node: &'t Node,
-        slot: Slot,
-        kind: &'static Kind,
-    ) -> Option<Given<T>> {
-        self.slot(node, slot, kind, |node| {
-            let choice = Choice::read(node, slot.about(), slot.takes().readings, self.findings)?;
-            from_word(choice.bare(self.findings)?)
-        })
+    pub(super) fn reading<T: DeserializeOwned>(&self, at: At<'_>, slot: Slot, kind: &'static Kind) -> Option<Given<T>> {
+        self.slot(at, slot, kind, |at| one_reading(at, slot))
     }
 
     /// The assumption that stands for a slot by the study's own declaration.
@@ -409,21 +455,52 @@ impl<'t> SceneReader<'t> {
         self.by_default(slot, kind).unwrap_or(Given::Stated(general))
     }
 
-    /// The assumption that `{assumed: NAME}` names, if it is one that fits.
-    pub(super) fn named(&self, node: &'t Node, takes: Takes<'_>, place: &str) -> Option<AssumptionName> {
+    /// The assumption that `{assumed: NAME}` names; `None`: it does not say so, `Some(None)`: it names none that fits.
+    #[expect(clippy::option_option, reason = "absent and wrong are two things")]
+    pub(super) fn assumption(
+        &self,
+        at: At<'_>,
+        takes: Takes<'_>,
+        place: impl FnOnce() -> String,
+    ) -> Option<Option<AssumptionName>> {
+        match at {
+            At::Node(node, findings) => names_assumption(node).then(|| self.named(node, takes, &place(), findings)),
+            At::Sketch(it) => {
+                it.add(assumptions::assumed(it, &self.assumptions.sheet, takes));
+                None
+            }
+        }
+    }
+
+    fn named(&self, node: &Node, takes: Takes<'_>, place: &str, findings: &Findings) -> Option<AssumptionName> {
         let Value::Mapping(entries) = &node.value else { return None };
         let entry = entries.first()?;
         let sheet = &self.assumptions.sheet;
-        let name = sheet.named(&entry.node, self.findings)?;
-        fits(sheet, &name, &entry.node, takes, place, self.findings).then_some(name)
+        let name = sheet.named(&entry.node, findings)?;
+        fits(sheet, &name, &entry.node, takes, place, findings).then_some(name)
     }
+}
+
+const RESTITUTION: &str = "Coefficient of restitution, 0 to 1";
+
+fn restitution(at: At<'_>) -> Option<f64> {
+    at.within([0.0, 1.0], "a coefficient of restitution lies between 0 and 1")
+}
+
+/// One of the named readings of a slot, without an assumption.
+fn one_reading<T: DeserializeOwned>(at: At<'_>, slot: Slot) -> Option<T> {
+    let names: Vec<_> = slot.takes().readings.iter().map(|word| (*word, "")).collect();
+    at.choose(slot.about(), &names, |choice| {
+        choice.bare()?;
+        from_word(choice.name())
+    })
 }
 
 /// It says `{assumed: …}`.
 pub(super) fn names_assumption(node: &Node) -> bool {
-    matches!(&node.value, Value::Mapping(entries) if matches!(entries.as_slice(), [entry] if entry.key == "assumed"))
+    names_assumption_value(&node.value)
 }
 
-pub(super) fn is_word(node: &Node, word: &str) -> bool {
-    matches!(&node.value, Value::Scalar(text) if text == word)
+fn names_assumption_value(value: &Value) -> bool {
+    matches!(value, Value::Mapping(entries) if matches!(entries.as_slice(), [entry] if entry.key == "assumed"))
 }

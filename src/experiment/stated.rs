@@ -15,7 +15,7 @@ use std::collections::BTreeMap;
 
 use serde_json::json;
 
-use super::about_study::MOST_CHAPTERS;
+use super::about_study::chapter_number;
 use super::at::At;
 use super::diagnostic::{Findings, Span};
 use super::quantity::{Amount, parse_amount};
@@ -69,10 +69,8 @@ impl Statement {
 /// `chapter: {place: {key: value}}`.
 pub(super) fn read_chapters(at: At<'_>) -> Option<StatedByChapter> {
     let form = "statements are written as `chapter: {Table 6: {key: value}}`";
-    let chapters = at.by_name(json!({}), form, |key, key_span, at| match key.parse::<u32>() {
-        Ok(number) if number <= MOST_CHAPTERS => Some((number, read_statements(at)?)),
-        _ => at.wrong_at(key_span, format!("`{key}` is not the number of a chapter: write one up to {MOST_CHAPTERS}")),
-    });
+    let chapters = at
+        .by_name(json!({}), form, |key, key_span, at| Some((chapter_number(key, key_span, at)?, read_statements(at)?)));
     chapters.map(|chapters| chapters.into_iter().collect())
 }
 

@@ -3,16 +3,17 @@
 use std::collections::BTreeMap;
 
 use super::assumption_sheet::{Quantity, Takes};
+use super::at::At;
 use super::quantity::Dimension;
-use super::reader::{Choice, above_zero, count, list, ratio, scalar, unknown, zero_or_more};
+use super::reader::{scalar, unknown};
 use super::recipe::{Given, Parameter, Slot, StructureRecipe};
-use super::scene::{SceneReader, is_word};
+use super::scene::SceneReader;
+use super::schema::parts::one_of_words;
 use super::word::from_word;
-use super::yaml::{Node, Value};
 use crate::scene::{FieldValue, Form, KINDS, Kind};
 
 /// Most modes that are read at all; how many a structure carries is its own affair.
-pub(super) const MOST_MODES: u32 = 100_000;
+const MOST_MODES: u32 = 100_000;
 /// Stands where the file says `swept`.
 const PLACEHOLDER: f64 = 1.0;
 
@@ -22,74 +23,64 @@ pub(super) struct ReadStructure {
     pub recipe: StructureRecipe,
 }
 
-/// Reads the node under `structure`.
-pub(super) fn read_structure<'t>(node: &'t Node, reader: &SceneReader<'t>) -> Option<ReadStructure> {
-    let findings = reader.findings;
-    let names: Vec<&'static str> = KINDS.iter().map(|kind| kind.name).collect();
-    let choice = Choice::read(node, "the structure", &names, findings)?;
-    let kind = Kind::named(choice.name)?;
-    let fields = choice.fields(kind.what, findings)?;
-    let mut values = BTreeMap::new();
-    let mut fine = true;
-    for field in kind.fields {
-        let read = |node: &'t Node| match field.swept.then(|| from_word::<Parameter>(field.key)).flatten() {
-            Some(parameter) if is_word(node, "swept") => {
-                reader.swept.borrow_mut().push((parameter, node.span));
-                Some(Given::Stated(match field.form {
+/// Reads what stands under `structure`.
+pub(super) fn read_structure(at: At<'_>, reader: &SceneReader<'_>) -> Option<ReadStructure> {
+    let names: Vec<(&'static str, &str)> = KINDS.iter().map(|kind| (kind.name, kind.what)).collect();
+    at.choose("the structure", &names, |choice| {
+        let kind = Kind::named(choice.name())?;
+        let keys = choice.keys(kind.what)?;
+        let mut values = BTreeMap::new();
+        let mut fine = true;
+        for field in kind.fields {
+            let about = field.key.replace('_', " ");
+            let read = |at: At<'_>| match field.swept.then(|| from_word::<Parameter>(field.key)).flatten() {
+                Some(parameter) if reader.is_swept(at, parameter) => Some(Given::Stated(match field.form {
                     Form::Modes => FieldValue::Counts(vec![1]),
                     _ => FieldValue::Number(PLACEHOLDER),
-                }))
+                })),
+                _ => read_value(at, field.form, kind, reader),
+            };
+            let value = match field.form {
+                Form::Word(_) => keys.optional(field.key, &about, read),
+                _ => keys.required(field.key, &about, read).map(Some),
+            };
+            match value {
+                Some(Some(value)) => drop(values.insert(field.key.to_owned(), value)),
+                Some(None) => {}
+                None => fine = false,
             }
-            _ => read_value(node, field.form, kind, reader),
-        };
-        let value = match field.form {
-            Form::Word(_) => fields.optional(field.key, read),
-            _ => fields.required(field.key, read).map(Some),
-        };
-        match value {
-            Some(Some(value)) => drop(values.insert(field.key.to_owned(), value)),
-            Some(None) => {}
-            None => fine = false,
         }
-    }
-    fields.close()?;
-    fine.then_some(ReadStructure { kind, recipe: StructureRecipe { kind: kind.name.into(), values } })
+        keys.close()?;
+        fine.then_some(ReadStructure { kind, recipe: StructureRecipe { kind: kind.name.into(), values } })
+    })
 }
 
-fn read_value<'t>(
-    node: &'t Node,
-    form: Form,
-    kind: &'static Kind,
-    reader: &SceneReader<'t>,
-) -> Option<Given<FieldValue>> {
-    let findings = reader.findings;
+fn read_value(at: At<'_>, form: Form, kind: &'static Kind, reader: &SceneReader<'_>) -> Option<Given<FieldValue>> {
     let size = |dimension: Dimension| {
-        reader.given(node, Takes::quantity(dimension), |node| {
-            above_zero(node, dimension, findings).map(FieldValue::Number)
-        })
+        reader.given(at, Takes::quantity(dimension), |at| at.above_zero(dimension).map(FieldValue::Number))
     };
-    let modes = |node: &Node| count(node, "modes", MOST_MODES, findings);
     match form {
         Form::Length => size(Dimension::Length),
         Form::Mass => size(Dimension::Mass),
-        Form::Stiffness => reader.given(node, Takes::quantity(Dimension::Stiffness), |node| {
-            zero_or_more(node, Dimension::Stiffness, findings).map(FieldValue::Number)
+        Form::Stiffness => reader.given(at, Takes::quantity(Dimension::Stiffness), |at| {
+            at.zero_or_more(Dimension::Stiffness).map(FieldValue::Number)
         }),
         Form::Stress => size(Dimension::Stress),
         Form::Density => size(Dimension::Density),
-        Form::Ratio => reader.given(node, Takes::ratio(), |node| ratio(node, findings).map(FieldValue::Number)),
-        Form::Modes => reader.slot(node, Slot::Modes, kind, |node| {
-            Some(FieldValue::Counts(match &node.value {
-                Value::Sequence(_) => list(node, findings, modes)?,
-                _ => vec![modes(node)?],
-            }))
+        Form::Ratio => reader.given(at, Takes::ratio(), |at| at.ratio().map(FieldValue::Number)),
+        Form::Modes => reader.slot(at, Slot::Modes, kind, |at| {
+            at.called("Number of modes, or one number a side", |at| {
+                at.one_or_more(|at| at.count("modes", MOST_MODES)).map(FieldValue::Counts)
+            })
         }),
-        Form::Word(words) => reader.given(node, Takes { quantity: None::<Quantity>, readings: words }, |node| {
-            let word = scalar(node, findings)?;
-            if words.contains(&word) {
-                return Some(FieldValue::Word(word.into()));
-            }
-            unknown(findings, node.span, "this key", "word", word, words)
+        Form::Word(words) => reader.given(at, Takes { quantity: None::<Quantity>, readings: words }, |at| {
+            at.form(
+                |node, findings| match scalar(node, findings)? {
+                    word if words.contains(&word) => Some(FieldValue::Word(word.into())),
+                    word => unknown(findings, node.span, "this key", "word", word, words),
+                },
+                |it| one_of_words(it.about(), words),
+            )
         }),
     }
 }

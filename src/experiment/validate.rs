@@ -73,7 +73,6 @@ pub fn experiment_schema(sheet: &AssumptionSheet) -> serde_json::Value {
     let reader = ExperimentReader { findings: &findings, assumptions: &assumptions, cases: Cases::Tried };
     let any = ExperimentId(String::new());
     let schema = Sketch::of("An experiment", &definitions, |at| reader.experiment(&any, at));
-    definitions.borrow_mut().extend(schema::experiment::definitions(sheet));
     schema::of_file("Experiment", schema, definitions)
 }
 
@@ -89,25 +88,21 @@ impl<'t> ExperimentReader<'t> {
         let title = keys.required("title", "A few words", |at| at.text());
         let source = keys.optional("source", "Where a publication shows it", read_source);
         let about = keys.required("about", "One or two sentences", |at| at.text());
-        let scene = keys.required("scene", "What is simulated", |at| {
-            at.form(|node, findings| read_scene(node, self.assumptions, findings), |_| schema::scene::scene())
-        });
+        let scene = keys.required("scene", "What is simulated", |at| read_scene(at, self.assumptions));
         let branches = "Branches of periodic motions along a parameter, stable or not";
-        let orbit =
-            keys.optional("orbit", branches, |at| at.form(read_continuation, |_| schema::continuation::continuation()));
+        let orbit = keys.optional("orbit", branches, read_continuation);
         let box_of_starts =
             "A box of random starts: the motions that each case may end in, with the share of the box of each";
         let starts = keys.optional("starts", box_of_starts, read_starts);
-        let sweep_of = |at: At<'_>| at.form(read_sweep, |_| schema::parts::reference("sweep"));
         let sweep = match &orbit {
             Some(Some(orbit)) => Some(Some(orbit.sweep())),
-            Some(None) => keys.optional("sweep", "What varies from row to row", sweep_of),
+            Some(None) => keys.optional("sweep", "What varies from row to row", read_sweep),
             None => None,
         };
         let stated = "Inputs that the text states, by table, figure or section";
         let stated = keys.optional(STATED, stated, read_statements);
         let mean_over =
-            keys.optional("mean_over", "Settings that a mean is taken over", |at| mean_over(at, sweep_of(at)?));
+            keys.optional("mean_over", "Settings that a mean is taken over", |at| mean_over(at, read_sweep(at)?));
         let measures = keys.required("measure", "What is measured", read_measures);
         let looked_for = [
             ("maximise", "The measure whose maximum is looked for"),

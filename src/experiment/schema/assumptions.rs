@@ -1,64 +1,47 @@
 //! The assumptions file.
 
-use std::collections::BTreeMap;
-
 use serde_json::{Value, json};
 
-use super::parts::{Object, any_of, form, list, number, one_of_words, quantity, ratio, reference, text};
-use crate::experiment::assumption_reader::{COUNTED, read_cycles};
-use crate::experiment::assumption_sheet::{AssumptionSheet, Quantity, Takes};
+use super::of_file;
+use super::parts::{Object, any_of, form, list, one_of_words, ratio, text};
+use crate::experiment::assumption_reader::{read_curve, read_cycles, read_entry};
+use crate::experiment::assumption_sheet::{AssumptionSheet, Takes};
 use crate::experiment::at::{Definitions, Sketch};
-use crate::experiment::quantity::Dimension;
+use crate::experiment::diagnostic::Place;
 use crate::experiment::recipe::Slot;
 use crate::experiment::stated::{STATED, read_chapters};
-use crate::experiment::word::{from_word, word_of, words};
-use crate::scene::{Form, KINDS};
+use crate::experiment::word::word_of;
+use crate::scene::KINDS;
 use crate::text::words::of_key;
 
 /// JSON Schema of the assumptions file.
 #[must_use]
 pub fn assumptions_schema() -> Value {
+    let definitions = Definitions::default();
     let mut schema = Object::new("Each input that the study uses and does not state, by name")
         .optional("defaults", defaults())
-        .optional(STATED, Sketch::of("Inputs that the text states, by chapter", &Definitions::default(), read_chapters))
+        .optional(STATED, Sketch::of("Inputs that the text states, by chapter", &definitions, read_chapters))
         .schema();
-    schema["additionalProperties"] = entry();
-    schema["$schema"] = json!("http://json-schema.org/draft-07/schema#");
-    schema["title"] = json!("Assumptions");
-    schema
-}
-
-fn entry() -> Value {
-    let kinds: Vec<&str> = COUNTED.iter().map(|(word, _)| *word).chain(words::<Dimension>().iter().copied()).collect();
-    let mut schema = Object::new("An assumption")
-        .optional("quantity", one_of_words("What its numbers are", &kinds))
-        .optional("readings", list("Its readings", text("A reading")))
-        .required("value", value())
-        .required("reason", text("Why this value"))
-        .optional("range", list("Other values that could be defended", value()))
-        .optional("fitted_to", list("Entries that the value was chosen by", text("experiment/entry")))
-        .schema();
-    schema["anyOf"] = json!([{"required": ["quantity"]}, {"required": ["readings"]}]);
-    schema
+    schema["additionalProperties"] = Sketch::of("An assumption", &definitions, |at| read_entry(at, Place::default()));
+    of_file("Assumptions", schema, definitions)
 }
 
 /// A number with or without unit, a reading, or a curve.
-fn value() -> Value {
-    any_of("A value of its kind", vec![json!({"type": ["number", "string"]}), curve(), places()])
+pub(in crate::experiment) fn value() -> Value {
+    any_of(
+        "A value of its kind",
+        vec![
+            json!({"type": ["number", "string"]}),
+            Sketch::of("A curve", &Definitions::default(), read_curve),
+            places(),
+        ],
+    )
 }
 
 /// Shares of the sides.
 fn places() -> Value {
     let share = || ratio("A share of the side");
     list("Places", any_of("A place", vec![share(), list("One coordinate a side", share())]))
-}
-
-/// Damping against acceleration.
-pub(in crate::experiment) fn curve() -> Value {
-    Object::new("A curve")
-        .required("acceleration_ratio", list("In units of g, increasing", number("Acceleration over g")))
-        .required("damping", list("As many", quantity("Damping", Dimension::Damping)))
-        .schema()
 }
 
 fn defaults() -> Value {
@@ -77,24 +60,12 @@ fn defaults() -> Value {
         .schema()
 }
 
-/// `{assumed: NAME}` for a place that takes this.
-pub(in crate::experiment) fn assumed(takes: Takes<'_>) -> Value {
-    reference(&definition(takes))
-}
-
-/// What each place that an assumption can stand in takes, and the names of the study's assumptions that fit there.
-pub(in crate::experiment) fn definitions(sheet: &AssumptionSheet) -> Vec<(String, Value)> {
-    let counted = COUNTED.iter().map(|(_, quantity)| *quantity);
-    let quantities = counted.chain(words::<Dimension>().iter().filter_map(|word| from_word(word)).map(Quantity::Of));
-    let quantities = quantities.map(|quantity| Takes { quantity: Some(quantity), readings: &[] });
-    let slots = Slot::ALL.iter().map(|slot| slot.takes());
-    let fields = KINDS.iter().flat_map(|kind| kind.fields).filter_map(|field| match field.form {
-        Form::Word(readings) => Some(Takes { quantity: None, readings }),
-        _ => None,
-    });
-    let all: BTreeMap<String, Takes<'_>> =
-        quantities.chain(slots).chain(fields).map(|takes| (definition(takes), takes)).collect();
-    all.into_iter().map(|(name, takes)| (name, form("assumed", "By an assumption", names(sheet, takes)))).collect()
+/// `{assumed: NAME}` for a place that takes this, with the names of the study's assumptions that fit there.
+pub(in crate::experiment) fn assumed(place: &Sketch<'_>, sheet: &AssumptionSheet, takes: Takes<'_>) -> Value {
+    const ABOUT: &str = "By an assumption";
+    place.shared(&definition(takes), ABOUT, |at| {
+        at.form(|_, _| None::<()>, |_| form("assumed", ABOUT, names(sheet, takes)))
+    })
 }
 
 /// The names that fit; any, where the study declares none of the kind.

@@ -1,17 +1,12 @@
 //! JSON Schemas (draft 7) of the files that a person writes, so that an editor completes and checks them while they are
 //! written.
 //!
-//! Words, parameters, structures and their keys, dimensions and limits come from the types that read the files. What a
+//! Keys, words, units and limits come from the functions that read the files: see [`super::at`]. What a
 //! schema cannot say (ranges in order, columns that exist, a scene that physics accepts) the reader says, which is the judge in
 //! everything: a file that it accepts passes the schema, as long as its units are written as people write them.
 
 pub(super) mod assumptions;
-pub(super) mod continuation;
-pub(super) mod experiment;
 pub(super) mod parts;
-pub(super) mod scene;
-mod study;
-pub(super) mod sweep;
 
 use serde_json::{Value, json};
 
@@ -19,7 +14,6 @@ use super::at::Definitions;
 
 pub use assumptions::assumptions_schema;
 pub(crate) use parts::{Object, list, text, words_of};
-pub use study::study_schema;
 
 /// The schema of a file, with what its places share.
 pub(super) fn of_file(title: &str, mut schema: Value, definitions: Definitions) -> Value {

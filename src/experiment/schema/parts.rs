@@ -76,12 +76,6 @@ impl Object {
         keys.into_iter().fold(self, |object, (key, schema)| object.optional(key, schema))
     }
 
-    /// No two of these keys, which are given elsewhere.
-    pub(crate) fn exclusive(mut self, keys: &[&str]) -> Self {
-        self.exclude(keys);
-        self
-    }
-
     pub(crate) fn rule(mut self, rule: Value) -> Self {
         self.add_rule(rule);
         self
