@@ -130,11 +130,8 @@ impl<'t> Keys<'t> {
                 None => Some(None),
             },
             Self::Outline(sketch, object) => {
-                let mut object = object.borrow_mut();
-                for (key, about) in keys {
-                    object.add(key, part(sketch, about, |at| read(key, at)));
-                }
-                object.exclude(&names(keys));
+                add_each(sketch, object, keys, read);
+                object.borrow_mut().exclude(&names(keys));
                 Some(None)
             }
         }
@@ -148,11 +145,8 @@ impl<'t> Keys<'t> {
                 read(key, At::Node(node, fields.findings))
             }
             Self::Outline(sketch, object) => {
-                let mut object = object.borrow_mut();
-                for (key, about) in keys {
-                    object.add(key, part(sketch, about, |at| read(key, at)));
-                }
-                object.demand_one(&names(keys));
+                add_each(sketch, object, keys, read);
+                object.borrow_mut().demand_one(&names(keys));
                 None
             }
         }
@@ -243,6 +237,18 @@ impl<'t> Keys<'t> {
                 None
             }
         }
+    }
+}
+
+fn add_each<T>(
+    sketch: &Sketch<'_>,
+    object: &RefCell<Object>,
+    keys: &[Key<'_>],
+    read: impl Fn(&'static str, At<'_>) -> Option<T>,
+) {
+    for (key, about) in keys {
+        let schema = part(sketch, about, |at| read(key, at));
+        object.borrow_mut().add(key, schema);
     }
 }
 
