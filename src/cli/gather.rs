@@ -4,9 +4,9 @@ use super::args::GatherArgs;
 use super::error::CliError;
 use super::exit::Exit;
 use super::output::print_unread;
-use super::select::choose;
+use super::select::{choose, open_stale};
 use super::simulate::held;
-use super::update::{Done, conclude, open_stale};
+use super::update::{Done, conclude};
 use crate::study::{Item, Layout, Lock, Shard, State, gather, save};
 
 /// Joins what is stale, then judges, draws and writes as `run` does.

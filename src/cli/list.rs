@@ -4,8 +4,7 @@ use super::args::Choice;
 use super::error::CliError;
 use super::exit::Exit;
 use super::output::{columns, print, print_unread};
-use super::select::choose;
-use super::update::open_stale;
+use super::select::{choose, open_stale};
 use crate::study::{Heading, Layout};
 
 /// One line an experiment: id, where it is shown, title.

@@ -24,6 +24,18 @@ pub(super) fn open(layout: &Layout) -> Result<Study, CliError> {
     Ok(Study::new(layout.clone(), Texts::read(layout)?))
 }
 
+/// The study, in which only the experiments are planned that are not known to be up to date, or are chosen and to be looked at `anyway`.
+pub(super) fn open_stale(layout: &Layout, choice: &Choice, anyway: bool) -> Result<Study, CliError> {
+    let texts = Texts::read(layout)?;
+    let Snapshot { mut experiments, mut used, .. } = Snapshot::current(layout, &texts);
+    if anyway {
+        for (id, known) in experiments.extract_if(.., |_, known| choice.admits_known(known)) {
+            used.insert(id, known.used);
+        }
+    }
+    Ok(Study::beside(layout.clone(), texts, experiments, used))
+}
+
 impl Choice {
     /// True for an experiment that is known to be up to date.
     pub fn admits_known(&self, known: &Summary) -> bool {

@@ -7,7 +7,7 @@ use super::dry_run::dry_run;
 use super::error::CliError;
 use super::exit::Exit;
 use super::output::{print, print_error, print_unread, print_warnings};
-use super::select::{Chosen, choose, matched};
+use super::select::{Chosen, choose, matched, open_stale};
 use super::simulate::{How, Ran, held, print_failures, simulate};
 use crate::report::{Judgement, Published, doubts, judge_all, publish, summary_of};
 use crate::study::{Item, Layout, Lock, RunTimes, Snapshot, State, Study, Texts, remove_journals, save};
@@ -52,18 +52,6 @@ pub(super) fn update(layout: &Layout, args: &RunArgs, common: &Args) -> Result<E
         study.refresh();
     }
     conclude(&study, &args.choice, done)
-}
-
-/// The study, in which only the experiments are planned that are not known to be up to date, or are chosen and to be looked at `anyway`.
-pub(super) fn open_stale(layout: &Layout, choice: &Choice, anyway: bool) -> Result<Study, CliError> {
-    let texts = Texts::read(layout)?;
-    let Snapshot { mut experiments, mut used, .. } = Snapshot::current(layout, &texts);
-    if anyway {
-        for (id, known) in experiments.extract_if(.., |_, known| choice.admits_known(known)) {
-            used.insert(id, known.used);
-        }
-    }
-    Ok(Study::beside(layout.clone(), texts, experiments, used))
 }
 
 fn nothing_to_do(snapshot: &Snapshot, ids: &BTreeSet<&str>) -> Result<Exit, CliError> {

@@ -7,7 +7,12 @@ use serde_json::Value;
 /// blake3 of a canonical JSON text, in hexadecimal.
 #[must_use]
 pub fn fingerprint(inputs: &Value) -> String {
-    blake3::hash(canonical(inputs).as_bytes()).to_hex().to_string()
+    hash(canonical(inputs).as_bytes())
+}
+
+/// blake3 of these bytes, in hexadecimal.
+pub(super) fn hash(bytes: &[u8]) -> String {
+    blake3::hash(bytes).to_hex().to_string()
 }
 
 /// One text for equal inputs: keys sorted, no space, shortest digits that read back to the same bits.

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use serde_json::value::{RawValue, to_raw_value};
 
-use super::canonical::{Change, changes};
+use super::canonical::{Change, changes, hash};
 
 /// The parts by name.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
@@ -45,9 +45,8 @@ impl Inputs {
     /// blake3 of all parts as one canonical JSON text, in hexadecimal.
     #[must_use]
     pub fn fingerprint(&self) -> String {
-        let parts: Vec<String> =
-            self.0.iter().map(|(name, part)| format!("{}:{}", Value::from(name.as_str()), part.0.get())).collect();
-        blake3::hash(format!("{{{}}}", parts.join(",")).as_bytes()).to_hex().to_string()
+        let text = serde_json::to_string(self).unwrap_or_else(|error| unreachable!("parts are JSON: {error}"));
+        hash(text.as_bytes())
     }
 
     /// True if these parts are the same in both.

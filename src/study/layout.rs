@@ -5,6 +5,7 @@ use std::fs::{self, File};
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
+use super::canonical::hash;
 use crate::atomic::FileError;
 pub use crate::experiment::ASSUMPTIONS;
 
@@ -142,7 +143,7 @@ impl Texts {
     /// The hash of each text, by name.
     #[must_use]
     pub fn hashes(&self) -> BTreeMap<String, String> {
-        self.files.iter().map(|(name, bytes)| (name.clone(), blake3::hash(bytes).to_hex().to_string())).collect()
+        self.files.iter().map(|(name, bytes)| (name.clone(), hash(bytes))).collect()
     }
 }
 

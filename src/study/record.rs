@@ -8,6 +8,7 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
+use super::canonical::hash;
 use super::inputs::Inputs;
 use crate::atomic::{self, FileError};
 use crate::experiment::ExperimentId;
@@ -69,7 +70,7 @@ impl FileHash {
     /// Of these bytes.
     #[must_use]
     pub fn of(bytes: &[u8]) -> Self {
-        Self { bytes: bytes.len() as u64, blake3: blake3::hash(bytes).to_hex().to_string() }
+        Self { bytes: bytes.len() as u64, blake3: hash(bytes) }
     }
 
     /// True if the file at `path` holds these bytes.

@@ -12,6 +12,7 @@ use std::time::SystemTime;
 
 use serde::{Deserialize, Serialize};
 
+use super::canonical::hash;
 use super::glance::{Glance, Match};
 use super::layout::{ASSUMPTIONS, Layout, Texts, stem};
 use super::record::{PRESENTATION_VERSION, RECORD_FORMAT};
@@ -272,22 +273,18 @@ fn hash_of(value: &impl Serialize) -> String {
     serde_json::to_vec(value).map_or_else(|_| String::new(), |text| hash(&text))
 }
 
-fn hash(bytes: &[u8]) -> String {
-    blake3::hash(bytes).to_hex().to_string()
-}
-
 /// Texts that concern the study as a whole: what it says of itself, assumptions and calibrations.
 fn shared_inputs(texts: &Texts) -> Hashes {
     let shared = texts.files.iter().filter(|(name, _)| !Texts::is_of_experiment(name));
     shared.map(|(name, bytes)| (name.clone(), hash(bytes))).collect()
 }
 
-/// The texts of each experiment; two files of one id are both its own, and never those that a run has left.
 /// The hash of the experiment's own file among those that it consists of.
 fn own_text(hashes: &Hashes) -> Option<&String> {
     hashes.iter().find(|(name, _)| name.starts_with("experiments/")).map(|(_, hash)| hash)
 }
 
+/// The texts of each experiment; two files of one id are both its own, and never those that a run has left.
 fn texts_by_experiment(texts: &Texts) -> BTreeMap<&str, Hashes> {
     let mut by_id = BTreeMap::<&str, Hashes>::new();
     for (name, bytes) in texts.files.iter().filter(|(name, _)| Texts::is_of_experiment(name)) {

@@ -8,7 +8,7 @@ use shotdamp::measure::Evaluated;
 use shotdamp::study::{Engine, Evaluate, IgnoreEvents, RowFailure, Simulation};
 use shotdamp::table::{Data, Table};
 
-use crate::desk::Desk;
+use crate::desk::{Desk, refuses};
 
 /// Balls without mass on a table with the acceleration Γ = 0.8 of gravity. The state of the unstable motion with one impact a cycle,
 /// 9.970 mm and −0.1676 m/s at the start of a cycle, lies on the border between rest and bouncing: within 20 µm the border is straight, and a box that
@@ -148,7 +148,7 @@ fn a_box_that_makes_no_sense_is_refused_where_it_stands() {
     read(BALLS).unwrap_or_else(|problems| panic!("{problems}"));
     let height =
         "height: [9.95024134066 mm, 9.99024134066 mm], velocity: [-0.177566128893 m/s, -0.137566128893 m/s]}\n  count";
-    for (from, to, place, what) in [
+    let mistakes = [
         ("count: 300", "count: 0", "17:", "one start at least"),
         ("count: 300", "counts: 300", "17:", "did you mean `count`?"),
         ("  count: 300", "  displacement: [5 mm, -5 mm]\n  count: 300", "17:", "write the smaller value first"),
@@ -177,11 +177,8 @@ fn a_box_that_makes_no_sense_is_refused_where_it_stands() {
         ),
         ("y: share,", "y: shares,", "21:", "did you mean `share`?"),
         ("y: start_height_2", "y: share", "22:", "one is a list a row"),
-    ] {
-        assert!(BALLS.contains(from), "{from}");
-        let said = read(&BALLS.replacen(from, to, 1)).expect_err(to);
-        assert!(said.contains(what) && said.contains(&format!("mine.yaml:{place}")), "{to}:\n{said}");
-    }
+    ];
+    refuses(BALLS, read, &mistakes);
     // Without starts an experiment means what it meant before.
     let begin = BALLS.find("starts:").unwrap();
     let end = BALLS.find("run:").unwrap();

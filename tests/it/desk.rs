@@ -16,6 +16,15 @@ use shotdamp::study::{
 };
 use shotdamp::table::{Table, parquet};
 
+/// Each exchange of a part of a text, read as `mine.yaml`, is refused on the line, and with the words, that stand beside it.
+pub fn refuses<T>(text: &str, read: impl Fn(&str) -> Result<T, String>, mistakes: &[(&str, &str, &str, &str)]) {
+    for (from, to, place, what) in mistakes {
+        assert!(text.contains(from), "{from}");
+        let said = read(&text.replacen(from, to, 1)).err().unwrap_or_else(|| panic!("{to}"));
+        assert!(said.contains(what) && said.contains(&format!("mine.yaml:{place}")), "{to}:\n{said}");
+    }
+}
+
 pub const ASSUMPTIONS: &str = "
 gravity: {value: 9.81 m/s^2, reason: usual, quantity: acceleration}
 impulse_factor: {value: 2, range: [1.8, 2.2], reason: half sine, quantity: ratio}
