@@ -412,6 +412,7 @@ pub(super) enum SchemaOf {
     Experiment,
     Assumptions,
     Reference,
+    Calibration,
 }
 
 #[derive(Debug, clap::Args)]

@@ -4,7 +4,7 @@ use super::args::{Args, RunArgs};
 use super::error::CliError;
 use super::exit::Exit;
 use super::output::{print, print_unread, simulations};
-use super::select::{choose, open_stale};
+use super::select::{Found, choose};
 use super::update::todo;
 use crate::study::{Extent, KnownRows, Layout, forecast};
 use crate::text::number::compact;
@@ -12,7 +12,7 @@ use crate::text::words::{capitalised, counted};
 
 /// Prints it, and writes nothing.
 pub(super) fn dry_run(layout: &Layout, args: &RunArgs, common: &Args) -> Result<Exit, CliError> {
-    let study = open_stale(layout, &args.choice, args.force)?;
+    let study = Found::look(layout)?.open(layout, &args.choice, args.force);
     let chosen = choose(&study, &args.choice)?;
     print_unread(chosen.unread.iter().copied());
     let threads = common.jobs.map_or_else(processors, usize::from);

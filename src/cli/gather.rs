@@ -4,7 +4,7 @@ use super::args::GatherArgs;
 use super::error::CliError;
 use super::exit::Exit;
 use super::output::print_unread;
-use super::select::{choose, open_stale};
+use super::select::{Found, choose};
 use super::simulate::held;
 use super::update::{Done, conclude};
 use crate::study::{Item, Layout, Lock, Shard, State, gather, save};
@@ -12,7 +12,7 @@ use crate::study::{Item, Layout, Lock, Shard, State, gather, save};
 /// Joins what is stale, then judges, draws and writes as `run` does.
 pub(super) fn gather_all(layout: &Layout, args: &GatherArgs) -> Result<Exit, CliError> {
     let _lock = Lock::of_study(layout, held(args.no_wait))?;
-    let mut study = open_stale(layout, &args.choice, args.force)?;
+    let mut study = Found::look(layout)?.open(layout, &args.choice, args.force);
     let chosen = choose(&study, &args.choice)?;
     print_unread(chosen.unread.iter().copied());
     let stale = |item: &&Item| args.force || !matches!(item.state, State::Current(_));

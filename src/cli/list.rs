@@ -4,12 +4,12 @@ use super::args::Choice;
 use super::error::CliError;
 use super::exit::Exit;
 use super::output::{columns, print, print_unread};
-use super::select::{choose, open_stale};
+use super::select::{Found, choose};
 use crate::study::{Heading, Layout};
 
 /// One line an experiment: id, where it is shown, title.
 pub(super) fn list(layout: &Layout) -> Result<Exit, CliError> {
-    let study = open_stale(layout, &Choice::default(), false)?;
+    let study = Found::look(layout)?.open(layout, &Choice::default(), false);
     let chosen = choose(&study, &Choice::default())?;
     print_unread(&study.unread);
     let planned = chosen.items.iter().map(|item| Heading::of(&item.source.experiment));

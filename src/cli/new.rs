@@ -5,10 +5,9 @@ use super::error::CliError;
 use super::exit::Exit;
 use super::output::print;
 use super::schema::write_all;
-use super::select::open;
 use crate::atomic;
 use crate::experiment::{ExperimentId, scaffold, structures};
-use crate::study::Layout;
+use crate::study::{Layout, Texts};
 
 /// Writes an experiment to begin with, and the schemas by which an editor completes and checks it.
 pub(super) fn new(layout: &Layout, args: &NewArgs) -> Result<Exit, CliError> {
@@ -18,7 +17,7 @@ pub(super) fn new(layout: &Layout, args: &NewArgs) -> Result<Exit, CliError> {
         None => known_folder(layout, &id),
     };
     let name = format!("experiments/{folder}{id}.yaml");
-    let taken = open(layout)?.items.iter().any(|item| item.source.experiment.id == id);
+    let taken = Texts::read(layout)?.ids().contains(id.0.as_str());
     if taken || layout.path(&name).exists() {
         return Err(CliError::Exists(id.to_string()));
     }

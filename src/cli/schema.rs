@@ -5,12 +5,14 @@ use super::error::CliError;
 use super::exit::Exit;
 use super::output::{print, print_document};
 use crate::atomic::{self, FileError};
-use crate::experiment::{AssumptionSheet, assumptions_schema, experiment_schema, load_assumptions, study_schema};
+use crate::experiment::{
+    AssumptionSheet, assumptions_schema, calibration_schema, experiment_schema, load_assumptions, study_schema,
+};
 use crate::reference::reference_schema;
 use crate::study::{ASSUMPTIONS, Layout};
 
 impl SchemaOf {
-    pub const ALL: [Self; 4] = [Self::Study, Self::Experiment, Self::Assumptions, Self::Reference];
+    pub const ALL: [Self; 5] = [Self::Study, Self::Experiment, Self::Assumptions, Self::Reference, Self::Calibration];
 
     /// Where it stands within the study.
     pub fn file(self) -> &'static str {
@@ -19,6 +21,7 @@ impl SchemaOf {
             Self::Experiment => "schema/experiment.json",
             Self::Assumptions => "schema/assumptions.json",
             Self::Reference => "schema/reference.json",
+            Self::Calibration => "schema/calibration.json",
         }
     }
 
@@ -28,6 +31,7 @@ impl SchemaOf {
             Self::Study => study_schema(),
             Self::Assumptions => assumptions_schema(),
             Self::Reference => reference_schema(),
+            Self::Calibration => calibration_schema(sheet),
         };
         format!("{schema:#}\n")
     }

@@ -24,16 +24,29 @@ pub(super) fn open(layout: &Layout) -> Result<Study, CliError> {
     Ok(Study::new(layout.clone(), Texts::read(layout)?))
 }
 
-/// The study, in which only the experiments are planned that are not known to be up to date, or are chosen and to be looked at `anyway`.
-pub(super) fn open_stale(layout: &Layout, choice: &Choice, anyway: bool) -> Result<Study, CliError> {
-    let texts = Texts::read(layout)?;
-    let Snapshot { mut experiments, mut used, .. } = Snapshot::current(layout, &texts);
-    if anyway {
-        for (id, known) in experiments.extract_if(.., |_, known| choice.admits_known(known)) {
-            used.insert(id, known.used);
-        }
+/// The texts of a study, and what the last runs left up to date.
+pub(super) struct Found {
+    pub texts: Texts,
+    pub snapshot: Snapshot,
+}
+
+impl Found {
+    pub fn look(layout: &Layout) -> Result<Self, CliError> {
+        let texts = Texts::read(layout)?;
+        let snapshot = Snapshot::current(layout, &texts);
+        Ok(Self { texts, snapshot })
     }
-    Ok(Study::beside(layout.clone(), texts, experiments, used))
+
+    /// The study, in which only the experiments are planned that are not known to be up to date, or are chosen and to be looked at `anyway`.
+    pub fn open(self, layout: &Layout, choice: &Choice, anyway: bool) -> Study {
+        let Snapshot { mut experiments, mut used, .. } = self.snapshot;
+        if anyway {
+            for (id, known) in experiments.extract_if(.., |_, known| choice.admits_known(known)) {
+                used.insert(id, known.used);
+            }
+        }
+        Study::beside(layout.clone(), self.texts, experiments, used)
+    }
 }
 
 impl Choice {
@@ -66,7 +79,8 @@ pub(super) struct Chosen<'a> {
 }
 
 /// The chosen ids, if all of them are known to be up to date, and the index with them.
-pub(super) fn matched<'a>(snapshot: &'a Snapshot, texts: &'a Texts, choice: &Choice) -> Option<BTreeSet<&'a str>> {
+pub(super) fn matched<'a>(found: &'a Found, choice: &Choice) -> Option<BTreeSet<&'a str>> {
+    let Found { texts, snapshot } = found;
     let admitted = |id: &&str| match snapshot.experiments.get(*id) {
         Some(known) => choice.admits_known(known),
         // One that has to be read first is known by its id alone.

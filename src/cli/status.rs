@@ -5,10 +5,10 @@ use super::dry_run::rows;
 use super::error::CliError;
 use super::exit::Exit;
 use super::output::{print, print_unread, print_warnings};
-use super::select::{Chosen, choose, matched};
+use super::select::{Chosen, Found, choose, matched};
 use crate::experiment::line_of;
 use crate::report::publication_reasons;
-use crate::study::{Item, KnownRows, Layout, Reason, Snapshot, State, Study, Texts};
+use crate::study::{Item, KnownRows, Layout, Reason, State, Study, Texts};
 use crate::text::words::counted;
 
 /// What a run would have to do for an experiment.
@@ -33,14 +33,13 @@ impl Standing {
 
 /// One line for each experiment that is not up to date, below it why, and the number of the others.
 pub(super) fn status(layout: &Layout, args: &StatusArgs) -> Result<Exit, CliError> {
-    let texts = Texts::read(layout)?;
-    let snapshot = Snapshot::current(layout, &texts);
-    if let Some(ids) = matched(&snapshot, &texts, &args.choice) {
-        print_warnings(snapshot.warnings(&texts).as_ref());
+    let found = Found::look(layout)?;
+    if let Some(ids) = matched(&found, &args.choice) {
+        print_warnings(found.snapshot.warnings(&found.texts).as_ref());
         print(&total(ids.len(), 0, 0))?;
         return Ok(Exit::AsExpected);
     }
-    let study = Study::beside(layout.clone(), texts, snapshot.experiments, snapshot.used);
+    let study = found.open(layout, &args.choice, false);
     let chosen = choose(&study, &args.choice)?;
     print_unread(chosen.unread.iter().copied());
     print_warnings(study.warnings().as_ref());

@@ -7,23 +7,24 @@ use super::dry_run::dry_run;
 use super::error::CliError;
 use super::exit::Exit;
 use super::output::{print, print_error, print_unread, print_warnings};
-use super::select::{Chosen, choose, matched, open_stale};
+use super::select::{Chosen, Found, choose, matched};
 use super::simulate::{How, Ran, held, print_failures, simulate};
 use crate::report::{Judgement, Published, doubts, judge_all, publish, summary_of};
-use crate::study::{Item, Layout, Lock, RunTimes, Snapshot, State, Study, Texts, remove_journals, save};
+use crate::study::{Item, Layout, Lock, RunTimes, Snapshot, State, Study, remove_journals, save};
 use crate::text::words::counted;
 
 /// Brings the chosen experiments up to date.
 pub(super) fn update(layout: &Layout, args: &RunArgs, common: &Args) -> Result<Exit, CliError> {
+    let mut found = None;
     if !args.force && !args.tables && !args.times && !args.verify {
         // Without lock, YAML, table or thread.
-        let texts = Texts::read(layout)?;
-        let snapshot = Snapshot::current(layout, &texts);
-        if let Some(ids) = matched(&snapshot, &texts, &args.choice) {
-            snapshot.settle(layout);
-            print_warnings(snapshot.warnings(&texts).as_ref());
-            return nothing_to_do(&snapshot, &ids);
+        let looked = Found::look(layout)?;
+        if let Some(ids) = matched(&looked, &args.choice) {
+            looked.snapshot.settle(layout);
+            print_warnings(looked.snapshot.warnings(&looked.texts).as_ref());
+            return nothing_to_do(&looked.snapshot, &ids);
         }
+        found = Some(looked);
     }
     if args.dry_run {
         return dry_run(layout, args, common);
@@ -31,8 +32,12 @@ pub(super) fn update(layout: &Layout, args: &RunArgs, common: &Args) -> Result<E
     // Figures are drawn on the shared pool.
     super::start_threads(common);
     let _lock = Lock::of_study(layout, held(args.no_wait))?;
-    // Read again: another run may have ended before this one got the lock.
-    let mut study = open_stale(layout, &args.choice, args.force || args.verify)?;
+    // Another run may have ended before this one got the lock.
+    let found = match found.filter(|found| found.snapshot.is_latest(layout)) {
+        Some(found) => found,
+        None => Found::look(layout)?,
+    };
+    let mut study = found.open(layout, &args.choice, args.force || args.verify);
     args.limit.apply(&mut study);
     let chosen = choose(&study, &args.choice)?;
     print_unread(chosen.unread.iter().copied());
@@ -57,7 +62,7 @@ pub(super) fn update(layout: &Layout, args: &RunArgs, common: &Args) -> Result<E
 fn nothing_to_do(snapshot: &Snapshot, ids: &BTreeSet<&str>) -> Result<Exit, CliError> {
     let chosen = snapshot.experiments.iter().filter(|(id, _)| ids.contains(id.as_str()));
     let verdicts: BTreeMap<_, _> = chosen.map(|(id, known)| (id.clone(), known.judged.clone())).collect();
-    let judgement = Judgement { verdicts, tables: BTreeMap::new() };
+    let judgement = Judgement { verdicts, ..Judgement::default() };
     print(&format!("Nothing to do.\n{}", verdicts_of(&judgement, ids)))?;
     Ok(Exit::of_verdicts(judgement.verdicts.values().flatten()))
 }

@@ -4,11 +4,10 @@ use std::sync::Arc;
 
 use serde_json::json;
 
-use super::assumption_sheet::{
-    ASSUMPTIONS, AssumptionEntry, AssumptionKind, AssumptionSheet, Cycles, Defaults, Quantity, Takes,
-};
+use super::assumption_sheet::{ASSUMPTIONS, AssumptionEntry, AssumptionKind, AssumptionSheet, Cycles, Quantity, Takes};
 use super::at::At;
 use super::diagnostic::{Findings, Place, Problems, place};
+use super::keys::Key;
 use super::quantity::Dimension;
 use super::reader::{above_zero, count, list, no_such, ratio, scalar, unknown};
 use super::recipe::{AssumptionName, AssumptionValue, Slot};
@@ -17,7 +16,7 @@ use super::stated::{STATED, read_chapters};
 use super::word::{from_word, words};
 use super::yaml::{Entry, Node, Value, read_tree};
 use crate::dynamics::Spline;
-use crate::scene::{Curve, KINDS};
+use crate::scene::{Curve, KINDS, Kind};
 use crate::text::number::significant;
 
 /// Reads the assumptions file from its text; `file` only names it in messages.
@@ -42,17 +41,18 @@ fn read_sheet(root: &Node, text: &str, findings: &Findings) -> Option<Assumption
             sheet.entries.push((AssumptionName::from(key.as_str()), Arc::new(entry)));
         }
     }
-    if let Some(defaults) = entries.iter().find(|entry| entry.key == DEFAULTS) {
-        read_defaults(&defaults.node, &mut sheet, findings)?;
+    let part = |part: &str| entries.iter().find(|entry| entry.key == part).map(|entry| At::Node(&entry.node, findings));
+    if let Some(defaults) = part(DEFAULTS) {
+        read_defaults(defaults, &mut sheet);
     }
-    if let Some(stated) = entries.iter().find(|entry| entry.key == STATED) {
-        sheet.stated = Arc::new(read_chapters(At::Node(&stated.node, findings))?);
+    if let Some(stated) = part(STATED) {
+        sheet.stated = Arc::new(read_chapters(stated)?);
     }
     Some(sheet)
 }
 
 /// The key of the defaults, which no assumption can have for a name.
-const DEFAULTS: &str = "defaults";
+pub(super) const DEFAULTS: &str = "defaults";
 /// The default that is no slot of a scene.
 const RUN: &str = "run";
 
@@ -61,42 +61,54 @@ fn is_name(key: &str) -> bool {
     !key.is_empty() && key.len() <= 64 && key.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')
 }
 
+/// What one of the defaults says.
+enum Default {
+    Cycles(Cycles),
+    Slot(Slot, Vec<(&'static str, AssumptionName)>),
+}
+
 /// `slot: name` for every structure, or `slot: {structure: name}`.
-fn read_defaults(node: &Node, sheet: &mut AssumptionSheet, findings: &Findings) -> Option<()> {
-    let Value::Mapping(entries) = &node.value else {
-        return findings
-            .wrong(node.span, "defaults are written as `slot: assumption` or `slot: {structure: assumption}`");
-    };
-    let mut defaults = Defaults::new();
-    for Entry { key, key_span, node } in entries {
-        if key == RUN {
-            sheet.cycles = read_cycles(At::Node(node, findings));
-            continue;
-        }
-        let Some(slot) = from_word::<Slot>(key) else {
-            let known: Vec<&str> = words::<Slot>().iter().copied().chain([RUN]).collect();
-            no_such::<()>(findings, *key_span, "slot of a scene", key, &known);
-            continue;
-        };
-        let name = |node: &Node| {
-            let name = sheet.named(node, findings)?;
-            fits(sheet, &name, node, slot.takes(), &format!("`{key}`"), findings).then_some(name)
-        };
-        if let Value::Mapping(each) = &node.value {
-            for Entry { key, key_span, node } in each {
-                let Some(kind) = KINDS.iter().find(|kind| kind.name == key) else {
-                    let known: Vec<&str> = KINDS.iter().map(|kind| kind.name).collect();
-                    no_such::<()>(findings, *key_span, "structure", key, &known);
-                    continue;
-                };
-                defaults.extend(name(node).map(|name| ((slot, kind.name), name)));
+fn read_defaults(at: At<'_>, sheet: &mut AssumptionSheet) -> Option<()> {
+    let form = "defaults are written as `slot: assumption` or `slot: {structure: assumption}`";
+    for default in read_each_default(at, form, sheet)? {
+        match default {
+            Default::Cycles(cycles) => sheet.cycles = Some(cycles),
+            Default::Slot(slot, names) => {
+                Arc::make_mut(&mut sheet.defaults).extend(names.into_iter().map(|(kind, name)| ((slot, kind), name)));
             }
-        } else if let Some(name) = name(node) {
-            defaults.extend(KINDS.iter().map(|kind| ((slot, kind.name), name.clone())));
         }
     }
-    sheet.defaults = Arc::new(defaults);
     Some(())
+}
+
+fn read_each_default(at: At<'_>, form: &str, sheet: &AssumptionSheet) -> Option<Vec<Default>> {
+    let slots = words::<Slot>().iter().map(|word| (*word, from_word::<Slot>(word).map_or("", Slot::about)));
+    let known: Vec<Key<'_>> = slots.chain([(RUN, "Cycles of experiments that do not say")]).collect();
+    at.by_known_name(form, "slot of a scene", &known, |key, at| {
+        if key == RUN {
+            return read_cycles(at).map(Default::Cycles);
+        }
+        let slot = from_word::<Slot>(key)?;
+        let name = |at: At<'_>| {
+            let read = |node: &Node, findings: &Findings| {
+                let name = sheet.named(node, findings)?;
+                fits(sheet, &name, node, slot.takes(), &format!("`{key}`"), findings).then_some(name)
+            };
+            at.form(read, |_| parts::text("An assumption"))
+        };
+        let on_each = |at: At<'_>| {
+            let kinds: Vec<Key<'_>> = KINDS.iter().map(|kind| (kind.name, "An assumption")).collect();
+            at.by_known_name("", "structure", &kinds, |kind, at| Some((Kind::named(kind)?.name, name(at)?)))
+        };
+        let on_all = |at: At<'_>| name(at).map(|name| KINDS.iter().map(|kind| (kind.name, name.clone())).collect());
+        let is_mapping = |value: &Value| matches!(value, Value::Mapping(_));
+        at.either(is_mapping, on_each, on_all).map(|names| Default::Slot(slot, names))
+    })
+}
+
+/// The schema of the defaults.
+pub(super) fn describe_defaults(at: At<'_>) -> Option<()> {
+    read_defaults(at, &mut AssumptionSheet::default())
 }
 
 /// `{skip: 25 cycles, average: 100 cycles}`.

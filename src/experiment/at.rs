@@ -11,9 +11,9 @@ use serde::de::DeserializeOwned;
 use serde_json::{Map, Value as Schema, json};
 
 use super::diagnostic::{Findings, Span};
-use super::keys::Keys;
+use super::keys::{Key, Keys};
 use super::quantity::Dimension;
-use super::reader::{self, Fields};
+use super::reader;
 use super::schema::parts::{self, Object};
 use super::yaml::{Entry, Node, Value};
 
@@ -294,7 +294,7 @@ impl<'t> At<'t> {
     /// Keys with values; `what` names the mapping in messages (`a damper`).
     pub fn keys(self, what: &'static str) -> Option<Keys<'t>> {
         match self {
-            Self::Node(node, findings) => Fields::open(node, what, findings).map(Keys::of),
+            Self::Node(node, findings) => Keys::open(node, what, findings),
             Self::Sketch(sketch) => Some(Keys::outline(sketch)),
         }
     }
@@ -318,6 +318,33 @@ impl<'t> At<'t> {
                 schema["type"] = json!("object");
                 schema["additionalProperties"] = sketch.part(sketch.about, |at| read(ANY_NAME, Span::default(), at));
                 schema
+            },
+        )
+    }
+
+    /// Values by names out of a list; `form` says how they are written, `role` what a name is.
+    pub fn by_known_name<T>(
+        self,
+        form: &str,
+        role: &str,
+        known: &[Key<'_>],
+        read: impl Fn(&str, At<'_>) -> Option<T>,
+    ) -> Option<Vec<T>> {
+        let one = |entry: &Entry, findings: &Findings| {
+            if known.iter().any(|(name, _)| *name == entry.key) {
+                return read(&entry.key, At::Node(&entry.node, findings));
+            }
+            let known: Vec<&str> = known.iter().map(|(name, _)| *name).collect();
+            reader::no_such(findings, entry.key_span, role, &entry.key, &known)
+        };
+        self.form(
+            |node, findings| match &node.value {
+                Value::Mapping(entries) => reader::all(entries.iter().map(|entry| one(entry, findings))),
+                _ => findings.wrong(node.span, form),
+            },
+            |sketch| {
+                let each = known.iter().map(|(name, about)| (*name, sketch.part(about, |at| read(name, at))));
+                each.fold(Object::new(sketch.about), |object, (name, schema)| object.optional(name, schema)).schema()
             },
         )
     }
@@ -395,7 +422,7 @@ impl<'t> Choice<'t> {
     /// The mapping behind the colon.
     pub fn keys(&self, what: &'static str) -> Option<Keys<'t>> {
         match self {
-            Self::Read(choice, findings) => choice.fields(what, findings).map(Keys::of),
+            Self::Read(choice, findings) => Keys::open(choice.values(findings)?, what, findings),
             Self::Sketch(_, content, _) => Some(Keys::outline(content)),
         }
     }

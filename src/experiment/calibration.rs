@@ -21,16 +21,18 @@ use std::collections::BTreeSet;
 use std::path::Path;
 
 use serde::Deserialize;
-
-use super::recipe::{AssumptionName, AssumptionValue};
+use serde_json::{Value as Schema, json};
 
 use super::assumption_sheet::{AssumptionSheet, Quantity};
-use super::at::At;
-use super::diagnostic::{Findings, Problems};
+use super::at::{At, Definitions, Sketch};
+use super::diagnostic::{Findings, Problems, Span};
 use super::load::read;
-use super::reader::{Choice, Fields, all, count, list, no_such, number, text, word};
+use super::reader::{all, no_such};
+use super::recipe::{AssumptionName, AssumptionValue};
+use super::schema::parts::{any_of, list};
+use super::schema::{assumptions, of_file};
 use super::solver::read_solver;
-use super::yaml::{Entry, Node, Value, read_tree};
+use super::yaml::{Node, Value, read_tree};
 use crate::measure::SolverChoice;
 
 /// Most combinations of values of a full grid: each is a run of every experiment concerned.
@@ -153,23 +155,26 @@ pub fn load_calibration(path: &Path, sheet: &AssumptionSheet) -> Result<Calibrat
 /// Every mistake of the file, with its place.
 pub fn parse_calibration(file: &str, text: &str, sheet: &AssumptionSheet) -> Result<Calibration, Problems> {
     let findings = Findings::default();
-    let calibration = read_tree(text, &findings).and_then(|root| calibration(&root, sheet, &findings));
+    let calibration = read_tree(text, &findings).and_then(|root| calibration(At::Node(&root, &findings), sheet));
     findings.finish(file, text, calibration)
 }
 
-fn calibration(root: &Node, sheet: &AssumptionSheet, findings: &Findings) -> Option<Calibration> {
-    let fields = Fields::open(root, "a calibration", findings)?;
-    let title = fields.required("title", |node| text(node, findings));
-    let about = fields.required("about", |node| text(node, findings));
-    let finding = fields.optional("finding", |node| text(node, findings));
-    let inputs = fields.required("calibrate", |node| inputs(node, sheet, findings));
-    let search = fields.optional("search", |node| search(node, findings));
-    let ensemble = fields.optional("ensemble", |node| some(node, "members", findings));
-    let residual = fields.optional("residual", |node| word::<Residual>(node, "residual", findings));
-    let ids = |node| list(node, findings, |node| text(node, findings));
-    let fit = fields.required("fit", ids);
-    let hold_out = fields.optional("hold_out", ids);
-    fields.close()?;
+fn calibration(at: At<'_>, sheet: &AssumptionSheet) -> Option<Calibration> {
+    let keys = at.keys("a calibration")?;
+    let title = keys.required("title", "Its title", |at| at.text());
+    let about = keys.required("about", "What it is to show", |at| at.text());
+    let finding = keys.optional("finding", "What it showed, written when it has been run", |at| at.text());
+    let free = "The inputs that are free, with the values that are tried";
+    let inputs = keys.required("calibrate", free, |at| inputs(at, sheet));
+    let search = keys.optional("search", "How sets of values are chosen; every combination if absent", search);
+    let of_chaotic = "Members of the ensemble of a chaotic point; single runs if absent";
+    let ensemble = keys.optional("ensemble", of_chaotic, |at| some(at, "members"));
+    let of_entry = "What the residual of an entry is";
+    let residual = keys.optional("residual", of_entry, |at| at.word::<Residual>("residual"));
+    let ids = |at: At<'_>| at.list(|at| at.text());
+    let fit = keys.required("fit", "The entries that are fitted, experiment/entry", ids);
+    let hold_out = keys.optional("hold_out", "The entries that are held out", ids);
+    keys.close()?;
     let calibration = Calibration {
         title: title?,
         about: about?,
@@ -183,8 +188,7 @@ fn calibration(root: &Node, sheet: &AssumptionSheet, findings: &Findings) -> Opt
     };
     let combinations = calibration.combinations();
     if calibration.search == CalibrationSearch::Grid && combinations > MOST_COMBINATIONS {
-        return findings.report(
-            root.span,
+        return at.report(
             format!("{combinations} combinations of values: {MOST_COMBINATIONS} at most"),
             Some("write `search: {coordinate: {starts: 4, budget: 400 sets}}`, which tries a part of them".into()),
         );
@@ -193,98 +197,141 @@ fn calibration(root: &Node, sheet: &AssumptionSheet, findings: &Findings) -> Opt
 }
 
 /// `grid`, or `{coordinate: {starts: 4, budget: 400 sets}}`.
-fn search(node: &Node, findings: &Findings) -> Option<CalibrationSearch> {
-    let choice = Choice::read(node, "a search", &["grid", "coordinate"], findings)?;
-    if choice.name == "grid" {
-        choice.bare(findings)?;
-        return Some(CalibrationSearch::Grid);
-    }
-    let fields = choice.fields("a coordinate search", findings)?;
-    let starts = fields.required("starts", |node| some(node, "starts", findings));
-    let budget = fields.required("budget", |node| some(node, "sets", findings));
-    fields.close()?;
-    Some(CalibrationSearch::Coordinate { starts: starts?, budget: budget? })
+fn search(at: At<'_>) -> Option<CalibrationSearch> {
+    let forms = [("grid", "Every combination"), ("coordinate", "One input after another, from several starts")];
+    at.choose("a search", &forms, |choice| {
+        if choice.name() == "grid" {
+            choice.bare()?;
+            return Some(CalibrationSearch::Grid);
+        }
+        let keys = choice.keys("a coordinate search")?;
+        let starts = keys.required("starts", "Starts of the search", |at| some(at, "starts"));
+        let budget = keys.required("budget", "Sets of values that are tried", |at| some(at, "sets"));
+        keys.close()?;
+        Some(CalibrationSearch::Coordinate { starts: starts?, budget: budget? })
+    })
 }
 
 /// A number of things, one at least.
-fn some(node: &Node, noun: &str, findings: &Findings) -> Option<u32> {
-    match count(node, noun, MOST_SETS, findings)? {
-        0 => findings.wrong(node.span, format!("no {noun} at all would find nothing")),
-        some => Some(some),
-    }
+fn some(at: At<'_>, noun: &str) -> Option<u32> {
+    at.count_from(1, noun, MOST_SETS, &format!("no {noun} at all would find nothing"))
 }
 
-fn inputs(node: &Node, sheet: &AssumptionSheet, findings: &Findings) -> Option<Vec<CalibrationInput>> {
-    let Value::Mapping(entries) = &node.value else {
-        return findings.wrong(node.span, "inputs are written as `assumption: [value, …]`");
+fn inputs(at: At<'_>, sheet: &AssumptionSheet) -> Option<Vec<CalibrationInput>> {
+    let solvers = "Solvers that are tried";
+    let rules = match at {
+        At::Node(..) => Schema::Null,
+        At::Sketch(it) => json!({"properties": {SOLVER: it.part(solvers, tried_solvers)}, "minProperties": 1}),
     };
-    let mut inputs: Vec<CalibrationInput> = Vec::new();
+    let read = |key: &str, span: Span, at: At<'_>| {
+        let tried = if key == SOLVER { tried_solvers(at) } else { tried(key, span, at, sheet) }?;
+        Some((CalibrationInput { name: key.into(), tried }, span))
+    };
+    let inputs = at.by_name(rules, "inputs are written as `assumption: [value, …]`", read)?;
     let mut moved = BTreeSet::new();
-    for entry in entries {
-        let input = input(entry, sheet, findings)?;
+    for (input, span) in &inputs {
         if let Tried::Values { moves, .. } = &input.tried
             && let Some(name) = moves.iter().find(|name| !moved.insert((*name).clone()))
         {
-            return findings.wrong(entry.key_span, format!("`{name}` is moved by two inputs"));
+            return at.wrong_at(*span, format!("`{name}` is moved by two inputs"));
         }
-        inputs.push(input);
     }
-    if inputs.is_empty() { findings.wrong(node.span, "there is no input to calibrate") } else { Some(inputs) }
+    if inputs.is_empty() {
+        return at.wrong("there is no input to calibrate");
+    }
+    Some(inputs.into_iter().map(|(input, _)| input).collect())
+}
+
+/// The input that is no assumption.
+const SOLVER: &str = "solver";
+
+fn tried_solvers(at: At<'_>) -> Option<Tried> {
+    at.list(read_solver).map(Tried::Solvers)
 }
 
 /// `assumption: [value, …]`, `name: {moves: [assumption, …], values: [value, …]}` with a value for all of them or a list of one
-/// for each, `name: {scales: assumption, by: [factor, …]}`, or `solver: [event_driven, {fixed_step: …}]`.
-fn input(entry: &Entry, sheet: &AssumptionSheet, findings: &Findings) -> Option<CalibrationInput> {
-    let Entry { key, key_span, node } = entry;
-    let input = |tried| Some(CalibrationInput { name: key.clone(), tried });
-    if key == "solver" {
-        return input(Tried::Solvers(list(node, findings, |node| read_solver(At::Node(node, findings)))?));
-    }
-    let value = |node: &Node, moves: &[AssumptionName]| {
-        let are_places =
-            |name: &AssumptionName| sheet.get(name).is_some_and(|entry| entry.kind.quantity == Some(Quantity::Places));
-        // Places are a list themselves.
-        let (Value::Sequence(each), false) = (&node.value, matches!(moves, [name] if are_places(name))) else {
-            return all(moves.iter().map(|name| sheet.value_of(name, node, findings)));
-        };
-        if each.len() != moves.len() {
-            return findings.wrong(node.span, format!("{} values for {} assumptions", each.len(), moves.len()));
-        }
-        all(moves.iter().zip(each).map(|(name, node)| sheet.value_of(name, node, findings)))
+/// for each, or `name: {scales: assumption, by: [factor, …]}`.
+fn tried(key: &str, span: Span, at: At<'_>, sheet: &AssumptionSheet) -> Option<Tried> {
+    let of = |moves: Vec<AssumptionName>, values| {
+        let units = moves.iter().map(|name| sheet.get(name).map_or("", |entry| entry.kind.unit())).collect();
+        Tried::Values { units, moves, values }
     };
-    let units = |moves: &[AssumptionName]| -> Vec<&'static str> {
-        moves.iter().map(|name| sheet.get(name).map_or("", |entry| entry.kind.unit())).collect()
-    };
-    let values = |node: &Node, moves: &[AssumptionName]| list(node, findings, |node| value(node, moves));
-    if matches!(node.value, Value::Sequence(_)) {
-        let Some((name, _)) = sheet.iter().find(|(name, _)| name.as_str() == key) else {
-            return no_such(findings, *key_span, "assumption", key, &sheet.names());
+    let listed = |at: At<'_>| {
+        let known = sheet.iter().map(|(name, _)| name).find(|name| name.as_str() == key);
+        let name = match at {
+            At::Node(_, findings) => known.or_else(|| no_such(findings, span, "assumption", key, &sheet.names())),
+            At::Sketch(_) => None,
         };
-        let tried = values(node, std::slice::from_ref(name))?;
-        return input(Tried::Values {
-            units: units(std::slice::from_ref(name)),
-            moves: vec![name.clone()],
-            values: tried,
+        let moves: Option<Vec<_>> = name.map(|name| vec![name.clone()]);
+        let values = values(at, moves.as_deref(), sheet);
+        moves.zip(values).map(|(moves, values)| of(moves, values))
+    };
+    let named = |at: At<'_>| at.form(|node, findings| sheet.named(node, findings), |_| assumptions::any(sheet));
+    let keyed = |at: At<'_>| {
+        let keys = at.keys("an input")?;
+        let forms = [("moves", "Assumptions that are moved together"), ("scales", "The assumption that is scaled")];
+        let (of_moves, of_factors) = ("A value for all of them, or a list of one for each", "Factors");
+        let tried = keys.exactly_one(&forms, |key, at| match key {
+            "moves" => {
+                let moves = at.list(named);
+                let values = keys.optional("values", of_moves, |at| values(at, moves.as_deref(), sheet));
+                let values = values?.or_else(|| keys.lacks("values"));
+                moves.zip(values).map(|(moves, values)| of(moves, values))
+            }
+            _ => {
+                let of = named(at);
+                let by = keys.optional("by", of_factors, |at| at.list(factor))?.or_else(|| keys.lacks("by"));
+                of.zip(by).map(|(of, by)| Tried::Factors { of, by })
+            }
         });
-    }
-    let named = |node: &Node| sheet.named(node, findings);
-    let fields = Fields::open(node, "an input", findings)?;
-    let tried = match fields.exactly_one(&["moves", "scales"]) {
-        Some(("moves", node)) => {
-            let moves = list(node, findings, named);
-            let tried = fields.required("values", |node| values(node, moves.as_ref()?));
-            moves.zip(tried).map(|(moves, values)| Tried::Values { units: units(&moves), moves, values })
-        }
-        Some((_, node)) => {
-            let factor = |node: &Node| match number(node, findings)? {
-                factor if factor > 0.0 => Some(factor),
-                _ => findings.wrong(node.span, "a factor above zero is wanted"),
-            };
-            let by = fields.required("by", |node| list(node, findings, factor));
-            named(node).zip(by).map(|(of, by)| Tried::Factors { of, by })
-        }
-        None => None,
+        keys.rule(
+            || json!({"if": {"required": ["moves"]}, "then": {"required": ["values"]}, "else": {"required": ["by"]}}),
+        );
+        keys.close()?;
+        tried
     };
-    fields.close()?;
-    input(tried?)
+    at.either(|value| matches!(value, Value::Sequence(_)), listed, keyed)
+}
+
+fn factor(at: At<'_>) -> Option<f64> {
+    match at.number()? {
+        factor if factor > 0.0 => Some(factor),
+        _ => at.wrong("a factor above zero is wanted"),
+    }
+}
+
+/// The values that are tried: of each assumption that is moved one, or the same for all.
+fn values(at: At<'_>, moves: Option<&[AssumptionName]>, sheet: &AssumptionSheet) -> Option<Vec<Vec<AssumptionValue>>> {
+    at.list(|at| {
+        at.form(
+            |node, findings| value(node, moves?, sheet, findings),
+            |_| any_of("A value", vec![assumptions::value(), list("One for each", assumptions::value())]),
+        )
+    })
+}
+
+fn value(
+    node: &Node,
+    moves: &[AssumptionName],
+    sheet: &AssumptionSheet,
+    findings: &Findings,
+) -> Option<Vec<AssumptionValue>> {
+    let are_places =
+        |name: &AssumptionName| sheet.get(name).is_some_and(|entry| entry.kind.quantity == Some(Quantity::Places));
+    // Places are a list themselves.
+    let (Value::Sequence(each), false) = (&node.value, matches!(moves, [name] if are_places(name))) else {
+        return all(moves.iter().map(|name| sheet.value_of(name, node, findings)));
+    };
+    if each.len() != moves.len() {
+        return findings.wrong(node.span, format!("{} values for {} assumptions", each.len(), moves.len()));
+    }
+    all(moves.iter().zip(each).map(|(name, node)| sheet.value_of(name, node, findings)))
+}
+
+/// JSON Schema of a calibration file, with the assumptions of the study.
+#[must_use]
+pub fn calibration_schema(sheet: &AssumptionSheet) -> Schema {
+    let definitions = Definitions::default();
+    let schema = Sketch::of("A calibration", &definitions, |at| calibration(at, sheet));
+    of_file("Calibration", schema, definitions)
 }

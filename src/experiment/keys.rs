@@ -5,10 +5,11 @@ use std::cell::RefCell;
 use serde_json::{Value as Schema, json};
 
 use super::at::{At, Sketch};
-use super::diagnostic::Span;
-use super::reader::{Fields, all};
+use super::diagnostic::{Findings, Span};
+use super::reader::{all, kind, unknown};
 use super::schema::parts::Object;
-use super::yaml::Entry;
+use super::word::closest;
+use super::yaml::{Entry, Node, Value};
 
 /// A mapping. The keys that a reader asks for are the keys that exist.
 pub(super) enum Keys<'t> {
@@ -22,8 +23,9 @@ pub(super) enum Keys<'t> {
 pub(super) type Key<'a> = (&'static str, &'a str);
 
 impl<'t> Keys<'t> {
-    pub fn of(fields: Fields<'t>) -> Self {
-        Self::Read(fields)
+    /// Opens `node` as a mapping; `what` names it in messages (`a damper`).
+    pub fn open(node: &'t Node, what: &'static str, findings: &'t Findings) -> Option<Self> {
+        Fields::open(node, what, findings).map(Self::Read)
     }
 
     pub fn outline(sketch: &'t Sketch<'t>) -> Self {
@@ -33,7 +35,7 @@ impl<'t> Keys<'t> {
     /// Where the mapping stands.
     pub fn span(&self) -> Span {
         match self {
-            Self::Read(fields) => fields.span(),
+            Self::Read(fields) => fields.span,
             Self::Outline(..) => Span::default(),
         }
     }
@@ -41,7 +43,7 @@ impl<'t> Keys<'t> {
     /// Reports a problem of the mapping as a whole.
     pub fn wrong<T>(&self, message: &str) -> Option<T> {
         match self {
-            Self::Read(fields) => fields.findings.wrong(fields.span(), message),
+            Self::Read(fields) => fields.findings.wrong(fields.span, message),
             Self::Outline(..) => None,
         }
     }
@@ -87,7 +89,7 @@ impl<'t> Keys<'t> {
         }
     }
 
-    /// A part that there is only where `holds`, and which may be absent there; a schema allows it everywhere.
+    /// A part that there is only where `holds`, and which may be absent there.
     #[expect(clippy::option_option, reason = "absent and wrong are two things")]
     pub fn optional_where<T>(
         &self,
@@ -96,13 +98,10 @@ impl<'t> Keys<'t> {
         about: &str,
         read: impl FnOnce(At<'_>) -> Option<T>,
     ) -> Option<Option<T>> {
-        match self {
-            Self::Read(_) if !holds => Some(None),
-            _ => self.optional(key, about, read),
-        }
+        if holds { self.optional(key, about, read) } else { Some(None) }
     }
 
-    /// A part that there is only where `holds`, and which must be there; a schema allows it everywhere.
+    /// A part that there is only where `holds`, and which must be there.
     #[expect(clippy::option_option, reason = "absent and wrong are two things")]
     pub fn required_where<T>(
         &self,
@@ -111,9 +110,13 @@ impl<'t> Keys<'t> {
         about: &str,
         read: impl FnOnce(At<'_>) -> Option<T>,
     ) -> Option<Option<T>> {
-        match self {
-            Self::Read(_) if holds => self.required(key, about, read).map(Some),
-            _ => self.optional_where(holds, key, about, read),
+        if holds { self.required(key, about, read).map(Some) } else { Some(None) }
+    }
+
+    /// A part that may be absent, for the schema: it is read elsewhere.
+    pub fn elsewhere<T>(&self, key: &'static str, about: &str, read: impl FnOnce(At<'_>) -> Option<T>) {
+        if let Self::Outline(sketch, object) = self {
+            object.borrow_mut().add(key, part(sketch, about, read));
         }
     }
 
@@ -237,6 +240,112 @@ impl<'t> Keys<'t> {
                 None
             }
         }
+    }
+}
+
+/// A mapping as it is written, while it is read.
+pub(super) struct Fields<'t> {
+    findings: &'t Findings,
+    entries: &'t [Entry],
+    what: &'static str,
+    span: Span,
+    asked: RefCell<Vec<&'static str>>,
+    /// Of each of these groups one key should have been there.
+    missing: RefCell<Vec<Vec<&'static str>>>,
+}
+
+impl<'t> Fields<'t> {
+    fn open(node: &'t Node, what: &'static str, findings: &'t Findings) -> Option<Self> {
+        let Value::Mapping(entries) = &node.value else {
+            return findings.report(
+                node.span,
+                format!("{what} is written as keys with values, not as {}", kind(node)),
+                Some("write `key: value` lines below it, or {key: value, key: value}".into()),
+            );
+        };
+        let span = node.span;
+        Some(Self { findings, entries, what, span, asked: RefCell::default(), missing: RefCell::default() })
+    }
+
+    /// The node under `key`, if it is there.
+    fn get(&self, key: &'static str) -> Option<&'t Node> {
+        self.entry(key).map(|entry| &entry.node)
+    }
+
+    fn entry(&self, key: &'static str) -> Option<&'t Entry> {
+        let mut asked = self.asked.borrow_mut();
+        if !asked.contains(&key) {
+            asked.push(key);
+        }
+        self.entries.iter().find(|entry| entry.key == key)
+    }
+
+    /// A part that must be there. `None`: reported.
+    fn required<T>(&self, key: &'static str, read: impl FnOnce(&'t Node) -> Option<T>) -> Option<T> {
+        match self.get(key) {
+            Some(node) => read(node),
+            None => {
+                self.missing.borrow_mut().push(vec![key]);
+                None
+            }
+        }
+    }
+
+    /// A part that may be absent. `None`: reported; `Some(None)`: absent.
+    #[expect(clippy::option_option, reason = "absent and wrong are two things")]
+    fn optional<T>(&self, key: &'static str, read: impl FnOnce(&'t Node) -> Option<T>) -> Option<Option<T>> {
+        self.get(key).map_or(Some(None), |node| read(node).map(Some))
+    }
+
+    /// The one key among `keys` that is given, if any; two are reported.
+    #[expect(clippy::option_option, reason = "absent and wrong are two things")]
+    fn at_most_one(&self, keys: &[&'static str]) -> Option<Option<(&'static str, &'t Node)>> {
+        let mut given: Vec<_> = keys.iter().filter_map(|key| self.entry(key).map(|entry| (*key, entry))).collect();
+        given.sort_by_key(|(_, entry)| entry.key_span.start);
+        match given.as_slice() {
+            [] => Some(None),
+            [(key, entry)] => Some(Some((key, &entry.node))),
+            [(first, _), (second, entry), ..] => self.findings.report(
+                entry.key_span,
+                format!("{} has both `{first}` and `{second}`, which say the same", self.what),
+                Some("keep one of the two".into()),
+            ),
+        }
+    }
+
+    /// The one key among `keys` that is given; none or two are reported.
+    fn exactly_one(&self, keys: &[&'static str]) -> Option<(&'static str, &'t Node)> {
+        let given = self.at_most_one(keys)?;
+        if given.is_none() {
+            self.missing.borrow_mut().push(keys.to_vec());
+        }
+        given
+    }
+
+    /// The keys that are there and have not been asked for yet.
+    fn others(&self) -> impl Iterator<Item = &'t Entry> {
+        let asked = self.asked.borrow().clone();
+        self.entries.iter().filter(move |entry| !asked.contains(&&*entry.key))
+    }
+
+    /// Reports what is missing and what was never asked for.
+    fn close(self) -> Option<()> {
+        let asked = self.asked.borrow();
+        let unknown_keys = || self.entries.iter().filter(|entry| !asked.contains(&&*entry.key));
+        let mut fine = self.missing.borrow().is_empty();
+        for group in self.missing.borrow().iter() {
+            // A misspelt key is reported itself, with the right spelling.
+            let meant = |entry: &Entry| closest(&entry.key, asked.iter().copied());
+            if !unknown_keys().filter_map(meant).any(|key| group.contains(&key)) {
+                let wanted: Vec<_> = group.iter().map(|key| format!("`{key}`")).collect();
+                self.findings.wrong::<()>(self.span, format!("{} lacks {}", self.what, wanted.join(" or ")));
+            }
+        }
+        for entry in unknown_keys() {
+            fine = false;
+            unknown::<()>(self.findings, entry.key_span, self.what, "key", &entry.key, &asked);
+        }
+        fine.then_some(())
     }
 }
 

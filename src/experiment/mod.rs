@@ -56,7 +56,8 @@ pub use assumption_sheet::{
     ASSUMPTIONS, AssumptionEntry, AssumptionKind, AssumptionSheet, Cycles, Moved, Quantity, Takes,
 };
 pub use calibration::{
-    Calibration, CalibrationInput, CalibrationSearch, Residual, Tried, load_calibration, parse_calibration,
+    Calibration, CalibrationInput, CalibrationSearch, Residual, Tried, calibration_schema, load_calibration,
+    parse_calibration,
 };
 pub use continuation::{BranchColumn, Continuation, RowSource, Stability};
 pub use continued::{ContinuedSweep, Direction};

@@ -1,128 +1,13 @@
 //! Typed reading of a node tree: each reader gives its value, or reports what is wrong and gives `None`.
 //!
-//! A reader reads all of its parts before it gives up, so one pass finds every mistake. The keys that a reader asks for
-//! are the keys that exist: all others are reported by [`Fields::close`], with the nearest that was asked for.
-
-use std::cell::RefCell;
+//! A reader reads all of its parts before it gives up, so one pass finds every mistake.
 
 use serde::de::DeserializeOwned;
 
 use super::diagnostic::{Findings, Span};
 use super::quantity::{Dimension, QuantityError, parse_number, parse_quantity};
 use super::word::{closest, from_word, words};
-use super::yaml::{Entry, Node, Value};
-
-/// A mapping while it is read.
-pub(super) struct Fields<'t> {
-    pub(super) findings: &'t Findings,
-    entries: &'t [Entry],
-    what: &'static str,
-    span: Span,
-    asked: RefCell<Vec<&'static str>>,
-    /// Of each of these groups one key should have been there.
-    missing: RefCell<Vec<Vec<&'static str>>>,
-}
-
-impl<'t> Fields<'t> {
-    /// Opens `node` as a mapping; `what` names it in messages (`a damper`).
-    pub fn open(node: &'t Node, what: &'static str, findings: &'t Findings) -> Option<Self> {
-        let Value::Mapping(entries) = &node.value else {
-            return findings.report(
-                node.span,
-                format!("{what} is written as keys with values, not as {}", kind(node)),
-                Some("write `key: value` lines below it, or {key: value, key: value}".into()),
-            );
-        };
-        let span = node.span;
-        Some(Self { findings, entries, what, span, asked: RefCell::default(), missing: RefCell::default() })
-    }
-
-    /// Where the mapping stands.
-    pub fn span(&self) -> Span {
-        self.span
-    }
-
-    /// The node under `key`, if it is there.
-    pub fn get(&self, key: &'static str) -> Option<&'t Node> {
-        self.entry(key).map(|entry| &entry.node)
-    }
-
-    fn entry(&self, key: &'static str) -> Option<&'t Entry> {
-        let mut asked = self.asked.borrow_mut();
-        if !asked.contains(&key) {
-            asked.push(key);
-        }
-        self.entries.iter().find(|entry| entry.key == key)
-    }
-
-    /// A part that must be there. `None`: reported.
-    pub fn required<T>(&self, key: &'static str, read: impl FnOnce(&'t Node) -> Option<T>) -> Option<T> {
-        match self.get(key) {
-            Some(node) => read(node),
-            None => {
-                self.missing.borrow_mut().push(vec![key]);
-                None
-            }
-        }
-    }
-
-    /// A part that may be absent. `None`: reported; `Some(None)`: absent.
-    #[expect(clippy::option_option, reason = "absent and wrong are two things")]
-    pub fn optional<T>(&self, key: &'static str, read: impl FnOnce(&'t Node) -> Option<T>) -> Option<Option<T>> {
-        self.get(key).map_or(Some(None), |node| read(node).map(Some))
-    }
-
-    /// The one key among `keys` that is given, if any; two are reported.
-    #[expect(clippy::option_option, reason = "absent and wrong are two things")]
-    pub fn at_most_one(&self, keys: &[&'static str]) -> Option<Option<(&'static str, &'t Node)>> {
-        let mut given: Vec<_> = keys.iter().filter_map(|key| self.entry(key).map(|entry| (*key, entry))).collect();
-        given.sort_by_key(|(_, entry)| entry.key_span.start);
-        match given.as_slice() {
-            [] => Some(None),
-            [(key, entry)] => Some(Some((key, &entry.node))),
-            [(first, _), (second, entry), ..] => self.findings.report(
-                entry.key_span,
-                format!("{} has both `{first}` and `{second}`, which say the same", self.what),
-                Some("keep one of the two".into()),
-            ),
-        }
-    }
-
-    /// The one key among `keys` that is given; none or two are reported.
-    pub fn exactly_one(&self, keys: &[&'static str]) -> Option<(&'static str, &'t Node)> {
-        let given = self.at_most_one(keys)?;
-        if given.is_none() {
-            self.missing.borrow_mut().push(keys.to_vec());
-        }
-        given
-    }
-
-    /// The keys that are there and have not been asked for yet.
-    pub fn others(&self) -> impl Iterator<Item = &'t Entry> {
-        let asked = self.asked.borrow().clone();
-        self.entries.iter().filter(move |entry| !asked.contains(&&*entry.key))
-    }
-
-    /// Reports what is missing and what was never asked for.
-    pub fn close(self) -> Option<()> {
-        let asked = self.asked.borrow();
-        let unknown_keys = || self.entries.iter().filter(|entry| !asked.contains(&&*entry.key));
-        let mut fine = self.missing.borrow().is_empty();
-        for group in self.missing.borrow().iter() {
-            // A misspelt key is reported itself, with the right spelling.
-            let meant = |entry: &Entry| closest(&entry.key, asked.iter().copied());
-            if !unknown_keys().filter_map(meant).any(|key| group.contains(&key)) {
-                let wanted: Vec<_> = group.iter().map(|key| format!("`{key}`")).collect();
-                self.findings.wrong::<()>(self.span, format!("{} lacks {}", self.what, wanted.join(" or ")));
-            }
-        }
-        for entry in unknown_keys() {
-            fine = false;
-            unknown::<()>(self.findings, entry.key_span, self.what, "key", &entry.key, &asked);
-        }
-        fine.then_some(())
-    }
-}
+use super::yaml::{Node, Value};
 
 /// Reports a word that is none of the known ones.
 pub(super) fn unknown<T>(
@@ -153,7 +38,7 @@ fn suggestion(findings: &Findings, given: &str, known: &[&str]) -> Option<String
 }
 
 /// What a node is, in words.
-fn kind(node: &Node) -> &'static str {
+pub(super) fn kind(node: &Node) -> &'static str {
     match node.value {
         Value::Nothing => "nothing",
         Value::Scalar(_) => "a single value",
@@ -312,10 +197,8 @@ impl<'t> Choice<'t> {
     }
 
     /// The mapping behind the colon.
-    pub fn fields(&self, what: &'static str, findings: &'t Findings) -> Option<Fields<'t>> {
-        match self.content {
-            Some(node) => Fields::open(node, what, findings),
-            None => findings.wrong(self.span, format!("`{}` needs its values: {}: {{…}}", self.name, self.name)),
-        }
+    pub fn values(&self, findings: &Findings) -> Option<&'t Node> {
+        let wanted = || findings.wrong(self.span, format!("`{}` needs its values: {}: {{…}}", self.name, self.name));
+        self.content.or_else(wanted)
     }
 }

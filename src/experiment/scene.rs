@@ -7,7 +7,7 @@ use serde_json::json;
 
 use super::assumption_reader::{fits, read_curve};
 use super::assumption_sheet::{ASSUMPTIONS, Takes};
-use super::at::At;
+use super::at::{At, Sketch};
 use super::diagnostic::{Findings, Span};
 use super::keys::Keys;
 use super::quantity::{Dimension, parse_number};
@@ -43,12 +43,18 @@ pub(super) struct ReadScene {
 
 /// Reads what stands under `scene`.
 pub(super) fn read_scene(at: At<'_>, assumptions: &Assumptions) -> Option<ReadScene> {
-    let reader = SceneReader {
+    let reader = |unknown: &'static Kind| SceneReader {
         assumptions,
+        unknown,
         swept: RefCell::default(),
         optimised: RefCell::default(),
         parts: RefCell::default(),
     };
+    if let At::Sketch(it) = at {
+        describe(it, |at, kind| reader(kind).recipe(at));
+        return None;
+    }
+    let reader = reader(KINDS[0]);
     let recipe = reader.recipe(at)?;
     Some(ReadScene {
         recipe,
@@ -58,54 +64,46 @@ pub(super) fn read_scene(at: At<'_>, assumptions: &Assumptions) -> Option<ReadSc
     })
 }
 
+/// What dampers and excitation may say depends on the structure: a schema asks which it is.
+fn describe(it: &Sketch<'_>, recipe: impl Fn(At<'_>, &'static Kind) -> Option<Recipe>) {
+    let scene = |lumped: bool| {
+        let kind = KINDS.iter().rfind(|kind| kind.is_lumped() == lumped)?;
+        Some(it.part(it.about(), |at| recipe(at, kind)))
+    };
+    let lumped = KINDS.iter().filter(|kind| kind.is_lumped());
+    let lumped: Vec<_> = lumped.map(|kind| json!({"properties": {"structure": {"required": [kind.name]}}})).collect();
+    it.add(json!({
+        "if": {"required": ["structure"], "anyOf": lumped},
+        "then": scene(true),
+        "else": scene(false),
+    }));
+}
+
 pub(super) struct SceneReader<'t> {
     pub(super) assumptions: &'t Assumptions,
+    /// Stands for a structure that is wrong, or that a schema does not know.
+    unknown: &'static Kind,
     pub(super) swept: RefCell<Vec<(Parameter, Span)>>,
     optimised: RefCell<Vec<Span>>,
     pub(super) parts: RefCell<Vec<(Part, Span)>>,
 }
 
-// Keys that only one mass has, or only a structure with sides.
-const UNDAMPED_MASS: &str = "undamped_mass";
-const MASSLESS_RATIO: &str = "massless_ratio";
 pub(super) const AT: &str = "at";
-const ARRAY: &str = "array";
-const MASS_READING: &str = "mass_reading";
-const GAP_FREQUENCY: &str = "gap_frequency";
-// A key that only a structure with sides must have.
-const PARTICLE_SHARE: &str = "particle_share";
-
-/// Which keys there are on which structure, for a schema, where no reader asks for them by itself.
-fn by_structure() -> serde_json::Value {
-    let present = |keys: &[&str]| keys.iter().map(|key| json!({"required": [key]})).collect::<Vec<_>>();
-    let dampers = |rule: serde_json::Value| json!({"dampers": {"items": rule}});
-    let lumped = KINDS.iter().filter(|kind| kind.is_lumped());
-    let lumped: Vec<_> = lumped.map(|kind| json!({"properties": {"structure": {"required": [kind.name]}}})).collect();
-    json!({
-        "if": {"required": ["structure"], "anyOf": lumped},
-        "then": {"properties": dampers(json!({
-            "not": {"anyOf": present(&[AT, ARRAY, MASS_READING, GAP_FREQUENCY])},
-        }))},
-        "else": {"not": {"required": [UNDAMPED_MASS]}, "properties": dampers(json!({
-            "required": [AT, PARTICLE_SHARE],
-            "not": {"required": [MASSLESS_RATIO]},
-        }))},
-    })
-}
 
 impl SceneReader<'_> {
     fn recipe(&self, at: At<'_>) -> Option<Recipe> {
         let keys = at.keys("the scene")?;
-        let structure = keys.required("structure", "The vibrating structure", |at| {
+        let vibrating = "The vibrating structure";
+        let structure = keys.required("structure", vibrating, |at| {
             self.parts.borrow_mut().push((Part::Structure, at.span()));
-            read_structure(at, self)
+            at.named("structure", vibrating, |at| read_structure(at, self))
         });
-        // What dampers and excitation may say depends on the structure; one that is wrong is taken for a single mass.
-        let kind = structure.as_ref().map_or(KINDS[0], |structure| structure.kind);
+        // What dampers and excitation may say depends on the structure.
+        let kind = structure.as_ref().map_or(self.unknown, |structure| structure.kind);
         let gravity = keys.optional("gravity", Slot::Gravity.about(), |at| {
             self.slot(at, Slot::Gravity, kind, |at| at.quantity(Dimension::Acceleration))
         });
-        let undamped_mass = keys.optional_where(kind.is_lumped(), UNDAMPED_MASS, Slot::UndampedMass.about(), |at| {
+        let undamped_mass = keys.optional_where(kind.is_lumped(), "undamped_mass", Slot::UndampedMass.about(), |at| {
             self.reading(at, Slot::UndampedMass, kind)
         });
         let mass_measure =
@@ -121,7 +119,6 @@ impl SceneReader<'_> {
             self.parts.borrow_mut().push((Part::Observe, at.span()));
             self.observe(at, kind)
         });
-        keys.rule(by_structure);
         keys.close()?;
         Some(Recipe {
             structure: structure?.recipe,
@@ -138,7 +135,8 @@ impl SceneReader<'_> {
     }
 
     fn dampers(&self, at: At<'_>, kind: &'static Kind) -> Option<Vec<DamperRecipe>> {
-        let damper = |at: At<'_>| at.named("damper", "A particle impact damper", |at| self.damper(at, kind));
+        let name = if kind.is_lumped() { "damper" } else { "damper_at_place" };
+        let damper = |at: At<'_>| at.named(name, "A particle impact damper", |at| self.damper(at, kind));
         match at {
             At::Node(Node { value: Value::Sequence(items), .. }, _) => {
                 if items.is_empty() {
@@ -165,7 +163,7 @@ impl SceneReader<'_> {
         // One mass has one mode and no enclosure unless the file names one; on a beam or plate there always is one.
         let lumped = kind.is_lumped();
         let place = self.at(&keys, kind, [Parameter::DamperX, Parameter::DamperY]);
-        let array = keys.optional_where(!lumped, ARRAY, "Dampers side by side", |at| self.array(at, kind));
+        let array = keys.optional_where(!lumped, "array", "Dampers side by side", |at| self.array(at, kind));
         let masses =
             [("mass_ratio", "m′: mass of the damper over that of the structure"), ("mass", "Mass of the damper")];
         let mass = keys.exactly_one(&masses, |key, at| match key {
@@ -173,21 +171,20 @@ impl SceneReader<'_> {
             _ => self.sweepable(at, Parameter::MassRatio).map(MassRecipe::Ratio),
         });
         let of_massless = Slot::MasslessRatio.about();
-        let massless_ratio = keys.optional_where(lumped, MASSLESS_RATIO, of_massless, |at| {
+        let massless_ratio = keys.optional_where(lumped, "massless_ratio", of_massless, |at| {
             self.slot(at, Slot::MasslessRatio, kind, |at| at.ratio())
         });
-        let share = |at: At<'_>| self.sweepable(at, Parameter::ParticleShare);
-        let of_share = "Particle over the whole damper, mass";
-        let lumped_share = if lumped { keys.optional(PARTICLE_SHARE, of_share, share) } else { Some(None) };
         let mass_reading =
-            keys.optional_where(!lumped, MASS_READING, Slot::MassReading.about(), |at| self.mass_reading(at, kind));
-        let gap_frequency = keys.optional_where(!lumped, GAP_FREQUENCY, Slot::GapFrequency.about(), |at| {
+            keys.optional_where(!lumped, "mass_reading", Slot::MassReading.about(), |at| self.mass_reading(at, kind));
+        let gap_frequency = keys.optional_where(!lumped, "gap_frequency", Slot::GapFrequency.about(), |at| {
             self.reading(at, Slot::GapFrequency, kind)
         });
+        let share = |at: At<'_>| self.sweepable(at, Parameter::ParticleShare);
+        let (key, of_share) = ("particle_share", "Particle over the whole damper, mass");
         let particle_share = if lumped {
-            lumped_share.map(|share| share.unwrap_or(Given::Stated(1.0)))
+            keys.optional(key, of_share, share).map(|share| share.unwrap_or(Given::Stated(1.0)))
         } else {
-            keys.required(PARTICLE_SHARE, of_share, share)
+            keys.required(key, of_share, share)
         };
         let gaps = [
             ("gap_ratio", "h′ = h ωn²/g: dimensionless gap clearance"),

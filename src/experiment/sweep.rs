@@ -190,7 +190,7 @@ impl SweepReader {
         keys.rule(not_empty);
         if !within_union {
             // A union is read by itself.
-            keys.optional_where(false, UNION, JOINED, |at| self.union(at));
+            keys.elsewhere(UNION, JOINED, |at| self.union(at));
             keys.rule(|| json!({"if": {"required": [UNION]}, "then": {"maxProperties": 1}}));
         }
         let known = self.refined.borrow().len();

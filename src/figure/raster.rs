@@ -53,7 +53,7 @@ fn encode(picture: &tiny_skia::Pixmap) -> Result<Vec<u8>, RasterError> {
         encoder.set_color(png::ColorType::Indexed);
         encoder.set_depth(png::BitDepth::Eight);
         encoder.set_palette(palette);
-        encoder.set_compression(png::Compression::High);
+        encoder.set_deflate_compression(png::DeflateCompression::Level(LEVEL));
         encoder.set_filter(png::Filter::NoFilter);
         let mut writer = encoder.write_header().map_err(failed)?;
         writer.write_image_data(&indices).map_err(failed)?;
@@ -62,6 +62,9 @@ fn encode(picture: &tiny_skia::Pixmap) -> Result<Vec<u8>, RasterError> {
     }
     picture.encode_png().map_err(|error| RasterError::Png(error.to_string()))
 }
+
+/// The highest level, 9, takes six times as long as all else of a picture's encoding, for files that are a fifth smaller.
+const LEVEL: u8 = 5;
 
 /// How many shades a channel is rounded to; the first with which 256 colours suffice.
 const SHADES: [u32; 5] = [64, 32, 20, 16, 12];

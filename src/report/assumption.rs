@@ -1,5 +1,7 @@
 //! Assumptions in words.
 
+use std::collections::BTreeMap;
+
 use crate::experiment::AssumptionValue;
 use crate::text::number;
 
@@ -80,12 +82,14 @@ fn reason(assumption: &AssumptionView) -> String {
 /// Ids grouped by experiment, so that a long list stays readable: `ch3-gap` (maximum, order).
 fn entries(ids: &[String]) -> String {
     let mut groups: Vec<(&str, Vec<&str>)> = Vec::new();
+    let mut known = BTreeMap::new();
     for id in ids {
         let (experiment, entry) = id.split_once('/').unwrap_or((id, ""));
-        match groups.iter_mut().find(|(name, _)| *name == experiment) {
-            Some((_, entries)) => entries.push(entry),
-            None => groups.push((experiment, vec![entry])),
-        }
+        let group = *known.entry(experiment).or_insert_with(|| {
+            groups.push((experiment, Vec::new()));
+            groups.len() - 1
+        });
+        groups[group].1.push(entry);
     }
     let group = |(experiment, entries): &(&str, Vec<&str>)| {
         let entries: Vec<&str> = entries.iter().copied().filter(|entry| !entry.is_empty()).collect();

@@ -60,10 +60,15 @@ pub(super) fn in_short(experiment: &Experiment, table: &Table) -> Option<String>
 const MOST_LISTED: usize = 24;
 
 /// The answer of a page of random starts in a sentence.
-pub(super) fn of_starts_in_short(experiment: &Experiment, starts: &Starts, table: &Table) -> Option<String> {
+pub(super) fn of_starts_in_short(
+    experiment: &Experiment,
+    starts: &Starts,
+    table: &Table,
+    motions: Option<&Motions>,
+) -> Option<String> {
     let cases = CaseShares::of(experiment, table);
     let several: Vec<&CaseShares> = cases.iter().filter(|case| case.settled().count() > 1).collect();
-    let lead = format!("**In short.** {}", best(experiment, table).unwrap_or_default());
+    let lead = format!("**In short.** {}", motions.and_then(best).unwrap_or_default());
     let from = format!("From {}", counted(starts.count as usize, "random start", "random starts"));
     let each = if cases.len() > 1 { " each" } else { "" };
     let left = |case: &CaseShares| 1.0 - case.settled().map(|motion| motion.share).sum::<f64>();
@@ -118,9 +123,8 @@ pub(super) fn of_starts_in_short(experiment: &Experiment, starts: &Starts, table
 }
 
 /// Of several dampers the best motion that attracts.
-fn best(experiment: &Experiment, table: &Table) -> Option<String> {
-    let all = Motions::of(experiment, table)?.best;
-    let best = all.iter().max_by(|a, b| a.velocity_ratio.total_cmp(&b.velocity_ratio))?;
+fn best(motions: &Motions) -> Option<String> {
+    let best = motions.best.iter().max_by(|a, b| a.velocity_ratio.total_cmp(&b.velocity_ratio))?;
     let at = if best.at.is_empty() { String::new() } else { format!(" and {}", best.at) };
     Some(format!(
         "The best motion that attracts is {} at {}{at}: ψ = {}, reached from {} of the starts. ",

@@ -9,6 +9,9 @@ use super::markdown::one_line;
 use super::tally::{Tally, VERDICTS, word};
 use crate::text::words::counted;
 
+/// Up to so many experiments are shown one by one; of more only those with a verdict that is not as expected.
+const SHOWN: usize = 20;
+
 /// Counts by experiment, what is known to differ, what is unexpected; ends with a line that says it all.
 ///
 /// `experiments` are ids with their entries, in the order to show.
@@ -17,7 +20,10 @@ pub fn summary(experiments: &[(&str, &[Judged])]) -> String {
     let judged = || experiments.iter().flat_map(|(_, judged)| judged.iter());
     let mut text = format!("{}\n", table(experiments));
     let known: Vec<&Judged> = judged().filter(|one| one.as_expected() && one.verdict != Verdict::Reproduced).collect();
-    if !known.is_empty() {
+    if !known.is_empty() && experiments.len() > SHOWN {
+        let entries = counted(known.len(), "entry", "entries");
+        text += &format!("\nNot reproduced, as expected: {entries}, which `shotdamp check ID` lists.\n");
+    } else if !known.is_empty() {
         text += "\nNot reproduced, as expected:\n";
         for one in known {
             text += &format!("  {:<11} {}: {}\n", word(one.verdict), one.id, one_line(&one.found));
@@ -48,7 +54,8 @@ fn table(experiments: &[(&str, &[Judged])]) -> Table {
     table.load_style(TableStyle::new().header_separator(LineStyle::none().fill('─').junction('─'))).force_no_tty();
     let heads = ["experiment".to_owned()].into_iter().chain(VERDICTS.map(|verdict| word(verdict).to_owned()));
     table.set_header(heads.collect::<Vec<_>>());
-    for (id, judged) in experiments {
+    let surprises = |judged: &[Judged]| judged.iter().any(|one| !one.as_expected());
+    for (id, judged) in experiments.iter().filter(|(_, judged)| experiments.len() <= SHOWN || surprises(judged)) {
         table.add_row(row(id, &Tally::of(*judged)));
     }
     if experiments.len() > 1 {

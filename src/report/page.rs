@@ -2,7 +2,6 @@
 
 use crate::experiment::{RowSource, Source};
 use crate::reference::NotJudged;
-use crate::study::Motions;
 use crate::text::words::capitalised;
 
 use super::markdown::{details, one_line};
@@ -13,8 +12,7 @@ use super::{assumption, branch, candidate, coexisting, comparison, doubts, few_r
 #[must_use]
 pub fn page(view: &PageView<'_>) -> String {
     let experiment = view.experiment;
-    let motions = view.table.and_then(|table| Motions::of(experiment, table));
-    let mut motions_in_words = motions.as_ref().and_then(motions::in_words);
+    let mut motions_in_words = view.motions.and_then(motions::in_words);
     let mut text = format!("# {}\n\n", one_line(&experiment.title));
     text += &lead(view).unwrap_or_else(|| match motions_in_words.take() {
         Some(words) => format!("**In short.** {words}\n\n"),
@@ -42,7 +40,7 @@ pub fn page(view: &PageView<'_>) -> String {
     if let Some(words) = motions_in_words {
         text += &format!("**What moves how.** {words}\n\n");
     }
-    text += &motions.as_ref().map_or_else(String::new, motions::unsettled);
+    text += &view.motions.map_or_else(String::new, motions::unsettled);
     text += &details("Uncertainties and sensitivity", &comparison::uncertainties(view.judged));
     let about = if view.judged.is_empty() { "" } else { about.as_str() };
     let run = format!("{about}{}{}", run::section(experiment), run::effects(view.effects));
@@ -77,7 +75,7 @@ fn lead(view: &PageView<'_>) -> Option<String> {
             let answers = [coexisting::in_short, few_rows::searched, few_rows::in_short];
             answers.iter().find_map(|answer| answer(view.experiment, table))
         }
-        RowSource::Basins(starts) => coexisting::of_starts_in_short(view.experiment, starts, table),
+        RowSource::Basins(starts) => coexisting::of_starts_in_short(view.experiment, starts, table, view.motions),
         RowSource::Search(_) => None,
     }
 }

@@ -15,7 +15,7 @@ use crate::figure::{FigureError, Picture, figure_stem, sketch};
 use crate::measure::rounded;
 use crate::reference::{Judged, ReferenceFile};
 use crate::study::{
-    FileHash, Heading, Inputs, Item, Motions, Publication, Record, State, Study, Summary, record_name, stem, table_name,
+    FileHash, Heading, Inputs, Item, Publication, Record, State, Study, Summary, record_name, stem, table_name,
 };
 use crate::table::{Table, UNDEFINED};
 
@@ -299,7 +299,7 @@ fn summary(study: &Study, judgement: &Judgement, page: &Page<'_>) -> Option<Summ
         reads: reads?,
         judged: judged_as_written(judgement, reference, id),
         lines: reference.into_iter().flat_map(|file| &file.entries).map(|entry| entry.line).collect(),
-        motions: judgement.tables.get(id).and_then(|table| Motions::of(experiment, table)),
+        motions: judgement.motions.get(id).cloned(),
     })
 }
 

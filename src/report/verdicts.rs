@@ -6,7 +6,7 @@ use rayon::prelude::*;
 
 use super::prose;
 use crate::reference::{Judged, ReferenceFile, SelfTestFailure, TableState, Tables, judge, self_test};
-use crate::study::{Item, State, Study, table_name};
+use crate::study::{Item, Motions, State, Study, table_name};
 use crate::table::{Table, parquet};
 
 /// The tables that count, and the verdicts that they give.
@@ -16,6 +16,8 @@ pub struct Judgement {
     pub tables: BTreeMap<String, Table>,
     /// Verdicts by experiment, in the order of its reference file.
     pub verdicts: BTreeMap<String, Vec<Judged>>,
+    /// What moves how in those that were planned, where that is measured.
+    pub motions: BTreeMap<String, Motions>,
 }
 
 /// What is known of the table of an experiment.
@@ -36,14 +38,19 @@ pub fn judge_all(study: &Study) -> Judgement {
     let verdict = |(id, file): (&String, &ReferenceFile)| (id.clone(), judged(study, file, &tables, &fitted));
     let mut verdicts = study.references.iter().map(verdict).chain(known).collect();
     prose::fill(&mut verdicts);
-    let tables = states
+    let tables: BTreeMap<String, Table> = states
         .into_iter()
         .filter_map(|(id, state)| match state {
             OnDisk::Present(table) => Some((id, table)),
             _ => None,
         })
         .collect();
-    Judgement { tables, verdicts }
+    let motions = |item: &Item| {
+        let experiment = &item.source.experiment;
+        Some((experiment.id.0.clone(), Motions::of(experiment, tables.get(&experiment.id.0)?)?))
+    };
+    let motions = study.items.par_iter().filter_map(motions).collect();
+    Judgement { tables, verdicts, motions }
 }
 
 /// The verdicts that these tables give, whatever they were computed from.

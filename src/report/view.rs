@@ -67,6 +67,8 @@ pub struct PageView<'a> {
     pub experiment: &'a Experiment,
     /// Its table; `None` if it has none.
     pub table: Option<&'a Table>,
+    /// What moves how in it, where that is measured.
+    pub motions: Option<&'a Motions>,
     /// Its entries with their verdicts.
     pub judged: &'a [Judged],
     /// What the study says of it without an entry.

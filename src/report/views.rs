@@ -27,6 +27,7 @@ pub(super) fn page(study: &Study, judgement: &Judgement, item: &Item) -> String 
     report::page(&PageView {
         experiment,
         table: judgement.tables.get(&experiment.id.0),
+        motions: judgement.motions.get(&experiment.id.0),
         judged: judged(judgement, &experiment.id.0),
         not_judged: study.references.get(&experiment.id.0).map_or(&[], |file| &file.not_judged),
         assumptions: &assumptions(study, judgement, &|name| item.used.contains(name), &|_| Vec::new()),
@@ -56,8 +57,7 @@ pub(super) fn page_name(item: &Item) -> String {
 pub(super) fn listed<'a>(study: &Study, judgement: &'a Judgement, times: Option<&RunTimes>) -> Vec<ExperimentView<'a>> {
     let planned = study.items.iter().map(|item| {
         let experiment = &item.source.experiment;
-        let table = judgement.tables.get(&experiment.id.0);
-        let motions = table.and_then(|table| Motions::of(experiment, table));
+        let motions = judgement.motions.get(&experiment.id.0).cloned();
         one_listed(judgement, Heading::of(experiment), item.source.folder(), motions, times)
     });
     let known = study

@@ -17,7 +17,7 @@ use crate::experiment::ExperimentId;
 pub const RECORD_FORMAT: u32 = 2;
 
 /// Raised when figures or reports of the same tables come out differently, so that they are made again.
-pub const PRESENTATION_VERSION: u32 = 7;
+pub const PRESENTATION_VERSION: u32 = 8;
 
 /// What became of one experiment.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

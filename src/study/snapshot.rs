@@ -41,6 +41,8 @@ pub struct Snapshot {
     pub unused: BTreeSet<AssumptionName>,
     /// Files that were compared by content, and need not be the next time.
     settled: Option<Box<OnDisk>>,
+    /// When it was written.
+    taken: Option<SystemTime>,
 }
 
 /// An experiment, or what concerns the study as a whole, with the files that make it valid.
@@ -115,7 +117,7 @@ impl Snapshot {
     fn read(layout: &Layout, texts: &Texts) -> Option<Self> {
         let path = layout.path(NAME);
         let mut known = OnDisk::from_bytes(&std::fs::read(&path).ok()?)?;
-        let taken = std::fs::metadata(&path).and_then(|meta| meta.modified()).ok()?;
+        let taken = written_at(&path)?;
         if known.program != Program::here() {
             return None;
         }
@@ -140,13 +142,19 @@ impl Snapshot {
         let all = texts.len() == experiments.len();
         let unused = known.unused.clone();
         let settled = (look.settled && all && index_is_current).then(|| Box::new(known));
-        Some(Self { experiments, index_is_current, used, unused, settled })
+        Some(Self { experiments, index_is_current, used, unused, settled, taken: Some(taken) })
     }
 
     /// True if every experiment and every reference file among `texts` is up to date, and the index.
     #[must_use]
     pub fn is_complete(&self, texts: &Texts) -> bool {
         self.index_is_current && texts.stems().iter().all(|id| self.experiments.contains_key(*id))
+    }
+
+    /// True unless another run has ended since it was read.
+    #[must_use]
+    pub fn is_latest(&self, layout: &Layout) -> bool {
+        self.taken.is_some() && self.taken == written_at(&layout.path(NAME))
     }
 
     /// Writes down which files one `stat` will do for the next time. It saves time only: on a full disk nothing is lost.
@@ -258,6 +266,10 @@ impl Look<'_> {
             Match::Different => false,
         })
     }
+}
+
+fn written_at(path: &Path) -> Option<SystemTime> {
+    std::fs::metadata(path).and_then(|metadata| metadata.modified()).ok()
 }
 
 fn glances(layout: &Layout, names: &BTreeSet<String>) -> Result<BTreeMap<String, Glance>, FileError> {

@@ -140,6 +140,7 @@ fn page_of(table: Option<&Table>, judged: &[Judged]) -> String {
     page(&PageView {
         experiment: &limit_stop(),
         table,
+        motions: None,
         judged,
         not_judged: &[],
         assumptions: &assumptions(),

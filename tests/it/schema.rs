@@ -8,8 +8,8 @@ use std::path::{Path, PathBuf};
 use regex::Regex;
 use serde_json::{Value, json};
 use shotdamp::experiment::{
-    AssumptionSheet, Dimension, assumptions_schema, experiment_schema, from_yaml, load_assumptions, parse_experiment,
-    parse_quantity, scaffold, structures, study_schema,
+    AssumptionSheet, Dimension, assumptions_schema, calibration_schema, experiment_schema, from_yaml, load_assumptions,
+    parse_experiment, parse_quantity, scaffold, structures, study_schema,
 };
 use shotdamp::reference::{parse_reference, reference_schema};
 
@@ -157,6 +157,10 @@ fn every_shipped_file_passes_its_schema() {
     }
     let assumptions = fs::read_to_string(here("experiments/assumptions.yaml")).unwrap();
     assert_eq!(passes(&assumptions_schema(), &assumptions), Ok(()));
+    for calibration in fs::read_dir(here("calibrations")).unwrap().flatten() {
+        let text = fs::read_to_string(calibration.path()).unwrap();
+        assert_eq!(passes(&calibration_schema(&sheet()), &text), Ok(()), "{}", calibration.path().display());
+    }
     for study in ["study.yaml", "examples/classics/study.yaml"] {
         assert_eq!(passes(&study_schema(), &fs::read_to_string(here(study)).unwrap()), Ok(()), "{study}");
     }
@@ -172,6 +176,7 @@ fn committed_schemas_are_those_that_would_be_written() {
         ("experiment", of_the_study()),
         ("assumptions", assumptions_schema()),
         ("reference", reference_schema()),
+        ("calibration", calibration_schema(&sheet())),
     ] {
         let committed = fs::read_to_string(here(&format!("schema/{name}.json"))).unwrap();
         assert!(committed == format!("{schema:#}\n"), "run `shotdamp schema` and commit schema/{name}.json");
@@ -290,7 +295,7 @@ fn paths(value: &Value) -> Vec<String> {
 #[test]
 fn a_quantity_passes_where_the_reader_takes_it() {
     let schema = of_the_study();
-    let mass = &schema["properties"]["scene"]["properties"]["structure"]["properties"]["single_mass"]["properties"];
+    let mass = &schema["definitions"]["structure"]["properties"]["single_mass"]["properties"];
     for (key, dimension) in [("mass", Dimension::Mass), ("stiffness", Dimension::Stiffness)] {
         for text in [
             "1 kg", "50 g", "1e-3 kg", ".5kg", "5. g", "1 mg", "2 µg", "1", "kg", "1 m", "1000 N/m", "1 kN/m",

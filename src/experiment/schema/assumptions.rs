@@ -4,14 +4,11 @@ use serde_json::{Value, json};
 
 use super::of_file;
 use super::parts::{Object, any_of, form, list, one_of_words, ratio, text};
-use crate::experiment::assumption_reader::{read_curve, read_cycles, read_entry};
+use crate::experiment::assumption_reader::{DEFAULTS, describe_defaults, read_curve, read_entry};
 use crate::experiment::assumption_sheet::{AssumptionSheet, Takes};
 use crate::experiment::at::{Definitions, Sketch};
 use crate::experiment::diagnostic::Place;
-use crate::experiment::recipe::Slot;
 use crate::experiment::stated::{STATED, read_chapters};
-use crate::experiment::word::word_of;
-use crate::scene::KINDS;
 use crate::text::words::of_key;
 
 /// JSON Schema of the assumptions file.
@@ -19,12 +16,15 @@ use crate::text::words::of_key;
 pub fn assumptions_schema() -> Value {
     let definitions = Definitions::default();
     let mut schema = Object::new("Each input that the study uses and does not state, by name")
-        .optional("defaults", defaults())
+        .optional(DEFAULTS, Sketch::of(OF_DEFAULTS, &definitions, describe_defaults))
         .optional(STATED, Sketch::of("Inputs that the text states, by chapter", &definitions, read_chapters))
         .schema();
     schema["additionalProperties"] = Sketch::of("An assumption", &definitions, |at| read_entry(at, Place::default()));
     of_file("Assumptions", schema, definitions)
 }
+
+const OF_DEFAULTS: &str =
+    "Cycles of a run, and which assumption stands where an experiment says assumed or leaves a slot out";
 
 /// A number with or without unit, a reading, or a curve.
 pub(in crate::experiment) fn value() -> Value {
@@ -42,22 +42,6 @@ pub(in crate::experiment) fn value() -> Value {
 fn places() -> Value {
     let share = || ratio("A share of the side");
     list("Places", any_of("A place", vec![share(), list("One coordinate a side", share())]))
-}
-
-fn defaults() -> Value {
-    let all = Object::new(
-        "Cycles of a run, and which assumption stands where an experiment says assumed or leaves a slot out",
-    )
-    .optional("run", Sketch::of("Cycles of experiments that do not say", &Definitions::default(), read_cycles));
-    Slot::ALL
-        .iter()
-        .fold(all, |object, slot| {
-            let by_structure = KINDS
-                .iter()
-                .fold(Object::new("By structure"), |object, kind| object.optional(kind.name, text("An assumption")));
-            object.optional(&word_of(slot), any_of(slot.about(), vec![text("An assumption"), by_structure.schema()]))
-        })
-        .schema()
 }
 
 /// `{assumed: NAME}` for a place that takes this, with the names of the study's assumptions that fit there.
