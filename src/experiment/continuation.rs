@@ -25,8 +25,17 @@ pub struct Continuation {
     pub periods: Option<u32>,
     /// How many times over the branch is switched to that begins at a period doubling.
     pub doublings: u32,
+    /// Whether the motions are followed, too, that begin where one loses its symmetry.
+    #[serde(default, skip_serializing_if = "is_false")]
+    pub asymmetric: bool,
     /// Points to either side of the first one beyond which a branch is not followed.
     pub points: u32,
+}
+
+/// What an experiment without the key means: its fingerprint is the same as before there was one.
+#[allow(clippy::trivially_copy_pass_by_ref, reason = "serde wants it so")]
+fn is_false(it: &bool) -> bool {
+    !*it
 }
 
 impl Continuation {
@@ -103,13 +112,13 @@ impl BranchColumn {
     pub fn about(self) -> &'static str {
         match self {
             Self::Branch => {
-                "which branch, from 1: those that begin at the starts, then those that begin at period doublings"
+                "which branch, from 1: those that begin at the starts, then those that begin at special points"
             }
             Self::Periods => "forcing periods after which the motion comes again",
             Self::Contacts => "contacts made in that time, impacts on stops among them",
             Self::Stability => "`stable` where no multiplier exceeds 1, else `unstable`",
             Self::SpecialPoint => {
-                "what happens at this point: `fold`, `period doubling`, `torus` (a quasi-periodic motion begins) or `graze`; empty elsewhere"
+                "what happens at this point: `fold`, `period doubling`, `torus` (a quasi-periodic motion begins), `graze` or `symmetry breaking` (two motions begin, each the other upside down); empty elsewhere"
             }
             Self::BranchEnd => "in the first and the last row of a branch why it goes no further; empty elsewhere",
         }

@@ -55,6 +55,8 @@ pub(super) fn read_continuation(at: At<'_>) -> Option<ReadContinuation> {
     let periods = keys.optional("periods", periods, |at| some(at, "periods", MOST_PERIODS));
     let doublings = "How many times over doubled periods are followed";
     let doublings = keys.optional("doublings", doublings, |at| at.count("doublings", MOST_DOUBLINGS));
+    let asymmetric = "Follow the two motions, too, that begin where a motion loses its symmetry";
+    let asymmetric = keys.optional("asymmetric", asymmetric, |at| at.boolean());
     let points = "Points of a branch to either side of its first";
     let points = keys.optional("points", points, |at| some(at, "points", MOST_POINTS));
     keys.close()?;
@@ -67,6 +69,7 @@ pub(super) fn read_continuation(at: At<'_>) -> Option<ReadContinuation> {
         starts: starts?.unwrap_or_else(|| vec![from]),
         periods: periods?,
         doublings: doublings?.unwrap_or(0),
+        asymmetric: asymmetric?.unwrap_or(false),
         points: points?.unwrap_or(USUAL_POINTS),
     };
     Some(ReadContinuation { continuation, along_at, span: at.span() })

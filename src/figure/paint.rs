@@ -250,6 +250,13 @@ pub(super) fn marker(sheet: &Sheet, at: Point, look: Look) {
         }
         Marker::Up => sheet.fill(&[corner(0.0, -1.2), corner(1.1, 0.8), corner(-1.1, 0.8)], look.color, 1.0),
         Marker::Down => sheet.fill(&[corner(0.0, 1.2), corner(1.1, -0.8), corner(-1.1, -0.8)], look.color, 1.0),
+        Marker::Cross => {
+            let (long, wide) = (1.1, 0.35);
+            let quarter = [[-wide, -long], [wide, -long], [wide, -wide]];
+            let turned = |quarters: usize| quarter.map(|at| (0..quarters).fold(at, |[x, y], _| [-y, x]));
+            let corners: Vec<Point> = (0..4).flat_map(turned).map(|[x, y]| corner(x, y)).collect();
+            sheet.fill(&corners, look.color, 1.0)
+        }
     }
 }
 

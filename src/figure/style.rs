@@ -173,6 +173,7 @@ pub(super) enum Marker {
     Square,
     Up,
     Down,
+    Cross,
 }
 
 impl Marker {
@@ -183,6 +184,7 @@ impl Marker {
             Special::PeriodDoubling => Self::Square,
             Special::Torus => Self::Up,
             Special::Graze => Self::Down,
+            Special::SymmetryBreaking => Self::Cross,
         }
     }
 }

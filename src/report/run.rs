@@ -106,7 +106,7 @@ fn of_starts(starts: &Starts) -> String {
 fn branches(experiment: &Experiment, continuation: &Continuation) -> String {
     let along = column_words(&words::of_key(&continuation.along));
     let value = |x: f64| quantity(x, continuation.along.unit(), 6);
-    let Continuation { from, to, ref starts, doublings, points, .. } = *continuation;
+    let Continuation { from, to, ref starts, doublings, asymmetric, points, .. } = *continuation;
     let starts: Vec<String> = starts.iter().map(|start| value(*start)).collect();
     let settings = &experiment.settings;
     let periods = continuation.periods.map_or_else(String::new, |periods| {
@@ -124,6 +124,9 @@ fn branches(experiment: &Experiment, continuation: &Continuation) -> String {
     if doublings > 0 {
         let times = counted(doublings as usize, "time", "times");
         text += &format!("- At period doublings the motion of twice the period is followed as well, {times} over.\n");
+    }
+    if asymmetric {
+        text += "- Where a motion loses its symmetry the two asymmetric motions are followed as well.\n";
     }
     if let Some(step) = settings.round_period_to {
         text += &format!("- The forcing period is rounded to whole steps of {}.\n", quantity(step, "s", 4));

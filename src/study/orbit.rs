@@ -1,5 +1,5 @@
 //! Branches of periodic motions: from the end of each first run to both ends of the range, and from each of their period doublings the
-//! next, as many times over as asked for.
+//! next, as many times over as asked for; likewise from where they lose their symmetry.
 //!
 //! A branch ends where it ends, and says why in its last row: that is a result. Without a first motion there is one row, which says
 //! why it has no numbers. Every branch is followed by one thread; its points are measured side by side.
@@ -29,7 +29,7 @@ use crate::text::words;
 
 /// The longest step, as a share of the range and of the motion.
 const STEP: f64 = 0.01;
-/// A branch that ends next to a doubling, by this share of the range, joins it.
+/// A branch that ends next to a special point, by this share of the range, joins the one that has it.
 const JOINS: f64 = 1e-3;
 
 /// Points of all branches at most, as far as that is known before: of the first ones.
@@ -80,21 +80,37 @@ struct Following<'a> {
 enum Begin {
     /// A run, at this share of the range.
     Run(f64),
-    /// A doubling of the period, and how many there were before it on the way.
-    Doubling(Box<BranchPoint>, u32),
+    /// A special point at which others begin, and how many doublings there were on the way with it.
+    Switch(Box<BranchPoint>, u32),
 }
 
 /// What is still to be done.
 enum Open {
     Follow(Begin),
-    /// A doubling from which no other motion was found: unless a branch joins it, that is the result.
-    Lone(Traced),
+    /// A special point from which no other motion was found: unless a branch joins it, that is the result.
+    Lone(Special, Traced),
 }
 
 /// Points of a branch in their order, and why it goes no further at either end; no reason at an end that another branch begins at.
 struct Traced {
     points: Vec<BranchPoint>,
     ends: [Option<BranchEnd<RowFailure>>; 2],
+}
+
+impl Traced {
+    /// The special point of another branch that this one ends at.
+    fn joins(&self) -> Option<Special> {
+        match self.ends[1] {
+            Some(BranchEnd::HalfPeriod) => Some(Special::PeriodDoubling),
+            Some(BranchEnd::Symmetry) => Some(Special::SymmetryBreaking),
+            _ => None,
+        }
+    }
+}
+
+/// Periods of the motion that begins at a special point, in those of the one that has it.
+fn periods_from(special: Special) -> u32 {
+    if special == Special::PeriodDoubling { 2 } else { 1 }
 }
 
 impl Following<'_> {
@@ -116,46 +132,52 @@ impl Following<'_> {
     /// All branches, a row for each of their points.
     fn branches(&self) -> Vec<BranchRow> {
         let mut rows = Vec::new();
-        // Where branches have joined the one whose period doubles there, and forcing periods of the joined motion.
-        let mut joined: Vec<(f64, u32)> = Vec::new();
+        // Special points at which branches have joined others, and forcing periods of the joined motion.
+        let mut joined: Vec<(Special, f64, u32)> = Vec::new();
         let starts = self.continuation.starts.iter();
         let run = |start: &f64| Open::Follow(Begin::Run(self.continuation.share(*start)));
         let mut open: VecDeque<Open> = starts.map(run).collect();
         let mut number = 0;
         while let Some(next) = open.pop_front() {
-            // The branch of another doubling has ended here.
-            let is_joined = |parameter: f64, periods: u32| {
-                joined.iter().any(|(other, cycles)| *cycles == periods && (other - parameter).abs() <= JOINS)
+            // The branch of another special point has ended here.
+            let is_joined = |special: Special, parameter: f64, periods: u32| {
+                let is_here = |other: f64| (other - parameter).abs() <= JOINS;
+                joined.iter().any(|(kind, other, cycles)| *kind == special && *cycles == periods && is_here(*other))
             };
             let begin = match next {
                 Open::Follow(begin) => begin,
-                Open::Lone(traced) => {
-                    if traced.points.iter().any(|it| !is_joined(it.parameter, it.orbit.cycles)) {
+                Open::Lone(special, traced) => {
+                    if traced.points.iter().any(|it| !is_joined(special, it.parameter, it.orbit.cycles)) {
                         number += 1;
                         self.enter(number, traced, &mut rows);
                     }
                     continue;
                 }
             };
-            let (parameter, level) = match &begin {
-                Begin::Run(share) => (*share, 0),
-                Begin::Doubling(point, _) if is_joined(point.parameter, 2 * point.orbit.cycles) => continue,
-                Begin::Doubling(point, level) => (point.parameter, *level),
+            let (parameter, level, switch) = match &begin {
+                Begin::Run(share) => (*share, 0, None),
+                Begin::Switch(point, level) => (point.parameter, *level, point.special),
             };
+            if let (Begin::Switch(point, _), Some(special)) = (&begin, switch)
+                && is_joined(special, point.parameter, periods_from(special) * point.orbit.cycles)
+            {
+                continue;
+            }
             match guarded(|| self.traced(&begin)) {
-                Ok(traced) if level > 0 && traced.points.len() == 1 => open.push_back(Open::Lone(traced)),
-                Ok(traced) => {
-                    number += 1;
-                    if let (Some(BranchEnd::HalfPeriod), Some(last)) = (&traced.ends[1], traced.points.last()) {
-                        joined.push((last.parameter, last.orbit.cycles));
+                Ok(branches) => {
+                    for traced in branches {
+                        if let (Some(special), [_]) = (switch, &traced.points[..]) {
+                            open.push_back(Open::Lone(special, traced));
+                            continue;
+                        }
+                        number += 1;
+                        if let (Some(special), Some(last)) = (traced.joins(), traced.points.last()) {
+                            joined.push((special, last.parameter, last.orbit.cycles));
+                        }
+                        let next = traced.points.iter().filter_map(|point| self.switch(point, level));
+                        open.extend(next.map(Open::Follow));
+                        self.enter(number, traced, &mut rows);
                     }
-                    if level < self.continuation.doublings {
-                        let doubles = |point: &&BranchPoint| point.special == Some(Special::PeriodDoubling);
-                        let next =
-                            |point: &BranchPoint| Open::Follow(Begin::Doubling(Box::new(point.clone()), level + 1));
-                        open.extend(traced.points.iter().filter(doubles).map(next));
-                    }
-                    self.enter(number, traced, &mut rows);
                 }
                 Err(reason) => {
                     number += 1;
@@ -166,7 +188,18 @@ impl Following<'_> {
         rows
     }
 
-    fn traced(&self, begin: &Begin) -> Result<Traced, RowFailure> {
+    /// What is followed from a point of a branch with so many doublings on the way to it.
+    fn switch(&self, point: &BranchPoint, level: u32) -> Option<Begin> {
+        let level = match point.special? {
+            Special::PeriodDoubling if level < self.continuation.doublings => level + 1,
+            Special::SymmetryBreaking if self.continuation.asymmetric => level,
+            _ => return None,
+        };
+        Some(Begin::Switch(Box::new(point.clone()), level))
+    }
+
+    /// The branch that begins so, or both.
+    fn traced(&self, begin: &Begin) -> Result<Vec<Traced>, RowFailure> {
         let system = |share| self.system(share);
         let points = self.continuation.points as usize;
         let up = Along { from: 0.0, to: 1.0, step: STEP, points };
@@ -177,13 +210,17 @@ impl Following<'_> {
         };
         let (orbit, start) = match begin {
             Begin::Run(share) => (self.first(*share)?, *share),
-            Begin::Doubling(point, _) => {
-                let Branch { points, end } = Branch::doubled(system, point, up).map_err(unfollowed)?;
-                return Ok(Traced { points, ends: [None, Some(end)] });
+            Begin::Switch(point, _) => {
+                let begun = |Branch { points, end }| Traced { points, ends: [None, Some(end)] };
+                return Ok(if point.special == Some(Special::PeriodDoubling) {
+                    vec![begun(Branch::doubled(system, point, up).map_err(unfollowed)?)]
+                } else {
+                    Branch::asymmetric(system, point, up).map_err(unfollowed)?.map(begun).into()
+                });
             }
         };
         let follow = |along: Along| Branch::follow(system, &orbit, start, along).map_err(unfollowed);
-        Ok(match start {
+        Ok(vec![match start {
             0.0 => {
                 let Branch { points, end } = follow(up)?;
                 Traced { points, ends: [Some(BranchEnd::Range), Some(end)] }
@@ -200,7 +237,7 @@ impl Following<'_> {
                 let points = back.chain(upwards.points).collect();
                 Traced { points, ends: [Some(downwards.end), Some(upwards.end)] }
             }
-        })
+        }])
     }
 
     /// The orbit that a run ends next to.
@@ -257,6 +294,9 @@ impl Following<'_> {
             BranchEnd::Range => "end of the range".into(),
             BranchEnd::HalfPeriod => {
                 "next to it the motion has half the period: it joins the branch that doubles there".into()
+            }
+            BranchEnd::Symmetry => {
+                "next to it the motion comes again upside down after half a period: it joins the branch that loses its symmetry there".into()
             }
             BranchEnd::Graze { parameter } => {
                 let at = compact(self.continuation.at(parameter), 12);

@@ -158,6 +158,8 @@ fn what_is_wrong_with_an_orbit_is_told_where_it_stands() {
         ("along: {force_ratio", "along: {force_ration", "did you mean `force_ratio`?", "9:"),
         ("along: {force_ratio", "along: {stop", "takes no values in between", "9:"),
         ("doublings: 1", "doubling: 1", "did you mean `doublings`?", "9:"),
+        ("doublings: 1", "asymmetric: 2", "true", "9:"),
+        ("doublings: 1", "asymetric: true", "did you mean `asymmetric`?", "9:"),
         ("run: {", "sweep: {force_ratio: [1, 2]}\nrun: {", "give one of the two an experiment of its own", "10:"),
         ("[floor_impact_speed]", "[drift]", "not read off one period", "11:"),
         ("[floor_impact_speed]", "[motion]", "every orbit has its `motion`", "11:"),

@@ -3,7 +3,7 @@
 use super::corrector::{At, Path, length};
 use super::newton::closed;
 use super::shot::{Shot, absolute};
-use super::special::{self, Special};
+use super::special::{self, Between, Special};
 use super::{Orbit, OrbitError};
 use crate::dynamics::system::HybridSystem;
 
@@ -66,6 +66,9 @@ pub enum BranchEnd<E> {
     Range,
     /// Next to the last point the motion has half the period: the branch of that motion doubles its period there.
     HalfPeriod,
+    /// Next to the last point the motion comes again upside down after half a period: the branch of that motion loses its symmetry
+    /// there.
+    Symmetry,
     /// A contact begins or ends without speed here; the last point is as close to it as orbits are found.
     Graze {
         /// The parameter of the graze.
@@ -134,7 +137,33 @@ impl<E> Branch<E> {
         let mut tangent = single.flipping().ok_or_else(none)?;
         tangent.push(0.0);
         let shot = Shot::new(&system, single.start.clone(), 2 * cycles, Some(&single.scale))?;
-        Follower::new(path, along).run(At { share, shot, distance, tangent })
+        Follower::new(path, along).run(At { share, shot, distance, tangent, determinant: 0.0 })
+    }
+
+    /// Follows the two motions, each the mirror image of the other, that begin where a motion loses its symmetry.
+    ///
+    /// # Errors
+    /// As [`Branch::follow`].
+    pub fn asymmetric(
+        mut system_at: impl FnMut(f64) -> Result<HybridSystem, E>,
+        fork: &BranchPoint,
+        along: Along,
+    ) -> Result<[Self; 2], BranchError<E>> {
+        let Orbit { cycles, distance, .. } = fork.orbit;
+        let none = || OrbitError::NoConvergence { cycles, miss: f64::INFINITY };
+        let mut follow = |side: f64| {
+            let begin = fork.parameter;
+            let mut path = Path { system_at: &mut system_at, cycles, from: along.from, to: along.to, begin };
+            let share = path.first();
+            let system = path.system(share)?;
+            let start = absolute(&system, &fork.orbit.start).ok_or_else(none)?;
+            let shot = Shot::new(&system, start, cycles, None)?;
+            // Neighbours differ by the vector of the multiplier 1, and by no parameter.
+            let [kept, _] = shot.kept().ok_or_else(none)?;
+            let tangent = kept.iter().map(|x| side * x).chain([0.0]).collect();
+            Follower::new(path, along).run(At { share, shot, distance, tangent, determinant: 0.0 })
+        };
+        Ok([follow(1.0)?, follow(-1.0)?])
     }
 }
 
@@ -220,7 +249,8 @@ impl<E, F: FnMut(f64) -> Result<HybridSystem, E>> Follower<F> {
             return Ok(Ok(Next::End(BranchEnd::HalfPeriod)));
         }
         let specials = match special::between(&mut self.path, at, &next, step) {
-            Ok(specials) => specials,
+            Ok(Between::Specials(specials)) => specials,
+            Ok(Between::Symmetry) => return Ok(Ok(Next::End(BranchEnd::Symmetry))),
             Err(error) => return Ok(Err(error)),
         };
         let beyond = (next.share > 1.0).then_some(1.0).or((next.share < 0.0).then_some(0.0));

@@ -7,6 +7,7 @@
 use nalgebra::DMatrix;
 
 use super::branch::BranchError;
+use super::elimination::Solved;
 use super::newton::{CLOSED, size};
 use super::shot::{Contacts, Shot, state_after};
 use super::{OrbitError, elimination};
@@ -41,6 +42,8 @@ pub(super) struct At {
     pub(super) distance: f64,
     /// Of length 1: state in units of the motion, then the share.
     pub(super) tangent: Vec<f64>,
+    /// Of [1 − M, −∂P/∂λ; tᵀ]; zero where branches cross.
+    pub(super) determinant: f64,
 }
 
 /// What is followed.
@@ -78,8 +81,8 @@ impl<E, F: FnMut(f64) -> Result<HybridSystem, E>> Path<F> {
         let mut onwards = vec![0.0; shot.miss.len() + 1];
         onwards[shot.miss.len()] = 1.0;
         let share = self.first();
-        let tangent = self.tangent(&shot, share, &onwards)?;
-        Ok(At { share, shot, distance, tangent })
+        let (tangent, determinant) = self.tangent(&shot, share, &onwards)?;
+        Ok(At { share, shot, distance, tangent, determinant })
     }
 
     /// The point at a step along the tangent.
@@ -122,8 +125,8 @@ impl<E, F: FnMut(f64) -> Result<HybridSystem, E>> Path<F> {
                     .map(|i| from.tangent[i] * from.shot.scale.unit(i) / shot.scale.unit(i))
                     .chain([from.tangent[count]])
                     .collect();
-                let tangent = self.tangent(&shot, share, &onwards)?;
-                return Ok(At { share, shot, distance, tangent });
+                let (tangent, determinant) = self.tangent(&shot, share, &onwards)?;
+                return Ok(At { share, shot, distance, tangent, determinant });
             }
             aside.iter_mut().zip(&moves).for_each(|(aside, by)| *aside += by);
             if distance > last || length(&aside) > ASIDE * step.abs() {
@@ -168,16 +171,17 @@ impl<E, F: FnMut(f64) -> Result<HybridSystem, E>> Path<F> {
         Ok((end.contacts == shot.end().contacts && contacts == shot.contacts()).then_some(end))
     }
 
-    /// The direction in which solutions lie side by side, on the side of `onwards`.
-    fn tangent(&mut self, shot: &Shot, share: f64, onwards: &[f64]) -> Result<Vec<f64>, BranchError<E>> {
+    /// The direction in which solutions lie side by side, on the side of `onwards`, and the determinant of its equations.
+    fn tangent(&mut self, shot: &Shot, share: f64, onwards: &[f64]) -> Result<(Vec<f64>, f64), BranchError<E>> {
         let by = self.slope(shot, share)?;
         let mut rest = vec![0.0; onwards.len()];
         rest[onwards.len() - 1] = 1.0;
         let missed = OrbitError::NoConvergence { cycles: self.cycles, miss: shot.misses_by() };
-        let tangent =
-            elimination::solve(bordered(shot, &by, onwards), rest, &shot.places()).ok_or(BranchError::Orbit(missed))?;
+        let solved = elimination::solved(bordered(shot, &by, onwards), rest, &shot.places());
+        let Solved { x: mut tangent, determinant } = solved.ok_or(BranchError::Orbit(missed))?;
         let all = length(&tangent);
-        Ok(tangent.into_iter().map(|t| t / all).collect())
+        tangent.iter_mut().for_each(|t| *t /= all);
+        Ok((tangent, determinant * all))
     }
 }
 

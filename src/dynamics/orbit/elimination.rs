@@ -11,9 +11,22 @@ const SINGULAR: f64 = 1e-11;
 /// A column that rather stays open is a pivot where it is larger than all others by this.
 const LATE: f64 = 1e-4;
 
+/// x of A x = b, and det A.
+pub(super) struct Solved {
+    pub(super) x: Vec<f64>,
+    /// Zero of a singular one.
+    pub(super) determinant: f64,
+}
+
 /// x of A x = b; `None` where a number is not finite. Of the unknowns that could be left open, those are that come `late`.
-pub(super) fn solve(mut a: DMatrix<f64>, mut b: Vec<f64>, late: &Range<usize>) -> Option<Vec<f64>> {
+pub(super) fn solve(a: DMatrix<f64>, b: Vec<f64>, late: &Range<usize>) -> Option<Vec<f64>> {
+    solved(a, b, late).map(|solved| solved.x)
+}
+
+/// The same with the determinant.
+pub(super) fn solved(mut a: DMatrix<f64>, mut b: Vec<f64>, late: &Range<usize>) -> Option<Solved> {
     let size = b.len();
+    let mut determinant = 1.0;
     let mut order: Vec<usize> = (0..size).collect();
     let mut rank = 0;
     let mut largest: f64 = 0.0;
@@ -41,6 +54,8 @@ pub(super) fn solve(mut a: DMatrix<f64>, mut b: Vec<f64>, late: &Range<usize>) -
         b.swap(rank, place.0);
         a.swap_columns(rank, place.1);
         order.swap(rank, place.1);
+        let is_even = (place.0 == rank) == (place.1 == rank);
+        determinant *= if is_even { a[(rank, rank)] } else { -a[(rank, rank)] };
         for row in rank + 1..size {
             let factor = a[(row, rank)] / a[(rank, rank)];
             if factor != 0.0 {
@@ -55,7 +70,8 @@ pub(super) fn solve(mut a: DMatrix<f64>, mut b: Vec<f64>, late: &Range<usize>) -
         let rest = (row + 1..rank).fold(b[row], |rest, column| rest - a[(row, column)] * x[order[column]]);
         x[order[row]] = rest / a[(row, row)];
     }
-    x.iter().all(|x| x.is_finite()).then_some(x)
+    let determinant = if rank < size { 0.0 } else { determinant };
+    x.iter().all(|x| x.is_finite()).then_some(Solved { x, determinant })
 }
 
 #[cfg(test)]
@@ -70,5 +86,16 @@ mod tests {
         assert_eq!(solve(either.clone(), vec![8.0, 8.0], &(0..1)), Some(vec![0.0, 2.0]));
         assert_eq!(solve(either, vec![8.0, 8.0], &(1..2)), Some(vec![4.0, 0.0]));
         assert_eq!(solve(DMatrix::from_element(1, 1, f64::NAN), vec![1.0], &(0..0)), None);
+    }
+
+    #[test]
+    fn the_determinant_has_the_sign_of_the_order() {
+        let determinant = |entries: &[f64]| {
+            let a = DMatrix::from_row_slice(3, 3, entries);
+            solved(a, vec![0.0; 3], &(0..0)).map(|solved| solved.determinant)
+        };
+        assert_eq!(determinant(&[0.0, 2.0, 0.0, 3.0, 0.0, 0.0, 0.0, 0.0, 4.0]), Some(-24.0));
+        assert_eq!(determinant(&[0.0, 2.0, 0.0, 0.0, 0.0, 3.0, 4.0, 0.0, 0.0]), Some(24.0));
+        assert_eq!(determinant(&[1.0, 2.0, 0.0, 2.0, 4.0, 0.0, 0.0, 0.0, 1.0]), Some(0.0));
     }
 }

@@ -14,6 +14,7 @@
 //! | fold | λ̇ |
 //! | period doubling | det(1 + M) |
 //! | torus (Neimark-Sacker) | the modulus of a complex pair of multipliers less 1 |
+//! | symmetry breaking | det [1 − M, −∂P/∂λ; tᵀ], t = (ẋ, λ̇) |
 //! | graze | the speed of a contact of the sequence, not the map, whose derivative is infinite there |
 //!
 //! A contact of rigid faces ends the branch at its graze: λ is a smooth function of the impact speed there, so that the zero is
@@ -30,6 +31,7 @@
 //! | `newton` | one orbit |
 //! | `corrector` | a point of a branch beside another |
 //! | `special` | test functions, and where they vanish |
+//! | `fork` | where a branch loses its symmetry |
 //! | `branch` | from point to point, and how a branch ends |
 //! | `elasticity` | the derivative of a number of an orbit in a parameter |
 //! | `elimination` | linear equations, singular ones among them |
@@ -38,6 +40,7 @@ mod branch;
 mod corrector;
 mod elasticity;
 mod elimination;
+mod fork;
 mod newton;
 mod shot;
 mod special;

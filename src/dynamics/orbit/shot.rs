@@ -11,7 +11,7 @@ use crate::dynamics::states::States;
 use crate::dynamics::system::{Contact, Event, EventKind, HybridSystem, Law, dot};
 use crate::dynamics::{Options, Response, StartState, budget};
 
-/// Away from the multiplier −1, so that the equations have a solution.
+/// Away from a multiplier, so that the equations have a solution.
 const SHIFT: f64 = 1e-9;
 /// Each leaves a billionth of all other vectors.
 const INVERSE_ITERATIONS: usize = 3;
@@ -106,17 +106,33 @@ impl Shot {
         elimination::solve(self.closing(), self.miss.clone(), &self.places())
     }
 
-    /// The vector that a period turns into its opposite, of length 1: that of the multiplier next to −1, by inverse iteration.
+    /// The vector that a period turns into its opposite, of length 1: that of the multiplier next to −1.
     pub(super) fn flipping(&self) -> Option<Vec<f64>> {
         let size = self.miss.len();
-        let shifted = DMatrix::identity(size, size) * (1.0 + SHIFT) + &self.map.matrix;
-        let mut vector = vec![1.0; size];
-        for _ in 0..INVERSE_ITERATIONS {
-            vector = elimination::solve(shifted.clone(), vector, &(0..0))?;
-            let length = dot(&vector, &vector).sqrt();
-            vector.iter_mut().for_each(|x| *x /= length);
-        }
-        Some(vector)
+        inverse_iteration(&(DMatrix::identity(size, size) * (1.0 + SHIFT) + &self.map.matrix))
+    }
+
+    /// The vector that a period leaves as it is, of length 1, and that of the transposed map: those of the multiplier next to 1.
+    pub(super) fn kept(&self) -> Option<[Vec<f64>; 2]> {
+        let size = self.miss.len();
+        let shifted = DMatrix::identity(size, size) * (1.0 + SHIFT) - &self.map.matrix;
+        Some([inverse_iteration(&shifted)?, inverse_iteration(&shifted.transpose())?])
+    }
+
+    /// Newton's step where a multiplier is 1, with nothing along the vector of that multiplier: an imperfection takes its place.
+    pub(super) fn step_beside(&self, [kept, left]: &[Vec<f64>; 2]) -> Option<Vec<f64>> {
+        let size = self.miss.len();
+        let closing = self.closing();
+        let equations = DMatrix::from_fn(size + 1, size + 1, |i, k| match (i == size, k == size) {
+            (true, true) => 0.0,
+            (true, false) => kept[k],
+            (false, true) => left[i],
+            (false, false) => closing[(i, k)],
+        });
+        let rest = self.miss.iter().copied().chain([0.0]).collect();
+        let mut step = elimination::solve(equations, rest, &self.places())?;
+        step.truncate(size);
+        Some(step)
     }
 
     /// The start moved by a step in units of the motion.
@@ -190,6 +206,17 @@ impl Shot {
             response: self.response.clone(),
         })
     }
+}
+
+/// The vector of length 1 that a matrix shortens most.
+fn inverse_iteration(matrix: &DMatrix<f64>) -> Option<Vec<f64>> {
+    let mut vector = vec![1.0; matrix.nrows()];
+    for _ in 0..INVERSE_ITERATIONS {
+        vector = elimination::solve(matrix.clone(), vector, &(0..0))?;
+        let length = dot(&vector, &vector).sqrt();
+        vector.iter_mut().for_each(|x| *x /= length);
+    }
+    Some(vector)
 }
 
 /// Cycle, jumps of the force in it before the event, particle, and what happens.

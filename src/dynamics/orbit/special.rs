@@ -5,6 +5,7 @@ use nalgebra::DMatrix;
 use super::NEUTRAL;
 use super::branch::BranchError;
 use super::corrector::{At, Path};
+use super::fork::{self, Fork};
 use crate::dynamics::motion::Multiplier;
 use crate::dynamics::system::HybridSystem;
 
@@ -26,11 +27,13 @@ pub enum Special {
     Torus,
     /// A contact begins or ends without speed.
     Graze,
+    /// A multiplier passes 1 where the branch does not turn: two motions that are each other's mirror image begin.
+    SymmetryBreaking,
 }
 
 impl Special {
     /// All of them, in the order of this list.
-    pub const ALL: [Self; 4] = [Self::Fold, Self::PeriodDoubling, Self::Torus, Self::Graze];
+    pub const ALL: [Self; 5] = [Self::Fold, Self::PeriodDoubling, Self::Torus, Self::Graze, Self::SymmetryBreaking];
 
     /// The word in a table.
     #[must_use]
@@ -40,6 +43,7 @@ impl Special {
             Self::PeriodDoubling => "period doubling",
             Self::Torus => "torus",
             Self::Graze => "graze",
+            Self::SymmetryBreaking => "symmetry breaking",
         }
     }
 }
@@ -84,13 +88,21 @@ fn pairs(multipliers: &[Multiplier]) -> Vec<f64> {
     complex.step_by(2).map(|it| it.modulus).collect()
 }
 
-/// The special points between a point and the next, `step` along, in their order.
+/// What is between a point and the next.
+pub(super) enum Between {
+    /// Special points in their order.
+    Specials(Vec<(Special, At)>),
+    /// The motion has lost its asymmetry: it comes to the branch that begins to have one there.
+    Symmetry,
+}
+
+/// The special points between a point and the next, `step` along.
 pub(super) fn between<E, F: FnMut(f64) -> Result<HybridSystem, E>>(
     path: &mut Path<F>,
     from: &At,
     to: &At,
     step: f64,
-) -> Result<Vec<(Special, At)>, BranchError<E>> {
+) -> Result<Between, BranchError<E>> {
     let outside = |at: &At| -> Result<usize, BranchError<E>> {
         Ok(pairs(&multipliers(at)?).iter().filter(|modulus| **modulus > 1.0 + NEUTRAL).count())
     };
@@ -109,8 +121,13 @@ pub(super) fn between<E, F: FnMut(f64) -> Result<HybridSystem, E>>(
             found.push((place, test.special(), at));
         }
     }
+    match fork::between(path, from, to, step)? {
+        Some(Fork::Begins(place, at)) => found.push((place, Special::SymmetryBreaking, *at)),
+        Some(Fork::Joins) => return Ok(Between::Symmetry),
+        None => {}
+    }
     found.sort_by(|a, b| a.0.total_cmp(&b.0));
-    Ok(found.into_iter().map(|(_, special, at)| (special, at)).collect())
+    Ok(Between::Specials(found.into_iter().map(|(_, special, at)| (special, at)).collect()))
 }
 
 /// Where a function of the points of a branch vanishes between two of them, by regula falsi (Illinois). `None` where points in between

@@ -4,6 +4,7 @@
 mod arrays;
 mod averages;
 mod bench;
+mod branching;
 mod closed_forms;
 mod elasticities;
 mod equal_modes;

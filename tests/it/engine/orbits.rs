@@ -355,19 +355,19 @@ fn an_orbit_with_one_impact_ends_in_its_graze_and_folds_before_where_the_closed_
 
 /// The impact damper of Masri and Caughey (1966) with two impacts a cycle, half a cycle apart, by the particle's speed V: the base is a
 /// forced oscillator that answers impulses of ∓2 mp V, and meets the floor at x = (h − V T/2)/2 with v = V (1 + 2μ − ε)/(1 + ε).
-struct Masri {
-    ratio: f64,
-    gap: f64,
-    restitution: f64,
-    particle: f64,
+pub(super) struct Masri {
+    pub(super) ratio: f64,
+    pub(super) gap: f64,
+    pub(super) restitution: f64,
+    pub(super) particle: f64,
 }
 
 impl Masri {
-    fn omega(&self) -> f64 {
+    pub(super) fn omega(&self) -> f64 {
         self.ratio * STIFFNESS.sqrt()
     }
 
-    fn system(&self, force: f64) -> HybridSystem {
+    pub(super) fn system(&self, force: f64) -> HybridSystem {
         let drive = Excitation::Harmonic { force, angular_frequency: self.omega() };
         let between = damper(self.particle, self.gap, rigid(self.restitution));
         system(&scene(base(1.0, STIFFNESS, Stopped::damping()), 0.0, between, drive))
@@ -386,8 +386,25 @@ impl Masri {
         [before, train]
     }
 
+    /// The speed of the particle at which the motion loses its symmetry, whatever the restitution. Beside it is a motion whose impacts
+    /// are late by τ on the floor and early by τ on the ceiling. Both flights are of one length, so that the particle has the velocity
+    /// w = 4 V τ/T more in both. It still gives 2 mp V to the base, whose answer to the shifts is that to a train of doublets 2 μ V τ δ′
+    /// with half the period. Impacts keep their restitution if the base has w more there, too: x″ τ + 2 μ V τ g″ = 4 V τ/T, g the answer
+    /// to a train of unit impulses in every half period. All of x″ but −ω² h/2 is proportional to V.
+    pub(super) fn symmetry_breaking(&self) -> f64 {
+        let (omega, damping) = (self.omega(), Stopped::damping());
+        let flow = oscillator(PI / omega);
+        let unit = Vector2::new(0.0, 1.0);
+        let train = (Matrix2::identity() + flow).try_inverse().expect("it is damped") * flow * unit;
+        let answer = (Matrix2::identity() - flow).try_inverse().expect("it is damped") * flow * unit;
+        let bend = |state: Vector2<f64>| -STIFFNESS * state[0] - damping * state[1];
+        let doublets = 2.0 * self.particle * bend(answer);
+        let answers = 2.0 * self.particle * (omega * omega * train[0] + bend(train));
+        0.5 * omega * omega * self.gap / (0.5 * PI * omega + answers + doublets - 2.0 * omega / PI)
+    }
+
     /// The force under which the particle has this speed.
-    fn force(&self, speed: f64) -> f64 {
+    pub(super) fn force(&self, speed: f64) -> f64 {
         let [before, train] = self.impact(speed);
         let forced = before - train;
         let stiffness = (STIFFNESS - self.omega().powi(2)).hypot(Stopped::damping() * self.omega());
@@ -395,7 +412,7 @@ impl Masri {
     }
 
     /// Multipliers: the squares of those of half a cycle, after which the motion comes again upside down.
-    fn multipliers(&self, speed: f64) -> Vec<[f64; 2]> {
+    pub(super) fn multipliers(&self, speed: f64) -> Vec<[f64; 2]> {
         let (mu, e, omega) = (self.particle, self.restitution, self.omega());
         let [before, train] = self.impact(speed);
         let damping = Stopped::damping();
@@ -505,7 +522,7 @@ fn a_branch_of_resilient_contacts_changes_its_stability_at_its_special_points_an
                     within("modulus", multipliers[0].modulus, 1.0, 1e-9);
                     stable = false;
                 }
-                Some(Special::Fold | Special::Graze) => break,
+                Some(Special::Fold | Special::Graze | Special::SymmetryBreaking) => break,
                 None => assert_eq!(point.orbit.is_stable(), stable, "at {}", point.parameter),
             }
             found.extend(point.special.map(Special::word));
