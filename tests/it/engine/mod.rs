@@ -5,6 +5,7 @@ mod arrays;
 mod averages;
 mod bench;
 mod closed_forms;
+mod drawn_scenes;
 mod elasticities;
 mod equal_modes;
 mod event_cases;
