@@ -36,6 +36,9 @@ use half_cycles::Half;
 /// Events at one instant beyond which the contact is declared undecidable.
 const MOST_EVENTS_AT_AN_INSTANT: u32 = 64;
 
+/// The longest time, in periods, for which contacts that do not settle are left alone.
+const LONGEST_BLINK: f64 = 1e-9;
+
 /// Panels that an integral may take before closed forms are cheaper, where a contact state is hardly ever visited twice.
 const FEW_PANELS: usize = 16;
 
@@ -72,6 +75,8 @@ pub(crate) struct March<'a, const TAPED: bool> {
     slipped: Option<Slipped>,
     /// Some floor and ceiling do not move as one.
     has_walls: bool,
+    /// A time in which nothing can have moved, s.
+    nothing: f64,
     averaged: Averaged,
     // Clock.
     cycle: u64,
@@ -135,6 +140,7 @@ impl<'a, const TAPED: bool> March<'a, TAPED> {
             smooth: vec![false; count],
             slipped: None,
             has_walls: system.particles.iter().any(Particle::has_walls),
+            nothing: f64::EPSILON * f64::EPSILON * system.drive.period,
             averaged: options.averaged(),
             cycle: 0,
             time: 0.0,
@@ -192,7 +198,8 @@ impl<'a, const TAPED: bool> March<'a, TAPED> {
                     }
                 }
                 if fits {
-                    break;
+                    // Nothing presses a particle without weight: what the drive is about to do decides.
+                    return if self.system.gravity > 0.0 { Ok(()) } else { self.settle(&[]) };
                 }
                 self.changed = true;
             },
@@ -420,7 +427,7 @@ impl<'a, const TAPED: bool> March<'a, TAPED> {
     fn propagate_to(&mut self, until: f64) -> Result<(), EngineError> {
         // Near the start of a cycle the clock counts finer than its instants can be told apart later.
         let instant = f64::EPSILON * self.system.drive.period;
-        let mut stuck = 0;
+        let (mut stuck, mut blinks) = (0, 0);
         let mut last = self.time;
         while self.time < until {
             self.segment(until)?;
@@ -428,17 +435,41 @@ impl<'a, const TAPED: bool> March<'a, TAPED> {
                 return Err(budget::overrun().into());
             }
             if self.time > last + instant {
+                blinks = if self.time > last + LONGEST_BLINK * self.system.drive.period { 0 } else { blinks };
                 (stuck, last) = (0, self.time);
             }
             stuck += 1;
             if stuck > MOST_EVENTS_AT_AN_INSTANT {
-                return Err(self.no_progress());
+                let blink = instant * f64::from(1_u32 << blinks);
+                let short = blink > 0.0 && blink <= LONGEST_BLINK * self.system.drive.period;
+                if !short || self.squeezed().is_some() {
+                    return Err(self.no_progress());
+                }
+                self.blink(until.min(self.time + blink))?;
+                (stuck, last, blinks) = (0, self.time, blinks + 1);
             }
         }
         Ok(())
     }
 
+    /// To the next event.
     fn segment(&mut self, until: f64) -> Result<(), EngineError> {
+        self.set_guards()?;
+        self.follow(until)
+    }
+
+    /// Goes on without a look at the contacts, for so short a time that rounding moves them as far: what they do at this instant
+    /// is rounding, and one of them undoes what another one does.
+    #[cold]
+    fn blink(&mut self, until: f64) -> Result<(), EngineError> {
+        self.set_guards()?;
+        self.search.guards.clear();
+        self.clarity.ties += 1;
+        self.follow(until)
+    }
+
+    #[inline]
+    fn set_guards(&mut self) -> Result<(), EngineError> {
         self.choose_flow()?;
         let drive = self.drive_phase(self.time);
         self.enter_flow(drive);
@@ -459,6 +490,13 @@ impl<'a, const TAPED: bool> March<'a, TAPED> {
         if let (Some(bend), false) = (flow.rows.bend, self.half.idle) {
             guards::half_cycle(bend, self.half.sign, self.half.touching, &mut self.search);
         }
+        Ok(())
+    }
+
+    /// Follows the flow to the first of the guards that are set.
+    #[inline]
+    fn follow(&mut self, until: f64) -> Result<(), EngineError> {
+        let (flow, drive) = (&self.flow, self.phase);
         let limit = (until - self.time).min(flow.lasts());
         let found = self.search.run(flow, &self.signals, limit, &mut self.clarity);
         let length = match found {
@@ -498,7 +536,7 @@ impl<'a, const TAPED: bool> March<'a, TAPED> {
         let n = self.system.mass.order;
         let flow = &self.flow;
         let mut kept = Vec::new();
-        if self.has_walls && length != 0.0 {
+        if self.has_walls && length > self.nothing {
             self.slipped = None;
         }
         for (j, particle) in self.system.particles.iter().enumerate() {
@@ -517,7 +555,7 @@ impl<'a, const TAPED: bool> March<'a, TAPED> {
                 self.particles[j] = guards::fly(flow, self.paths[j], phases, here, &self.search.kernels, length);
             }
             // What has begun at zero is there no longer.
-            self.smooth[j] &= length == 0.0;
+            self.smooth[j] &= length <= self.nothing;
         }
         flow.leave(&self.c_end, length, self.level, end_drive, &mut self.q, &mut self.rate);
         for (j, side) in kept {

@@ -80,7 +80,10 @@ impl<const TAPED: bool> March<'_, TAPED> {
                     self.smooth[j] = !self.sudden;
                 }
                 _ => {
-                    self.particles[j].gap = 0.0;
+                    // It leaves, or is at rest; what rounding has left of an approach would bring it back at once.
+                    let rate = self.particles[j].rate;
+                    let leaves = side.away() * rate > 0.0;
+                    self.particles[j] = Relative { gap: 0.0, rate: if leaves { rate } else { 0.0 } };
                     self.let_go(j, side);
                     jumps = true;
                 }
@@ -112,6 +115,15 @@ impl<const TAPED: bool> March<'_, TAPED> {
     #[cold]
     pub(super) fn no_progress(&self) -> EngineError {
         let (cycle, time) = (self.cycle, self.time);
+        match self.squeezed() {
+            Some(particle) => EngineError::Squeezed { particle, cycle, time },
+            None => EngineError::NoProgress { cycle, time },
+        }
+    }
+
+    /// A particle whose faces, rigid or on their stops, move by themselves and have met.
+    #[cold]
+    pub(super) fn squeezed(&self) -> Option<usize> {
         let between = |j: &usize| {
             let particle = &self.system.particles[*j];
             let yields = |face: &Face| matches!(face.law, Law::Resilient { stop: None, .. });
@@ -126,10 +138,7 @@ impl<const TAPED: bool> March<'_, TAPED> {
                     !yields(ceiling) && way <= CLOSED * size
                 })
         };
-        match (0..self.particles.len()).find(between) {
-            Some(particle) => EngineError::Squeezed { particle, cycle, time },
-            None => EngineError::NoProgress { cycle, time },
-        }
+        (0..self.particles.len()).find(between)
     }
 
     /// A particle in flight that is at a face and moves into it has met it: where there is no gap to cross.

@@ -6,6 +6,7 @@ mod averages;
 mod bench;
 mod branching;
 mod closed_forms;
+mod drawn_scenes;
 mod elasticities;
 mod equal_modes;
 mod event_cases;

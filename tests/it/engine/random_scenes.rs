@@ -1,10 +1,24 @@
 //! Random scenes over structures, faces, stops and drives: each has an answer, whose balances close. `SHOTDAMP_SCENES=10000`
 //! tries as many.
 
-use shotdamp::dynamics::{Drive, Harmonic, HybridSystem, Tick, event_driven};
+use shotdamp::dynamics::{
+    Allowance, Drive, EngineError, Harmonic, HybridSystem, Law, Limit, Options, Particle, Proof, Tick, event_driven,
+};
+use shotdamp::scene::compile;
 
 use super::arrays::{Dice, any_scene, cycles};
 use super::bench::note;
+use super::drawn_scenes::any_drawn_scene;
+
+fn scenes(usual: u64) -> u64 {
+    std::env::var("SHOTDAMP_SCENES").ok().and_then(|count| count.parse().ok()).unwrap_or(usual)
+}
+
+fn balanced(seed: u64, proof: Proof) {
+    note("energy residual", proof.energy_residual, 1e-9);
+    note("momentum residual", proof.momentum_residual, 1e-9);
+    assert!(proof.energy_residual < 1e-9 && proof.momentum_residual < 1e-9, "seed {seed}: {proof:?}");
+}
 
 /// A scene of any kind under impulses, pulses, a harmonic force, or with a dashpot that ties all modes together.
 fn any_driven_scene(seed: u64) -> HybridSystem {
@@ -35,12 +49,36 @@ fn any_driven_scene(seed: u64) -> HybridSystem {
 
 #[test]
 pub(super) fn no_scene_is_refused() {
-    let scenes = std::env::var("SHOTDAMP_SCENES").ok().and_then(|count| count.parse().ok()).unwrap_or(100);
-    for seed in 0..scenes {
+    for seed in 0..scenes(100) {
         let response = event_driven(&any_driven_scene(seed), &cycles(4));
-        let proof = response.unwrap_or_else(|error| panic!("seed {seed}: {error}")).proof;
-        note("energy residual", proof.energy_residual, 1e-9);
-        note("momentum residual", proof.momentum_residual, 1e-9);
-        assert!(proof.energy_residual < 1e-9 && proof.momentum_residual < 1e-9, "seed {seed}: {proof:?}");
+        balanced(seed, response.unwrap_or_else(|error| panic!("seed {seed}: {error}")).proof);
+    }
+}
+
+/// Neither face yields, and they move by themselves: a particle between both would be a rod between two bodies.
+fn is_rod(particle: &Particle) -> bool {
+    let yields = |law: Law| matches!(law, Law::Resilient { stop: None, .. });
+    particle
+        .ceiling
+        .as_ref()
+        .is_some_and(|ceiling| ceiling.row != particle.floor.row && !yields(particle.floor.law) && !yields(ceiling.law))
+}
+
+#[test]
+pub(super) fn no_drawn_scene_is_refused_unless_both_its_faces_are_rigid_and_meet() {
+    // Behind the first ones: faces that cannot pull and let go of particles at rest, or of several at once, and particles without
+    // weight; each of them undid at one instant what it had just done.
+    let known = [688, 736, 1656, 1868, 2052, 2493, 3777, 4014, 4874, 5132, 5305];
+    for seed in (0..scenes(200)).chain(known) {
+        let scene = any_drawn_scene(seed);
+        let system = compile(&scene).unwrap_or_else(|error| panic!("seed {seed}: {error}"));
+        scene.check_start().unwrap_or_else(|error| panic!("seed {seed}: {error}"));
+        let options = Options { start: scene.start_state(), record_events: 0, ..cycles(4) };
+        let limit = Limit { events: 1_000_000, ..Limit::default() };
+        match Allowance::new(limit).simulate(|| event_driven(&system, &options)) {
+            Ok(response) => balanced(seed, response.proof),
+            Err(EngineError::Squeezed { particle, .. }) if is_rod(&system.particles[particle]) => {}
+            Err(error) => panic!("seed {seed}: {error}"),
+        }
     }
 }
