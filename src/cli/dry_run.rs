@@ -11,8 +11,8 @@ use crate::text::number::compact;
 use crate::text::words::{capitalised, counted};
 
 /// Prints it, and writes nothing.
-pub(super) fn dry_run(layout: &Layout, args: &RunArgs, common: &Args) -> Result<Exit, CliError> {
-    let study = Found::look(layout)?.open(layout, &args.choice, args.force);
+pub(super) fn dry_run(layout: &Layout, found: Found, args: &RunArgs, common: &Args) -> Result<Exit, CliError> {
+    let study = found.open(layout, &args.choice, args.force);
     let chosen = choose(&study, &args.choice)?;
     print_unread(chosen.unread.iter().copied());
     let threads = common.jobs.map_or_else(processors, usize::from);

@@ -1,5 +1,7 @@
 //! `shotdamp schema`: JSON Schemas for editors.
 
+use clap::ValueEnum;
+
 use super::args::{SchemaArgs, SchemaOf};
 use super::error::CliError;
 use super::exit::Exit;
@@ -12,8 +14,6 @@ use crate::reference::reference_schema;
 use crate::study::{ASSUMPTIONS, Layout};
 
 impl SchemaOf {
-    pub const ALL: [Self; 5] = [Self::Study, Self::Experiment, Self::Assumptions, Self::Reference, Self::Calibration];
-
     /// Where it stands within the study.
     pub fn file(self) -> &'static str {
         match self {
@@ -49,7 +49,7 @@ pub(super) fn schema(layout: &Layout, args: &SchemaArgs) -> Result<Exit, CliErro
         return print_one(of);
     }
     write_all(layout)?;
-    let description: Vec<String> = SchemaOf::ALL.iter().map(|of| format!("{}\n", of.file())).collect();
+    let description: Vec<String> = SchemaOf::value_variants().iter().map(|of| format!("{}\n", of.file())).collect();
     print(&description.concat())?;
     Ok(Exit::AsExpected)
 }
@@ -57,7 +57,7 @@ pub(super) fn schema(layout: &Layout, args: &SchemaArgs) -> Result<Exit, CliErro
 /// Writes those that are not what they should be; while the assumptions cannot be read, without their names.
 pub(super) fn write_all(layout: &Layout) -> Result<(), FileError> {
     let sheet = load_assumptions(&layout.path(ASSUMPTIONS)).unwrap_or_default();
-    for of in SchemaOf::ALL {
+    for of in SchemaOf::value_variants() {
         atomic::write_if_changed(&layout.path(of.file()), of.text(&sheet).as_bytes())?;
     }
     Ok(())

@@ -15,28 +15,23 @@ use crate::text::words::counted;
 
 /// Brings the chosen experiments up to date.
 pub(super) fn update(layout: &Layout, args: &RunArgs, common: &Args) -> Result<Exit, CliError> {
-    let mut found = None;
+    let found = Found::look(layout)?;
     if !args.force && !args.tables && !args.times && !args.verify {
         // Without lock, YAML, table or thread.
-        let looked = Found::look(layout)?;
-        if let Some(ids) = matched(&looked, &args.choice) {
-            looked.snapshot.settle(layout);
-            print_warnings(looked.snapshot.warnings(&looked.texts).as_ref());
-            return nothing_to_do(&looked.snapshot, &ids);
+        if let Some(ids) = matched(&found, &args.choice) {
+            found.snapshot.settle(layout);
+            print_warnings(found.snapshot.warnings(&found.texts).as_ref());
+            return nothing_to_do(&found.snapshot, &ids);
         }
-        found = Some(looked);
     }
     if args.dry_run {
-        return dry_run(layout, args, common);
+        return dry_run(layout, found, args, common);
     }
     // Figures are drawn on the shared pool.
     super::start_threads(common);
     let _lock = Lock::of_study(layout, held(args.no_wait))?;
     // Another run may have ended before this one got the lock.
-    let found = match found.filter(|found| found.snapshot.is_latest(layout)) {
-        Some(found) => found,
-        None => Found::look(layout)?,
-    };
+    let found = if found.snapshot.is_latest(layout) { found } else { Found::look(layout)? };
     let mut study = found.open(layout, &args.choice, args.force || args.verify);
     args.limit.apply(&mut study);
     let chosen = choose(&study, &args.choice)?;

@@ -33,7 +33,7 @@ use super::visits::Visits;
 use super::{Averaged, CycleRates, EngineError, Observed, Options, Proof, Response, Until};
 use half_cycles::Half;
 
-/// Events at one instant beyond which the contact is declared undecidable.
+/// Events at one instant beyond which contacts are left alone for a moment, as they undo each other.
 const MOST_EVENTS_AT_AN_INSTANT: u32 = 64;
 
 /// The longest time, in periods, for which contacts that do not settle are left alone.
@@ -427,7 +427,8 @@ impl<'a, const TAPED: bool> March<'a, TAPED> {
     fn propagate_to(&mut self, until: f64) -> Result<(), EngineError> {
         // Near the start of a cycle the clock counts finer than its instants can be told apart later.
         let instant = f64::EPSILON * self.system.drive.period;
-        let (mut stuck, mut blinks) = (0, 0);
+        let longest = LONGEST_BLINK * self.system.drive.period;
+        let (mut stuck, mut blink) = (0, instant);
         let mut last = self.time;
         while self.time < until {
             self.segment(until)?;
@@ -435,18 +436,17 @@ impl<'a, const TAPED: bool> March<'a, TAPED> {
                 return Err(budget::overrun().into());
             }
             if self.time > last + instant {
-                blinks = if self.time > last + LONGEST_BLINK * self.system.drive.period { 0 } else { blinks };
+                blink = if self.time > last + longest { instant } else { blink };
                 (stuck, last) = (0, self.time);
             }
             stuck += 1;
             if stuck > MOST_EVENTS_AT_AN_INSTANT {
-                let blink = instant * f64::from(1_u32 << blinks);
-                let short = blink > 0.0 && blink <= LONGEST_BLINK * self.system.drive.period;
+                let short = blink > 0.0 && blink <= longest;
                 if !short || self.squeezed().is_some() {
                     return Err(self.no_progress());
                 }
                 self.blink(until.min(self.time + blink))?;
-                (stuck, last, blinks) = (0, self.time, blinks + 1);
+                (stuck, last, blink) = (0, self.time, 2.0 * blink);
             }
         }
         Ok(())

@@ -80,8 +80,24 @@ struct Following<'a> {
 enum Begin {
     /// A run, at this share of the range.
     Run(f64),
-    /// A special point at which others begin, and how many doublings there were on the way with it.
-    Switch(Box<BranchPoint>, u32),
+    /// A special point of another branch.
+    Switch(Box<Switch>),
+}
+
+/// A special point at which other motions begin.
+struct Switch {
+    special: Special,
+    point: BranchPoint,
+    /// Doublings of the period on the way, with this one.
+    doublings: u32,
+}
+
+impl Switch {
+    /// Forcing periods of the motions that begin.
+    fn periods(&self) -> u32 {
+        let cycles = self.point.orbit.cycles;
+        if self.special == Special::PeriodDoubling { 2 * cycles } else { cycles }
+    }
 }
 
 /// What is still to be done.
@@ -106,11 +122,6 @@ impl Traced {
             _ => None,
         }
     }
-}
-
-/// Periods of the motion that begins at a special point, in those of the one that has it.
-fn periods_from(special: Special) -> u32 {
-    if special == Special::PeriodDoubling { 2 } else { 1 }
 }
 
 impl Following<'_> {
@@ -154,27 +165,26 @@ impl Following<'_> {
                     continue;
                 }
             };
-            let (parameter, level, switch) = match &begin {
-                Begin::Run(share) => (*share, 0, None),
-                Begin::Switch(point, level) => (point.parameter, *level, point.special),
+            let (parameter, switch) = match &begin {
+                Begin::Run(share) => (*share, None),
+                Begin::Switch(switch) => (switch.point.parameter, Some(switch)),
             };
-            if let (Begin::Switch(point, _), Some(special)) = (&begin, switch)
-                && is_joined(special, point.parameter, periods_from(special) * point.orbit.cycles)
-            {
+            if switch.is_some_and(|it| is_joined(it.special, parameter, it.periods())) {
                 continue;
             }
+            let doublings = switch.map_or(0, |it| it.doublings);
             match guarded(|| self.traced(&begin)) {
                 Ok(branches) => {
                     for traced in branches {
-                        if let (Some(special), [_]) = (switch, &traced.points[..]) {
-                            open.push_back(Open::Lone(special, traced));
+                        if let (Some(switch), [_]) = (switch, &traced.points[..]) {
+                            open.push_back(Open::Lone(switch.special, traced));
                             continue;
                         }
                         number += 1;
                         if let (Some(special), Some(last)) = (traced.joins(), traced.points.last()) {
                             joined.push((special, last.parameter, last.orbit.cycles));
                         }
-                        let next = traced.points.iter().filter_map(|point| self.switch(point, level));
+                        let next = traced.points.iter().filter_map(|point| self.switch(point, doublings));
                         open.extend(next.map(Open::Follow));
                         self.enter(number, traced, &mut rows);
                     }
@@ -189,13 +199,14 @@ impl Following<'_> {
     }
 
     /// What is followed from a point of a branch with so many doublings on the way to it.
-    fn switch(&self, point: &BranchPoint, level: u32) -> Option<Begin> {
-        let level = match point.special? {
-            Special::PeriodDoubling if level < self.continuation.doublings => level + 1,
-            Special::SymmetryBreaking if self.continuation.asymmetric => level,
+    fn switch(&self, point: &BranchPoint, doublings: u32) -> Option<Begin> {
+        let special = point.special?;
+        let doublings = match special {
+            Special::PeriodDoubling if doublings < self.continuation.doublings => doublings + 1,
+            Special::SymmetryBreaking if self.continuation.asymmetric => doublings,
             _ => return None,
         };
-        Some(Begin::Switch(Box::new(point.clone()), level))
+        Some(Begin::Switch(Box::new(Switch { special, point: point.clone(), doublings })))
     }
 
     /// The branch that begins so, or both.
@@ -210,9 +221,10 @@ impl Following<'_> {
         };
         let (orbit, start) = match begin {
             Begin::Run(share) => (self.first(*share)?, *share),
-            Begin::Switch(point, _) => {
+            Begin::Switch(switch) => {
+                let Switch { special, point, .. } = &**switch;
                 let begun = |Branch { points, end }| Traced { points, ends: [None, Some(end)] };
-                return Ok(if point.special == Some(Special::PeriodDoubling) {
+                return Ok(if *special == Special::PeriodDoubling {
                     vec![begun(Branch::doubled(system, point, up).map_err(unfollowed)?)]
                 } else {
                     Branch::asymmetric(system, point, up).map_err(unfollowed)?.map(begun).into()

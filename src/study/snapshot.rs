@@ -41,7 +41,7 @@ pub struct Snapshot {
     pub unused: BTreeSet<AssumptionName>,
     /// Files that were compared by content, and need not be the next time.
     settled: Option<Box<OnDisk>>,
-    /// When it was written.
+    /// When it was written; `None` if there is none.
     taken: Option<SystemTime>,
 }
 
@@ -154,7 +154,7 @@ impl Snapshot {
     /// True unless another run has ended since it was read.
     #[must_use]
     pub fn is_latest(&self, layout: &Layout) -> bool {
-        self.taken.is_some() && self.taken == written_at(&layout.path(NAME))
+        self.taken == written_at(&layout.path(NAME))
     }
 
     /// Writes down which files one `stat` will do for the next time. It saves time only: on a full disk nothing is lost.

@@ -81,7 +81,7 @@ impl<E, F: FnMut(f64) -> Result<HybridSystem, E>> Path<F> {
         let mut onwards = vec![0.0; shot.miss.len() + 1];
         onwards[shot.miss.len()] = 1.0;
         let share = self.first();
-        let (tangent, determinant) = self.tangent(&shot, share, &onwards)?;
+        let Solved { x: tangent, determinant } = self.tangent(&shot, share, &onwards)?;
         Ok(At { share, shot, distance, tangent, determinant })
     }
 
@@ -125,7 +125,7 @@ impl<E, F: FnMut(f64) -> Result<HybridSystem, E>> Path<F> {
                     .map(|i| from.tangent[i] * from.shot.scale.unit(i) / shot.scale.unit(i))
                     .chain([from.tangent[count]])
                     .collect();
-                let (tangent, determinant) = self.tangent(&shot, share, &onwards)?;
+                let Solved { x: tangent, determinant } = self.tangent(&shot, share, &onwards)?;
                 return Ok(At { share, shot, distance, tangent, determinant });
             }
             aside.iter_mut().zip(&moves).for_each(|(aside, by)| *aside += by);
@@ -172,16 +172,17 @@ impl<E, F: FnMut(f64) -> Result<HybridSystem, E>> Path<F> {
     }
 
     /// The direction in which solutions lie side by side, on the side of `onwards`, and the determinant of its equations.
-    fn tangent(&mut self, shot: &Shot, share: f64, onwards: &[f64]) -> Result<(Vec<f64>, f64), BranchError<E>> {
+    fn tangent(&mut self, shot: &Shot, share: f64, onwards: &[f64]) -> Result<Solved, BranchError<E>> {
         let by = self.slope(shot, share)?;
         let mut rest = vec![0.0; onwards.len()];
         rest[onwards.len() - 1] = 1.0;
         let missed = OrbitError::NoConvergence { cycles: self.cycles, miss: shot.misses_by() };
         let solved = elimination::solved(bordered(shot, &by, onwards), rest, &shot.places());
-        let Solved { x: mut tangent, determinant } = solved.ok_or(BranchError::Orbit(missed))?;
-        let all = length(&tangent);
-        tangent.iter_mut().for_each(|t| *t /= all);
-        Ok((tangent, determinant * all))
+        let mut tangent = solved.ok_or(BranchError::Orbit(missed))?;
+        let all = length(&tangent.x);
+        tangent.x.iter_mut().for_each(|t| *t /= all);
+        tangent.determinant *= all;
+        Ok(tangent)
     }
 }
 

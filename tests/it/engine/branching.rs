@@ -17,6 +17,15 @@ fn special(branch: &Branch<Infallible>, kind: Special) -> Vec<&BranchPoint> {
     branch.points.iter().filter(|point| point.special == Some(kind)).collect()
 }
 
+/// The last number of an interval, to its last bit, for which something holds that holds at its begin and not at its end.
+fn last(mut low: f64, mut high: f64, holds: impl Fn(f64) -> bool) -> f64 {
+    while low < 0.5 * (low + high) && 0.5 * (low + high) < high {
+        let middle = 0.5 * (low + high);
+        if holds(middle) { low = middle } else { high = middle }
+    }
+    low
+}
+
 /// A ball on a table x = Γ sin φ in units of g and ω: phase and velocity after an impact to those after the next.
 struct Ball {
     restitution: f64,
@@ -32,11 +41,7 @@ impl Ball {
         while above(high) > 0.0 {
             high += 1e-3;
         }
-        let mut low = high - 1e-3;
-        while low < 0.5 * (low + high) && 0.5 * (low + high) < high {
-            let middle = 0.5 * (low + high);
-            if above(middle) > 0.0 { low = middle } else { high = middle }
-        }
+        let low = last(high - 1e-3, high, |t| above(t) > 0.0);
         let next = phase + low;
         let (leaves, meets) = (table * phase.cos(), table * next.cos());
         let falls = velocity - low;
@@ -86,11 +91,7 @@ impl Ball {
                 high = low + 1e-4;
             }
         }
-        while low < 0.5 * (low + high) && 0.5 * (low + high) < high {
-            let middle = 0.5 * (low + high);
-            if at(middle).cycle(impacts, state).1 > 0.0 { low = middle } else { high = middle }
-        }
-        low
+        last(low, high, |acceleration| at(acceleration).cycle(impacts, state).1 > 0.0)
     }
 }
 
@@ -215,14 +216,12 @@ fn the_impact_pair_loses_its_symmetry_where_half_a_cycle_has_the_eigenvalue_minu
         let down = Along { from: begin, to: 0.9 * pair.fold(), ..along };
         let turned = Branch::follow(systems, &orbit, begin, down).expect("it has a first orbit");
         let kinds: Vec<Special> = turned.points.iter().filter_map(|point| point.special).collect();
-        println!("{kinds:?}, {:?}", turned.end);
         close("fold", special(&turned, Special::Fold)[0].parameter, pair.fold(), 1e-10);
         assert!(!kinds.contains(&Special::SymmetryBreaking));
 
         let both = Branch::asymmetric(systems, fork, along).expect("they begin there");
         for branch in &both {
             let points = &branch.points[1..];
-            println!("ε = {restitution}: {} points, {:?}", points.len(), branch.end);
             assert!(points.len() > 5 && points[0].orbit.is_stable());
             for point in points {
                 assert_eq!((point.orbit.cycles, point.orbit.contacts), (1, 2));
@@ -262,9 +261,6 @@ fn the_impact_damper_loses_its_symmetry_at_the_speed_of_the_closed_form() {
     close("symmetry breaking", fork.parameter, masri.force(speed), 1e-10);
     let both = Branch::asymmetric(systems, fork, along).expect("they begin there");
     for branch in &both {
-        println!("{} points to {:?}", branch.points.len(), branch.end);
-        let kinds: Vec<_> = branch.points.iter().filter_map(|it| Some((it.special?.word(), it.parameter))).collect();
-        println!("{kinds:?}");
         assert!(branch.points[1].orbit.is_stable() && branch.points.len() > 5);
     }
 }
