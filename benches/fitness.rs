@@ -40,6 +40,7 @@ fn evaluation(bencher: Bencher<'_, '_>, id: &str, which: usize) {
                 energies: None,
                 shape: None,
                 each_cycle: None,
+                tolerances: &[],
                 link: Link::None,
                 rigour: Rigour::Step,
             };

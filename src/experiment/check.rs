@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::recipe::{Assumptions, ExcitationKind, Parameter, ParameterValue, Part, RecipeError};
 use crate::dynamics::Until;
-use crate::measure::{CycleSpec, EnergySpec, Measure, Settings, ShapeSpec, SolverChoice, TraceSpec, Under};
+use crate::measure::{CycleSpec, EnergySpec, Measure, Settings, ShapeSpec, SolverChoice, Tolerance, TraceSpec, Under};
 use crate::scene::Scene;
 
 use super::continued::ContinuedSweep;
@@ -79,18 +79,26 @@ impl Checks<'_> {
         averages: bool,
         solvers: &[SolverChoice],
     ) {
-        let Some((measure, span)) = measures.iter().find(|(measure, _)| measure.needs_multipliers()) else { return };
-        let name = word_of(*measure);
-        let reason = if solvers.iter().any(|solver| matches!(solver, SolverChoice::FixedStep { .. })) {
-            "the event-driven solver alone"
+        let exact = |solver: &SolverChoice| *solver == SolverChoice::EventDriven;
+        // Beside exact rows those of a fixed step have an empty name.
+        let is_named = measures.iter().any(|(measure, _)| measure.is_name());
+        let unproved = |measure: Measure| match is_named && measure.needs_motion() {
+            true => !solvers.iter().any(exact),
+            false => !solvers.iter().all(exact),
+        };
+        let of_motions = || measures.iter().filter(|(measure, _)| measure.needs_multipliers());
+        let (at, reason) = if let Some(at) = of_motions().find(|(measure, _)| unproved(*measure)) {
+            (Some(at), "the event-driven solver alone")
         } else if averages {
-            "a single run, not of the mean over several"
+            (of_motions().next(), "a single run, not of the mean over several")
         } else if maximise.is_some_and(|maximise| maximise.measure.is_name()) {
-            "a run as it is: a name has no maximum"
+            (of_motions().next(), "a run as it is: a name has no maximum")
         } else {
             return;
         };
-        self.findings.wrong::<()>(*span, format!("`{name}` is measured of {reason}"));
+        if let Some((measure, span)) = at {
+            self.findings.wrong::<()>(*span, format!("`{}` is measured of {reason}", word_of(*measure)));
+        }
     }
 
     /// Runs that are to settle: what proves it, and what is read off one period.
@@ -303,6 +311,16 @@ impl Checks<'_> {
                 "under a fixed step a cycle ends up to a step late, and its state is not that of the next cycle's start",
                 Some("`from: last` goes with `solver: event_driven`".into()),
             );
+        }
+    }
+
+    /// An uncertainty is that of something.
+    pub fn tolerances(&self, measures: &[(Measure, Span)], tolerances: &[Tolerance]) {
+        if let (Some((measure, span)), true) =
+            (measures.iter().find(|(measure, _)| *measure == Measure::VelocityRatioInput), tolerances.is_empty())
+        {
+            let message = format!("`{}` is what tolerances leave, and there are none", word_of(*measure));
+            self.findings.report::<()>(*span, message, Some("add `tolerances: {gap: 1 %}`".into()));
         }
     }
 

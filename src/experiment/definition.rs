@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::recipe::{AssumptionName, AssumptionValue, Assumptions, Parameter, ParameterValue, Recipe, RecipeError};
 use crate::dynamics::Limit;
-use crate::measure::{CycleSpec, EnergySpec, Measure, Needs, Settings, ShapeSpec, SolverChoice, TraceSpec};
+use crate::measure::{CycleSpec, EnergySpec, Measure, Needs, Settings, ShapeSpec, SolverChoice, Tolerance, TraceSpec};
 
 use super::assumption_sheet::AssumptionSheet;
 use super::continuation::Continuation;
@@ -101,6 +101,9 @@ pub struct Experiment {
     /// Value of each cycle to keep with each row. At most one of the four is kept: the lists of a row are of one length.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub each_cycle: Option<CycleSpec>,
+    /// How uncertain design parameters are.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub tolerances: Vec<Tolerance>,
     /// The figures; never part of what makes a simulation stale.
     pub figures: Vec<FigureSpec>,
     /// Inputs that neither the text of the study nor an assumption gives, `key value`; none where no text is stated.
@@ -216,6 +219,9 @@ impl Experiment {
         }
         if let Some(each_cycle) = &self.each_cycle {
             meaning["each_cycle"] = json(each_cycle);
+        }
+        if !self.tolerances.is_empty() {
+            meaning["tolerances"] = json(&self.tolerances);
         }
         if let Some(optimise) = &self.optimise {
             meaning["optimise"] = json(optimise);

@@ -3,8 +3,9 @@
 use super::assumption_reader::MOST_CYCLES;
 use super::at::At;
 use super::keys::Keys;
+use super::word::words;
 use super::yaml::Value;
-use crate::measure::{CycleSpec, CycleValue, EnergySpec, ShapeOf, ShapeSpec, TraceSpec};
+use crate::measure::{CycleSpec, CycleValue, EnergySpec, Measure, ShapeOf, ShapeSpec, Tolerance, TraceSpec};
 
 /// Most samples of a time history.
 const MOST_SAMPLES: u32 = 1_000_000;
@@ -58,6 +59,27 @@ pub(super) fn read_each_cycle(at: At<'_>) -> Option<CycleSpec> {
     };
     let all = |at: At<'_>| Some(CycleSpec { of: value(at)?, last: None });
     at.either(|value| matches!(value, Value::Mapping(_)), last_ones, all)
+}
+
+/// `{gap: 1 %, force: 5 %}`: the words are those of the elasticities.
+pub(super) fn read_tolerances(at: At<'_>) -> Option<Vec<Tolerance>> {
+    let keys = at.keys("tolerances")?;
+    let mut tolerances = Vec::new();
+    let mut is_fine = true;
+    for measure in Measure::ALL {
+        let Some(of) = measure.elasticity_in() else { continue };
+        let Some(name) = words::<Measure>()[*measure as usize].strip_suffix("_elasticity") else { continue };
+        let about = "Its standard uncertainty over its value";
+        match keys.optional(name, about, |at| at.share("a value is known better than to itself")) {
+            Some(share) => tolerances.extend(share.map(|share| Tolerance { of, share })),
+            None => is_fine = false,
+        }
+    }
+    keys.close()?;
+    if is_fine && tolerances.is_empty() {
+        return at.wrong("there is no tolerance here: write `gap: 1 %`, for one");
+    }
+    is_fine.then_some(tolerances)
 }
 
 pub(super) fn read_shape(at: At<'_>) -> Option<ShapeSpec> {

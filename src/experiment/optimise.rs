@@ -88,6 +88,11 @@ pub enum Search {
         /// Rounds of finer grids around the best point.
         refine: u32,
     },
+    /// After the others: down the gradient of settled motion from the best of all candidates.
+    Polish {
+        /// Most orbits with their derivatives.
+        evaluations: u32,
+    },
 }
 
 /// Which optimiser, as the table's column `candidate` names what it found.
@@ -102,13 +107,15 @@ pub enum SearchKind {
     CmaEs,
     /// Dense search.
     Dense,
+    /// Along the gradient from the best of all.
+    Polish,
     /// Not a search: sections through the best point.
     Landscape,
 }
 
 impl SearchKind {
     /// All of them: names that no candidate may have.
-    pub const ALL: [Self; 5] = [Self::Genetic, Self::TwoOpt, Self::CmaEs, Self::Dense, Self::Landscape];
+    pub const ALL: [Self; 6] = [Self::Genetic, Self::TwoOpt, Self::CmaEs, Self::Dense, Self::Polish, Self::Landscape];
 }
 
 /// Sections of the fitness.
@@ -163,6 +170,8 @@ impl Optimise {
                 let power = |base: u64| base.saturating_pow(u32::try_from(gaps).unwrap_or(u32::MAX));
                 power(u64::from(*points)).saturating_add(u64::from(*refine).saturating_mul(power(FINER)))
             }
+            // The candidates of the file have to be looked at first.
+            Search::Polish { evaluations } => u64::from(*evaluations) + self.candidates.len() as u64 + 1,
         });
         let landscape = self.landscape.map_or(0, |landscape| gaps * (u64::from(landscape.points) + 1));
         let own = (swaps_each + 1) * self.two_opt_of.len() as u64;

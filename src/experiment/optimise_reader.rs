@@ -14,6 +14,7 @@ use super::sweep::{NAME, is_name};
 use super::validate::read_measure;
 use super::word::word_of;
 use super::yaml::Value;
+use crate::measure::Measure;
 
 /// Most individuals of a population.
 const MOST_INDIVIDUALS: u32 = 100_000;
@@ -54,6 +55,7 @@ pub(super) fn read_optimise(at: At<'_>) -> Option<ReadOptimise> {
     let genetic = keys.optional("genetic", "The genetic algorithm", read_genetic);
     let cma_es = keys.optional("cma_es", "CMA-ES, the peer", read_cma_es);
     let dense = keys.optional("dense", "Every point of a grid", read_dense);
+    let polish = keys.optional("polish", "Down the gradient of settled motion from the best candidate", read_polish);
     let improved = "Improve by 2-opt what the genetic algorithm found, or these candidates";
     let two_opt = keys.optional("two_opt", improved, read_two_opt);
     let seeds = keys.optional("seeds", "Seeds, each a search of its own", read_seeds);
@@ -72,6 +74,7 @@ pub(super) fn read_optimise(at: At<'_>) -> Option<ReadOptimise> {
     }
     let (names, candidates_at): (Vec<Candidate>, Vec<Span>) = candidates.into_iter().unzip();
     let (genetic, cma_es, dense, stop) = (genetic?, cma_es?, dense?, stop?.unwrap_or_default());
+    let polish = polish?;
     let (two_opt, two_opt_of) = two_opt?.unwrap_or_default();
     if let Some(Search::Genetic { start, .. }) = &genetic
         && let Some(name) = start.iter().find(|name| names.iter().all(|candidate| candidate.name != **name))
@@ -97,6 +100,10 @@ pub(super) fn read_optimise(at: At<'_>) -> Option<ReadOptimise> {
         let help = "add `stop: {generations: …}` or `stop: {evaluations: …}`".to_owned();
         return at.report("nothing bounds this search", Some(help));
     }
+    if let (Some((_, polish_at)), false) = (&polish, matches!(measure, Measure::RmsVelocity | Measure::VelocityRatio)) {
+        let help = "optimise `rms_velocity` or `velocity_ratio`, or leave `polish` out".to_owned();
+        return at.report_at(*polish_at, "polishing follows the derivatives of the RMS velocity", Some(help));
+    }
     if genetic.is_none() && cma_es.is_none() && dense.is_none() && landscape == Some(None) && names.is_empty() {
         return at.wrong("there is nothing to evaluate: name candidates or a search");
     }
@@ -106,7 +113,7 @@ pub(super) fn read_optimise(at: At<'_>) -> Option<ReadOptimise> {
         gaps,
         bounds: Vec::new(),
         candidates: names,
-        searches: [genetic, cma_es, dense].into_iter().flatten().collect(),
+        searches: [genetic, cma_es, dense, polish.map(|(polish, _)| polish)].into_iter().flatten().collect(),
         seeds: seeds?.unwrap_or_else(|| vec![1]),
         two_opt,
         two_opt_of,
@@ -235,6 +242,18 @@ fn read_dense(at: At<'_>) -> Option<Search> {
     let refine = keys.optional("refine", "Finer grids around the best", |at| at.count("rounds", 50));
     keys.close()?;
     Some(Search::Dense { points: points?, spacing: spacing?, refine: refine?.unwrap_or(0) })
+}
+
+/// Orbits with their derivatives, unless the file says otherwise.
+const USUAL_POLISH: u32 = 100;
+
+fn read_polish(at: At<'_>) -> Option<(Search, Span)> {
+    let keys = at.keys("a descent")?;
+    let evaluations = keys.optional("evaluations", "Orbits with their derivatives, at most", |at| {
+        at.count_from(1, "evaluations", 10_000, "one at least is wanted here")
+    });
+    keys.close()?;
+    Some((Search::Polish { evaluations: evaluations?.unwrap_or(USUAL_POLISH) }, at.span()))
 }
 
 fn read_landscape(at: At<'_>) -> Option<Landscape> {

@@ -13,7 +13,7 @@ use super::definition::{Case, Experiment, ExperimentId, Maximise, Source};
 use super::diagnostic::{Findings, Problems, Span};
 use super::exclusions::{check_lists, check_mean, check_rows};
 use super::figure::FigureReader;
-use super::lists::{read_each_cycle, read_energies, read_shape, read_trace};
+use super::lists::{read_each_cycle, read_energies, read_shape, read_tolerances, read_trace};
 use super::looked_for::{read_maximise, read_onset};
 use super::optimise::Optimise;
 use super::optimise_reader::{ReadOptimise, read_optimise};
@@ -118,6 +118,8 @@ impl<'t> ExperimentReader<'t> {
         let shape = keys.optional("shape", "A shape that is kept", read_shape);
         let each_cycle = "A value of each averaged cycle that is kept";
         let each_cycle = keys.optional("each_cycle", each_cycle, read_each_cycle);
+        let uncertain = "Relative standard uncertainties of design parameters";
+        let tolerances = keys.optional("tolerances", uncertain, |at| Some((read_tolerances(at)?, at.span())));
         let lists =
             matches!(trace, Some(Some(_))) || matches!(energies, Some(Some(_))) || matches!(each_cycle, Some(Some(_)));
         let deflection = matches!(&shape, Some(Some(shape)) if shape.of == ShapeOf::Deflection);
@@ -130,6 +132,10 @@ impl<'t> ExperimentReader<'t> {
         };
         let measures = match (measures, &starts) {
             (Some(measures), Some(Some(starts))) => Some(with_the_motion(measures, starts.span)),
+            (measures, _) => measures,
+        };
+        let measures = match (measures, &tolerances) {
+            (Some(measures), Some(Some((_, at)))) => Some(with_what_tolerances_leave(measures, *at)),
             (measures, _) => measures,
         };
         let one_list = check_lists(&keys, self.findings);
@@ -195,13 +201,9 @@ impl<'t> ExperimentReader<'t> {
         let (mean_over, optimise) = (mean_over?.unwrap_or_else(ReadSweep::none), optimise?);
         let (measures, maximise, trace, run) = (measures?, maximise?, trace?, run?);
         let (energies, shape, each_cycle) = (energies?, shape?, each_cycle?);
+        let tolerances = tolerances?.map_or_else(Vec::new, |(tolerances, _)| tolerances);
         checks.measures(&measures, maximise.as_ref(), trace.as_ref(), shape.as_ref());
-        checks.motion(
-            &measures,
-            maximise.as_ref(),
-            mean_over.cases.iter().any(|case| !case.values.is_empty()),
-            &run.solvers,
-        );
+        checks.tolerances(&measures, &tolerances);
         checks.energies(energies.as_ref(), &run.settings, energies_at);
         checks.each_cycle(each_cycle.as_ref(), &run.settings, each_cycle_at);
         if let Some(at) = run.settled_at {
@@ -231,6 +233,7 @@ impl<'t> ExperimentReader<'t> {
         let inner = mean_over.cases.first().filter(|case| !case.values.is_empty()).map(|_| mean_over.cases.clone());
         let inner = inner.unwrap_or_default();
         let cases = with_solvers(sweep.cases, &run.solvers);
+        checks.motion(&measures, maximise.as_ref(), !inner.is_empty(), &all_solvers(&cases));
         checks.refined(&sweep.refined, &measures);
         checks.continued(&sweep.continued, &cases, unordered);
         if let (true, Some((_, at))) = (no_run, sweep.continued.first()) {
@@ -276,6 +279,7 @@ impl<'t> ExperimentReader<'t> {
             energies,
             shape,
             each_cycle,
+            tolerances,
             figures,
             without_source: without_source(
                 root,
@@ -388,6 +392,14 @@ fn with_the_end(mut measures: Vec<(Measure, Span)>, settled_at: Span) -> Vec<(Me
         if measures.iter().all(|(other, _)| *other != measure) {
             measures.push((measure, settled_at));
         }
+    }
+    measures
+}
+
+/// With what the tolerances leave of the velocity ratio.
+fn with_what_tolerances_leave(mut measures: Vec<(Measure, Span)>, at: Span) -> Vec<(Measure, Span)> {
+    if measures.iter().all(|(measure, _)| *measure != Measure::VelocityRatioInput) {
+        measures.push((Measure::VelocityRatioInput, at));
     }
     measures
 }

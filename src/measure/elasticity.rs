@@ -5,9 +5,9 @@
 //! v₀ is proportional to the force, and depends on the particles' mass where the run without dampers carries it.
 
 use super::reading::Reading;
-use super::{EvaluateError, Measured, Subject};
-use crate::dynamics::{Elasticity, ElasticityError, EngineError, Orbit, OrbitError, StartState};
-use crate::scene::{Design, Scene, Structure, compile};
+use super::{EvaluateError, Measured, Subject, Tolerance};
+use crate::dynamics::{Elasticity, ElasticityError, EngineError, HybridSystem, Orbit, OrbitError, StartState};
+use crate::scene::{CompileError, Design, Scene, Structure, compile};
 
 /// Why a row has no elasticity. A table keeps it as the numerical error of the number that is not there.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -53,13 +53,13 @@ impl Absent {
 
 /// The elasticity of the velocity ratio of an orbit of the subject's scene.
 pub(super) fn of(subject: &Subject, orbit: &Orbit, design: Design) -> Result<Measured, EvaluateError> {
-    let Some(own) = of_rms_velocity(&subject.scene, orbit, |factor| subject.scene.scaled(design, factor))? else {
+    let Some(own) = of_scaled(&subject.scene, orbit, |factor| subject.scene.scaled(design, factor))? else {
         return Ok(Absent::NoParameter.measured());
     };
     let reference = match subject.undamped.as_ref() {
         Some(bare) if reference(subject, bare, design, 2.0).is_some() => {
             match Orbit::near(&compile(bare)?, &StartState::StaticEquilibrium, 1) {
-                Ok(orbit) => of_rms_velocity(bare, &orbit, |factor| reference(subject, bare, design, factor))?,
+                Ok(orbit) => of_scaled(bare, &orbit, |factor| reference(subject, bare, design, factor))?,
                 Err(error) => Some(Err(refused(error)?)),
             }
         }
@@ -72,6 +72,28 @@ pub(super) fn of(subject: &Subject, orbit: &Orbit, design: Design) -> Result<Mea
         }
         (Err(absent), _) | (_, Err(absent)) => absent.measured(),
     })
+}
+
+/// What the tolerances of parameters leave of a velocity ratio, as a standard uncertainty: u = ψ √Σ (u_p d ln ψ/d ln p)². A parameter that
+/// the scene does not have leaves nothing.
+pub(super) fn left_by(
+    tolerances: &[Tolerance],
+    velocity_ratio: f64,
+    elasticity_in: impl Fn(Design) -> Result<Measured, EvaluateError>,
+) -> Result<Measured, EvaluateError> {
+    let (mut sum, mut error) = (0.0, 0.0);
+    for Tolerance { of, share } in tolerances {
+        let elasticity = elasticity_in(*of)?;
+        if elasticity.value.is_nan() {
+            match Absent::of(&elasticity) {
+                Absent::NoParameter => continue,
+                absent => return Ok(absent.measured()),
+            }
+        }
+        sum += (share * elasticity.value).powi(2);
+        error += share * elasticity.numerical;
+    }
+    Ok(Measured { value: velocity_ratio * sum.sqrt(), numerical: velocity_ratio * error, spread: 0.0 })
 }
 
 /// The scene without dampers, where it changes with the parameter; one mass that is heavier without dampers carries the particles.
@@ -95,7 +117,7 @@ fn reference(subject: &Subject, bare: &Scene, design: Design, factor: f64) -> Op
 }
 
 /// d ln v/d ln p; `None` where the scene does not change with the parameter.
-fn of_rms_velocity(
+fn of_scaled(
     scene: &Scene,
     orbit: &Orbit,
     scaled: impl Fn(f64) -> Option<Scene>,
@@ -104,15 +126,23 @@ fn of_rms_velocity(
         return Ok(None);
     }
     let system_at = |factor: f64| compile(&scaled(factor).unwrap_or_else(|| scene.clone()));
-    let found = orbit.elasticity(system_at, |run| Reading::of_run(scene, run).rms_velocity(run));
-    Ok(Some(match found {
+    of_rms_velocity(scene, orbit, system_at).map(Some)
+}
+
+/// d ln v/d ln p for the parameter by whose factor a system is given.
+pub(super) fn of_rms_velocity(
+    scene: &Scene,
+    orbit: &Orbit,
+    system_at: impl FnMut(f64) -> Result<HybridSystem, CompileError>,
+) -> Result<Result<Elasticity, Absent>, EvaluateError> {
+    Ok(match orbit.elasticity(system_at, |run| Reading::of_run(scene, run).rms_velocity(run)) {
         Ok(elasticity) => Ok(elasticity),
         Err(ElasticityError::System(error)) => return Err(error.into()),
         Err(ElasticityError::Orbit(error)) => Err(refused(error)?),
         Err(ElasticityError::Graze { .. } | ElasticityError::Fold { .. } | ElasticityError::Zero) => {
             Err(Absent::NotSmooth)
         }
-    }))
+    })
 }
 
 /// A run that came to an end of its time is tried again with more; any other refusal is a result.

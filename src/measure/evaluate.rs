@@ -26,7 +26,7 @@ use crate::dynamics::{
     Averaged, EngineError, HybridSystem, Method, MotionKind, Options, Proof, Response, StartState, TraceRequest, Until,
     event_driven,
 };
-use crate::measure::{CycleSpec, EnergySpec, Settings, ShapeOf, ShapeSpec, SolverChoice, TraceSpec};
+use crate::measure::{CycleSpec, EnergySpec, Settings, ShapeOf, ShapeSpec, SolverChoice, Tolerance, TraceSpec};
 use crate::scene::{Excitation, Scene, SingleMass, Structure, compile};
 
 /// Kick that tells chaos from order, relative to the drive.
@@ -65,6 +65,8 @@ pub struct Request<'a> {
     pub shape: Option<&'a ShapeSpec>,
     /// Value to keep of each cycle.
     pub each_cycle: Option<&'a CycleSpec>,
+    /// How uncertain design parameters are.
+    pub tolerances: &'a [Tolerance],
     /// What the numbers have to be worth.
     pub rigour: Rigour,
     /// The place of the run in a chain.
@@ -116,8 +118,8 @@ impl Request<'_> {
 #[derive(Debug)]
 pub struct Prepared<'a> {
     subject: Subject,
-    settings: &'a Settings,
-    measures: &'a [Measure],
+    pub(super) settings: &'a Settings,
+    pub(super) measures: &'a [Measure],
     solver: SolverChoice,
     system: HybridSystem,
     reference: References,
@@ -149,15 +151,26 @@ impl<'a> Prepared<'a> {
     /// # Errors
     /// [`EvaluateError`] with the reason.
     pub fn evaluate(&self, gaps: &[f64], rigour: Rigour) -> Result<Evaluated, EvaluateError> {
+        let (scene, system) = self.with_gaps(gaps);
+        let request = Request { measures: self.measures, rigour, ..Request::default() };
+        let Self { subject, settings, .. } = self;
+        let case = Case { subject, settings, request: &request, scene: &scene };
+        in_range(&scene, self.measures, case.run(&system, &self.reference, self.solver)?)
+    }
+
+    pub(super) fn with_gaps(&self, gaps: &[f64]) -> (Scene, HybridSystem) {
         let (mut scene, mut system) = (self.subject.scene.clone(), self.system.clone());
         for (i, (gap, unit)) in gaps.iter().zip(&self.units).enumerate() {
             scene.dampers[i].gap = gap * unit;
             system.particles[i].gap = gap * unit;
         }
-        let request = Request { measures: self.measures, rigour, ..Request::default() };
-        let Self { subject, settings, .. } = self;
-        let case = Case { subject, settings, request: &request, scene: &scene };
-        in_range(&scene, self.measures, case.run(&system, &self.reference, self.solver)?)
+        (scene, system)
+    }
+
+    /// RMS velocity of the structure without dampers, where something is compared with it.
+    pub(super) fn undamped_rms_velocity(&self) -> Option<f64> {
+        let run = self.reference.of_cycles.as_ref()?;
+        Some(Reading::of_run(&self.subject.scene, run).rms_velocity(run))
     }
 }
 
@@ -212,7 +225,8 @@ impl References {
         let of_cycles = Some(solve(&system, &plain, solver)?);
         let settles = || solve(&system, &Options { until: Until::Settled, ..plain.clone() }, solver);
         let settled = if wanted { Some(settles()?).filter(|run| run.settled.is_some()) } else { None };
-        let settled_later = match request.measures.contains(&Measure::SettledVelocityRatio) {
+        let of_settled = [Measure::SettledVelocityRatio, Measure::VelocityRatioInput];
+        let settled_later = match request.any(|measure| of_settled.contains(&measure)) {
             true => settled_later(&system, &plain)?,
             false => None,
         };
@@ -276,7 +290,7 @@ impl Case<'_> {
         }
         let Read { mut values, lists } = case.read(&response, reference, true)?;
         let later = case.later(system, references, plain, &response)?;
-        let elasticities = later.elasticities(request.measures)?;
+        let elasticities = later.elasticities(request.measures, request.tolerances)?;
         let settled = request.measures.iter().position(|measure| *measure == Measure::SettledVelocityRatio);
         if let Some(place) = settled {
             values[place] = later.velocity_ratio();

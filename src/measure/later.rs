@@ -2,8 +2,9 @@
 
 use super::elasticity::{self, Absent};
 use super::reading::Reading;
-use super::{EvaluateError, Measure, Measured, Subject};
+use super::{EvaluateError, Measure, Measured, Subject, Tolerance};
 use crate::dynamics::{EngineError, HybridSystem, Options, Orbit, OrbitError, Response, Until, event_driven};
+use crate::scene::Scene;
 
 /// Cycles in which a motion may settle, over those of a run.
 const LONGER: u32 = 10;
@@ -23,8 +24,12 @@ impl Later<'_> {
         self.undamped.as_ref().zip(self.own.as_ref()).map_or(f64::NAN, |(undamped, own)| rms(undamped) / rms(own))
     }
 
-    /// Its elasticities; `None` in the place of any other measure.
-    pub(super) fn elasticities(&self, measures: &[Measure]) -> Result<Vec<Option<Measured>>, EvaluateError> {
+    /// Its elasticities, and what is made of them; `None` in the place of any other measure.
+    pub(super) fn elasticities(
+        &self,
+        measures: &[Measure],
+        tolerances: &[Tolerance],
+    ) -> Result<Vec<Option<Measured>>, EvaluateError> {
         if !measures.iter().any(|measure| measure.needs_neighbours()) {
             return Ok(vec![None; measures.len()]);
         }
@@ -33,18 +38,37 @@ impl Later<'_> {
             Ok(orbit) => elasticity::of(self.subject, orbit, design),
             Err(absent) => Ok(absent.measured()),
         };
-        measures.iter().map(|measure| measure.elasticity_in().map(of).transpose()).collect()
+        let one = |measure: &Measure| match measure {
+            Measure::VelocityRatioInput => elasticity::left_by(tolerances, self.velocity_ratio(), of).map(Some),
+            _ => measure.elasticity_in().map(of).transpose(),
+        };
+        measures.iter().map(one).collect()
     }
 
     /// The orbit that the run has settled to.
     fn orbit(&self) -> Result<Result<Orbit, Absent>, EngineError> {
-        let settled = self.own.as_ref().and_then(|own| Some((own.final_state.as_ref()?, own.settled?.cycles)));
-        let Some((state, cycles)) = settled else { return Ok(Err(Absent::NotSettled)) };
-        match Orbit::near(self.system, state, u32::try_from(cycles).unwrap_or(u32::MAX)) {
-            Ok(orbit) => Ok(Ok(orbit)),
-            Err(OrbitError::Engine(overrun @ EngineError::Overrun(_))) => Err(overrun),
-            Err(_) => Ok(Err(Absent::NotSmooth)),
-        }
+        self.own.as_ref().map_or(Ok(Err(Absent::NotSettled)), |own| closed(self.system, own))
+    }
+}
+
+/// The orbit that the runs of a system go on to, and its RMS velocity; `None` where they do not settle or it cannot be closed.
+pub(super) fn orbit_of(
+    scene: &Scene,
+    system: &HybridSystem,
+    plain: &Options,
+) -> Result<Option<(Orbit, f64)>, EngineError> {
+    let Some(run) = settled_later(system, plain)? else { return Ok(None) };
+    let velocity = Reading::of_run(scene, &run).rms_velocity(&run);
+    Ok(closed(system, &run)?.ok().map(|orbit| (orbit, velocity)))
+}
+
+/// The orbit that a run has settled to.
+fn closed(system: &HybridSystem, run: &Response) -> Result<Result<Orbit, Absent>, EngineError> {
+    let Some((state, settled)) = run.final_state.as_ref().zip(run.settled) else { return Ok(Err(Absent::NotSettled)) };
+    match Orbit::near(system, state, u32::try_from(settled.cycles).unwrap_or(u32::MAX)) {
+        Ok(orbit) => Ok(Ok(orbit)),
+        Err(OrbitError::Engine(overrun @ EngineError::Overrun(_))) => Err(overrun),
+        Err(_) => Ok(Err(Absent::NotSmooth)),
     }
 }
 

@@ -177,6 +177,7 @@ measures! {
     StiffnessElasticity: "", "", "elasticity of ψ in the floor stiffness", "the same for the stiffnesses of floors and ceilings", Neighbours, Both, Any;
     DampingElasticity: "", "", "elasticity of ψ in the contact damping", "the same for the dashpots of floors and ceilings; where all are rigid, for their restitution", Neighbours, Both, Any;
     ForceElasticity: "", "", "elasticity of ψ in the force", "the same for the amplitude of the force, or the impulse", Neighbours, Both, Any;
+    VelocityRatioInput: "", "", "standard uncertainty of ψ by the tolerances", "what the `tolerances` of gap clearance, mass, stiffness, damping and force leave of the velocity ratio of the periodic motion that the run goes on to: ψ √Σ (u d ln ψ/d ln p)²", Neighbours, Both, Any;
 }
 
 /// A column's name in words: a measure's, or those of [`words::of_column`].
@@ -256,7 +257,8 @@ impl Measure {
     }
 
     /// What it is an elasticity in.
-    pub(super) fn elasticity_in(self) -> Option<Design> {
+    #[must_use]
+    pub fn elasticity_in(self) -> Option<Design> {
         Some(match self {
             Self::GapElasticity => Design::Gap,
             Self::MassElasticity => Design::ParticleMass,
@@ -307,7 +309,7 @@ impl Measure {
         let from = self.facts().from;
         let single =
             matches!(from, Velocity | ReadOff::Displacement | Extremes | Run | Events | End | Model | Neighbours);
-        single && !self.compares_cycles()
+        single && !self.compares_cycles() && self != Self::VelocityRatioInput
     }
 
     /// It changes from one kind of motion to the next, and is constant or without meaning between.

@@ -20,6 +20,7 @@ mod orbit;
 mod reading;
 mod request;
 mod shape;
+mod slope;
 mod subject;
 mod trial;
 mod undefined;
@@ -30,7 +31,9 @@ pub use kept::{
     PROOF, ProofColumn, ProofOf, column_of_damper, energy_columns, of_another_damper, shape_columns, trace_columns,
 };
 pub use measures::{Facts, Measure, ReadOff, Runs, Under, column_words};
-pub use request::{CycleSpec, CycleValue, EnergySpec, Settings, ShapeOf, ShapeSpec, SolverChoice, TraceSpec};
+pub use request::{
+    CycleSpec, CycleValue, EnergySpec, Settings, ShapeOf, ShapeSpec, SolverChoice, Tolerance, TraceSpec,
+};
 pub use subject::{Comparison, Needs, Subject};
 pub use trial::Trial;
 

@@ -119,7 +119,8 @@ impl Reading<'_> {
             | Measure::MultiplierResidual
             | Measure::LyapunovExponent
             | Measure::SettledAfter => {
-                of_motion(response.motion.as_ref().ok_or(EvaluateError::NoRun(measure))?, measure)
+                // A fixed step proves none.
+                response.motion.as_ref().map_or(f64::NAN, |motion| of_motion(motion, measure))
             }
             // Of other runs than this one: who makes those enters them.
             Measure::SettledVelocityRatio
@@ -127,7 +128,8 @@ impl Reading<'_> {
             | Measure::MassElasticity
             | Measure::StiffnessElasticity
             | Measure::DampingElasticity
-            | Measure::ForceElasticity => f64::NAN,
+            | Measure::ForceElasticity
+            | Measure::VelocityRatioInput => f64::NAN,
             Measure::NaturalFrequency
             | Measure::CleanNaturalFrequency
             | Measure::ExactNaturalFrequency

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::dynamics::Until;
+use crate::scene::Design;
 
 /// Which solver.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -72,6 +73,15 @@ pub struct EnergySpec {
     pub from_cycle: u32,
     /// One past the last.
     pub to_cycle: u32,
+}
+
+/// Relative standard uncertainty of a design parameter: what it leaves of the velocity ratio is `velocity_ratio_input`.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Tolerance {
+    /// The parameter.
+    pub of: Design,
+    /// Its uncertainty over its value.
+    pub share: f64,
 }
 
 /// Which value to keep of every averaged cycle, or of the last of them: what a bifurcation diagram shows. The list column carries

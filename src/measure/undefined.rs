@@ -16,8 +16,9 @@ impl Evaluated {
         let mut reasons: Vec<(&str, Vec<String>)> = Vec::new();
         for (measure, one) in measures.iter().zip(&self.measured) {
             let is_named = measure.is_of_a_period() && motion.is_some_and(|kind| !kind.repeats());
-            // The name of the motion says that there is no period.
-            if measure.is_name() || is_named || !one.value.is_nan() {
+            let is_unnamed = measure.needs_motion() && self.motion.is_none() && measures.contains(&Measure::Motion);
+            // The name of the motion says that there is no period, and a row of a fixed step has none.
+            if measure.is_name() || is_named || is_unnamed || !one.value.is_nan() {
                 continue;
             }
             let (why, name) = (measure.why_undefined(motion, one), measure.name_undefined());
@@ -59,7 +60,7 @@ impl Measure {
                 Some(false) => "particles are struck at one instant, or the cycles are too few",
                 _ => "nothing is left of a disturbance, or particles are struck at one instant",
             },
-            _ if self.elasticity_in().is_some() => Absent::of(one).why(),
+            _ if self.elasticity_in().is_some() || self == Self::VelocityRatioInput => Absent::of(one).why(),
             _ if self.is_of_a_period() => match motion {
                 Some(_) => "particles are struck at one instant",
                 None => "the motion does not come again, or particles are struck at one instant",

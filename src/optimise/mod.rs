@@ -6,6 +6,7 @@
 //!
 //! - [`Genetic`]: the genetic algorithm; [`CmaEs`]: the peer that it is judged against;
 //! - [`two_opt`]: swaps of pairs, after a search; [`dense`]: every point of a grid, where there are few coordinates;
+//! - [`polish`]: down the gradient from a point that one of them has found, where there is a gradient;
 //! - [`sections`]: the function along each coordinate through a point.
 
 mod bounds;
@@ -13,6 +14,7 @@ mod cma_es;
 mod dense;
 mod eigen;
 mod genetic;
+mod polish;
 mod random;
 mod search;
 mod section;
@@ -22,6 +24,7 @@ pub use bounds::{Bounds, BoundsError, Spacing};
 pub use cma_es::CmaEs;
 pub use dense::{Dense, dense};
 pub use genetic::{Genetic, GeneticSettings};
+pub use polish::{Slope, Smooth, polish};
 pub use random::Stream;
 pub use search::{Batch, Found, Function, Optimiser, Score, Stalled, Step, Stopped, Stopping, minimise};
 pub use section::{Section, sections};

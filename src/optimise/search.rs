@@ -71,6 +71,12 @@ pub enum Stopped {
     Tolerance,
     /// The optimiser had nothing more to ask.
     Exhausted,
+    /// No step goes down any more.
+    Converged,
+    /// A step down leads to where the function has no derivative.
+    Edge,
+    /// The function has no derivative where the descent should begin.
+    NotSmooth,
 }
 
 impl Stopped {
@@ -83,6 +89,9 @@ impl Stopped {
             Self::Time => "time",
             Self::Tolerance => "tolerance",
             Self::Exhausted => "exhausted",
+            Self::Converged => "converged",
+            Self::Edge => "edge",
+            Self::NotSmooth => "not smooth",
         }
     }
 }

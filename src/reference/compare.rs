@@ -4,7 +4,8 @@
 //!
 //! - u_num: the run's own error and the grid's, and the whole spread of the ensemble: a published number is one run, not
 //!   a mean.
-//! - u_input: each unstated input moved to the ends of its range; half the range of S, root-sum-square over the inputs.
+//! - u_input: each unstated input moved to the ends of its range; half the range of S, root-sum-square over the inputs;
+//!   what the `tolerances` of design parameters leave of a settled motion, by its elasticities, joins them.
 //! - u_D: half a unit of the last printed digit.
 //!
 //! Agreement must say something. S itself may be uncertain by no more than the publication is loose, or a tenth of the

@@ -188,6 +188,27 @@ impl Extraction {
     }
 }
 
+impl Extraction {
+    /// What the tolerances of design parameters leave of a number that stands in one row, if its table tells: 0 otherwise.
+    pub(crate) fn left_by_tolerances(&self, view: &View<'_>) -> f64 {
+        let beside = |of: &str| format!("{of}_input");
+        let left = match self {
+            Self::Cell(cells) => view.rows(cells.source(), None).and_then(|rows| view.cells(&rows, &beside(&cells.of))),
+            Self::Maximum(along) => view.line(along.source(), &along.of, &along.over, None).and_then(|line| {
+                let left = view.line(along.source(), &beside(&along.of), &along.over, None)?;
+                let top = line.x[line.highest()];
+                Ok(left.x.iter().position(|&x| same(x, top)).map(|at| left.y[at]).into_iter().collect())
+            }),
+            _ => return 0.0,
+        };
+        match left.as_deref() {
+            Ok([cell]) => cell.value,
+            // No such column, or no number there: a motion that does not settle has no derivative.
+            _ => 0.0,
+        }
+    }
+}
+
 /// The largest cell of the rows, or the smallest where `sign` is −1.
 fn extreme(cells: &Cells, view: &View<'_>, sign: f64) -> Result<Extracted, Absence> {
     let rows = view.rows(cells.source(), None)?;

@@ -230,7 +230,7 @@ fn value(
         simulated: simulated.value,
         published: datum,
         u_num: libm::hypot(simulated.run, simulated.spread),
-        u_input: u_input(simulated.value, &others),
+        u_input: libm::hypot(u_input(simulated.value, &others), from.left_by_tolerances(view)),
         u_data,
         spread: simulated.spread,
         tolerance_by_hand: by_hand.map(|tolerance| match tolerance.size {

@@ -162,6 +162,10 @@ fn searches(optimise: &Optimise) -> String {
                 "- Dense search: every combination of {points} values a gap, then {} around the best.\n",
                 counted(*refine as usize, "finer grid", "finer grids")
             ),
+            Search::Polish { evaluations } => format!(
+                "- Polishing: from the best candidate down the gradient of settled motion, {} at most.\n",
+                counted(*evaluations as usize, "orbit", "orbits")
+            ),
         };
     }
     text

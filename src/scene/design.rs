@@ -1,9 +1,12 @@
 //! What a designer of a particle impact damper chooses, and a scene with one of these choices scaled.
 
+use serde::{Deserialize, Serialize};
+
 use super::{ContactDamping, Damper, Excitation, Scene, Surface};
 
 /// A quantity of the dampers, of all of them at once, or of the excitation.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Design {
     /// Gap clearances h.
     Gap,

@@ -6,8 +6,9 @@ use super::row_failure::RowFailure;
 use crate::experiment::{Assumptions, GapWord, Recipe};
 use crate::measure::{
     self, CycleSpec, EnergySpec, Evaluated, Link, Measure, Needs, Prepared, Request, Rigour, Settings, ShapeSpec,
-    SolverChoice, TraceSpec,
+    SolverChoice, Tolerance, TraceSpec,
 };
+use crate::optimise::Slope;
 
 /// One simulation to be made.
 #[derive(Debug, Clone, Copy)]
@@ -30,6 +31,8 @@ pub struct Simulation<'a> {
     pub shape: Option<&'a ShapeSpec>,
     /// Value to keep of each cycle.
     pub each_cycle: Option<&'a CycleSpec>,
+    /// How uncertain design parameters are.
+    pub tolerances: &'a [Tolerance],
     /// The place of the row in a chain of rows.
     pub link: Link<'a>,
     /// Whether it is a result, or a look on the way to one.
@@ -63,6 +66,16 @@ pub trait Array: Send + Sync {
     /// # Errors
     /// The reason.
     fn evaluate(&self, gaps: &[f64], rigour: Rigour) -> Result<Evaluated, RowFailure>;
+
+    /// A measure of the motion that these gaps settle to, and its derivative by each of them. `None` where it does not settle, has no
+    /// derivative, or the stand-in knows none.
+    ///
+    /// # Errors
+    /// The reason.
+    fn slope(&self, gaps: &[f64], measure: Measure) -> Result<Option<Slope>, RowFailure> {
+        let _ = (gaps, measure);
+        Ok(None)
+    }
 }
 
 /// An array that is rebuilt for each set of gaps.
@@ -84,6 +97,10 @@ impl Array for Prepared<'_> {
     fn evaluate(&self, gaps: &[f64], rigour: Rigour) -> Result<Evaluated, RowFailure> {
         Ok(Prepared::evaluate(self, gaps, rigour)?)
     }
+
+    fn slope(&self, gaps: &[f64], measure: Measure) -> Result<Option<Slope>, RowFailure> {
+        Ok(Prepared::slope(self, gaps, measure)?)
+    }
 }
 
 /// The engine, [`measure::evaluate`].
@@ -92,8 +109,8 @@ pub struct Engine;
 
 impl Evaluate for Engine {
     fn evaluate(&self, it: &Simulation<'_>) -> Result<Evaluated, RowFailure> {
-        let Simulation { measures, trace, energies, shape, each_cycle, rigour, link, .. } = *it;
-        let request = Request { measures, trace, energies, shape, each_cycle, rigour, link };
+        let Simulation { measures, trace, energies, shape, each_cycle, tolerances, rigour, link, .. } = *it;
+        let request = Request { measures, trace, energies, shape, each_cycle, tolerances, rigour, link };
         let subject = it.recipe.subject(it.assumptions, request.needs())?;
         Ok(measure::evaluate(subject, it.solver, it.settings, &request)?)
     }

@@ -21,8 +21,8 @@ use crate::dynamics::is_interrupted;
 use crate::experiment::{Experiment, Goal, Optimise, Recipe, Search, SearchKind, SearchSpacing};
 use crate::measure::{Evaluated, Link, Measure, Measured, Rigour, SolverChoice};
 use crate::optimise::{
-    Batch, Bounds, CmaEs, Dense, Found, Genetic, GeneticSettings, Optimiser, Score, Spacing, Stalled, Stopping, dense,
-    minimise, sections, two_opt,
+    Batch, Bounds, CmaEs, Dense, Found, Genetic, GeneticSettings, Optimiser, Score, Slope, Spacing, Stalled, Stopping,
+    dense, minimise, polish, sections, two_opt,
 };
 use crate::table::Table;
 use crate::text::words;
@@ -38,7 +38,7 @@ fn candidates(optimise: &Optimise) -> usize {
     let of = |search: &Search| match search {
         Search::Genetic { .. } => seeds * if optimise.two_opt { 2 } else { 1 },
         Search::CmaEs { .. } => seeds,
-        Search::Dense { .. } => 1,
+        Search::Dense { .. } | Search::Polish { .. } => 1,
     };
     optimise.candidates.len() + optimise.two_opt_of.len() + optimise.searches.iter().map(of).sum::<usize>()
 }
@@ -75,6 +75,7 @@ impl<'a> Fitness<'a> {
                 energies: None,
                 shape: None,
                 each_cycle: None,
+                tolerances: &[],
                 link: Link::None,
                 rigour: Rigour::Step,
             };
@@ -88,6 +89,17 @@ impl<'a> Fitness<'a> {
         let one = |array: &(dyn Array + 'a)| guarded(|| array.evaluate(gaps, rigour));
         let each = self.arrays.iter().map(|array| one(array.as_ref())).collect::<Result<Vec<_>, _>>()?;
         Ok(mean(self.wanted, self.measures, &each))
+    }
+
+    /// The mean over the settings and its derivatives; `None` if that of one setting has none.
+    fn slope(&self, gaps: &[f64], measure: Measure) -> Result<Option<Slope>, RowFailure> {
+        let one = |array: &(dyn Array + 'a)| guarded(|| array.slope(gaps, measure));
+        let each = self.arrays.par_iter().map(|array| one(array.as_ref())).collect::<Result<Vec<_>, _>>()?;
+        let Some(each) = each.into_iter().collect::<Option<Vec<Slope>>>() else { return Ok(None) };
+        let count = each.len() as f64;
+        let value = each.iter().map(|slope| slope.value).sum::<f64>() / count;
+        let by = |i: usize| each.iter().map(|slope| slope.gradient[i]).sum::<f64>() / count;
+        Ok(Some(Slope { value, gradient: (0..gaps.len()).map(by).collect() }))
     }
 }
 
@@ -208,6 +220,10 @@ impl Searches<'_> {
                     let best = best.ok_or(SearchError::EmptyGrid)?;
                     found.push(self.candidate(SearchKind::Dense, None, &best, 0));
                 }
+                Search::Polish { evaluations } => {
+                    let polished = self.polished(&found, u64::from(*evaluations))?;
+                    found.push(polished);
+                }
             }
         }
         self.landscape(&mut found)?;
@@ -317,6 +333,39 @@ impl Searches<'_> {
         self.fitness.evaluate(point, rigour).ok()?.measured.get(self.measure).copied()
     }
 
+    /// The best of what was found, improved down the gradient of settled motion; as it is where that motion has none.
+    fn polished(&mut self, found: &[Candidate], most: u64) -> Result<Candidate, RowFailure> {
+        let name = describe(SearchKind::Polish, None);
+        let start = self.best(found, &name)?;
+        let (fitness, goal, measure) = (&self.fitness, self.optimise.goal, self.optimise.measure);
+        let polished = polish(&self.bounds, &start, most, &mut |gaps| -> Result<_, RowFailure> {
+            if is_interrupted() {
+                return Err(RowFailure::Interrupted);
+            }
+            let slope = fitness.slope(gaps, measure)?;
+            Ok(match goal {
+                Goal::Minimise => slope,
+                Goal::Maximise => slope.map(|Slope { value, gradient }| Slope {
+                    value: -value,
+                    gradient: gradient.into_iter().map(|by| -by).collect(),
+                }),
+            })
+        })?;
+        // As the searches before it saw their best.
+        let score = self.batch(std::slice::from_ref(&polished.point), &name, polished.evaluations)?.scores[0];
+        Ok(self.candidate(SearchKind::Polish, None, &Found { score, ..polished }, 0))
+    }
+
+    /// The gaps of the best candidate as the searches saw it; of equal ones the first.
+    fn best(&mut self, found: &[Candidate], name: &str) -> Result<Vec<f64>, RowFailure> {
+        let points: Vec<Vec<f64>> = found.iter().map(|candidate| candidate.gaps.clone()).collect();
+        // The journal has all but the candidates of the file.
+        let scores = self.batch(&points, name, 0)?.scores;
+        let order = |i: &usize| if scores[*i].value.is_nan() { f64::INFINITY } else { scores[*i].value };
+        let best = (0..points.len()).min_by(|a, b| order(a).total_cmp(&order(b)));
+        Ok(best.map(|best| points[best].clone()).ok_or(SearchError::NoCandidates)?)
+    }
+
     fn signed(&self, value: f64) -> f64 {
         match self.optimise.goal {
             Goal::Minimise => value,
@@ -350,13 +399,7 @@ impl Searches<'_> {
     /// Sections through the best candidate as the searches saw it.
     fn landscape(&mut self, found: &mut Vec<Candidate>) -> Result<(), RowFailure> {
         let Some(landscape) = self.optimise.landscape else { return Ok(()) };
-        let points: Vec<Vec<f64>> = found.iter().map(|candidate| candidate.gaps.clone()).collect();
-        let name = describe(SearchKind::Landscape, None);
-        // The journal has all but the candidates of the file.
-        let scores = self.batch(&points, &name, 0)?.scores;
-        let order = |i: &usize| if scores[*i].value.is_nan() { f64::INFINITY } else { scores[*i].value };
-        let best = (0..points.len()).min_by(|a, b| order(a).total_cmp(&order(b)));
-        let centre = best.map(|best| points[best].clone()).ok_or(SearchError::NoCandidates)?;
+        let centre = self.best(found, &describe(SearchKind::Landscape, None))?;
         let bounds = self.bounds.clone();
         let count = landscape.points as usize;
         let cut = sections(&bounds, &centre, count, spaced(landscape.spacing), |points| self.looks(points))?;

@@ -72,6 +72,9 @@ impl<'a> RowFingerprints<'a> {
                 if let Some(each_cycle) = asked.each_cycle {
                     feed(&mut hasher, &("each_cycle", each_cycle));
                 }
+                if !asked.tolerances.is_empty() {
+                    feed(&mut hasher, &("tolerances", asked.tolerances));
+                }
                 feed(&mut hasher, &self.read(&recipe, &variant.assumptions));
             }
             // It has no numbers, and no table gives it any.

@@ -107,8 +107,9 @@ impl<'a> Cells<'a> {
             proof,
             chaotic: self.chaotic[row] != 0,
             members: u32::try_from(self.members[row]).ok()?,
-            motion: match self.motion {
-                Some(cells) => Some(cells[row].parse().ok()?),
+            // A row of a fixed step has no name.
+            motion: match self.motion.map(|cells| &cells[row]).filter(|cell| !cell.is_empty()) {
+                Some(cell) => Some(cell.parse().ok()?),
                 None => None,
             },
             trace: kept

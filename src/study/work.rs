@@ -178,6 +178,7 @@ pub(super) fn asked<'a>(
         energies: experiment.energies.as_ref().filter(|_| job.variant == 0),
         shape: experiment.shape.as_ref().filter(|_| job.variant == 0 || needs_shape(experiment)),
         each_cycle: experiment.each_cycle.as_ref().filter(|_| job.variant == 0),
+        tolerances: &experiment.tolerances,
         link: Link::None,
         rigour: if job.variant == 0 { Rigour::Result } else { Rigour::Look },
     }

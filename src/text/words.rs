@@ -65,6 +65,7 @@ pub fn of_level(column: &str, level: &str) -> String {
             "two_opt" => "2-opt".into(),
             "cma_es" => "CMA-ES".into(),
             "dense" => "dense search".into(),
+            "polish" => "polished".into(),
             _ => match level.strip_suffix("_two_opt") {
                 Some(improved) => format!("{} after 2-opt", improved.replace('_', " ")),
                 None => level.replace('_', " "),

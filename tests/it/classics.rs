@@ -143,13 +143,25 @@ fn a_motion_is_named_in_its_table_and_known_again() {
     // Rows are taken from the table before where only a measure's place has changed, its text among them.
     shotdamp(&["run", "--force"]);
     assert_eq!(table(), first);
+    // Beside an exact row one of a fixed step has no name, and says nothing about multipliers.
+    let both = text.replace("run: {", "run: {solver: [event_driven, {fixed_step: {time_step: 1e-3 s}}], ");
+    fs::write(folder.path().join(file), &both).unwrap();
+    shotdamp(&["run"]);
+    let second = table();
+    assert_eq!(second.texts("motion").unwrap(), ["periodic 1:2", ""]);
+    assert!(second.floats("largest_multiplier").unwrap()[1].is_nan() && second.column("undefined").is_none());
+    shotdamp(&["run", "--force"]);
+    assert_eq!(table(), second);
 }
 
 #[test]
-fn a_motion_that_has_no_name_is_refused_where_it_is_asked_for() {
+fn what_a_run_cannot_tell_of_a_motion_is_refused_where_it_is_asked_for() {
     for (from, to, what) in [
         ("measure: [", "measure: [motion, ", "measured twice"),
         ("run: {", "run: {solver: {fixed_step: {time_step: 1e-4 s}}, ", "the event-driven solver alone"),
+        ("measure: [", "measure: [velocity_ratio_input, ", "add `tolerances: {gap: 1 %}`"),
+        ("measure: [", "tolerances: {}\nmeasure: [", "there is no tolerance here"),
+        ("measure: [", "tolerances: {gap: 120 %}\nmeasure: [", "known better than to itself"),
     ] {
         let with_motion = complaint_of("two-impacts-above-resonance", &[(from, to)]);
         assert!(with_motion.contains(what) && with_motion.contains("mine.yaml:"), "{to}: {with_motion}");

@@ -72,6 +72,7 @@ pub fn limit_stop() -> Experiment {
         refined: Vec::new(),
         continued: Vec::new(),
         each_cycle: None,
+        tolerances: Vec::new(),
         mean_over: Vec::new(),
         optimise: None,
         orbit: None,

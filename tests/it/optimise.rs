@@ -4,8 +4,8 @@ use std::convert::Infallible;
 use std::f64::consts::{E, TAU};
 
 use shotdamp::optimise::{
-    Batch, Bounds, CmaEs, Dense, Found, Genetic, GeneticSettings, Optimiser, Score, Spacing, Stalled, Stopped,
-    Stopping, Stream, dense, minimise, sections, two_opt,
+    Batch, Bounds, CmaEs, Dense, Found, Genetic, GeneticSettings, Optimiser, Score, Slope, Spacing, Stalled, Stopped,
+    Stopping, Stream, dense, minimise, polish, sections, two_opt,
 };
 
 type Function = fn(&[f64]) -> f64;
@@ -208,4 +208,48 @@ fn bounds_that_enclose_nothing_are_refused() {
     assert!(Bounds::new(vec![]).is_err());
     let description = Bounds::new(vec![[0.0, 1.0], [2.0, 2.0]]).unwrap_err().to_string();
     assert_eq!(description, "coordinate 2 lies between 2 and 2, which is no range");
+}
+
+/// Rosenbrock's function with its gradient.
+fn valley(x: &[f64]) -> Slope {
+    let mut gradient = vec![0.0; x.len()];
+    for i in 0..x.len() - 1 {
+        let rise = x[i + 1] - x[i] * x[i];
+        gradient[i] += -400.0 * x[i] * rise - 2.0 * (1.0 - x[i]);
+        gradient[i + 1] += 200.0 * rise;
+    }
+    Slope { value: rosenbrock(x), gradient }
+}
+
+fn polished(bounds: &Bounds, start: &[f64], mut slope: impl FnMut(&[f64]) -> Option<Slope>) -> Found {
+    polish(bounds, start, 200, &mut |x: &[f64]| Ok::<_, Infallible>(slope(x))).unwrap()
+}
+
+#[test]
+fn polishing_follows_a_bent_valley_to_its_end() {
+    for size in [2, 4, 8] {
+        let found = polished(&cube([-2.048, 2.6], size), &vec![-0.5; size], |x| Some(valley(x)));
+        assert_eq!(found.stopped, Stopped::Converged, "{found:?}");
+        assert!(found.point.iter().all(|x| (x - 1.0).abs() < 1e-7), "{found:?}");
+        assert!(found.trail.windows(2).all(|pair| pair[1].best <= pair[0].best));
+    }
+}
+
+#[test]
+fn polishing_ends_at_a_bound_at_an_edge_or_where_it_begins() {
+    // The valley crosses x₁ = 0.8 at x₂ = 0.64.
+    let narrow = Bounds::new(vec![[-1.0, 0.8], [-1.0, 2.0]]).unwrap();
+    let found = polished(&narrow, &[-0.5, 0.5], |x| Some(valley(x)));
+    assert_eq!(found.stopped, Stopped::Converged);
+    assert!((found.point[0] - 0.8).abs() < 1e-12 && (found.point[1] - 0.64).abs() < 1e-8, "{found:?}");
+    // Beyond 0.7 the function has no derivative.
+    let found = polished(&cube([-2.0, 2.0], 1), &[0.0], |x| {
+        (x[0] < 0.7).then(|| Slope { value: (x[0] - 1.0).powi(2), gradient: vec![2.0 * (x[0] - 1.0)] })
+    });
+    assert_eq!(found.stopped, Stopped::Edge);
+    assert!(found.point[0] < 0.7 && found.point[0] > 0.7 - 1e-9, "{found:?}");
+    let found = polished(&cube([-2.0, 2.0], 1), &[0.5], |_| None);
+    assert_eq!((found.stopped, found.point), (Stopped::NotSmooth, vec![0.5]));
+    let found = polish(&cube([-2.0, 2.0], 2), &[-1.0, 1.5], 5, &mut |x: &[f64]| Ok::<_, Infallible>(Some(valley(x))));
+    assert_eq!(found.unwrap().stopped, Stopped::Evaluations);
 }

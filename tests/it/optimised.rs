@@ -237,6 +237,8 @@ fn mistakes_in_an_optimisation_are_told_where_they_stand() {
             "mean_over: {base_amplitude_ratio: [1, 2]}\nsweep: ‹{gap_ratio: [1]}›",
             "neither a sweep",
         ),
+        ("dense: {points: 3, refine: 2}", "polish: {evaluations: ‹0›}", "one at least"),
+        ("minimise: rms_velocity", "minimise: drift\n  polish: ‹{}›", "follows the derivatives of the RMS velocity"),
         ("by: varied", "by: ‹sweep›", "no column `sweep`"),
         ("two_opt: true", "compare_with: ‹unknown›", "none of the candidates"),
         ("by: varied", "by: ‹evaluation›", "holds a list a row"),
@@ -332,6 +334,7 @@ fn a_scene_that_is_prepared_once_gives_the_bits_of_one_that_is_built_for_its_gap
             energies: None,
             shape: None,
             each_cycle: None,
+            tolerances: &[],
             link: shotdamp::measure::Link::None,
             rigour: shotdamp::measure::Rigour::Result,
         };
