@@ -7,7 +7,8 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use super::rows::Wanted;
 use super::set::Set;
 use crate::experiment::{Experiment, GapWord};
-use crate::measure::{Evaluated, Rigour, SolverChoice};
+use crate::measure::{Evaluated, Measure, Rigour, SolverChoice};
+use crate::optimise::Slope;
 use crate::reference::Entry;
 use crate::study::{Array, Evaluate, Event, EventHandler, RowFailure, RunError, Simulation, Task, Variant, run};
 use crate::table::{BASELINE, Table};
@@ -149,6 +150,10 @@ struct SubstitutedArray<'a> {
 impl Array for SubstitutedArray<'_> {
     fn evaluate(&self, gaps: &[f64], rigour: Rigour) -> Result<Evaluated, RowFailure> {
         self.array.evaluate(gaps, self.worth.rigour(rigour))
+    }
+
+    fn slope(&self, gaps: &[f64], measure: Measure) -> Result<Option<Slope>, RowFailure> {
+        self.array.slope(gaps, measure)
     }
 }
 

@@ -3,6 +3,7 @@
 use super::assumption_reader::MOST_CYCLES;
 use super::at::At;
 use super::keys::Keys;
+use super::refined::share;
 use super::word::words;
 use super::yaml::Value;
 use crate::measure::{CycleSpec, CycleValue, EnergySpec, Measure, ShapeOf, ShapeSpec, Tolerance, TraceSpec};
@@ -70,8 +71,8 @@ pub(super) fn read_tolerances(at: At<'_>) -> Option<Vec<Tolerance>> {
         let Some(of) = measure.elasticity_in() else { continue };
         let Some(name) = words::<Measure>()[*measure as usize].strip_suffix("_elasticity") else { continue };
         let about = "Its standard uncertainty over its value";
-        match keys.optional(name, about, |at| at.share("a value is known better than to itself")) {
-            Some(share) => tolerances.extend(share.map(|share| Tolerance { of, share })),
+        match keys.optional(name, about, share) {
+            Some(known) => tolerances.extend(known.map(|share| Tolerance { of, share })),
             None => is_fine = false,
         }
     }

@@ -61,7 +61,7 @@ pub(super) fn refined(at: At<'_>, parameter: Parameter) -> Option<(Vec<Parameter
 }
 
 /// `1 %` or 0.01, above zero.
-fn share(at: At<'_>) -> Option<f64> {
+pub(super) fn share(at: At<'_>) -> Option<f64> {
     let read = |node: &Node, findings: &Findings| {
         let value = match scalar(node, findings)?.trim().strip_suffix('%') {
             Some(percent) => percent.trim().parse::<f64>().ok().map(|percent| percent / 100.0),

@@ -67,15 +67,12 @@ pub trait Array: Send + Sync {
     /// The reason.
     fn evaluate(&self, gaps: &[f64], rigour: Rigour) -> Result<Evaluated, RowFailure>;
 
-    /// A measure of the motion that these gaps settle to, and its derivative by each of them. `None` where it does not settle, has no
-    /// derivative, or the stand-in knows none.
+    /// A measure of the motion that these gaps settle to, and its derivative by each of them. `None` where it does not settle, or has
+    /// no derivative.
     ///
     /// # Errors
     /// The reason.
-    fn slope(&self, gaps: &[f64], measure: Measure) -> Result<Option<Slope>, RowFailure> {
-        let _ = (gaps, measure);
-        Ok(None)
-    }
+    fn slope(&self, gaps: &[f64], measure: Measure) -> Result<Option<Slope>, RowFailure>;
 }
 
 /// An array that is rebuilt for each set of gaps.
@@ -90,6 +87,11 @@ impl<E: Evaluate> Array for Unprepared<'_, E> {
         let mut recipe = self.simulation.recipe.clone();
         recipe.set_gaps(self.word, gaps)?;
         self.evaluate.evaluate(&Simulation { recipe: &recipe, rigour, ..self.simulation })
+    }
+
+    /// A stand-in for the engine knows no derivatives.
+    fn slope(&self, _: &[f64], _: Measure) -> Result<Option<Slope>, RowFailure> {
+        Ok(None)
     }
 }
 

@@ -6,7 +6,8 @@ use super::evaluate::{Array, Evaluate, Simulation};
 use super::row_failure::RowFailure;
 use crate::dynamics::{Allowance, Limit};
 use crate::experiment::GapWord;
-use crate::measure::{Evaluated, Rigour};
+use crate::measure::{Evaluated, Measure, Rigour};
+use crate::optimise::Slope;
 
 /// What the simulations of an engine share.
 pub(super) enum Share {
@@ -62,5 +63,9 @@ struct LimitedArray<'a> {
 impl Array for LimitedArray<'_> {
     fn evaluate(&self, gaps: &[f64], rigour: Rigour) -> Result<Evaluated, RowFailure> {
         self.share.simulate(|| self.array.evaluate(gaps, rigour))
+    }
+
+    fn slope(&self, gaps: &[f64], measure: Measure) -> Result<Option<Slope>, RowFailure> {
+        self.share.simulate(|| self.array.slope(gaps, measure))
     }
 }

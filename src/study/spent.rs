@@ -13,7 +13,8 @@ use super::layout::Layout;
 use super::row_failure::RowFailure;
 use crate::atomic;
 use crate::experiment::{ExperimentId, GapWord};
-use crate::measure::{Evaluated, Rigour, SolverChoice};
+use crate::measure::{Evaluated, Measure, Rigour, SolverChoice};
+use crate::optimise::Slope;
 
 /// The folder of what was spent, within the study.
 pub(super) const FOLDER: &str = "results/times";
@@ -144,5 +145,9 @@ struct MeteredArray<'a> {
 impl Array for MeteredArray<'_> {
     fn evaluate(&self, gaps: &[f64], rigour: Rigour) -> Result<Evaluated, RowFailure> {
         self.meter.time(self.solver, rigour, || self.array.evaluate(gaps, rigour))
+    }
+
+    fn slope(&self, gaps: &[f64], measure: Measure) -> Result<Option<Slope>, RowFailure> {
+        self.meter.time(self.solver, Rigour::Step, || self.array.slope(gaps, measure))
     }
 }

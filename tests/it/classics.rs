@@ -124,7 +124,7 @@ fn a_motion_is_named_in_its_table_and_known_again() {
     // The figure's histories are not what this is about.
     let text = text.split("measure:").next().unwrap().to_owned()
         + "measure: [motion, rms_velocity]\nfigure: {x: rms_velocity, y: largest_multiplier, by: motion, caption: One motion.}\n";
-    fs::write(folder.path().join(file), text).unwrap();
+    fs::write(folder.path().join(file), &text).unwrap();
     let shotdamp = |command: &[&str]| {
         let run = Command::new(env!("CARGO_BIN_EXE_shotdamp")).arg("--root").arg(folder.path()).args(command).output();
         let output = run.unwrap();
@@ -161,7 +161,7 @@ fn what_a_run_cannot_tell_of_a_motion_is_refused_where_it_is_asked_for() {
         ("run: {", "run: {solver: {fixed_step: {time_step: 1e-4 s}}, ", "the event-driven solver alone"),
         ("measure: [", "measure: [velocity_ratio_input, ", "add `tolerances: {gap: 1 %}`"),
         ("measure: [", "tolerances: {}\nmeasure: [", "there is no tolerance here"),
-        ("measure: [", "tolerances: {gap: 120 %}\nmeasure: [", "known better than to itself"),
+        ("measure: [", "tolerances: {gap: 120 %}\nmeasure: [", "between nothing and the whole"),
     ] {
         let with_motion = complaint_of("two-impacts-above-resonance", &[(from, to)]);
         assert!(with_motion.contains(what) && with_motion.contains("mine.yaml:"), "{to}: {with_motion}");
