@@ -5,7 +5,10 @@ use std::time::Duration;
 use super::measured::NoAccuracy;
 use super::representative::{is_chaotic, representative, trial, worst};
 use super::timing::Times;
-use crate::dynamics::{Allowance, EngineError, HybridSystem, Method, Options, Response, event_driven, is_linear};
+use crate::dynamics::{
+    Allowance, EngineError, FarSurface, HybridSystem, Law, Method, Options, OutOfReach, Response, event_driven,
+    is_linear, out_of_reach,
+};
 use crate::experiment::{Assumptions, Experiment, Given, Parameter, ParameterValue, Recipe, Slot, StopRecipe};
 use crate::measure::{Measure, Settings, Trial};
 use crate::scene::{EffectUse, LimitStop, Scene, Switching, compile, effects, switched};
@@ -45,6 +48,15 @@ pub struct Switched {
     pub outcome: Outcome,
 }
 
+/// Why an effect that a scene has never acts.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Idle {
+    /// No particle leaves its floor.
+    OnFloors,
+    /// Its energy does not take a particle there: the surface that is nearest to be reached.
+    OutOfReach(OutOfReach),
+}
+
 /// What came of switching an effect.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Outcome {
@@ -60,7 +72,7 @@ pub enum Outcome {
         times: Times,
     },
     /// The scene has it, but it is proved that it never acts: the run skips it.
-    Idle,
+    Idle(Idle),
     /// It was not switched, and why.
     Not(String),
 }
@@ -84,6 +96,25 @@ pub fn ablation(experiment: &Experiment, assumptions: &Assumptions) -> Result<Ve
     cases.into_iter().map(case).collect()
 }
 
+/// Of an effect all of whose surfaces are out of reach, the one that is nearest to be reached.
+fn nearest(effect: &str, system: &HybridSystem, far: &[OutOfReach]) -> Option<OutOfReach> {
+    let has_stop = |law: Law| matches!(law, Law::Resilient { stop: Some(_), .. });
+    let ceilings = || system.particles.iter().filter_map(|particle| particle.ceiling.as_ref());
+    let all = match effect {
+        "ceiling" => ceilings().count(),
+        "limit stop" => {
+            let floors = system.particles.iter().map(|particle| &particle.floor);
+            floors.chain(ceilings()).filter(|face| has_stop(face.law)).count()
+        }
+        _ => return None,
+    };
+    let own = |far: &&OutOfReach| (far.surface == FarSurface::Ceiling) == (effect == "ceiling");
+    let margin = |far: &OutOfReach| far.distance / far.reach;
+    let found: Vec<&OutOfReach> = far.iter().filter(own).collect();
+    let least = found.iter().copied().min_by(|a, b| margin(a).total_cmp(&margin(b)))?;
+    (found.len() == all).then_some(*least)
+}
+
 /// How many scenes have a particle of which it is proved that it never leaves its floor.
 #[must_use]
 pub fn idle_cases(experiment: &Experiment, scenes: &[Scene]) -> usize {
@@ -94,6 +125,31 @@ pub fn idle_cases(experiment: &Experiment, scenes: &[Scene]) -> usize {
         !scene.dampers.is_empty() && compile(scene).is_ok_and(linear)
     };
     scenes.iter().filter(proved).count()
+}
+
+/// How many scenes have ceilings or limit stops that their energy does not take a particle to, and the nearest to be reached.
+#[must_use]
+pub fn unreached_cases(experiment: &Experiment, scenes: &[Scene]) -> Vec<(&'static str, usize, OutOfReach)> {
+    let Settings { skip, average, until, .. } = experiment.settings;
+    let mut found: Vec<(&'static str, usize, OutOfReach)> = Vec::new();
+    for scene in scenes {
+        let Ok(system) = compile(scene) else { continue };
+        let options = Options { skip, average, until, start: scene.start_state(), ..Options::default() };
+        let far = out_of_reach(&system, &options);
+        for effect in ["ceiling", "limit stop"] {
+            let Some(near) = nearest(effect, &system, &far) else { continue };
+            match found.iter_mut().find(|(name, ..)| *name == effect) {
+                Some((_, count, nearest)) => {
+                    *count += 1;
+                    if near.distance / near.reach < nearest.distance / nearest.reach {
+                        *nearest = near;
+                    }
+                }
+                None => found.push((effect, 1, near)),
+            }
+        }
+    }
+    found
 }
 
 fn case(
@@ -108,11 +164,16 @@ fn case(
     let bare = event_driven(&trial.undamped, &trial.options)?;
     let base = Base { values: trial.read(&own, &bare)?, trial: &trial, bare: &bare };
     let closed_form = own.method == Method::ClosedForm;
-    let outcome = |EffectUse { name, in_force, why_not, .. }: &EffectUse| match *name {
-        name if *in_force > 0 && closed_form && OF_FLIGHT.contains(&name) => Outcome::Idle,
-        "structural damping" if *in_force > 0 => base.undamped(),
-        "further modes" if *in_force > 0 => base.one_mode(recipe, experiment, assumptions),
-        name => match switched(&trial.scene, name, limit_stop) {
+    let far = out_of_reach(&trial.system, &trial.options);
+    let idle = |name: &str| match nearest(name, &trial.system, &far) {
+        _ if closed_form && OF_FLIGHT.contains(&name) => Some(Idle::OnFloors),
+        nearest => nearest.map(Idle::OutOfReach),
+    };
+    let outcome = |EffectUse { name, in_force, why_not, .. }: &EffectUse| match (*name, idle(name)) {
+        (_, Some(idle)) if *in_force > 0 => Outcome::Idle(idle),
+        ("structural damping", _) if *in_force > 0 => base.undamped(),
+        ("further modes", _) if *in_force > 0 => base.one_mode(recipe, experiment, assumptions),
+        (name, _) => match switched(&trial.scene, name, limit_stop) {
             Switching::Not(_) if *in_force == 0 => Outcome::Not((*why_not).into()),
             Switching::Not(why) => Outcome::Not(why.into()),
             Switching::Off(scene) | Switching::On(scene) => match compile(&scene) {

@@ -1,6 +1,7 @@
 //! What each effect changes and costs, as text.
 
-use super::ablation::{Ablation, Outcome, Switched};
+use super::ablation::{Ablation, Idle, Outcome, Switched};
+use crate::dynamics::OutOfReach;
 use crate::measure::column_words;
 use crate::text::number::{quantity, significant};
 use crate::text::words;
@@ -51,9 +52,13 @@ fn row(Switched { effect, in_force, outcome }: &Switched, case: &Ablation) -> [S
         [(*effect).into(), scene.into(), switched.into(), empty(), empty(), empty(), empty()]
     };
     match outcome {
-        Outcome::Idle => {
+        Outcome::Idle(idle) => {
+            let why = match idle {
+                Idle::OnFloors => String::new(),
+                Idle::OutOfReach(far) => format!(": {}", out_of_reach_in_words(*far)),
+            };
             let [effect, _, _, a, b, c, d] = cells("");
-            [effect, "named, idle".into(), "skipped already".into(), a, b, c, d]
+            [effect, "named, idle".into(), format!("skipped already{why}"), a, b, c, d]
         }
         Outcome::Not(why) => cells(&format!("no: {why}")),
         Outcome::Changed { change, worst, events, times } => {
@@ -71,6 +76,16 @@ fn row(Switched { effect, in_force, outcome }: &Switched, case: &Ablation) -> [S
             ]
         }
     }
+}
+
+/// How far away a surface is, and how far a particle comes.
+#[must_use]
+pub fn out_of_reach_in_words(OutOfReach { distance, reach, .. }: OutOfReach) -> String {
+    format!(
+        "{} away, and the energy of the run takes a particle {} at most",
+        quantity(distance, "m", 3),
+        quantity(reach, "m", 3)
+    )
 }
 
 fn seconds(value: f64) -> String {

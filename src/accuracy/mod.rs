@@ -14,8 +14,8 @@ mod scatter;
 mod timing;
 mod verdict_price;
 
-pub use ablation::{Ablation, Outcome, Switched, ablation, idle_cases};
-pub use ablation_page::ablation_page;
+pub use ablation::{Ablation, Idle, Outcome, Switched, ablation, idle_cases, unreached_cases};
+pub use ablation_page::{ablation_page, out_of_reach_in_words};
 pub use measured::{
     Accuracy, CaseAccuracy, Contender, Errors, EventTimes, NoAccuracy, Origin, Point, Skipped, accuracy, errors,
 };

@@ -14,7 +14,7 @@ use super::error::CliError;
 use super::exit::Exit;
 use super::output::{columns, print, print_error, print_unread, simulations};
 use super::select::{choose, matches};
-use crate::accuracy::idle_cases;
+use crate::accuracy::{idle_cases, out_of_reach_in_words, unreached_cases};
 use crate::dynamics::{Allowance, Limit, Until, in_words};
 use crate::experiment::{Continuation, Experiment, RowSource};
 use crate::measure::Settings;
@@ -212,14 +212,20 @@ fn in_force(scenes: &[Scene]) -> String {
 /// Cases in which what only a particle in flight can meet is named and provably never met.
 fn idle(experiment: &Experiment, scenes: &[Scene]) -> String {
     let limit = Limit { time: PATIENCE, ..Limit::default() };
-    match Allowance::new(limit).simulate(|| idle_cases(experiment, scenes)) {
+    let all = counted(scenes.len(), "case", "cases");
+    let mut text = match Allowance::new(limit).simulate(|| idle_cases(experiment, scenes)) {
         0 => String::new(),
         count => format!(
-            "  In {count} of {} it is proved that no particle leaves its floor: ceilings, stops and impacts are idle \
+            "  In {count} of {all} it is proved that no particle leaves its floor: ceilings, stops and impacts are idle \
              there and skipped.\n",
-            counted(scenes.len(), "case", "cases")
         ),
+    };
+    for (effect, count, nearest) in unreached_cases(experiment, scenes) {
+        let nearest = out_of_reach_in_words(nearest);
+        text +=
+            &format!("  In {count} of {all} it is proved that the {effect} is out of reach, and skipped: {nearest}.\n");
     }
+    text
 }
 
 fn assumptions(study: &Study, item: &Item) -> String {

@@ -24,6 +24,7 @@ use super::integral::{self, quadrature};
 use super::mobility::Mobilities;
 use super::motion::{self, Fundamental, Tape};
 use super::parabola::Parabola;
+use super::reach::Watched;
 use super::search::{Clarity, Found, Search};
 use super::signals::{self, Signals};
 use super::states::States;
@@ -717,7 +718,15 @@ pub(crate) fn march(system: &HybridSystem, options: &Options, states: States) ->
     if options.is_taped() {
         return Ok(taped(system, options, states)?.0);
     }
-    March::<false>::new(system, options, states)?.run()
+    let has_walls = |system: &HybridSystem| system.particles.iter().any(Particle::has_walls);
+    let walls = has_walls(system);
+    let Watched { system, clearance } = Watched::of(system, options);
+    // What is known of a contact state depends on walls, not on stops nor on a ceiling that moves with its floor.
+    let states = if has_walls(&system) == walls { states } else { States::of(&system) };
+    let mut response = March::<false>::new(&system, options, states)?.run()?;
+    let margin = &mut response.proof.smallest_margin;
+    *margin = margin.min(clearance);
+    Ok(response)
 }
 
 /// The fundamental matrix of the averaged cycles.

@@ -10,6 +10,7 @@
 //! | `response`, `sums`, `extremes`, `steady_state`, `proof`, `error` | what comes out |
 //! | `march`, `states`, `visits` | from event to event; the contact states on the way and how long each was in force |
 //! | `search`, `guards`, `window`, `polynomial` | the first event, certified by Bernstein enclosures |
+//! | `reach` | stops and ceilings that a bound on the energy keeps out of the search |
 //! | `contact`, `collision`, `mobility` | what an event leads to |
 //! | `flow`, `load`, `signals`, `parabola`, `series` | exact motion of one contact state, and what is watched of it |
 //! | `contact_state`, `modes`, `spectral`, `cluster`, `resonance`, `schur`, `block`, `bank` | its equations, split into 2 × 2 blocks |
@@ -60,6 +61,7 @@ mod orbit;
 mod parabola;
 mod polynomial;
 mod proof;
+mod reach;
 mod residual_bound;
 mod resonance;
 mod response;
@@ -87,6 +89,7 @@ pub use orbit::{
     Along, Branch, BranchEnd, BranchError, BranchPoint, Elasticity, ElasticityError, Orbit, OrbitError, Special,
 };
 pub use proof::Proof;
+pub use reach::{FarSurface, OutOfReach, out_of_reach};
 pub use response::{Counts, CycleRates, Method, Observed, Response};
 pub use run::{event_driven, fixed_step, fundamental_matrix, is_linear, steady_state};
 pub use spline::Spline;

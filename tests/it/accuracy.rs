@@ -4,8 +4,8 @@ use std::path::Path;
 use std::time::Duration;
 
 use shotdamp::accuracy::{
-    Ablation, Accuracy, AccuracyView, Contender, Origin, Outcome, VerdictPrice, ablation, ablation_page, accuracy,
-    accuracy_page, accuracy_summary,
+    Ablation, Accuracy, AccuracyView, Contender, Idle, Origin, Outcome, VerdictPrice, ablation, ablation_page,
+    accuracy, accuracy_page, accuracy_summary,
 };
 use shotdamp::experiment::{Assumptions, Experiment, load_assumptions, parse_experiment};
 use shotdamp::reference::{Price, Verdict};
@@ -133,6 +133,17 @@ fn each_effect_is_switched_and_what_is_idle_is_left_alone() {
     let cases = ablation(&experiment(stopped, "[0.001]"), &assumptions()).expect("it can be switched");
     assert!(cases[0].closed_form);
     for name in ["limit stop", "ceiling"] {
-        assert_eq!(of(&cases, name), Outcome::Idle, "{name}");
+        assert_eq!(of(&cases, name), Outcome::Idle(Idle::OnFloors), "{name}");
     }
+    // A stop that all the impulses of the run together do not press the floor to.
+    let far = stopped.replace("1 mm", "1000 m");
+    let cases = ablation(&experiment(&far, "[20]"), &assumptions()).expect("it can be switched");
+    let Outcome::Idle(Idle::OutOfReach(of_stop)) = of(&cases, "limit stop") else { panic!("{cases:?}") };
+    assert!(of_stop.distance == 1000.0 && of_stop.reach < 1000.0, "{of_stop:?}");
+    assert!(matches!(of(&cases, "ceiling"), Outcome::Changed { .. }), "{cases:?}");
+    let text = ablation_page(&cases);
+    assert!(
+        text.contains("| limit stop | named, idle | skipped already: 1000 m away, and the energy of the run"),
+        "{text}"
+    );
 }

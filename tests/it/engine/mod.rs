@@ -21,6 +21,7 @@ mod orbits;
 mod precise;
 mod properties;
 mod random_scenes;
+mod reach;
 mod reference_cases;
 mod resonance;
 mod search;
