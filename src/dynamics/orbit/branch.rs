@@ -2,6 +2,7 @@
 
 use super::corrector::{At, Path, length};
 use super::newton::closed;
+use super::origin::Origin;
 use super::shot::{Shot, absolute};
 use super::special::{self, Between, Special};
 use super::{Orbit, OrbitError};
@@ -64,6 +65,8 @@ pub struct BranchPoint {
 pub enum BranchEnd<E> {
     /// It has come to an end of the range: to `to`, or by way of a fold to `from`.
     Range,
+    /// It has come back to its first point, which is the last one, too.
+    Closed,
     /// Next to the last point the motion has half the period: the branch of that motion doubles its period there.
     HalfPeriod,
     /// Next to the last point the motion comes again upside down after half a period: the branch of that motion loses its symmetry
@@ -113,7 +116,7 @@ impl<E> Branch<E> {
         let start = absolute(&system, &orbit.start).ok_or_else(none)?;
         let (shot, distance) = closed(&system, start, orbit.cycles)?;
         let at = path.begin(shot, distance)?;
-        Follower::new(path, along).run(at)
+        Follower::new(path, along, &at).run(at)
     }
 
     /// Follows the motion of twice the period that begins at a period doubling, on the side of it where that motion exists.
@@ -137,7 +140,8 @@ impl<E> Branch<E> {
         let mut tangent = single.flipping().ok_or_else(none)?;
         tangent.push(0.0);
         let shot = Shot::new(&system, single.start.clone(), 2 * cycles, Some(&single.scale))?;
-        Follower::new(path, along).run(At { share, shot, distance, tangent, determinant: 0.0 })
+        let at = At { share, shot, distance, tangent, determinant: 0.0 };
+        Follower::new(path, along, &at).run(at)
     }
 
     /// Follows the two motions, each the mirror image of the other, that begin where a motion loses its symmetry.
@@ -161,7 +165,8 @@ impl<E> Branch<E> {
             // Neighbours differ by the vector of the multiplier 1, and by no parameter.
             let [kept, _] = shot.kept().ok_or_else(none)?;
             let tangent = kept.iter().map(|x| side * x).chain([0.0]).collect();
-            Follower::new(path, along).run(At { share, shot, distance, tangent, determinant: 0.0 })
+            let at = At { share, shot, distance, tangent, determinant: 0.0 };
+            Follower::new(path, along, &at).run(at)
         };
         Ok([follow(1.0)?, follow(-1.0)?])
     }
@@ -171,6 +176,7 @@ impl<E> Branch<E> {
 struct Follower<F> {
     path: Path<F>,
     along: Along,
+    origin: Origin,
     points: Vec<BranchPoint>,
     /// Share of the range and speed of the slowest contact at the last points, while it slows down.
     slowing: Vec<[f64; 2]>,
@@ -191,8 +197,9 @@ enum Next<E> {
 }
 
 impl<E, F: FnMut(f64) -> Result<HybridSystem, E>> Follower<F> {
-    fn new(path: Path<F>, along: Along) -> Self {
-        Self { path, along, points: Vec::new(), slowing: Vec::new(), since: 0.0, pending: false, turns: false }
+    fn new(path: Path<F>, along: Along, first: &At) -> Self {
+        let origin = Origin::of(first);
+        Self { path, along, origin, points: Vec::new(), slowing: Vec::new(), since: 0.0, pending: false, turns: false }
     }
 
     fn run(mut self, mut at: At) -> Result<Branch<E>, BranchError<E>> {
@@ -248,7 +255,12 @@ impl<E, F: FnMut(f64) -> Result<HybridSystem, E>> Follower<F> {
         if at.shot.swaps_halves(&next.shot) {
             return Ok(Ok(Next::End(BranchEnd::HalfPeriod)));
         }
-        let specials = match special::between(&mut self.path, at, &next, step) {
+        let closing = match self.origin.between(&mut self.path, at, &next, step) {
+            Ok(closing) => closing,
+            Err(error) => return Ok(Err(error)),
+        };
+        let (last, arc) = closing.as_ref().map_or((&next, step), |(place, first)| (first, *place));
+        let specials = match special::between(&mut self.path, at, last, arc) {
             Ok(Between::Specials(specials)) => specials,
             Ok(Between::Symmetry) => return Ok(Ok(Next::End(BranchEnd::Symmetry))),
             Err(error) => return Ok(Err(error)),
@@ -257,6 +269,9 @@ impl<E, F: FnMut(f64) -> Result<HybridSystem, E>> Follower<F> {
         let inside = |at: &At| (0.0..=1.0).contains(&at.share);
         for (special, at) in specials.iter().filter(|(_, at)| inside(at)) {
             self.keep(at, Some(*special))?;
+        }
+        if closing.is_some() {
+            return Ok(Ok(self.close()));
         }
         if let Some(end) = beyond {
             let ends = [at.share - end, next.share - end];
@@ -297,6 +312,13 @@ impl<E, F: FnMut(f64) -> Result<HybridSystem, E>> Follower<F> {
                 Err(error) => return Ok(Err(error)),
             }
         }
+        if let Some(edge) = &last {
+            match self.origin.between(&mut self.path, at, edge, low) {
+                Ok(None) => {}
+                Ok(Some(_)) => return Ok(Ok(self.close())),
+                Err(error) => return Ok(Err(error)),
+            }
+        }
         if last.is_none() && self.turns {
             self.turns = false;
             return Ok(Ok(Next::Turn));
@@ -305,10 +327,15 @@ impl<E, F: FnMut(f64) -> Result<HybridSystem, E>> Follower<F> {
         match first {
             Some(beyond) if turn(edge, &beyond) > 0.0 => {
                 let is_slow = |at: &At| slow_share(at).is_some_and(|share| share <= GRAZES);
-                // Else a contact passes the instant at which the period begins.
                 self.turns = is_slow(edge) || is_slow(&beyond);
-                if self.turns {
-                    self.keep(edge, Some(Special::Graze))?;
+                // Else a contact passes the instant at which the period begins.
+                let special = if self.path.begins_to_stay(edge, &beyond)? {
+                    Some(Special::Sticking)
+                } else {
+                    self.turns.then_some(Special::Graze)
+                };
+                if special.is_some() {
+                    self.keep(edge, special)?;
                 }
                 self.slowing.clear();
                 self.pending = true;
@@ -320,6 +347,13 @@ impl<E, F: FnMut(f64) -> Result<HybridSystem, E>> Follower<F> {
                 miss: edge.shot.misses_by(),
             }))),
         }
+    }
+
+    /// Enters the first point again.
+    fn close(&mut self) -> Next<E> {
+        self.points.push(BranchPoint { special: None, ..self.points[0].clone() });
+        self.pending = false;
+        Next::End(BranchEnd::Closed)
     }
 
     /// Enters a point.

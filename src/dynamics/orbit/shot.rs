@@ -186,6 +186,20 @@ impl Shot {
         })
     }
 
+    /// How often a rigid face lets a particle go within an instant after it has landed without a bounce.
+    pub(super) fn brief_stays(&self, period: f64) -> usize {
+        let events = &self.response.events;
+        let at = |event: &Event| event.cycle as f64 * period + event.time;
+        let is_brief =
+            |(i, release): &(usize, &Event)| {
+                matches!(release.kind, EventKind::FloorRelease | EventKind::CeilingRelease | EventKind::StopRelease)
+                    && events[..*i].iter().rev().find(|event| event.particle == release.particle).is_some_and(
+                        |landing| landing.departure == 0.0 && at(release) - at(landing) <= COINCIDES * period,
+                    )
+            };
+        events.iter().enumerate().filter(is_brief).count()
+    }
+
     /// By how much a surface would have to move for another sequence of contacts, as a share of the motion's length.
     pub(super) fn margin(&self) -> f64 {
         let half = self.miss.len() / 2;
