@@ -4,6 +4,7 @@ use super::corrector::{At, Path, length};
 use super::newton::closed;
 use super::origin::Origin;
 use super::shot::{Shot, absolute};
+use super::slowing::{GRAZES, Slowing};
 use super::special::{self, Between, Special};
 use super::{Orbit, OrbitError};
 use crate::dynamics::system::HybridSystem;
@@ -18,14 +19,10 @@ const KEPT: f64 = 0.06;
 const STRAIGHT: f64 = 0.9;
 /// Share of the way to the graze of a contact that slows down, that one step may go.
 const TOWARDS: f64 = 0.5;
-/// A contact slower than this, in units of the motion, is about to graze.
-const GRAZES: f64 = 1e-3;
 /// Halvings between a sequence of contacts and the next.
 const HALVINGS: usize = 60;
 /// Clearance in units of the motion, of a branch that ends where a contact begins.
 const TOUCHES: f64 = 1e-7;
-/// Points that the zero of the impact speed is extrapolated from.
-const EXTRAPOLATED: usize = 5;
 
 /// What a branch is followed along.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -178,8 +175,7 @@ struct Follower<F> {
     along: Along,
     origin: Origin,
     points: Vec<BranchPoint>,
-    /// Share of the range and speed of the slowest contact at the last points, while it slows down.
-    slowing: Vec<[f64; 2]>,
+    slowing: Slowing,
     /// Arc since the last point that was kept.
     since: f64,
     /// The present point is not among those that were kept.
@@ -199,13 +195,22 @@ enum Next<E> {
 impl<E, F: FnMut(f64) -> Result<HybridSystem, E>> Follower<F> {
     fn new(path: Path<F>, along: Along, first: &At) -> Self {
         let origin = Origin::of(first);
-        Self { path, along, origin, points: Vec::new(), slowing: Vec::new(), since: 0.0, pending: false, turns: false }
+        Self {
+            path,
+            along,
+            origin,
+            points: Vec::new(),
+            slowing: Slowing::default(),
+            since: 0.0,
+            pending: false,
+            turns: false,
+        }
     }
 
     fn run(mut self, mut at: At) -> Result<Branch<E>, BranchError<E>> {
         let mut step = self.along.step;
         self.keep(&at, None)?;
-        self.watch(&at);
+        self.slowing.watch(&at.shot, at.share);
         loop {
             if self.points.len() >= self.along.points {
                 return self.end(&at, BranchEnd::Points);
@@ -213,10 +218,11 @@ impl<E, F: FnMut(f64) -> Result<HybridSystem, E>> Follower<F> {
             let tried = self.limited(&at, step);
             match self.advance(&at, tried)? {
                 Ok(Next::At(next)) => {
-                    self.watch(&next);
+                    self.slowing.watch(&next.shot, next.share);
                     at = *next;
                     step = (GROWTH * tried).min(self.along.step);
-                    if let Some(parameter) = self.graze(&at) {
+                    if let Some(share) = self.slowing.graze(&at.shot) {
+                        let parameter = self.path.parameter(share);
                         return self.end(&at, BranchEnd::Graze { parameter });
                     }
                 }
@@ -378,38 +384,10 @@ impl<E, F: FnMut(f64) -> Result<HybridSystem, E>> Follower<F> {
         Ok(Branch { points: self.points, end })
     }
 
-    /// Remembers how a contact slows down.
-    fn watch(&mut self, at: &At) {
-        let Some(slowest) = at.shot.slowest() else { return self.slowing.clear() };
-        let speed = slowest.approach.abs();
-        if self.slowing.last().is_some_and(|[_, last]| speed >= *last) {
-            self.slowing.clear();
-        }
-        self.slowing.push([at.share, speed]);
-        if self.slowing.len() > EXTRAPOLATED {
-            self.slowing.remove(0);
-        }
-    }
-
     /// A step that does not go all the way to the graze of a contact that slows down.
     fn limited(&self, at: &At, step: f64) -> f64 {
-        let [.., before, last] = self.slowing[..] else { return step };
-        let along = (last[0] - before[0]).abs() / at.tangent[at.tangent.len() - 1].abs().max(f64::EPSILON);
-        let left = along * last[1] / (before[1] - last[1]);
-        if left > 0.0 { step.min((TOWARDS * left).max(SHORTEST * self.along.step)) } else { step }
-    }
-
-    /// The parameter at which the slowest contact has no speed left, once it is slow.
-    fn graze(&self, at: &At) -> Option<f64> {
-        let points = &self.slowing;
-        let is_slow = |[_, speed]: &[f64; 2]| at.shot.share_of_speed(*speed) <= GRAZES;
-        (points.len() == EXTRAPOLATED && points.last().is_some_and(is_slow)).then(|| {
-            let share = points.iter().enumerate().fold(0.0, |sum, (i, own)| {
-                let others = points.iter().enumerate().filter(|(k, _)| *k != i);
-                sum + others.fold(own[0], |weight, (_, other)| weight * other[1] / (other[1] - own[1]))
-            });
-            self.path.parameter(share)
-        })
+        let left = self.slowing.left(at.tangent[at.tangent.len() - 1]);
+        left.map_or(step, |left| step.min((TOWARDS * left).max(SHORTEST * self.along.step)))
     }
 }
 

@@ -37,6 +37,7 @@
 //! | `corrector` | a point of a branch beside another |
 //! | `special` | test functions, and where they vanish |
 //! | `origin` | whether a branch has come back to its first point |
+//! | `slowing` | where a contact that slows down has no speed left |
 //! | `fork` | where a branch loses its symmetry |
 //! | `branch` | from point to point, and how a branch ends |
 //! | `elasticity` | the derivative of a number of an orbit in a parameter |
@@ -50,6 +51,7 @@ mod fork;
 mod newton;
 mod origin;
 mod shot;
+mod slowing;
 mod special;
 
 use super::motion::{Exponent, MotionKind, Multiplier};

@@ -171,6 +171,13 @@ impl Shot {
         events.copied().min_by(|a, b| a.approach.abs().total_cmp(&b.approach.abs()))
     }
 
+    /// The flight before a contact begins from rest on a rigid face.
+    pub(super) fn flies_from_rest(&self, contact: &Event) -> bool {
+        let of_particle = || self.response.events.iter().filter(|event| event.particle == contact.particle);
+        let before = of_particle().take_while(|event| *event != contact).last().or_else(|| of_particle().last());
+        before.is_some_and(|event| is_release(event.kind) && event.departure == 0.0)
+    }
+
     /// A speed as a share of the motion's.
     pub(super) fn share_of_speed(&self, speed: f64) -> f64 {
         let half = self.miss.len() / 2;
@@ -192,7 +199,7 @@ impl Shot {
         let at = |event: &Event| event.cycle as f64 * period + event.time;
         let is_brief =
             |(i, release): &(usize, &Event)| {
-                matches!(release.kind, EventKind::FloorRelease | EventKind::CeilingRelease | EventKind::StopRelease)
+                is_release(release.kind)
                     && events[..*i].iter().rev().find(|event| event.particle == release.particle).is_some_and(
                         |landing| landing.departure == 0.0 && at(release) - at(landing) <= COINCIDES * period,
                     )
@@ -220,6 +227,10 @@ impl Shot {
             response: self.response.clone(),
         })
     }
+}
+
+fn is_release(kind: EventKind) -> bool {
+    matches!(kind, EventKind::FloorRelease | EventKind::CeilingRelease | EventKind::StopRelease)
 }
 
 /// The vector of length 1 that a matrix shortens most.

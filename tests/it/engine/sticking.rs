@@ -77,6 +77,17 @@ fn a_plastic_ball_stops_to_stay_where_its_flight_takes_a_cycle() {
     close("sticking, downwards", places(&down, Special::Sticking)[0], comes_back, 1e-10);
 }
 
+#[test]
+fn the_flight_of_a_plastic_ball_is_born_where_the_table_falls_with_gravity() {
+    let begin = 1.3;
+    let systems = |acceleration: f64| system(&Table::new(0.0, acceleration).scene());
+    let run = Options { skip: 0, average: 40, start: Table::new(0.0, begin).start(0.001), ..Options::default() };
+    let orbit = Orbit::after(&systems(begin), &run).expect("it settles");
+    let branch = follow(systems, &orbit, begin, [begin, 0.9]);
+    let BranchEnd::Graze { parameter } = branch.end else { panic!("{:?}", branch.end) };
+    close("birth of the flight", parameter, 1.0, 1e-10);
+}
+
 /// A particle with mass that flies for a cycle: it leaves with g T/2, comes back with −g T/2, and gives the structure the jump −μ g T.
 /// With x = a and v = b of the answer to a train of such jumps, the structure has v = (1 + 2 μ) g T/2 before the landing, and −g after it
 /// where the particle begins to stay.
