@@ -250,6 +250,10 @@ pub(super) fn marker(sheet: &Sheet, at: Point, look: Look) {
         }
         Marker::Up => sheet.fill(&[corner(0.0, -1.2), corner(1.1, 0.8), corner(-1.1, 0.8)], look.color, 1.0),
         Marker::Down => sheet.fill(&[corner(0.0, 1.2), corner(1.1, -0.8), corner(-1.1, -0.8)], look.color, 1.0),
+        Marker::Diamond => {
+            let corners = [corner(0.0, -1.3), corner(1.1, 0.0), corner(0.0, 1.3), corner(-1.1, 0.0)];
+            sheet.fill(&corners, look.color, 1.0)
+        }
         Marker::Cross => {
             let (long, wide) = (1.1, 0.35);
             let quarter = [[-wide, -long], [wide, -long], [wide, -wide]];

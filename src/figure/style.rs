@@ -173,6 +173,7 @@ pub(super) enum Marker {
     Square,
     Up,
     Down,
+    Diamond,
     Cross,
 }
 
@@ -184,6 +185,7 @@ impl Marker {
             Special::PeriodDoubling => Self::Square,
             Special::Torus => Self::Up,
             Special::Graze => Self::Down,
+            Special::Sticking => Self::Diamond,
             Special::SymmetryBreaking => Self::Cross,
         }
     }

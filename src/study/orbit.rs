@@ -107,7 +107,8 @@ enum Open {
     Lone(Special, Traced),
 }
 
-/// Points of a branch in their order, and why it goes no further at either end; no reason at an end that another branch begins at.
+/// Points of a branch in their order, and why it goes no further at either end; no reason at an end that another branch begins at, nor at
+/// the first point of a closed branch.
 struct Traced {
     points: Vec<BranchPoint>,
     ends: [Option<BranchEnd<RowFailure>>; 2],
@@ -243,7 +244,11 @@ impl Following<'_> {
                 Traced { points, ends: [Some(end), Some(BranchEnd::Range)] }
             }
             _ => {
-                let (upwards, downwards) = (follow(up)?, follow(down)?);
+                let upwards = follow(up)?;
+                if let BranchEnd::Closed = upwards.end {
+                    return Ok(vec![Traced { points: upwards.points, ends: [None, Some(upwards.end)] }]);
+                }
+                let downwards = follow(down)?;
                 // Both have the first point.
                 let back = downwards.points.into_iter().skip(1).rev();
                 let points = back.chain(upwards.points).collect();
@@ -304,6 +309,7 @@ impl Following<'_> {
         let name = words::of_key(&self.continuation.along);
         match end {
             BranchEnd::Range => "end of the range".into(),
+            BranchEnd::Closed => "closed: it comes back to its first motion".into(),
             BranchEnd::HalfPeriod => {
                 "next to it the motion has half the period: it joins the branch that doubles there".into()
             }

@@ -2,7 +2,9 @@
 
 use super::corrector::{At, Path, length};
 use super::newton::closed;
+use super::origin::Origin;
 use super::shot::{Shot, absolute};
+use super::slowing::{GRAZES, Slowing};
 use super::special::{self, Between, Special};
 use super::{Orbit, OrbitError};
 use crate::dynamics::system::HybridSystem;
@@ -17,14 +19,10 @@ const KEPT: f64 = 0.06;
 const STRAIGHT: f64 = 0.9;
 /// Share of the way to the graze of a contact that slows down, that one step may go.
 const TOWARDS: f64 = 0.5;
-/// A contact slower than this, in units of the motion, is about to graze.
-const GRAZES: f64 = 1e-3;
 /// Halvings between a sequence of contacts and the next.
 const HALVINGS: usize = 60;
 /// Clearance in units of the motion, of a branch that ends where a contact begins.
 const TOUCHES: f64 = 1e-7;
-/// Points that the zero of the impact speed is extrapolated from.
-const EXTRAPOLATED: usize = 5;
 
 /// What a branch is followed along.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -64,6 +62,8 @@ pub struct BranchPoint {
 pub enum BranchEnd<E> {
     /// It has come to an end of the range: to `to`, or by way of a fold to `from`.
     Range,
+    /// It has come back to its first point, which is the last one, too.
+    Closed,
     /// Next to the last point the motion has half the period: the branch of that motion doubles its period there.
     HalfPeriod,
     /// Next to the last point the motion comes again upside down after half a period: the branch of that motion loses its symmetry
@@ -113,7 +113,7 @@ impl<E> Branch<E> {
         let start = absolute(&system, &orbit.start).ok_or_else(none)?;
         let (shot, distance) = closed(&system, start, orbit.cycles)?;
         let at = path.begin(shot, distance)?;
-        Follower::new(path, along).run(at)
+        Follower::new(path, along, &at).run(at)
     }
 
     /// Follows the motion of twice the period that begins at a period doubling, on the side of it where that motion exists.
@@ -137,7 +137,8 @@ impl<E> Branch<E> {
         let mut tangent = single.flipping().ok_or_else(none)?;
         tangent.push(0.0);
         let shot = Shot::new(&system, single.start.clone(), 2 * cycles, Some(&single.scale))?;
-        Follower::new(path, along).run(At { share, shot, distance, tangent, determinant: 0.0 })
+        let at = At { share, shot, distance, tangent, determinant: 0.0 };
+        Follower::new(path, along, &at).run(at)
     }
 
     /// Follows the two motions, each the mirror image of the other, that begin where a motion loses its symmetry.
@@ -161,7 +162,8 @@ impl<E> Branch<E> {
             // Neighbours differ by the vector of the multiplier 1, and by no parameter.
             let [kept, _] = shot.kept().ok_or_else(none)?;
             let tangent = kept.iter().map(|x| side * x).chain([0.0]).collect();
-            Follower::new(path, along).run(At { share, shot, distance, tangent, determinant: 0.0 })
+            let at = At { share, shot, distance, tangent, determinant: 0.0 };
+            Follower::new(path, along, &at).run(at)
         };
         Ok([follow(1.0)?, follow(-1.0)?])
     }
@@ -171,9 +173,9 @@ impl<E> Branch<E> {
 struct Follower<F> {
     path: Path<F>,
     along: Along,
+    origin: Origin,
     points: Vec<BranchPoint>,
-    /// Share of the range and speed of the slowest contact at the last points, while it slows down.
-    slowing: Vec<[f64; 2]>,
+    slowing: Slowing,
     /// Arc since the last point that was kept.
     since: f64,
     /// The present point is not among those that were kept.
@@ -191,14 +193,24 @@ enum Next<E> {
 }
 
 impl<E, F: FnMut(f64) -> Result<HybridSystem, E>> Follower<F> {
-    fn new(path: Path<F>, along: Along) -> Self {
-        Self { path, along, points: Vec::new(), slowing: Vec::new(), since: 0.0, pending: false, turns: false }
+    fn new(path: Path<F>, along: Along, first: &At) -> Self {
+        let origin = Origin::of(first);
+        Self {
+            path,
+            along,
+            origin,
+            points: Vec::new(),
+            slowing: Slowing::default(),
+            since: 0.0,
+            pending: false,
+            turns: false,
+        }
     }
 
     fn run(mut self, mut at: At) -> Result<Branch<E>, BranchError<E>> {
         let mut step = self.along.step;
         self.keep(&at, None)?;
-        self.watch(&at);
+        self.slowing.watch(&at.shot, at.share);
         loop {
             if self.points.len() >= self.along.points {
                 return self.end(&at, BranchEnd::Points);
@@ -206,10 +218,11 @@ impl<E, F: FnMut(f64) -> Result<HybridSystem, E>> Follower<F> {
             let tried = self.limited(&at, step);
             match self.advance(&at, tried)? {
                 Ok(Next::At(next)) => {
-                    self.watch(&next);
+                    self.slowing.watch(&next.shot, next.share);
                     at = *next;
                     step = (GROWTH * tried).min(self.along.step);
-                    if let Some(parameter) = self.graze(&at) {
+                    if let Some(share) = self.slowing.graze(&at.shot) {
+                        let parameter = self.path.parameter(share);
                         return self.end(&at, BranchEnd::Graze { parameter });
                     }
                 }
@@ -248,7 +261,12 @@ impl<E, F: FnMut(f64) -> Result<HybridSystem, E>> Follower<F> {
         if at.shot.swaps_halves(&next.shot) {
             return Ok(Ok(Next::End(BranchEnd::HalfPeriod)));
         }
-        let specials = match special::between(&mut self.path, at, &next, step) {
+        let closing = match self.origin.between(&mut self.path, at, &next, step) {
+            Ok(closing) => closing,
+            Err(error) => return Ok(Err(error)),
+        };
+        let (last, arc) = closing.as_ref().map_or((&next, step), |(place, first)| (first, *place));
+        let specials = match special::between(&mut self.path, at, last, arc) {
             Ok(Between::Specials(specials)) => specials,
             Ok(Between::Symmetry) => return Ok(Ok(Next::End(BranchEnd::Symmetry))),
             Err(error) => return Ok(Err(error)),
@@ -257,6 +275,9 @@ impl<E, F: FnMut(f64) -> Result<HybridSystem, E>> Follower<F> {
         let inside = |at: &At| (0.0..=1.0).contains(&at.share);
         for (special, at) in specials.iter().filter(|(_, at)| inside(at)) {
             self.keep(at, Some(*special))?;
+        }
+        if closing.is_some() {
+            return Ok(Ok(self.close()));
         }
         if let Some(end) = beyond {
             let ends = [at.share - end, next.share - end];
@@ -297,6 +318,13 @@ impl<E, F: FnMut(f64) -> Result<HybridSystem, E>> Follower<F> {
                 Err(error) => return Ok(Err(error)),
             }
         }
+        if let Some(edge) = &last {
+            match self.origin.between(&mut self.path, at, edge, low) {
+                Ok(None) => {}
+                Ok(Some(_)) => return Ok(Ok(self.close())),
+                Err(error) => return Ok(Err(error)),
+            }
+        }
         if last.is_none() && self.turns {
             self.turns = false;
             return Ok(Ok(Next::Turn));
@@ -305,10 +333,15 @@ impl<E, F: FnMut(f64) -> Result<HybridSystem, E>> Follower<F> {
         match first {
             Some(beyond) if turn(edge, &beyond) > 0.0 => {
                 let is_slow = |at: &At| slow_share(at).is_some_and(|share| share <= GRAZES);
-                // Else a contact passes the instant at which the period begins.
                 self.turns = is_slow(edge) || is_slow(&beyond);
-                if self.turns {
-                    self.keep(edge, Some(Special::Graze))?;
+                // Else a contact passes the instant at which the period begins.
+                let special = if self.path.begins_to_stay(edge, &beyond)? {
+                    Some(Special::Sticking)
+                } else {
+                    self.turns.then_some(Special::Graze)
+                };
+                if special.is_some() {
+                    self.keep(edge, special)?;
                 }
                 self.slowing.clear();
                 self.pending = true;
@@ -320,6 +353,13 @@ impl<E, F: FnMut(f64) -> Result<HybridSystem, E>> Follower<F> {
                 miss: edge.shot.misses_by(),
             }))),
         }
+    }
+
+    /// Enters the first point again.
+    fn close(&mut self) -> Next<E> {
+        self.points.push(BranchPoint { special: None, ..self.points[0].clone() });
+        self.pending = false;
+        Next::End(BranchEnd::Closed)
     }
 
     /// Enters a point.
@@ -344,38 +384,10 @@ impl<E, F: FnMut(f64) -> Result<HybridSystem, E>> Follower<F> {
         Ok(Branch { points: self.points, end })
     }
 
-    /// Remembers how a contact slows down.
-    fn watch(&mut self, at: &At) {
-        let Some(slowest) = at.shot.slowest() else { return self.slowing.clear() };
-        let speed = slowest.approach.abs();
-        if self.slowing.last().is_some_and(|[_, last]| speed >= *last) {
-            self.slowing.clear();
-        }
-        self.slowing.push([at.share, speed]);
-        if self.slowing.len() > EXTRAPOLATED {
-            self.slowing.remove(0);
-        }
-    }
-
     /// A step that does not go all the way to the graze of a contact that slows down.
     fn limited(&self, at: &At, step: f64) -> f64 {
-        let [.., before, last] = self.slowing[..] else { return step };
-        let along = (last[0] - before[0]).abs() / at.tangent[at.tangent.len() - 1].abs().max(f64::EPSILON);
-        let left = along * last[1] / (before[1] - last[1]);
-        if left > 0.0 { step.min((TOWARDS * left).max(SHORTEST * self.along.step)) } else { step }
-    }
-
-    /// The parameter at which the slowest contact has no speed left, once it is slow.
-    fn graze(&self, at: &At) -> Option<f64> {
-        let points = &self.slowing;
-        let is_slow = |[_, speed]: &[f64; 2]| at.shot.share_of_speed(*speed) <= GRAZES;
-        (points.len() == EXTRAPOLATED && points.last().is_some_and(is_slow)).then(|| {
-            let share = points.iter().enumerate().fold(0.0, |sum, (i, own)| {
-                let others = points.iter().enumerate().filter(|(k, _)| *k != i);
-                sum + others.fold(own[0], |weight, (_, other)| weight * other[1] / (other[1] - own[1]))
-            });
-            self.path.parameter(share)
-        })
+        let left = self.slowing.left(at.tangent[at.tangent.len() - 1]);
+        left.map_or(step, |left| step.min((TOWARDS * left).max(SHORTEST * self.along.step)))
     }
 }
 

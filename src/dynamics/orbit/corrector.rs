@@ -76,6 +76,12 @@ impl<E, F: FnMut(f64) -> Result<HybridSystem, E>> Path<F> {
         (self.system_at)(parameter).map_err(BranchError::System)
     }
 
+    /// Of two neighbours, one has a particle that stays on its face for an instant; that of the other leaves at once.
+    pub(super) fn begins_to_stay(&mut self, one: &At, other: &At) -> Result<bool, BranchError<E>> {
+        let period = self.system(one.share)?.drive.period;
+        Ok(one.shot.brief_stays(period).abs_diff(other.shot.brief_stays(period)) == 1)
+    }
+
     /// The first point.
     pub(super) fn begin(&mut self, shot: Shot, distance: f64) -> Result<At, BranchError<E>> {
         let mut onwards = vec![0.0; shot.miss.len() + 1];

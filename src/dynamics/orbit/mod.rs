@@ -15,10 +15,15 @@
 //! | period doubling | det(1 + M) |
 //! | torus (Neimark-Sacker) | the modulus of a complex pair of multipliers less 1 |
 //! | symmetry breaking | det [1 − M, −∂P/∂λ; tᵀ], t = (ẋ, λ̇) |
+//! | sticking | the acceleration of a particle towards its rigid face as it lands on it without a bounce |
 //! | graze | the speed of a contact of the sequence, not the map, whose derivative is infinite there |
 //!
 //! A contact of rigid faces ends the branch at its graze: λ is a smooth function of the impact speed there, so that the zero is
 //! extrapolated from the last points. A branch on which a contact is about to begin is followed up to that instant.
+//!
+//! A particle that lands without a bounce stays where its face pushes it, and leaves at once where it does not. Between the two the
+//! branch goes on smoothly: a flight that begins θ late begins where both accelerations are equal to first order, and differs by θ² only.
+//! The side of a point is seen from its contacts, and the zero between the sides is halved down to rounding.
 //!
 //! Sources: Parker & Chua, Practical Numerical Algorithms for Chaotic Systems, 1989 (shooting); Seydel, Practical Bifurcation and
 //! Stability Analysis, 3rd ed. 2010 (arc length, test functions); Leine & Nijmeijer, Dynamics and Bifurcations of Non-Smooth
@@ -31,6 +36,8 @@
 //! | `newton` | one orbit |
 //! | `corrector` | a point of a branch beside another |
 //! | `special` | test functions, and where they vanish |
+//! | `origin` | whether a branch has come back to its first point |
+//! | `slowing` | where a contact that slows down has no speed left |
 //! | `fork` | where a branch loses its symmetry |
 //! | `branch` | from point to point, and how a branch ends |
 //! | `elasticity` | the derivative of a number of an orbit in a parameter |
@@ -42,7 +49,9 @@ mod elasticity;
 mod elimination;
 mod fork;
 mod newton;
+mod origin;
 mod shot;
+mod slowing;
 mod special;
 
 use super::motion::{Exponent, MotionKind, Multiplier};

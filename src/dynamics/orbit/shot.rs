@@ -171,6 +171,13 @@ impl Shot {
         events.copied().min_by(|a, b| a.approach.abs().total_cmp(&b.approach.abs()))
     }
 
+    /// The flight before a contact begins from rest on a rigid face.
+    pub(super) fn flies_from_rest(&self, contact: &Event) -> bool {
+        let of_particle = || self.response.events.iter().filter(|event| event.particle == contact.particle);
+        let before = of_particle().take_while(|event| *event != contact).last().or_else(|| of_particle().last());
+        before.is_some_and(|event| is_release(event.kind) && event.departure == 0.0)
+    }
+
     /// A speed as a share of the motion's.
     pub(super) fn share_of_speed(&self, speed: f64) -> f64 {
         let half = self.miss.len() / 2;
@@ -184,6 +191,20 @@ impl Shot {
             (event.cycle == 0 && event.time <= COINCIDES * period)
                 || (event.cycle == last && event.time >= (1.0 - COINCIDES) * period)
         })
+    }
+
+    /// How often a rigid face lets a particle go within an instant after it has landed without a bounce.
+    pub(super) fn brief_stays(&self, period: f64) -> usize {
+        let events = &self.response.events;
+        let at = |event: &Event| event.cycle as f64 * period + event.time;
+        let is_brief =
+            |(i, release): &(usize, &Event)| {
+                is_release(release.kind)
+                    && events[..*i].iter().rev().find(|event| event.particle == release.particle).is_some_and(
+                        |landing| landing.departure == 0.0 && at(release) - at(landing) <= COINCIDES * period,
+                    )
+            };
+        events.iter().enumerate().filter(is_brief).count()
     }
 
     /// By how much a surface would have to move for another sequence of contacts, as a share of the motion's length.
@@ -206,6 +227,10 @@ impl Shot {
             response: self.response.clone(),
         })
     }
+}
+
+fn is_release(kind: EventKind) -> bool {
+    matches!(kind, EventKind::FloorRelease | EventKind::CeilingRelease | EventKind::StopRelease)
 }
 
 /// The vector of length 1 that a matrix shortens most.

@@ -27,13 +27,16 @@ pub enum Special {
     Torus,
     /// A contact begins or ends without speed.
     Graze,
+    /// A particle that stays on its rigid face for a while begins to leave it as soon as it lands, or the other way round.
+    Sticking,
     /// A multiplier passes 1 where the branch does not turn: two motions that are each other's mirror image begin.
     SymmetryBreaking,
 }
 
 impl Special {
     /// All of them, in the order of this list.
-    pub const ALL: [Self; 5] = [Self::Fold, Self::PeriodDoubling, Self::Torus, Self::Graze, Self::SymmetryBreaking];
+    pub const ALL: [Self; 6] =
+        [Self::Fold, Self::PeriodDoubling, Self::Torus, Self::Graze, Self::Sticking, Self::SymmetryBreaking];
 
     /// The word in a table.
     #[must_use]
@@ -43,6 +46,7 @@ impl Special {
             Self::PeriodDoubling => "period doubling",
             Self::Torus => "torus",
             Self::Graze => "graze",
+            Self::Sticking => "sticking",
             Self::SymmetryBreaking => "symmetry breaking",
         }
     }

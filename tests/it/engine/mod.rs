@@ -6,6 +6,7 @@ mod averages;
 mod bench;
 mod branching;
 mod closed_forms;
+mod closed_loops;
 mod drawn_scenes;
 mod elasticities;
 mod equal_modes;
@@ -26,6 +27,7 @@ mod reference_cases;
 mod resonance;
 mod search;
 mod settled;
+mod sticking;
 mod walls;
 
 pub use bench::note;

@@ -226,13 +226,13 @@ fn a_branch_of_bounces_doubles_and_folds_where_the_closed_forms_say() {
 /// An oscillator that meets a fixed stop at `place` once a cycle: the harmonic response and the answer to a train of impulses of
 /// −(1 + ε) v, with x = stop and x′ = v at the impact (Peterka 1974; Shaw & Holmes 1983):
 /// A² = (d + (1 + ε) α v)² + (v (1 + (1 + ε) β)/ω)², (α, β) the state before the impact of a train of unit jumps.
-struct Stopped {
+pub(super) struct Stopped {
     ratio: f64,
     place: f64,
     restitution: f64,
 }
 
-const STIFFNESS: f64 = 1000.0;
+pub(super) const STIFFNESS: f64 = 1000.0;
 const DAMPING_RATIO: f64 = 0.02;
 
 impl Stopped {
@@ -240,7 +240,7 @@ impl Stopped {
         self.ratio * STIFFNESS.sqrt()
     }
 
-    fn damping() -> f64 {
+    pub(super) fn damping() -> f64 {
         2.0 * DAMPING_RATIO * STIFFNESS.sqrt()
     }
 
@@ -374,7 +374,7 @@ impl Masri {
     }
 
     /// Place and velocity of the base before the impact, and the part of them that answers the impulses.
-    fn impact(&self, speed: f64) -> [Vector2<f64>; 2] {
+    pub(super) fn impact(&self, speed: f64) -> [Vector2<f64>; 2] {
         let half = PI / self.omega();
         let before = Vector2::new(
             0.5 * (self.gap - speed * half),
@@ -446,7 +446,7 @@ impl Masri {
 }
 
 /// The damped oscillator's flow.
-fn oscillator(time: f64) -> Matrix2<f64> {
+pub(super) fn oscillator(time: f64) -> Matrix2<f64> {
     let natural = STIFFNESS.sqrt();
     let (decay, omega) = (DAMPING_RATIO * natural, natural * (1.0 - DAMPING_RATIO * DAMPING_RATIO).sqrt());
     let (s, c) = (omega * time).sin_cos();
@@ -522,7 +522,7 @@ fn a_branch_of_resilient_contacts_changes_its_stability_at_its_special_points_an
                     within("modulus", multipliers[0].modulus, 1.0, 1e-9);
                     stable = false;
                 }
-                Some(Special::Fold | Special::Graze | Special::SymmetryBreaking) => break,
+                Some(Special::Fold | Special::Graze | Special::Sticking | Special::SymmetryBreaking) => break,
                 None => assert_eq!(point.orbit.is_stable(), stable, "at {}", point.parameter),
             }
             found.extend(point.special.map(Special::word));
