@@ -20,7 +20,8 @@ use crate::experiment::{Continuation, Experiment, RowSource};
 use crate::measure::Settings;
 use crate::report::{scenes, value_in_words};
 use crate::scene::{Scene, effects};
-use crate::study::{Item, Layout, State, Study, Texts, forecast};
+use crate::study::{Item, Layout, LiftOff, State, Study, Texts, forecast, lift_offs};
+use crate::text::number::compact;
 use crate::text::words::{counted, of_key};
 
 /// Processor time of all threads for an experiment.
@@ -155,7 +156,10 @@ fn describe(study: &Study, item: &Item, section: Section, all: &mut Option<Vec<S
         Section::Heading => heading(item),
         Section::Scene => first_scene(study, experiment),
         Section::Effects => in_force(all.get_or_insert_with(|| scenes(study, experiment))),
-        Section::Idle => idle(experiment, all.get_or_insert_with(|| scenes(study, experiment))),
+        Section::Idle => {
+            let idle = idle(experiment, all.get_or_insert_with(|| scenes(study, experiment)));
+            idle + &at_rest(study, experiment)
+        }
         Section::Assumptions => assumptions(study, item),
         Section::Cases => cases(item),
         Section::Warnings => {
@@ -226,6 +230,21 @@ fn idle(experiment: &Experiment, scenes: &[Scene]) -> String {
             &format!("  In {count} of {all} it is proved that the {effect} is out of reach, and skipped: {nearest}.\n");
     }
     text
+}
+
+/// The strength of the drive below which particles rest.
+fn at_rest(study: &Study, experiment: &Experiment) -> String {
+    let assumptions = study.sheet.assumptions();
+    let limit = Limit { time: PATIENCE, ..Limit::default() };
+    let found = Allowance::new(limit).simulate(|| lift_offs(experiment, &assumptions));
+    let line = |LiftOff { over, least, most, at_rest }: LiftOff| {
+        let unit = if over.unit().is_empty() { String::new() } else { format!(" {}", over.unit()) };
+        let [least, most] = [least, most].map(|at| compact(at, 4) + &unit);
+        let range = if least == most { least } else { format!("{least} to {most}, by case") };
+        let cases = counted(at_rest, "case lies", "cases lie");
+        format!("  All particles rest below {} = {range}, once transients are gone; {cases} there.\n", of_key(&over))
+    };
+    found.into_iter().map(line).collect()
 }
 
 fn assumptions(study: &Study, item: &Item) -> String {

@@ -10,6 +10,7 @@
 mod balance;
 mod bound;
 mod cycle;
+mod lift_off;
 mod moments;
 mod range;
 mod signal;
@@ -84,24 +85,38 @@ pub(crate) fn attempt(system: &HybridSystem, options: &Options, states: &States)
     Ok(Attempt::Solved(Box::new(run.respond(options, margin)?)))
 }
 
-/// The motion that comes again in every cycle once all transients are gone, if it is linear: no particle on board, or none
-/// ever leaving its floor. `None` where it is not proved to be, or where there is no such motion.
+/// The motion that comes again in every cycle once all transients are gone, with every particle held on its floor.
+struct Steady {
+    flow: Rc<Flow>,
+    cycle: Cycle,
+    /// At the start of a cycle.
+    state: Vec<f64>,
+}
+
+impl Steady {
+    /// `None` where there is no such motion, or where it is not linear.
+    fn of(system: &HybridSystem) -> Result<Option<Self>, EngineError> {
+        if !may_be_linear(system, &Options::default()) || !(system.drive.repeats || system.drive.ticks.is_empty()) {
+            return Ok(None);
+        }
+        let flow = at_rest(system, &States::of(system))?;
+        if !is_closed(&flow) {
+            return Ok(None);
+        }
+        let answer = Cholesky::new(&system.mass)?.solve(&system.force_row);
+        let before = system.drive.ticks.last().map_or(0.0, |tick| tick.level);
+        let cycle = regular(system, &flow, before, &answer);
+        // An undamped transient never goes.
+        if flow.blocks[..flow.own].iter().any(|block| !(block.decay > 0.0)) {
+            return Ok(None);
+        }
+        Ok(cycle.map.fixed_point().map(|state| Self { flow, cycle, state }))
+    }
+}
+
+/// That motion; `None` as well where it is not proved that no particle leaves its floor.
 pub(crate) fn steady_state(system: &HybridSystem) -> Result<Option<SteadyState>, EngineError> {
-    if !may_be_linear(system, &Options::default()) || !(system.drive.repeats || system.drive.ticks.is_empty()) {
-        return Ok(None);
-    }
-    let flow = at_rest(system, &States::of(system))?;
-    if !is_closed(&flow) {
-        return Ok(None);
-    }
-    let answer = Cholesky::new(&system.mass)?.solve(&system.force_row);
-    let before = system.drive.ticks.last().map_or(0.0, |tick| tick.level);
-    let cycle = regular(system, &flow, before, &answer);
-    let Some(steady) = cycle.map.fixed_point() else { return Ok(None) };
-    // An undamped transient never goes.
-    if flow.blocks[..flow.own].iter().any(|block| !(block.decay > 0.0)) {
-        return Ok(None);
-    }
+    let Some(Steady { flow, cycle, state: steady }) = Steady::of(system)? else { return Ok(None) };
     let watch = Watch {
         system,
         flow: &flow,
@@ -121,6 +136,12 @@ pub(crate) fn steady_state(system: &HybridSystem) -> Result<Option<SteadyState>,
         SteadyMotion { cycle: part, extremes }
     };
     Ok(Some(SteadyState { observed: rows.iter().zip(parts).map(motion).collect(), margin }))
+}
+
+/// The share of the drive's strength at which the steady motion first takes a particle off its floor; `None` where no strength does, and
+/// where there is no steady motion with particles at rest.
+pub(crate) fn lift_off(system: &HybridSystem) -> Result<Option<f64>, EngineError> {
+    Ok(Steady::of(system)?.and_then(|steady| lift_off::share(system, &steady)))
 }
 
 /// False where a look at the scene shows that it is not linear.

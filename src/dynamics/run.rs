@@ -62,6 +62,16 @@ pub fn steady_state(system: &HybridSystem) -> Result<Option<SteadyState>, Engine
     budget::within(|| linear::steady_state(system))
 }
 
+/// The share of its present strength at which the drive takes the first particle off its floor, in closed form: below it every particle
+/// rests, once all transients are gone. `None` where no strength does, and where particles never rest under this drive: on rigid floors
+/// under impulses, say.
+///
+/// # Errors
+/// [`EngineError`] with the reason.
+pub fn lift_off(system: &HybridSystem) -> Result<Option<f64>, EngineError> {
+    budget::within(|| linear::lift_off(system))
+}
+
 /// Runs a system with a fixed time step, s: exact propagators of one step, the contact state checked once a step.
 ///
 /// # Errors

@@ -8,10 +8,10 @@ use crate::measure::{CycleSpec, EnergySpec, Measure, Settings, ShapeSpec, Solver
 use crate::scene::Scene;
 
 use super::continued::ContinuedSweep;
-use super::definition::{Case, Drawing, Experiment, FigureSpec, Maximise, Panel, Refinement, SearchPoint};
+use super::definition::{Case, Drawing, Experiment, FigureSpec, Maximise, Panel, SearchPoint};
 use super::diagnostic::{Findings, Span};
 use super::optimise::Optimise;
-use super::refined::curves;
+use super::refined::{Refinement, curves};
 use super::scene::ReadScene;
 use super::starts_reader::ReadStarts;
 use super::sweep::ReadSweep;

@@ -13,6 +13,8 @@ use super::assumption_sheet::AssumptionSheet;
 use super::continuation::Continuation;
 use super::continued::{ContinuedSweep, Direction, chains};
 use super::optimise::Optimise;
+use super::range::rounded;
+use super::refined::Refinement;
 use super::starts::Starts;
 use super::word::word_of;
 
@@ -293,6 +295,15 @@ impl Case {
         }
     }
 
+    /// The same with another number for a parameter that it has, to 13 digits, as all points of a sweep are.
+    #[must_use]
+    pub(crate) fn with(&self, parameter: Parameter, number: f64) -> Self {
+        let mut case = self.clone();
+        let own = case.values.iter_mut().filter(|(name, _)| *name == parameter);
+        own.for_each(|(_, value)| *value = ParameterValue::Number(rounded(number)));
+        case
+    }
+
     /// In words: `gap_ratio = 50, stop = with`; empty when nothing is swept.
     #[must_use]
     pub fn describe(&self) -> String {
@@ -382,25 +393,6 @@ impl Maximise {
 
 /// Bisections that bring any interval below the distance of two numbers that an onset is known by.
 const MOST_BISECTIONS: u64 = 60;
-
-/// Points added to the curves of a sweep, one parameter running, where a straight line between two of them would miss.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Refinement {
-    /// The sweep within a union; empty otherwise.
-    pub sweep: String,
-    /// The parameter that runs along a curve.
-    pub over: Parameter,
-    /// How far a straight line may miss, relative to the local value; on a logarithmic scale in its logarithm.
-    pub tolerance: f64,
-    /// Most points of a curve.
-    pub most: u32,
-    /// The scale on which points are evenly spaced and intervals halved.
-    pub spacing: AxisScale,
-    /// The scale on which lines are straight.
-    pub value_scale: AxisScale,
-    /// The measures that decide; all where none is named.
-    pub measures: Vec<Measure>,
-}
 
 /// One PNG.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

@@ -63,7 +63,7 @@ pub use continuation::{BranchColumn, Continuation, RowSource, Stability};
 pub use continued::{ContinuedSweep, Direction};
 pub use definition::{
     AnimationSpec, Axis, AxisScale, Band, Best, Case, Drawing, Experiment, ExperimentId, FigureSpec, IdError, Joined,
-    Level, MapSpec, Mark, Maximise, Only, Panel, PeakMarks, Refinement, SearchPoint, Source, Strip,
+    Level, MapSpec, Mark, Maximise, Only, Panel, PeakMarks, SearchPoint, Source, Strip,
 };
 pub use diagnostic::{Place, Problem, Problems, Severity};
 pub(crate) use edit::{Written, set_keys};
@@ -79,7 +79,8 @@ pub use recipe::{
     ObserveRecipe, Parameter, ParameterValue, Part, PlaceRecipe, PointsRecipe, Recipe, RecipeError, Reference, Slot,
     StiffnessRecipe, StopRecipe, StrengthRecipe, StructureRecipe, SurfaceRecipe, TimingRecipe, WallRecipe,
 };
-pub(crate) use refined::{Curve, curves};
+pub(crate) use refined::{Curve, by_strength, curves};
+pub use refined::{Refinement, Threshold};
 pub use scaffold::{scaffold, structures};
 pub use schema::assumptions_schema;
 pub(crate) use schema::{Object, list, text, words_of};

@@ -1,9 +1,12 @@
 //! Refined ranges: a few points to start with, and the rule by which a run adds more where a curve bends.
 
+use std::collections::BTreeSet;
+
+use serde::{Deserialize, Serialize};
 use serde_json::json;
 
 use super::at::At;
-use super::definition::{AxisScale, Case, Refinement, differing_in};
+use super::definition::{AxisScale, Case, Experiment, differing_in};
 use super::diagnostic::Findings;
 use super::range::{between, end, in_order, rounded};
 use super::reader::{number, scalar};
@@ -11,11 +14,42 @@ use super::recipe::{Parameter, ParameterValue};
 use super::schema::parts;
 use super::validate::read_measure;
 use super::yaml::{Node, Value};
+use crate::measure::Measure;
 
 /// Most points of a curve.
 const MOST_POINTS: u32 = 20_000;
 /// Fewest points to start with.
 const FEWEST_POINTS: u32 = 5;
+
+/// Points added to the curves of a sweep, one parameter running, where a straight line between two of them would miss.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Refinement {
+    /// The sweep within a union; empty otherwise.
+    pub sweep: String,
+    /// The parameter that runs along a curve.
+    pub over: Parameter,
+    /// How far a straight line may miss, relative to the local value; on a logarithmic scale in its logarithm.
+    pub tolerance: f64,
+    /// Most points of a curve.
+    pub most: u32,
+    /// The scale on which points are evenly spaced and intervals halved.
+    pub spacing: AxisScale,
+    /// The scale on which lines are straight.
+    pub value_scale: AxisScale,
+    /// The measures that decide; all where none is named.
+    pub measures: Vec<Measure>,
+    /// A place in closed form that gets a point on either side.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub around: Option<Threshold>,
+}
+
+/// A place on a curve that is known in closed form.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Threshold {
+    /// The first particle leaves its floor.
+    LiftOff,
+}
 
 /// Whether a range is refined.
 pub(super) fn is_refined(value: &Value) -> bool {
@@ -39,6 +73,8 @@ pub(super) fn refined(at: At<'_>, parameter: Parameter) -> Option<(Vec<Parameter
         let scale = "Scale on which the curve is looked at";
         let value_scale = keys.optional("value_scale", scale, |at| at.word::<AxisScale>("scale"));
         let of = keys.optional("of", "Measures whose curve is looked at", |at| at.one_or_more(read_measure));
+        let beside = "A place in closed form that gets a point on either side";
+        let around = keys.optional("around", beside, |at| threshold(at, parameter));
         keys.close()?;
         let (from, to, spacing) = (from?, to?, spacing?.unwrap_or_default());
         let [from, to] = in_order(at, from, to, spacing)?;
@@ -51,6 +87,7 @@ pub(super) fn refined(at: At<'_>, parameter: Parameter) -> Option<(Vec<Parameter
             spacing,
             value_scale: value_scale?.unwrap_or_default(),
             measures: of?.unwrap_or_default(),
+            around: around?,
         };
         let points = match spacing {
             AxisScale::Linear => between(from, to, start),
@@ -58,6 +95,17 @@ pub(super) fn refined(at: At<'_>, parameter: Parameter) -> Option<(Vec<Parameter
         };
         Some((points.into_iter().map(|point| ParameterValue::Number(rounded(point))).collect(), refinement))
     })
+}
+
+/// `lift_off`, of a strength of the drive.
+fn threshold(at: At<'_>, parameter: Parameter) -> Option<Threshold> {
+    let threshold = at.word::<Threshold>("threshold")?;
+    if matches!(at, At::Node(..)) && !parameter.is_strength() {
+        let help =
+            "refine `force_ratio`, `base_amplitude_ratio`, `force` or `impulse`, or leave `around` out".to_owned();
+        return at.report("lift-off is a strength of the drive", Some(help));
+    }
+    Some(threshold)
 }
 
 /// `1 %` or 0.01, above zero.
@@ -97,4 +145,16 @@ pub(crate) fn curves<'a>(cases: &[Case], rules: impl IntoIterator<Item = &'a Ref
     let mut curves: Vec<Curve<'a>> = rules.into_iter().flat_map(of_rule).collect();
     curves.sort_by_key(|curve| curve.cases.first().copied());
     curves
+}
+
+/// The cases that differ in a strength of the drive alone, by their index, with that strength.
+pub(crate) fn by_strength(experiment: &Experiment) -> Vec<(Parameter, Vec<usize>)> {
+    let sweeps: BTreeSet<&str> = experiment.cases.iter().map(|case| case.sweep.as_str()).collect();
+    let mut found = Vec::new();
+    for over in experiment.swept.iter().copied().filter(|parameter| parameter.is_strength()) {
+        for sweep in &sweeps {
+            found.extend(differing_in(&experiment.cases, sweep, over).into_iter().map(|cases| (over, cases)));
+        }
+    }
+    found
 }

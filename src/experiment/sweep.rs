@@ -11,12 +11,12 @@ use serde_json::json;
 
 use super::at::At;
 use super::continued::{Continued, ContinuedSweep, Direction, KEYS, chains};
-use super::definition::{Case, Refinement};
+use super::definition::Case;
 use super::diagnostic::Span;
 use super::range::{MOST_POINTS, by_kind, too_many, value, values};
 use super::reader::unknown;
 use super::recipe::{Parameter, ParameterValue};
-use super::refined::{is_refined, refined};
+use super::refined::{Refinement, is_refined, refined};
 use super::solver::read_solver;
 use super::word::{from_word, word_of, words};
 use super::yaml::Value;

@@ -86,7 +86,10 @@ impl Item {
             let row = known.row(experiment, fingerprints.of(&self.variants[0], case, &job));
             row.ok_or(RowFailure::NotComputed)
         };
-        let cases = refine::points(experiment, &look).into_iter().map(|point| point.case).collect();
+        let cases = refine::points(experiment, &self.variants[0].assumptions, &look)
+            .into_iter()
+            .map(|point| point.case)
+            .collect();
         Cow::Owned(Experiment { cases, ..experiment.clone() })
     }
 }

@@ -10,7 +10,8 @@
 use rayon::prelude::*;
 
 use super::tabulate::Outcome;
-use crate::experiment::{AxisScale, Case, Curve, Experiment, ParameterValue, Refinement, curves};
+use super::threshold;
+use crate::experiment::{Assumptions, AxisScale, Case, Curve, Experiment, Parameter, Refinement, curves};
 use crate::measure::Measured;
 
 /// Halvings of the first intervals, at most: from 3 rad/s to 0.0002 rad/s.
@@ -28,9 +29,14 @@ pub(super) struct Point {
 }
 
 /// All cases with those that were added, curve by curve in the order of their first cases.
-pub(super) fn points(experiment: &Experiment, look: &(impl Fn(&Case) -> Outcome + Sync)) -> Vec<Point> {
+pub(super) fn points(
+    experiment: &Experiment,
+    assumptions: &Assumptions,
+    look: &(impl Fn(&Case) -> Outcome + Sync),
+) -> Vec<Point> {
     let curves = curves(&experiment.cases, &experiment.refined);
-    let refined: Vec<Vec<Point>> = curves.par_iter().map(|curve| refine(experiment, curve, look)).collect();
+    let refined: Vec<Vec<Point>> =
+        curves.par_iter().map(|curve| refine(experiment, assumptions, curve, look)).collect();
     let mut on_a_curve = vec![false; experiment.cases.len()];
     curves.iter().flat_map(|curve| &curve.cases).for_each(|&case| on_a_curve[case] = true);
     let mut refined: Vec<(usize, Vec<Point>)> =
@@ -51,19 +57,24 @@ struct Seen {
     point: Point,
 }
 
-fn refine(experiment: &Experiment, curve: &Curve<'_>, look: &(impl Fn(&Case) -> Outcome + Sync)) -> Vec<Point> {
+fn refine(
+    experiment: &Experiment,
+    assumptions: &Assumptions,
+    curve: &Curve<'_>,
+    look: &(impl Fn(&Case) -> Outcome + Sync),
+) -> Vec<Point> {
     let rule = curve.rule;
     let see = |case: Case| {
         let known = look(&case);
-        let parameter = match case.get(rule.over) {
-            Some(ParameterValue::Number(value)) => value,
-            _ => f64::NAN,
-        };
+        let parameter = number_of(&case, rule.over);
         let at = if rule.spacing == AxisScale::Log { libm::log10(parameter) } else { parameter };
         let chaotic = known.as_ref().is_ok_and(|row| row.evaluated.chaotic);
         Seen { at, values: values(experiment, rule, &known), chaotic, point: Point { case, known: Some(known) } }
     };
-    let first: Vec<Case> = curve.cases.iter().map(|&case| experiment.cases[case].clone()).collect();
+    let mut first: Vec<Case> = curve.cases.iter().map(|&case| experiment.cases[case].clone()).collect();
+    if let Some(threshold) = rule.around {
+        first.extend(threshold::around(experiment, assumptions, threshold, rule.over, &first));
+    }
     let mut seen: Vec<Seen> = first.into_par_iter().map(see).collect();
     seen.sort_by(|a, b| a.at.total_cmp(&b.at));
     let widest = seen.windows(2).fold(0.0_f64, |widest, pair| widest.max(pair[1].at - pair[0].at));
@@ -142,16 +153,14 @@ fn miss(three: &[Seen], rule: &Refinement) -> f64 {
     a.values.iter().zip(&b.values).zip(&c.values).map(of).fold(0.0, f64::max)
 }
 
+/// The value of a parameter; NaN where it is a word.
+pub(super) fn number_of(case: &Case, parameter: Parameter) -> f64 {
+    case.number(parameter).unwrap_or(f64::NAN)
+}
+
 /// The case halfway.
 fn between(low: &Seen, high: &Seen, rule: &Refinement) -> Case {
     let middle = f64::midpoint(low.at, high.at);
     let value = if rule.spacing == AxisScale::Log { libm::exp10(middle) } else { middle };
-    let mut case = low.point.case.clone();
-    for (parameter, old) in &mut case.values {
-        if *parameter == rule.over {
-            // To 13 digits, as all points of a sweep are.
-            *old = ParameterValue::Number(format!("{value:.12e}").parse().unwrap_or(value));
-        }
-    }
-    case
+    low.point.case.with(rule.over, value)
 }

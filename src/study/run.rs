@@ -218,7 +218,7 @@ fn undivided(task: Task<'_>, mut finished: Finished) -> Finished {
 fn run_refined(task: Task<'_>, evaluate: &impl Evaluate, handler: &dyn EventHandler, hand_over: impl Fn(&Work<'_>)) {
     let counting = Counting { handler, simulations: AtomicU64::new(0) };
     let look = |case: &Case| outcome(task, case, &job::first_of(case), evaluate, &counting);
-    let points = refine::points(task.experiment, &look);
+    let points = refine::points(task.experiment, &task.variants[0].assumptions, &look);
     let cases = points.iter().map(|point| point.case.clone()).collect();
     let experiment = Experiment { cases, ..task.experiment.clone() };
     let work = Work::new(Task { experiment: &experiment, shard: None, ..task });

@@ -49,4 +49,5 @@ mod stated;
 mod structures;
 mod study;
 mod table;
+mod thresholds;
 mod what_stands;

@@ -16,8 +16,8 @@ use crate::dynamics::system::{HybridSystem, Law};
 const MOST_PIECES: usize = 400;
 
 /// What must stay positive: a constant and a signal.
-struct Guard {
-    row: Row,
+pub(super) struct Guard {
+    pub(super) row: Row,
     sign: f64,
     /// Beside the row's own rest.
     constant: f64,
@@ -43,7 +43,7 @@ impl Watch<'_> {
     /// How far, in metres, every guard that is a distance stays from zero throughout; `None` if some guard might not.
     pub(super) fn margin(&self) -> Option<f64> {
         let mut margin = f64::INFINITY;
-        for guard in self.guards() {
+        for guard in guards(self.system, self.flow) {
             let transient = guard.transient(self.flow, self.transient)?;
             let later = guard.lowest(self.flow, self.regular, self.steady, transient)? - transient;
             let bound = later.min(guard.lowest(self.flow, self.first, self.start, 0.0)?);
@@ -53,28 +53,33 @@ impl Watch<'_> {
         }
         Some(margin)
     }
+}
 
-    fn guards(&self) -> Vec<Guard> {
-        let mut guards = Vec::new();
-        for (particle, rows) in self.system.particles.iter().zip(&self.flow.rows.guards) {
-            let guard =
-                |row, sign, constant, is_distance| Guard { row: Row::new(self.flow, row), sign, constant, is_distance };
-            guards.extend(rows.across.map(|across| guard(across.way, 1.0, particle.gap, true)));
-            match particle.floor.law {
-                Law::Resilient { no_tension, stop, .. } => {
-                    let holds = if no_tension { rows.second } else { rows.first };
-                    guards.push(guard(holds, -1.0, 0.0, !no_tension));
-                    guards.extend(stop.map(|stop| guard(rows.first, 1.0, stop.length, true)));
-                }
-                // What the floor pushes, per mass: its acceleration and gravity.
-                Law::Rigid { .. } => guards.push(guard(rows.first, 1.0, self.system.gravity, false)),
+/// What must stay positive while every particle rests on its floor.
+pub(super) fn guards(system: &HybridSystem, flow: &Flow) -> Vec<Guard> {
+    let mut guards = Vec::new();
+    for (particle, rows) in system.particles.iter().zip(&flow.rows.guards) {
+        let guard = |row, sign, constant, is_distance| Guard { row: Row::new(flow, row), sign, constant, is_distance };
+        guards.extend(rows.across.map(|across| guard(across.way, 1.0, particle.gap, true)));
+        match particle.floor.law {
+            Law::Resilient { no_tension, stop, .. } => {
+                let holds = if no_tension { rows.second } else { rows.first };
+                guards.push(guard(holds, -1.0, 0.0, !no_tension));
+                guards.extend(stop.map(|stop| guard(rows.first, 1.0, stop.length, true)));
             }
+            // What the floor pushes, per mass: its acceleration and gravity.
+            Law::Rigid { .. } => guards.push(guard(rows.first, 1.0, system.gravity, false)),
         }
-        guards
     }
+    guards
 }
 
 impl Guard {
+    /// Its value at one of its row.
+    pub(super) fn of(&self, row: f64) -> f64 {
+        self.constant + self.sign * row
+    }
+
     /// Shares of the guard from those of its row.
     fn shares(&self, phases: Vec<Phase>) -> Vec<Phase> {
         let signed = |share: Phase| Phase { value: self.sign * share.value, rate: self.sign * share.rate };

@@ -197,6 +197,12 @@ impl Parameter {
         self.words().is_empty() && !is_counted
     }
 
+    /// The drive is proportional to it.
+    #[must_use]
+    pub fn is_strength(self) -> bool {
+        matches!(self, Self::ForceRatio | Self::BaseAmplitudeRatio | Self::Force | Self::Impulse)
+    }
+
     /// Unit symbol of its numbers, empty when dimensionless.
     #[must_use]
     pub fn unit(self) -> &'static str {

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use shotdamp::dynamics::{
     Drive, Face, Harmonic, HybridSystem, Law, Matrix, Method, Options, Particle, Response, Stop, Tick, TraceRequest,
-    event_driven, steady_state,
+    event_driven, lift_off, steady_state,
 };
 
 use super::bench::{GRAVITY, close, within};
@@ -305,4 +305,65 @@ pub(super) fn a_harmonic_response_is_the_inverse_of_the_dynamic_stiffness() {
         let response = solved(&system, &Options { skip: cycles, average: 1, ..Options::default() });
         close("RMS velocity of a run", response.window().rms_velocity(), rms, 1e-11);
     }
+}
+
+#[test]
+fn lift_off_is_where_the_loaded_mass_falls_with_gravity_and_where_a_soft_floor_is_no_longer_compressed() {
+    let one = |ratio: f64, particle: f64, law: Law| HybridSystem {
+        mass: Matrix::diagonal(&[1.0]),
+        damping: Matrix::diagonal(&[0.1 * f64::sqrt(1000.0)]),
+        stiffness: Matrix::diagonal(&[1000.0]),
+        gravity: GRAVITY,
+        particles: vec![Particle { mass: particle, floor: Face { row: vec![1.0], law }, ceiling: None, gap: 0.0 }],
+        force_row: vec![1.0],
+        drive: harmonic(ratio * f64::sqrt(1000.0), 0.7),
+        observed_rows: vec![vec![1.0]],
+        momentum_rows: vec![vec![1.0]],
+    };
+    let force = |system: &HybridSystem| 0.7 * lift_off(system).expect("it is linear").expect("it lifts off");
+    for (ratio, particle) in [(0.7, 0.3), (1.0, 0.05), (1.8, 0.0)] {
+        let omega = ratio * f64::sqrt(1000.0);
+        let stiffness = f64::hypot(1000.0 - (1.0 + particle) * omega * omega, 0.1 * f64::sqrt(1000.0) * omega);
+        let rigid = one(ratio, particle, Law::Rigid { restitution: 0.4 });
+        close("rigid floor", force(&rigid), GRAVITY / (omega * omega) * stiffness, 1e-12);
+    }
+    // A particle on a spring and a dashpot, as an absorber: its stretch r = ω² x/(κ² − ω² + iγω), the force on the mass mp (κ² + iγω) r.
+    for (ratio, kappa, gamma) in [(0.8, 60.0, 3.0), (1.1, 25.0, 10.0)] {
+        let (particle, omega) = (0.1, ratio * f64::sqrt(1000.0));
+        let law = Law::Resilient {
+            stiffness: particle * kappa * kappa,
+            damping: particle * gamma,
+            no_tension: false,
+            stop: None,
+        };
+        // F/r, from F = (k − ω² + icω) x − mp (κ² + iγω) r.
+        let own = [1000.0 - omega * omega, 0.1 * f64::sqrt(1000.0) * omega];
+        let relative = [(kappa * kappa - omega * omega) / (omega * omega), gamma / omega];
+        let re = own[0] * relative[0] - own[1] * relative[1] - particle * kappa * kappa;
+        let im = own[0] * relative[1] + own[1] * relative[0] - particle * gamma * omega;
+        close("soft floor", force(&one(ratio, particle, law)), GRAVITY / (kappa * kappa) * re.hypot(im), 1e-12);
+    }
+}
+
+#[test]
+fn below_lift_off_no_particle_of_an_array_leaves_and_above_it_one_does() {
+    let mut dice = Dice(77);
+    for i in 0..12 {
+        let omega = dice.between(20.0, 90.0);
+        let drive = |strength: f64| match i % 2 {
+            0 => harmonic(omega, strength),
+            _ => impulses(TAU / omega, strength),
+        };
+        let mut system = beam(&mut dice, 3, 1 + i % 3, drive(0.01));
+        let threshold = 0.01 * lift_off(&system).expect("it is linear").expect("it lifts off");
+        for (share, rests) in [(1.0 - 1e-6, true), (1.0 + 1e-6, false)] {
+            system.drive = drive(share * threshold);
+            assert_eq!(steady_state(&system).expect("it has one").is_some(), rests, "{i}: {share}");
+        }
+    }
+    // Rigid floors throw their particles off under any impulse.
+    let floor = Face { row: vec![1.0, 0.5], law: Law::Rigid { restitution: 0.4 } };
+    let mut system = beam(&mut dice, 2, 1, impulses(0.1, 0.01));
+    system.particles[0].floor = floor;
+    assert_eq!(lift_off(&system).expect("it is refused"), None);
 }
