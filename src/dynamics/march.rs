@@ -37,6 +37,11 @@ use half_cycles::Half;
 /// Events at one instant beyond which contacts are left alone for a moment, as they undo each other.
 const MOST_EVENTS_AT_AN_INSTANT: u32 = 64;
 
+/// The same within a moment, in periods, so short that what happens in it may be rounding: a structure that is just set in motion hardly
+/// moves, and each event rounds its places anew.
+const MOST_EVENTS_IN_A_MOMENT: u32 = 256;
+const MOMENT: f64 = 1e-12;
+
 /// The longest time, in periods, for which contacts that do not settle are left alone.
 const LONGEST_BLINK: f64 = 1e-9;
 
@@ -429,8 +434,9 @@ impl<'a, const TAPED: bool> March<'a, TAPED> {
         // Near the start of a cycle the clock counts finer than its instants can be told apart later.
         let instant = f64::EPSILON * self.system.drive.period;
         let longest = LONGEST_BLINK * self.system.drive.period;
-        let (mut stuck, mut blink) = (0, instant);
-        let mut last = self.time;
+        let moment = MOMENT * self.system.drive.period;
+        let (mut stuck, mut flickers, mut blink) = (0, 0, instant);
+        let (mut last, mut begun) = (self.time, self.time);
         while self.time < until {
             self.segment(until)?;
             if budget::spend(1) {
@@ -439,15 +445,19 @@ impl<'a, const TAPED: bool> March<'a, TAPED> {
             if self.time > last + instant {
                 blink = if self.time > last + longest { instant } else { blink };
                 (stuck, last) = (0, self.time);
+                if self.time > begun + moment {
+                    (flickers, begun) = (0, self.time);
+                }
             }
             stuck += 1;
-            if stuck > MOST_EVENTS_AT_AN_INSTANT {
+            flickers += 1;
+            if stuck > MOST_EVENTS_AT_AN_INSTANT || flickers > MOST_EVENTS_IN_A_MOMENT {
                 let short = blink > 0.0 && blink <= longest;
                 if !short || self.squeezed().is_some() {
                     return Err(self.no_progress());
                 }
                 self.blink(until.min(self.time + blink))?;
-                (stuck, last, blink) = (0, self.time, 2.0 * blink);
+                (stuck, flickers, last, blink) = (0, 0, self.time, 2.0 * blink);
             }
         }
         Ok(())

@@ -136,14 +136,14 @@ fn each_effect_is_switched_and_what_is_idle_is_left_alone() {
         assert_eq!(of(&cases, name), Outcome::Idle(Idle::OnFloors), "{name}");
     }
     // A stop that all the impulses of the run together do not press the floor to.
-    let far = stopped.replace("1 mm", "1000 m");
+    let far = stopped.replace("1 mm", "500 m");
     let cases = ablation(&experiment(&far, "[20]"), &assumptions()).expect("it can be switched");
     let Outcome::Idle(Idle::OutOfReach(of_stop)) = of(&cases, "limit stop") else { panic!("{cases:?}") };
-    assert!(of_stop.distance == 1000.0 && of_stop.reach < 1000.0, "{of_stop:?}");
+    assert!(of_stop.distance == 500.0 && of_stop.reach < 500.0, "{of_stop:?}");
     assert!(matches!(of(&cases, "ceiling"), Outcome::Changed { .. }), "{cases:?}");
     let text = ablation_page(&cases);
     assert!(
-        text.contains("| limit stop | named, idle | skipped already: 1000 m away, and the energy of the run"),
+        text.contains("| limit stop | named, idle | skipped already: 500 m away, and the energy of the run"),
         "{text}"
     );
 }
