@@ -174,7 +174,7 @@ impl Shot {
     /// The flight before a contact begins from rest on a rigid face.
     pub(super) fn flies_from_rest(&self, contact: &Event) -> bool {
         let of_particle = || self.response.events.iter().filter(|event| event.particle == contact.particle);
-        let before = of_particle().take_while(|event| *event != contact).last().or_else(|| of_particle().last());
+        let before = of_particle().take_while(|event| *event != contact).last().or_else(|| of_particle().next_back());
         before.is_some_and(|event| is_release(event.kind) && event.departure == 0.0)
     }
 
