@@ -108,17 +108,9 @@ fn undecided(all: &[&Judged]) -> String {
     let (blocked, undecidable) = (count(Verdict::Blocked), count(Verdict::Undecidable));
     let mut sentences = Vec::new();
     if blocked > 0 {
-        let mut inputs = BTreeMap::<&str, usize>::new();
-        for one in all.iter().filter(|one| one.verdict == Verdict::Blocked) {
-            for input in one.blocked_by.iter().flat_map(|inputs| inputs.split(" and ")) {
-                *inputs.entry(input.trim_start_matches("the ")).or_default() += 1;
-            }
-        }
-        let mut inputs: Vec<_> = inputs.into_iter().collect();
-        inputs.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
-        let inputs: Vec<String> = inputs.into_iter().map(|(input, count)| format!("{input} ({count})")).collect();
+        let inputs = missing_inputs(all.iter().copied());
         let inputs = if inputs.is_empty() { String::new() } else { format!(": {}", some(inputs)) };
-        let depends = counted(blocked, "number depends", "numbers depend");
+        let depends = counted(blocked, "statement depends", "statements depend");
         sentences.push(format!("{depends} on inputs that the study does not state{inputs}."));
     }
     if undecidable > 0 {
@@ -126,6 +118,19 @@ fn undecided(all: &[&Judged]) -> String {
         sentences.push(format!("{lie} within the chaotic spread or the grid of the sweep."));
     }
     if sentences.is_empty() { String::new() } else { format!("- **Cannot be decided:** {}\n", sentences.join(" ")) }
+}
+
+/// The inputs that blocked entries name, with how many do, the most wanted first: `contact damping (24)`.
+pub(super) fn missing_inputs<'a>(all: impl Iterator<Item = &'a Judged>) -> Vec<String> {
+    let mut inputs = BTreeMap::<&str, usize>::new();
+    for one in all.filter(|one| one.verdict == Verdict::Blocked) {
+        for input in one.blocked_by.iter().flat_map(|inputs| inputs.split(" and ")) {
+            *inputs.entry(input.trim_start_matches("the ")).or_default() += 1;
+        }
+    }
+    let mut inputs: Vec<_> = inputs.into_iter().collect();
+    inputs.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
+    inputs.into_iter().map(|(input, count)| format!("{input} ({count})")).collect()
 }
 
 fn link(view: &ExperimentView<'_>) -> String {

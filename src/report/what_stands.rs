@@ -7,6 +7,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::assumption::value_in_words;
+use super::headline::missing_inputs;
 use super::markdown::one_line;
 use super::tally::{agrees, word};
 use super::view::{AssumptionView, ExperimentView};
@@ -19,6 +20,9 @@ pub(super) const PAGE: &str = "what-stands.md";
 
 /// Questions that the first lines name.
 const FIRST_QUESTIONS: usize = 3;
+
+/// Missing inputs that the first lines name.
+const WAITED_FOR: usize = 6;
 
 /// What becomes of an entry when the unstated inputs are moved.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -62,6 +66,13 @@ pub fn what_stands(
     let group = |robustness: Robustness| groups.get(&robustness).map_or(&[][..], Vec::as_slice);
     let mut text = String::from("# What stands\n\n[The study in one page](README.md)\n\n");
     text += &in_short(&group, &questions);
+    let missing = missing_inputs(experiments.iter().flat_map(|view| view.judged));
+    if !missing.is_empty() {
+        text += &format!(
+            "Blocked entries wait for inputs that no single move supplies: {}.\n\n",
+            missing.into_iter().take(WAITED_FOR).collect::<Vec<_>>().join(", ")
+        );
+    }
     text += &section("Stands: agrees under every move", group(Robustness::Stands));
     text += &section("Does not stand: differs under every move", group(Robustness::Fails));
     text += &in_question(&questions);
