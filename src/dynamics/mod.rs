@@ -101,4 +101,4 @@ pub use system::{
 pub use trace::{Sample, SampledParticle, TraceRequest};
 
 /// Changes whenever the same scene may give other bits. A test holds the bits of fixed scenes against it.
-pub const SOLVER_VERSION: u32 = 9;
+pub const SOLVER_VERSION: u32 = 10;
