@@ -71,6 +71,8 @@ pub fn polish<E>(bounds: &Bounds, start: &[f64], most: u64, slope: &mut Smooth<'
         return Ok(found(&nowhere, Vec::new(), 1, Stopped::NotSmooth));
     };
     let mut trail = vec![Step { evaluations, best: here.value }];
+    // A step that meets an edge tells how far away it is at most.
+    let mut longest = f64::INFINITY;
     let mut curvature = DMatrix::identity(here.shares.len(), here.shares.len()) * (here.gradient.norm() / FIRST);
     loop {
         let Some(direction) = direction(&here, &curvature) else {
@@ -87,7 +89,7 @@ pub fn polish<E>(bounds: &Bounds, start: &[f64], most: u64, slope: &mut Smooth<'
             }
             return Ok(found(&here, trail, evaluations, Stopped::Converged));
         }
-        let mut share = 1.0_f64.min(1.0 / direction.amax());
+        let mut share = 1.0_f64.min(longest.min(1.0) / direction.amax());
         let mut met_an_edge = false;
         let next = loop {
             if evaluations >= most {
@@ -109,6 +111,7 @@ pub fn polish<E>(bounds: &Bounds, start: &[f64], most: u64, slope: &mut Smooth<'
             }
             share *= 0.5;
         };
+        longest = if met_an_edge { (&next.shares - &here.shares).amax() } else { 2.0 * longest };
         learn(&mut curvature, &(&next.shares - &here.shares), &(&next.gradient - &here.gradient));
         here = next;
         trail.push(Step { evaluations, best: here.value });

@@ -144,7 +144,9 @@ fn a_motion_is_named_in_its_table_and_known_again() {
     shotdamp(&["run", "--force"]);
     assert_eq!(table(), first);
     // Beside an exact row one of a fixed step has no name, and says nothing about multipliers.
-    let both = text.replace("run: {", "run: {solver: [event_driven, {fixed_step: {time_step: 1e-3 s}}], ");
+    let both = text
+        .replace("by: motion", "by: solver")
+        .replace("run: {", "run: {solver: [event_driven, {fixed_step: {time_step: 1e-3 s}}], ");
     fs::write(folder.path().join(file), &both).unwrap();
     shotdamp(&["run"]);
     let second = table();

@@ -74,9 +74,9 @@ fn a_measure_that_can_be_read_in_several_ways_is_computed_for_each_of_them() {
     }
     let item = &desk.plan()["ch5-measures-centre"];
     let extent = item.extent(&desk.layout, &KnownRows::nothing());
-    // Clean, light and heavy: at the baseline, with another damper mass (which the clean plate lacks), another impulse, and
-    // under two more readings.
-    assert_eq!((extent.to_do, extent.rows), (3 + 2 + 3 + 2 * 3, 15));
+    // Clean, light and heavy: at the baseline, with another damper mass and two other dampings (which the clean plate lacks), another
+    // impulse, and under two more readings.
+    assert_eq!((extent.to_do, extent.rows), (3 + 2 + 2 * 2 + 3 + 2 * 3, 21));
 }
 
 #[test]

@@ -91,10 +91,12 @@ fn everything() -> Options {
     Options { audit: true, extremes: true, cycle_rates: true, ..Options::default() }
 }
 
-/// A time history is kept by the simulation alone.
+/// A time history is kept by the simulation alone, and a motion is named with all surfaces in sight: else the smallest margin is no larger
+/// than that by which a bound keeps some of them out of reach.
 fn simulated(system: &HybridSystem, options: &Options) -> Response {
     let trace = Some(TraceRequest { from_cycle: 0, to_cycle: 1, samples: 1 });
-    let response = event_driven(system, &Options { trace, ..options.clone() }).expect("it can be simulated");
+    let response =
+        event_driven(system, &Options { trace, motion: true, ..options.clone() }).expect("it can be simulated");
     assert_eq!(response.method, Method::Simulated);
     response
 }
