@@ -152,8 +152,10 @@ fn a_motion_is_named_in_its_table_and_known_again() {
     let second = table();
     assert_eq!(second.texts("motion").unwrap(), ["periodic 1:2", ""]);
     assert!(second.floats("largest_multiplier").unwrap()[1].is_nan() && second.column("undefined").is_none());
+    let bytes = || fs::read(folder.path().join("results/two-impacts-above-resonance.parquet")).unwrap();
+    let before = bytes();
     shotdamp(&["run", "--force"]);
-    assert_eq!(table(), second);
+    assert!(bytes() == before, "the rows that are known again have other bytes");
 }
 
 #[test]
