@@ -90,7 +90,8 @@ pub(super) fn left_by(
                 absent => return Ok(absent.measured()),
             }
         }
-        sum += (share * elasticity.value).powi(2);
+        let left = share * elasticity.value;
+        sum += left * left;
         error += share * elasticity.numerical;
     }
     Ok(Measured { value: velocity_ratio * sum.sqrt(), numerical: velocity_ratio * error, spread: 0.0 })
