@@ -6,8 +6,8 @@ use super::measured::NoAccuracy;
 use super::representative::{is_chaotic, representative, trial, worst};
 use super::timing::Times;
 use crate::dynamics::{
-    Allowance, EngineError, FarSurface, HybridSystem, Law, Method, Options, OutOfReach, Response, event_driven,
-    is_linear, out_of_reach,
+    Allowance, EngineError, FarSurface, HybridSystem, Method, Options, OutOfReach, Response, event_driven, is_linear,
+    out_of_reach,
 };
 use crate::experiment::{Assumptions, Experiment, Given, Parameter, ParameterValue, Recipe, Slot, StopRecipe};
 use crate::measure::{Measure, Settings, Trial};
@@ -98,13 +98,12 @@ pub fn ablation(experiment: &Experiment, assumptions: &Assumptions) -> Result<Ve
 
 /// Of an effect all of whose surfaces are out of reach, the one that is nearest to be reached.
 fn nearest(effect: &str, system: &HybridSystem, far: &[OutOfReach]) -> Option<OutOfReach> {
-    let has_stop = |law: Law| matches!(law, Law::Resilient { stop: Some(_), .. });
     let ceilings = || system.particles.iter().filter_map(|particle| particle.ceiling.as_ref());
     let all = match effect {
         "ceiling" => ceilings().count(),
         "limit stop" => {
             let floors = system.particles.iter().map(|particle| &particle.floor);
-            floors.chain(ceilings()).filter(|face| has_stop(face.law)).count()
+            floors.chain(ceilings()).filter(|face| face.law.stop().is_some()).count()
         }
         _ => return None,
     };

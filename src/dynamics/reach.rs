@@ -18,7 +18,7 @@ use std::borrow::Cow;
 use super::cholesky::Cholesky;
 use super::contact::Side;
 use super::options::{Options, StartState, Until};
-use super::system::{Drive, Face, HybridSystem, Law, Matrix, Particle, Stop, dot};
+use super::system::{Drive, Face, HybridSystem, Law, Matrix, Particle, dot};
 
 /// What rounding may add to a bound, relative to it.
 const ROUNDING: f64 = 1e-9;
@@ -86,7 +86,7 @@ fn drop_surface(particle: &mut Particle, surface: FarSurface) {
 #[must_use]
 pub fn out_of_reach(system: &HybridSystem, options: &Options) -> Vec<OutOfReach> {
     let bounded =
-        system.particles.iter().any(|particle| particle.ceiling.is_some() || stop_of(&particle.floor).is_some());
+        system.particles.iter().any(|particle| particle.ceiling.is_some() || particle.floor.law.stop().is_some());
     // How many cycles a run takes that settles is not known before.
     if !bounded || options.until == Until::Settled {
         return Vec::new();
@@ -174,10 +174,6 @@ fn sunk(particle: &Particle, gravity: f64) -> f64 {
     }
 }
 
-fn stop_of(face: &Face) -> Option<Stop> {
-    face.law.stop()
-}
-
 /// What is beyond the reach of motions with √(2H) ≤ `most`.
 fn beyond(system: &HybridSystem, most: f64) -> Option<Vec<OutOfReach>> {
     let mut far = Vec::new();
@@ -192,7 +188,7 @@ fn beyond(system: &HybridSystem, most: f64) -> Option<Vec<OutOfReach>> {
             Law::Resilient { stiffness, .. } => most / stiffness.sqrt(),
             Law::Rigid { .. } => 0.0,
         };
-        if let Some(stop) = stop_of(&particle.floor) {
+        if let Some(stop) = particle.floor.law.stop() {
             look(FarSurface::FloorStop, stop.length, sunk(particle, system.gravity) + compression(&particle.floor));
         }
         let Some(ceiling) = &particle.ceiling else { continue };
@@ -200,7 +196,7 @@ fn beyond(system: &HybridSystem, most: f64) -> Option<Vec<OutOfReach>> {
         if height < particle.gap {
             look(FarSurface::Ceiling, particle.gap, height + approach(system, particle, ceiling, most)?);
         }
-        if let Some(stop) = stop_of(ceiling) {
+        if let Some(stop) = ceiling.law.stop() {
             look(FarSurface::CeilingStop, stop.length, compression(ceiling));
         }
     }

@@ -3,6 +3,8 @@
 //! A check runs as soon as the parts it talks about are sound, so a mistake in a figure is reported beside one in the
 //! scene. The last check resolves every case into its scene: what physics refuses is found before anything runs.
 
+use std::iter;
+
 use super::about_study::MOST_CHAPTERS;
 use super::assumption_sheet::AssumptionSheet;
 use super::at::{At, Definitions, Sketch};
@@ -18,7 +20,7 @@ use super::looked_for::{read_maximise, read_onset};
 use super::optimise::Optimise;
 use super::optimise_reader::{ReadOptimise, read_optimise};
 use super::recipe::{Assumptions, Parameter, ParameterValue, Part, Recipe};
-use super::run::{Run, read_run};
+use super::run::read_run;
 use super::scene::{ReadScene, read_scene};
 use super::schema;
 use super::starts_reader::{ReadStarts, read_starts};
@@ -126,18 +128,15 @@ impl<'t> ExperimentReader<'t> {
         let of_model = measures.as_ref().is_some_and(|measures| measures.iter().all(|(measure, _)| measure.is_modal()));
         let no_run = of_model && !lists && !deflection;
         let run = read_run(&keys, &self.assumptions.sheet, no_run, self.findings);
-        let measures = match (measures, &run) {
-            (Some(measures), Some(Run { settled_at: Some(at), .. })) => Some(with_the_end(measures, *at)),
-            (measures, _) => measures,
-        };
-        let measures = match (measures, &starts) {
-            (Some(measures), Some(Some(starts))) => Some(with_the_motion(measures, starts.span)),
-            (measures, _) => measures,
-        };
-        let measures = match (measures, &tolerances) {
-            (Some(measures), Some(Some((_, at)))) => Some(with_what_tolerances_leave(measures, *at)),
-            (measures, _) => measures,
-        };
+        let measures = measures.map(|mut measures| {
+            let settled_at = run.as_ref().and_then(|run| run.settled_at);
+            bring(&mut measures, settled_at, Measure::of_settled_runs());
+            let starts_at = starts.iter().flatten().next().map(|starts| starts.span);
+            bring(&mut measures, starts_at, iter::once(Measure::Motion).chain(Measure::Motion.companions()));
+            let tolerances_at = tolerances.iter().flatten().next().map(|(_, at)| *at);
+            bring(&mut measures, tolerances_at, iter::once(Measure::VelocityRatioInput));
+            measures
+        });
         let one_list = check_lists(&keys, self.findings);
         let alone = check_rows(&keys, self.findings);
         let whole = check_mean(&keys, self.findings);
@@ -386,32 +385,14 @@ fn mean_over(at: At<'_>, sweep: ReadSweep) -> Option<ReadSweep> {
     Some(sweep)
 }
 
-/// With what tells how a run that is to settle ended.
-fn with_the_end(mut measures: Vec<(Measure, Span)>, settled_at: Span) -> Vec<(Measure, Span)> {
-    for measure in Measure::of_settled_runs() {
-        if measures.iter().all(|(other, _)| *other != measure) {
-            measures.push((measure, settled_at));
-        }
-    }
-    measures
-}
-
-/// With what the tolerances leave of the velocity ratio.
-fn with_what_tolerances_leave(mut measures: Vec<(Measure, Span)>, at: Span) -> Vec<(Measure, Span)> {
-    if measures.iter().all(|(measure, _)| *measure != Measure::VelocityRatioInput) {
-        measures.push((Measure::VelocityRatioInput, at));
-    }
-    measures
-}
-
-/// With the motion that a run ends in.
-fn with_the_motion(mut measures: Vec<(Measure, Span)>, at: Span) -> Vec<(Measure, Span)> {
-    for measure in std::iter::once(Measure::Motion).chain(Measure::Motion.companions()) {
-        if measures.iter().all(|(other, _)| *other != measure) {
+/// Adds the measures that come with something, where it stands, unless they are asked for already.
+fn bring(measures: &mut Vec<(Measure, Span)>, at: Option<Span>, others: impl Iterator<Item = Measure>) {
+    let Some(at) = at else { return };
+    for measure in others {
+        if measures.iter().all(|(known, _)| *known != measure) {
             measures.push((measure, at));
         }
     }
-    measures
 }
 
 fn words_only(measures: &[(Measure, Span)]) -> Vec<Measure> {

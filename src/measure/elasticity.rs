@@ -79,7 +79,7 @@ pub(super) fn of(subject: &Subject, orbit: &Orbit, design: Design) -> Result<Mea
 pub(super) fn left_by(
     tolerances: &[Tolerance],
     velocity_ratio: f64,
-    elasticity_in: impl Fn(Design) -> Result<Measured, EvaluateError>,
+    mut elasticity_in: impl FnMut(Design) -> Result<Measured, EvaluateError>,
 ) -> Result<Measured, EvaluateError> {
     let (mut sum, mut error) = (0.0, 0.0);
     for Tolerance { of, share } in tolerances {

@@ -361,8 +361,7 @@ impl Searches<'_> {
         let points: Vec<Vec<f64>> = found.iter().map(|candidate| candidate.gaps.clone()).collect();
         // The journal has all but the candidates of the file.
         let scores = self.batch(&points, name, 0)?.scores;
-        let order = |i: &usize| if scores[*i].value.is_nan() { f64::INFINITY } else { scores[*i].value };
-        let best = (0..points.len()).min_by(|a, b| order(a).total_cmp(&order(b)));
+        let best = (0..points.len()).min_by(|a, b| scores[*a].order().total_cmp(&scores[*b].order()));
         Ok(best.map(|best| points[best].clone()).ok_or(SearchError::NoCandidates)?)
     }
 
