@@ -13,7 +13,7 @@ use super::recipe::AssumptionName;
 use super::schema::assumptions;
 use super::solver::read_solver;
 use crate::dynamics::{Limit, Until};
-use crate::measure::{Settings, SolverChoice};
+use crate::measure::{NamedRows, Settings, SolverChoice};
 
 /// Perturbed starts of a chaotic point, unless an experiment says.
 const USUAL_ENSEMBLE: u32 = 32;
@@ -70,6 +70,7 @@ pub(super) fn read_run(
             until: given.until.map_or(Until::Cycles, |(until, _)| until),
             round_period_to: given.round_period_to,
             ensemble: given.ensemble.unwrap_or(USUAL_ENSEMBLE),
+            named: NamedRows::default(),
         },
         settled_at: given.until.filter(|(until, _)| *until == Until::Settled).map(|(_, at)| at),
         limit: given.limit.unwrap_or_default(),

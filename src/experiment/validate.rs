@@ -28,7 +28,9 @@ use super::stated::{STATED, read_statements, without_source};
 use super::sweep::{ReadSweep, read_sweep};
 use super::word::{word_of, words};
 use super::yaml::read_tree;
-use crate::measure::{CycleValue, Measure, ShapeOf, SolverChoice, energy_columns, shape_columns, trace_columns};
+use crate::measure::{
+    CycleValue, Measure, NamedRows, Settings, ShapeOf, SolverChoice, energy_columns, shape_columns, trace_columns,
+};
 
 /// Reads an experiment from its text; `file` only names it in messages.
 ///
@@ -263,7 +265,7 @@ impl<'t> ExperimentReader<'t> {
             solvers: all_solvers(&cases),
             cases,
             swept: sweep.swept,
-            settings: run.settings,
+            settings: Settings { named: named_rows(&measures, maximise.as_ref()), ..run.settings },
             limit: run.limit,
             moved: run.moved,
             maximise,
@@ -393,6 +395,15 @@ fn bring(measures: &mut Vec<(Measure, Span)>, at: Option<Span>, others: impl Ite
             measures.push((measure, at));
         }
     }
+}
+
+/// Numbers that come with the name of a motion stand where `motion` does. One that has a place of its own, or whose maximum is
+/// looked for, is wanted in every row.
+fn named_rows(measures: &[(Measure, Span)], maximise: Option<&Maximise>) -> NamedRows {
+    let name_at = measures.iter().find(|(measure, _)| measure.is_name()).map(|(_, at)| *at);
+    let is_own = |(measure, at): &(Measure, Span)| measure.needs_motion() && Some(*at) != name_at;
+    let is_looked_for = maximise.is_some_and(|maximise| maximise.measure.needs_motion());
+    if is_looked_for || measures.iter().any(is_own) { NamedRows::All } else { NamedRows::Results }
 }
 
 fn words_only(measures: &[(Measure, Span)]) -> Vec<Measure> {

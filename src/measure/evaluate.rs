@@ -26,7 +26,9 @@ use crate::dynamics::{
     Averaged, EngineError, HybridSystem, Method, MotionKind, Options, Proof, Response, StartState, TraceRequest, Until,
     event_driven,
 };
-use crate::measure::{CycleSpec, EnergySpec, Settings, ShapeOf, ShapeSpec, SolverChoice, Tolerance, TraceSpec};
+use crate::measure::{
+    CycleSpec, EnergySpec, NamedRows, Settings, ShapeOf, ShapeSpec, SolverChoice, Tolerance, TraceSpec,
+};
 use crate::scene::{Excitation, Scene, SingleMass, Structure, compile};
 
 /// Kick that tells chaos from order, relative to the drive.
@@ -273,7 +275,7 @@ impl Case<'_> {
         };
         let main = Options {
             audit: request.rigour == Rigour::Result,
-            motion: request.any(Measure::needs_motion),
+            motion: self.is_named(),
             final_state: !matches!(request.link, Link::None),
             trace: request.trace.map(|trace| TraceRequest {
                 from_cycle: u64::from(trace.from_cycle),
@@ -400,6 +402,13 @@ struct Read {
 }
 
 impl Case<'_> {
+    /// The motion is to be named. A number of the motion that a run settles to needs to know whether there is one.
+    fn is_named(&self) -> bool {
+        let Request { rigour, .. } = *self.request;
+        let of_row = rigour == Rigour::Result || self.settings.named == NamedRows::All;
+        self.request.any(Measure::needs_motion) && (of_row || self.request.any(Measure::needs_settled))
+    }
+
     /// Natural frequencies and mode shapes.
     fn without_run(&self) -> Result<Evaluated, EvaluateError> {
         let shape = self.mode_shape()?;

@@ -32,7 +32,7 @@ pub use kept::{
 };
 pub use measures::{Facts, Measure, ReadOff, Runs, Under, column_words};
 pub use request::{
-    CycleSpec, CycleValue, EnergySpec, Settings, ShapeOf, ShapeSpec, SolverChoice, Tolerance, TraceSpec,
+    CycleSpec, CycleValue, EnergySpec, NamedRows, Settings, ShapeOf, ShapeSpec, SolverChoice, Tolerance, TraceSpec,
 };
 pub use subject::{Comparison, Needs, Subject};
 pub use trial::Trial;

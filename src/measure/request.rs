@@ -43,10 +43,24 @@ pub struct Settings {
     pub round_period_to: Option<f64>,
     /// Members of the ensemble of perturbed starts that a chaotic point gets; 0 switches ensembles off.
     pub ensemble: u32,
+    /// Of which rows the motion is named, where it is measured.
+    #[serde(default, skip_serializing_if = "is_usual")]
+    pub named: NamedRows,
 }
 
-fn is_usual(until: &Until) -> bool {
-    *until == Until::default()
+/// The rows whose motion is named: that takes a third of a run, and looks are many.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum NamedRows {
+    /// Results: neither rows under a moved assumption nor the points among which a maximum is looked for.
+    #[default]
+    Results,
+    /// All, as numbers that come with the name are asked for by their own words.
+    All,
+}
+
+fn is_usual<T: Default + PartialEq>(value: &T) -> bool {
+    *value == T::default()
 }
 
 /// Which part of the motion to keep as a time history. The list columns are then `time` (s), `base_displacement`,

@@ -7,7 +7,7 @@ use shotdamp::experiment::{
     MassReading, MassRecipe, ObserveRecipe, Panel, Parameter, PlaceRecipe, PointsRecipe, Recipe, Reference, Source,
     StiffnessRecipe, StopRecipe, StrengthRecipe, StructureRecipe, SurfaceRecipe, TimingRecipe,
 };
-use shotdamp::measure::{Comparison, Measure, Settings, SolverChoice};
+use shotdamp::measure::{Comparison, Measure, NamedRows, Settings, SolverChoice};
 use shotdamp::scene::Take;
 use shotdamp::table::{Column, Data, Table};
 
@@ -66,7 +66,14 @@ pub fn limit_stop() -> Experiment {
         cases: vec![Case::default()],
         swept: vec![Parameter::ForceRatio, Parameter::Stop],
         solvers: vec![SolverChoice::EventDriven, SolverChoice::FixedStep { time_step: 1e-4 }],
-        settings: Settings { skip: 25, average: 100, until: Until::Cycles, round_period_to: None, ensemble: 32 },
+        settings: Settings {
+            skip: 25,
+            average: 100,
+            until: Until::Cycles,
+            round_period_to: None,
+            ensemble: 32,
+            named: NamedRows::Results,
+        },
         limit: Limit::default(),
         maximise: None,
         refined: Vec::new(),

@@ -8,8 +8,8 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use shotdamp::measure::Evaluated;
 use shotdamp::scene::Excitation;
 use shotdamp::study::{
-    Evaluate, Event, EventHandler, Heading, Held, IgnoreEvents, Inputs, Item, KnownRows, Loaded, Lock, RowFailure,
-    Simulation, Snapshot, Study, Summary, Texts,
+    Engine, Evaluate, Event, EventHandler, Heading, Held, IgnoreEvents, Inputs, Item, KnownRows, Loaded, Lock,
+    RowFailure, Simulation, Snapshot, Study, Summary, Texts,
 };
 
 use crate::desk::{ASSUMPTIONS, Desk, GAP, GAP_REFERENCE, MadeUp, STOP};
@@ -77,6 +77,30 @@ fn a_measure_that_can_be_read_in_several_ways_is_computed_for_each_of_them() {
     // Clean, light and heavy: at the baseline, with another damper mass and two other dampings (which the clean plate lacks), another
     // impulse, and under two more readings.
     assert_eq!((extent.to_do, extent.rows), (3 + 2 + 2 * 2 + 3 + 2 * 3, 21));
+}
+
+#[test]
+fn the_motion_is_named_under_the_assumptions_in_force_and_elsewhere_only_on_request() {
+    let mut numbers = Vec::new();
+    for (measures, everywhere) in
+        [("[velocity_ratio, motion]", false), ("[velocity_ratio, motion, largest_multiplier]", true)]
+    {
+        let desk = Desk::new();
+        let text = STOP.replace("[event_driven, {fixed_step: {time_step: 0.1 ms}}]", "event_driven");
+        let text = text.replace("[velocity_ratio]", measures).replace("by: [stop, solver]", "by: stop");
+        desk.put("experiments/ch3/ch3-stop.yaml", &text);
+        desk.run(1, &Engine, &IgnoreEvents);
+        let table = desk.table("ch3-stop");
+        let (motions, variants) = (table.texts("motion").unwrap(), table.texts("variant").unwrap());
+        assert!(variants.iter().any(|variant| variant == "stop_length=0.05"));
+        for row in table.rows_where("stop", "with") {
+            let is_named = variants[row] == "baseline" || everywhere;
+            assert_eq!(motions[row].is_empty(), !is_named, "{}: {}", variants[row], motions[row]);
+        }
+        assert!(table.column("undefined").is_none());
+        numbers.push(table.floats("velocity_ratio").unwrap().to_vec());
+    }
+    assert_eq!(numbers[0], numbers[1]);
 }
 
 #[test]

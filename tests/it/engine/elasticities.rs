@@ -6,7 +6,7 @@ use std::f64::consts::PI;
 use shotdamp::dynamics::{
     Elasticity, ElasticityError, EventKind, HybridSystem, Options, Orbit, Response, StartState, Until, event_driven,
 };
-use shotdamp::measure::{Evaluated, Measure, Request, Rigour, Settings, SolverChoice, Subject, evaluate};
+use shotdamp::measure::{Evaluated, Measure, NamedRows, Request, Rigour, Settings, SolverChoice, Subject, evaluate};
 use shotdamp::scene::{Design, Excitation, Scene, SingleMass, Structure};
 
 use super::bench::{GRAVITY, base, close, damper, in_flight, resilient, rigid, scene, system, within};
@@ -263,7 +263,14 @@ fn measured(scene: &Scene, carried: f64) -> Evaluated {
     let Structure::SingleMass(SingleMass { mass, .. }) = &mut bare.structure else { panic!("one mass") };
     *mass += carried;
     let subject = Subject { scene: scene.clone(), undamped: Some(bare), comparison: None, mode: 1 };
-    let settings = Settings { skip: 25, average: 100, until: Until::Cycles, round_period_to: None, ensemble: 8 };
+    let settings = Settings {
+        skip: 25,
+        average: 100,
+        until: Until::Cycles,
+        round_period_to: None,
+        ensemble: 8,
+        named: NamedRows::Results,
+    };
     let request = Request { measures: &MEASURES, rigour: Rigour::Result, ..Request::default() };
     evaluate(subject, SolverChoice::EventDriven, &settings, &request).expect("it runs")
 }

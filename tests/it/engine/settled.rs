@@ -2,7 +2,7 @@
 //! do not settle.
 
 use shotdamp::dynamics::{Options, Response, StartState, Until};
-use shotdamp::measure::{Evaluated, Measure, Request, Rigour, Settings, SolverChoice, Subject, evaluate};
+use shotdamp::measure::{Evaluated, Measure, NamedRows, Request, Rigour, Settings, SolverChoice, Subject, evaluate};
 use shotdamp::scene::{ContactDamping, ContactEnd, Damper, Excitation, Scene, Surface};
 
 use super::bench::{GRAVITY, base, close, in_flight, run, within};
@@ -73,7 +73,7 @@ fn a_settled_run_has_the_averages_of_a_long_one() {
 fn measured(scene: &Scene, until: Until, average: u32) -> Evaluated {
     let bare = Scene { dampers: Vec::new(), ..scene.clone() };
     let subject = Subject { scene: scene.clone(), undamped: Some(bare), comparison: None, mode: 1 };
-    let settings = Settings { skip: 25, average, until, round_period_to: None, ensemble: 8 };
+    let settings = Settings { skip: 25, average, until, round_period_to: None, ensemble: 8, named: NamedRows::Results };
     let measures = [
         Measure::VelocityRatio,
         Measure::FloorImpacts,
