@@ -97,24 +97,57 @@ class Scene:
 
 
 def run(scene, segment):
-    """From impulse to impulse and event to event; `segment` goes to the first event or to the end: (t, z, whether it is one)."""
-    z, events = scene.start.copy(), []
-    contacts = [FLOOR] * scene.p
-    for cycle in range(scene.cycles):
-        scene.strike(z)
-        t, last = 0.0, 0
-        while t < scene.period:
-            before = t
-            slope, guards = scene.slope(contacts, cycle >= scene.skip), scene.guards(contacts)
-            t, z, is_event = segment(slope, guards, t, scene.period, z)
-            if is_event:
-                for j, contact, word in met(guards, slope(t, z), z):
-                    contacts[j] = contact
-                    events.append([cycle * scene.period + t, j, word])
-            last = last + 1 if t == before else 0
-            if last > 64:
-                raise RuntimeError(f"no progress in cycle {cycle} at {t} s")
+    """From impulse to impulse."""
+    z, events, _ = to_the_end(scene, segment)
     return scene.rms(z), events
+
+
+def to_the_end(scene, segment):
+    z, events, contacts = scene.start.copy(), [], [FLOOR] * scene.p
+    for number in range(scene.cycles):
+        z, within = cycle(scene, segment, z, contacts, number >= scene.skip)
+        events += [[number * scene.period + t, j, word] for t, j, word in within]
+    return z, events, contacts
+
+
+def cycle(scene, segment, z, contacts, averaged):
+    """From event to event, contacts in place; `segment` goes to the first event or to the end: (t, z, whether it is one)."""
+    z, events = z.copy(), []
+    scene.strike(z)
+    t, last = 0.0, 0
+    while t < scene.period:
+        before = t
+        slope, guards = scene.slope(contacts, averaged), scene.guards(contacts)
+        t, z, is_event = segment(slope, guards, t, scene.period, z)
+        if is_event:
+            for j, contact, word in met(guards, slope(t, z), z):
+                contacts[j] = contact
+                events.append([t, j, word])
+        last = last + 1 if t == before else 0
+        if last > 64:
+            raise RuntimeError(f"no progress at {t} s of a cycle")
+    return z, events
+
+
+def orbit(scene, segment, rtol, z, contacts):
+    """The RMS velocity of the motion that comes again, by shooting: Newton on the map of a cycle, its matrix by differences."""
+    order = scene.size - 1
+
+    def through(state):
+        end, _ = cycle(scene, segment, np.append(state, 0.0), list(contacts), True)
+        return end
+
+    state = z[:order].copy()
+    size = np.linalg.norm(state)
+    kick = np.sqrt(rtol) * size
+    for _ in range(20):
+        end = through(state)[:order]
+        matrix = np.column_stack([(through(state + kick * unit)[:order] - end) / kick for unit in np.eye(order)])
+        step = np.linalg.solve(np.eye(order) - matrix, end - state)
+        state = state + step
+        if np.linalg.norm(step) <= 10.0 * rtol * size:
+            return float(np.sqrt(through(state)[-1] / scene.period)), []
+    raise RuntimeError("shooting does not converge")
 
 
 def met(guards, slope, z):
@@ -133,16 +166,22 @@ def met(guards, slope, z):
     return [nearest[1]] + [then for then in behind if then is not nearest[1]]
 
 
-def answers(methods, settings, once, word, prepare=lambda scene: None):
-    """Prints a line of JSON an answer. A scene is run in all settings, repeatedly; after `--tightest` once, in the last of them."""
-    tightest = sys.argv[1] == "--tightest"
-    for path in sys.argv[2 if tightest else 1 :]:
+def answers(methods, settings, once, word, prepare=lambda scene: None, segment=None):
+    """Prints a line of JSON an answer. A scene is run in all settings, repeatedly; after `--tightest` once, in the last of them; after
+    `--orbit` the motion that comes again is looked for from the state in which a run ends, which is not timed."""
+    tightest, is_orbit = sys.argv[1] == "--tightest", sys.argv[1] == "--orbit"
+    for path in sys.argv[2 if tightest or is_orbit else 1 :]:
         scene = Scene(path)
         prepare(scene)
         for method in methods:
             for setting in settings[-1:] if tightest else settings:
                 told = {"file": path, "solver": method, "setting": word(method, setting)}
-                print(json.dumps(told | answer(lambda: once(scene, method, setting), tightest)), flush=True)
+                asked = lambda: once(scene, method, setting)
+                if is_orbit:
+                    ahead = segment(method, setting)
+                    z, _, contacts = to_the_end(scene, ahead)
+                    asked = lambda: orbit(scene, ahead, setting, z, contacts)
+                print(json.dumps(told | answer(asked, tightest)), flush=True)
 
 
 def answer(once, untimed, patience=0.7):

@@ -19,6 +19,9 @@ const LIBRARIES: [&str; 7] = [
     "-lm",
 ];
 
+/// Peers that look for a periodic motion by shooting.
+const SHOOTING: [&str; 2] = ["diffsol", "SciPy"];
+
 /// Another solver.
 pub struct Peer {
     /// As the tables call it.
@@ -73,6 +76,11 @@ impl Peer {
     /// A scene in all settings, repeatedly.
     pub fn timed(&self, scene: &Path) -> Vec<Answer> {
         self.ask(&[], &[scene.to_owned()])
+    }
+
+    /// The periodic motion of a scene in all settings, repeatedly; of peers that look for one.
+    pub fn orbit(&self, scene: &Path) -> Vec<Answer> {
+        if SHOOTING.contains(&self.name) { self.ask(&["--orbit".as_ref()], &[scene.to_owned()]) } else { Vec::new() }
     }
 
     /// Each scene once, in the tightest settings.

@@ -9,6 +9,9 @@ use shotdamp::dynamics::{Event, EventKind, HybridSystem, Law, Options, Response}
 
 use crate::common;
 
+/// Cycles after which nothing is left of a start.
+pub const SETTLED_AFTER: u32 = 1000;
+
 /// An event as peers tell it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Told {
@@ -37,6 +40,14 @@ impl Scene {
         let rms = Some(reference.window().rms_velocity());
         let events = describe(&reference, system.drive.period);
         Self { system, options, rms, events }
+    }
+
+    /// The periodic motion that its run goes on to: its RMS velocity by the same arithmetic, many cycles later.
+    pub fn settled(&self) -> Self {
+        let options = Options { skip: SETTLED_AFTER, average: 1, ..self.options.clone() };
+        let reference = precise(&self.system, &options, Duration::from_secs(600)).expect("it has a reference");
+        let rms = Some(reference.window().rms_velocity());
+        Self { system: self.system.clone(), options: self.options.clone(), rms, events: Vec::new() }
     }
 
     /// Events of `got` in the right order from the first on, and the largest error of their times over the period.

@@ -29,4 +29,5 @@ if __name__ == "__main__":
         [1e-4, 1e-6, 1e-9, 1e-12],
         lambda scene, method, rtol: run(scene, segment(method, rtol)),
         lambda method, rtol: f"SciPy {method}, rtol {rtol:.0e}",
+        segment=segment,
     )

@@ -5,6 +5,7 @@ use super::error::CliError;
 use super::exit::Exit;
 use super::output::{print, print_unread, simulations};
 use super::select::{Found, choose};
+use super::thresholds;
 use super::update::todo;
 use crate::study::{Extent, KnownRows, Layout, forecast};
 use crate::text::number::compact;
@@ -30,6 +31,7 @@ pub(super) fn dry_run(layout: &Layout, found: Found, args: &RunArgs, common: &Ar
             for warning in forecast(&item.source.experiment, &study.sheet.assumptions()) {
                 text += &format!("  warning: {warning}\n");
             }
+            text += &thresholds::in_words(&study, &item.source.experiment);
         }
         total.add(&extent, threads);
     }

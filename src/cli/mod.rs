@@ -24,6 +24,7 @@ mod shard;
 mod show;
 mod simulate;
 mod status;
+mod thresholds;
 mod update;
 
 use std::process::ExitCode;

@@ -14,14 +14,14 @@ use super::error::CliError;
 use super::exit::Exit;
 use super::output::{columns, print, print_error, print_unread, simulations};
 use super::select::{choose, matches};
+use super::thresholds;
 use crate::accuracy::{idle_cases, out_of_reach_in_words, unreached_cases};
 use crate::dynamics::{Allowance, Limit, Until, in_words};
 use crate::experiment::{Continuation, Experiment, RowSource};
 use crate::measure::Settings;
 use crate::report::{scenes, value_in_words};
 use crate::scene::{Scene, effects};
-use crate::study::{Item, Layout, LiftOff, State, Study, Texts, forecast, lift_offs};
-use crate::text::number::compact;
+use crate::study::{Item, Layout, State, Study, Texts, forecast};
 use crate::text::words::{counted, of_key};
 
 /// Processor time of all threads for an experiment.
@@ -158,7 +158,7 @@ fn describe(study: &Study, item: &Item, section: Section, all: &mut Option<Vec<S
         Section::Effects => in_force(all.get_or_insert_with(|| scenes(study, experiment))),
         Section::Idle => {
             let idle = idle(experiment, all.get_or_insert_with(|| scenes(study, experiment)));
-            idle + &at_rest(study, experiment)
+            idle + &thresholds::in_words(study, experiment)
         }
         Section::Assumptions => assumptions(study, item),
         Section::Cases => cases(item),
@@ -230,21 +230,6 @@ fn idle(experiment: &Experiment, scenes: &[Scene]) -> String {
             &format!("  In {count} of {all} it is proved that the {effect} is out of reach, and skipped: {nearest}.\n");
     }
     text
-}
-
-/// The strength of the drive below which particles rest.
-fn at_rest(study: &Study, experiment: &Experiment) -> String {
-    let assumptions = study.sheet.assumptions();
-    let limit = Limit { time: PATIENCE, ..Limit::default() };
-    let found = Allowance::new(limit).simulate(|| lift_offs(experiment, &assumptions));
-    let line = |LiftOff { over, least, most, at_rest }: LiftOff| {
-        let unit = if over.unit().is_empty() { String::new() } else { format!(" {}", over.unit()) };
-        let [least, most] = [least, most].map(|at| compact(at, 4) + &unit);
-        let range = if least == most { least } else { format!("{least} to {most}, by case") };
-        let cases = counted(at_rest, "case lies", "cases lie");
-        format!("  All particles rest below {} = {range}, once transients are gone; {cases} there.\n", of_key(&over))
-    };
-    found.into_iter().map(line).collect()
 }
 
 fn assumptions(study: &Study, item: &Item) -> String {

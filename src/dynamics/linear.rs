@@ -14,6 +14,7 @@ mod lift_off;
 mod moments;
 mod range;
 mod signal;
+mod two_impacts;
 
 use std::rc::Rc;
 
@@ -142,6 +143,13 @@ pub(crate) fn steady_state(system: &HybridSystem) -> Result<Option<SteadyState>,
 /// where there is no steady motion with particles at rest.
 pub(crate) fn lift_off(system: &HybridSystem) -> Result<Option<f64>, EngineError> {
     Ok(Steady::of(system)?.and_then(|steady| lift_off::share(system, &steady)))
+}
+
+/// The share of the drive's strength below which no motion has one impact on the floor and one on the ceiling a period; `None` where the
+/// scene has no such motion, or none in closed form.
+pub(crate) fn two_impacts(system: &HybridSystem) -> Result<Option<f64>, EngineError> {
+    let Some(bare) = two_impacts::structure(system) else { return Ok(None) };
+    Ok(Steady::of(&bare)?.and_then(|steady| two_impacts::share(system, &bare, &steady)))
 }
 
 /// False where a look at the scene shows that it is not linear.

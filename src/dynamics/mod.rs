@@ -91,7 +91,7 @@ pub use orbit::{
 pub use proof::Proof;
 pub use reach::{FarSurface, OutOfReach, out_of_reach};
 pub use response::{Counts, CycleRates, Method, Observed, Response};
-pub use run::{event_driven, fixed_step, fundamental_matrix, is_linear, lift_off, steady_state};
+pub use run::{event_driven, fixed_step, fundamental_matrix, is_linear, lift_off, steady_state, two_impacts};
 pub use spline::Spline;
 pub use steady_state::{SteadyMotion, SteadyState};
 pub use sums::Sums;

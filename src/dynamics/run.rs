@@ -72,6 +72,16 @@ pub fn lift_off(system: &HybridSystem) -> Result<Option<f64>, EngineError> {
     budget::within(|| linear::lift_off(system))
 }
 
+/// The share of its present strength below which the drive keeps up no motion with one impact on the floor and one on the ceiling a period,
+/// in closed form: one particle between rigid faces, under a harmonic force on a damped structure. `None` elsewhere, and where no strength
+/// does.
+///
+/// # Errors
+/// [`EngineError`] with the reason.
+pub fn two_impacts(system: &HybridSystem) -> Result<Option<f64>, EngineError> {
+    budget::within(|| linear::two_impacts(system))
+}
+
 /// Runs a system with a fixed time step, s: exact propagators of one step, the contact state checked once a step.
 ///
 /// # Errors

@@ -49,6 +49,13 @@ pub struct Refinement {
 pub enum Threshold {
     /// The first particle leaves its floor.
     LiftOff,
+    /// A motion with an impact on floor and ceiling a period begins.
+    TwoImpacts,
+}
+
+impl Threshold {
+    /// All of them, in the order in which a growing strength usually meets them.
+    pub const ALL: &[Self] = &[Self::LiftOff, Self::TwoImpacts];
 }
 
 /// Whether a range is refined.
@@ -97,13 +104,13 @@ pub(super) fn refined(at: At<'_>, parameter: Parameter) -> Option<(Vec<Parameter
     })
 }
 
-/// `lift_off`, of a strength of the drive.
+/// `lift_off` or `two_impacts`, of a strength of the drive.
 fn threshold(at: At<'_>, parameter: Parameter) -> Option<Threshold> {
     let threshold = at.word::<Threshold>("threshold")?;
     if matches!(at, At::Node(..)) && !parameter.is_strength() {
         let help =
             "refine `force_ratio`, `base_amplitude_ratio`, `force` or `impulse`, or leave `around` out".to_owned();
-        return at.report("lift-off is a strength of the drive", Some(help));
+        return at.report("a threshold is a strength of the drive", Some(help));
     }
     Some(threshold)
 }

@@ -83,5 +83,5 @@ pub use snapshot::Snapshot;
 pub use spent::{Cost, Spent};
 pub use store::{Held, Lock, LockError, keep, remove_journals, save};
 pub use summary::{Heading, Summary, Used};
-pub use threshold::{LiftOff, lift_offs};
+pub use threshold::{ThresholdAlong, thresholds};
 pub use variant::{Sensitivity, Variant, variants};

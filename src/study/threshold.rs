@@ -1,6 +1,8 @@
-//! Lift-off in closed form: the strength of the drive below which every particle rests on its floor, once transients are gone.
+//! Thresholds in closed form along a strength of the drive: where the first particle lifts off, once transients are gone, and where a
+//! motion with an impact on floor and ceiling a period begins.
 //!
-//! The motion with particles at rest is linear, so that one steady state gives the threshold of a whole curve (`dynamics::lift_off`).
+//! The motions on one side of each are linear in the strength, so that one scene gives the threshold of a whole curve
+//! (`dynamics::lift_off`, `dynamics::two_impacts`).
 
 use super::refine::number_of;
 use crate::dynamics;
@@ -11,36 +13,42 @@ use crate::scene::compile;
 /// Points beside a threshold are off it by this share.
 const BESIDE: f64 = 1e-3;
 
-/// Where particles lift off along a strength of the drive: of several curves the least and the greatest place.
+/// Where a threshold lies along a strength of the drive: of several curves the least and the greatest place.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct LiftOff {
+pub struct ThresholdAlong {
+    /// Of what.
+    pub threshold: Threshold,
     /// The strength.
     pub over: Parameter,
-    /// The smallest at which a particle lifts off.
+    /// The smallest place.
     pub least: f64,
-    /// That of the curve on which particles rest longest.
+    /// The greatest.
     pub most: f64,
-    /// Cases below their own.
-    pub at_rest: usize,
+    /// Cases below that of their own curve.
+    pub below: usize,
 }
 
-/// Lift-off along the strengths that an experiment sweeps; nothing where particles never rest, and where none is swept.
+/// The thresholds along the strengths that an experiment sweeps, where they are known.
 #[must_use]
-pub fn lift_offs(experiment: &Experiment, assumptions: &Assumptions) -> Vec<LiftOff> {
-    let mut found: Vec<LiftOff> = Vec::new();
+pub fn thresholds(experiment: &Experiment, assumptions: &Assumptions) -> Vec<ThresholdAlong> {
+    let mut found: Vec<ThresholdAlong> = Vec::new();
     for (over, cases) in by_strength(experiment) {
         let strongest = cases
             .iter()
             .map(|&case| &experiment.cases[case])
             .reduce(|strongest, case| if case.number(over) > strongest.number(over) { case } else { strongest });
-        let Some(at) = strongest.and_then(|case| place(experiment, assumptions, case, over)) else { continue };
-        let at_rest = cases.iter().filter(|&&case| experiment.cases[case].number(over).is_some_and(|x| x < at)).count();
-        match found.iter_mut().find(|known| known.over == over) {
-            Some(known) => {
-                (known.least, known.most) = (known.least.min(at), known.most.max(at));
-                known.at_rest += at_rest;
+        for &threshold in Threshold::ALL {
+            let at = strongest.and_then(|case| place(experiment, assumptions, threshold, case, over));
+            let Some(at) = at else { continue };
+            let is_below = |case: &&usize| experiment.cases[**case].number(over).is_some_and(|x| x < at);
+            let below = cases.iter().filter(is_below).count();
+            match found.iter_mut().find(|known| (known.threshold, known.over) == (threshold, over)) {
+                Some(known) => {
+                    (known.least, known.most) = (known.least.min(at), known.most.max(at));
+                    known.below += below;
+                }
+                None => found.push(ThresholdAlong { threshold, over, least: at, most: at, below }),
             }
-            None => found.push(LiftOff { over, least: at, most: at, at_rest }),
         }
     }
     found
@@ -50,7 +58,7 @@ pub fn lift_offs(experiment: &Experiment, assumptions: &Assumptions) -> Vec<Lift
 pub(super) fn around(
     experiment: &Experiment,
     assumptions: &Assumptions,
-    Threshold::LiftOff: Threshold,
+    threshold: Threshold,
     over: Parameter,
     curve: &[Case],
 ) -> Vec<Case> {
@@ -61,16 +69,26 @@ pub(super) fn around(
     let Some(strongest) = curve.iter().max_by(|a, b| number_of(a, over).total_cmp(&number_of(b, over))) else {
         return Vec::new();
     };
-    let Some(at) = place(experiment, assumptions, strongest, over) else { return Vec::new() };
+    let Some(at) = place(experiment, assumptions, threshold, strongest, over) else { return Vec::new() };
     let beside = [1.0 - BESIDE, 1.0 + BESIDE].map(|share| share * at).into_iter().filter(|value| within(*value));
     beside.map(|value| strongest.with(over, value)).collect()
 }
 
-/// The strength at which a particle lifts off, all else as in this case.
-fn place(experiment: &Experiment, assumptions: &Assumptions, case: &Case, over: Parameter) -> Option<f64> {
+/// The strength at a threshold, all else as in this case.
+fn place(
+    experiment: &Experiment,
+    assumptions: &Assumptions,
+    threshold: Threshold,
+    case: &Case,
+    over: Parameter,
+) -> Option<f64> {
     let recipe = experiment.recipe_of(case).ok()?;
     let scene = rounded(recipe.resolve(assumptions).ok()?, &experiment.settings);
     // Whatever keeps a case from being compiled fails as a row of the table, with its reason.
-    let share = dynamics::lift_off(&compile(&scene).ok()?).ok()??;
-    Some(share * case.number(over)?)
+    let system = compile(&scene).ok()?;
+    let share = match threshold {
+        Threshold::LiftOff => dynamics::lift_off(&system),
+        Threshold::TwoImpacts => dynamics::two_impacts(&system),
+    };
+    Some(share.ok()?? * case.number(over)?)
 }

@@ -1,4 +1,4 @@
-//! Lift-off in closed form: where `show` names it and where refined sweeps have their points, against the formula and against the search
+//! Thresholds in closed form: where `show` names them and where refined sweeps have their points, against formulas and against the search
 //! of the classic `lift-off-onset`.
 
 use std::fs;
@@ -71,6 +71,36 @@ fn a_refined_sweep_has_a_point_on_either_side_of_lift_off_and_show_names_it() {
     }
 }
 
+/// Masri and Caughey's damper; its smallest force with two impacts is worked out from their formulas in double precision.
+const BETWEEN: &str = "title: Between
+about: A particle between two faces.
+scene:
+  structure: {single_mass: {mass: 1 kg, stiffness: 1000 N/m, damping_ratio: 0.02}}
+  gravity: 0 m/s^2
+  dampers: [{mass: 0.1 kg, gap: 100 mm, floor: {rigid: {restitution: 0.6}}}]
+  excitation: {harmonic: {force: swept, frequency_ratio: 1.1}}
+sweep: {force: {refined: {from: 1 N, to: 3 N, start: 5 points, most: 7 points, around: two_impacts}}}
+run: {skip: 50 cycles, average: 20 cycles, ensemble: none}
+measure: floor_impacts
+figure: {x: force, y: floor_impacts, caption: Impacts.}
+";
+
+#[test]
+fn the_smallest_force_with_two_impacts_is_named_before_a_run_and_gets_points() {
+    let study = Study::new(BETWEEN);
+    for command in [&["show", "mine"][..], &["run", "--dry-run"]] {
+        let (_, said) = study.shotdamp(command);
+        let wanted = "No motion has one impact on floor and ceiling a period below force = 1.938 N; 2 cases lie there.";
+        assert!(said.contains(wanted), "{said}");
+    }
+    let table = study.run();
+    let forces = table.floats("force").unwrap();
+    for side in [0.999, 1.001] {
+        let at = side * 1.938_425_472_849_182;
+        assert!(forces.iter().any(|force| (force / at - 1.0).abs() < 1e-12), "{forces:?}");
+    }
+}
+
 #[test]
 fn the_search_of_the_classic_finds_lift_off_where_the_points_are() {
     let classic = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/classics/experiments/lift-off-onset.yaml");
@@ -95,7 +125,7 @@ fn points_around_lift_off_are_refused_along_what_is_no_strength() {
         .replace("force: {refined: {from: 0.5 N, to: 3 N", "frequency_ratio: {refined: {from: 0.5, to: 3")
         .replace("x: force", "x: frequency_ratio");
     for (text, said) in [
-        (along_frequency, "lift-off is a strength of the drive"),
+        (along_frequency, "a threshold is a strength of the drive"),
         (RESTING.replace("around: lift_off", "around: lift_of"), "did you mean `lift_off`?"),
     ] {
         let (code, found) = Study::new(&text).shotdamp(&["check"]);

@@ -194,7 +194,13 @@ pub(super) fn enter(flow: &Flow, p: &[f64], rate: &[f64], level: f64, drive: Dri
 }
 
 /// What an impulse and a change of the force do to block coordinates: rates jump, and so does the rest that they count from.
-fn jump(system: &HybridSystem, flow: &Flow, impulse: f64, [before, after]: [f64; 2], answer: &[f64]) -> Vec<[f64; 2]> {
+pub(super) fn jump(
+    system: &HybridSystem,
+    flow: &Flow,
+    impulse: f64,
+    [before, after]: [f64; 2],
+    answer: &[f64],
+) -> Vec<[f64; 2]> {
     let still = DrivePhase::default();
     let (rest, _) = leave(flow, &vec![0.0; 2 * flow.order], before, still);
     let mut rate: Vec<f64> = answer.iter().map(|jump| impulse * jump).collect();

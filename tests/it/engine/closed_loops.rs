@@ -12,7 +12,7 @@ use super::orbits::{Masri, STIFFNESS, Stopped, oscillator};
 impl Masri {
     const MASS_RATIO: f64 = 0.02;
 
-    fn at(ratio: f64) -> Self {
+    pub(super) fn at(ratio: f64) -> Self {
         Self { ratio, gap: 0.1, restitution: 0.6, particle: Self::MASS_RATIO }
     }
 
@@ -31,13 +31,13 @@ impl Masri {
     }
 
     /// The smallest force with a motion of two impacts: |a + b V| is the amplitude, a parabola in V under the root.
-    fn least_force(&self) -> f64 {
+    pub(super) fn least_force(&self) -> f64 {
         let [a, b] = self.forced();
         (a - b * (a.dot(&b) / b.norm_squared())).norm() * self.dynamic_stiffness()
     }
 
     /// The greater of the speeds that a force belongs to.
-    fn greater_speed(&self, force: f64) -> f64 {
+    pub(super) fn greater_speed(&self, force: f64) -> f64 {
         let [a, b] = self.forced();
         let (half, square) = (a.dot(&b), b.norm_squared());
         let rest = a.norm_squared() - (force / self.dynamic_stiffness()).powi(2);
@@ -45,7 +45,7 @@ impl Masri {
     }
 
     /// The motion with a speed, at the start of a cycle.
-    fn start(&self, speed: f64) -> StartState {
+    pub(super) fn start(&self, speed: f64) -> StartState {
         let omega = self.omega();
         let (half, period) = (PI / omega, TAU / omega);
         let [before, train] = self.impact(speed);

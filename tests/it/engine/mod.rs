@@ -28,6 +28,7 @@ mod resonance;
 mod search;
 mod settled;
 mod sticking;
+mod two_impacts;
 mod walls;
 
 pub use bench::note;

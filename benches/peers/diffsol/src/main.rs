@@ -9,6 +9,7 @@ use std::time::Instant;
 
 use diffsol::error::DiffsolError;
 use diffsol::{NalgebraLU, NalgebraMat, OdeBuilder, OdeEquations, OdeSolverMethod, OdeSolverStopReason, Vector};
+use nalgebra::{DMatrix, DVector};
 use scene::{Contact, Equations, Guard, Scene};
 use serde_json::{Value, json};
 
@@ -40,30 +41,93 @@ struct Found {
     events: Vec<Value>,
 }
 
-/// From impulse to impulse and event to event.
-fn run(scene: &Scene, method: Method, rtol: f64) -> Result<Found, String> {
-    let mut z = scene.start.clone();
-    let mut contacts = vec![Contact::Floor; scene.particles];
+/// What is asked of a scene.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Asked {
+    /// A run in all settings, repeatedly.
+    Run,
+    /// A run in the tightest of them, once.
+    Tightest,
+    /// The motion that comes again, in all settings, from the state in which a run ends, which is not timed.
+    Orbit,
+}
+
+/// A state between cycles.
+#[derive(Clone)]
+struct State {
+    z: Vec<f64>,
+    contacts: Vec<Contact>,
+}
+
+/// From impulse to impulse: where it ends, and the events.
+fn run(scene: &Scene, method: Method, rtol: f64) -> Result<(State, Vec<Value>), String> {
+    let mut state = State { z: scene.start.clone(), contacts: vec![Contact::Floor; scene.particles] };
     let mut events = Vec::new();
-    for cycle in 0..scene.cycles {
-        scene.strike(&mut z);
-        let (mut t, mut still) = (0.0, 0);
-        // What is left within rounding of the end is none of the solver's business.
-        while scene.period - t > 4.0 * f64::EPSILON * scene.period {
-            let equations = scene.equations(&contacts, cycle >= scene.skip);
-            let end = segment(&equations, method, rtol, t, scene.period, &z)?;
-            for guard in end.met {
-                contacts[guard.particle] = guard.next;
-                events.push(json!([f64::from(cycle) * scene.period + end.time, guard.particle, guard.word]));
+    for number in 0..scene.cycles {
+        cycle(scene, method, rtol, &mut state, number >= scene.skip, |time, guard| {
+            events.push(json!([f64::from(number) * scene.period + time, guard.particle, guard.word]));
+        })?;
+    }
+    Ok((state, events))
+}
+
+/// From event to event.
+fn cycle(
+    scene: &Scene,
+    method: Method,
+    rtol: f64,
+    State { z, contacts }: &mut State,
+    averaged: bool,
+    mut met: impl FnMut(f64, &Guard),
+) -> Result<(), String> {
+    scene.strike(z);
+    let (mut t, mut still) = (0.0, 0);
+    // What is left within rounding of the end is none of the solver's business.
+    while scene.period - t > 4.0 * f64::EPSILON * scene.period {
+        let equations = scene.equations(contacts, averaged);
+        let end = segment(&equations, method, rtol, t, scene.period, z)?;
+        for guard in end.met {
+            contacts[guard.particle] = guard.next;
+            met(end.time, guard);
+        }
+        still = if end.time == t { still + 1 } else { 0 };
+        if still > 64 {
+            return Err(format!("no progress at {t} s of a cycle"));
+        }
+        (t, *z) = (end.time, end.state);
+    }
+    Ok(())
+}
+
+/// The RMS velocity of the motion that comes again, by shooting: Newton on the map of a cycle, its matrix by differences.
+fn orbit(scene: &Scene, method: Method, rtol: f64, near: &State) -> Result<f64, String> {
+    let order = scene.start.len() - 1;
+    let through = |place: &DVector<f64>| {
+        let mut state = State { z: place.iter().copied().chain([0.0]).collect(), contacts: near.contacts.clone() };
+        cycle(scene, method, rtol, &mut state, true, |_, _| {})?;
+        Ok::<_, String>((DVector::from_column_slice(&state.z[..order]), state.z[order]))
+    };
+    let mut place = DVector::from_column_slice(&near.z[..order]);
+    let size = place.norm();
+    let kick = rtol.sqrt() * size;
+    for _ in 0..20 {
+        let (end, _) = through(&place)?;
+        let mut matrix = DMatrix::identity(order, order);
+        for i in 0..order {
+            let mut kicked = place.clone();
+            kicked[i] += kick;
+            let moved = (through(&kicked)?.0 - &end) / kick;
+            for row in 0..order {
+                matrix[(row, i)] -= moved[row];
             }
-            still = if end.time == t { still + 1 } else { 0 };
-            if still > 64 {
-                return Err(format!("no progress in cycle {cycle} at {t} s"));
-            }
-            (t, z) = (end.time, end.state);
+        }
+        let step = matrix.lu().solve(&(end - &place)).ok_or("a singular matrix")?;
+        place += &step;
+        if step.norm() <= 10.0 * rtol * size {
+            return Ok((through(&place)?.1 / scene.period).sqrt());
         }
     }
-    Ok(Found { rms: scene.rms(&z), events })
+    Err("shooting does not converge".into())
 }
 
 fn segment<'e>(
@@ -116,12 +180,23 @@ where
     }
 }
 
-fn answer(scene: &Scene, method: Method, rtol: f64, is_timed: bool) -> Value {
+fn answer(scene: &Scene, method: Method, rtol: f64, asked: Asked) -> Value {
+    if asked != Asked::Orbit {
+        let once = || run(scene, method, rtol).map(|(end, events)| Found { rms: scene.rms(&end.z), events });
+        return timed(once, asked == Asked::Run);
+    }
+    match run(scene, method, rtol) {
+        Err(why) => json!({"failure": why}),
+        Ok((near, _)) => timed(|| Ok(Found { rms: orbit(scene, method, rtol, &near)?, events: Vec::new() }), true),
+    }
+}
+
+fn timed(once: impl Fn() -> Result<Found, String>, is_timed: bool) -> Value {
     let mut times: Vec<f64> = Vec::new();
     let begun = Instant::now();
     loop {
         let begin = Instant::now();
-        let found = run(scene, method, rtol);
+        let found = once();
         times.push(begin.elapsed().as_secs_f64());
         // A slow run is its own median.
         let more =
@@ -144,19 +219,22 @@ impl Method {
     }
 }
 
-/// A scene is run in all settings, repeatedly; after `--tightest` once, in the last of them.
 fn main() -> Result<(), String> {
     let words: Vec<String> = std::env::args().skip(1).collect();
-    let tightest = words.first().is_some_and(|word| word == "--tightest");
-    let settings = if tightest { &SETTINGS[SETTINGS.len() - 1..] } else { &SETTINGS[..] };
-    for file in &words[usize::from(tightest)..] {
+    let asked = match words.first().map(String::as_str) {
+        Some("--tightest") => Asked::Tightest,
+        Some("--orbit") => Asked::Orbit,
+        _ => Asked::Run,
+    };
+    let settings = if asked == Asked::Tightest { &SETTINGS[SETTINGS.len() - 1..] } else { &SETTINGS[..] };
+    for file in &words[usize::from(asked != Asked::Run)..] {
         let scene = Scene::read(file)?;
         for method in METHODS {
             for rtol in settings {
                 let description = method.describe();
-                let mut line = answer(&scene, method, *rtol, !tightest);
+                let mut line = answer(&scene, method, *rtol, asked);
                 line["file"] = json!(file);
-                line["solver"] = json!(told);
+                line["solver"] = json!(description);
                 line["setting"] = json!(format!("diffsol {description}, rtol {rtol:e}"));
                 println!("{line}");
             }
