@@ -48,6 +48,9 @@ const LONGEST_BLINK: f64 = 1e-9;
 /// Panels that an integral may take before closed forms are cheaper, where a contact state is hardly ever visited twice.
 const FEW_PANELS: usize = 16;
 
+/// Events after which what rounding does at each of them adds up to more than the rest of it.
+const MANY_EVENTS: u64 = 10_000;
+
 /// How the observed signals are integrated over a segment.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Integration {
@@ -81,6 +84,8 @@ pub(crate) struct March<'a, const TAPED: bool> {
     slipped: Option<Slipped>,
     /// Some floor and ceiling do not move as one.
     has_walls: bool,
+    /// No error dies away.
+    undamped: bool,
     /// A time in which nothing can have moved, s.
     nothing: f64,
     averaged: Averaged,
@@ -146,6 +151,7 @@ impl<'a, const TAPED: bool> March<'a, TAPED> {
             smooth: vec![false; count],
             slipped: None,
             has_walls: system.particles.iter().any(Particle::has_walls),
+            undamped: system.is_undamped(),
             nothing: f64::EPSILON * f64::EPSILON * system.drive.period,
             averaged: options.averaged(),
             cycle: 0,
@@ -426,7 +432,11 @@ impl<'a, const TAPED: bool> March<'a, TAPED> {
             self.q[n + i] = self.particles[j].gap;
             self.rate[n + i] = self.particles[j].rate;
         }
-        flow.enter(&self.q[..flow.order], &self.rate[..flow.order], self.level, drive, &mut self.c);
+        let (p, rate) = (&self.q[..flow.order], &self.rate[..flow.order]);
+        flow.enter(p, rate, self.level, drive, &mut self.c);
+        if self.undamped || self.response.proof.events >= MANY_EVENTS {
+            flow.correct(p, rate, self.level, drive, &mut self.c);
+        }
     }
 
     /// Propagates to `until` within the cycle, from event to event.
@@ -523,7 +533,7 @@ impl<'a, const TAPED: bool> March<'a, TAPED> {
         if TAPED {
             self.tape.flow(&self.flow, length);
         }
-        self.sample(length);
+        self.sample(length, drive);
         self.arrive(length, end_drive);
         self.time = match found {
             Found::Nothing if limit < until - self.time => self.time + limit,
@@ -561,9 +571,8 @@ impl<'a, const TAPED: bool> March<'a, TAPED> {
                     kept.push((j, side));
                     continue;
                 }
-                let (phases, _) = self.signals.of(flow.rows.guards[j].first);
-                let here = self.particles[j];
-                self.particles[j] = guards::fly(flow, self.paths[j], phases, here, &self.search.kernels, length);
+                let (path, here) = (self.paths[j], self.particles[j]);
+                self.particles[j] = guards::fly(flow, j, path, &self.signals, here, &self.c_end, length);
             }
             // What has begun at zero is there no longer.
             self.smooth[j] &= length <= self.nothing;
@@ -665,14 +674,14 @@ impl<'a, const TAPED: bool> March<'a, TAPED> {
     }
 
     /// Samples of the time history that fall into the segment.
-    fn sample(&mut self, length: f64) {
+    fn sample(&mut self, length: f64, drive: DrivePhase) {
         let Some(request) = self.options.trace else { return };
         if !request.covers(self.cycle) {
             return;
         }
         let flow = &self.flow;
         let period = self.system.drive.period;
-        let mut kernels = Vec::with_capacity(flow.blocks.len());
+        let (mut kernels, mut c) = (Vec::with_capacity(flow.blocks.len()), self.c.clone());
         for i in request.next_sample(self.time, period).. {
             let instant = request.instant(i, period);
             let t = instant - self.time;
@@ -681,6 +690,7 @@ impl<'a, const TAPED: bool> March<'a, TAPED> {
             }
             kernels.clear();
             kernels.extend(flow.blocks.iter().map(|block| block.kernel(t)));
+            flow.advance(&kernels, &self.c, flow.drive_after(drive, t), &mut c);
             let value = |(phases, rest): (&[Phase], Parabola)| signals::value(&flow.blocks, phases, rest, &kernels, t);
             let anywhere = |row: usize| {
                 let (phases, rest) = flow.rows.evaluate(row, &self.c, self.level, flow.blocks.len());
@@ -691,10 +701,7 @@ impl<'a, const TAPED: bool> March<'a, TAPED> {
                 let contact = self.contacts[j];
                 let faces = [Side::Floor, Side::Ceiling].map(|side| anywhere(flow.rows.face(j, side))[0]);
                 let gap = match (contact.face(particle), flow.rows.faces[j].compression) {
-                    (None, _) => {
-                        let (phases, here) = (self.signals.of(flow.rows.guards[j].first).0, self.particles[j]);
-                        guards::fly(flow, self.paths[j], phases, here, &kernels, t).gap
-                    }
+                    (None, _) => guards::fly(flow, j, self.paths[j], &self.signals, self.particles[j], &c, t).gap,
                     (Some(_), Some(compression)) => anywhere(compression)[0],
                     (Some(_), None) => self.particles[j].gap,
                 };

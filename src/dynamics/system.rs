@@ -74,6 +74,18 @@ pub struct HybridSystem {
     pub momentum_rows: Vec<Vec<f64>>,
 }
 
+impl HybridSystem {
+    /// Neither the structure nor a floor takes energy. Ceilings and stops do not count: a run may do without them.
+    pub(crate) fn is_undamped(&self) -> bool {
+        let keeps = |particle: &Particle| match particle.floor.law {
+            Law::Rigid { restitution } => restitution == 1.0,
+            Law::Resilient { damping, .. } => damping == 0.0,
+        };
+        let still = self.damping.entries.iter().all(|entry| *entry == 0.0);
+        still && self.drive.half_cycles.is_none() && self.particles.iter().all(keeps)
+    }
+}
+
 /// A particle in its enclosure.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Particle {
