@@ -14,7 +14,6 @@ use std::rc::Rc;
 use super::audit::{Audit, Force};
 use super::block::Phase;
 use super::budget;
-use super::cholesky::Cholesky;
 use super::contact::{Relative, Side};
 use super::contact_state::{contact_damping, dampings};
 use super::extremes;
@@ -24,7 +23,7 @@ use super::integral::{self, quadrature};
 use super::mobility::Mobilities;
 use super::motion::{self, Fundamental, Tape};
 use super::parabola::Parabola;
-use super::reach::Watched;
+use super::reach::{self, OutOfReach};
 use super::search::{Clarity, Found, Search};
 use super::signals::{self, Signals};
 use super::states::States;
@@ -137,6 +136,7 @@ impl<'a, const TAPED: bool> March<'a, TAPED> {
         let mut damping = Vec::new();
         dampings(system, &contacts, equivalent, &mut damping);
         let flow = states.flow(system, &contacts, &damping)?;
+        let answer = states.ground().answer(system)?.to_vec();
         let mut march = Self {
             system,
             options,
@@ -161,7 +161,7 @@ impl<'a, const TAPED: bool> March<'a, TAPED> {
             search: Search::new(options.window_factor),
             paths: vec![Parabola::default(); count],
             signals: Signals::default(),
-            answer: Cholesky::new(&system.mass)?.solve(&system.force_row),
+            answer,
             sudden: false,
             changed: true,
             mobilities: Mobilities::default(),
@@ -735,15 +735,35 @@ pub(crate) fn march(system: &HybridSystem, options: &Options, states: States) ->
     if options.is_taped() {
         return Ok(taped(system, options, states)?.0);
     }
+    // A time history shows ceilings, whether anything meets them or not.
+    let mut far = if options.trace.is_none() { reach::far(system, options, &states) } else { Vec::new() };
+    let spent = budget::events();
+    let response = without(system, options, states, &far)?;
+    // What is out of reach by less than the smallest margin may be nearer than all that decided it: the same run once more tells.
+    let sharp = response.proof.smallest_margin;
+    if far.iter().all(|far| sharp <= far.room()) {
+        return Ok(response);
+    }
+    far.retain(|far| sharp <= far.room());
+    budget::go_back_to(spent);
+    without(system, options, States::of(system), &far)
+}
+
+/// Runs a system without what it cannot reach.
+fn without(
+    system: &HybridSystem,
+    options: &Options,
+    states: States,
+    far: &[OutOfReach],
+) -> Result<Response, EngineError> {
+    if far.is_empty() {
+        return March::<false>::new(system, options, states)?.run();
+    }
     let has_walls = |system: &HybridSystem| system.particles.iter().any(Particle::has_walls);
-    let walls = has_walls(system);
-    let Watched { system, clearance } = Watched::of(system, options);
+    let less = states.ground().without(system, far);
     // What is known of a contact state depends on walls, not on stops nor on a ceiling that moves with its floor.
-    let states = if has_walls(&system) == walls { states } else { States::of(&system) };
-    let mut response = March::<false>::new(&system, options, states)?.run()?;
-    let margin = &mut response.proof.smallest_margin;
-    *margin = margin.min(clearance);
-    Ok(response)
+    let states = if has_walls(&less) == has_walls(system) { states } else { States::of(&less) };
+    March::<false>::new(&less, options, states)?.run()
 }
 
 /// The fundamental matrix of the averaged cycles.

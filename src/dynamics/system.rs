@@ -75,6 +75,20 @@ pub struct HybridSystem {
 }
 
 impl HybridSystem {
+    /// They are the same but for their particles.
+    pub(crate) fn is_as_driven_as(&self, other: &Self) -> bool {
+        let Self { mass, damping, stiffness, gravity, particles: _, force_row, drive, observed_rows, momentum_rows } =
+            self;
+        *gravity == other.gravity
+            && *drive == other.drive
+            && *mass == other.mass
+            && *damping == other.damping
+            && *stiffness == other.stiffness
+            && *force_row == other.force_row
+            && *observed_rows == other.observed_rows
+            && *momentum_rows == other.momentum_rows
+    }
+
     /// Neither the structure nor a floor takes energy. Ceilings and stops do not count: a run may do without them.
     pub(crate) fn is_undamped(&self) -> bool {
         let keeps = |particle: &Particle| match particle.floor.law {
