@@ -52,9 +52,10 @@ impl Bank {
         for (turns, kernels) in self.turns.iter().zip(kernels.as_chunks_mut::<WIDTH>().0) {
             let e = exp_lanes(-1.0 * turns.decay * t);
             let (sine, cosine) = sin_cos_lanes(turns.root * t);
-            let (c, s) = (e * cosine, e * sine * turns.inverse_root);
-            for (kernel, (c, s)) in kernels.iter_mut().zip(c.0.into_iter().zip(s.0)) {
-                *kernel = Kernel { c, s };
+            let (c, turn) = (e * cosine, e * sine);
+            let s = turn * turns.inverse_root;
+            for (lane, kernel) in kernels.iter_mut().enumerate() {
+                *kernel = Kernel { c: c.0[lane], s: s.0[lane], turn: turn.0[lane] };
             }
         }
         for &k in &self.others {

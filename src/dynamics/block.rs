@@ -28,6 +28,8 @@ pub(crate) struct Block {
 pub(crate) struct Kernel {
     pub(crate) c: f64,
     pub(crate) s: f64,
+    /// e^(−at) sin √(−d) t of a block that turns: √(−d) S, but for the rounding of 1/√(−d), which is the same each time.
+    pub(crate) turn: f64,
 }
 
 /// The pairs k ≤ l of so many blocks, row by row: the order of every form over them.
@@ -65,7 +67,7 @@ pub(crate) struct Phase {
 
 impl Kernel {
     /// After no time.
-    pub(crate) const NONE: Self = Self { c: 1.0, s: 0.0 };
+    pub(crate) const NONE: Self = Self { c: 1.0, s: 0.0, turn: 0.0 };
 }
 
 impl Block {
@@ -150,17 +152,17 @@ impl Block {
         if self.discriminant < 0.0 {
             let e = if self.decay == 0.0 { 1.0 } else { super::elementary::exp(-self.decay * t) };
             let (sine, cosine) = super::elementary::sin_cos(self.root * t);
-            Kernel { c: e * cosine, s: e * sine * self.inverse_root }
+            Kernel { c: e * cosine, s: e * sine * self.inverse_root, turn: e * sine }
         } else if self.discriminant == 0.0 {
             let e = super::elementary::exp(-self.decay * t);
-            Kernel { c: e, s: e * t }
+            Kernel { c: e, s: e * t, turn: 0.0 }
         } else {
             // e^(−at) sinh(rt)/r = e^(−(a+r)t) (e^(2rt) − 1)/(2r): no overflow, no cancellation.
             let fast = super::elementary::exp(-(self.decay + self.root) * t);
             let slow = super::elementary::exp(-(self.decay - self.root) * t);
             let two_rt = 2.0 * self.root * t;
             let s = if two_rt < 0.5 { fast * libm::expm1(two_rt) } else { slow - fast } / (2.0 * self.root);
-            Kernel { c: 0.5 * (slow + fast), s }
+            Kernel { c: 0.5 * (slow + fast), s, turn: 0.0 }
         }
     }
 
@@ -176,15 +178,18 @@ impl Block {
         let c = (1.0 + y * 0.5) + y * y * ((1.0 / 24.0 + y * (1.0 / 720.0)) + y * y * (1.0 / 40_320.0));
         let s =
             t * ((1.0 + y * (1.0 / 6.0)) + y * y * ((1.0 / 120.0 + y * (1.0 / 5040.0)) + y * y * (1.0 / 362_880.0)));
-        Kernel { c: e * c, s: e * s }
+        Kernel { c: e * c, s: e * s, turn: self.root * (e * s) }
     }
 
     /// e^(B t1) e^(B t2).
     #[inline]
     pub(crate) fn compose(&self, first: Kernel, second: Kernel) -> Kernel {
+        let turns = self.discriminant < 0.0;
+        let product = if turns { -(first.turn * second.turn) } else { self.discriminant * (first.s * second.s) };
         Kernel {
-            c: first.c * second.c + self.discriminant * (first.s * second.s),
+            c: first.c * second.c + product,
             s: first.c * second.s + first.s * second.c,
+            turn: first.c * second.turn + first.turn * second.c,
         }
     }
 

@@ -267,6 +267,16 @@ pub(crate) fn count_event() {
     }
 }
 
+/// Events of the simulation so far.
+pub(crate) fn events() -> u64 {
+    EVENTS.get()
+}
+
+/// Takes back the events since then: a run that is made again has no more of them.
+pub(crate) fn go_back_to(events: u64) {
+    EVENTS.set(events);
+}
+
 #[cold]
 fn exhaust(by: Exhausted) {
     EXHAUSTED.set(Some(EXHAUSTED.get().unwrap_or(by)));

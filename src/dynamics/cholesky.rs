@@ -28,12 +28,31 @@ impl Cholesky {
         Ok(Self { order: n, lower })
     }
 
+    /// A⁻¹ b.
     pub(crate) fn solve(&self, b: &[f64]) -> Vec<f64> {
+        self.backward(&self.forward(b))
+    }
+
+    /// L⁻¹ b.
+    pub(crate) fn forward(&self, b: &[f64]) -> Vec<f64> {
         let n = self.order;
         let mut x = b.to_vec();
         for i in 0..n {
             x[i] = (0..i).fold(x[i], |sum, k| sum - self.lower[i * n + k] * x[k]) / self.lower[i * n + i];
         }
+        x
+    }
+
+    /// L b.
+    pub(crate) fn spread(&self, b: &[f64]) -> Vec<f64> {
+        let n = self.order;
+        (0..n).map(|i| (0..=i).fold(0.0, |sum, k| sum + self.lower[i * n + k] * b[k])).collect()
+    }
+
+    /// L⁻ᵀ b.
+    pub(crate) fn backward(&self, b: &[f64]) -> Vec<f64> {
+        let n = self.order;
+        let mut x = b.to_vec();
         for i in (0..n).rev() {
             x[i] = (i + 1..n).fold(x[i], |sum, k| sum - self.lower[k * n + i] * x[k]) / self.lower[i * n + i];
         }

@@ -111,13 +111,17 @@ impl Modes {
         let accelerations = accelerations(system, contacts, &carried, &attached, &face_of, damping, &across);
         let stated = |j: &usize| face_damping(face_of(*j).law, None) == damping[*j];
         let iteration = if attached.iter().all(stated) { Iteration::Library } else { Iteration::Own };
-        let spectral = super::modes::split(&accelerations, &mass_of(system, mass, &attached, &face_of), iteration)?;
+        let order = n + attached.len();
+        let undamped = accelerations.iter().all(|row| row[order..].iter().all(|entry| *entry == 0.0));
+        let stiffness = undamped.then(|| stiffness_of(system, &attached, &face_of, &across));
+        let mass = mass_of(system, mass, &attached, &face_of);
+        let spectral = super::modes::split(&accelerations, &mass, stiffness.as_ref(), iteration)?;
         let columns = by_columns(&spectral, 2 * (n + attached.len()));
         let mut modes = Self {
             contacts: contacts.to_vec(),
             damping: damping.to_vec(),
             across,
-            order: n + attached.len(),
+            order,
             attached,
             accelerations,
             spectral,
@@ -333,4 +337,31 @@ fn mass_of<'a>(
         }
     }
     mass
+}
+
+/// Stiffness matrix of p.
+fn stiffness_of<'a>(
+    system: &HybridSystem,
+    attached: &[usize],
+    face_of: &dyn Fn(usize) -> &'a Face,
+    across: &[Across],
+) -> Matrix {
+    let n = system.stiffness.order;
+    let springs = attached.iter().map(|&j| match face_of(j).law {
+        Law::Resilient { stiffness, .. } => stiffness,
+        Law::Rigid { .. } => 0.0,
+    });
+    let mut all = Matrix::diagonal(&std::iter::repeat_n(0.0, n).chain(springs).collect::<Vec<_>>());
+    let order = all.order;
+    for i in 0..n {
+        all.entries[i * order..][..n].copy_from_slice(&system.stiffness.entries[i * n..][..n]);
+    }
+    for across in across.iter().filter(|across| across.presses) {
+        for (i, x) in across.row.iter().enumerate() {
+            for (k, y) in across.row.iter().enumerate() {
+                all.entries[i * order + k] += across.stiffness * x * y;
+            }
+        }
+    }
+    all
 }

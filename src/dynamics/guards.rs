@@ -120,28 +120,24 @@ pub(crate) fn creep(flow: &Flow, constant: f64, sign: f64, phases: &[Phase], her
     }
 }
 
-/// The gap coordinate of a flight after the time of `kernels`.
+/// The gap coordinate of particle j's flight after a time, when the blocks are at `c`: the same numbers that the structure is at, so
+/// that nothing but chance is in their difference.
 #[inline]
 pub(crate) fn fly(
     flow: &Flow,
+    j: usize,
     path: Parabola,
-    phases: &[Phase],
+    signals: &Signals,
     here: Relative,
-    kernels: &[super::block::Kernel],
+    c: &[f64],
     time: f64,
 ) -> Relative {
+    let row = flow.rows.guards[j].first;
     if is_short(flow, time) {
-        return creep(flow, 2.0 * path.p2, -1.0, phases, here, time);
+        return creep(flow, 2.0 * path.p2, -1.0, signals.of(row).0, here, time);
     }
-    let mut now = Relative { gap: path.at(time), rate: path.rate(time) };
-    for ((block, phase), kernel) in flow.blocks.iter().zip(phases).zip(kernels) {
-        if !block.is_drift() {
-            let share = block.advance(*phase, *kernel);
-            now.gap -= share.value;
-            now.rate -= share.rate;
-        }
-    }
-    now
+    let face = flow.rows.row(row).shares(c);
+    Relative { gap: path.at(time) - face.value, rate: path.rate(time) - face.rate }
 }
 
 /// Σ |φ x|.

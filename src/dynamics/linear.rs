@@ -24,7 +24,6 @@ use self::moments::Moments;
 use self::signal::{Row, integrals};
 use super::audit::Audit;
 use super::budget;
-use super::cholesky::Cholesky;
 use super::contact_state::contact_damping;
 use super::flow::{DrivePhase, Flow};
 use super::states::States;
@@ -81,7 +80,7 @@ pub(crate) fn attempt(system: &HybridSystem, options: &Options, states: &States)
     if !is_closed(&flow) {
         return Ok(Attempt::Open);
     }
-    let run = Run::new(system, &flow, options)?;
+    let run = Run::new(system, states, &flow, options)?;
     let Some(margin) = run.margin() else { return Ok(Attempt::Open) };
     Ok(Attempt::Solved(Box::new(run.respond(options, margin)?)))
 }
@@ -100,13 +99,14 @@ impl Steady {
         if !may_be_linear(system, &Options::default()) || !(system.drive.repeats || system.drive.ticks.is_empty()) {
             return Ok(None);
         }
-        let flow = at_rest(system, &States::of(system))?;
+        let states = States::of(system);
+        let flow = at_rest(system, &states)?;
         if !is_closed(&flow) {
             return Ok(None);
         }
-        let answer = Cholesky::new(&system.mass)?.solve(&system.force_row);
+        let answer = states.ground().answer(system)?;
         let before = system.drive.ticks.last().map_or(0.0, |tick| tick.level);
-        let cycle = regular(system, &flow, before, &answer);
+        let cycle = regular(system, &flow, before, answer);
         // An undamped transient never goes.
         if flow.blocks[..flow.own].iter().any(|block| !(block.decay > 0.0)) {
             return Ok(None);
@@ -175,8 +175,8 @@ fn is_closed(flow: &Flow) -> bool {
 }
 
 impl<'a> Run<'a> {
-    fn new(system: &'a HybridSystem, flow: &'a Flow, options: &Options) -> Result<Self, EngineError> {
-        let answer = Cholesky::new(&system.mass)?.solve(&system.force_row);
+    fn new(system: &'a HybridSystem, states: &States, flow: &'a Flow, options: &Options) -> Result<Self, EngineError> {
+        let answer = states.ground().answer(system)?.to_vec();
         let still = [Tick { time: 0.0, impulse: 0.0, level: 0.0 }];
         let ticks = if system.drive.ticks.is_empty() { &still[..] } else { &system.drive.ticks };
         let kick = options.kick * system.drive.scale();

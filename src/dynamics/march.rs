@@ -7,57 +7,30 @@ mod between;
 mod contacts;
 mod half_cycles;
 mod impacts;
+mod samples;
+mod segment;
+mod sums;
 mod taped;
 
 use std::rc::Rc;
 
-use super::audit::{Audit, Force};
-use super::block::Phase;
+use super::audit::Audit;
 use super::budget;
-use super::cholesky::Cholesky;
 use super::contact::{Relative, Side};
-use super::contact_state::{contact_damping, dampings};
-use super::extremes;
+use super::contact_state::dampings;
 use super::flow::{DrivePhase, Flow};
-use super::guards::{self, Contacts, Slipped};
-use super::integral::{self, quadrature};
+use super::guards::Slipped;
 use super::mobility::Mobilities;
 use super::motion::{self, Fundamental, Tape};
 use super::parabola::Parabola;
-use super::reach::Watched;
-use super::search::{Clarity, Found, Search};
-use super::signals::{self, Signals};
+use super::reach::{self, OutOfReach};
+use super::search::{Clarity, Search};
+use super::signals::Signals;
 use super::states::States;
-use super::system::{Contact, Event, EventKind, HybridSystem, Law, Particle, Tick, dot};
-use super::trace::{Sample, SampledParticle};
+use super::system::{Contact, Event, EventKind, HybridSystem, Particle, Tick, dot};
 use super::visits::Visits;
 use super::{Averaged, CycleRates, EngineError, Observed, Options, Proof, Response, Until};
 use half_cycles::Half;
-
-/// Events at one instant beyond which contacts are left alone for a moment, as they undo each other.
-const MOST_EVENTS_AT_AN_INSTANT: u32 = 64;
-
-/// The same within a moment, in periods, so short that what happens in it may be rounding: a structure that is just set in motion hardly
-/// moves, and each event rounds its places anew.
-const MOST_EVENTS_IN_A_MOMENT: u32 = 256;
-const MOMENT: f64 = 1e-12;
-
-/// The longest time, in periods, for which contacts that do not settle are left alone.
-const LONGEST_BLINK: f64 = 1e-9;
-
-/// Panels that an integral may take before closed forms are cheaper, where a contact state is hardly ever visited twice.
-const FEW_PANELS: usize = 16;
-
-/// How the observed signals are integrated over a segment.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Integration {
-    /// From the ends of the visits of a contact state.
-    ByEnds,
-    /// Each by panels.
-    ByPanels,
-    /// By the few panels that half cycles integrate the acceleration by.
-    Together,
-}
 
 /// A run in progress.
 pub(crate) struct March<'a, const TAPED: bool> {
@@ -81,6 +54,8 @@ pub(crate) struct March<'a, const TAPED: bool> {
     slipped: Option<Slipped>,
     /// Some floor and ceiling do not move as one.
     has_walls: bool,
+    /// No error dies away.
+    undamped: bool,
     /// A time in which nothing can have moved, s.
     nothing: f64,
     averaged: Averaged,
@@ -132,6 +107,7 @@ impl<'a, const TAPED: bool> March<'a, TAPED> {
         let mut damping = Vec::new();
         dampings(system, &contacts, equivalent, &mut damping);
         let flow = states.flow(system, &contacts, &damping)?;
+        let answer = states.ground().answer(system)?.to_vec();
         let mut march = Self {
             system,
             options,
@@ -146,6 +122,7 @@ impl<'a, const TAPED: bool> March<'a, TAPED> {
             smooth: vec![false; count],
             slipped: None,
             has_walls: system.particles.iter().any(Particle::has_walls),
+            undamped: system.is_undamped(),
             nothing: f64::EPSILON * f64::EPSILON * system.drive.period,
             averaged: options.averaged(),
             cycle: 0,
@@ -155,7 +132,7 @@ impl<'a, const TAPED: bool> March<'a, TAPED> {
             search: Search::new(options.window_factor),
             paths: vec![Parabola::default(); count],
             signals: Signals::default(),
-            answer: Cholesky::new(&system.mass)?.solve(&system.force_row),
+            answer,
             sudden: false,
             changed: true,
             mobilities: Mobilities::default(),
@@ -384,343 +361,6 @@ impl<'a, const TAPED: bool> March<'a, TAPED> {
             self.response.events.push(Event { cycle: self.cycle, time, particle, kind, approach, departure });
         }
     }
-
-    /// Damping of the face that particle j's contact refers to, N s/m.
-    fn damping_at(&self, j: usize) -> f64 {
-        contact_damping(self.system, &self.contacts, j, self.equivalent)
-    }
-
-    /// Makes the flow of the contact state in force current, building it at the first visit.
-    fn choose_flow(&mut self) -> Result<(), EngineError> {
-        if !self.changed {
-            return Ok(());
-        }
-        self.changed = false;
-        if self.has_walls {
-            dampings(self.system, &self.contacts, self.equivalent, &mut self.damping);
-        } else {
-            for j in 0..self.damping.len() {
-                self.damping[j] = self.damping_at(j);
-            }
-        }
-        if self.equivalent.is_some() {
-            // Which of many dampings are still known hangs on the runs before; what is summed up together must not.
-            self.pay_out();
-        }
-        self.flow = self.states.flow(self.system, &self.contacts, &self.damping)?;
-        let width = 2 * self.flow.blocks.len();
-        if self.c.len() < width {
-            self.c.resize(width, 0.0);
-            self.c_end.resize(width, 0.0);
-        }
-        let highest = &mut self.response.highest_frequency;
-        *highest = self.flow.natural_frequencies().fold(*highest, f64::max);
-        Ok(())
-    }
-
-    /// Block coordinates of the state in the flow in force.
-    fn enter_flow(&mut self, drive: DrivePhase) {
-        let flow = &self.flow;
-        let n = self.system.mass.order;
-        for (i, &j) in flow.modes.attached.iter().enumerate() {
-            self.q[n + i] = self.particles[j].gap;
-            self.rate[n + i] = self.particles[j].rate;
-        }
-        flow.enter(&self.q[..flow.order], &self.rate[..flow.order], self.level, drive, &mut self.c);
-    }
-
-    /// Propagates to `until` within the cycle, from event to event.
-    fn propagate_to(&mut self, until: f64) -> Result<(), EngineError> {
-        // Near the start of a cycle the clock counts finer than its instants can be told apart later.
-        let instant = f64::EPSILON * self.system.drive.period;
-        let longest = LONGEST_BLINK * self.system.drive.period;
-        let moment = MOMENT * self.system.drive.period;
-        let (mut stuck, mut flickers, mut blink) = (0, 0, instant);
-        let (mut last, mut begun) = (self.time, self.time);
-        while self.time < until {
-            self.segment(until)?;
-            if budget::spend(1) {
-                return Err(budget::overrun().into());
-            }
-            if self.time > last + instant {
-                blink = if self.time > last + longest { instant } else { blink };
-                (stuck, last) = (0, self.time);
-                if self.time > begun + moment {
-                    (flickers, begun) = (0, self.time);
-                }
-            }
-            stuck += 1;
-            flickers += 1;
-            if stuck > MOST_EVENTS_AT_AN_INSTANT || flickers > MOST_EVENTS_IN_A_MOMENT {
-                let short = blink > 0.0 && blink <= longest;
-                if !short || self.squeezed().is_some() {
-                    return Err(self.no_progress());
-                }
-                self.blink(until.min(self.time + blink))?;
-                (stuck, flickers, last, blink) = (0, 0, self.time, 2.0 * blink);
-            }
-        }
-        Ok(())
-    }
-
-    /// To the next event.
-    fn segment(&mut self, until: f64) -> Result<(), EngineError> {
-        self.set_guards()?;
-        self.follow(until)
-    }
-
-    /// Goes on without a look at the contacts, for so short a time that rounding moves them as far: what they do at this instant
-    /// is rounding, and one of them undoes what another one does.
-    #[cold]
-    fn blink(&mut self, until: f64) -> Result<(), EngineError> {
-        self.set_guards()?;
-        self.search.guards.clear();
-        self.clarity.ties += 1;
-        self.follow(until)
-    }
-
-    #[inline]
-    fn set_guards(&mut self) -> Result<(), EngineError> {
-        self.choose_flow()?;
-        let drive = self.drive_phase(self.time);
-        self.enter_flow(drive);
-        self.flow.watch(&self.c, self.level, &mut self.signals);
-        self.turn_half_cycle()?;
-        let flow = &self.flow;
-        let state = Contacts {
-            system: self.system,
-            contacts: &self.contacts,
-            particles: &self.particles,
-            damping: &self.damping,
-            smooth: &self.smooth,
-            slipped: self.slipped,
-            q: &self.q,
-            rate: &self.rate,
-        };
-        guards::set(state, flow, &self.signals, &mut self.search, &mut self.paths);
-        if let (Some(bend), false) = (flow.rows.bend, self.half.idle) {
-            guards::half_cycle(bend, self.half.sign, self.half.touching, &mut self.search);
-        }
-        Ok(())
-    }
-
-    /// Follows the flow to the first of the guards that are set.
-    #[inline]
-    fn follow(&mut self, until: f64) -> Result<(), EngineError> {
-        let (flow, drive) = (&self.flow, self.phase);
-        let limit = (until - self.time).min(flow.lasts());
-        let found = self.search.run(flow, &self.signals, limit, &mut self.clarity);
-        let length = match found {
-            Found::Nothing => limit,
-            Found::Event { time, .. } => time.min(limit),
-        };
-        let end_drive = match self.system.drive.harmonic {
-            None => drive,
-            Some(_) => self.drive_phase(self.time + length),
-        };
-        self.flow.advance(&self.search.kernels, &self.c, end_drive, &mut self.c_end);
-        self.sum_up(length, drive);
-        if TAPED {
-            self.tape.flow(&self.flow, length);
-        }
-        self.sample(length);
-        self.arrive(length, end_drive);
-        self.time = match found {
-            Found::Nothing if limit < until - self.time => self.time + limit,
-            Found::Nothing => until,
-            Found::Event { .. } => self.time + length,
-        };
-        if let Found::Event { guard, .. } = found {
-            let super::search::Guard { particle, crossing, .. } = self.search.guards[guard];
-            self.sudden = length == 0.0;
-            if TAPED {
-                self.cross_taped(particle, crossing)?;
-            } else {
-                self.cross(particle, crossing)?;
-            }
-        }
-        Ok(())
-    }
-
-    /// The state at the end of a segment.
-    fn arrive(&mut self, length: f64, end_drive: DrivePhase) {
-        let n = self.system.mass.order;
-        let flow = &self.flow;
-        let mut kept = Vec::new();
-        if self.has_walls && length > self.nothing {
-            self.slipped = None;
-        }
-        for (j, particle) in self.system.particles.iter().enumerate() {
-            let contact = self.contacts[j];
-            if contact.face(particle).is_none() {
-                if self.smooth[j]
-                    && flow.is_short(length)
-                    && let Some(side) = self.lies_at(j)
-                {
-                    // Let go at the same instant as another: u = u‴t³/6 is still nothing, and is kept so to the bit.
-                    kept.push((j, side));
-                    continue;
-                }
-                let (phases, _) = self.signals.of(flow.rows.guards[j].first);
-                let here = self.particles[j];
-                self.particles[j] = guards::fly(flow, self.paths[j], phases, here, &self.search.kernels, length);
-            }
-            // What has begun at zero is there no longer.
-            self.smooth[j] &= length <= self.nothing;
-        }
-        flow.leave(&self.c_end, length, self.level, end_drive, &mut self.q, &mut self.rate);
-        for (j, side) in kept {
-            self.particles[j] = Relative::default();
-            if side == Side::Ceiling {
-                self.refer_to_floor(j);
-            }
-        }
-        let flow = &self.flow;
-        let short = guards::is_short(flow, length);
-        for (i, &j) in flow.modes.attached.iter().enumerate() {
-            self.particles[j] = match flow.rows.faces[j].compression {
-                Some(_) if short => {
-                    let (phases, rest) = self.signals.of(flow.rows.guards[j].first);
-                    guards::creep(flow, 2.0 * rest.p2, 1.0, phases, self.particles[j], length)
-                }
-                _ => Relative { gap: self.q[n + i], rate: self.rate[n + i] },
-            };
-        }
-    }
-
-    /// Adds the segment to the measures, and to the audit if there is one.
-    fn sum_up(&mut self, length: f64, drive: DrivePhase) {
-        if self.averaged.holds(self.cycle) {
-            let half = self.averaged.half(self.cycle);
-            if self.visits.half != half || self.visits.is_full() {
-                self.pay_out();
-                self.visits.half = half;
-            }
-            let integration = self.integration(length);
-            if integration == Integration::ByEnds {
-                self.visits.of(&self.flow).visit(&self.c, &self.c_end, self.level, length);
-            }
-            if integration == Integration::ByPanels || self.options.extremes {
-                self.look_along(length);
-            }
-        }
-        let flow = &self.flow;
-        let first_audited = self.first_audited();
-        if let Some(audit) = &mut self.audit
-            && self.cycle >= first_audited
-        {
-            audit.segment(self.system, flow, &self.c, &self.search.kernels, Force { level: self.level, drive }, length);
-        }
-        if flow.rows.bend.is_some() {
-            self.sum_up_half_cycle(length);
-        }
-    }
-
-    /// The integrals are differences of end values: not of motion without damping, nor between jumps of the force that follow
-    /// each other within a small part of the slowest turn; nor over the few turns for which half cycles leave a contact state as
-    /// it is, where panels are cheaper than the equations of its blocks.
-    fn integration(&self, length: f64) -> Integration {
-        let drive = &self.system.drive;
-        if self.equivalent.is_some() && integral::panels(&self.flow.blocks, length) <= FEW_PANELS {
-            Integration::Together
-        } else if self.flow.closed().is_some() && !self.flow.is_brief(drive.period / drive.ticks.len().max(1) as f64) {
-            Integration::ByEnds
-        } else {
-            Integration::ByPanels
-        }
-    }
-
-    /// What has to be taken from the observed signals themselves.
-    fn look_along(&mut self, length: f64) {
-        let sampled = length > 0.0 && self.integration(length) == Integration::ByPanels;
-        let flow = &self.flow;
-        for (of, &row) in self.response.observed.iter_mut().zip(&flow.rows.observed) {
-            let (observed, rest) = flow.rows.evaluate(row, &self.c, self.level, flow.blocks.len());
-            if sampled {
-                of.halves[self.visits.half].add(quadrature(&flow.blocks, &flow.bank, &observed, rest, length));
-            }
-            if self.options.extremes {
-                extremes::take(&mut of.extremes, &flow.blocks, &observed, rest, length);
-            }
-        }
-    }
-
-    fn pay_out(&mut self) {
-        self.visits.pay_out(self.options.displacement, &mut self.response.observed);
-    }
-
-    fn audit_state(&self) -> super::audit::State {
-        super::audit::State {
-            q: self.q[..self.system.mass.order].to_vec(),
-            rate: self.rate[..self.system.mass.order].to_vec(),
-            particles: (0..self.particles.len()).map(|j| self.absolute(j)).collect(),
-            compressions: (0..self.particles.len())
-                .map(|j| match side_stiffness(self.system, &self.contacts, j) {
-                    Some(stiffness) => [stiffness, self.particles[j].gap],
-                    None => [0.0, 0.0],
-                })
-                .collect(),
-            across: (0..self.particles.len()).filter_map(|j| self.stored_across(j)).collect(),
-        }
-    }
-
-    /// Samples of the time history that fall into the segment.
-    fn sample(&mut self, length: f64) {
-        let Some(request) = self.options.trace else { return };
-        if !request.covers(self.cycle) {
-            return;
-        }
-        let flow = &self.flow;
-        let period = self.system.drive.period;
-        let mut kernels = Vec::with_capacity(flow.blocks.len());
-        for i in request.next_sample(self.time, period).. {
-            let instant = request.instant(i, period);
-            let t = instant - self.time;
-            if t > length || (t >= length && instant >= period) {
-                break;
-            }
-            kernels.clear();
-            kernels.extend(flow.blocks.iter().map(|block| block.kernel(t)));
-            let value = |(phases, rest): (&[Phase], Parabola)| signals::value(&flow.blocks, phases, rest, &kernels, t);
-            let anywhere = |row: usize| {
-                let (phases, rest) = flow.rows.evaluate(row, &self.c, self.level, flow.blocks.len());
-                value((&phases, rest))
-            };
-            let [displacement, velocity, acceleration] = anywhere(flow.rows.observed[0]);
-            let sampled = |(j, particle): (usize, &Particle)| {
-                let contact = self.contacts[j];
-                let faces = [Side::Floor, Side::Ceiling].map(|side| anywhere(flow.rows.face(j, side))[0]);
-                let gap = match (contact.face(particle), flow.rows.faces[j].compression) {
-                    (None, _) => {
-                        let (phases, here) = (self.signals.of(flow.rows.guards[j].first).0, self.particles[j]);
-                        guards::fly(flow, self.paths[j], phases, here, &kernels, t).gap
-                    }
-                    (Some(_), Some(compression)) => anywhere(compression)[0],
-                    (Some(_), None) => self.particles[j].gap,
-                };
-                SampledParticle::new(particle, contact, faces, gap)
-            };
-            let sample = Sample {
-                time: self.cycle as f64 * period + instant,
-                displacement,
-                velocity,
-                acceleration,
-                damping: self.equivalent.or(self.damping.first().copied()).unwrap_or(0.0),
-                half_cycle_rms: self.half.last,
-                particles: self.system.particles.iter().enumerate().map(sampled).collect(),
-            };
-            self.response.trace.push(sample);
-        }
-    }
-}
-
-fn side_stiffness(system: &HybridSystem, contacts: &[Contact], j: usize) -> Option<f64> {
-    let contact = contacts[j];
-    let face = contact.face(&system.particles[j])?;
-    match face.law {
-        Law::Resilient { stiffness, .. } => Some(stiffness),
-        Law::Rigid { .. } => None,
-    }
 }
 
 /// Runs a system.
@@ -728,15 +368,35 @@ pub(crate) fn march(system: &HybridSystem, options: &Options, states: States) ->
     if options.is_taped() {
         return Ok(taped(system, options, states)?.0);
     }
+    // A time history shows ceilings, whether anything meets them or not.
+    let mut far = if options.trace.is_none() { reach::far(system, options, &states) } else { Vec::new() };
+    let spent = budget::events();
+    let response = without(system, options, states, &far)?;
+    // What is out of reach by less than the smallest margin may be nearer than all that decided it: the same run once more tells.
+    let sharp = response.proof.smallest_margin;
+    if far.iter().all(|far| sharp <= far.room()) {
+        return Ok(response);
+    }
+    far.retain(|far| sharp <= far.room());
+    budget::go_back_to(spent);
+    without(system, options, States::of(system), &far)
+}
+
+/// Runs a system without what it cannot reach.
+fn without(
+    system: &HybridSystem,
+    options: &Options,
+    states: States,
+    far: &[OutOfReach],
+) -> Result<Response, EngineError> {
+    if far.is_empty() {
+        return March::<false>::new(system, options, states)?.run();
+    }
     let has_walls = |system: &HybridSystem| system.particles.iter().any(Particle::has_walls);
-    let walls = has_walls(system);
-    let Watched { system, clearance } = Watched::of(system, options);
+    let less = states.ground().without(system, far);
     // What is known of a contact state depends on walls, not on stops nor on a ceiling that moves with its floor.
-    let states = if has_walls(&system) == walls { states } else { States::of(&system) };
-    let mut response = March::<false>::new(&system, options, states)?.run()?;
-    let margin = &mut response.proof.smallest_margin;
-    *margin = margin.min(clearance);
-    Ok(response)
+    let states = if has_walls(&less) == has_walls(system) { states } else { States::of(&less) };
+    March::<false>::new(&less, options, states)?.run()
 }
 
 /// The fundamental matrix of the averaged cycles.

@@ -13,7 +13,7 @@
 //! | `reach` | stops and ceilings that a bound on the energy keeps out of the search |
 //! | `contact`, `collision`, `mobility` | what an event leads to |
 //! | `flow`, `load`, `signals`, `parabola`, `series` | exact motion of one contact state, and what is watched of it |
-//! | `contact_state`, `modes`, `spectral`, `cluster`, `resonance`, `schur`, `block`, `bank` | its equations, split into 2 × 2 blocks |
+//! | `contact_state`, `modes`, `undamped`, `spectral`, `cluster`, `resonance`, `schur`, `block`, `bank` | its equations, split into 2 × 2 blocks |
 //! | `gains`, `integral`, `lyapunov` | its integrals in closed form, by quadrature where that would lose digits |
 //! | `audit`, `dissipation`, `residual_bound` | momentum and energy, balanced by other means |
 //! | `motion` | which kind of motion a run ends in: multipliers, exponents |
@@ -21,7 +21,7 @@
 //! | `linear` | a run in which no event can happen, in closed form |
 //! | `fixed` | a fixed-step scheme, to show what the time step does to a published result |
 //! | `budget` | what a run may take |
-//! | `cholesky`, `elementary`, `lanes` | arithmetic |
+//! | `cholesky`, `elementary`, `exact`, `lanes` | arithmetic |
 //!
 //! The engine knows no beam, no YAML and no file. It works with dense matrices of a hundred modes or so, not with large
 //! sparse systems.
@@ -42,6 +42,7 @@ mod contact_state;
 mod dissipation;
 mod elementary;
 mod error;
+mod exact;
 mod extremes;
 mod fixed;
 mod flow;
@@ -77,6 +78,7 @@ mod steady_state;
 mod sums;
 mod system;
 mod trace;
+mod undamped;
 mod visits;
 mod window;
 

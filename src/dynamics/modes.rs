@@ -11,18 +11,49 @@ use super::cholesky::Cholesky;
 use super::schur::Iteration;
 use super::spectral::Spectral;
 use super::system::Matrix;
+use super::undamped;
 
 /// Splits (p, p′) with p″ = (`accelerations`) (p, p′) and the mass matrix `mass` of p into blocks: V, row by row, and
 /// W = V⁻¹, column by column.
-pub(crate) fn split(accelerations: &[Vec<f64>], mass: &Matrix, iteration: Iteration) -> Result<Spectral, EngineError> {
+///
+/// `stiffness` is that of p where no dashpot acts.
+pub(crate) fn split(
+    accelerations: &[Vec<f64>],
+    mass: &Matrix,
+    stiffness: Option<&Matrix>,
+    iteration: Iteration,
+) -> Result<Spectral, EngineError> {
     let order = accelerations.len();
     let size = 2 * order;
     let free = |i: usize| accelerations.iter().all(|row| row[i] == 0.0 && row[order + i] == 0.0);
     let (rigid, elastic): (Vec<usize>, Vec<usize>) = (0..order).partition(|&i| free(i));
     let count = elastic.len();
 
+    // shift = M_rr⁻¹ M_re, column by column.
+    let own = Matrix {
+        order: rigid.len(),
+        entries: rigid.iter().flat_map(|&i| rigid.iter().map(move |&j| mass.at(i, j))).collect(),
+    };
+    let solve = Cholesky::new(&own)?;
+    let shift: Vec<Vec<f64>> =
+        elastic.iter().map(|&j| solve.solve(&rigid.iter().map(|&i| mass.at(i, j)).collect::<Vec<_>>())).collect();
+
+    let undamped = stiffness.filter(|_| count > 0).and_then(|stiffness| {
+        let chosen = |entry: &dyn Fn(usize, usize) -> f64| Matrix {
+            order: count,
+            entries: (0..count * count).map(|at| entry(at / count, at % count)).collect(),
+        };
+        // What rigid bodies leave of the masses: M_ee − M_er M_rr⁻¹ M_re.
+        let left = |i: usize, j: usize| {
+            let own = rigid.iter().zip(&shift[j]);
+            own.fold(mass.at(elastic[i], elastic[j]), |sum, (&r, shift)| sum - mass.at(elastic[i], r) * shift)
+        };
+        undamped::split(&chosen(&|i, j| stiffness.at(elastic[i], elastic[j])), &chosen(&left))
+    });
+
     // Lengths are scaled by frequencies, so that the matrix is of one magnitude: (Ω e, e′).
-    let frequency: Vec<f64> = elastic.iter().map(|&i| scale(accelerations[i][i])).collect();
+    let unit = |&i: &usize| if undamped.is_some() { 1.0 } else { scale(accelerations[i][i]) };
+    let frequency: Vec<f64> = elastic.iter().map(unit).collect();
     let mut matrix = vec![0.0; 4 * count * count];
     for (i, &row) in elastic.iter().enumerate() {
         matrix[i * 2 * count + count + i] = frequency[i];
@@ -31,7 +62,11 @@ pub(crate) fn split(accelerations: &[Vec<f64>], mass: &Matrix, iteration: Iterat
             matrix[(count + i) * 2 * count + count + j] = accelerations[row][order + column];
         }
     }
-    let inner = if count > 0 { Spectral::split(2 * count, &matrix, iteration)? } else { Spectral::default() };
+    let inner = match undamped {
+        Some(undamped) => undamped,
+        None if count > 0 => Spectral::split(2 * count, &matrix, iteration)?,
+        None => Spectral::default(),
+    };
 
     let (within, width) = (inner.width(), inner.width() + 2 * rigid.len());
     let mut modes = Spectral {
@@ -54,14 +89,6 @@ pub(crate) fn split(accelerations: &[Vec<f64>], mass: &Matrix, iteration: Iterat
         return Ok(modes);
     }
 
-    // shift = M_rr⁻¹ M_re, column by column.
-    let own = Matrix {
-        order: rigid.len(),
-        entries: rigid.iter().flat_map(|&i| rigid.iter().map(move |&j| mass.at(i, j))).collect(),
-    };
-    let solve = Cholesky::new(&own)?;
-    let shift: Vec<Vec<f64>> =
-        elastic.iter().map(|&j| solve.solve(&rigid.iter().map(|&i| mass.at(i, j)).collect::<Vec<_>>())).collect();
     for (r, &row) in rigid.iter().enumerate() {
         for half in 0..2 {
             let column = within + 2 * r + half;

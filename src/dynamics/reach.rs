@@ -13,11 +13,14 @@
 //! the last with ρ = φ_c − φ_f where the ceiling does not move as the floor does. R grows with every cycle that is driven: the
 //! bound serves far surfaces, short runs and single impulses.
 
-use std::borrow::Cow;
+use std::cell::{OnceCell, RefCell};
+use std::rc::Rc;
 
+use super::EngineError;
 use super::cholesky::Cholesky;
 use super::contact::Side;
 use super::options::{Options, StartState, Until};
+use super::states::States;
 use super::system::{Drive, Face, HybridSystem, Law, Matrix, Particle, dot};
 
 /// What rounding may add to a bound, relative to it.
@@ -47,25 +50,85 @@ pub struct OutOfReach {
     pub reach: f64,
 }
 
-/// A system as a run needs it.
-pub(crate) struct Watched<'a> {
-    /// Without what is out of reach.
-    pub(crate) system: Cow<'a, HybridSystem>,
-    /// By how much that is out of reach, m; the smallest margin of the run is no larger.
-    pub(crate) clearance: f64,
+impl OutOfReach {
+    /// How far the particle stays away from it at least, m.
+    pub(crate) fn room(&self) -> f64 {
+        self.distance - self.reach
+    }
 }
 
-impl<'a> Watched<'a> {
-    /// A time history shows ceilings, whether anything meets them or not.
-    pub(crate) fn of(system: &'a HybridSystem, options: &Options) -> Self {
-        let mut watched = Self { system: Cow::Borrowed(system), clearance: f64::INFINITY };
-        for OutOfReach { particle, surface, distance, reach } in out_of_reach(system, options) {
-            watched.clearance = watched.clearance.min(distance - reach);
-            if options.trace.is_none() {
-                drop_surface(&mut watched.system.to_mut().particles[particle], surface);
-            }
+/// What the bound takes from a system whatever its gaps and the size of its drive: kept with its contact states, so that an ensemble
+/// works it out once.
+#[derive(Default)]
+pub(crate) struct Ground {
+    answer: OnceCell<Vec<f64>>,
+    stiffness: OnceCell<Option<Cholesky>>,
+    sag: OnceCell<Option<Sag>>,
+    takes: OnceCell<bool>,
+    /// The last system that was run with less than all its surfaces.
+    less: RefCell<Option<Rc<HybridSystem>>>,
+}
+
+/// What the weights of all particles do to a structure at rest.
+struct Sag {
+    /// Σ mg φ_f.
+    weights: Vec<f64>,
+    /// How far they sink it.
+    places: Vec<f64>,
+}
+
+impl Ground {
+    /// M⁻¹b: what a unit impulse does to q′.
+    pub(crate) fn answer(&self, system: &HybridSystem) -> Result<&[f64], EngineError> {
+        if let Some(answer) = self.answer.get() {
+            return Ok(answer);
         }
-        watched
+        let answer = Cholesky::new(&system.mass)?.solve(&system.force_row);
+        Ok(self.answer.get_or_init(|| answer))
+    }
+
+    /// The factor of K, where it holds up any load.
+    fn stiffness(&self, system: &HybridSystem) -> Option<&Cholesky> {
+        self.stiffness.get_or_init(|| Cholesky::new(&system.stiffness).ok()).as_ref()
+    }
+
+    fn sag(&self, system: &HybridSystem) -> Option<&Sag> {
+        let sag = || {
+            let mut weights = vec![0.0; system.mass.order];
+            for particle in &system.particles {
+                let weight = particle.mass * system.gravity;
+                weights.iter_mut().zip(&particle.floor.row).for_each(|(sum, phi)| *sum += weight * phi);
+            }
+            let places = self.stiffness(system)?.solve(&weights);
+            Some(Sag { weights, places })
+        };
+        self.sag.get_or_init(sag).as_ref()
+    }
+
+    /// A system without these surfaces.
+    pub(crate) fn without(&self, system: &HybridSystem, far: &[OutOfReach]) -> Rc<HybridSystem> {
+        let mut particles = system.particles.clone();
+        far.iter().for_each(|far| drop_surface(&mut particles[far.particle], far.surface));
+        let mut last = self.less.borrow_mut();
+        if let Some(less) = last.as_ref().filter(|less| less.particles == particles && less.is_as_driven_as(system)) {
+            return Rc::clone(less);
+        }
+        let less = Rc::new(HybridSystem { particles, ..system.clone() });
+        *last = Some(Rc::clone(&less));
+        less
+    }
+
+    /// Neither springs nor dashpots of the structure give energy.
+    fn takes(&self, system: &HybridSystem) -> bool {
+        *self.takes.get_or_init(|| {
+            // Nothing holds up a structure without springs that carries weights.
+            let springs = if system.gravity > 0.0 {
+                self.stiffness(system).is_some()
+            } else {
+                system.gravity == 0.0 && takes(&system.stiffness, &system.mass)
+            };
+            springs && takes(&system.damping, &system.mass)
+        })
     }
 }
 
@@ -85,20 +148,25 @@ fn drop_surface(particle: &mut Particle, surface: FarSurface) {
 /// The ceilings and limit stops that a run from event to event cannot reach; it does without their guards.
 #[must_use]
 pub fn out_of_reach(system: &HybridSystem, options: &Options) -> Vec<OutOfReach> {
+    far(system, options, &States::of(system))
+}
+
+/// The same of a system whose states are known.
+pub(crate) fn far(system: &HybridSystem, options: &Options, states: &States) -> Vec<OutOfReach> {
     let bounded =
         system.particles.iter().any(|particle| particle.ceiling.is_some() || particle.floor.law.stop().is_some());
     // How many cycles a run takes that settles is not known before.
     if !bounded || options.until == Until::Settled {
         return Vec::new();
     }
-    prove(system, options).unwrap_or_default()
+    prove(system, options, states.ground()).unwrap_or_default()
 }
 
-fn prove(system: &HybridSystem, options: &Options) -> Option<Vec<OutOfReach>> {
-    let answer = Cholesky::new(&system.mass).ok()?.solve(&system.force_row);
-    let driven = dot(&system.force_row, &answer).sqrt() * passed(&system.drive, options);
+fn prove(system: &HybridSystem, options: &Options, ground: &Ground) -> Option<Vec<OutOfReach>> {
+    let answer = ground.answer(system).ok()?;
+    let driven = dot(&system.force_row, answer).sqrt() * passed(&system.drive, options);
     // From rest nearly all are within reach, and most runs need no more than that.
-    let mut far = beyond(system, driven)?;
+    let mut far = beyond(system, ground, driven)?;
     if far.is_empty() {
         return None;
     }
@@ -108,9 +176,9 @@ fn prove(system: &HybridSystem, options: &Options) -> Option<Vec<OutOfReach>> {
             let offset = if contact.side() == Side::Ceiling { particle.gap } else { 0.0 };
             [dot(&face.row, q) + offset + gap, dot(&face.row, rate) + speed]
         });
-        far = beyond(system, driven + (2.0 * above_rest(system, q, rate, above)?).sqrt())?;
+        far = beyond(system, ground, driven + (2.0 * above_rest(system, ground, q, rate, above)?).sqrt())?;
     }
-    takes_energy(system, &far).then_some(far)
+    takes_energy(system, ground, &far).then_some(far)
 }
 
 /// Σ|J| + ∫|F| dt of a whole run.
@@ -129,6 +197,7 @@ fn passed(drive: &Drive, options: &Options) -> f64 {
 /// H of a state, of whose particles y and y′ are given.
 fn above_rest(
     system: &HybridSystem,
+    ground: &Ground,
     q: &[f64],
     rate: &[f64],
     particles: impl Iterator<Item = [f64; 2]>,
@@ -150,20 +219,9 @@ fn above_rest(
         }
         energy += 0.5 * weight * sunk(particle, system.gravity);
     }
-    let (weights, sag) = sag(system)?;
-    energy += 0.5 * dot(&weights, &sag);
+    let Sag { weights, places } = ground.sag(system)?;
+    energy += 0.5 * dot(weights, places);
     Some((energy + ROUNDING * size).max(0.0))
-}
-
-/// Σ mg φ_f, and how far the structure sinks under it.
-fn sag(system: &HybridSystem) -> Option<(Vec<f64>, Vec<f64>)> {
-    let mut weights = vec![0.0; system.mass.order];
-    for particle in &system.particles {
-        let weight = particle.mass * system.gravity;
-        weights.iter_mut().zip(&particle.floor.row).for_each(|(sum, phi)| *sum += weight * phi);
-    }
-    let sag = Cholesky::new(&system.stiffness).ok()?.solve(&weights);
-    Some((weights, sag))
 }
 
 /// mg/k: how far a particle sinks into its floor.
@@ -175,7 +233,7 @@ fn sunk(particle: &Particle, gravity: f64) -> f64 {
 }
 
 /// What is beyond the reach of motions with √(2H) ≤ `most`.
-fn beyond(system: &HybridSystem, most: f64) -> Option<Vec<OutOfReach>> {
+fn beyond(system: &HybridSystem, ground: &Ground, most: f64) -> Option<Vec<OutOfReach>> {
     let mut far = Vec::new();
     for (j, particle) in system.particles.iter().enumerate() {
         let mut look = |surface: FarSurface, distance: f64, reach: f64| {
@@ -194,7 +252,7 @@ fn beyond(system: &HybridSystem, most: f64) -> Option<Vec<OutOfReach>> {
         let Some(ceiling) = &particle.ceiling else { continue };
         let height = 0.5 * most * most / (particle.mass * system.gravity);
         if height < particle.gap {
-            look(FarSurface::Ceiling, particle.gap, height + approach(system, particle, ceiling, most)?);
+            look(FarSurface::Ceiling, particle.gap, height + approach(system, ground, particle, ceiling, most)?);
         }
         if let Some(stop) = ceiling.law.stop() {
             look(FarSurface::CeilingStop, stop.length, compression(ceiling));
@@ -204,19 +262,18 @@ fn beyond(system: &HybridSystem, most: f64) -> Option<Vec<OutOfReach>> {
 }
 
 /// How far a ceiling comes down to its floor.
-fn approach(system: &HybridSystem, particle: &Particle, ceiling: &Face, most: f64) -> Option<f64> {
+fn approach(system: &HybridSystem, ground: &Ground, particle: &Particle, ceiling: &Face, most: f64) -> Option<f64> {
     if ceiling.row == particle.floor.row {
         return Some(0.0);
     }
     let between: Vec<f64> = ceiling.row.iter().zip(&particle.floor.row).map(|(above, below)| above - below).collect();
-    let yielding = Cholesky::new(&system.stiffness).ok()?.solve(&between);
-    let (_, sag) = sag(system)?;
-    Some(most * dot(&between, &yielding).sqrt() + dot(&between, &sag).abs())
+    let yielding = ground.stiffness(system)?.solve(&between);
+    Some(most * dot(&between, &yielding).sqrt() + dot(&between, &ground.sag(system)?.places).abs())
 }
 
 /// Nothing but the drive gives energy, as long as what is `far` is not met. Of several impacts at one instant, by Newton's
 /// restitution, that holds where they are plastic.
-fn takes_energy(system: &HybridSystem, far: &[OutOfReach]) -> bool {
+fn takes_energy(system: &HybridSystem, ground: &Ground, far: &[OutOfReach]) -> bool {
     let is_far = |j: usize, surface: FarSurface| far.iter().any(|of| of.particle == j && of.surface == surface);
     let (mut strikers, mut bounces) = (0, false);
     for (j, particle) in system.particles.iter().enumerate() {
@@ -238,13 +295,7 @@ fn takes_energy(system: &HybridSystem, far: &[OutOfReach]) -> bool {
         strikers += u32::from(strikes);
     }
     let renewed = system.drive.half_cycles.as_ref().is_none_or(|half| half.curve.lowest()[1] >= 0.0);
-    // Nothing holds up a structure without springs that carries weights.
-    let springs = if system.gravity > 0.0 {
-        Cholesky::new(&system.stiffness).is_ok()
-    } else {
-        system.gravity == 0.0 && takes(&system.stiffness, &system.mass)
-    };
-    renewed && springs && (strikers < 2 || !bounces) && takes(&system.damping, &system.mass)
+    renewed && (strikers < 2 || !bounces) && ground.takes(system)
 }
 
 /// No motion gains energy from such springs or dashpots: with a rounding of themselves as a share of M they are positive.

@@ -121,6 +121,17 @@ impl Row {
         }
     }
 
+    /// The sum of all shares.
+    #[inline]
+    pub(crate) fn shares(&self, c: &[f64]) -> Phase {
+        let mut sum = Phase::default();
+        for (&[v0, v1, r0, r1], &[x, y]) in self.weights.iter().zip(c.as_chunks::<2>().0) {
+            sum.value += v0 * x + v1 * y;
+            sum.rate += r0 * x + r1 * y;
+        }
+        sum
+    }
+
     #[inline(always)]
     fn evaluate(&self, c: &[f64], force: f64, phases: &mut [Phase]) -> Parabola {
         for ((&[v0, v1, r0, r1], &[x, y]), phase) in self.weights.iter().zip(c.as_chunks::<2>().0).zip(phases) {

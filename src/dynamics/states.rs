@@ -12,6 +12,7 @@ use super::EngineError;
 use super::budget;
 use super::contact_state::Modes;
 use super::flow::Flow;
+use super::reach::Ground;
 use super::system::{Contact, HybridSystem, Particle};
 
 /// Numbers that a thread keeps, about: 128 MB.
@@ -35,6 +36,7 @@ struct Driven {
     observed_rows: Vec<Vec<f64>>,
     half_cycles: bool,
     frequency: Option<f64>,
+    ground: Ground,
     flows: ByContact<Flow>,
 }
 
@@ -64,6 +66,11 @@ impl States {
             }
             Self(driven)
         })
+    }
+
+    /// What they are set on: masses, springs and the forcing point.
+    pub(crate) fn ground(&self) -> &Ground {
+        &self.0.ground
     }
 
     /// The flow of a contact state, built at the first visit.
@@ -119,6 +126,7 @@ impl Driven {
             observed_rows: system.observed_rows.clone(),
             half_cycles: system.drive.half_cycles.is_some(),
             frequency: system.drive.harmonic.map(|drive| drive.angular_frequency),
+            ground: Ground::default(),
             flows: ByContact::default(),
         }
     }

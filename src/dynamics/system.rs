@@ -74,6 +74,32 @@ pub struct HybridSystem {
     pub momentum_rows: Vec<Vec<f64>>,
 }
 
+impl HybridSystem {
+    /// They are the same but for their particles.
+    pub(crate) fn is_as_driven_as(&self, other: &Self) -> bool {
+        let Self { mass, damping, stiffness, gravity, particles: _, force_row, drive, observed_rows, momentum_rows } =
+            self;
+        *gravity == other.gravity
+            && *drive == other.drive
+            && *mass == other.mass
+            && *damping == other.damping
+            && *stiffness == other.stiffness
+            && *force_row == other.force_row
+            && *observed_rows == other.observed_rows
+            && *momentum_rows == other.momentum_rows
+    }
+
+    /// Neither the structure nor a floor takes energy. Ceilings and stops do not count: a run may do without them.
+    pub(crate) fn is_undamped(&self) -> bool {
+        let keeps = |particle: &Particle| match particle.floor.law {
+            Law::Rigid { restitution } => restitution == 1.0,
+            Law::Resilient { damping, .. } => damping == 0.0,
+        };
+        let still = self.damping.entries.iter().all(|entry| *entry == 0.0);
+        still && self.drive.half_cycles.is_none() && self.particles.iter().all(keeps)
+    }
+}
+
 /// A particle in its enclosure.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Particle {

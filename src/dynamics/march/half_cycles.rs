@@ -1,6 +1,7 @@
 //! Equivalent viscous damping: the half cycles of the observed acceleration, each of which sets the next one's dashpots.
 
-use super::{Integration, March};
+use super::March;
+use super::sums::Integration;
 use crate::dynamics::EngineError;
 use crate::dynamics::integral::{self, Integrand};
 use crate::dynamics::parabola::Parabola;

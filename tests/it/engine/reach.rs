@@ -66,6 +66,9 @@ pub(super) fn drawn_scenes_are_the_same_without_what_is_out_of_reach() {
             assert_eq!(sums(&less), sums(&kept), "seed {seed} × {farther}");
             assert_eq!(less.final_particles, kept.final_particles, "seed {seed} × {farther}");
             assert_eq!([less.proof.events, less.proof.ties], [kept.proof.events, kept.proof.ties], "seed {seed}");
+            let [sharp, margin] = [kept.proof.smallest_margin, less.proof.smallest_margin];
+            let off = if margin == sharp { 0.0 } else { (margin / sharp - 1.0).abs() };
+            assert!(off < 0.01, "seed {seed} × {farther}: margin {margin} instead of {sharp}");
         }
     }
     assert!(idle.iter().chain(&acting).all(|count| *count > 20), "out of reach {idle:?}, acting {acting:?}");

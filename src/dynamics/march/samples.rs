@@ -1,0 +1,60 @@
+//! The time history: samples of the segments that it covers.
+
+use super::March;
+use crate::dynamics::block::Phase;
+use crate::dynamics::contact::Side;
+use crate::dynamics::flow::DrivePhase;
+use crate::dynamics::guards;
+use crate::dynamics::parabola::Parabola;
+use crate::dynamics::signals;
+use crate::dynamics::system::Particle;
+use crate::dynamics::trace::{Sample, SampledParticle};
+
+impl<const TAPED: bool> March<'_, TAPED> {
+    /// Samples of the time history that fall into the segment.
+    pub(super) fn sample(&mut self, length: f64, drive: DrivePhase) {
+        let Some(request) = self.options.trace else { return };
+        if !request.covers(self.cycle) {
+            return;
+        }
+        let flow = &self.flow;
+        let period = self.system.drive.period;
+        let (mut kernels, mut c) = (Vec::with_capacity(flow.blocks.len()), self.c.clone());
+        for i in request.next_sample(self.time, period).. {
+            let instant = request.instant(i, period);
+            let t = instant - self.time;
+            if t > length || (t >= length && instant >= period) {
+                break;
+            }
+            kernels.clear();
+            kernels.extend(flow.blocks.iter().map(|block| block.kernel(t)));
+            flow.advance(&kernels, &self.c, flow.drive_after(drive, t), &mut c);
+            let value = |(phases, rest): (&[Phase], Parabola)| signals::value(&flow.blocks, phases, rest, &kernels, t);
+            let anywhere = |row: usize| {
+                let (phases, rest) = flow.rows.evaluate(row, &self.c, self.level, flow.blocks.len());
+                value((&phases, rest))
+            };
+            let [displacement, velocity, acceleration] = anywhere(flow.rows.observed[0]);
+            let sampled = |(j, particle): (usize, &Particle)| {
+                let contact = self.contacts[j];
+                let faces = [Side::Floor, Side::Ceiling].map(|side| anywhere(flow.rows.face(j, side))[0]);
+                let gap = match (contact.face(particle), flow.rows.faces[j].compression) {
+                    (None, _) => guards::fly(flow, j, self.paths[j], &self.signals, self.particles[j], &c, t).gap,
+                    (Some(_), Some(compression)) => anywhere(compression)[0],
+                    (Some(_), None) => self.particles[j].gap,
+                };
+                SampledParticle::new(particle, contact, faces, gap)
+            };
+            let sample = Sample {
+                time: self.cycle as f64 * period + instant,
+                displacement,
+                velocity,
+                acceleration,
+                damping: self.equivalent.or(self.damping.first().copied()).unwrap_or(0.0),
+                half_cycle_rms: self.half.last,
+                particles: self.system.particles.iter().enumerate().map(sampled).collect(),
+            };
+            self.response.trace.push(sample);
+        }
+    }
+}

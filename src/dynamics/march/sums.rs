@@ -1,0 +1,109 @@
+//! What a segment adds to the measures and to the audit.
+
+use super::March;
+use crate::dynamics::audit::{self, Force};
+use crate::dynamics::extremes;
+use crate::dynamics::flow::DrivePhase;
+use crate::dynamics::integral::{self, quadrature};
+use crate::dynamics::system::{Contact, HybridSystem, Law};
+
+/// Panels that an integral may take before closed forms are cheaper, where a contact state is hardly ever visited twice.
+const FEW_PANELS: usize = 16;
+
+/// How the observed signals are integrated over a segment.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Integration {
+    /// From the ends of the visits of a contact state.
+    ByEnds,
+    /// Each by panels.
+    ByPanels,
+    /// By the few panels that half cycles integrate the acceleration by.
+    Together,
+}
+
+impl<const TAPED: bool> March<'_, TAPED> {
+    /// Adds the segment to the measures, and to the audit if there is one.
+    pub(super) fn sum_up(&mut self, length: f64, drive: DrivePhase) {
+        if self.averaged.holds(self.cycle) {
+            let half = self.averaged.half(self.cycle);
+            if self.visits.half != half || self.visits.is_full() {
+                self.pay_out();
+                self.visits.half = half;
+            }
+            let integration = self.integration(length);
+            if integration == Integration::ByEnds {
+                self.visits.of(&self.flow).visit(&self.c, &self.c_end, self.level, length);
+            }
+            if integration == Integration::ByPanels || self.options.extremes {
+                self.look_along(length);
+            }
+        }
+        let flow = &self.flow;
+        let first_audited = self.first_audited();
+        if let Some(audit) = &mut self.audit
+            && self.cycle >= first_audited
+        {
+            audit.segment(self.system, flow, &self.c, &self.search.kernels, Force { level: self.level, drive }, length);
+        }
+        if flow.rows.bend.is_some() {
+            self.sum_up_half_cycle(length);
+        }
+    }
+
+    /// The integrals are differences of end values: not of motion without damping, nor between jumps of the force that follow
+    /// each other within a small part of the slowest turn; nor over the few turns for which half cycles leave a contact state as
+    /// it is, where panels are cheaper than the equations of its blocks.
+    pub(super) fn integration(&self, length: f64) -> Integration {
+        let drive = &self.system.drive;
+        if self.equivalent.is_some() && integral::panels(&self.flow.blocks, length) <= FEW_PANELS {
+            Integration::Together
+        } else if self.flow.closed().is_some() && !self.flow.is_brief(drive.period / drive.ticks.len().max(1) as f64) {
+            Integration::ByEnds
+        } else {
+            Integration::ByPanels
+        }
+    }
+
+    /// What has to be taken from the observed signals themselves.
+    fn look_along(&mut self, length: f64) {
+        let sampled = length > 0.0 && self.integration(length) == Integration::ByPanels;
+        let flow = &self.flow;
+        for (of, &row) in self.response.observed.iter_mut().zip(&flow.rows.observed) {
+            let (observed, rest) = flow.rows.evaluate(row, &self.c, self.level, flow.blocks.len());
+            if sampled {
+                of.halves[self.visits.half].add(quadrature(&flow.blocks, &flow.bank, &observed, rest, length));
+            }
+            if self.options.extremes {
+                extremes::take(&mut of.extremes, &flow.blocks, &observed, rest, length);
+            }
+        }
+    }
+
+    pub(super) fn pay_out(&mut self) {
+        self.visits.pay_out(self.options.displacement, &mut self.response.observed);
+    }
+
+    pub(super) fn audit_state(&self) -> audit::State {
+        audit::State {
+            q: self.q[..self.system.mass.order].to_vec(),
+            rate: self.rate[..self.system.mass.order].to_vec(),
+            particles: (0..self.particles.len()).map(|j| self.absolute(j)).collect(),
+            compressions: (0..self.particles.len())
+                .map(|j| match side_stiffness(self.system, &self.contacts, j) {
+                    Some(stiffness) => [stiffness, self.particles[j].gap],
+                    None => [0.0, 0.0],
+                })
+                .collect(),
+            across: (0..self.particles.len()).filter_map(|j| self.stored_across(j)).collect(),
+        }
+    }
+}
+
+fn side_stiffness(system: &HybridSystem, contacts: &[Contact], j: usize) -> Option<f64> {
+    let contact = contacts[j];
+    let face = contact.face(&system.particles[j])?;
+    match face.law {
+        Law::Resilient { stiffness, .. } => Some(stiffness),
+        Law::Rigid { .. } => None,
+    }
+}

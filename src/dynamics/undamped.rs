@@ -1,0 +1,134 @@
+//! Modes of a contact state without dashpots: M e″ = −K e.
+//!
+//! With K = L Lᵀ and L⁻¹ M L⁻ᵀ = U diag(1/ω²) Uᵀ the shapes are Φ = L⁻ᵀ U and Φ⁻¹ = Uᵀ Lᵀ. In x = ω Φ⁻¹ e and y = Φ⁻¹ e′ each block is
+//! [[0, ω], [−ω, 0]] to the bit: no rounding damps it or feeds it, and places do not mix with rates, so that a motion can be run
+//! backwards. Jacobi's rotations keep the digits of slow modes beside fast ones (Demmel & Veselić, SIAM J. Matrix Anal. Appl. 13, 1992).
+
+use super::block::Block;
+use super::cholesky::Cholesky;
+use super::spectral::Spectral;
+use super::system::Matrix;
+
+/// Sweeps of rotations; eight are usual.
+const MOST_SWEEPS: usize = 40;
+
+/// Splits (e, e′); `None` where K is not positive.
+pub(crate) fn split(stiffness: &Matrix, mass: &Matrix) -> Option<Spectral> {
+    let n = mass.order;
+    let factor = Cholesky::new(stiffness).ok()?;
+    // L⁻¹ M, row by row, since M is symmetric; then its columns.
+    let half: Vec<Vec<f64>> = mass.entries.chunks_exact(n).map(|row| factor.forward(row)).collect();
+    let column = |j: usize| factor.forward(&half.iter().map(|row| row[j]).collect::<Vec<_>>());
+    let columns: Vec<Vec<f64>> = (0..n).map(column).collect();
+    let mut inner = Matrix { order: n, entries: Vec::with_capacity(n * n) };
+    for i in 0..n {
+        inner.entries.extend((0..n).map(|j| 0.5 * (columns[i][j] + columns[j][i])));
+    }
+    let axes = turn_to_axes(&mut inner)?;
+    let shapes: Vec<Vec<f64>> = axes.iter().map(|axis| factor.backward(axis)).collect();
+    let mut inverse: Vec<Vec<f64>> = axes.iter().map(|axis| factor.spread(axis)).collect();
+    invert_again(&shapes, &mut inverse);
+    let width = 2 * n;
+    let mut spectral =
+        Spectral { from_blocks: vec![0.0; width * width], to_blocks: vec![0.0; width * width], ..Spectral::default() };
+    for k in 0..n {
+        let omega = 1.0 / inner.at(k, k).sqrt();
+        if !(omega > 0.0 && omega.is_finite()) {
+            return None;
+        }
+        for i in 0..n {
+            spectral.from_blocks[i * width + 2 * k] = shapes[k][i] / omega;
+            spectral.from_blocks[(n + i) * width + 2 * k + 1] = shapes[k][i];
+            spectral.to_blocks[2 * k * width + i] = inverse[k][i] * omega;
+            spectral.to_blocks[(2 * k + 1) * width + n + i] = inverse[k][i];
+        }
+        let entries = [0.0, omega, -omega, 0.0];
+        spectral.matrices.push(entries);
+        spectral.blocks.push(Block::new(entries));
+    }
+    Some(spectral)
+}
+
+/// Leaves the eigenvalues on the diagonal; gives the eigenvectors. `None` where it does not end.
+fn turn_to_axes(matrix: &mut Matrix) -> Option<Vec<Vec<f64>>> {
+    let n = matrix.order;
+    let mut axes: Vec<Vec<f64>> = (0..n).map(|i| (0..n).map(|j| f64::from(u8::from(i == j))).collect()).collect();
+    for _ in 0..MOST_SWEEPS {
+        let mut still = true;
+        for p in 0..n {
+            for q in p + 1..n {
+                let [first, second, between] = [matrix.at(p, p), matrix.at(q, q), matrix.at(p, q)];
+                if !(between.abs() > f64::EPSILON * (first * second).sqrt()) {
+                    continue;
+                }
+                still = false;
+                let half = (second - first) / (2.0 * between);
+                let tangent = half.signum() / (half.abs() + half.hypot(1.0));
+                let cosine = 1.0 / tangent.hypot(1.0);
+                let sine = tangent * cosine;
+                let turn = |x: f64, y: f64| [cosine * x - sine * y, sine * x + cosine * y];
+                for k in (0..n).filter(|&k| k != p && k != q) {
+                    let [x, y] = turn(matrix.at(p, k), matrix.at(q, k));
+                    for (i, j, entry) in [(p, k, x), (k, p, x), (q, k, y), (k, q, y)] {
+                        matrix.entries[i * n + j] = entry;
+                    }
+                    let [x, y] = turn(axes[p][k], axes[q][k]);
+                    (axes[p][k], axes[q][k]) = (x, y);
+                }
+                for k in [p, q] {
+                    let [x, y] = turn(axes[p][k], axes[q][k]);
+                    (axes[p][k], axes[q][k]) = (x, y);
+                }
+                matrix.entries[p * n + p] = first - tangent * between;
+                matrix.entries[q * n + q] = second + tangent * between;
+                matrix.entries[p * n + q] = 0.0;
+                matrix.entries[q * n + p] = 0.0;
+            }
+        }
+        if still {
+            return Some(axes);
+        }
+    }
+    None
+}
+
+/// W ← W + (1 − W V) W, V column by column and W row by row.
+fn invert_again(v: &[Vec<f64>], w: &mut [Vec<f64>]) {
+    let n = v.len();
+    let mut next = w.to_vec();
+    for (i, row) in next.iter_mut().enumerate() {
+        for j in 0..n {
+            let unit = f64::from(u8::from(i == j));
+            let rest = super::exact::rest(unit, &w[i], &v[j]);
+            row.iter_mut().zip(&w[j]).for_each(|(entry, other)| *entry += rest * other);
+        }
+    }
+    w.clone_from_slice(&next);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_soft_mass_beside_a_hard_contact_keeps_its_digits() {
+        // A mass on 1 N/m carries a light one on a spring up to 10¹² times harder: λ² μ − λ (μ + k (1 + μ)) + k = 0.
+        for (light, hard) in [(0.1, 50.0), (0.1, 1e6), (1e-3, 1e12), (0.5, 1e12)] {
+            let mass = Matrix { order: 2, entries: vec![1.0 + light, light, light, light] };
+            let spectral = split(&Matrix::diagonal(&[1.0, hard]), &mass).expect("it is positive");
+            let sum: f64 = light + hard * (1.0 + light);
+            let slow = 2.0 * hard / (sum + (sum * sum - 4.0 * light * hard).sqrt());
+            let slowest = spectral.blocks.iter().fold(f64::INFINITY, |least, block| least.min(block.determinant));
+            assert!((slowest / slow - 1.0).abs() < 1e-14, "{light}, {hard}: {slowest} for {slow}");
+            for (i, row) in spectral.from_blocks.chunks_exact(4).enumerate() {
+                for j in 0..4 {
+                    let column: Vec<f64> = (0..4).map(|k| spectral.to_blocks[k * 4 + j]).collect();
+                    let unit = f64::from(u8::from(i == j));
+                    let size: f64 = row.iter().zip(&column).map(|(x, y)| (x * y).abs()).sum();
+                    assert!(super::super::exact::rest(unit, row, &column).abs() < 4.0 * f64::EPSILON * size.max(unit));
+                }
+            }
+            assert!(spectral.blocks.iter().all(|block| block.decay == 0.0));
+        }
+    }
+}
