@@ -30,5 +30,10 @@ fn line(&ThresholdAlong { threshold, over, least, most, below }: &ThresholdAlong
         Threshold::TwoImpacts => {
             format!("  No motion has one impact on floor and ceiling a period below {over} = {range}; {cases} there.\n")
         }
+        Threshold::CeilingGraze => {
+            format!(
+                "  A motion with one impact on the floor a period stays below the ceiling up to {over} = {range}; {cases} there.\n"
+            )
+        }
     }
 }

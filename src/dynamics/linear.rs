@@ -9,11 +9,13 @@
 
 mod balance;
 mod bound;
+mod ceiling_graze;
 mod cycle;
 mod lift_off;
 mod moments;
 mod range;
 mod signal;
+mod struck;
 mod two_impacts;
 
 use std::rc::Rc;
@@ -22,6 +24,7 @@ use self::bound::Watch;
 use self::cycle::{Cycle, drive_at, enter, leave};
 use self::moments::Moments;
 use self::signal::{Row, integrals};
+use self::struck::Struck;
 use super::audit::Audit;
 use super::budget;
 use super::contact_state::contact_damping;
@@ -148,8 +151,12 @@ pub(crate) fn lift_off(system: &HybridSystem) -> Result<Option<f64>, EngineError
 /// The share of the drive's strength below which no motion has one impact on the floor and one on the ceiling a period; `None` where the
 /// scene has no such motion, or none in closed form.
 pub(crate) fn two_impacts(system: &HybridSystem) -> Result<Option<f64>, EngineError> {
-    let Some(bare) = two_impacts::structure(system) else { return Ok(None) };
-    Ok(Steady::of(&bare)?.and_then(|steady| two_impacts::share(system, &bare, &steady)))
+    Ok(Struck::of(system)?.as_ref().and_then(two_impacts::share))
+}
+
+/// The share at which a motion with one impact on the floor a period first touches the ceiling; `None` as above.
+pub(crate) fn ceiling_graze(system: &HybridSystem) -> Result<Option<f64>, EngineError> {
+    Ok(Struck::of(system)?.as_ref().and_then(ceiling_graze::share))
 }
 
 /// False where a look at the scene shows that it is not linear.

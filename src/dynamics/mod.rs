@@ -93,7 +93,9 @@ pub use orbit::{
 pub use proof::Proof;
 pub use reach::{FarSurface, OutOfReach, out_of_reach};
 pub use response::{Counts, CycleRates, Method, Observed, Response};
-pub use run::{event_driven, fixed_step, fundamental_matrix, is_linear, lift_off, steady_state, two_impacts};
+pub use run::{
+    ceiling_graze, event_driven, fixed_step, fundamental_matrix, is_linear, lift_off, steady_state, two_impacts,
+};
 pub use spline::Spline;
 pub use steady_state::{SteadyMotion, SteadyState};
 pub use sums::Sums;
@@ -103,4 +105,4 @@ pub use system::{
 pub use trace::{Sample, SampledParticle, TraceRequest};
 
 /// Changes whenever the same scene may give other bits. A test holds the bits of fixed scenes against it.
-pub const SOLVER_VERSION: u32 = 10;
+pub const SOLVER_VERSION: u32 = 11;

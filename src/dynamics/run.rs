@@ -82,6 +82,16 @@ pub fn two_impacts(system: &HybridSystem) -> Result<Option<f64>, EngineError> {
     budget::within(|| linear::two_impacts(system))
 }
 
+/// The share of its present strength at which the motion with one impact on the floor a period first touches the ceiling, in closed form:
+/// one particle on a rigid floor, under gravity and a harmonic force on a damped structure. `None` elsewhere, and where no motion of this
+/// kind that attracts stays below the ceiling.
+///
+/// # Errors
+/// [`EngineError`] with the reason.
+pub fn ceiling_graze(system: &HybridSystem) -> Result<Option<f64>, EngineError> {
+    budget::within(|| linear::ceiling_graze(system))
+}
+
 /// Runs a system with a fixed time step, s: exact propagators of one step, the contact state checked once a step.
 ///
 /// # Errors

@@ -51,11 +51,13 @@ pub enum Threshold {
     LiftOff,
     /// A motion with an impact on floor and ceiling a period begins.
     TwoImpacts,
+    /// A motion with one impact on the floor a period touches the ceiling.
+    CeilingGraze,
 }
 
 impl Threshold {
     /// All of them, in the order in which a growing strength usually meets them.
-    pub const ALL: &[Self] = &[Self::LiftOff, Self::TwoImpacts];
+    pub const ALL: &[Self] = &[Self::LiftOff, Self::TwoImpacts, Self::CeilingGraze];
 }
 
 /// Whether a range is refined.
@@ -104,7 +106,7 @@ pub(super) fn refined(at: At<'_>, parameter: Parameter) -> Option<(Vec<Parameter
     })
 }
 
-/// `lift_off` or `two_impacts`, of a strength of the drive.
+/// `lift_off`, `two_impacts` or `ceiling_graze`, of a strength of the drive.
 fn threshold(at: At<'_>, parameter: Parameter) -> Option<Threshold> {
     let threshold = at.word::<Threshold>("threshold")?;
     if matches!(at, At::Node(..)) && !parameter.is_strength() {

@@ -1,8 +1,8 @@
-//! Thresholds in closed form along a strength of the drive: where the first particle lifts off, once transients are gone, and where a
-//! motion with an impact on floor and ceiling a period begins.
+//! Thresholds in closed form along a strength of the drive: where the first particle lifts off, once transients are gone, where a
+//! motion with an impact on floor and ceiling a period begins, and where one with an impact on the floor alone touches the ceiling.
 //!
 //! The motions on one side of each are linear in the strength, so that one scene gives the threshold of a whole curve
-//! (`dynamics::lift_off`, `dynamics::two_impacts`).
+//! (`dynamics::lift_off`, `two_impacts`, `ceiling_graze`).
 
 use super::refine::number_of;
 use crate::dynamics;
@@ -89,6 +89,7 @@ fn place(
     let share = match threshold {
         Threshold::LiftOff => dynamics::lift_off(&system),
         Threshold::TwoImpacts => dynamics::two_impacts(&system),
+        Threshold::CeilingGraze => dynamics::ceiling_graze(&system),
     };
     Some(share.ok()?? * case.number(over)?)
 }

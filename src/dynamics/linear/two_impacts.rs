@@ -14,63 +14,29 @@
 //! Without weight and with equal restitution, τ = T/2 leaves v₁ free: Masri and Caughey's symmetric motion, whose strength is the
 //! distance of a straight line from the origin.
 
-use std::f64::consts::TAU;
-
-use super::Steady;
-use super::cycle::{Affine, drive_at, jump, leave};
+use super::struck::{At, Struck, harmonic_velocity, least, restitution};
 use crate::dynamics::budget;
-use crate::dynamics::cholesky::Cholesky;
-use crate::dynamics::system::{Drive, Face, HybridSystem, Law, Particle, dot};
+use crate::dynamics::elementary::sin_cos;
+use crate::dynamics::system::dot;
 
 /// Times between the impacts that are looked at, evenly spaced.
 const TIMES: u32 = 256;
 /// Beside a time at which v₁ grows without limit: shares of the period by halving, from the first power to the last.
 const HALVINGS: std::ops::Range<i32> = 8..48;
-/// Steps of a search within an interval.
+/// Halvings that find such a time.
 const STEPS: u32 = 80;
 
-/// The share of the drive's present strength; `None` where the scene is another one, or where no strength makes such a motion.
-pub(super) fn share(system: &HybridSystem, bare: &HybridSystem, steady: &Steady) -> Option<f64> {
-    let between = Between::new(system, bare, steady)?;
-    between.least()
+/// The share of the drive's present strength; `None` where a face is resilient, or where no strength makes such a motion.
+pub(super) fn share(struck: &Struck<'_>) -> Option<f64> {
+    let restitution = [restitution(&struck.particle.floor)?, restitution(struck.ceiling)?];
+    TwoImpacts { struck, restitution }.least()
 }
 
-/// The structure of a system whose one particle flies between two rigid faces that move as one, under a harmonic force alone.
-pub(super) fn structure(system: &HybridSystem) -> Option<HybridSystem> {
-    let Drive { ticks, harmonic: Some(_), half_cycles: None, .. } = &system.drive else { return None };
-    let [Particle { floor, ceiling: Some(ceiling), .. }] = &system.particles[..] else { return None };
-    let is_silent = ticks.iter().all(|tick| tick.impulse == 0.0 && tick.level == 0.0);
-    let fits = is_silent && floor.row == ceiling.row && restitution(floor).and(restitution(ceiling)).is_some();
-    fits.then(|| HybridSystem { particles: Vec::new(), ..system.clone() })
-}
-
-fn restitution(face: &Face) -> Option<f64> {
-    match face.law {
-        Law::Rigid { restitution } => Some(restitution),
-        Law::Resilient { .. } => None,
-    }
-}
-
-/// A particle between two faces of a structure.
-struct Between<'a> {
-    particle: &'a Particle,
-    gravity: f64,
+/// Motions with two impacts a period.
+struct TwoImpacts<'a> {
+    struck: &'a Struck<'a>,
     /// ε of floor and ceiling.
     restitution: [f64; 2],
-    /// ω, rad/s.
-    omega: f64,
-    /// Amplitude of the faces under the present drive alone, m.
-    amplitude: f64,
-    steady: &'a Steady,
-    /// Block coordinates just after a unit impulse at the faces, in a train of one a period.
-    struck: Vec<f64>,
-}
-
-/// Place and velocity.
-#[derive(Clone, Copy)]
-struct At {
-    x: f64,
-    v: f64,
 }
 
 /// What the impulses and the flights leave to the harmonic share for one v₁.
@@ -103,48 +69,11 @@ impl Wanted {
     }
 }
 
-impl<'a> Between<'a> {
-    fn new(system: &'a HybridSystem, bare: &HybridSystem, steady: &'a Steady) -> Option<Self> {
-        let particle = system.particles.first()?;
-        let omega = system.drive.harmonic?.angular_frequency;
-        let Steady { flow, state, .. } = steady;
-        let (q, rate) = leave(flow, state, 0.0, drive_at(bare, 0.0));
-        let row = &particle.floor.row;
-        let amplitude = libm::hypot(dot(row, &q), dot(row, &rate) / omega);
-        let answer = Cholesky::new(&system.mass).ok()?.solve(row);
-        let unit: Vec<f64> = jump(bare, flow, 1.0, [0.0; 2], &answer).concat();
-        let mut train = Affine::flow(flow, TAU / omega);
-        train.shift =
-            train.turn.iter().zip(unit.chunks_exact(2)).map(|(a, b)| super::cycle::times(*a, [b[0], b[1]])).collect();
-        let struck = train.fixed_point()?.iter().zip(&unit).map(|(before, jump)| before + jump).collect();
-        let restitution = [restitution(&particle.floor)?, restitution(particle.ceiling.as_ref()?)?];
-        (amplitude > 0.0).then_some(Self {
-            particle,
-            gravity: system.gravity,
-            restitution,
-            omega,
-            amplitude,
-            steady,
-            struck,
-        })
-    }
-
-    fn period(&self) -> f64 {
-        TAU / self.omega
-    }
-
-    /// The faces, a time after one of the unit impulses.
-    fn answer(&self, time: f64) -> At {
-        let flow = &self.steady.flow;
-        let state = Affine::flow(flow, time).apply(&self.struck);
-        let (q, rate) = leave(flow, &state, 0.0, Default::default());
-        let row = &self.particle.floor.row;
-        At { x: dot(row, &q), v: dot(row, &rate) }
-    }
-
+impl TwoImpacts<'_> {
     /// What a motion wants that meets the ceiling τ after the floor, and leaves the floor with v₁.
     fn wanted(&self, tau: f64, v1: f64, answers: &Answers) -> Wanted {
-        let (rest, g, mass) = (self.period() - tau, self.gravity, self.particle.mass);
+        let Struck { particle, gravity: g, omega, .. } = *self.struck;
+        let (rest, mass) = (self.struck.period() - tau, particle.mass);
         // Up and down again by the same height.
         let height = v1 * tau - 0.5 * g * tau * tau;
         let v2 = 0.5 * g * rest - height / rest;
@@ -156,28 +85,24 @@ impl<'a> Between<'a> {
         // Impulses push the structure down at the floor, up at the ceiling.
         let at_floor = [-impulses[0], impulses[1]];
         let at_ceiling = [impulses[1], -impulses[0]];
-        // (1 + ε) H′ is what the particle asks of the face less what the impulses give.
-        let of_harmonic = |restitution: f64, [before, after]: [f64; 2], [w_before, w_after]: [f64; 2]| {
-            (after + restitution * before - w_after - restitution * w_before) / (1.0 + restitution)
-        };
         let w = |other: At, strikes: [f64; 2]| [just_before.v, just_after.v].map(|own| train(own, other.v, strikes));
-        let rate = of_harmonic(floor, [before[0], v1], w(of_ceiling, at_floor));
-        let s = rate / self.omega;
+        let rate = harmonic_velocity(floor, [before[0], v1], w(of_ceiling, at_floor));
+        let s = rate / omega;
         let risen = train(just_after.x, of_floor.x, at_ceiling) - train(just_after.x, of_ceiling.x, at_floor);
-        let (sine, cosine) = crate::dynamics::elementary::sin_cos(self.omega * tau);
-        let c = (height - self.particle.gap - risen - s * sine) / (cosine - 1.0);
-        let later = self.omega * (s * cosine - c * sine);
-        let missed = later - of_harmonic(ceiling, [before[1], v2], w(of_floor, at_ceiling));
+        let (sine, cosine) = sin_cos(omega * tau);
+        let c = (height - particle.gap - risen - s * sine) / (cosine - 1.0);
+        let later = omega * (s * cosine - c * sine);
+        let missed = later - harmonic_velocity(ceiling, [before[1], v2], w(of_floor, at_ceiling));
         Wanted { share: [c, s], missed, impulses }
     }
 
     /// For any v₁, as a straight line.
     fn line(&self, tau: f64) -> [Wanted; 2] {
         let answers = Answers {
-            just_before: self.answer(self.period()),
-            just_after: self.answer(0.0),
-            of_floor: self.answer(tau),
-            of_ceiling: self.answer(self.period() - tau),
+            just_before: self.struck.answer(self.struck.period()),
+            just_after: self.struck.answer(0.0),
+            of_floor: self.struck.answer(tau),
+            of_ceiling: self.struck.answer(self.struck.period() - tau),
         };
         [0.0, 1.0].map(|v1| self.wanted(tau, v1, &answers))
     }
@@ -201,10 +126,10 @@ impl<'a> Between<'a> {
     /// The smallest amplitude of the symmetric motion, whose v₁ is free.
     fn symmetric(&self) -> f64 {
         let [floor, ceiling] = self.restitution;
-        if self.gravity != 0.0 || floor != ceiling {
+        if self.struck.gravity != 0.0 || floor != ceiling {
             return f64::INFINITY;
         }
-        let [from, to] = self.line(0.5 * self.period());
+        let [from, to] = self.line(0.5 * self.struck.period());
         let along = [to.share[0] - from.share[0], to.share[1] - from.share[1]];
         let foot = -dot(&from.share, &along) / dot(&along, &along);
         // At rest at the start of the line, a face is grazed.
@@ -212,21 +137,13 @@ impl<'a> Between<'a> {
     }
 
     fn least(&self) -> Option<f64> {
-        let times = self.times();
-        let mut least = self.symmetric();
-        let values: Vec<f64> = times.iter().map(|tau| self.at(*tau)).collect();
-        for i in 1..times.len() - 1 {
-            let [before, here, after] = [values[i - 1], values[i], values[i + 1]];
-            if here.is_finite() && here <= before && here <= after {
-                least = least.min(self.between(times[i - 1], times[i + 1]));
-            }
-        }
-        least.is_finite().then_some(least / self.amplitude)
+        let amplitude = least(&self.times(), |tau| self.at(tau)).min(self.symmetric());
+        amplitude.is_finite().then_some(amplitude / self.struck.amplitude)
     }
 
     /// The times that are looked at: evenly, and ever closer to those at which v₁ grows without limit.
     fn times(&self) -> Vec<f64> {
-        let period = self.period();
+        let period = self.struck.period();
         let even: Vec<f64> = (1..TIMES).map(|i| period * f64::from(i) / f64::from(TIMES)).collect();
         let bends: Vec<f64> = even.iter().map(|tau| self.bend(*tau)).collect();
         let mut times = even.clone();
@@ -249,26 +166,6 @@ impl<'a> Between<'a> {
             if self.bend(middle) * sign > 0.0 { low = middle } else { high = middle }
         }
         low
-    }
-
-    /// The smallest amplitude of an interval, by the golden section.
-    fn between(&self, mut low: f64, mut high: f64) -> f64 {
-        const SECTION: f64 = 0.618_033_988_749_894_8;
-        let inner = |low: f64, high: f64| [high - SECTION * (high - low), low + SECTION * (high - low)];
-        let [mut left, mut right] = inner(low, high);
-        let [mut of_left, mut of_right] = [self.at(left), self.at(right)];
-        for _ in 0..STEPS {
-            if of_left <= of_right {
-                (high, right, of_right) = (right, left, of_left);
-                left = inner(low, high)[0];
-                of_left = self.at(left);
-            } else {
-                (low, left, of_left) = (left, right, of_right);
-                right = inner(low, high)[1];
-                of_right = self.at(right);
-            }
-        }
-        of_left.min(of_right)
     }
 }
 

@@ -18,6 +18,7 @@ mod hard_cases;
 mod linear;
 mod long_runs;
 mod motion;
+mod one_impact_a_face;
 mod orbits;
 mod precise;
 mod properties;
@@ -28,7 +29,6 @@ mod resonance;
 mod search;
 mod settled;
 mod sticking;
-mod two_impacts;
 mod walls;
 
 pub use bench::note;
