@@ -50,9 +50,9 @@ mod tests {
 
     #[test]
     fn nothing_is_left_of_a_sum_that_cancels() {
-        // (1 + 2⁻³⁰)² = 1 + 2⁻²⁹ + 2⁻⁶⁰, of which a product keeps no 2⁻⁶⁰.
-        let (a, tiny) = (1.0 + f64::powi(2.0, -30), f64::powi(2.0, -60));
-        assert_eq!(rest(1.0 + f64::powi(2.0, -29), &[a], &[a]), -tiny);
+        // (1 + s)² = 1 + 2 s + s² with s = 2⁻³⁰, of which a product keeps no 2⁻⁶⁰.
+        let small = 1.0 / f64::from(1_u32 << 30);
+        assert_eq!(rest(1.0 + 2.0 * small, &[1.0 + small], &[1.0 + small]), -(small * small));
         assert_eq!(rest(1e17, &[1e17, 3.0], &[1.0, 1.0]), -3.0);
         assert_eq!(rest(1.0, &[1e16, -1e16, 1.0], &[1.0, 1.0, 1.0]), 0.0);
     }
