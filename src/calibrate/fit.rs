@@ -1,14 +1,16 @@
-//! The calibration itself: residuals of the sets that a search asks for, and the verdicts under the best one.
+//! The calibration itself: the search over sets, and the verdicts under the best one.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
 
-use super::search::{Places, Trail, coordinate, grid};
+use super::journal::Journal;
+use super::residuals::{Residuals, found, root_mean_square, states};
+use super::search::{Places, Residue, Trail, coordinate, grid};
 use super::set::{Set, place_in_force};
 use super::trials::{Asked, CumulativeEvents, SharedTables, TrialRunner, Workers, Worth};
-use crate::experiment::{Assumptions, Calibration, CalibrationSearch, Experiment, Residual};
-use crate::reference::{Entry, Found, ReferenceFile, TableState, Tables, Verdict, judge};
+use crate::experiment::{Assumptions, Calibration, CalibrationSearch, Experiment};
+use crate::reference::{Entry, Found, ReferenceFile, Verdict, judge};
 use crate::study::{Evaluate, Event, EventHandler, RunError};
-use crate::table::BASELINE;
 
 /// Why there is no calibration.
 #[derive(Debug, thiserror::Error)]
@@ -76,7 +78,16 @@ pub struct Read {
     pub verdict: Verdict,
 }
 
-/// Searches the best inputs and judges all entries under them, on `threads` threads (0: one a processor).
+/// How a calibration is run; no number depends on it.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Running<'a> {
+    /// Threads; 0: one a processor.
+    pub threads: usize,
+    /// Where it keeps what it has evaluated, so that it can go on after an interruption; `None`: nowhere.
+    pub journal: Option<&'a Path>,
+}
+
+/// Searches the best inputs and judges all entries under them.
 ///
 /// # Errors
 /// [`CalibrationError::NoEntry`] for an entry that the reference or the experiments lack.
@@ -85,7 +96,7 @@ pub fn calibrate(
     experiments: &[&Experiment],
     references: &BTreeMap<String, ReferenceFile>,
     in_force: &Assumptions,
-    threads: usize,
+    running: Running<'_>,
     evaluate: &impl Evaluate,
     handler: &dyn EventHandler,
 ) -> Result<Calibrated, CalibrationError> {
@@ -99,24 +110,26 @@ pub fn calibrate(
             }
         }
     }
-    let workers = Workers { threads, evaluate, handler: &CumulativeEvents::new(handler) };
+    let cumulative = CumulativeEvents::new(handler);
+    let workers = Workers { threads: running.threads, evaluate, handler: &cumulative };
     let now = Set::in_force(in_force);
     let set = |places: &Places| Set::of(calibration, places, in_force);
 
-    let mut trials = TrialRunner::new(&workers, Worth::Step { ensemble: calibration.ensemble }, experiments, &fit);
-    let mut residuals = |sets: &[Set]| -> Result<Vec<Option<f64>>, RunError> {
-        Ok(trials
-            .tables(sets)?
-            .iter()
-            .map(|tables| residual(calibration.residual, fit.iter().map(|one| found(one, tables))))
-            .collect())
+    let trials = TrialRunner::new(&workers, Worth::Step { ensemble: calibration.ensemble }, experiments, &fit);
+    let journal = Journal::open(running.journal);
+    let mut residuals = Residuals::new(calibration.residual, &fit, trials, journal, handler);
+    let residual_in_force = match residuals.of(&[(now.clone(), f64::INFINITY)])?[..] {
+        [Residue::Exact(residual)] => residual,
+        _ => None,
     };
-    let residual_in_force = residuals(std::slice::from_ref(&now))?[0];
-    let trail = search(calibration, in_force, |places| residuals(&places.iter().map(set).collect::<Vec<_>>()))?;
+    let trail = search(calibration, in_force, |wanted| {
+        residuals.of(&wanted.iter().map(|(places, level)| (set(places), *level)).collect::<Vec<_>>())
+    })?;
     let best = trail.best(|_| true);
 
     let all: Vec<Asked<'_>> = fit.iter().chain(&held).copied().collect();
     let best_set = best.map_or_else(|| now.clone(), |(places, _)| set(places));
+    let workers = Workers { handler, ..workers };
     let as_results = TrialRunner::new(&workers, Worth::Result, experiments, &all).tables(&[now, best_set])?;
     handler.on_event(&Event::Ended);
     let compared = |one: &Asked<'_>| Compared {
@@ -129,8 +142,8 @@ pub fn calibrate(
         in_force: residual_in_force,
         best: best.map(|(_, residual)| residual),
         as_results: [
-            residual(calibration.residual, fitted.iter().map(|one| one.in_force.found.clone())),
-            residual(calibration.residual, fitted.iter().map(|one| one.best.found.clone())),
+            root_mean_square(calibration.residual, fitted.iter().map(|one| one.in_force.found.clone())),
+            root_mean_square(calibration.residual, fitted.iter().map(|one| one.best.found.clone())),
         ],
         places: best.map(|(places, _)| places.clone()).unwrap_or_default(),
         profiles: profiles(calibration, &trail),
@@ -145,7 +158,7 @@ pub fn calibrate(
 fn search(
     calibration: &Calibration,
     in_force: &Assumptions,
-    residuals: impl FnMut(&[Places]) -> Result<Vec<Option<f64>>, RunError>,
+    residuals: impl FnMut(&[(Places, f64)]) -> Result<Vec<Residue>, RunError>,
 ) -> Result<Trail, RunError> {
     let counts: Vec<usize> = calibration.inputs.iter().map(|input| input.tried.count()).collect();
     match calibration.search {
@@ -187,14 +200,6 @@ fn chosen<'a>(
     Ok(chosen)
 }
 
-fn states(tables: &SharedTables) -> Tables<'_> {
-    tables.iter().map(|(id, table)| (id.clone(), TableState::Present(table.as_ref()))).collect()
-}
-
-fn found((home, entry): &Asked<'_>, tables: &SharedTables) -> Found {
-    entry.found(home, &states(tables), BASELINE)
-}
-
 pub(super) fn read(asked: &Asked<'_>, tables: &SharedTables) -> Read {
     let (home, entry) = *asked;
     let alone = Entry { blocked_by: Vec::new(), ..entry.clone() };
@@ -202,22 +207,4 @@ pub(super) fn read(asked: &Asked<'_>, tables: &SharedTables) -> Read {
     let judged = judge(&file, &states(tables), &BTreeSet::new());
     let verdict = judged.first().map_or(Verdict::Missing, |judged| judged.verdict);
     Read { found: found(asked, tables), verdict }
-}
-
-/// Root mean square of errors; a claim that fails counts as an error of one, none may lack its number.
-fn residual(kind: Residual, found: impl Iterator<Item = Found>) -> Option<f64> {
-    let (mut sum, mut count) = (0.0, 0.0_f64);
-    for one in found {
-        let error = match one {
-            Found::Number { simulated, published } => match kind {
-                Residual::Relative => (simulated - published) / published,
-                Residual::Logarithmic => libm::log(simulated / published),
-            },
-            Found::Claim { holds } => f64::from(u8::from(!holds)),
-            Found::Nothing(_) => return None,
-        };
-        sum += error * error;
-        count += 1.0;
-    }
-    (count > 0.0).then(|| (sum / count).sqrt()).filter(|residual| residual.is_finite())
 }

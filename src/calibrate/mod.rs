@@ -5,20 +5,23 @@
 //! the search asks for, of each experiment only the rows that are read (`rows`), each as a single run unless an ensemble is asked for;
 //! experiments that do not depend on the inputs that differ are not re-run (`trials`). The search is a full grid, or goes along one
 //! input after the other from several starts (`search`). All sets stay in the count: the profile of an input is the least
-//! residual that was found with each of its values, exact on a full grid and an upper bound otherwise.
+//! residual that was found with each of its values, exact on a full grid and an upper bound otherwise. A set is run no further
+//! than it may still change the answer (`residuals`), and what was evaluated is kept for the next start (`journal`).
 //!
 //! In the end the inputs in force and the best ones are run once more as results, with ensembles where the motion is chaotic,
 //! and all entries, those held out too, are judged by their own tolerances (`fit`).
 
 mod fit;
+mod journal;
 mod moved;
 mod page;
+mod residuals;
 mod rows;
 mod search;
 mod set;
 mod trials;
 
-pub use fit::{Calibrated, CalibrationError, Compared, Profile, Read, calibrate};
+pub use fit::{Calibrated, CalibrationError, Compared, Profile, Read, Running, calibrate};
 pub use moved::moved_alone;
 pub use page::calibration;
 pub use trials::Asked;

@@ -1,7 +1,7 @@
-//! Of an experiment the rows that entries read, so that no others are simulated.
+//! Of an experiment the rows and measures that entries read, so that no others are simulated.
 
 use crate::experiment::{Case, Experiment, ParameterValue, curves};
-use crate::measure::SolverChoice;
+use crate::measure::{Measure, SolverChoice};
 use crate::reference::{Entry, Reading, Selection};
 use crate::table::Data;
 use crate::text::words;
@@ -15,6 +15,8 @@ const BESIDE: usize = 3;
 pub(super) struct Wanted {
     readings: Vec<Reading>,
     every_solver: bool,
+    /// What the entries read and how, as JSON: the column of a measure that no word there names is not read.
+    words: String,
 }
 
 impl Wanted {
@@ -22,9 +24,12 @@ impl Wanted {
     pub(super) fn add(&mut self, entry: &Entry, home: &str, id: &str) {
         self.readings.extend(entry.readings(home).into_iter().filter(|reading| reading.experiment == id));
         self.every_solver |= entry.names_solver();
+        for part in [serde_json::to_string(&entry.check), serde_json::to_string(&entry.rows)] {
+            self.words += &part.unwrap_or_default();
+        }
     }
 
-    /// The experiment with these rows only, and without the searches of an optimisation: gaps that the file names are
+    /// The experiment with these rows and measures only, and without the searches of an optimisation: gaps that the file names are
     /// evaluated, none are looked for.
     pub(super) fn of(&self, experiment: &Experiment) -> Experiment {
         let mut part = experiment.clone();
@@ -73,7 +78,31 @@ impl Wanted {
             };
             optimise.candidates.retain(|candidate| named(&candidate.name));
         }
+        // Branches, and motions of random starts, are told apart by more than what is read of them.
+        if part.orbit.is_none() && part.starts.is_none() {
+            let read: Vec<Measure> = part.measures.iter().copied().filter(|it| self.reads(*it, experiment)).collect();
+            if !read.is_empty() {
+                part.measures = read;
+            }
+        }
         part
+    }
+
+    /// True of a measure that an entry reads, or by which the experiment finds its points.
+    fn reads(&self, measure: Measure, experiment: &Experiment) -> bool {
+        let column = words::of_key(&measure);
+        let named = |column: &str| self.words.contains(&format!("\"{column}\""));
+        let leads = experiment.refined.iter().any(|rule| match rule.measures.as_slice() {
+            [] => !measure.jumps(),
+            leading => leading.contains(&measure),
+        });
+        named(&column)
+            // What tolerances leave of a measure stands beside it.
+            || column.strip_suffix("_input").is_some_and(named)
+            || leads
+            || experiment.maximise.as_ref().is_some_and(|maximise| maximise.measure == measure)
+            || experiment.optimise.as_ref().is_some_and(|optimise| optimise.measure == measure)
+            || Measure::of_settled_runs().any(|other| other == measure)
     }
 }
 

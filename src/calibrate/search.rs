@@ -4,6 +4,10 @@
 //! input, until no single input improves on what it has; then it moves two inputs by one step at once, which gets it along a
 //! valley that lies across the inputs, and begins again where that helps. It depends on residuals alone, never on threads or
 //! time.
+//!
+//! With each set goes the level that its residual has to reach to matter: to be the next step it has to be below the residual of
+//! the set in hand, to enter the profile of an input it has to be below the least one found with that value. Of a set above all of
+//! these the search needs to know no more than that, and comes to the same answer.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -12,11 +16,20 @@ use crate::optimise::Stream;
 /// The value that each input takes, by its index.
 pub(super) type Places = Vec<usize>;
 
+/// What is known of the residual of a set.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Residue {
+    /// The residual; none where an entry has no number.
+    Exact(Option<f64>),
+    /// It is above this, or there is none.
+    AtLeast(f64),
+}
+
 /// What was tried.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct Trail {
-    /// The residual of each set; none where an entry has no number.
-    pub residuals: BTreeMap<Places, Option<f64>>,
+    /// The residual of each set.
+    pub residuals: BTreeMap<Places, Residue>,
     /// Where each start ended, with its residual.
     pub ends: Vec<(Places, Option<f64>)>,
     /// The budget ended the search.
@@ -27,19 +40,28 @@ impl Trail {
     /// The best of these sets; of equal ones the first in order.
     pub(super) fn best(&self, wanted: impl Fn(&Places) -> bool) -> Option<(&Places, f64)> {
         let known = self.residuals.iter().filter(|(places, _)| wanted(places));
-        known.filter_map(|(places, residual)| Some((places, (*residual)?))).min_by(|a, b| a.1.total_cmp(&b.1))
+        let exact = known.filter_map(|(places, residual)| match residual {
+            Residue::Exact(residual) => Some((places, (*residual)?)),
+            Residue::AtLeast(_) => None,
+        });
+        exact.min_by(|a, b| a.1.total_cmp(&b.1))
     }
 }
+
+/// Sets of a grid that are run side by side.
+const SIDE_BY_SIDE: usize = 32;
 
 /// Every combination; `counts` holds the number of values of each input.
 pub(super) fn grid<E>(
     counts: &[usize],
-    residuals: impl FnMut(&[Places]) -> Result<Vec<Option<f64>>, E>,
+    residuals: impl FnMut(&[(Places, f64)]) -> Result<Vec<Residue>, E>,
 ) -> Result<Trail, E> {
     let total: usize = counts.iter().product();
     let all: Vec<Places> = (0..total).map(|index| places(counts, index)).collect();
-    let mut tried = Tried { trail: Trail::default(), budget: total, residuals };
-    tried.evaluate(all)?;
+    let mut tried = Tried::new(counts, total, residuals);
+    for some in all.chunks(SIDE_BY_SIDE) {
+        tried.evaluate(some.to_vec(), f64::NEG_INFINITY)?;
+    }
     Ok(tried.trail)
 }
 
@@ -59,9 +81,9 @@ pub(super) fn coordinate<E>(
     first: Places,
     starts: u32,
     budget: u32,
-    residuals: impl FnMut(&[Places]) -> Result<Vec<Option<f64>>, E>,
+    residuals: impl FnMut(&[(Places, f64)]) -> Result<Vec<Residue>, E>,
 ) -> Result<Trail, E> {
-    let mut tried = Tried { trail: Trail::default(), budget: budget as usize, residuals };
+    let mut tried = Tried::new(counts, budget as usize, residuals);
     for start in 0..starts {
         let drawn = |(input, &count): (usize, &usize)| Stream::of(u64::from(start), &[input as u64]).below(count);
         let from = if start == 0 { first.clone() } else { counts.iter().enumerate().map(drawn).collect() };
@@ -79,39 +101,70 @@ pub(super) fn coordinate<E>(
 struct Tried<F> {
     trail: Trail,
     budget: usize,
+    /// Of each value of each input the least residual so far; infinite where there is none.
+    profiles: Vec<Vec<f64>>,
     residuals: F,
 }
 
-impl<E, F: FnMut(&[Places]) -> Result<Vec<Option<f64>>, E>> Tried<F> {
-    /// Evaluates what is new among `sets`, as far as the budget goes.
-    fn evaluate(&mut self, sets: Vec<Places>) -> Result<(), E> {
-        let new: BTreeSet<Places> =
-            sets.into_iter().filter(|places| !self.trail.residuals.contains_key(places)).collect();
+impl<E, F: FnMut(&[(Places, f64)]) -> Result<Vec<Residue>, E>> Tried<F> {
+    fn new(counts: &[usize], budget: usize, residuals: F) -> Self {
+        let profiles = counts.iter().map(|&count| vec![f64::INFINITY; count]).collect();
+        Self { trail: Trail::default(), budget, profiles, residuals }
+    }
+
+    /// Evaluates what is new among `sets`, as far as the budget goes; each as far as it may be below `level` or enter a profile.
+    fn evaluate(&mut self, sets: Vec<Places>, level: f64) -> Result<(), E> {
+        let sets: BTreeSet<Places> = sets.into_iter().collect();
+        let (known, new): (Vec<Places>, Vec<Places>) =
+            sets.into_iter().partition(|places| self.trail.residuals.contains_key(places));
         let room = self.budget - self.trail.residuals.len();
         self.trail.cut_short |= new.len() > room;
-        let new: Vec<Places> = new.into_iter().take(room).collect();
-        if !new.is_empty() {
-            let residuals = (self.residuals)(&new)?;
-            self.trail.residuals.extend(new.into_iter().zip(residuals));
+        let wanted = known.into_iter().chain(new.into_iter().take(room)).map(|places| {
+            let level =
+                places.iter().zip(&self.profiles).fold(level, |level, (place, profile)| level.max(profile[*place]));
+            (places, level)
+        });
+        let open = |(places, level): &(Places, f64)| match self.trail.residuals.get(places) {
+            None => true,
+            Some(Residue::Exact(_)) => false,
+            // Given up when less was at stake.
+            Some(Residue::AtLeast(bound)) => *bound <= *level,
+        };
+        let wanted: Vec<(Places, f64)> = wanted.filter(open).collect();
+        if wanted.is_empty() {
+            return Ok(());
+        }
+        let residuals = (self.residuals)(&wanted)?;
+        for ((places, _), residual) in wanted.into_iter().zip(residuals) {
+            if let Residue::Exact(Some(value)) = residual {
+                for (place, profile) in places.iter().zip(&mut self.profiles) {
+                    profile[*place] = profile[*place].min(value);
+                }
+            }
+            self.trail.residuals.insert(places, residual);
         }
         Ok(())
     }
 
     fn residual(&self, places: &Places) -> Option<f64> {
-        self.trail.residuals.get(places).copied().flatten()
+        match self.trail.residuals.get(places) {
+            Some(Residue::Exact(residual)) => *residual,
+            _ => None,
+        }
     }
 
     /// The best of `sets`, if it is better than `at`; of equal ones the first.
     fn better(&mut self, at: &Places, sets: Vec<Places>) -> Result<Option<Places>, E> {
-        self.evaluate(sets.clone())?;
+        let in_hand = self.residual(at).unwrap_or(f64::INFINITY);
+        self.evaluate(sets.clone(), in_hand)?;
         let value = |places: &Places| self.residual(places).unwrap_or(f64::INFINITY);
         let best = sets.into_iter().reduce(|best, next| if value(&next) < value(&best) { next } else { best });
-        Ok(best.filter(|best| value(best) < value(at)))
+        Ok(best.filter(|best| value(best) < in_hand))
     }
 
     fn descend(&mut self, counts: &[usize], from: Places) -> Result<Places, E> {
         let mut at = from;
-        self.evaluate(vec![at.clone()])?;
+        self.evaluate(vec![at.clone()], f64::INFINITY)?;
         loop {
             let before = at.clone();
             for (input, &count) in counts.iter().enumerate() {
@@ -156,4 +209,83 @@ fn with(places: &Places, moved: &[(usize, usize)]) -> Places {
         places[*input] = *place;
     }
     places
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+    use std::convert::Infallible;
+
+    use super::*;
+
+    const COUNTS: [usize; 4] = [5, 4, 3, 4];
+    const ENTRIES: usize = 6;
+
+    /// Errors of entries under a set: a smooth valley, made rough; now and then an entry without a number.
+    fn errors(landscape: u64, places: &Places) -> Vec<Option<f64>> {
+        let of = |entry: usize| {
+            let key: Vec<u64> = places.iter().map(|place| *place as u64).chain([entry as u64]).collect();
+            let rough = Stream::of(landscape, &key).below(1000) as f64 / 1000.0;
+            let best = Stream::of(landscape, &[7, entry as u64]).below(4) as f64;
+            let off = places.iter().map(|place| (*place as f64 - best) * (*place as f64 - best)).sum::<f64>();
+            (rough > 0.004).then_some(0.1 * off.sqrt() + rough)
+        };
+        (0..ENTRIES).map(of).collect()
+    }
+
+    fn root(errors: &[f64]) -> f64 {
+        (errors.iter().map(|error| error * error).sum::<f64>() / ENTRIES as f64).sqrt()
+    }
+
+    /// The trail, and the entries that were evaluated; given up where that is `allowed`.
+    fn searched(landscape: u64, budget: u32, allowed: bool) -> (Trail, usize) {
+        let mut evaluated = BTreeSet::new();
+        let residuals = |sets: &[(Places, f64)]| {
+            let one = |(places, level): &(Places, f64)| {
+                let mut known = Vec::new();
+                for (entry, error) in errors(landscape, places).into_iter().enumerate() {
+                    let bound = root(&known);
+                    if allowed && bound > *level {
+                        return Residue::AtLeast(bound);
+                    }
+                    evaluated.insert((places.clone(), entry));
+                    let Some(error) = error else { return Residue::Exact(None) };
+                    known.push(error);
+                }
+                Residue::Exact(Some(root(&known)))
+            };
+            Ok::<_, Infallible>(sets.iter().map(one).collect())
+        };
+        let trail = match budget {
+            0 => grid(&COUNTS, residuals),
+            _ => coordinate(&COUNTS, vec![0; COUNTS.len()], 3, budget, residuals),
+        };
+        (trail.unwrap_or_else(|never| match never {}), evaluated.len())
+    }
+
+    #[test]
+    fn sets_given_up_early_change_no_answer() {
+        let mut shares = [0.0, 0.0];
+        for (budget, share) in [(0, 0), (200, 1), (25, 1)] {
+            for landscape in 0..100 {
+                let (whole, all) = searched(landscape, budget, false);
+                let (stopped, some) = searched(landscape, budget, true);
+                let answer = |trail: &Trail| {
+                    let profiles = COUNTS.iter().enumerate().flat_map(|(input, &count)| {
+                        (0..count).map(move |value| {
+                            trail.best(|places| places[input] == value).map(|(at, r)| (at.clone(), r))
+                        })
+                    });
+                    (profiles.collect::<Vec<_>>(), trail.residuals.keys().cloned().collect::<Vec<_>>())
+                };
+                assert_eq!(answer(&stopped), answer(&whole), "landscape {landscape}, budget {budget}");
+                assert_eq!((&stopped.ends, stopped.cut_short), (&whole.ends, whole.cut_short));
+                shares[share] += some as f64 / all as f64 / if share == 0 { 100.0 } else { 200.0 };
+            }
+        }
+        assert!(
+            shares[0] < 0.9 && shares[1] < 0.97,
+            "of the entries {shares:?} were evaluated, on a grid and in a search"
+        );
+    }
 }

@@ -10,7 +10,9 @@ use crate::experiment::{Experiment, GapWord};
 use crate::measure::{Evaluated, Measure, Rigour, SolverChoice};
 use crate::optimise::Slope;
 use crate::reference::Entry;
-use crate::study::{Array, Evaluate, Event, EventHandler, RowFailure, RunError, Simulation, Task, Variant, run};
+use crate::study::{
+    Array, Evaluate, Event, EventHandler, Finished, RowFailure, RunError, Simulation, Task, Variant, run,
+};
 use crate::table::{BASELINE, Table};
 
 /// An entry with the id of its experiment.
@@ -31,7 +33,7 @@ pub(super) enum Worth {
 pub(super) struct Workers<'a, E> {
     pub threads: usize,
     pub evaluate: &'a E,
-    pub handler: &'a CumulativeEvents<'a>,
+    pub handler: &'a dyn EventHandler,
 }
 
 /// The experiments that entries read, ready to be run under any inputs.
@@ -41,6 +43,27 @@ pub(super) struct TrialRunner<'a, E> {
     experiments: Vec<Experiment>,
     /// By experiment and all that its numbers depend on.
     known: BTreeMap<(usize, String), Arc<Table>>,
+}
+
+/// What is to be run, by experiment and all that its numbers depend on.
+type New = BTreeMap<(usize, String), [Variant; 1]>;
+
+/// A set of inputs, and what of it each experiment depends on.
+pub(super) struct Trial {
+    set: Set,
+    inputs: Vec<String>,
+}
+
+impl Trial {
+    /// All that the numbers of an experiment depend on.
+    pub(super) fn inputs(&self, experiment: usize) -> &str {
+        &self.inputs[experiment]
+    }
+
+    /// Of all experiments.
+    pub(super) fn into_inputs(self) -> Vec<String> {
+        self.inputs
+    }
 }
 
 impl<'a, E: Evaluate> TrialRunner<'a, E> {
@@ -67,54 +90,76 @@ impl<'a, E: Evaluate> TrialRunner<'a, E> {
         Self { workers, worth, experiments: experiments.iter().filter_map(part).collect(), known: BTreeMap::new() }
     }
 
+    /// The experiments, each with the rows that are read.
+    pub(super) fn experiments(&self) -> &[Experiment] {
+        &self.experiments
+    }
+
+    /// A set, ready to be run.
+    pub(super) fn trial(&self, set: &Set) -> Trial {
+        Trial { inputs: self.experiments.iter().map(|one| dependencies(one, set)).collect(), set: set.clone() }
+    }
+
     /// The tables under each of the sets.
     pub(super) fn tables(&mut self, sets: &[Set]) -> Result<Vec<SharedTables>, RunError> {
-        let mut solvers: Vec<SolverChoice> = Vec::new();
-        for set in sets {
-            if !solvers.contains(&set.solver) {
-                solvers.push(set.solver);
-            }
-        }
-        for solver in solvers {
-            self.run_new(sets.iter().filter(|set| set.solver == solver), solver)?;
-        }
-        let of = |set: &Set| {
-            let known = |index: usize| self.known.get(&(index, self.dependencies(index, set))).cloned();
-            let each = (0..self.experiments.len()).filter_map(|index| Some((index, known(index)?)));
-            each.map(|(index, table)| (self.experiments[index].id.to_string(), table)).collect()
-        };
-        Ok(sets.iter().map(of).collect())
+        let trials: Vec<Trial> = sets.iter().map(|set| self.trial(set)).collect();
+        let all = 0..self.experiments.len();
+        self.run_all(all.flat_map(|index| trials.iter().map(move |trial| (index, trial))))?;
+        Ok(trials.iter().map(|trial| self.known_tables(trial)).collect())
     }
 
-    fn run_new<'s>(&mut self, sets: impl Iterator<Item = &'s Set>, solver: SolverChoice) -> Result<(), RunError> {
-        let mut new: BTreeMap<(usize, String), [Variant; 1]> = BTreeMap::new();
-        for set in sets {
-            for index in 0..self.experiments.len() {
-                let key = (index, self.dependencies(index, set));
-                if !self.known.contains_key(&key) {
-                    let assumptions = set.assumptions.clone();
-                    new.entry(key).or_insert([Variant { label: BASELINE.into(), moved: None, assumptions }]);
-                }
+    /// Runs one of the experiments where that is new.
+    pub(super) fn run(&mut self, experiment: usize, trials: &[&Trial]) -> Result<(), RunError> {
+        self.run_all(trials.iter().map(|trial| (experiment, *trial)))
+    }
+
+    /// All of these experiments have been run.
+    pub(super) fn has(&self, trial: &Trial, experiments: &BTreeSet<usize>) -> bool {
+        experiments.iter().all(|&index| self.known.contains_key(&(index, trial.inputs[index].clone())))
+    }
+
+    /// The tables of the experiments that have been run.
+    pub(super) fn known_tables(&self, trial: &Trial) -> SharedTables {
+        let known = |index: usize| self.known.get(&(index, trial.inputs[index].clone())).cloned();
+        let each = (0..self.experiments.len()).filter_map(|index| Some((index, known(index)?)));
+        each.map(|(index, table)| (self.experiments[index].id.to_string(), table)).collect()
+    }
+
+    fn run_all<'t>(&mut self, wanted: impl Iterator<Item = (usize, &'t Trial)>) -> Result<(), RunError> {
+        let mut solvers: Vec<(SolverChoice, New)> = Vec::new();
+        for (index, trial) in wanted {
+            let key = (index, trial.inputs[index].clone());
+            if self.known.contains_key(&key) {
+                continue;
             }
+            let Set { assumptions, solver } = &trial.set;
+            let place = solvers.iter().position(|(known, _)| known == solver).unwrap_or_else(|| {
+                solvers.push((*solver, New::new()));
+                solvers.len() - 1
+            });
+            let variant = || [Variant { label: BASELINE.into(), moved: None, assumptions: assumptions.clone() }];
+            solvers[place].1.entry(key).or_insert_with(variant);
         }
-        let metadata = BTreeMap::new();
-        let tasks: Vec<Task<'_>> = new
-            .iter()
-            .map(|((index, _), variants)| Task::new(&self.experiments[*index], variants, &metadata))
-            .collect();
-        let evaluate = Substituted { evaluate: self.workers.evaluate, solver, worth: self.worth };
-        let tables =
-            run(&tasks, self.workers.threads, &evaluate, self.workers.handler, |_, finished| Arc::new(finished.table))?;
-        self.known.extend(new.into_keys().zip(tables));
+        for (solver, new) in solvers {
+            let metadata = BTreeMap::new();
+            let tasks: Vec<Task<'_>> = new
+                .iter()
+                .map(|((index, _), variants)| Task::new(&self.experiments[*index], variants, &metadata))
+                .collect();
+            let evaluate = Substituted { evaluate: self.workers.evaluate, solver, worth: self.worth };
+            let take = |_, finished: Finished| Arc::new(finished.table);
+            let tables = run(&tasks, self.workers.threads, &evaluate, self.workers.handler, take)?;
+            self.known.extend(new.into_keys().zip(tables));
+        }
         Ok(())
     }
+}
 
-    /// All that the numbers of an experiment depend on under this set.
-    fn dependencies(&self, index: usize, set: &Set) -> String {
-        let used = self.experiments[index].assumptions_under(&set.assumptions);
-        let values: Vec<_> = set.assumptions.values.iter().filter(|(name, _)| used.contains(name)).collect();
-        format!("{:?} {values:?}", set.solver)
-    }
+/// All that the numbers of an experiment depend on under this set.
+fn dependencies(experiment: &Experiment, set: &Set) -> String {
+    let used = experiment.assumptions_under(&set.assumptions);
+    let values: Vec<_> = set.assumptions.values.iter().filter(|(name, _)| used.contains(name)).collect();
+    format!("{:?} {values:?}", set.solver)
 }
 
 /// Substitutes another solver for the exact one, and single runs for steps.

@@ -6,9 +6,9 @@ use super::exit::Exit;
 use super::output::{print, print_unread};
 use super::select::open;
 use crate::atomic;
-use crate::calibrate::calibration as calibration_page;
+use crate::calibrate::{Running, calibration as calibration_page};
 use crate::experiment::{Experiment, ExperimentId, load_calibration};
-use crate::study::{Engine, EventHandler, IgnoreEvents, Layout, Progress};
+use crate::study::{Engine, EventHandler, IgnoreEvents, Layout, Progress, calibration_journal_name};
 
 /// Runs a calibration, prints what it found, and writes its page.
 pub(super) fn calibrate(layout: &Layout, args: &CalibrateArgs, common: &Args) -> Result<Exit, CliError> {
@@ -27,7 +27,7 @@ pub(super) fn calibrate(layout: &Layout, args: &CalibrateArgs, common: &Args) ->
         &experiments,
         references,
         &in_force,
-        common.threads(),
+        Running { threads: common.threads(), journal: Some(&layout.path(&calibration_journal_name(&id))) },
         &Engine,
         handler,
     )?;

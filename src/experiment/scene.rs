@@ -6,15 +6,15 @@ use serde::de::DeserializeOwned;
 use serde_json::json;
 
 use super::assumption_reader::{fits, read_curve};
-use super::assumption_sheet::{ASSUMPTIONS, Takes};
+use super::assumption_sheet::{ASSUMPTIONS, Quantity, Takes};
 use super::at::{At, Sketch};
 use super::diagnostic::{Findings, Span};
 use super::keys::Keys;
 use super::quantity::{Dimension, parse_number};
 use super::recipe::{
-    AssumptionName, Assumptions, Carried, ContactDampingRatio, ContactDampingRecipe, DamperRecipe, Filling,
-    FloorStiffness, GapRecipe, Given, MassReading, MassRecipe, Parameter, Part, Recipe, Reference, Slot,
-    StiffnessRecipe, StopRecipe, SurfaceRecipe, WallRecipe,
+    AssumptionName, Assumptions, Carried, ContactDampingConstant, ContactDampingRatio, ContactDampingRecipe,
+    DamperRecipe, Filling, FloorStiffness, GapRecipe, Given, MassReading, MassRecipe, Parameter, Part, Recipe,
+    Reference, Slot, StiffnessRecipe, StopRecipe, SurfaceRecipe, WallRecipe,
 };
 use super::schema::assumptions;
 use super::structure::read_structure;
@@ -295,7 +295,12 @@ impl SceneReader<'_> {
             "damping" if at.is_word("equivalent_viscous") => {
                 Some(ContactDampingRecipe::Ratio(Given::Stated(ContactDampingRatio::EquivalentViscous)))
             }
-            "damping" => self.quantity(at, Dimension::Damping).map(ContactDampingRecipe::Damping),
+            "damping" => {
+                let takes =
+                    Takes { quantity: Some(Quantity::Of(Dimension::Damping)), readings: &["equivalent_viscous"] };
+                let constant = |at: At<'_>| at.quantity(Dimension::Damping).map(ContactDampingConstant::Constant);
+                self.given(at, takes, constant).map(ContactDampingRecipe::Damping)
+            }
             _ => self
                 .slot(at, Slot::DampingRatio, kind, |at| {
                     self.swept_ratio(at, Parameter::ContactDampingRatio).map(ContactDampingRatio::Ratio)

@@ -327,7 +327,9 @@ impl Case<'_> {
             return Ok(Some(certain(exact(), false)));
         }
         let rms = case.rms_velocity(&response);
-        let twin = event_driven(system, &Options { kick: TWIN_KICK, ..plain.clone() })?;
+        // Of the twin the RMS velocity is read, and nothing that has to be looked for along its motion.
+        let lean = Options { extremes: false, record_events: 0, cycle_rates: false, ..plain.clone() };
+        let twin = event_driven(system, &Options { kick: TWIN_KICK, ..lean })?;
         if unsettled(&twin) {
             return Ok(None);
         }

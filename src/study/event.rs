@@ -33,6 +33,15 @@ pub enum Event<'a> {
         /// Its unit.
         unit: &'a str,
     },
+    /// A calibration has tried more sets of inputs.
+    Tried {
+        /// Sets so far.
+        sets: usize,
+        /// Those of them that were not run to the end, as they could not change the answer.
+        given_up: usize,
+        /// The least residual so far.
+        best: Option<f64>,
+    },
     /// An experiment's table is complete and on disk.
     Finished {
         /// Which.

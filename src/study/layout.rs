@@ -73,6 +73,12 @@ pub fn journal_name(id: &crate::experiment::ExperimentId) -> String {
     format!("results/{id}.journal")
 }
 
+/// What a calibration has evaluated, within the study.
+#[must_use]
+pub fn calibration_journal_name(id: &crate::experiment::ExperimentId) -> String {
+    format!("results/calibrations/{id}.journal")
+}
+
 /// `study.yaml` and every YAML file under `experiments/`, `reference/` and `calibrations/` as it stood at one moment, by its name within the study.
 ///
 /// All that follows, hashes included, is made from these bytes and never from a second look at the disk: a file that is

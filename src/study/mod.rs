@@ -64,7 +64,9 @@ pub use gather::{GatherError, gather};
 pub use inputs::Inputs;
 pub use job::runs_of_a_row;
 pub use known_rows::KnownRows;
-pub use layout::{ASSUMPTIONS, Layout, STUDY, Texts, folder_of, journal_name, record_name, stem, table_name};
+pub use layout::{
+    ASSUMPTIONS, Layout, STUDY, Texts, calibration_journal_name, folder_of, journal_name, record_name, stem, table_name,
+};
 pub use load::{Loaded, Refused, Source};
 pub use machine::Machine;
 pub use motions::{Deviation, Motions, Settling, row_in_words};

@@ -6,7 +6,7 @@ use std::sync::Mutex;
 use indicatif::{ProgressBar, ProgressStyle};
 
 use super::event::{Event, EventHandler};
-use crate::text::number::quantity;
+use crate::text::number::{quantity, significant};
 use crate::text::words::counted;
 
 /// Shows the progress of a run.
@@ -74,12 +74,21 @@ fn show(bar: &ProgressBar, event: &Event<'_>) {
             let best = quantity(*best, unit, 5);
             bar.set_message(format!("{experiment}, {search}: best {best} after {evaluations} evaluations"));
         }
+        Event::Tried { sets, given_up, best } => bar.set_message(tried(*sets, *given_up, *best)),
         Event::Finished { experiment, failures, .. } => {
             let state = if failures.rows == 0 { "done" } else { "done, with failed rows" };
             bar.set_message(format!("{experiment} {state}"));
         }
         Event::Ended => bar.finish_and_clear(),
     }
+}
+
+/// `24 sets tried, 7 of them stopped early; least residual 15 %`.
+fn tried(sets: usize, given_up: usize, best: Option<f64>) -> String {
+    let stopped = if given_up == 0 { String::new() } else { format!(", {given_up} of them stopped early") };
+    let least = |best: f64| format!("least residual {} %", significant(100.0 * best, 2));
+    let best = best.map_or_else(|| "no residual yet".into(), least);
+    format!("{} tried{stopped}; {best}", counted(sets, "set", "sets"))
 }
 
 impl Left {
@@ -109,6 +118,7 @@ impl Left {
                 let rows = counted(*rows, "row", "rows");
                 Some(format!("{experiment}: {rows}{failed}, {took}; {left}\n"))
             }
+            Event::Tried { sets, given_up, best } => Some(tried(*sets, *given_up, *best) + "\n"),
             Event::Searched { .. } | Event::Ended => None,
         }
     }

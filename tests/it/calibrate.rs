@@ -1,16 +1,17 @@
 //! Calibrations: which values of unstated inputs bring chosen entries nearest, and what becomes of the others.
 
 use std::collections::BTreeSet;
+use std::path::Path;
 use std::sync::atomic::Ordering;
 
-use shotdamp::calibrate::{Calibrated, CalibrationError, calibrate};
+use shotdamp::calibrate::{Calibrated, CalibrationError, Running, calibrate};
 use shotdamp::experiment::{AssumptionSheet, Calibration, Experiment, parse_assumptions, parse_calibration};
 use shotdamp::reference::{Found, Role, Verdict};
 use shotdamp::report::judge_all;
 use shotdamp::study::Study;
 use shotdamp::study::{IgnoreEvents, Layout, Texts};
 
-use crate::desk::{ASSUMPTIONS, Desk, MadeUp, STOP_REFERENCE, simulated};
+use crate::desk::{ASSUMPTIONS, Desk, MadeUp, STOP_REFERENCE, shotdamp, simulated};
 
 const STOP: &str = "
 title: How long the stop is
@@ -32,10 +33,21 @@ fn read(text: &str) -> Calibration {
 
 /// The result on this desk, and how many simulations it took.
 fn on(desk: &Desk, calibration: &Calibration, threads: usize) -> Result<(Calibrated, usize), CalibrationError> {
+    with_journal(desk, calibration, threads, None)
+}
+
+/// The same, with what was evaluated kept there.
+fn with_journal(
+    desk: &Desk,
+    calibration: &Calibration,
+    threads: usize,
+    journal: Option<&Path>,
+) -> Result<(Calibrated, usize), CalibrationError> {
     let study = Study::new(desk.layout.clone(), desk.texts());
     let experiments: Vec<&Experiment> = study.items.iter().map(|item| &item.source.experiment).collect();
     let (in_force, engine) = (study.sheet.assumptions(), MadeUp::default());
-    let result = calibrate(calibration, &experiments, &study.references, &in_force, threads, &engine, &IgnoreEvents)?;
+    let running = Running { threads, journal };
+    let result = calibrate(calibration, &experiments, &study.references, &in_force, running, &engine, &IgnoreEvents)?;
     Ok((result, engine.simulations.load(Ordering::Relaxed)))
 }
 
@@ -122,6 +134,50 @@ fn a_search_along_one_input_after_the_other_finds_the_answer_with_a_part_of_the_
         }
     }
     assert_eq!(on(&desk, &read(SEARCHED), 1).unwrap().0, searched, "on any number of threads");
+}
+
+#[test]
+fn what_was_evaluated_is_kept_and_used_again_at_the_next_start() {
+    let desk = with_a_known_answer();
+    let path = desk.folder.path().join("results/calibrations/searched.journal");
+    let (fresh, simulations) = on(&desk, &read(SEARCHED), 1).unwrap();
+    // The inputs in force and the best ones as results, three rows each.
+    let results = 2 * 3;
+
+    let few = read(&SEARCHED.replace("200 sets", "15 sets"));
+    let (_, begun) = with_journal(&desk, &few, 1, Some(&path)).unwrap();
+    let (resumed, rest) = with_journal(&desk, &read(SEARCHED), 2, Some(&path)).unwrap();
+    assert_eq!(resumed, fresh, "as if it had never been interrupted");
+    assert_eq!(begun + rest, simulations + results, "and nothing of the search is run twice");
+    assert_eq!(with_journal(&desk, &read(SEARCHED), 1, Some(&path)).unwrap(), (fresh.clone(), results));
+
+    // A line that was cut off does not count, nor does an entry that has changed.
+    let whole = std::fs::read(&path).unwrap();
+    std::fs::write(&path, &whole[..whole.len() - 5]).unwrap();
+    let (repaired, again) = with_journal(&desk, &read(SEARCHED), 1, Some(&path)).unwrap();
+    assert!(repaired == fresh && again > results && again <= results + 3, "{again} simulations");
+    assert_eq!(std::fs::read(&path).unwrap().len(), whole.len());
+    let reference = String::from_utf8(desk.bytes("reference/ch3/ch3-stop.yaml")).unwrap();
+    desk.put("reference/ch3/ch3-stop.yaml", &reference.replace("force_ratio: 2", "force_ratio: 4"));
+    let (changed, _) = with_journal(&desk, &read(SEARCHED), 1, Some(&path)).unwrap();
+    assert_eq!(changed, on(&desk, &read(SEARCHED), 1).unwrap().0);
+    assert_ne!(changed, fresh);
+}
+
+#[test]
+fn a_calibration_says_how_far_it_is_where_no_terminal_is_and_resumes() {
+    let desk = Desk::new();
+    desk.put("calibrations/stop.yaml", STOP);
+    let first = shotdamp(&desk, &["calibrate", "stop", "--jobs", "1"]);
+    assert_eq!(first.code, 0, "{}", first.err);
+    // The inputs in force, which are not among the six sets of the grid, come first.
+    assert!(first.err.starts_with("1 set tried; least residual "), "{}", first.err);
+    assert!(first.err.contains("\n7 sets tried"), "{}", first.err);
+    let kept = desk.bytes("results/calibrations/stop.journal");
+    let second = shotdamp(&desk, &["calibrate", "stop"]);
+    assert_eq!((second.code, &second.out), (0, &first.out));
+    assert!(desk.bytes("results/calibrations/stop.journal") == kept, "nothing is evaluated that was kept");
+    assert!(shotdamp(&desk, &["calibrate", "stop", "--quiet"]).err.is_empty());
 }
 
 #[test]

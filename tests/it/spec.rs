@@ -9,7 +9,7 @@ use shotdamp::experiment::{
     parse_number, parse_quantity,
 };
 use shotdamp::measure::{Measure, SolverChoice};
-use shotdamp::scene::{Excitation, Surface};
+use shotdamp::scene::{ContactDamping, Excitation, Surface};
 use shotdamp::text::words;
 
 const GOOD: &str = "\
@@ -622,6 +622,37 @@ zeta: {quantity: ratio, readings: [equivalent_viscous], value: 0.1, reason: none
                 "declare an assumption for it under `defaults: damping_curve` in experiments/assumptions.yaml"
             ),
         "{said}"
+    );
+    // A damping in N s/m takes the word as a damping ratio does, and asks for the curve.
+    let curve = "{acceleration_ratio: [0.5, 5], damping: [1 N s/m, 2 N s/m]}";
+    let words = format!(
+        "dashpot: {{quantity: damping, readings: [equivalent_viscous], value: 3 N s/m, range: [equivalent_viscous], reason: a}}\n\
+         curve: {{quantity: damping_curve, value: {curve}, reason: b}}\n\
+         half: {{quantity: damping, readings: [by_half_cycles], value: 1 N s/m, reason: c}}\n"
+    );
+    let assumed = with("damping_ratio: assumed", "damping: {assumed: dashpot}");
+    let damping = |defaults: &str, value: &str| {
+        let text = format!("{}{defaults}", words.replace("value: 3 N s/m", &format!("value: {value}")));
+        let sheet = parse_assumptions("assumptions.yaml", &text).unwrap_or_else(|problems| panic!("{problems}"));
+        let assumptions = sheet.assumptions();
+        let read = parse_experiment(&"a".parse().unwrap(), "a.yaml", &assumed, &assumptions)?;
+        let scene = read.recipe_of(&read.cases[0]).unwrap().resolve(&assumptions).unwrap();
+        let Surface::Resilient { damping, .. } = scene.dampers[0].floor.clone() else { panic!("a resilient floor") };
+        Ok::<_, Problems>(damping)
+    };
+    let with_curve = "defaults: {damping_curve: curve}\n";
+    assert_eq!(damping(with_curve, "3 N s/m").unwrap(), ContactDamping::Constant(3.0));
+    let by_half_cycles = ContactDamping::EquivalentViscous(vec![[0.5, 1.0], [5.0, 2.0]]);
+    assert_eq!(damping(with_curve, "equivalent_viscous").unwrap(), by_half_cycles);
+    let said = describe(&damping("", "equivalent_viscous").expect_err("no curve")).remove(0);
+    assert!(said.starts_with("7:") && said.contains("equivalent viscous damping needs `damping_curve`"), "{said}");
+    let sheet = parse_assumptions("assumptions.yaml", &words).unwrap_or_else(|problems| panic!("{problems}"));
+    let other = assumed.replace("assumed: dashpot", "assumed: half");
+    let wrong = parse_experiment(&"a".parse().unwrap(), "a.yaml", &other, &sheet.assumptions()).expect_err("a mistake");
+    assert_eq!(
+        describe(&wrong),
+        ["9:66 this key takes a damping constant or one of equivalent_viscous, but the assumption `half` \
+             (experiments/assumptions.yaml, line 3) is a damping constant or one of by_half_cycles"]
     );
     // A study without assumptions has the general values: standard gravity, J = f′ m g/ω, the run without damper clean.
     let bare = with("damping_ratio: assumed", "damping_ratio: 0.15");

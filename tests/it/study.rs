@@ -362,7 +362,7 @@ fn every_simulation_is_reported_once() {
                 Event::Finished { experiment, rows, .. } => {
                     self.0.lock().unwrap().push(format!("{experiment}: {rows} rows"));
                 }
-                Event::Searched { .. } => panic!("nothing is searched for here"),
+                Event::Searched { .. } | Event::Tried { .. } => panic!("nothing is searched for here"),
                 Event::Ended => self.0.lock().unwrap().push("ended".into()),
             }
         }

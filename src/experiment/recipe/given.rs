@@ -198,6 +198,16 @@ impl Assumable for super::ContactDampingRatio {
     }
 }
 
+impl Assumable for super::ContactDampingConstant {
+    fn of(value: &AssumptionValue) -> Option<Self> {
+        match value {
+            AssumptionValue::Number(damping) => Some(Self::Constant(*damping)),
+            AssumptionValue::Choice(word) => from_word(word),
+            AssumptionValue::Curve(_) | AssumptionValue::Places(_) => None,
+        }
+    }
+}
+
 /// The assumptions in force while a recipe is resolved, with a record of those that were read.
 #[derive(Debug)]
 pub(super) struct Inputs<'a> {

@@ -15,10 +15,10 @@ mod structure;
 pub use given::{Assumable, AssumptionName, AssumptionValue, Assumptions, Given};
 pub use parameter::{Parameter, ParameterValue, Takes};
 pub use parts::{
-    ArrayOrder, ArrayRecipe, Carried, ContactDampingRatio, ContactDampingRecipe, DamperRecipe, ExcitationKind,
-    ExcitationRecipe, Filling, FloorStiffness, ForcingOrNatural, GapRecipe, GapWord, ImpulseTime, ImpulseTimeRecipe,
-    MassReading, MassRecipe, ObserveRecipe, Part, PointsRecipe, Recipe, RecipeError, Reference, StiffnessRecipe,
-    StopRecipe, StrengthRecipe, SurfaceRecipe, TimingRecipe, WallRecipe,
+    ArrayOrder, ArrayRecipe, Carried, ContactDampingConstant, ContactDampingRatio, ContactDampingRecipe, DamperRecipe,
+    ExcitationKind, ExcitationRecipe, Filling, FloorStiffness, ForcingOrNatural, GapRecipe, GapWord, ImpulseTime,
+    ImpulseTimeRecipe, MassReading, MassRecipe, ObserveRecipe, Part, PointsRecipe, Recipe, RecipeError, Reference,
+    StiffnessRecipe, StopRecipe, StrengthRecipe, SurfaceRecipe, TimingRecipe, WallRecipe,
 };
 pub use place::{Coordinate, PlaceRecipe};
 pub use slot::Slot;

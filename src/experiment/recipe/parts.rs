@@ -283,8 +283,8 @@ pub enum FloorStiffness {
 pub enum ContactDampingRecipe {
     /// ζf = cf/(2 √(kf mp)), or the damping curve in its place.
     Ratio(Given<ContactDampingRatio>),
-    /// cf, N s/m.
-    Damping(Given),
+    /// cf, N s/m, or the damping curve in its place.
+    Damping(Given<ContactDampingConstant>),
 }
 
 /// A damping ratio of a contact, or the damping curve in its place.
@@ -295,6 +295,17 @@ pub enum ContactDampingRatio {
     Ratio(f64),
     /// Equivalent viscous damping by half cycles.
     EquivalentViscous,
+}
+
+/// The damping constant of a contact, or the damping curve in its place.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ContactDampingConstant {
+    /// Equivalent viscous damping by half cycles.
+    EquivalentViscous,
+    /// cf, N s/m; a plain number in JSON.
+    #[serde(untagged)]
+    Constant(f64),
 }
 
 /// Limit stop.

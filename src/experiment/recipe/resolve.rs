@@ -9,9 +9,9 @@ use std::collections::BTreeSet;
 
 use super::given::{AssumptionName, Assumptions, Given, Inputs};
 use super::parts::{
-    Carried, ContactDampingRatio, ContactDampingRecipe, DamperRecipe, Filling, FloorStiffness, GapRecipe, MassReading,
-    MassRecipe, ObserveRecipe, Part, PointsRecipe, Recipe, RecipeError, Reference, StiffnessRecipe, StopRecipe,
-    SurfaceRecipe, TimingRecipe,
+    Carried, ContactDampingConstant, ContactDampingRatio, ContactDampingRecipe, DamperRecipe, Filling, FloorStiffness,
+    GapRecipe, MassReading, MassRecipe, ObserveRecipe, Part, PointsRecipe, Recipe, RecipeError, Reference,
+    StiffnessRecipe, StopRecipe, SurfaceRecipe, TimingRecipe,
 };
 use super::place::{PlaceRecipe, Places};
 use super::slot::Slot;
@@ -342,22 +342,25 @@ impl SurfaceRecipe {
             Self::Resilient { stiffness, untuned_ratio, damping, damping_curve, no_tension } => {
                 let stiffness = stiffness.resolve(base, particle_mass, frequency, untuned_ratio.as_ref())?;
                 above("the surface's stiffness", stiffness, 0.0)?;
+                let by_half_cycles = || {
+                    let needs = "equivalent viscous damping needs";
+                    let curve = inputs.needed(damping_curve.as_ref(), Slot::DampingCurve, needs)?;
+                    Ok::<_, RecipeError>(ContactDamping::EquivalentViscous(curve))
+                };
                 let damping = match damping {
-                    ContactDampingRecipe::Damping(value) => {
-                        let value = inputs.get(value)?;
-                        at_least("the surface's damping", value, 0.0)?;
-                        ContactDamping::Constant(value)
-                    }
+                    ContactDampingRecipe::Damping(given) => match inputs.get(given)? {
+                        ContactDampingConstant::Constant(value) => {
+                            at_least("the surface's damping", value, 0.0)?;
+                            ContactDamping::Constant(value)
+                        }
+                        ContactDampingConstant::EquivalentViscous => by_half_cycles()?,
+                    },
                     ContactDampingRecipe::Ratio(given) => match inputs.get(given)? {
                         ContactDampingRatio::Ratio(ratio) => {
                             at_least("contact_damping_ratio", ratio, 0.0)?;
                             ContactDamping::Constant(2.0 * ratio * (stiffness * particle_mass).sqrt())
                         }
-                        ContactDampingRatio::EquivalentViscous => {
-                            let needs = "equivalent viscous damping needs";
-                            let curve = inputs.needed(damping_curve.as_ref(), Slot::DampingCurve, needs)?;
-                            ContactDamping::EquivalentViscous(curve)
-                        }
+                        ContactDampingRatio::EquivalentViscous => by_half_cycles()?,
                     },
                 };
                 let ends = if *no_tension { ContactEnd::ZeroForce } else { ContactEnd::ZeroGap };
