@@ -31,7 +31,7 @@ pub(super) fn dry_run(layout: &Layout, found: Found, args: &RunArgs, common: &Ar
             for warning in forecast(&item.source.experiment, &study.sheet.assumptions()) {
                 text += &format!("  warning: {warning}\n");
             }
-            text += &thresholds::in_words(&study, &item.source.experiment);
+            text += &thresholds::with_cases_in_words(&study, &item.source.experiment);
         }
         total.add(&extent, threads);
     }

@@ -13,9 +13,18 @@ const PATIENCE: Duration = Duration::from_millis(500);
 
 /// A line for each threshold, indented.
 pub(super) fn in_words(study: &Study, experiment: &Experiment) -> String {
+    found(study, experiment).iter().map(line).collect()
+}
+
+/// Of those with cases below them.
+pub(super) fn with_cases_in_words(study: &Study, experiment: &Experiment) -> String {
+    found(study, experiment).iter().filter(|found| found.below > 0).map(line).collect()
+}
+
+fn found(study: &Study, experiment: &Experiment) -> Vec<ThresholdAlong> {
     let assumptions = study.sheet.assumptions();
     let limit = Limit { time: PATIENCE, ..Limit::default() };
-    Allowance::new(limit).simulate(|| thresholds(experiment, &assumptions)).iter().map(line).collect()
+    Allowance::new(limit).simulate(|| thresholds(experiment, &assumptions))
 }
 
 fn line(&ThresholdAlong { threshold, over, least, most, below }: &ThresholdAlong) -> String {

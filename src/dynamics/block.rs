@@ -146,6 +146,14 @@ impl Block {
         })
     }
 
+    /// Adds this block's share of displacement, velocity, acceleration and its rate, when it is at `now`.
+    #[inline]
+    pub(crate) fn add_motion(&self, motion: &mut [f64; 4], now: Phase) {
+        let bend = self.acceleration(now);
+        let parts = [now.value, now.rate, bend.value, bend.rate];
+        motion.iter_mut().zip(parts).for_each(|(sum, part)| *sum += part);
+    }
+
     /// The kernel after `t` seconds.
     #[inline]
     pub(crate) fn kernel(&self, t: f64) -> Kernel {

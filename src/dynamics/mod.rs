@@ -39,6 +39,7 @@ mod cluster;
 mod collision;
 mod contact;
 mod contact_state;
+mod crest;
 mod dissipation;
 mod elementary;
 mod error;

@@ -4,8 +4,7 @@
 //! A search sees one run for each setting, not an ensemble: ten times as many evaluations are worth more to it than the
 //! mean of an ensemble. Where the motion is chaotic it may so find luck, and the ensemble of the result says whether it did.
 
-use std::time::Instant;
-
+use cpu_time::ThreadTime;
 use rayon::prelude::*;
 
 use super::evaluate::{Array, Evaluate, Simulation, guarded};
@@ -287,7 +286,7 @@ impl Searches<'_> {
             }
         }
         let evaluate = |point: &&Vec<f64>| {
-            let begun = Instant::now();
+            let begun = ThreadTime::now();
             // Smaller is better to the optimisers; what has no number is the worst.
             let fitness = self.fitness_of(point, Rigour::Step);
             let score = Score { value: fitness.map_or(f64::NAN, |fitness| self.signed(fitness.value)) };

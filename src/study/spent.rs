@@ -4,8 +4,8 @@
 use std::collections::BTreeMap;
 use std::fs;
 use std::sync::Mutex;
-use std::time::Instant;
 
+use cpu_time::ThreadTime;
 use serde::{Deserialize, Serialize};
 
 use super::evaluate::{Array, Evaluate, Simulation};
@@ -102,8 +102,8 @@ pub(super) struct Meter(Mutex<Spent>);
 
 impl Meter {
     pub(super) fn time<T>(&self, solver: SolverChoice, rigour: Rigour, simulate: impl FnOnce() -> T) -> T {
-        // A simulation stays on its thread and never waits, so that wall time is processor time.
-        let begun = Instant::now();
+        // A simulation stays on its thread.
+        let begun = ThreadTime::now();
         let done = simulate();
         let seconds = begun.elapsed().as_secs_f64();
         if let Ok(mut spent) = self.0.lock() {

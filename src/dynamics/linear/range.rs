@@ -9,20 +9,16 @@ use super::signal::Row;
 use crate::dynamics::Extremes;
 use crate::dynamics::block::{Block, Phase};
 use crate::dynamics::budget;
+use crate::dynamics::crest::{self, Motion, crest};
 use crate::dynamics::flow::Flow;
 use crate::dynamics::system::HybridSystem;
 
-/// Nodes a radian of whatever oscillates: the cubic between two of them is then off by less than [`DOUBT`].
+/// Nodes a radian of whatever oscillates: the cubic between two of them is then close enough to judge a crest ([`crest`]).
 const NODES_A_RADIAN: f64 = 2.5;
-/// Crests that are lower by more than this share of the range are not the highest.
-const DOUBT: f64 = 1e-3;
 /// Most nodes of a segment by its oscillations.
 const MOST_NODES: f64 = 4000.0;
 /// A state that changes by less than this share in a cycle is steady.
 const STEADY: f64 = 1e-16;
-
-/// Displacement, velocity, acceleration and its rate.
-type Motion = [f64; 4];
 
 /// Grid of a segment.
 struct Grid {
@@ -106,26 +102,24 @@ impl Grid {
 
     fn take(&self, flow: &Flow, row: &Row, c: &[f64], range: &mut Extremes) {
         let shares = std::cell::OnceCell::new();
-        let mut before: Option<(f64, [f64; 3])> = None;
+        let shares = || -> &Vec<Phase> { shares.get_or_init(|| row.shares(c).into_iter().chain(self.drive).collect()) };
+        let mut before: Option<crest::Node> = None;
         for node in &self.nodes {
             let mut now = node.constant;
             for (sum, weights) in now.iter_mut().zip(&node.rows) {
                 *sum += weights.iter().zip(c).fold(0.0, |sum, (weight, c)| sum + weight * c);
             }
             range.take(now[0], now[1]);
-            if let Some((time, last)) = before {
+            let now = crest::Node { time: node.time, motion: now };
+            if let Some(last) = before {
                 for order in [0, 1] {
-                    let known = if order == 0 { range.displacement } else { range.velocity };
-                    let [low, high] = [(time, last), (node.time, now)];
-                    if last[order + 1] * now[order + 1] < 0.0 && may_exceed(order, low, high, known) {
-                        let shares: &Vec<Phase> =
-                            shares.get_or_init(|| row.shares(c).into_iter().chain(self.drive).collect());
-                        let turn = turning_point(&flow.blocks, shares, self.rest, order, low, high);
+                    let at = |t: f64| motion(&flow.blocks, shares(), self.rest, t);
+                    if let Some(turn) = crest(order, last, now, range.of(order), at) {
                         range.take(turn[0], turn[1]);
                     }
                 }
             }
-            before = Some((node.time, now));
+            before = Some(now);
         }
     }
 }
@@ -152,65 +146,11 @@ fn times(flow: &Flow, length: f64) -> Vec<f64> {
     times
 }
 
-/// Whether the crest between two nodes may exceed what is known, by the cubic through values and slopes.
-fn may_exceed(order: usize, low: (f64, [f64; 3]), high: (f64, [f64; 3]), known: [f64; 2]) -> bool {
-    let h = high.0 - low.0;
-    let ([v0, s0], [v1, s1]) = ([low.1[order], h * low.1[order + 1]], [high.1[order], h * high.1[order + 1]]);
-    // The slope of the cubic, a parabola in s from 0 to 1; its root within.
-    let (a, b, c) = (3.0 * (s0 + s1) + 6.0 * (v0 - v1), -4.0 * s0 - 2.0 * s1 - 6.0 * (v0 - v1), s0);
-    let discriminant = (b * b - 4.0 * a * c).max(0.0).sqrt();
-    let q = -0.5 * (b + if b < 0.0 { -discriminant } else { discriminant });
-    let within = |s: f64| (0.0..=1.0).contains(&s);
-    let s = if within(c / q) { c / q } else { q / a };
-    if !within(s) {
-        return true;
-    }
-    let crest = v0 + s * (c + s * (0.5 * b + s * a / 3.0));
-    let doubt = DOUBT * (known[1] - known[0]) + 0.1 * (crest - v0).abs().min((crest - v1).abs());
-    !(crest < known[1] - doubt && crest > known[0] + doubt)
-}
-
-/// The motion where the derivative of `order` vanishes between two nodes at which its signs differ: Newton, kept within by
-/// bisection.
-fn turning_point(
-    blocks: &[Block],
-    shares: &[Phase],
-    rest: f64,
-    order: usize,
-    low: (f64, [f64; 3]),
-    high: (f64, [f64; 3]),
-) -> Motion {
-    let at = |t: f64| -> Motion {
-        let mut motion = [rest, 0.0, 0.0, 0.0];
-        for (block, share) in blocks.iter().zip(shares) {
-            let now = block.advance(*share, block.kernel(t));
-            let bend = block.acceleration(now);
-            let parts = [now.value, now.rate, bend.value, bend.rate];
-            motion.iter_mut().zip(parts).for_each(|(sum, part)| *sum += part);
-        }
-        motion
-    };
-    let sign = low.1[order + 1];
-    // From the straight line between the slopes at both ends.
-    let share = sign / (sign - high.1[order + 1]);
-    let (mut low, mut high) = (low.0, high.0);
-    let mut t = low + share * (high - low);
-    let mut motion = at(t);
-    for _ in 0..60 {
-        if motion[order + 1] * sign > 0.0 {
-            low = t
-        } else {
-            high = t
-        }
-        let newton = t - motion[order + 1] / motion[order + 2];
-        let next = if newton > low && newton < high { newton } else { f64::midpoint(low, high) };
-        // The value is quadratic in the instant's error.
-        let settled = (next - t).abs() <= 1e-9 * t.abs();
-        t = next;
-        motion = at(t);
-        if settled {
-            break;
-        }
+/// The motion after a time.
+fn motion(blocks: &[Block], shares: &[Phase], rest: f64, time: f64) -> Motion {
+    let mut motion = [rest, 0.0, 0.0, 0.0];
+    for (block, share) in blocks.iter().zip(shares) {
+        block.add_motion(&mut motion, block.advance(*share, block.kernel(time)));
     }
     motion
 }

@@ -10,7 +10,7 @@
 //!   v₁ from the impact on the ceiling.
 //!
 //! All three are linear for a given τ. The strength is √(C² + S²) over the amplitude of the present drive, and the least of all τ is
-//! looked for: below it there is no such motion. (A motion found by this may still pass through a face between its impacts.)
+//! looked for: below it there is no such motion. Motions that are seen to pass a face between their impacts are left out.
 //! Without weight and with equal restitution, τ = T/2 leaves v₁ free: Masri and Caughey's symmetric motion, whose strength is the
 //! distance of a straight line from the origin.
 
@@ -23,6 +23,9 @@ use crate::dynamics::system::dot;
 const TIMES: u32 = 256;
 /// Beside a time at which v₁ grows without limit: shares of the period by halving, from the first power to the last.
 const HALVINGS: std::ops::Range<i32> = 8..48;
+/// Places of a flight at which it is held against the faces, and how far beyond one rounding may take it.
+const PLACES: u32 = 12;
+const ROUNDING: f64 = 1e-9;
 /// Halvings that find such a time.
 const STEPS: u32 = 80;
 
@@ -37,6 +40,14 @@ struct TwoImpacts<'a> {
     struck: &'a Struck<'a>,
     /// ε of floor and ceiling.
     restitution: [f64; 2],
+}
+
+/// Up and down again by the same height.
+struct Flights {
+    /// m.
+    height: f64,
+    /// With which the particle leaves the ceiling, m/s.
+    v2: f64,
 }
 
 /// What the impulses and the flights leave to the harmonic share for one v₁.
@@ -70,13 +81,17 @@ impl Wanted {
 }
 
 impl TwoImpacts<'_> {
+    fn flights(&self, tau: f64, v1: f64) -> Flights {
+        let (g, rest) = (self.struck.gravity, self.struck.period() - tau);
+        let height = v1 * tau - 0.5 * g * tau * tau;
+        Flights { height, v2: 0.5 * g * rest - height / rest }
+    }
+
     /// What a motion wants that meets the ceiling τ after the floor, and leaves the floor with v₁.
     fn wanted(&self, tau: f64, v1: f64, answers: &Answers) -> Wanted {
         let Struck { particle, gravity: g, omega, .. } = *self.struck;
         let (rest, mass) = (self.struck.period() - tau, particle.mass);
-        // Up and down again by the same height.
-        let height = v1 * tau - 0.5 * g * tau * tau;
-        let v2 = 0.5 * g * rest - height / rest;
+        let Flights { height, v2 } = self.flights(tau, v1);
         let before = [v2 - g * rest, v1 - g * tau];
         let impulses = [mass * (v1 - before[0]), mass * (before[1] - v2)];
         let [floor, ceiling] = self.restitution;
@@ -120,7 +135,32 @@ impl TwoImpacts<'_> {
         }
         let [from, to] = self.line(tau);
         let v1 = -from.missed / (to.missed - from.missed);
-        if v1.is_finite() { Wanted::at(&from, &to, v1).amplitude() } else { f64::INFINITY }
+        let wanted = Wanted::at(&from, &to, v1);
+        let amplitude = if v1.is_finite() { wanted.amplitude() } else { f64::INFINITY };
+        if amplitude.is_finite() && self.passes_a_face(tau, v1, &wanted) { f64::INFINITY } else { amplitude }
+    }
+
+    /// Somewhere on its flights the particle is beyond a face: no such motion is there. That it is not proves nothing, as few places are
+    /// looked at.
+    fn passes_a_face(&self, tau: f64, v1: f64, wanted: &Wanted) -> bool {
+        let Struck { particle, gravity: g, omega, .. } = *self.struck;
+        let period = self.struck.period();
+        let ([c, s], [of_floor, of_ceiling]) = (wanted.share, wanted.impulses);
+        let face = |t: f64| {
+            let (sine, cosine) = sin_cos(omega * t);
+            let since = if t < tau { t + period - tau } else { t - tau };
+            c * cosine + s * sine - of_floor * self.struck.answer(t).x + of_ceiling * self.struck.answer(since).x
+        };
+        let start = face(0.0);
+        let Flights { height, v2 } = self.flights(tau, v1);
+        let flights = [(0.0, tau, start, v1), (tau, period - tau, start + height, v2)];
+        flights.into_iter().any(|(from, length, place, velocity)| {
+            (1..PLACES).any(|i| {
+                let t = length * f64::from(i) / f64::from(PLACES);
+                let gap = place + velocity * t - 0.5 * g * t * t - face(from + t);
+                gap < -ROUNDING * particle.gap || gap > (1.0 + ROUNDING) * particle.gap
+            })
+        })
     }
 
     /// The smallest amplitude of the symmetric motion, whose v₁ is free.

@@ -17,7 +17,7 @@ impl Masri {
     }
 
     /// Force over displacement of the structure alone.
-    fn dynamic_stiffness(&self) -> f64 {
+    pub(super) fn dynamic_stiffness(&self) -> f64 {
         (STIFFNESS - self.omega().powi(2)).hypot(Stopped::damping() * self.omega())
     }
 
