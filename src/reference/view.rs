@@ -257,6 +257,10 @@ impl<'a> View<'a> {
             .map(|&row| {
                 let broken = |what: &str| Absence::Broken(format!("`{of}` {what} in row {}", row + 1));
                 let value = number(&found.column.data, row).ok_or_else(|| broken("is no column of numbers"))?;
+                // The time to what never happens, for one.
+                if value == f64::INFINITY {
+                    return Err(Absence::Nowhere(format!("`{of}` is ∞ in row {}", row + 1)));
+                }
                 if !value.is_finite() {
                     return Err(broken(&format!("is {}", significant(value, 3))));
                 }
