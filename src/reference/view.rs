@@ -257,16 +257,17 @@ impl<'a> View<'a> {
             .map(|&row| {
                 let broken = |what: &str| Absence::Broken(format!("`{of}` {what} in row {}", row + 1));
                 let value = number(&found.column.data, row).ok_or_else(|| broken("is no column of numbers"))?;
+                let (own, spread) = (error(errors.own, 0.0, row), error(errors.spread, 0.0, row));
+                let members = error(errors.members, 1.0, row);
+                let has_error = own >= 0.0 && spread >= 0.0 && members >= 1.0;
                 // The time to what never happens, for one.
-                if value == f64::INFINITY {
+                if value == f64::INFINITY && has_error {
                     return Err(Absence::Nowhere(format!("`{of}` is ∞ in row {}", row + 1)));
                 }
                 if !value.is_finite() {
                     return Err(broken(&format!("is {}", significant(value, 3))));
                 }
-                let (own, spread) = (error(errors.own, 0.0, row), error(errors.spread, 0.0, row));
-                let members = error(errors.members, 1.0, row);
-                if !(own.is_finite() && spread.is_finite() && own >= 0.0 && spread >= 0.0 && members >= 1.0) {
+                if !(has_error && own.is_finite() && spread.is_finite()) {
                     return Err(broken("has no error of its own"));
                 }
                 Ok(Cell { value, run: own.max(spread / members.sqrt()), spread })

@@ -75,7 +75,7 @@ pub enum BranchEnd<E> {
         parameter: f64,
     },
     /// A contact has come to the instant at which the cycles of the drive begin: with the impulse given there, the motion after it
-    /// is another one; under a harmonic force, orbits are followed beyond it from another start.
+    /// is another one; under a harmonic force it goes on, and is followed there from another start of its own.
     CycleStart,
     /// As many points as were asked for.
     Points,
