@@ -2,12 +2,12 @@
 //!
 //! An error stands under the hash of all that it depends on: the solver's version, the rows that the entry reads, the values of the
 //! inputs that these depend on, and the entry. So an error is used again wherever the same is asked, also after the
-//! calibration's file has changed. Numbers are written as their bits; a line that was cut off, and all after it, does not count.
+//! calibration's file has changed. Numbers are written as their bits.
 
 use std::collections::BTreeMap;
-use std::fs::{self, File};
-use std::io::Write;
 use std::path::Path;
+
+use crate::study::KeptLines;
 
 const HEADER: &str = "shotdamp calibration 1\n";
 /// In the place of the bits of an error that is none.
@@ -19,35 +19,16 @@ pub(super) type EntryError = Option<f64>;
 /// Errors by the hash of what they depend on, and where they are kept.
 pub(super) struct Journal {
     known: BTreeMap<String, EntryError>,
-    file: Option<File>,
+    lines: KeptLines,
 }
 
 impl Journal {
-    /// The journal at `path`. One that cannot be read or written is done without: it saves time and decides nothing.
+    /// The journal at `path`.
     pub(super) fn open(path: Option<&Path>) -> Self {
-        let Some(path) = path else { return Self { known: BTreeMap::new(), file: None } };
-        let text = fs::read_to_string(path).unwrap_or_default();
-        let (mut known, mut whole) = (BTreeMap::new(), 0);
-        if let Some(lines) = text.strip_prefix(HEADER) {
-            whole = HEADER.len();
-            for line in lines.split_inclusive('\n') {
-                let Some((key, error)) = line.strip_suffix('\n').and_then(read_line) else { break };
-                known.insert(key, error);
-                whole += line.len();
-            }
-        }
-        let begun = || {
-            if let Some(folder) = path.parent() {
-                fs::create_dir_all(folder)?;
-            }
-            let mut file = File::options().create(true).truncate(false).append(true).open(path)?;
-            file.set_len(whole as u64)?;
-            if whole == 0 {
-                file.write_all(HEADER.as_bytes())?;
-            }
-            Ok::<_, std::io::Error>(file)
-        };
-        Self { known, file: begun().ok() }
+        let mut known = BTreeMap::new();
+        let read = |line: &str| read_line(line).map(|(key, error)| known.insert(key, error)).is_some();
+        let lines = KeptLines::open(path, HEADER, read);
+        Self { known, lines }
     }
 
     pub(super) fn get(&self, key: &str) -> Option<EntryError> {
@@ -62,14 +43,7 @@ impl Journal {
             text += &format!("{key} {bits}\n");
             self.known.insert(key, error);
         }
-        if text.is_empty() {
-            return;
-        }
-        let kept = self.file.as_mut().map(|file| file.write_all(text.as_bytes()).and_then(|()| file.sync_data()));
-        if let Some(Err(_)) = kept {
-            // A full disk ends the journal, not the calibration.
-            self.file = None;
-        }
+        self.lines.append(&text);
     }
 }
 

@@ -29,7 +29,7 @@ const BOUND: Duration = Duration::from_millis(1500);
 /// Between two looks at it.
 const LOOK: Duration = Duration::from_millis(5);
 /// How long the proof that particles stay on their floors may take; cases beyond it count as not proved.
-const PATIENCE: Duration = Duration::from_millis(500);
+pub(super) const PATIENCE: Duration = Duration::from_millis(500);
 
 /// Parts of the text, in its order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]

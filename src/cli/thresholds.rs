@@ -1,15 +1,11 @@
 //! Thresholds in words: what is known of a sweep's rows before any of them is simulated.
 
-use std::time::Duration;
-
+use super::show::PATIENCE;
 use crate::dynamics::{Allowance, Limit};
 use crate::experiment::{Experiment, Threshold};
 use crate::study::{Study, ThresholdAlong, thresholds};
 use crate::text::number::compact;
 use crate::text::words::{counted, of_key};
-
-/// The most that they may take.
-const PATIENCE: Duration = Duration::from_millis(500);
 
 /// A line for each threshold, indented.
 pub(super) fn in_words(study: &Study, experiment: &Experiment) -> String {

@@ -1,14 +1,12 @@
 //! The journal of an optimisation: every point that was evaluated, with its score, so that an interrupted run goes on.
 //!
 //! Searches are deterministic, so nothing else has to be kept: the next run asks for the same points, takes those that the
-//! journal knows, and goes on where it ended, to the same bytes. Numbers are written as their bits; a line that was cut off, and
-//! all after it, does not count.
+//! journal knows, and goes on where it ended, to the same bytes. Numbers are written as their bits.
 
 use std::collections::BTreeMap;
-use std::fs::{self, File};
-use std::io::Write;
 use std::path::Path;
 
+use super::kept_lines::KeptLines;
 use crate::optimise::Score;
 
 /// What is known of a point.
@@ -22,38 +20,16 @@ pub(super) struct Known {
 /// Points with what is known of them, and where that is kept.
 pub(super) struct Journal {
     known: BTreeMap<Vec<u64>, Known>,
-    file: Option<File>,
+    lines: KeptLines,
 }
 
 impl Journal {
-    /// The journal at `path`, if it has the same `fingerprint`; else a new one. One that cannot be read or written is done
-    /// without: it saves time and decides nothing.
+    /// The journal at `path`, if it has the same `fingerprint`; else a new one.
     pub(super) fn open(path: Option<&Path>, fingerprint: &str) -> Self {
-        let header = format!("shotdamp journal 2 {fingerprint}\n");
-        let Some(path) = path else { return Self { known: BTreeMap::new(), file: None } };
-        let text = fs::read_to_string(path).unwrap_or_default();
         let mut known = BTreeMap::new();
-        let mut whole = 0;
-        if let Some(lines) = text.strip_prefix(&header) {
-            whole = header.len();
-            for line in lines.split_inclusive('\n') {
-                let Some((point, is)) = line.strip_suffix('\n').and_then(read_line) else { break };
-                known.insert(point, is);
-                whole += line.len();
-            }
-        }
-        let begun = || {
-            if let Some(folder) = path.parent() {
-                fs::create_dir_all(folder)?;
-            }
-            let mut file = File::options().create(true).truncate(false).append(true).open(path)?;
-            file.set_len(whole as u64)?;
-            if whole == 0 {
-                file.write_all(header.as_bytes())?;
-            }
-            Ok::<_, std::io::Error>(file)
-        };
-        Self { known, file: begun().ok() }
+        let read = |line: &str| read_line(line).map(|(point, is)| known.insert(point, is)).is_some();
+        let lines = KeptLines::open(path, &format!("shotdamp journal 2 {fingerprint}\n"), read);
+        Self { known, lines }
     }
 
     pub(super) fn get(&self, point: &[f64]) -> Option<Known> {
@@ -67,11 +43,7 @@ impl Journal {
             self.known.insert(key(point), *known);
             text += &line(point, known);
         }
-        let kept = self.file.as_mut().map(|file| file.write_all(text.as_bytes()).and_then(|()| file.sync_data()));
-        if let Some(Err(_)) = kept {
-            // A full disk ends the journal, not the optimisation.
-            self.file = None;
-        }
+        self.lines.append(&text);
     }
 }
 

@@ -18,6 +18,7 @@ mod glance;
 mod inputs;
 mod job;
 mod journal;
+mod kept_lines;
 mod known_rows;
 mod layout;
 mod limited;
@@ -63,6 +64,7 @@ pub use forecast::forecast;
 pub use gather::{GatherError, gather};
 pub use inputs::Inputs;
 pub use job::runs_of_a_row;
+pub(crate) use kept_lines::KeptLines;
 pub use known_rows::KnownRows;
 pub use layout::{
     ASSUMPTIONS, Layout, STUDY, Texts, calibration_journal_name, folder_of, journal_name, record_name, stem, table_name,

@@ -119,16 +119,6 @@ impl Assumable for PlaceList {
     }
 }
 
-impl Assumable for super::MassReading {
-    fn of(value: &AssumptionValue) -> Option<Self> {
-        match value {
-            AssumptionValue::Number(share) => Some(Self::Share(*share)),
-            AssumptionValue::Choice(word) => from_word(word),
-            AssumptionValue::Curve(_) | AssumptionValue::Places(_) => None,
-        }
-    }
-}
-
 impl Assumable for FieldValue {
     fn of(value: &AssumptionValue) -> Option<Self> {
         match value {
@@ -168,45 +158,27 @@ readings!(
     crate::measure::Comparison
 );
 
-impl Assumable for super::FloorStiffness {
-    fn of(value: &AssumptionValue) -> Option<Self> {
-        match value {
-            AssumptionValue::Number(stiffness) => Some(Self::Stiffness(*stiffness)),
-            AssumptionValue::Choice(word) => from_word(word),
-            AssumptionValue::Curve(_) | AssumptionValue::Places(_) => None,
-        }
-    }
+/// A number, or a reading in its place.
+macro_rules! numbers_or_readings {
+    ($($Type:ident::$Number:ident),*) => {
+        $(impl Assumable for super::$Type {
+            fn of(value: &AssumptionValue) -> Option<Self> {
+                match value {
+                    AssumptionValue::Number(number) => Some(Self::$Number(*number)),
+                    AssumptionValue::Choice(word) => from_word(word),
+                    AssumptionValue::Curve(_) | AssumptionValue::Places(_) => None,
+                }
+            }
+        })*
+    };
 }
-
-impl Assumable for super::ImpulseTime {
-    fn of(value: &AssumptionValue) -> Option<Self> {
-        match value {
-            AssumptionValue::Number(seconds) => Some(Self::Seconds(*seconds)),
-            AssumptionValue::Choice(word) => from_word(word),
-            AssumptionValue::Curve(_) | AssumptionValue::Places(_) => None,
-        }
-    }
-}
-
-impl Assumable for super::ContactDampingRatio {
-    fn of(value: &AssumptionValue) -> Option<Self> {
-        match value {
-            AssumptionValue::Number(ratio) => Some(Self::Ratio(*ratio)),
-            AssumptionValue::Choice(word) => from_word(word),
-            AssumptionValue::Curve(_) | AssumptionValue::Places(_) => None,
-        }
-    }
-}
-
-impl Assumable for super::ContactDampingConstant {
-    fn of(value: &AssumptionValue) -> Option<Self> {
-        match value {
-            AssumptionValue::Number(damping) => Some(Self::Constant(*damping)),
-            AssumptionValue::Choice(word) => from_word(word),
-            AssumptionValue::Curve(_) | AssumptionValue::Places(_) => None,
-        }
-    }
-}
+numbers_or_readings!(
+    MassReading::Share,
+    FloorStiffness::Stiffness,
+    ImpulseTime::Seconds,
+    ContactDampingRatio::Ratio,
+    ContactDampingConstant::Constant
+);
 
 /// The assumptions in force while a recipe is resolved, with a record of those that were read.
 #[derive(Debug)]
