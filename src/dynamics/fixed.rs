@@ -121,7 +121,7 @@ impl<'a, V: Vector> Run<'a, V> {
             with_displacement: options.displacement,
         };
         let oscillator =
-            system.drive.harmonic.map(|drive| Oscillator::new(drive.force, schedule.angle(drive, system.drive.period)));
+            system.drive.harmonic.map(|drive| Oscillator::new(drive, schedule.angle(drive, system.drive.period)));
         let half_cycles = system.drive.half_cycles.as_ref();
         let (contacts, state) = start(system, &options.start, layout)?;
         let mut run = Self {

@@ -17,7 +17,7 @@ use super::load::{self, Load, Steady};
 use super::parabola::Parabola;
 use super::series::Series;
 use super::signals::{Row, Rows, Signals};
-use super::system::{Contact, HybridSystem, dot};
+use super::system::{Contact, Drive, HybridSystem, dot};
 
 /// One contact state, ready to be propagated.
 pub(crate) struct Flow {
@@ -321,11 +321,21 @@ fn answered(
     Ok((modes, steady))
 }
 
-/// Phase of the harmonic drive: F cos ω t and F sin ω t.
+/// Phase of the harmonic drive: F cos(ω t + φ) and F sin(ω t + φ).
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct DrivePhase {
     pub(crate) cosine: f64,
     pub(crate) sine: f64,
+}
+
+impl DrivePhase {
+    /// At a time within the cycle; zero without a harmonic force.
+    pub(crate) fn of(drive: &Drive, time: f64) -> Self {
+        drive.harmonic.map_or_else(Self::default, |harmonic| {
+            let (sine, cosine) = super::elementary::sin_cos(harmonic.angular_frequency * time + harmonic.phase);
+            Self { cosine: harmonic.force * cosine, sine: harmonic.force * sine }
+        })
+    }
 }
 
 impl Flow {

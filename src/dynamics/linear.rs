@@ -21,7 +21,7 @@ mod two_impacts;
 use std::rc::Rc;
 
 use self::bound::Watch;
-use self::cycle::{Cycle, drive_at, enter, leave};
+use self::cycle::{Cycle, enter, leave};
 use self::moments::Moments;
 use self::signal::{Row, integrals};
 use self::struck::Struck;
@@ -189,7 +189,7 @@ impl<'a> Run<'a> {
         let kick = options.kick * system.drive.scale();
         let first = Cycle::new(system, flow, ticks, 0.0, kick, &answer);
         let regular = regular(system, flow, first.after(), &answer);
-        let phase = drive_at(system, 0.0);
+        let phase = DrivePhase::of(&system.drive, 0.0);
         let start = match &options.start {
             StartState::Given { q, rate, .. } if system.particles.is_empty() => enter(flow, q, rate, 0.0, phase),
             _ => {
@@ -244,7 +244,7 @@ impl<'a> Run<'a> {
     /// The structure's velocities at both ends of every cycle.
     fn cycle_rates(&self, cycles: u64) -> Vec<CycleRates> {
         let n = self.system.mass.order;
-        let phase = drive_at(self.system, 0.0);
+        let phase = DrivePhase::of(&self.system.drive, 0.0);
         let rates = |c: &[f64], level: f64| {
             let (_, mut rate) = leave(self.flow, c, level, phase);
             rate.truncate(n);
@@ -295,12 +295,12 @@ impl<'a> Run<'a> {
             response.cycle_rates = self.cycle_rates(options.cycles());
         }
         let (end, level) = self.before(options.cycles());
-        let (p, rate) = leave(flow, &end, level, drive_at(system, 0.0));
+        let (p, rate) = leave(flow, &end, level, DrivePhase::of(&system.drive, 0.0));
         let last = balance::state(system, flow, &p, &rate);
         response.final_state = options.final_state.then(|| on_floors(system, flow, &p, &rate));
         if options.audit {
             let (begin, level) = self.before(skip);
-            let (p, rate) = leave(flow, &begin, level, drive_at(system, 0.0));
+            let (p, rate) = leave(flow, &begin, level, DrivePhase::of(&system.drive, 0.0));
             let mut audit = Audit::default();
             audit.begin(balance::state(system, flow, &p, &rate));
             for Stretch { cycle, at, .. } in self.stretch(skip, options.cycles()) {

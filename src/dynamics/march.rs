@@ -309,16 +309,10 @@ impl<'a, const TAPED: bool> March<'a, TAPED> {
 
     /// The harmonic force's phase; a segment begins where another ended, so that the last answer is kept.
     fn drive_phase(&mut self, time: f64) -> DrivePhase {
-        match self.system.drive.harmonic {
-            None => DrivePhase::default(),
-            Some(_) if self.phase_time == time => self.phase,
-            Some(drive) => {
-                let (sine, cosine) = super::elementary::sin_cos(drive.angular_frequency * time);
-                self.phase = DrivePhase { cosine: drive.force * cosine, sine: drive.force * sine };
-                self.phase_time = time;
-                self.phase
-            }
+        if self.phase_time != time {
+            (self.phase, self.phase_time) = (DrivePhase::of(&self.system.drive, time), time);
         }
+        self.phase
     }
 
     /// A jump of the force.

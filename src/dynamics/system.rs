@@ -162,7 +162,7 @@ pub struct Drive {
     pub ticks: Vec<Tick>,
     /// False: the ticks belong to the first cycle alone.
     pub repeats: bool,
-    /// A harmonic force F sin(ω t) beside them: [F, ω], with ω·period a multiple of 2π.
+    /// A harmonic force F sin(ω t + φ) beside them, with ω·period a multiple of 2π.
     pub harmonic: Option<Harmonic>,
     /// Contact damping renewed at every half cycle of the observed acceleration.
     pub half_cycles: Option<HalfCycles>,
@@ -188,13 +188,15 @@ pub struct Tick {
     pub level: f64,
 }
 
-/// F sin(ω t).
+/// F sin(ω t + φ).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Harmonic {
     /// F, N.
     pub force: f64,
     /// ω, rad/s.
     pub angular_frequency: f64,
+    /// φ: where in its own period the cycles of the drive begin, rad.
+    pub phase: f64,
 }
 
 /// Equivalent viscous damping: c = curve(RMS of the observed acceleration over the half cycle before, in g).

@@ -144,9 +144,10 @@ fn drive(excitation: &Excitation) -> Drive {
     match *excitation {
         Excitation::SingleImpulse { impulse, cycle } => Drive { repeats: false, ..quiet(cycle, once(impulse)) },
         Excitation::ImpulseTrain { impulse, period } => quiet(period, once(impulse)),
-        Excitation::Harmonic { force, angular_frequency } => {
-            Drive { harmonic: Some(Harmonic { force, angular_frequency }), ..quiet(excitation.period(), once(0.0)) }
-        }
+        Excitation::Harmonic { force, angular_frequency } => Drive {
+            harmonic: Some(Harmonic { force, angular_frequency, phase: 0.0 }),
+            ..quiet(excitation.period(), once(0.0))
+        },
         Excitation::PulseTrain { impulse, period, duration, shape: PulseShape::Rectangular } => {
             let mut ticks = vec![Tick { time: 0.0, impulse: 0.0, level: impulse / duration }];
             if duration < period {

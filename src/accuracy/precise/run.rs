@@ -94,12 +94,17 @@ pub(super) struct Run<'a> {
     pub(super) response: Response,
 }
 
+/// sin and cos of the harmonic force's phase as a cycle begins.
+fn begun_at(system: &HybridSystem) -> [Double; 2] {
+    sin_cos(Double::from(system.drive.harmonic.map_or(0.0, |drive| drive.phase)))
+}
+
 impl<'a> Run<'a> {
     fn new(system: &'a HybridSystem, options: &'a Options, patience: Duration) -> Result<Self, PreciseError> {
         let (n, count) = (system.mass.order, system.particles.len());
         let zeros = |n: usize| vec![Double::ZERO; n];
         let rows = system.observed_rows.len();
-        let phase = [Double::ZERO, Double::from(1.0)];
+        let phase = begun_at(system);
         let mut run = Self {
             system,
             options,
@@ -175,7 +180,7 @@ impl<'a> Run<'a> {
         for cycle in 0..self.options.cycles() {
             self.cycle = cycle;
             self.time = Double::ZERO;
-            self.state.phase = [Double::ZERO, Double::from(1.0)];
+            self.state.phase = begun_at(self.system);
             let single = [Tick { time: 0.0, impulse: 0.0, level: 0.0 }];
             let ticks: &[Tick] = if cycle == 0 || drive.repeats { &drive.ticks } else { &single };
             for (i, tick) in ticks.iter().enumerate() {

@@ -94,10 +94,11 @@ fn ticks(ticks: &[Tick], period: f64, steps: f64, time_step: f64) -> Vec<StepTic
     rounded
 }
 
-/// F sin(ω k Δt), step by step.
+/// F sin(ω k Δt + φ), step by step.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Oscillator {
     force: f64,
+    phase: f64,
     angle: f64,
     rotation: (f64, f64),
     now: (f64, f64),
@@ -109,8 +110,8 @@ const EXACT_EVERY: u64 = 64;
 
 impl Oscillator {
     /// At step 0, turning by `angle` radians a step.
-    pub(super) fn new(force: f64, angle: f64) -> Self {
-        Self { force, angle, rotation: sin_cos(angle), now: (0.0, 1.0), step: 0 }
+    pub(super) fn new(Harmonic { force, phase, .. }: Harmonic, angle: f64) -> Self {
+        Self { force, phase, angle, rotation: sin_cos(angle), now: sin_cos(phase), step: 0 }
     }
 
     #[inline(always)]
@@ -123,7 +124,7 @@ impl Oscillator {
         self.step += 1;
         let ((sine, cosine), (s, c)) = (self.rotation, self.now);
         self.now = if self.step.is_multiple_of(EXACT_EVERY) {
-            sin_cos(self.angle * self.step as f64)
+            sin_cos(self.angle * self.step as f64 + self.phase)
         } else {
             (s * cosine + c * sine, c * cosine - s * sine)
         };
@@ -168,15 +169,16 @@ mod tests {
 
     #[test]
     fn a_harmonic_force_keeps_its_period_and_its_phase() {
-        let harmonic = Some(crate::dynamics::Harmonic { force: 3.0, angular_frequency: 30.861 });
+        let harmonic = Some(crate::dynamics::Harmonic { force: 3.0, angular_frequency: 30.861, phase: 0.0 });
         let period = std::f64::consts::TAU / 30.861;
         let schedule = Schedule::of(&Drive { harmonic, ..train(period, Vec::new()) }, 1e-2).unwrap();
         assert_eq!(schedule.cycle(125), (125.0 * period / 1e-2).round() as u64);
-        let mut oscillator = Oscillator::new(3.0, 30.861e-2);
+        let force = Harmonic { force: 3.0, angular_frequency: 30.861, phase: 0.5 };
+        let mut oscillator = Oscillator::new(force, 30.861e-2);
         for _ in 0..1000 {
             oscillator.advance();
         }
-        assert!((oscillator.value() - 3.0 * libm::sin(308.61)).abs() < 1e-12);
+        assert!((oscillator.value() - 3.0 * libm::sin(309.11)).abs() < 1e-12);
     }
 
     #[test]

@@ -158,7 +158,7 @@ impl Cycle {
             let length = (end - tick.time).max(0.0);
             let free = Affine::flow(flow, length);
             map = map.then(&jump).then(&free);
-            let drive = drive_at(system, tick.time);
+            let drive = DrivePhase::of(&system.drive, tick.time);
             segments.push(Segment { begin: tick.time, length, impulse, level, jump, flow: free, drive });
         }
         Self { segments, before, map }
@@ -168,14 +168,6 @@ impl Cycle {
     pub(super) fn after(&self) -> f64 {
         self.segments.last().map_or(self.before, |segment| segment.level)
     }
-}
-
-/// Phase of the harmonic force at a time of the cycle.
-pub(super) fn drive_at(system: &HybridSystem, time: f64) -> DrivePhase {
-    system.drive.harmonic.map_or_else(DrivePhase::default, |drive| {
-        let (sine, cosine) = crate::dynamics::elementary::sin_cos(drive.angular_frequency * time);
-        DrivePhase { cosine: drive.force * cosine, sine: drive.force * sine }
-    })
 }
 
 /// (p, p′) of a state of block coordinates.

@@ -4,13 +4,13 @@
 //! state, set up once. Between nodes a cubic tells how high a crest may be; only one that may be the highest so far is
 //! closed in on, by Newton on the exact flow.
 
-use super::cycle::{Cycle, Segment, drive_at};
+use super::cycle::{Cycle, Segment};
 use super::signal::Row;
 use crate::dynamics::Extremes;
 use crate::dynamics::block::{Block, Phase};
 use crate::dynamics::budget;
 use crate::dynamics::crest::{self, Motion, crest};
-use crate::dynamics::flow::Flow;
+use crate::dynamics::flow::{DrivePhase, Flow};
 use crate::dynamics::system::HybridSystem;
 
 /// Nodes a radian of whatever oscillates: the cubic between two of them is then close enough to judge a crest ([`crest`]).
@@ -88,7 +88,7 @@ impl Grid {
                         rows.iter_mut().zip(parts).for_each(|(row, part)| row.push(part));
                     }
                 }
-                let (driven, _) = row.outside(flow, segment.level, drive_at(system, segment.begin + time));
+                let (driven, _) = row.outside(flow, segment.level, DrivePhase::of(&system.drive, segment.begin + time));
                 let mut constant = [rest, 0.0, 0.0];
                 if let (Some(phase), Some(block)) = (driven, flow.blocks.last()) {
                     let parts = [phase.value, phase.rate, block.acceleration(phase).value];

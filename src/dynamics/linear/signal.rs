@@ -1,6 +1,6 @@
 //! Signals of a flow as rows over its block coordinates, and their integrals over many cycles at once.
 
-use super::cycle::{Affine, Cycle, Segment, drive_at, product, sum, times};
+use super::cycle::{Affine, Cycle, Segment, product, sum, times};
 use super::moments::{Moments, outer};
 use crate::dynamics::Sums;
 use crate::dynamics::block::{Block, Phase, pairs, transposed};
@@ -89,7 +89,7 @@ pub(super) fn integrals(
         if segment.length == 0.0 {
             continue;
         }
-        let end_drive = drive_at(system, segment.begin + segment.length);
+        let end_drive = DrivePhase::of(&system.drive, segment.begin + segment.length);
         let ends = [At { moments: &start, drive: segment.drive }, At { moments: &end, drive: end_drive }];
         let gained = |closed: &Closed| closed.solve(&gains(flow, ends, segment.level, segment.length));
         let integrated = flow.closed().filter(|_| !flow.is_brief(segment.length)).map(gained);

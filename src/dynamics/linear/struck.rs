@@ -4,7 +4,7 @@
 use std::f64::consts::TAU;
 
 use super::Steady;
-use super::cycle::{Affine, drive_at, jump, leave, times};
+use super::cycle::{Affine, jump, leave, times};
 use crate::dynamics::EngineError;
 use crate::dynamics::cholesky::Cholesky;
 use crate::dynamics::flow::DrivePhase;
@@ -44,7 +44,7 @@ impl<'a> Struck<'a> {
         let bare = HybridSystem { particles: Vec::new(), ..system.clone() };
         let Some(steady) = Steady::of(&bare)? else { return Ok(None) };
         let (omega, row) = (harmonic.angular_frequency, &floor.row);
-        let (q, rate) = leave(&steady.flow, &steady.state, 0.0, drive_at(&bare, 0.0));
+        let (q, rate) = leave(&steady.flow, &steady.state, 0.0, DrivePhase::of(&bare.drive, 0.0));
         let amplitude = libm::hypot(dot(row, &q), dot(row, &rate) / omega);
         let answer = Cholesky::new(&system.mass)?.solve(row);
         let unit: Vec<f64> = jump(&bare, &steady.flow, 1.0, [0.0; 2], &answer).concat();

@@ -75,7 +75,7 @@ pub enum BranchEnd<E> {
         parameter: f64,
     },
     /// A contact has come to the instant at which the cycles of the drive begin: with the impulse given there, the motion after it
-    /// is another one; under a harmonic force it goes on, and is followed there from another start of its own.
+    /// is another one.
     CycleStart,
     /// As many points as were asked for.
     Points,
@@ -107,7 +107,7 @@ impl<E> Branch<E> {
         parameter: f64,
         along: Along,
     ) -> Result<Self, BranchError<E>> {
-        let mut path = Path { system_at, cycles: orbit.cycles, from: along.from, to: along.to, begin: parameter };
+        let mut path = Path::new(system_at, orbit.cycles, along, parameter);
         let system = path.system(path.first())?;
         let none = || OrbitError::NoConvergence { cycles: orbit.cycles, miss: f64::INFINITY };
         let start = absolute(&system, &orbit.start).ok_or_else(none)?;
@@ -126,8 +126,7 @@ impl<E> Branch<E> {
         along: Along,
     ) -> Result<Self, BranchError<E>> {
         let cycles = doubling.orbit.cycles;
-        let begin = doubling.parameter;
-        let mut path = Path { system_at, cycles: 2 * cycles, from: along.from, to: along.to, begin };
+        let mut path = Path::new(system_at, 2 * cycles, along, doubling.parameter);
         let share = path.first();
         let system = path.system(share)?;
         let none = || OrbitError::NoConvergence { cycles, miss: f64::INFINITY };
@@ -153,8 +152,7 @@ impl<E> Branch<E> {
         let Orbit { cycles, distance, .. } = fork.orbit;
         let none = || OrbitError::NoConvergence { cycles, miss: f64::INFINITY };
         let mut follow = |side: f64| {
-            let begin = fork.parameter;
-            let mut path = Path { system_at: &mut system_at, cycles, from: along.from, to: along.to, begin };
+            let mut path = Path::new(&mut system_at, cycles, along, fork.parameter);
             let share = path.first();
             let system = path.system(share)?;
             let start = absolute(&system, &fork.orbit.start).ok_or_else(none)?;
@@ -173,7 +171,8 @@ impl<E> Branch<E> {
 struct Follower<F> {
     path: Path<F>,
     along: Along,
-    origin: Origin,
+    /// `None` where it cannot come back to it.
+    origin: Option<Origin>,
     points: Vec<BranchPoint>,
     slowing: Slowing,
     /// Arc since the last point that was kept.
@@ -194,7 +193,7 @@ enum Next<E> {
 
 impl<E, F: FnMut(f64) -> Result<HybridSystem, E>> Follower<F> {
     fn new(path: Path<F>, along: Along, first: &At) -> Self {
-        let origin = Origin::of(first);
+        let origin = Some(Origin::of(first));
         Self {
             path,
             along,
@@ -228,6 +227,7 @@ impl<E, F: FnMut(f64) -> Result<HybridSystem, E>> Follower<F> {
                 }
                 Ok(Next::Turn) => at.tangent.iter_mut().for_each(|t| *t = -*t),
                 Ok(Next::End(end)) => return self.end(&at, end),
+                Err(_) if let Some(same) = self.cleared(&at)? => (at, step) = (same, tried),
                 Err(_) if tried > SHORTEST * self.along.step => step = 0.5 * tried,
                 Err(BranchError::System(error)) => return self.end(&at, BranchEnd::System(error)),
                 Err(BranchError::Orbit(error)) => {
@@ -261,7 +261,7 @@ impl<E, F: FnMut(f64) -> Result<HybridSystem, E>> Follower<F> {
         if at.shot.swaps_halves(&next.shot) {
             return Ok(Ok(Next::End(BranchEnd::HalfPeriod)));
         }
-        let closing = match self.origin.between(&mut self.path, at, &next, step) {
+        let closing = match self.comes_back(at, &next, step) {
             Ok(closing) => closing,
             Err(error) => return Ok(Err(error)),
         };
@@ -288,7 +288,7 @@ impl<E, F: FnMut(f64) -> Result<HybridSystem, E>> Follower<F> {
             };
             let system = self.path.system(end)?;
             let (shot, distance) = closed(&system, last.shot.start, self.path.cycles)?;
-            let orbit = shot.orbit(&system, distance)?;
+            let orbit = self.path.orbit(&At { share: end, shot, distance, ..last })?;
             self.pending = false;
             self.points.push(BranchPoint { parameter: self.path.parameter(end), orbit, special: None });
             return Ok(Ok(Next::End(BranchEnd::Range)));
@@ -319,7 +319,7 @@ impl<E, F: FnMut(f64) -> Result<HybridSystem, E>> Follower<F> {
             }
         }
         if let Some(edge) = &last {
-            match self.origin.between(&mut self.path, at, edge, low) {
+            match self.comes_back(at, edge, low) {
                 Ok(None) => {}
                 Ok(Some(_)) => return Ok(Ok(self.close())),
                 Err(error) => return Ok(Err(error)),
@@ -355,6 +355,20 @@ impl<E, F: FnMut(f64) -> Result<HybridSystem, E>> Follower<F> {
         }
     }
 
+    /// The same point, with a period that begins away from contacts.
+    fn cleared(&mut self, at: &At) -> Result<Option<At>, BranchError<E>> {
+        let Some((shift, same)) = self.path.cleared(at)? else { return Ok(None) };
+        if let Some(origin) = self.origin.take() {
+            self.origin = origin.seen_from(&mut self.path, shift)?;
+        }
+        Ok(Some(same))
+    }
+
+    /// The first point again, and how far along the step.
+    fn comes_back(&mut self, at: &At, next: &At, step: f64) -> Result<Option<(f64, At)>, BranchError<E>> {
+        self.origin.as_ref().map_or(Ok(None), |origin| origin.between(&mut self.path, at, next, step))
+    }
+
     /// Enters the first point again.
     fn close(&mut self) -> Next<E> {
         self.points.push(BranchPoint { special: None, ..self.points[0].clone() });
@@ -364,8 +378,7 @@ impl<E, F: FnMut(f64) -> Result<HybridSystem, E>> Follower<F> {
 
     /// Enters a point.
     fn keep(&mut self, at: &At, special: Option<Special>) -> Result<(), BranchError<E>> {
-        let system = self.path.system(at.share)?;
-        let orbit = at.shot.orbit(&system, at.distance)?;
+        let orbit = self.path.orbit(at)?;
         self.points.push(BranchPoint { parameter: self.path.parameter(at.share), orbit, special });
         if special.is_none() {
             (self.since, self.pending) = (0.0, false);

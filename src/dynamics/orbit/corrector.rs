@@ -6,9 +6,10 @@
 
 use nalgebra::DMatrix;
 
-use super::branch::BranchError;
+use super::branch::{Along, BranchError};
 use super::elimination::Solved;
 use super::newton::{CLOSED, size};
+use super::section::begun_late;
 use super::shot::{Contacts, Shot, state_after};
 use super::{OrbitError, elimination};
 use crate::dynamics::motion::End;
@@ -50,13 +51,20 @@ pub(super) struct At {
 pub(super) struct Path<F> {
     pub(super) system_at: F,
     pub(super) cycles: u32,
-    pub(super) from: f64,
-    pub(super) to: f64,
+    /// Of a cycle of the drive, after which the period begins.
+    pub(super) late: f64,
+    from: f64,
+    to: f64,
     /// The parameter of the first point.
-    pub(super) begin: f64,
+    begin: f64,
 }
 
 impl<E, F: FnMut(f64) -> Result<HybridSystem, E>> Path<F> {
+    /// From the point of a parameter on.
+    pub(super) fn new(system_at: F, cycles: u32, along: Along, begin: f64) -> Self {
+        Self { system_at, cycles, late: 0.0, from: along.from, to: along.to, begin }
+    }
+
     /// The parameter at a share of the range; its ends and the first point are met to the bit.
     pub(super) fn parameter(&self, share: f64) -> f64 {
         match share {
@@ -73,7 +81,7 @@ impl<E, F: FnMut(f64) -> Result<HybridSystem, E>> Path<F> {
 
     pub(super) fn system(&mut self, share: f64) -> Result<HybridSystem, BranchError<E>> {
         let parameter = self.parameter(share);
-        (self.system_at)(parameter).map_err(BranchError::System)
+        Ok(begun_late((self.system_at)(parameter).map_err(BranchError::System)?, self.late))
     }
 
     /// Of two neighbours, one has a particle that stays on its face for an instant; that of the other leaves at once.
@@ -178,7 +186,7 @@ impl<E, F: FnMut(f64) -> Result<HybridSystem, E>> Path<F> {
     }
 
     /// The direction in which solutions lie side by side, on the side of `onwards`, and the determinant of its equations.
-    fn tangent(&mut self, shot: &Shot, share: f64, onwards: &[f64]) -> Result<Solved, BranchError<E>> {
+    pub(super) fn tangent(&mut self, shot: &Shot, share: f64, onwards: &[f64]) -> Result<Solved, BranchError<E>> {
         let by = self.slope(shot, share)?;
         let mut rest = vec![0.0; onwards.len()];
         rest[onwards.len() - 1] = 1.0;

@@ -37,6 +37,7 @@
 //! | `corrector` | a point of a branch beside another |
 //! | `special` | test functions, and where they vanish |
 //! | `origin` | whether a branch has come back to its first point |
+//! | `section` | where the period begins, away from contacts |
 //! | `slowing` | where a contact that slows down has no speed left |
 //! | `fork` | where a branch loses its symmetry |
 //! | `branch` | from point to point, and how a branch ends |
@@ -50,6 +51,7 @@ mod elimination;
 mod fork;
 mod newton;
 mod origin;
+mod section;
 mod shot;
 mod slowing;
 mod special;

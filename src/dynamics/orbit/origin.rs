@@ -8,6 +8,8 @@
 
 use super::branch::BranchError;
 use super::corrector::{At, Path};
+use super::section::Shift;
+use super::shot::Shot;
 use super::special;
 use crate::dynamics::motion::{End, Scale};
 use crate::dynamics::system::HybridSystem;
@@ -29,6 +31,25 @@ impl Origin {
     pub(super) fn of(at: &At) -> Self {
         let At { share, shot, tangent, .. } = at;
         Self { share: *share, start: shot.start.clone(), scale: shot.scale.clone(), tangent: tangent.clone() }
+    }
+
+    /// The same with a period that begins elsewhere; `None` of a branch that begins at a fork, and ends there if it comes back.
+    pub(super) fn seen_from<E, F: FnMut(f64) -> Result<HybridSystem, E>>(
+        &self,
+        path: &mut Path<F>,
+        shift: Shift,
+    ) -> Result<Option<Self>, BranchError<E>> {
+        let along = self.tangent[self.tangent.len() - 1];
+        if along == 0.0 {
+            return Ok(None);
+        }
+        let (start, _) = path.carried(self.share, &self.start, shift)?;
+        let system = path.system(self.share)?;
+        let shot = Shot::new(&system, start, path.cycles, None)?;
+        let mut onwards = vec![0.0; self.tangent.len()];
+        onwards[shot.miss.len()] = along;
+        let tangent = path.tangent(&shot, self.share, &onwards)?.x;
+        Ok(Some(Self { share: self.share, start: shot.start, scale: shot.scale, tangent }))
     }
 
     /// The first point again, if the branch has come to it between a point and the next, `step` along; and how far along.

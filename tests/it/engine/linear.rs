@@ -84,7 +84,7 @@ fn pulses(period: f64, force: f64) -> Drive {
 
 fn harmonic(angular_frequency: f64, force: f64) -> Drive {
     let ticks = vec![Tick { time: 0.0, impulse: 0.0, level: 0.0 }];
-    Drive { harmonic: Some(Harmonic { force, angular_frequency }), ..drive(TAU / angular_frequency, ticks) }
+    Drive { harmonic: Some(Harmonic { force, angular_frequency, phase: 0.0 }), ..drive(TAU / angular_frequency, ticks) }
 }
 
 fn everything() -> Options {

@@ -1,6 +1,7 @@
 //! The engine against references that no code of this package made: 128-bit arithmetic, closed forms, conserved
 //! quantities, changes of units. `tests/it/data/README.md` says where the data come from.
 
+mod any_instant;
 mod arrays;
 mod averages;
 mod bench;

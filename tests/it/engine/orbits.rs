@@ -26,7 +26,7 @@ fn beside(steady: &Steady, off: f64, cycles: u32) -> Orbit {
 }
 
 /// ω t and relative speed of the first floor contact of an orbit.
-fn floor_contact(orbit: &Orbit, omega: f64) -> [f64; 2] {
+pub(super) fn floor_contact(orbit: &Orbit, omega: f64) -> [f64; 2] {
     let events = &orbit.response.events;
     let contact = events.iter().find(|event| event.kind == EventKind::FloorContact).expect("it meets the floor");
     [omega * contact.time, contact.approach]

@@ -30,8 +30,10 @@ fn any_driven_scene(seed: u64) -> HybridSystem {
         0 => {}
         1 => {
             let (force, angular_frequency) = (dice.ratio(0.1, 30.0), dice.ratio(3.0, 200.0));
-            let harmonic = Some(Harmonic { force, angular_frequency });
             let period = std::f64::consts::TAU / angular_frequency;
+            // Half of them begin within a period of the force.
+            let phase = if seed % 8 < 4 { 0.0 } else { force % std::f64::consts::TAU };
+            let harmonic = Some(Harmonic { force, angular_frequency, phase });
             system.drive = Drive { period, ticks: Vec::new(), harmonic, ..system.drive };
         }
         2 => {

@@ -12,7 +12,7 @@ fn driven(system: HybridSystem, force: f64, angular_frequency: f64) -> HybridSys
     let drive = Drive {
         period: TAU / angular_frequency,
         ticks: Vec::new(),
-        harmonic: Some(Harmonic { force, angular_frequency }),
+        harmonic: Some(Harmonic { force, angular_frequency, phase: 0.0 }),
         ..quiet(1.0)
     };
     HybridSystem { drive, ..system }
