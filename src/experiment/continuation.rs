@@ -118,7 +118,7 @@ impl BranchColumn {
             Self::Contacts => "contacts made in that time, impacts on stops among them",
             Self::Stability => "`stable` where no multiplier exceeds 1, else `unstable`",
             Self::SpecialPoint => {
-                "what happens at this point: `fold`, `period doubling`, `torus` (a quasi-periodic motion begins), `graze`, `sticking` (a particle begins or ceases to stay on a rigid face that it lands on) or `symmetry breaking` (two motions begin, each the other upside down); empty elsewhere"
+                "what happens at this point: `fold`, `period doubling`, `torus` (a quasi-periodic motion begins), `graze`, `sticking` (a particle begins or ceases to stay on a rigid face that it lands on), `symmetry breaking` (two motions begin, each the other upside down) or `branch point` (another branch crosses); empty elsewhere"
             }
             Self::BranchEnd => "in the first and the last row of a branch why it goes no further; empty elsewhere",
         }

@@ -1,5 +1,7 @@
 //! A panel put on the sheet: grid, bands, curves, markers, frame, numbers, legend, in this order.
 
+use std::f64::consts::FRAC_PI_4;
+
 use crate::experiment::Band;
 use crate::text::number::compact;
 
@@ -254,11 +256,14 @@ pub(super) fn marker(sheet: &Sheet, at: Point, look: Look) {
             let corners = [corner(0.0, -1.3), corner(1.1, 0.0), corner(0.0, 1.3), corner(-1.1, 0.0)];
             sheet.fill(&corners, look.color, 1.0)
         }
-        Marker::Cross => {
+        Marker::Cross | Marker::Saltire => {
+            let turn = if look.marker == Marker::Cross { 0.0 } else { FRAC_PI_4 };
+            let [sine, cosine] = [libm::sin(turn), libm::cos(turn)];
             let (long, wide) = (1.1, 0.35);
             let quarter = [[-wide, -long], [wide, -long], [wide, -wide]];
             let turned = |quarters: usize| quarter.map(|at| (0..quarters).fold(at, |[x, y], _| [-y, x]));
-            let corners: Vec<Point> = (0..4).flat_map(turned).map(|[x, y]| corner(x, y)).collect();
+            let corners: Vec<Point> =
+                (0..4).flat_map(turned).map(|[x, y]| corner(cosine * x - sine * y, sine * x + cosine * y)).collect();
             sheet.fill(&corners, look.color, 1.0)
         }
     }

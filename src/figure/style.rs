@@ -175,6 +175,7 @@ pub(super) enum Marker {
     Down,
     Diamond,
     Cross,
+    Saltire,
 }
 
 impl Marker {
@@ -187,6 +188,7 @@ impl Marker {
             Special::Graze => Self::Down,
             Special::Sticking => Self::Diamond,
             Special::SymmetryBreaking => Self::Cross,
+            Special::BranchPoint => Self::Saltire,
         }
     }
 }

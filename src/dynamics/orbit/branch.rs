@@ -272,10 +272,7 @@ impl<E, F: FnMut(f64) -> Result<HybridSystem, E>> Follower<F> {
             Err(error) => return Ok(Err(error)),
         };
         let beyond = (next.share > 1.0).then_some(1.0).or((next.share < 0.0).then_some(0.0));
-        let inside = |at: &At| (0.0..=1.0).contains(&at.share);
-        for (special, at) in specials.iter().filter(|(_, at)| inside(at)) {
-            self.keep(at, Some(*special))?;
-        }
+        self.keep_all(&specials)?;
         if closing.is_some() {
             return Ok(Ok(self.close()));
         }
@@ -325,6 +322,12 @@ impl<E, F: FnMut(f64) -> Result<HybridSystem, E>> Follower<F> {
                 Err(error) => return Ok(Err(error)),
             }
         }
+        let before = match last.as_ref().map(|edge| special::between(&mut self.path, at, edge, low)).transpose() {
+            Ok(Some(Between::Specials(specials))) => specials,
+            Ok(Some(Between::Symmetry)) => return Ok(Ok(Next::End(BranchEnd::Symmetry))),
+            Ok(None) => Vec::new(),
+            Err(error) => return Ok(Err(error)),
+        };
         if last.is_none() && self.turns {
             self.turns = false;
             return Ok(Ok(Next::Turn));
@@ -340,6 +343,7 @@ impl<E, F: FnMut(f64) -> Result<HybridSystem, E>> Follower<F> {
                 } else {
                     self.turns.then_some(Special::Graze)
                 };
+                self.keep_all(&before)?;
                 if special.is_some() {
                     self.keep(edge, special)?;
                 }
@@ -374,6 +378,12 @@ impl<E, F: FnMut(f64) -> Result<HybridSystem, E>> Follower<F> {
         self.points.push(BranchPoint { special: None, ..self.points[0].clone() });
         self.pending = false;
         Next::End(BranchEnd::Closed)
+    }
+
+    /// Enters the special points that lie in the range.
+    fn keep_all(&mut self, specials: &[(Special, At)]) -> Result<(), BranchError<E>> {
+        let inside = specials.iter().filter(|(_, at)| (0.0..=1.0).contains(&at.share));
+        inside.into_iter().try_for_each(|(special, at)| self.keep(at, Some(*special)))
     }
 
     /// Enters a point.

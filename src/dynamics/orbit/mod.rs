@@ -14,7 +14,7 @@
 //! | fold | λ̇ |
 //! | period doubling | det(1 + M) |
 //! | torus (Neimark-Sacker) | the modulus of a complex pair of multipliers less 1 |
-//! | symmetry breaking | det [1 − M, −∂P/∂λ; tᵀ], t = (ẋ, λ̇) |
+//! | symmetry breaking, branch point | det [1 − M, −∂P/∂λ; tᵀ], t = (ẋ, λ̇) |
 //! | sticking | the acceleration of a particle towards its rigid face as it lands on it without a bounce |
 //! | graze | the speed of a contact of the sequence, not the map, whose derivative is infinite there |
 //!

@@ -193,6 +193,21 @@ impl Shot {
         })
     }
 
+    /// It comes again upside down after half a period, as far as its contacts tell.
+    pub(super) fn comes_upside_down(&self, period: f64) -> bool {
+        let (events, whole) = (&self.response.events, self.tape.ends.len() as f64 * period);
+        let at = |event: &Event| event.cycle as f64 * period + event.time;
+        let fast = self.scale.unit(self.miss.len() - 1);
+        events.iter().all(|event| {
+            events.iter().any(|other| {
+                let late = (at(other) - at(event) + 1.5 * whole) % whole;
+                (other.particle, other.kind) == (event.particle, upside_down(event.kind))
+                    && late.min(whole - late) <= COINCIDES * period
+                    && (other.approach.abs() - event.approach.abs()).abs() <= COINCIDES * fast
+            })
+        })
+    }
+
     /// How often a rigid face lets a particle go within an instant after it has landed without a bounce.
     pub(super) fn brief_stays(&self, period: f64) -> usize {
         let events = &self.response.events;
@@ -226,6 +241,18 @@ impl Shot {
             distance,
             response: self.response.clone(),
         })
+    }
+}
+
+fn upside_down(kind: EventKind) -> EventKind {
+    match kind {
+        EventKind::FloorContact => EventKind::CeilingContact,
+        EventKind::FloorRelease => EventKind::CeilingRelease,
+        EventKind::CeilingContact => EventKind::FloorContact,
+        EventKind::CeilingRelease => EventKind::FloorRelease,
+        EventKind::FloorStop => EventKind::CeilingStop,
+        EventKind::CeilingStop => EventKind::FloorStop,
+        EventKind::StopRelease | EventKind::ChatterEnd => kind,
     }
 }
 

@@ -12,6 +12,8 @@ pub(super) const GRAZES: f64 = 1e-3;
 const LANDS: f64 = 1e-8;
 /// Points that the zero is extrapolated from.
 const EXTRAPOLATED: usize = 5;
+/// From one of them to the next the speed falls below this share: closer ones would extrapolate their rounding.
+const SLOWER: f64 = 0.8;
 
 /// The slowest contact at the last points, while it slows down.
 #[derive(Default)]
@@ -58,6 +60,9 @@ impl Slowing {
         let flight = if shot.flies_from_rest(&slowest) { Flight::FromRest } else { Flight::Free };
         if self.0.last().is_some_and(|last| speed >= last.speed || flight != last.flight) {
             self.clear();
+        }
+        if self.0.last().is_some_and(|last| speed > SLOWER * last.speed) {
+            return;
         }
         self.0.push(Slow { share, speed, flight });
         if self.0.len() > EXTRAPOLATED {

@@ -29,14 +29,24 @@ pub enum Special {
     Graze,
     /// A particle that stays on its rigid face for a while begins to leave it as soon as it lands, or the other way round.
     Sticking,
-    /// A multiplier passes 1 where the branch does not turn: two motions that are each other's mirror image begin.
+    /// A multiplier passes 1 where the branch of a motion that comes again upside down after half a period does not turn: two motions
+    /// that are each other's mirror image begin.
     SymmetryBreaking,
+    /// The same of a motion without that symmetry: another branch crosses.
+    BranchPoint,
 }
 
 impl Special {
     /// All of them, in the order of this list.
-    pub const ALL: [Self; 6] =
-        [Self::Fold, Self::PeriodDoubling, Self::Torus, Self::Graze, Self::Sticking, Self::SymmetryBreaking];
+    pub const ALL: [Self; 7] = [
+        Self::Fold,
+        Self::PeriodDoubling,
+        Self::Torus,
+        Self::Graze,
+        Self::Sticking,
+        Self::SymmetryBreaking,
+        Self::BranchPoint,
+    ];
 
     /// The word in a table.
     #[must_use]
@@ -48,6 +58,7 @@ impl Special {
             Self::Graze => "graze",
             Self::Sticking => "sticking",
             Self::SymmetryBreaking => "symmetry breaking",
+            Self::BranchPoint => "branch point",
         }
     }
 }
@@ -126,7 +137,11 @@ pub(super) fn between<E, F: FnMut(f64) -> Result<HybridSystem, E>>(
         }
     }
     match fork::between(path, from, to, step)? {
-        Some(Fork::Begins(place, at)) => found.push((place, Special::SymmetryBreaking, *at)),
+        Some(Fork::Begins(place, at)) => {
+            let period = path.system(at.share)?.drive.period;
+            let mirrored = at.shot.comes_upside_down(period);
+            found.push((place, if mirrored { Special::SymmetryBreaking } else { Special::BranchPoint }, *at));
+        }
         Some(Fork::Joins) => return Ok(Between::Symmetry),
         None => {}
     }

@@ -264,3 +264,30 @@ fn the_impact_damper_loses_its_symmetry_at_the_speed_of_the_closed_form() {
         assert!(branch.points[1].orbit.is_stable() && branch.points.len() > 5);
     }
 }
+
+#[test]
+fn special_points_do_not_depend_on_the_length_of_steps() {
+    for (ratio, particle, [from, to]) in [(1.03, 0.1, [3.0, 0.1]), (1.1, 0.1, [1.5, 0.1]), (0.97, 0.05, [2.0, 0.1])] {
+        let masri = Masri { restitution: 0.5, particle, ..Masri::at(ratio) };
+        let least = masri.least_force();
+        let force = from * least;
+        let orbit = Orbit::near(&masri.system(force), &masri.start(masri.greater_speed(force)), 1).expect("it is one");
+        let points = |step: f64| -> Vec<(Special, f64)> {
+            let along = Along { from: force, to: to * least, step, points: 2000 };
+            let systems = |force: f64| Ok::<HybridSystem, Infallible>(masri.system(force));
+            let branch = Branch::follow(systems, &orbit, force, along).expect("it is followed");
+            if let BranchEnd::Graze { parameter } = branch.end {
+                // Both contacts lose their speed at once, and what they make of rounding grows as its square.
+                close("graze", parameter, masri.force(0.0), 1e-7);
+            }
+            let special = branch.points.iter().filter_map(|point| Some((point.special?, point.parameter)));
+            special.filter(|(kind, _)| *kind != Special::Graze).collect()
+        };
+        let [fine, coarse] = [0.02, 0.11].map(points);
+        assert_eq!(fine.len(), coarse.len(), "ω′ = {ratio}: {fine:?} and {coarse:?}");
+        for ((one, here), (other, there)) in fine.into_iter().zip(coarse) {
+            assert_eq!(one, other);
+            close(one.word(), here, there, 1e-10);
+        }
+    }
+}

@@ -522,7 +522,13 @@ fn a_branch_of_resilient_contacts_changes_its_stability_at_its_special_points_an
                     within("modulus", multipliers[0].modulus, 1.0, 1e-9);
                     stable = false;
                 }
-                Some(Special::Fold | Special::Graze | Special::Sticking | Special::SymmetryBreaking) => break,
+                Some(
+                    Special::Fold
+                    | Special::Graze
+                    | Special::Sticking
+                    | Special::SymmetryBreaking
+                    | Special::BranchPoint,
+                ) => break,
                 None => assert_eq!(point.orbit.is_stable(), stable, "at {}", point.parameter),
             }
             found.extend(point.special.map(Special::word));
