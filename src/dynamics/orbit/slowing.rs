@@ -12,6 +12,8 @@ pub(super) const GRAZES: f64 = 1e-3;
 const LANDS: f64 = 1e-8;
 /// Points that the zero is extrapolated from.
 const EXTRAPOLATED: usize = 5;
+/// The last points among which they are chosen.
+const WATCHED: usize = 12;
 /// From one of them to the next the speed falls below this share: closer ones would extrapolate their rounding.
 const SLOWER: f64 = 0.8;
 
@@ -65,7 +67,7 @@ impl Slowing {
             return;
         }
         self.0.push(Slow { share, speed, flight });
-        if self.0.len() > EXTRAPOLATED {
+        if self.0.len() > WATCHED {
             self.0.remove(0);
         }
     }
@@ -89,12 +91,21 @@ impl Slowing {
             let share = shot.share_of_speed(last.speed);
             share <= if last.flight == Flight::FromRest { LANDS } else { GRAZES }
         };
-        (points.len() == EXTRAPOLATED && points.last().is_some_and(is_slow)).then(|| {
-            points.iter().enumerate().fold(0.0, |sum, (i, own)| {
-                let others = points.iter().enumerate().filter(|(k, _)| *k != i);
-                let (own, weight) = (own.value(), own.share);
-                sum + others.fold(weight, |weight, (_, other)| weight * other.value() / (other.value() - own))
-            })
-        })
+        if points.len() < EXTRAPOLATED || !points.last().is_some_and(is_slow) {
+            return None;
+        }
+        // The first windows lack the next power of the speed, the last ones may extrapolate what a slow contact makes of rounding.
+        let zeros: Vec<f64> = points.windows(EXTRAPOLATED).map(extrapolated).collect();
+        let closest = zeros.windows(2).min_by(|a, b| (a[1] - a[0]).abs().total_cmp(&(b[1] - b[0]).abs()));
+        closest.map(|pair| pair[1]).or_else(|| zeros.first().copied())
     }
+}
+
+/// λ at the speed zero: the polynomial through the points.
+fn extrapolated(points: &[Slow]) -> f64 {
+    points.iter().enumerate().fold(0.0, |sum, (i, own)| {
+        let others = points.iter().enumerate().filter(|(k, _)| *k != i);
+        let (own, weight) = (own.value(), own.share);
+        sum + others.fold(weight, |weight, (_, other)| weight * other.value() / (other.value() - own))
+    })
 }

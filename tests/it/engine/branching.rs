@@ -278,7 +278,7 @@ fn special_points_do_not_depend_on_the_length_of_steps() {
             let branch = Branch::follow(systems, &orbit, force, along).expect("it is followed");
             if let BranchEnd::Graze { parameter } = branch.end {
                 // Both contacts lose their speed at once, and what they make of rounding grows as its square.
-                close("graze", parameter, masri.force(0.0), 1e-7);
+                close("graze", parameter, masri.force(0.0), 1e-8);
             }
             let special = branch.points.iter().filter_map(|point| Some((point.special?, point.parameter)));
             special.filter(|(kind, _)| *kind != Special::Graze).collect()
