@@ -4,6 +4,7 @@
 //! in units of the fastest block's time 1/ρ, a signal's series is a product of rows: no recurrence, one pass, any window.
 
 use super::block::{Block, Phase};
+use super::lanes::Lanes;
 
 /// Coefficients kept: degree eleven.
 const TERMS: usize = 12;
@@ -154,20 +155,21 @@ pub(crate) struct Span {
 }
 
 impl Span {
-    #[inline]
+    #[inline(always)]
     pub(crate) fn new(series: &Series, from: f64, length: f64) -> Self {
         Self { from, length, powers: powers(series.pace * length) }
     }
 }
 
-/// x⁰ … x¹³, and zeros: in pairs, as they are read.
+/// x⁰ … x¹³, and zeros: in pairs, as they are read, so that no pair is put together from two stores.
 #[inline(always)]
 fn powers(x: f64) -> [f64; PADDED] {
     let mut powers = [0.0; PADDED];
+    let pair = Lanes([1.0, x]);
     let (x2, x4) = (x * x, (x * x) * (x * x));
     let steps = [1.0, x2, x4, x4 * x2, x4 * x4, (x4 * x4) * x2, (x4 * x4) * x4];
-    for (pair, step) in powers.chunks_exact_mut(2).zip(steps) {
-        pair.copy_from_slice(&[step, x * step]);
+    for (place, step) in powers.as_chunks_mut::<2>().0.iter_mut().zip(steps) {
+        *place = (step * pair).0;
     }
     powers
 }

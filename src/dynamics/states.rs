@@ -17,6 +17,8 @@ use super::system::{Contact, HybridSystem, Particle};
 
 /// Numbers that a thread keeps, about: 128 MB.
 const MOST_NUMBERS: usize = 1 << 24;
+/// They are counted at every so many new drives: counting takes as long as a short run.
+const SELDOM: usize = 8;
 /// Dampings of one contact state that are kept; half cycles give it another one each time.
 const MOST_DAMPINGS: usize = 64;
 
@@ -51,7 +53,8 @@ impl States {
     /// The states of a system: those of one that was run before, if it differs in nothing that they know.
     pub(crate) fn of(system: &HybridSystem) -> Self {
         KNOWN.with_borrow_mut(|known| {
-            if let Some(place) = known.iter().position(|driven| driven.fits(system)) {
+            // The next system is mostly one of the last.
+            if let Some(place) = known.iter().rposition(|driven| driven.fits(system)) {
                 let driven = known.remove(place);
                 known.push(Rc::clone(&driven));
                 return Self(driven);
@@ -60,9 +63,11 @@ impl States {
             let undriven = same.map_or_else(|| Rc::new(Undriven::new(system)), |driven| Rc::clone(&driven.undriven));
             let driven = Rc::new(Driven::new(system, undriven));
             known.push(Rc::clone(&driven));
-            let mut numbers: usize = known.iter().map(|driven| driven.size()).sum();
-            while numbers > MOST_NUMBERS && known.len() > 1 {
-                numbers -= known.remove(0).size();
+            if known.len().is_multiple_of(SELDOM) {
+                let mut numbers: usize = known.iter().map(|driven| driven.size()).sum();
+                while numbers > MOST_NUMBERS && known.len() > 1 {
+                    numbers -= known.remove(0).size();
+                }
             }
             Self(driven)
         })
@@ -132,10 +137,10 @@ impl Driven {
     }
 
     fn fits(&self, system: &HybridSystem) -> bool {
-        self.force_row == system.force_row
-            && self.observed_rows == system.observed_rows
+        self.frequency == system.drive.harmonic.map(|drive| drive.angular_frequency)
             && self.half_cycles == system.drive.half_cycles.is_some()
-            && self.frequency == system.drive.harmonic.map(|drive| drive.angular_frequency)
+            && self.force_row == system.force_row
+            && self.observed_rows == system.observed_rows
             && self.undriven.fits(system)
     }
 
