@@ -2,11 +2,12 @@
 //! same again.
 
 /// Pages, by title and name below `reports/`; pictures and data go by the name of their page.
-pub(super) const PAGES: [(&str, &str); 5] = [
+pub(super) const PAGES: [(&str, &str); 6] = [
     ("Speed", "speed.md"),
     ("What accuracy costs", "accuracy.md"),
     ("Peers", "accuracy/peers.md"),
     ("Peers on hard sequences of events", "accuracy/peers-events.md"),
+    ("Peers on one periodic motion", "accuracy/peers-orbit.md"),
     ("Hard cases", "hard-cases.md"),
 ];
 /// Folders with a page for each experiment or calibration.
