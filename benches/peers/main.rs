@@ -106,8 +106,8 @@ impl Pages {
 fn introduction() -> String {
     let machine = Machine::here();
     format!(
-        "# Peers\n\n[What accuracy costs](../accuracy.md) · [the same peers on hard sequences of events](peers-events.md) · [one periodic motion](peers-orbit.md) · written \
-         by `cargo bench --bench peers`; `benches/peers` has the programs and says how they are used.\n\n{}, {} threads, {}; {}; \
+        "# Peers\n\n[What accuracy costs](../accuracy.md) · [the same peers on hard sequences of events](peers-events.md) · [one \
+         periodic motion](peers-orbit.md) · written by `cargo bench --bench peers`; `benches/peers` has the programs and says how they are used.\n\n{}, {} threads, {}; {}; \
          every run on one thread.\n\nErrors are against arithmetic of 32 digits. Interpreted peers pay for every call of the \
          equations; their times say what a user of them waits for, not what their methods could do in another language.\n\n",
         machine.processor, machine.threads, machine.system, machine.build

@@ -57,15 +57,10 @@ impl Extremes {
 /// Takes the segment of `length` seconds that starts with these phases into the range.
 pub(crate) fn take(extremes: &mut Extremes, blocks: &[Block], start: &[Phase], rest: Parabola, length: f64) {
     let advance = |block: &Block, phase: &Phase, t: f64| block.advance(*phase, block.kernel(t));
-    let at = |t: f64| -> Motion {
-        let mut motion = [rest.at(t), rest.rate(t), 2.0 * rest.p2, 0.0];
-        blocks.iter().zip(start).for_each(|(block, phase)| block.add_motion(&mut motion, advance(block, phase, t)));
-        motion
-    };
+    let at = |t: f64| motion(blocks, blocks.iter().zip(start).map(|(block, phase)| advance(block, phase, t)), rest, t);
     let node = |time: f64, phases: &[Phase]| {
-        let mut motion = [rest.at(time), rest.rate(time), 2.0 * rest.p2, 0.0];
-        blocks.iter().zip(phases).for_each(|(block, now)| block.add_motion(&mut motion, *now));
-        Node { time, motion: [motion[0], motion[1], motion[2]] }
+        let [displacement, velocity, acceleration, _] = motion(blocks, phases.iter().copied(), rest, time);
+        Node { time, motion: [displacement, velocity, acceleration] }
     };
     let mut phases = start.to_vec();
     let mut here = node(0.0, &phases);
@@ -110,6 +105,13 @@ pub(crate) fn take(extremes: &mut Extremes, blocks: &[Block], start: &[Phase], r
         let fastest = bounds.renew(blocks, &phases, rest, length - t);
         short = (1.0 / (STEPS_A_RADIAN * fastest * step)).clamp(1.0, MOST_STEPS) as u64;
     }
+}
+
+/// The motion whose blocks are in these phases.
+fn motion(blocks: &[Block], phases: impl Iterator<Item = Phase>, rest: Parabola, t: f64) -> Motion {
+    let mut motion = [rest.at(t), rest.rate(t), 2.0 * rest.p2, 0.0];
+    blocks.iter().zip(phases).for_each(|(block, phase)| block.add_motion(&mut motion, phase));
+    motion
 }
 
 /// What bounds a motion from an instant to the end of its segment.

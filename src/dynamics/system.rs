@@ -169,6 +169,12 @@ pub struct Drive {
 }
 
 impl Drive {
+    /// The harmonic force, if the force never jumps beside it.
+    pub(crate) fn harmonic_alone(&self) -> Option<Harmonic> {
+        let silent = self.ticks.iter().all(|tick| tick.impulse == 0.0 && tick.level == 0.0);
+        self.harmonic.filter(|_| silent)
+    }
+
     /// The impulse that the drive gives in a cycle or in a radian: the scale of a kick.
     pub(crate) fn scale(&self) -> f64 {
         let impulses =

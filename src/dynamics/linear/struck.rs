@@ -37,8 +37,7 @@ impl<'a> Struck<'a> {
         let [particle @ Particle { floor, ceiling: Some(ceiling), .. }] = &system.particles[..] else {
             return Ok(None);
         };
-        let is_silent = system.drive.ticks.iter().all(|tick| tick.impulse == 0.0 && tick.level == 0.0);
-        let Some(harmonic) = system.drive.harmonic.filter(|_| is_silent && floor.row == ceiling.row) else {
+        let Some(harmonic) = system.drive.harmonic_alone().filter(|_| floor.row == ceiling.row) else {
             return Ok(None);
         };
         let bare = HybridSystem { particles: Vec::new(), ..system.clone() };

@@ -183,6 +183,16 @@ struct Follower<F> {
     turns: bool,
 }
 
+/// What lies between a point and the next.
+enum Passed {
+    /// Special points in their order.
+    Specials(Vec<(Special, At)>),
+    /// The first point of the branch, after these.
+    Origin(Vec<(Special, At)>),
+    /// The motion has lost its asymmetry.
+    Symmetry,
+}
+
 /// What comes after a point.
 enum Next<E> {
     At(Box<At>),
@@ -227,7 +237,7 @@ impl<E, F: FnMut(f64) -> Result<HybridSystem, E>> Follower<F> {
                 }
                 Ok(Next::Turn) => at.tangent.iter_mut().for_each(|t| *t = -*t),
                 Ok(Next::End(end)) => return self.end(&at, end),
-                Err(_) if let Some(same) = self.cleared(&at)? => (at, step) = (same, tried),
+                Err(_) if let Some(same) = self.cleared(&at) => (at, step) = (same, tried),
                 Err(_) if tried > SHORTEST * self.along.step => step = 0.5 * tried,
                 Err(BranchError::System(error)) => return self.end(&at, BranchEnd::System(error)),
                 Err(BranchError::Orbit(error)) => {
@@ -261,21 +271,14 @@ impl<E, F: FnMut(f64) -> Result<HybridSystem, E>> Follower<F> {
         if at.shot.swaps_halves(&next.shot) {
             return Ok(Ok(Next::End(BranchEnd::HalfPeriod)));
         }
-        let closing = match self.comes_back(at, &next, step) {
-            Ok(closing) => closing,
-            Err(error) => return Ok(Err(error)),
-        };
-        let (last, arc) = closing.as_ref().map_or((&next, step), |(place, first)| (first, *place));
-        let specials = match special::between(&mut self.path, at, last, arc) {
-            Ok(Between::Specials(specials)) => specials,
-            Ok(Between::Symmetry) => return Ok(Ok(Next::End(BranchEnd::Symmetry))),
+        let specials = match self.passed(at, &next, step) {
+            Ok(Passed::Specials(specials)) => specials,
+            Ok(Passed::Origin(specials)) => return Ok(Ok(self.close(&specials)?)),
+            Ok(Passed::Symmetry) => return Ok(Ok(Next::End(BranchEnd::Symmetry))),
             Err(error) => return Ok(Err(error)),
         };
         let beyond = (next.share > 1.0).then_some(1.0).or((next.share < 0.0).then_some(0.0));
         self.keep_all(&specials)?;
-        if closing.is_some() {
-            return Ok(Ok(self.close()));
-        }
         if let Some(end) = beyond {
             let ends = [at.share - end, next.share - end];
             let last = match special::zero(&mut self.path, at, step, ends, |at| Ok(at.share - end)) {
@@ -315,16 +318,10 @@ impl<E, F: FnMut(f64) -> Result<HybridSystem, E>> Follower<F> {
                 Err(error) => return Ok(Err(error)),
             }
         }
-        if let Some(edge) = &last {
-            match self.comes_back(at, edge, low) {
-                Ok(None) => {}
-                Ok(Some(_)) => return Ok(Ok(self.close())),
-                Err(error) => return Ok(Err(error)),
-            }
-        }
-        let before = match last.as_ref().map(|edge| special::between(&mut self.path, at, edge, low)).transpose() {
-            Ok(Some(Between::Specials(specials))) => specials,
-            Ok(Some(Between::Symmetry)) => return Ok(Ok(Next::End(BranchEnd::Symmetry))),
+        let before = match last.as_ref().map(|edge| self.passed(at, edge, low)).transpose() {
+            Ok(Some(Passed::Specials(specials))) => specials,
+            Ok(Some(Passed::Origin(specials))) => return Ok(Ok(self.close(&specials)?)),
+            Ok(Some(Passed::Symmetry)) => return Ok(Ok(Next::End(BranchEnd::Symmetry))),
             Ok(None) => Vec::new(),
             Err(error) => return Ok(Err(error)),
         };
@@ -360,30 +357,38 @@ impl<E, F: FnMut(f64) -> Result<HybridSystem, E>> Follower<F> {
     }
 
     /// The same point, with a period that begins away from contacts.
-    fn cleared(&mut self, at: &At) -> Result<Option<At>, BranchError<E>> {
-        let Some((shift, same)) = self.path.cleared(at)? else { return Ok(None) };
-        if let Some(origin) = self.origin.take() {
-            self.origin = origin.seen_from(&mut self.path, shift)?;
-        }
-        Ok(Some(same))
+    fn cleared(&mut self, at: &At) -> Option<At> {
+        let (shift, same) = self.path.cleared(at)?;
+        self.origin = self.origin.take().and_then(|origin| origin.seen_from(&mut self.path, shift));
+        Some(same)
     }
 
-    /// The first point again, and how far along the step.
-    fn comes_back(&mut self, at: &At, next: &At, step: f64) -> Result<Option<(f64, At)>, BranchError<E>> {
-        self.origin.as_ref().map_or(Ok(None), |origin| origin.between(&mut self.path, at, next, step))
+    /// What lies between a point and the next.
+    fn passed(&mut self, at: &At, next: &At, step: f64) -> Result<Passed, BranchError<E>> {
+        let met = match &self.origin {
+            Some(origin) => origin.between(&mut self.path, at, next, step)?,
+            None => None,
+        };
+        let (last, arc) = met.as_ref().map_or((next, step), |(place, first)| (first, *place));
+        Ok(match special::between(&mut self.path, at, last, arc)? {
+            Between::Specials(specials) if met.is_some() => Passed::Origin(specials),
+            Between::Specials(specials) => Passed::Specials(specials),
+            Between::Symmetry => Passed::Symmetry,
+        })
     }
 
-    /// Enters the first point again.
-    fn close(&mut self) -> Next<E> {
+    /// Enters the first point again, after the special points on the way to it.
+    fn close(&mut self, specials: &[(Special, At)]) -> Result<Next<E>, BranchError<E>> {
+        self.keep_all(specials)?;
         self.points.push(BranchPoint { special: None, ..self.points[0].clone() });
         self.pending = false;
-        Next::End(BranchEnd::Closed)
+        Ok(Next::End(BranchEnd::Closed))
     }
 
     /// Enters the special points that lie in the range.
     fn keep_all(&mut self, specials: &[(Special, At)]) -> Result<(), BranchError<E>> {
-        let inside = specials.iter().filter(|(_, at)| (0.0..=1.0).contains(&at.share));
-        inside.into_iter().try_for_each(|(special, at)| self.keep(at, Some(*special)))
+        let mut inside = specials.iter().filter(|(_, at)| (0.0..=1.0).contains(&at.share));
+        inside.try_for_each(|(special, at)| self.keep(at, Some(*special)))
     }
 
     /// Enters a point.

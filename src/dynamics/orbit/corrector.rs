@@ -9,7 +9,6 @@ use nalgebra::DMatrix;
 use super::branch::{Along, BranchError};
 use super::elimination::Solved;
 use super::newton::{CLOSED, size};
-use super::section::begun_late;
 use super::shot::{Contacts, Shot, state_after};
 use super::{OrbitError, elimination};
 use crate::dynamics::motion::End;
@@ -80,8 +79,7 @@ impl<E, F: FnMut(f64) -> Result<HybridSystem, E>> Path<F> {
     }
 
     pub(super) fn system(&mut self, share: f64) -> Result<HybridSystem, BranchError<E>> {
-        let parameter = self.parameter(share);
-        Ok(begun_late((self.system_at)(parameter).map_err(BranchError::System)?, self.late))
+        self.system_late(share, self.late)
     }
 
     /// Of two neighbours, one has a particle that stays on its face for an instant; that of the other leaves at once.

@@ -11,6 +11,7 @@
 use super::OrbitError;
 use super::branch::BranchError;
 use super::corrector::{At, Path};
+use super::lagrange::{combined, weights};
 use super::newton::size;
 use super::shot::Shot;
 use crate::dynamics::motion::End;
@@ -102,17 +103,4 @@ fn closed<E, F: FnMut(f64) -> Result<HybridSystem, E>>(
     let shot = Shot::new(&system, first.moved(&step(&first)?), path.cycles, None)?;
     let distance = size(&step(&shot)?);
     Ok(At { share, shot, distance, tangent, determinant: 0.0 })
-}
-
-/// Lagrange's weights of values at some places, for that at another.
-fn weights(places: &[f64], at: f64) -> Vec<f64> {
-    let weight = |i: usize| {
-        let others = places.iter().enumerate().filter(|(k, _)| *k != i);
-        others.fold(1.0, |weight, (_, other)| weight * (at - other) / (places[i] - other))
-    };
-    (0..places.len()).map(weight).collect()
-}
-
-fn combined(weights: &[f64], values: impl IntoIterator<Item = f64>) -> f64 {
-    weights.iter().zip(values).fold(0.0, |sum, (weight, value)| sum + weight * value)
 }

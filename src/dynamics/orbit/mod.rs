@@ -41,6 +41,7 @@
 //! | `slowing` | where a contact that slows down has no speed left |
 //! | `fork` | where a branch loses its symmetry |
 //! | `branch` | from point to point, and how a branch ends |
+//! | `lagrange` | the polynomial through a few points |
 //! | `elasticity` | the derivative of a number of an orbit in a parameter |
 //! | `elimination` | linear equations, singular ones among them |
 
@@ -49,6 +50,7 @@ mod corrector;
 mod elasticity;
 mod elimination;
 mod fork;
+mod lagrange;
 mod newton;
 mod origin;
 mod section;

@@ -33,23 +33,24 @@ impl Origin {
         Self { share: *share, start: shot.start.clone(), scale: shot.scale.clone(), tangent: tangent.clone() }
     }
 
-    /// The same with a period that begins elsewhere; `None` of a branch that begins at a fork, and ends there if it comes back.
+    /// The same with a period that begins elsewhere; `None` where it is not found there, and of a branch that begins at a fork, and ends
+    /// there if it comes back.
     pub(super) fn seen_from<E, F: FnMut(f64) -> Result<HybridSystem, E>>(
         &self,
         path: &mut Path<F>,
         shift: Shift,
-    ) -> Result<Option<Self>, BranchError<E>> {
+    ) -> Option<Self> {
         let along = self.tangent[self.tangent.len() - 1];
         if along == 0.0 {
-            return Ok(None);
+            return None;
         }
-        let (start, _) = path.carried(self.share, &self.start, shift)?;
-        let system = path.system(self.share)?;
-        let shot = Shot::new(&system, start, path.cycles, None)?;
+        let (start, _) = path.carried(self.share, &self.start, shift).ok()?;
+        let system = path.system(self.share).ok()?;
+        let shot = Shot::new(&system, start, path.cycles, None).ok()?;
         let mut onwards = vec![0.0; self.tangent.len()];
         onwards[shot.miss.len()] = along;
-        let tangent = path.tangent(&shot, self.share, &onwards)?.x;
-        Ok(Some(Self { share: self.share, start: shot.start, scale: shot.scale, tangent }))
+        let tangent = path.tangent(&shot, self.share, &onwards).ok()?.x;
+        Some(Self { share: self.share, start: shot.start, scale: shot.scale, tangent })
     }
 
     /// The first point again, if the branch has come to it between a point and the next, `step` along; and how far along.

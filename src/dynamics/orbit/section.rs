@@ -43,20 +43,6 @@ impl Shift {
     }
 }
 
-/// A system whose cycles begin later by a share of a cycle.
-pub(super) fn begun_late(mut system: HybridSystem, late: f64) -> HybridSystem {
-    let period = system.drive.period;
-    if let Some(harmonic) = system.drive.harmonic.as_mut().filter(|_| late > 0.0) {
-        harmonic.phase += late * period * harmonic.angular_frequency;
-    }
-    system
-}
-
-/// The drive is a harmonic force alone.
-fn is_smooth(drive: &Drive) -> bool {
-    drive.harmonic.is_some() && drive.ticks.iter().all(|tick| tick.impulse == 0.0 && tick.level == 0.0)
-}
-
 /// The share of a cycle after which no contact is near, if one is near its beginning now.
 fn clearer(shot: &Shot, period: f64) -> Option<f64> {
     let mut at: Vec<f64> = shot.response().events.iter().map(|event| event.time / period).collect();
@@ -69,23 +55,30 @@ fn clearer(shot: &Shot, period: f64) -> Option<f64> {
 }
 
 impl<E, F: FnMut(f64) -> Result<HybridSystem, E>> Path<F> {
+    /// The system whose cycles begin later by a share of a cycle.
+    pub(super) fn system_late(&mut self, share: f64, late: f64) -> Result<HybridSystem, BranchError<E>> {
+        let parameter = self.parameter(share);
+        let mut system = (self.system_at)(parameter).map_err(BranchError::System)?;
+        let period = system.drive.period;
+        if let Some(harmonic) = system.drive.harmonic.as_mut() {
+            harmonic.phase += late * period * harmonic.angular_frequency;
+        }
+        Ok(system)
+    }
+
     /// The same point, with a period that begins away from contacts; `None` where it does, or where the force jumps.
-    pub(super) fn cleared(&mut self, at: &At) -> Result<Option<(Shift, At)>, BranchError<E>> {
-        let drive = self.system(at.share)?.drive;
-        let Some(middle) = is_smooth(&drive).then(|| clearer(&at.shot, drive.period)).flatten() else {
-            return Ok(None);
-        };
+    pub(super) fn cleared(&mut self, at: &At) -> Option<(Shift, At)> {
+        let drive = self.system(at.share).ok()?.drive;
+        drive.harmonic_alone()?;
+        let middle = clearer(&at.shot, drive.period)?;
         let before = self.late;
         self.late = (before + middle) % 1.0;
         let shift = Shift::new(before, self.late, self.cycles);
-        match self.seen_from(at, shift) {
-            Ok(at) => Ok(Some((shift, at))),
-            Err(BranchError::Orbit(_)) => {
-                self.late = before;
-                Ok(None)
-            }
-            Err(error) => Err(error),
+        let seen = self.seen_from(at, shift);
+        if seen.is_err() {
+            self.late = before;
         }
+        seen.ok().map(|at| (shift, at))
     }
 
     /// The point and its tangent after a shift.
@@ -117,8 +110,7 @@ impl<E, F: FnMut(f64) -> Result<HybridSystem, E>> Path<F> {
         start: &End,
         Shift { from, whole, part }: Shift,
     ) -> Result<(End, Contacts), BranchError<E>> {
-        let parameter = self.parameter(share);
-        let system = begun_late((self.system_at)(parameter).map_err(BranchError::System)?, from);
+        let system = self.system_late(share, from)?;
         let (at, mut contacts) =
             if whole > 0 { state_after(&system, start, whole)? } else { (start.clone(), Contacts::new()) };
         let drive = Drive { period: part * system.drive.period, ..system.drive.clone() };
@@ -129,12 +121,11 @@ impl<E, F: FnMut(f64) -> Result<HybridSystem, E>> Path<F> {
 
     /// A point as it is seen from the beginning of the drive's own cycle.
     pub(super) fn orbit(&mut self, at: &At) -> Result<Orbit, BranchError<E>> {
-        let system = self.system(at.share)?;
+        let own = self.system_late(at.share, 0.0)?;
         if self.late == 0.0 {
-            return Ok(at.shot.orbit(&system, at.distance)?);
+            return Ok(at.shot.orbit(&own, at.distance)?);
         }
         let (start, _) = self.carried(at.share, &at.shot.start, Shift::new(self.late, 0.0, self.cycles))?;
-        let own = begun_late(system, 1.0 - self.late);
         // What unstable motions made of rounding on the way is taken off again, unless a contact is at that very instant.
         match closed(&own, start.clone(), self.cycles) {
             Ok((shot, distance)) => Ok(shot.orbit(&own, distance)?),

@@ -196,7 +196,7 @@ impl Shot {
     /// It comes again upside down after half a period, as far as its contacts tell.
     pub(super) fn comes_upside_down(&self, period: f64) -> bool {
         let (events, whole) = (&self.response.events, self.tape.ends.len() as f64 * period);
-        let at = |event: &Event| event.cycle as f64 * period + event.time;
+        let at = |event: &Event| since_start(event, period);
         let fast = self.scale.unit(self.miss.len() - 1);
         events.iter().all(|event| {
             events.iter().any(|other| {
@@ -211,7 +211,7 @@ impl Shot {
     /// How often a rigid face lets a particle go within an instant after it has landed without a bounce.
     pub(super) fn brief_stays(&self, period: f64) -> usize {
         let events = &self.response.events;
-        let at = |event: &Event| event.cycle as f64 * period + event.time;
+        let at = |event: &Event| since_start(event, period);
         let is_brief =
             |(i, release): &(usize, &Event)| {
                 is_release(release.kind)
@@ -242,6 +242,11 @@ impl Shot {
             response: self.response.clone(),
         })
     }
+}
+
+/// Time from the first cycle's start to an event, s.
+fn since_start(event: &Event, period: f64) -> f64 {
+    event.cycle as f64 * period + event.time
 }
 
 fn upside_down(kind: EventKind) -> EventKind {

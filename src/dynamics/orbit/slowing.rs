@@ -4,6 +4,7 @@
 //! rests on its face and flies for a moment only: the flight begins where the face falls as fast as the particle would, lasts t, and ends
 //! with v ~ t³. There λ is a smooth function of t, with λ − λ₀ ~ t², so that ∛v takes the place of v.
 
+use super::lagrange::{combined, weights};
 use super::shot::Shot;
 
 /// A contact slower than this, in units of the motion, is about to graze.
@@ -103,9 +104,6 @@ impl Slowing {
 
 /// λ at the speed zero: the polynomial through the points.
 fn extrapolated(points: &[Slow]) -> f64 {
-    points.iter().enumerate().fold(0.0, |sum, (i, own)| {
-        let others = points.iter().enumerate().filter(|(k, _)| *k != i);
-        let (own, weight) = (own.value(), own.share);
-        sum + others.fold(weight, |weight, (_, other)| weight * other.value() / (other.value() - own))
-    })
+    let speeds: Vec<f64> = points.iter().map(Slow::value).collect();
+    combined(&weights(&speeds, 0.0), points.iter().map(|point| point.share))
 }
