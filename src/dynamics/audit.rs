@@ -105,8 +105,8 @@ impl Nodes {
             return;
         }
         let kernels = |t: f64| {
-            let mut kernels = vec![Kernel::NONE; flow.bank.places()];
-            flow.bank.kernels(&flow.blocks, t, &mut kernels);
+            let mut kernels = vec![Kernel::NONE; flow.blocks.len()];
+            flow.bank.list(&flow.blocks, t, &mut kernels);
             kernels
         };
         self.within = GAUSS.iter().map(|[x, _]| kernels(x * length)).collect();
@@ -143,13 +143,12 @@ impl Audit {
         self.work_passed += passed.work_modulus;
     }
 
-    /// Adds one segment, whose `kernels` are those of its end: in closed form if there is one, else by panels.
+    /// Adds one segment between two states: in closed form if there is one, else by panels.
     pub(crate) fn segment(
         &mut self,
         system: &HybridSystem,
         flow: &Flow,
-        start: &[f64],
-        kernels: &[Kernel],
+        [start, end]: [&[f64]; 2],
         force: Force,
         length: f64,
     ) {
@@ -157,12 +156,10 @@ impl Audit {
             return;
         }
         self.duration += length;
-        let start = &start[..2 * flow.own];
-        let mut end = vec![0.0; 2 * flow.own];
-        flow.move_blocks(kernels, start, &mut end);
-        if let Some(taken) = flow.dissipation(system).between(start, &end) {
+        let [start, end] = [start, end].map(|state| &state[..2 * flow.own]);
+        if let Some(taken) = flow.dissipation(system).between(start, end) {
             self.dissipated += taken;
-            self.moved(system, flow, &flow.integrated(start, &end), force.level, length);
+            self.moved(system, flow, &flow.integrated(start, end), force.level, length);
         } else {
             self.panels(system, flow, start, force, length);
         }
@@ -180,7 +177,7 @@ impl Audit {
             let h = dissipation.panel(system, &flow.modes, |i| from[i].abs()).min(length - t0);
             nodes.set(flow, h);
             for ([x, weight], kernels) in GAUSS.iter().zip(&nodes.within) {
-                flow.move_blocks(kernels, &from, &mut c);
+                flow.move_blocks(|k| kernels[k], &from, &mut c);
                 let w = weight * h;
                 if flow.is_free() {
                     sum.iter_mut().zip(&c).for_each(|(sum, c)| *sum += w * c);
@@ -189,7 +186,7 @@ impl Audit {
                     self.node(system, flow, &c, Node { time: t0 + x * h, weight: w }, force);
                 }
             }
-            flow.move_blocks(&nodes.end, &from, &mut c);
+            flow.move_blocks(|k| nodes.end[k], &from, &mut c);
             std::mem::swap(&mut from, &mut c);
             t0 += h;
         }
@@ -203,7 +200,7 @@ impl Audit {
         let n = system.mass.order;
         let (mut p, mut rate) = (vec![0.0; flow.order], vec![0.0; flow.order]);
         let now = flow.drive_after(force.drive, time);
-        flow.leave(c, time, force.level, now, &mut p, &mut rate);
+        flow.leave(c, time, force.level, now, &mut Vec::new(), [&mut p, &mut rate]);
         self.position.iter_mut().zip(&p[..n]).for_each(|(sum, q)| *sum += weight * q);
         self.dissipated += weight * system.damping.form(&rate[..n], &rate[..n]);
         for (i, &j) in flow.modes.attached.iter().enumerate() {
@@ -226,7 +223,7 @@ impl Audit {
         let n = system.mass.order;
         let (mut p, mut rate) = (vec![0.0; flow.order], vec![0.0; flow.order]);
         let mean: Vec<f64> = sum.iter().map(|c| c / length).collect();
-        flow.leave(&mean, 0.0, level, DrivePhase::default(), &mut p, &mut rate);
+        flow.leave(&mean, 0.0, level, DrivePhase::default(), &mut Vec::new(), [&mut p, &mut rate]);
         self.position.iter_mut().zip(&p[..n]).for_each(|(sum, q)| *sum += length * q);
         let work = level * length * dot(&system.force_row, &rate[..n]);
         self.force += level * length;

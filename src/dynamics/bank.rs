@@ -1,65 +1,195 @@
-//! The kernels of all blocks of a flow, side by side.
+//! The blocks of a flow, side by side: what is done to one of them is done to several at once.
 //!
-//! Most blocks turn: they need e^(−at), sin and cos of √(−d) t, which are computed for several blocks at once. The few that do
-//! not turn are computed by themselves afterwards.
+//! Most blocks turn: they need e^(−at), sin and cos of √(−d) t, which are computed together. The few that do not turn are
+//! computed by themselves afterwards.
 
-use super::block::{Block, Kernel};
+use super::block::{Block, Kernel, Phase};
 use super::elementary::{exp_lanes, sin_cos_lanes};
-use super::lanes::Lanes;
+use super::lanes::{Lanes, WIDTH};
 
-/// Blocks side by side: two registers of two numbers keep a pipeline busier than one.
-const WIDTH: usize = 2;
+type Wide = Lanes<WIDTH>;
 
-/// The blocks of a flow, as their kernels need them.
+/// The blocks of a flow.
 #[derive(Debug, Default)]
 pub(crate) struct Bank {
-    turns: Vec<Turns>,
+    blocks: Vec<Blocks>,
     /// Blocks that do not turn.
     others: Vec<usize>,
+    /// Blocks near critical damping, whose bounds depend on the time that they are to hold.
+    near_critical: Vec<usize>,
 }
 
-/// Blocks that turn; in the place of one that does not stands nothing.
+/// Several blocks; places without one hold zeros.
 #[derive(Debug, Clone, Copy)]
-struct Turns {
-    decay: Lanes<WIDTH>,
-    root: Lanes<WIDTH>,
-    inverse_root: Lanes<WIDTH>,
+pub(crate) struct Blocks {
+    decay: Wide,
+    /// The decay of those that turn.
+    fades: Wide,
+    determinant: Wide,
+    discriminant: Wide,
+    /// √|d|, and of those that turn its inverse.
+    root: Wide,
+    inverse_root: Wide,
+    /// −1 of those that turn.
+    turns: Wide,
+    /// d of those that do not.
+    grows: Wide,
+    /// 1/√|d|, but of blocks near critical damping.
+    spread: Wide,
+    /// The square of the radius.
+    pub(crate) square: Wide,
+}
+
+/// Shares of several blocks in a signal.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Phases {
+    pub(crate) value: Wide,
+    pub(crate) rate: Wide,
+}
+
+impl Phases {
+    pub(crate) const ZERO: Self = Self { value: Wide::ZERO, rate: Wide::ZERO };
+
+    /// That of one block.
+    #[inline(always)]
+    pub(crate) fn at(&self, lane: usize) -> Phase {
+        Phase { value: self.value.0[lane], rate: self.rate.0[lane] }
+    }
+}
+
+/// Kernels of several blocks.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Kernels {
+    c: Wide,
+    s: Wide,
+    turn: Wide,
+}
+
+impl Kernels {
+    /// After no time.
+    pub(crate) const NONE: Self = Self { c: Lanes([1.0; WIDTH]), s: Wide::ZERO, turn: Wide::ZERO };
+
+    /// That of one block.
+    #[inline(always)]
+    pub(crate) fn at(&self, lane: usize) -> Kernel {
+        Kernel { c: self.c.0[lane], s: self.s.0[lane], turn: self.turn.0[lane] }
+    }
+
+    #[inline(always)]
+    fn set(&mut self, lane: usize, kernel: Kernel) {
+        (self.c.0[lane], self.s.0[lane], self.turn.0[lane]) = (kernel.c, kernel.s, kernel.turn);
+    }
+}
+
+impl Blocks {
+    fn new(blocks: &[Block]) -> Self {
+        let each = |part: fn(&Block) -> f64| {
+            let mut lanes = Wide::ZERO;
+            lanes.0.iter_mut().zip(blocks).for_each(|(lane, block)| *lane = part(block));
+            lanes
+        };
+        Self {
+            decay: each(|block| block.decay),
+            fades: each(|block| if block.oscillates() { block.decay } else { 0.0 }),
+            determinant: each(|block| block.determinant),
+            discriminant: each(|block| block.discriminant),
+            root: each(|block| if block.oscillates() { block.root } else { 0.0 }),
+            inverse_root: each(|block| if block.oscillates() { block.inverse_root } else { 0.0 }),
+            turns: each(|block| if block.oscillates() { -1.0 } else { 0.0 }),
+            grows: each(|block| if block.oscillates() { 0.0 } else { block.discriminant }),
+            spread: each(|block| if block.is_near_critical() { 0.0 } else { block.inverse_root }),
+            square: each(|block| block.radius * block.radius),
+        }
+    }
+
+    /// Their shares after the time of `kernels`.
+    #[inline(always)]
+    pub(crate) fn advance(&self, phases: Phases, kernels: &Kernels) -> Phases {
+        let Phases { value, rate } = phases;
+        Phases {
+            value: kernels.c * value + kernels.s * (rate + self.decay * value),
+            rate: kernels.c * rate - kernels.s * (self.decay * rate + self.determinant * value),
+        }
+    }
+
+    /// [`Block::amplitude`] of those that are not near critical damping.
+    #[inline(always)]
+    pub(crate) fn amplitudes(&self, phases: Phases) -> Wide {
+        phases.value.abs() + (phases.rate + self.decay * phases.value).abs() * self.spread
+    }
+
+    /// e^(B t₁) e^(B t₂) for a t₂ so short that radius·t₂ < 0.03, by power series.
+    #[inline(always)]
+    pub(crate) fn follow_on(&self, first: &Kernels, t: f64) -> Kernels {
+        let x = -1.0 * self.decay * t;
+        let x2 = x * x;
+        let e = (1.0 + x)
+            + x2 * ((0.5 + x * (1.0 / 6.0))
+                + x2 * ((1.0 / 24.0 + x * (1.0 / 120.0)) + x2 * (1.0 / 720.0 + x * (1.0 / 5040.0))));
+        let y = self.discriminant * t * t;
+        let c = (1.0 + y * 0.5) + y * y * ((1.0 / 24.0 + y * (1.0 / 720.0)) + y * y * (1.0 / 40_320.0));
+        let s =
+            t * ((1.0 + y * (1.0 / 6.0)) + y * y * ((1.0 / 120.0 + y * (1.0 / 5040.0)) + y * y * (1.0 / 362_880.0)));
+        let (c, s) = (e * c, e * s);
+        let turn = self.root * s;
+        let product = self.turns * (first.turn * turn) + self.grows * (first.s * s);
+        Kernels {
+            c: first.c * c + product,
+            s: first.c * s + first.s * c,
+            turn: first.c * turn + first.turn * c,
+        }
+    }
+
+    #[inline(always)]
+    fn kernels(&self, t: f64) -> Kernels {
+        let e = exp_lanes(-1.0 * self.fades * t);
+        let (sine, cosine) = sin_cos_lanes(self.root * t);
+        let turn = e * sine;
+        Kernels { c: e * cosine, s: turn * self.inverse_root, turn }
+    }
 }
 
 impl Bank {
     pub(crate) fn new(blocks: &[Block]) -> Self {
-        let turns = blocks.chunks(WIDTH).map(|chunk| {
-            let each = |part: fn(&Block) -> f64| {
-                let mut lanes = Lanes([0.0; WIDTH]);
-                for (lane, block) in lanes.0.iter_mut().zip(chunk).filter(|(_, block)| block.oscillates()) {
-                    *lane = part(block);
-                }
-                lanes
-            };
-            Turns { decay: each(|b| b.decay), root: each(|b| b.root), inverse_root: each(|b| b.inverse_root) }
-        });
-        Self { turns: turns.collect(), others: (0..blocks.len()).filter(|&k| !blocks[k].oscillates()).collect() }
+        let chosen = |which: fn(&Block) -> bool| (0..blocks.len()).filter(|&k| which(&blocks[k])).collect();
+        Self {
+            blocks: blocks.chunks(WIDTH).map(Blocks::new).collect(),
+            others: chosen(|block| !block.oscillates()),
+            near_critical: chosen(Block::is_near_critical),
+        }
     }
 
-    /// Places for kernels; those behind the blocks hold nothing.
-    pub(crate) fn places(&self) -> usize {
-        WIDTH * self.turns.len()
+    /// The blocks.
+    #[inline(always)]
+    pub(crate) fn blocks(&self) -> &[Blocks] {
+        &self.blocks
     }
 
-    /// The kernels of all `blocks` after `t` seconds.
-    #[inline]
-    pub(crate) fn kernels(&self, blocks: &[Block], t: f64, kernels: &mut [Kernel]) {
-        for (turns, kernels) in self.turns.iter().zip(kernels.as_chunks_mut::<WIDTH>().0) {
-            let e = exp_lanes(-1.0 * turns.decay * t);
-            let (sine, cosine) = sin_cos_lanes(turns.root * t);
-            let (c, turn) = (e * cosine, e * sine);
-            let s = turn * turns.inverse_root;
-            for (lane, kernel) in kernels.iter_mut().enumerate() {
-                *kernel = Kernel { c: c.0[lane], s: s.0[lane], turn: turn.0[lane] };
-            }
+    /// Blocks near critical damping.
+    #[inline(always)]
+    pub(crate) fn near_critical(&self) -> &[usize] {
+        &self.near_critical
+    }
+
+    /// The kernels of all blocks after `t` seconds; `each` has the same blocks one by one.
+    #[inline(always)]
+    pub(crate) fn kernels(&self, each: &[Block], t: f64, kernels: &mut [Kernels]) {
+        for (blocks, kernels) in self.blocks.iter().zip(&mut *kernels) {
+            *kernels = blocks.kernels(t);
         }
         for &k in &self.others {
-            kernels[k] = blocks[k].kernel(t);
+            kernels[k / WIDTH].set(k % WIDTH, each[k].kernel(t));
+        }
+    }
+
+    /// The same one by one.
+    pub(crate) fn list(&self, each: &[Block], t: f64, list: &mut [Kernel]) {
+        for (blocks, list) in self.blocks.iter().zip(list.chunks_mut(WIDTH)) {
+            let kernels = blocks.kernels(t);
+            list.iter_mut().enumerate().for_each(|(lane, kernel)| *kernel = kernels.at(lane));
+        }
+        for &k in &self.others {
+            list[k] = each[k].kernel(t);
         }
     }
 }

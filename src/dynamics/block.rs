@@ -14,7 +14,7 @@ pub(crate) struct Block {
     /// b: determinant, 1/s².
     pub(crate) determinant: f64,
     /// d = a² − b, 1/s².
-    discriminant: f64,
+    pub(super) discriminant: f64,
     /// √|d|.
     pub(super) root: f64,
     /// 1/√|d|; infinite at critical damping.

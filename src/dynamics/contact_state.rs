@@ -16,6 +16,7 @@ use super::contact::{Hold, Side};
 use super::load::{Load, Steady};
 use super::schur::Iteration;
 use super::spectral::Spectral;
+use super::superposition::Superposition;
 use super::system::{Contact, Face, HybridSystem, Law, Matrix, Particle, dot};
 
 /// The second face of a particle that is at both: v is its distance from the particle, negative where it is compressed.
@@ -93,8 +94,9 @@ pub(crate) struct Modes {
     pub(crate) accelerations: Vec<Vec<f64>>,
     /// Block coordinates from (p, p′) and back, column by column and row by row.
     pub(crate) spectral: Spectral,
-    /// The way back once more, column by column: as a segment ends with it.
-    pub(crate) columns: Vec<f64>,
+    /// Block coordinates from (p, p′) once more, and back column by column: a segment begins with the one and ends with the other.
+    pub(crate) to_blocks: Superposition,
+    pub(crate) columns: Superposition,
     /// Answer to gravity.
     pub(crate) gravity: Load,
     carried: Cholesky,
@@ -116,7 +118,6 @@ impl Modes {
         let stiffness = undamped.then(|| stiffness_of(system, &attached, &face_of, &across));
         let mass = mass_of(system, mass, &attached, &face_of);
         let spectral = super::modes::split(&accelerations, &mass, stiffness.as_ref(), iteration)?;
-        let columns = by_columns(&spectral, 2 * (n + attached.len()));
         let mut modes = Self {
             contacts: contacts.to_vec(),
             damping: damping.to_vec(),
@@ -124,8 +125,9 @@ impl Modes {
             order,
             attached,
             accelerations,
+            to_blocks: by_coordinates(&spectral),
+            columns: by_columns(&spectral, 2 * order),
             spectral,
-            columns,
             gravity: Load::default(),
             carried,
         };
@@ -145,6 +147,7 @@ impl Modes {
             order: self.order,
             attached: self.attached.clone(),
             accelerations: self.accelerations.clone(),
+            to_blocks: by_coordinates(&spectral),
             columns: by_columns(&spectral, 2 * self.order),
             spectral,
             gravity,
@@ -189,7 +192,7 @@ impl Modes {
 
     /// Numbers that it keeps.
     pub(crate) fn size(&self) -> usize {
-        self.accelerations.len() * 2 * self.order + 3 * self.columns.len()
+        self.accelerations.len() * 2 * self.order + 2 * self.to_blocks.size() + 2 * self.columns.size()
     }
 }
 
@@ -201,10 +204,15 @@ pub(crate) fn contact_damping(system: &HybridSystem, contacts: &[Contact], j: us
     face_damping(side.face(particle).law, equivalent.filter(compressed))
 }
 
+/// Block coordinates by coordinates and rates.
+fn by_coordinates(spectral: &Spectral) -> Superposition {
+    Superposition::new(spectral.width(), spectral.to_blocks.iter().copied())
+}
+
 /// The way back from the blocks to so many coordinates and rates, column by column.
-fn by_columns(spectral: &Spectral, size: usize) -> Vec<f64> {
+fn by_columns(spectral: &Spectral, size: usize) -> Superposition {
     let width = spectral.width();
-    (0..size * width).map(|i| spectral.from_blocks[(i % size) * width + i / size]).collect()
+    Superposition::new(size, (0..size * width).map(|i| spectral.from_blocks[(i % size) * width + i / size]))
 }
 
 /// The damping of the face that each particle's contact refers to; then, of those at both faces, that of the second one and the

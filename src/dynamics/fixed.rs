@@ -350,7 +350,8 @@ fn start(system: &HybridSystem, from: &StartState, layout: Layout) -> Result<(Ve
             let damping = vec![0.0; layout.particles];
             let flow = Flow::build(&without_harmonic(system), &contacts, &damping)?;
             let (mut p, mut rate) = (vec![0.0; flow.order], vec![0.0; flow.order]);
-            flow.leave(&vec![0.0; 2 * flow.order], 0.0, 0.0, Default::default(), &mut p, &mut rate);
+            let still = vec![0.0; 2 * flow.order];
+            flow.leave(&still, 0.0, 0.0, Default::default(), &mut Vec::new(), [&mut p, &mut rate]);
             state[..n].copy_from_slice(&p[..n]);
             for (i, &j) in flow.modes.attached.iter().enumerate() {
                 state[layout.gap(j)] = p[n + i];

@@ -8,7 +8,7 @@ use std::rc::Rc;
 
 use super::EngineError;
 use super::bank::Bank;
-use super::block::Block;
+use super::block::{Block, Kernel};
 use super::contact_state::Modes;
 use super::dissipation::Dissipation;
 use super::exact;
@@ -139,22 +139,24 @@ impl Flow {
     }
 
     /// Block coordinates of (p, p′) at the start of a segment; `force` is the constant force in force, `drive` the phase
-    /// of the harmonic one: F cos ω t and F sin ω t, which are the coordinates of its block.
+    /// of the harmonic one: F cos ω t and F sin ω t, which are the coordinates of its block. `work` is room to work in.
     #[inline]
-    pub(crate) fn enter(&self, p: &[f64], rate: &[f64], force: f64, drive: DrivePhase, c: &mut [f64]) {
-        let order = self.order;
-        let size = self.modes.spectral.width();
-        c[..size].fill(0.0);
-        for i in 0..order {
-            let [position, velocity] = self.free(i, [p[i], rate[i]], force, drive);
-            let (by_position, by_rate) = (
-                &self.modes.spectral.to_blocks[i * size..][..size],
-                &self.modes.spectral.to_blocks[(order + i) * size..][..size],
-            );
-            for ((c, x), y) in c[..size].iter_mut().zip(by_position).zip(by_rate) {
-                *c += x * position + y * velocity;
-            }
+    pub(crate) fn enter(
+        &self,
+        p: &[f64],
+        rate: &[f64],
+        force: f64,
+        drive: DrivePhase,
+        work: &mut Vec<f64>,
+        c: &mut [f64],
+    ) {
+        let (order, size) = (self.order, self.modes.spectral.width());
+        work.resize(2 * order, 0.0);
+        let (positions, velocities) = work.split_at_mut(order);
+        for (i, (position, velocity)) in positions.iter_mut().zip(velocities).enumerate() {
+            [*position, *velocity] = self.free(i, [p[i], rate[i]], force, drive);
         }
+        self.modes.to_blocks.sum(work, c);
         if self.harmonic.is_some() {
             c[size..size + 2].copy_from_slice(&[drive.cosine, drive.sine]);
             if self.is_resonant {
@@ -206,21 +208,27 @@ impl Flow {
         }
     }
 
-    /// (p, p′) from block coordinates after `t` seconds of the segment, with the drive's phase then.
+    /// (p, p′) from block coordinates after `t` seconds of the segment, with the drive's phase then; `work` is room to work in.
     #[inline]
-    pub(crate) fn leave(&self, c: &[f64], t: f64, force: f64, drive: DrivePhase, p: &mut [f64], rate: &mut [f64]) {
-        let order = self.order;
-        let (size, width) = (2 * order, self.modes.spectral.width());
+    pub(crate) fn leave(
+        &self,
+        c: &[f64],
+        t: f64,
+        force: f64,
+        drive: DrivePhase,
+        work: &mut Vec<f64>,
+        [p, rate]: [&mut [f64]; 2],
+    ) {
+        let (order, width) = (self.order, self.modes.spectral.width());
         let (p, rate) = (&mut p[..order], &mut rate[..order]);
-        for ((p, by_gravity), by_force) in p.iter_mut().zip(&self.modes.gravity.rest).zip(&self.force.rest) {
-            *p = by_gravity + force * by_force;
-        }
-        rate.fill(0.0);
+        work.resize(2 * order, 0.0);
         // There may be more blocks than coordinates; those that `c` has none for are at rest.
-        for (c, column) in c.iter().zip(self.modes.columns.chunks_exact(size)) {
-            let (positions, rates) = column.split_at(order);
-            p.iter_mut().zip(positions).for_each(|(p, entry)| *p += entry * c);
-            rate.iter_mut().zip(rates).for_each(|(rate, entry)| *rate += entry * c);
+        self.modes.columns.sum(c, work);
+        let (positions, rates) = work.split_at(order);
+        rate.copy_from_slice(rates);
+        let rests = self.modes.gravity.rest.iter().zip(&self.force.rest);
+        for ((p, position), (by_gravity, by_force)) in p.iter_mut().zip(positions).zip(rests) {
+            *p = (by_gravity + force * by_force) + position;
         }
         if let Some(steady) = &self.harmonic {
             for i in 0..order {
@@ -250,8 +258,8 @@ impl Flow {
 
     /// Propagates block coordinates by the kernels of a time, with the drive's phase after it.
     #[inline]
-    pub(crate) fn advance(&self, kernels: &[super::block::Kernel], start: &[f64], drive: DrivePhase, end: &mut [f64]) {
-        self.move_blocks(kernels, start, end);
+    pub(crate) fn advance(&self, kernel: impl Fn(usize) -> Kernel, start: &[f64], drive: DrivePhase, end: &mut [f64]) {
+        self.move_blocks(kernel, start, end);
         if self.harmonic.is_some() {
             end[2 * self.own..2 * self.own + 2].copy_from_slice(&[drive.cosine, drive.sine]);
         }
@@ -259,20 +267,17 @@ impl Flow {
 
     /// Propagates the coordinates of its own blocks by the kernels of a time.
     #[inline]
-    pub(crate) fn move_blocks(&self, kernels: &[super::block::Kernel], start: &[f64], end: &mut [f64]) {
-        for k in 0..self.own {
-            let [p, q, r, s] = self.modes.spectral.matrices[k];
-            let kernel = kernels[k];
-            let a = self.blocks[k].decay;
-            let (x, y) = (start[2 * k], start[2 * k + 1]);
-            if a == 0.0 && q > 0.0 && q == -r {
+    pub(crate) fn move_blocks(&self, kernel: impl Fn(usize) -> Kernel, start: &[f64], end: &mut [f64]) {
+        let states = start.as_chunks::<2>().0.iter().zip(end.as_chunks_mut::<2>().0);
+        let blocks = self.modes.spectral.matrices.iter().zip(&self.blocks).zip(states);
+        for (k, (([p, q, r, s], Block { decay: a, .. }), (&[x, y], end))) in blocks.enumerate() {
+            let kernel = kernel(k);
+            *end = if *a == 0.0 && *q > 0.0 && *q == -r {
                 // Without damping a turn is a turn, and no length comes or goes.
-                end[2 * k] = kernel.c * x + kernel.turn * y;
-                end[2 * k + 1] = kernel.c * y - kernel.turn * x;
-                continue;
-            }
-            end[2 * k] = kernel.c * x + kernel.s * ((p + a) * x + q * y);
-            end[2 * k + 1] = kernel.c * y + kernel.s * (r * x + (s + a) * y);
+                [kernel.c * x + kernel.turn * y, kernel.c * y - kernel.turn * x]
+            } else {
+                [kernel.c * x + kernel.s * ((p + a) * x + q * y), kernel.c * y + kernel.s * (r * x + (s + a) * y)]
+            };
         }
     }
 

@@ -15,7 +15,7 @@ use super::contact_state::constant_across;
 use super::flow::Flow;
 use super::parabola::Parabola;
 use super::search::{Guard, Search};
-use super::signals::{AcrossRows, Signals};
+use super::signals::{AcrossRows, Signals, Watched};
 use super::system::{Contact, HybridSystem, Law, Particle, dot};
 use super::window::Start;
 
@@ -79,15 +79,8 @@ pub(crate) fn half_cycle(signal: usize, sign: f64, touching: bool, search: &mut 
 /// The parabola of a gap in flight. The particle falls by itself and the blocks of the face are taken off it, so that the
 /// start is kept to the bit; a face that drifts with its structure takes the frame along, and no digit is lost to distance.
 #[inline]
-fn flight_path(flow: &Flow, rest: Parabola, phases: &[Phase], here: Relative, gravity: f64) -> Parabola {
-    let mut path = Parabola { p0: here.gap, p1: here.rate, p2: -0.5 * gravity - rest.p2 };
-    for (block, phase) in flow.blocks.iter().zip(phases) {
-        if !block.is_drift() {
-            path.p0 += phase.value;
-            path.p1 += phase.rate;
-        }
-    }
-    path
+fn flight_path(face: Watched<'_>, here: Relative, gravity: f64) -> Parabola {
+    Parabola { p0: here.gap + face.sum.value, p1: here.rate + face.sum.rate, p2: -0.5 * gravity - face.rest.p2 }
 }
 
 /// radius·t below which the fifth derivative of a gap moves nothing.
@@ -101,11 +94,11 @@ pub(crate) fn is_short(flow: &Flow, time: f64) -> bool {
 
 /// A gap after a short time, from where it is: its acceleration is `constant` plus `sign` times that of the shares.
 #[cold]
-pub(crate) fn creep(flow: &Flow, constant: f64, sign: f64, phases: &[Phase], here: Relative, time: f64) -> Relative {
+pub(crate) fn creep(flow: &Flow, constant: f64, sign: f64, signal: Watched<'_>, here: Relative, time: f64) -> Relative {
     let mut derivatives = [constant, 0.0, 0.0, 0.0];
-    for (block, phase) in flow.blocks.iter().zip(phases) {
+    for (block, phase) in flow.blocks.iter().zip(signal.each()) {
         if !block.is_drift() {
-            let bend = block.acceleration(*phase);
+            let bend = block.acceleration(phase);
             let snap = block.acceleration(bend);
             for (sum, term) in derivatives.iter_mut().zip([bend.value, bend.rate, snap.value, snap.rate]) {
                 *sum += sign * term;
@@ -134,7 +127,7 @@ pub(crate) fn fly(
 ) -> Relative {
     let row = flow.rows.guards[j].first;
     if is_short(flow, time) {
-        return creep(flow, 2.0 * path.p2, -1.0, signals.of(row).0, here, time);
+        return creep(flow, 2.0 * path.p2, -1.0, signals.of(row), here, time);
     }
     let face = flow.rows.row(row).shares(c);
     Relative { gap: path.at(time) - face.value, rate: path.rate(time) - face.rate }
@@ -145,16 +138,11 @@ fn magnitude(row: &[f64], x: &[f64]) -> f64 {
     row.iter().zip(x).fold(0.0, |sum, (phi, x)| sum + (phi * x).abs())
 }
 
-/// What rounding makes of a sum of shares.
-fn noise(phases: &[Phase]) -> f64 {
-    4.0 * f64::EPSILON * phases.iter().fold(0.0, |sum, phase| sum + phase.value.abs())
-}
-
 /// How a distance starts that grows with `rate`, being the difference of lengths of `size` beside its shares: at zero where it is, or where it is nothing but rounding and grows.
 #[inline]
-fn start(distance: f64, rate: f64, smooth: bool, phases: &[Phase], size: f64) -> Start {
+fn start(distance: f64, rate: f64, smooth: bool, signal: Watched<'_>, size: f64) -> Start {
     if distance != 0.0 {
-        if rate > 0.0 && distance.abs() < noise(phases) + 4.0 * f64::EPSILON * size {
+        if rate > 0.0 && distance.abs() < signal.noise() + 4.0 * f64::EPSILON * size {
             return Start::Touching { order: 1, slope: rate };
         }
         return Start::Apart;
@@ -199,8 +187,8 @@ fn in_flight(
     let here = state.particles[j];
     let gravity = state.system.gravity;
     let rows = flow.rows.guards[j];
-    let (phases, rest) = signals.of(rows.first);
-    let path = flight_path(flow, rest, phases, here, gravity);
+    let face = signals.of(rows.first);
+    let path = flight_path(face, here, gravity);
     // u = path − blocks.
     guards.push(Guard {
         particle: j,
@@ -208,17 +196,17 @@ fn in_flight(
         signal: rows.first,
         sign: -1.0,
         parabola: path,
-        start: start(here.gap, here.rate, state.smooth[j], phases, 0.0),
+        start: start(here.gap, here.rate, state.smooth[j], face, 0.0),
         distance: true,
     });
     let (Some(ceiling), Some(relative)) = (&particle.ceiling, above(particle, here, state.q, state.rate)) else {
         return path;
     };
-    let (above, phases) = if ceiling.row == particle.floor.row {
-        (Parabola { p0: path.p0 - particle.gap, ..path }, phases)
+    let (above, face) = if ceiling.row == particle.floor.row {
+        (Parabola { p0: path.p0 - particle.gap, ..path }, face)
     } else {
-        let (phases, rest) = signals.of(rows.second);
-        (flight_path(flow, rest, phases, relative, gravity), phases)
+        let face = signals.of(rows.second);
+        (flight_path(face, relative, gravity), face)
     };
     guards.push(Guard {
         particle: j,
@@ -226,7 +214,7 @@ fn in_flight(
         signal: rows.second,
         sign: 1.0,
         parabola: above.negative(),
-        start: start(-relative.gap, -relative.rate, state.smooth[j], phases, particle.gap),
+        start: start(-relative.gap, -relative.rate, state.smooth[j], face, particle.gap),
         distance: true,
     });
     path
@@ -243,8 +231,7 @@ fn released(
     let side = state.contacts[j].side();
     let away = side.away();
     let rows = flow.rows.guards[j];
-    let (phases, rest) = signals.of(rows.first);
-    let path = flight_path(flow, rest, phases, state.particles[j], state.system.gravity);
+    let path = flight_path(signals.of(rows.first), state.particles[j], state.system.gravity);
     // Compression, −u at the floor; u = path − blocks.
     guards.push(Guard {
         particle: j,
@@ -263,15 +250,11 @@ fn released(
             signal: rows.second,
             sign: -away,
             parabola: path.spring_and_dashpot(stiffness, damping).times(away),
-            start: force_start(state.particles[j], stiffness, damping, state.smooth[j], signals.of(rows.second).0),
+            start: force_start(state.particles[j], stiffness, damping, state.smooth[j], signals.of(rows.second)),
             distance: false,
         });
     }
     path
-}
-
-fn sum(phases: &[Phase], part: impl Fn(&Phase) -> f64) -> f64 {
-    phases.iter().fold(0.0, |sum, phase| sum + part(phase))
 }
 
 #[inline]
@@ -287,20 +270,21 @@ fn pressed(
     let side = state.contacts[j].side();
     let away = side.away();
     let rows = flow.rows.guards[j];
-    let (phases, mut rest) = signals.of(rows.first);
+    let own = signals.of(rows.first);
+    let mut rest = own.rest;
     let Law::Resilient { stiffness, no_tension, stop, .. } = side.face(particle).law else { return };
     // The start is known to the bit; what the blocks make of it would hide a contact that lasts a nanosecond.
-    rest.p0 = here.gap - sum(phases, |phase| phase.value);
+    rest.p0 = here.gap - own.sum.value;
     if here.gap == 0.0 {
-        rest.p1 = here.rate - sum(phases, |phase| phase.rate);
+        rest.p1 = here.rate - own.sum.rate;
     }
     let release = if no_tension {
         let damping = state.damping[j];
-        let (phases, mut force) = signals.of(rows.second);
-        force.p0 = stiffness * here.gap + damping * here.rate - sum(phases, |phase| phase.value);
-        (rows.second, force, force_start(here, stiffness, damping, state.smooth[j], phases))
+        let push = signals.of(rows.second);
+        let force = Parabola { p0: stiffness * here.gap + damping * here.rate - push.sum.value, ..push.rest };
+        (rows.second, force, force_start(here, stiffness, damping, state.smooth[j], push))
     } else {
-        (rows.first, rest, start(-away * here.gap, -away * here.rate, state.smooth[j], phases, 0.0))
+        (rows.first, rest, start(-away * here.gap, -away * here.rate, state.smooth[j], own, 0.0))
     };
     let (signal, parabola, begin) = release;
     guards.push(Guard {
@@ -320,7 +304,7 @@ fn pressed(
             signal: rows.first,
             sign: away,
             parabola: Parabola { p0: away * rest.p0 + stop.length, ..rest.times(away) },
-            start: start(away * here.gap + stop.length, away * here.rate, state.smooth[j], phases, stop.length),
+            start: start(away * here.gap + stop.length, away * here.rate, state.smooth[j], own, stop.length),
             distance: true,
         });
     }
@@ -339,16 +323,15 @@ fn across(
 ) {
     let contact = state.contacts[j];
     let side = contact.side().opposite();
-    let (phases, rest) = signals.of(rows.way);
+    let signal = signals.of(rows.way);
     // The distance v to the face, as parabola + sign × signal.
     let (way, sign, now) = if contact.face(particle).is_some() {
-        let way = Parabola { p0: rest.p0 + constant_across(particle, contact), ..rest };
-        let rate = way.p1 + sum(phases, |phase| phase.rate);
-        (way, 1.0, Relative { gap: way.p0 + sum(phases, |phase| phase.value), rate })
+        let way = Parabola { p0: signal.rest.p0 + constant_across(particle, contact), ..signal.rest };
+        (way, 1.0, Relative { gap: way.p0 + signal.sum.value, rate: way.p1 + signal.sum.rate })
     } else {
         let here = seen_from(side, particle, state.particles[j], state.q, state.rate);
         let away = side.away();
-        let path = flight_path(flow, rest, phases, here, state.system.gravity);
+        let path = flight_path(signal, here, state.system.gravity);
         (path.times(away), -away, Relative { gap: away * here.gap, rate: away * here.rate })
     };
     // What it is the difference of, and the way in the rounding of an instant.
@@ -357,7 +340,7 @@ fn across(
     let slipped = state.slipped.filter(|slipped| slipped.particle == j);
     let apart = || match slipped {
         Some(Slipped { order, .. }) => Start::Touching { order, slope: 0.0 },
-        None => start(now.gap, now.rate, false, phases, size),
+        None => start(now.gap, now.rate, false, signal, size),
     };
     let guard = |crossing, parabola, sign, start| Guard {
         particle: j,
@@ -375,14 +358,13 @@ fn across(
     let damping = flow.modes.across.iter().find(|across| across.particle == j).map_or(0.0, |across| across.damping);
     // k v + c v′, zero where the push is: its sign folded in by `pushes`.
     let force = |crossing, pushes: f64| {
-        let (phases, _) = signals.of(rows.force);
         Guard {
             particle: j,
             crossing,
             signal: rows.force,
             sign: -pushes * sign,
             parabola: way.spring_and_dashpot(stiffness, damping).times(-pushes),
-            start: match force_start(now, stiffness, damping, slipped.is_some(), phases) {
+            start: match force_start(now, stiffness, damping, slipped.is_some(), signals.of(rows.force)) {
                 Start::Apart
                     if (stiffness * now.gap + damping * now.rate).abs() < 4.0 * f64::EPSILON * stiffness * size =>
                 {
@@ -401,12 +383,12 @@ fn across(
             if no_tension {
                 guards.push(force(Crossing::ReleaseAcross, 1.0));
             } else {
-                let begin = start(-now.gap, -now.rate, false, phases, size);
+                let begin = start(-now.gap, -now.rate, false, signal, size);
                 guards.push(guard(Crossing::ReleaseAcross, way.negative(), -sign, begin));
             }
             if let Some(stop) = stop {
                 let left = Parabola { p0: way.p0 + stop.length, ..way };
-                let begin = start(now.gap + stop.length, now.rate, false, phases, size + stop.length);
+                let begin = start(now.gap + stop.length, now.rate, false, signal, size + stop.length);
                 guards.push(guard(Crossing::ToStopAcross, left, sign, begin));
             }
         }
@@ -432,7 +414,7 @@ fn held(state: Contacts<'_>, j: usize, particle: &Particle, flow: &Flow, signals
     }
     let side = state.contacts[j].side();
     let signal = flow.rows.guards[j].first;
-    let rest = signals.of(signal).1;
+    let rest = signals.of(signal).rest;
     let offset = rest.p0 + state.system.gravity - side.away() * spring_on_stop(particle, side);
     let mut parabola = Parabola { p0: side.away() * offset, p1: 0.0, p2: 0.0 };
     if let Some(across) = flow.modes.across.iter().find(|across| across.particle == j && across.presses) {
@@ -455,10 +437,10 @@ fn held(state: Contacts<'_>, j: usize, particle: &Particle, flow: &Flow, signals
 /// How the force of spring and dashpot starts: at zero where the contact has just begun or ended smoothly, and where it
 /// begins without dashpot or at rest; then with the first derivative that the motion has. A force that is nothing but rounding
 /// of its shares is zero too: what it does next, its derivative says.
-fn force_start(here: Relative, stiffness: f64, damping: f64, smooth: bool, phases: &[Phase]) -> Start {
+fn force_start(here: Relative, stiffness: f64, damping: f64, smooth: bool, signal: Watched<'_>) -> Start {
     let (spring, dashpot) = (stiffness * here.gap, damping * here.rate);
     let force = spring + dashpot;
-    if force != 0.0 && force.abs() < noise(phases) {
+    if force != 0.0 && force.abs() < signal.noise() {
         return touching_once(true);
     }
     // Where it began or ended smoothly the two cancel, as well as the instant of a contact of nanoseconds is known.

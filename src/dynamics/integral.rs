@@ -38,11 +38,11 @@ pub(crate) struct Integrand {
 
 /// The integrals of several signals over a few panels, which share the kernels of their nodes: shares move on from panel to panel.
 pub(crate) fn together(blocks: &[Block], bank: &Bank, signals: &mut [Integrand], duration: f64) -> Vec<[f64; 3]> {
-    let (count, places) = (panels(blocks, duration), bank.places());
+    let (count, places) = (panels(blocks, duration), blocks.len());
     let h = duration / count as f64;
     let mut kernels = vec![Kernel::NONE; (GAUSS.len() + 1) * places];
     let nodes = GAUSS.iter().map(|[x, _]| *x).chain([1.0]);
-    kernels.chunks_exact_mut(places).zip(nodes).for_each(|(kernels, x)| bank.kernels(blocks, x * h, kernels));
+    kernels.chunks_exact_mut(places).zip(nodes).for_each(|(kernels, x)| bank.list(blocks, x * h, kernels));
     let (within, end) = kernels.split_at(GAUSS.len() * places);
     let mut sums = vec![[0.0; 3]; signals.len()];
     for (signal, sum) in signals.iter_mut().zip(&mut sums) {
@@ -71,7 +71,7 @@ pub(crate) fn integrals(
     place: f64,
 ) -> [f64; 3] {
     let count = panels(blocks, duration);
-    let mut kernels = vec![Kernel::NONE; bank.places()];
+    let mut kernels = vec![Kernel::NONE; blocks.len()];
     let h = duration / count as f64;
     let mut sum = [0.0; 3];
     for panel in 0..count {
@@ -80,7 +80,7 @@ pub(crate) fn integrals(
         }
         for [x, weight] in GAUSS {
             let t = (panel as f64 + x) * h;
-            bank.kernels(blocks, t, &mut kernels);
+            bank.list(blocks, t, &mut kernels);
             add_node(&mut sum, weight * h, blocks, &kernels, start, about(rest, place, t));
         }
     }

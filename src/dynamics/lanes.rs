@@ -5,13 +5,18 @@
 
 use std::ops::{Add, Mul, Sub};
 
+/// Numbers that are worked on together: one register of new processors, two of older ones.
+pub(crate) const WIDTH: usize = 4;
+
 /// `N` numbers.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[repr(transparent)]
 pub(crate) struct Lanes<const N: usize>(pub(crate) [f64; N]);
 
 impl<const N: usize> Lanes<N> {
+    /// Each with that in the same place of the other.
     #[inline(always)]
-    fn with(self, other: Self, each: impl Fn(f64, f64) -> f64) -> Self {
+    pub(crate) fn zip(self, other: Self, each: impl Fn(f64, f64) -> f64) -> Self {
         let mut result = self;
         for (a, b) in result.0.iter_mut().zip(other.0) {
             *a = each(*a, b);
@@ -25,10 +30,36 @@ impl<const N: usize> Lanes<N> {
         Self(self.0.map(each))
     }
 
+    /// Without sign.
+    #[inline(always)]
+    pub(crate) fn abs(self) -> Self {
+        self.map(f64::abs)
+    }
+
     /// Whether all are of a smaller modulus; never so with NaN among them.
     #[inline(always)]
     pub(crate) fn all_below(self, bound: f64) -> bool {
         self.0.iter().all(|x| x.abs() < bound)
+    }
+}
+
+impl Lanes<WIDTH> {
+    /// Of nothing.
+    pub(crate) const ZERO: Self = Self([0.0; WIDTH]);
+
+    /// All of them together.
+    #[inline(always)]
+    pub(crate) fn sum(self) -> f64 {
+        let [a, b, c, d] = self.0;
+        (a + c) + (b + d)
+    }
+
+    /// The largest of them.
+    #[inline(always)]
+    pub(crate) fn largest(self) -> f64 {
+        let larger = |a: f64, b: f64| if a > b { a } else { b };
+        let [a, b, c, d] = self.0;
+        larger(larger(a, c), larger(b, d))
     }
 }
 
@@ -38,7 +69,7 @@ macro_rules! operator {
             type Output = Self;
             #[inline(always)]
             fn $function(self, other: Self) -> Self {
-                self.with(other, |a, b| a $symbol b)
+                self.zip(other, |a, b| a $symbol b)
             }
         }
 

@@ -82,6 +82,7 @@ pub(crate) struct March<'a, const TAPED: bool> {
     phase_time: f64,
     c: Vec<f64>,
     c_end: Vec<f64>,
+    work: Vec<f64>,
     // Results.
     visits: Visits,
     clarity: Clarity,
@@ -140,6 +141,7 @@ impl<'a, const TAPED: bool> March<'a, TAPED> {
             phase_time: f64::NAN,
             c: vec![0.0; 2 * most + 2],
             c_end: vec![0.0; 2 * most + 2],
+            work: Vec::new(),
             visits: Visits::default(),
             clarity: Clarity { margin: f64::INFINITY, ties: 0 },
             response: Response {
@@ -165,7 +167,7 @@ impl<'a, const TAPED: bool> March<'a, TAPED> {
                 let drive = DrivePhase::default();
                 let flow = &self.flow;
                 self.c.fill(0.0);
-                flow.leave(&self.c, 0.0, 0.0, drive, &mut self.q, &mut self.rate);
+                flow.leave(&self.c, 0.0, 0.0, drive, &mut self.work, [&mut self.q, &mut self.rate]);
                 let n = self.system.mass.order;
                 self.rate.fill(0.0);
                 let mut fits = true;

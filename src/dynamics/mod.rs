@@ -21,7 +21,7 @@
 //! | `linear` | a run in which no event can happen, in closed form |
 //! | `fixed` | a fixed-step scheme, to show what the time step does to a published result |
 //! | `budget` | what a run may take |
-//! | `cholesky`, `elementary`, `exact`, `lanes` | arithmetic |
+//! | `cholesky`, `elementary`, `exact`, `lanes`, `superposition`, `wide` | arithmetic, several numbers at a time |
 //!
 //! The engine knows no beam, no YAML and no file. It works with dense matrices of a hundred modes or so, not with large
 //! sparse systems.
@@ -77,10 +77,12 @@ mod spline;
 mod states;
 mod steady_state;
 mod sums;
+mod superposition;
 mod system;
 mod trace;
 mod undamped;
 mod visits;
+mod wide;
 mod window;
 
 pub use budget::{Allowance, Exhausted, Limit, Overrun, in_words, interrupt, is_interrupted};

@@ -86,7 +86,7 @@ pub(crate) fn split(
         }
     }
     if rigid.is_empty() {
-        return Ok(modes);
+        return Ok(modes.fastest_first());
     }
 
     for (r, &row) in rigid.iter().enumerate() {
@@ -106,7 +106,7 @@ pub(crate) fn split(
         modes.matrices.push([0.0, 1.0, 0.0, 0.0]);
         modes.blocks.push(Block::new([0.0, 1.0, 0.0, 0.0]));
     }
-    Ok(modes)
+    Ok(modes.fastest_first())
 }
 
 fn scale(acceleration: f64) -> f64 {

@@ -152,6 +152,6 @@ impl Parts {
             matrices,
             lasts,
         };
-        (spectral, Steady { omega, cosine, sine })
+        (spectral.fastest_first(), Steady { omega, cosine, sine })
     }
 }

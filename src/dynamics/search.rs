@@ -15,15 +15,17 @@
 //! further from zero than all blocks together can reach, or value and slope are larger than their curvature can undo. No
 //! window is sampled, no crossing stepped over.
 
-use super::bank::Bank;
-use super::block::{Block, Kernel, Phase};
+use super::bank::{Bank, Blocks, Kernels};
+use super::block::{Block, Kernel};
 use super::budget;
 use super::contact::Crossing;
 use super::flow::Flow;
+use super::lanes::{Lanes, WIDTH};
 use super::parabola::Parabola;
 use super::polynomial::nearest_root;
-use super::series::{Series, Span};
-use super::signals::Signals;
+use super::series::{Series, Shares, Span};
+use super::signals::{Signals, Watched};
+use super::wide::widened;
 use super::window::{Start, Verdict, Window};
 
 /// radius·Δ of a first window: half a turn and a little, since that is how long a face holds a particle. The remainder is
@@ -45,15 +47,17 @@ const NEAR: f64 = 0.03;
 /// What a search knows of a flow.
 #[derive(Clone, Copy)]
 struct Motion<'a> {
-    blocks: &'a [Block],
+    /// Its blocks, several together, and one by one.
+    blocks: &'a [Blocks],
+    each: &'a [Block],
     bank: &'a Bank,
     series: &'a Series,
 }
 
 impl Motion<'_> {
-    #[inline]
-    fn kernels(self, t: f64, kernels: &mut [Kernel]) {
-        self.bank.kernels(self.blocks, t, kernels);
+    #[inline(always)]
+    fn kernels(self, t: f64, kernels: &mut [Kernels]) {
+        self.bank.kernels(self.each, t, kernels);
     }
 }
 
@@ -105,15 +109,14 @@ pub(crate) struct Search {
     plans: Vec<Plan>,
     /// The signals as they are at `now`, as far as they have been looked at.
     surveys: Vec<Survey>,
-    /// Their shares, signal by signal, and bounds on them from then on.
-    current: Vec<Phase>,
-    amplitudes: Vec<f64>,
+    /// Their shares, signal by signal.
+    shares: Vec<Shares>,
     /// Where windows begin, seconds from the segment's start, and the kernels up to there.
     now: f64,
-    here: Vec<Kernel>,
+    here: Vec<Kernels>,
     /// Kernels from the segment's start to the result.
-    pub(crate) kernels: Vec<Kernel>,
-    trial: Vec<Kernel>,
+    kernels: Vec<Kernels>,
+    trial: Vec<Kernels>,
     /// Windows are shorter by this factor, to have a second accuracy to compare with.
     window_factor: f64,
     /// Windows below this are not divided any more, s. It grows from doubt to doubt: a guard that stays within rounding of
@@ -179,8 +182,7 @@ impl Search {
             looked: Vec::new(),
             plans: Vec::new(),
             surveys: Vec::new(),
-            current: Vec::new(),
-            amplitudes: Vec::new(),
+            shares: Vec::new(),
             now: 0.0,
             here: Vec::new(),
             kernels: Vec::new(),
@@ -190,15 +192,25 @@ impl Search {
         }
     }
 
-    /// Finds the first event before `limit` seconds; leaves the kernels of that time, or of the limit.
-    pub(crate) fn run(&mut self, flow: &Flow, signals: &Signals, limit: f64, clarity: &mut Clarity) -> Found {
-        // The same search three times: with one or two blocks the compiler unrolls every loop over them.
-        let motion = |blocks| Motion { blocks, bank: &flow.bank, series: &flow.series };
-        match &flow.blocks[..] {
-            one @ [_] => self.first(motion(one), signals, limit, clarity),
-            two @ [_, _] => self.first(motion(two), signals, limit, clarity),
+    widened! {
+        /// Finds the first event before `limit` seconds; leaves the kernels of that time, or of the limit.
+        pub(crate) fn run | run_wide (&mut self, flow: &Flow, signals: &Signals, limit: f64, clarity: &mut Clarity) -> Found = run_by_width
+    }
+
+    #[inline(always)]
+    fn run_by_width(&mut self, flow: &Flow, signals: &Signals, limit: f64, clarity: &mut Clarity) -> Found {
+        // The same search twice: with a few blocks the compiler unrolls every loop over them.
+        let motion = |blocks| Motion { blocks, each: &flow.blocks, bank: &flow.bank, series: &flow.series };
+        match flow.bank.blocks() {
+            few @ [_] => self.first(motion(few), signals, limit, clarity),
             many => self.first(motion(many), signals, limit, clarity),
         }
+    }
+
+    /// The kernel of a block from the segment's start to the result.
+    #[inline]
+    pub(crate) fn kernel(&self, block: usize) -> Kernel {
+        self.kernels[block / WIDTH].at(block % WIDTH)
     }
 
     #[inline(always)]
@@ -249,12 +261,11 @@ impl Search {
         self.surveys.resize(signals.len(), Survey::NONE);
         let width = motion.blocks.len();
         let size = width * signals.len();
-        if self.current.len() < size {
-            self.current.resize(size, Phase::default());
-            self.amplitudes.resize(size, 0.0);
+        if self.shares.len() < size {
+            self.shares.resize(size, Shares::NONE);
         }
         for kernels in [&mut self.here, &mut self.kernels, &mut self.trial] {
-            kernels.resize(motion.bank.places(), Kernel::NONE);
+            kernels.resize(width, Kernels::NONE);
         }
         self.now = 0.0;
         self.shortest = f64::EPSILON * limit;
@@ -314,13 +325,13 @@ impl Search {
             let now = self.now;
             let start = if now == 0.0 { guard.start } else { Start::Apart };
             let indivisible = window <= self.shortest.max(64.0 * f64::EPSILON * now);
-            let own = self.own(motion.blocks.len(), guard.signal);
-            if motion.series.near_critical {
-                self.bound(motion.blocks, own.clone(), window);
+            let own = own(motion.blocks.len(), guard.signal);
+            if !motion.bank.near_critical().is_empty() {
+                bound(motion, &mut self.shares[own.clone()], 12.0, window);
             }
             let span = Span::new(motion.series, now, window);
-            let (shares, amplitudes) = (&self.current[own.clone()], &self.amplitudes[own]);
-            let bounds = motion.series.bounds(amplitudes, &span, start == Start::Apart);
+            let shares = &self.shares[own];
+            let bounds = motion.series.bounds(shares, &span, start == Start::Apart);
             let hopeless = bounds.leaves_blocks && {
                 let survey = &self.surveys[guard.signal];
                 guard.parabola.at(now) + guard.sign * survey.value < 2.0 * bounds.left_out
@@ -332,7 +343,7 @@ impl Search {
                 piece.judge(|order| {
                     let bent = guard.parabola.p2.abs() * (span.length * span.length);
                     let parabola = if order == 0 { 2.0 * bent } else { 0.0 };
-                    parabola + motion.series.bend(amplitudes, span.length * motion.series.pace, order)
+                    parabola + motion.series.bend(shares, span.length * motion.series.pace, order)
                 })
             };
             match verdict {
@@ -382,26 +393,26 @@ impl Search {
         if self.surveys[signal].at == self.now {
             return;
         }
-        let own = self.own(motion.blocks.len(), signal);
-        let (initial, _) = signals.of(signal);
         let moved = self.now > 0.0;
-        let remaining = limit - self.now;
-        let mut survey = Survey { at: self.now, ..Survey::NONE };
-        let places = self.current[own.clone()].iter_mut().zip(&mut self.amplitudes[own]);
-        for (((block, start), kernel), (share, bound)) in motion.blocks.iter().zip(initial).zip(&self.here).zip(places)
-        {
-            let now = if moved { block.advance(*start, *kernel) } else { *start };
-            // Good for the second derivative too.
-            let amplitude = block.amplitude(now, 2.0, remaining);
-            (*share, *bound) = (now, amplitude);
-            let square = block.radius * block.radius;
-            survey.value += now.value;
-            survey.rate += now.rate;
-            survey.reach += amplitude;
-            survey.bend += amplitude * square;
-            survey.snap += amplitude * square * square;
+        let shares = &mut self.shares[own(motion.blocks.len(), signal)];
+        let watched = signals.of(signal);
+        for (((blocks, start), kernels), share) in motion.blocks.iter().zip(watched.phases).zip(&self.here).zip(&mut *shares) {
+            let now = if moved { blocks.advance(*start, kernels) } else { *start };
+            *share = Shares { now, amplitude: blocks.amplitudes(now) };
         }
-        self.surveys[signal] = survey;
+        if !motion.bank.near_critical().is_empty() {
+            // Good for the second derivative too.
+            bound(motion, shares, 2.0, limit - self.now);
+        }
+        let mut sums = [Lanes::ZERO; 5];
+        for (blocks, Shares { now, amplitude }) in motion.blocks.iter().zip(&*shares) {
+            let bend = *amplitude * blocks.square;
+            for (sum, part) in sums.iter_mut().zip([now.value, now.rate, *amplitude, bend, bend * blocks.square]) {
+                *sum = *sum + part;
+            }
+        }
+        let [value, rate, reach, bend, snap] = sums.map(Lanes::sum);
+        self.surveys[signal] = Survey { at: self.now, value, rate, reach, bend, snap };
     }
 
     /// Looks at a guard from now on: the window that suits it, and how long two cheap bounds keep it clear, by more than the
@@ -431,24 +442,23 @@ impl Search {
         let (mut bend, mut snap) = (survey.bend, survey.snap);
         let mut fastest = f64::INFINITY;
         let mut noise = 1e-12 * (here.p0.abs() + survey.reach);
-        if width > 2 {
-            let own = self.own(width, guard.signal);
-            let (shares, amplitudes) = (&self.current[own.clone()], &self.amplitudes[own]);
-            let (most, mut slow) = (NOISE * (here.p0 + value - least), &motion.series.by_radius[..]);
-            while let [(block, _), slower @ ..] = slow
-                && !slower.is_empty()
-                && noise + amplitudes[*block] < most
-            {
-                noise += amplitudes[*block];
-                value -= guard.sign * shares[*block].value;
-                rate -= guard.sign * shares[*block].rate;
-                slow = slower;
+        if motion.each.len() > 2 {
+            let shares = &self.shares[own(width, guard.signal)];
+            let most = NOISE * (here.p0 + value - least);
+            let mut slow = 0;
+            while slow + 1 < motion.each.len() {
+                let (share, lane) = (&shares[slow / WIDTH], slow % WIDTH);
+                if !(noise + share.amplitude.0[lane] < most) {
+                    break;
+                }
+                noise += share.amplitude.0[lane];
+                value -= guard.sign * share.now.value.0[lane];
+                rate -= guard.sign * share.now.rate.0[lane];
+                slow += 1;
             }
-            fastest = FASTEST / slow.first().map_or(0.0, |(_, square)| square.sqrt());
-            (bend, snap) = (0.0, 0.0);
-            for &(block, square) in slow {
-                bend += amplitudes[block] * square;
-                snap += amplitudes[block] * (square * square);
+            fastest = FASTEST / motion.series.fastest[slow];
+            if slow > 0 {
+                (bend, snap) = turns(motion.blocks, shares, slow);
             }
         }
         let curve = Parabola { p0: here.p0 + value, p1: here.p1 + rate, p2: here.p2 - 0.5 * bend };
@@ -456,20 +466,6 @@ impl Search {
             at: now,
             window: window(bend, snap, fastest),
             quick: apart.max(clear_until(curve, noise + least, margin)),
-        }
-    }
-
-    /// Places of a signal's shares.
-    #[inline(always)]
-    fn own(&self, width: usize, signal: usize) -> std::ops::Range<usize> {
-        signal * width..(signal + 1) * width
-    }
-
-    /// Bounds anew the shares of blocks near critical damping, for the twelfth derivative over one window.
-    #[cold]
-    fn bound(&mut self, blocks: &[Block], own: std::ops::Range<usize>, window: f64) {
-        for ((amplitude, share), block) in self.amplitudes[own.clone()].iter_mut().zip(&self.current[own]).zip(blocks) {
-            *amplitude = block.amplitude(*share, 12.0, window);
         }
     }
 
@@ -492,7 +488,7 @@ impl Search {
         if t == 0.0 && guard.start != Start::Apart && root.guess * window * motion.series.pace < SHORT_HOP {
             return self.polish_short_hop(motion, root);
         }
-        let (initial, _) = signals.of(guard.signal);
+        let initial = signals.of(guard.signal);
         let (mut lower, mut upper) = (t, t + root.high * window);
         let slack = 1e-3 * (upper - lower);
         let mut time = t + window * root.guess;
@@ -514,8 +510,8 @@ impl Search {
                     scaled = delta / motion.series.unit;
                 }
                 if scaled.abs() < NEAR {
-                    for (kernel, block) in self.trial.iter_mut().zip(motion.blocks) {
-                        *kernel = block.compose(*kernel, block.kernel_near_zero(delta));
+                    for (kernels, blocks) in self.trial.iter_mut().zip(motion.blocks) {
+                        *kernels = blocks.follow_on(kernels, delta);
                     }
                     if guard.distance {
                         // The guard would have to be moved by about g′²/(2|g″|) for this crossing to vanish.
@@ -543,24 +539,24 @@ impl Search {
     #[cold]
     fn polish_short_hop(&mut self, motion: Motion<'_>, root: Root) -> f64 {
         let guard = self.guards[root.guard];
-        let own = self.own(motion.blocks.len(), guard.signal);
+        let own = own(motion.blocks.len(), guard.signal);
         let mut piece = Window::new();
         let span = Span::new(motion.series, 0.0, root.window);
-        let (shares, amplitudes) = (&self.current[own.clone()], &self.amplitudes[own]);
-        let bounds = motion.series.bounds(amplitudes, &span, false);
+        let shares = &self.shares[own];
+        let bounds = motion.series.bounds(shares, &span, false);
         piece.expand(motion.series, shares, &bounds, guard.sign, guard.parabola, &span, guard.start);
         let time = root.window * piece.refine(root.guess, root.high);
-        for (kernel, block) in self.trial.iter_mut().zip(motion.blocks) {
-            *kernel = block.kernel_near_zero(time);
+        for (kernels, blocks) in self.trial.iter_mut().zip(motion.blocks) {
+            *kernels = blocks.follow_on(&Kernels::NONE, time);
         }
         time
     }
 
     /// Taylor coefficients of a guard about `time`, to the seventh, in powers of ρδ.
     #[inline(always)]
-    fn local(&self, motion: Motion<'_>, initial: &[Phase], guard: &Guard, time: f64) -> [f64; 8] {
-        let moved = motion.blocks.iter().zip(&self.trial).zip(initial);
-        let mut a = motion.series.expand::<0, 8>(moved.map(|((block, kernel), phase)| block.advance(*phase, *kernel)));
+    fn local(&self, motion: Motion<'_>, initial: Watched<'_>, guard: &Guard, time: f64) -> [f64; 8] {
+        let moved = motion.blocks.iter().zip(&self.trial).zip(initial.phases);
+        let mut a = motion.series.expand::<0, 8>(moved.map(|((blocks, kernels), phases)| blocks.advance(*phases, kernels)));
         let unit = motion.series.unit;
         let parabola = guard.parabola;
         let rest = [parabola.at(time), parabola.rate(time) * unit, parabola.p2 * (unit * unit)];
@@ -570,6 +566,36 @@ impl Search {
         }
         a
     }
+}
+
+/// Places of a signal's shares.
+#[inline(always)]
+fn own(width: usize, signal: usize) -> std::ops::Range<usize> {
+    signal * width..(signal + 1) * width
+}
+
+/// Bounds anew the shares of blocks near critical damping, for a derivative of this order over so long a time.
+#[cold]
+fn bound(motion: Motion<'_>, shares: &mut [Shares], order: f64, window: f64) {
+    for &k in motion.bank.near_critical() {
+        let share = &mut shares[k / WIDTH];
+        share.amplitude.0[k % WIDTH] = motion.each[k].amplitude(share.now.at(k % WIDTH), order, window);
+    }
+}
+
+/// Σ amplitude·radius² and Σ amplitude·radius⁴ of all blocks from `first` on.
+#[inline(always)]
+fn turns(blocks: &[Blocks], shares: &[Shares], first: usize) -> (f64, f64) {
+    let (mut bend, mut snap) = (Lanes::ZERO, Lanes::ZERO);
+    for (register, (blocks, Shares { amplitude, .. })) in blocks.iter().zip(shares).enumerate().skip(first / WIDTH) {
+        let mut amplitude = *amplitude;
+        for (lane, amplitude) in amplitude.0.iter_mut().enumerate() {
+            *amplitude = if register * WIDTH + lane < first { 0.0 } else { *amplitude };
+        }
+        let part = amplitude * blocks.square;
+        (bend, snap) = (bend + part, snap + part * blocks.square);
+    }
+    (bend.sum(), snap.sum())
 }
 
 /// How long a parabola keeps further from zero than `reach`; 0 if it is not so now, nor where it may come closer to that

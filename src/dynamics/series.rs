@@ -3,8 +3,9 @@
 //! A block's share is value·A(t) + rate·B(t), where A and B belong to the block alone. With their coefficients tabulated,
 //! in units of the fastest block's time 1/ρ, a signal's series is a product of rows: no recurrence, one pass, any window.
 
+use super::bank::Phases;
 use super::block::{Block, Phase};
-use super::lanes::Lanes;
+use super::lanes::{Lanes, WIDTH};
 
 /// Coefficients kept: degree eleven.
 const TERMS: usize = 12;
@@ -20,11 +21,10 @@ pub(crate) struct Series {
     pub(crate) pace: f64,
     /// 1/ρ.
     pub(crate) unit: f64,
-    /// Some block is near critical damping: its amplitude depends on the window.
-    pub(crate) near_critical: bool,
-    /// The blocks, fastest first, with the squares of their radii, 1/s².
-    pub(crate) by_radius: Vec<(usize, f64)>,
+    /// The largest radius of each block and all behind it, 1/s.
+    pub(crate) fastest: Vec<f64>,
     terms: Vec<Terms>,
+    radii: Vec<Radii>,
 }
 
 /// One block's.
@@ -33,10 +33,27 @@ struct Terms {
     /// Coefficients of (ρt)ʲ in A and in B.
     value: [f64; PADDED],
     rate: [f64; PADDED],
+}
+
+/// Those of several blocks.
+#[derive(Debug)]
+struct Radii {
     /// radius/ρ.
-    radius: f64,
+    radius: Lanes<WIDTH>,
     /// (radius/ρ)¹²/12!.
-    left_out: f64,
+    left_out: Lanes<WIDTH>,
+}
+
+/// Shares of several blocks in a signal from now on.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Shares {
+    pub(crate) now: Phases,
+    /// Bounds as in [`Block::amplitude`].
+    pub(crate) amplitude: Lanes<WIDTH>,
+}
+
+impl Shares {
+    pub(crate) const NONE: Self = Self { now: Phases::ZERO, amplitude: Lanes::ZERO };
 }
 
 /// A block whose Taylor polynomial may leave out this share of its amplitude is left out itself.
@@ -53,23 +70,24 @@ pub(crate) struct Bounds {
 
 impl Series {
     pub(crate) fn new(blocks: &[Block]) -> Self {
-        let fastest = blocks.iter().fold(0.0_f64, |fastest, block| fastest.max(block.radius));
-        let pace = if fastest > 0.0 { fastest } else { 1.0 };
-        let unit = 1.0 / pace;
+        let largest = blocks.iter().fold(0.0_f64, |fastest, block| fastest.max(block.radius));
+        let pace = if largest > 0.0 { largest } else { 1.0 };
+        let mut fastest: Vec<f64> = blocks.iter().map(|block| block.radius).collect();
+        for k in (1..fastest.len()).rev() {
+            fastest[k - 1] = fastest[k - 1].max(fastest[k]);
+        }
+        let radii = blocks.chunks(WIDTH).map(|blocks| Radii::new(blocks, pace)).collect();
         let terms = blocks.iter().map(|block| Terms::new(block, pace)).collect();
-        let mut by_radius: Vec<(usize, f64)> =
-            blocks.iter().map(|block| block.radius * block.radius).enumerate().collect();
-        by_radius.sort_by(|a, b| b.1.total_cmp(&a.1));
-        Self { pace, unit, near_critical: blocks.iter().any(Block::is_near_critical), by_radius, terms }
+        Self { pace, unit: 1.0 / pace, fastest, terms, radii }
     }
 
     /// Coefficients `FROM` to `FROM` + N of Σ shares, in powers of ρt.
     #[inline(always)]
-    pub(crate) fn expand<const FROM: usize, const N: usize>(&self, shares: impl Iterator<Item = Phase>) -> [f64; N] {
+    pub(crate) fn expand<const FROM: usize, const N: usize>(&self, shares: impl Iterator<Item = Phases>) -> [f64; N] {
         let mut sum = [0.0; N];
-        for (terms, share) in self.terms.iter().zip(shares) {
-            for j in 0..N {
-                sum[j] += share.value * terms.value[j + FROM] + share.rate * terms.rate[j + FROM];
+        for (terms, share) in self.terms.chunks(WIDTH).zip(shares) {
+            for (lane, terms) in terms.iter().enumerate() {
+                terms.add::<FROM, N>(share.at(lane), &mut sum);
             }
         }
         sum
@@ -77,51 +95,60 @@ impl Series {
 
     /// The same over a window of ρΔ with `twelfth` = (ρΔ)¹², leaving out the blocks too fast for it.
     #[inline(always)]
-    pub(crate) fn expand_slow(&self, shares: &[Phase], twelfth: f64) -> [f64; TERMS] {
+    pub(crate) fn expand_slow(&self, shares: &[Shares], twelfth: f64) -> [f64; TERMS] {
         let mut sum = [0.0; TERMS];
-        for (terms, share) in self.terms.iter().zip(shares) {
-            if terms.left_out * twelfth > TOO_FAST {
-                continue;
-            }
-            for j in 0..TERMS {
-                sum[j] += share.value * terms.value[j] + share.rate * terms.rate[j];
+        for ((terms, radii), share) in self.terms.chunks(WIDTH).zip(&self.radii).zip(shares) {
+            for (lane, terms) in terms.iter().enumerate() {
+                if radii.left_out.0[lane] * twelfth > TOO_FAST {
+                    continue;
+                }
+                terms.add::<0, TERMS>(share.now.at(lane), &mut sum);
             }
         }
         sum
     }
 
-    /// Over a window, with `amplitudes` as in [`Block::amplitude`]: what is left out of Σ shares beyond degree eleven, and with
-    /// `leave_fast` the blocks too fast for it; bounds on what is expanded.
+    /// Over a window: what is left out of Σ shares beyond degree eleven, and with `leave_fast` the blocks too fast for it;
+    /// bounds on what is expanded.
     #[inline(always)]
-    pub(crate) fn bounds(&self, amplitudes: &[f64], span: &Span, leave_fast: bool) -> Bounds {
+    pub(crate) fn bounds(&self, shares: &[Shares], span: &Span, leave_fast: bool) -> Bounds {
         let (length, twelfth) = (span.powers[1], span.powers[TERMS]);
-        let mut bounds = Bounds { left_out: 0.0, moving: 0.0, leaves_blocks: false };
-        for (terms, amplitude) in self.terms.iter().zip(amplitudes) {
-            let share = terms.left_out * twelfth;
-            if leave_fast && share > TOO_FAST {
-                bounds.left_out += amplitude;
-                bounds.leaves_blocks = true;
-            } else {
-                bounds.left_out += amplitude * share;
-                bounds.moving += amplitude * (1.0 + terms.radius * length);
-            }
+        let limit = if leave_fast { TOO_FAST } else { f64::INFINITY };
+        let (mut left_out, mut moving, mut largest) = (Lanes::ZERO, Lanes::ZERO, Lanes::ZERO);
+        for (radii, Shares { amplitude, .. }) in self.radii.iter().zip(shares) {
+            let share = radii.left_out * twelfth;
+            largest = largest.zip(share, |a, b| if b > a { b } else { a });
+            left_out = left_out + *amplitude * share.map(|share| if share > limit { 1.0 } else { share });
+            let moves = *amplitude * (1.0 + radii.radius * length);
+            moving = moving + moves.zip(share, |moves, share| if share > limit { 0.0 } else { moves });
         }
-        bounds
+        Bounds { left_out: left_out.sum(), moving: moving.sum(), leaves_blocks: largest.largest() > limit }
     }
 
     /// A bound on the second derivative in σ = t/Δ of Σ shares/σ^`order`, given ρΔ: that of p/σʲ is below 2/(j + 2)! of p's
     /// derivative of order j + 2.
-    pub(crate) fn bend(&self, amplitudes: &[f64], length: f64, order: usize) -> f64 {
-        self.terms.iter().zip(amplitudes).fold(0.0, |sum, (terms, amplitude)| {
-            let x = terms.radius * length;
-            let higher = match order {
-                0 => 1.0,
-                1 => x * (1.0 / 3.0),
-                2 => x * x * (1.0 / 12.0),
-                _ => x * x * x * (1.0 / 60.0),
-            };
-            sum + amplitude * (x * x) * higher
-        })
+    #[inline(always)]
+    pub(crate) fn bend(&self, shares: &[Shares], length: f64, order: usize) -> f64 {
+        let each = self.radii.iter().zip(shares).map(|(radii, Shares { amplitude, .. })| {
+            let x = radii.radius * length;
+            let square = *amplitude * (x * x);
+            match order {
+                0 => square,
+                1 => square * x * (1.0 / 3.0),
+                2 => square * (x * x) * (1.0 / 12.0),
+                _ => square * (x * x * x) * (1.0 / 60.0),
+            }
+        });
+        each.fold(Lanes::ZERO, |sum, bend| sum + bend).sum()
+    }
+}
+
+impl Radii {
+    fn new(blocks: &[Block], pace: f64) -> Self {
+        let mut radius = Lanes::ZERO;
+        radius.0.iter_mut().zip(blocks).for_each(|(radius, block)| *radius = block.radius / pace);
+        let r4 = (radius * radius) * (radius * radius);
+        Self { radius, left_out: r4 * r4 * r4 * LEFT_OUT }
     }
 }
 
@@ -137,10 +164,14 @@ impl Terms {
             }
             s
         };
-        let radius = block.radius / pace;
-        let r4 = (radius * radius) * (radius * radius);
-        let rate = series(0.0, 1.0).map(|s| s / pace);
-        Self { value: series(1.0, 0.0), rate, radius, left_out: r4 * r4 * r4 * LEFT_OUT }
+        Self { value: series(1.0, 0.0), rate: series(0.0, 1.0).map(|s| s / pace) }
+    }
+
+    #[inline(always)]
+    fn add<const FROM: usize, const N: usize>(&self, share: Phase, sum: &mut [f64; N]) {
+        for j in 0..N {
+            sum[j] += share.value * self.value[j + FROM] + share.rate * self.rate[j + FROM];
+        }
     }
 }
 

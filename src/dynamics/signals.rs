@@ -3,11 +3,14 @@
 //! A row r·p of the coordinates is a share of every block, and so are its second derivative and the force of a spring and a
 //! dashpot along it. What a contact state needs is known when its flow is built, so that a segment evaluates just that.
 
+use super::bank::Phases;
 use super::block::{Block, Kernel, Phase};
 use super::contact::Side;
 use super::contact_state::{Modes, way_across};
+use super::lanes::{Lanes, WIDTH};
 use super::parabola::Parabola;
 use super::system::{Contact, HybridSystem, Law, Particle};
+use super::wide::widened;
 
 /// One signal: two weights of each block's coordinates for its value, two for its rate; then what constant loads add.
 #[derive(Debug, Clone, PartialEq)]
@@ -59,6 +62,8 @@ pub(crate) struct AcrossRows {
 pub(crate) struct Rows {
     rows: Vec<Row>,
     watched: usize,
+    /// Weights of the watched rows, several blocks together.
+    weights: Vec<[Lanes<WIDTH>; 4]>,
     /// Observed displacements; half cycles watch the first of them.
     pub(crate) observed: Vec<usize>,
     /// Acceleration of the first of them, where half cycles follow it.
@@ -67,12 +72,24 @@ pub(crate) struct Rows {
     pub(crate) faces: Vec<FaceRows>,
 }
 
-/// Watched rows at the start of a segment: shares in every block, and the parabola that constant loads add.
+/// Watched rows at the start of a segment.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Signals {
-    width: usize,
-    phases: Vec<Phase>,
+    blocks: usize,
+    phases: Vec<Phases>,
+    sums: Vec<Phase>,
     rests: Vec<Parabola>,
+    /// Coordinates of several blocks.
+    coordinates: Vec<[Lanes<WIDTH>; 2]>,
+}
+
+/// A watched row at the start of a segment: its shares in the blocks, their sum, and the parabola that constant loads add.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Watched<'a> {
+    blocks: usize,
+    pub(crate) phases: &'a [Phases],
+    pub(crate) sum: Phase,
+    pub(crate) rest: Parabola,
 }
 
 impl Row {
@@ -124,19 +141,17 @@ impl Row {
     /// The sum of all shares.
     #[inline]
     pub(crate) fn shares(&self, c: &[f64]) -> Phase {
-        let mut sum = Phase::default();
-        for (&[v0, v1, r0, r1], &[x, y]) in self.weights.iter().zip(c.as_chunks::<2>().0) {
-            sum.value += v0 * x + v1 * y;
-            sum.rate += r0 * x + r1 * y;
+        let mut sum = Lanes::ZERO;
+        for (weights, &[x, y]) in self.weights.iter().zip(c.as_chunks::<2>().0) {
+            sum = sum + Lanes(*weights) * Lanes([x, y, x, y]);
         }
-        sum
+        let [v0, v1, r0, r1] = sum.0;
+        Phase { value: v0 + v1, rate: r0 + r1 }
     }
 
+    /// What constant loads add, under this force.
     #[inline(always)]
-    fn evaluate(&self, c: &[f64], force: f64, phases: &mut [Phase]) -> Parabola {
-        for ((&[v0, v1, r0, r1], &[x, y]), phase) in self.weights.iter().zip(c.as_chunks::<2>().0).zip(phases) {
-            *phase = Phase { value: v0 * x + v1 * y, rate: r0 * x + r1 * y };
-        }
+    fn rest(&self, force: f64) -> Parabola {
         Parabola {
             p0: self.gravity.p0 + force * self.force.p0,
             p1: self.gravity.p1 + force * self.force.p1,
@@ -234,6 +249,7 @@ impl Rows {
             all.guards.push(rows);
         }
         all.watched = all.rows.len();
+        all.weights = all.rows.iter().flat_map(|row| row.weights.chunks(WIDTH).map(together)).collect();
         for row in &system.observed_rows {
             let place = all.place(padded(row));
             all.observed.push(place);
@@ -248,7 +264,7 @@ impl Rows {
 
     /// Numbers that it keeps.
     pub(crate) fn size(&self) -> usize {
-        self.rows.iter().map(|row| 4 * row.weights.len()).sum()
+        self.rows.iter().map(|row| 4 * row.weights.len()).sum::<usize>() + 4 * WIDTH * self.weights.len()
     }
 
     fn place(&mut self, row: Row) -> usize {
@@ -274,37 +290,94 @@ impl Rows {
         }
     }
 
-    /// Evaluates the watched rows; `c` holds two coordinates a block, `force` the constant force in force.
-    #[inline]
-    pub(crate) fn watch(&self, c: &[f64], force: f64, width: usize, signals: &mut Signals) {
-        signals.width = width;
-        signals.phases.resize(self.watched * width, Phase::default());
+    widened! {
+        /// Evaluates the watched rows; `c` holds two coordinates a block, `force` the constant force in force.
+        pub(crate) fn watch | watch_wide (&self, c: &[f64], force: f64, blocks: usize, signals: &mut Signals) = watch_by_registers
+    }
+
+    #[inline(always)]
+    fn watch_by_registers(&self, c: &[f64], force: f64, blocks: usize, signals: &mut Signals) {
+        let registers = blocks.div_ceil(WIDTH);
+        signals.blocks = blocks;
+        signals.phases.resize(self.watched * registers, Phases::ZERO);
+        signals.sums.resize(self.watched, Phase::default());
         signals.rests.resize(self.watched, Parabola::default());
-        let places = signals.phases.chunks_exact_mut(width).zip(&mut signals.rests);
-        for (row, (phases, rest)) in self.rows.iter().zip(places) {
-            *rest = row.evaluate(c, force, phases);
+        signals.coordinates.clear();
+        signals.coordinates.extend(c.as_chunks::<2>().0[..blocks].chunks(WIDTH).map(apart));
+        let rows = self.rows.iter().zip(self.weights.chunks_exact(registers.max(1)));
+        let places = signals.phases.chunks_exact_mut(registers.max(1)).zip(&mut signals.sums).zip(&mut signals.rests);
+        for ((row, weights), ((phases, total), rest)) in rows.zip(places) {
+            let mut sum = Phases::ZERO;
+            for ((&[v0, v1, r0, r1], &[x, y]), phase) in weights.iter().zip(&signals.coordinates).zip(phases) {
+                *phase = Phases { value: v0 * x + v1 * y, rate: r0 * x + r1 * y };
+                sum = Phases { value: sum.value + phase.value, rate: sum.rate + phase.rate };
+            }
+            *total = Phase { value: sum.value.sum(), rate: sum.rate.sum() };
+            *rest = row.rest(force);
         }
     }
 
     /// Evaluates any row.
     pub(crate) fn evaluate(&self, row: usize, c: &[f64], force: f64, width: usize) -> (Vec<Phase>, Parabola) {
-        let mut phases = vec![Phase::default(); width];
-        let rest = self.rows[row].evaluate(c, force, &mut phases);
-        (phases, rest)
+        let row = &self.rows[row];
+        let share = |(&[v0, v1, r0, r1], &[x, y]): (&[f64; 4], &[f64; 2])| Phase {
+            value: v0 * x + v1 * y,
+            rate: r0 * x + r1 * y,
+        };
+        let mut phases: Vec<Phase> = row.weights.iter().zip(c.as_chunks::<2>().0).map(share).collect();
+        phases.resize(width, Phase::default());
+        (phases, row.rest(force))
     }
 }
 
 impl Signals {
-    /// Shares and rest of a watched row.
+    /// A watched row.
     #[inline]
-    pub(crate) fn of(&self, row: usize) -> (&[Phase], Parabola) {
-        (&self.phases[row * self.width..(row + 1) * self.width], self.rests[row])
+    pub(crate) fn of(&self, row: usize) -> Watched<'_> {
+        let registers = self.blocks.div_ceil(WIDTH);
+        let phases = &self.phases[row * registers..][..registers];
+        Watched { blocks: self.blocks, phases, sum: self.sums[row], rest: self.rests[row] }
     }
 
     /// How many are watched.
     pub(crate) fn len(&self) -> usize {
         self.rests.len()
     }
+}
+
+impl<'a> Watched<'a> {
+    /// Its shares, block by block.
+    #[inline]
+    pub(crate) fn each(self) -> impl Iterator<Item = Phase> + 'a {
+        let lanes = self.phases.iter().flat_map(|phases| (0..WIDTH).map(|lane| phases.at(lane)));
+        lanes.take(self.blocks)
+    }
+
+    /// What rounding makes of the sum of its shares.
+    #[inline]
+    pub(crate) fn noise(self) -> f64 {
+        let sizes = self.phases.iter().fold(Lanes::ZERO, |sum, phases| sum + phases.value.abs());
+        4.0 * f64::EPSILON * sizes.sum()
+    }
+}
+
+/// Weights of several blocks.
+fn together(weights: &[[f64; 4]]) -> [Lanes<WIDTH>; 4] {
+    let mut lanes = [Lanes::ZERO; 4];
+    for (lane, weights) in weights.iter().enumerate() {
+        lanes.iter_mut().zip(weights).for_each(|(lanes, weight)| lanes.0[lane] = *weight);
+    }
+    lanes
+}
+
+/// Coordinates of several blocks.
+#[inline(always)]
+fn apart(c: &[[f64; 2]]) -> [Lanes<WIDTH>; 2] {
+    let mut lanes = [Lanes::ZERO; 2];
+    for (lane, [x, y]) in c.iter().enumerate() {
+        (lanes[0].0[lane], lanes[1].0[lane]) = (*x, *y);
+    }
+    lanes
 }
 
 /// Value, rate and acceleration of a signal after the time of `kernels`.

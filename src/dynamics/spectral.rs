@@ -46,6 +46,24 @@ impl Default for Spectral {
 }
 
 impl Spectral {
+    /// The same with its fastest blocks first, as a search for events leaves them out.
+    pub(crate) fn fastest_first(self) -> Self {
+        let width = self.width();
+        let mut order: Vec<usize> = (0..self.blocks.len()).collect();
+        order.sort_by(|&k, &l| self.blocks[l].radius.total_cmp(&self.blocks[k].radius));
+        let sorted = |rows: &[f64]| -> Vec<f64> {
+            let pairs = |row: &[f64]| order.iter().flat_map(|&k| [row[2 * k], row[2 * k + 1]]).collect::<Vec<_>>();
+            rows.chunks_exact(width.max(1)).flat_map(pairs).collect()
+        };
+        Self {
+            from_blocks: sorted(&self.from_blocks),
+            to_blocks: sorted(&self.to_blocks),
+            matrices: order.iter().map(|&k| self.matrices[k]).collect(),
+            blocks: order.iter().map(|&k| self.blocks[k]).collect(),
+            lasts: self.lasts,
+        }
+    }
+
     /// Block coordinates: two a block.
     pub(crate) fn width(&self) -> usize {
         2 * self.blocks.len()

@@ -1,9 +1,8 @@
 //! One guard over one window: its polynomial with a bound on what that leaves out, and what the two prove.
 
-use super::block::Phase;
 use super::parabola::Parabola;
 use super::polynomial::{Coefficients, DEGREE, bernstein, evaluate};
-use super::series::{Bounds, Series, Span};
+use super::series::{Bounds, Series, Shares, Span};
 
 /// How a guard starts.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -55,7 +54,7 @@ impl Window {
     pub(crate) fn expand(
         &mut self,
         series: &Series,
-        shares: &[Phase],
+        shares: &[Shares],
         bounds: &Bounds,
         sign: f64,
         parabola: Parabola,
@@ -93,8 +92,8 @@ impl Window {
 
     /// The coefficients in σ, divided by σ^`ORDER`.
     #[inline(always)]
-    fn fill<const ORDER: usize>(&mut self, series: &Series, shares: &[Phase], sign: f64, base: &[f64; 3], span: &Span) {
-        let a: Coefficients = series.expand::<ORDER, _>(shares.iter().copied());
+    fn fill<const ORDER: usize>(&mut self, series: &Series, shares: &[Shares], sign: f64, base: &[f64; 3], span: &Span) {
+        let a: Coefficients = series.expand::<ORDER, _>(shares.iter().map(|share| share.now));
         for j in 0..DEGREE + 1 {
             self.a[j] = a[j] * (sign * span.powers[j + ORDER]);
         }

@@ -28,7 +28,7 @@ impl Affine {
         let mut columns = [vec![0.0; 2 * flow.own], vec![0.0; 2 * flow.own]];
         for (unit, column) in columns.iter_mut().enumerate() {
             let start: Vec<f64> = (0..2 * flow.own).map(|i| if i % 2 == unit { 1.0 } else { 0.0 }).collect();
-            flow.move_blocks(&kernels, &start, column);
+            flow.move_blocks(|k| kernels[k], &start, column);
         }
         let [x, y] = columns;
         let turn = x.chunks_exact(2).zip(y.chunks_exact(2)).map(|(x, y)| [x[0], y[0], x[1], y[1]]).collect();
@@ -173,14 +173,14 @@ impl Cycle {
 /// (p, p′) of a state of block coordinates.
 pub(super) fn leave(flow: &Flow, c: &[f64], level: f64, drive: DrivePhase) -> (Vec<f64>, Vec<f64>) {
     let (mut p, mut rate) = (vec![0.0; flow.order], vec![0.0; flow.order]);
-    flow.leave(c, 0.0, level, drive, &mut p, &mut rate);
+    flow.leave(c, 0.0, level, drive, &mut Vec::new(), [&mut p, &mut rate]);
     (p, rate)
 }
 
 /// Block coordinates of (p, p′); those of the drive are its phase.
 pub(super) fn enter(flow: &Flow, p: &[f64], rate: &[f64], level: f64, drive: DrivePhase) -> Vec<f64> {
     let mut c = vec![0.0; 2 * flow.blocks.len()];
-    flow.enter(p, rate, level, drive, &mut c);
+    flow.enter(p, rate, level, drive, &mut Vec::new(), &mut c);
     c.truncate(2 * flow.own);
     c
 }

@@ -36,12 +36,12 @@ impl<const TAPED: bool> March<'_, TAPED> {
         let Some(half_cycles) = &self.system.drive.half_cycles else { return Ok(()) };
         let flow = &self.flow;
         let Some(bend) = flow.rows.bend else { return Ok(()) };
-        let bends = self.signals.of(bend).0;
+        let bends = self.signals.of(bend);
         let bound = flow
             .blocks
             .iter()
-            .zip(bends)
-            .fold(0.0, |sum, (block, phase)| sum + block.amplitude(*phase, 0.0, self.system.drive.period));
+            .zip(bends.each())
+            .fold(0.0, |sum, (block, phase)| sum + block.amplitude(phase, 0.0, self.system.drive.period));
         // Below the curve's first point every half cycle gives the same damping: no need to follow them until something
         // happens. The bound holds to the end of the segment, and the half cycle under way is as weak.
         let [least, damping] = half_cycles.curve.lower_end();
@@ -60,8 +60,8 @@ impl<const TAPED: bool> March<'_, TAPED> {
             return Ok(());
         }
         self.half.idle = false;
-        let total = bends.iter().fold(0.0, |sum, phase| sum + phase.value);
-        let rate = bends.iter().fold(0.0, |sum, phase| sum + phase.rate);
+        let total = bends.sum.value;
+        let rate = bends.sum.rate;
         let smooth = total.abs() <= SMOOTH * bound + rounding;
         if self.half.sign == 0.0 {
             // From rest the first half cycle goes where the acceleration is about to go.
@@ -116,7 +116,7 @@ impl<const TAPED: bool> March<'_, TAPED> {
         let together = self.integration(length) == Integration::Together;
         let averaged = together && length > 0.0 && self.averaged.holds(self.cycle);
         let follows = flow.rows.bend.filter(|_| !self.half.idle);
-        let bend = |row| Integrand { shares: self.signals.of(row).0.to_vec(), rest: Parabola::default(), place: 0.0 };
+        let bend = |row| Integrand { shares: self.signals.of(row).each().collect(), rest: Parabola::default(), place: 0.0 };
         let observed = |row: &usize| {
             let (shares, rest) = flow.rows.evaluate(*row, &self.c, self.level, flow.blocks.len());
             let place = shares.iter().fold(rest.p0, |sum, share| sum + share.value);

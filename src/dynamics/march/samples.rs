@@ -28,7 +28,7 @@ impl<const TAPED: bool> March<'_, TAPED> {
             }
             kernels.clear();
             kernels.extend(flow.blocks.iter().map(|block| block.kernel(t)));
-            flow.advance(&kernels, &self.c, flow.drive_after(drive, t), &mut c);
+            flow.advance(|k| kernels[k], &self.c, flow.drive_after(drive, t), &mut c);
             let value = |(phases, rest): (&[Phase], Parabola)| signals::value(&flow.blocks, phases, rest, &kernels, t);
             let anywhere = |row: usize| {
                 let (phases, rest) = flow.rows.evaluate(row, &self.c, self.level, flow.blocks.len());

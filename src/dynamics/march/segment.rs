@@ -66,7 +66,7 @@ impl<const TAPED: bool> March<'_, TAPED> {
             self.rate[n + i] = self.particles[j].rate;
         }
         let (p, rate) = (&self.q[..flow.order], &self.rate[..flow.order]);
-        flow.enter(p, rate, self.level, drive, &mut self.c);
+        flow.enter(p, rate, self.level, drive, &mut self.work, &mut self.c);
         if self.undamped || self.response.proof.events >= MANY_EVENTS {
             flow.correct(p, rate, self.level, drive, &mut self.c);
         }
@@ -161,7 +161,7 @@ impl<const TAPED: bool> March<'_, TAPED> {
             None => drive,
             Some(_) => self.drive_phase(self.time + length),
         };
-        self.flow.advance(&self.search.kernels, &self.c, end_drive, &mut self.c_end);
+        self.flow.advance(|k| self.search.kernel(k), &self.c, end_drive, &mut self.c_end);
         self.sum_up(length, drive);
         if TAPED {
             self.tape.flow(&self.flow, length);
@@ -210,7 +210,7 @@ impl<const TAPED: bool> March<'_, TAPED> {
             // What has begun at zero is there no longer.
             self.smooth[j] &= length <= self.nothing;
         }
-        flow.leave(&self.c_end, length, self.level, end_drive, &mut self.q, &mut self.rate);
+        flow.leave(&self.c_end, length, self.level, end_drive, &mut self.work, [&mut self.q, &mut self.rate]);
         for (j, side) in kept {
             self.particles[j] = Relative::default();
             if side == Side::Ceiling {
@@ -222,8 +222,8 @@ impl<const TAPED: bool> March<'_, TAPED> {
         for (i, &j) in flow.modes.attached.iter().enumerate() {
             self.particles[j] = match flow.rows.faces[j].compression {
                 Some(_) if short => {
-                    let (phases, rest) = self.signals.of(flow.rows.guards[j].first);
-                    guards::creep(flow, 2.0 * rest.p2, 1.0, phases, self.particles[j], length)
+                    let own = self.signals.of(flow.rows.guards[j].first);
+                    guards::creep(flow, 2.0 * own.rest.p2, 1.0, own, self.particles[j], length)
                 }
                 _ => Relative { gap: self.q[n + i], rate: self.rate[n + i] },
             };

@@ -43,7 +43,7 @@ impl<const TAPED: bool> March<'_, TAPED> {
         if let Some(audit) = &mut self.audit
             && self.cycle >= first_audited
         {
-            audit.segment(self.system, flow, &self.c, &self.search.kernels, Force { level: self.level, drive }, length);
+            audit.segment(self.system, flow, [&self.c, &self.c_end], Force { level: self.level, drive }, length);
         }
         if flow.rows.bend.is_some() {
             self.sum_up_half_cycle(length);

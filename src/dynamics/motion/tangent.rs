@@ -60,8 +60,7 @@ impl<'a> Tangent<'a> {
     fn flow(&mut self, flow: &Flow, length: f64, vectors: &mut [Vec<f64>]) {
         let (n, order) = (self.system.mass.order, flow.order);
         let half = n + self.system.particles.len();
-        let spectral = &flow.modes.spectral;
-        let width = spectral.width();
+        let width = flow.modes.spectral.width();
         self.kernels.clear();
         self.kernels.extend(flow.blocks[..flow.own].iter().map(|block| block.kernel(length)));
         self.c.resize(width, 0.0);
@@ -75,15 +74,9 @@ impl<'a> Tangent<'a> {
                     p[n + i] = x[n + j] - dot(row, &x[..n]);
                 }
             }
-            self.c.fill(0.0);
-            for (p, column) in self.p.iter().zip(spectral.to_blocks.chunks_exact(width.max(1))) {
-                self.c.iter_mut().zip(column).for_each(|(c, entry)| *c += entry * p);
-            }
-            flow.move_blocks(&self.kernels, &self.c, &mut self.c_end);
-            self.p.fill(0.0);
-            for (c, column) in self.c_end.iter().zip(flow.modes.columns.chunks_exact(2 * order)) {
-                self.p.iter_mut().zip(column).for_each(|(p, entry)| *p += entry * c);
-            }
+            flow.modes.to_blocks.sum(&self.p, &mut self.c);
+            flow.move_blocks(|k| self.kernels[k], &self.c, &mut self.c_end);
+            flow.modes.columns.sum(&self.c_end, &mut self.p);
             for (j, particle) in self.system.particles.iter().enumerate() {
                 if flow.modes.contacts[j].face(particle).is_none() {
                     vector[n + j] += length * vector[half + n + j];

@@ -1,0 +1,76 @@
+//! Matrices as sums of their rows: y = Σ xᵢ rᵢ, many numbers of y at a time and each row once.
+
+use super::lanes::{Lanes, WIDTH};
+use super::wide::widened;
+
+/// The rows, filled up with zeros to whole registers.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Superposition {
+    /// Numbers of a row.
+    length: usize,
+    /// Registers of a row.
+    registers: usize,
+    rows: Vec<[f64; WIDTH]>,
+}
+
+impl Superposition {
+    /// Of rows of `length` numbers each, one after the other.
+    pub(crate) fn new(length: usize, entries: impl IntoIterator<Item = f64>) -> Self {
+        let registers = length.div_ceil(WIDTH);
+        let mut rows = Vec::new();
+        let mut entries = entries.into_iter().peekable();
+        while length > 0 && entries.peek().is_some() {
+            let first = rows.len();
+            rows.resize(first + registers, [0.0; WIDTH]);
+            rows[first..].as_flattened_mut().iter_mut().take(length).zip(&mut entries).for_each(|(to, from)| *to = from);
+        }
+        Self { length, registers, rows }
+    }
+
+    /// The rows.
+    pub(crate) fn rows(&self) -> impl Iterator<Item = &[f64]> {
+        self.rows.chunks_exact(self.registers.max(1)).map(|row| &row.as_flattened()[..self.length])
+    }
+
+    /// Numbers that it keeps.
+    pub(crate) fn size(&self) -> usize {
+        WIDTH * self.rows.len()
+    }
+
+    widened! {
+        /// y = Σ xᵢ rᵢ; rows beyond the last x count nothing.
+        pub(crate) fn sum | sum_wide (&self, x: &[f64], y: &mut [f64]) = sum_by_registers
+    }
+
+    #[inline(always)]
+    fn sum_by_registers(&self, x: &[f64], y: &mut [f64]) {
+        let mut y = &mut y[..self.length];
+        let mut first = 0;
+        while self.registers - first >= 4 {
+            y = self.strip::<4>(first, x, y);
+            first += 4;
+        }
+        match self.registers - first {
+            3 => self.strip::<3>(first, x, y),
+            2 => self.strip::<2>(first, x, y),
+            1 => self.strip::<1>(first, x, y),
+            _ => y,
+        };
+    }
+
+    /// So many registers of y; gives what is left of it.
+    #[inline(always)]
+    fn strip<'a, const MANY: usize>(&self, first: usize, x: &[f64], y: &'a mut [f64]) -> &'a mut [f64] {
+        let mut sums = [Lanes([0.0; WIDTH]); MANY];
+        for (x, row) in x.iter().zip(self.rows.chunks_exact(self.registers)) {
+            if let Some(row) = row[first..].first_chunk::<MANY>() {
+                for (sum, entries) in sums.iter_mut().zip(row) {
+                    *sum = *sum + Lanes(*entries) * *x;
+                }
+            }
+        }
+        let (now, rest) = y.split_at_mut(y.len().min(MANY * WIDTH));
+        now.iter_mut().zip(sums.iter().flat_map(|sum| sum.0)).for_each(|(y, sum)| *y = sum);
+        rest
+    }
+}
