@@ -10,8 +10,10 @@
 
 use super::Sums;
 use super::block::{Block, form, pairs, transposed};
+use super::lanes::Lanes;
 use super::lyapunov::{Lyapunov, NEARLY_NEUTRAL};
 use super::signals::Row;
+use super::wide::widened;
 
 /// The equations of a contact state's integrals.
 pub(crate) struct Closed {
@@ -58,20 +60,23 @@ impl Gains {
         }
     }
 
-    /// Adds a visit of `length` seconds under the constant force `level`, from `start` to `end`.
-    #[inline]
-    pub(crate) fn visit(&mut self, start: &[f64], end: &[f64], level: f64, length: f64) {
+    widened! {
+        /// Adds a visit of `length` seconds under the constant force `level`, from `start` to `end`.
+        pub(crate) fn visit | visit_wide (&mut self, start: &[f64], end: &[f64], level: f64, length: f64) = visit_by_registers
+    }
+
+    #[inline(always)]
+    fn visit_by_registers(&mut self, start: &[f64], end: &[f64], level: f64, length: f64) {
         let blocks = self.first.len();
         let (start, end) = (&start.as_chunks::<2>().0[..blocks], &end.as_chunks::<2>().0[..blocks]);
         let mut second = self.second.as_mut_slice();
         for k in 0..blocks {
             let ([x0, y0], [x1, y1]) = (start[k], end[k]);
             let (row, rest) = second.split_at_mut(blocks - k);
-            for ((cell, [u0, v0]), [u1, v1]) in row.iter_mut().zip(&start[k..]).zip(&end[k..]) {
-                cell[0] += x1 * u1 - x0 * u0;
-                cell[1] += x1 * v1 - x0 * v0;
-                cell[2] += y1 * u1 - y0 * u0;
-                cell[3] += y1 * v1 - y0 * v0;
+            let (from, to) = (Lanes([x0, x0, y0, y0]), Lanes([x1, x1, y1, y1]));
+            for ((cell, &[u0, v0]), &[u1, v1]) in row.iter_mut().zip(&start[k..]).zip(&end[k..]) {
+                let gained = to * Lanes([u1, v1, u1, v1]) - from * Lanes([u0, v0, u0, v0]);
+                *cell = (Lanes(*cell) + gained).0;
             }
             second = rest;
         }

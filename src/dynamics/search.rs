@@ -272,7 +272,7 @@ impl Search {
         for index in 0..count {
             let guard = self.guards[index];
             self.survey(motion, signals, guard.signal, limit);
-            self.plans[index] = self.plan(motion, &guard, clarity);
+            self.plans[index] = self.plan(motion, &guard, limit, clarity);
             self.clear[index] = self.plans[index].quick;
         }
     }
@@ -303,14 +303,14 @@ impl Search {
         if self.plans[index].at != self.now {
             // Another guard has moved on to here.
             self.survey(motion, signals, guard.signal, limit);
-            self.plans[index] = self.plan(motion, &guard, clarity);
+            self.plans[index] = self.plan(motion, &guard, limit, clarity);
         }
         let clear = self.clear[index];
         let ahead = clear - self.now;
         if ahead > WORTH_A_MOVE * self.plans[index].window || (ahead > 0.0 && self.looked[index] == self.now) {
             self.move_to(motion, clear);
             self.survey(motion, signals, guard.signal, limit);
-            self.plans[index] = self.plan(motion, &guard, clarity);
+            self.plans[index] = self.plan(motion, &guard, limit, clarity);
         }
         let plan = self.plans[index];
         if self.now + plan.quick > clear {
@@ -418,7 +418,7 @@ impl Search {
     /// Looks at a guard from now on: the window that suits it, and how long two cheap bounds keep it clear, by more than the
     /// smallest margin so far. The fastest blocks are left out of both while all of them together cannot bring it near zero.
     #[inline(always)]
-    fn plan(&self, motion: Motion<'_>, guard: &Guard, clarity: &Clarity) -> Plan {
+    fn plan(&self, motion: Motion<'_>, guard: &Guard, limit: f64, clarity: &Clarity) -> Plan {
         let (survey, width) = (&self.surveys[guard.signal], motion.blocks.len());
         let (now, parabola) = (self.now, guard.parabola);
         let here = Parabola { p0: parabola.at(now), p1: parabola.rate(now), p2: parabola.p2 };
@@ -438,27 +438,31 @@ impl Search {
             return Plan { at: now, window: window(survey.bend, survey.snap, f64::INFINITY), quick };
         }
         let apart = clear_until(here, survey.reach + least, margin);
+        if apart >= limit - now {
+            return Plan { at: now, window: limit, quick: apart };
+        }
         let (mut value, mut rate) = (guard.sign * survey.value, guard.sign * survey.rate);
         let (mut bend, mut snap) = (survey.bend, survey.snap);
         let mut fastest = f64::INFINITY;
         let mut noise = 1e-12 * (here.p0.abs() + survey.reach);
-        if motion.each.len() > 2 {
+        if width > 1 {
             let shares = &self.shares[own(width, guard.signal)];
             let most = NOISE * (here.p0 + value - least);
             let mut slow = 0;
-            while slow + 1 < motion.each.len() {
-                let (share, lane) = (&shares[slow / WIDTH], slow % WIDTH);
-                if !(noise + share.amplitude.0[lane] < most) {
+            while slow + 1 < width {
+                let Shares { now, amplitude } = &shares[slow];
+                let more = noise + amplitude.sum();
+                if !(more < most) {
                     break;
                 }
-                noise += share.amplitude.0[lane];
-                value -= guard.sign * share.now.value.0[lane];
-                rate -= guard.sign * share.now.rate.0[lane];
+                noise = more;
+                value -= guard.sign * now.value.sum();
+                rate -= guard.sign * now.rate.sum();
                 slow += 1;
             }
             fastest = FASTEST / motion.series.fastest[slow];
             if slow > 0 {
-                (bend, snap) = turns(motion.blocks, shares, slow);
+                (bend, snap) = turns(&motion.blocks[slow..], &shares[slow..]);
             }
         }
         let curve = Parabola { p0: here.p0 + value, p1: here.p1 + rate, p2: here.p2 - 0.5 * bend };
@@ -583,16 +587,12 @@ fn bound(motion: Motion<'_>, shares: &mut [Shares], order: f64, window: f64) {
     }
 }
 
-/// Σ amplitude·radius² and Σ amplitude·radius⁴ of all blocks from `first` on.
+/// Σ amplitude·radius² and Σ amplitude·radius⁴.
 #[inline(always)]
-fn turns(blocks: &[Blocks], shares: &[Shares], first: usize) -> (f64, f64) {
+fn turns(blocks: &[Blocks], shares: &[Shares]) -> (f64, f64) {
     let (mut bend, mut snap) = (Lanes::ZERO, Lanes::ZERO);
-    for (register, (blocks, Shares { amplitude, .. })) in blocks.iter().zip(shares).enumerate().skip(first / WIDTH) {
-        let mut amplitude = *amplitude;
-        for (lane, amplitude) in amplitude.0.iter_mut().enumerate() {
-            *amplitude = if register * WIDTH + lane < first { 0.0 } else { *amplitude };
-        }
-        let part = amplitude * blocks.square;
+    for (blocks, Shares { amplitude, .. }) in blocks.iter().zip(shares) {
+        let part = *amplitude * blocks.square;
         (bend, snap) = (bend + part, snap + part * blocks.square);
     }
     (bend.sum(), snap.sum())

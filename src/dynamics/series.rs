@@ -21,7 +21,7 @@ pub(crate) struct Series {
     pub(crate) pace: f64,
     /// 1/ρ.
     pub(crate) unit: f64,
-    /// The largest radius of each block and all behind it, 1/s.
+    /// The largest radius of several blocks and all behind them, 1/s.
     pub(crate) fastest: Vec<f64>,
     terms: Vec<Terms>,
     radii: Vec<Radii>,
@@ -70,12 +70,13 @@ pub(crate) struct Bounds {
 
 impl Series {
     pub(crate) fn new(blocks: &[Block]) -> Self {
-        let largest = blocks.iter().fold(0.0_f64, |fastest, block| fastest.max(block.radius));
-        let pace = if largest > 0.0 { largest } else { 1.0 };
-        let mut fastest: Vec<f64> = blocks.iter().map(|block| block.radius).collect();
+        
+        let most = |blocks: &[Block]| blocks.iter().fold(0.0_f64, |most, block| most.max(block.radius));
+        let mut fastest: Vec<f64> = blocks.chunks(WIDTH).map(most).collect();
         for k in (1..fastest.len()).rev() {
             fastest[k - 1] = fastest[k - 1].max(fastest[k]);
         }
+        let pace = fastest.first().copied().filter(|fastest| *fastest > 0.0).unwrap_or(1.0);
         let radii = blocks.chunks(WIDTH).map(|blocks| Radii::new(blocks, pace)).collect();
         let terms = blocks.iter().map(|block| Terms::new(block, pace)).collect();
         Self { pace, unit: 1.0 / pace, fastest, terms, radii }
@@ -84,28 +85,29 @@ impl Series {
     /// Coefficients `FROM` to `FROM` + N of Σ shares, in powers of ρt.
     #[inline(always)]
     pub(crate) fn expand<const FROM: usize, const N: usize>(&self, shares: impl Iterator<Item = Phases>) -> [f64; N] {
-        let mut sum = [0.0; N];
+        let mut sums = [Lanes::ZERO; TERMS / WIDTH];
+        let sums = &mut sums[..N / WIDTH];
         for (terms, share) in self.terms.chunks(WIDTH).zip(shares) {
             for (lane, terms) in terms.iter().enumerate() {
-                terms.add::<FROM, N>(share.at(lane), &mut sum);
+                terms.add(FROM, share.at(lane), sums);
             }
         }
-        sum
+        in_line(sums)
     }
 
     /// The same over a window of ρΔ with `twelfth` = (ρΔ)¹², leaving out the blocks too fast for it.
     #[inline(always)]
     pub(crate) fn expand_slow(&self, shares: &[Shares], twelfth: f64) -> [f64; TERMS] {
-        let mut sum = [0.0; TERMS];
+        let mut sums = [Lanes::ZERO; TERMS / WIDTH];
         for ((terms, radii), share) in self.terms.chunks(WIDTH).zip(&self.radii).zip(shares) {
             for (lane, terms) in terms.iter().enumerate() {
                 if radii.left_out.0[lane] * twelfth > TOO_FAST {
                     continue;
                 }
-                terms.add::<0, TERMS>(share.now.at(lane), &mut sum);
+                terms.add(0, share.now.at(lane), &mut sums);
             }
         }
-        sum
+        in_line(&sums)
     }
 
     /// Over a window: what is left out of Σ shares beyond degree eleven, and with `leave_fast` the blocks too fast for it;
@@ -168,11 +170,20 @@ impl Terms {
     }
 
     #[inline(always)]
-    fn add<const FROM: usize, const N: usize>(&self, share: Phase, sum: &mut [f64; N]) {
-        for j in 0..N {
-            sum[j] += share.value * self.value[j + FROM] + share.rate * self.rate[j + FROM];
+    fn add(&self, from: usize, share: Phase, sums: &mut [Lanes<WIDTH>]) {
+        let (values, rates) = (self.value[from..].as_chunks().0, self.rate[from..].as_chunks().0);
+        for ((sum, value), rate) in sums.iter_mut().zip(values).zip(rates) {
+            *sum = *sum + (Lanes(*value) * share.value + Lanes(*rate) * share.rate);
         }
     }
+}
+
+/// The numbers of several registers.
+#[inline(always)]
+fn in_line<const N: usize>(registers: &[Lanes<WIDTH>]) -> [f64; N] {
+    let mut numbers = [0.0; N];
+    numbers.as_chunks_mut().0.iter_mut().zip(registers).for_each(|(to, from)| *to = from.0);
+    numbers
 }
 
 /// The stretch of time of a window.
