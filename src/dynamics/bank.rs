@@ -193,3 +193,23 @@ impl Bank {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn two_short_flows_make_one_long_flow() {
+        let matrices =
+            [[0.0, 1.0, -1000.0, -3.0], [0.0, 1.0, -25.0, -10.0], [0.0, 1.0, -9.0, -40.0], [0.0, 1.0, 0.0, 0.0]];
+        let each = matrices.map(Block::new);
+        let bank = Bank::new(&each);
+        let mut first = [Kernels::NONE];
+        bank.kernels(&each, 0.037, &mut first);
+        let joined = bank.blocks()[0].follow_on(&first[0], 1e-4);
+        for (lane, block) in each.iter().enumerate() {
+            let (joined, whole) = (joined.at(lane), block.kernel(0.0371));
+            assert!((joined.c - whole.c).abs() < 1e-14 && (joined.s - whole.s).abs() < 1e-14);
+        }
+    }
+}

@@ -174,33 +174,6 @@ impl Block {
         }
     }
 
-    /// The kernel after a time so short that radius·t < 0.03: power series, no transcendental function.
-    #[inline]
-    pub(crate) fn kernel_near_zero(&self, t: f64) -> Kernel {
-        let x = -self.decay * t;
-        let x2 = x * x;
-        let e = (1.0 + x)
-            + x2 * ((0.5 + x * (1.0 / 6.0))
-                + x2 * ((1.0 / 24.0 + x * (1.0 / 120.0)) + x2 * (1.0 / 720.0 + x * (1.0 / 5040.0))));
-        let y = self.discriminant * t * t;
-        let c = (1.0 + y * 0.5) + y * y * ((1.0 / 24.0 + y * (1.0 / 720.0)) + y * y * (1.0 / 40_320.0));
-        let s =
-            t * ((1.0 + y * (1.0 / 6.0)) + y * y * ((1.0 / 120.0 + y * (1.0 / 5040.0)) + y * y * (1.0 / 362_880.0)));
-        Kernel { c: e * c, s: e * s, turn: self.root * (e * s) }
-    }
-
-    /// e^(B t1) e^(B t2).
-    #[inline]
-    pub(crate) fn compose(&self, first: Kernel, second: Kernel) -> Kernel {
-        let turns = self.discriminant < 0.0;
-        let product = if turns { -(first.turn * second.turn) } else { self.discriminant * (first.s * second.s) };
-        Kernel {
-            c: first.c * second.c + product,
-            s: first.c * second.s + first.s * second.c,
-            turn: first.c * second.turn + first.turn * second.c,
-        }
-    }
-
     /// A signal's share after the time of `kernel`.
     #[inline]
     pub(crate) fn advance(&self, phase: Phase, kernel: Kernel) -> Phase {
@@ -267,18 +240,6 @@ mod tests {
                 assert!((near.c - critical.c).abs() < 4.0 * shift + 1e-15);
                 assert!((near.s - critical.s).abs() < 4.0 * shift + 1e-15);
             }
-        }
-    }
-
-    #[test]
-    fn two_short_flows_make_one_long_flow() {
-        for matrix in
-            [[0.0, 1.0, -1000.0, -3.0], [0.0, 1.0, -25.0, -10.0], [0.0, 1.0, -9.0, -40.0], [0.0, 1.0, 0.0, 0.0]]
-        {
-            let block = Block::new(matrix);
-            let joined = block.compose(block.kernel(0.037), block.kernel_near_zero(1e-4));
-            let whole = block.kernel(0.0371);
-            assert!((joined.c - whole.c).abs() < 1e-14 && (joined.s - whole.s).abs() < 1e-14);
         }
     }
 }

@@ -31,6 +31,8 @@ pub(crate) struct Flow {
     pub(crate) series: Series,
     /// Blocks without the drive.
     pub(crate) own: usize,
+    /// The highest natural frequency of the contact state, rad/s (modulus of a complex pair's eigenvalue).
+    pub(crate) highest_frequency: f64,
     /// Some block has an eigenvalue zero, so that a constant load sets it moving.
     drifts: bool,
     /// Some blocks take in the harmonic drive, whose phase they start with.
@@ -67,6 +69,8 @@ impl Flow {
         let force = Load::new(&push, &modes.spectral, &modes.accelerations);
         let mut blocks = modes.spectral.blocks.clone();
         let own = blocks.len();
+        let turning = blocks.iter().filter(|block| block.oscillates());
+        let highest_frequency = turning.map(|block| block.determinant.sqrt()).fold(0.0, f64::max);
         blocks.extend(harmonic.as_ref().map(|steady| Block::harmonic(steady.omega)));
         let is_resonant = modes.spectral.to_blocks.len() > 2 * modes.order * modes.spectral.width();
         if !(system.drive.period.is_finite() && blocks.iter().all(Block::is_finite)) {
@@ -79,6 +83,7 @@ impl Flow {
             is_resonant,
             blocks,
             own,
+            highest_frequency,
             order: modes.order,
             modes,
             force,
@@ -302,10 +307,6 @@ impl Flow {
         self.modes.spectral.lasts
     }
 
-    /// Natural frequencies of the contact state, rad/s (moduli of the complex pairs' eigenvalues).
-    pub(crate) fn natural_frequencies(&self) -> impl Iterator<Item = f64> {
-        self.blocks[..self.own].iter().filter(|block| block.oscillates()).map(|block| block.determinant.sqrt())
-    }
 }
 
 /// The modes and the steady answer of a contact state under a harmonic force of this ω, by which p″ = `push` sin ωt.

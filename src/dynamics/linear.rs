@@ -273,7 +273,7 @@ impl<'a> Run<'a> {
             method: Method::ClosedForm,
             observed: vec![Observed::default(); rows.len()],
             proof: Proof { smallest_margin: margin, ..Proof::default() },
-            highest_frequency: flow.natural_frequencies().fold(0.0, f64::max),
+            highest_frequency: flow.highest_frequency,
             ..Response::default()
         };
         for half in 0..2 {

@@ -138,9 +138,13 @@ impl Row {
         }
     }
 
-    /// The sum of all shares.
-    #[inline]
-    pub(crate) fn shares(&self, c: &[f64]) -> Phase {
+    widened! {
+        /// The sum of all shares.
+        pub(crate) fn shares | shares_wide (&self, c: &[f64]) -> Phase = sum_of_shares
+    }
+
+    #[inline(always)]
+    fn sum_of_shares(&self, c: &[f64]) -> Phase {
         let mut sum = Lanes::ZERO;
         for (weights, &[x, y]) in self.weights.iter().zip(c.as_chunks::<2>().0) {
             sum = sum + Lanes(*weights) * Lanes([x, y, x, y]);

@@ -53,7 +53,7 @@ impl<const TAPED: bool> March<'_, TAPED> {
             self.c_end.resize(width, 0.0);
         }
         let highest = &mut self.response.highest_frequency;
-        *highest = self.flow.natural_frequencies().fold(*highest, f64::max);
+        *highest = highest.max(self.flow.highest_frequency);
         Ok(())
     }
 
