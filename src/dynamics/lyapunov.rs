@@ -1,12 +1,14 @@
 //! BᵀP + PC = Q for two blocks: zᵀQw integrated over motions z′ = Bz and w′ = Cw is [zᵀPw], a difference of end values.
 
-use nalgebra::{LU, Matrix4, U4, Vector4};
+use nalgebra::{Matrix4, Vector4};
+
+use super::lanes::{Lanes, WIDTH};
 
 /// Where |λₖ + λₗ| is below this share of the faster one, a solution would lose more than three digits.
 pub(crate) const NEARLY_NEUTRAL: f64 = 4e-4;
 
-/// The equation of two blocks, factorised.
-pub(crate) struct Lyapunov(LU<f64, U4, U4>);
+/// The equation of two blocks: P for each entry of Q alone. It is solved far more often than set up.
+pub(crate) struct Lyapunov([Lanes<WIDTH>; 4]);
 
 impl Lyapunov {
     /// `one` and `other` are B and C, row by row; none where two of their eigenvalues cancel.
@@ -20,12 +22,13 @@ impl Lyapunov {
             0.0, b, f, d + h,
         );
         let lu = system.lu();
-        lu.is_invertible().then_some(Self(lu))
+        let alone = |entry: usize| lu.solve(&Vector4::ith(entry, 1.0)).map(|p| Lanes(p.into()));
+        Some(Self([alone(0)?, alone(1)?, alone(2)?, alone(3)?]))
     }
 
     /// P for this Q.
     pub(crate) fn solve(&self, q: [f64; 4]) -> [f64; 4] {
-        let p = self.0.solve(&Vector4::from(q)).expect("only what can be solved is kept");
-        [p[0], p[1], p[2], p[3]]
+        let [a, b, c, d] = &self.0;
+        (*a * q[0] + *b * q[1] + (*c * q[2] + *d * q[3])).0
     }
 }

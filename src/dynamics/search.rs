@@ -39,6 +39,8 @@ const WORTH_A_STEP: f64 = 0.1;
 const NOISE: f64 = 0.25;
 /// radius·Δ of the fastest block that a window must not leave out.
 const FASTEST: f64 = 4.8;
+/// radius·t beyond which no window is taken for a rounding of the time to go.
+const MANY_TURNS: f64 = 1e6;
 /// radius·t below which a window polynomial leaves out less than rounding.
 const SHORT_HOP: f64 = 0.02;
 /// radius·δ below which the local expansion of a guard, to the seventh, is exact to rounding.
@@ -216,13 +218,12 @@ impl Search {
     #[inline(always)]
     fn first(&mut self, motion: Motion<'_>, signals: &Signals, limit: f64, clarity: &mut Clarity) -> Found {
         self.start(motion, signals, limit, clarity);
-        // Below the rounding of the clock nothing can be told apart: what happens at the limit comes first.
-        let instant = 4.0 * f64::EPSILON * limit;
         let mut found = Found::Nothing;
         let mut horizon = limit;
         loop {
             let (guard, clear) = self.least_clear();
-            if !(clear < horizon - instant) || budget::spend(1) {
+            // Below the rounding of the clock nothing can be told apart: what is known comes first.
+            if !(clear < horizon - 4.0 * f64::EPSILON * horizon) || budget::spend(1) {
                 break;
             }
             let Look::Root(root) = self.look(motion, signals, guard, horizon, limit, clarity) else { continue };
@@ -268,7 +269,7 @@ impl Search {
             kernels.resize(width, Kernels::NONE);
         }
         self.now = 0.0;
-        self.shortest = f64::EPSILON * limit;
+        self.shortest = shortest(motion, limit);
         for index in 0..count {
             let guard = self.guards[index];
             self.survey(motion, signals, guard.signal, limit);
@@ -349,7 +350,7 @@ impl Search {
             match verdict {
                 Verdict::Clear { clearance } => {
                     self.clear[index] = now + window;
-                    self.shortest = f64::EPSILON * limit;
+                    self.shortest = shortest(motion, limit);
                     if guard.distance {
                         clarity.margin = clarity.margin.min(clearance);
                     }
@@ -570,6 +571,12 @@ impl Search {
         }
         a
     }
+}
+
+/// The shortest window, s: a rounding of the time to go, or of a million turns of the fastest block.
+#[inline(always)]
+fn shortest(motion: Motion<'_>, limit: f64) -> f64 {
+    f64::EPSILON * limit.min(MANY_TURNS * motion.series.unit)
 }
 
 /// Places of a signal's shares.

@@ -552,3 +552,33 @@ pub(super) fn particles_that_a_ceiling_lets_go_together_leave_together() {
         alike(&format!("seed {seed}"), &scene(&masses, gap, impulse, period, dice.between(0.0, 6.0)));
     }
 }
+
+#[test]
+fn what_a_blow_sets_off_does_not_depend_on_when_the_next_one_comes() {
+    let mut dice = Dice(41);
+    let mut closest = f64::INFINITY;
+    for _ in 0..40 {
+        let mut system = beam(1 + dice.between(0.0, 3.99) as usize, dice.between(20.0, 40.0), 0.02);
+        let n = system.mass.order;
+        for _ in 0..3 {
+            let (mass, floor) = (dice.between(0.04, 0.06), spring(1000.0, dice.between(1.0, 4.0)));
+            system.particles.push(particle(mass, 0.1, shape(n, dice.between(0.4, 0.6)), [floor, floor]));
+        }
+        let events = |period: f64| {
+            let drive = blows(period, 0.5);
+            let options = Options { record_events: 10_000, ..cycles(1) };
+            let mut events = event_driven(&HybridSystem { drive, ..system.clone() }, &options).unwrap().events;
+            events.retain(|event| event.time < 0.5);
+            events
+        };
+        let [soon, late] = [1.0, 1e12].map(events);
+        assert_eq!(soon.len(), late.len());
+        for (soon, late) in soon.iter().zip(&late) {
+            assert_eq!((soon.particle, soon.kind), (late.particle, late.kind), "at {} s", soon.time);
+            assert!((soon.time - late.time).abs() < 1e-12);
+        }
+        closest = soon.windows(2).map(|pair| pair[1].time - pair[0].time).fold(closest, f64::min);
+    }
+    // In a cycle of 10¹² s a rounding is more than that.
+    assert!(closest < 1e12 * f64::EPSILON, "{closest:e}");
+}
