@@ -133,11 +133,7 @@ impl Blocks {
         let (c, s) = (e * c, e * s);
         let turn = self.root * s;
         let product = self.turns * (first.turn * turn) + self.grows * (first.s * s);
-        Kernels {
-            c: first.c * c + product,
-            s: first.c * s + first.s * c,
-            turn: first.c * turn + first.turn * c,
-        }
+        Kernels { c: first.c * c + product, s: first.c * s + first.s * c, turn: first.c * turn + first.turn * c }
     }
 
     #[inline(always)]

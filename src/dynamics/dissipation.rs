@@ -28,8 +28,7 @@ pub(crate) struct Dissipation {
 impl Dissipation {
     /// `free` where nothing moves but the blocks.
     pub(crate) fn new(system: &HybridSystem, modes: &Modes, free: bool) -> Self {
-        let columns: Vec<Vec<f64>> =
-            modes.columns.rows().map(|column| column[modes.order..].to_vec()).collect();
+        let columns: Vec<Vec<f64>> = modes.columns.rows().map(|column| column[modes.order..].to_vec()).collect();
         let damped: Vec<Vec<f64>> = columns.iter().map(|rate| against(system, modes, rate)).collect();
         let largest = columns.iter().map(|rate| rate.iter().fold(0.0_f64, |most, x| most.max(x.abs()))).collect();
         let form = |(k, l): (usize, usize)| {

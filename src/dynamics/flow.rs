@@ -306,7 +306,6 @@ impl Flow {
     pub(crate) fn lasts(&self) -> f64 {
         self.modes.spectral.lasts
     }
-
 }
 
 /// The modes and the steady answer of a contact state under a harmonic force of this ω, by which p″ = `push` sin ωt.

@@ -357,23 +357,21 @@ fn across(
     };
     let damping = flow.modes.across.iter().find(|across| across.particle == j).map_or(0.0, |across| across.damping);
     // k v + c v′, zero where the push is: its sign folded in by `pushes`.
-    let force = |crossing, pushes: f64| {
-        Guard {
-            particle: j,
-            crossing,
-            signal: rows.force,
-            sign: -pushes * sign,
-            parabola: way.spring_and_dashpot(stiffness, damping).times(-pushes),
-            start: match force_start(now, stiffness, damping, slipped.is_some(), signals.of(rows.force)) {
-                Start::Apart
-                    if (stiffness * now.gap + damping * now.rate).abs() < 4.0 * f64::EPSILON * stiffness * size =>
-                {
-                    touching_once(true)
-                }
-                start => start,
-            },
-            distance: false,
-        }
+    let force = |crossing, pushes: f64| Guard {
+        particle: j,
+        crossing,
+        signal: rows.force,
+        sign: -pushes * sign,
+        parabola: way.spring_and_dashpot(stiffness, damping).times(-pushes),
+        start: match force_start(now, stiffness, damping, slipped.is_some(), signals.of(rows.force)) {
+            Start::Apart
+                if (stiffness * now.gap + damping * now.rate).abs() < 4.0 * f64::EPSILON * stiffness * size =>
+            {
+                touching_once(true)
+            }
+            start => start,
+        },
+        distance: false,
     };
     match contact.across() {
         Hold::Away | Hold::Held => {

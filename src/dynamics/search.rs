@@ -397,7 +397,9 @@ impl Search {
         let moved = self.now > 0.0;
         let shares = &mut self.shares[own(motion.blocks.len(), signal)];
         let watched = signals.of(signal);
-        for (((blocks, start), kernels), share) in motion.blocks.iter().zip(watched.phases).zip(&self.here).zip(&mut *shares) {
+        for (((blocks, start), kernels), share) in
+            motion.blocks.iter().zip(watched.phases).zip(&self.here).zip(&mut *shares)
+        {
             let now = if moved { blocks.advance(*start, kernels) } else { *start };
             *share = Shares { now, amplitude: blocks.amplitudes(now) };
         }
@@ -561,7 +563,8 @@ impl Search {
     #[inline(always)]
     fn local(&self, motion: Motion<'_>, initial: Watched<'_>, guard: &Guard, time: f64) -> [f64; 8] {
         let moved = motion.blocks.iter().zip(&self.trial).zip(initial.phases);
-        let mut a = motion.series.expand::<0, 8>(moved.map(|((blocks, kernels), phases)| blocks.advance(*phases, kernels)));
+        let mut a =
+            motion.series.expand::<0, 8>(moved.map(|((blocks, kernels), phases)| blocks.advance(*phases, kernels)));
         let unit = motion.series.unit;
         let parabola = guard.parabola;
         let rest = [parabola.at(time), parabola.rate(time) * unit, parabola.p2 * (unit * unit)];

@@ -70,7 +70,6 @@ pub(crate) struct Bounds {
 
 impl Series {
     pub(crate) fn new(blocks: &[Block]) -> Self {
-        
         let most = |blocks: &[Block]| blocks.iter().fold(0.0_f64, |most, block| most.max(block.radius));
         let mut fastest: Vec<f64> = blocks.chunks(WIDTH).map(most).collect();
         for k in (1..fastest.len()).rev() {

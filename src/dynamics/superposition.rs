@@ -22,7 +22,12 @@ impl Superposition {
         while length > 0 && entries.peek().is_some() {
             let first = rows.len();
             rows.resize(first + registers, [0.0; WIDTH]);
-            rows[first..].as_flattened_mut().iter_mut().take(length).zip(&mut entries).for_each(|(to, from)| *to = from);
+            rows[first..]
+                .as_flattened_mut()
+                .iter_mut()
+                .take(length)
+                .zip(&mut entries)
+                .for_each(|(to, from)| *to = from);
         }
         Self { length, registers, rows }
     }
@@ -72,5 +77,29 @@ impl Superposition {
         let (now, rest) = y.split_at_mut(y.len().min(MANY * WIDTH));
         now.iter_mut().zip(sums.iter().flat_map(|sum| sum.0)).for_each(|(y, sum)| *y = sum);
         rest
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_processor_sums_up_the_same_bits_as_row_after_row() {
+        for length in 0..40_u32 {
+            let number = |i: u32| (f64::from(i) * 0.37).sin();
+            let x: Vec<f64> = (0..7).map(number).collect();
+            let entries: Vec<f64> = (0..7 * length).map(|i| number(i + 11)).collect();
+            let matrix = Superposition::new(length as usize, entries.iter().copied());
+            let mut expected = vec![0.0; length as usize];
+            for (x, row) in x.iter().zip(entries.chunks(length.max(1) as usize)) {
+                expected.iter_mut().zip(row).for_each(|(sum, entry)| *sum += entry * x);
+            }
+            let (mut here, mut everywhere) = (expected.clone(), expected.clone());
+            matrix.sum(&x, &mut here);
+            matrix.sum_by_registers(&x, &mut everywhere);
+            assert_eq!([&here, &everywhere], [&expected; 2], "{length} numbers");
+            assert!(matrix.rows().flatten().copied().eq(entries));
+        }
     }
 }

@@ -5,25 +5,19 @@
 
 /// `fn name | wide_name (…) = body`: `name` runs `body`, which is to be inlined always, as this processor runs it best.
 macro_rules! widened {
-    ($(#[$doc:meta])* $vis:vis fn $name:ident | $wide:ident (&$this:ident $(, $arg:ident: $type:ty)* $(,)?) $(-> $out:ty)? = $body:ident) => {
-        $(#[$doc])*
-        #[inline]
-        $vis fn $name(&$this, $($arg: $type),*) $(-> $out)? {
-            #[cfg(target_arch = "x86_64")]
-            if std::arch::is_x86_feature_detected!("avx2") {
-                // SAFETY: the processor has the registers.
-                return unsafe { $this.$wide($($arg),*) };
-            }
-            $this.$body($($arg),*)
-        }
-        #[cfg(target_arch = "x86_64")]
-        #[target_feature(enable = "avx2")]
-        fn $wide(&$this, $($arg: $type),*) $(-> $out)? { $this.$body($($arg),*) }
+    ($(#[$doc:meta])* $vis:vis fn $name:ident | $wide:ident (&mut $this:ident $($rest:tt)*) $(-> $out:ty)? = $body:ident) => {
+        widened!(@ $(#[$doc])* $vis fn $name | $wide | $body | $this [&mut $this] ($($rest)*) $(-> $out)?);
     };
-    ($(#[$doc:meta])* $vis:vis fn $name:ident | $wide:ident (&mut $this:ident $(, $arg:ident: $type:ty)* $(,)?) $(-> $out:ty)? = $body:ident) => {
+    ($(#[$doc:meta])* $vis:vis fn $name:ident | $wide:ident (&$this:ident $($rest:tt)*) $(-> $out:ty)? = $body:ident) => {
+        widened!(@ $(#[$doc])* $vis fn $name | $wide | $body | $this [&$this] ($($rest)*) $(-> $out)?);
+    };
+    (
+        @ $(#[$doc:meta])* $vis:vis fn $name:ident | $wide:ident | $body:ident | $this:ident [$($receiver:tt)+]
+        ($(, $arg:ident: $type:ty)* $(,)?) $(-> $out:ty)?
+    ) => {
         $(#[$doc])*
         #[inline]
-        $vis fn $name(&mut $this, $($arg: $type),*) $(-> $out)? {
+        $vis fn $name($($receiver)+, $($arg: $type),*) $(-> $out)? {
             #[cfg(target_arch = "x86_64")]
             if std::arch::is_x86_feature_detected!("avx2") {
                 // SAFETY: the processor has the registers.
@@ -31,9 +25,12 @@ macro_rules! widened {
             }
             $this.$body($($arg),*)
         }
+
         #[cfg(target_arch = "x86_64")]
         #[target_feature(enable = "avx2")]
-        fn $wide(&mut $this, $($arg: $type),*) $(-> $out)? { $this.$body($($arg),*) }
+        fn $wide($($receiver)+, $($arg: $type),*) $(-> $out)? {
+            $this.$body($($arg),*)
+        }
     };
 }
 

@@ -92,7 +92,14 @@ impl Window {
 
     /// The coefficients in σ, divided by σ^`ORDER`.
     #[inline(always)]
-    fn fill<const ORDER: usize>(&mut self, series: &Series, shares: &[Shares], sign: f64, base: &[f64; 3], span: &Span) {
+    fn fill<const ORDER: usize>(
+        &mut self,
+        series: &Series,
+        shares: &[Shares],
+        sign: f64,
+        base: &[f64; 3],
+        span: &Span,
+    ) {
         let a: Coefficients = series.expand::<ORDER, _>(shares.iter().map(|share| share.now));
         for j in 0..DEGREE + 1 {
             self.a[j] = a[j] * (sign * span.powers[j + ORDER]);

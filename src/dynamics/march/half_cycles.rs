@@ -116,7 +116,8 @@ impl<const TAPED: bool> March<'_, TAPED> {
         let together = self.integration(length) == Integration::Together;
         let averaged = together && length > 0.0 && self.averaged.holds(self.cycle);
         let follows = flow.rows.bend.filter(|_| !self.half.idle);
-        let bend = |row| Integrand { shares: self.signals.of(row).each().collect(), rest: Parabola::default(), place: 0.0 };
+        let bend =
+            |row| Integrand { shares: self.signals.of(row).each().collect(), rest: Parabola::default(), place: 0.0 };
         let observed = |row: &usize| {
             let (shares, rest) = flow.rows.evaluate(*row, &self.c, self.level, flow.blocks.len());
             let place = shares.iter().fold(rest.p0, |sum, share| sum + share.value);
