@@ -87,7 +87,7 @@ mod tests {
     #[test]
     fn every_processor_sums_up_the_same_bits_as_row_after_row() {
         for length in 0..40_u32 {
-            let number = |i: u32| (f64::from(i) * 0.37).sin();
+            let number = |i: u32| libm::sin(f64::from(i) * 0.37);
             let x: Vec<f64> = (0..7).map(number).collect();
             let entries: Vec<f64> = (0..7 * length).map(|i| number(i + 11)).collect();
             let matrix = Superposition::new(length as usize, entries.iter().copied());
