@@ -4,13 +4,17 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use super::journal::Journal;
-use super::residuals::{Residuals, found, root_mean_square, states};
+use super::left_out::{LeftOut, left_out};
+use super::residuals::{Residuals, found, residual_of, states};
 use super::search::{Places, Residue, Trail, coordinate, grid};
 use super::set::{Set, place_in_force};
 use super::trials::{Asked, CumulativeEvents, SharedTables, TrialRunner, Workers, Worth};
 use crate::experiment::{Assumptions, Calibration, CalibrationSearch, Experiment};
 use crate::reference::{Entry, Found, ReferenceFile, Verdict, judge};
 use crate::study::{Evaluate, Event, EventHandler, RunError};
+
+/// What exceeds the least residual by less than this share of it is as good.
+pub(super) const AS_GOOD: f64 = 0.1;
 
 /// Why there is no calibration.
 #[derive(Debug, thiserror::Error)]
@@ -45,6 +49,8 @@ pub struct Calibrated {
     pub cut_short: bool,
     /// The entries that were fitted.
     pub fitted: Vec<Compared>,
+    /// Of each fitted entry what the fit of the others says; empty where that was not asked for.
+    pub left_out: Vec<LeftOut>,
     /// The entries that were held out.
     pub held_out: Vec<Compared>,
 }
@@ -126,6 +132,14 @@ pub fn calibrate(
         residuals.of(&wanted.iter().map(|(places, level)| (set(places), *level)).collect::<Vec<_>>())
     })?;
     let best = trail.best(|_| true);
+    let left_out = match calibration.leave_one_out {
+        true => {
+            let sets: Vec<&Places> = trail.residuals.keys().collect();
+            let errors = residuals.errors(&sets.iter().map(|places| set(places)).collect::<Vec<_>>())?;
+            left_out(calibration.residual, &fit, &sets, &errors)
+        }
+        false => Vec::new(),
+    };
 
     let all: Vec<Asked<'_>> = fit.iter().chain(&held).copied().collect();
     let best_set = best.map_or_else(|| now.clone(), |(places, _)| set(places));
@@ -142,8 +156,8 @@ pub fn calibrate(
         in_force: residual_in_force,
         best: best.map(|(_, residual)| residual),
         as_results: [
-            root_mean_square(calibration.residual, fitted.iter().map(|one| one.in_force.found.clone())),
-            root_mean_square(calibration.residual, fitted.iter().map(|one| one.best.found.clone())),
+            residual_of(calibration.residual, fitted.iter().map(|one| one.in_force.found.clone())),
+            residual_of(calibration.residual, fitted.iter().map(|one| one.best.found.clone())),
         ],
         places: best.map(|(places, _)| places.clone()).unwrap_or_default(),
         profiles: profiles(calibration, &trail),
@@ -151,6 +165,7 @@ pub fn calibrate(
         ends: trail.ends.iter().map(|(_, residual)| *residual).collect(),
         cut_short: trail.cut_short,
         fitted,
+        left_out,
         held_out: held.iter().map(compared).collect(),
     })
 }

@@ -6,13 +6,15 @@
 //! experiments that do not depend on the inputs that differ are not re-run (`trials`). The search is a full grid, or goes along one
 //! input after the other from several starts (`search`). All sets stay in the count: the profile of an input is the least
 //! residual that was found with each of its values, exact on a full grid and an upper bound otherwise. A set is run no further
-//! than it may still change the answer (`residuals`), and what was evaluated is kept for the next start (`journal`).
+//! than it may still change the answer (`residuals`), and what was evaluated is kept for the next start (`journal`). Where it is
+//! asked for, each fitted entry is left out in turn, and the sets that fit the others best predict it (`left_out`).
 //!
 //! In the end the inputs in force and the best ones are run once more as results, with ensembles where the motion is chaotic,
 //! and all entries, those held out too, are judged by their own tolerances (`fit`).
 
 mod fit;
 mod journal;
+mod left_out;
 mod moved;
 mod page;
 mod residuals;
@@ -22,6 +24,7 @@ mod set;
 mod trials;
 
 pub use fit::{Calibrated, CalibrationError, Compared, Profile, Read, Running, calibrate};
+pub use left_out::LeftOut;
 pub use moved::moved_alone;
 pub use page::calibration;
 pub use trials::Asked;

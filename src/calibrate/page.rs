@@ -1,6 +1,9 @@
 //! The page of a calibration.
 
-use super::{Calibrated, Compared, Profile, Read};
+use std::collections::BTreeSet;
+
+use super::fit::AS_GOOD;
+use super::{Calibrated, Compared, LeftOut, Profile, Read};
 use crate::experiment::{Calibration, CalibrationInput, CalibrationSearch, Residual, Tried};
 use crate::measure::SolverChoice;
 use crate::reference::{Found, Verdict};
@@ -10,9 +13,6 @@ use crate::report::markdown::{Align, MarkdownTable};
 use crate::report::tally::word;
 use crate::report::value_in_words;
 use crate::text::words::counted;
-
-/// A value whose least residual exceeds the best by less than this share of it is as good as the best.
-const AS_GOOD: f64 = 0.1;
 
 /// The page.
 #[must_use]
@@ -47,6 +47,7 @@ pub fn calibration(calibration: &Calibration, result: &Calibrated) -> String {
         table.row(cells);
     }
     text += &table.finish();
+    text += &left_out(calibration, result);
     text += "## Entries\n\nRun as results, with an ensemble where the motion is chaotic, and judged by the entry’s own \
              tolerance; nothing is allowed for inputs that the study does not state, as they are what is chosen here.\n\n";
     text += &entries("Fitted", &result.fitted);
@@ -59,6 +60,65 @@ pub fn calibration(calibration: &Calibration, result: &Calibrated) -> String {
         reproduced(&result.held_out, "held out", |one| &one.in_force),
     );
     text
+}
+
+/// What the fit of the others says of each entry.
+fn left_out(calibration: &Calibration, result: &Calibrated) -> String {
+    if !calibration.leave_one_out {
+        return String::new();
+    }
+    let mut table = MarkdownTable::new(&[
+        ("Entry", Align::Left),
+        ("By the others", Align::Right),
+        ("Their residual", Align::Right),
+        ("Sets as good", Align::Right),
+        ("Other values", Align::Left),
+        ("By chance", Align::Right),
+    ]);
+    for one in &result.left_out {
+        let is_claim =
+            result.fitted.iter().any(|fit| fit.id == one.id && matches!(fit.best.found, Found::Claim { .. }));
+        table.row([
+            format!("`{}`", one.id),
+            predicted(one, is_claim),
+            share(Some(one.residual)),
+            one.as_good.len().to_string(),
+            moved(calibration, result, one),
+            format!("{:.0} %", 100.0 * one.by_chance),
+        ]);
+    }
+    format!(
+        "## Left out one at a time\n\nEach fitted entry is left out in turn, and the others alone choose the inputs: every set whose \
+         residual without it comes within a tenth of the least one. Given are the entry’s errors under these sets, and the values \
+         that the best set of all entries does not have. By chance: the share of all sets that bring it within a tenth of its \
+         number, or as its tolerance says. An entry *comes out* if both ends of its errors would still get the verdict `fitted`, \
+         with its uncertainties; the index counts them.\n\n{}",
+        table.finish(),
+    )
+}
+
+/// The values that sets which fit the others have, and the best set of all entries has not.
+fn moved(calibration: &Calibration, result: &Calibrated, one: &LeftOut) -> String {
+    let values = |(which, input): (usize, &CalibrationInput)| {
+        let places: BTreeSet<usize> = one.as_good.iter().map(|places| places[which]).collect();
+        let others = places.into_iter().filter(|place| result.places.get(which) != Some(place));
+        let others: Vec<String> = others.map(|place| value(&input.tried, place)).collect();
+        (!others.is_empty()).then(|| format!("`{}`: {}", input.name, others.join(" or ")))
+    };
+    calibration.inputs.iter().enumerate().filter_map(values).collect::<Vec<_>>().join("; ")
+}
+
+/// The errors that the sets which fit the others leave an entry.
+fn predicted(one: &LeftOut, is_claim: bool) -> String {
+    let off = |error: f64| number::signed(100.0 * error, 2);
+    match one.errors {
+        None => "no number".into(),
+        Some([_, largest]) if is_claim && largest == 0.0 => "holds".into(),
+        Some([least, _]) if is_claim && least > 0.0 => "does not hold".into(),
+        Some(_) if is_claim => "open".into(),
+        Some([least, largest]) if off(least) == off(largest) => format!("{} %", off(least)),
+        Some([least, largest]) => format!("{} to {} %", off(least), off(largest)),
+    }
 }
 
 /// How the sets were chosen, and how the search ended.

@@ -84,23 +84,37 @@ impl<'a, E: Evaluate> Residuals<'a, E> {
     /// What becomes of each set, as far as its level asks.
     pub(super) fn of(&mut self, asked: &[(Set, f64)]) -> Result<Vec<Residue>, RunError> {
         let mut sets: Vec<Open> = asked.iter().map(|(set, level)| self.open(set, *level)).collect();
+        self.run(&mut sets, |set| residue(set).is_none())?;
+        let residues: Vec<Residue> = sets.iter().map(|set| residue(set).unwrap_or(Residue::Exact(None))).collect();
+        self.tell(sets, &residues);
+        Ok(residues)
+    }
+
+    /// Of each set the errors of all entries.
+    pub(super) fn errors(&mut self, asked: &[Set]) -> Result<Vec<Vec<EntryError>>, RunError> {
+        let mut sets: Vec<Open> = asked.iter().map(|set| self.open(set, f64::INFINITY)).collect();
+        self.run(&mut sets, |_| true)?;
+        let all = |set: Open| set.errors.into_iter().map(Option::flatten).collect();
+        Ok(sets.into_iter().map(all).collect())
+    }
+
+    /// Runs, one experiment after the other, what is missing of the sets that are still `wanted`.
+    fn run(&mut self, sets: &mut [Open], wanted: impl Fn(&Open) -> bool) -> Result<(), RunError> {
         for index in self.order.clone() {
             let missing = |one: &Open| {
                 let read = self.read_by.iter().zip(&one.errors);
                 read.into_iter().any(|(read, error)| error.is_none() && read.contains(&index))
             };
-            let wanted: Vec<&Trial> =
-                sets.iter().filter(|one| residue(one).is_none() && missing(one)).map(|one| &one.trial).collect();
-            self.trials.run(index, &wanted)?;
+            let trials: Vec<&Trial> =
+                sets.iter().filter(|one| wanted(one) && missing(one)).map(|one| &one.trial).collect();
+            self.trials.run(index, &trials)?;
             let mut new = Vec::new();
-            for set in &mut sets {
+            for set in &mut *sets {
                 self.read(set, &mut new);
             }
             self.journal.add(new);
         }
-        let residues: Vec<Residue> = sets.iter().map(|set| residue(set).unwrap_or(Residue::Exact(None))).collect();
-        self.tell(sets, &residues);
-        Ok(residues)
+        Ok(())
     }
 
     fn open(&self, set: &Set, level: f64) -> Open {
@@ -178,10 +192,14 @@ fn error(kind: Residual, found: Found) -> EntryError {
     error.is_finite().then_some(error)
 }
 
+/// Root mean square of what entries read.
+pub(super) fn residual_of(kind: Residual, found: impl Iterator<Item = Found>) -> Option<f64> {
+    root_mean_square(found.map(|one| error(kind, one)))
+}
+
 /// Root mean square of errors; none may lack its number.
-pub(super) fn root_mean_square(kind: Residual, found: impl Iterator<Item = Found>) -> Option<f64> {
-    let errors: Vec<Option<f64>> = found.map(|one| error(kind, one)).collect();
-    let errors: Vec<f64> = errors.into_iter().collect::<Option<_>>()?;
+pub(super) fn root_mean_square(errors: impl Iterator<Item = EntryError>) -> Option<f64> {
+    let errors: Vec<f64> = errors.collect::<Option<_>>()?;
     let squares: f64 = errors.iter().map(|error| error * error).sum();
     (!errors.is_empty()).then(|| (squares / errors.len() as f64).sqrt()).filter(|residual| residual.is_finite())
 }

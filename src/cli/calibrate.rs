@@ -8,7 +8,7 @@ use super::select::open;
 use crate::atomic;
 use crate::calibrate::{Running, calibration as calibration_page};
 use crate::experiment::{Experiment, ExperimentId, load_calibration};
-use crate::study::{Engine, EventHandler, IgnoreEvents, Layout, Progress, calibration_journal_name};
+use crate::study::{Engine, EventHandler, IgnoreEvents, Layout, LeftOutRecord, Progress, calibration_journal_name};
 
 /// Runs a calibration, prints what it found, and writes its page.
 pub(super) fn calibrate(layout: &Layout, args: &CalibrateArgs, common: &Args) -> Result<Exit, CliError> {
@@ -33,6 +33,11 @@ pub(super) fn calibrate(layout: &Layout, args: &CalibrateArgs, common: &Args) ->
     )?;
     let page = calibration_page(&calibration, &result);
     atomic::write_if_changed(&layout.path(&format!("reports/calibrations/{id}.md")), page.as_bytes())?;
+    if calibration.leave_one_out {
+        let errors = result.left_out.iter().map(|one| (one.id.clone(), one.errors)).collect();
+        let record = LeftOutRecord::of(&calibration, errors);
+        atomic::write_if_changed(&layout.path(&LeftOutRecord::name(&id.0)), record.text().as_bytes())?;
+    }
     print(&page)?;
     Ok(if result.best.is_some() { Exit::AsExpected } else { Exit::CouldNot })
 }

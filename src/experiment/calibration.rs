@@ -13,6 +13,7 @@
 //!   damper_mass: {moves: [mass_on_beams, mass_on_plates], values: [total, modal]}   # several at once
 //!   impulse: {moves: [factor_of_impulses, time_of_impulses], values: [[1, radian], [2, half_sine]]}
 //!   solver: [event_driven, {fixed_step: {time_step: 1 ms}}]
+//! leave_one_out: true                                               # every combination only; false if absent
 //! fit: [ch5-impulse-ratio/tuned-184]
 //! hold_out: [ch5-mass-crossing/*]
 //! ```
@@ -59,6 +60,8 @@ pub struct Calibration {
     pub residual: Residual,
     /// Ids of the entries to fit, or `EXPERIMENT/*` for all of an experiment.
     pub fit: Vec<String>,
+    /// Whether each fitted entry is also predicted by the fit of the others.
+    pub leave_one_out: bool,
     /// Ids of the entries held out, or `EXPERIMENT/*` for all that are not fitted.
     pub hold_out: Vec<String>,
 }
@@ -133,6 +136,14 @@ impl Tried {
 }
 
 impl Calibration {
+    /// What it asks, without what is said about it.
+    #[must_use]
+    pub fn question(&self) -> String {
+        let Self { title: _, about: _, finding: _, inputs, search, ensemble, residual, fit, leave_one_out, hold_out } =
+            self;
+        format!("{inputs:?} {search:?} {ensemble} {residual:?} {fit:?} {leave_one_out} {hold_out:?}")
+    }
+
     /// How many combinations of values there are.
     #[must_use]
     pub fn combinations(&self) -> usize {
@@ -171,10 +182,14 @@ fn calibration(at: At<'_>, sheet: &AssumptionSheet) -> Option<Calibration> {
     let ensemble = keys.optional("ensemble", of_chaotic, |at| some(at, "members"));
     let of_entry = "What the residual of an entry is";
     let residual = keys.optional("residual", of_entry, |at| at.word::<Residual>("residual"));
+    let of_one = "Each fitted entry is also predicted by the sets that fit the others best; false if absent";
+    let leave_one_out =
+        keys.optional("leave_one_out", of_one, |at| at.boolean().map(|wanted| wanted.then(|| at.span())));
     let ids = |at: At<'_>| at.list(|at| at.text());
     let fit = keys.required("fit", "The entries that are fitted, experiment/entry", ids);
     let hold_out = keys.optional("hold_out", "The entries that are held out", ids);
     keys.close()?;
+    let leave_one_out = leave_one_out?.flatten();
     let calibration = Calibration {
         title: title?,
         about: about?,
@@ -184,8 +199,21 @@ fn calibration(at: At<'_>, sheet: &AssumptionSheet) -> Option<Calibration> {
         ensemble: ensemble?.unwrap_or(0),
         residual: residual?.unwrap_or_default(),
         fit: fit?,
+        leave_one_out: leave_one_out.is_some(),
         hold_out: hold_out?.unwrap_or_default(),
     };
+    if let Some(span) = leave_one_out
+        && calibration.search != CalibrationSearch::Grid
+    {
+        return at.report_at(
+            span,
+            "`leave_one_out` wants every combination to be tried",
+            Some(
+                "leave out `search`: what a search for the best fit of all entries passes by may fit the others better"
+                    .into(),
+            ),
+        );
+    }
     let combinations = calibration.combinations();
     if calibration.search == CalibrationSearch::Grid && combinations > MOST_COMBINATIONS {
         return at.report(

@@ -24,6 +24,11 @@ pub(crate) const COVERAGE: f64 = 2.0;
 /// Widest agreement that says something, as a fraction of the published value or its scale.
 const TELLING: f64 = 0.1;
 
+/// W: the widest agreement that says something.
+pub(super) fn telling(u_data: f64, scale: f64) -> f64 {
+    (COVERAGE * u_data).max(TELLING * scale)
+}
+
 /// The verdict on a value, and what there is to say beyond the numbers.
 pub(crate) fn verdict(comparison: &Comparison, scale: Option<f64>, fitted: bool) -> (Verdict, Option<String>) {
     let error = comparison.error().abs();
@@ -31,7 +36,7 @@ pub(crate) fn verdict(comparison: &Comparison, scale: Option<f64>, fitted: bool)
         return (Verdict::Differs, None);
     }
     let scale = scale.unwrap_or(comparison.published.abs());
-    let telling = (COVERAGE * comparison.u_data).max(TELLING * scale);
+    let telling = telling(comparison.u_data, scale);
     let simulated = COVERAGE * libm::hypot(comparison.u_num, comparison.u_input);
     let says_something = comparison.tolerance_by_hand.is_some()
         && COVERAGE * comparison.spread <= comparison.tolerance().max(telling)

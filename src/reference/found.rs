@@ -1,7 +1,9 @@
 //! What an entry reads under one variant of the assumptions, without a verdict.
 
+use super::compare::telling;
 use super::decide::decide;
-use super::entry::{Check, Entry};
+use super::entry::{Check, Entry, ToleranceSize};
+use super::extraction::Extraction;
 use super::tally::Outcome;
 use super::view::{Reads, Tables, View};
 
@@ -25,6 +27,22 @@ pub enum Found {
 }
 
 impl Entry {
+    /// The widest error, as a share of the published value, of an agreement that says something: W of V&V 20 as it is used here, or a
+    /// tolerance set by hand. None for a claim, and for an instant, whose scale lies in its table.
+    #[must_use]
+    pub fn telling(&self) -> Option<f64> {
+        let Check::Value { published, from, tolerance } = &self.check else { return None };
+        let size = published.value().abs();
+        match (tolerance, from) {
+            (_, Extraction::NearestPassage(_)) => None,
+            (Some(tolerance), _) => Some(match tolerance.size {
+                ToleranceSize::Relative(share) => share,
+                ToleranceSize::Absolute(distance) => distance / size,
+            }),
+            (None, _) => Some(telling(published.half_unit(), size) / size),
+        }
+    }
+
     /// What this entry of `experiment` reads where the table's column `variant` says so.
     #[must_use]
     pub fn found(&self, experiment: &str, tables: &Tables<'_>, variant: &str) -> Found {

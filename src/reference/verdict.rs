@@ -149,6 +149,8 @@ pub struct Judged {
 pub enum Role {
     /// An assumption was chosen by it, or a calibration fits it: its agreement proves nothing.
     Fitted,
+    /// The same, but a calibration of the others alone predicts it.
+    CrossValidated,
     /// A calibration kept it aside, to be tested by it.
     HeldOut,
     /// None.
@@ -176,6 +178,19 @@ impl Judged {
     pub fn comparisons(&self) -> impl Iterator<Item = (&str, &Comparison)> {
         let parts = self.parts.iter().filter_map(|part| Some((part.name.as_str(), part.comparison.as_ref()?)));
         self.comparison.iter().map(|comparison| ("", comparison)).chain(parts)
+    }
+
+    /// Whether it would still be `fitted` at both of these relative errors, which are 0 for a claim that holds.
+    #[must_use]
+    pub fn comes_out(&self, errors: [f64; 2]) -> bool {
+        let stays = |error: f64| match &self.comparison {
+            Some(comparison) => {
+                let simulated = comparison.published * (1.0 + error);
+                super::compare::verdict(&Comparison { simulated, ..*comparison }, None, true).0 == Verdict::Fitted
+            }
+            None => error == 0.0,
+        };
+        self.verdict == Verdict::Fitted && errors.into_iter().all(stays)
     }
 
     /// True if the verdict is the expected one; `missing` never is.

@@ -38,6 +38,7 @@ fn counts(all: &[&Judged]) -> String {
             sentences.push(format!("**{}**: {}.", counted(tally.total(), one, many), tally.describe()));
         }
     }
+    sentences.extend(cross_validated(all));
     let held_out: Vec<_> = all.iter().filter(|one| one.role == Role::HeldOut).collect();
     if !held_out.is_empty() {
         let agree = Tally::of(held_out.iter().copied().copied()).agreeing();
@@ -49,6 +50,21 @@ fn counts(all: &[&Judged]) -> String {
         more => format!("**{more} verdicts are not the expected ones.**"),
     });
     sentences.join(" ") + "\n\n"
+}
+
+/// How much of what was fitted the fit of the others predicts.
+fn cross_validated(all: &[&Judged]) -> Option<String> {
+    let fitted = || all.iter().filter(|one| one.verdict == Verdict::Fitted);
+    let come_out = || fitted().filter(|one| one.role == Role::CrossValidated);
+    let numbers = come_out().filter(|one| kind(one) == Kind::Number).count();
+    (numbers > 0 || come_out().count() > 0).then(|| {
+        let count = come_out().count();
+        format!(
+            "**Left out one at a time**, {count} of {} fitted come out, {} among them.",
+            fitted().count(),
+            counted(numbers, "number", "numbers")
+        )
+    })
 }
 
 /// Experiments all of whose statements agree, those with most evidence first.

@@ -29,7 +29,8 @@ verdict. Agreement is *reproduced* only if it could have failed: where ± alone 
 digits allow), the number is blocked or undecidable. **Claims** are decided over the whole table.
 
 **Fitted** entries were used to choose an unstated input, so their agreement proves nothing. **Held out** entries were kept aside \
-by a calibration to test it. Only entries that are held out or neither are evidence.
+by a calibration to test it. Only entries that are held out or neither are evidence, and of the \
+fitted ones those that come out when *left out*: the others alone choose inputs that give them.
 
 **Runs.** *Event-driven* runs follow the exact motion from one contact to the next; *fixed step* runs follow a scheme that \
 looks for contacts once a step. Impact dampers are chaotic in wide ranges: there the mean of an *ensemble* of slightly \

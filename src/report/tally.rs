@@ -71,6 +71,7 @@ pub(super) fn kind(judged: &Judged) -> Kind {
 pub(super) fn role(judged: &Judged) -> &'static str {
     match judged.role {
         Role::Fitted => "fitted",
+        Role::CrossValidated => "fitted, comes out when left out",
         Role::HeldOut => "held out",
         Role::Neither => "",
     }

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use rayon::prelude::*;
 
 use super::prose;
-use crate::reference::{Judged, ReferenceFile, SelfTestFailure, TableState, Tables, judge, self_test};
+use crate::reference::{Judged, ReferenceFile, Role, SelfTestFailure, TableState, Tables, judge, self_test};
 use crate::study::{Item, Motions, State, Study, table_name};
 use crate::table::{Table, parquet};
 
@@ -63,7 +63,13 @@ pub fn judge_tables(study: &Study, tables: &BTreeMap<String, Table>) -> Vec<Judg
 
 fn judged(study: &Study, file: &ReferenceFile, tables: &Tables<'_>, fitted: &BTreeSet<String>) -> Vec<Judged> {
     let mut judged = judge(file, tables, fitted);
-    judged.iter_mut().for_each(|one| one.role = study.role(&one.id));
+    for one in &mut judged {
+        one.role = study.role(&one.id);
+        let left_out = || study.left_out.get(&one.id).copied().flatten();
+        if one.role == Role::Fitted && left_out().is_some_and(|errors| one.comes_out(errors)) {
+            one.role = Role::CrossValidated;
+        }
+    }
     judged
 }
 

@@ -79,7 +79,8 @@ pub fn calibration_journal_name(id: &crate::experiment::ExperimentId) -> String 
     format!("results/calibrations/{id}.journal")
 }
 
-/// `study.yaml` and every YAML file under `experiments/`, `reference/` and `calibrations/` as it stood at one moment, by its name within the study.
+/// `study.yaml`, every YAML file under `experiments/`, `reference/` and `calibrations/`, and what calibrations recorded, as it stood at
+/// one moment, by its name within the study.
 ///
 /// All that follows, hashes included, is made from these bytes and never from a second look at the disk: a file that is
 /// edited while a study runs is stale afterwards.
@@ -96,10 +97,13 @@ impl Texts {
     /// [`FileError`] if a folder or a file cannot be read, or is far too large.
     pub fn read(layout: &Layout) -> Result<Self, FileError> {
         let mut texts = Self::default();
-        for folder in ["experiments", "reference", "calibrations"] {
+        let yaml: &[&str] = &[".yaml", ".yml"];
+        for (folder, endings) in
+            [("experiments", yaml), ("reference", yaml), ("calibrations", yaml), ("reports/calibrations", &[".json"])]
+        {
             let path = layout.path(folder);
             if path.is_dir() {
-                texts.walk(&path, folder, DEEPEST)?;
+                texts.walk(&path, folder, endings, DEEPEST)?;
             }
         }
         let about = layout.path(STUDY);
@@ -127,7 +131,7 @@ impl Texts {
         self.files.keys().filter(|name| Self::is_of_experiment(name)).map(|name| stem(name)).collect()
     }
 
-    fn walk(&mut self, folder: &Path, name: &str, depth: u32) -> Result<(), FileError> {
+    fn walk(&mut self, folder: &Path, name: &str, endings: &[&str], depth: u32) -> Result<(), FileError> {
         let fail = |source| FileError::new("list", folder, source);
         for entry in fs::read_dir(folder).map_err(fail)? {
             let entry = entry.map_err(fail)?;
@@ -137,10 +141,10 @@ impl Texts {
             }
             let path = entry.path();
             let name = format!("{name}/{file_name}");
-            if file_name.ends_with(".yaml") || file_name.ends_with(".yml") {
+            if endings.iter().any(|ending| file_name.ends_with(ending)) {
                 self.files.insert(name, read_text(&path)?);
             } else if depth > 0 && path.is_dir() {
-                self.walk(&path, &name, depth - 1)?;
+                self.walk(&path, &name, endings, depth - 1)?;
             }
         }
         Ok(())

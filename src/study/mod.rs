@@ -21,6 +21,7 @@ mod journal;
 mod kept_lines;
 mod known_rows;
 mod layout;
+mod left_out;
 mod limited;
 mod load;
 mod machine;
@@ -69,6 +70,7 @@ pub use known_rows::KnownRows;
 pub use layout::{
     ASSUMPTIONS, Layout, STUDY, Texts, calibration_journal_name, folder_of, journal_name, record_name, stem, table_name,
 };
+pub use left_out::{LeftOutRecord, PredictedErrors};
 pub use load::{Loaded, Refused, Source};
 pub use machine::Machine;
 pub use motions::{Deviation, Motions, Settling, row_in_words};

@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use rayon::prelude::*;
 
+use super::left_out::{LeftOutRecord, PredictedErrors};
 use super::load::text;
 use crate::experiment::{AboutStudy, AssumptionSheet, Calibration, Cases, Problems, RowLimit, parse_calibration};
 use crate::reference::{Check, Prose, ReferenceFile, ReferenceMistake, ReferenceProblem, Role, parse_reference};
@@ -29,6 +30,8 @@ pub struct Study {
     pub references: BTreeMap<String, ReferenceFile>,
     /// The calibrations by the names of their files, without ending.
     pub calibrations: BTreeMap<String, Calibration>,
+    /// The fitted entries that a calibration left out in turn, and how far off each came out.
+    pub left_out: BTreeMap<String, PredictedErrors>,
     /// Files that could not be used.
     pub unread: Vec<Unread>,
 }
@@ -125,6 +128,7 @@ impl Study {
             known: BTreeMap::new(),
             references: BTreeMap::new(),
             calibrations: BTreeMap::new(),
+            left_out: BTreeMap::new(),
             unread: Vec::new(),
         }
     }
@@ -132,6 +136,7 @@ impl Study {
     /// Reads what is beside the experiments.
     fn complete(mut self) -> Self {
         self.calibrations = calibrations(&self.texts, &self.sheet, &mut self.unread);
+        self.left_out = LeftOutRecord::all(&self.texts, &self.calibrations);
         let lost = self.lost_placeholders();
         self.unread.extend(lost);
         self

@@ -260,3 +260,47 @@ fn the_calibrations_of_the_study_are_sound() {
         }
     }
 }
+
+const LEFT_OUT: &str = "
+title: Left out one at a time
+about: Three numbers of two inputs, and the first of them once more.
+leave_one_out: true
+calibrate:
+  stop_length: [50 mm, 70 mm, 90 mm, 110 mm]
+  impulse_factor: [1.5, 1.9, 2.2]
+fit: [ch3-stop/*]
+";
+
+#[test]
+fn a_number_that_the_others_give_comes_out_when_it_is_left_out() {
+    let desk = with_a_known_answer();
+    let (result, _) = on(&desk, &read(LEFT_OUT), 2).unwrap();
+    assert_eq!(result.left_out.len(), 3);
+    for one in &result.left_out {
+        assert_eq!(one.as_good, [[2, 1]], "any two of the three numbers choose 90 mm and 1.9");
+        assert!(one.errors.is_some_and(|[least, largest]| least.abs() < 1e-5 && largest.abs() < 1e-5), "{one:?}");
+        assert!(one.by_chance > 0.0, "the chosen set is one of them: {one:?}");
+    }
+    assert_eq!(on(&desk, &read(LEFT_OUT), 1).unwrap().0, result, "on any number of threads");
+
+    let alone = read(&LEFT_OUT.replace("ch3-stop/*", "ch3-stop/at-1"));
+    assert_eq!(on(&desk, &alone, 2).unwrap().0.left_out, [], "nothing is left to choose by");
+}
+
+#[test]
+fn a_number_that_is_printed_once_is_left_out_wherever_it_is_read() {
+    let desk = with_a_known_answer();
+    let text = String::from_utf8(desk.texts().files["reference/ch3/ch3-stop.yaml"].clone()).unwrap();
+    let first = &text[text.find("  - id").unwrap()..text[20..].find("  - id").map(|at| at + 20).unwrap()];
+    desk.put("reference/ch3/ch3-stop.yaml", &(text.clone() + &first.replace("at-1", "at-1-again")));
+    let (result, _) =
+        on(&desk, &read(&LEFT_OUT.replace("ch3-stop/*", "ch3-stop/at-1, ch3-stop/at-1-again")), 2).unwrap();
+    assert_eq!(result.left_out, [], "the one would tell the other");
+}
+
+#[test]
+fn leaving_out_wants_every_combination() {
+    let text = LEFT_OUT.replace("leave_one_out", "search: {coordinate: {starts: 2, budget: 9 sets}}\nleave_one_out");
+    let problems = parse_calibration("it.yaml", &text, &sheet()).unwrap_err().to_string();
+    assert!(problems.contains("it.yaml:5") && problems.contains("wants every combination"), "{problems}");
+}

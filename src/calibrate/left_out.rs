@@ -1,0 +1,84 @@
+//! Each fitted entry left out in turn: what the sets that fit the others best say of it.
+//!
+//! An entry that was fitted agrees because it was fitted. If the others alone choose inputs that give it, it was not needed, and
+//! its agreement is evidence after all. "Choose" means every set whose residual without it comes within a tenth of the
+//! least one, so that an input on which the entry alone hangs leaves it open. A number that is printed once and read in several places
+//! is left out of all of them.
+
+use super::fit::AS_GOOD;
+use super::journal::EntryError;
+use super::residuals::root_mean_square;
+use super::search::Places;
+use super::trials::Asked;
+use crate::experiment::Residual;
+use crate::reference::Check;
+
+/// What the fit of the other entries says of one.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LeftOut {
+    /// `ch6-beam-b1-light/uniform`.
+    pub id: String,
+    /// The sets that fit the others as well as any, the best first: of each input the index of its value.
+    pub as_good: Vec<Vec<usize>>,
+    /// Root mean square of the others' errors under the first of them.
+    pub residual: f64,
+    /// The entry's relative errors under them, the least and the largest, 0 for a claim that holds; none where it has no
+    /// number under one of them.
+    pub errors: Option<[f64; 2]>,
+    /// The share of all sets that bring it within a tenth of its number, or as its tolerance says: how often a set taken
+    /// blindly does.
+    pub by_chance: f64,
+}
+
+/// Leaves out each entry of `fit` in turn. Of each of `sets` the errors of all entries are given. An entry is left away where no
+/// set gives all others a number.
+pub(super) fn left_out(
+    kind: Residual,
+    fit: &[Asked<'_>],
+    sets: &[&Places],
+    errors: &[Vec<EntryError>],
+) -> Vec<LeftOut> {
+    let printed = |which: usize| match &fit[which].1.check {
+        Check::Value { published, .. } => Some(published.text()),
+        _ => None,
+    };
+    let of = |(which, (_, entry)): (usize, &Asked<'_>)| {
+        let same = |other: usize| other == which || printed(which).is_some_and(|text| printed(other) == Some(text));
+        let others = |errors: &Vec<EntryError>| {
+            let others = errors.iter().enumerate().filter(|(other, _)| !same(*other));
+            root_mean_square(others.map(|(_, error)| *error))
+        };
+        let mut residuals: Vec<(usize, f64)> =
+            errors.iter().map(others).enumerate().filter_map(|(set, residual)| Some((set, residual?))).collect();
+        residuals.sort_by(|a, b| a.1.total_cmp(&b.1));
+        let residual = residuals.first()?.1;
+        let good: Vec<usize> = residuals
+            .iter()
+            .take_while(|(_, other)| *other <= (1.0 + AS_GOOD) * residual)
+            .map(|(set, _)| *set)
+            .collect();
+        let error = |set: &usize| errors[*set][which].map(|error| relative(kind, error));
+        let range = |range: Option<[f64; 2]>, set: &usize| {
+            let (range, error) = (range?, error(set)?);
+            Some([range[0].min(error), range[1].max(error)])
+        };
+        // A claim that holds has no error, one that fails has an error of one.
+        let widest = entry.telling().unwrap_or(0.0);
+        let near = (0..sets.len()).filter(|set| error(set).is_some_and(|error| error.abs() <= widest)).count();
+        Some(LeftOut {
+            id: entry.id.clone(),
+            errors: good.iter().fold(Some([f64::INFINITY, f64::NEG_INFINITY]), range),
+            as_good: good.into_iter().map(|set| sets[set].clone()).collect(),
+            residual,
+            by_chance: near as f64 / sets.len() as f64,
+        })
+    };
+    fit.iter().enumerate().filter_map(of).collect()
+}
+
+fn relative(kind: Residual, error: f64) -> f64 {
+    match kind {
+        Residual::Relative => error,
+        Residual::Logarithmic => libm::expm1(error),
+    }
+}
