@@ -4,9 +4,9 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use super::journal::Journal;
-use super::left_out::{LeftOut, left_out};
+use super::left_out::{LeftOut, left_out, left_out_error};
 use super::residuals::{Residuals, found, residual_of, states};
-use super::search::{Places, Residue, Trail, coordinate, grid};
+use super::search::{Places, Residue, Trail, coordinate, global, grid};
 use super::set::{Set, place_in_force};
 use super::trials::{Asked, CumulativeEvents, SharedTables, TrialRunner, Workers, Worth};
 use crate::experiment::{Assumptions, Calibration, CalibrationSearch, Experiment};
@@ -47,6 +47,8 @@ pub struct Calibrated {
     pub ends: Vec<Option<f64>>,
     /// The budget ended the search.
     pub cut_short: bool,
+    /// Inputs, by their index, that hardly change the residual when they are moved alone, and that a global search held at first.
+    pub screened: Vec<usize>,
     /// The entries that were fitted.
     pub fitted: Vec<Compared>,
     /// Of each fitted entry what the fit of the others says; empty where that was not asked for.
@@ -61,6 +63,9 @@ pub struct Calibrated {
 pub struct Profile {
     /// In the order of the input's values.
     pub residuals: Vec<Option<f64>>,
+    /// Of each value the root mean square of the errors that entries have where the others alone choose the rest; empty where none
+    /// was left out.
+    pub left_out: Vec<Option<f64>>,
 }
 
 /// An entry under the inputs in force and under the best ones.
@@ -132,14 +137,17 @@ pub fn calibrate(
         residuals.of(&wanted.iter().map(|(places, level)| (set(places), *level)).collect::<Vec<_>>())
     })?;
     let best = trail.best(|_| true);
-    let left_out = match calibration.leave_one_out {
-        true => {
-            let sets: Vec<&Places> = trail.residuals.keys().collect();
-            let errors = residuals.errors(&sets.iter().map(|places| set(places)).collect::<Vec<_>>())?;
-            left_out(calibration.residual, &fit, &sets, &errors)
+    let mut profiles = profiles(calibration, &trail);
+    let mut predicted = Vec::new();
+    if calibration.leave_one_out {
+        let sets: Vec<&Places> = trail.residuals.keys().collect();
+        let errors = residuals.errors(&sets.iter().map(|places| set(places)).collect::<Vec<_>>())?;
+        predicted = left_out(calibration.residual, &fit, &sets, &errors);
+        for (input, profile) in profiles.iter_mut().enumerate() {
+            let of = |value: usize| left_out_error(&fit, &sets, &errors, [input, value]);
+            profile.left_out = (0..profile.residuals.len()).map(of).collect();
         }
-        false => Vec::new(),
-    };
+    }
 
     let all: Vec<Asked<'_>> = fit.iter().chain(&held).copied().collect();
     let best_set = best.map_or_else(|| now.clone(), |(places, _)| set(places));
@@ -156,16 +164,17 @@ pub fn calibrate(
         in_force: residual_in_force,
         best: best.map(|(_, residual)| residual),
         as_results: [
-            residual_of(calibration.residual, fitted.iter().map(|one| one.in_force.found.clone())),
-            residual_of(calibration.residual, fitted.iter().map(|one| one.best.found.clone())),
+            residual_of(calibration.residual, fit.iter().zip(fitted.iter().map(|one| one.in_force.found.clone()))),
+            residual_of(calibration.residual, fit.iter().zip(fitted.iter().map(|one| one.best.found.clone()))),
         ],
         places: best.map(|(places, _)| places.clone()).unwrap_or_default(),
-        profiles: profiles(calibration, &trail),
+        profiles,
         tried: trail.residuals.len(),
         ends: trail.ends.iter().map(|(_, residual)| *residual).collect(),
         cut_short: trail.cut_short,
+        screened: trail.held,
         fitted,
-        left_out,
+        left_out: predicted,
         held_out: held.iter().map(compared).collect(),
     })
 }
@@ -176,12 +185,11 @@ fn search(
     residuals: impl FnMut(&[(Places, f64)]) -> Result<Vec<Residue>, RunError>,
 ) -> Result<Trail, RunError> {
     let counts: Vec<usize> = calibration.inputs.iter().map(|input| input.tried.count()).collect();
+    let first: Places = calibration.inputs.iter().map(|input| place_in_force(input, in_force)).collect();
     match calibration.search {
         CalibrationSearch::Grid => grid(&counts, residuals),
-        CalibrationSearch::Coordinate { starts, budget } => {
-            let first = calibration.inputs.iter().map(|input| place_in_force(input, in_force)).collect();
-            coordinate(&counts, first, starts, budget, residuals)
-        }
+        CalibrationSearch::Coordinate { starts, budget } => coordinate(&counts, first, starts, budget, residuals),
+        CalibrationSearch::Global { budget } => global(&counts, &first, budget, residuals),
     }
 }
 
@@ -190,6 +198,7 @@ fn profiles(calibration: &Calibration, trail: &Trail) -> Vec<Profile> {
         residuals: (0..count)
             .map(|place| trail.best(|places| places[which] == place).map(|(_, residual)| residual))
             .collect(),
+        left_out: Vec::new(),
     };
     calibration.inputs.iter().enumerate().map(|(which, input)| of(which, input.tried.count())).collect()
 }

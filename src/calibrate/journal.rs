@@ -9,12 +9,28 @@ use std::path::Path;
 
 use crate::study::KeptLines;
 
-const HEADER: &str = "shotdamp calibration 1\n";
+const HEADER: &str = "shotdamp calibration 2\n";
 /// In the place of the bits of an error that is none.
 const NO_NUMBER: &str = "none";
 
+/// The error of an entry, and what of it counts.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Weighed {
+    pub error: f64,
+    /// 1; less where the spread of an ensemble makes a number uncertain.
+    pub weight: f64,
+}
+
+impl Weighed {
+    /// What it adds to the sum of squares.
+    pub(super) fn square(self) -> f64 {
+        let counted = self.error * self.weight;
+        counted * counted
+    }
+}
+
 /// The error of an entry; none where it has no number.
-pub(super) type EntryError = Option<f64>;
+pub(super) type EntryError = Option<Weighed>;
 
 /// Errors by the hash of what they depend on, and where they are kept.
 pub(super) struct Journal {
@@ -39,7 +55,10 @@ impl Journal {
     pub(super) fn add(&mut self, new: Vec<(String, EntryError)>) {
         let mut text = String::new();
         for (key, error) in new {
-            let bits = error.map_or_else(|| NO_NUMBER.to_owned(), |error| format!("{:016x}", error.to_bits()));
+            let bits = error.map_or_else(
+                || NO_NUMBER.to_owned(),
+                |Weighed { error, weight }| format!("{:016x}{:016x}", error.to_bits(), weight.to_bits()),
+            );
             text += &format!("{key} {bits}\n");
             self.known.insert(key, error);
         }
@@ -51,7 +70,10 @@ fn read_line(line: &str) -> Option<(String, EntryError)> {
     let (key, bits) = line.split_once(' ')?;
     let error = match bits {
         NO_NUMBER => None,
-        bits if bits.len() == 16 => Some(f64::from_bits(u64::from_str_radix(bits, 16).ok()?)),
+        bits if bits.len() == 32 => {
+            let number = |digits: &str| u64::from_str_radix(digits, 16).ok().map(f64::from_bits);
+            Some(Weighed { error: number(bits.get(..16)?)?, weight: number(bits.get(16..)?)? })
+        }
         _ => return None,
     };
     (key.len() == 64).then(|| (key.to_owned(), error))

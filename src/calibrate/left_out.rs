@@ -38,18 +38,10 @@ pub(super) fn left_out(
     sets: &[&Places],
     errors: &[Vec<EntryError>],
 ) -> Vec<LeftOut> {
-    let printed = |which: usize| match &fit[which].1.check {
-        Check::Value { published, .. } => Some(published.text()),
-        _ => None,
-    };
     let of = |(which, (_, entry)): (usize, &Asked<'_>)| {
-        let same = |other: usize| other == which || printed(which).is_some_and(|text| printed(other) == Some(text));
-        let others = |errors: &Vec<EntryError>| {
-            let others = errors.iter().enumerate().filter(|(other, _)| !same(*other));
-            root_mean_square(others.map(|(_, error)| *error))
-        };
+        let others = errors.iter().map(|errors| without(fit, which, errors));
         let mut residuals: Vec<(usize, f64)> =
-            errors.iter().map(others).enumerate().filter_map(|(set, residual)| Some((set, residual?))).collect();
+            others.enumerate().filter_map(|(set, residual)| Some((set, residual?))).collect();
         residuals.sort_by(|a, b| a.1.total_cmp(&b.1));
         let residual = residuals.first()?.1;
         let good: Vec<usize> = residuals
@@ -57,7 +49,7 @@ pub(super) fn left_out(
             .take_while(|(_, other)| *other <= (1.0 + AS_GOOD) * residual)
             .map(|(set, _)| *set)
             .collect();
-        let error = |set: &usize| errors[*set][which].map(|error| relative(kind, error));
+        let error = |set: &usize| errors[*set][which].map(|one| relative(kind, one.error));
         let range = |range: Option<[f64; 2]>, set: &usize| {
             let (range, error) = (range?, error(set)?);
             Some([range[0].min(error), range[1].max(error)])
@@ -74,6 +66,37 @@ pub(super) fn left_out(
         })
     };
     fit.iter().enumerate().filter_map(of).collect()
+}
+
+/// Root mean square of the errors that entries have where the others alone choose, among the sets with this value of an input:
+/// what tells readings apart by numbers that had no say. None where an entry is left without a choice, or without a number.
+///
+/// With independent normal errors of one size the likelihood of what was left out is the larger the smaller this is
+/// (Stone, 1974; PRESS).
+pub(super) fn left_out_error(
+    fit: &[Asked<'_>],
+    sets: &[&Places],
+    errors: &[Vec<EntryError>],
+    [input, value]: [usize; 2],
+) -> Option<f64> {
+    let among: Vec<&Vec<EntryError>> =
+        sets.iter().zip(errors).filter(|(places, _)| places[input] == value).map(|(_, errors)| errors).collect();
+    let predicted = (0..fit.len()).map(|which| {
+        let others = among.iter().filter_map(|errors| Some((without(fit, which, errors)?, errors[which])));
+        others.min_by(|a, b| a.0.total_cmp(&b.0)).and_then(|(_, error)| error)
+    });
+    root_mean_square(predicted)
+}
+
+/// The residual of the others, of `errors` of one set.
+fn without(fit: &[Asked<'_>], which: usize, errors: &[EntryError]) -> Option<f64> {
+    let printed = |entry: usize| match &fit[entry].1.check {
+        Check::Value { published, .. } => Some(published.text()),
+        _ => None,
+    };
+    let same = |other: usize| other == which || printed(which).is_some_and(|text| printed(other) == Some(text));
+    let others = errors.iter().enumerate().filter(|(other, _)| !same(*other));
+    root_mean_square(others.map(|(_, error)| *error))
 }
 
 fn relative(kind: Residual, error: f64) -> f64 {

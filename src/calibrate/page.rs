@@ -17,10 +17,11 @@ use crate::text::words::counted;
 /// The page.
 #[must_use]
 pub fn calibration(calibration: &Calibration, result: &Calibrated) -> String {
-    let mut text = format!("# {}\n\n[All experiments](../README.md)\n\n{}\n\n", calibration.title, calibration.about);
+    let mut text = format!("# {}\n\n", calibration.title);
     if !calibration.finding.is_empty() {
         text += &format!("**What it shows** (our interpretation): {}\n\n", calibration.finding);
     }
+    text += &format!("{}\n\n[All experiments](../README.md)\n\n", calibration.about);
     text += &format!(
         "{} fitted, {} held out. {}\n\n{}\n\n",
         counted(result.fitted.len(), "entry", "entries"),
@@ -32,19 +33,24 @@ pub fn calibration(calibration: &Calibration, result: &Calibrated) -> String {
         text += "**No set gives every fitted entry a number**; “best inputs” stands for those in force.\n\n";
     }
     text += "## Inputs\n\nFor each value the least residual that was found with it, all other inputs free; bold the best. \
-             An input is determined if no other value comes within a tenth of the best residual.\n\n";
-    let mut table = MarkdownTable::new(&[
-        ("Input", Align::Left),
-        ("Value: least residual", Align::Left),
-        ("Determined", Align::Left),
-    ]);
+             An input is determined if no other value comes within a tenth of the best residual.";
+    if calibration.leave_one_out {
+        text += " Left out: with this value the root mean square of the errors that entries have where the others alone choose \
+                 the rest, which tells readings apart by numbers that had no say.";
+    }
+    text += "\n\n";
+    let mut columns = vec![("Input", Align::Left), ("Value: least residual", Align::Left), ("Determined", Align::Left)];
+    columns.extend(calibration.leave_one_out.then_some(("Left out", Align::Left)));
+    let mut table = MarkdownTable::new(&columns);
     for ((input, profile), place) in calibration.inputs.iter().zip(&result.profiles).zip(&result.places) {
         let cells = [
             format!("`{}`", input.name),
-            points(input, profile, *place),
+            points(input, &profile.residuals, *place),
             determined(profile, *place, result.cut_short).into(),
         ];
-        table.row(cells);
+        let least = || least(&profile.left_out).unwrap_or(usize::MAX);
+        let left_out = calibration.leave_one_out.then(|| points(input, &profile.left_out, least()));
+        table.row(cells.into_iter().chain(left_out));
     }
     text += &table.finish();
     text += &left_out(calibration, result);
@@ -121,26 +127,52 @@ fn predicted(one: &LeftOut, is_claim: bool) -> String {
     }
 }
 
+/// The index of the least of them.
+fn least(residuals: &[Option<f64>]) -> Option<usize> {
+    let known = residuals.iter().enumerate().filter_map(|(value, residual)| Some((value, (*residual)?)));
+    known.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(value, _)| value)
+}
+
 /// How the sets were chosen, and how the search ended.
 fn searched(calibration: &Calibration, result: &Calibrated) -> String {
     let runs = match calibration.ensemble {
         0 => "each as a single run".to_owned(),
         members => format!("chaotic points as the mean of {members} runs"),
     };
-    let CalibrationSearch::Coordinate { .. } = calibration.search else {
-        let sets = counted(result.tried, "combination of values was", "combinations of values were");
-        return format!("All {sets} tried, {runs}.");
-    };
-    let ends: Vec<String> = result.ends.iter().map(|residual| share(*residual)).collect();
-    format!(
-        "Coordinate search, {runs}: {} of {} possible ones, from {}, which ended at {}{}. What lies between the sets that were \
-         tried is not known: a least residual is one that was found.",
+    let sets = format!(
+        "{} of {} possible ones",
         counted(result.tried, "set of inputs", "sets of inputs"),
-        calibration.combinations(),
-        counted(ends.len(), "start", "starts"),
-        ends.join(", "),
-        if result.cut_short { ", the last one by the budget" } else { "" }
-    )
+        calibration.combinations()
+    );
+    let tried = match calibration.search {
+        CalibrationSearch::Grid => {
+            let sets = counted(result.tried, "combination of values was", "combinations of values were");
+            return format!("All {sets} tried, {runs}.");
+        }
+        CalibrationSearch::Coordinate { .. } => {
+            let ends: Vec<String> = result.ends.iter().map(|residual| share(*residual)).collect();
+            format!(
+                "Coordinate search, {runs}: {sets}, from {}, which ended at {}{}.",
+                counted(ends.len(), "start", "starts"),
+                ends.join(", "),
+                if result.cut_short { ", the last one by the budget" } else { "" }
+            )
+        }
+        CalibrationSearch::Global { .. } => {
+            let held: Vec<String> =
+                result.screened.iter().map(|&input| format!("`{}`", calibration.inputs[input].name)).collect();
+            format!(
+                "Global search, {runs}: {sets}, by CMA-ES over {} and then along one input after the other{}.",
+                if held.is_empty() {
+                    "all inputs".into()
+                } else {
+                    format!("all inputs but {}, which moved alone hardly change the residual,", held.join(", "))
+                },
+                if result.cut_short { ", up to the budget" } else { "" }
+            )
+        }
+    };
+    tried + " What lies between the sets that were tried is not known: a least residual is one that was found."
 }
 
 fn residuals(calibration: &Calibration, result: &Calibrated) -> String {
@@ -149,8 +181,12 @@ fn residuals(calibration: &Calibration, result: &Calibrated) -> String {
         Residual::Relative => "relative errors",
         Residual::Logarithmic => "logarithmic errors, ln(here/study)",
     };
+    let weighed = match calibration.ensemble {
+        0 => "",
+        _ => " and a number with a chaotic spread σ counts W/√(W² + σ²), W a tenth of it",
+    };
     format!(
-        "Residual: root mean square of the fitted entries’ {errors}, where a claim that fails counts as 100 %. Best: \
+        "Residual: root mean square of the fitted entries’ {errors}, where a claim that fails counts as 100 %{weighed}. Best: \
          **{}**; with the inputs in force: {}. As results, with ensembles: {best} and {in_force}.",
         share(result.best),
         share(result.in_force),
@@ -161,8 +197,8 @@ fn share(residual: Option<f64>) -> String {
     residual.map_or_else(|| "none".into(), |residual| format!("{} %", number::significant(100.0 * residual, 2)))
 }
 
-fn points(input: &CalibrationInput, profile: &Profile, best: usize) -> String {
-    let description = profile.residuals.iter().enumerate().map(|(place, residual)| {
+fn points(input: &CalibrationInput, residuals: &[Option<f64>], best: usize) -> String {
+    let description = residuals.iter().enumerate().map(|(place, residual)| {
         let description =
             format!("{}: {}", value(&input.tried, place), residual.map_or("none".into(), |one| share(Some(one))));
         if place == best { format!("**{description}**") } else { description }
@@ -245,7 +281,7 @@ fn entries(title: &str, list: &[Compared]) -> String {
 
 fn describe(found: &Found) -> String {
     match found {
-        Found::Number { simulated, published } => {
+        Found::Number { simulated, published, .. } => {
             let off = 100.0 * (simulated - published) / published.abs();
             format!("{} ({} %)", number::significant(*simulated, 4), number::signed(off, 2))
         }

@@ -1,12 +1,12 @@
 //! Residuals of sets of inputs, one experiment after the other: a set is given up once its entries prove that it cannot matter.
 //!
-//! R² = (1/n) Σ e², and no e² is negative: the entries that are known give a bound from below. A search names with each
+//! R² = (1/n) Σ (w e)², and no square is negative: the entries that are known give a bound from below. A search names with each
 //! set the level above which its residual changes nothing (`search`); a set whose bound exceeds it is not run any further. If
 //! a later step needs it after all, only what is missing is run. Experiments with few simulations for each entry come first.
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::journal::{EntryError, Journal};
+use super::journal::{EntryError, Journal, Weighed};
 use super::search::Residue;
 use super::set::Set;
 use super::trials::{Asked, SharedTables, Trial, TrialRunner};
@@ -131,7 +131,7 @@ impl<'a, E: Evaluate> Residuals<'a, E> {
             if set.errors[entry].is_some() || !self.trials.has(&set.trial, read) {
                 continue;
             }
-            let error = error(self.kind, found(asked, &self.trials.known_tables(&set.trial)));
+            let error = error(self.kind, asked, found(asked, &self.trials.known_tables(&set.trial)));
             set.errors[entry] = Some(error);
             new.push((self.key(entry, &set.trial), error));
         }
@@ -171,7 +171,7 @@ fn residue(set: &Open) -> Option<Residue> {
         return Some(Residue::Exact(None));
     }
     let known = set.errors.iter().flatten().flatten();
-    let root = (known.map(|error| error * error).sum::<f64>() / set.errors.len() as f64).sqrt();
+    let root = (known.map(|error| error.square()).sum::<f64>() / set.errors.len() as f64).sqrt();
     if set.errors.iter().all(Option::is_some) {
         return Some(Residue::Exact(Some(root).filter(|root| root.is_finite() && !set.errors.is_empty())));
     }
@@ -179,29 +179,37 @@ fn residue(set: &Open) -> Option<Residue> {
     (bound > set.level).then_some(Residue::AtLeast(bound))
 }
 
-/// The error of an entry; a claim that fails counts as an error of one.
-fn error(kind: Residual, found: Found) -> EntryError {
-    let error = match found {
-        Found::Number { simulated, published } => match kind {
-            Residual::Relative => (simulated - published) / published,
-            Residual::Logarithmic => libm::log(simulated / published),
-        },
-        Found::Claim { holds } => f64::from(u8::from(!holds)),
+/// The error of an entry; a claim that fails counts as an error of one. What an ensemble leaves open counts less: with the
+/// standard deviation σ the weight is W/√(W² + σ²), where W is the widest error of an agreement that says something.
+fn error(kind: Residual, asked: &Asked<'_>, found: Found) -> EntryError {
+    let (error, spread) = match found {
+        Found::Number { simulated, published, spread } => {
+            let error = match kind {
+                Residual::Relative => (simulated - published) / published,
+                Residual::Logarithmic => libm::log(simulated / published),
+            };
+            (error, spread / published)
+        }
+        Found::Claim { holds } => (f64::from(u8::from(!holds)), 0.0),
         Found::Nothing(_) => return None,
     };
-    error.is_finite().then_some(error)
+    let weight = match asked.1.telling() {
+        Some(telling) if spread != 0.0 => telling / libm::hypot(telling, spread),
+        _ => 1.0,
+    };
+    (error.is_finite() && weight.is_finite()).then_some(Weighed { error, weight })
 }
 
 /// Root mean square of what entries read.
-pub(super) fn residual_of(kind: Residual, found: impl Iterator<Item = Found>) -> Option<f64> {
-    root_mean_square(found.map(|one| error(kind, one)))
+pub(super) fn residual_of<'a>(kind: Residual, found: impl Iterator<Item = (&'a Asked<'a>, Found)>) -> Option<f64> {
+    root_mean_square(found.map(|(asked, found)| error(kind, asked, found)))
 }
 
 /// Root mean square of errors; none may lack its number.
 pub(super) fn root_mean_square(errors: impl Iterator<Item = EntryError>) -> Option<f64> {
-    let errors: Vec<f64> = errors.collect::<Option<_>>()?;
-    let squares: f64 = errors.iter().map(|error| error * error).sum();
-    (!errors.is_empty()).then(|| (squares / errors.len() as f64).sqrt()).filter(|residual| residual.is_finite())
+    let squares: Vec<f64> = errors.map(|error| error.map(Weighed::square)).collect::<Option<_>>()?;
+    let sum: f64 = squares.iter().sum();
+    (!squares.is_empty()).then(|| (sum / squares.len() as f64).sqrt()).filter(|residual| residual.is_finite())
 }
 
 pub(super) fn states(tables: &SharedTables) -> Tables<'_> {

@@ -27,6 +27,7 @@ use serde_json::{Value as Schema, json};
 use super::assumption_sheet::{AssumptionSheet, Quantity};
 use super::at::{At, Definitions, Sketch};
 use super::diagnostic::{Findings, Problems, Span};
+use super::keys::Keys;
 use super::load::read;
 use super::reader::{all, no_such};
 use super::recipe::{AssumptionName, AssumptionValue};
@@ -75,6 +76,11 @@ pub enum CalibrationSearch {
     Coordinate {
         /// Starts: the inputs in force first, the others drawn.
         starts: u32,
+        /// Most sets that are tried.
+        budget: u32,
+    },
+    /// All over the space, by CMA-ES over the inputs that matter, then one input after the other.
+    Global {
         /// Most sets that are tried.
         budget: u32,
     },
@@ -224,17 +230,28 @@ fn calibration(at: At<'_>, sheet: &AssumptionSheet) -> Option<Calibration> {
     Some(calibration)
 }
 
-/// `grid`, or `{coordinate: {starts: 4, budget: 400 sets}}`.
+/// `grid`, `{coordinate: {starts: 4, budget: 400 sets}}`, or `{global: {budget: 1000 sets}}`.
 fn search(at: At<'_>) -> Option<CalibrationSearch> {
-    let forms = [("grid", "Every combination"), ("coordinate", "One input after another, from several starts")];
+    let forms = [
+        ("grid", "Every combination"),
+        ("coordinate", "One input after another, from several starts"),
+        ("global", "CMA-ES over the inputs that matter, then one input after another"),
+    ];
     at.choose("a search", &forms, |choice| {
         if choice.name() == "grid" {
             choice.bare()?;
             return Some(CalibrationSearch::Grid);
         }
+        let budget = |keys: &Keys<'_>| keys.required("budget", "Sets of values that are tried", |at| some(at, "sets"));
+        if choice.name() == "global" {
+            let keys = choice.keys("a global search")?;
+            let budget = budget(&keys);
+            keys.close()?;
+            return Some(CalibrationSearch::Global { budget: budget? });
+        }
         let keys = choice.keys("a coordinate search")?;
         let starts = keys.required("starts", "Starts of the search", |at| some(at, "starts"));
-        let budget = keys.required("budget", "Sets of values that are tried", |at| some(at, "sets"));
+        let budget = budget(&keys);
         keys.close()?;
         Some(CalibrationSearch::Coordinate { starts: starts?, budget: budget? })
     })

@@ -16,6 +16,8 @@ pub enum Found {
         simulated: f64,
         /// What is published.
         published: f64,
+        /// Standard deviation of the ensemble, where there is one.
+        spread: f64,
     },
     /// A claim that holds, or does not.
     Claim {
@@ -51,7 +53,9 @@ impl Entry {
         match &self.check {
             Check::Value { published, from, .. } => match from.take(&view) {
                 Ok(simulated) => match published.converted_to(&simulated.unit) {
-                    Some((published, _)) => Found::Number { simulated: simulated.value, published },
+                    Some((published, _)) => {
+                        Found::Number { simulated: simulated.value, published, spread: simulated.spread }
+                    }
                     None => Found::Nothing(format!("`{}` is of another unit", published.text())),
                 },
                 Err(absence) => Found::Nothing(absence.reason().into()),
