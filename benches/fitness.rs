@@ -34,7 +34,7 @@ fn evaluation(bencher: Bencher<'_, '_>, id: &str, which: usize) {
                 recipe,
                 assumptions: &assumptions,
                 solver: SolverChoice::EventDriven,
-                settings: &experiment.settings,
+                settings: experiment.settings,
                 measures: &experiment.measures,
                 trace: None,
                 energies: None,

@@ -9,24 +9,16 @@ use std::path::Path;
 
 use crate::study::KeptLines;
 
-const HEADER: &str = "shotdamp calibration 2\n";
+const HEADER: &str = "shotdamp calibration 3\n";
 /// In the place of the bits of an error that is none.
 const NO_NUMBER: &str = "none";
 
-/// The error of an entry, and what of it counts.
+/// The error of an entry.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Weighed {
     pub error: f64,
-    /// 1; less where the spread of an ensemble makes a number uncertain.
-    pub weight: f64,
-}
-
-impl Weighed {
     /// What it adds to the sum of squares.
-    pub(super) fn square(self) -> f64 {
-        let counted = self.error * self.weight;
-        counted * counted
-    }
+    pub square: f64,
 }
 
 /// The error of an entry; none where it has no number.
@@ -57,7 +49,7 @@ impl Journal {
         for (key, error) in new {
             let bits = error.map_or_else(
                 || NO_NUMBER.to_owned(),
-                |Weighed { error, weight }| format!("{:016x}{:016x}", error.to_bits(), weight.to_bits()),
+                |Weighed { error, square }| format!("{:016x}{:016x}", error.to_bits(), square.to_bits()),
             );
             text += &format!("{key} {bits}\n");
             self.known.insert(key, error);
@@ -72,7 +64,7 @@ fn read_line(line: &str) -> Option<(String, EntryError)> {
         NO_NUMBER => None,
         bits if bits.len() == 32 => {
             let number = |digits: &str| u64::from_str_radix(digits, 16).ok().map(f64::from_bits);
-            Some(Weighed { error: number(bits.get(..16)?)?, weight: number(bits.get(16..)?)? })
+            Some(Weighed { error: number(bits.get(..16)?)?, square: number(bits.get(16..)?)? })
         }
         _ => return None,
     };

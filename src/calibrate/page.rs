@@ -46,7 +46,7 @@ pub fn calibration(calibration: &Calibration, result: &Calibrated) -> String {
         let cells = [
             format!("`{}`", input.name),
             points(input, &profile.residuals, *place),
-            determined(profile, *place, result.cut_short).into(),
+            determined(profile, *place, calibration.search).into(),
         ];
         let least = || least(&profile.left_out).unwrap_or(usize::MAX);
         let left_out = calibration.leave_one_out.then(|| points(input, &profile.left_out, least()));
@@ -183,7 +183,9 @@ fn residuals(calibration: &Calibration, result: &Calibrated) -> String {
     };
     let weighed = match calibration.ensemble {
         0 => "",
-        _ => " and a number with a chaotic spread σ counts W/√(W² + σ²), W a tenth of it",
+        _ => {
+            " and an error e of a number with a chaotic spread σ adds W² e²/(W² + σ²) + W² ln(1 + σ²/W²) in the place of e², W a tenth of it"
+        }
     };
     format!(
         "Residual: root mean square of the fitted entries’ {errors}, where a claim that fails counts as 100 %{weighed}. Best: \
@@ -232,14 +234,14 @@ fn value(tried: &Tried, place: usize) -> String {
     }
 }
 
-fn determined(profile: &Profile, best: usize, cut_short: bool) -> &'static str {
+fn determined(profile: &Profile, best: usize, search: CalibrationSearch) -> &'static str {
     let Some(Some(least)) = profile.residuals.get(best) else { return "no" };
     let rivals = profile.residuals.iter().enumerate().filter(|(place, residual)| {
         *place != best && residual.is_some_and(|residual| residual <= (1.0 + AS_GOOD) * least)
     });
     match (rivals.count(), profile.residuals.len()) {
         (_, 1) => "held",
-        (0, _) if cut_short => "as far as tried",
+        (0, _) if search != CalibrationSearch::Grid => "as far as tried",
         (0, _) => "yes",
         (rivals, all) if rivals + 1 == all => "no",
         _ => "in part",

@@ -1,6 +1,6 @@
 //! Residuals of sets of inputs, one experiment after the other: a set is given up once its entries prove that it cannot matter.
 //!
-//! R² = (1/n) Σ (w e)², and no square is negative: the entries that are known give a bound from below. A search names with each
+//! R² = (1/n) Σ e², and no square is negative: the entries that are known give a bound from below. A search names with each
 //! set the level above which its residual changes nothing (`search`); a set whose bound exceeds it is not run any further. If
 //! a later step needs it after all, only what is missing is run. Experiments with few simulations for each entry come first.
 
@@ -171,7 +171,7 @@ fn residue(set: &Open) -> Option<Residue> {
         return Some(Residue::Exact(None));
     }
     let known = set.errors.iter().flatten().flatten();
-    let root = (known.map(|error| error.square()).sum::<f64>() / set.errors.len() as f64).sqrt();
+    let root = (known.map(|error| error.square).sum::<f64>() / set.errors.len() as f64).sqrt();
     if set.errors.iter().all(Option::is_some) {
         return Some(Residue::Exact(Some(root).filter(|root| root.is_finite() && !set.errors.is_empty())));
     }
@@ -179,8 +179,11 @@ fn residue(set: &Open) -> Option<Residue> {
     (bound > set.level).then_some(Residue::AtLeast(bound))
 }
 
-/// The error of an entry; a claim that fails counts as an error of one. What an ensemble leaves open counts less: with the
-/// standard deviation σ the weight is W/√(W² + σ²), where W is the widest error of an agreement that says something.
+/// The error of an entry; a claim that fails counts as an error of one.
+///
+/// What an ensemble leaves open counts less. With W, the widest error of an agreement that says something, and a standard deviation σ of the
+/// ensemble, the error is taken for normal with the variance W² + σ², and adds what it adds to −2 W² ln of its likelihood: e² W²/(W² + σ²) +
+/// W² ln(1 + σ²/W²), which is e² where nothing is chaotic. Without the logarithm the search would go where motion is most chaotic.
 fn error(kind: Residual, asked: &Asked<'_>, found: Found) -> EntryError {
     let (error, spread) = match found {
         Found::Number { simulated, published, spread } => {
@@ -193,11 +196,14 @@ fn error(kind: Residual, asked: &Asked<'_>, found: Found) -> EntryError {
         Found::Claim { holds } => (f64::from(u8::from(!holds)), 0.0),
         Found::Nothing(_) => return None,
     };
-    let weight = match asked.1.telling() {
-        Some(telling) if spread != 0.0 => telling / libm::hypot(telling, spread),
-        _ => 1.0,
+    let square = match asked.1.telling() {
+        Some(telling) if spread != 0.0 => {
+            let (telling, spread) = (telling * telling, spread * spread);
+            error * error * telling / (telling + spread) + telling * libm::log1p(spread / telling)
+        }
+        _ => error * error,
     };
-    (error.is_finite() && weight.is_finite()).then_some(Weighed { error, weight })
+    (error.is_finite() && square.is_finite()).then_some(Weighed { error, square })
 }
 
 /// Root mean square of what entries read.
@@ -207,7 +213,7 @@ pub(super) fn residual_of<'a>(kind: Residual, found: impl Iterator<Item = (&'a A
 
 /// Root mean square of errors; none may lack its number.
 pub(super) fn root_mean_square(errors: impl Iterator<Item = EntryError>) -> Option<f64> {
-    let squares: Vec<f64> = errors.map(|error| error.map(Weighed::square)).collect::<Option<_>>()?;
+    let squares: Vec<f64> = errors.map(|error| error.map(|one| one.square)).collect::<Option<_>>()?;
     let sum: f64 = squares.iter().sum();
     (!squares.is_empty()).then(|| (sum / squares.len() as f64).sqrt()).filter(|residual| residual.is_finite())
 }

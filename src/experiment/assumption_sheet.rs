@@ -120,6 +120,12 @@ impl Takes<'_> {
         Self { quantity: Some(Quantity::Ratio), readings: &[] }
     }
 
+    /// A number of things.
+    #[must_use]
+    pub fn count() -> Self {
+        Self { quantity: Some(Quantity::Count), readings: &[] }
+    }
+
     /// Every value of the kind has a meaning here.
     #[must_use]
     pub fn admits(self, kind: &AssumptionKind) -> bool {

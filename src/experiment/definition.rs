@@ -65,6 +65,9 @@ pub struct Experiment {
     pub solvers: Vec<SolverChoice>,
     /// How a case is run and averaged.
     pub settings: Settings,
+    /// The cycles that are left out where an assumption says how many; `settings` then has its value in force.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub transient: Option<Transient>,
     /// The most that a row may take; no number depends on it.
     #[serde(default, skip_serializing_if = "is_usual")]
     pub limit: Limit,
@@ -157,6 +160,13 @@ impl Experiment {
         if self.mean_over.is_empty() { Ok(vec![recipe.clone()]) } else { self.mean_over.iter().map(inner).collect() }
     }
 
+    /// How a case is run and averaged under these assumptions.
+    #[must_use]
+    pub fn settings_under(&self, assumptions: &Assumptions) -> Settings {
+        let left_out = self.transient.as_ref().and_then(|it| Some((it.left_out_under(assumptions)?, it.to)));
+        left_out.map_or(self.settings, |(skip, to)| Settings { skip, average: to - skip, ..self.settings })
+    }
+
     /// The assumptions that a number of this experiment may depend on, under the values in force or with one of them moved.
     #[must_use]
     pub fn assumptions_used(&self, sheet: &AssumptionSheet) -> BTreeSet<AssumptionName> {
@@ -189,7 +199,8 @@ impl Experiment {
     ) -> BTreeSet<AssumptionName> {
         let needs = Needs::of(&self.measures, self.energies.is_some());
         let each = scenes.into_iter().flat_map(|scene| self.recipes_in(&scene).unwrap_or_default());
-        each.flat_map(|recipe| recipe.dependencies(in_force, needs)).collect()
+        let left_out = self.transient.iter().map(|transient| transient.left_out.clone());
+        each.flat_map(|recipe| recipe.dependencies(in_force, needs)).chain(left_out).collect()
     }
 
     /// The whole meaning as JSON; equal meanings give equal JSON. Keys are sorted.
@@ -213,6 +224,9 @@ impl Experiment {
             "energies": json(&self.energies),
             "shape": json(&self.shape),
         });
+        if let Some(transient) = &self.transient {
+            meaning["transient"] = json(transient);
+        }
         if !self.mean_over.is_empty() {
             meaning["mean_over"] = json(&self.mean_over);
         }
@@ -241,6 +255,31 @@ impl Experiment {
     #[must_use]
     pub fn figures_json(&self) -> serde_json::Value {
         json(&self.figures)
+    }
+}
+
+/// How many forcing cycles are left out, by an assumption, of those up to a given one.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Transient {
+    /// The assumption.
+    pub left_out: AssumptionName,
+    /// The last cycle that is averaged.
+    pub to: u32,
+}
+
+impl Transient {
+    /// The cycles that these values leave out; none if they have no whole number of cycles before the last one.
+    #[must_use]
+    pub fn left_out_under(&self, assumptions: &Assumptions) -> Option<u32> {
+        match assumptions.values.get(&self.left_out)? {
+            AssumptionValue::Number(cycles) => self.fits(*cycles),
+            _ => None,
+        }
+    }
+
+    /// This many cycles, if they leave one to average.
+    pub(super) fn fits(&self, cycles: f64) -> Option<u32> {
+        ((0.0..f64::from(self.to)).contains(&cycles) && cycles.fract() == 0.0).then_some(cycles as u32)
     }
 }
 

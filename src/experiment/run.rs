@@ -2,14 +2,18 @@
 
 use std::collections::BTreeSet;
 
+use serde_json::json;
+
 use super::assumption_reader::{AVERAGE, SKIP, read_average, read_skip};
-use super::assumption_sheet::{AssumptionSheet, Cycles};
+use super::assumption_sheet::{AssumptionSheet, Cycles, Takes};
 use super::at::At;
+use super::definition::Transient;
 use super::diagnostic::{Findings, Span};
 use super::keys::Keys;
 use super::limit::read_limit;
 use super::quantity::Dimension;
-use super::recipe::AssumptionName;
+use super::recipe::{AssumptionName, AssumptionValue};
+use super::scene::assumption;
 use super::schema::assumptions;
 use super::solver::read_solver;
 use crate::dynamics::{Limit, Until};
@@ -22,6 +26,8 @@ const USUAL_ENSEMBLE: u32 = 32;
 pub(super) struct Run {
     pub solvers: Vec<SolverChoice>,
     pub settings: Settings,
+    /// The cycles that an assumption leaves out, and where that stands.
+    pub transient: Option<(Transient, Span)>,
     /// Where it says that runs are to settle.
     pub settled_at: Option<Span>,
     pub limit: Limit,
@@ -33,13 +39,20 @@ pub(super) struct Run {
 struct GivenRun {
     span: Span,
     solvers: Option<Vec<SolverChoice>>,
-    skip: Option<u32>,
+    skip: Option<Skip>,
     average: Option<u32>,
+    to: Option<(u32, Span)>,
     until: Option<(Until, Span)>,
     round_period_to: Option<f64>,
     ensemble: Option<u32>,
     limit: Option<Limit>,
     moved: Option<BTreeSet<AssumptionName>>,
+}
+
+/// Cycles that are left out.
+enum Skip {
+    Stated(u32),
+    Assumed(AssumptionName, Span),
 }
 
 /// What stands under `run`; what it leaves out is the study's, or the same for every study. What is read off the model alone
@@ -60,8 +73,26 @@ pub(super) fn read_run(
         let message = || format!("a run lacks `{key}`, and the study has no default for it");
         given.or(usual).or_else(|| findings.report(span, message(), Some(help.into())))
     };
-    let skip = cycles("skip", given.skip, usual.map(|usual| usual.skip));
-    let average = cycles("average", given.average, usual.map(|usual| usual.average));
+    let (skip, transient) = match given.skip {
+        Some(Skip::Assumed(left_out, at)) => {
+            let (to, _) = given.to.or_else(|| {
+                let help = "write `run: {skip: {assumed: NAME}, to: 125 cycles}`";
+                findings.report(at, "cycles that an assumption leaves out need `to`, the last one", Some(help.into()))
+            })?;
+            let transient = Transient { left_out, to };
+            (left_out_of(&transient, sheet, at, findings), Some((transient, at)))
+        }
+        Some(Skip::Stated(skip)) => (Some(skip), None),
+        None => (cycles("skip", None, usual.map(|usual| usual.skip)), None),
+    };
+    let average = match given.to {
+        None => cycles("average", given.average, usual.map(|usual| usual.average)),
+        Some((to, at)) => skip.and_then(|skip| {
+            to.checked_sub(skip)
+                .filter(|cycles| *cycles > 0)
+                .or_else(|| findings.wrong(at, format!("{skip} cycles are left out: none is left up to cycle {to}")))
+        }),
+    };
     Some(Run {
         solvers: given.solvers.unwrap_or_else(|| vec![SolverChoice::EventDriven]),
         settings: Settings {
@@ -72,6 +103,7 @@ pub(super) fn read_run(
             ensemble: given.ensemble.unwrap_or(USUAL_ENSEMBLE),
             named: NamedRows::default(),
         },
+        transient,
         settled_at: given.until.filter(|(until, _)| *until == Until::Settled).map(|(_, at)| at),
         limit: given.limit.unwrap_or_default(),
         moved: given.moved,
@@ -81,8 +113,13 @@ pub(super) fn read_run(
 fn given_run(at: At<'_>, sheet: &AssumptionSheet) -> Option<GivenRun> {
     let keys = at.keys("a run")?;
     let solvers = keys.optional("solver", "Solvers", |at| at.one_or_more(read_solver));
-    let skip = keys.optional("skip", SKIP, read_skip);
+    let skip = keys.optional("skip", SKIP, |at| match assumption(sheet, at, Takes::count(), || "`skip`".into()) {
+        Some(name) => name.map(|name| Skip::Assumed(name, at.span())),
+        None => read_skip(at).map(Skip::Stated),
+    });
     let average = keys.optional("average", AVERAGE, read_average);
+    let to = "The last cycle that is averaged, in the place of `average`";
+    let to = keys.optional("to", to, |at| read_average(at).map(|to| (to, at.span())));
     let until = keys.optional("until", "When it ends: after these cycles, or where it has settled before", |at| {
         at.word::<Until>("end").map(|until| (until, at.span()))
     });
@@ -100,16 +137,39 @@ fn given_run(at: At<'_>, sheet: &AssumptionSheet) -> Option<GivenRun> {
     });
     let most = "The most that a row may take; one that reaches it has failed, with the reason, and the others go on";
     let limit = keys.optional("limit", most, read_limit);
+    keys.rule(|| json!({"not": {"required": ["average", "to"]}}));
     keys.close()?;
+    let (average, to) = (average?, to?);
+    if let (Some(_), Some((_, at_to))) = (average, to) {
+        return at.wrong_at(at_to, "`average` and `to` say the same thing: leave one of them out");
+    }
     Some(GivenRun {
         span: at.span(),
         solvers: solvers?,
         skip: skip?,
-        average: average?,
+        average,
+        to,
         until: until?,
         round_period_to: round_period_to?,
         ensemble: ensemble?,
         limit: limit?,
         moved: moved?,
     })
+}
+
+/// The cycles that are left out with the value in force; every value of the range has to leave one to average.
+fn left_out_of(transient: &Transient, sheet: &AssumptionSheet, at: Span, findings: &Findings) -> Option<u32> {
+    let entry = sheet.get(&transient.left_out)?;
+    let cycles = |value: &AssumptionValue| match value {
+        AssumptionValue::Number(cycles) => transient.fits(*cycles).ok_or(*cycles),
+        _ => Err(f64::NAN),
+    };
+    for value in std::iter::once(&entry.value).chain(&entry.range) {
+        if let Err(cycles) = cycles(value) {
+            let (name, to) = (&transient.left_out, transient.to);
+            return findings
+                .wrong(at, format!("`{name}` may be {cycles}: of {to} cycles no whole number is left to average"));
+        }
+    }
+    cycles(&entry.value).ok()
 }

@@ -6,7 +6,7 @@ use serde::de::DeserializeOwned;
 use serde_json::json;
 
 use super::assumption_reader::{fits, read_curve};
-use super::assumption_sheet::{ASSUMPTIONS, Quantity, Takes};
+use super::assumption_sheet::{ASSUMPTIONS, AssumptionSheet, Quantity, Takes};
 use super::at::{At, Sketch};
 use super::diagnostic::{Findings, Span};
 use super::keys::Keys;
@@ -465,22 +465,38 @@ impl SceneReader<'_> {
         takes: Takes<'_>,
         place: impl FnOnce() -> String,
     ) -> Option<Option<AssumptionName>> {
-        match at {
-            At::Node(node, findings) => names_assumption(node).then(|| self.named(node, takes, &place(), findings)),
-            At::Sketch(it) => {
-                it.add(assumptions::assumed(it, &self.assumptions.sheet, takes));
-                None
-            }
+        assumption(&self.assumptions.sheet, at, takes, place)
+    }
+}
+
+/// The assumption that `{assumed: NAME}` names; `None`: it does not say so, `Some(None)`: it names none that fits.
+#[expect(clippy::option_option, reason = "absent and wrong are two things")]
+pub(super) fn assumption(
+    sheet: &AssumptionSheet,
+    at: At<'_>,
+    takes: Takes<'_>,
+    place: impl FnOnce() -> String,
+) -> Option<Option<AssumptionName>> {
+    match at {
+        At::Node(node, findings) => names_assumption(node).then(|| named(sheet, node, takes, &place(), findings)),
+        At::Sketch(it) => {
+            it.add(assumptions::assumed(it, sheet, takes));
+            None
         }
     }
+}
 
-    fn named(&self, node: &Node, takes: Takes<'_>, place: &str, findings: &Findings) -> Option<AssumptionName> {
-        let Value::Mapping(entries) = &node.value else { return None };
-        let entry = entries.first()?;
-        let sheet = &self.assumptions.sheet;
-        let name = sheet.named(&entry.node, findings)?;
-        fits(sheet, &name, &entry.node, takes, place, findings).then_some(name)
-    }
+fn named(
+    sheet: &AssumptionSheet,
+    node: &Node,
+    takes: Takes<'_>,
+    place: &str,
+    findings: &Findings,
+) -> Option<AssumptionName> {
+    let Value::Mapping(entries) = &node.value else { return None };
+    let entry = entries.first()?;
+    let name = sheet.named(&entry.node, findings)?;
+    fits(sheet, &name, &entry.node, takes, place, findings).then_some(name)
 }
 
 const RESTITUTION: &str = "Coefficient of restitution, 0 to 1";

@@ -207,6 +207,11 @@ impl<'t> ExperimentReader<'t> {
         checks.tolerances(&measures, &tolerances);
         checks.energies(energies.as_ref(), &run.settings, energies_at);
         checks.each_cycle(each_cycle.as_ref(), &run.settings, each_cycle_at);
+        if let Some((_, at)) =
+            run.transient.as_ref().filter(|_| matches!(orbit, Some(Some(_))) || matches!(starts, Some(Some(_))))
+        {
+            self.findings.wrong::<()>(*at, "cycles that an assumption leaves out are for sweeps: state them here");
+        }
         if let Some(at) = run.settled_at {
             checks.settled(&measures, energies.is_some(), &run.solvers, at);
         }
@@ -266,6 +271,7 @@ impl<'t> ExperimentReader<'t> {
             cases,
             swept: sweep.swept,
             settings: Settings { named: named_rows(&measures, maximise.as_ref()), ..run.settings },
+            transient: run.transient.map(|(transient, _)| transient),
             limit: run.limit,
             moved: run.moved,
             maximise,

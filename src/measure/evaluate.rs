@@ -120,7 +120,7 @@ impl Request<'_> {
 #[derive(Debug)]
 pub struct Prepared<'a> {
     subject: Subject,
-    pub(super) settings: &'a Settings,
+    pub(super) settings: Settings,
     pub(super) measures: &'a [Measure],
     solver: SolverChoice,
     system: HybridSystem,
@@ -137,13 +137,13 @@ impl<'a> Prepared<'a> {
     pub fn new(
         subject: Subject,
         solver: SolverChoice,
-        settings: &'a Settings,
+        settings: Settings,
         measures: &'a [Measure],
     ) -> Result<Self, EvaluateError> {
-        let subject = rounded_subject(subject, settings);
+        let subject = rounded_subject(subject, &settings);
         let system = compile(&subject.scene)?;
         let request = Request { measures, rigour: Rigour::Look, ..Request::default() };
-        let reference = References::of(&subject, &request, settings, solver)?;
+        let reference = References::of(&subject, &request, &settings, solver)?;
         let units = subject.scene.dampers.iter().map(|damper| damper.gap).collect();
         Ok(Self { subject, settings, measures, solver, system, reference, units })
     }

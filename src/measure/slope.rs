@@ -21,7 +21,7 @@ impl Prepared<'_> {
     pub fn slope(&self, gaps: &[f64], measure: Measure) -> Result<Option<Slope>, EvaluateError> {
         let (scene, system) = self.with_gaps(gaps);
         let request = Request { measures: self.measures, rigour: Rigour::Step, ..Request::default() };
-        let plain = request.options(&scene, self.settings);
+        let plain = request.options(&scene, &self.settings);
         let Some((orbit, velocity)) = orbit_of(&scene, &system, &plain)? else { return Ok(None) };
         let mut of_each = Vec::new();
         for (damper, gap) in gaps.iter().enumerate() {

@@ -1,7 +1,7 @@
 //! What an entry depends on: how far each assumption, moved alone, shifts what came out, and which move would change its verdict.
 
 use crate::experiment::{AssumptionName, AssumptionValue};
-use crate::reference::{Judged, Moved, Verdict};
+use crate::reference::{Judged, Moved, Role, Verdict};
 use crate::text::number;
 
 use super::assumption::value_in_words;
@@ -51,7 +51,11 @@ pub fn explain(view: &EntryView<'_>) -> String {
         text += &format!("  {label:<10} {}\n", one_line(line));
     }
     if !view.chosen_by.is_empty() {
-        text += &format!("  {:<10} {} chosen by it\n", "fitted", names(&view.chosen_by));
+        let also = match judged.role {
+            Role::CrossValidated => "; it comes out when it is left out of the fit",
+            _ => "",
+        };
+        text += &format!("  {:<10} {} chosen by it{also}\n", "fitted", names(&view.chosen_by));
     }
     if view.moves.is_empty() {
         text += "\nNo assumption was moved for it.\n";

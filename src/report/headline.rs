@@ -57,13 +57,10 @@ fn cross_validated(all: &[&Judged]) -> Option<String> {
     let fitted = || all.iter().filter(|one| one.verdict == Verdict::Fitted);
     let come_out = || fitted().filter(|one| one.role == Role::CrossValidated);
     let numbers = come_out().filter(|one| kind(one) == Kind::Number).count();
-    (numbers > 0 || come_out().count() > 0).then(|| {
-        let count = come_out().count();
-        format!(
-            "**Left out one at a time**, {count} of {} fitted come out, {} among them.",
-            fitted().count(),
-            counted(numbers, "number", "numbers")
-        )
+    let count = come_out().count();
+    (count > 0).then(|| {
+        let (fitted, numbers) = (fitted().count(), counted(numbers, "number", "numbers"));
+        format!("**Left out one at a time**, {count} of {fitted} fitted come out, {numbers} among them.")
     })
 }
 

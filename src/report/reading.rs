@@ -30,7 +30,8 @@ digits allow), the number is blocked or undecidable. **Claims** are decided over
 
 **Fitted** entries were used to choose an unstated input, so their agreement proves nothing. **Held out** entries were kept aside \
 by a calibration to test it. Only entries that are held out or neither are evidence, and of the \
-fitted ones those that come out when *left out*: the others alone choose inputs that give them.
+fitted ones those that come out when *left out*: the others alone choose inputs that give them. The page of the calibration says \
+how many sets of inputs would, whatever chose them.
 
 **Runs.** *Event-driven* runs follow the exact motion from one contact to the next; *fixed step* runs follow a scheme that \
 looks for contacts once a step. Impact dampers are chaotic in wide ranges: there the mean of an *ensemble* of slightly \

@@ -20,7 +20,7 @@ pub struct Simulation<'a> {
     /// Under which solver.
     pub solver: SolverChoice,
     /// How long.
-    pub settings: &'a Settings,
+    pub settings: Settings,
     /// What to measure.
     pub measures: &'a [Measure],
     /// Time history to keep.
@@ -114,7 +114,7 @@ impl Evaluate for Engine {
         let Simulation { measures, trace, energies, shape, each_cycle, tolerances, rigour, link, .. } = *it;
         let request = Request { measures, trace, energies, shape, each_cycle, tolerances, rigour, link };
         let subject = it.recipe.subject(it.assumptions, request.needs())?;
-        Ok(measure::evaluate(subject, it.solver, it.settings, &request)?)
+        Ok(measure::evaluate(subject, it.solver, &it.settings, &request)?)
     }
 
     fn array<'a>(&'a self, it: Simulation<'a>, word: GapWord) -> Result<Box<dyn Array + 'a>, RowFailure> {

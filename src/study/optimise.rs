@@ -68,7 +68,7 @@ impl<'a> Fitness<'a> {
                 recipe,
                 assumptions: &variant.assumptions,
                 solver: experiment.solvers.first().copied().unwrap_or(SolverChoice::EventDriven),
-                settings: &experiment.settings,
+                settings: experiment.settings_under(&variant.assumptions),
                 measures,
                 trace: None,
                 energies: None,

@@ -171,7 +171,7 @@ pub(super) fn asked<'a>(
         recipe,
         assumptions: &variant.assumptions,
         solver: job.solver,
-        settings: &experiment.settings,
+        settings: experiment.settings_under(&variant.assumptions),
         measures: &experiment.measures,
         trace: experiment.trace.as_ref().filter(|_| wanted),
         // Only the baseline keeps its lists; a measure of a shape needs it everywhere.

@@ -74,6 +74,7 @@ pub fn limit_stop() -> Experiment {
             ensemble: 32,
             named: NamedRows::Results,
         },
+        transient: None,
         limit: Limit::default(),
         maximise: None,
         refined: Vec::new(),

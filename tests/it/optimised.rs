@@ -328,7 +328,7 @@ fn a_scene_that_is_prepared_once_gives_the_bits_of_one_that_is_built_for_its_gap
             recipe,
             assumptions: &assumptions,
             solver: experiment.solvers[0],
-            settings: &experiment.settings,
+            settings: experiment.settings,
             measures: &experiment.measures,
             trace: None,
             energies: None,

@@ -673,6 +673,53 @@ zeta: {quantity: ratio, readings: [equivalent_viscous], value: 0.1, reason: none
     assert!((impulse - 9.80665 / 1000_f64.sqrt()).abs() < 1e-15, "{impulse}");
 }
 
+#[test]
+fn cycles_that_are_left_out_may_be_an_assumption() {
+    let sheet = |value: &str| {
+        let text = format!("before: {{quantity: count, value: 100, range: [{value}], reason: a}}\n");
+        parse_assumptions("assumptions.yaml", &text).unwrap_or_else(|problems| panic!("{problems}"))
+    };
+    let bare = with("damping_ratio: assumed", "damping_ratio: 0.15");
+    let run = |keys: &str| bare.replace("skip: 25 cycles, average: 100 cycles", keys);
+    let read =
+        |text: &str, value: &str| parse_experiment(&"a".parse().unwrap(), "a.yaml", text, &sheet(value).assumptions());
+
+    let assumed =
+        read(&run("skip: {assumed: before}, to: 125 cycles"), "25").unwrap_or_else(|problems| panic!("{problems}"));
+    let stated = read(&run("skip: 100 cycles, to: 125 cycles"), "25").unwrap_or_else(|problems| panic!("{problems}"));
+    assert_eq!(assumed.settings, stated.settings);
+    assert_eq!((stated.settings.skip, stated.settings.average), (100, 25));
+    let used = assumed.assumptions_used(&sheet("25"));
+    assert_eq!(used, BTreeSet::from([AssumptionName::from("before")]));
+    assert!(stated.assumptions_used(&sheet("25")).is_empty());
+    let [moved] = &sheet("25").variants(&used)[..] else { panic!("one other value") };
+    let settings = assumed.settings_under(&moved.assumptions);
+    assert_eq!((settings.skip, settings.average), (25, 100), "up to the same cycle");
+    assert_eq!(stated.settings_under(&moved.assumptions), stated.settings);
+
+    let one = |keys: &str, value: &str| describe(&read(&run(keys), value).expect_err("a mistake")).remove(0);
+    for (keys, value, message) in [
+        ("skip: {assumed: before}", "25", "cycles that an assumption leaves out need `to`, the last one"),
+        ("skip: {assumed: before}, to: 100 cycles", "25", "`before` may be 100: of 100 cycles no whole number is left"),
+        (
+            "skip: {assumed: before}, to: 125 cycles",
+            "125",
+            "`before` may be 125: of 125 cycles no whole number is left",
+        ),
+        ("skip: {assumed: befor}, to: 125 cycles", "25", "`befor` is not an assumption | did you mean `before`?"),
+        ("skip: 125 cycles, to: 125 cycles", "25", "125 cycles are left out: none is left up to cycle 125"),
+        ("skip: 5 cycles, average: 9 cycles, to: 14 cycles", "25", "`average` and `to` say the same thing"),
+    ] {
+        let said = one(keys, value);
+        assert!(said.starts_with("15:") && said.contains(message), "{keys}: {said}");
+    }
+    let length = "before: {quantity: length, value: 1 m, reason: a}\n";
+    let length = parse_assumptions("assumptions.yaml", length).unwrap_or_else(|problems| panic!("{problems}"));
+    let text = run("skip: {assumed: before}, to: 125 cycles");
+    let wrong = parse_experiment(&"a".parse().unwrap(), "a.yaml", &text, &length.assumptions()).expect_err("a mistake");
+    assert!(describe(&wrong)[0].contains("`skip` takes a count"), "{:?}", describe(&wrong));
+}
+
 /// What an experiment depends on holds whichever value of its range an assumption takes.
 #[test]
 fn no_variant_depends_on_more_than_is_recorded() {
