@@ -717,7 +717,7 @@ fn cycles_that_are_left_out_may_be_an_assumption() {
     let length = parse_assumptions("assumptions.yaml", length).unwrap_or_else(|problems| panic!("{problems}"));
     let text = run("skip: {assumed: before}, to: 125 cycles");
     let wrong = parse_experiment(&"a".parse().unwrap(), "a.yaml", &text, &length.assumptions()).expect_err("a mistake");
-    assert!(describe(&wrong)[0].contains("`skip` takes a count"), "{:?}", describe(&wrong));
+    assert!(describe(&wrong)[0].contains("`skip` takes a whole number"), "{:?}", describe(&wrong));
 }
 
 /// What an experiment depends on holds whichever value of its range an assumption takes.
