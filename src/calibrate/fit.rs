@@ -22,6 +22,18 @@ pub enum CalibrationError {
     /// An entry that the reference lacks.
     #[error("`{0}` is no entry of an experiment of this study")]
     NoEntry(String),
+    /// A value that leaves an experiment no cycle to average.
+    #[error(
+        "`{input}` has a value with which `{experiment}` averages no whole number of cycles up to cycle {to}: give it whole numbers below {to}"
+    )]
+    NoCycle {
+        /// The input as the calibration names it.
+        input: String,
+        /// The experiment.
+        experiment: String,
+        /// Its last cycle.
+        to: u32,
+    },
     /// A run was not complete.
     #[error(transparent)]
     Run(#[from] RunError),
@@ -101,7 +113,7 @@ pub struct Running<'a> {
 /// Searches the best inputs and judges all entries under them.
 ///
 /// # Errors
-/// [`CalibrationError::NoEntry`] for an entry that the reference or the experiments lack.
+/// [`CalibrationError`] with the reason.
 pub fn calibrate(
     calibration: &Calibration,
     experiments: &[&Experiment],
@@ -126,6 +138,7 @@ pub fn calibrate(
     let now = Set::in_force(in_force);
     let set = |places: &Places| Set::of(calibration, places, in_force);
 
+    cycles_are_left(calibration, experiments, set)?;
     let trials = TrialRunner::new(&workers, Worth::Step { ensemble: calibration.ensemble }, experiments, &fit);
     let journal = Journal::open(running.journal);
     let mut residuals = Residuals::new(calibration.residual, &fit, trials, journal, handler);
@@ -177,6 +190,30 @@ pub fn calibrate(
         left_out: predicted,
         held_out: held.iter().map(compared).collect(),
     })
+}
+
+/// Every value of an input that says how many cycles are left out leaves some to average.
+fn cycles_are_left(
+    calibration: &Calibration,
+    experiments: &[&Experiment],
+    set: impl Fn(&Places) -> Set,
+) -> Result<(), CalibrationError> {
+    for (which, input) in calibration.inputs.iter().enumerate() {
+        for value in 0..input.tried.count() {
+            let mut places = vec![0; calibration.inputs.len()];
+            places[which] = value;
+            let assumptions = set(&places).assumptions;
+            for experiment in experiments {
+                if let Some(transient) = &experiment.transient
+                    && transient.left_out_under(&assumptions).is_none()
+                {
+                    let (input, experiment) = (input.name.clone(), experiment.id.0.clone());
+                    return Err(CalibrationError::NoCycle { input, experiment, to: transient.to });
+                }
+            }
+        }
+    }
+    Ok(())
 }
 
 fn search(

@@ -11,7 +11,7 @@ use shotdamp::report::judge_all;
 use shotdamp::study::Study;
 use shotdamp::study::{IgnoreEvents, Layout, Texts};
 
-use crate::desk::{ASSUMPTIONS, Desk, MadeUp, STOP_REFERENCE, shotdamp, simulated};
+use crate::desk::{ASSUMPTIONS, Desk, MadeUp, STOP as STOP_TEXT, STOP_REFERENCE, shotdamp, simulated};
 
 const STOP: &str = "
 title: How long the stop is
@@ -303,4 +303,22 @@ fn leaving_out_wants_every_combination() {
     let text = LEFT_OUT.replace("leave_one_out", "search: {coordinate: {starts: 2, budget: 9 sets}}\nleave_one_out");
     let problems = parse_calibration("it.yaml", &text, &sheet()).unwrap_err().to_string();
     assert!(problems.contains("it.yaml:5") && problems.contains("wants every combination"), "{problems}");
+}
+
+#[test]
+fn a_value_that_leaves_no_cycle_to_average_is_refused() {
+    let desk = Desk::new();
+    let assumptions = format!("before: {{value: 25, reason: plain, quantity: count}}\n{}", ASSUMPTIONS.trim_start());
+    desk.put("experiments/assumptions.yaml", &assumptions);
+    desk.put(
+        "experiments/ch3/ch3-stop.yaml",
+        &STOP_TEXT.replace("skip: 25 cycles, average: 100 cycles", "skip: {assumed: before}, to: 125 cycles"),
+    );
+    let sheet = parse_assumptions("assumptions.yaml", &assumptions).unwrap_or_else(|problems| panic!("{problems}"));
+    let text = "title: a\nabout: b\ncalibrate: {before: [25, 125]}\nfit: [ch3-stop/at-two]\n";
+    let calibration = parse_calibration("it.yaml", text, &sheet).unwrap_or_else(|problems| panic!("{problems}"));
+    assert_eq!(
+        on(&desk, &calibration, 1).unwrap_err().to_string(),
+        "`before` has a value with which `ch3-stop` averages no whole number of cycles up to cycle 125: give it whole numbers below 125"
+    );
 }
