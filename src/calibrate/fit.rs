@@ -198,15 +198,14 @@ fn cycles_are_left(
     experiments: &[&Experiment],
     set: impl Fn(&Places) -> Set,
 ) -> Result<(), CalibrationError> {
-    for (which, input) in calibration.inputs.iter().enumerate() {
-        for value in 0..input.tried.count() {
-            let mut places = vec![0; calibration.inputs.len()];
-            places[which] = value;
-            let assumptions = set(&places).assumptions;
-            for experiment in experiments {
-                if let Some(transient) = &experiment.transient
-                    && transient.left_out_under(&assumptions).is_none()
-                {
+    for (experiment, transient) in experiments.iter().filter_map(|one| Some((one, one.transient.as_ref()?))) {
+        for (which, input) in
+            calibration.inputs.iter().enumerate().filter(|(_, it)| it.tried.moves(&transient.left_out))
+        {
+            for value in 0..input.tried.count() {
+                let mut places = vec![0; calibration.inputs.len()];
+                places[which] = value;
+                if transient.left_out_under(&set(&places).assumptions).is_none() {
                     let (input, experiment) = (input.name.clone(), experiment.id.0.clone());
                     return Err(CalibrationError::NoCycle { input, experiment, to: transient.to });
                 }

@@ -139,6 +139,16 @@ impl Tried {
             Self::Solvers(solvers) => solvers.len(),
         }
     }
+
+    /// True if it changes this assumption.
+    #[must_use]
+    pub fn moves(&self, name: &AssumptionName) -> bool {
+        match self {
+            Self::Values { moves, .. } => moves.contains(name),
+            Self::Factors { of, .. } => of == name,
+            Self::Solvers(_) => false,
+        }
+    }
 }
 
 impl Calibration {

@@ -271,14 +271,12 @@ impl Transient {
     /// The cycles that these values leave out; none if they have no whole number of cycles before the last one.
     #[must_use]
     pub fn left_out_under(&self, assumptions: &Assumptions) -> Option<u32> {
-        match assumptions.values.get(&self.left_out)? {
-            AssumptionValue::Number(cycles) => self.fits(*cycles),
-            _ => None,
-        }
+        self.cycles(assumptions.values.get(&self.left_out)?)
     }
 
     /// This many cycles, if they leave one to average.
-    pub(super) fn fits(&self, cycles: f64) -> Option<u32> {
+    pub(super) fn cycles(&self, value: &AssumptionValue) -> Option<u32> {
+        let AssumptionValue::Number(cycles) = *value else { return None };
         ((0.0..f64::from(self.to)).contains(&cycles) && cycles.fract() == 0.0).then_some(cycles as u32)
     }
 }

@@ -160,16 +160,11 @@ fn given_run(at: At<'_>, sheet: &AssumptionSheet) -> Option<GivenRun> {
 /// The cycles that are left out with the value in force; every value of the range has to leave one to average.
 fn left_out_of(transient: &Transient, sheet: &AssumptionSheet, at: Span, findings: &Findings) -> Option<u32> {
     let entry = sheet.get(&transient.left_out)?;
-    let cycles = |value: &AssumptionValue| match value {
-        AssumptionValue::Number(cycles) => transient.fits(*cycles).ok_or(*cycles),
-        _ => Err(f64::NAN),
-    };
-    for value in std::iter::once(&entry.value).chain(&entry.range) {
-        if let Err(cycles) = cycles(value) {
-            let (name, to) = (&transient.left_out, transient.to);
-            return findings
-                .wrong(at, format!("`{name}` may be {cycles}: of {to} cycles no whole number is left to average"));
-        }
+    let wrong = std::iter::once(&entry.value).chain(&entry.range).find(|value| transient.cycles(value).is_none());
+    if let Some(AssumptionValue::Number(cycles)) = wrong {
+        let (name, to) = (&transient.left_out, transient.to);
+        return findings
+            .wrong(at, format!("`{name}` may be {cycles}: of {to} cycles no whole number is left to average"));
     }
-    cycles(&entry.value).ok()
+    transient.cycles(&entry.value)
 }

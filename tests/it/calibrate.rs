@@ -315,7 +315,7 @@ fn a_value_that_leaves_no_cycle_to_average_is_refused() {
         &STOP_TEXT.replace("skip: 25 cycles, average: 100 cycles", "skip: {assumed: before}, to: 125 cycles"),
     );
     let sheet = parse_assumptions("assumptions.yaml", &assumptions).unwrap_or_else(|problems| panic!("{problems}"));
-    let text = "title: a\nabout: b\ncalibrate: {before: [25, 125]}\nfit: [ch3-stop/at-two]\n";
+    let text = "title: a\nabout: b\ncalibrate: {stop_length: [50 mm], before: [125, 25]}\nfit: [ch3-stop/at-two]\n";
     let calibration = parse_calibration("it.yaml", text, &sheet).unwrap_or_else(|problems| panic!("{problems}"));
     assert_eq!(
         on(&desk, &calibration, 1).unwrap_err().to_string(),
