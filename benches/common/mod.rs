@@ -12,14 +12,14 @@ pub const SINGLE: &str = "structure: {single_mass: {mass: 1 kg, stiffness: 1000 
   dampers: [{mass_ratio: 0.05, gap_ratio: 50, floor: {resilient: {stiffness_ratio: 1, damping_ratio: 0.3}}}]
   excitation: {impulse_train: {impulse: 2.171536069237626 N s, PERIOD}}";
 
-/// Four dampers at the free end of a beam, after its modes and the damping of the floors.
+/// Four dampers at the free end of a beam, after its modes and the damping of the floors, with its key.
 pub const BEAM: &str = "structure: {cantilever_beam: {length: 1 m, width: 30 mm, thickness: 5 mm, youngs_modulus: 200 GPa, density: 7800 kg/m^3, rayleigh: 5e-5, basis: exact, modes: MODES}}
   dampers:
     - at: 0.96
       mass_ratio: 0.1
       particle_share: 0.5
       gap: 42 mm
-      floor: {resilient: {stiffness: assumed, damping_ratio: DAMPING}}
+      floor: {resilient: {stiffness: assumed, DAMPING}}
       array: {count: 4, spacing: -4 cm}
   excitation: {impulse_train: {at: 1, impulse: 0.244 N s, frequency_ratio: 1}}";
 

@@ -38,7 +38,7 @@ fn main() {
         return;
     }
     let mut page = introduction();
-    let beam = common::BEAM.replace("MODES", "4").replace("DAMPING", "0.4");
+    let beam = common::BEAM.replace("MODES", "4").replace("DAMPING", "damping_ratio: 0.4");
     for (part, name, text, cycles) in [
         ("single", "One mass, one damper, 125 impulses", single, [25, 100]),
         ("beam", "Beam of four modes, four dampers, 5 impulses", beam, [0, 5]),

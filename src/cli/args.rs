@@ -422,7 +422,7 @@ Examples:
   shotdamp clean --orphans
   shotdamp clean --earlier                    free disk space; going back to earlier inputs then re-simulates")]
 pub(super) struct CleanArgs {
-    /// Remove tables, records, figures and pages of experiments whose files no longer exist
+    /// Remove tables, records, figures and pages of experiments and calibrations whose files no longer exist
     #[arg(long, required_unless_present = "earlier")]
     pub orphans: bool,
     /// Remove earlier tables, which are kept so that going back to earlier inputs simulates nothing

@@ -6,6 +6,9 @@
 //!
 //! C and S are entire functions of d: nothing happens at critical damping (d = 0), where an eigenbasis would fail.
 
+use super::elementary::{exp_lanes, sin_cos_lanes};
+use super::lanes::Lanes;
+
 /// A block's invariants: all that a scalar signal of the flow needs.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Block {
@@ -171,6 +174,19 @@ impl Block {
             let two_rt = 2.0 * self.root * t;
             let s = if two_rt < 0.5 { fast * libm::expm1(two_rt) } else { slow - fast } / (2.0 * self.root);
             Kernel { c: 0.5 * (slow + fast), s, turn: 0.0 }
+        }
+    }
+
+    /// c and s of its kernel after several times.
+    #[inline(always)]
+    pub(crate) fn kernels<const N: usize>(&self, times: Lanes<N>) -> [Lanes<N>; 2] {
+        if self.discriminant < 0.0 {
+            let e = exp_lanes(times * -self.decay);
+            let (sine, cosine) = sin_cos_lanes(times * self.root);
+            [e * cosine, e * sine * self.inverse_root]
+        } else {
+            let each = times.0.map(|t| self.kernel(t));
+            [Lanes(each.map(|kernel| kernel.c)), Lanes(each.map(|kernel| kernel.s))]
         }
     }
 

@@ -206,13 +206,14 @@ pub(crate) fn contact_damping(system: &HybridSystem, contacts: &[Contact], j: us
 
 /// Block coordinates by coordinates and rates.
 fn by_coordinates(spectral: &Spectral) -> Superposition {
-    Superposition::new(spectral.width(), spectral.to_blocks.iter().copied())
+    let width = spectral.width();
+    Superposition::new(width, spectral.to_blocks.chunks_exact(width.max(1)).map(|row| row.iter().copied()))
 }
 
 /// The way back from the blocks to so many coordinates and rates, column by column.
 fn by_columns(spectral: &Spectral, size: usize) -> Superposition {
     let width = spectral.width();
-    Superposition::new(size, (0..size * width).map(|i| spectral.from_blocks[(i % size) * width + i / size]))
+    Superposition::new(size, (0..width).map(|k| (0..size).map(move |i| spectral.from_blocks[i * width + k])))
 }
 
 /// The damping of the face that each particle's contact refers to; then, of those at both faces, that of the second one and the

@@ -116,24 +116,25 @@ impl Flow {
     pub(crate) fn row(&self, row: &[f64]) -> Row {
         let size = self.modes.spectral.width();
         // By values and by rates: r·V, column by column of V.
-        let mut by = [vec![0.0; size], vec![0.0; size]];
-        for (half, by) in by.iter_mut().enumerate() {
+        let mut weights = vec![[0.0; 4]; self.own];
+        weights.reserve_exact(self.blocks.len() - self.own);
+        for half in 0..2 {
             for (i, r) in row.iter().enumerate().filter(|(_, r)| **r != 0.0) {
                 let place = (half * self.order + i) * size;
-                let entries = &self.modes.spectral.from_blocks[place..place + size];
-                by.iter_mut().zip(entries).for_each(|(sum, entry)| *sum += r * entry);
+                let entries = self.modes.spectral.from_blocks[place..place + size].as_chunks::<2>().0;
+                for (weight, [x, y]) in weights.iter_mut().zip(entries) {
+                    weight[2 * half] += r * x;
+                    weight[2 * half + 1] += r * y;
+                }
             }
         }
-        let mut weights = Vec::with_capacity(self.blocks.len());
         let mut drift = [[0.0; 2]; 2];
-        for k in 0..self.own {
-            let weight = [by[0][2 * k], by[0][2 * k + 1], by[1][2 * k], by[1][2 * k + 1]];
+        for (k, weight) in weights.iter().enumerate() {
             for (load, drift) in [&self.modes.gravity, &self.force].into_iter().zip(&mut drift) {
                 for (coefficient, part) in drift.iter_mut().zip([load.slope[k], load.bend[k]]) {
                     *coefficient += weight[0] * part[0] + weight[1] * part[1];
                 }
             }
-            weights.push(weight);
         }
         if let Some(Steady { omega, cosine, sine }) = &self.harmonic {
             let (cosine, sine) = (dot(row, cosine), dot(row, sine));

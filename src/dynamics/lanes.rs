@@ -14,6 +14,15 @@ pub(crate) const WIDTH: usize = 4;
 pub(crate) struct Lanes<const N: usize>(pub(crate) [f64; N]);
 
 impl<const N: usize> Lanes<N> {
+    /// Of nothing.
+    pub(crate) const ZERO: Self = Self([0.0; N]);
+
+    /// The same number in all places.
+    #[inline(always)]
+    pub(crate) fn all(number: f64) -> Self {
+        Self([number; N])
+    }
+
     /// Each with that in the same place of the other.
     #[inline(always)]
     pub(crate) fn zip(self, other: Self, each: impl Fn(f64, f64) -> f64) -> Self {
@@ -44,9 +53,6 @@ impl<const N: usize> Lanes<N> {
 }
 
 impl Lanes<WIDTH> {
-    /// Of nothing.
-    pub(crate) const ZERO: Self = Self([0.0; WIDTH]);
-
     /// All of them together.
     #[inline(always)]
     pub(crate) fn sum(self) -> f64 {

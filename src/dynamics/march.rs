@@ -20,6 +20,7 @@ use super::contact::{Relative, Side};
 use super::contact_state::dampings;
 use super::flow::{DrivePhase, Flow};
 use super::guards::Slipped;
+use super::integral::Panels;
 use super::mobility::Mobilities;
 use super::motion::{self, Fundamental, Tape};
 use super::parabola::Parabola;
@@ -67,6 +68,7 @@ pub(crate) struct March<'a, const TAPED: bool> {
     half: Half,
     // Work space.
     search: Search,
+    panels: Panels,
     /// Gap parabolas of the particles in flight.
     paths: Vec<Parabola>,
     signals: Signals,
@@ -131,6 +133,7 @@ impl<'a, const TAPED: bool> March<'a, TAPED> {
             level: 0.0,
             half: Half::default(),
             search: Search::new(options.window_factor),
+            panels: Panels::default(),
             paths: vec![Parabola::default(); count],
             signals: Signals::default(),
             answer,

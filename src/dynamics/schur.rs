@@ -8,6 +8,7 @@
 use nalgebra::{DMatrix, Hessenberg, Schur};
 
 use super::EngineError;
+use super::wide::widened;
 
 /// Sweeps for each eigenvalue; three are usual.
 const SWEEPS: usize = 30;
@@ -27,13 +28,9 @@ pub(crate) enum Iteration {
 pub(super) fn schur(a: DMatrix<f64>, first: Iteration) -> Result<[DMatrix<f64>; 2], EngineError> {
     let order = a.nrows();
     let library = |a: DMatrix<f64>| Schur::try_new(a, f64::EPSILON, SWEEPS * order).map(|form| form.unpack().into());
-    let own = |a: DMatrix<f64>| {
-        let (q, t) = Hessenberg::new(a).unpack();
-        Francis { q, t }.run()
-    };
     let form = match first {
-        Iteration::Library => library(a.clone()).or_else(|| own(a)),
-        Iteration::Own => own(a.clone()).or_else(|| library(a)),
+        Iteration::Library => library(a.clone()).or_else(|| Francis::form(a)),
+        Iteration::Own => Francis::form(a.clone()).or_else(|| library(a)),
     };
     form.ok_or(EngineError::NoSchurForm { order })
 }
@@ -45,14 +42,27 @@ struct Francis {
 }
 
 impl Francis {
-    fn run(mut self) -> Option<[DMatrix<f64>; 2]> {
+    /// Q and T, if the iteration ends.
+    fn form(a: DMatrix<f64>) -> Option<[DMatrix<f64>; 2]> {
+        let (q, t) = Hessenberg::new(a).unpack();
+        let mut form = Self { q, t };
+        form.run().then_some([form.q, form.t])
+    }
+
+    widened! {
+        /// False if it does not end.
+        fn run | run_wide (&mut self) -> bool = run_by_registers
+    }
+
+    #[inline(always)]
+    fn run_by_registers(&mut self) -> bool {
         let (mut end, mut sweeps, mut in_vain) = (self.t.nrows(), 0, 0);
         while end > 1 {
             let begin = self.split(end);
             if end - begin > 2 {
                 (sweeps, in_vain) = (sweeps + 1, in_vain + 1);
                 if sweeps > SWEEPS * self.t.nrows() {
-                    return None;
+                    return false;
                 }
                 self.sweep(begin, end, in_vain % PATIENCE == 0);
                 continue;
@@ -62,7 +72,7 @@ impl Francis {
             }
             (end, in_vain) = (begin, 0);
         }
-        Some([self.q, self.t])
+        true
     }
 
     /// Where the last piece before `end` begins; what is rounding there becomes zero.
@@ -78,6 +88,7 @@ impl Francis {
     }
 
     /// One double step on the rows and columns from `begin` to `end`.
+    #[inline(always)]
     fn sweep(&mut self, begin: usize, end: usize, exceptional: bool) {
         let (t, last) = (&self.t, end - 1);
         let mut shifts = [t[(last, last)], t[(last - 1, last - 1)], t[(last, last - 1)] * t[(last - 1, last)]];
@@ -113,6 +124,7 @@ impl Francis {
     }
 
     /// Reflects the rows and columns from `k` on so that `axis` points along the first of them.
+    #[inline(always)]
     fn reflect<const SIZE: usize>(&mut self, k: usize, axis: [f64; SIZE], end: usize) {
         let largest = axis.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
         if largest == 0.0 {
@@ -191,9 +203,8 @@ mod tests {
                 matrix[(i, count + i)] = frequency;
                 (count..2 * count).for_each(|row| matrix[(row, i)] /= frequency);
             }
-            let (q, t) = Hessenberg::new(matrix.clone()).unpack();
             let largest = matrix.amax();
-            for [q, t] in [schur(matrix.clone(), Iteration::Library).unwrap(), Francis { q, t }.run().unwrap()] {
+            for [q, t] in [schur(matrix.clone(), Iteration::Library).unwrap(), Francis::form(matrix.clone()).unwrap()] {
                 assert!((&q * q.transpose() - DMatrix::identity(2 * count, 2 * count)).amax() < 1e-13);
                 assert!((&q * &t * q.transpose() - &matrix).amax() < 1e-13 * largest, "seed {seed}");
                 for i in 2..2 * count {

@@ -48,12 +48,15 @@ impl Default for Spectral {
 impl Spectral {
     /// The same with its fastest blocks first, as a search for events leaves them out.
     pub(crate) fn fastest_first(self) -> Self {
-        let width = self.width();
         let mut order: Vec<usize> = (0..self.blocks.len()).collect();
         order.sort_by(|&k, &l| self.blocks[l].radius.total_cmp(&self.blocks[k].radius));
-        let sorted = |rows: &[f64]| -> Vec<f64> {
-            let pairs = |row: &[f64]| order.iter().flat_map(|&k| [row[2 * k], row[2 * k + 1]]).collect::<Vec<_>>();
-            rows.chunks_exact(width.max(1)).flat_map(pairs).collect()
+        let sorted = |entries: &[f64]| {
+            let pairs = entries.as_chunks::<2>().0;
+            let mut sorted = Vec::with_capacity(pairs.len());
+            for row in pairs.chunks_exact(order.len().max(1)) {
+                sorted.extend(order.iter().map(|&k| row[k]));
+            }
+            sorted.into_flattened()
         };
         Self {
             from_blocks: sorted(&self.from_blocks),
@@ -80,8 +83,8 @@ impl Spectral {
             return Ok(Self::single(matrix));
         }
         let a = DMatrix::from_row_slice(order, order, matrix);
-        let creeps = a.column_iter().any(|column| column.iter().all(|entry| *entry == 0.0));
-        let norm = a.iter().fold(0.0_f64, |largest, x| largest.max(x.abs()));
+        let creeps = a.as_slice().chunks_exact(order).any(|column| column.iter().all(|entry| *entry == 0.0));
+        let norm = a.as_slice().iter().fold(0.0_f64, |largest, x| largest.max(x.abs()));
         let [mut q, mut t] = schur(a, iteration)?;
         let firsts = gather(&mut q, &mut t);
         let (x, y) = decouple(&t, &firsts);
@@ -392,5 +395,5 @@ fn column<T>(matrix: &DMatrix<T>, j: usize) -> &[T] {
 }
 
 fn largest(m: &DMatrix<f64>) -> f64 {
-    m.iter().fold(0.0_f64, |largest, x| if x.is_nan() { f64::INFINITY } else { largest.max(x.abs()) })
+    m.as_slice().iter().fold(0.0_f64, |largest, x| if x.is_nan() { f64::INFINITY } else { largest.max(x.abs()) })
 }

@@ -14,20 +14,16 @@ pub(crate) struct Superposition {
 }
 
 impl Superposition {
-    /// Of rows of `length` numbers each, one after the other.
-    pub(crate) fn new(length: usize, entries: impl IntoIterator<Item = f64>) -> Self {
+    /// Of rows of `length` numbers each.
+    pub(crate) fn new<Row: IntoIterator<Item = f64>>(length: usize, of: impl IntoIterator<Item = Row>) -> Self {
         let registers = length.div_ceil(WIDTH);
-        let mut rows = Vec::new();
-        let mut entries = entries.into_iter().peekable();
-        while length > 0 && entries.peek().is_some() {
+        let of = of.into_iter();
+        let mut rows = Vec::with_capacity(of.size_hint().0 * registers);
+        for row in of {
             let first = rows.len();
             rows.resize(first + registers, [0.0; WIDTH]);
-            rows[first..]
-                .as_flattened_mut()
-                .iter_mut()
-                .take(length)
-                .zip(&mut entries)
-                .for_each(|(to, from)| *to = from);
+            let to = rows[first..].as_flattened_mut().iter_mut().take(length);
+            to.zip(row).for_each(|(to, from)| *to = from);
         }
         Self { length, registers, rows }
     }
@@ -90,7 +86,10 @@ mod tests {
             let number = |i: u32| libm::sin(f64::from(i) * 0.37);
             let x: Vec<f64> = (0..7).map(number).collect();
             let entries: Vec<f64> = (0..7 * length).map(|i| number(i + 11)).collect();
-            let matrix = Superposition::new(length as usize, entries.iter().copied());
+            let matrix = Superposition::new(
+                length as usize,
+                entries.chunks(length.max(1) as usize).map(|row| row.iter().copied()),
+            );
             let mut expected = vec![0.0; length as usize];
             for (x, row) in x.iter().zip(entries.chunks(length.max(1) as usize)) {
                 expected.iter_mut().zip(row).for_each(|(sum, entry)| *sum += entry * x);

@@ -120,6 +120,12 @@ impl Texts {
         names.map(|file| stem(file)).collect()
     }
 
+    /// Ids that the calibrations' files are called by.
+    #[must_use]
+    pub fn calibrations(&self) -> BTreeSet<&str> {
+        self.files.keys().filter(|name| name.starts_with("calibrations/")).map(|name| stem(name)).collect()
+    }
+
     /// True for the text of one experiment or of its reference; assumptions and calibrations concern the whole study.
     pub(super) fn is_of_experiment(name: &str) -> bool {
         (name.starts_with("experiments/") && name != ASSUMPTIONS) || name.starts_with("reference/")

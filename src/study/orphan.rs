@@ -1,4 +1,4 @@
-//! Results of experiments that no longer exist, and earlier tables.
+//! Results of experiments and calibrations that no longer exist, and earlier tables.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -10,9 +10,13 @@ use crate::experiment::ExperimentId;
 
 /// What an experiment leaves in `results/`.
 const ENDINGS: [&str; 3] = ["parquet", "json", "journal"];
+/// What a calibration leaves, and where.
+const OF_CALIBRATIONS: [(&str, &[&str]); 2] =
+    [("results/calibrations", &["journal"]), ("reports/calibrations", &["md", "json"])];
 
 /// Tables, earlier ones too, records, journals and times of experiments that no file has the name of, and the figures and pages that their records
-/// list; by their names within the study. A file that cannot be understood still counts as an experiment: it may be repaired.
+/// list; journals, pages and records of such calibrations; by their names within the study. A file that cannot be understood still counts
+/// as an experiment: it may be repaired.
 #[must_use]
 pub fn orphans(layout: &Layout, texts: &Texts) -> BTreeSet<String> {
     let known = texts.ids();
@@ -22,6 +26,14 @@ pub fn orphans(layout: &Layout, texts: &Texts) -> BTreeSet<String> {
         found.extend(names_in(layout, &folder));
     }
     found.extend(names_in(layout, spent::FOLDER).into_iter().filter(|name| is_orphan(name)));
+    let calibrations = texts.calibrations();
+    for (folder, endings) in OF_CALIBRATIONS {
+        let is_left = |name: &String| {
+            name.rsplit_once('.').is_some_and(|(_, ending)| endings.contains(&ending))
+                && stem(name).parse::<ExperimentId>().is_ok_and(|id| !calibrations.contains(id.0.as_str()))
+        };
+        found.extend(names_in(layout, folder).into_iter().filter(is_left));
+    }
     let Ok(entries) = fs::read_dir(layout.results()) else { return found };
     for entry in entries.flatten() {
         let Ok(name) = entry.file_name().into_string() else { continue };

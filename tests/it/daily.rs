@@ -176,6 +176,12 @@ fn what_a_deleted_experiment_left_is_removed() {
     }
     let before = (names(&desk, "results"), names(&desk, "reports/ch3"));
     assert_eq!(shotdamp(&desk, &["clean", "--orphans"]).out, "0 files removed\n");
+    for name in ["results/calibrations/gone.journal", "reports/calibrations/gone.md", "reports/calibrations/NOTES.md"] {
+        desk.put(name, "of a calibration");
+    }
+    let gone = "reports/calibrations/gone.md\nresults/calibrations/gone.journal\n2 files removed\n";
+    assert_eq!(shotdamp(&desk, &["clean", "--orphans"]).out, gone);
+    fs::remove_dir_all(desk.layout.path("results/calibrations")).unwrap();
     fs::remove_file(desk.layout.path("experiments/ch3/ch3-gap.yaml")).unwrap();
     fs::remove_file(desk.layout.path("reference/ch3/ch3-gap.yaml")).unwrap();
     // One that cannot be read just now is not gone.

@@ -3,8 +3,7 @@
 use super::March;
 use super::sums::Integration;
 use crate::dynamics::EngineError;
-use crate::dynamics::integral::{self, Integrand};
-use crate::dynamics::parabola::Parabola;
+use crate::dynamics::integral;
 
 /// An acceleration below this share of what it may become is zero: the crossing that ended the half cycle was smooth.
 const SMOOTH: f64 = 1e-9;
@@ -112,27 +111,29 @@ impl<const TAPED: bool> March<'_, TAPED> {
     /// Adds a segment to the half cycle, and to the measures what is integrated together with it.
     #[cold]
     pub(super) fn sum_up_half_cycle(&mut self, length: f64) {
-        let flow = &self.flow;
         let together = self.integration(length) == Integration::Together;
         let averaged = together && length > 0.0 && self.averaged.holds(self.cycle);
-        let follows = flow.rows.bend.filter(|_| !self.half.idle);
-        let bend =
-            |row| Integrand { shares: self.signals.of(row).each().collect(), rest: Parabola::default(), place: 0.0 };
-        let observed = |row: &usize| {
-            let (shares, rest) = flow.rows.evaluate(*row, &self.c, self.level, flow.blocks.len());
-            let place = shares.iter().fold(rest.p0, |sum, share| sum + share.value);
-            Integrand { shares, rest, place }
-        };
-        let rows = flow.rows.observed.iter().filter(|_| averaged);
-        let mut signals: Vec<Integrand> = follows.map(bend).into_iter().chain(rows.map(observed)).collect();
-        let of = integral::together(&flow.blocks, &flow.bank, &mut signals, length);
-        let mut of = signals.iter().zip(of);
-        if follows.is_some() {
-            self.half.square += of.next().map_or(0.0, |(_, integrals)| integrals[1]);
+        let follows = !self.half.idle;
+        let flow = &self.flow;
+        let needed = if averaged { flow.rows.observed.len() } else { usize::from(follows) };
+        // Half cycles watch the first of them, so that its shares are known.
+        self.panels.clear();
+        for (place, &row) in flow.rows.observed.iter().take(needed).enumerate() {
+            if place == 0 {
+                let watched = self.signals.of(row);
+                self.panels.add(watched.each(), watched.rest);
+            } else {
+                let (shares, rest) = flow.rows.evaluate(row, &self.c, self.level, flow.blocks.len());
+                self.panels.add(shares.into_iter(), rest);
+            }
+        }
+        let integrands = self.panels.integrate(&flow.blocks, length);
+        if let (true, Some(first)) = (follows, integrands.first()) {
+            self.half.square += first.acceleration_square;
             self.half.length += length;
         }
-        for (observed, (signal, integrals)) in self.response.observed.iter_mut().zip(of) {
-            observed.halves[self.visits.half].add(integral::sums(signal.place, length, integrals));
+        for (observed, signal) in self.response.observed.iter_mut().zip(integrands.iter().filter(|_| averaged)) {
+            observed.halves[self.visits.half].add(integral::sums(signal.place, length, signal.integrals));
         }
     }
 
