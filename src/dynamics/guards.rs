@@ -32,6 +32,15 @@ pub(crate) struct Contacts<'a> {
     pub(crate) slipped: Option<Slipped>,
     pub(crate) q: &'a [f64],
     pub(crate) rate: &'a [f64],
+    /// Some floor and ceiling do not move as one.
+    pub(crate) has_walls: bool,
+}
+
+impl<'a> Contacts<'a> {
+    /// q and q′, where a ceiling may move by itself.
+    fn structure(&self) -> Option<[&'a [f64]; 2]> {
+        self.has_walls.then_some([self.q, self.rate])
+    }
 }
 
 /// The face across has just let a particle go, or pushes it again, where its force or their relative speed is zero.
@@ -159,13 +168,14 @@ fn start(distance: f64, rate: f64, smooth: bool, signal: Watched<'_>, size: f64)
     }
 }
 
-/// A particle in flight relative to its ceiling, of a structure at q and q′; what rounding has left of rest there is rest.
+/// A particle in flight relative to its ceiling; what rounding has left of rest there is rest. `structure` is q and q′ where some
+/// ceiling moves by itself.
 #[inline]
-pub(crate) fn above(particle: &Particle, here: Relative, q: &[f64], q_rate: &[f64]) -> Option<Relative> {
+pub(crate) fn above(particle: &Particle, here: Relative, structure: Option<[&[f64]; 2]>) -> Option<Relative> {
     let ceiling = particle.ceiling.as_ref()?;
-    if ceiling.row == particle.floor.row {
+    let Some([q, q_rate]) = structure.filter(|_| particle.has_walls()) else {
         return Some(Relative { gap: here.gap - particle.gap, rate: here.rate });
-    }
+    };
     let shift = |x: &[f64]| dot(&ceiling.row, x) - dot(&particle.floor.row, x);
     let size = |x: &[f64]| [&ceiling.row, &particle.floor.row].map(|row| magnitude(row, x)).iter().sum::<f64>();
     let known = |value: f64, size: f64| if value.abs() <= 4.0 * f64::EPSILON * size { 0.0 } else { value };
@@ -199,14 +209,12 @@ fn in_flight(
         start: start(here.gap, here.rate, state.smooth[j], face, 0.0),
         distance: true,
     });
-    let (Some(ceiling), Some(relative)) = (&particle.ceiling, above(particle, here, state.q, state.rate)) else {
-        return path;
-    };
-    let (above, face) = if ceiling.row == particle.floor.row {
-        (Parabola { p0: path.p0 - particle.gap, ..path }, face)
-    } else {
+    let Some(relative) = above(particle, here, state.structure()) else { return path };
+    let (above, face) = if state.has_walls && particle.has_walls() {
         let face = signals.of(rows.second);
         (flight_path(face, relative, gravity), face)
+    } else {
+        (Parabola { p0: path.p0 - particle.gap, ..path }, face)
     };
     guards.push(Guard {
         particle: j,

@@ -15,8 +15,8 @@
 //! further from zero than all blocks together can reach, or value and slope are larger than their curvature can undo. No
 //! window is sampled, no crossing stepped over.
 
-use super::bank::{Bank, Blocks, Kernels};
-use super::block::{Block, Kernel};
+use super::bank::{Bank, Blocks, Kernels, Phases};
+use super::block::{Block, Kernel, Phase};
 use super::budget;
 use super::contact::Crossing;
 use super::flow::Flow;
@@ -137,6 +137,26 @@ struct Survey {
     reach: f64,
     bend: f64,
     snap: f64,
+}
+
+/// Sums over several blocks each: amplitude, amplitude·radius², amplitude·radius⁴.
+#[derive(Clone, Copy)]
+struct Sums {
+    reach: Lanes<WIDTH>,
+    bend: Lanes<WIDTH>,
+    snap: Lanes<WIDTH>,
+}
+
+impl Sums {
+    const ZERO: Self = Self { reach: Lanes::ZERO, bend: Lanes::ZERO, snap: Lanes::ZERO };
+
+    #[inline(always)]
+    fn add(&mut self, amplitude: Lanes<WIDTH>, blocks: &Blocks) {
+        let bend = amplitude * blocks.square;
+        self.reach = self.reach + amplitude;
+        self.bend = self.bend + bend;
+        self.snap = self.snap + bend * blocks.square;
+    }
 }
 
 impl Survey {
@@ -321,9 +341,8 @@ impl Search {
         // A little beyond the first root that is known, to see one that comes at the same time.
         let mut window = plan.window.min(1.25 * (horizon - self.now)).min(limit - self.now);
         self.looked[index] = self.now;
-        let mut piece = Window::new();
+        let now = self.now;
         loop {
-            let now = self.now;
             let start = if now == 0.0 { guard.start } else { Start::Apart };
             let indivisible = window <= self.shortest.max(64.0 * f64::EPSILON * now);
             let own = own(motion.blocks.len(), guard.signal);
@@ -337,11 +356,11 @@ impl Search {
                 let survey = &self.surveys[guard.signal];
                 guard.parabola.at(now) + guard.sign * survey.value < 2.0 * bounds.left_out
             };
+            let piece = || Window::expand(motion.series, shares, &bounds, guard.sign, guard.parabola, &span, start);
             let verdict = if hopeless && !indivisible {
                 Verdict::Unsure
             } else {
-                piece.expand(motion.series, shares, &bounds, guard.sign, guard.parabola, &span, start);
-                piece.judge(|order| {
+                piece().judge(|order| {
                     let bent = guard.parabola.p2.abs() * (span.length * span.length);
                     let parabola = if order == 0 { 2.0 * bent } else { 0.0 };
                     parabola + motion.series.bend(shares, span.length * motion.series.pace, order)
@@ -365,7 +384,7 @@ impl Search {
                 Verdict::Unsure | Verdict::Until { .. } if indivisible => {
                     clarity.ties += 1;
                     clarity.margin = 0.0;
-                    if piece.end() < 0.0 {
+                    if piece().end() < 0.0 {
                         return Look::Root(Root { guard: index, guess: 1.0, high: 1.0, window });
                     }
                     self.clear[index] = now + window;
@@ -394,27 +413,38 @@ impl Search {
         if self.surveys[signal].at == self.now {
             return;
         }
-        let moved = self.now > 0.0;
         let shares = &mut self.shares[own(motion.blocks.len(), signal)];
         let watched = signals.of(signal);
-        for (((blocks, start), kernels), share) in
-            motion.blocks.iter().zip(watched.phases).zip(&self.here).zip(&mut *shares)
-        {
-            let now = if moved { blocks.advance(*start, kernels) } else { *start };
-            *share = Shares { now, amplitude: blocks.amplitudes(now) };
-        }
-        if !motion.bank.near_critical().is_empty() {
+        let bounded = motion.bank.near_critical().is_empty();
+        let mut sums = Sums::ZERO;
+        let Phase { value, rate } = if self.now > 0.0 {
+            let mut total = Phases::ZERO;
+            for (((blocks, start), kernels), share) in
+                motion.blocks.iter().zip(watched.phases).zip(&self.here).zip(&mut *shares)
+            {
+                let now = blocks.advance(*start, kernels);
+                total = Phases { value: total.value + now.value, rate: total.rate + now.rate };
+                *share = Shares { now, amplitude: blocks.amplitudes(now) };
+                sums.add(share.amplitude, blocks);
+            }
+            Phase { value: total.value.sum(), rate: total.rate.sum() }
+        } else {
+            for ((blocks, now), share) in motion.blocks.iter().zip(watched.phases).zip(&mut *shares) {
+                *share = Shares { now: *now, amplitude: blocks.amplitudes(*now) };
+                sums.add(share.amplitude, blocks);
+            }
+            watched.sum
+        };
+        if !bounded {
             // Good for the second derivative too.
             bound(motion, shares, 2.0, limit - self.now);
-        }
-        let mut sums = [Lanes::ZERO; 5];
-        for (blocks, Shares { now, amplitude }) in motion.blocks.iter().zip(&*shares) {
-            let bend = *amplitude * blocks.square;
-            for (sum, part) in sums.iter_mut().zip([now.value, now.rate, *amplitude, bend, bend * blocks.square]) {
-                *sum = *sum + part;
+            sums = Sums::ZERO;
+            for (blocks, share) in motion.blocks.iter().zip(&*shares) {
+                sums.add(share.amplitude, blocks);
             }
         }
-        let [value, rate, reach, bend, snap] = sums.map(Lanes::sum);
+        let Sums { reach, bend, snap } = sums;
+        let [reach, bend, snap] = [reach, bend, snap].map(Lanes::sum);
         self.surveys[signal] = Survey { at: self.now, value, rate, reach, bend, snap };
     }
 
@@ -547,11 +577,10 @@ impl Search {
     fn polish_short_hop(&mut self, motion: Motion<'_>, root: Root) -> f64 {
         let guard = self.guards[root.guard];
         let own = own(motion.blocks.len(), guard.signal);
-        let mut piece = Window::new();
         let span = Span::new(motion.series, 0.0, root.window);
         let shares = &self.shares[own];
         let bounds = motion.series.bounds(shares, &span, false);
-        piece.expand(motion.series, shares, &bounds, guard.sign, guard.parabola, &span, guard.start);
+        let piece = Window::expand(motion.series, shares, &bounds, guard.sign, guard.parabola, &span, guard.start);
         let time = root.window * piece.refine(root.guess, root.high);
         for (kernels, blocks) in self.trial.iter_mut().zip(motion.blocks) {
             *kernels = blocks.follow_on(&Kernels::NONE, time);

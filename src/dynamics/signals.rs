@@ -76,11 +76,20 @@ pub(crate) struct Rows {
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Signals {
     blocks: usize,
+    registers: usize,
     phases: Vec<Phases>,
-    sums: Vec<Phase>,
-    rests: Vec<Parabola>,
+    totals: Vec<Total>,
     /// Coordinates of several blocks.
     coordinates: Vec<[Lanes<WIDTH>; 2]>,
+}
+
+/// Of a watched row at the start of a segment.
+#[derive(Debug, Clone, Copy, Default)]
+struct Total {
+    /// Of its shares, and of the moduli of their values.
+    sum: Phase,
+    size: f64,
+    rest: Parabola,
 }
 
 /// A watched row at the start of a segment: its shares in the blocks, their sum, and the parabola that constant loads add.
@@ -89,6 +98,7 @@ pub(crate) struct Watched<'a> {
     blocks: usize,
     pub(crate) phases: &'a [Phases],
     pub(crate) sum: Phase,
+    size: f64,
     pub(crate) rest: Parabola,
 }
 
@@ -302,22 +312,22 @@ impl Rows {
     #[inline(always)]
     fn watch_by_registers(&self, c: &[f64], force: f64, blocks: usize, signals: &mut Signals) {
         let registers = blocks.div_ceil(WIDTH);
-        signals.blocks = blocks;
+        (signals.blocks, signals.registers) = (blocks, registers);
         signals.phases.resize(self.watched * registers, Phases::ZERO);
-        signals.sums.resize(self.watched, Phase::default());
-        signals.rests.resize(self.watched, Parabola::default());
+        signals.totals.resize(self.watched, Total::default());
         signals.coordinates.clear();
         signals.coordinates.extend(c.as_chunks::<2>().0[..blocks].chunks(WIDTH).map(apart));
         let rows = self.rows.iter().zip(self.weights.chunks_exact(registers.max(1)));
-        let places = signals.phases.chunks_exact_mut(registers.max(1)).zip(&mut signals.sums).zip(&mut signals.rests);
-        for ((row, weights), ((phases, total), rest)) in rows.zip(places) {
-            let mut sum = Phases::ZERO;
+        let places = signals.phases.chunks_exact_mut(registers.max(1)).zip(&mut signals.totals);
+        for ((row, weights), (phases, total)) in rows.zip(places) {
+            let (mut sum, mut sizes) = (Phases::ZERO, Lanes::ZERO);
             for ((&[v0, v1, r0, r1], &[x, y]), phase) in weights.iter().zip(&signals.coordinates).zip(phases) {
                 *phase = Phases { value: v0 * x + v1 * y, rate: r0 * x + r1 * y };
                 sum = Phases { value: sum.value + phase.value, rate: sum.rate + phase.rate };
+                sizes = sizes + phase.value.abs();
             }
-            *total = Phase { value: sum.value.sum(), rate: sum.rate.sum() };
-            *rest = row.rest(force);
+            let sum = Phase { value: sum.value.sum(), rate: sum.rate.sum() };
+            *total = Total { sum, size: sizes.sum(), rest: row.rest(force) };
         }
     }
 
@@ -336,16 +346,16 @@ impl Rows {
 
 impl Signals {
     /// A watched row.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn of(&self, row: usize) -> Watched<'_> {
-        let registers = self.blocks.div_ceil(WIDTH);
-        let phases = &self.phases[row * registers..][..registers];
-        Watched { blocks: self.blocks, phases, sum: self.sums[row], rest: self.rests[row] }
+        let Total { sum, size, rest } = self.totals[row];
+        let phases = &self.phases[row * self.registers..][..self.registers];
+        Watched { blocks: self.blocks, phases, sum, size, rest }
     }
 
     /// How many are watched.
     pub(crate) fn len(&self) -> usize {
-        self.rests.len()
+        self.totals.len()
     }
 }
 
@@ -360,8 +370,7 @@ impl<'a> Watched<'a> {
     /// What rounding makes of the sum of its shares.
     #[inline]
     pub(crate) fn noise(self) -> f64 {
-        let sizes = self.phases.iter().fold(Lanes::ZERO, |sum, phases| sum + phases.value.abs());
-        4.0 * f64::EPSILON * sizes.sum()
+        4.0 * f64::EPSILON * self.size
     }
 }
 

@@ -46,6 +46,11 @@ impl Superposition {
     #[inline(always)]
     fn sum_by_registers(&self, x: &[f64], y: &mut [f64]) {
         let mut y = &mut y[..self.length];
+        match self.registers {
+            1 => return put(narrow::<1>(&self.rows, x), y),
+            2 => return put(narrow::<2>(&self.rows, x), y),
+            _ => {}
+        }
         let mut first = 0;
         while self.registers - first >= 4 {
             y = self.strip::<4>(first, x, y);
@@ -71,8 +76,31 @@ impl Superposition {
             }
         }
         let (now, rest) = y.split_at_mut(y.len().min(MANY * WIDTH));
-        now.iter_mut().zip(sums.iter().flat_map(|sum| sum.0)).for_each(|(y, sum)| *y = sum);
+        put(sums, now);
         rest
+    }
+}
+
+/// Σ xᵢ rᵢ of rows that are so many registers long.
+#[inline(always)]
+fn narrow<const MANY: usize>(rows: &[[f64; WIDTH]], x: &[f64]) -> [Lanes<WIDTH>; MANY] {
+    let mut sums = [Lanes::ZERO; MANY];
+    for (x, row) in x.iter().zip(rows.as_chunks::<MANY>().0) {
+        for (sum, entries) in sums.iter_mut().zip(row) {
+            *sum = *sum + Lanes(*entries) * *x;
+        }
+    }
+    sums
+}
+
+/// The numbers of several registers, as far as `y` goes.
+#[inline(always)]
+fn put<const MANY: usize>(registers: [Lanes<WIDTH>; MANY], y: &mut [f64]) {
+    let (whole, part) = y.as_chunks_mut::<WIDTH>();
+    let count = whole.len();
+    whole.iter_mut().zip(registers).for_each(|(y, register)| *y = register.0);
+    if let Some(register) = registers.get(count) {
+        part.iter_mut().zip(register.0).for_each(|(y, number)| *y = number);
     }
 }
 

@@ -44,15 +44,10 @@ pub(crate) struct Window {
 }
 
 impl Window {
-    pub(crate) fn new() -> Self {
-        Self { a: [0.0; DEGREE + 1], b: [0.0; DEGREE + 1], remainder: 0.0, leaves_blocks: false, start: Start::Apart }
-    }
-
     /// Expands a guard over a window: its shares and their bounds at the window's start, its parabola from the segment's.
     #[inline(always)]
     #[expect(clippy::too_many_arguments, reason = "a guard comes in pieces, so that nothing is copied")]
     pub(crate) fn expand(
-        &mut self,
         series: &Series,
         shares: &[Shares],
         bounds: &Bounds,
@@ -60,53 +55,27 @@ impl Window {
         parabola: Parabola,
         span: &Span,
         start: Start,
-    ) {
+    ) -> Self {
         let bent = parabola.p2 * span.length;
         let base = [parabola.at(span.from), parabola.rate(span.from) * span.length, bent * span.length];
-        self.start = start;
-        self.remainder = bounds.left_out;
-        self.leaves_blocks = bounds.leaves_blocks;
-        match start {
+        let mut remainder = bounds.left_out;
+        let a = match start {
             Start::Apart => {
-                self.remainder += 8.0 * f64::EPSILON * (base[0].abs() + base[1].abs() + bounds.moving);
-                let a = series.expand_slow(shares, span.powers[DEGREE + 1]);
-                for j in 0..DEGREE + 1 {
-                    self.a[j] = a[j] * (sign * span.powers[j]);
-                }
-                for j in 0..3 {
-                    self.a[j] += base[j];
-                }
+                remainder += 8.0 * f64::EPSILON * (base[0].abs() + base[1].abs() + bounds.moving);
+                scaled::<0>(series.expand_slow(shares, span.powers[DEGREE + 1]), sign, &base, span)
             }
             // The start is known exactly: what rounding left in the coefficients below the first is not there.
             Start::Touching { order: 1, slope } => {
-                self.fill::<1>(series, shares, sign, &base, span);
+                let mut a = divided::<1>(series, shares, sign, &base, span);
                 if !slope.is_nan() {
-                    self.a[0] = slope * span.length;
+                    a[0] = slope * span.length;
                 }
+                a
             }
-            Start::Touching { order: 2, .. } => self.fill::<2>(series, shares, sign, &base, span),
-            Start::Touching { .. } => self.fill::<3>(series, shares, sign, &base, span),
-        }
-        self.b = bernstein(&self.a);
-    }
-
-    /// The coefficients in σ, divided by σ^`ORDER`.
-    #[inline(always)]
-    fn fill<const ORDER: usize>(
-        &mut self,
-        series: &Series,
-        shares: &[Shares],
-        sign: f64,
-        base: &[f64; 3],
-        span: &Span,
-    ) {
-        let a: Coefficients = series.expand::<ORDER, _>(shares.iter().map(|share| share.now));
-        for j in 0..DEGREE + 1 {
-            self.a[j] = a[j] * (sign * span.powers[j + ORDER]);
-        }
-        for j in ORDER..3 {
-            self.a[j - ORDER] += base[j];
-        }
+            Start::Touching { order: 2, .. } => divided::<2>(series, shares, sign, &base, span),
+            Start::Touching { .. } => divided::<3>(series, shares, sign, &base, span),
+        };
+        Self { b: bernstein(&a), a, remainder, leaves_blocks: bounds.leaves_blocks, start }
     }
 
     pub(crate) fn end(&self) -> f64 {
@@ -297,6 +266,30 @@ impl Window {
         }
         x
     }
+}
+
+/// The coefficients in σ of a guard divided by σ^`ORDER`.
+#[inline(always)]
+fn divided<const ORDER: usize>(
+    series: &Series,
+    shares: &[Shares],
+    sign: f64,
+    base: &[f64; 3],
+    span: &Span,
+) -> Coefficients {
+    scaled::<ORDER>(series.expand::<ORDER, _>(shares.iter().map(|share| share.now)), sign, base, span)
+}
+
+/// From powers of ρt to powers of σ, with the parabola.
+#[inline(always)]
+fn scaled<const ORDER: usize>(mut a: Coefficients, sign: f64, base: &[f64; 3], span: &Span) -> Coefficients {
+    for j in 0..DEGREE + 1 {
+        a[j] *= sign * span.powers[j + ORDER];
+    }
+    for j in ORDER..3 {
+        a[j - ORDER] += base[j];
+    }
+    a
 }
 
 /// Which Bernstein coefficients are surely positive, and which surely negative: one bit each, the first the lowest.

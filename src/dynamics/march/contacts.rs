@@ -5,7 +5,7 @@ use super::March;
 use crate::dynamics::EngineError;
 use crate::dynamics::contact::{Crossing, Hold, Relative, Side};
 use crate::dynamics::guards;
-use crate::dynamics::system::{Contact, EventKind, Face, Law, dot};
+use crate::dynamics::system::{Contact, EventKind, Face, Law, Particle, dot};
 
 /// How far a face can be compressed to its stop.
 fn depth(face: &Face) -> f64 {
@@ -252,7 +252,8 @@ impl<const TAPED: bool> March<'_, TAPED> {
         if self.particles[j] == Relative::default() {
             return Some(Side::Floor);
         }
-        let above = guards::above(&self.system.particles[j], self.particles[j], &self.q, &self.rate)?;
+        let structure = self.has_walls.then_some([self.q.as_slice(), self.rate.as_slice()]);
+        let above = guards::above(&self.system.particles[j], self.particles[j], structure)?;
         (above == Relative::default()).then_some(Side::Ceiling)
     }
 
@@ -261,7 +262,7 @@ impl<const TAPED: bool> March<'_, TAPED> {
         let particle = &self.system.particles[j];
         let ceiling = particle.ceiling.as_ref()?;
         let floor = self.particles[j];
-        if ceiling.row == particle.floor.row {
+        if !self.moves_by_itself(particle) {
             return Some(Relative { gap: floor.gap - particle.gap, rate: floor.rate });
         }
         let shift = |x: &[f64]| dot(&ceiling.row, x) - dot(&particle.floor.row, x);
@@ -273,12 +274,17 @@ impl<const TAPED: bool> March<'_, TAPED> {
         let particle = &self.system.particles[j];
         let Some(ceiling) = particle.ceiling.as_ref() else { return };
         let here = self.particles[j];
-        self.particles[j] = if ceiling.row == particle.floor.row {
-            Relative { gap: here.gap + particle.gap, rate: here.rate }
-        } else {
+        self.particles[j] = if self.moves_by_itself(particle) {
             let shift = |x: &[f64]| dot(&ceiling.row, x) - dot(&particle.floor.row, x);
             Relative { gap: here.gap + particle.gap + shift(&self.q), rate: here.rate + shift(&self.rate) }
+        } else {
+            Relative { gap: here.gap + particle.gap, rate: here.rate }
         };
+    }
+
+    /// The ceiling of a particle does not move with its floor.
+    fn moves_by_itself(&self, particle: &Particle) -> bool {
+        self.has_walls && particle.has_walls()
     }
 
     /// The face that a particle presses into is compressed by more than rounding.

@@ -139,6 +139,7 @@ impl<const TAPED: bool> March<'_, TAPED> {
             slipped: self.slipped,
             q: &self.q,
             rate: &self.rate,
+            has_walls: self.has_walls,
         };
         guards::set(state, flow, &self.signals, &mut self.search, &mut self.paths);
         if let (Some(bend), false) = (flow.rows.bend, self.half.idle) {
