@@ -356,11 +356,13 @@ impl Search {
                 let survey = &self.surveys[guard.signal];
                 guard.parabola.at(now) + guard.sign * survey.value < 2.0 * bounds.left_out
             };
-            let piece = || Window::expand(motion.series, shares, &bounds, guard.sign, guard.parabola, &span, start);
+            let mut ends_below = false;
             let verdict = if hopeless && !indivisible {
                 Verdict::Unsure
             } else {
-                piece().judge(|order| {
+                let piece = Window::expand(motion.series, shares, &bounds, guard.sign, guard.parabola, &span, start);
+                ends_below = indivisible && piece.end() < 0.0;
+                piece.judge(|order| {
                     let bent = guard.parabola.p2.abs() * (span.length * span.length);
                     let parabola = if order == 0 { 2.0 * bent } else { 0.0 };
                     parabola + motion.series.bend(shares, span.length * motion.series.pace, order)
@@ -384,7 +386,7 @@ impl Search {
                 Verdict::Unsure | Verdict::Until { .. } if indivisible => {
                     clarity.ties += 1;
                     clarity.margin = 0.0;
-                    if piece().end() < 0.0 {
+                    if ends_below {
                         return Look::Root(Root { guard: index, guess: 1.0, high: 1.0, window });
                     }
                     self.clear[index] = now + window;
