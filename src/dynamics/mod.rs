@@ -9,7 +9,7 @@
 //! | `run` | the ways to run it |
 //! | `response`, `sums`, `extremes`, `steady_state`, `proof`, `error` | what comes out |
 //! | `march`, `states`, `visits` | from event to event; the contact states on the way and how long each was in force |
-//! | `search`, `guards`, `window`, `polynomial` | the first event, certified by Bernstein enclosures |
+//! | `search`, `survey`, `guards`, `window`, `polynomial` | the first event, certified by Bernstein enclosures |
 //! | `reach` | stops and ceilings that a bound on the energy keeps out of the search |
 //! | `contact`, `collision`, `mobility` | what an event leads to |
 //! | `flow`, `load`, `signals`, `parabola`, `series` | exact motion of one contact state, and what is watched of it |
@@ -78,6 +78,7 @@ mod states;
 mod steady_state;
 mod sums;
 mod superposition;
+mod survey;
 mod system;
 mod trace;
 mod undamped;

@@ -15,16 +15,17 @@
 //! further from zero than all blocks together can reach, or value and slope are larger than their curvature can undo. No
 //! window is sampled, no crossing stepped over.
 
-use super::bank::{Bank, Blocks, Kernels, Phases};
-use super::block::{Block, Kernel, Phase};
+use super::bank::Kernels;
+use super::block::Kernel;
 use super::budget;
 use super::contact::Crossing;
 use super::flow::Flow;
-use super::lanes::{Lanes, WIDTH};
+use super::lanes::WIDTH;
 use super::parabola::Parabola;
 use super::polynomial::nearest_root;
-use super::series::{Series, Shares, Span};
+use super::series::{Shares, Span};
 use super::signals::{Signals, Watched};
+use super::survey::{Motion, Surveys, Turns, bound};
 use super::wide::widened;
 use super::window::{Start, Verdict, Window};
 
@@ -45,23 +46,6 @@ const MANY_TURNS: f64 = 1e6;
 const SHORT_HOP: f64 = 0.02;
 /// radius·δ below which the local expansion of a guard, to the seventh, is exact to rounding.
 const NEAR: f64 = 0.03;
-
-/// What a search knows of a flow.
-#[derive(Clone, Copy)]
-struct Motion<'a> {
-    /// Its blocks, several together, and one by one.
-    blocks: &'a [Blocks],
-    each: &'a [Block],
-    bank: &'a Bank,
-    series: &'a Series,
-}
-
-impl Motion<'_> {
-    #[inline(always)]
-    fn kernels(self, t: f64, kernels: &mut [Kernels]) {
-        self.bank.kernels(self.each, t, kernels);
-    }
-}
 
 /// A guard at the start of a segment: parabola + sign × signal.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -106,16 +90,8 @@ pub(crate) struct Search {
     pub(crate) guards: Vec<Guard>,
     /// Until when each of them is known to stay positive.
     clear: Vec<f64>,
-    /// Where the last window of each of them began.
-    looked: Vec<f64>,
     plans: Vec<Plan>,
-    /// The signals as they are at `now`, as far as they have been looked at.
-    surveys: Vec<Survey>,
-    /// Their shares, signal by signal.
-    shares: Vec<Shares>,
-    /// Where windows begin, seconds from the segment's start, and the kernels up to there.
-    now: f64,
-    here: Vec<Kernels>,
+    surveys: Surveys,
     /// Kernels from the segment's start to the result.
     kernels: Vec<Kernels>,
     trial: Vec<Kernels>,
@@ -124,43 +100,6 @@ pub(crate) struct Search {
     /// Windows below this are not divided any more, s. It grows from doubt to doubt: a guard that stays within rounding of
     /// zero must not hold up the search.
     shortest: f64,
-}
-
-/// A signal at an instant, and what bounds it from then on.
-#[derive(Debug, Clone, Copy)]
-struct Survey {
-    /// NaN until it is looked at.
-    at: f64,
-    value: f64,
-    rate: f64,
-    /// Σ amplitude, Σ amplitude·radius², Σ amplitude·radius⁴.
-    reach: f64,
-    bend: f64,
-    snap: f64,
-}
-
-/// Sums over several blocks each: amplitude, amplitude·radius², amplitude·radius⁴.
-#[derive(Clone, Copy)]
-struct Sums {
-    reach: Lanes<WIDTH>,
-    bend: Lanes<WIDTH>,
-    snap: Lanes<WIDTH>,
-}
-
-impl Sums {
-    const ZERO: Self = Self { reach: Lanes::ZERO, bend: Lanes::ZERO, snap: Lanes::ZERO };
-
-    #[inline(always)]
-    fn add(&mut self, amplitude: Lanes<WIDTH>, blocks: &Blocks) {
-        let bend = amplitude * blocks.square;
-        self.reach = self.reach + amplitude;
-        self.bend = self.bend + bend;
-        self.snap = self.snap + bend * blocks.square;
-    }
-}
-
-impl Survey {
-    const NONE: Self = Self { at: f64::NAN, value: 0.0, rate: 0.0, reach: 0.0, bend: 0.0, snap: 0.0 };
 }
 
 /// The one root of a guard in a window that begins now.
@@ -182,10 +121,16 @@ struct Plan {
     window: f64,
     /// How long it is clear without one, s.
     quick: f64,
+    /// A window has begun there.
+    begun: bool,
 }
 
 impl Plan {
-    const NONE: Self = Self { at: f64::NAN, window: 0.0, quick: 0.0 };
+    const NONE: Self = Self::new(f64::NAN, 0.0, 0.0);
+
+    const fn new(at: f64, window: f64, quick: f64) -> Self {
+        Self { at, window, quick, begun: false }
+    }
 }
 
 /// What a look at a guard has brought.
@@ -201,12 +146,8 @@ impl Search {
         Self {
             guards: Vec::new(),
             clear: Vec::new(),
-            looked: Vec::new(),
             plans: Vec::new(),
-            surveys: Vec::new(),
-            shares: Vec::new(),
-            now: 0.0,
-            here: Vec::new(),
+            surveys: Surveys::default(),
             kernels: Vec::new(),
             trial: Vec::new(),
             window_factor,
@@ -275,26 +216,15 @@ impl Search {
     fn start(&mut self, motion: Motion<'_>, signals: &Signals, limit: f64, clarity: &Clarity) {
         let count = self.guards.len();
         self.clear.resize(count, 0.0);
-        self.looked.clear();
-        self.looked.resize(count, f64::NAN);
         self.plans.resize(count, Plan::NONE);
-        self.surveys.clear();
-        self.surveys.resize(signals.len(), Survey::NONE);
-        let width = motion.blocks.len();
-        let size = width * signals.len();
-        if self.shares.len() < size {
-            self.shares.resize(size, Shares::NONE);
+        for kernels in [&mut self.kernels, &mut self.trial] {
+            kernels.resize(motion.blocks.len(), Kernels::NONE);
         }
-        for kernels in [&mut self.here, &mut self.kernels, &mut self.trial] {
-            kernels.resize(width, Kernels::NONE);
-        }
-        self.now = 0.0;
+        self.surveys.begin(motion, signals);
         self.shortest = shortest(motion, limit);
-        for index in 0..count {
-            let guard = self.guards[index];
-            self.survey(motion, signals, guard.signal, limit);
-            self.plans[index] = self.plan(motion, &guard, limit, clarity);
-            self.clear[index] = self.plans[index].quick;
+        for (guard, (plan, clear)) in self.guards.iter().zip(self.plans.iter_mut().zip(&mut self.clear)) {
+            *plan = plan_of(motion, signals, &mut self.surveys, guard, limit, clarity, self.window_factor);
+            *clear = plan.quick;
         }
     }
 
@@ -320,42 +250,36 @@ impl Search {
         limit: f64,
         clarity: &mut Clarity,
     ) -> Look {
-        let guard = self.guards[index];
-        if self.plans[index].at != self.now {
+        let Self { guards, plans, clear: known, surveys, shortest: least, .. } = self;
+        let (guard, plan, known) = (&guards[index], &mut plans[index], &mut known[index]);
+        if plan.at != surveys.now {
             // Another guard has moved on to here.
-            self.survey(motion, signals, guard.signal, limit);
-            self.plans[index] = self.plan(motion, &guard, limit, clarity);
+            *plan = plan_of(motion, signals, surveys, guard, limit, clarity, self.window_factor);
         }
-        let clear = self.clear[index];
-        let ahead = clear - self.now;
-        if ahead > WORTH_A_MOVE * self.plans[index].window || (ahead > 0.0 && self.looked[index] == self.now) {
-            self.move_to(motion, clear);
-            self.survey(motion, signals, guard.signal, limit);
-            self.plans[index] = self.plan(motion, &guard, limit, clarity);
+        let ahead = *known - surveys.now;
+        if ahead > WORTH_A_MOVE * plan.window || (ahead > 0.0 && plan.begun) {
+            surveys.move_to(motion, *known);
+            *plan = plan_of(motion, signals, surveys, guard, limit, clarity, self.window_factor);
         }
-        let plan = self.plans[index];
-        if self.now + plan.quick > clear {
-            self.clear[index] = self.now + plan.quick;
+        let now = surveys.now;
+        if now + plan.quick > *known {
+            *known = now + plan.quick;
             return Look::Further;
         }
         // A little beyond the first root that is known, to see one that comes at the same time.
-        let mut window = plan.window.min(1.25 * (horizon - self.now)).min(limit - self.now);
-        self.looked[index] = self.now;
-        let now = self.now;
+        let mut window = plan.window.min(1.25 * (horizon - now)).min(limit - now);
+        plan.begun = true;
+        let (survey, shares) = surveys.of(motion, signals, guard.signal, limit);
         loop {
             let start = if now == 0.0 { guard.start } else { Start::Apart };
-            let indivisible = window <= self.shortest.max(64.0 * f64::EPSILON * now);
-            let own = own(motion.blocks.len(), guard.signal);
+            let indivisible = window <= least.max(64.0 * f64::EPSILON * now);
             if !motion.bank.near_critical().is_empty() {
-                bound(motion, &mut self.shares[own.clone()], 12.0, window);
+                bound(motion, shares, 12.0, window);
             }
             let span = Span::new(motion.series, now, window);
-            let shares = &self.shares[own];
             let bounds = motion.series.bounds(shares, &span, start == Start::Apart);
-            let hopeless = bounds.leaves_blocks && {
-                let survey = &self.surveys[guard.signal];
-                guard.parabola.at(now) + guard.sign * survey.value < 2.0 * bounds.left_out
-            };
+            let hopeless =
+                bounds.leaves_blocks && guard.parabola.at(now) + guard.sign * survey.value < 2.0 * bounds.left_out;
             let mut ends_below = false;
             let verdict = if hopeless && !indivisible {
                 Verdict::Unsure
@@ -370,8 +294,8 @@ impl Search {
             };
             match verdict {
                 Verdict::Clear { clearance } => {
-                    self.clear[index] = now + window;
-                    self.shortest = shortest(motion, limit);
+                    *known = now + window;
+                    *least = shortest(motion, limit);
                     if guard.distance {
                         clarity.margin = clarity.margin.min(clearance);
                     }
@@ -380,7 +304,7 @@ impl Search {
                 Verdict::Root { guess, high } => return Look::Root(Root { guard: index, guess, high, window }),
                 // So far the slow blocks alone prove it; from there on with more of them.
                 Verdict::Until { sigma } if sigma > WORTH_A_STEP => {
-                    self.clear[index] = now + sigma * window;
+                    *known = now + sigma * window;
                     return Look::Further;
                 }
                 Verdict::Unsure | Verdict::Until { .. } if indivisible => {
@@ -389,8 +313,8 @@ impl Search {
                     if ends_below {
                         return Look::Root(Root { guard: index, guess: 1.0, high: 1.0, window });
                     }
-                    self.clear[index] = now + window;
-                    self.shortest *= 4.0;
+                    *known = now + window;
+                    *least *= 4.0;
                     return Look::Further;
                 }
                 Verdict::Unsure | Verdict::Until { .. } => {
@@ -398,10 +322,10 @@ impl Search {
                         Verdict::Until { sigma } => (2.0 * sigma).clamp(0.05, 0.5),
                         _ => 0.5,
                     };
-                    let known = self.clear[index] - now;
-                    if window < known {
+                    let proven = *known - now;
+                    if window < proven {
                         // Shorter than what is proven already: begin where that ends.
-                        self.move_to(motion, now + known);
+                        surveys.move_to(motion, now + proven);
                         return Look::Further;
                     }
                 }
@@ -409,117 +333,11 @@ impl Search {
         }
     }
 
-    /// The signal as it is now, with its bounds.
-    #[inline(always)]
-    fn survey(&mut self, motion: Motion<'_>, signals: &Signals, signal: usize, limit: f64) {
-        if self.surveys[signal].at == self.now {
-            return;
-        }
-        let shares = &mut self.shares[own(motion.blocks.len(), signal)];
-        let watched = signals.of(signal);
-        let bounded = motion.bank.near_critical().is_empty();
-        let mut sums = Sums::ZERO;
-        let Phase { value, rate } = if self.now > 0.0 {
-            let mut total = Phases::ZERO;
-            for (((blocks, start), kernels), share) in
-                motion.blocks.iter().zip(watched.phases).zip(&self.here).zip(&mut *shares)
-            {
-                let now = blocks.advance(*start, kernels);
-                total = Phases { value: total.value + now.value, rate: total.rate + now.rate };
-                *share = Shares { now, amplitude: blocks.amplitudes(now) };
-                sums.add(share.amplitude, blocks);
-            }
-            Phase { value: total.value.sum(), rate: total.rate.sum() }
-        } else {
-            for ((blocks, now), share) in motion.blocks.iter().zip(watched.phases).zip(&mut *shares) {
-                *share = Shares { now: *now, amplitude: blocks.amplitudes(*now) };
-                sums.add(share.amplitude, blocks);
-            }
-            watched.sum
-        };
-        if !bounded {
-            // Good for the second derivative too.
-            bound(motion, shares, 2.0, limit - self.now);
-            sums = Sums::ZERO;
-            for (blocks, share) in motion.blocks.iter().zip(&*shares) {
-                sums.add(share.amplitude, blocks);
-            }
-        }
-        let Sums { reach, bend, snap } = sums;
-        let [reach, bend, snap] = [reach, bend, snap].map(Lanes::sum);
-        self.surveys[signal] = Survey { at: self.now, value, rate, reach, bend, snap };
-    }
-
-    /// Looks at a guard from now on: the window that suits it, and how long two cheap bounds keep it clear, by more than the
-    /// smallest margin so far. The fastest blocks are left out of both while all of them together cannot bring it near zero.
-    #[inline(always)]
-    fn plan(&self, motion: Motion<'_>, guard: &Guard, limit: f64, clarity: &Clarity) -> Plan {
-        let (survey, width) = (&self.surveys[guard.signal], motion.blocks.len());
-        let (now, parabola) = (self.now, guard.parabola);
-        let here = Parabola { p0: parabola.at(now), p1: parabola.rate(now), p2: parabola.p2 };
-        let margin = if guard.distance { clarity.margin } else { 0.0 };
-        let least = margin.min(survey.reach);
-        let window = |bend: f64, snap: f64, fastest: f64| {
-            let turn = if snap > 0.0 { (bend / snap).sqrt() } else { f64::INFINITY };
-            self.window_factor * (REACH * turn).min(fastest)
-        };
-        if now == 0.0
-            && let Start::Touching { order, slope } = guard.start
-        {
-            // It grows as long as its slope cannot have been turned.
-            let bend = here.p2 - 0.5 * survey.bend;
-            let until = if bend < 0.0 { -0.5 * slope / bend } else { f64::INFINITY };
-            let quick = if order == 1 && until > 0.0 { until } else { 0.0 };
-            return Plan { at: now, window: window(survey.bend, survey.snap, f64::INFINITY), quick };
-        }
-        let apart = clear_until(here, survey.reach + least, margin);
-        if apart >= limit - now {
-            return Plan { at: now, window: limit, quick: apart };
-        }
-        let (mut value, mut rate) = (guard.sign * survey.value, guard.sign * survey.rate);
-        let (mut bend, mut snap) = (survey.bend, survey.snap);
-        let mut fastest = f64::INFINITY;
-        let mut noise = 1e-12 * (here.p0.abs() + survey.reach);
-        if width > 1 {
-            let shares = &self.shares[own(width, guard.signal)];
-            let most = NOISE * (here.p0 + value - least);
-            let mut slow = 0;
-            while slow + 1 < width {
-                let Shares { now, amplitude } = &shares[slow];
-                let more = noise + amplitude.sum();
-                if !(more < most) {
-                    break;
-                }
-                noise = more;
-                value -= guard.sign * now.value.sum();
-                rate -= guard.sign * now.rate.sum();
-                slow += 1;
-            }
-            fastest = FASTEST / motion.series.fastest[slow];
-            if slow > 0 {
-                (bend, snap) = turns(&motion.blocks[slow..], &shares[slow..]);
-            }
-        }
-        let curve = Parabola { p0: here.p0 + value, p1: here.p1 + rate, p2: here.p2 - 0.5 * bend };
-        Plan {
-            at: now,
-            window: window(bend, snap, fastest),
-            quick: apart.max(clear_until(curve, noise + least, margin)),
-        }
-    }
-
-    /// Windows begin at `t` from now on.
-    #[inline(always)]
-    fn move_to(&mut self, motion: Motion<'_>, t: f64) {
-        self.now = t;
-        motion.kernels(t, &mut self.here);
-    }
-
     /// The time of an isolated root, to the last digit; leaves its kernels on trial.
     #[inline(always)]
     fn polish(&mut self, motion: Motion<'_>, signals: &Signals, root: Root, clarity: &mut Clarity) -> f64 {
         let guard = self.guards[root.guard];
-        let (t, window) = (self.now, root.window);
+        let (t, window) = (self.surveys.now, root.window);
         if root.high == 0.0 {
             motion.kernels(t, &mut self.trial);
             return t;
@@ -578,9 +396,8 @@ impl Search {
     #[cold]
     fn polish_short_hop(&mut self, motion: Motion<'_>, root: Root) -> f64 {
         let guard = self.guards[root.guard];
-        let own = own(motion.blocks.len(), guard.signal);
         let span = Span::new(motion.series, 0.0, root.window);
-        let shares = &self.shares[own];
+        let shares = self.surveys.shares(guard.signal);
         let bounds = motion.series.bounds(shares, &span, false);
         let piece = Window::expand(motion.series, shares, &bounds, guard.sign, guard.parabola, &span, guard.start);
         let time = root.window * piece.refine(root.guess, root.high);
@@ -594,8 +411,9 @@ impl Search {
     #[inline(always)]
     fn local(&self, motion: Motion<'_>, initial: Watched<'_>, guard: &Guard, time: f64) -> [f64; 8] {
         let moved = motion.blocks.iter().zip(&self.trial).zip(initial.phases);
-        let mut a =
-            motion.series.expand::<0, 8>(moved.map(|((blocks, kernels), phases)| blocks.advance(*phases, kernels)));
+        let moved = moved.map(|((blocks, kernels), phases)| blocks.advance(*phases, kernels));
+        let mut a = [0.0; 8];
+        a.as_chunks_mut().0.copy_from_slice(&motion.series.expand::<0, 2>(moved));
         let unit = motion.series.unit;
         let parabola = guard.parabola;
         let rest = [parabola.at(time), parabola.rate(time) * unit, parabola.p2 * (unit * unit)];
@@ -613,30 +431,68 @@ fn shortest(motion: Motion<'_>, limit: f64) -> f64 {
     f64::EPSILON * limit.min(MANY_TURNS * motion.series.unit)
 }
 
-/// Places of a signal's shares.
+/// Looks at a guard from now on: the window that suits it, and how long two cheap bounds keep it clear, by more than the
+/// smallest margin so far. The fastest blocks are left out of both while all of them together cannot bring it near zero.
 #[inline(always)]
-fn own(width: usize, signal: usize) -> std::ops::Range<usize> {
-    signal * width..(signal + 1) * width
-}
-
-/// Bounds anew the shares of blocks near critical damping, for a derivative of this order over so long a time.
-#[cold]
-fn bound(motion: Motion<'_>, shares: &mut [Shares], order: f64, window: f64) {
-    for &k in motion.bank.near_critical() {
-        let share = &mut shares[k / WIDTH];
-        share.amplitude.0[k % WIDTH] = motion.each[k].amplitude(share.now.at(k % WIDTH), order, window);
+fn plan_of(
+    motion: Motion<'_>,
+    signals: &Signals,
+    surveys: &mut Surveys,
+    guard: &Guard,
+    limit: f64,
+    clarity: &Clarity,
+    window_factor: f64,
+) -> Plan {
+    let (now, parabola) = (surveys.now, guard.parabola);
+    let (survey, shares) = surveys.of(motion, signals, guard.signal, limit);
+    let width = motion.blocks.len();
+    let here = Parabola { p0: parabola.at(now), p1: parabola.rate(now), p2: parabola.p2 };
+    let margin = if guard.distance { clarity.margin } else { 0.0 };
+    let reach = survey.turns.reach.sum();
+    let (mut bend, mut snap) = (survey.turns.bend.sum(), survey.turns.snap.sum());
+    let least = margin.min(reach);
+    let window = |bend: f64, snap: f64, fastest: f64| {
+        let turn = if snap > 0.0 { (bend / snap).sqrt() } else { f64::INFINITY };
+        window_factor * (REACH * turn).min(fastest)
+    };
+    if now == 0.0
+        && let Start::Touching { order, slope } = guard.start
+    {
+        // It grows as long as its slope cannot have been turned.
+        let turned = here.p2 - 0.5 * bend;
+        let until = if turned < 0.0 { -0.5 * slope / turned } else { f64::INFINITY };
+        let quick = if order == 1 && until > 0.0 { until } else { 0.0 };
+        return Plan::new(now, window(bend, snap, f64::INFINITY), quick);
     }
-}
-
-/// Σ amplitude·radius² and Σ amplitude·radius⁴.
-#[inline(always)]
-fn turns(blocks: &[Blocks], shares: &[Shares]) -> (f64, f64) {
-    let (mut bend, mut snap) = (Lanes::ZERO, Lanes::ZERO);
-    for (blocks, Shares { amplitude, .. }) in blocks.iter().zip(shares) {
-        let part = *amplitude * blocks.square;
-        (bend, snap) = (bend + part, snap + part * blocks.square);
+    let apart = clear_until(here, reach + least, margin);
+    if apart >= limit - now {
+        return Plan::new(now, limit, apart);
     }
-    (bend.sum(), snap.sum())
+    let (mut value, mut rate) = (guard.sign * survey.value, guard.sign * survey.rate);
+    let mut fastest = f64::INFINITY;
+    let mut noise = 1e-12 * (here.p0.abs() + reach);
+    if width > 1 {
+        let most = NOISE * (here.p0 + value - least);
+        let mut slow = 0;
+        while slow + 1 < width {
+            let Shares { now, amplitude } = &shares[slow];
+            let more = noise + amplitude.sum();
+            if !(more < most) {
+                break;
+            }
+            noise = more;
+            value -= guard.sign * now.value.sum();
+            rate -= guard.sign * now.rate.sum();
+            slow += 1;
+        }
+        fastest = FASTEST / motion.series.fastest[slow];
+        if slow > 0 {
+            let turns = Turns::of(&motion.blocks[slow..], &shares[slow..]);
+            (bend, snap) = (turns.bend.sum(), turns.snap.sum());
+        }
+    }
+    let curve = Parabola { p0: here.p0 + value, p1: here.p1 + rate, p2: here.p2 - 0.5 * bend };
+    Plan::new(now, window(bend, snap, fastest), apart.max(clear_until(curve, noise + least, margin)))
 }
 
 /// How long a parabola keeps further from zero than `reach`; 0 if it is not so now, nor where it may come closer to that

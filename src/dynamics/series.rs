@@ -81,32 +81,34 @@ impl Series {
         Self { pace, unit: 1.0 / pace, fastest, terms, radii }
     }
 
-    /// Coefficients `FROM` to `FROM` + N of Σ shares, in powers of ρt.
+    /// Coefficients `FROM` to `FROM` + 4 `MANY` of Σ shares, in powers of ρt.
     #[inline(always)]
-    pub(crate) fn expand<const FROM: usize, const N: usize>(&self, shares: impl Iterator<Item = Phases>) -> [f64; N] {
-        let mut sums = [Lanes::ZERO; TERMS / WIDTH];
-        let sums = &mut sums[..N / WIDTH];
+    pub(crate) fn expand<const FROM: usize, const MANY: usize>(
+        &self,
+        shares: impl Iterator<Item = Phases>,
+    ) -> [[f64; WIDTH]; MANY] {
+        let mut sums = [Lanes::ZERO; MANY];
         for (terms, share) in self.terms.chunks(WIDTH).zip(shares) {
             for (lane, terms) in terms.iter().enumerate() {
-                terms.add(FROM, share.at(lane), sums);
+                terms.add::<FROM, MANY>(share.at(lane), &mut sums);
             }
         }
-        in_line(sums)
+        sums.map(|sum| sum.0)
     }
 
-    /// The same over a window of ρΔ with `twelfth` = (ρΔ)¹², leaving out the blocks too fast for it.
+    /// All of them over a window of ρΔ with `twelfth` = (ρΔ)¹², leaving out the blocks too fast for it.
     #[inline(always)]
-    pub(crate) fn expand_slow(&self, shares: &[Shares], twelfth: f64) -> [f64; TERMS] {
+    pub(crate) fn expand_slow(&self, shares: &[Shares], twelfth: f64) -> [[f64; WIDTH]; TERMS / WIDTH] {
         let mut sums = [Lanes::ZERO; TERMS / WIDTH];
         for ((terms, radii), share) in self.terms.chunks(WIDTH).zip(&self.radii).zip(shares) {
             for (lane, terms) in terms.iter().enumerate() {
                 if radii.left_out.0[lane] * twelfth > TOO_FAST {
                     continue;
                 }
-                terms.add(0, share.now.at(lane), &mut sums);
+                terms.add::<0, { TERMS / WIDTH }>(share.now.at(lane), &mut sums);
             }
         }
-        in_line(&sums)
+        sums.map(|sum| sum.0)
     }
 
     /// Over a window: what is left out of Σ shares beyond degree eleven, and with `leave_fast` the blocks too fast for it;
@@ -169,20 +171,12 @@ impl Terms {
     }
 
     #[inline(always)]
-    fn add(&self, from: usize, share: Phase, sums: &mut [Lanes<WIDTH>]) {
-        let (values, rates) = (self.value[from..].as_chunks().0, self.rate[from..].as_chunks().0);
-        for ((sum, value), rate) in sums.iter_mut().zip(values).zip(rates) {
-            *sum = *sum + (Lanes(*value) * share.value + Lanes(*rate) * share.rate);
+    fn add<const FROM: usize, const MANY: usize>(&self, share: Phase, sums: &mut [Lanes<WIDTH>; MANY]) {
+        for i in 0..MANY {
+            let four = |terms: &[f64; PADDED]| Lanes([0, 1, 2, 3].map(|lane| terms[FROM + WIDTH * i + lane]));
+            sums[i] = sums[i] + (four(&self.value) * share.value + four(&self.rate) * share.rate);
         }
     }
-}
-
-/// The numbers of several registers.
-#[inline(always)]
-fn in_line<const N: usize>(registers: &[Lanes<WIDTH>]) -> [f64; N] {
-    let mut numbers = [0.0; N];
-    numbers.as_chunks_mut().0.iter_mut().zip(registers).for_each(|(to, from)| *to = from.0);
-    numbers
 }
 
 /// The stretch of time of a window.

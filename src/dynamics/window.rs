@@ -277,14 +277,15 @@ fn divided<const ORDER: usize>(
     base: &[f64; 3],
     span: &Span,
 ) -> Coefficients {
-    scaled::<ORDER>(series.expand::<ORDER, _>(shares.iter().map(|share| share.now)), sign, base, span)
+    scaled::<ORDER>(series.expand::<ORDER, 3>(shares.iter().map(|share| share.now)), sign, base, span)
 }
 
 /// From powers of ρt to powers of σ, with the parabola.
 #[inline(always)]
-fn scaled<const ORDER: usize>(mut a: Coefficients, sign: f64, base: &[f64; 3], span: &Span) -> Coefficients {
+fn scaled<const ORDER: usize>(series: [[f64; 4]; 3], sign: f64, base: &[f64; 3], span: &Span) -> Coefficients {
+    let mut a = [0.0; DEGREE + 1];
     for j in 0..DEGREE + 1 {
-        a[j] *= sign * span.powers[j + ORDER];
+        a[j] = series.as_flattened()[j] * (sign * span.powers[j + ORDER]);
     }
     for j in ORDER..3 {
         a[j - ORDER] += base[j];

@@ -1,0 +1,171 @@
+//! Watched signals as they are where windows begin, and what bounds them from then on.
+
+use super::bank::{Bank, Blocks, Kernels, Phases};
+use super::block::{Block, Phase};
+use super::lanes::{Lanes, WIDTH};
+use super::series::{Series, Shares};
+use super::signals::Signals;
+
+/// What a search knows of a flow.
+#[derive(Clone, Copy)]
+pub(super) struct Motion<'a> {
+    /// Its blocks, several together, and one by one.
+    pub(super) blocks: &'a [Blocks],
+    pub(super) each: &'a [Block],
+    pub(super) bank: &'a Bank,
+    pub(super) series: &'a Series,
+}
+
+impl Motion<'_> {
+    #[inline(always)]
+    pub(super) fn kernels(self, t: f64, kernels: &mut [Kernels]) {
+        self.bank.kernels(self.each, t, kernels);
+    }
+}
+
+/// A signal at an instant, and what bounds it from then on.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Survey {
+    /// NaN until it is looked at.
+    at: f64,
+    pub(super) value: f64,
+    pub(super) rate: f64,
+    pub(super) turns: Turns,
+}
+
+impl Survey {
+    const NONE: Self = Self { at: f64::NAN, value: 0.0, rate: 0.0, turns: Turns::ZERO };
+}
+
+/// The signals, as far as they have been looked at since windows began at `now`.
+#[derive(Debug, Default)]
+pub(super) struct Surveys {
+    /// Where windows begin, seconds from the segment's start, and the kernels up to there.
+    pub(super) now: f64,
+    here: Vec<Kernels>,
+    each: Vec<Survey>,
+    /// Shares of several blocks each, signal by signal.
+    shares: Vec<Shares>,
+    width: usize,
+}
+
+impl Surveys {
+    /// Of no signal yet, at the start of a segment.
+    #[inline(always)]
+    pub(super) fn begin(&mut self, motion: Motion<'_>, signals: &Signals) {
+        self.width = motion.blocks.len();
+        self.here.resize(self.width, Kernels::NONE);
+        self.each.resize(signals.len(), Survey::NONE);
+        self.each.iter_mut().for_each(|survey| survey.at = f64::NAN);
+        let size = self.width * signals.len();
+        if self.shares.len() < size {
+            self.shares.resize(size, Shares::NONE);
+        }
+        self.now = 0.0;
+    }
+
+    /// Windows begin at `t` from now on.
+    #[inline(always)]
+    pub(super) fn move_to(&mut self, motion: Motion<'_>, t: f64) {
+        self.now = t;
+        motion.kernels(t, &mut self.here);
+    }
+
+    /// The shares of a signal that has been looked at.
+    pub(super) fn shares(&self, signal: usize) -> &[Shares] {
+        &self.shares[signal * self.width..][..self.width]
+    }
+
+    /// A signal as it is now, with its shares.
+    #[inline(always)]
+    pub(super) fn of(
+        &mut self,
+        motion: Motion<'_>,
+        signals: &Signals,
+        signal: usize,
+        limit: f64,
+    ) -> (&Survey, &mut [Shares]) {
+        let shares = &mut self.shares[signal * self.width..][..self.width];
+        let survey = &mut self.each[signal];
+        if survey.at != self.now {
+            *survey = look(motion, signals, signal, shares, &self.here, self.now, limit);
+        }
+        (survey, shares)
+    }
+}
+
+#[inline(always)]
+fn look(
+    motion: Motion<'_>,
+    signals: &Signals,
+    signal: usize,
+    shares: &mut [Shares],
+    here: &[Kernels],
+    now: f64,
+    limit: f64,
+) -> Survey {
+    let watched = signals.of(signal);
+    let mut turns = Turns::ZERO;
+    let Phase { value, rate } = if now > 0.0 {
+        let mut total = Phases::ZERO;
+        for (((blocks, start), kernels), share) in motion.blocks.iter().zip(watched.phases).zip(here).zip(&mut *shares)
+        {
+            let now = blocks.advance(*start, kernels);
+            total = Phases { value: total.value + now.value, rate: total.rate + now.rate };
+            *share = Shares { now, amplitude: blocks.amplitudes(now) };
+            turns.add(blocks, share.amplitude);
+        }
+        Phase { value: total.value.sum(), rate: total.rate.sum() }
+    } else {
+        for ((blocks, now), share) in motion.blocks.iter().zip(watched.phases).zip(&mut *shares) {
+            *share = Shares { now: *now, amplitude: blocks.amplitudes(*now) };
+            turns.add(blocks, share.amplitude);
+        }
+        watched.sum
+    };
+    if !motion.bank.near_critical().is_empty() {
+        // Good for the second derivative too.
+        bound(motion, shares, 2.0, limit - now);
+        turns = Turns::of(motion.blocks, shares);
+    }
+    Survey { at: now, value, rate, turns }
+}
+
+/// Σ amplitude, Σ amplitude·radius², Σ amplitude·radius⁴, side by side as they are summed up: kept so, the compiler takes whole
+/// registers for them.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Turns {
+    pub(super) reach: Lanes<WIDTH>,
+    pub(super) bend: Lanes<WIDTH>,
+    pub(super) snap: Lanes<WIDTH>,
+}
+
+impl Turns {
+    const ZERO: Self = Self { reach: Lanes::ZERO, bend: Lanes::ZERO, snap: Lanes::ZERO };
+
+    #[inline(always)]
+    pub(super) fn of(blocks: &[Blocks], shares: &[Shares]) -> Self {
+        let mut turns = Self::ZERO;
+        for (blocks, share) in blocks.iter().zip(shares) {
+            turns.add(blocks, share.amplitude);
+        }
+        turns
+    }
+
+    #[inline(always)]
+    fn add(&mut self, blocks: &Blocks, amplitude: Lanes<WIDTH>) {
+        let bend = amplitude * blocks.square;
+        self.reach = self.reach + amplitude;
+        self.bend = self.bend + bend;
+        self.snap = self.snap + bend * blocks.square;
+    }
+}
+
+/// Bounds anew the shares of blocks near critical damping, for a derivative of this order over so long a time.
+#[cold]
+pub(super) fn bound(motion: Motion<'_>, shares: &mut [Shares], order: f64, window: f64) {
+    for &k in motion.bank.near_critical() {
+        let share = &mut shares[k / WIDTH];
+        share.amplitude.0[k % WIDTH] = motion.each[k].amplitude(share.now.at(k % WIDTH), order, window);
+    }
+}
