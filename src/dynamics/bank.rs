@@ -5,9 +5,8 @@
 
 use super::block::{Block, Kernel, Phase};
 use super::elementary::{exp_lanes, sin_cos_lanes};
+use super::four::Four;
 use super::lanes::{Lanes, WIDTH};
-
-type Wide = Lanes<WIDTH>;
 
 /// The blocks of a flow.
 #[derive(Debug, Default)]
@@ -22,71 +21,73 @@ pub(crate) struct Bank {
 /// Several blocks; places without one hold zeros.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Blocks {
-    decay: Wide,
+    decay: Four,
     /// The decay of those that turn.
-    fades: Wide,
-    determinant: Wide,
-    discriminant: Wide,
+    fades: Four,
+    determinant: Four,
+    discriminant: Four,
     /// √|d|, and of those that turn its inverse.
-    root: Wide,
-    inverse_root: Wide,
+    root: Four,
+    inverse_root: Four,
     /// −1 of those that turn.
-    turns: Wide,
+    turns: Four,
     /// d of those that do not.
-    grows: Wide,
+    grows: Four,
     /// 1/√|d|, but of blocks near critical damping.
-    spread: Wide,
+    spread: Four,
     /// The square of the radius.
-    pub(crate) square: Wide,
+    pub(crate) square: Four,
 }
 
 /// Shares of several blocks in a signal.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Phases {
-    pub(crate) value: Wide,
-    pub(crate) rate: Wide,
+    pub(crate) value: Four,
+    pub(crate) rate: Four,
 }
 
 impl Phases {
-    pub(crate) const ZERO: Self = Self { value: Wide::ZERO, rate: Wide::ZERO };
+    pub(crate) const ZERO: Self = Self { value: Four::ZERO, rate: Four::ZERO };
 
     /// That of one block.
     #[inline(always)]
     pub(crate) fn at(&self, lane: usize) -> Phase {
-        Phase { value: self.value.0[lane], rate: self.rate.0[lane] }
+        Phase { value: self.value.at(lane), rate: self.rate.at(lane) }
     }
 }
 
 /// Kernels of several blocks.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Kernels {
-    c: Wide,
-    s: Wide,
-    turn: Wide,
+    c: Four,
+    s: Four,
+    turn: Four,
 }
 
 impl Kernels {
     /// After no time.
-    pub(crate) const NONE: Self = Self { c: Lanes([1.0; WIDTH]), s: Wide::ZERO, turn: Wide::ZERO };
+    pub(crate) const NONE: Self = Self { c: Four::new([1.0; WIDTH]), s: Four::ZERO, turn: Four::ZERO };
 
     /// That of one block.
     #[inline(always)]
     pub(crate) fn at(&self, lane: usize) -> Kernel {
-        Kernel { c: self.c.0[lane], s: self.s.0[lane], turn: self.turn.0[lane] }
+        Kernel { c: self.c.at(lane), s: self.s.at(lane), turn: self.turn.at(lane) }
     }
 
     #[inline(always)]
     fn set(&mut self, lane: usize, kernel: Kernel) {
-        (self.c.0[lane], self.s.0[lane], self.turn.0[lane]) = (kernel.c, kernel.s, kernel.turn);
+        self.c.set(lane, kernel.c);
+        self.s.set(lane, kernel.s);
+        self.turn.set(lane, kernel.turn);
     }
 }
 
 impl Blocks {
     fn new(blocks: &[Block]) -> Self {
         let each = |part: fn(&Block) -> f64| {
-            let mut lanes = Wide::ZERO;
-            lanes.0.iter_mut().zip(blocks).for_each(|(lane, block)| *lane = part(block));
-            lanes
+            let mut lanes = [0.0; WIDTH];
+            lanes.iter_mut().zip(blocks).for_each(|(lane, block)| *lane = part(block));
+            Four::new(lanes)
         };
         Self {
             decay: each(|block| block.decay),
@@ -114,7 +115,7 @@ impl Blocks {
 
     /// [`Block::amplitude`] of those that are not near critical damping.
     #[inline(always)]
-    pub(crate) fn amplitudes(&self, phases: Phases) -> Wide {
+    pub(crate) fn amplitudes(&self, phases: Phases) -> Four {
         phases.value.abs() + (phases.rate + self.decay * phases.value).abs() * self.spread
     }
 
@@ -138,8 +139,9 @@ impl Blocks {
 
     #[inline(always)]
     fn kernels(&self, t: f64) -> Kernels {
-        let e = exp_lanes(-1.0 * self.fades * t);
-        let (sine, cosine) = sin_cos_lanes(self.root * t);
+        let e = (-1.0 * self.fades * t).together(exp_lanes);
+        let (sine, cosine) = sin_cos_lanes(Lanes((self.root * t).array()));
+        let (sine, cosine) = (Four::new(sine.0), Four::new(cosine.0));
         let turn = e * sine;
         Kernels { c: e * cosine, s: turn * self.inverse_root, turn }
     }

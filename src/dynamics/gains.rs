@@ -10,7 +10,7 @@
 
 use super::Sums;
 use super::block::{Block, form, pairs, transposed};
-use super::lanes::Lanes;
+use super::four::Four;
 use super::lyapunov::{Lyapunov, NEARLY_NEUTRAL};
 use super::signals::Row;
 use super::wide::widened;
@@ -73,10 +73,10 @@ impl Gains {
         for k in 0..blocks {
             let ([x0, y0], [x1, y1]) = (start[k], end[k]);
             let (row, rest) = second.split_at_mut(blocks - k);
-            let (from, to) = (Lanes([x0, x0, y0, y0]), Lanes([x1, x1, y1, y1]));
+            let (from, to) = (Four::new([x0, x0, y0, y0]), Four::new([x1, x1, y1, y1]));
             for ((cell, &[u0, v0]), &[u1, v1]) in row.iter_mut().zip(&start[k..]).zip(&end[k..]) {
-                let gained = to * Lanes([u1, v1, u1, v1]) - from * Lanes([u0, v0, u0, v0]);
-                *cell = (Lanes(*cell) + gained).0;
+                let gained = to * Four::new([u1, v1, u1, v1]) - from * Four::new([u0, v0, u0, v0]);
+                *cell = (Four::new(*cell) + gained).array();
             }
             second = rest;
         }

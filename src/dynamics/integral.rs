@@ -5,7 +5,8 @@ use super::Sums;
 use super::bank::Bank;
 use super::block::{Block, Kernel, Phase};
 use super::budget;
-use super::lanes::{Lanes, WIDTH};
+use super::four::Four;
+use super::lanes::Lanes;
 use super::parabola::Parabola;
 use super::wide::widened;
 
@@ -201,9 +202,9 @@ const fn places(column: usize, end: f64) -> Places {
 /// The mean over a panel.
 #[inline(always)]
 fn weighted(values: Places) -> f64 {
-    let mut sum = Lanes::ZERO;
+    let mut sum = Four::ZERO;
     for (values, weights) in values.0.as_chunks().0.iter().zip(WEIGHTS.0.as_chunks().0) {
-        sum = sum + Lanes::<WIDTH>(*values) * Lanes(*weights);
+        sum = sum + Four::new(*values) * Four::new(*weights);
     }
     sum.sum()
 }

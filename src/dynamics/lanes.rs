@@ -39,33 +39,10 @@ impl<const N: usize> Lanes<N> {
         Self(self.0.map(each))
     }
 
-    /// Without sign.
-    #[inline(always)]
-    pub(crate) fn abs(self) -> Self {
-        self.map(f64::abs)
-    }
-
     /// Whether all are of a smaller modulus; never so with NaN among them.
     #[inline(always)]
     pub(crate) fn all_below(self, bound: f64) -> bool {
         self.0.iter().all(|x| x.abs() < bound)
-    }
-}
-
-impl Lanes<WIDTH> {
-    /// All of them together.
-    #[inline(always)]
-    pub(crate) fn sum(self) -> f64 {
-        let [a, b, c, d] = self.0;
-        (a + c) + (b + d)
-    }
-
-    /// The largest of them.
-    #[inline(always)]
-    pub(crate) fn largest(self) -> f64 {
-        let larger = |a: f64, b: f64| if a > b { a } else { b };
-        let [a, b, c, d] = self.0;
-        larger(larger(a, c), larger(b, d))
     }
 }
 

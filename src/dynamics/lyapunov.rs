@@ -2,13 +2,13 @@
 
 use nalgebra::{Matrix4, Vector4};
 
-use super::lanes::{Lanes, WIDTH};
+use super::four::Four;
 
 /// Where |λₖ + λₗ| is below this share of the faster one, a solution would lose more than three digits.
 pub(crate) const NEARLY_NEUTRAL: f64 = 4e-4;
 
 /// The equation of two blocks: P for each entry of Q alone. It is solved far more often than set up.
-pub(crate) struct Lyapunov([Lanes<WIDTH>; 4]);
+pub(crate) struct Lyapunov([Four; 4]);
 
 impl Lyapunov {
     /// `one` and `other` are B and C, row by row; none where two of their eigenvalues cancel.
@@ -22,13 +22,13 @@ impl Lyapunov {
             0.0, b, f, d + h,
         );
         let lu = system.lu();
-        let alone = |entry: usize| lu.solve(&Vector4::ith(entry, 1.0)).map(|p| Lanes(p.into()));
+        let alone = |entry: usize| lu.solve(&Vector4::ith(entry, 1.0)).map(|p| Four::new(p.into()));
         Some(Self([alone(0)?, alone(1)?, alone(2)?, alone(3)?]))
     }
 
     /// P for this Q.
     pub(crate) fn solve(&self, q: [f64; 4]) -> [f64; 4] {
         let [a, b, c, d] = &self.0;
-        (*a * q[0] + *b * q[1] + (*c * q[2] + *d * q[3])).0
+        (*a * q[0] + *b * q[1] + (*c * q[2] + *d * q[3])).array()
     }
 }

@@ -5,6 +5,7 @@
 
 use super::bank::Phases;
 use super::block::{Block, Phase};
+use super::four::Four;
 use super::lanes::{Lanes, WIDTH};
 
 /// Coefficients kept: degree eleven.
@@ -39,9 +40,9 @@ struct Terms {
 #[derive(Debug)]
 struct Radii {
     /// radius/ρ.
-    radius: Lanes<WIDTH>,
+    radius: Four,
     /// (radius/ρ)¹²/12!.
-    left_out: Lanes<WIDTH>,
+    left_out: Four,
 }
 
 /// Shares of several blocks in a signal from now on.
@@ -49,11 +50,11 @@ struct Radii {
 pub(crate) struct Shares {
     pub(crate) now: Phases,
     /// Bounds as in [`Block::amplitude`].
-    pub(crate) amplitude: Lanes<WIDTH>,
+    pub(crate) amplitude: Four,
 }
 
 impl Shares {
-    pub(crate) const NONE: Self = Self { now: Phases::ZERO, amplitude: Lanes::ZERO };
+    pub(crate) const NONE: Self = Self { now: Phases::ZERO, amplitude: Four::ZERO };
 }
 
 /// A block whose Taylor polynomial may leave out this share of its amplitude is left out itself.
@@ -87,28 +88,28 @@ impl Series {
         &self,
         shares: impl Iterator<Item = Phases>,
     ) -> [[f64; WIDTH]; MANY] {
-        let mut sums = [Lanes::ZERO; MANY];
+        let mut sums = [Four::ZERO; MANY];
         for (terms, share) in self.terms.chunks(WIDTH).zip(shares) {
             for (lane, terms) in terms.iter().enumerate() {
                 terms.add::<FROM, MANY>(share.at(lane), &mut sums);
             }
         }
-        sums.map(|sum| sum.0)
+        sums.map(Four::array)
     }
 
     /// All of them over a window of ρΔ with `twelfth` = (ρΔ)¹², leaving out the blocks too fast for it.
     #[inline(always)]
     pub(crate) fn expand_slow(&self, shares: &[Shares], twelfth: f64) -> [[f64; WIDTH]; TERMS / WIDTH] {
-        let mut sums = [Lanes::ZERO; TERMS / WIDTH];
+        let mut sums = [Four::ZERO; TERMS / WIDTH];
         for ((terms, radii), share) in self.terms.chunks(WIDTH).zip(&self.radii).zip(shares) {
             for (lane, terms) in terms.iter().enumerate() {
-                if radii.left_out.0[lane] * twelfth > TOO_FAST {
+                if radii.left_out.at(lane) * twelfth > TOO_FAST {
                     continue;
                 }
                 terms.add::<0, { TERMS / WIDTH }>(share.now.at(lane), &mut sums);
             }
         }
-        sums.map(|sum| sum.0)
+        sums.map(Four::array)
     }
 
     /// Over a window: what is left out of Σ shares beyond degree eleven, and with `leave_fast` the blocks too fast for it;
@@ -117,7 +118,7 @@ impl Series {
     pub(crate) fn bounds(&self, shares: &[Shares], span: &Span, leave_fast: bool) -> Bounds {
         let (length, twelfth) = (span.powers[1], span.powers[TERMS]);
         let limit = if leave_fast { TOO_FAST } else { f64::INFINITY };
-        let (mut left_out, mut moving, mut largest) = (Lanes::ZERO, Lanes::ZERO, Lanes::ZERO);
+        let (mut left_out, mut moving, mut largest) = (Four::ZERO, Four::ZERO, Four::ZERO);
         for (radii, Shares { amplitude, .. }) in self.radii.iter().zip(shares) {
             let share = radii.left_out * twelfth;
             largest = largest.zip(share, |a, b| if b > a { b } else { a });
@@ -142,14 +143,15 @@ impl Series {
                 _ => square * (x * x * x) * (1.0 / 60.0),
             }
         });
-        each.fold(Lanes::ZERO, |sum, bend| sum + bend).sum()
+        each.fold(Four::ZERO, |sum, bend| sum + bend).sum()
     }
 }
 
 impl Radii {
     fn new(blocks: &[Block], pace: f64) -> Self {
-        let mut radius = Lanes::ZERO;
-        radius.0.iter_mut().zip(blocks).for_each(|(radius, block)| *radius = block.radius / pace);
+        let mut radius = [0.0; WIDTH];
+        radius.iter_mut().zip(blocks).for_each(|(radius, block)| *radius = block.radius / pace);
+        let radius = Four::new(radius);
         let r4 = (radius * radius) * (radius * radius);
         Self { radius, left_out: r4 * r4 * r4 * LEFT_OUT }
     }
@@ -171,9 +173,9 @@ impl Terms {
     }
 
     #[inline(always)]
-    fn add<const FROM: usize, const MANY: usize>(&self, share: Phase, sums: &mut [Lanes<WIDTH>; MANY]) {
+    fn add<const FROM: usize, const MANY: usize>(&self, share: Phase, sums: &mut [Four; MANY]) {
         for i in 0..MANY {
-            let four = |terms: &[f64; PADDED]| Lanes([0, 1, 2, 3].map(|lane| terms[FROM + WIDTH * i + lane]));
+            let four = |terms: &[f64; PADDED]| Four::new([0, 1, 2, 3].map(|lane| terms[FROM + WIDTH * i + lane]));
             sums[i] = sums[i] + (four(&self.value) * share.value + four(&self.rate) * share.rate);
         }
     }

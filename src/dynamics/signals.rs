@@ -7,7 +7,8 @@ use super::bank::Phases;
 use super::block::{Block, Kernel, Phase};
 use super::contact::Side;
 use super::contact_state::{Modes, way_across};
-use super::lanes::{Lanes, WIDTH};
+use super::four::Four;
+use super::lanes::WIDTH;
 use super::parabola::Parabola;
 use super::system::{Contact, HybridSystem, Law, Particle};
 use super::wide::widened;
@@ -63,7 +64,7 @@ pub(crate) struct Rows {
     rows: Vec<Row>,
     watched: usize,
     /// Weights of the watched rows, several blocks together.
-    weights: Vec<[Lanes<WIDTH>; 4]>,
+    weights: Vec<[Four; 4]>,
     /// Observed displacements; half cycles watch the first of them.
     pub(crate) observed: Vec<usize>,
     /// Acceleration of the first of them, where half cycles follow it.
@@ -80,7 +81,7 @@ pub(crate) struct Signals {
     phases: Vec<Phases>,
     totals: Vec<Total>,
     /// Coordinates of several blocks.
-    coordinates: Vec<[Lanes<WIDTH>; 2]>,
+    coordinates: Vec<[Four; 2]>,
 }
 
 /// Of a watched row at the start of a segment.
@@ -155,11 +156,11 @@ impl Row {
 
     #[inline(always)]
     fn sum_of_shares(&self, c: &[f64]) -> Phase {
-        let mut sum = Lanes::ZERO;
+        let mut sum = Four::ZERO;
         for (weights, &[x, y]) in self.weights.iter().zip(c.as_chunks::<2>().0) {
-            sum = sum + Lanes(*weights) * Lanes([x, y, x, y]);
+            sum = sum + Four::new(*weights) * Four::new([x, y, x, y]);
         }
-        let [v0, v1, r0, r1] = sum.0;
+        let [v0, v1, r0, r1] = sum.array();
         Phase { value: v0 + v1, rate: r0 + r1 }
     }
 
@@ -320,7 +321,7 @@ impl Rows {
         let rows = self.rows.iter().zip(self.weights.chunks_exact(registers.max(1)));
         let places = signals.phases.chunks_exact_mut(registers.max(1)).zip(&mut signals.totals);
         for ((row, weights), (phases, total)) in rows.zip(places) {
-            let (mut sum, mut sizes) = (Phases::ZERO, Lanes::ZERO);
+            let (mut sum, mut sizes) = (Phases::ZERO, Four::ZERO);
             for ((&[v0, v1, r0, r1], &[x, y]), phase) in weights.iter().zip(&signals.coordinates).zip(phases) {
                 *phase = Phases { value: v0 * x + v1 * y, rate: r0 * x + r1 * y };
                 sum = Phases { value: sum.value + phase.value, rate: sum.rate + phase.rate };
@@ -375,22 +376,22 @@ impl<'a> Watched<'a> {
 }
 
 /// Weights of several blocks.
-fn together(weights: &[[f64; 4]]) -> [Lanes<WIDTH>; 4] {
-    let mut lanes = [Lanes::ZERO; 4];
+fn together(weights: &[[f64; 4]]) -> [Four; 4] {
+    let mut lanes = [[0.0; WIDTH]; 4];
     for (lane, weights) in weights.iter().enumerate() {
-        lanes.iter_mut().zip(weights).for_each(|(lanes, weight)| lanes.0[lane] = *weight);
+        lanes.iter_mut().zip(weights).for_each(|(lanes, weight)| lanes[lane] = *weight);
     }
-    lanes
+    lanes.map(Four::new)
 }
 
 /// Coordinates of several blocks.
 #[inline(always)]
-fn apart(c: &[[f64; 2]]) -> [Lanes<WIDTH>; 2] {
-    let mut lanes = [Lanes::ZERO; 2];
+fn apart(c: &[[f64; 2]]) -> [Four; 2] {
+    let mut lanes = [[0.0; WIDTH]; 2];
     for (lane, [x, y]) in c.iter().enumerate() {
-        (lanes[0].0[lane], lanes[1].0[lane]) = (*x, *y);
+        (lanes[0][lane], lanes[1][lane]) = (*x, *y);
     }
-    lanes
+    lanes.map(Four::new)
 }
 
 /// Value, rate and acceleration of a signal after the time of `kernels`.

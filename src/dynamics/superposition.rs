@@ -1,6 +1,7 @@
 //! Matrices as sums of their rows: y = Σ xᵢ rᵢ, many numbers of y at a time and each row once.
 
-use super::lanes::{Lanes, WIDTH};
+use super::four::Four;
+use super::lanes::WIDTH;
 use super::wide::widened;
 
 /// The rows, filled up with zeros to whole registers.
@@ -67,11 +68,11 @@ impl Superposition {
     /// So many registers of y; gives what is left of it.
     #[inline(always)]
     fn strip<'a, const MANY: usize>(&self, first: usize, x: &[f64], y: &'a mut [f64]) -> &'a mut [f64] {
-        let mut sums = [Lanes([0.0; WIDTH]); MANY];
+        let mut sums = [Four::ZERO; MANY];
         for (x, row) in x.iter().zip(self.rows.chunks_exact(self.registers)) {
             if let Some(row) = row[first..].first_chunk::<MANY>() {
                 for (sum, entries) in sums.iter_mut().zip(row) {
-                    *sum = *sum + Lanes(*entries) * *x;
+                    *sum = *sum + Four::new(*entries) * *x;
                 }
             }
         }
@@ -83,11 +84,11 @@ impl Superposition {
 
 /// Σ xᵢ rᵢ of rows that are so many registers long.
 #[inline(always)]
-fn narrow<const MANY: usize>(rows: &[[f64; WIDTH]], x: &[f64]) -> [Lanes<WIDTH>; MANY] {
-    let mut sums = [Lanes::ZERO; MANY];
+fn narrow<const MANY: usize>(rows: &[[f64; WIDTH]], x: &[f64]) -> [Four; MANY] {
+    let mut sums = [Four::ZERO; MANY];
     for (x, row) in x.iter().zip(rows.as_chunks::<MANY>().0) {
         for (sum, entries) in sums.iter_mut().zip(row) {
-            *sum = *sum + Lanes(*entries) * *x;
+            *sum = *sum + Four::new(*entries) * *x;
         }
     }
     sums
@@ -95,12 +96,12 @@ fn narrow<const MANY: usize>(rows: &[[f64; WIDTH]], x: &[f64]) -> [Lanes<WIDTH>;
 
 /// The numbers of several registers, as far as `y` goes.
 #[inline(always)]
-fn put<const MANY: usize>(registers: [Lanes<WIDTH>; MANY], y: &mut [f64]) {
+fn put<const MANY: usize>(registers: [Four; MANY], y: &mut [f64]) {
     let (whole, part) = y.as_chunks_mut::<WIDTH>();
     let count = whole.len();
-    whole.iter_mut().zip(registers).for_each(|(y, register)| *y = register.0);
+    whole.iter_mut().zip(registers).for_each(|(y, register)| *y = register.array());
     if let Some(register) = registers.get(count) {
-        part.iter_mut().zip(register.0).for_each(|(y, number)| *y = number);
+        part.iter_mut().zip(register.array()).for_each(|(y, number)| *y = number);
     }
 }
 

@@ -2,7 +2,8 @@
 
 use super::bank::{Bank, Blocks, Kernels, Phases};
 use super::block::{Block, Phase};
-use super::lanes::{Lanes, WIDTH};
+use super::four::Four;
+use super::lanes::WIDTH;
 use super::series::{Series, Shares};
 use super::signals::Signals;
 
@@ -135,13 +136,13 @@ fn look(
 /// registers for them.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Turns {
-    pub(super) reach: Lanes<WIDTH>,
-    pub(super) bend: Lanes<WIDTH>,
-    pub(super) snap: Lanes<WIDTH>,
+    pub(super) reach: Four,
+    pub(super) bend: Four,
+    pub(super) snap: Four,
 }
 
 impl Turns {
-    const ZERO: Self = Self { reach: Lanes::ZERO, bend: Lanes::ZERO, snap: Lanes::ZERO };
+    const ZERO: Self = Self { reach: Four::ZERO, bend: Four::ZERO, snap: Four::ZERO };
 
     #[inline(always)]
     pub(super) fn of(blocks: &[Blocks], shares: &[Shares]) -> Self {
@@ -153,7 +154,7 @@ impl Turns {
     }
 
     #[inline(always)]
-    fn add(&mut self, blocks: &Blocks, amplitude: Lanes<WIDTH>) {
+    fn add(&mut self, blocks: &Blocks, amplitude: Four) {
         let bend = amplitude * blocks.square;
         self.reach = self.reach + amplitude;
         self.bend = self.bend + bend;
@@ -166,6 +167,6 @@ impl Turns {
 pub(super) fn bound(motion: Motion<'_>, shares: &mut [Shares], order: f64, window: f64) {
     for &k in motion.bank.near_critical() {
         let share = &mut shares[k / WIDTH];
-        share.amplitude.0[k % WIDTH] = motion.each[k].amplitude(share.now.at(k % WIDTH), order, window);
+        share.amplitude.set(k % WIDTH, motion.each[k].amplitude(share.now.at(k % WIDTH), order, window));
     }
 }

@@ -1,0 +1,135 @@
+//! Four numbers in one register of new processors, two of older ones.
+//!
+//! The compiler sees a vector, and keeps it one: of an array of four it makes four numbers, and joins them again in pairs that
+//! suit no register. Each number is computed as it would be alone, so that the registers change no bit.
+
+use std::fmt;
+use std::ops::{Add, Mul, Sub};
+
+use super::lanes::{Lanes, WIDTH};
+
+#[cfg(target_arch = "x86_64")]
+type Register = std::arch::x86_64::__m256d;
+#[cfg(not(target_arch = "x86_64"))]
+type Register = [f64; WIDTH];
+
+/// Four numbers.
+#[derive(Clone, Copy)]
+#[repr(transparent)]
+pub(crate) struct Four(Register);
+
+impl Four {
+    /// Of nothing.
+    pub(crate) const ZERO: Self = Self::new([0.0; WIDTH]);
+
+    #[inline(always)]
+    pub(crate) const fn new(numbers: [f64; WIDTH]) -> Self {
+        // SAFETY: a register is four numbers, and any bits are.
+        Self(unsafe { std::mem::transmute::<[f64; WIDTH], Register>(numbers) })
+    }
+
+    /// The numbers.
+    #[inline(always)]
+    pub(crate) const fn array(self) -> [f64; WIDTH] {
+        // SAFETY: as above.
+        unsafe { std::mem::transmute::<Register, [f64; WIDTH]>(self.0) }
+    }
+
+    /// One of them.
+    #[inline(always)]
+    pub(crate) fn at(self, place: usize) -> f64 {
+        self.array()[place]
+    }
+
+    #[inline(always)]
+    pub(crate) fn set(&mut self, place: usize, number: f64) {
+        let mut numbers = self.array();
+        numbers[place] = number;
+        *self = Self::new(numbers);
+    }
+
+    /// Each with that in the same place of the other.
+    #[inline(always)]
+    pub(crate) fn zip(self, other: Self, each: impl Fn(f64, f64) -> f64) -> Self {
+        let ([a, b, c, d], [e, f, g, h]) = (self.array(), other.array());
+        Self::new([each(a, e), each(b, f), each(c, g), each(d, h)])
+    }
+
+    /// The same done to each.
+    #[inline(always)]
+    pub(crate) fn map(self, each: impl Fn(f64) -> f64) -> Self {
+        let [a, b, c, d] = self.array();
+        Self::new([each(a), each(b), each(c), each(d)])
+    }
+
+    /// The same done to all of them, side by side.
+    #[inline(always)]
+    pub(crate) fn together(self, all: impl Fn(Lanes<WIDTH>) -> Lanes<WIDTH>) -> Self {
+        Self::new(all(Lanes(self.array())).0)
+    }
+
+    /// Without sign.
+    #[inline(always)]
+    pub(crate) fn abs(self) -> Self {
+        self.map(f64::abs)
+    }
+
+    /// All of them together.
+    #[inline(always)]
+    pub(crate) fn sum(self) -> f64 {
+        let [a, b, c, d] = self.array();
+        (a + c) + (b + d)
+    }
+
+    /// The largest of them.
+    #[inline(always)]
+    pub(crate) fn largest(self) -> f64 {
+        let larger = |a: f64, b: f64| if a > b { a } else { b };
+        let [a, b, c, d] = self.array();
+        larger(larger(a, c), larger(b, d))
+    }
+}
+
+impl PartialEq for Four {
+    fn eq(&self, other: &Self) -> bool {
+        self.array() == other.array()
+    }
+}
+
+impl fmt::Debug for Four {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.array().fmt(f)
+    }
+}
+
+macro_rules! operator {
+    ($trait:ident, $function:ident, $symbol:tt) => {
+        impl $trait for Four {
+            type Output = Self;
+            #[inline(always)]
+            fn $function(self, other: Self) -> Self {
+                self.zip(other, |a, b| a $symbol b)
+            }
+        }
+
+        impl $trait<f64> for Four {
+            type Output = Self;
+            #[inline(always)]
+            fn $function(self, other: f64) -> Self {
+                self.map(|a| a $symbol other)
+            }
+        }
+
+        impl $trait<Four> for f64 {
+            type Output = Four;
+            #[inline(always)]
+            fn $function(self, other: Four) -> Four {
+                other.map(|b| self $symbol b)
+            }
+        }
+    };
+}
+
+operator!(Add, add, +);
+operator!(Sub, sub, -);
+operator!(Mul, mul, *);
