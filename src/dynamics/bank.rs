@@ -82,6 +82,63 @@ impl Kernels {
     }
 }
 
+/// Several blocks with their matrices, which propagate coordinates (x, y): x′ = c x + k (px + qy), y′ = c y + k (rx + sy), with k the S of their
+/// kernels, and with p + a and s + a for p and s.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Propagator {
+    matrix: [Four; 4],
+    /// 1 where k is the turn.
+    alone: Four,
+    /// 1 where it is S.
+    damped: Four,
+}
+
+/// Without damping a turn is a turn, and no length comes or goes.
+pub(crate) fn turns_alone([_, q, r, _]: [f64; 4], decay: f64) -> bool {
+    decay == 0.0 && q > 0.0 && q == -r
+}
+
+impl Propagator {
+    /// Of the blocks that have a matrix.
+    pub(crate) fn of(matrices: &[[f64; 4]], blocks: &[Block]) -> Vec<Self> {
+        let all: Vec<_> = matrices.iter().zip(blocks).map(|(matrix, block)| (*matrix, block.decay)).collect();
+        all.chunks(WIDTH).map(Self::new).collect()
+    }
+
+    fn new(several: &[([f64; 4], f64)]) -> Self {
+        let mut lanes = [[0.0; WIDTH]; 6];
+        for (lane, &(matrix, decay)) in several.iter().enumerate() {
+            let [p, q, r, s] = matrix;
+            let entries = if turns_alone(matrix, decay) {
+                [0.0, 1.0, -1.0, 0.0, 1.0, 0.0]
+            } else {
+                [p + decay, q, r, s + decay, 0.0, 1.0]
+            };
+            lanes.iter_mut().zip(entries).for_each(|(lanes, entry)| lanes[lane] = entry);
+        }
+        let [p, q, r, s, alone, damped] = lanes.map(Four::new);
+        Self { matrix: [p, q, r, s], alone, damped }
+    }
+
+    /// Coordinates, two a block, after the time of `kernels`; those that are not there are nothing.
+    #[inline(always)]
+    pub(crate) fn advance(&self, kernels: &Kernels, coordinates: &[f64]) -> [f64; 2 * WIDTH] {
+        let mut all = [0.0; 2 * WIDTH];
+        match coordinates.as_chunks().0 {
+            [whole] => all = *whole,
+            _ => all[..coordinates.len()].copy_from_slice(coordinates),
+        }
+        let [a, b, c, d, e, f, g, h] = all;
+        let (x, y) = (Four::new([a, c, e, g]), Four::new([b, d, f, h]));
+        let [p, q, r, s] = self.matrix;
+        let k = kernels.turn * self.alone + kernels.s * self.damped;
+        let x_end = (kernels.c * x + k * (p * x + q * y)).array();
+        let y_end = (kernels.c * y + k * (r * x + s * y)).array();
+        let ([a, c, e, g], [b, d, f, h]) = (x_end, y_end);
+        [a, b, c, d, e, f, g, h]
+    }
+}
+
 impl Blocks {
     fn new(blocks: &[Block]) -> Self {
         let each = |part: fn(&Block) -> f64| {
@@ -139,7 +196,7 @@ impl Blocks {
 
     #[inline(always)]
     fn kernels(&self, t: f64) -> Kernels {
-        let e = (-1.0 * self.fades * t).together(exp_lanes);
+        let e = Four::new(exp_lanes(Lanes((-1.0 * self.fades * t).array())).0);
         let (sine, cosine) = sin_cos_lanes(Lanes((self.root * t).array()));
         let (sine, cosine) = (Four::new(sine.0), Four::new(cosine.0));
         let turn = e * sine;

@@ -7,17 +7,19 @@ use std::cell::OnceCell;
 use std::rc::Rc;
 
 use super::EngineError;
-use super::bank::Bank;
+use super::bank::{Bank, Kernels, Propagator, turns_alone};
 use super::block::{Block, Kernel};
 use super::contact_state::Modes;
 use super::dissipation::Dissipation;
 use super::exact;
 use super::gains::Closed;
+use super::lanes::WIDTH;
 use super::load::{self, Load, Steady};
 use super::parabola::Parabola;
 use super::series::Series;
 use super::signals::{Row, Rows, Signals};
 use super::system::{Contact, Drive, HybridSystem, dot};
+use super::wide::widened;
 
 /// One contact state, ready to be propagated.
 pub(crate) struct Flow {
@@ -29,6 +31,8 @@ pub(crate) struct Flow {
     pub(crate) bank: Bank,
     /// Their Taylor series.
     pub(crate) series: Series,
+    /// Those of its own, with their matrices.
+    propagators: Vec<Propagator>,
     /// Blocks without the drive.
     pub(crate) own: usize,
     /// The highest natural frequency of the contact state, rad/s (modulus of a complex pair's eigenvalue).
@@ -79,6 +83,7 @@ impl Flow {
         let mut flow = Self {
             bank: Bank::new(&blocks),
             series: Series::new(&blocks),
+            propagators: Propagator::of(&modes.spectral.matrices, &blocks),
             drifts: modes.spectral.drifts(),
             is_resonant,
             blocks,
@@ -262,7 +267,28 @@ impl Flow {
         }
     }
 
-    /// Propagates block coordinates by the kernels of a time, with the drive's phase after it.
+    widened! {
+        /// Propagates block coordinates by the kernels of a time, with the drive's phase after it.
+        pub(crate) fn advance_all | advance_wide (&self, kernels: &[Kernels], start: &[f64], drive: DrivePhase, end: &mut [f64]) = advance_by_registers
+    }
+
+    #[inline(always)]
+    fn advance_by_registers(&self, kernels: &[Kernels], start: &[f64], drive: DrivePhase, end: &mut [f64]) {
+        let own = 2 * self.own;
+        let states = start[..own].chunks(2 * WIDTH).zip(end[..own].chunks_mut(2 * WIDTH));
+        for ((propagator, kernels), (from, to)) in self.propagators.iter().zip(kernels).zip(states) {
+            let ended = propagator.advance(kernels, from);
+            match to.as_chunks_mut().0 {
+                [whole] => *whole = ended,
+                _ => to.copy_from_slice(&ended[..to.len()]),
+            }
+        }
+        if self.harmonic.is_some() {
+            end[own..own + 2].copy_from_slice(&[drive.cosine, drive.sine]);
+        }
+    }
+
+    /// The same, by kernels one by one.
     #[inline]
     pub(crate) fn advance(&self, kernel: impl Fn(usize) -> Kernel, start: &[f64], drive: DrivePhase, end: &mut [f64]) {
         self.move_blocks(kernel, start, end);
@@ -278,8 +304,7 @@ impl Flow {
         let blocks = self.modes.spectral.matrices.iter().zip(&self.blocks).zip(states);
         for (k, (([p, q, r, s], Block { decay: a, .. }), (&[x, y], end))) in blocks.enumerate() {
             let kernel = kernel(k);
-            *end = if *a == 0.0 && *q > 0.0 && *q == -r {
-                // Without damping a turn is a turn, and no length comes or goes.
+            *end = if turns_alone([*p, *q, *r, *s], *a) {
                 [kernel.c * x + kernel.turn * y, kernel.c * y - kernel.turn * x]
             } else {
                 [kernel.c * x + kernel.s * ((p + a) * x + q * y), kernel.c * y + kernel.s * (r * x + (s + a) * y)]

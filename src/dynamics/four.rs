@@ -6,7 +6,7 @@
 use std::fmt;
 use std::ops::{Add, Mul, Sub};
 
-use super::lanes::{Lanes, WIDTH};
+use super::lanes::WIDTH;
 
 #[cfg(target_arch = "x86_64")]
 type Register = std::arch::x86_64::__m256d;
@@ -60,12 +60,6 @@ impl Four {
     pub(crate) fn map(self, each: impl Fn(f64) -> f64) -> Self {
         let [a, b, c, d] = self.array();
         Self::new([each(a), each(b), each(c), each(d)])
-    }
-
-    /// The same done to all of them, side by side.
-    #[inline(always)]
-    pub(crate) fn together(self, all: impl Fn(Lanes<WIDTH>) -> Lanes<WIDTH>) -> Self {
-        Self::new(all(Lanes(self.array())).0)
     }
 
     /// Without sign.

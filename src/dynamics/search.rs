@@ -16,11 +16,10 @@
 //! window is sampled, no crossing stepped over.
 
 use super::bank::Kernels;
-use super::block::Kernel;
 use super::budget;
 use super::contact::Crossing;
 use super::flow::Flow;
-use super::lanes::WIDTH;
+
 use super::parabola::Parabola;
 use super::polynomial::nearest_root;
 use super::series::{Shares, Span};
@@ -170,10 +169,9 @@ impl Search {
         }
     }
 
-    /// The kernel of a block from the segment's start to the result.
-    #[inline]
-    pub(crate) fn kernel(&self, block: usize) -> Kernel {
-        self.kernels[block / WIDTH].at(block % WIDTH)
+    /// Kernels from the segment's start to the result.
+    pub(crate) fn kernels(&self) -> &[Kernels] {
+        &self.kernels
     }
 
     #[inline(always)]

@@ -162,7 +162,7 @@ impl<const TAPED: bool> March<'_, TAPED> {
             None => drive,
             Some(_) => self.drive_phase(self.time + length),
         };
-        self.flow.advance(|k| self.search.kernel(k), &self.c, end_drive, &mut self.c_end);
+        self.flow.advance_all(self.search.kernels(), &self.c, end_drive, &mut self.c_end);
         self.sum_up(length, drive);
         if TAPED {
             self.tape.flow(&self.flow, length);
