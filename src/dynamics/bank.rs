@@ -82,6 +82,15 @@ impl Kernels {
     }
 }
 
+/// (x, y) of several blocks, one after the other; zero where there is no block.
+pub(crate) type Coordinates = [f64; 2 * WIDTH];
+
+/// x of several blocks, and y.
+#[inline(always)]
+pub(crate) fn apart(&[a, b, c, d, e, f, g, h]: &Coordinates) -> [Four; 2] {
+    [Four::new([a, c, e, g]), Four::new([b, d, f, h])]
+}
+
 /// Several blocks with their matrices, which propagate coordinates (x, y): x′ = c x + k (px + qy), y′ = c y + k (rx + sy), with k the S of their
 /// kernels, and with p + a and s + a for p and s.
 #[derive(Debug, Clone, Copy)]
@@ -120,16 +129,10 @@ impl Propagator {
         Self { matrix: [p, q, r, s], alone, damped }
     }
 
-    /// Coordinates, two a block, after the time of `kernels`; those that are not there are nothing.
+    /// Coordinates, two a block, after the time of `kernels`.
     #[inline(always)]
-    pub(crate) fn advance(&self, kernels: &Kernels, coordinates: &[f64]) -> [f64; 2 * WIDTH] {
-        let mut all = [0.0; 2 * WIDTH];
-        match coordinates.as_chunks().0 {
-            [whole] => all = *whole,
-            _ => all[..coordinates.len()].copy_from_slice(coordinates),
-        }
-        let [a, b, c, d, e, f, g, h] = all;
-        let (x, y) = (Four::new([a, c, e, g]), Four::new([b, d, f, h]));
+    pub(crate) fn advance(&self, kernels: &Kernels, coordinates: &Coordinates) -> Coordinates {
+        let [x, y] = apart(coordinates);
         let [p, q, r, s] = self.matrix;
         let k = kernels.turn * self.alone + kernels.s * self.damped;
         let x_end = (kernels.c * x + k * (p * x + q * y)).array();

@@ -109,6 +109,11 @@ impl Flow {
             + self.dissipation.get().map_or(0, Dissipation::size)
     }
 
+    /// Numbers that its coordinates take in whole registers.
+    pub(crate) fn width(&self) -> usize {
+        2 * WIDTH * self.bank.blocks().len()
+    }
+
     /// Closed forms of its integrals, where they keep their digits.
     #[inline]
     pub(crate) fn closed(&self) -> Option<&Closed> {
@@ -268,23 +273,18 @@ impl Flow {
     }
 
     widened! {
-        /// Propagates block coordinates by the kernels of a time, with the drive's phase after it.
+        /// Propagates block coordinates, filled up to [`Flow::width`], by the kernels of a time, with the drive's phase after it.
         pub(crate) fn advance_all | advance_wide (&self, kernels: &[Kernels], start: &[f64], drive: DrivePhase, end: &mut [f64]) = advance_by_registers
     }
 
     #[inline(always)]
     fn advance_by_registers(&self, kernels: &[Kernels], start: &[f64], drive: DrivePhase, end: &mut [f64]) {
-        let own = 2 * self.own;
-        let states = start[..own].chunks(2 * WIDTH).zip(end[..own].chunks_mut(2 * WIDTH));
+        let states = start.as_chunks().0.iter().zip(end.as_chunks_mut().0);
         for ((propagator, kernels), (from, to)) in self.propagators.iter().zip(kernels).zip(states) {
-            let ended = propagator.advance(kernels, from);
-            match to.as_chunks_mut().0 {
-                [whole] => *whole = ended,
-                _ => to.copy_from_slice(&ended[..to.len()]),
-            }
+            *to = propagator.advance(kernels, from);
         }
         if self.harmonic.is_some() {
-            end[own..own + 2].copy_from_slice(&[drive.cosine, drive.sine]);
+            end[2 * self.own..2 * self.own + 2].copy_from_slice(&[drive.cosine, drive.sine]);
         }
     }
 

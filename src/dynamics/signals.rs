@@ -3,7 +3,7 @@
 //! A row r·p of the coordinates is a share of every block, and so are its second derivative and the force of a spring and a
 //! dashpot along it. What a contact state needs is known when its flow is built, so that a segment evaluates just that.
 
-use super::bank::Phases;
+use super::bank::{Phases, apart};
 use super::block::{Block, Kernel, Phase};
 use super::contact::Side;
 use super::contact_state::{Modes, way_across};
@@ -306,7 +306,7 @@ impl Rows {
     }
 
     widened! {
-        /// Evaluates the watched rows; `c` holds two coordinates a block, `force` the constant force in force.
+        /// Evaluates the watched rows; `c` holds two coordinates a block, in whole registers, `force` is the constant force in force.
         pub(crate) fn watch | watch_wide (&self, c: &[f64], force: f64, blocks: usize, signals: &mut Signals) = watch_by_registers
     }
 
@@ -316,8 +316,10 @@ impl Rows {
         (signals.blocks, signals.registers) = (blocks, registers);
         signals.phases.resize(self.watched * registers, Phases::ZERO);
         signals.totals.resize(self.watched, Total::default());
-        signals.coordinates.clear();
-        signals.coordinates.extend(c.as_chunks::<2>().0[..blocks].chunks(WIDTH).map(apart));
+        signals.coordinates.resize(registers, [Four::ZERO; 2]);
+        for (to, from) in signals.coordinates.iter_mut().zip(c.as_chunks().0) {
+            *to = apart(from);
+        }
         let rows = self.rows.iter().zip(self.weights.chunks_exact(registers.max(1)));
         let places = signals.phases.chunks_exact_mut(registers.max(1)).zip(&mut signals.totals);
         for ((row, weights), (phases, total)) in rows.zip(places) {
@@ -380,16 +382,6 @@ fn together(weights: &[[f64; 4]]) -> [Four; 4] {
     let mut lanes = [[0.0; WIDTH]; 4];
     for (lane, weights) in weights.iter().enumerate() {
         lanes.iter_mut().zip(weights).for_each(|(lanes, weight)| lanes[lane] = *weight);
-    }
-    lanes.map(Four::new)
-}
-
-/// Coordinates of several blocks.
-#[inline(always)]
-fn apart(c: &[[f64; 2]]) -> [Four; 2] {
-    let mut lanes = [[0.0; WIDTH]; 2];
-    for (lane, [x, y]) in c.iter().enumerate() {
-        (lanes[0][lane], lanes[1][lane]) = (*x, *y);
     }
     lanes.map(Four::new)
 }

@@ -8,7 +8,7 @@ use crate::dynamics::EngineError;
 use crate::dynamics::collision::{self, Closed, Outcome};
 use crate::dynamics::contact::{Hold, Relative, STICKING_SPEED, Side};
 use crate::dynamics::guards::{Grip, Slipped};
-use crate::dynamics::system::{Contact, EventKind, Law, dot};
+use crate::dynamics::system::{Contact, EventKind, Law, Particle, dot};
 
 /// A rigid contact that is closed.
 pub(super) struct Touch {
@@ -119,11 +119,12 @@ impl<const TAPED: bool> March<'_, TAPED> {
 
     /// After a jump of accelerations: lets go what a face can no longer hold.
     pub(super) fn hold_on(&mut self) -> Result<(), EngineError> {
-        let candidates: Vec<_> = (0..self.particles.len())
-            .filter(|&j| self.contacts[j].holds(&self.system.particles[j]))
-            .map(|j| self.candidate(j))
-            .collect();
-        self.hold(candidates)?;
+        let holds = |(contact, particle): (&Contact, &Particle)| contact.holds(particle);
+        if self.contacts.iter().zip(&self.system.particles).any(holds) {
+            let held = (0..self.particles.len()).filter(|&j| holds((&self.contacts[j], &self.system.particles[j])));
+            let candidates = held.map(|j| self.candidate(j)).collect();
+            self.hold(candidates)?;
+        }
         self.choose_flow()
     }
 

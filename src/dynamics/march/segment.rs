@@ -47,7 +47,7 @@ impl<const TAPED: bool> March<'_, TAPED> {
             self.pay_out();
         }
         self.flow = self.states.flow(self.system, &self.contacts, &self.damping)?;
-        let width = 2 * self.flow.blocks.len();
+        let width = self.flow.width();
         if self.c.len() < width {
             self.c.resize(width, 0.0);
             self.c_end.resize(width, 0.0);
@@ -67,6 +67,7 @@ impl<const TAPED: bool> March<'_, TAPED> {
         }
         let (p, rate) = (&self.q[..flow.order], &self.rate[..flow.order]);
         flow.enter(p, rate, self.level, drive, &mut self.work, &mut self.c);
+        self.c[2 * flow.blocks.len()..flow.width()].fill(0.0);
         if self.undamped || self.response.proof.events >= MANY_EVENTS {
             flow.correct(p, rate, self.level, drive, &mut self.c);
         }
