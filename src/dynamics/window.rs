@@ -46,7 +46,6 @@ pub(crate) struct Window {
 impl Window {
     /// Expands a guard over a window: its shares and their bounds at the window's start, its parabola from the segment's.
     #[inline(always)]
-    #[expect(clippy::too_many_arguments, reason = "a guard comes in pieces, so that nothing is copied")]
     pub(crate) fn expand(
         series: &Series,
         shares: &[Shares],
