@@ -148,6 +148,8 @@ impl Extraction {
             Self::NearestPassage(word) => word.take(view)?,
             Self::Largest(cells) => extreme(cells, view, 1.0)?,
             Self::Smallest(cells) => extreme(cells, view, -1.0)?,
+            Self::PathMaximum(cells) => path_extreme(cells, view, f64::max)?,
+            Self::PathMinimum(cells) => path_extreme(cells, view, f64::min)?,
             Self::Interpolated(word) => word.take(view)?,
             Self::MeanOver(word) => word.mean(view)?,
             Self::StandardDeviationOver(word) => word.standard_deviation(view)?,
@@ -216,6 +218,15 @@ fn extreme(cells: &Cells, view: &View<'_>, sign: f64) -> Result<Extracted, Absen
     let best = all.into_iter().reduce(|a, b| if sign * b.value > sign * a.value { b } else { a });
     let best = best.ok_or_else(|| Absence::NoRow(format!("no row has a `{}`", cells.of)))?;
     Ok(Extracted::cell(best, view.unit(&rows, &cells.of)?))
+}
+
+/// The largest or the smallest sample of a time history: as exact as its samples are dense.
+fn path_extreme(cells: &Cells, view: &View<'_>, pick: fn(f64, f64) -> f64) -> Result<Extracted, Absence> {
+    let rows = view.rows(cells.source(), None)?;
+    let path = view.path(&rows, &cells.of)?;
+    let value = path.iter().copied().reduce(pick);
+    let value = value.ok_or_else(|| Absence::NoRow(format!("the time history `{}` is empty", cells.of)))?;
+    Ok(Extracted { value, run: 0.0, spread: 0.0, unit: view.unit(&rows, &cells.of)?.into(), scale: None })
 }
 
 /// Standard errors by which two means have to differ. A sweep compares them at a hundred points: two would not do.

@@ -317,6 +317,7 @@ impl Trial<'_> {
                     alter(table, column, &rows, |x, _| place + (x - place) * to / now);
                 }
             },
+            Extraction::PathMaximum(word) | Extraction::PathMinimum(word) => shift(cells(Role::Path, &word.of)),
             Extraction::NearestPassage(_) => shift(cells(Role::Path, "time")),
             Extraction::LargestStepBack(word) => {
                 let (column, rows) = cells(Role::Value, &word.of);

@@ -23,6 +23,8 @@ impl Extraction {
             Self::StandardDeviationOver(word) => of("standard deviation of the ", &word.of),
             Self::Maximum(word) => of("largest ", &word.of),
             Self::Largest(word) => of("largest ", &word.of),
+            Self::PathMaximum(word) => of("largest ", &word.of),
+            Self::PathMinimum(word) => of("smallest ", &word.of),
             Self::Minimum(word) => of("smallest ", &word.of),
             Self::Smallest(word) => of("smallest ", &word.of),
             Self::Argmax(word) => Some(format!("{} of the largest {}", symbol(&word.over), column_words(&word.of))),

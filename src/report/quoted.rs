@@ -169,6 +169,8 @@ impl Axes<'_> {
             | Extraction::End(_)
             | Extraction::LargestStepBack(_)
             | Extraction::StandardDeviationOver(_)
+            | Extraction::PathMaximum(_)
+            | Extraction::PathMinimum(_)
             | Extraction::LargestLead(_)
             | Extraction::Ratio(_)
             | Extraction::Difference(_)

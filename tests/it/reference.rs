@@ -473,7 +473,12 @@ fn time_histories_are_judged_along_their_samples() {
         from: {nearest_passage: {of: particle_displacement, through: rigid_floor, direction: decreasing, to: 52.31}}";
     assert_eq!(verdict(impact, &table), Verdict::Reproduced);
     assert_eq!(verdict(&impact.replace("decreasing", "increasing"), &table), Verdict::Differs);
-    for body in [falls, &late, impact, "claim: {paths_cross: {of: particle_displacement, other: rigid_floor}}"] {
+    let lowest = "value: \"1.0\"\nfrom: {path_minimum: {of: rms_acceleration}}";
+    let highest = "value: \"3.0\"\nfrom: {path_maximum: {of: rms_acceleration}}";
+    assert_eq!([lowest, highest].map(|body| verdict(body, &table)), [Verdict::Reproduced; 2]);
+    for body in
+        [falls, &late, impact, lowest, highest, "claim: {paths_cross: {of: particle_displacement, other: rigid_floor}}"]
+    {
         assert_eq!(broken(body, &table), Vec::<String>::new(), "{body}");
     }
     for body in [late.as_str(), impact] {
