@@ -303,6 +303,21 @@ impl NearestPassage {
             let [of, through] = [&self.of, &self.through].map(|path| column_words(path));
             Absence::Nowhere(format!("the {of} never passes the {through} that way"))
         })?;
+        if let Some(read) = &self.read {
+            let path = view.path(&rows, read)?;
+            // The interval of samples that holds the instant.
+            let after = times.partition_point(|time| *time < value).clamp(1, times.len() - 1);
+            let share = (value - times[after - 1]) / (times[after] - times[after - 1]);
+            let step = path[after] - path[after - 1];
+            let unit = view.unit(&rows, read)?.into();
+            return Ok(Extracted {
+                value: path[after - 1] + share * step,
+                run: step.abs() / 2.0,
+                spread: 0.0,
+                unit,
+                scale: None,
+            });
+        }
         let between = instants.windows(2).map(|pair| pair[1].0 - pair[0].0).reduce(f64::min);
         let scale = between.or(Some(times[times.len() - 1] - times[0]));
         Ok(Extracted { value, run, spread: 0.0, unit: view.unit(&rows, "time")?.into(), scale })

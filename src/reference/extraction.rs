@@ -206,6 +206,9 @@ pub struct NearestPassage {
     pub direction: Direction,
     /// The time to be near to, s.
     pub to: f64,
+    /// A path to be read at that instant, in the place of the instant itself.
+    #[serde(default)]
+    pub read: Option<String>,
     /// Conditions beyond the entry's own.
     #[serde(rename = "where", default)]
     pub rows: Selection,
