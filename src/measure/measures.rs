@@ -158,6 +158,7 @@ measures! {
     FloorReboundSpeed: "m/s", "", "", "relative speed at the end of its last floor contact that has ended", Events, Own, Any;
     FloorRestitution: "", "", "", "that speed over the one at the begin of the same contact", Events, Own, Any;
     FloorContactTime: "s", "", "", "duration of the same contact", Events, Own, Any;
+    ContactShare: "", "", "", "share of the averaged time that particles spend in contact with floor or ceiling, mean over the particles", Events, Own, Any;
     FloorReleaseTime: "s", "", "", "first release of the first particle from its floor in the window, from the start of the run", Events, Own, Any;
     ChatterEndTime: "s", "", "", "end of the first complete chatter of the first particle in the window, from the start of the run", Events, Own, Any;
     FinalDisplacement: "m", "", "", "displacement of the structure at the end of the run", End, Own, Any;

@@ -6,6 +6,7 @@
 
 use std::borrow::Cow;
 
+mod contact;
 mod each_cycle;
 mod elasticity;
 mod ending;

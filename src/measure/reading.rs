@@ -2,6 +2,7 @@
 
 use std::f64::consts::TAU;
 
+use super::contact::contact_share;
 use super::energy::Energies;
 use super::history::History;
 use super::impact::Impacts;
@@ -108,6 +109,13 @@ impl Reading<'_> {
             | Measure::ChatterEndTime => {
                 let first = response.settled.map_or(u64::from(self.skip), |settled| settled.first);
                 Impacts::of(response, self.scene, first).read(measure)
+            }
+            Measure::ContactShare => {
+                let cycles = response.settled.map_or_else(
+                    || u64::from(self.skip)..u64::from(self.skip + self.average),
+                    |settled| settled.first..settled.end(),
+                );
+                contact_share(response, self.scene, cycles)
             }
             Measure::Settled => f64::from(u8::from(response.settled.is_some())),
             Measure::AveragedCycles => {

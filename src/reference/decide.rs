@@ -7,7 +7,7 @@ use super::extraction::Extraction;
 use super::line::{common, lines};
 use super::place::{best_place, grows_towards};
 use super::predicate::{
-    Apart, Between, ColumnsAgree, Equal, GreatestPoint, Level, LineAbove, LinesAgree, PathMonotone, PathsCross,
+    Apart, Between, ColumnsAgree, Equal, GreatestPoint, Level, LineAbove, LinesAgree, PathMonotone, PathsCross, Points,
     Predicate, Trend, Within,
 };
 use super::shape::{greatest_at_end, levels_off, linear, monotone, onsets, peaks};
@@ -286,8 +286,19 @@ fn lines_agree(claim: &LinesAgree, view: &View<'_>) -> Result<Decision, Absence>
 }
 
 fn line_above(claim: &LineAbove, view: &View<'_>) -> Result<Decision, Absence> {
-    let lead = claim.pair().lead(view, claim.source())?;
+    let mut lead = claim.pair().lead(view, claim.source())?;
     let mut tally = Tally::new();
+    if claim.points == Points::Most {
+        // More than half are ahead if the one in the middle, or the next lower, is.
+        let points = lead.y.len();
+        let ahead = lead.y.iter().filter(|cell| cell.value > 0.0).count();
+        lead.y.sort_by(|a, b| b.value.total_cmp(&a.value));
+        let middle = lead.y[points / 2];
+        tally.require_strictly(middle.value, middle.run, || {
+            format!("ahead at {ahead} of {points} points, by {} in the middle one", significant(middle.value, 3))
+        });
+        return tally.decision();
+    }
     for (x, ahead) in lead.x.iter().zip(&lead.y) {
         tally.require_strictly(ahead.value, ahead.run, || {
             format!("smallest lead {} at {} = {}", significant(ahead.value, 3), symbol(&claim.over), significant(*x, 4))

@@ -148,6 +148,8 @@ impl Extraction {
             Self::NearestPassage(word) => word.take(view)?,
             Self::Largest(cells) => extreme(cells, view, 1.0)?,
             Self::Smallest(cells) => extreme(cells, view, -1.0)?,
+            Self::PathMaximum(cells) => path_extreme(cells, view, f64::max)?,
+            Self::PathMinimum(cells) => path_extreme(cells, view, f64::min)?,
             Self::Interpolated(word) => word.take(view)?,
             Self::MeanOver(word) => word.mean(view)?,
             Self::StandardDeviationOver(word) => word.standard_deviation(view)?,
@@ -216,6 +218,15 @@ fn extreme(cells: &Cells, view: &View<'_>, sign: f64) -> Result<Extracted, Absen
     let best = all.into_iter().reduce(|a, b| if sign * b.value > sign * a.value { b } else { a });
     let best = best.ok_or_else(|| Absence::NoRow(format!("no row has a `{}`", cells.of)))?;
     Ok(Extracted::cell(best, view.unit(&rows, &cells.of)?))
+}
+
+/// The largest or the smallest sample of a time history: as exact as its samples are dense.
+fn path_extreme(cells: &Cells, view: &View<'_>, pick: fn(f64, f64) -> f64) -> Result<Extracted, Absence> {
+    let rows = view.rows(cells.source(), None)?;
+    let path = view.path(&rows, &cells.of)?;
+    let value = path.iter().copied().reduce(pick);
+    let value = value.ok_or_else(|| Absence::NoRow(format!("the time history `{}` is empty", cells.of)))?;
+    Ok(Extracted { value, run: 0.0, spread: 0.0, unit: view.unit(&rows, &cells.of)?.into(), scale: None })
 }
 
 /// Standard errors by which two means have to differ. A sweep compares them at a hundred points: two would not do.
@@ -292,6 +303,21 @@ impl NearestPassage {
             let [of, through] = [&self.of, &self.through].map(|path| column_words(path));
             Absence::Nowhere(format!("the {of} never passes the {through} that way"))
         })?;
+        if let Some(read) = &self.read {
+            let path = view.path(&rows, read)?;
+            // The interval of samples that holds the instant.
+            let after = times.partition_point(|time| *time < value).clamp(1, times.len() - 1);
+            let share = (value - times[after - 1]) / (times[after] - times[after - 1]);
+            let step = path[after] - path[after - 1];
+            let unit = view.unit(&rows, read)?.into();
+            return Ok(Extracted {
+                value: path[after - 1] + share * step,
+                run: step.abs() / 2.0,
+                spread: 0.0,
+                unit,
+                scale: None,
+            });
+        }
         let between = instants.windows(2).map(|pair| pair[1].0 - pair[0].0).reduce(f64::min);
         let scale = between.or(Some(times[times.len() - 1] - times[0]));
         Ok(Extracted { value, run, spread: 0.0, unit: view.unit(&rows, "time")?.into(), scale })

@@ -51,6 +51,10 @@ pub enum Extraction {
     Largest(Cells),
     /// Smallest value of all rows.
     Smallest(Cells),
+    /// Largest number of a time history.
+    PathMaximum(Cells),
+    /// Smallest number of a time history.
+    PathMinimum(Cells),
     /// A measure between two points of a line.
     Interpolated(Interpolated),
     /// Mean along a parameter, ∫ y dx over its length.
@@ -202,6 +206,9 @@ pub struct NearestPassage {
     pub direction: Direction,
     /// The time to be near to, s.
     pub to: f64,
+    /// A path to be read at that instant, in the place of the instant itself.
+    #[serde(default)]
+    pub read: Option<String>,
     /// Conditions beyond the entry's own.
     #[serde(rename = "where", default)]
     pub rows: Selection,
@@ -289,6 +296,7 @@ impl Extraction {
             Self::Number(_) => return Vec::new(),
             Self::NearestPassage(word) => Source { table: None, rows: &word.rows },
             Self::Cell(word) | Self::Mean(word) | Self::Largest(word) | Self::Smallest(word) => word.source(),
+            Self::PathMaximum(word) | Self::PathMinimum(word) => word.source(),
             Self::Interpolated(word) => word.source(),
             Self::MeanOver(word) | Self::StandardDeviationOver(word) => word.source(),
             Self::Peak(peak) => peak.source(),

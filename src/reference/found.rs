@@ -36,7 +36,7 @@ impl Entry {
         let Check::Value { published, from, tolerance } = &self.check else { return None };
         let size = published.value().abs();
         match (tolerance, from) {
-            (_, Extraction::NearestPassage(_)) => None,
+            (_, Extraction::NearestPassage(word)) if word.read.is_none() => None,
             (Some(tolerance), _) => Some(match tolerance.size {
                 ToleranceSize::Relative(share) => share,
                 ToleranceSize::Absolute(distance) => distance / size,

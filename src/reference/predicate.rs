@@ -40,7 +40,7 @@ pub enum Predicate {
     ColumnsAgree(ColumnsAgree),
     /// The lines of a measure agree at every parameter value that they share.
     LinesAgree(LinesAgree),
-    /// One line lies above another at every point that they share.
+    /// One line lies above another at every point that they share, or at most of them.
     LineAbove(LineAbove),
     /// A measure is a straight line along a parameter.
     Linear(Linear),
@@ -227,8 +227,23 @@ claim! {
         above: String,
         /// Its level on the lower line.
         below: String,
+        /// At how many of the points.
+        #[serde(default)]
+        points: Points,
     }
 }
+
+/// At how many points of two lines.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Points {
+    /// At each.
+    #[default]
+    Every,
+    /// At more than half of them.
+    Most,
+}
+
 impl LineAbove {
     pub(crate) fn pair(&self) -> Pair<'_> {
         Pair { of: &self.of, over: &self.over, by: &self.by, above: &self.above, below: &self.below }

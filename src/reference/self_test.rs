@@ -317,7 +317,8 @@ impl Trial<'_> {
                     alter(table, column, &rows, |x, _| place + (x - place) * to / now);
                 }
             },
-            Extraction::NearestPassage(_) => shift(cells(Role::Path, "time")),
+            Extraction::PathMaximum(word) | Extraction::PathMinimum(word) => shift(cells(Role::Path, &word.of)),
+            Extraction::NearestPassage(word) => shift(cells(Role::Path, word.read.as_deref().unwrap_or("time"))),
             Extraction::LargestStepBack(word) => {
                 let (column, rows) = cells(Role::Value, &word.of);
                 alter(table, column, &rows, |x, _| x * to / now);

@@ -1,6 +1,6 @@
 //! What an extraction takes out of a table, in words: a bare number beside a claim does not say what it is.
 
-use super::extraction::Extraction;
+use super::extraction::{Extraction, NearestPassage};
 use super::resonance::Feature;
 use super::selection::Allowed;
 use super::text::{symbol, with_unit};
@@ -23,6 +23,9 @@ impl Extraction {
             Self::StandardDeviationOver(word) => of("standard deviation of the ", &word.of),
             Self::Maximum(word) => of("largest ", &word.of),
             Self::Largest(word) => of("largest ", &word.of),
+            Self::NearestPassage(NearestPassage { read: Some(read), .. }) => of("", read),
+            Self::PathMaximum(word) => of("largest ", &word.of),
+            Self::PathMinimum(word) => of("smallest ", &word.of),
             Self::Minimum(word) => of("smallest ", &word.of),
             Self::Smallest(word) => of("smallest ", &word.of),
             Self::Argmax(word) => Some(format!("{} of the largest {}", symbol(&word.over), column_words(&word.of))),

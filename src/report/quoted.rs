@@ -157,7 +157,7 @@ impl Axes<'_> {
             Extraction::Parting(word) => (&word.of, word.over.as_str(), Where::Place),
             Extraction::Meeting(word) => (&word.of, word.over.as_str(), Where::Place),
             Extraction::ArgmaxLead(word) => (&word.of, word.over.as_str(), Where::Place),
-            Extraction::NearestPassage(word) => (&word.of, "time", Where::Place),
+            Extraction::NearestPassage(word) if word.read.is_none() => (&word.of, "time", Where::Place),
             Extraction::Peak(peak) => match peak.read {
                 Feature::Place => (&peak.of, peak.over.as_str(), Where::Place),
                 Feature::Height => (&peak.of, peak.over.as_str(), Where::Level("peak ")),
@@ -169,6 +169,9 @@ impl Axes<'_> {
             | Extraction::End(_)
             | Extraction::LargestStepBack(_)
             | Extraction::StandardDeviationOver(_)
+            | Extraction::PathMaximum(_)
+            | Extraction::PathMinimum(_)
+            | Extraction::NearestPassage(_)
             | Extraction::LargestLead(_)
             | Extraction::Ratio(_)
             | Extraction::Difference(_)

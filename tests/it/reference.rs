@@ -473,7 +473,22 @@ fn time_histories_are_judged_along_their_samples() {
         from: {nearest_passage: {of: particle_displacement, through: rigid_floor, direction: decreasing, to: 52.31}}";
     assert_eq!(verdict(impact, &table), Verdict::Reproduced);
     assert_eq!(verdict(&impact.replace("decreasing", "increasing"), &table), Verdict::Differs);
-    for body in [falls, &late, impact, "claim: {paths_cross: {of: particle_displacement, other: rigid_floor}}"] {
+    // Halfway between the two samples where it passes the floor: 2.5 g.
+    let read = impact.replace("52.31 s", "2.5").replace("to: 52.31}", "to: 52.31, read: rms_acceleration}");
+    let at_impact = judged(&read, &table).comparison.unwrap();
+    assert!(at_impact.error().abs() < 1e-12 && (at_impact.u_num - 0.5).abs() < 1e-12);
+    let lowest = "value: \"1.0\"\nfrom: {path_minimum: {of: rms_acceleration}}";
+    let highest = "value: \"3.0\"\nfrom: {path_maximum: {of: rms_acceleration}}";
+    assert_eq!([lowest, highest].map(|body| verdict(body, &table)), [Verdict::Reproduced; 2]);
+    for body in [
+        falls,
+        &late,
+        impact,
+        &read,
+        lowest,
+        highest,
+        "claim: {paths_cross: {of: particle_displacement, other: rigid_floor}}",
+    ] {
         assert_eq!(broken(body, &table), Vec::<String>::new(), "{body}");
     }
     for body in [late.as_str(), impact] {
