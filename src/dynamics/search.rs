@@ -24,7 +24,7 @@ use super::parabola::Parabola;
 use super::polynomial::nearest_root;
 use super::series::{Shares, Span};
 use super::signals::{Signals, Watched};
-use super::survey::{Motion, Surveys, Turns, bound};
+use super::survey::{Motion, Survey, Surveys, Turns, bound};
 use super::wide::widened;
 use super::window::{Start, Verdict, Window};
 
@@ -446,8 +446,7 @@ fn plan_of(
     let width = motion.blocks.len();
     let here = Parabola { p0: parabola.at(now), p1: parabola.rate(now), p2: parabola.p2 };
     let margin = if guard.distance { clarity.margin } else { 0.0 };
-    let reach = survey.turns.reach.sum();
-    let (mut bend, mut snap) = (survey.turns.bend.sum(), survey.turns.snap.sum());
+    let Survey { reach, mut bend, mut snap, .. } = *survey;
     let least = margin.min(reach);
     let window = |bend: f64, snap: f64, fastest: f64| {
         let turn = if snap > 0.0 { (bend / snap).sqrt() } else { f64::INFINITY };

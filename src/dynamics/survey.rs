@@ -31,11 +31,14 @@ pub(super) struct Survey {
     at: f64,
     pub(super) value: f64,
     pub(super) rate: f64,
-    pub(super) turns: Turns,
+    /// Σ amplitude, Σ amplitude·radius², Σ amplitude·radius⁴.
+    pub(super) reach: f64,
+    pub(super) bend: f64,
+    pub(super) snap: f64,
 }
 
 impl Survey {
-    const NONE: Self = Self { at: f64::NAN, value: 0.0, rate: 0.0, turns: Turns::ZERO };
+    const NONE: Self = Self { at: f64::NAN, value: 0.0, rate: 0.0, reach: 0.0, bend: 0.0, snap: 0.0 };
 }
 
 /// The signals, as far as they have been looked at since windows began at `now`.
@@ -129,14 +132,14 @@ fn look(
         bound(motion, shares, 2.0, limit - now);
         turns = Turns::of(motion.blocks, shares);
     }
-    Survey { at: now, value, rate, turns }
+    let Turns { reach, bend, snap } = turns;
+    Survey { at: now, value, rate, reach: reach.sum(), bend: bend.sum(), snap: snap.sum() }
 }
 
-/// Σ amplitude, Σ amplitude·radius², Σ amplitude·radius⁴, side by side as they are summed up: kept so, the compiler takes whole
-/// registers for them.
-#[derive(Debug, Clone, Copy)]
+/// The same sums of several blocks each.
+#[derive(Clone, Copy)]
 pub(super) struct Turns {
-    pub(super) reach: Four,
+    reach: Four,
     pub(super) bend: Four,
     pub(super) snap: Four,
 }
