@@ -10,14 +10,18 @@
 //!
 //! Its matrix is split into 2 × 2 blocks ([`super::modes`]); forcing and time do not enter, the gap only in the constant of v.
 
+use std::cell::OnceCell;
+use std::rc::Rc;
+
 use super::EngineError;
 use super::cholesky::Cholesky;
+use super::conservative::{self, Conservative, face_of};
 use super::contact::{Hold, Side};
 use super::load::{Load, Steady};
 use super::schur::Iteration;
 use super::spectral::Spectral;
 use super::superposition::Superposition;
-use super::system::{Contact, Face, HybridSystem, Law, Matrix, Particle, dot};
+use super::system::{Contact, HybridSystem, Law, Matrix, Particle, dot};
 
 /// The second face of a particle that is at both: v is its distance from the particle, negative where it is compressed.
 #[derive(Clone)]
@@ -90,8 +94,8 @@ pub(crate) struct Modes {
     pub(crate) order: usize,
     /// Which particle the coordinate `structure + i` belongs to.
     pub(crate) attached: Vec<usize>,
-    /// Accelerations of p by (p, p′): order rows of 2·order numbers.
-    pub(crate) accelerations: Vec<Vec<f64>>,
+    /// Accelerations of p by (p, p′); worked out when they are asked for.
+    accelerations: OnceCell<Vec<Vec<f64>>>,
     /// Block coordinates from (p, p′) and back, column by column and row by row.
     pub(crate) spectral: Spectral,
     /// Block coordinates from (p, p′) once more, and back column by column: a segment begins with the one and ends with the other.
@@ -99,47 +103,80 @@ pub(crate) struct Modes {
     pub(crate) columns: Superposition,
     /// Answer to gravity.
     pub(crate) gravity: Load,
-    carried: Cholesky,
+    /// What it would be without dashpots.
+    bare: Rc<Conservative>,
+    /// It is split by the normal modes of that.
+    is_normal: bool,
 }
 
 impl Modes {
-    pub(crate) fn new(system: &HybridSystem, contacts: &[Contact], damping: &[f64]) -> Result<Self, EngineError> {
-        let n = system.mass.order;
-        let attached: Vec<usize> = (0..contacts.len()).filter(|&j| contacts[j].presses(&system.particles[j])).collect();
-        let mass = carried_mass(system, contacts);
-        let carried = Cholesky::new(&mass)?;
-        let face_of = |j: usize| contacts[j].face(&system.particles[j]).expect("a pressing particle has a face");
+    pub(crate) fn new(
+        system: &HybridSystem,
+        bare: Rc<Conservative>,
+        contacts: &[Contact],
+        damping: &[f64],
+    ) -> Result<Self, EngineError> {
+        let attached = bare.attached.clone();
+        let order = system.mass.order + attached.len();
         let across = Across::all(system, contacts, damping, &attached);
-        let accelerations = accelerations(system, contacts, &carried, &attached, &face_of, damping, &across);
-        let stated = |j: &usize| face_damping(face_of(*j).law, None) == damping[*j];
-        let iteration = if attached.iter().all(stated) { Iteration::Library } else { Iteration::Own };
-        let order = n + attached.len();
-        let undamped = accelerations.iter().all(|row| row[order..].iter().all(|entry| *entry == 0.0));
-        let stiffness = undamped.then(|| stiffness_of(system, &attached, &face_of, &across));
-        let mass = mass_of(system, mass, &attached, &face_of);
-        let spectral = super::modes::split(&accelerations, &mass, stiffness.as_ref(), iteration)?;
+        let stated = |j: &usize| face_damping(face_of(system, contacts, *j).law, None) == damping[*j];
+        let is_stated = attached.iter().all(stated);
+        // Stated dampings make few contact states, and keep their bits; half cycles make a new one each time.
+        let normal = if is_stated { None } else { bare.split(system, contacts, damping) };
         let mut modes = Self {
             contacts: contacts.to_vec(),
             damping: damping.to_vec(),
             across,
             order,
             attached,
-            accelerations,
-            to_blocks: by_coordinates(&spectral),
-            columns: by_columns(&spectral, 2 * order),
-            spectral,
+            accelerations: OnceCell::new(),
+            to_blocks: Superposition::default(),
+            columns: Superposition::default(),
+            is_normal: normal.is_some(),
+            spectral: Spectral::default(),
             gravity: Load::default(),
-            carried,
+            bare,
         };
-        let falls = modes.falls(system);
-        modes.gravity = Load::new(&falls, &modes.spectral, &modes.accelerations);
+        modes.spectral = match normal {
+            Some(spectral) => spectral,
+            None => {
+                let iteration = if is_stated { Iteration::Library } else { Iteration::Own };
+                let accelerations = modes.accelerations(system);
+                let undamped = accelerations.iter().all(|row| row[order..].iter().all(|entry| *entry == 0.0));
+                let stiffness = undamped.then(|| stiffness_of(system, contacts, &modes.attached, &modes.across));
+                super::modes::split(accelerations, &modes.bare.mass, stiffness.as_ref(), iteration)?
+            }
+        };
+        modes.to_blocks = by_coordinates(&modes.spectral);
+        modes.columns = by_columns(&modes.spectral, 2 * order);
+        modes.gravity = modes.load(system, &modes.falls(system));
         Ok(modes)
+    }
+
+    /// Accelerations of p by (p, p′): order rows of 2·order numbers.
+    pub(crate) fn accelerations(&self, system: &HybridSystem) -> &[Vec<f64>] {
+        self.accelerations.get_or_init(|| {
+            accelerations(system, &self.contacts, &self.bare.carried, &self.attached, &self.damping, &self.across)
+        })
+    }
+
+    /// Its answer to a constant load, which alone would give p these accelerations.
+    pub(crate) fn load(&self, system: &HybridSystem, load: &[f64]) -> Load {
+        self.load_on(system, load, &self.spectral)
+    }
+
+    fn load_on(&self, system: &HybridSystem, load: &[f64], spectral: &Spectral) -> Load {
+        let normal = if self.is_normal { self.bare.normal(system, &self.contacts) } else { None };
+        match normal {
+            Some(normal) => Load::still(normal.rest(load), spectral.blocks.len()),
+            None => Load::new(load, spectral, self.accelerations(system)),
+        }
     }
 
     /// The same with blocks that take in a harmonic drive, where that is in resonance with some of them; and what is steady then.
     pub(crate) fn resonant(&self, system: &HybridSystem, push: &[f64], omega: f64) -> Option<(Self, Steady)> {
         let (spectral, steady) = super::resonance::split(&self.spectral, self.order, push, omega)?;
-        let gravity = Load::new(&self.falls(system), &spectral, &self.accelerations);
+        let gravity = self.load_on(system, &self.falls(system), &spectral);
         let modes = Self {
             contacts: self.contacts.clone(),
             damping: self.damping.clone(),
@@ -151,16 +188,17 @@ impl Modes {
             columns: by_columns(&spectral, 2 * self.order),
             spectral,
             gravity,
-            carried: self.carried.clone(),
+            bare: Rc::clone(&self.bare),
+            is_normal: self.is_normal,
         };
         Some((modes, steady))
     }
 
     /// p″ under a force of this row on the structure, all springs at rest.
     pub(crate) fn answer(&self, system: &HybridSystem, force: &[f64]) -> Vec<f64> {
-        let mut answer = self.carried.solve(force);
+        let mut answer = self.bare.carried.solve(force);
         for &j in &self.attached {
-            let face = self.contacts[j].face(&system.particles[j]).expect("a pressing particle has a face");
+            let face = face_of(system, &self.contacts, j);
             answer.push(-dot(&face.row, &answer[..force.len()]));
         }
         answer
@@ -192,7 +230,7 @@ impl Modes {
 
     /// Numbers that it keeps.
     pub(crate) fn size(&self) -> usize {
-        self.accelerations.len() * 2 * self.order + 2 * self.to_blocks.size() + 2 * self.columns.size()
+        2 * self.order * self.order + 2 * self.to_blocks.size() + 2 * self.columns.size()
     }
 }
 
@@ -212,8 +250,7 @@ fn by_coordinates(spectral: &Spectral) -> Superposition {
 
 /// The way back from the blocks to so many coordinates and rates, column by column.
 fn by_columns(spectral: &Spectral, size: usize) -> Superposition {
-    let width = spectral.width();
-    Superposition::new(size, (0..width).map(|k| (0..size).map(move |i| spectral.from_blocks[i * width + k])))
+    Superposition::transposed(size, spectral.width(), &spectral.from_blocks)
 }
 
 /// The damping of the face that each particle's contact refers to; then, of those at both faces, that of the second one and the
@@ -245,12 +282,11 @@ fn pushed(system: &HybridSystem, contacts: &[Contact], across: &Across) -> Vec<f
 }
 
 /// Accelerations of p by (p, p′): order rows of 2·order numbers.
-fn accelerations<'a>(
+fn accelerations(
     system: &HybridSystem,
     contacts: &[Contact],
     solve: &Cholesky,
     attached: &[usize],
-    face_of: &dyn Fn(usize) -> &'a Face,
     damping: &[f64],
     across: &[Across],
 ) -> Vec<Vec<f64>> {
@@ -266,7 +302,7 @@ fn accelerations<'a>(
         }
     }
     for (slot, &particle) in attached.iter().enumerate() {
-        let face = face_of(particle);
+        let face = face_of(system, contacts, particle);
         let Law::Resilient { stiffness, .. } = face.law else { continue };
         let i = n + slot;
         // N = −k w − c w′ pushes the structure along −φ.
@@ -285,7 +321,7 @@ fn accelerations<'a>(
         }
     }
     for (slot, &particle) in attached.iter().enumerate() {
-        let face = face_of(particle);
+        let face = face_of(system, contacts, particle);
         let Law::Resilient { stiffness, .. } = face.law else { continue };
         let i = n + slot;
         for column in 0..2 * order {
@@ -305,66 +341,10 @@ fn accelerations<'a>(
     a
 }
 
-/// M + Σ mp φ φᵀ over the particles that a face holds.
-pub(crate) fn carried_mass(system: &HybridSystem, contacts: &[Contact]) -> Matrix {
-    let mut mass = system.mass.clone();
-    let n = mass.order;
-    for (particle, contact) in system.particles.iter().zip(contacts) {
-        if let (true, Some(face)) = (contact.holds(particle), contact.face(particle)) {
-            for i in 0..n {
-                for j in 0..n {
-                    mass.entries[i * n + j] += particle.mass * face.row[i] * face.row[j];
-                }
-            }
-        }
-    }
-    mass
-}
-
-/// Mass matrix of p = (q, w): each particle in contact moves with φ·q + w.
-fn mass_of<'a>(
-    system: &HybridSystem,
-    carried: Matrix,
-    attached: &[usize],
-    face_of: &dyn Fn(usize) -> &'a Face,
-) -> Matrix {
-    let n = carried.order;
-    let mut mass = Matrix::diagonal(&vec![0.0; n + attached.len()]);
-    let order = mass.order;
-    for i in 0..n {
-        mass.entries[i * order..][..n].copy_from_slice(&carried.entries[i * n..][..n]);
-    }
-    for (slot, &j) in attached.iter().enumerate() {
-        let particle = system.particles[j].mass;
-        let mut row = face_of(j).row.clone();
-        row.resize(order, 0.0);
-        row[n + slot] = 1.0;
-        for (i, x) in row.iter().enumerate() {
-            for (k, y) in row.iter().enumerate() {
-                mass.entries[i * order + k] += particle * x * y;
-            }
-        }
-    }
-    mass
-}
-
 /// Stiffness matrix of p.
-fn stiffness_of<'a>(
-    system: &HybridSystem,
-    attached: &[usize],
-    face_of: &dyn Fn(usize) -> &'a Face,
-    across: &[Across],
-) -> Matrix {
-    let n = system.stiffness.order;
-    let springs = attached.iter().map(|&j| match face_of(j).law {
-        Law::Resilient { stiffness, .. } => stiffness,
-        Law::Rigid { .. } => 0.0,
-    });
-    let mut all = Matrix::diagonal(&std::iter::repeat_n(0.0, n).chain(springs).collect::<Vec<_>>());
+fn stiffness_of(system: &HybridSystem, contacts: &[Contact], attached: &[usize], across: &[Across]) -> Matrix {
+    let mut all = conservative::stiffness(system, contacts, attached);
     let order = all.order;
-    for i in 0..n {
-        all.entries[i * order..][..n].copy_from_slice(&system.stiffness.entries[i * n..][..n]);
-    }
     for across in across.iter().filter(|across| across.presses) {
         for (i, x) in across.row.iter().enumerate() {
             for (k, y) in across.row.iter().enumerate() {

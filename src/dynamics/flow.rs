@@ -9,6 +9,7 @@ use std::rc::Rc;
 use super::EngineError;
 use super::bank::{Bank, Kernels, Propagator, turns_alone};
 use super::block::{Block, Kernel};
+use super::conservative::Conservative;
 use super::contact_state::Modes;
 use super::dissipation::Dissipation;
 use super::exact;
@@ -57,7 +58,8 @@ pub(crate) struct Flow {
 impl Flow {
     /// Builds the flow of a contact state with the contact damping now in force.
     pub(crate) fn build(system: &HybridSystem, contacts: &[Contact], damping: &[f64]) -> Result<Self, EngineError> {
-        Self::driven(system, Rc::new(Modes::new(system, contacts, damping)?))
+        let bare = Rc::new(Conservative::new(system, contacts)?);
+        Self::driven(system, Rc::new(Modes::new(system, bare, contacts, damping)?))
     }
 
     /// The flow of a contact state whose modes are known, under the drive of `system`.
@@ -70,7 +72,7 @@ impl Flow {
                 (modes, Some(steady))
             }
         };
-        let force = Load::new(&push, &modes.spectral, &modes.accelerations);
+        let force = modes.load(system, &push);
         let mut blocks = modes.spectral.blocks.clone();
         let own = blocks.len();
         let turning = blocks.iter().filter(|block| block.oscillates());
@@ -139,7 +141,7 @@ impl Flow {
             }
         }
         let mut drift = [[0.0; 2]; 2];
-        for (k, weight) in weights.iter().enumerate() {
+        for (k, weight) in weights.iter().enumerate().filter(|_| self.drifts) {
             for (load, drift) in [&self.modes.gravity, &self.force].into_iter().zip(&mut drift) {
                 for (coefficient, part) in drift.iter_mut().zip([load.slope[k], load.bend[k]]) {
                     *coefficient += weight[0] * part[0] + weight[1] * part[1];
@@ -341,7 +343,7 @@ fn answered(
     push: &[f64],
     omega: f64,
 ) -> Result<(Rc<Modes>, Steady), EngineError> {
-    let steady = |largest: f64| Steady::new(omega, push, &modes.accelerations, modes.order, largest);
+    let steady = |largest: f64| Steady::new(omega, push, modes.accelerations(system), modes.order, largest);
     if let Some(steady) = steady(load::RESONANCE) {
         return Ok((modes, steady));
     }

@@ -16,26 +16,25 @@ pub(crate) struct Load {
 }
 
 impl Load {
+    /// A place to rest, for so many blocks.
+    pub(crate) fn still(rest: Vec<f64>, blocks: usize) -> Self {
+        Self { rest_rate: vec![0.0; rest.len()], rest, slope: vec![[0.0; 2]; blocks], bend: vec![[0.0; 2]; blocks] }
+    }
+
     /// `load` and `accelerations` are those of p, `spectral` its blocks.
     pub(crate) fn new(load: &[f64], spectral: &Spectral, accelerations: &[Vec<f64>]) -> Self {
         let order = load.len();
         let size = spectral.width();
         let count = spectral.blocks.len();
-        let still = |rest: Vec<f64>| Self {
-            rest,
-            rest_rate: vec![0.0; order],
-            slope: vec![[0.0; 2]; count],
-            bend: vec![[0.0; 2]; count],
-        };
         if !spectral.drifts() {
             // Static answer: the stiffness part of the accelerations against the load.
             let k = DMatrix::from_fn(order, order, |i, j| -accelerations[i][j]);
             if let Some(rest) = k.lu().solve(&nalgebra::DVector::from_column_slice(load)) {
-                return still(rest.iter().copied().collect());
+                return Self::still(rest.iter().copied().collect(), count);
             }
         }
         // Block by block.
-        let mut answer = still(vec![0.0; order]);
+        let mut answer = Self::still(vec![0.0; order], count);
         for (k, (block, matrix)) in spectral.blocks.iter().zip(&spectral.matrices).enumerate() {
             let in_block = |row: usize| {
                 (0..order).fold(0.0, |sum, i| sum + spectral.to_blocks[(order + i) * size + row] * load[i])

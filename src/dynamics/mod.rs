@@ -13,7 +13,7 @@
 //! | `reach` | stops and ceilings that a bound on the energy keeps out of the search |
 //! | `contact`, `collision`, `mobility` | what an event leads to |
 //! | `flow`, `load`, `signals`, `parabola`, `series` | exact motion of one contact state, and what is watched of it |
-//! | `contact_state`, `modes`, `undamped`, `spectral`, `cluster`, `resonance`, `schur`, `block`, `bank` | its equations, split into 2 × 2 blocks |
+//! | `contact_state`, `conservative`, `modes`, `undamped`, `damped`, `spectral`, `cluster`, `resonance`, `schur`, `block`, `bank` | its equations, split into 2 × 2 blocks |
 //! | `gains`, `integral`, `lyapunov` | its integrals in closed form, by quadrature where that would lose digits |
 //! | `audit`, `dissipation`, `residual_bound` | momentum and energy, balanced by other means |
 //! | `motion` | which kind of motion a run ends in: multipliers, exponents |
@@ -37,9 +37,11 @@ mod carried;
 mod cholesky;
 mod cluster;
 mod collision;
+mod conservative;
 mod contact;
 mod contact_state;
 mod crest;
+mod damped;
 mod dissipation;
 mod elementary;
 mod error;

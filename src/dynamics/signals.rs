@@ -211,6 +211,7 @@ impl Rows {
         };
         if let (Some(row), Some(_)) = (system.observed_rows.first(), &system.drive.half_cycles) {
             let first = all.place(padded(row));
+            all.observed.push(first);
             all.bend = Some(all.place(all.rows[first].acceleration(blocks)));
         }
         let compression = |j: usize| {
@@ -221,30 +222,35 @@ impl Rows {
         let faces = |particle: &Particle| {
             let floor = padded(&particle.floor.row);
             let ceiling = particle.ceiling.as_ref().filter(|_| particle.has_walls());
-            let ceiling = ceiling.map_or_else(|| floor.clone(), |face| padded(&face.row));
-            [floor, ceiling]
+            (floor, ceiling.map(|face| padded(&face.row)))
         };
-        let faces: Vec<[Row; 2]> = system.particles.iter().map(faces).collect();
+        let faces: Vec<(Row, Option<Row>)> = system.particles.iter().map(faces).collect();
+        let drifts = blocks.iter().any(Block::is_drift);
+        let mut compressions = vec![None; system.particles.len()];
         for (j, particle) in system.particles.iter().enumerate() {
             let contact = modes.contacts[j];
             let side = contact.side();
-            let [floor, ceiling] = &faces[j];
+            let (floor, ceiling) = &faces[j];
+            let ceiling = ceiling.as_ref().unwrap_or(floor);
             let face = if side == Side::Floor { floor } else { ceiling };
             let force = |row: &Row| match side.face(particle).law {
                 Law::Resilient { stiffness, .. } => row.mixed(blocks, stiffness, modes.damping[j]),
                 Law::Rigid { .. } => row.clone(),
             };
             let (first, second) = match contact {
-                Contact::Flight => (face.fixed(blocks), ceiling.fixed(blocks)),
+                Contact::Flight if !drifts => (all.find(face), all.find(ceiling)),
+                Contact::Flight => (all.place(face.fixed(blocks)), all.place(ceiling.fixed(blocks))),
                 Contact::FloorReleased | Contact::CeilingReleased | Contact::BothReleased => {
                     let fixed = face.fixed(blocks);
-                    (fixed.clone(), force(&fixed))
+                    (all.find(&fixed), all.place(force(&fixed)))
                 }
                 _ => match compression(j) {
                     Some(own) => {
                         let pulls = !matches!(side.face(particle).law, Law::Resilient { no_tension: true, .. });
-                        let second = if pulls { own.clone() } else { force(&own) };
-                        (own, second)
+                        let second = (!pulls).then(|| force(&own));
+                        let first = all.place(own);
+                        compressions[j] = Some(first);
+                        (first, second.map_or(first, |second| all.place(second)))
                     }
                     None => {
                         let mut bend = face.acceleration(blocks);
@@ -254,24 +260,24 @@ impl Rows {
                             let pull = signal(&across.row).mixed(blocks, across.stiffness, across.damping);
                             bend = bend.plus(&pull, -side.away() / particle.mass);
                         }
-                        (bend.clone(), bend)
+                        let bend = all.place(bend);
+                        (bend, bend)
                     }
                 },
             };
             let across = particle.has_walls().then(|| across(modes, blocks, j, particle, &padded, &signal)).flatten();
             let across = across.map(|[way, force]| AcrossRows { way: all.place(way), force: all.place(force) });
-            let rows = GuardRows { first: all.place(first), second: all.place(second), across };
-            all.guards.push(rows);
+            all.guards.push(GuardRows { first, second, across });
         }
         all.watched = all.rows.len();
         all.weights = all.rows.iter().flat_map(|row| row.weights.chunks(WIDTH).map(together)).collect();
-        for row in &system.observed_rows {
+        for row in &system.observed_rows[all.observed.len()..] {
             let place = all.place(padded(row));
             all.observed.push(place);
         }
-        for (j, [floor, ceiling]) in faces.into_iter().enumerate() {
-            let [floor, ceiling] = [all.place(floor), all.place(ceiling)];
-            let compression = compression(j).map(|row| all.place(row));
+        for ((floor, ceiling), compression) in faces.into_iter().zip(compressions) {
+            let floor = all.place(floor);
+            let ceiling = ceiling.map_or(floor, |row| all.place(row));
             all.faces.push(FaceRows { floor, ceiling, compression });
         }
         all
@@ -282,14 +288,23 @@ impl Rows {
         self.rows.iter().map(|row| 4 * row.weights.len()).sum::<usize>() + 4 * WIDTH * self.weights.len()
     }
 
+    /// Where a row stands.
     fn place(&mut self, row: Row) -> usize {
-        match self.rows.iter().position(|known| *known == row) {
-            Some(place) => place,
-            None => {
-                self.rows.push(row);
-                self.rows.len() - 1
-            }
-        }
+        self.known(&row).unwrap_or_else(|| self.append(row))
+    }
+
+    /// The same, with a copy only if it is new.
+    fn find(&mut self, row: &Row) -> usize {
+        self.known(row).unwrap_or_else(|| self.append(row.clone()))
+    }
+
+    fn known(&self, row: &Row) -> Option<usize> {
+        self.rows.iter().position(|known| known == row)
+    }
+
+    fn append(&mut self, row: Row) -> usize {
+        self.rows.push(row);
+        self.rows.len() - 1
     }
 
     /// A row, watched or not.

@@ -244,7 +244,7 @@ fn radius(t: &DMatrix<f64>, first: usize) -> f64 {
 }
 
 /// W ← W + (1 − W V) W.
-fn invert_again(v: &DMatrix<f64>, w: &mut DMatrix<f64>) {
+pub(super) fn invert_again(v: &DMatrix<f64>, w: &mut DMatrix<f64>) {
     let mut rest = -product(w, v);
     (0..v.nrows()).for_each(|i| rest[(i, i)] += 1.0);
     *w += product(&rest, w);

@@ -11,6 +11,7 @@ use std::rc::Rc;
 
 use super::EngineError;
 use super::budget;
+use super::conservative::Conservative;
 use super::contact_state::Modes;
 use super::flow::Flow;
 use super::reach::Ground;
@@ -79,6 +80,8 @@ struct Driven {
 struct Undriven {
     /// The first of them; nobody looks at its gaps and its drive.
     system: HybridSystem,
+    /// Without dashpots.
+    bare: ByContact<Conservative>,
     modes: ByContact<Modes>,
 }
 
@@ -128,7 +131,11 @@ impl States {
                 &self.0.undriven.modes,
                 contacts,
                 |modes| modes.damping == damping,
-                || Modes::new(system, contacts, damping),
+                || {
+                    let build = || Conservative::new(system, contacts);
+                    let bare = visit(&self.0.undriven.bare, contacts, |_| true, build)?;
+                    Modes::new(system, bare, contacts, damping)
+                },
             )?;
             Flow::driven(system, modes)
         };
@@ -185,7 +192,7 @@ impl Driven {
 
 impl Undriven {
     fn new(system: &HybridSystem) -> Self {
-        Self { system: system.clone(), modes: ByContact::default() }
+        Self { system: system.clone(), bare: ByContact::default(), modes: ByContact::default() }
     }
 
     fn fits(&self, system: &HybridSystem) -> bool {

@@ -23,8 +23,19 @@ impl Superposition {
         for row in of {
             let first = rows.len();
             rows.resize(first + registers, [0.0; WIDTH]);
-            let to = rows[first..].as_flattened_mut().iter_mut().take(length);
-            to.zip(row).for_each(|(to, from)| *to = from);
+            let to = &mut rows[first..].as_flattened_mut()[..length];
+            to.iter_mut().zip(row).for_each(|(to, from)| *to = from);
+        }
+        Self { length, registers, rows }
+    }
+
+    /// Of the columns of a matrix that is given row by row, `length` rows of `columns` numbers.
+    pub(crate) fn transposed(length: usize, columns: usize, entries: &[f64]) -> Self {
+        let registers = length.div_ceil(WIDTH);
+        let mut rows = vec![[0.0; WIDTH]; columns * registers];
+        for (i, entries) in entries.chunks_exact(columns.max(1)).take(length).enumerate() {
+            let to = rows.iter_mut().skip(i / WIDTH).step_by(registers);
+            to.zip(entries).for_each(|(to, from)| to[i % WIDTH] = *from);
         }
         Self { length, registers, rows }
     }
@@ -127,6 +138,12 @@ mod tests {
             matrix.sum(&x, &mut here);
             matrix.sum_by_registers(&x, &mut everywhere);
             assert_eq!([&here, &everywhere], [&expected; 2], "{length} numbers");
+            let by_columns: Vec<f64> = (0..length as usize)
+                .flat_map(|i| (0..7).map(move |k| (i, k)))
+                .map(|(i, k)| entries[k * length as usize + i])
+                .collect();
+            let same = Superposition::transposed(length as usize, 7, &by_columns);
+            assert!(matrix.rows().flatten().eq(same.rows().flatten()));
             assert!(matrix.rows().flatten().copied().eq(entries));
         }
     }

@@ -7,46 +7,80 @@
 use super::block::Block;
 use super::cholesky::Cholesky;
 use super::spectral::Spectral;
-use super::system::Matrix;
+use super::system::{Matrix, dot};
 
 /// Sweeps of rotations; eight are usual.
 const MOST_SWEEPS: usize = 40;
 
+/// Normal modes: e = Φ ξ with Φᵀ K Φ = 1 and Φᵀ M Φ = 1/ω².
+pub(crate) struct NormalModes {
+    /// ω, rad/s.
+    pub(crate) omega: Vec<f64>,
+    /// Φ, mode by mode.
+    pub(crate) shapes: Vec<Vec<f64>>,
+    /// Φ⁻¹, mode by mode.
+    pub(crate) inverse: Vec<Vec<f64>>,
+}
+
 /// Splits (e, e′); `None` where K is not positive.
 pub(crate) fn split(stiffness: &Matrix, mass: &Matrix) -> Option<Spectral> {
-    let n = mass.order;
-    let factor = Cholesky::new(stiffness).ok()?;
-    // L⁻¹ M, row by row, since M is symmetric; then its columns.
-    let half: Vec<Vec<f64>> = mass.entries.chunks_exact(n).map(|row| factor.forward(row)).collect();
-    let column = |j: usize| factor.forward(&half.iter().map(|row| row[j]).collect::<Vec<_>>());
-    let columns: Vec<Vec<f64>> = (0..n).map(column).collect();
-    let mut inner = Matrix { order: n, entries: Vec::with_capacity(n * n) };
-    for i in 0..n {
-        inner.entries.extend((0..n).map(|j| 0.5 * (columns[i][j] + columns[j][i])));
-    }
-    let axes = turn_to_axes(&mut inner)?;
-    let shapes: Vec<Vec<f64>> = axes.iter().map(|axis| factor.backward(axis)).collect();
-    let mut inverse: Vec<Vec<f64>> = axes.iter().map(|axis| factor.spread(axis)).collect();
-    invert_again(&shapes, &mut inverse);
-    let width = 2 * n;
-    let mut spectral =
-        Spectral { from_blocks: vec![0.0; width * width], to_blocks: vec![0.0; width * width], ..Spectral::default() };
-    for k in 0..n {
-        let omega = 1.0 / inner.at(k, k).sqrt();
-        if !(omega > 0.0 && omega.is_finite()) {
-            return None;
-        }
+    NormalModes::new(stiffness, mass).map(|modes| modes.undamped())
+}
+
+impl NormalModes {
+    /// `None` where K is not positive.
+    pub(crate) fn new(stiffness: &Matrix, mass: &Matrix) -> Option<Self> {
+        let n = mass.order;
+        let factor = Cholesky::new(stiffness).ok()?;
+        // L⁻¹ M, row by row, since M is symmetric; then its columns.
+        let half: Vec<Vec<f64>> = mass.entries.chunks_exact(n).map(|row| factor.forward(row)).collect();
+        let column = |j: usize| factor.forward(&half.iter().map(|row| row[j]).collect::<Vec<_>>());
+        let columns: Vec<Vec<f64>> = (0..n).map(column).collect();
+        let mut inner = Matrix { order: n, entries: Vec::with_capacity(n * n) };
         for i in 0..n {
-            spectral.from_blocks[i * width + 2 * k] = shapes[k][i] / omega;
-            spectral.from_blocks[(n + i) * width + 2 * k + 1] = shapes[k][i];
-            spectral.to_blocks[2 * k * width + i] = inverse[k][i] * omega;
-            spectral.to_blocks[(2 * k + 1) * width + n + i] = inverse[k][i];
+            inner.entries.extend((0..n).map(|j| 0.5 * (columns[i][j] + columns[j][i])));
         }
-        let entries = [0.0, omega, -omega, 0.0];
-        spectral.matrices.push(entries);
-        spectral.blocks.push(Block::new(entries));
+        let axes = turn_to_axes(&mut inner)?;
+        let shapes: Vec<Vec<f64>> = axes.iter().map(|axis| factor.backward(axis)).collect();
+        let mut inverse: Vec<Vec<f64>> = axes.iter().map(|axis| factor.spread(axis)).collect();
+        invert_again(&shapes, &mut inverse);
+        let omega: Vec<f64> = (0..n).map(|k| 1.0 / inner.at(k, k).sqrt()).collect();
+        let are_frequencies = omega.iter().all(|omega| *omega > 0.0 && omega.is_finite());
+        are_frequencies.then_some(Self { omega, shapes, inverse })
     }
-    Some(spectral)
+
+    /// What stays at rest under a constant load, which alone would give these accelerations.
+    pub(crate) fn rest(&self, load: &[f64]) -> Vec<f64> {
+        let mut rest = vec![0.0; load.len()];
+        for ((omega, shape), inverse) in self.omega.iter().zip(&self.shapes).zip(&self.inverse) {
+            let share = dot(inverse, load) / (omega * omega);
+            rest.iter_mut().zip(shape).for_each(|(sum, entry)| *sum += share * entry);
+        }
+        rest
+    }
+
+    /// The blocks of (e, e′) where no dashpot acts.
+    fn undamped(&self) -> Spectral {
+        let n = self.omega.len();
+        let width = 2 * n;
+        let mut spectral = Spectral {
+            from_blocks: vec![0.0; width * width],
+            to_blocks: vec![0.0; width * width],
+            ..Spectral::default()
+        };
+        for (k, &omega) in self.omega.iter().enumerate() {
+            for i in 0..n {
+                spectral.from_blocks[i * width + 2 * k] = self.shapes[k][i] / omega;
+                spectral.from_blocks[(n + i) * width + 2 * k + 1] = self.shapes[k][i];
+                spectral.to_blocks[2 * k * width + i] = self.inverse[k][i] * omega;
+                spectral.to_blocks[(2 * k + 1) * width + n + i] = self.inverse[k][i];
+            }
+            let entries = [0.0, omega, -omega, 0.0];
+            spectral.matrices.push(entries);
+            spectral.blocks.push(Block::new(entries));
+        }
+        spectral
+    }
 }
 
 /// Leaves the eigenvalues on the diagonal; gives the eigenvectors. `None` where it does not end.

@@ -7,8 +7,8 @@ use super::vector::Vector;
 use crate::dynamics::EngineError;
 use crate::dynamics::audit::energy;
 use crate::dynamics::cholesky::Cholesky;
+use crate::dynamics::conservative::carried_mass;
 use crate::dynamics::contact::{Impact, Relative, STICKING_SPEED, Side};
-use crate::dynamics::contact_state::carried_mass;
 use crate::dynamics::system::{Contact, EventKind, Law, Particle, dot};
 
 impl<V: Vector> Run<'_, V> {

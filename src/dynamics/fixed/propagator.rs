@@ -9,8 +9,8 @@
 use super::vector::Vector;
 use crate::dynamics::EngineError;
 use crate::dynamics::cholesky::Cholesky;
+use crate::dynamics::conservative::carried_mass;
 use crate::dynamics::contact::Side;
-use crate::dynamics::contact_state::carried_mass;
 use crate::dynamics::system::{Contact, HybridSystem, Law, Matrix, Particle};
 
 /// One contact state over one time step.

@@ -142,7 +142,8 @@ fn expected(system: &HybridSystem, step: &Step) -> f64 {
         Step::Flow(flow, length) => {
             let modes = &flow.modes;
             let holds = modes.contacts.iter().zip(&system.particles).any(|(contact, it)| contact.holds(it));
-            let trace: f64 = (0..modes.order).map(|i| modes.accelerations[i][modes.order + i]).sum();
+            let accelerations = modes.accelerations(system);
+            let trace: f64 = (0..modes.order).map(|i| accelerations[i][modes.order + i]).sum();
             if holds { 0.0 } else { libm::exp(trace * length) }
         }
         Step::Timed(_) => 1.0,

@@ -158,9 +158,10 @@ impl<'a> Tangent<'a> {
             self.loads.len() - 1
         });
         let (_, falls, push) = &self.loads[place];
+        let accelerations = modes.accelerations(self.system);
         self.bends.clear();
         self.bends.extend((0..order).map(|i| {
-            let (by_place, by_rate) = modes.accelerations[i].split_at(order);
+            let (by_place, by_rate) = accelerations[i].split_at(order);
             dot(by_place, at.p) + dot(by_rate, at.rate) + falls[i] + force * push[i]
         }));
         let bends = &self.bends;

@@ -1,0 +1,144 @@
+//! A contact state without its dashpots: masses and springs, which all its dampings share.
+//!
+//! Half cycles put one damping after another on the same springs, and each of them is split by the normal modes that it has without:
+//! only the dashpots are new.
+
+use std::cell::OnceCell;
+
+use super::EngineError;
+use super::cholesky::Cholesky;
+use super::damped;
+use super::spectral::Spectral;
+use super::system::{Contact, Face, HybridSystem, Law, Matrix, dot};
+use super::undamped::NormalModes;
+
+/// Coordinates up to which normal modes are worth their price.
+const MOST_COORDINATES: usize = 48;
+
+/// Masses and springs of a contact state.
+pub(crate) struct Conservative {
+    /// Particles that press into a resilient face: their compressions are the coordinates behind the structure's.
+    pub(crate) attached: Vec<usize>,
+    /// Factors of the structure's masses, with those that it carries.
+    pub(crate) carried: Cholesky,
+    /// Mass matrix of p.
+    pub(crate) mass: Matrix,
+    normal: OnceCell<Option<Normal>>,
+}
+
+/// Normal modes, of modal mass 1, and the structure's own damping in them.
+struct Normal {
+    modes: NormalModes,
+    damping: Vec<f64>,
+}
+
+impl Conservative {
+    pub(crate) fn new(system: &HybridSystem, contacts: &[Contact]) -> Result<Self, EngineError> {
+        let attached: Vec<usize> = (0..contacts.len()).filter(|&j| contacts[j].presses(&system.particles[j])).collect();
+        let mass = carried_mass(system, contacts);
+        Ok(Self {
+            carried: Cholesky::new(&mass)?,
+            mass: mass_of(system, contacts, &mass, &attached),
+            attached,
+            normal: OnceCell::new(),
+        })
+    }
+
+    /// Its normal modes: none where a coordinate has no spring, or where springs are between particles and second faces.
+    pub(crate) fn normal(&self, system: &HybridSystem, contacts: &[Contact]) -> Option<&NormalModes> {
+        self.normal_and_damping(system, contacts).map(|normal| &normal.modes)
+    }
+
+    fn normal_and_damping(&self, system: &HybridSystem, contacts: &[Contact]) -> Option<&Normal> {
+        let build = || {
+            if self.mass.order > MOST_COORDINATES || contacts.iter().any(|contact| contact.is_between()) {
+                return None;
+            }
+            let stiffness = stiffness(system, contacts, &self.attached);
+            let modes = NormalModes::new(&stiffness, &self.mass)?;
+            let n = system.damping.order;
+            let damped: Vec<Vec<f64>> = modes.shapes.iter().map(|shape| system.damping.times(&shape[..n])).collect();
+            let weights = |i: usize, j: usize| modes.omega[i] * modes.omega[j];
+            let entry = |i: usize, j: usize| weights(i, j) * dot(&modes.shapes[i][..n], &damped[j]);
+            let order = modes.omega.len();
+            let damping = (0..order * order).map(|at| (at / order, at % order));
+            let damping = damping.map(|(i, j)| if i < j { entry(j, i) } else { entry(i, j) }).collect();
+            Some(Normal { modes, damping })
+        };
+        self.normal.get_or_init(build).as_ref()
+    }
+
+    /// The blocks of (p, p′) under dashpots, where they come from normal modes.
+    pub(crate) fn split(&self, system: &HybridSystem, contacts: &[Contact], damping: &[f64]) -> Option<Spectral> {
+        let Normal { modes, damping: structural } = self.normal_and_damping(system, contacts)?;
+        let order = modes.omega.len();
+        let mut all = structural.clone();
+        for (slot, &j) in self.attached.iter().enumerate() {
+            let place = system.mass.order + slot;
+            let row: Vec<f64> =
+                modes.shapes.iter().zip(&modes.omega).map(|(shape, omega)| omega * shape[place]).collect();
+            for (entries, x) in all.chunks_exact_mut(order).zip(&row) {
+                entries.iter_mut().zip(&row).for_each(|(entry, y)| *entry += damping[j] * (x * y));
+            }
+        }
+        damped::split(modes, &all)
+    }
+}
+
+/// The face that an attached particle presses into.
+pub(crate) fn face_of<'a>(system: &'a HybridSystem, contacts: &[Contact], j: usize) -> &'a Face {
+    contacts[j].face(&system.particles[j]).expect("a pressing particle has a face")
+}
+
+/// M + Σ mp φ φᵀ over the particles that a face holds.
+pub(crate) fn carried_mass(system: &HybridSystem, contacts: &[Contact]) -> Matrix {
+    let mut mass = system.mass.clone();
+    let n = mass.order;
+    for (particle, contact) in system.particles.iter().zip(contacts) {
+        if let (true, Some(face)) = (contact.holds(particle), contact.face(particle)) {
+            for i in 0..n {
+                for j in 0..n {
+                    mass.entries[i * n + j] += particle.mass * face.row[i] * face.row[j];
+                }
+            }
+        }
+    }
+    mass
+}
+
+/// Mass matrix of p = (q, w): each particle in contact moves with φ·q + w.
+fn mass_of(system: &HybridSystem, contacts: &[Contact], carried: &Matrix, attached: &[usize]) -> Matrix {
+    let n = carried.order;
+    let mut mass = Matrix::diagonal(&vec![0.0; n + attached.len()]);
+    let order = mass.order;
+    for i in 0..n {
+        mass.entries[i * order..][..n].copy_from_slice(&carried.entries[i * n..][..n]);
+    }
+    for (slot, &j) in attached.iter().enumerate() {
+        let particle = system.particles[j].mass;
+        let mut row = face_of(system, contacts, j).row.clone();
+        row.resize(order, 0.0);
+        row[n + slot] = 1.0;
+        for (i, x) in row.iter().enumerate() {
+            for (k, y) in row.iter().enumerate() {
+                mass.entries[i * order + k] += particle * x * y;
+            }
+        }
+    }
+    mass
+}
+
+/// Stiffness matrix of p: a coordinate of its own for the spring of every face.
+pub(crate) fn stiffness(system: &HybridSystem, contacts: &[Contact], attached: &[usize]) -> Matrix {
+    let n = system.stiffness.order;
+    let springs = attached.iter().map(|&j| match face_of(system, contacts, j).law {
+        Law::Resilient { stiffness, .. } => stiffness,
+        Law::Rigid { .. } => 0.0,
+    });
+    let mut all = Matrix::diagonal(&std::iter::repeat_n(0.0, n).chain(springs).collect::<Vec<_>>());
+    let order = all.order;
+    for i in 0..n {
+        all.entries[i * order..][..n].copy_from_slice(&system.stiffness.entries[i * n..][..n]);
+    }
+    all
+}

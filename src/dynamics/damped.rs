@@ -1,0 +1,554 @@
+//! Modes of a contact state with dashpots, found from its normal modes.
+//!
+//! In normal coordinates of modal mass 1, (λ² + λ C + Ω²) x = 0 with C symmetric. Beside each normal mode k there is a damped one with
+//! x_k = 1. Elimination of the other coordinates leaves one equation for λ,
+//!
+//! r(λ) = xᵀ (λ² + λ C + Ω²) x = 0,   r′ = xᵀ (2 λ + C) x = (σ + r)/λ,   σ = λ² xᵀx − xᵀΩ²x,
+//!
+//! which Newton's method solves in three steps or four, several modes side by side. It starts from the mode's own share of the damping,
+//! so that nothing depends on what was solved before. The matrix of (Ω q, q′) is symmetric but for signs, so that each
+//! column is its own row:
+//!
+//! v = (Ω x, λ x),   w = (−Ω x, λ x)/σ.
+//!
+//! What is overdamped, does not converge, or leaves the modes dependent on each other is none of this: a Schur form splits it.
+
+use nalgebra::DMatrix;
+
+use super::block::Block;
+use super::lanes::{Lanes, WIDTH};
+use super::spectral::{Spectral, invert_again};
+use super::undamped::NormalModes;
+use super::wide::widened;
+
+type Wide = Lanes<WIDTH>;
+
+/// Newton's steps; four are usual.
+const MOST_STEPS: usize = 12;
+/// A step below this share of λ leaves an error of its square; the next one shows it.
+const LAST_STEP: f64 = 1e-8;
+const CONVERGED: f64 = 1e-13;
+/// w v of two modes above this is corrected, and above `DEPENDENT` they are no basis.
+const ROUNDING: f64 = 2e-15;
+const DEPENDENT: f64 = 1e-8;
+/// What w v of two modes may be, times the distance of their eigenvalues: A V = V B misses as much.
+const MISSED: f64 = 2e-14;
+
+/// Complex numbers side by side.
+#[derive(Debug, Clone, Copy)]
+struct Complexes {
+    re: Wide,
+    im: Wide,
+}
+
+impl Complexes {
+    const ZERO: Self = Self { re: Wide::ZERO, im: Wide::ZERO };
+
+    #[inline(always)]
+    fn plus(self, other: Self) -> Self {
+        Self { re: self.re + other.re, im: self.im + other.im }
+    }
+
+    #[inline(always)]
+    fn minus(self, other: Self) -> Self {
+        Self { re: self.re - other.re, im: self.im - other.im }
+    }
+
+    #[inline(always)]
+    fn times(self, other: Self) -> Self {
+        Self { re: self.re * other.re - self.im * other.im, im: self.re * other.im + self.im * other.re }
+    }
+
+    #[inline(always)]
+    fn scaled(self, factor: Wide) -> Self {
+        Self { re: self.re * factor, im: self.im * factor }
+    }
+
+    #[inline(always)]
+    fn square(self) -> Wide {
+        self.re * self.re + self.im * self.im
+    }
+
+    #[inline(always)]
+    fn inverse(self) -> Self {
+        let factor = self.square().map(|square| 1.0 / square);
+        Self { re: self.re * factor, im: self.im * factor * -1.0 }
+    }
+
+    /// One of them, in all places.
+    #[inline(always)]
+    fn all(self, lane: usize) -> Self {
+        Self { re: Lanes::all(self.re.0[lane]), im: Lanes::all(self.im.0[lane]) }
+    }
+}
+
+/// Splits (e, e′) under the dashpots `damping`, row by row in normal coordinates of modal mass 1: V and W as
+/// [`super::modes::split`] has them, fastest blocks first.
+pub(super) fn split(modes: &NormalModes, damping: &[f64]) -> Option<Spectral> {
+    let problem = Problem { modes, damping };
+    let mut found = Vec::with_capacity(modes.omega.len().div_ceil(WIDTH));
+    for first in (0..modes.omega.len()).step_by(WIDTH) {
+        found.push(problem.solve(first)?);
+    }
+    let mut spectral = problem.assemble(&found);
+    match problem.independence(&found) {
+        Independence::Exact => {}
+        Independence::Near => correct(&mut spectral),
+        Independence::None => return None,
+    }
+    Some(spectral)
+}
+
+/// The equation of all modes.
+struct Problem<'a> {
+    modes: &'a NormalModes,
+    damping: &'a [f64],
+}
+
+/// Several modes.
+struct Found {
+    lambda: Complexes,
+    /// x, by normal coordinates.
+    shape: Vec<Complexes>,
+    /// σ.
+    size: Complexes,
+}
+
+/// How nearly W V is 1.
+enum Independence {
+    /// To rounding.
+    Exact,
+    /// Up to a small correction.
+    Near,
+    /// Not at all.
+    None,
+}
+
+impl Problem<'_> {
+    /// Which modes stand side by side, beginning with `first`; the last one fills up.
+    fn side_by_side(&self, first: usize) -> [usize; WIDTH] {
+        std::array::from_fn(|lane| (first + lane).min(self.modes.omega.len() - 1))
+    }
+
+    widened! {
+        /// Modes from `first` on.
+        fn solve | solve_wide (&self, first: usize) -> Option<Found> = solve_by_registers
+    }
+
+    #[inline(always)]
+    fn solve_by_registers(&self, first: usize) -> Option<Found> {
+        let (n, omega) = (self.modes.omega.len(), &self.modes.omega);
+        let own = self.side_by_side(first);
+        // Each mode's own coordinate is the last of its equation.
+        let place = |lane: usize, i: usize| if i + 1 == n { own[lane] } else { i + usize::from(i >= own[lane]) };
+        let places: Vec<[usize; WIDTH]> = (0..n).map(|i| std::array::from_fn(|lane| place(lane, i))).collect();
+        let squares: Vec<Wide> = places.iter().map(|places| Lanes(places.map(|i| omega[i] * omega[i]))).collect();
+        let mut damping = vec![Wide::ZERO; n * n];
+        for (i, row) in damping.chunks_exact_mut(n).enumerate() {
+            let from = places[i].map(|place| &self.damping[place * n..][..n]);
+            for (entry, places) in row[..=i].iter_mut().zip(&places) {
+                *entry = Lanes(std::array::from_fn(|lane| from[lane][places[lane]]));
+            }
+        }
+        let half = damping[n * n - 1] * 0.5;
+        let root = squares[n - 1] - half * half;
+        if !root.0.iter().all(|square| *square > 0.0) {
+            return None;
+        }
+        let mut lambda = Complexes { re: half * -1.0, im: root.map(f64::sqrt) };
+        let mut work = Work::new(n);
+        let mut is_last = false;
+        for _ in 0..MOST_STEPS {
+            let step = newton(lambda, &squares, &damping, &mut work);
+            let below = |share: f64| {
+                let [step, size] = [step.square().0, lambda.square().0];
+                (0..WIDTH).all(|lane| step[lane] <= share * share * size[lane])
+            };
+            if is_last {
+                return below(CONVERGED).then(|| found(lambda, &squares, &work.x, &places));
+            }
+            is_last = below(LAST_STEP);
+            lambda = lambda.minus(step);
+        }
+        None
+    }
+
+    widened! {
+        /// How nearly each mode's row passes over all other modes.
+        fn independence | independence_wide (&self, found: &[Found]) -> Independence = independence_by_registers
+    }
+
+    #[inline(always)]
+    fn independence_by_registers(&self, found: &[Found]) -> Independence {
+        let n = self.modes.omega.len();
+        let squares: Vec<f64> = self.modes.omega.iter().map(|omega| omega * omega).collect();
+        let (mut most, mut worst) = (Wide::ZERO, Wide::ZERO);
+        let larger = |a: f64, b: f64| if a < b || b.is_nan() { b } else { a };
+        for (group, Found { lambda, shape, size }) in found.iter().enumerate() {
+            let own = self.side_by_side(group * WIDTH);
+            // w v of one mode and another is v w of the other and the one.
+            for other in group * WIDTH..n {
+                let (others, lane) = (&found[other / WIDTH], other % WIDTH);
+                // Σ x y and Σ Ω² x y, with y and with its conjugate.
+                let (mut sums, mut stiff) = ([Wide::ZERO; 4], [Wide::ZERO; 4]);
+                for ((x, y), square) in shape.iter().zip(&others.shape).zip(&squares) {
+                    let y = y.all(lane);
+                    let terms = [x.re * y.re, x.im * y.im, x.re * y.im, x.im * y.re];
+                    for i in 0..4 {
+                        sums[i] = sums[i] + terms[i];
+                        stiff[i] = stiff[i] + terms[i] * *square;
+                    }
+                }
+                let plain = |[a, b, c, d]: [Wide; 4]| Complexes { re: a - b, im: c + d };
+                let conjugate = |[a, b, c, d]: [Wide; 4]| Complexes { re: a + b, im: d - c };
+                let next = others.lambda.all(lane);
+                let mirrored = Complexes { re: next.re, im: next.im * -1.0 };
+                let not_itself = Lanes(own.map(|own| if own == other { 0.0 } else { 1.0 }));
+                let scale = (size.square() * others.size.all(lane).square()).map(|scale| 1.0 / scale);
+                let pairs = [
+                    (next, plain(sums), plain(stiff), not_itself),
+                    (mirrored, conjugate(sums), conjugate(stiff), Lanes::all(1.0)),
+                ];
+                for (next, sum, stiff, counts) in pairs {
+                    // |w v|⁴, and what it makes A V = V B miss, to the same power.
+                    let shared = lambda.times(next).times(sum).minus(stiff).square() * counts;
+                    let fourth = shared * shared * scale;
+                    let apart = lambda.minus(next).square() * (lambda.square() + next.square()).map(|size| 1.0 / size);
+                    most = most.zip(fourth, larger);
+                    worst = worst.zip(fourth * apart * apart, larger);
+                }
+            }
+        }
+        let [most, worst] = [most, worst].map(|fourth| fourth.largest());
+        if !(most < fourth_power(DEPENDENT) && worst < fourth_power(MISSED)) {
+            Independence::None
+        } else if most < fourth_power(ROUNDING) {
+            Independence::Exact
+        } else {
+            Independence::Near
+        }
+    }
+
+    widened! {
+        /// Their blocks, with V and W.
+        fn assemble | assemble_wide (&self, found: &[Found]) -> Spectral = assemble_by_registers
+    }
+
+    #[inline(always)]
+    fn assemble_by_registers(&self, found: &[Found]) -> Spectral {
+        let n = self.modes.omega.len();
+        let width = 2 * n;
+        let of = |k: usize| (&found[k / WIDTH], k % WIDTH);
+        let blocks: Vec<([f64; 4], Block)> = (0..n)
+            .map(|k| {
+                let (found, lane) = of(k);
+                let (a, b) = (found.lambda.re.0[lane], found.lambda.im.0[lane]);
+                let matrix = [a, -b, b, a];
+                (matrix, Block::new(matrix))
+            })
+            .collect();
+        let mut order: Vec<usize> = (0..n).collect();
+        order.sort_by(|&k, &l| blocks[l].1.radius.total_cmp(&blocks[k].1.radius));
+        let mut slots = vec![0; n];
+        order.iter().enumerate().for_each(|(slot, &k)| slots[k] = slot);
+        let mut spectral = Spectral {
+            from_blocks: vec![0.0; width * width],
+            to_blocks: vec![0.0; width * width],
+            matrices: order.iter().map(|&k| blocks[k].0).collect(),
+            blocks: order.iter().map(|&k| blocks[k].1).collect(),
+            lasts: f64::INFINITY,
+        };
+        for (group, Found { lambda, shape, size }) in found.iter().enumerate() {
+            let first = group * WIDTH;
+            let lanes = WIDTH.min(n - first);
+            let inverse = size.inverse();
+            for i in 0..n {
+                let mut by_modes = [Complexes::ZERO; 3];
+                for (k, x) in shape.iter().enumerate() {
+                    let omega = self.modes.omega[k];
+                    let (to, from) = (self.modes.shapes[k][i] * omega, self.modes.inverse[k][i] / omega);
+                    let factors = [to, omega * omega * from, from];
+                    for (sum, factor) in by_modes.iter_mut().zip(factors) {
+                        *sum = sum.plus(x.scaled(Lanes::all(factor)));
+                    }
+                }
+                let [place, stiff, moving] = by_modes;
+                let columns = [place, lambda.times(place)];
+                let rows = [stiff.times(inverse).scaled(Lanes::all(-1.0)), moving.times(inverse.times(*lambda))];
+                for (half, (v, w)) in columns.into_iter().zip(rows).enumerate() {
+                    let row = (half * n + i) * width;
+                    for lane in 0..lanes {
+                        let at = row + 2 * slots[first + lane];
+                        spectral.from_blocks[at] = 2.0 * v.re.0[lane];
+                        spectral.from_blocks[at + 1] = -2.0 * v.im.0[lane];
+                        spectral.to_blocks[at] = w.re.0[lane];
+                        spectral.to_blocks[at + 1] = w.im.0[lane];
+                    }
+                }
+            }
+        }
+        spectral
+    }
+}
+
+/// Modes whose coordinates stand at these places.
+#[inline(always)]
+fn found(lambda: Complexes, squares: &[Wide], x: &[Complexes], places: &[[usize; WIDTH]]) -> Found {
+    let (mut sum, mut stiff) = (Complexes::ZERO, Complexes::ZERO);
+    let mut shape = vec![Complexes::ZERO; x.len()];
+    for ((x, square), places) in x.iter().zip(squares).zip(places) {
+        let own = x.times(*x);
+        sum = sum.plus(own);
+        stiff = stiff.plus(own.scaled(*square));
+        for (lane, place) in places.iter().enumerate() {
+            let to = &mut shape[*place];
+            (to.re.0[lane], to.im.0[lane]) = (x.re.0[lane], x.im.0[lane]);
+        }
+    }
+    Found { lambda, shape, size: lambda.times(lambda).times(sum).minus(stiff) }
+}
+
+/// Room to work in.
+struct Work {
+    /// L, row by row, without its diagonal of ones.
+    lower: Vec<Complexes>,
+    /// The row at hand before it is divided by the pivots.
+    row: Vec<Complexes>,
+    /// 1/D.
+    inverse: Vec<Complexes>,
+    /// L⁻ᵀ e_n.
+    x: Vec<Complexes>,
+}
+
+impl Work {
+    fn new(n: usize) -> Self {
+        let numbers = |count| vec![Complexes::ZERO; count];
+        Self { lower: numbers(n * n), row: numbers(n), inverse: numbers(n), x: numbers(n) }
+    }
+}
+
+/// Newton's step for λ, and x in passing: L D Lᵀ = λ² + λ C + Ω², whose last pivot is r. Row by row, as sums, which the compiler leaves
+/// in the registers; updates of the rest of the matrix it takes apart and puts together again.
+#[inline(always)]
+fn newton(lambda: Complexes, squares: &[Wide], damping: &[Wide], work: &mut Work) -> Complexes {
+    let n = squares.len();
+    let square = lambda.times(lambda);
+    let mut r = square;
+    let Work { lower, row, inverse, x } = work;
+    for (i, entries) in damping.chunks_exact(n).enumerate() {
+        let (above, own) = lower.split_at_mut(i * n);
+        for (j, before) in above.chunks_exact(n).enumerate() {
+            let mut sum = lambda.scaled(entries[j]);
+            for (u, l) in row[..j].iter().zip(before) {
+                sum = sum.minus(u.times(*l));
+            }
+            row[j] = sum;
+        }
+        let mut pivot = square.plus(lambda.scaled(entries[i]));
+        pivot.re = pivot.re + squares[i];
+        for ((u, inverse), l) in row[..i].iter().zip(&*inverse).zip(own) {
+            *l = u.times(*inverse);
+            pivot = pivot.minus(u.times(*l));
+        }
+        inverse[i] = pivot.inverse();
+        r = pivot;
+    }
+    x[n - 1] = Complexes { re: Lanes::all(1.0), im: Wide::ZERO };
+    for i in (0..n - 1).rev() {
+        let mut sum = Complexes::ZERO;
+        for (p, x) in x.iter().enumerate().skip(i + 1) {
+            sum = sum.minus(lower[p * n + i].times(*x));
+        }
+        x[i] = sum;
+    }
+    let (mut sum, mut stiff) = (Complexes::ZERO, Complexes::ZERO);
+    for (own, square) in x.iter().zip(squares) {
+        let own = own.times(*own);
+        sum = sum.plus(own);
+        stiff = stiff.plus(own.scaled(*square));
+    }
+    // r = λ² xᵀx + λ xᵀC x + xᵀΩ²x leaves no need of C in r′ = (σ + r)/λ.
+    let inverse = square.times(sum).minus(stiff).plus(r).inverse().times(lambda);
+    let step = r.times(inverse);
+    // λ² bends r; what x does beside is of the same order, and small where modes are apart.
+    step.plus(step.times(step).times(sum.times(inverse)))
+}
+
+/// W ← W + (1 − W V) W.
+fn correct(spectral: &mut Spectral) {
+    let width = spectral.width();
+    let v = DMatrix::from_row_slice(width, width, &spectral.from_blocks);
+    // By coordinates, as the engine keeps it, W is column by column.
+    let mut w = DMatrix::from_column_slice(width, width, &spectral.to_blocks);
+    invert_again(&v, &mut w);
+    spectral.to_blocks.copy_from_slice(w.as_slice());
+}
+
+fn fourth_power(x: f64) -> f64 {
+    (x * x) * (x * x)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::schur::Iteration;
+    use super::super::system::Matrix;
+    use super::*;
+
+    /// Masses that carry particles on springs and dashpots, in coordinates of the masses and compressions.
+    struct Drawn {
+        mass: Matrix,
+        stiffness: Matrix,
+        damping: Matrix,
+    }
+
+    impl Drawn {
+        /// Of so many modes and particles; dashpots of `ratio` times what is critical for a particle alone.
+        fn new(number: &mut impl FnMut(f64, f64) -> f64, structure: usize, particles: usize, ratio: f64) -> Self {
+            let order = structure + particles;
+            let (mut mass, mut stiffness) = (vec![0.0; order], vec![0.0; order]);
+            let mut damping = vec![0.0; order];
+            for i in 0..structure {
+                let omega = 25.0 * ((i + 1) * (i + 1)) as f64 * number(0.8, 1.2);
+                (mass[i], stiffness[i], damping[i]) = (1.0, omega * omega, 5e-5 * omega * omega);
+            }
+            let [one, spring] = [number(5e-3, 5e-2), number(3e2, 3e3)];
+            let dashpot = 2.0 * ratio * (one * spring).sqrt();
+            let mut all = Matrix::diagonal(&mass);
+            for slot in structure..order {
+                (stiffness[slot], damping[slot]) = (spring, dashpot);
+                let row: Vec<f64> = (0..structure).map(|_| number(-2.0, 2.0)).collect();
+                let row: Vec<f64> =
+                    row.into_iter().chain((structure..order).map(|i| f64::from(u8::from(i == slot)))).collect();
+                for i in 0..order {
+                    for j in 0..order {
+                        all.entries[i * order + j] += one * row[i] * row[j];
+                    }
+                }
+            }
+            Self { mass: all, stiffness: Matrix::diagonal(&stiffness), damping: Matrix::diagonal(&damping) }
+        }
+
+        /// Accelerations by places and rates.
+        fn accelerations(&self) -> Vec<Vec<f64>> {
+            let order = self.mass.order;
+            let factors = super::super::cholesky::Cholesky::new(&self.mass).expect("masses are positive");
+            let column =
+                |matrix: &Matrix, j: usize| factors.solve(&(0..order).map(|i| -matrix.at(i, j)).collect::<Vec<_>>());
+            let columns: Vec<Vec<f64>> = [&self.stiffness, &self.damping]
+                .into_iter()
+                .flat_map(|matrix| (0..order).map(move |j| (matrix, j)))
+                .map(|(matrix, j)| column(matrix, j))
+                .collect();
+            (0..order).map(|i| columns.iter().map(|column| column[i]).collect()).collect()
+        }
+
+        fn in_normal_coordinates(&self, modes: &NormalModes) -> Vec<f64> {
+            let order = self.mass.order;
+            let entry = |i: usize, j: usize| {
+                modes.omega[i] * modes.omega[j] * self.damping.form(&modes.shapes[i], &modes.shapes[j])
+            };
+            (0..order * order).map(|at| entry(at / order, at % order)).collect()
+        }
+
+        /// By normal modes.
+        fn split(&self) -> Option<Spectral> {
+            let modes = NormalModes::new(&self.stiffness, &self.mass).expect("springs are positive");
+            split(&modes, &self.in_normal_coordinates(&modes))
+        }
+
+        /// What W V misses of 1, and V B W of A, with places in units of their scale: (Ω p, p′).
+        fn residuals(&self, spectral: &Spectral) -> [f64; 2] {
+            let (order, width) = (self.mass.order, spectral.width());
+            let rows = self.accelerations();
+            let unit: Vec<f64> = (0..order).map(|i| rows[i][i].abs().sqrt()).chain(vec![1.0; order]).collect();
+            let v = DMatrix::from_fn(width, width, |i, k| spectral.from_blocks[i * width + k] * unit[i]);
+            let w = DMatrix::from_fn(width, width, |k, i| spectral.to_blocks[i * width + k] / unit[i]);
+            let mut b = DMatrix::zeros(width, width);
+            for (k, matrix) in spectral.matrices.iter().enumerate() {
+                (0..4).for_each(|i| b[(2 * k + i / 2, 2 * k + i % 2)] = matrix[i]);
+            }
+            let a = DMatrix::from_fn(width, width, |i, j| {
+                let entry = if i < order { f64::from(u8::from(j == order + i)) } else { rows[i - order][j] };
+                entry * unit[i] / unit[j]
+            });
+            let scale = a.amax();
+            [(&v * &w - DMatrix::identity(width, width)).amax(), (&v * b * &w - &a).amax() / scale]
+        }
+    }
+
+    fn numbers() -> impl FnMut(f64, f64) -> f64 {
+        let mut state = 1_u64;
+        move |low, high| {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            low + (high - low) * ((state >> 11) as f64 / (1_u64 << 53) as f64)
+        }
+    }
+
+    #[test]
+    fn modes_under_dashpots_are_as_exact_as_those_of_a_schur_form() {
+        let mut number = numbers();
+        // Dashpots by what is critical for a particle alone; which share of the systems must come from their normal modes.
+        for (least, most, share) in [(0.01, 0.1, 0.95), (0.1, 0.3, 0.95), (0.3, 0.6, 0.8), (0.6, 2.0, 0.0)] {
+            let (mut drawn, mut split, mut means) = (0, 0, [[0.0; 2]; 2]);
+            for _ in 0..300 {
+                let structure = number(3.0, 12.99) as usize;
+                let particles = number(1.0, 8.99_f64.min(structure as f64 + 0.99)) as usize;
+                let ratio = number(least, most);
+                let system = Drawn::new(&mut number, structure, particles, ratio);
+                drawn += 1;
+                let Some(own) = system.split() else { continue };
+                split += 1;
+                let [unit, matrix] = system.residuals(&own);
+                assert!(unit < 1e-13 && matrix < 5e-14, "{structure}, {particles}, {ratio}: {unit:e}, {matrix:e}");
+                let rows = system.accelerations();
+                let schur = super::super::modes::split(&rows, &system.mass, None, Iteration::Own).expect("it ends");
+                if schur.lasts.is_infinite() {
+                    for (sums, spectral) in means.iter_mut().zip([&own, &schur]) {
+                        let residuals = system.residuals(spectral);
+                        sums.iter_mut().zip(residuals).for_each(|(sum, x)| *sum += libm::log(x.max(1e-17)));
+                    }
+                }
+                for (own, schur) in own.blocks.iter().zip(&schur.blocks).filter(|_| schur.lasts.is_infinite()) {
+                    assert!((own.radius / schur.radius - 1.0).abs() < 1e-10, "{} for {}", own.radius, schur.radius);
+                }
+            }
+            assert!(f64::from(split) >= share * f64::from(drawn), "{split} of {drawn} up to {most}");
+            let [own, schur] = means.map(|sums| sums.map(|sum| sum / f64::from(split.max(1))));
+            assert!((0..2).all(|i| own[i] < schur[i] + 0.2), "up to {most}: {own:?} for {schur:?}");
+        }
+    }
+
+    #[test]
+    fn what_is_overdamped_is_left_to_the_schur_form_and_modes_that_are_twice_the_same_are_split_well_or_not_at_all() {
+        let mut number = numbers();
+        assert!(Drawn::new(&mut number, 4, 2, 3.0).split().is_none());
+        // More particles of one kind than modes: some of theirs are one, and any of their shapes will do.
+        for seed in 0..200 {
+            let ratio = number(0.01, 0.6);
+            let system = Drawn::new(&mut number, 1 + seed % 3, 4 + seed % 4, ratio);
+            if let Some(spectral) = system.split() {
+                let [unit, matrix] = system.residuals(&spectral);
+                assert!(unit < 1e-13 && matrix < 5e-14, "{seed}: {unit:e}, {matrix:e}");
+            }
+        }
+    }
+
+    #[test]
+    fn every_processor_finds_the_same_bits() {
+        let mut number = numbers();
+        for _ in 0..50 {
+            let system = Drawn::new(&mut number, 5, 3, 0.3);
+            let modes = NormalModes::new(&system.stiffness, &system.mass).expect("springs are positive");
+            let damping = system.in_normal_coordinates(&modes);
+            let problem = Problem { modes: &modes, damping: &damping };
+            let bits = |found: Option<Found>| {
+                let found = found.expect("it is lightly damped");
+                let each = found.shape.iter().chain([&found.lambda, &found.size]);
+                each.flat_map(|z| [z.re.0, z.im.0]).flatten().map(f64::to_bits).collect::<Vec<_>>()
+            };
+            for first in [0, 4] {
+                assert_eq!(bits(problem.solve(first)), bits(problem.solve_by_registers(first)));
+            }
+        }
+    }
+}
