@@ -16,12 +16,11 @@
 use nalgebra::DMatrix;
 
 use super::block::Block;
-use super::lanes::{Lanes, WIDTH};
+use super::four::Four;
+use super::lanes::WIDTH;
 use super::spectral::{Spectral, invert_again};
 use super::undamped::NormalModes;
 use super::wide::widened;
-
-type Wide = Lanes<WIDTH>;
 
 /// Newton's steps; four are usual.
 const MOST_STEPS: usize = 12;
@@ -37,12 +36,12 @@ const MISSED: f64 = 2e-14;
 /// Complex numbers side by side.
 #[derive(Debug, Clone, Copy)]
 struct Complexes {
-    re: Wide,
-    im: Wide,
+    re: Four,
+    im: Four,
 }
 
 impl Complexes {
-    const ZERO: Self = Self { re: Wide::ZERO, im: Wide::ZERO };
+    const ZERO: Self = Self { re: Four::ZERO, im: Four::ZERO };
 
     #[inline(always)]
     fn plus(self, other: Self) -> Self {
@@ -60,12 +59,12 @@ impl Complexes {
     }
 
     #[inline(always)]
-    fn scaled(self, factor: Wide) -> Self {
+    fn scaled(self, factor: Four) -> Self {
         Self { re: self.re * factor, im: self.im * factor }
     }
 
     #[inline(always)]
-    fn square(self) -> Wide {
+    fn square(self) -> Four {
         self.re * self.re + self.im * self.im
     }
 
@@ -78,7 +77,7 @@ impl Complexes {
     /// One of them, in all places.
     #[inline(always)]
     fn all(self, lane: usize) -> Self {
-        Self { re: Lanes::all(self.re.0[lane]), im: Lanes::all(self.im.0[lane]) }
+        Self { re: Four::all(self.re.at(lane)), im: Four::all(self.im.at(lane)) }
     }
 }
 
@@ -142,17 +141,17 @@ impl Problem<'_> {
         // Each mode's own coordinate is the last of its equation.
         let place = |lane: usize, i: usize| if i + 1 == n { own[lane] } else { i + usize::from(i >= own[lane]) };
         let places: Vec<[usize; WIDTH]> = (0..n).map(|i| std::array::from_fn(|lane| place(lane, i))).collect();
-        let squares: Vec<Wide> = places.iter().map(|places| Lanes(places.map(|i| omega[i] * omega[i]))).collect();
-        let mut damping = vec![Wide::ZERO; n * n];
+        let squares: Vec<Four> = places.iter().map(|places| Four::new(places.map(|i| omega[i] * omega[i]))).collect();
+        let mut damping = vec![Four::ZERO; n * n];
         for (i, row) in damping.chunks_exact_mut(n).enumerate() {
             let from = places[i].map(|place| &self.damping[place * n..][..n]);
             for (entry, places) in row[..=i].iter_mut().zip(&places) {
-                *entry = Lanes(std::array::from_fn(|lane| from[lane][places[lane]]));
+                *entry = Four::new(std::array::from_fn(|lane| from[lane][places[lane]]));
             }
         }
         let half = damping[n * n - 1] * 0.5;
         let root = squares[n - 1] - half * half;
-        if !root.0.iter().all(|square| *square > 0.0) {
+        if !root.array().iter().all(|square| *square > 0.0) {
             return None;
         }
         let mut lambda = Complexes { re: half * -1.0, im: root.map(f64::sqrt) };
@@ -161,7 +160,7 @@ impl Problem<'_> {
         for _ in 0..MOST_STEPS {
             let step = newton(lambda, &squares, &damping, &mut work);
             let below = |share: f64| {
-                let [step, size] = [step.square().0, lambda.square().0];
+                let [step, size] = [step.square().array(), lambda.square().array()];
                 (0..WIDTH).all(|lane| step[lane] <= share * share * size[lane])
             };
             if is_last {
@@ -182,7 +181,7 @@ impl Problem<'_> {
     fn independence_by_registers(&self, found: &[Found]) -> Independence {
         let n = self.modes.omega.len();
         let squares: Vec<f64> = self.modes.omega.iter().map(|omega| omega * omega).collect();
-        let (mut most, mut worst) = (Wide::ZERO, Wide::ZERO);
+        let (mut most, mut worst) = (Four::ZERO, Four::ZERO);
         let larger = |a: f64, b: f64| if a < b || b.is_nan() { b } else { a };
         for (group, Found { lambda, shape, size }) in found.iter().enumerate() {
             let own = self.side_by_side(group * WIDTH);
@@ -190,7 +189,7 @@ impl Problem<'_> {
             for other in group * WIDTH..n {
                 let (others, lane) = (&found[other / WIDTH], other % WIDTH);
                 // Σ x y and Σ Ω² x y, with y and with its conjugate.
-                let (mut sums, mut stiff) = ([Wide::ZERO; 4], [Wide::ZERO; 4]);
+                let (mut sums, mut stiff) = ([Four::ZERO; 4], [Four::ZERO; 4]);
                 for ((x, y), square) in shape.iter().zip(&others.shape).zip(&squares) {
                     let y = y.all(lane);
                     let terms = [x.re * y.re, x.im * y.im, x.re * y.im, x.im * y.re];
@@ -199,15 +198,15 @@ impl Problem<'_> {
                         stiff[i] = stiff[i] + terms[i] * *square;
                     }
                 }
-                let plain = |[a, b, c, d]: [Wide; 4]| Complexes { re: a - b, im: c + d };
-                let conjugate = |[a, b, c, d]: [Wide; 4]| Complexes { re: a + b, im: d - c };
+                let plain = |[a, b, c, d]: [Four; 4]| Complexes { re: a - b, im: c + d };
+                let conjugate = |[a, b, c, d]: [Four; 4]| Complexes { re: a + b, im: d - c };
                 let next = others.lambda.all(lane);
                 let mirrored = Complexes { re: next.re, im: next.im * -1.0 };
-                let not_itself = Lanes(own.map(|own| if own == other { 0.0 } else { 1.0 }));
+                let not_itself = Four::new(own.map(|own| if own == other { 0.0 } else { 1.0 }));
                 let scale = (size.square() * others.size.all(lane).square()).map(|scale| 1.0 / scale);
                 let pairs = [
                     (next, plain(sums), plain(stiff), not_itself),
-                    (mirrored, conjugate(sums), conjugate(stiff), Lanes::all(1.0)),
+                    (mirrored, conjugate(sums), conjugate(stiff), Four::all(1.0)),
                 ];
                 for (next, sum, stiff, counts) in pairs {
                     // |w v|⁴, and what it makes A V = V B miss, to the same power.
@@ -242,7 +241,7 @@ impl Problem<'_> {
         let blocks: Vec<([f64; 4], Block)> = (0..n)
             .map(|k| {
                 let (found, lane) = of(k);
-                let (a, b) = (found.lambda.re.0[lane], found.lambda.im.0[lane]);
+                let (a, b) = (found.lambda.re.at(lane), found.lambda.im.at(lane));
                 let matrix = [a, -b, b, a];
                 (matrix, Block::new(matrix))
             })
@@ -269,20 +268,20 @@ impl Problem<'_> {
                     let (to, from) = (self.modes.shapes[k][i] * omega, self.modes.inverse[k][i] / omega);
                     let factors = [to, omega * omega * from, from];
                     for (sum, factor) in by_modes.iter_mut().zip(factors) {
-                        *sum = sum.plus(x.scaled(Lanes::all(factor)));
+                        *sum = sum.plus(x.scaled(Four::all(factor)));
                     }
                 }
                 let [place, stiff, moving] = by_modes;
                 let columns = [place, lambda.times(place)];
-                let rows = [stiff.times(inverse).scaled(Lanes::all(-1.0)), moving.times(inverse.times(*lambda))];
+                let rows = [stiff.times(inverse).scaled(Four::all(-1.0)), moving.times(inverse.times(*lambda))];
                 for (half, (v, w)) in columns.into_iter().zip(rows).enumerate() {
                     let row = (half * n + i) * width;
                     for lane in 0..lanes {
                         let at = row + 2 * slots[first + lane];
-                        spectral.from_blocks[at] = 2.0 * v.re.0[lane];
-                        spectral.from_blocks[at + 1] = -2.0 * v.im.0[lane];
-                        spectral.to_blocks[at] = w.re.0[lane];
-                        spectral.to_blocks[at + 1] = w.im.0[lane];
+                        spectral.from_blocks[at] = 2.0 * v.re.at(lane);
+                        spectral.from_blocks[at + 1] = -2.0 * v.im.at(lane);
+                        spectral.to_blocks[at] = w.re.at(lane);
+                        spectral.to_blocks[at + 1] = w.im.at(lane);
                     }
                 }
             }
@@ -293,7 +292,7 @@ impl Problem<'_> {
 
 /// Modes whose coordinates stand at these places.
 #[inline(always)]
-fn found(lambda: Complexes, squares: &[Wide], x: &[Complexes], places: &[[usize; WIDTH]]) -> Found {
+fn found(lambda: Complexes, squares: &[Four], x: &[Complexes], places: &[[usize; WIDTH]]) -> Found {
     let (mut sum, mut stiff) = (Complexes::ZERO, Complexes::ZERO);
     let mut shape = vec![Complexes::ZERO; x.len()];
     for ((x, square), places) in x.iter().zip(squares).zip(places) {
@@ -302,7 +301,8 @@ fn found(lambda: Complexes, squares: &[Wide], x: &[Complexes], places: &[[usize;
         stiff = stiff.plus(own.scaled(*square));
         for (lane, place) in places.iter().enumerate() {
             let to = &mut shape[*place];
-            (to.re.0[lane], to.im.0[lane]) = (x.re.0[lane], x.im.0[lane]);
+            to.re.set(lane, x.re.at(lane));
+            to.im.set(lane, x.im.at(lane));
         }
     }
     Found { lambda, shape, size: lambda.times(lambda).times(sum).minus(stiff) }
@@ -327,10 +327,9 @@ impl Work {
     }
 }
 
-/// Newton's step for λ, and x in passing: L D Lᵀ = λ² + λ C + Ω², whose last pivot is r. Row by row, as sums, which the compiler leaves
-/// in the registers; updates of the rest of the matrix it takes apart and puts together again.
+/// Newton's step for λ, and x in passing: L D Lᵀ = λ² + λ C + Ω², row by row, whose last pivot is r.
 #[inline(always)]
-fn newton(lambda: Complexes, squares: &[Wide], damping: &[Wide], work: &mut Work) -> Complexes {
+fn newton(lambda: Complexes, squares: &[Four], damping: &[Four], work: &mut Work) -> Complexes {
     let n = squares.len();
     let square = lambda.times(lambda);
     let mut r = square;
@@ -353,7 +352,7 @@ fn newton(lambda: Complexes, squares: &[Wide], damping: &[Wide], work: &mut Work
         inverse[i] = pivot.inverse();
         r = pivot;
     }
-    x[n - 1] = Complexes { re: Lanes::all(1.0), im: Wide::ZERO };
+    x[n - 1] = Complexes { re: Four::all(1.0), im: Four::ZERO };
     for i in (0..n - 1).rev() {
         let mut sum = Complexes::ZERO;
         for (p, x) in x.iter().enumerate().skip(i + 1) {
@@ -544,7 +543,7 @@ mod tests {
             let bits = |found: Option<Found>| {
                 let found = found.expect("it is lightly damped");
                 let each = found.shape.iter().chain([&found.lambda, &found.size]);
-                each.flat_map(|z| [z.re.0, z.im.0]).flatten().map(f64::to_bits).collect::<Vec<_>>()
+                each.flat_map(|z| [z.re.array(), z.im.array()]).flatten().map(f64::to_bits).collect::<Vec<_>>()
             };
             for first in [0, 4] {
                 assert_eq!(bits(problem.solve(first)), bits(problem.solve_by_registers(first)));

@@ -35,6 +35,12 @@ impl Four {
         unsafe { std::mem::transmute::<Register, [f64; WIDTH]>(self.0) }
     }
 
+    /// The same number in all places.
+    #[inline(always)]
+    pub(crate) fn all(number: f64) -> Self {
+        Self::new([number; WIDTH])
+    }
+
     /// One of them.
     #[inline(always)]
     pub(crate) fn at(self, place: usize) -> f64 {
