@@ -195,7 +195,10 @@ fn a_dense_search_sees_every_point_of_its_grid_and_closes_in() {
 #[test]
 fn sections_go_through_the_point_on_every_side() {
     let bounds = Bounds::new(vec![[0.1, 10.0], [1.0, 2.0]]).unwrap();
-    let evaluate = |points: &[Vec<f64>]| Ok::<_, Infallible>(points.iter().map(|point| sphere(point)).collect());
+    let evaluate = |points: &[Vec<f64>]| {
+        assert_eq!(points.len(), 6 + 6 - 1, "the centre once");
+        Ok::<_, Infallible>(points.iter().map(|point| sphere(point)).collect())
+    };
     let cut = sections(&bounds, &[3.0, 1.5], 5, Spacing::Log, evaluate).unwrap();
     assert_eq!(cut.len(), 2);
     let at = cut[0].along.iter().position(|x| *x == 3.0).unwrap();
