@@ -267,6 +267,16 @@ pub(crate) fn count_event() {
     }
 }
 
+/// Counts the events of a run whose outcome is known.
+pub(crate) fn count_events(events: u64) {
+    EVENTS.set(EVENTS.get() + events);
+}
+
+/// So many more events are within the limit.
+pub(crate) fn has_room_for(events: u64) -> bool {
+    EVENTS.get().saturating_add(events) <= MOST_EVENTS.get()
+}
+
 /// Events of the simulation so far.
 pub(crate) fn events() -> u64 {
     EVENTS.get()

@@ -6,7 +6,7 @@
 //! | files | hold |
 //! |---|---|
 //! | `system`, `options`, `carried`, `trace`, `spline` | what is run, from where, and how |
-//! | `run` | the ways to run it |
+//! | `run`, `repeated` | the ways to run it; runs that are asked for again |
 //! | `response`, `sums`, `extremes`, `steady_state`, `proof`, `error` | what comes out |
 //! | `march`, `states`, `visits` | from event to event; the contact states on the way and how long each was in force |
 //! | `search`, `survey`, `guards`, `window`, `polynomial` | the first event, certified by Bernstein enclosures |
@@ -67,6 +67,7 @@ mod parabola;
 mod polynomial;
 mod proof;
 mod reach;
+mod repeated;
 mod residual_bound;
 mod resonance;
 mod response;
@@ -99,6 +100,7 @@ pub use orbit::{
 };
 pub use proof::Proof;
 pub use reach::{FarSurface, OutOfReach, out_of_reach};
+pub use repeated::keeping_runs;
 pub use response::{Counts, CycleRates, Method, Observed, Response};
 pub use run::{
     ceiling_graze, event_driven, fixed_step, fundamental_matrix, is_linear, lift_off, steady_state, two_impacts,

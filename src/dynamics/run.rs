@@ -7,13 +7,17 @@ use super::response::Response;
 use super::states::States;
 use super::steady_state::SteadyState;
 use super::system::HybridSystem;
-use super::{budget, fixed, linear, march, residual_bound};
+use super::{budget, fixed, linear, march, repeated, residual_bound};
 
 /// Runs a system from event to event; where it is proved that there is none, in closed form.
 ///
 /// # Errors
 /// [`EngineError`] with the reason.
 pub fn event_driven(system: &HybridSystem, options: &Options) -> Result<Response, EngineError> {
+    repeated::once(system, options, || simulated(system, options))
+}
+
+fn simulated(system: &HybridSystem, options: &Options) -> Result<Response, EngineError> {
     budget::within(|| {
         let states = States::of(system);
         let attempt = match options.until {

@@ -342,6 +342,12 @@ impl Measure {
         matches!(self.facts().from, ReadOff::Model | ReadOff::Shape)
     }
 
+    /// Zero or more in any run: part of a sum of such numbers is a bound of the sum.
+    #[must_use]
+    pub fn is_never_negative(self) -> bool {
+        matches!(self, Self::RmsVelocity | Self::UndampedRmsVelocity | Self::StdDisplacement)
+    }
+
     /// A number that tends to its limit as a run gets more exact: no count, no difference that should be zero, no sample.
     pub(super) fn converges(self) -> bool {
         matches!(self.facts().from, ReadOff::Velocity | ReadOff::Displacement | ReadOff::Extremes | ReadOff::Energies)

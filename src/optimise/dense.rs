@@ -1,7 +1,7 @@
 //! Dense search: every point of a grid, then finer grids around the best one.
 
 use super::bounds::{Bounds, Spacing};
-use super::search::{Found, Function, Optimiser, Score, Stopping, minimise};
+use super::search::{Found, Function, Optimiser, Score, Stopping, Wanted, minimise};
 
 /// Points evaluated at once.
 const BATCH: usize = 256;
@@ -84,6 +84,10 @@ impl Optimiser for Grid {
         self.next = (from + BATCH).min(self.size());
         self.asked = from;
         (from..self.next).map(|index| self.point(index)).collect()
+    }
+
+    fn wanted(&self) -> Wanted {
+        Wanted::Least { below: self.best.as_ref().map_or(f64::INFINITY, |(_, value)| *value) }
     }
 
     fn tell(&mut self, scores: &[Score]) {

@@ -26,6 +26,6 @@ pub use dense::{Dense, dense};
 pub use genetic::{Genetic, GeneticSettings};
 pub use polish::{Slope, Smooth, polish};
 pub use random::Stream;
-pub use search::{Batch, Found, Function, Optimiser, Score, Stalled, Step, Stopped, Stopping, minimise};
+pub use search::{Batch, Found, Function, Optimiser, Score, Stalled, Step, Stopped, Stopping, Wanted, minimise};
 pub use section::{Section, sections};
 pub use two_opt::two_opt;

@@ -23,8 +23,21 @@ pub struct Batch {
     pub seconds: f64,
 }
 
+/// Which scores of a batch have to be known.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Wanted {
+    /// All of them.
+    Each,
+    /// The least one, if it is below this. Of a score above this, or above another one of the batch, a bound will do that is above
+    /// it, too.
+    Least {
+        /// The least score known before.
+        below: f64,
+    },
+}
+
 /// Evaluates a batch of points, in whatever order and on however many threads.
-pub type Function<'f, E> = dyn FnMut(&[Vec<f64>]) -> Result<Batch, E> + 'f;
+pub type Function<'f, E> = dyn FnMut(&[Vec<f64>], Wanted) -> Result<Batch, E> + 'f;
 
 /// Something that looks for the smallest value, batch by batch.
 pub trait Optimiser {
@@ -33,6 +46,11 @@ pub trait Optimiser {
 
     /// Their scores, in the order in which they were asked for.
     fn tell(&mut self, scores: &[Score]);
+
+    /// Which of them it will look at.
+    fn wanted(&self) -> Wanted {
+        Wanted::Each
+    }
 }
 
 /// When to stop; the first condition that is met counts.
@@ -142,15 +160,16 @@ pub fn minimise<E>(
             let stopped = if asked > 0 { Stopped::Evaluations } else { Stopped::Exhausted };
             return Ok(found.map(|found| Found { stopped, ..found }));
         }
-        let batch = evaluate(&points)?;
-        seconds += batch.seconds;
         generation += 1;
+        let cut = points.len() < asked;
+        // What comes after the last batch asks for the best point alone.
+        let last = cut || stopping.counted(done + points.len() as u64, generation).is_some();
+        let below = found.as_ref().map_or(f64::INFINITY, |found| found.score.order());
+        let batch = evaluate(&points, if last { Wanted::Least { below } } else { optimiser.wanted() })?;
+        seconds += batch.seconds;
         take(&mut found, &points, &batch.scores);
         let Some(so_far) = &mut found else { return Ok(None) };
-        let cut = points.len() < asked;
-        if cut {
-            so_far.stopped = Stopped::Evaluations;
-        } else {
+        if !last {
             optimiser.tell(&batch.scores);
         }
         if let Some(stopped) = cut.then_some(Stopped::Evaluations).or_else(|| stopping.met(so_far, generation, seconds))
@@ -182,12 +201,17 @@ fn take(found: &mut Option<Found>, points: &[Vec<f64>], scores: &[Score]) {
 }
 
 impl Stopping {
-    fn met(&self, found: &Found, generation: u64, seconds: f64) -> Option<Stopped> {
+    /// The conditions that are known before a batch is evaluated.
+    fn counted(&self, evaluations: u64, generation: u64) -> Option<Stopped> {
         if self.generations.is_some_and(|most| generation >= most) {
             return Some(Stopped::Generations);
         }
-        if self.evaluations.is_some_and(|most| found.evaluations >= most) {
-            return Some(Stopped::Evaluations);
+        self.evaluations.is_some_and(|most| evaluations >= most).then_some(Stopped::Evaluations)
+    }
+
+    fn met(&self, found: &Found, generation: u64, seconds: f64) -> Option<Stopped> {
+        if let Some(stopped) = self.counted(found.evaluations, generation) {
+            return Some(stopped);
         }
         if self.stalled.is_some_and(|stalled| stalled.met(&found.trail)) {
             return Some(Stopped::Tolerance);

@@ -1,6 +1,6 @@
 //! 2-opt: the values of two coordinates change places wherever that is better, until no swap helps.
 
-use super::search::{Found, Function, Score, Step, Stopped};
+use super::search::{Found, Function, Score, Step, Stopped, Wanted};
 
 /// Improves `start`, whose score is known. Each pass tries every pair and takes the best swap.
 ///
@@ -19,7 +19,7 @@ pub fn two_opt<E>(start: &[f64], score: Score, evaluate: &mut Function<'_, E>) -
         if swaps.is_empty() {
             return Ok(found);
         }
-        let scores = evaluate(&swaps)?.scores;
+        let scores = evaluate(&swaps, Wanted::Least { below: found.score.order() })?.scores;
         found.evaluations += swaps.len() as u64;
         let best = (0..swaps.len()).min_by(|a, b| scores[*a].order().total_cmp(&scores[*b].order()));
         let better = best.filter(|best| scores[*best].order() < found.score.order());

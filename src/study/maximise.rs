@@ -16,6 +16,9 @@ use crate::text::words;
 /// An onset is known to this share of the parameter.
 const KNOWN: f64 = 1e-12;
 
+/// Points of the grid of an onset that are tried at once.
+const AT_ONCE: usize = 8;
+
 /// Where the point lies.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Place {
@@ -50,7 +53,7 @@ impl<E: Evaluate, D: Fn() + Sync> Along<'_, E, D> {
     /// The point that is looked for.
     ///
     /// # Errors
-    /// The reason of the first point that has no number: a maximum over part of a range is none. [`RowFailure::NoOnset`] where all
+    /// The reason of the first point that has no number: a maximum over part of a range is none. Beyond an onset none is asked for. [`RowFailure::NoOnset`] where all
     /// points of the grid, or none, have events.
     pub(super) fn found(&self) -> Result<(Evaluated, Place), RowFailure> {
         match self.maximise.wanted {
@@ -78,7 +81,14 @@ impl<E: Evaluate, D: Fn() + Sync> Along<'_, E, D> {
 
     /// The smallest value of the parameter at which the measure is above zero, as far as the grid tells.
     fn onset(&self) -> Result<(Evaluated, Place), RowFailure> {
-        let mut tried = self.all(&self.maximise.grid)?;
+        let mut tried = Vec::new();
+        // What lies beyond the first point with events is not asked for.
+        for points in self.maximise.grid.chunks(AT_ONCE) {
+            tried.extend(self.all(points)?);
+            if tried.iter().any(|one: &Tried| one.value > 0.0) {
+                break;
+            }
+        }
         let missed = |before| RowFailure::NoOnset { measure: words::of_key(&self.maximise.measure), before };
         let first = tried.iter().position(|one| one.value > 0.0).ok_or_else(|| missed(false))?;
         let mut below = first.checked_sub(1).map(|last| tried[last].at).ok_or_else(|| missed(true))?;

@@ -21,10 +21,13 @@ use crate::experiment::{Experiment, Goal, Optimise, Recipe, Search, SearchKind, 
 use crate::measure::{Evaluated, Link, Measure, Measured, Rigour, SolverChoice};
 use crate::optimise::{
     Batch, Bounds, CmaEs, Dense, Found, Genetic, GeneticSettings, Optimiser, Score, Slope, Spacing, Stalled, Stopping,
-    dense, minimise, polish, sections, two_opt,
+    Wanted, dense, minimise, polish, sections, two_opt,
 };
 use crate::table::Table;
 use crate::text::words;
+
+/// Points between two looks at the least score, where only that is wanted.
+const AT_ONCE: usize = 32;
 
 /// Rows of an optimisation's table.
 pub(super) fn rows(optimise: &Optimise, variants: &[Variant]) -> usize {
@@ -85,9 +88,23 @@ impl<'a> Fitness<'a> {
     }
 
     fn evaluate(&self, gaps: &[f64], rigour: Rigour) -> Result<Evaluated, RowFailure> {
-        let one = |array: &(dyn Array + 'a)| guarded(|| array.evaluate(gaps, rigour));
-        let each = self.arrays.iter().map(|array| one(array.as_ref())).collect::<Result<Vec<_>, _>>()?;
-        Ok(mean(self.wanted, self.measures, &each))
+        let each = self.arrays.iter().map(|array| guarded(|| array.evaluate(gaps, rigour)));
+        Ok(mean(self.wanted, self.measures, &each.collect::<Result<Vec<_>, _>>()?))
+    }
+
+    /// One step of a search: the mean of the measure at `index`, which is never negative, or part of it once that alone exceeds `limit`.
+    /// Sums of such numbers never fall, rounding included.
+    fn step(&self, gaps: &[f64], index: usize, limit: f64) -> Result<Step, RowFailure> {
+        let mut each = Vec::with_capacity(self.arrays.len());
+        for array in &self.arrays {
+            each.push(guarded(|| array.evaluate(gaps, Rigour::Step))?);
+            let sum: f64 = each.iter().map(|one| one.measured[index].value).sum();
+            let part = sum / self.arrays.len() as f64;
+            if each.len() < self.arrays.len() && part > limit {
+                return Ok(Step::Above(part));
+            }
+        }
+        Ok(Step::At(mean(self.wanted, self.measures, &each).measured[index].value))
     }
 
     /// The mean over the settings and its derivatives; `None` if that of one setting has none.
@@ -100,6 +117,15 @@ impl<'a> Fitness<'a> {
         let by = |i: usize| each.iter().map(|slope| slope.gradient[i]).sum::<f64>() / count;
         Ok(Some(Slope { value, gradient: (0..gaps.len()).map(by).collect() }))
     }
+}
+
+/// What a step of a search came to.
+#[derive(Debug, Clone, Copy)]
+enum Step {
+    /// The fitness.
+    At(f64),
+    /// A bound below it that was enough.
+    Above(f64),
 }
 
 /// The searches of one optimisation.
@@ -190,8 +216,9 @@ impl Searches<'_> {
                         found.push(self.candidate(SearchKind::Genetic, Some(*seed), &genetic, 0));
                         if self.optimise.two_opt {
                             let name = describe(SearchKind::TwoOpt, Some(*seed));
-                            let swapped =
-                                two_opt(&genetic.point, genetic.score, &mut |points| self.batch(points, &name, total))?;
+                            let swapped = two_opt(&genetic.point, genetic.score, &mut |points, wanted| {
+                                self.batch(points, wanted, &name, total)
+                            })?;
                             total += swapped.evaluations;
                             found.push(self.candidate(SearchKind::TwoOpt, Some(*seed), &swapped, genetic.evaluations));
                         }
@@ -212,9 +239,9 @@ impl Searches<'_> {
                     let settings = Dense { points: *points as usize, spacing: spaced(*spacing), refine: *refine };
                     let name = describe(SearchKind::Dense, None);
                     let (bounds, mut done) = (self.bounds.clone(), 0);
-                    let best = dense(&bounds, settings, &mut |points| {
+                    let best = dense(&bounds, settings, &mut |points, wanted| {
                         done += points.len() as u64;
-                        self.batch(points, &name, done - points.len() as u64)
+                        self.batch(points, wanted, &name, done - points.len() as u64)
                     })?;
                     let best = best.ok_or(SearchError::EmptyGrid)?;
                     found.push(self.candidate(SearchKind::Dense, None, &best, 0));
@@ -235,8 +262,8 @@ impl Searches<'_> {
         let gaps = known.ok_or_else(|| SearchError::NoCandidate(name.to_owned()))?.gaps.clone();
         let improved = format!("{name}_two_opt");
         let description = words::of_level("candidate", &improved);
-        let score = self.batch(std::slice::from_ref(&gaps), &description, 0)?.scores[0];
-        let swapped = two_opt(&gaps, score, &mut |points| self.batch(points, &description, 1))?;
+        let score = self.batch(std::slice::from_ref(&gaps), Wanted::Each, &description, 0)?.scores[0];
+        let swapped = two_opt(&gaps, score, &mut |points, wanted| self.batch(points, wanted, &description, 1))?;
         Ok(Candidate { name: improved, ..self.candidate(SearchKind::TwoOpt, None, &swapped, 1) })
     }
 
@@ -270,37 +297,61 @@ impl Searches<'_> {
     ) -> Result<Found, RowFailure> {
         let name = describe(kind, Some(seed));
         let mut done = 0;
-        let found = minimise(optimiser, stopping, &mut |points| {
+        let found = minimise(optimiser, stopping, &mut |points, wanted| {
             done += points.len() as u64;
-            self.batch(points, &name, done - points.len() as u64)
+            self.batch(points, wanted, &name, done - points.len() as u64)
         })?;
         Ok(found.ok_or(SearchError::NothingEvaluated(name))?)
     }
 
-    /// Scores of a batch: points that are not in the journal are evaluated in parallel.
-    fn batch(&mut self, points: &[Vec<f64>], search: &str, before: u64) -> Result<Batch, RowFailure> {
+    /// Scores of a batch: points that are not in the journal are evaluated in parallel; where only the least is wanted, each as far as
+    /// it takes to prove that an earlier one is less.
+    fn batch(&mut self, points: &[Vec<f64>], wanted: Wanted, search: &str, before: u64) -> Result<Batch, RowFailure> {
         let mut new: Vec<&Vec<f64>> = Vec::new();
         for point in points {
             if self.journal.get(point).is_none() && !new.contains(&point) {
                 new.push(point);
             }
         }
-        let evaluate = |point: &&Vec<f64>| {
+        let evaluate = |point: &&Vec<f64>, limit: f64| {
             let begun = ThreadTime::now();
-            // Smaller is better to the optimisers; what has no number is the worst.
-            let fitness = self.fitness_of(point, Rigour::Step);
-            let score = Score { value: fitness.map_or(f64::NAN, |fitness| self.signed(fitness.value)) };
-            ((*point).clone(), Known { score, seconds: begun.elapsed().as_secs_f64() })
+            // What has no number is the worst.
+            let step = self.fitness.step(point, self.measure, limit).unwrap_or(Step::At(f64::NAN));
+            ((*point).clone(), step, begun.elapsed().as_secs_f64())
         };
-        let mut evaluated: Vec<(Vec<f64>, Known)> = new.par_iter().map(evaluate).collect();
+        let (at_once, mut limit) = match wanted {
+            Wanted::Least { below } if self.is_bounded_by_parts() => (AT_ONCE, below),
+            Wanted::Least { .. } | Wanted::Each => (new.len().max(1), f64::INFINITY),
+        };
+        let mut steps: Vec<(Vec<f64>, Step, f64)> = Vec::with_capacity(new.len());
+        for some in new.chunks(at_once) {
+            // One limit for all of them: how much is evaluated does not depend on threads.
+            steps.par_extend(some.par_iter().map(|point| evaluate(point, limit)));
+            let known = steps[steps.len() - some.len()..].iter();
+            limit = known
+                .fold(limit, |limit, (_, step, _)| if let Step::At(value) = step { limit.min(*value) } else { limit });
+        }
         let interrupted = is_interrupted();
-        // Without a number is then also what was cut short.
-        evaluated.retain(|(_, known)| !(interrupted && known.score.value.is_nan()));
+        let (mut evaluated, mut bounds) = (Vec::new(), Vec::new());
+        for (point, step, seconds) in steps {
+            match step {
+                // Without a number is then also what was cut short.
+                Step::At(value) if interrupted && value.is_nan() => {}
+                // Smaller is better to the optimisers.
+                Step::At(value) => {
+                    evaluated.push((point, Known { score: Score { value: self.signed(value) }, seconds }))
+                }
+                // Not for the journal: another search may want the number.
+                Step::Above(value) => bounds.push((point, Known { score: Score { value }, seconds })),
+            }
+        }
         self.journal.add(&evaluated);
         if interrupted {
             return Err(RowFailure::Interrupted);
         }
-        let known: Vec<Known> = points.iter().filter_map(|point| self.journal.get(point)).collect();
+        let bound = |point: &Vec<f64>| bounds.iter().find(|(other, _)| other == point).map(|(_, known)| *known);
+        let known: Vec<Known> =
+            points.iter().filter_map(|point| self.journal.get(point).or_else(|| bound(point))).collect();
         let scores: Vec<Score> = known.iter().map(|known| known.score).collect();
         if scores.len() < points.len() {
             return Err(SearchError::NotKept.into());
@@ -327,9 +378,14 @@ impl Searches<'_> {
         self.evaluations += count;
     }
 
-    /// What is to be least or greatest; `None` where it cannot be computed.
-    fn fitness_of(&self, point: &[f64], rigour: Rigour) -> Option<Measured> {
-        self.fitness.evaluate(point, rigour).ok()?.measured.get(self.measure).copied()
+    /// Part of the sum that fitness is the mean of proves that a point cannot be the best.
+    fn is_bounded_by_parts(&self) -> bool {
+        self.optimise.goal == Goal::Minimise && self.optimise.measure.is_never_negative()
+    }
+
+    /// Fitness as a landscape shows it; `None` where it cannot be computed.
+    fn look(&self, point: &[f64]) -> Option<Measured> {
+        self.fitness.evaluate(point, Rigour::Look).ok()?.measured.get(self.measure).copied()
     }
 
     /// The best of what was found, improved down the gradient of settled motion; as it is where that motion has none.
@@ -351,7 +407,8 @@ impl Searches<'_> {
             })
         })?;
         // As the searches before it saw their best.
-        let score = self.batch(std::slice::from_ref(&polished.point), &name, polished.evaluations)?.scores[0];
+        let score =
+            self.batch(std::slice::from_ref(&polished.point), Wanted::Each, &name, polished.evaluations)?.scores[0];
         Ok(self.candidate(SearchKind::Polish, None, &Found { score, ..polished }, 0))
     }
 
@@ -359,7 +416,7 @@ impl Searches<'_> {
     fn best(&mut self, found: &[Candidate], name: &str) -> Result<Vec<f64>, RowFailure> {
         let points: Vec<Vec<f64>> = found.iter().map(|candidate| candidate.gaps.clone()).collect();
         // The journal has all but the candidates of the file.
-        let scores = self.batch(&points, name, 0)?.scores;
+        let scores = self.batch(&points, Wanted::Each, name, 0)?.scores;
         let best = (0..points.len()).min_by(|a, b| scores[*a].order().total_cmp(&scores[*b].order()));
         Ok(best.map(|best| points[best].clone()).ok_or(SearchError::NoCandidates)?)
     }
@@ -386,7 +443,7 @@ impl Searches<'_> {
     /// Fitness with its spread: unlike a search, which sees one run, a landscape shows what chaotic motion makes of it.
     fn looks(&mut self, points: &[Vec<f64>]) -> Result<Vec<Measured>, RowFailure> {
         let none = Measured { value: f64::NAN, numerical: f64::NAN, spread: f64::NAN };
-        let looks = points.par_iter().map(|point| self.fitness_of(point, Rigour::Look).unwrap_or(none)).collect();
+        let looks = points.par_iter().map(|point| self.look(point).unwrap_or(none)).collect();
         if is_interrupted() {
             return Err(RowFailure::Interrupted);
         }

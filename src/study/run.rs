@@ -28,7 +28,7 @@ use super::shard::Shard;
 use super::spent::{Meter, Metered, Spent};
 use super::variant::Variant;
 use super::work::{Work, outcome};
-use crate::dynamics::{Limit, is_interrupted};
+use crate::dynamics::{Limit, is_interrupted, keeping_runs};
 use crate::experiment::{Case, Experiment, RowSource};
 use crate::table::Table;
 
@@ -156,14 +156,16 @@ pub fn run<T: Send + Sync>(
                         run_refined(tasks[index], &engine(index), handler, take);
                     });
                 }
-                for (one, rows) in order(work) {
+                for (one, units) in order(work) {
                     scope.spawn_fifo(move |_| {
                         let (index, one) = &work[one];
-                        one.unit(&rows, &engine(*index), handler, |row, outcome| {
+                        let put = |row, outcome| {
                             if one.put(row, outcome) {
                                 hand_over(*index, one.finish());
                             }
-                        });
+                        };
+                        let all = || units.iter().for_each(|rows| one.unit(rows, &engine(*index), handler, put));
+                        if units.len() > 1 { keeping_runs(all) } else { all() }
                     });
                 }
             });
@@ -254,16 +256,33 @@ impl EventHandler for Counting<'_> {
     }
 }
 
+/// What is done one after the other: chains of rows, and lists of them.
+type Units = Vec<Vec<usize>>;
+
 /// Rows in the order in which to start them, chains of rows as one: the experiment with the longest first, in it the longest first.
-fn order(work: &[(usize, Work<'_>)]) -> Vec<(usize, Vec<usize>)> {
-    let mut order: Vec<(f64, f64, usize, Vec<usize>)> = Vec::new();
+fn order(work: &[(usize, Work<'_>)]) -> Vec<(usize, Units)> {
+    let mut order: Vec<(f64, f64, usize, Units)> = Vec::new();
     for (index, (_, one)) in work.iter().enumerate() {
         let cost = |row: &usize| cost(one.task.experiment, one.task.variants, &one.jobs[*row]);
-        let units = units(one.task.experiment, &one.jobs).into_iter();
-        let units: Vec<(f64, Vec<usize>)> = units.map(|rows| (rows.iter().map(cost).sum(), rows)).collect();
+        let units: Vec<(f64, Units)> =
+            together(one).into_iter().map(|units| (units.iter().flatten().map(cost).sum(), units)).collect();
         let longest = units.iter().map(|(cost, _)| *cost).fold(0.0, f64::max);
-        order.extend(units.into_iter().map(|(cost, rows)| (longest, cost, index, rows)));
+        order.extend(units.into_iter().map(|(cost, units)| (longest, cost, index, units)));
     }
     order.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.2.cmp(&b.2)).then(b.1.total_cmp(&a.1)).then(a.3.cmp(&b.3)));
-    order.into_iter().map(|(_, _, index, rows)| (index, rows)).collect()
+    order.into_iter().map(|(_, _, index, units)| (index, units)).collect()
+}
+
+/// Where a maximum is looked for, all rows of a case, one after the other: an assumption that enters what the runs are compared with
+/// alone leaves each of them as it is. Threads without a case of their own share the points of a row.
+fn together(work: &Work<'_>) -> Vec<Units> {
+    let units = units(work.task.experiment, &work.jobs);
+    if work.task.experiment.maximise.is_none() {
+        return units.into_iter().map(|rows| vec![rows]).collect();
+    }
+    let mut of_case: BTreeMap<usize, Units> = BTreeMap::new();
+    for rows in units {
+        of_case.entry(work.jobs[rows[0]].case).or_default().push(rows);
+    }
+    of_case.into_values().collect()
 }

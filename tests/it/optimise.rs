@@ -5,7 +5,7 @@ use std::f64::consts::{E, TAU};
 
 use shotdamp::optimise::{
     Batch, Bounds, CmaEs, Dense, Found, Genetic, GeneticSettings, Optimiser, Score, Slope, Spacing, Stalled, Stopped,
-    Stopping, Stream, dense, minimise, polish, sections, two_opt,
+    Stopping, Stream, Wanted, dense, minimise, polish, sections, two_opt,
 };
 
 type Function = fn(&[f64]) -> f64;
@@ -49,8 +49,8 @@ fn cube([low, high]: [f64; 2], size: usize) -> Bounds {
 }
 
 /// Evaluates one after the other, without noise.
-fn exact(function: Function) -> impl FnMut(&[Vec<f64>]) -> Result<Batch, Infallible> {
-    move |points| {
+fn exact(function: Function) -> impl FnMut(&[Vec<f64>], Wanted) -> Result<Batch, Infallible> {
+    move |points, _| {
         let score = |point: &Vec<f64>| Score { value: function(point) };
         Ok(Batch { scores: points.iter().map(score).collect(), seconds: 0.25 })
     }
@@ -192,10 +192,74 @@ fn a_dense_search_sees_every_point_of_its_grid_and_closes_in() {
     assert!(fine.score.value < 1e-6, "{}", fine.score.value);
 }
 
+/// Sums of non-negative terms, drawn by lot: bowls, ripples and steps about centres of their own.
+fn terms(landscape: u64, x: &[f64]) -> impl Iterator<Item = f64> {
+    (0..6).map(move |term| {
+        let mut stream = Stream::of(landscape, &[term]);
+        let far = x.iter().map(|x| (x - stream.uniform()).powi(2)).sum::<f64>();
+        let ripple = 1.0 + stream.uniform() * (30.0 * far).cos();
+        // Steps make equal values.
+        if stream.coin() { far * ripple } else { (8.0 * far).floor() / 8.0 }
+    })
+}
+
+/// Evaluates as many terms as it takes to know that an earlier point is less, where only the least is wanted; counts them.
+fn frugal(landscape: u64, counted: &mut u64) -> impl FnMut(&[Vec<f64>], Wanted) -> Result<Batch, Infallible> {
+    move |points, wanted| {
+        let mut least = if let Wanted::Least { below } = wanted { below } else { f64::INFINITY };
+        let mut scores = Vec::new();
+        for point in points {
+            let mut value = 0.0;
+            for term in terms(landscape, point) {
+                value += term;
+                *counted += 1;
+                if value > least && wanted != Wanted::Each {
+                    break;
+                }
+            }
+            least = least.min(value);
+            scores.push(Score { value });
+        }
+        Ok(Batch { scores, seconds: 0.0 })
+    }
+}
+
+fn whole(landscape: u64, counted: &mut u64) -> impl FnMut(&[Vec<f64>], Wanted) -> Result<Batch, Infallible> {
+    let mut inner = frugal(landscape, counted);
+    move |points, _| inner(points, Wanted::Each)
+}
+
+#[test]
+fn searches_end_at_the_same_point_when_evaluations_that_cannot_win_are_stopped() {
+    let bounds = cube([0.0, 1.0], 3);
+    let settings = Dense { points: 7, spacing: Spacing::Linear, refine: 4 };
+    let [mut in_full, mut stopped] = [0, 0];
+    for landscape in 0..60 {
+        let searches = |evaluate: &mut shotdamp::optimise::Function<'_, Infallible>| {
+            let generations = Stopping { generations: Some(4), ..Stopping::default() };
+            let genetic = minimise(&mut genetic(bounds.clone(), landscape), &generations, evaluate).unwrap().unwrap();
+            let swapped = two_opt(&genetic.point, genetic.score, evaluate).unwrap();
+            let budget = Stopping { evaluations: Some(100), ..Stopping::default() };
+            let mut peer = CmaEs::new(bounds.clone(), None, landscape);
+            let peer = minimise(&mut peer, &budget, evaluate).unwrap().unwrap();
+            [genetic, swapped, peer, dense(&bounds, settings, evaluate).unwrap().unwrap()]
+        };
+        assert_eq!(
+            searches(&mut whole(landscape, &mut in_full)),
+            searches(&mut frugal(landscape, &mut stopped)),
+            "landscape {landscape}"
+        );
+    }
+    assert!(stopped * 5 < in_full * 4, "{stopped} of {in_full} terms");
+}
+
 #[test]
 fn sections_go_through_the_point_on_every_side() {
     let bounds = Bounds::new(vec![[0.1, 10.0], [1.0, 2.0]]).unwrap();
-    let evaluate = |points: &[Vec<f64>]| Ok::<_, Infallible>(points.iter().map(|point| sphere(point)).collect());
+    let evaluate = |points: &[Vec<f64>]| {
+        assert_eq!(points.len(), 6 + 6 - 1, "the centre once");
+        Ok::<_, Infallible>(points.iter().map(|point| sphere(point)).collect())
+    };
     let cut = sections(&bounds, &[3.0, 1.5], 5, Spacing::Log, evaluate).unwrap();
     assert_eq!(cut.len(), 2);
     let at = cut[0].along.iter().position(|x| *x == 3.0).unwrap();

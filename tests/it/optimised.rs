@@ -1,19 +1,23 @@
 //! An optimisation as an experiment: what a file may say, what its table holds, and that neither threads nor an interruption
 //! show in it.
 
+use std::convert::Infallible;
 use std::fs;
 use std::path::Path;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use shotdamp::dynamics::Proof;
-use shotdamp::experiment::{Experiment, ExperimentId, Problems, load_assumptions, parse_experiment};
-use shotdamp::measure::{Evaluated, Measure, Measured};
+use shotdamp::experiment::{Experiment, ExperimentId, GapWord, Problems, load_assumptions, parse_experiment};
+use shotdamp::measure::{Evaluated, Measure, Measured, Rigour};
+use shotdamp::optimise::{
+    Batch, Bounds, Dense, Genetic, GeneticSettings, Score, Slope, Spacing, Stopping, Wanted, dense, minimise, two_opt,
+};
 use shotdamp::report::{judge_all, publish};
 use shotdamp::scene::Excitation;
 use shotdamp::study::Study;
 use shotdamp::study::{Array, Engine, Evaluate, Event, EventHandler, IgnoreEvents, RowFailure, Simulation};
-use shotdamp::table::Table;
+use shotdamp::table::{Data, Table};
 
 use crate::desk::Desk;
 
@@ -344,4 +348,112 @@ fn a_scene_that_is_prepared_once_gives_the_bits_of_one_that_is_built_for_its_gap
         let other = ready.evaluate(&[0.0419; 4], simulation.rigour).unwrap();
         assert_ne!(other.measured, built.measured);
     }
+}
+
+/// An engine that counts the runs of its arrays.
+#[derive(Default)]
+struct Counted(AtomicUsize);
+
+struct CountedArray<'a>(Box<dyn Array + 'a>, &'a AtomicUsize);
+
+impl Evaluate for Counted {
+    fn evaluate(&self, it: &Simulation<'_>) -> Result<Evaluated, RowFailure> {
+        Engine.evaluate(it)
+    }
+
+    fn array<'a>(&'a self, it: Simulation<'a>, word: GapWord) -> Result<Box<dyn Array + 'a>, RowFailure> {
+        Ok(Box::new(CountedArray(Engine.array(it, word)?, &self.0)))
+    }
+}
+
+impl Array for CountedArray<'_> {
+    fn evaluate(&self, gaps: &[f64], rigour: Rigour) -> Result<Evaluated, RowFailure> {
+        self.1.fetch_add(1, Ordering::Relaxed);
+        self.0.evaluate(gaps, rigour)
+    }
+
+    fn slope(&self, gaps: &[f64], measure: Measure) -> Result<Option<Slope>, RowFailure> {
+        self.0.slope(gaps, measure)
+    }
+}
+
+#[test]
+fn stopping_what_cannot_win_leaves_the_answer_of_a_real_search_as_it_is() {
+    let text = BEAM
+        .replace("gap: {uniform: 41.9 mm, optimised: [8.3 mm, 56.8 mm, 3.0 mm, 18.8 mm]}", "gap: optimised")
+        .replace("sweep: {filling: [uniform, optimised]}", "")
+        .replace("[1, 0.5]", "[1, 0.75, 0.5]")
+        + "
+optimise:
+  minimise: rms_velocity
+  gaps: {from: 0.1 mm, to: 83.7 mm}
+  candidates: {known: [8.3 mm, 56.8 mm, 3.0 mm, 18.8 mm]}
+  genetic: {population: 20, elites: 2}
+  stop: {generations: 2}
+  seeds: [1]
+  two_opt: true
+  dense: {points: 3, spacing: log, refine: 1}
+";
+    let desk = Desk::new();
+    for other in ["experiments", "reference"] {
+        fs::remove_dir_all(desk.layout.path(&format!("{other}/ch3"))).unwrap();
+    }
+    desk.put("experiments/ch6/ch6-gaps.yaml", &text);
+    let engine = Counted::default();
+    desk.run(2, &engine, &IgnoreEvents);
+    let table = desk.table("ch6-gaps");
+
+    // The same searches with every evaluation made in full.
+    let experiment = read(&text).unwrap_or_else(|problems| panic!("{problems}"));
+    let (assumptions, optimise) = (sheet(), experiment.optimise.as_ref().unwrap());
+    let recipes = experiment.recipes_of(&experiment.cases[0]).unwrap();
+    let array = |recipe| {
+        let simulation = Simulation {
+            recipe,
+            assumptions: &assumptions,
+            solver: experiment.solvers[0],
+            settings: experiment.settings,
+            measures: &experiment.measures,
+            trace: None,
+            energies: None,
+            shape: None,
+            each_cycle: None,
+            tolerances: &[],
+            link: shotdamp::measure::Link::None,
+            rigour: Rigour::Step,
+        };
+        Engine.array(simulation, GapWord::Gap).unwrap()
+    };
+    let arrays: Vec<Box<dyn Array + '_>> = recipes.iter().map(array).collect();
+    let mut runs = 0;
+    let mut in_full = |points: &[Vec<f64>], _: Wanted| {
+        let mean = |point: &Vec<f64>| {
+            let each = arrays.iter().map(|array| array.evaluate(point, Rigour::Step).unwrap().measured[0].value);
+            Score { value: each.sum::<f64>() / arrays.len() as f64 }
+        };
+        runs += points.len() * arrays.len();
+        Ok::<_, Infallible>(Batch { scores: points.iter().map(mean).collect(), seconds: 0.0 })
+    };
+    let bounds = Bounds::new(optimise.bounds.clone()).unwrap();
+    let settings = GeneticSettings { population: 20, elites: 2, crossover: 0.8 };
+    let generations = Stopping { generations: Some(2), ..Stopping::default() };
+    let mut genetic = Genetic::new(bounds.clone(), settings, 1, &[]);
+    let genetic = minimise(&mut genetic, &generations, &mut in_full).unwrap().unwrap();
+    let swapped = two_opt(&genetic.point, genetic.score, &mut in_full).unwrap();
+    let settings = Dense { points: 3, spacing: Spacing::Log, refine: 1 };
+    let dense = dense(&bounds, settings, &mut in_full).unwrap().unwrap();
+
+    let names = table.texts("candidate").unwrap();
+    for (name, found) in [("genetic", &genetic), ("two_opt", &swapped), ("dense", &dense)] {
+        let row = names.iter().position(|other| other == name).unwrap();
+        let gaps: Vec<f64> = (1..=4).map(|gap| table.floats(&format!("gap_{gap}")).unwrap()[row]).collect();
+        assert_eq!(gaps, found.point, "{name}");
+        assert_eq!(table.floats("fitness_in_search").unwrap()[row], found.score.value, "{name}");
+        let Data::FloatList(best) = &table.column("best_so_far").unwrap().data else { panic!("no list") };
+        let steps: Vec<f64> = found.trail.iter().map(|step| step.best).collect();
+        assert_eq!(best[row], steps, "{name}");
+    }
+    // Each of the four candidates is evaluated once more as a result.
+    let made = engine.0.into_inner() - 4 * arrays.len();
+    assert!(made < runs, "{made} of {runs} runs");
 }

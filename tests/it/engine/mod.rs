@@ -26,6 +26,7 @@ mod properties;
 mod random_scenes;
 mod reach;
 mod reference_cases;
+mod repeated;
 mod resonance;
 mod search;
 mod settled;
