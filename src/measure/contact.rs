@@ -8,7 +8,8 @@ use crate::scene::{ParticleStart, Scene};
 /// Share of these cycles that a particle spends on its floor or its ceiling, mean over the particles; 0 without any.
 pub(super) fn contact_share(response: &Response, scene: &Scene, cycles: Range<u64>) -> f64 {
     let shares = (0..scene.dampers.len()).map(|index| of_particle(response, scene, index, &cycles));
-    shares.sum::<f64>() / scene.dampers.len().max(1) as f64
+    // A sum of nothing is −0.
+    shares.fold(0.0, |sum, share| sum + share) / scene.dampers.len().max(1) as f64
 }
 
 fn of_particle(response: &Response, scene: &Scene, index: usize, cycles: &Range<u64>) -> f64 {

@@ -295,7 +295,7 @@ fn line_above(claim: &LineAbove, view: &View<'_>) -> Result<Decision, Absence> {
         lead.y.sort_by(|a, b| b.value.total_cmp(&a.value));
         let middle = lead.y[points / 2];
         tally.require_strictly(middle.value, middle.run, || {
-            format!("ahead at {ahead} of {points} points, by {} in the middle one", significant(middle.value, 3))
+            format!("ahead at {ahead} of {points} points, median lead {}", significant(middle.value, 3))
         });
         return tally.decision();
     }

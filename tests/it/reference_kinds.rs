@@ -430,7 +430,7 @@ fn one_line_lies_above_another_at_every_point_or_it_does_not() {
     // Behind at one point of three, it is still ahead at most of them.
     let most = claim.replace("below: uniform", "below: uniform, points: most");
     assert_eq!(verdict(&most, &fillings(-0.1, 1e-6)), Verdict::Reproduced);
-    assert!(judged(&most, &fillings(-0.1, 1e-6)).found.contains("ahead at 2 of 3 points, by 0.2 in the middle one"));
+    assert!(judged(&most, &fillings(-0.1, 1e-6)).found.contains("ahead at 2 of 3 points, median lead 0.2"));
     let other_way = most.replace("above: optimised, below: uniform", "above: uniform, below: optimised");
     assert_eq!(verdict(&other_way, &fillings(-0.1, 1e-6)), Verdict::Differs);
     assert_eq!(verdict(&most, &fillings(0.1, 0.2)), Verdict::Undecidable);
