@@ -817,8 +817,8 @@ pub(crate) fn every_shipped_experiment_loads_and_resolves_under_every_variant() 
     }
     assert_eq!(
         ids.len(),
-        31,
-        "23 of the study, the motion at two gap clearances, its kind, its branches, what coexists with its shares, a design, what it \
+        34,
+        "26 of the study, the motion at two gap clearances, its kind, its branches, what coexists with its shares, a design, what it \
          depends on, and where the ceiling is met: {ids:?}"
     );
     // At some 15 ns a step: half a minute of one core.
