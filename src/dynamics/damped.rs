@@ -86,8 +86,9 @@ impl Complexes {
 pub(super) fn split(modes: &NormalModes, damping: &[f64]) -> Option<Spectral> {
     let problem = Problem { modes, damping };
     let mut found = Vec::with_capacity(modes.omega.len().div_ceil(WIDTH));
+    let mut work = Work::new(modes.omega.len());
     for first in (0..modes.omega.len()).step_by(WIDTH) {
-        found.push(problem.solve(first)?);
+        found.push(problem.solve(first, &mut work)?);
     }
     let mut spectral = problem.assemble(&found);
     match problem.independence(&found) {
@@ -131,11 +132,11 @@ impl Problem<'_> {
 
     widened! {
         /// Modes from `first` on.
-        fn solve | solve_wide (&self, first: usize) -> Option<Found> = solve_by_registers
+        fn solve | solve_wide (&self, first: usize, work: &mut Work) -> Option<Found> = solve_by_registers
     }
 
     #[inline(always)]
-    fn solve_by_registers(&self, first: usize) -> Option<Found> {
+    fn solve_by_registers(&self, first: usize, work: &mut Work) -> Option<Found> {
         let (n, omega) = (self.modes.omega.len(), &self.modes.omega);
         let own = self.side_by_side(first);
         // Each mode's own coordinate is the last of its equation.
@@ -155,10 +156,9 @@ impl Problem<'_> {
             return None;
         }
         let mut lambda = Complexes { re: half * -1.0, im: root.map(f64::sqrt) };
-        let mut work = Work::new(n);
         let mut is_last = false;
         for _ in 0..MOST_STEPS {
-            let step = newton(lambda, &squares, &damping, &mut work);
+            let step = newton(lambda, &squares, &damping, work);
             let below = |share: f64| {
                 let [step, size] = [step.square().array(), lambda.square().array()];
                 (0..WIDTH).all(|lane| step[lane] <= share * share * size[lane])
@@ -540,13 +540,14 @@ mod tests {
             let modes = NormalModes::new(&system.stiffness, &system.mass).expect("springs are positive");
             let damping = system.in_normal_coordinates(&modes);
             let problem = Problem { modes: &modes, damping: &damping };
+            let mut work = Work::new(modes.omega.len());
             let bits = |found: Option<Found>| {
                 let found = found.expect("it is lightly damped");
                 let each = found.shape.iter().chain([&found.lambda, &found.size]);
                 each.flat_map(|z| [z.re.array(), z.im.array()]).flatten().map(f64::to_bits).collect::<Vec<_>>()
             };
             for first in [0, 4] {
-                assert_eq!(bits(problem.solve(first)), bits(problem.solve_by_registers(first)));
+                assert_eq!(bits(problem.solve(first, &mut work)), bits(problem.solve_by_registers(first, &mut work)));
             }
         }
     }

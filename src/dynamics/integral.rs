@@ -6,7 +6,7 @@ use super::bank::Bank;
 use super::block::{Block, Kernel, Phase};
 use super::budget;
 use super::four::Four;
-use super::lanes::Lanes;
+use super::lanes::{Lanes, WIDTH};
 use super::parabola::Parabola;
 use super::wide::widened;
 
@@ -87,23 +87,31 @@ impl Panels {
                 if budget::spend(1) {
                     break;
                 }
-                let t = (Places::all(panel as f64) + PLACES) * h;
+                let t = registers(PLACES).map(|places| (Four::all(panel as f64) + places) * h);
                 let Parabola { p0, p1, p2 } = signal.rest;
-                let mut value = Places::all(p0 - signal.place) + t * (Places::all(p1) + t * p2);
-                let mut rate = Places::all(p1) + t * (2.0 * p2);
-                let mut bend = Places::ZERO;
-                for ((block, share), &[c, s]) in blocks.iter().zip(&mut *shares).zip(&self.kernels) {
+                let mut value = t.map(|t| Four::all(p0 - signal.place) + t * (Four::all(p1) + t * p2));
+                let mut rate = t.map(|t| Four::all(p1) + t * (2.0 * p2));
+                let mut bend = [Four::ZERO; REGISTERS];
+                for ((block, share), kernels) in blocks.iter().zip(&mut *shares).zip(&self.kernels) {
                     let slope = share.rate + block.decay * share.value;
                     let fall = block.decay * share.rate + block.determinant * share.value;
-                    let (v, r) = (c * share.value + s * slope, c * share.rate - s * fall);
-                    (value, rate) = (value + v, rate + r);
-                    bend = bend + (r * (2.0 * block.decay) + v * block.determinant);
-                    *share = Phase { value: v.0[END], rate: r.0[END] };
+                    let [c, s] = kernels.map(registers);
+                    let mut now = *share;
+                    for i in 0..REGISTERS {
+                        let (v, r) = (c[i] * share.value + s[i] * slope, c[i] * share.rate - s[i] * fall);
+                        (value[i], rate[i]) = (value[i] + v, rate[i] + r);
+                        bend[i] = bend[i] + (r * (2.0 * block.decay) + v * block.determinant);
+                        if i == END / WIDTH {
+                            now = Phase { value: v.array()[END % WIDTH], rate: r.array()[END % WIDTH] };
+                        }
+                    }
+                    *share = now;
                 }
+                let square = |x: [Four; REGISTERS]| x.map(|x| x * x);
                 signal.integrals[0] += weighted(value) * h;
-                signal.integrals[1] += weighted(value * value) * h;
-                signal.integrals[2] += weighted(rate * rate) * h;
-                signal.acceleration_square += weighted(bend * bend) * h;
+                signal.integrals[1] += weighted(square(value)) * h;
+                signal.integrals[2] += weighted(square(rate)) * h;
+                signal.acceleration_square += weighted(square(bend)) * h;
             }
         }
         &self.signals
@@ -182,7 +190,8 @@ pub(crate) const GAUSS: [[f64; 2]; 10] = {
 };
 
 /// The nodes of a panel, its end, and one more to fill the registers.
-type Places = Lanes<12>;
+type Places = Lanes<{ REGISTERS * WIDTH }>;
+const REGISTERS: usize = 3;
 const END: usize = GAUSS.len();
 const PLACES: Places = places(0, 1.0);
 const WEIGHTS: Places = places(1, 0.0);
@@ -199,12 +208,19 @@ const fn places(column: usize, end: f64) -> Places {
     places
 }
 
+/// In whole registers.
+#[inline(always)]
+fn registers(places: Places) -> [Four; REGISTERS] {
+    let [a, b, c, d, e, f, g, h, i, j, k, l] = places.0;
+    [Four::new([a, b, c, d]), Four::new([e, f, g, h]), Four::new([i, j, k, l])]
+}
+
 /// The mean over a panel.
 #[inline(always)]
-fn weighted(values: Places) -> f64 {
+fn weighted(values: [Four; REGISTERS]) -> f64 {
     let mut sum = Four::ZERO;
-    for (values, weights) in values.0.as_chunks().0.iter().zip(WEIGHTS.0.as_chunks().0) {
-        sum = sum + Four::new(*values) * Four::new(*weights);
+    for (values, weights) in values.into_iter().zip(registers(WEIGHTS)) {
+        sum = sum + values * weights;
     }
     sum.sum()
 }

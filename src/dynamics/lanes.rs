@@ -17,12 +17,6 @@ impl<const N: usize> Lanes<N> {
     /// Of nothing.
     pub(crate) const ZERO: Self = Self([0.0; N]);
 
-    /// The same number in all places.
-    #[inline(always)]
-    pub(crate) fn all(number: f64) -> Self {
-        Self([number; N])
-    }
-
     /// Each with that in the same place of the other.
     #[inline(always)]
     pub(crate) fn zip(self, other: Self, each: impl Fn(f64, f64) -> f64) -> Self {
