@@ -91,8 +91,8 @@ pub(crate) fn apart(&[a, b, c, d, e, f, g, h]: &Coordinates) -> [Four; 2] {
     [Four::new([a, c, e, g]), Four::new([b, d, f, h])]
 }
 
-/// Several blocks with their matrices, which propagate coordinates (x, y): x′ = c x + k (px + qy), y′ = c y + k (rx + sy), with k the S of their
-/// kernels, and with p + a and s + a for p and s.
+/// Several blocks with their matrices, which propagate coordinates (x, y): x′ = c x + k (px + qy), y′ = c y + k (rx + sy), with k the S
+/// of their kernels, and with p + a and s + a for p and s.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Propagator {
     matrix: [Four; 4],

@@ -37,9 +37,9 @@ pub(crate) struct Contacts<'a> {
 }
 
 impl<'a> Contacts<'a> {
-    /// q and q′, where a ceiling may move by itself.
-    fn structure(&self) -> Option<[&'a [f64]; 2]> {
-        self.has_walls.then_some([self.q, self.rate])
+    /// q and q′, where the ceiling of a particle moves by itself.
+    fn structure(&self, particle: &Particle) -> Option<[&'a [f64]; 2]> {
+        (self.has_walls && particle.has_walls()).then_some([self.q, self.rate])
     }
 }
 
@@ -168,12 +168,12 @@ fn start(distance: f64, rate: f64, smooth: bool, signal: Watched<'_>, size: f64)
     }
 }
 
-/// A particle in flight relative to its ceiling; what rounding has left of rest there is rest. `structure` is q and q′ where some
+/// A particle in flight relative to its ceiling; what rounding has left of rest there is rest. `structure` is q and q′ where the
 /// ceiling moves by itself.
 #[inline]
 pub(crate) fn above(particle: &Particle, here: Relative, structure: Option<[&[f64]; 2]>) -> Option<Relative> {
     let ceiling = particle.ceiling.as_ref()?;
-    let Some([q, q_rate]) = structure.filter(|_| particle.has_walls()) else {
+    let Some([q, q_rate]) = structure else {
         return Some(Relative { gap: here.gap - particle.gap, rate: here.rate });
     };
     let shift = |x: &[f64]| dot(&ceiling.row, x) - dot(&particle.floor.row, x);
@@ -209,8 +209,9 @@ fn in_flight(
         start: start(here.gap, here.rate, state.smooth[j], face, 0.0),
         distance: true,
     });
-    let Some(relative) = above(particle, here, state.structure()) else { return path };
-    let (above, face) = if state.has_walls && particle.has_walls() {
+    let structure = state.structure(particle);
+    let Some(relative) = above(particle, here, structure) else { return path };
+    let (above, face) = if structure.is_some() {
         let face = signals.of(rows.second);
         (flight_path(face, relative, gravity), face)
     } else {

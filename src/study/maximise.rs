@@ -53,8 +53,8 @@ impl<E: Evaluate, D: Fn() + Sync> Along<'_, E, D> {
     /// The point that is looked for.
     ///
     /// # Errors
-    /// The reason of the first point that has no number: a maximum over part of a range is none. Beyond an onset none is asked for. [`RowFailure::NoOnset`] where all
-    /// points of the grid, or none, have events.
+    /// The reason of the first point that has no number: a maximum over part of a range is none. Beyond an onset none is asked for.
+    /// [`RowFailure::NoOnset`] where all points of the grid, or none, have events.
     pub(super) fn found(&self) -> Result<(Evaluated, Place), RowFailure> {
         match self.maximise.wanted {
             SearchPoint::Maximum => self.maximum(),

@@ -252,8 +252,9 @@ impl<const TAPED: bool> March<'_, TAPED> {
         if self.particles[j] == Relative::default() {
             return Some(Side::Floor);
         }
-        let structure = self.has_walls.then_some([self.q.as_slice(), self.rate.as_slice()]);
-        let above = guards::above(&self.system.particles[j], self.particles[j], structure)?;
+        let particle = &self.system.particles[j];
+        let structure = self.moves_by_itself(particle).then_some([self.q.as_slice(), self.rate.as_slice()]);
+        let above = guards::above(particle, self.particles[j], structure)?;
         (above == Relative::default()).then_some(Side::Ceiling)
     }
 
