@@ -255,13 +255,13 @@ fn by_columns(spectral: &Spectral, size: usize) -> Superposition {
 
 /// The damping of the face that each particle's contact refers to; then, of those at both faces, that of the second one and the
 /// constant of its distance, in which alone the gap enters.
-pub(crate) fn dampings(system: &HybridSystem, contacts: &[Contact], equivalent: Option<f64>, into: &mut Vec<f64>) {
-    into.clear();
-    into.extend((0..contacts.len()).map(|j| contact_damping(system, contacts, j, equivalent)));
+pub(crate) fn dampings(system: &HybridSystem, contacts: &[Contact], equivalent: Option<f64>) -> Vec<f64> {
+    let mut all: Vec<f64> = (0..contacts.len()).map(|j| contact_damping(system, contacts, j, equivalent)).collect();
     for (contact, particle) in contacts.iter().zip(&system.particles).filter(|(contact, _)| contact.is_between()) {
         let law = contact.side().opposite().face(particle).law;
-        into.extend([face_damping(law, equivalent), constant_across(particle, *contact)]);
+        all.extend([face_damping(law, equivalent), constant_across(particle, *contact)]);
     }
+    all
 }
 
 fn face_damping(law: Law, equivalent: Option<f64>) -> f64 {

@@ -20,11 +20,11 @@ pub(crate) fn crest(
     order: usize,
     low: Node,
     high: Node,
-    known: [f64; 2],
+    known: impl FnOnce() -> [f64; 2],
     at: impl Fn(f64) -> Motion,
 ) -> Option<Motion> {
     let turns = low.motion[order + 1] * high.motion[order + 1] < 0.0;
-    (turns && may_exceed(order, low, high, known)).then(|| turning_point(order, low, high, at))
+    (turns && may_exceed(order, low, high, known())).then(|| turning_point(order, low, high, at))
 }
 
 /// Whether the crest may exceed what is known. A range that is not known, NaN, is exceeded.

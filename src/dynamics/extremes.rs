@@ -97,7 +97,7 @@ pub(crate) fn take(extremes: &mut Extremes, blocks: &[Block], start: &[Phase], r
         let next = node(t, &phases);
         extremes.take(next.motion[0], next.motion[1]);
         for order in if jumps { 0..0 } else { 0..2 } {
-            if let Some(turn) = crest(order, here, next, extremes.of(order), at) {
+            if let Some(turn) = crest(order, here, next, || extremes.of(order), at) {
                 extremes.take(turn[0], turn[1]);
             }
         }

@@ -3,7 +3,7 @@
 //! The blocks of its modes ([`super::contact_state`]) move each by itself; a harmonic drive is one more of them. Gap, amplitude
 //! and time do not enter, so one flow serves a whole sweep.
 
-use std::cell::OnceCell;
+use std::cell::{Cell, OnceCell};
 use std::rc::Rc;
 
 use super::EngineError;
@@ -13,14 +13,13 @@ use super::conservative::Conservative;
 use super::contact_state::Modes;
 use super::dissipation::Dissipation;
 use super::exact;
-use super::gains::Closed;
+use super::gains::{Closed, Square};
 use super::lanes::WIDTH;
 use super::load::{self, Load, Steady};
 use super::parabola::Parabola;
 use super::series::Series;
 use super::signals::{Row, Rows, Signals};
 use super::system::{Contact, Drive, HybridSystem, dot};
-use super::wide::widened;
 
 /// One contact state, ready to be propagated.
 pub(crate) struct Flow {
@@ -52,7 +51,11 @@ pub(crate) struct Flow {
     pub(crate) rows: Rows,
     /// Closed forms of its integrals, where they keep their digits; worked out when they are asked for.
     closed: OnceCell<Option<Closed>>,
+    /// Those of the squared rates of the observed rows.
+    squares: OnceCell<Vec<Square>>,
     dissipation: OnceCell<Dissipation>,
+    /// Its place among the states that a run visits.
+    pub(crate) place: Cell<usize>,
 }
 
 impl Flow {
@@ -97,7 +100,9 @@ impl Flow {
             harmonic,
             rows: Rows::default(),
             closed: OnceCell::new(),
+            squares: OnceCell::new(),
             dissipation: OnceCell::new(),
+            place: Cell::new(0),
         };
         flow.rows = Rows::new(system, &flow.modes, &flow.blocks, |row| flow.row(row));
         Ok(flow)
@@ -108,6 +113,7 @@ impl Flow {
         self.modes.size()
             + self.rows.size()
             + self.closed.get().and_then(Option::as_ref).map_or(0, Closed::size)
+            + self.squares.get().map_or(0, |squares| squares.iter().map(Square::size).sum())
             + self.dissipation.get().map_or(0, Dissipation::size)
     }
 
@@ -122,6 +128,15 @@ impl Flow {
         let omega = || self.harmonic.as_ref().map(|steady| steady.omega);
         let solved = || Closed::new(&self.blocks, &self.modes.spectral.matrices, omega());
         self.closed.get_or_init(|| if self.is_resonant { None } else { solved() }).as_ref()
+    }
+
+    /// What gains count for in the integrals of the squared rates of the observed rows, in their order.
+    pub(crate) fn squares(&self, closed: &Closed) -> &[Square] {
+        let square = |row: &usize| {
+            let rates: Vec<[f64; 2]> = self.rows.row(*row).weights.iter().map(|[.., r0, r1]| [*r0, *r1]).collect();
+            closed.square(&rates)
+        };
+        self.squares.get_or_init(|| self.rows.observed.iter().map(square).collect())
     }
 
     /// The signal r·p.
@@ -158,7 +173,7 @@ impl Flow {
 
     /// Block coordinates of (p, p′) at the start of a segment; `force` is the constant force in force, `drive` the phase
     /// of the harmonic one: F cos ω t and F sin ω t, which are the coordinates of its block. `work` is room to work in.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn enter(
         &self,
         p: &[f64],
@@ -174,7 +189,7 @@ impl Flow {
         for (i, (position, velocity)) in positions.iter_mut().zip(velocities).enumerate() {
             [*position, *velocity] = self.free(i, [p[i], rate[i]], force, drive);
         }
-        self.modes.to_blocks.sum(work, c);
+        self.modes.to_blocks.sum_by_registers(work, c);
         if self.harmonic.is_some() {
             c[size..size + 2].copy_from_slice(&[drive.cosine, drive.sine]);
             if self.is_resonant {
@@ -227,7 +242,7 @@ impl Flow {
     }
 
     /// (p, p′) from block coordinates after `t` seconds of the segment, with the drive's phase then; `work` is room to work in.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn leave(
         &self,
         c: &[f64],
@@ -241,7 +256,7 @@ impl Flow {
         let (p, rate) = (&mut p[..order], &mut rate[..order]);
         work.resize(2 * order, 0.0);
         // There may be more blocks than coordinates; those that `c` has none for are at rest.
-        self.modes.columns.sum(c, work);
+        self.modes.columns.sum_by_registers(c, work);
         let (positions, rates) = work.split_at(order);
         rate.copy_from_slice(rates);
         let rests = self.modes.gravity.rest.iter().zip(&self.force.rest);
@@ -274,13 +289,9 @@ impl Flow {
         }
     }
 
-    widened! {
-        /// Propagates block coordinates, filled up to [`Flow::width`], by the kernels of a time, with the drive's phase after it.
-        pub(crate) fn advance_all | advance_wide (&self, kernels: &[Kernels], start: &[f64], drive: DrivePhase, end: &mut [f64]) = advance_by_registers
-    }
-
+    /// Propagates block coordinates, filled up to [`Flow::width`], by the kernels of a time, with the drive's phase after it.
     #[inline(always)]
-    fn advance_by_registers(&self, kernels: &[Kernels], start: &[f64], drive: DrivePhase, end: &mut [f64]) {
+    pub(crate) fn advance_all(&self, kernels: &[Kernels], start: &[f64], drive: DrivePhase, end: &mut [f64]) {
         let states = start.as_chunks().0.iter().zip(end.as_chunks_mut().0);
         for ((propagator, kernels), (from, to)) in self.propagators.iter().zip(kernels).zip(states) {
             *to = propagator.advance(kernels, from);

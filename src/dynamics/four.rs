@@ -41,6 +41,13 @@ impl Four {
         Self::new([number; WIDTH])
     }
 
+    /// As many as there are, and zeros.
+    pub(crate) fn padded(numbers: &[f64]) -> Self {
+        let mut four = Self::ZERO;
+        numbers.iter().enumerate().for_each(|(place, number)| four.set(place, *number));
+        four
+    }
+
     /// One of them.
     #[inline(always)]
     pub(crate) fn at(&self, place: usize) -> f64 {

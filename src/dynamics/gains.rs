@@ -11,9 +11,9 @@
 use super::Sums;
 use super::block::{Block, form, pairs, transposed};
 use super::four::Four;
+use super::lanes::WIDTH;
 use super::lyapunov::{Lyapunov, NEARLY_NEUTRAL};
 use super::signals::Row;
-use super::wide::widened;
 
 /// The equations of a contact state's integrals.
 pub(crate) struct Closed {
@@ -60,13 +60,9 @@ impl Gains {
         }
     }
 
-    widened! {
-        /// Adds a visit of `length` seconds under the constant force `level`, from `start` to `end`.
-        pub(crate) fn visit | visit_wide (&mut self, start: &[f64], end: &[f64], level: f64, length: f64) = visit_by_registers
-    }
-
+    /// Adds a visit of `length` seconds under the constant force `level`, from `start` to `end`.
     #[inline(always)]
-    fn visit_by_registers(&mut self, start: &[f64], end: &[f64], level: f64, length: f64) {
+    pub(crate) fn visit(&mut self, start: &[f64], end: &[f64], level: f64, length: f64) {
         let blocks = self.first.len();
         let (start, end) = (&start.as_chunks::<2>().0[..blocks], &end.as_chunks::<2>().0[..blocks]);
         let mut second = self.second.as_mut_slice();
@@ -128,6 +124,24 @@ impl Closed {
         self.equations.len() * size_of::<Lyapunov>() / size_of::<f64>() + 4 * self.blocks.len()
     }
 
+    /// What gains count for in ∫ (zᵀc)² dt.
+    pub(crate) fn square(&self, z: &[[f64; 2]]) -> Square {
+        let mut each = pairs(z.len());
+        let weighed = |(equation, (k, l)): (&Lyapunov, (usize, usize))| {
+            let ([x, y], [u, v]) = (z[k], z[l]);
+            let twice = if k == l { 1.0 } else { 2.0 };
+            equation.adjoint([x * u, x * v, y * u, y * v]) * twice
+        };
+        let mut square = Square { pairs: self.equations.iter().zip(&mut each).map(weighed).collect(), swing: 0.0 };
+        if let (Some(omega), Some([x, y])) = (self.drive, z.last()) {
+            // As in `solve`.
+            let by_xx = -x * y / omega;
+            square.pairs.push(Four::new([by_xx, 0.5 * (x * x - y * y) / omega, 0.0, 0.0]));
+            square.swing = 0.5 * (x * x + y * y);
+        }
+        square
+    }
+
     /// Solves them for what was gained.
     pub(crate) fn solve(&self, gains: &Gains) -> Integrated {
         let blocks = self.blocks.len();
@@ -146,6 +160,26 @@ impl Closed {
             self.blocks.iter().zip(gains).flat_map(each).collect()
         };
         Integrated { first: undone(&gains.first), forced: undone(&gains.forced), second, time: gains.time }
+    }
+}
+
+/// What gains count for in the integral of the square of a signal: (zᵀc)² gives zᵀGz, which is linear in them.
+pub(crate) struct Square {
+    pairs: Vec<Four>,
+    swing: f64,
+}
+
+impl Square {
+    /// Numbers that it keeps.
+    pub(crate) fn size(&self) -> usize {
+        WIDTH * self.pairs.len()
+    }
+
+    /// The integral over the visits that have gained this.
+    pub(crate) fn of(&self, gains: &Gains) -> f64 {
+        let each = self.pairs.iter().zip(&gains.second);
+        let sum = each.fold(Four::ZERO, |sum, (weights, gain)| sum + *weights * Four::new(*gain)).sum();
+        sum + self.swing * gains.swing
     }
 }
 
@@ -213,5 +247,7 @@ mod tests {
         assert!((integrals.displacement / sampled.displacement - 1.0).abs() < 1e-12);
         assert!((integrals.deviation_square / sampled.deviation_square - 1.0).abs() < 1e-12);
         assert!((integrals.velocity_square / sampled.velocity_square - 1.0).abs() < 1e-12);
+        let rates: Vec<[f64; 2]> = row.weights.iter().map(|[.., r0, r1]| [*r0, *r1]).collect();
+        assert!((closed.square(&rates).of(&gains) / sampled.velocity_square - 1.0).abs() < 1e-12);
     }
 }

@@ -25,7 +25,6 @@ pub(crate) struct Contacts<'a> {
     pub(crate) system: &'a HybridSystem,
     pub(crate) contacts: &'a [Contact],
     pub(crate) particles: &'a [Relative],
-    pub(crate) damping: &'a [f64],
     /// Let go smoothly: the first derivative that is not zero is of higher order.
     pub(crate) smooth: &'a [bool],
     /// What has just happened at the face across from that of a particle.
@@ -34,6 +33,8 @@ pub(crate) struct Contacts<'a> {
     pub(crate) rate: &'a [f64],
     /// Some floor and ceiling do not move as one.
     pub(crate) has_walls: bool,
+    /// All faces can pull, and none has a stop.
+    pub(crate) plain: bool,
 }
 
 impl<'a> Contacts<'a> {
@@ -52,7 +53,7 @@ pub(crate) struct Slipped {
 }
 
 /// Sets the guards of every particle; remembers the path of those in flight.
-#[inline]
+#[inline(always)]
 pub(crate) fn set(state: Contacts<'_>, flow: &Flow, signals: &Signals, search: &mut Search, paths: &mut [Parabola]) {
     search.guards.clear();
     for (j, particle) in state.system.particles.iter().enumerate() {
@@ -66,7 +67,9 @@ pub(crate) fn set(state: Contacts<'_>, flow: &Flow, signals: &Signals, search: &
             _ if contact.presses(particle) => pressed(state, j, particle, flow, signals, guards),
             _ => held(state, j, particle, flow, signals, guards),
         }
-        if let Some(rows) = flow.rows.guards[j].across {
+        if state.has_walls
+            && let Some(rows) = flow.rows.guards[j].across
+        {
             across(state, j, particle, flow, signals, rows, &mut search.guards);
         }
     }
@@ -124,7 +127,7 @@ pub(crate) fn creep(flow: &Flow, constant: f64, sign: f64, signal: Watched<'_>, 
 
 /// The gap coordinate of particle j's flight after a time, when the blocks are at `c`: the same numbers that the structure is at, so
 /// that nothing but chance is in their difference.
-#[inline]
+#[inline(always)]
 pub(crate) fn fly(
     flow: &Flow,
     j: usize,
@@ -185,7 +188,7 @@ pub(crate) fn above(particle: &Particle, here: Relative, structure: Option<[&[f6
     })
 }
 
-#[inline]
+#[inline(always)]
 fn in_flight(
     state: Contacts<'_>,
     j: usize,
@@ -252,7 +255,7 @@ fn released(
         distance: true,
     });
     if let Law::Resilient { stiffness, .. } = side.face(particle).law {
-        let damping = state.damping[j];
+        let damping = flow.modes.damping[j];
         guards.push(Guard {
             particle: j,
             crossing: Crossing::Again,
@@ -266,7 +269,7 @@ fn released(
     path
 }
 
-#[inline]
+#[inline(always)]
 fn pressed(
     state: Contacts<'_>,
     j: usize,
@@ -287,8 +290,8 @@ fn pressed(
     if here.gap == 0.0 {
         rest.p1 = here.rate - own.sum.rate;
     }
-    let release = if no_tension {
-        let damping = state.damping[j];
+    let release = if no_tension && !state.plain {
+        let damping = flow.modes.damping[j];
         let push = signals.of(rows.second);
         let force = Parabola { p0: stiffness * here.gap + damping * here.rate - push.sum.value, ..push.rest };
         (rows.second, force, force_start(here, stiffness, damping, state.smooth[j], push))
@@ -303,9 +306,11 @@ fn pressed(
         sign: -away,
         parabola: parabola.times(-away),
         start: begin,
-        distance: !no_tension,
+        distance: state.plain || !no_tension,
     });
-    if let Some(stop) = stop {
+    if !state.plain
+        && let Some(stop) = stop
+    {
         // Positive until the compression is δ.
         guards.push(Guard {
             particle: j,

@@ -27,7 +27,6 @@ use self::signal::{Row, integrals};
 use self::struck::Struck;
 use super::audit::Audit;
 use super::budget;
-use super::contact_state::contact_damping;
 use super::flow::{DrivePhase, Flow};
 use super::states::States;
 use super::system::{Contact, HybridSystem, Law, Tick, dot};
@@ -172,8 +171,7 @@ fn may_be_linear(system: &HybridSystem, options: &Options) -> bool {
 /// The flow with every particle on its floor.
 fn at_rest(system: &HybridSystem, states: &States) -> Result<Rc<Flow>, EngineError> {
     let contacts = vec![Contact::Floor; system.particles.len()];
-    let damping: Vec<f64> = (0..contacts.len()).map(|j| contact_damping(system, &contacts, j, None)).collect();
-    states.flow(system, &contacts, &damping)
+    states.flow(system, &contacts, None)
 }
 
 /// Its cycles can be summed: each block has a place to rest, and holds for any number of them.

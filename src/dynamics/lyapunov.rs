@@ -31,4 +31,10 @@ impl Lyapunov {
         let [a, b, c, d] = &self.0;
         (*a * q[0] + *b * q[1] + (*c * q[2] + *d * q[3])).array()
     }
+
+    /// What each entry of Q counts for in Σ wP, P being its solution.
+    pub(crate) fn adjoint(&self, w: [f64; 4]) -> Four {
+        let w = Four::new(w);
+        Four::new(self.0.each_ref().map(|alone| (*alone * w).sum()))
+    }
 }

@@ -5,6 +5,7 @@
 
 mod between;
 mod contacts;
+mod effects;
 mod half_cycles;
 mod impacts;
 mod samples;
@@ -12,12 +13,12 @@ mod segment;
 mod sums;
 mod taped;
 
+use std::marker::PhantomData;
 use std::rc::Rc;
 
 use super::audit::Audit;
 use super::budget;
 use super::contact::{Relative, Side};
-use super::contact_state::dampings;
 use super::flow::{DrivePhase, Flow};
 use super::guards::Slipped;
 use super::integral::Panels;
@@ -31,10 +32,11 @@ use super::states::States;
 use super::system::{Contact, Event, EventKind, HybridSystem, Particle, Tick, dot};
 use super::visits::Visits;
 use super::{Averaged, CycleRates, EngineError, Observed, Options, Proof, Response, Until};
+use effects::{Effects, Every, Plain, Taped};
 use half_cycles::Half;
 
 /// A run in progress.
-pub(crate) struct March<'a, const TAPED: bool> {
+pub(crate) struct March<'a, E> {
     system: &'a HybridSystem,
     options: &'a Options,
     states: States,
@@ -45,9 +47,7 @@ pub(crate) struct March<'a, const TAPED: bool> {
     rate: Vec<f64>,
     particles: Vec<Relative>,
     contacts: Vec<Contact>,
-    /// Contact damping in force, per particle: that of the face its contact refers to.
-    damping: Vec<f64>,
-    /// What half cycles have put in its place.
+    /// The damping that half cycles have put in the place of the stated.
     equivalent: Option<f64>,
     /// The last contact began or ended smoothly: u = u′ = u″ = 0, it leaves with u‴; or its push grows from zero.
     smooth: Vec<bool>,
@@ -57,6 +57,8 @@ pub(crate) struct March<'a, const TAPED: bool> {
     has_walls: bool,
     /// No error dies away.
     undamped: bool,
+    /// Between two jumps of the force the slowest block of the flow in force hardly turns.
+    is_brief: bool,
     /// A time in which nothing can have moved, s.
     nothing: f64,
     averaged: Averaged,
@@ -90,13 +92,14 @@ pub(crate) struct March<'a, const TAPED: bool> {
     clarity: Clarity,
     response: Response,
     audit: Option<Audit>,
-    /// What names the motion; kept if `TAPED`, so that other runs have no such code.
+    /// What names the motion; kept by a run on tape.
     tape: Tape,
-    /// Contacts before what may capture particles; kept if `TAPED`.
+    /// Contacts before what may capture particles; kept by a run on tape.
     held: Vec<Contact>,
+    effects: PhantomData<E>,
 }
 
-impl<'a, const TAPED: bool> March<'a, TAPED> {
+impl<'a, E: Effects> March<'a, E> {
     /// A run at its start.
     pub(crate) fn new(system: &'a HybridSystem, options: &'a Options, states: States) -> Result<Self, EngineError> {
         let n = system.mass.order;
@@ -107,9 +110,7 @@ impl<'a, const TAPED: bool> March<'a, TAPED> {
             super::StartState::Given { particles, .. } => particles.iter().map(|(contact, ..)| *contact).collect(),
         };
         let equivalent = system.drive.half_cycles.as_ref().map(|half| half.curve.upper_end());
-        let mut damping = Vec::new();
-        dampings(system, &contacts, equivalent, &mut damping);
-        let flow = states.flow(system, &contacts, &damping)?;
+        let flow = states.flow(system, &contacts, equivalent)?;
         let answer = states.ground().answer(system)?.to_vec();
         let mut march = Self {
             system,
@@ -120,12 +121,12 @@ impl<'a, const TAPED: bool> March<'a, TAPED> {
             rate: vec![0.0; most],
             particles: vec![Relative::default(); count],
             contacts,
-            damping,
             equivalent,
             smooth: vec![false; count],
             slipped: None,
-            has_walls: system.particles.iter().any(Particle::has_walls),
+            has_walls: E::ALL && system.particles.iter().any(Particle::has_walls),
             undamped: system.is_undamped(),
+            is_brief: false,
             nothing: f64::EPSILON * f64::EPSILON * system.drive.period,
             averaged: options.averaged(),
             cycle: 0,
@@ -154,8 +155,9 @@ impl<'a, const TAPED: bool> March<'a, TAPED> {
             audit: options.audit.then(Audit::default),
             tape: Tape::default(),
             held: Vec::new(),
+            effects: PhantomData,
         };
-        if TAPED && system.drive.half_cycles.is_some() {
+        if E::TAPED && system.drive.half_cycles.is_some() {
             return Err(EngineError::DampingWithMemory);
         }
         march.place(&options.start)?;
@@ -217,7 +219,7 @@ impl<'a, const TAPED: bool> March<'a, TAPED> {
         while self.cycle < cycles {
             let cycle = self.cycle;
             self.time = 0.0;
-            if TAPED {
+            if E::TAPED {
                 self.tape.begin_cycle();
             }
             budget::reach(cycle, cycles);
@@ -242,7 +244,7 @@ impl<'a, const TAPED: bool> March<'a, TAPED> {
             if let Some(cycle) = self.response.cycle_rates.last_mut() {
                 cycle.before.extend_from_slice(&self.rate[..self.system.mass.order]);
             }
-            if TAPED {
+            if E::TAPED {
                 self.end_taped_cycle();
                 if let Some(settled) = self.settle_down()? {
                     cycles = settled.end().max(self.options.trace.map_or(0, |trace| trace.to_cycle));
@@ -313,6 +315,7 @@ impl<'a, const TAPED: bool> March<'a, TAPED> {
     }
 
     /// The harmonic force's phase; a segment begins where another ended, so that the last answer is kept.
+    #[inline]
     fn drive_phase(&mut self, time: f64) -> DrivePhase {
         if self.phase_time != time {
             (self.phase, self.phase_time) = (DrivePhase::of(&self.system.drive, time), time);
@@ -322,7 +325,7 @@ impl<'a, const TAPED: bool> March<'a, TAPED> {
 
     /// A jump of the force.
     fn tick(&mut self, tick: Tick, kick: f64) -> Result<(), EngineError> {
-        if TAPED {
+        if E::TAPED {
             self.held.clone_from(&self.contacts);
         }
         let stepped = tick.level != self.level;
@@ -334,7 +337,7 @@ impl<'a, const TAPED: bool> March<'a, TAPED> {
         if stepped {
             self.regrip()?;
         }
-        if TAPED {
+        if E::TAPED {
             self.tape_captures()?;
             self.tape.timed();
         }
@@ -347,7 +350,7 @@ impl<'a, const TAPED: bool> March<'a, TAPED> {
 
     fn record_at(&mut self, particle: usize, kind: EventKind, time: f64, approach: f64, departure: f64) {
         self.response.proof.events += 1;
-        if TAPED {
+        if E::TAPED {
             self.tape.count(kind);
         }
         budget::count_event();
@@ -389,13 +392,21 @@ fn without(
     far: &[OutOfReach],
 ) -> Result<Response, EngineError> {
     if far.is_empty() {
-        return March::<false>::new(system, options, states)?.run();
+        return run(system, options, states);
     }
     let has_walls = |system: &HybridSystem| system.particles.iter().any(Particle::has_walls);
     let less = states.ground().without(system, far);
     // What is known of a contact state depends on walls, not on stops nor on a ceiling that moves with its floor.
     let states = if has_walls(&less) == has_walls(system) { states } else { States::of(&less) };
-    March::<false>::new(&less, options, states)?.run()
+    run(&less, options, states)
+}
+
+fn run(system: &HybridSystem, options: &Options, states: States) -> Result<Response, EngineError> {
+    if effects::is_plain(system) {
+        March::<Plain>::new(system, options, states)?.run()
+    } else {
+        March::<Every>::new(system, options, states)?.run()
+    }
 }
 
 /// The fundamental matrix of the averaged cycles.
@@ -404,14 +415,14 @@ pub(crate) fn fundamental(
     options: &Options,
     states: States,
 ) -> Result<Fundamental, EngineError> {
-    let mut march = March::<true>::new(system, options, states)?;
+    let mut march = March::<Taped>::new(system, options, states)?;
     march.all_cycles()?;
     Fundamental::of(system, &march.tape, options.average as usize)
 }
 
 /// Runs a system and keeps its tape.
 pub(crate) fn taped(system: &HybridSystem, options: &Options, states: States) -> Result<(Response, Tape), EngineError> {
-    let mut march = March::<true>::new(system, options, states)?;
+    let mut march = March::<Taped>::new(system, options, states)?;
     march.all_cycles()?;
     let motion = if options.motion { Some(motion::name(system, &march.tape, options.average as usize)?) } else { None };
     let tape = std::mem::take(&mut march.tape);

@@ -12,14 +12,15 @@
 //!
 //! Each guard has its own proof of how long it is clear; the search works on the one whose proof ends first, and no
 //! further than the first root that is known. Most guards are cleared by two bounds that cost no window: their parabola is
-//! further from zero than all blocks together can reach, or value and slope are larger than their curvature can undo. No
+//! further from zero than all blocks together can reach, or value and slope are larger than their curvature can undo. Where
+//! guards are many, a bound on that curvature by the coordinates alone comes first, and for most of them it is enough. No
 //! window is sampled, no crossing stepped over.
 
 use super::bank::Kernels;
 use super::budget;
 use super::contact::Crossing;
 use super::flow::Flow;
-
+use super::four::Four;
 use super::parabola::Parabola;
 use super::polynomial::nearest_root;
 use super::series::{Shares, Span};
@@ -39,6 +40,10 @@ const WORTH_A_STEP: f64 = 0.1;
 const NOISE: f64 = 0.25;
 /// radius·Δ of the fastest block that a window must not leave out.
 const FASTEST: f64 = 4.8;
+/// More guards than this are first looked at by the bends of their signals alone, which most of them pass.
+const MANY: usize = 16;
+/// What is later than a known root by this factor does not come at the same time.
+const AFTER: f64 = 1.0 + 1e-12;
 /// radius·t beyond which no window is taken for a rounding of the time to go.
 const MANY_TURNS: f64 = 1e6;
 /// radius·t below which a window polynomial leaves out less than rounding.
@@ -90,6 +95,8 @@ pub(crate) struct Search {
     /// Until when each of them is known to stay positive.
     clear: Vec<f64>,
     plans: Vec<Plan>,
+    /// Bounds on the second derivatives of the signals, if there are many guards.
+    bends: Vec<f64>,
     surveys: Surveys,
     /// Kernels from the segment's start to the result.
     kernels: Vec<Kernels>,
@@ -130,6 +137,12 @@ impl Plan {
     const fn new(at: f64, window: f64, quick: f64) -> Self {
         Self { at, window, quick, begun: false }
     }
+
+    /// Windows had better begin where its proof, `ahead` of them, ends.
+    #[inline(always)]
+    fn is_overtaken(&self, ahead: f64) -> bool {
+        ahead > WORTH_A_MOVE * self.window || (ahead > 0.0 && self.begun)
+    }
 }
 
 /// What a look at a guard has brought.
@@ -146,6 +159,7 @@ impl Search {
             guards: Vec::new(),
             clear: Vec::new(),
             plans: Vec::new(),
+            bends: Vec::new(),
             surveys: Surveys::default(),
             kernels: Vec::new(),
             trial: Vec::new(),
@@ -161,6 +175,10 @@ impl Search {
 
     #[inline(always)]
     fn run_by_width(&mut self, flow: &Flow, signals: &Signals, limit: f64, clarity: &mut Clarity) -> Found {
+        self.bends.clear();
+        if self.guards.len() * flow.bank.blocks().len() > MANY && flow.bank.near_critical().is_empty() {
+            flow.rows.bound(signals, &mut self.bends);
+        }
         // The same search twice: with a few blocks the compiler unrolls every loop over them.
         let motion = |blocks| Motion { blocks, each: &flow.blocks, bank: &flow.bank, series: &flow.series };
         match flow.bank.blocks() {
@@ -221,20 +239,32 @@ impl Search {
         self.surveys.begin(motion, signals);
         self.shortest = shortest(motion, limit);
         for (guard, (plan, clear)) in self.guards.iter().zip(self.plans.iter_mut().zip(&mut self.clear)) {
-            *plan = plan_of(motion, signals, &mut self.surveys, guard, limit, clarity, self.window_factor);
-            *clear = plan.quick;
+            if let (Some(bend), Start::Apart) = (self.bends.get(guard.signal), guard.start) {
+                (*plan, *clear) = (Plan::NONE, clear_by_bend(signals.of(guard.signal), *bend, guard, clarity));
+            } else {
+                *plan = plan_of(motion, signals, &mut self.surveys, guard, limit, clarity, self.window_factor);
+                *clear = plan.quick;
+            }
         }
     }
 
     #[inline(always)]
     fn least_clear(&self) -> (usize, f64) {
-        let mut least = (0, f64::INFINITY);
-        for (guard, clear) in self.clear.iter().enumerate() {
-            if *clear < least.1 {
-                least = (guard, *clear);
+        if self.bends.is_empty() {
+            let mut least = (0, f64::INFINITY);
+            for (guard, clear) in self.clear.iter().enumerate() {
+                if *clear < least.1 {
+                    least = (guard, *clear);
+                }
             }
+            return least;
         }
-        least
+        let smaller = |a: f64, b: f64| if b < a { b } else { a };
+        let (fours, rest) = self.clear.as_chunks();
+        let each = fours.iter().map(|clear| Four::new(*clear));
+        let [a, b, c, d] = each.fold(Four::all(f64::INFINITY), |least, clear| least.zip(clear, smaller)).array();
+        let least = rest.iter().copied().fold(smaller(smaller(a, b), smaller(c, d)), smaller);
+        (self.clear.iter().position(|clear| *clear == least).unwrap_or(0), least)
     }
 
     /// Extends the proof of one guard, or finds its root.
@@ -250,12 +280,12 @@ impl Search {
     ) -> Look {
         let Self { guards, plans, clear: known, surveys, shortest: least, .. } = self;
         let (guard, plan, known) = (&guards[index], &mut plans[index], &mut known[index]);
+        let ahead = *known - surveys.now;
+        // It is none yet, or another guard has moved on to here.
         if plan.at != surveys.now {
-            // Another guard has moved on to here.
             *plan = plan_of(motion, signals, surveys, guard, limit, clarity, self.window_factor);
         }
-        let ahead = *known - surveys.now;
-        if ahead > WORTH_A_MOVE * plan.window || (ahead > 0.0 && plan.begun) {
+        if plan.is_overtaken(ahead) {
             surveys.move_to(motion, *known);
             *plan = plan_of(motion, signals, surveys, guard, limit, clarity, self.window_factor);
         }
@@ -278,17 +308,19 @@ impl Search {
             let bounds = motion.series.bounds(shares, &span, start == Start::Apart);
             let hopeless =
                 bounds.leaves_blocks && guard.parabola.at(now) + guard.sign * survey.value < 2.0 * bounds.left_out;
-            let mut ends_below = false;
+            let (mut ends_below, mut comes_later) = (false, false);
             let verdict = if hopeless && !indivisible {
                 Verdict::Unsure
             } else {
                 let piece = Window::expand(motion.series, shares, &bounds, guard.sign, guard.parabola, &span, start);
                 ends_below = indivisible && piece.end() < 0.0;
-                piece.judge(|order| {
+                let verdict = piece.judge(|order| {
                     let bent = guard.parabola.p2.abs() * (span.length * span.length);
                     let parabola = if order == 0 { 2.0 * bent } else { 0.0 };
                     parabola + motion.series.bend(shares, span.length * motion.series.pace, order)
-                })
+                });
+                comes_later = now + window > horizon && piece.is_positive((horizon * AFTER - now) / window);
+                verdict
             };
             match verdict {
                 Verdict::Clear { clearance } => {
@@ -297,6 +329,11 @@ impl Search {
                     if guard.distance {
                         clarity.margin = clarity.margin.min(clearance);
                     }
+                    return Look::Further;
+                }
+                // The one root of the window comes after one that is known.
+                Verdict::Root { high: 1.0, .. } if comes_later => {
+                    *known = f64::INFINITY;
                     return Look::Further;
                 }
                 Verdict::Root { guess, high } => return Look::Root(Root { guard: index, guess, high, window }),
@@ -490,6 +527,16 @@ fn plan_of(
     }
     let curve = Parabola { p0: here.p0 + value, p1: here.p1 + rate, p2: here.p2 - 0.5 * bend };
     Plan::new(now, window(bend, snap, fastest), apart.max(clear_until(curve, noise + least, margin)))
+}
+
+/// How long the bounds on the bends of signals alone keep a guard clear: most guards are looked at no more than so.
+#[inline(always)]
+fn clear_by_bend(signal: Watched<'_>, bend: f64, guard: &Guard, clarity: &Clarity) -> f64 {
+    let Parabola { p0, p1, p2 } = guard.parabola;
+    let curve =
+        Parabola { p0: p0 + guard.sign * signal.sum.value, p1: p1 + guard.sign * signal.sum.rate, p2: p2 - 0.5 * bend };
+    let margin = if guard.distance { clarity.margin } else { 0.0 };
+    clear_until(curve, 1e-12 * (p0.abs() + signal.size) + margin, margin)
 }
 
 /// How long a parabola keeps further from zero than `reach`; 0 if it is not so now, nor where it may come closer to that

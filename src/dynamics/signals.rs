@@ -65,10 +65,15 @@ pub(crate) struct Rows {
     watched: usize,
     /// Weights of the watched rows, several blocks together.
     weights: Vec<[Four; 4]>,
+    /// Bounds of the second derivatives of their shares, by |x| + |y|.
+    bends: Vec<Four>,
     /// Observed displacements; half cycles watch the first of them.
     pub(crate) observed: Vec<usize>,
     /// Acceleration of the first of them, where half cycles follow it.
     pub(crate) bend: Option<usize>,
+    /// What it answers to each place, block by block without sign: weights sink the springs, and there the places round however
+    /// little they move.
+    pub(crate) bend_of_places: Vec<f64>,
     pub(crate) guards: Vec<GuardRows>,
     pub(crate) faces: Vec<FaceRows>,
 }
@@ -99,7 +104,8 @@ pub(crate) struct Watched<'a> {
     blocks: usize,
     pub(crate) phases: &'a [Phases],
     pub(crate) sum: Phase,
-    size: f64,
+    /// Of the moduli of their values.
+    pub(crate) size: f64,
     pub(crate) rest: Parabola,
 }
 
@@ -149,13 +155,9 @@ impl Row {
         }
     }
 
-    widened! {
-        /// The sum of all shares.
-        pub(crate) fn shares | shares_wide (&self, c: &[f64]) -> Phase = sum_of_shares
-    }
-
+    /// The sum of all shares.
     #[inline(always)]
-    fn sum_of_shares(&self, c: &[f64]) -> Phase {
+    pub(crate) fn shares(&self, c: &[f64]) -> Phase {
         let mut sum = Four::ZERO;
         for (weights, &[x, y]) in self.weights.iter().zip(c.as_chunks::<2>().0) {
             sum = sum + Four::new(*weights) * Four::new([x, y, x, y]);
@@ -212,7 +214,18 @@ impl Rows {
         if let (Some(row), Some(_)) = (system.observed_rows.first(), &system.drive.half_cycles) {
             let first = all.place(padded(row));
             all.observed.push(first);
-            all.bend = Some(all.place(all.rows[first].acceleration(blocks)));
+            let bend = all.rows[first].acceleration(blocks);
+            all.bend_of_places = modes
+                .spectral
+                .to_blocks
+                .chunks_exact(modes.spectral.width())
+                .take(modes.order)
+                .map(|entries| {
+                    let each = bend.weights.iter().zip(entries.as_chunks::<2>().0);
+                    each.fold(0.0, |sum, ([v0, v1, ..], [x, y])| sum + (v0 * x).abs() + (v1 * y).abs())
+                })
+                .collect();
+            all.bend = Some(all.place(bend));
         }
         let compression = |j: usize| {
             let mut unit = vec![0.0; modes.order];
@@ -271,6 +284,12 @@ impl Rows {
         }
         all.watched = all.rows.len();
         all.weights = all.rows.iter().flat_map(|row| row.weights.chunks(WIDTH).map(together)).collect();
+        let bends = |row: &Row| {
+            let each = blocks.iter().zip(&row.weights);
+            let each: Vec<f64> = each.map(|(block, weights)| bend(block, weights)).collect();
+            each.chunks(WIDTH).map(Four::padded).collect::<Vec<_>>()
+        };
+        all.bends = all.rows.iter().flat_map(bends).collect();
         for row in &system.observed_rows[all.observed.len()..] {
             let place = all.place(padded(row));
             all.observed.push(place);
@@ -285,7 +304,8 @@ impl Rows {
 
     /// Numbers that it keeps.
     pub(crate) fn size(&self) -> usize {
-        self.rows.iter().map(|row| 4 * row.weights.len()).sum::<usize>() + 4 * WIDTH * self.weights.len()
+        self.rows.iter().map(|row| 4 * row.weights.len()).sum::<usize>()
+            + WIDTH * (4 * self.weights.len() + self.bends.len())
     }
 
     /// Where a row stands.
@@ -326,7 +346,7 @@ impl Rows {
     }
 
     #[inline(always)]
-    fn watch_by_registers(&self, c: &[f64], force: f64, blocks: usize, signals: &mut Signals) {
+    pub(crate) fn watch_by_registers(&self, c: &[f64], force: f64, blocks: usize, signals: &mut Signals) {
         let registers = blocks.div_ceil(WIDTH);
         (signals.blocks, signals.registers) = (blocks, registers);
         signals.phases.resize(self.watched * registers, Phases::ZERO);
@@ -335,8 +355,9 @@ impl Rows {
         for (to, from) in signals.coordinates.iter_mut().zip(c.as_chunks().0) {
             *to = apart(from);
         }
-        let rows = self.rows.iter().zip(self.weights.chunks_exact(registers.max(1)));
-        let places = signals.phases.chunks_exact_mut(registers.max(1)).zip(&mut signals.totals);
+        let registers = registers.max(1);
+        let rows = self.rows.iter().zip(self.weights.chunks_exact(registers));
+        let places = signals.phases.chunks_exact_mut(registers).zip(&mut signals.totals);
         for ((row, weights), (phases, total)) in rows.zip(places) {
             let (mut sum, mut sizes) = (Phases::ZERO, Four::ZERO);
             for ((&[v0, v1, r0, r1], &[x, y]), phase) in weights.iter().zip(&signals.coordinates).zip(phases) {
@@ -346,6 +367,19 @@ impl Rows {
             }
             let sum = Phase { value: sum.value.sum(), rate: sum.rate.sum() };
             *total = Total { sum, size: sizes.sum(), rest: row.rest(force) };
+        }
+    }
+
+    /// Bounds on the second derivatives of the watched rows, without what constant loads add; not of blocks near critical damping.
+    #[inline(always)]
+    pub(crate) fn bound(&self, signals: &Signals, bends: &mut Vec<f64>) {
+        bends.clear();
+        for most in self.bends.chunks_exact(signals.registers.max(1)) {
+            let mut bend = Four::ZERO;
+            for (most, [x, y]) in most.iter().zip(&signals.coordinates) {
+                bend = bend + *most * (x.abs() + y.abs());
+            }
+            bends.push(bend.sum());
         }
     }
 
@@ -392,6 +426,12 @@ impl<'a> Watched<'a> {
     }
 }
 
+/// The largest second derivative of a share of these weights where |x| + |y| = 1.
+fn bend(block: &Block, &[v0, v1, r0, r1]: &[f64; 4]) -> f64 {
+    let most = |value: f64, rate: f64| block.amplitude(Phase { value, rate }, 2.0, 0.0);
+    most(v0, r0).max(most(v1, r1)) * block.radius * block.radius
+}
+
 /// Weights of several blocks.
 fn together(weights: &[[f64; 4]]) -> [Four; 4] {
     let mut lanes = [[0.0; WIDTH]; 4];
@@ -411,4 +451,29 @@ pub(crate) fn value(blocks: &[Block], phases: &[Phase], rest: Parabola, kernels:
         sum[2] += block.acceleration(now).value;
     }
     sum
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_share_bends_more_than_its_bound() {
+        let matrices =
+            [[0.0, 1.0, -9e4, -3.0], [0.0, 1.0, -25.0, -4.0], [-5.0, 140.0, -150.0, -40.0], [0.0, 1.0, -9.0, -40.0]];
+        let weights = [[1.0, 0.0, 0.0, 1.0], [0.3, -0.2, -31.5, 34.0], [0.01, 0.02, 0.34, -0.17]];
+        for block in matrices.map(Block::new) {
+            for weights in weights {
+                let most = bend(&block, &weights);
+                for [x, y] in [[1.0, 0.0], [0.0, 1.0], [0.5, -0.5], [0.3, 0.7]] {
+                    let [v0, v1, r0, r1] = weights;
+                    let start = Phase { value: v0 * x + v1 * y, rate: r0 * x + r1 * y };
+                    for i in 0..200 {
+                        let now = block.advance(start, block.kernel(0.1 * f64::from(i) / block.radius));
+                        assert!(block.acceleration(now).value.abs() <= most * (1.0 + 1e-12));
+                    }
+                }
+            }
+        }
+    }
 }

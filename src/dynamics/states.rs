@@ -12,7 +12,7 @@ use std::rc::Rc;
 use super::EngineError;
 use super::budget;
 use super::conservative::Conservative;
-use super::contact_state::Modes;
+use super::contact_state::{Modes, dampings};
 use super::flow::Flow;
 use super::reach::Ground;
 use super::system::{Contact, HybridSystem, Particle};
@@ -114,35 +114,50 @@ impl States {
         &self.0.ground
     }
 
-    /// The flow of a contact state, built at the first visit.
+    /// The flow of a contact state, built at the first visit, with the damping that half cycles have put in the place of the stated.
+    #[inline]
     pub(crate) fn flow(
         &self,
         system: &HybridSystem,
         contacts: &[Contact],
-        damping: &[f64],
+        equivalent: Option<f64>,
     ) -> Result<Rc<Flow>, EngineError> {
-        let build = || {
-            let order = system.mass.order + contacts.len();
-            // About what the Schur form of a matrix of twice the order takes.
-            if budget::spend_ahead(u32::try_from(order.saturating_pow(3) / 8).unwrap_or(u32::MAX)) {
-                return Err(budget::overrun().into());
-            }
-            let modes = visit(
-                &self.0.undriven.modes,
+        if !self.0.half_cycles && !contacts.iter().any(|contact| contact.is_between()) {
+            // It has the stated dampings and no others.
+            return visit(
+                &self.0.flows,
                 contacts,
-                |modes| modes.damping == damping,
-                || {
-                    let build = || Conservative::new(system, contacts);
-                    let bare = visit(&self.0.undriven.bare, contacts, |_| true, build)?;
-                    Modes::new(system, bare, contacts, damping)
-                },
-            )?;
-            Flow::driven(system, modes)
-        };
-        visit(&self.0.flows, contacts, |flow| flow.modes.damping == damping, build)
+                |_| true,
+                || self.build(system, contacts, &dampings(system, contacts, None)),
+            );
+        }
+        let damping = dampings(system, contacts, equivalent);
+        let fits = |flow: &Flow| flow.modes.damping == damping;
+        visit(&self.0.flows, contacts, fits, || self.build(system, contacts, &damping))
+    }
+
+    #[cold]
+    fn build(&self, system: &HybridSystem, contacts: &[Contact], damping: &[f64]) -> Result<Flow, EngineError> {
+        let order = system.mass.order + contacts.len();
+        // About what the Schur form of a matrix of twice the order takes.
+        if budget::spend_ahead(u32::try_from(order.saturating_pow(3) / 8).unwrap_or(u32::MAX)) {
+            return Err(budget::overrun().into());
+        }
+        let modes = visit(
+            &self.0.undriven.modes,
+            contacts,
+            |modes| modes.damping == damping,
+            || {
+                let build = || Conservative::new(system, contacts);
+                let bare = visit(&self.0.undriven.bare, contacts, |_| true, build)?;
+                Modes::new(system, bare, contacts, damping)
+            },
+        )?;
+        Flow::driven(system, modes)
     }
 }
 
+#[inline]
 fn visit<T>(
     known: &ByContact<T>,
     contacts: &[Contact],

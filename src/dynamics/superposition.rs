@@ -56,7 +56,7 @@ impl Superposition {
     }
 
     #[inline(always)]
-    fn sum_by_registers(&self, x: &[f64], y: &mut [f64]) {
+    pub(crate) fn sum_by_registers(&self, x: &[f64], y: &mut [f64]) {
         let mut y = &mut y[..self.length];
         match self.registers {
             1 => return put(narrow::<1>(&self.rows, x), y),

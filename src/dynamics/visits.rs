@@ -3,12 +3,11 @@
 //! A run comes to the same few contact states again and again. Each keeps one sum ([`super::gains`]), and its equations are
 //! solved when a half of the averaged window is over.
 
-use std::collections::BTreeMap;
 use std::rc::Rc;
 
-use super::Observed;
 use super::flow::Flow;
 use super::gains::Gains;
+use super::{Observed, Sums};
 
 /// Contact states that are kept before they are paid out.
 const MOST_STATES: usize = 1024;
@@ -18,9 +17,6 @@ const MOST_STATES: usize = 1024;
 pub(crate) struct Visits {
     /// In the order of the first visits, in which they are paid out.
     states: Vec<(Rc<Flow>, Gains)>,
-    places: BTreeMap<*const Flow, usize>,
-    /// The last one visited.
-    here: usize,
     /// Half of the averaged window that they belong to.
     pub(crate) half: usize,
 }
@@ -29,13 +25,13 @@ impl Visits {
     /// The gains of a contact state.
     #[inline]
     pub(crate) fn of(&mut self, flow: &Rc<Flow>) -> &mut Gains {
-        if self.states.get(self.here).is_none_or(|(here, _)| !Rc::ptr_eq(here, flow)) {
-            self.here = *self.places.entry(Rc::as_ptr(flow)).or_insert_with(|| {
-                self.states.push((Rc::clone(flow), Gains::none(flow.blocks.len())));
-                self.states.len() - 1
-            });
+        // Where it stood in another run's list, or one that was paid out, another one stands now, or none.
+        let known = self.states.get(flow.place.get()).is_some_and(|(known, _)| Rc::ptr_eq(known, flow));
+        if !known {
+            flow.place.set(self.states.len());
+            self.states.push((Rc::clone(flow), Gains::none(flow.blocks.len())));
         }
-        &mut self.states[self.here].1
+        &mut self.states[flow.place.get()].1
     }
 
     /// So many that they should be paid out before another one comes.
@@ -47,12 +43,17 @@ impl Visits {
     pub(crate) fn pay_out(&mut self, displacement: bool, observed: &mut [Observed]) {
         for (flow, gains) in self.states.drain(..) {
             let Some(closed) = flow.closed() else { continue };
+            if !displacement {
+                for (of, square) in observed.iter_mut().zip(flow.squares(closed)) {
+                    let (duration, velocity_square) = (gains.time[0], square.of(&gains));
+                    of.halves[self.half].add(Sums { duration, velocity_square, ..Sums::default() });
+                }
+                continue;
+            }
             let integrated = closed.solve(&gains);
             for (of, &row) in observed.iter_mut().zip(&flow.rows.observed) {
-                of.halves[self.half].add(integrated.of(flow.rows.row(row), displacement));
+                of.halves[self.half].add(integrated.of(flow.rows.row(row), true));
             }
         }
-        self.places.clear();
-        self.here = 0;
     }
 }

@@ -1,6 +1,8 @@
 //! One source for several processors: a method is compiled twice, for every processor and for registers of four numbers, and
 //! what this processor can do decides which of them runs.
 //!
+//! What such a method calls is compiled with it where it is inlined always; so that one check is enough for many segments.
+//!
 //! Nothing is contracted and no sum is reordered, so that both give the same bits.
 
 /// `fn name | wide_name (…) = body`: `name` runs `body`, which is to be inlined always, as this processor runs it best.

@@ -105,11 +105,19 @@ impl Window {
         if signs.positive == 0 || signs.positive & (signs.positive + 1) != 0 {
             return Verdict::Unsure;
         }
-        let mut above = Self { a: self.a, b: self.b, remainder: 0.0, leaves_blocks: false, start: self.start };
-        above.a[0] -= self.remainder;
+        let mut above = self.a;
+        above[0] -= self.remainder;
         // Newton has the root to three digits or so; a little before it the polynomial is still above.
-        let sigma = 0.98 * above.root(0.5, 1.0).0;
-        if above.value(sigma) > 0.0 { Verdict::Until { sigma } } else { Verdict::Unsure }
+        let sigma = 0.98 * root(&above, self.crossing(signs, self.remainder), 1.0).0;
+        if evaluate(&above, sigma).0 > 0.0 { Verdict::Until { sigma } } else { Verdict::Unsure }
+    }
+
+    /// Where the control polygon falls to `level`, behind the coefficients that are surely positive.
+    #[inline(always)]
+    fn crossing(&self, signs: Signs, level: f64) -> f64 {
+        let first = signs.positive.trailing_ones() as usize;
+        let (before, after) = (self.b[first - 1], self.b[first]);
+        ((first - 1) as f64 + (before - level) / (before - after)).min(first as f64) * (1.0 / DEGREE as f64)
     }
 
     /// Descartes' rule in Bernstein form: coefficients positive, then doubtful, then negative. The guard is positive before
@@ -118,11 +126,10 @@ impl Window {
     #[inline(always)]
     fn single_crossing(&self, signs: Signs, bend: impl FnOnce(usize) -> f64) -> Option<f64> {
         let doubt = self.remainder;
-        let first = signs.single_change()?;
-        // Where the control polygon crosses zero.
-        let (before, after) = (self.b[first - 1], self.b[first]);
-        let x = ((first - 1) as f64 + before / (before - after)).min(first as f64) * (1.0 / DEGREE as f64);
-        let (guess, slope, step) = self.root(x, 1.0);
+        if !signs.change_once() {
+            return None;
+        }
+        let (guess, slope, step) = root(&self.a, self.crossing(signs, 0.0), 1.0);
         let order = match self.start {
             Start::Apart => 0,
             Start::Touching { order, .. } => order,
@@ -169,7 +176,7 @@ impl Window {
             // A jump has left the contact untenable: it ends at once.
             return Verdict::Root { guess: 0.0, high: 0.0 };
         }
-        let root = |high: f64| Verdict::Root { guess: self.root(high, high).0, high };
+        let root = |high: f64| Verdict::Root { guess: root(&self.a, high, high).0, high };
         if (falls || concave) && end < -doubt {
             return root(1.0);
         }
@@ -210,36 +217,14 @@ impl Window {
         0.5 * (low + high)
     }
 
-    fn value(&self, x: f64) -> f64 {
-        self.a.iter().rev().fold(0.0, |sum, a| sum * x + a)
+    /// The guard is surely positive there.
+    #[cold]
+    pub(crate) fn is_positive(&self, x: f64) -> bool {
+        evaluate(&self.a, x).0 > self.remainder
     }
 
-    /// The root below `high` by Newton steps from `x`, to three digits or so. Gives with it the slope before the last step,
-    /// and that step.
-    #[inline]
-    fn root(&self, mut x: f64, high: f64) -> (f64, f64, f64) {
-        let (mut lower, mut upper) = (0.0, high);
-        let mut last = (x, f64::NAN, f64::INFINITY);
-        for _ in 0..60 {
-            let (value, slope) = evaluate(&self.a, x);
-            if value > 0.0 {
-                lower = x
-            } else {
-                upper = x
-            }
-            let mut next = x - value / slope;
-            if !(next > lower && next < upper) {
-                next = 0.5 * (lower + upper);
-            }
-            let step = (next - x).abs();
-            x = next;
-            last = (x, slope, step);
-            // Quadratic convergence: the next step would be the square of this.
-            if step < 0.03 * x {
-                break;
-            }
-        }
-        last
+    fn value(&self, x: f64) -> f64 {
+        self.a.iter().rev().fold(0.0, |sum, a| sum * x + a)
     }
 
     /// The root below `high` of the polynomial divided by σ^order, from a guess that is near.
@@ -265,6 +250,34 @@ impl Window {
         }
         x
     }
+}
+
+/// The root below `high` by Newton steps from `x`, to three digits or so. Gives with it the slope before the last step,
+/// and that step.
+#[inline]
+fn root(a: &Coefficients, mut x: f64, high: f64) -> (f64, f64, f64) {
+    let (mut lower, mut upper) = (0.0, high);
+    let mut last = (x, f64::NAN, f64::INFINITY);
+    for _ in 0..60 {
+        let (value, slope) = evaluate(a, x);
+        if value > 0.0 {
+            lower = x
+        } else {
+            upper = x
+        }
+        let mut next = x - value / slope;
+        if !(next > lower && next < upper) {
+            next = 0.5 * (lower + upper);
+        }
+        let step = (next - x).abs();
+        x = next;
+        last = (x, slope, step);
+        // Quadratic convergence: the next step would be the square of this.
+        if step < 0.03 * x {
+            break;
+        }
+    }
+    last
 }
 
 /// The coefficients in σ of a guard divided by σ^`ORDER`.
@@ -313,13 +326,12 @@ impl Signs {
         Self { positive, negative }
     }
 
-    /// Positive, then doubtful, then negative: where the first that is not positive stands.
+    /// Positive, then doubtful, then negative.
     #[inline(always)]
-    fn single_change(self) -> Option<usize> {
+    fn change_once(self) -> bool {
         let falling = |bits: u64| bits & (bits + 1) == 0;
         let before = Self::ALL & !self.negative;
-        let once = self.positive != 0 && self.negative != 0 && falling(self.positive) && falling(before);
-        once.then(|| self.positive.trailing_ones() as usize)
+        self.positive != 0 && self.negative != 0 && falling(self.positive) && falling(before)
     }
 }
 

@@ -2,7 +2,7 @@
 //!
 //! Every event-driven case is run three times: as it is, with search windows half as long (the difference is its numerical
 //! uncertainty), and with a kicked start. If the kick of a billionth has grown beyond a millionth, the motion is chaotic and
-//! no single run is a result: an ensemble of kicked starts gives mean and spread. A search makes one run a step, and what it
+//! no single run is a result: an ensemble of kicked starts, and the one without a kick, gives mean and spread. A search makes one run a step, and what it
 //! finds is evaluated as a result afterwards. The fixed step is run once: what its
 //! step does to the numbers is the result that it is there for.
 //!
@@ -360,7 +360,11 @@ impl Case<'_> {
 
         let mut sums = vec![Welford::default(); request.measures.len()];
         for member in 0..members {
-            let place = (f64::from(member) + 0.5) / f64::from(members) * 2.0 - 1.0;
+            let place = (f64::from(member) - f64::from(members / 2)) * 2.0 / f64::from(members);
+            if place == 0.0 {
+                sums.iter_mut().zip(&values).for_each(|(sum, value)| sum.add(*value));
+                continue;
+            }
             // Time histories, shapes and their measures stay those of the unkicked run.
             let kicked = event_driven(system, &Options { kick: ENSEMBLE_KICK * place, ..plain.clone() })?;
             if unsettled(&kicked) {

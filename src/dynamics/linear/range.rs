@@ -11,6 +11,7 @@ use crate::dynamics::block::{Block, Phase};
 use crate::dynamics::budget;
 use crate::dynamics::crest::{self, Motion, crest};
 use crate::dynamics::flow::{DrivePhase, Flow};
+use crate::dynamics::four::Four;
 use crate::dynamics::system::HybridSystem;
 
 /// Nodes a radian of whatever oscillates: the cubic between two of them is then close enough to judge a crest ([`crest`]).
@@ -32,8 +33,8 @@ struct Grid {
 /// An instant of a segment.
 struct Node {
     time: f64,
-    /// Displacement, velocity and acceleration by the block coordinates at the segment's beginning.
-    rows: [Vec<f64>; 3],
+    /// Displacement, velocity and acceleration by each block coordinate at the segment's beginning.
+    columns: Vec<Four>,
     /// What they are beside those.
     constant: [f64; 3],
 }
@@ -79,13 +80,12 @@ impl Grid {
         let nodes = times(flow, segment.length)
             .into_iter()
             .map(|time| {
-                let mut rows = [Vec::new(), Vec::new(), Vec::new()];
+                let mut columns = Vec::with_capacity(2 * flow.blocks.len());
                 for (block, [a, b, c, d]) in flow.blocks.iter().zip(&row.weights) {
                     let kernel = block.kernel(time);
                     for phase in [Phase { value: *a, rate: *c }, Phase { value: *b, rate: *d }] {
                         let now = block.advance(phase, kernel);
-                        let parts = [now.value, now.rate, block.acceleration(now).value];
-                        rows.iter_mut().zip(parts).for_each(|(row, part)| row.push(part));
+                        columns.push(Four::new([now.value, now.rate, block.acceleration(now).value, 0.0]));
                     }
                 }
                 let (driven, _) = row.outside(flow, segment.level, DrivePhase::of(&system.drive, segment.begin + time));
@@ -94,7 +94,7 @@ impl Grid {
                     let parts = [phase.value, phase.rate, block.acceleration(phase).value];
                     constant.iter_mut().zip(parts).for_each(|(sum, part)| *sum += part);
                 }
-                Node { time, rows, constant }
+                Node { time, columns, constant }
             })
             .collect();
         Self { nodes, drive, rest }
@@ -105,16 +105,14 @@ impl Grid {
         let shares = || -> &Vec<Phase> { shares.get_or_init(|| row.shares(c).into_iter().chain(self.drive).collect()) };
         let mut before: Option<crest::Node> = None;
         for node in &self.nodes {
-            let mut now = node.constant;
-            for (sum, weights) in now.iter_mut().zip(&node.rows) {
-                *sum += weights.iter().zip(c).fold(0.0, |sum, (weight, c)| sum + weight * c);
-            }
-            range.take(now[0], now[1]);
-            let now = crest::Node { time: node.time, motion: now };
+            let free = node.columns.iter().zip(c).fold(Four::ZERO, |sum, (column, c)| sum + *column * *c);
+            let ([value, rate, bend, _], [rest, driven, driven_bend]) = (free.array(), node.constant);
+            let now = crest::Node { time: node.time, motion: [rest + value, driven + rate, driven_bend + bend] };
+            range.take(now.motion[0], now.motion[1]);
             if let Some(last) = before {
                 for order in [0, 1] {
                     let at = |t: f64| motion(&flow.blocks, shares(), self.rest, t);
-                    if let Some(turn) = crest(order, last, now, range.of(order), at) {
+                    if let Some(turn) = crest(order, last, now, || range.of(order), at) {
                         range.take(turn[0], turn[1]);
                     }
                 }

@@ -4,6 +4,7 @@
 //! particle, else to one that presses, and is referred anew where that changes. Two faces that would both hold it are refused.
 
 use super::March;
+use super::effects::Effects;
 use crate::dynamics::EngineError;
 use crate::dynamics::contact::{Crossing, Hold, Relative, STICKING_SPEED, Side};
 use crate::dynamics::guards::{self, Slipped};
@@ -22,7 +23,7 @@ enum Change {
     PushesAgain,
 }
 
-impl<const TAPED: bool> March<'_, TAPED> {
+impl<E: Effects> March<'_, E> {
     /// A crossing of a particle that is at both faces, or comes to be.
     pub(super) fn cross_between(&mut self, j: usize, crossing: Crossing) -> Result<(), EngineError> {
         let own = self.contacts[j].side();
@@ -125,7 +126,7 @@ impl<const TAPED: bool> March<'_, TAPED> {
     pub(super) fn touches_across(&self, j: usize, side: Side) -> bool {
         let contact = self.contacts[j];
         let particle = &self.system.particles[j];
-        self.has_walls && contact.at(side.opposite(), particle) != Hold::Away
+        E::ALL && self.has_walls && contact.at(side.opposite(), particle) != Hold::Away
     }
 
     /// Held on the stop of the face on this side.
@@ -133,7 +134,7 @@ impl<const TAPED: bool> March<'_, TAPED> {
     pub(super) fn is_on_stop(&self, j: usize, side: Side) -> bool {
         let (contact, particle) = (self.contacts[j], &self.system.particles[j]);
         let both = || side.face(particle).law.stop().is_some() && contact.side() == side && contact.holds(particle);
-        contact == side.stopped() || (contact.is_between() && both())
+        E::ALL && (contact == side.stopped() || (contact.is_between() && both()))
     }
 
     /// A force comes to zero at one of the faces: its guard begins there.

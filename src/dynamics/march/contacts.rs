@@ -2,6 +2,7 @@
 //! velocity jumps for it. Rigid faces are the business of [`super::impacts`].
 
 use super::March;
+use super::effects::Effects;
 use crate::dynamics::EngineError;
 use crate::dynamics::contact::{Crossing, Hold, Relative, Side};
 use crate::dynamics::guards;
@@ -15,20 +16,23 @@ fn depth(face: &Face) -> f64 {
 /// Rigid faces closer to each other than this share of their way have met.
 const CLOSED: f64 = 1e-9;
 
-impl<const TAPED: bool> March<'_, TAPED> {
+impl<E: Effects> March<'_, E> {
     /// What a crossing leads to; the state has arrived there.
     pub(super) fn cross(&mut self, j: usize, crossing: Crossing) -> Result<(), EngineError> {
-        if crossing == Crossing::HalfCycle {
-            self.half.sign = -self.half.sign;
-            self.half.touching = true;
-            self.close_half_cycle();
-            return self.hold_on();
+        if E::ALL {
+            if crossing == Crossing::HalfCycle {
+                self.half.sign = -self.half.sign;
+                self.half.touching = true;
+                self.close_half_cycle();
+                return self.hold_on();
+            }
+            self.half.touching = false;
+            if self.contacts[j].is_between() || crossing == Crossing::Meeting {
+                self.smooth[j] = false;
+                return self.cross_between(j, crossing);
+            }
         }
-        self.half.touching = false;
         self.smooth[j] = false;
-        if self.contacts[j].is_between() || crossing == Crossing::Meeting {
-            return self.cross_between(j, crossing);
-        }
         let side = self.contacts[j].side();
         let particle = &self.system.particles[j];
         // The push of a dashpot sets in at once, and with it accelerations elsewhere jump.
@@ -66,7 +70,7 @@ impl<const TAPED: bool> March<'_, TAPED> {
                     return self.strike(j, side);
                 }
             }
-            Crossing::Release if self.contacts[j].holds(particle) => {
+            Crossing::Release if E::ALL && self.contacts[j].holds(particle) => {
                 if self.sudden {
                     return self.hold_on();
                 }
@@ -75,7 +79,7 @@ impl<const TAPED: bool> March<'_, TAPED> {
                 self.smooth[j] = true;
             }
             Crossing::Release => match side.face(particle).law {
-                Law::Resilient { no_tension: true, .. } if self.is_compressed(j, side) => {
+                Law::Resilient { no_tension: true, .. } if E::ALL && self.is_compressed(j, side) => {
                     self.slip(j, side);
                     self.smooth[j] = !self.sudden;
                 }
@@ -107,7 +111,12 @@ impl<const TAPED: bool> March<'_, TAPED> {
             | Crossing::AgainAcross
             | Crossing::HalfCycle => {}
         }
-        self.meet_at_once()?;
+        if E::ALL {
+            self.meet_at_once()?;
+        } else if let Some(side) = self.meets(j) {
+            // No velocity has jumped: no other particle is at a face now that was not before.
+            self.press(j, side);
+        }
         if jumps { self.hold_on() } else { self.choose_flow() }
     }
 
@@ -180,7 +189,7 @@ impl<const TAPED: bool> March<'_, TAPED> {
     /// After a jump of velocities: decides the contact of a particle with a resilient face, as far as velocities do.
     pub(super) fn press_or_part(&mut self, j: usize) -> Result<(), EngineError> {
         let contact = self.contacts[j];
-        if contact.is_between() {
+        if E::ALL && contact.is_between() {
             return self.press_or_part_between(j);
         }
         let particle = &self.system.particles[j];
@@ -285,7 +294,7 @@ impl<const TAPED: bool> March<'_, TAPED> {
 
     /// The ceiling of a particle does not move with its floor.
     fn moves_by_itself(&self, particle: &Particle) -> bool {
-        self.has_walls && particle.has_walls()
+        E::ALL && self.has_walls && particle.has_walls()
     }
 
     /// The face that a particle presses into is compressed by more than rounding.

@@ -1,8 +1,10 @@
 //! Equivalent viscous damping: the half cycles of the observed acceleration, each of which sets the next one's dashpots.
 
 use super::March;
+use super::effects::Effects;
 use super::sums::Integration;
 use crate::dynamics::EngineError;
+use crate::dynamics::four::Four;
 use crate::dynamics::integral;
 
 /// An acceleration below this share of what it may become is zero: the crossing that ended the half cycle was smooth.
@@ -29,25 +31,28 @@ pub(super) struct Half {
     pub(super) idle: bool,
 }
 
-impl<const TAPED: bool> March<'_, TAPED> {
+impl<E: Effects> March<'_, E> {
     /// Starts the first half cycle, and ends one whose acceleration a contact has turned at once.
     pub(super) fn turn_half_cycle(&mut self) -> Result<(), EngineError> {
         let Some(half_cycles) = &self.system.drive.half_cycles else { return Ok(()) };
         let flow = &self.flow;
         let Some(bend) = flow.rows.bend else { return Ok(()) };
         let bends = self.signals.of(bend);
-        let bound = flow
-            .blocks
-            .iter()
-            .zip(bends.each())
-            .fold(0.0, |sum, (block, phase)| sum + block.amplitude(phase, 0.0, self.system.drive.period));
+        let bound = if flow.bank.near_critical().is_empty() {
+            let each = flow.bank.blocks().iter().zip(bends.phases);
+            each.fold(Four::ZERO, |sum, (blocks, phases)| sum + blocks.amplitudes(*phases)).sum()
+        } else {
+            let each = flow.blocks.iter().zip(bends.each());
+            each.fold(0.0, |sum, (block, phase)| sum + block.amplitude(phase, 0.0, self.system.drive.period))
+        };
         // Below the curve's first point every half cycle gives the same damping: no need to follow them until something
         // happens. The bound holds to the end of the segment, and the half cycle under way is as weak.
         let [least, damping] = half_cycles.curve.lower_end();
         let least = least * self.system.gravity;
         let weak = self.half.square <= least * least * self.half.length;
         let is_lowest = self.equivalent == Some(damping);
-        let rounding = self.rounding(bend);
+        let places = self.q.iter().zip(&flow.rows.bend_of_places);
+        let rounding = ROUNDING * places.fold(0.0, |sum, (place, answer)| sum + place.abs() * answer);
         let died_away = bound < DIED_AWAY * rounding;
         if died_away || (bound < least && weak && is_lowest) {
             self.half = Half { idle: true, last: self.half.last, ..Half::default() };
@@ -92,20 +97,6 @@ impl<const TAPED: bool> March<'_, TAPED> {
         self.enter_flow(drive);
         self.flow.watch(&self.c, self.level, &mut self.signals);
         Ok(())
-    }
-
-    /// What of the acceleration is rounding of the places that it is the answer to: weights sink the springs, and there the
-    /// places round however little they move.
-    fn rounding(&self, bend: usize) -> f64 {
-        let flow = &self.flow;
-        let size = flow.modes.spectral.width();
-        let weights = &flow.rows.row(bend).weights[..flow.own];
-        let answer = |entries: &[f64]| {
-            let blocks = weights.iter().zip(entries.as_chunks::<2>().0);
-            blocks.fold(0.0, |sum, ([v0, v1, ..], [x, y])| sum + (v0 * x).abs() + (v1 * y).abs())
-        };
-        let places = self.q.iter().zip(flow.modes.spectral.to_blocks.chunks_exact(size)).take(flow.order);
-        places.fold(0.0, |sum, (place, entries)| sum + ROUNDING * place.abs() * answer(entries))
     }
 
     /// Adds a segment to the half cycle, and to the measures what is integrated together with it.

@@ -4,6 +4,7 @@
 //! Then accelerations: of the particles that are left without relative speed, those are held that their faces have to push.
 
 use super::March;
+use super::effects::Effects;
 use crate::dynamics::EngineError;
 use crate::dynamics::collision::{self, Closed, Outcome};
 use crate::dynamics::contact::{Hold, Relative, STICKING_SPEED, Side};
@@ -35,7 +36,7 @@ pub(super) struct Candidate {
     restitution: f64,
 }
 
-impl<const TAPED: bool> March<'_, TAPED> {
+impl<E: Effects> March<'_, E> {
     /// An impulse on the structure: a particle that is held receives its share through the face.
     pub(super) fn strike_structure(&mut self, impulse: f64) -> Result<(), EngineError> {
         let before = self.audit.is_some().then(|| crate::dynamics::audit::energy(self.system, &self.audit_state()));
@@ -103,7 +104,7 @@ impl<const TAPED: bool> March<'_, TAPED> {
     /// After a jump of velocities: decides every contact that the jump has made untenable. `arrived` particles in flight
     /// are at a rigid face, pressed ones at its stop.
     pub(super) fn settle(&mut self, arrived: &[(usize, Side)]) -> Result<(), EngineError> {
-        let candidates = self.collide(arrived)?;
+        let candidates = if E::ALL { self.collide(arrived)? } else { Vec::new() };
         for j in 0..self.particles.len() {
             // Whose state refers to a rigid face already.
             if !candidates.iter().any(|candidate| candidate.particle == j && !candidate.on_stop) {
@@ -120,7 +121,7 @@ impl<const TAPED: bool> March<'_, TAPED> {
     /// After a jump of accelerations: lets go what a face can no longer hold.
     pub(super) fn hold_on(&mut self) -> Result<(), EngineError> {
         let holds = |(contact, particle): (&Contact, &Particle)| contact.holds(particle);
-        if self.contacts.iter().zip(&self.system.particles).any(holds) {
+        if E::ALL && self.contacts.iter().zip(&self.system.particles).any(holds) {
             let held = (0..self.particles.len()).filter(|&j| holds((&self.contacts[j], &self.system.particles[j])));
             let candidates = held.map(|j| self.candidate(j)).collect();
             self.hold(candidates)?;
@@ -217,7 +218,7 @@ impl<const TAPED: bool> March<'_, TAPED> {
         let outcomes = if closed.iter().any(Closed::is_struck) {
             let outcomes = collision::collide(&closed, &self.answers(&touches));
             self.exchange(&touches, &outcomes);
-            if TAPED {
+            if E::TAPED {
                 self.tape_exchange(&touches, &outcomes);
             }
             self.half.touching = false;

@@ -1,6 +1,7 @@
 //! The time history: samples of the segments that it covers.
 
 use super::March;
+use super::effects::Effects;
 use crate::dynamics::block::Phase;
 use crate::dynamics::contact::Side;
 use crate::dynamics::flow::DrivePhase;
@@ -10,7 +11,7 @@ use crate::dynamics::signals;
 use crate::dynamics::system::Particle;
 use crate::dynamics::trace::{Sample, SampledParticle};
 
-impl<const TAPED: bool> March<'_, TAPED> {
+impl<E: Effects> March<'_, E> {
     /// Samples of the time history that fall into the segment.
     pub(super) fn sample(&mut self, length: f64, drive: DrivePhase) {
         let Some(request) = self.options.trace else { return };
@@ -50,7 +51,7 @@ impl<const TAPED: bool> March<'_, TAPED> {
                 displacement,
                 velocity,
                 acceleration,
-                damping: self.equivalent.or(self.damping.first().copied()).unwrap_or(0.0),
+                damping: self.equivalent.or(self.flow.modes.damping.first().copied()).unwrap_or(0.0),
                 half_cycle_rms: self.half.last,
                 particles: self.system.particles.iter().enumerate().map(sampled).collect(),
             };

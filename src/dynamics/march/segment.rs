@@ -1,13 +1,15 @@
 //! A segment: the flow of the contact state in force, followed to the next event or to the next jump of the force.
 
 use super::March;
+use super::effects::Effects;
 use crate::dynamics::EngineError;
 use crate::dynamics::budget;
 use crate::dynamics::contact::{Relative, Side};
-use crate::dynamics::contact_state::{contact_damping, dampings};
+use crate::dynamics::contact_state::contact_damping;
 use crate::dynamics::flow::DrivePhase;
 use crate::dynamics::guards::{self, Contacts};
 use crate::dynamics::search::{Found, Guard};
+use crate::dynamics::wide::widened;
 
 /// Events at one instant beyond which contacts are left alone for a moment, as they undo each other.
 const MOST_EVENTS_AT_AN_INSTANT: u32 = 64;
@@ -23,7 +25,7 @@ const LONGEST_BLINK: f64 = 1e-9;
 /// Events after which what rounding does at each of them adds up to more than the rest of it.
 const MANY_EVENTS: u64 = 10_000;
 
-impl<const TAPED: bool> March<'_, TAPED> {
+impl<E: Effects> March<'_, E> {
     /// Damping of the face that particle j's contact refers to, N s/m.
     pub(super) fn damping_at(&self, j: usize) -> f64 {
         contact_damping(self.system, &self.contacts, j, self.equivalent)
@@ -35,18 +37,14 @@ impl<const TAPED: bool> March<'_, TAPED> {
             return Ok(());
         }
         self.changed = false;
-        if self.has_walls {
-            dampings(self.system, &self.contacts, self.equivalent, &mut self.damping);
-        } else {
-            for j in 0..self.damping.len() {
-                self.damping[j] = self.damping_at(j);
-            }
-        }
-        if self.equivalent.is_some() {
+        if E::ALL && self.equivalent.is_some() {
             // Which of many dampings are still known hangs on the runs before; what is summed up together must not.
             self.pay_out();
         }
-        self.flow = self.states.flow(self.system, &self.contacts, &self.damping)?;
+        self.flow = self.states.flow(self.system, &self.contacts, self.equivalent)?;
+        let drive = &self.system.drive;
+        let pause = drive.period / drive.ticks.len().max(1) as f64;
+        self.is_brief = self.flow.is_brief(pause);
         let width = self.flow.width();
         if self.c.len() < width {
             self.c.resize(width, 0.0);
@@ -58,6 +56,7 @@ impl<const TAPED: bool> March<'_, TAPED> {
     }
 
     /// Block coordinates of the state in the flow in force.
+    #[inline(always)]
     pub(super) fn enter_flow(&mut self, drive: DrivePhase) {
         let flow = &self.flow;
         let n = self.system.mass.order;
@@ -73,8 +72,13 @@ impl<const TAPED: bool> March<'_, TAPED> {
         }
     }
 
-    /// Propagates to `until` within the cycle, from event to event.
-    pub(super) fn propagate_to(&mut self, until: f64) -> Result<(), EngineError> {
+    widened! {
+        /// Propagates to `until` within the cycle, from event to event.
+        pub(super) fn propagate_to | propagate_wide (&mut self, until: f64) -> Result<(), EngineError> = propagate
+    }
+
+    #[inline(always)]
+    fn propagate(&mut self, until: f64) -> Result<(), EngineError> {
         // Near the start of a cycle the clock counts finer than its instants can be told apart later.
         let instant = f64::EPSILON * self.system.drive.period;
         let longest = LONGEST_BLINK * self.system.drive.period;
@@ -108,6 +112,7 @@ impl<const TAPED: bool> March<'_, TAPED> {
     }
 
     /// To the next event.
+    #[inline(always)]
     fn segment(&mut self, until: f64) -> Result<(), EngineError> {
         self.set_guards()?;
         self.follow(until)
@@ -123,34 +128,38 @@ impl<const TAPED: bool> March<'_, TAPED> {
         self.follow(until)
     }
 
-    #[inline]
+    #[inline(always)]
     fn set_guards(&mut self) -> Result<(), EngineError> {
         self.choose_flow()?;
         let drive = self.drive_phase(self.time);
         self.enter_flow(drive);
-        self.flow.watch(&self.c, self.level, &mut self.signals);
-        self.turn_half_cycle()?;
+        self.flow.rows.watch_by_registers(&self.c, self.level, self.flow.blocks.len(), &mut self.signals);
+        if E::ALL {
+            self.turn_half_cycle()?;
+        }
         let flow = &self.flow;
         let state = Contacts {
             system: self.system,
             contacts: &self.contacts,
             particles: &self.particles,
-            damping: &self.damping,
             smooth: &self.smooth,
             slipped: self.slipped,
             q: &self.q,
             rate: &self.rate,
-            has_walls: self.has_walls,
+            has_walls: E::ALL && self.has_walls,
+            plain: !E::ALL,
         };
         guards::set(state, flow, &self.signals, &mut self.search, &mut self.paths);
-        if let (Some(bend), false) = (flow.rows.bend, self.half.idle) {
+        if E::ALL
+            && let (Some(bend), false) = (flow.rows.bend, self.half.idle)
+        {
             guards::half_cycle(bend, self.half.sign, self.half.touching, &mut self.search);
         }
         Ok(())
     }
 
     /// Follows the flow to the first of the guards that are set.
-    #[inline]
+    #[inline(always)]
     fn follow(&mut self, until: f64) -> Result<(), EngineError> {
         let (flow, drive) = (&self.flow, self.phase);
         let limit = (until - self.time).min(flow.lasts());
@@ -165,10 +174,12 @@ impl<const TAPED: bool> March<'_, TAPED> {
         };
         self.flow.advance_all(self.search.kernels(), &self.c, end_drive, &mut self.c_end);
         self.sum_up(length, drive);
-        if TAPED {
+        if E::TAPED {
             self.tape.flow(&self.flow, length);
         }
-        self.sample(length, drive);
+        if self.options.trace.is_some() {
+            self.sample(length, drive);
+        }
         self.arrive(length, end_drive);
         self.time = match found {
             Found::Nothing if limit < until - self.time => self.time + limit,
@@ -178,7 +189,7 @@ impl<const TAPED: bool> March<'_, TAPED> {
         if let Found::Event { guard, .. } = found {
             let Guard { particle, crossing, .. } = self.search.guards[guard];
             self.sudden = length == 0.0;
-            if TAPED {
+            if E::TAPED {
                 self.cross_taped(particle, crossing)?;
             } else {
                 self.cross(particle, crossing)?;
@@ -188,11 +199,12 @@ impl<const TAPED: bool> March<'_, TAPED> {
     }
 
     /// The state at the end of a segment.
+    #[inline(always)]
     fn arrive(&mut self, length: f64, end_drive: DrivePhase) {
         let n = self.system.mass.order;
         let flow = &self.flow;
         let mut kept = Vec::new();
-        if self.has_walls && length > self.nothing {
+        if E::ALL && self.has_walls && length > self.nothing {
             self.slipped = None;
         }
         for (j, particle) in self.system.particles.iter().enumerate() {

@@ -1,6 +1,7 @@
 //! What a segment adds to the measures and to the audit.
 
 use super::March;
+use super::effects::Effects;
 use crate::dynamics::audit::{self, Force};
 use crate::dynamics::extremes;
 use crate::dynamics::flow::DrivePhase;
@@ -21,8 +22,9 @@ pub(super) enum Integration {
     Together,
 }
 
-impl<const TAPED: bool> March<'_, TAPED> {
+impl<E: Effects> March<'_, E> {
     /// Adds the segment to the measures, and to the audit if there is one.
+    #[inline(always)]
     pub(super) fn sum_up(&mut self, length: f64, drive: DrivePhase) {
         if self.averaged.holds(self.cycle) {
             let half = self.averaged.half(self.cycle);
@@ -45,7 +47,7 @@ impl<const TAPED: bool> March<'_, TAPED> {
         {
             audit.segment(self.system, flow, [&self.c, &self.c_end], Force { level: self.level, drive }, length);
         }
-        if flow.rows.bend.is_some() {
+        if E::ALL && flow.rows.bend.is_some() {
             self.sum_up_half_cycle(length);
         }
     }
@@ -54,10 +56,9 @@ impl<const TAPED: bool> March<'_, TAPED> {
     /// each other within a small part of the slowest turn; nor over the few turns for which half cycles leave a contact state as
     /// it is, where panels are cheaper than the equations of its blocks.
     pub(super) fn integration(&self, length: f64) -> Integration {
-        let drive = &self.system.drive;
-        if self.equivalent.is_some() && integral::panels(&self.flow.blocks, length) <= FEW_PANELS {
+        if E::ALL && self.equivalent.is_some() && integral::panels(&self.flow.blocks, length) <= FEW_PANELS {
             Integration::Together
-        } else if self.flow.closed().is_some() && !self.flow.is_brief(drive.period / drive.ticks.len().max(1) as f64) {
+        } else if !self.is_brief && self.flow.closed().is_some() {
             Integration::ByEnds
         } else {
             Integration::ByPanels

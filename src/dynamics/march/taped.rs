@@ -1,6 +1,7 @@
 //! What a run leaves on the tape that its motion is named from; only runs that are asked for it have this code.
 
 use super::March;
+use super::effects::Effects;
 use super::impacts::Touch;
 use crate::dynamics::collision::{self, Closed, Outcome};
 use crate::dynamics::contact::{Crossing, Side};
@@ -8,7 +9,7 @@ use crate::dynamics::motion::{self, Instant, Jump, Kick};
 use crate::dynamics::system::{Contact, Law, dot};
 use crate::dynamics::{Averaged, Counts, EngineError, Observed, Until};
 
-impl<const TAPED: bool> March<'_, TAPED> {
+impl<E: Effects> March<'_, E> {
     /// An event, with both sides of it.
     pub(super) fn cross_taped(&mut self, j: usize, crossing: Crossing) -> Result<(), EngineError> {
         let gap = self.gap_of(j, crossing);
