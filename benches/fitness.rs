@@ -5,7 +5,7 @@ use std::path::Path;
 
 use divan::Bencher;
 use shotdamp::experiment::{Experiment, load_assumptions, parse_experiment};
-use shotdamp::measure::{Link, Rigour, SolverChoice};
+use shotdamp::measure::Rigour;
 use shotdamp::study::{Array, Engine, Evaluate, Simulation};
 
 fn main() {
@@ -30,20 +30,7 @@ fn evaluation(bencher: Bencher<'_, '_>, id: &str, which: usize) {
     let arrays: Vec<Box<dyn Array + '_>> = recipes
         .iter()
         .map(|recipe| {
-            let simulation = Simulation {
-                recipe,
-                assumptions: &assumptions,
-                solver: SolverChoice::EventDriven,
-                settings: experiment.settings,
-                measures: &experiment.measures,
-                trace: None,
-                energies: None,
-                shape: None,
-                each_cycle: None,
-                tolerances: &[],
-                link: Link::None,
-                rigour: Rigour::Step,
-            };
+            let simulation = Simulation::step(&experiment, recipe, &assumptions, &experiment.measures);
             Engine.array(simulation, optimise.gaps).expect("its scenes compile")
         })
         .collect();

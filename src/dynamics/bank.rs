@@ -144,11 +144,7 @@ impl Propagator {
 
 impl Blocks {
     fn new(blocks: &[Block]) -> Self {
-        let each = |part: fn(&Block) -> f64| {
-            let mut lanes = [0.0; WIDTH];
-            lanes.iter_mut().zip(blocks).for_each(|(lane, block)| *lane = part(block));
-            Four::new(lanes)
-        };
+        let each = |part: fn(&Block) -> f64| Four::padded(blocks.iter().map(part));
         Self {
             decay: each(|block| block.decay),
             fades: each(|block| if block.oscillates() { block.decay } else { 0.0 }),

@@ -42,10 +42,10 @@ impl Four {
     }
 
     /// As many as there are, and zeros.
-    pub(crate) fn padded(numbers: &[f64]) -> Self {
-        let mut four = Self::ZERO;
-        numbers.iter().enumerate().for_each(|(place, number)| four.set(place, *number));
-        four
+    pub(crate) fn padded(numbers: impl Iterator<Item = f64>) -> Self {
+        let mut four = [0.0; WIDTH];
+        four.iter_mut().zip(numbers).for_each(|(place, number)| *place = number);
+        Self::new(four)
     }
 
     /// One of them.

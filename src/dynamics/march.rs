@@ -124,7 +124,7 @@ impl<'a, E: Effects> March<'a, E> {
             equivalent,
             smooth: vec![false; count],
             slipped: None,
-            has_walls: E::ALL && system.particles.iter().any(Particle::has_walls),
+            has_walls: system.particles.iter().any(Particle::has_walls),
             undamped: system.is_undamped(),
             is_brief: false,
             nothing: f64::EPSILON * f64::EPSILON * system.drive.period,

@@ -149,9 +149,7 @@ impl Series {
 
 impl Radii {
     fn new(blocks: &[Block], pace: f64) -> Self {
-        let mut radius = [0.0; WIDTH];
-        radius.iter_mut().zip(blocks).for_each(|(radius, block)| *radius = block.radius / pace);
-        let radius = Four::new(radius);
+        let radius = Four::padded(blocks.iter().map(|block| block.radius / pace));
         let r4 = (radius * radius) * (radius * radius);
         Self { radius, left_out: r4 * r4 * r4 * LEFT_OUT }
     }

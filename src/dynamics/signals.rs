@@ -284,12 +284,11 @@ impl Rows {
         }
         all.watched = all.rows.len();
         all.weights = all.rows.iter().flat_map(|row| row.weights.chunks(WIDTH).map(together)).collect();
-        let bends = |row: &Row| {
-            let each = blocks.iter().zip(&row.weights);
-            let each: Vec<f64> = each.map(|(block, weights)| bend(block, weights)).collect();
-            each.chunks(WIDTH).map(Four::padded).collect::<Vec<_>>()
+        let bends = |(blocks, weights): (&[Block], &[[f64; 4]])| {
+            Four::padded(blocks.iter().zip(weights).map(|(block, weights)| bend(block, weights)))
         };
-        all.bends = all.rows.iter().flat_map(bends).collect();
+        let registers = |row: &Row| blocks.chunks(WIDTH).zip(row.weights.chunks(WIDTH)).map(bends).collect::<Vec<_>>();
+        all.bends = all.rows.iter().flat_map(registers).collect();
         for row in &system.observed_rows[all.observed.len()..] {
             let place = all.place(padded(row));
             all.observed.push(place);
@@ -370,10 +369,9 @@ impl Rows {
         }
     }
 
-    /// Bounds on the second derivatives of the watched rows, without what constant loads add; not of blocks near critical damping.
+    /// Adds bounds on the second derivatives of the watched rows, without what constant loads add; not of blocks near critical damping.
     #[inline(always)]
     pub(crate) fn bound(&self, signals: &Signals, bends: &mut Vec<f64>) {
-        bends.clear();
         for most in self.bends.chunks_exact(signals.registers.max(1)) {
             let mut bend = Four::ZERO;
             for (most, [x, y]) in most.iter().zip(&signals.coordinates) {
@@ -434,11 +432,7 @@ fn bend(block: &Block, &[v0, v1, r0, r1]: &[f64; 4]) -> f64 {
 
 /// Weights of several blocks.
 fn together(weights: &[[f64; 4]]) -> [Four; 4] {
-    let mut lanes = [[0.0; WIDTH]; 4];
-    for (lane, weights) in weights.iter().enumerate() {
-        lanes.iter_mut().zip(weights).for_each(|(lanes, weight)| lanes[lane] = *weight);
-    }
-    lanes.map(Four::new)
+    [0, 1, 2, 3].map(|i| Four::padded(weights.iter().map(|weights| weights[i])))
 }
 
 /// Value, rate and acceleration of a signal after the time of `kernels`.

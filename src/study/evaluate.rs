@@ -3,7 +3,7 @@
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use super::row_failure::RowFailure;
-use crate::experiment::{Assumptions, GapWord, Recipe};
+use crate::experiment::{Assumptions, Experiment, GapWord, Recipe};
 use crate::measure::{
     self, CycleSpec, EnergySpec, Evaluated, Link, Measure, Needs, Prepared, Request, Rigour, Settings, ShapeSpec,
     SolverChoice, Tolerance, TraceSpec,
@@ -37,6 +37,32 @@ pub struct Simulation<'a> {
     pub link: Link<'a>,
     /// Whether it is a result, or a look on the way to one.
     pub rigour: Rigour,
+}
+
+impl<'a> Simulation<'a> {
+    /// A step of a search: by the experiment's first solver, and without lists.
+    #[must_use]
+    pub fn step(
+        experiment: &'a Experiment,
+        recipe: &'a Recipe,
+        assumptions: &'a Assumptions,
+        measures: &'a [Measure],
+    ) -> Self {
+        Self {
+            recipe,
+            assumptions,
+            solver: experiment.solvers.first().copied().unwrap_or(SolverChoice::EventDriven),
+            settings: experiment.settings_under(assumptions),
+            measures,
+            trace: None,
+            energies: None,
+            shape: None,
+            each_cycle: None,
+            tolerances: &[],
+            link: Link::None,
+            rigour: Rigour::Step,
+        }
+    }
 }
 
 /// What turns a simulation into numbers: the engine, or a stand-in for it.

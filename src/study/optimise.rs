@@ -18,7 +18,7 @@ use super::tabulate_candidates::{AlongGap, Candidate, failures, table};
 use super::variant::Variant;
 use crate::dynamics::is_interrupted;
 use crate::experiment::{Experiment, Goal, Optimise, Recipe, Search, SearchKind, SearchSpacing};
-use crate::measure::{Evaluated, Link, Measure, Measured, Rigour, SolverChoice};
+use crate::measure::{Evaluated, Measure, Measured, Rigour};
 use crate::optimise::{
     Batch, Bounds, CmaEs, Dense, Found, Genetic, GeneticSettings, Optimiser, Score, Slope, Spacing, Stalled, Stopping,
     Wanted, dense, minimise, polish, sections, two_opt,
@@ -67,20 +67,7 @@ impl<'a> Fitness<'a> {
         measures: &'a [Measure],
     ) -> Result<Self, RowFailure> {
         let ready = |recipe: &'a Recipe| {
-            let simulation = Simulation {
-                recipe,
-                assumptions: &variant.assumptions,
-                solver: experiment.solvers.first().copied().unwrap_or(SolverChoice::EventDriven),
-                settings: experiment.settings_under(&variant.assumptions),
-                measures,
-                trace: None,
-                energies: None,
-                shape: None,
-                each_cycle: None,
-                tolerances: &[],
-                link: Link::None,
-                rigour: Rigour::Step,
-            };
+            let simulation = Simulation::step(experiment, recipe, &variant.assumptions, measures);
             guarded(|| evaluate.array(simulation, optimise.gaps))
         };
         let arrays = recipes.iter().map(ready).collect::<Result<_, _>>()?;

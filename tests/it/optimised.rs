@@ -8,9 +8,7 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use shotdamp::dynamics::Proof;
-use shotdamp::experiment::{
-    Assumptions, Experiment, ExperimentId, GapWord, Problems, Recipe, load_assumptions, parse_experiment,
-};
+use shotdamp::experiment::{Experiment, ExperimentId, GapWord, Problems, load_assumptions, parse_experiment};
 use shotdamp::measure::{Evaluated, Measure, Measured, Rigour};
 use shotdamp::optimise::{
     Batch, Bounds, Dense, Genetic, GeneticSettings, Score, Slope, Spacing, Stopping, Wanted, dense, minimise, two_opt,
@@ -324,36 +322,14 @@ fn an_array_keeps_its_distance_from_the_ends_and_is_filled_in_two_ways() {
     assert!(read(&wrong).unwrap_err().to_string().contains("3 gaps are too few"));
 }
 
-/// A run by an experiment's first solver, without history.
-fn simulation<'a>(
-    recipe: &'a Recipe,
-    experiment: &'a Experiment,
-    assumptions: &'a Assumptions,
-    rigour: Rigour,
-) -> Simulation<'a> {
-    Simulation {
-        recipe,
-        assumptions,
-        solver: experiment.solvers[0],
-        settings: experiment.settings,
-        measures: &experiment.measures,
-        trace: None,
-        energies: None,
-        shape: None,
-        each_cycle: None,
-        tolerances: &[],
-        link: shotdamp::measure::Link::None,
-        rigour,
-    }
-}
-
 #[test]
 fn a_scene_that_is_prepared_once_gives_the_bits_of_one_that_is_built_for_its_gaps() {
     let experiment = read(BEAM).unwrap_or_else(|problems| panic!("{problems}"));
     let assumptions = sheet();
     let recipes = experiment.recipes_of(&experiment.cases[1]).unwrap();
     for recipe in &recipes {
-        let simulation = simulation(recipe, &experiment, &assumptions, Rigour::Result);
+        let step = Simulation::step(&experiment, recipe, &assumptions, &experiment.measures);
+        let simulation = Simulation { rigour: Rigour::Result, ..step };
         let built = Engine.evaluate(&simulation).unwrap();
         let ready: Box<dyn Array + '_> = Engine.array(simulation, shotdamp::experiment::GapWord::Gap).unwrap();
         assert_eq!(ready.evaluate(&[0.0083, 0.0568, 0.003, 0.0188], simulation.rigour).unwrap(), built);
@@ -420,7 +396,7 @@ optimise:
     let (assumptions, optimise) = (sheet(), experiment.optimise.as_ref().unwrap());
     let recipes = experiment.recipes_of(&experiment.cases[0]).unwrap();
     let array = |recipe| {
-        let simulation = simulation(recipe, &experiment, &assumptions, Rigour::Step);
+        let simulation = Simulation::step(&experiment, recipe, &assumptions, &experiment.measures);
         Engine.array(simulation, GapWord::Gap).unwrap()
     };
     let arrays: Vec<Box<dyn Array + '_>> = recipes.iter().map(array).collect();

@@ -121,12 +121,18 @@ impl<E: Effects> March<'_, E> {
         guards::seen_from(side, &self.system.particles[j], here, &self.q, &self.rate)
     }
 
+    /// Some floor and ceiling do not move as one.
+    #[inline(always)]
+    pub(super) fn has_walls(&self) -> bool {
+        E::ALL && self.has_walls
+    }
+
     /// The face across from this side touches the particle too, or alone.
     #[inline]
     pub(super) fn touches_across(&self, j: usize, side: Side) -> bool {
         let contact = self.contacts[j];
         let particle = &self.system.particles[j];
-        E::ALL && self.has_walls && contact.at(side.opposite(), particle) != Hold::Away
+        self.has_walls() && contact.at(side.opposite(), particle) != Hold::Away
     }
 
     /// Held on the stop of the face on this side.

@@ -294,7 +294,7 @@ impl<E: Effects> March<'_, E> {
 
     /// The ceiling of a particle does not move with its floor.
     fn moves_by_itself(&self, particle: &Particle) -> bool {
-        E::ALL && self.has_walls && particle.has_walls()
+        self.has_walls() && particle.has_walls()
     }
 
     /// The face that a particle presses into is compressed by more than rounding.

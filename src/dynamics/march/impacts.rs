@@ -228,7 +228,7 @@ impl<E: Effects> March<'_, E> {
         };
         let mut candidates = Vec::new();
         for (touch, outcome) in touches.iter().zip(&outcomes) {
-            let slow = if self.has_walls { self.slow(touch) } else { STICKING_SPEED };
+            let slow = if self.has_walls() { self.slow(touch) } else { STICKING_SPEED };
             let Touch { particle: j, side, on_stop, held, closed, .. } = *touch;
             let away = side.away();
             let gap = if on_stop { self.particles[j].gap } else { 0.0 };

@@ -9,12 +9,11 @@ use crate::dynamics::guards;
 use crate::dynamics::parabola::Parabola;
 use crate::dynamics::signals;
 use crate::dynamics::system::Particle;
-use crate::dynamics::trace::{Sample, SampledParticle};
+use crate::dynamics::trace::{Sample, SampledParticle, TraceRequest};
 
 impl<E: Effects> March<'_, E> {
     /// Samples of the time history that fall into the segment.
-    pub(super) fn sample(&mut self, length: f64, drive: DrivePhase) {
-        let Some(request) = self.options.trace else { return };
+    pub(super) fn sample(&mut self, request: TraceRequest, length: f64, drive: DrivePhase) {
         if !request.covers(self.cycle) {
             return;
         }

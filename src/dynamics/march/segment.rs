@@ -146,7 +146,7 @@ impl<E: Effects> March<'_, E> {
             slipped: self.slipped,
             q: &self.q,
             rate: &self.rate,
-            has_walls: E::ALL && self.has_walls,
+            has_walls: self.has_walls(),
             plain: !E::ALL,
         };
         guards::set(state, flow, &self.signals, &mut self.search, &mut self.paths);
@@ -177,8 +177,8 @@ impl<E: Effects> March<'_, E> {
         if E::TAPED {
             self.tape.flow(&self.flow, length);
         }
-        if self.options.trace.is_some() {
-            self.sample(length, drive);
+        if let Some(request) = self.options.trace {
+            self.sample(request, length, drive);
         }
         self.arrive(length, end_drive);
         self.time = match found {
@@ -204,7 +204,7 @@ impl<E: Effects> March<'_, E> {
         let n = self.system.mass.order;
         let flow = &self.flow;
         let mut kept = Vec::new();
-        if E::ALL && self.has_walls && length > self.nothing {
+        if self.has_walls() && length > self.nothing {
             self.slipped = None;
         }
         for (j, particle) in self.system.particles.iter().enumerate() {
