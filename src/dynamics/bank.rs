@@ -35,7 +35,8 @@ pub(crate) struct Blocks {
     grows: Four,
     /// 1/√|d|, but of blocks near critical damping.
     spread: Four,
-    /// The square of the radius.
+    pub(crate) radius: Four,
+    /// Its square.
     pub(crate) square: Four,
 }
 
@@ -48,6 +49,14 @@ pub(crate) struct Phases {
 
 impl Phases {
     pub(crate) const ZERO: Self = Self { value: Four::ZERO, rate: Four::ZERO };
+
+    /// Those of so many blocks, padded with zeros.
+    pub(crate) fn of(shares: &[Phase]) -> Self {
+        Self {
+            value: Four::padded(shares.iter().map(|share| share.value)),
+            rate: Four::padded(shares.iter().map(|share| share.rate)),
+        }
+    }
 
     /// That of one block.
     #[inline(always)]
@@ -155,6 +164,7 @@ impl Blocks {
             turns: each(|block| if block.oscillates() { -1.0 } else { 0.0 }),
             grows: each(|block| if block.oscillates() { 0.0 } else { block.discriminant }),
             spread: each(|block| if block.is_near_critical() { 0.0 } else { block.inverse_root }),
+            radius: each(|block| block.radius),
             square: each(|block| block.radius * block.radius),
         }
     }
@@ -167,6 +177,13 @@ impl Blocks {
             value: kernels.c * value + kernels.s * (rate + self.decay * value),
             rate: kernels.c * rate - kernels.s * (self.decay * rate + self.determinant * value),
         }
+    }
+
+    /// The second derivatives of shares, as shares.
+    #[inline(always)]
+    pub(crate) fn acceleration(&self, Phases { value, rate }: Phases) -> Phases {
+        let bend = -2.0 * self.decay * rate - self.determinant * value;
+        Phases { value: bend, rate: -2.0 * self.decay * bend - self.determinant * rate }
     }
 
     /// [`Block::amplitude`] of those that are not near critical damping.

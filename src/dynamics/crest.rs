@@ -21,7 +21,7 @@ pub(crate) fn crest(
     low: Node,
     high: Node,
     known: impl FnOnce() -> [f64; 2],
-    at: impl Fn(f64) -> Motion,
+    at: impl FnMut(f64) -> Motion,
 ) -> Option<Motion> {
     let turns = low.motion[order + 1] * high.motion[order + 1] < 0.0;
     (turns && may_exceed(order, low, high, known())).then(|| turning_point(order, low, high, at))
@@ -46,7 +46,7 @@ fn may_exceed(order: usize, low: Node, high: Node, known: [f64; 2]) -> bool {
 }
 
 /// The motion where the derivative of `order` vanishes between two nodes at which its signs differ: Newton, kept within by bisection.
-fn turning_point(order: usize, low: Node, high: Node, at: impl Fn(f64) -> Motion) -> Motion {
+fn turning_point(order: usize, low: Node, high: Node, mut at: impl FnMut(f64) -> Motion) -> Motion {
     let sign = low.motion[order + 1];
     // From the straight line between the slopes at both ends.
     let share = sign / (sign - high.motion[order + 1]);

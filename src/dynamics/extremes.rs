@@ -9,9 +9,13 @@
 //! keeps within the range that is known, for s the displacement and the velocity, nothing new can come. Steps and jumps are 2ⁿ of the
 //! shortest step, so that a few kernels a block are enough.
 
-use super::block::{Block, Kernel, Phase};
+use super::bank::{Bank, Kernels, Phases};
+use super::block::{Block, Phase};
 use super::crest::{Motion, Node, crest};
+use super::four::Four;
+use super::lanes::WIDTH;
 use super::parabola::Parabola;
+use super::wide::widened;
 
 /// Steps a radian of the fastest block that moves visibly.
 const STEPS_A_RADIAN: f64 = 4.0;
@@ -54,91 +58,161 @@ impl Extremes {
     }
 }
 
-/// Takes the segment of `length` seconds that starts with these phases into the range.
-pub(crate) fn take(extremes: &mut Extremes, blocks: &[Block], start: &[Phase], rest: Parabola, length: f64) {
-    let advance = |block: &Block, phase: &Phase, t: f64| block.advance(*phase, block.kernel(t));
-    let at = |t: f64| motion(blocks, blocks.iter().zip(start).map(|(block, phase)| advance(block, phase, t)), rest, t);
-    let node = |time: f64, phases: &[Phase]| {
-        let [displacement, velocity, acceleration, _] = motion(blocks, phases.iter().copied(), rest, time);
-        Node { time, motion: [displacement, velocity, acceleration] }
-    };
-    let mut phases = start.to_vec();
-    let mut here = node(0.0, &phases);
-    extremes.take(here.motion[0], here.motion[1]);
-    let mut bounds = Bounds { speeds: vec![0.0; blocks.len()], bend: 0.0, snap: 0.0 };
-    let fastest = bounds.renew(blocks, &phases, rest, length);
-    let steps = (STEPS_A_RADIAN * fastest * length).ceil().clamp(1.0, MOST_STEPS);
-    let (last, step) = (steps as u64, length / steps);
-    let mut strides: Vec<Vec<Kernel>> = Vec::new();
-    let (mut place, mut taken, mut short) = (0_u64, 0_u64, 1_u64);
-    while place < last {
-        let left = last - place;
-        // Surely within the range for so many steps; else as far as a crest does not escape.
-        let within = (bounds.within(&here, extremes) / step) as u64;
-        if within >= left {
-            break;
-        }
-        let jumps = within > short;
-        let doublings = (if jumps { within } else { short.min(left) }).ilog2();
-        while strides.len() <= doublings as usize {
-            let stride = step * (1_u64 << strides.len()) as f64;
-            strides.push(blocks.iter().map(|block| block.kernel(stride)).collect());
-        }
-        place += 1 << doublings;
-        taken += 1;
-        let t = if place == last { length } else { length * (place as f64 / steps) };
-        if taken.is_multiple_of(STRIDES_IN_A_ROW) || place == last {
-            let from = blocks.iter().zip(start);
-            phases.iter_mut().zip(from).for_each(|(now, (block, from))| *now = advance(block, from, t));
-        } else {
-            let kernels = blocks.iter().zip(&strides[doublings as usize]);
-            phases.iter_mut().zip(kernels).for_each(|(now, (block, kernel))| *now = block.advance(*now, *kernel));
-        }
-        let next = node(t, &phases);
-        extremes.take(next.motion[0], next.motion[1]);
-        for order in if jumps { 0..0 } else { 0..2 } {
-            if let Some(turn) = crest(order, here, next, || extremes.of(order), at) {
-                extremes.take(turn[0], turn[1]);
+/// Room to look along segments.
+#[derive(Debug, Default)]
+pub(crate) struct Lookout {
+    /// Shares at the start, and where the look is.
+    start: Vec<Phases>,
+    now: Vec<Phases>,
+    /// Bounds on the velocities of the blocks' shares from there on, m/s.
+    speeds: Vec<Four>,
+    /// Kernels of 1, 2, 4, … steps.
+    strides: Vec<Vec<Kernels>>,
+    /// Of them are of this segment.
+    known: usize,
+    /// Kernels of a time.
+    kernels: Vec<Kernels>,
+}
+
+/// A segment: its blocks, one by one and several together, the parabola of its loads, and its length in s.
+#[derive(Clone, Copy)]
+pub(crate) struct Stretch<'a> {
+    pub(crate) blocks: &'a [Block],
+    pub(crate) bank: &'a Bank,
+    pub(crate) rest: Parabola,
+    pub(crate) length: f64,
+}
+
+impl Lookout {
+    widened! {
+        /// Takes a segment that starts with these shares into the range.
+        pub(crate) fn take | take_wide (&mut self, extremes: &mut Extremes, stretch: Stretch<'_>, shares: &[Phase]) = by_registers
+    }
+
+    #[inline(always)]
+    fn by_registers(&mut self, extremes: &mut Extremes, stretch: Stretch<'_>, shares: &[Phase]) {
+        let length = stretch.length;
+        self.start.clear();
+        self.start.extend(shares.chunks(WIDTH).map(Phases::of));
+        self.now.clone_from(&self.start);
+        self.kernels.resize(self.start.len(), Kernels::NONE);
+        self.known = 0;
+        let mut here = node(stretch, &self.now, 0.0);
+        extremes.take(here.motion[0], here.motion[1]);
+        let mut bounds = self.bounds(stretch, length);
+        let steps = (STEPS_A_RADIAN * bounds.fastest * length).ceil().clamp(1.0, MOST_STEPS);
+        let (last, step) = (steps as u64, length / steps);
+        let (mut place, mut taken, mut short) = (0_u64, 0_u64, 1_u64);
+        while place < last {
+            let left = last - place;
+            // Surely within the range for so many steps; else as far as a crest does not escape.
+            let within = (bounds.within(&here, extremes) / step) as u64;
+            if within >= left {
+                break;
             }
+            let jumps = within > short;
+            let doublings = (if jumps { within } else { short.min(left) }).ilog2();
+            place += 1 << doublings;
+            taken += 1;
+            let t = if place == last { length } else { length * (place as f64 / steps) };
+            if taken.is_multiple_of(STRIDES_IN_A_ROW) || place == last {
+                stretch.bank.kernels(stretch.blocks, t, &mut self.kernels);
+                let moved = self.start.iter().zip(stretch.bank.blocks()).zip(&self.kernels);
+                let moved = moved.map(|((from, blocks), kernels)| blocks.advance(*from, kernels));
+                self.now.iter_mut().zip(moved).for_each(|(now, moved)| *now = moved);
+            } else {
+                self.know(stretch, step, doublings as usize);
+                let by = stretch.bank.blocks().iter().zip(&self.strides[doublings as usize]);
+                self.now.iter_mut().zip(by).for_each(|(now, (blocks, by))| *now = blocks.advance(*now, by));
+            }
+            let next = node(stretch, &self.now, t);
+            extremes.take(next.motion[0], next.motion[1]);
+            for order in if jumps { 0..0 } else { 0..2 } {
+                let (start, kernels) = (&self.start, &mut self.kernels);
+                let at = |t: f64| {
+                    stretch.bank.kernels(stretch.blocks, t, kernels);
+                    let moved = start.iter().zip(stretch.bank.blocks()).zip(&*kernels);
+                    motion(stretch, moved.map(|((from, blocks), kernels)| blocks.advance(*from, kernels)), t)
+                };
+                if let Some(turn) = crest(order, here, next, || extremes.of(order), at) {
+                    extremes.take(turn[0], turn[1]);
+                }
+            }
+            here = next;
+            bounds = self.bounds(stretch, length - t);
+            short = (1.0 / (STEPS_A_RADIAN * bounds.fastest * step)).clamp(1.0, MOST_STEPS) as u64;
         }
-        here = next;
-        let fastest = bounds.renew(blocks, &phases, rest, length - t);
-        short = (1.0 / (STEPS_A_RADIAN * fastest * step)).clamp(1.0, MOST_STEPS) as u64;
+    }
+
+    /// Knows the kernels of up to 2^`doublings` steps.
+    #[inline(always)]
+    fn know(&mut self, stretch: Stretch<'_>, step: f64, doublings: usize) {
+        self.strides.resize_with(self.strides.len().max(doublings + 1), Vec::new);
+        for (i, kernels) in self.strides.iter_mut().enumerate().take(doublings + 1).skip(self.known) {
+            kernels.resize(self.start.len(), Kernels::NONE);
+            stretch.bank.kernels(stretch.blocks, step * (1_u64 << i) as f64, kernels);
+        }
+        self.known = self.known.max(doublings + 1);
+    }
+
+    /// The bounds from now on, for `left` seconds.
+    #[inline(always)]
+    fn bounds(&mut self, Stretch { blocks, bank, rest, .. }: Stretch<'_>, left: f64) -> Bounds {
+        let amplitudes = bank.blocks().iter().zip(&self.now).map(|(blocks, now)| blocks.amplitudes(*now));
+        self.speeds.clear();
+        self.speeds.extend(amplitudes);
+        for &k in bank.near_critical() {
+            let share = self.now[k / WIDTH].at(k % WIDTH);
+            self.speeds[k / WIDTH].set(k % WIDTH, blocks[k].amplitude(share, THIRD, left));
+        }
+        let (mut whole, mut bend, mut snap) = (Four::ZERO, Four::ZERO, Four::ZERO);
+        for (speed, blocks) in self.speeds.iter_mut().zip(bank.blocks()) {
+            *speed = *speed * blocks.radius;
+            whole = whole + *speed;
+            bend = bend + *speed * blocks.radius;
+            snap = snap + *speed * blocks.square;
+        }
+        let visible = INVISIBLE * whole.sum();
+        let fastest = self.speeds.iter().zip(bank.blocks()).fold(Four::ZERO, |fastest, (speed, blocks)| {
+            let moving = speed.zip(blocks.radius, |speed, radius| if speed > visible { radius } else { 0.0 });
+            fastest.zip(moving, |a, b| if b > a { b } else { a })
+        });
+        Bounds { bend: 2.0 * rest.p2.abs() + bend.sum(), snap: snap.sum(), fastest: fastest.largest() }
     }
 }
 
-/// The motion whose blocks are in these phases.
-fn motion(blocks: &[Block], phases: impl Iterator<Item = Phase>, rest: Parabola, t: f64) -> Motion {
-    let mut motion = [rest.at(t), rest.rate(t), 2.0 * rest.p2, 0.0];
-    blocks.iter().zip(phases).for_each(|(block, phase)| block.add_motion(&mut motion, phase));
-    motion
+#[inline(always)]
+fn node(stretch: Stretch<'_>, shares: &[Phases], time: f64) -> Node {
+    let [displacement, velocity, acceleration, _] = motion(stretch, shares.iter().copied(), time);
+    Node { time, motion: [displacement, velocity, acceleration] }
+}
+
+/// The motion whose blocks have these shares.
+#[inline(always)]
+fn motion(stretch: Stretch<'_>, shares: impl Iterator<Item = Phases>, t: f64) -> Motion {
+    let mut sums = [Four::ZERO; 4];
+    for (now, blocks) in shares.zip(stretch.bank.blocks()) {
+        let bend = blocks.acceleration(now);
+        for (sum, part) in sums.iter_mut().zip([now.value, now.rate, bend.value, bend.rate]) {
+            *sum = *sum + part;
+        }
+    }
+    let [value, rate, bend, snap] = sums.map(Four::sum);
+    let rest = stretch.rest;
+    [rest.at(t) + value, rest.rate(t) + rate, 2.0 * rest.p2 + bend, snap]
 }
 
 /// What bounds a motion from an instant to the end of its segment.
 struct Bounds {
-    /// The velocity of each block's share, m/s.
-    speeds: Vec<f64>,
     /// The acceleration, m/s².
     bend: f64,
     /// The rate of that, m/s³.
     snap: f64,
+    /// Radius of the fastest block that moves visibly, 1/s.
+    fastest: f64,
 }
 
 impl Bounds {
-    /// The bounds from now on, for `left` seconds. Gives the radius of the fastest block that moves visibly.
-    fn renew(&mut self, blocks: &[Block], phases: &[Phase], rest: Parabola, left: f64) -> f64 {
-        (self.bend, self.snap) = (2.0 * rest.p2.abs(), 0.0);
-        let mut whole = 0.0;
-        for ((speed, block), phase) in self.speeds.iter_mut().zip(blocks).zip(phases) {
-            *speed = block.amplitude(*phase, THIRD, left) * block.radius;
-            whole += *speed;
-            self.bend += *speed * block.radius;
-            self.snap += *speed * (block.radius * block.radius);
-        }
-        let visible = self.speeds.iter().zip(blocks).filter(|(speed, _)| **speed > INVISIBLE * whole);
-        visible.fold(0.0_f64, |fastest, (_, block)| fastest.max(block.radius))
-    }
-
     /// For how long displacement and velocity keep within what is known of them.
     fn within(&self, here: &Node, known: &Extremes) -> f64 {
         let [displacement, velocity, acceleration] = here.motion;

@@ -258,10 +258,12 @@ impl Flow {
         // There may be more blocks than coordinates; those that `c` has none for are at rest.
         self.modes.columns.sum_by_registers(c, work);
         let (positions, rates) = work.split_at(order);
-        rate.copy_from_slice(rates);
         let rests = self.modes.gravity.rest.iter().zip(&self.force.rest);
-        for ((p, position), (by_gravity, by_force)) in p.iter_mut().zip(positions).zip(rests) {
+        let moving = positions.iter().zip(rates).zip(rests);
+        for ((p, rate), ((position, velocity), (by_gravity, by_force))) in p.iter_mut().zip(rate.iter_mut()).zip(moving)
+        {
             *p = (by_gravity + force * by_force) + position;
+            *rate = *velocity;
         }
         if let Some(steady) = &self.harmonic {
             for i in 0..order {

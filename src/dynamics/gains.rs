@@ -6,7 +6,7 @@
 //!
 //! only the ends of a visit matter, not what is watched. What visits gain adds up; one equation for each pair of blocks is
 //! solved when all are over, for every observed signal at once. Where two eigenvalues nearly cancel (undamped motion) G
-//! would lose digits, and [`super::integral::quadrature`] takes its place.
+//! would lose digits, and [`super::integral`] takes its place.
 
 use super::Sums;
 use super::block::{Block, form, pairs, transposed};
@@ -52,12 +52,20 @@ pub(crate) struct Integrated {
 impl Gains {
     /// Of no visit yet, to so many blocks.
     pub(crate) fn none(blocks: usize) -> Self {
-        Self {
-            first: vec![[0.0; 2]; blocks],
-            forced: vec![[0.0; 2]; blocks],
-            second: vec![[0.0; 4]; blocks * (blocks + 1) / 2],
-            ..Self::default()
+        let mut none = Self::default();
+        none.clear(blocks);
+        none
+    }
+
+    /// Makes them those of no visit yet, to so many blocks.
+    pub(crate) fn clear(&mut self, blocks: usize) {
+        for first in [&mut self.first, &mut self.forced] {
+            first.clear();
+            first.resize(blocks, [0.0; 2]);
         }
+        self.second.clear();
+        self.second.resize(blocks * (blocks + 1) / 2, [0.0; 4]);
+        (self.swing, self.time) = (0.0, [0.0; 3]);
     }
 
     /// Adds a visit of `length` seconds under the constant force `level`, from `start` to `end`.
@@ -177,9 +185,20 @@ impl Square {
 
     /// The integral over the visits that have gained this.
     pub(crate) fn of(&self, gains: &Gains) -> f64 {
-        let each = self.pairs.iter().zip(&gains.second);
-        let sum = each.fold(Four::ZERO, |sum, (weights, gain)| sum + *weights * Four::new(*gain)).sum();
-        sum + self.swing * gains.swing
+        // Several sums side by side, as each addition would have to wait for the one before.
+        const MANY: usize = 4;
+        let mut sums = [Four::ZERO; MANY];
+        let (weights, gained) = (self.pairs.as_chunks::<MANY>(), gains.second.as_chunks::<MANY>());
+        for (weights, gained) in weights.0.iter().zip(gained.0) {
+            for ((sum, weights), gained) in sums.iter_mut().zip(weights).zip(gained) {
+                *sum = *sum + *weights * Four::new(*gained);
+            }
+        }
+        for ((sum, weights), gained) in sums.iter_mut().zip(weights.1).zip(gained.1) {
+            *sum = *sum + *weights * Four::new(*gained);
+        }
+        let [a, b, c, d] = sums;
+        ((a + b) + (c + d)).sum() + self.swing * gains.swing
     }
 }
 
@@ -208,9 +227,8 @@ impl Integrated {
 
 #[cfg(test)]
 mod tests {
-    use super::super::bank::Bank;
     use super::super::block::Phase;
-    use super::super::integral::quadrature;
+    use super::super::integral::Panels;
     use super::super::parabola::Parabola;
     use super::*;
 
@@ -230,8 +248,9 @@ mod tests {
             let (x, y) = (start[2 * k], start[2 * k + 1]);
             Phase { value: v0 * x + v1 * y, rate: r0 * x + r1 * y }
         };
-        let phases: Vec<Phase> = row.weights.iter().enumerate().map(phase).collect();
-        let sampled = quadrature(&blocks, &Bank::new(&blocks), &phases, parabola(-0.01 + level * 0.002), duration);
+        let mut panels = Panels::default();
+        panels.add(row.weights.iter().enumerate().map(phase), parabola(-0.01 + level * 0.002));
+        let sampled = panels.integrate(&blocks, duration)[0].sums(duration);
 
         let end = |(k, [p, q, r, s]): (usize, [f64; 4])| {
             let (kernel, a) = (blocks[k].kernel(duration), blocks[k].decay);

@@ -2,8 +2,7 @@
 //! without damping and for brief stretches, where the closed forms of [`super::gains`] lose their digits.
 
 use super::Sums;
-use super::bank::Bank;
-use super::block::{Block, Kernel, Phase};
+use super::block::{Block, Phase};
 use super::budget;
 use super::four::Four;
 use super::lanes::{Lanes, WIDTH};
@@ -14,30 +13,18 @@ use super::wide::widened;
 /// that the closed forms are made of.
 pub(crate) const BRIEF: f64 = 0.05;
 
-/// The measures of a signal with its parabola, by panels that are exact to rounding.
-pub(crate) fn quadrature(blocks: &[Block], bank: &Bank, start: &[Phase], rest: Parabola, duration: f64) -> Sums {
-    // About a place on the way: the mean would do as well.
-    let place = start.iter().fold(rest.p0, |sum, phase| sum + phase.value);
-    sums(place, duration, integrals(blocks, bank, start, rest, duration, place))
-}
+/// Panels after each other by the kernels of one; their rounding adds up to some 1e-14 of the motion.
+const PANELS_IN_A_ROW: usize = 32;
 
-/// The measures of a signal from its integrals about a place.
-pub(crate) fn sums(place: f64, duration: f64, [moved, square, velocity_square]: [f64; 3]) -> Sums {
-    Sums {
-        duration,
-        displacement: place * duration + moved,
-        deviation_square: (square - moved * moved / duration).max(0.0),
-        velocity_square,
-    }
-}
-
-/// Several signals over the few panels between two half cycles, which share the kernels of their nodes: the nodes of a panel lie
-/// side by side, and shares move on from panel to panel.
+/// Several signals over the panels of a stretch, which share the kernels of their nodes: the nodes of a panel lie side by side,
+/// and shares move on from panel to panel.
 #[derive(Debug, Default)]
 pub(crate) struct Panels {
     signals: Vec<Integrand>,
-    /// Their shares, signal by signal.
+    /// Their shares at the start, signal by signal.
     shares: Vec<Phase>,
+    /// Those of one of them at the start of a panel.
+    now: Vec<Phase>,
     /// c and s of each block at the places of a panel.
     kernels: Vec<[Places; 2]>,
 }
@@ -47,11 +34,24 @@ pub(crate) struct Panels {
 pub(crate) struct Integrand {
     rest: Parabola,
     /// About which the displacement is taken.
-    pub(crate) place: f64,
+    place: f64,
     /// ∫ (s − place), ∫ (s − place)² and ∫ s′².
-    pub(crate) integrals: [f64; 3],
+    integrals: [f64; 3],
     /// ∫ s″², without what constant loads add.
     pub(crate) acceleration_square: f64,
+}
+
+impl Integrand {
+    /// The measures of its signal, of a stretch of `duration` seconds.
+    pub(crate) fn sums(&self, duration: f64) -> Sums {
+        let [moved, square, velocity_square] = self.integrals;
+        Sums {
+            duration,
+            displacement: self.place * duration + moved,
+            deviation_square: (square - moved * moved / duration).max(0.0),
+            velocity_square,
+        }
+    }
 }
 
 impl Panels {
@@ -76,23 +76,30 @@ impl Panels {
 
     #[inline(always)]
     fn by_registers(&mut self, blocks: &[Block], duration: f64) -> &[Integrand] {
-        let count = panels_of(WIDE, blocks, duration);
+        let count = panels(blocks, duration);
         let h = duration / count as f64;
         self.kernels.resize(blocks.len(), [Places::ZERO; 2]);
         for (kernels, block) in self.kernels.iter_mut().zip(blocks) {
             *kernels = block.kernels(h * PLACES);
         }
-        for (signal, shares) in self.signals.iter_mut().zip(self.shares.chunks_exact_mut(blocks.len().max(1))) {
+        for (signal, start) in self.signals.iter_mut().zip(self.shares.chunks_exact(blocks.len().max(1))) {
+            self.now.clear();
+            self.now.extend_from_slice(start);
             for panel in 0..count {
                 if budget::spend(1) {
                     break;
+                }
+                if panel > 0 && panel.is_multiple_of(PANELS_IN_A_ROW) {
+                    let from = blocks.iter().zip(start);
+                    let moved = from.map(|(block, share)| block.advance(*share, block.kernel(panel as f64 * h)));
+                    self.now.iter_mut().zip(moved).for_each(|(now, moved)| *now = moved);
                 }
                 let t = registers(PLACES).map(|places| (Four::all(panel as f64) + places) * h);
                 let Parabola { p0, p1, p2 } = signal.rest;
                 let mut value = t.map(|t| Four::all(p0 - signal.place) + t * (Four::all(p1) + t * p2));
                 let mut rate = t.map(|t| Four::all(p1) + t * (2.0 * p2));
                 let mut bend = [Four::ZERO; REGISTERS];
-                for ((block, share), kernels) in blocks.iter().zip(&mut *shares).zip(&self.kernels) {
+                for ((block, share), kernels) in blocks.iter().zip(&mut self.now).zip(&self.kernels) {
                     let slope = share.rate + block.decay * share.value;
                     let fall = block.decay * share.rate + block.determinant * share.value;
                     let [c, s] = kernels.map(registers);
@@ -116,51 +123,6 @@ impl Panels {
         }
         &self.signals
     }
-}
-
-/// ∫ (s − place), ∫ (s − place)² and ∫ s′² of a signal.
-pub(crate) fn integrals(
-    blocks: &[Block],
-    bank: &Bank,
-    start: &[Phase],
-    rest: Parabola,
-    duration: f64,
-    place: f64,
-) -> [f64; 3] {
-    let count = panels(blocks, duration);
-    let mut kernels = vec![Kernel::NONE; blocks.len()];
-    let h = duration / count as f64;
-    let mut sum = [0.0; 3];
-    for panel in 0..count {
-        if budget::spend(1) {
-            break;
-        }
-        for [x, weight] in GAUSS {
-            let t = (panel as f64 + x) * h;
-            bank.list(blocks, t, &mut kernels);
-            add_node(&mut sum, weight * h, blocks, &kernels, start, about(rest, place, t));
-        }
-    }
-    sum
-}
-
-/// What is left of a signal beside its shares, about a place.
-fn about(rest: Parabola, place: f64, t: f64) -> Phase {
-    Phase { value: rest.at(t) - place, rate: rest.rate(t) }
-}
-
-/// What a node adds to the integrals: the `shares` moved on by its kernels, upon the `rest` there.
-#[inline]
-fn add_node(sum: &mut [f64; 3], weight: f64, blocks: &[Block], kernels: &[Kernel], shares: &[Phase], rest: Phase) {
-    let Phase { mut value, mut rate } = rest;
-    for ((block, phase), kernel) in blocks.iter().zip(shares).zip(kernels) {
-        let now = block.advance(*phase, *kernel);
-        value += now.value;
-        rate += now.rate;
-    }
-    sum[0] += weight * value;
-    sum[1] += weight * value * value;
-    sum[2] += weight * rate * rate;
 }
 
 /// Nodes and weights of the ten-point Gauss-Legendre rule on [0, 1].
@@ -225,42 +187,53 @@ fn weighted(values: [Four; REGISTERS]) -> f64 {
     sum.sum()
 }
 
-/// How many panels make the ten-point rule exact to rounding over `duration`, with room to spare: radius·panel ≤ 1.5.
+/// What a squared signal, which turns twice as fast as its fastest block, turns by in a panel for which the ten-point rule is exact to
+/// rounding: of the 20th derivative of the square it leaves (10!)⁴/(21 (20!)³) 4.6²⁰, which is 10⁻¹⁷.
+const TURN_OF_A_PANEL: f64 = 4.6;
+
+/// How many panels make the rule exact to rounding over `duration`.
 pub(crate) fn panels(blocks: &[Block], duration: f64) -> usize {
-    panels_of(3.0, blocks, duration)
-}
-
-/// 2 radius·panel at which the rule still is: of the 20th derivative of the square it leaves (10!)⁴/(21 (20!)³) 4.6²⁰, which is
-/// 10⁻¹⁷.
-const WIDE: f64 = 4.6;
-
-/// Panels in which a squared signal, which turns twice as fast as its fastest block, turns by `width` at most.
-fn panels_of(width: f64, blocks: &[Block], duration: f64) -> usize {
     let radius = blocks.iter().fold(0.0_f64, |largest, block| largest.max(block.radius));
     // A cap, since far beyond it the fast blocks have died away.
-    (2.0 * radius * duration / width).ceil().clamp(1.0, 20_000.0) as usize
+    (2.0 * radius * duration / TURN_OF_A_PANEL).ceil().clamp(1.0, 20_000.0) as usize
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::block::Kernel;
     use super::*;
+
+    /// The integrals of a signal about a place, node by node, each from the start.
+    fn integrals(blocks: &[Block], start: &[Phase], rest: Parabola, duration: f64, place: f64) -> [f64; 3] {
+        let count = 2 * panels(blocks, duration);
+        let h = duration / count as f64;
+        let mut sum = [0.0; 3];
+        for (panel, [x, weight]) in (0..count).flat_map(|panel| GAUSS.map(|node| (panel, node))) {
+            let t = (panel as f64 + x) * h;
+            let kernels: Vec<Kernel> = blocks.iter().map(|block| block.kernel(t)).collect();
+            let [value, rate, _] = super::super::signals::value(blocks, start, rest, &kernels, t);
+            let value = value - place;
+            let parts = [value, value * value, rate * rate];
+            sum.iter_mut().zip(parts).for_each(|(sum, part)| *sum += weight * h * part);
+        }
+        sum
+    }
 
     #[test]
     fn signals_side_by_side_have_the_integrals_that_each_has_alone() {
         let matrices =
             [[0.0, 1.0, -9e4, -3.0], [0.0, 1.0, -25.0, -10.0], [0.0, 1.0, -9.0, -40.0], [0.0, 1.0, 0.0, 0.0]];
         let blocks = matrices.map(Block::new);
-        let bank = Bank::new(&blocks);
         let shares = [0.3, -1.2, 0.7, 0.1].map(|x| Phase { value: x, rate: 40.0 * x * x });
         let rest = Parabola { p0: 0.2, p1: -1.0, p2: -4.9 };
         let mut panels = Panels::default();
-        for duration in [1e-6, 3e-3, 0.02] {
+        for duration in [1e-6, 3e-3, 0.02, 0.7] {
             panels.clear();
             panels.add(shares.iter().copied(), Parabola::default());
             panels.add(shares.iter().copied(), rest);
             let of = panels.integrate(&blocks, duration);
             for (signal, rest) in of.iter().zip([Parabola::default(), rest]) {
-                let alone = integrals(&blocks, &bank, &shares, rest, duration, signal.place);
+                let alone = integrals(&blocks, &shares, rest, duration, signal.place);
                 for ((one, other), size) in signal.integrals.iter().zip(alone).zip([duration, duration, alone[2]]) {
                     assert!((one - other).abs() <= 1e-13 * size, "{duration}: {one} for {other}");
                 }
@@ -270,7 +243,7 @@ mod tests {
             rates.iter_mut().zip(&blocks).for_each(|(share, block)| {
                 *share = Phase { value: share.rate, rate: block.acceleration(*share).value };
             });
-            let [.., square] = integrals(&blocks, &bank, &rates, Parabola::default(), duration, 0.0);
+            let [.., square] = integrals(&blocks, &rates, Parabola::default(), duration, 0.0);
             assert!((of[0].acceleration_square / square - 1.0).abs() < 1e-12);
         }
     }

@@ -19,6 +19,7 @@ use std::rc::Rc;
 use super::audit::Audit;
 use super::budget;
 use super::contact::{Relative, Side};
+use super::extremes::Lookout;
 use super::flow::{DrivePhase, Flow};
 use super::guards::Slipped;
 use super::integral::Panels;
@@ -71,6 +72,7 @@ pub(crate) struct March<'a, E> {
     // Work space.
     search: Search,
     panels: Panels,
+    lookout: Lookout,
     /// Gap parabolas of the particles in flight.
     paths: Vec<Parabola>,
     signals: Signals,
@@ -135,6 +137,7 @@ impl<'a, E: Effects> March<'a, E> {
             half: Half::default(),
             search: Search::new(options.window_factor),
             panels: Panels::default(),
+            lookout: Lookout::default(),
             paths: vec![Parabola::default(); count],
             signals: Signals::default(),
             answer,

@@ -74,6 +74,31 @@ struct Driven {
     frequency: Option<f64>,
     ground: Ground,
     flows: ByContact<Flow>,
+    /// Some of them, those with the stated dampings alone, each where its code leads.
+    at_hand: RefCell<Vec<Option<AtHand>>>,
+}
+
+/// A contact state by its code.
+#[derive(Clone)]
+struct AtHand {
+    code: u64,
+    flow: Rc<Flow>,
+}
+
+/// Contact states that are at hand, at most.
+const AT_HAND: usize = 256;
+
+/// Which contact state of a system it is, four bits a particle; `None` where a number does not hold so many.
+#[inline]
+fn code(contacts: &[Contact]) -> Option<u64> {
+    let digits = contacts.iter().rev().fold(0, |code, contact| code << 4 | *contact as u64);
+    (contacts.len() <= 16).then_some(digits)
+}
+
+/// Where it is at hand.
+#[inline]
+fn place(code: u64) -> usize {
+    (code.wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 56) as usize
 }
 
 /// What systems share that differ in their drive.
@@ -122,14 +147,21 @@ impl States {
         contacts: &[Contact],
         equivalent: Option<f64>,
     ) -> Result<Rc<Flow>, EngineError> {
+        let code = code(contacts).filter(|_| !self.0.half_cycles);
+        if let Some(code) = code
+            && let Some(known) = &self.0.at_hand.borrow()[place(code)]
+            && known.code == code
+        {
+            return Ok(Rc::clone(&known.flow));
+        }
         if !self.0.half_cycles && !contacts.iter().any(|contact| contact.is_between()) {
             // It has the stated dampings and no others.
-            return visit(
-                &self.0.flows,
-                contacts,
-                |_| true,
-                || self.build(system, contacts, &dampings(system, contacts, None)),
-            );
+            let build = || self.build(system, contacts, &dampings(system, contacts, None));
+            let flow = visit(&self.0.flows, contacts, |_| true, build)?;
+            if let Some(code) = code {
+                self.0.at_hand.borrow_mut()[place(code)] = Some(AtHand { code, flow: Rc::clone(&flow) });
+            }
+            return Ok(flow);
         }
         let damping = dampings(system, contacts, equivalent);
         let fits = |flow: &Flow| flow.modes.damping == damping;
@@ -188,6 +220,7 @@ impl Driven {
             frequency: system.drive.harmonic.map(|drive| drive.angular_frequency),
             ground: Ground::default(),
             flows: ByContact::default(),
+            at_hand: RefCell::new(vec![None; AT_HAND]),
         }
     }
 

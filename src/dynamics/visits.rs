@@ -17,6 +17,8 @@ const MOST_STATES: usize = 1024;
 pub(crate) struct Visits {
     /// In the order of the first visits, in which they are paid out.
     states: Vec<(Rc<Flow>, Gains)>,
+    /// Of those that were paid out, to be used again.
+    spare: Vec<Gains>,
     /// Half of the averaged window that they belong to.
     pub(crate) half: usize,
 }
@@ -29,7 +31,9 @@ impl Visits {
         let known = self.states.get(flow.place.get()).is_some_and(|(known, _)| Rc::ptr_eq(known, flow));
         if !known {
             flow.place.set(self.states.len());
-            self.states.push((Rc::clone(flow), Gains::none(flow.blocks.len())));
+            let mut gains = self.spare.pop().unwrap_or_default();
+            gains.clear(flow.blocks.len());
+            self.states.push((Rc::clone(flow), gains));
         }
         &mut self.states[flow.place.get()].1
     }
@@ -43,17 +47,19 @@ impl Visits {
     pub(crate) fn pay_out(&mut self, displacement: bool, observed: &mut [Observed]) {
         for (flow, gains) in self.states.drain(..) {
             let Some(closed) = flow.closed() else { continue };
-            if !displacement {
-                for (of, square) in observed.iter_mut().zip(flow.squares(closed)) {
+            let halves = observed.iter_mut().map(|of| &mut of.halves[self.half]);
+            if displacement {
+                let integrated = closed.solve(&gains);
+                halves
+                    .zip(&flow.rows.observed)
+                    .for_each(|(half, &row)| half.add(integrated.of(flow.rows.row(row), true)));
+            } else {
+                for (half, square) in halves.zip(flow.squares(closed)) {
                     let (duration, velocity_square) = (gains.time[0], square.of(&gains));
-                    of.halves[self.half].add(Sums { duration, velocity_square, ..Sums::default() });
+                    half.add(Sums { duration, velocity_square, ..Sums::default() });
                 }
-                continue;
             }
-            let integrated = closed.solve(&gains);
-            for (of, &row) in observed.iter_mut().zip(&flow.rows.observed) {
-                of.halves[self.half].add(integrated.of(flow.rows.row(row), true));
-            }
+            self.spare.push(gains);
         }
     }
 }

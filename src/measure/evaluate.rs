@@ -12,6 +12,7 @@
 //! Where runs are to settle, all of a case are made so; if one of them does not, the case is evaluated as if it had not been asked.
 
 use std::f64::consts::TAU;
+use std::sync::Arc;
 
 use super::each_cycle;
 use super::energy::Energies;
@@ -19,6 +20,7 @@ use super::history::History;
 use super::kept;
 use super::later::{Later, settled_later};
 use super::reading::Reading;
+use super::references::References;
 use super::shape::{self, Shape};
 use super::undefined::in_range;
 use super::{EvaluateError, Evaluated, Measure, Measured, Needs, Rigour, Subject, TraceColumn};
@@ -76,7 +78,7 @@ pub struct Request<'a> {
 }
 
 impl Request<'_> {
-    fn any(&self, test: impl Fn(Measure) -> bool) -> bool {
+    pub(super) fn any(&self, test: impl Fn(Measure) -> bool) -> bool {
         self.measures.iter().any(|measure| test(*measure))
     }
 
@@ -124,7 +126,7 @@ pub struct Prepared<'a> {
     pub(super) measures: &'a [Measure],
     solver: SolverChoice,
     system: HybridSystem,
-    reference: References,
+    reference: Arc<References>,
     /// The gap of each damper, m, that is one in the word by which gaps are given.
     units: Vec<f64>,
 }
@@ -197,43 +199,6 @@ pub fn evaluate(
     }
     let reference = References::of(&subject, request, settings, solver)?;
     in_range(&subject.scene, request.measures, case.run(&system, &reference, solver)?)
-}
-
-/// The run without dampers, where something is compared with it, by how it ends.
-#[derive(Debug)]
-struct References {
-    /// After the cycles given.
-    of_cycles: Option<Response>,
-    /// Where runs are to settle, and it has.
-    settled: Option<Response>,
-    /// Where it is asked what longer runs settle to, and it has.
-    settled_later: Option<Response>,
-    /// Runs are to settle, and there is none without dampers that has not.
-    may_settle: bool,
-}
-
-impl References {
-    fn of(
-        subject: &Subject,
-        request: &Request<'_>,
-        settings: &Settings,
-        solver: SolverChoice,
-    ) -> Result<Self, EvaluateError> {
-        let wanted = settings.until == Until::Settled;
-        let Some(bare) = subject.undamped.as_ref().filter(|_| request.needs().undamped) else {
-            return Ok(Self { of_cycles: None, settled: None, settled_later: None, may_settle: wanted });
-        };
-        let (system, plain) = (compile(bare)?, request.options(bare, settings));
-        let of_cycles = Some(solve(&system, &plain, solver)?);
-        let settles = || solve(&system, &Options { until: Until::Settled, ..plain.clone() }, solver);
-        let settled = if wanted { Some(settles()?).filter(|run| run.settled.is_some()) } else { None };
-        let of_settled = [Measure::SettledVelocityRatio, Measure::VelocityRatioInput];
-        let settled_later = match request.any(|measure| of_settled.contains(&measure)) {
-            true => settled_later(&system, &plain)?,
-            false => None,
-        };
-        Ok(Self { of_cycles, may_settle: settled.is_some(), settled, settled_later })
-    }
 }
 
 impl Case<'_> {
@@ -528,7 +493,7 @@ fn own_error(measure: Measure, response: &Response) -> f64 {
     exponent.filter(|_| measure == Measure::LyapunovExponent).map_or(0.0, |exponent| exponent.error)
 }
 
-fn solve(system: &HybridSystem, options: &Options, solver: SolverChoice) -> Result<Response, EngineError> {
+pub(super) fn solve(system: &HybridSystem, options: &Options, solver: SolverChoice) -> Result<Response, EngineError> {
     match solver {
         SolverChoice::EventDriven => event_driven(system, options),
         SolverChoice::FixedStep { time_step } => crate::dynamics::fixed_step(system, options, time_step),

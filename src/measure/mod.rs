@@ -19,6 +19,7 @@ mod later;
 mod measures;
 mod orbit;
 mod reading;
+mod references;
 mod request;
 mod shape;
 mod slope;

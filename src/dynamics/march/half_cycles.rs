@@ -5,7 +5,6 @@ use super::effects::Effects;
 use super::sums::Integration;
 use crate::dynamics::EngineError;
 use crate::dynamics::four::Four;
-use crate::dynamics::integral;
 
 /// An acceleration below this share of what it may become is zero: the crossing that ended the half cycle was smooth.
 const SMOOTH: f64 = 1e-9;
@@ -124,7 +123,7 @@ impl<E: Effects> March<'_, E> {
             self.half.length += length;
         }
         for (observed, signal) in self.response.observed.iter_mut().zip(integrands.iter().filter(|_| averaged)) {
-            observed.halves[self.visits.half].add(integral::sums(signal.place, length, signal.integrals));
+            observed.halves[self.visits.half].add(signal.sums(length));
         }
     }
 

@@ -3,13 +3,13 @@
 use super::March;
 use super::effects::Effects;
 use crate::dynamics::audit::{self, Force};
-use crate::dynamics::extremes;
+use crate::dynamics::extremes::Stretch;
 use crate::dynamics::flow::DrivePhase;
-use crate::dynamics::integral::{self, quadrature};
+use crate::dynamics::integral;
 use crate::dynamics::system::{Contact, HybridSystem, Law};
 
 /// Panels that an integral may take before closed forms are cheaper, where a contact state is hardly ever visited twice.
-const FEW_PANELS: usize = 16;
+const FEW_PANELS: usize = 10;
 
 /// How the observed signals are integrated over a segment.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -69,13 +69,21 @@ impl<E: Effects> March<'_, E> {
     fn look_along(&mut self, length: f64) {
         let sampled = length > 0.0 && self.integration(length) == Integration::ByPanels;
         let flow = &self.flow;
+        self.panels.clear();
         for (of, &row) in self.response.observed.iter_mut().zip(&flow.rows.observed) {
-            let (observed, rest) = flow.rows.evaluate(row, &self.c, self.level, flow.blocks.len());
-            if sampled {
-                of.halves[self.visits.half].add(quadrature(&flow.blocks, &flow.bank, &observed, rest, length));
-            }
+            let (shares, rest) = flow.rows.evaluate(row, &self.c, self.level, flow.blocks.len());
             if self.options.extremes {
-                extremes::take(&mut of.extremes, &flow.blocks, &observed, rest, length);
+                let stretch = Stretch { blocks: &flow.blocks, bank: &flow.bank, rest, length };
+                self.lookout.take(&mut of.extremes, stretch, &shares);
+            }
+            if sampled {
+                self.panels.add(shares.into_iter(), rest);
+            }
+        }
+        if sampled {
+            let signals = self.panels.integrate(&flow.blocks, length);
+            for (of, signal) in self.response.observed.iter_mut().zip(signals) {
+                of.halves[self.visits.half].add(signal.sums(length));
             }
         }
     }
