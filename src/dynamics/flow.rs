@@ -3,6 +3,8 @@
 //! The blocks of its modes ([`super::contact_state`]) move each by itself; a harmonic drive is one more of them. Gap, amplitude
 //! and time do not enter, so one flow serves a whole sweep.
 
+mod doubled;
+
 use std::cell::{Cell, OnceCell};
 use std::rc::Rc;
 

@@ -8,6 +8,7 @@ mod contacts;
 mod effects;
 mod half_cycles;
 mod impacts;
+mod lossless;
 mod samples;
 mod segment;
 mod sums;
@@ -35,6 +36,7 @@ use super::visits::Visits;
 use super::{Averaged, CycleRates, EngineError, Observed, Options, Proof, Response, Until};
 use effects::{Effects, Every, Plain, Taped};
 use half_cycles::Half;
+use lossless::Doubled;
 
 /// A run in progress.
 pub(crate) struct March<'a, E> {
@@ -89,6 +91,7 @@ pub(crate) struct March<'a, E> {
     c: Vec<f64>,
     c_end: Vec<f64>,
     work: Vec<f64>,
+    doubled: Doubled,
     // Results.
     visits: Visits,
     clarity: Clarity,
@@ -149,6 +152,7 @@ impl<'a, E: Effects> March<'a, E> {
             c: vec![0.0; 2 * most + 2],
             c_end: vec![0.0; 2 * most + 2],
             work: Vec::new(),
+            doubled: Doubled::default(),
             visits: Visits::default(),
             clarity: Clarity { margin: f64::INFINITY, ties: 0 },
             response: Response {

@@ -67,7 +67,9 @@ impl<E: Effects> March<'_, E> {
         let (p, rate) = (&self.q[..flow.order], &self.rate[..flow.order]);
         flow.enter(p, rate, self.level, drive, &mut self.work, &mut self.c);
         self.c[2 * flow.blocks.len()..flow.width()].fill(0.0);
-        if self.undamped || self.response.proof.events >= MANY_EVENTS {
+        if self.undamped {
+            flow.enter_doubled([p, rate], self.level, drive, &mut self.c, &mut self.doubled.low);
+        } else if self.response.proof.events >= MANY_EVENTS {
             flow.correct(p, rate, self.level, drive, &mut self.c);
         }
     }
@@ -180,7 +182,11 @@ impl<E: Effects> March<'_, E> {
         if let Some(request) = self.options.trace {
             self.sample(request, length, drive);
         }
-        self.arrive(length, end_drive);
+        if self.undamped {
+            self.arrive_doubled(length, end_drive, found);
+        } else {
+            self.arrive(length, end_drive);
+        }
         self.time = match found {
             Found::Nothing if limit < until - self.time => self.time + limit,
             Found::Nothing => until,
@@ -200,7 +206,7 @@ impl<E: Effects> March<'_, E> {
 
     /// The state at the end of a segment.
     #[inline(always)]
-    fn arrive(&mut self, length: f64, end_drive: DrivePhase) {
+    pub(super) fn arrive(&mut self, length: f64, end_drive: DrivePhase) {
         let n = self.system.mass.order;
         let flow = &self.flow;
         let mut kept = Vec::new();

@@ -70,7 +70,10 @@ const HARD_CASES: &[HardCase] = &[
         name: "No dissipation for 100 000 cycles, rigid and resilient faces",
         checks: "energy",
         reference: "its value at the start",
-        tests: &[long_runs::what_nothing_takes_stays_for_a_hundred_thousand_cycles],
+        tests: &[
+            long_runs::what_nothing_takes_stays_for_a_hundred_thousand_cycles,
+            long_runs::what_nothing_takes_does_not_drift,
+        ],
     },
     HardCase {
         name: "No dissipation, several dampers: back to the start when time is turned round",
