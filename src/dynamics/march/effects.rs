@@ -4,13 +4,13 @@ use crate::dynamics::system::{Face, HybridSystem, Law, Particle};
 
 /// What a run has to reckon with.
 pub(crate) trait Effects {
-    /// Rigid faces and limit stops, faces that cannot pull, walls, half cycles.
+    /// Rigid faces and limit stops, faces that cannot pull, walls, half cycles; motion without loss.
     const ALL: bool;
     /// It keeps a tape.
     const TAPED: bool;
 }
 
-/// Springs and dashpots, at faces that move as one.
+/// Springs and dashpots, at faces that move as one, and a motion that loses energy.
 pub(crate) struct Plain;
 
 /// Whatever a scene can name.
@@ -43,5 +43,5 @@ pub(crate) fn is_plain(system: &HybridSystem) -> bool {
     let plain = |particle: &Particle| {
         !particle.has_walls() && pulls(&particle.floor) && particle.ceiling.as_ref().is_none_or(pulls)
     };
-    system.drive.half_cycles.is_none() && system.particles.iter().all(plain)
+    system.drive.half_cycles.is_none() && !system.is_undamped() && system.particles.iter().all(plain)
 }
