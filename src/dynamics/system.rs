@@ -270,6 +270,18 @@ pub enum EventKind {
     ChatterEnd,
 }
 
+impl EventKind {
+    /// A contact is made, with a face or with its stop.
+    pub(crate) fn is_contact(self) -> bool {
+        matches!(self, Self::FloorContact | Self::CeilingContact | Self::FloorStop | Self::CeilingStop)
+    }
+
+    /// A contact is lost.
+    pub(crate) fn is_release(self) -> bool {
+        matches!(self, Self::FloorRelease | Self::CeilingRelease | Self::StopRelease)
+    }
+}
+
 /// An event in its place.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Event {
