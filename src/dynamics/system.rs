@@ -194,6 +194,11 @@ pub struct Tick {
     pub level: f64,
 }
 
+impl Tick {
+    /// A cycle without force.
+    pub(crate) const STILL: Self = Self { time: 0.0, impulse: 0.0, level: 0.0 };
+}
+
 /// F sin(ω t + φ).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Harmonic {
