@@ -41,7 +41,7 @@ pub(crate) struct Blocks {
 }
 
 /// Shares of several blocks in a signal.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy)]
 pub(crate) struct Phases {
     pub(crate) value: Four,
     pub(crate) rate: Four,
@@ -66,7 +66,7 @@ impl Phases {
 }
 
 /// Kernels of several blocks.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy)]
 pub(crate) struct Kernels {
     c: Four,
     s: Four,

@@ -233,13 +233,9 @@ impl Block {
             return phase.value.abs() + slope.abs() * window;
         }
         let divided = (order + self.radius * window) / self.radius;
-        let share = if self.root > 0.0 { divided.min(1.0 / self.root) } else { divided };
-        if self.discriminant < 0.0 {
-            phase.value.abs() + slope.abs() * share
-        } else {
-            // cosh and sinh parts: both exponentials decay while decay ≥ root.
-            phase.value.abs() + slope.abs() * share
-        }
+        let share = divided.min(self.inverse_root);
+        // Of cosh and sinh as well: both exponentials decay while decay ≥ root.
+        phase.value.abs() + slope.abs() * share
     }
 }
 

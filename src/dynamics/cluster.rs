@@ -164,11 +164,28 @@ pub(super) fn lagrange(t: &DMatrix<C>, nodes: &[C], j: usize, mut rows: DMatrix<
 }
 
 /// Blocks as they are found, with their columns of V and rows of W.
+#[derive(Default)]
+pub(super) struct Pieces {
+    pub(super) matrices: Vec<[f64; 4]>,
+    pub(super) columns: Vec<Vec<f64>>,
+    pub(super) rows: Vec<Vec<f64>>,
+}
+
+impl Pieces {
+    /// Re(`factor`·v e^(zt) (w·x)): the coordinates are the real and the imaginary part of w·x.
+    pub(super) fn turning(&mut self, z: C, factor: f64, column: &[C], row: &[C]) {
+        self.matrices.push([z.re, -z.im, z.im, z.re]);
+        self.columns.push(column.iter().map(|v| factor * v.re).collect());
+        self.columns.push(column.iter().map(|v| -factor * v.im).collect());
+        self.rows.push(row.iter().map(|w| w.re).collect());
+        self.rows.push(row.iter().map(|w| w.im).collect());
+    }
+}
+
+/// What the split is made of.
 struct Parts {
     order: usize,
-    matrices: Vec<[f64; 4]>,
-    columns: Vec<Vec<f64>>,
-    rows: Vec<Vec<f64>>,
+    pieces: Pieces,
     /// Single real eigenvalues, which make blocks two by two.
     real: Vec<(f64, Vec<f64>, Vec<f64>)>,
     lasts: f64,
@@ -176,28 +193,19 @@ struct Parts {
 
 impl Parts {
     fn new(order: usize) -> Self {
-        let empty = Vec::new;
-        Self { order, matrices: empty(), columns: Vec::new(), rows: Vec::new(), real: Vec::new(), lasts: f64::INFINITY }
+        Self { order, pieces: Pieces::default(), real: Vec::new(), lasts: f64::INFINITY }
     }
 
     /// An eigenvalue that stands alone; of a complex pair the upper one speaks for both.
     fn single(&mut self, eigenvalue: C, v: &DMatrix<C>, w: &DMatrix<C>, i: usize) {
-        let (column, row) = (v.column(i).iter().copied().collect(), w.row(i).iter().copied().collect());
+        let (column, row): (Vec<C>, Vec<C>) =
+            (v.column(i).iter().copied().collect(), w.row(i).iter().copied().collect());
         if eigenvalue.im == 0.0 {
             let real = |numbers: Vec<C>| numbers.iter().map(|z| z.re).collect();
             self.real.push((eigenvalue.re, real(column), real(row)));
         } else if eigenvalue.im > 0.0 {
-            self.turning(eigenvalue, 2.0, column, row);
+            self.pieces.turning(eigenvalue, 2.0, &column, &row);
         }
-    }
-
-    /// Re(`factor`·v e^(zt) (w·x)): the coordinates are the real and the imaginary part of w·x.
-    fn turning(&mut self, z: C, factor: f64, column: Vec<C>, row: Vec<C>) {
-        self.matrices.push([z.re, -z.im, z.im, z.re]);
-        self.columns.push(column.iter().map(|v| factor * v.re).collect());
-        self.columns.push(column.iter().map(|v| -factor * v.im).collect());
-        self.rows.push(row.iter().map(|w| w.re).collect());
-        self.rows.push(row.iter().map(|w| w.im).collect());
     }
 
     /// Eigenvalues that stay together, by interpolation.
@@ -229,9 +237,9 @@ impl Parts {
         for j in 0..NODES {
             let rows = lagrange(&own, &nodes, j, rows.into_owned());
             for i in 0..count {
-                let (column, row) =
+                let (column, row): (Vec<C>, Vec<C>) =
                     (columns.column(i).iter().copied().collect(), rows.row(i).iter().copied().collect());
-                self.turning(nodes[j], if on_axis { 1.0 } else { 2.0 }, column, row);
+                self.pieces.turning(nodes[j], if on_axis { 1.0 } else { 2.0 }, &column, &row);
             }
         }
     }
@@ -242,14 +250,14 @@ impl Parts {
             let rate = self.real[self.real.len() - 1].0;
             self.real.push((rate, vec![0.0; self.order], vec![0.0; self.order]));
         }
-        for pair in std::mem::take(&mut self.real).chunks_exact(2) {
-            self.matrices.push([pair[0].0, 0.0, 0.0, pair[1].0]);
+        let Self { order, pieces: Pieces { mut matrices, mut columns, mut rows }, real, lasts } = self;
+        for pair in real.chunks_exact(2) {
+            matrices.push([pair[0].0, 0.0, 0.0, pair[1].0]);
             for (_, column, row) in pair {
-                self.columns.push(column.clone());
-                self.rows.push(row.clone());
+                columns.push(column.clone());
+                rows.push(row.clone());
             }
         }
-        let Self { order, matrices, columns, rows, lasts, .. } = self;
         Spectral {
             from_blocks: (0..order).flat_map(|i| columns.iter().map(move |column| column[i])).collect(),
             to_blocks: rows.concat(),

@@ -10,6 +10,8 @@
 //! an approach, 0 elsewhere. All principal minors of 1 + S m are positive, so that there is exactly one solution, whatever
 //! the order of the contacts; Murty's least-index pivoting finds it (Oper. Res. 22, 1974).
 
+use super::gauss::eliminate;
+
 /// A rigid contact that is closed at the instant of the collision.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Closed {
@@ -78,7 +80,7 @@ pub(crate) fn collide(closed: &[Closed], answers: &[f64]) -> Vec<Outcome> {
 pub(crate) fn push(closed: &[Closed], answers: &[f64], pushes: &[bool], wanted: &[f64]) -> Vec<f64> {
     let count = closed.len();
     let active: Vec<usize> = (0..count).filter(|&i| pushes[i]).collect();
-    let mut rows: Vec<Vec<f64>> = active
+    let rows: Vec<Vec<f64>> = active
         .iter()
         .map(|&i| {
             let own = |k: usize| if i == k { 1.0 } else { 0.0 };
@@ -87,7 +89,7 @@ pub(crate) fn push(closed: &[Closed], answers: &[f64], pushes: &[bool], wanted: 
         })
         .collect();
     let mut impulses = vec![0.0; count];
-    for (i, p) in active.iter().zip(eliminate(&mut rows)) {
+    for (i, p) in active.iter().zip(eliminate(rows)) {
         impulses[*i] = p;
     }
     impulses
@@ -101,26 +103,6 @@ fn speeds(closed: &[Closed], answers: &[f64], impulses: &[f64]) -> Vec<f64> {
             .fold(closed[i].speed + impulses[i], |sum, k| sum + answers[i * count + k] * closed[k].mass * impulses[k])
     };
     (0..count).map(after).collect()
-}
-
-/// Gaussian elimination with partial pivoting; the last column is the right-hand side.
-fn eliminate(rows: &mut [Vec<f64>]) -> Vec<f64> {
-    let order = rows.len();
-    for column in 0..order {
-        let pivot = (column..order).max_by(|&i, &k| rows[i][column].abs().total_cmp(&rows[k][column].abs()));
-        rows.swap(column, pivot.unwrap_or(column));
-        for i in column + 1..order {
-            let factor = rows[i][column] / rows[column][column];
-            for k in column..=order {
-                rows[i][k] -= factor * rows[column][k];
-            }
-        }
-    }
-    let mut x = vec![0.0; order];
-    for i in (0..order).rev() {
-        x[i] = (i + 1..order).fold(rows[i][order], |sum, k| sum - rows[i][k] * x[k]) / rows[i][i];
-    }
-    x
 }
 
 #[cfg(test)]

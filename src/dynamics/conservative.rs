@@ -9,7 +9,7 @@ use super::EngineError;
 use super::cholesky::Cholesky;
 use super::damped;
 use super::spectral::Spectral;
-use super::system::{Contact, Face, HybridSystem, Law, Matrix, dot};
+use super::system::{Contact, Face, HybridSystem, Matrix, dot};
 use super::undamped::NormalModes;
 
 /// Coordinates up to which normal modes are worth their price.
@@ -131,10 +131,7 @@ fn mass_of(system: &HybridSystem, contacts: &[Contact], carried: &Matrix, attach
 /// Stiffness matrix of p: a coordinate of its own for the spring of every face.
 pub(crate) fn stiffness(system: &HybridSystem, contacts: &[Contact], attached: &[usize]) -> Matrix {
     let n = system.stiffness.order;
-    let springs = attached.iter().map(|&j| match face_of(system, contacts, j).law {
-        Law::Resilient { stiffness, .. } => stiffness,
-        Law::Rigid { .. } => 0.0,
-    });
+    let springs = attached.iter().map(|&j| face_of(system, contacts, j).law.stiffness().unwrap_or(0.0));
     let mut all = Matrix::diagonal(&std::iter::repeat_n(0.0, n).chain(springs).collect::<Vec<_>>());
     let order = all.order;
     for i in 0..n {

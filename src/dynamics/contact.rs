@@ -9,7 +9,7 @@
 //!
 //! An impact with restitution ε exchanges the impulse P = −(1 + ε) u′/(1/mp + φ·M⁻¹φ).
 
-use super::system::{Contact, EventKind, Face, Law, Particle, Stop};
+use super::system::{Contact, EventKind, Face, Law, Particle, Stop, dot};
 
 /// Below this relative speed, m/s, a particle sticks to a rigid face; what it would still have bounced is added to the time at
 /// which the chatter ends.
@@ -51,6 +51,15 @@ pub(crate) struct Relative {
     pub(crate) gap: f64,
     /// Its rate, m/s.
     pub(crate) rate: f64,
+}
+
+impl Relative {
+    /// y and y′ of a particle that is here relative to the face on one side, of a structure at q, q′.
+    pub(crate) fn absolute(self, particle: &Particle, side: Side, [q, rate]: [&[f64]; 2]) -> [f64; 2] {
+        let row = &side.face(particle).row;
+        let offset = if side == Side::Ceiling { particle.gap } else { 0.0 };
+        [dot(row, q) + offset + self.gap, dot(row, rate) + self.rate]
+    }
 }
 
 const fn set(contacts: &[Contact]) -> u32 {
@@ -276,6 +285,14 @@ impl Particle {
 }
 
 impl Law {
+    /// N/m; none of a rigid face.
+    pub(crate) fn stiffness(self) -> Option<f64> {
+        match self {
+            Self::Resilient { stiffness, .. } => Some(stiffness),
+            Self::Rigid { .. } => None,
+        }
+    }
+
     pub(crate) fn stop(self) -> Option<Stop> {
         match self {
             Self::Resilient { stop, .. } => stop,

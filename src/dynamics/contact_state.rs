@@ -264,7 +264,7 @@ pub(crate) fn dampings(system: &HybridSystem, contacts: &[Contact], equivalent: 
     all
 }
 
-fn face_damping(law: Law, equivalent: Option<f64>) -> f64 {
+pub(crate) fn face_damping(law: Law, equivalent: Option<f64>) -> f64 {
     match law {
         Law::Resilient { damping, .. } => equivalent.unwrap_or(damping),
         Law::Rigid { .. } => 0.0,

@@ -298,16 +298,9 @@ impl<'a, V: Vector> Run<'a, V> {
         self.seam(-0.5);
         if let Some(mut audit) = self.audit.take() {
             audit.add(&self.passed);
-            let (momentum, energy) = audit.residuals(self.system, &self.audit_state());
-            self.response.proof.momentum_residual = momentum;
-            self.response.proof.energy_residual = energy;
+            self.response.proof.balance(self.system, &audit, &self.audit_state());
         }
         self.response.proof.smallest_margin = f64::NAN;
-        let (n, positions) = (self.layout.n, self.layout.positions());
-        let state = self.motion.state.values();
-        let observed = &self.system.observed_rows[0];
-        self.response.final_displacement = dot(observed, &state[..n]);
-        self.response.final_velocity = dot(observed, &state[positions..positions + n]);
         self.response.final_particles = (0..self.contacts.len()).map(|j| self.absolute(j)).collect();
         let quiet = without_harmonic(self.system);
         for contacts in std::mem::take(&mut self.visited) {
@@ -320,11 +313,9 @@ impl<'a, V: Vector> Run<'a, V> {
         let (_, rest) = start(self.system, &StartState::StaticEquilibrium, self.layout)?;
         let rounding = self.rounding_of(&rest);
         self.response.observed.iter_mut().for_each(|of| of.rest_below(rounding));
-        if self.response.final_displacement.is_finite() && self.response.final_velocity.is_finite() {
-            Ok(self.response)
-        } else {
-            Err(EngineError::NotFinite { cycle: self.cycle })
-        }
+        let (n, positions) = (self.layout.n, self.layout.positions());
+        let state = self.motion.state.values();
+        self.response.at_end(self.system, [&state[..n], &state[positions..positions + n]], self.cycle)
     }
 
     /// y and y′ of a particle.

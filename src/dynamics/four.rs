@@ -3,10 +3,7 @@
 //! The compiler sees a vector, and keeps it one: of an array of four it makes four numbers, and joins them again in pairs that
 //! suit no register. Each number is computed as it would be alone, so that the registers change no bit.
 
-use std::fmt;
-use std::ops::{Add, Mul, Sub};
-
-use super::lanes::WIDTH;
+use super::lanes::{WIDTH, operators};
 
 #[cfg(target_arch = "x86_64")]
 type Register = std::arch::x86_64::__m256d;
@@ -14,7 +11,7 @@ type Register = std::arch::x86_64::__m256d;
 type Register = [f64; WIDTH];
 
 /// Four numbers.
-#[derive(Clone, Copy)]
+#[derive(Debug, Clone, Copy)]
 #[repr(transparent)]
 pub(crate) struct Four(Register);
 
@@ -99,46 +96,4 @@ impl Four {
     }
 }
 
-impl PartialEq for Four {
-    fn eq(&self, other: &Self) -> bool {
-        self.array() == other.array()
-    }
-}
-
-impl fmt::Debug for Four {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        self.array().fmt(f)
-    }
-}
-
-macro_rules! operator {
-    ($trait:ident, $function:ident, $symbol:tt) => {
-        impl $trait for Four {
-            type Output = Self;
-            #[inline(always)]
-            fn $function(self, other: Self) -> Self {
-                self.zip(other, |a, b| a $symbol b)
-            }
-        }
-
-        impl $trait<f64> for Four {
-            type Output = Self;
-            #[inline(always)]
-            fn $function(self, other: f64) -> Self {
-                self.map(|a| a $symbol other)
-            }
-        }
-
-        impl $trait<Four> for f64 {
-            type Output = Four;
-            #[inline(always)]
-            fn $function(self, other: Four) -> Four {
-                other.map(|b| self $symbol b)
-            }
-        }
-    };
-}
-
-operator!(Add, add, +);
-operator!(Sub, sub, -);
-operator!(Mul, mul, *);
+operators!([] Four);

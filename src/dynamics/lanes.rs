@@ -3,8 +3,6 @@
 //! Each lane is computed as it would be alone. So a value does not depend on its neighbours, on the number of lanes or on
 //! the registers that the compiler finds.
 
-use std::ops::{Add, Mul, Sub};
-
 /// Numbers that are worked on together: one register of new processors, two of older ones.
 pub(crate) const WIDTH: usize = 4;
 
@@ -40,9 +38,15 @@ impl<const N: usize> Lanes<N> {
     }
 }
 
-macro_rules! operator {
-    ($trait:ident, $function:ident, $symbol:tt) => {
-        impl<const N: usize> $trait for Lanes<N> {
+/// Sums, differences and products of several numbers, of them and one number, and of one number and them.
+macro_rules! operators {
+    ([$($generic:tt)*] $type:ty) => {
+        operators!([$($generic)*] $type: Add, add, +);
+        operators!([$($generic)*] $type: Sub, sub, -);
+        operators!([$($generic)*] $type: Mul, mul, *);
+    };
+    ([$($generic:tt)*] $type:ty: $trait:ident, $function:ident, $symbol:tt) => {
+        impl<$($generic)*> std::ops::$trait for $type {
             type Output = Self;
             #[inline(always)]
             fn $function(self, other: Self) -> Self {
@@ -50,7 +54,7 @@ macro_rules! operator {
             }
         }
 
-        impl<const N: usize> $trait<f64> for Lanes<N> {
+        impl<$($generic)*> std::ops::$trait<f64> for $type {
             type Output = Self;
             #[inline(always)]
             fn $function(self, other: f64) -> Self {
@@ -58,16 +62,16 @@ macro_rules! operator {
             }
         }
 
-        impl<const N: usize> $trait<Lanes<N>> for f64 {
-            type Output = Lanes<N>;
+        impl<$($generic)*> std::ops::$trait<$type> for f64 {
+            type Output = $type;
             #[inline(always)]
-            fn $function(self, other: Lanes<N>) -> Lanes<N> {
+            fn $function(self, other: $type) -> $type {
                 other.map(|b| self $symbol b)
             }
         }
     };
 }
 
-operator!(Add, add, +);
-operator!(Sub, sub, -);
-operator!(Mul, mul, *);
+operators!([const N: usize] Lanes<N>);
+
+pub(crate) use operators;

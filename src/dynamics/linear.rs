@@ -29,7 +29,7 @@ use super::audit::Audit;
 use super::budget;
 use super::flow::{DrivePhase, Flow};
 use super::states::States;
-use super::system::{Contact, HybridSystem, Law, Tick, dot};
+use super::system::{Contact, HybridSystem, Law, Tick};
 use super::{
     CycleRates, EngineError, Extremes, Method, Observed, Options, Proof, Response, StartState, SteadyMotion,
     SteadyState, Sums,
@@ -182,8 +182,7 @@ fn is_closed(flow: &Flow) -> bool {
 impl<'a> Run<'a> {
     fn new(system: &'a HybridSystem, states: &States, flow: &'a Flow, options: &Options) -> Result<Self, EngineError> {
         let answer = states.ground().answer(system)?.to_vec();
-        let still = [Tick { time: 0.0, impulse: 0.0, level: 0.0 }];
-        let ticks = if system.drive.ticks.is_empty() { &still[..] } else { &system.drive.ticks };
+        let ticks = if system.drive.ticks.is_empty() { &[Tick::STILL][..] } else { &system.drive.ticks };
         let kick = options.kick * system.drive.scale();
         let first = Cycle::new(system, flow, ticks, 0.0, kick, &answer);
         let regular = regular(system, flow, first.after(), &answer);
@@ -304,20 +303,10 @@ impl<'a> Run<'a> {
             for Stretch { cycle, at, .. } in self.stretch(skip, options.cycles()) {
                 balance::pass(system, flow, &self.answer, cycle, &at, &mut audit);
             }
-            let (momentum, energy) = audit.residuals(system, &last);
-            response.proof.momentum_residual = momentum;
-            response.proof.energy_residual = energy;
-        }
-        if let Some(row) = system.observed_rows.first() {
-            response.final_displacement = dot(row, &last.q);
-            response.final_velocity = dot(row, &last.rate);
+            response.proof.balance(system, &audit, &last);
         }
         response.final_particles = last.particles;
-        if response.final_displacement.is_finite() && response.final_velocity.is_finite() {
-            Ok(response)
-        } else {
-            Err(EngineError::NotFinite { cycle: options.cycles() })
-        }
+        response.at_end(system, [&last.q, &last.rate], options.cycles())
     }
 }
 
@@ -333,10 +322,7 @@ fn on_floors(system: &HybridSystem, flow: &Flow, p: &[f64], rate: &[f64]) -> Sta
 
 /// The cycle that repeats, after one that ended with the force `before`.
 fn regular(system: &HybridSystem, flow: &Flow, before: f64, answer: &[f64]) -> Cycle {
-    let still = [Tick { time: 0.0, impulse: 0.0, level: 0.0 }];
-    if system.drive.repeats && !system.drive.ticks.is_empty() {
-        Cycle::new(system, flow, &system.drive.ticks, before, 0.0, answer)
-    } else {
-        Cycle::new(system, flow, &still, before, 0.0, answer)
-    }
+    let repeats = system.drive.repeats && !system.drive.ticks.is_empty();
+    let ticks = if repeats { &system.drive.ticks } else { &[Tick::STILL][..] };
+    Cycle::new(system, flow, ticks, before, 0.0, answer)
 }

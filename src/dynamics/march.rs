@@ -19,7 +19,7 @@ use std::rc::Rc;
 
 use super::audit::Audit;
 use super::budget;
-use super::contact::{Relative, Side};
+use super::contact::Relative;
 use super::extremes::Lookout;
 use super::flow::{DrivePhase, Flow};
 use super::guards::Slipped;
@@ -31,7 +31,7 @@ use super::reach::{self, OutOfReach};
 use super::search::{Clarity, Search};
 use super::signals::Signals;
 use super::states::States;
-use super::system::{Contact, Event, EventKind, HybridSystem, Particle, Tick, dot};
+use super::system::{Contact, Event, EventKind, HybridSystem, Particle, Tick};
 use super::visits::Visits;
 use super::{Averaged, CycleRates, EngineError, Observed, Options, Proof, Response, Until};
 use effects::{Effects, Every, Plain, Taped};
@@ -233,9 +233,8 @@ impl<'a, E: Effects> March<'a, E> {
             if cycle == audited {
                 self.begin_audit();
             }
-            let single = [Tick { time: 0.0, impulse: 0.0, level: 0.0 }];
-            let ticks: &[Tick] =
-                if cycle == 0 || self.system.drive.repeats { &self.system.drive.ticks } else { &single };
+            let driven = cycle == 0 || self.system.drive.repeats;
+            let ticks: &[Tick] = if driven { &self.system.drive.ticks } else { &[Tick::STILL] };
             for (i, tick) in ticks.iter().enumerate() {
                 if tick.time > self.time {
                     self.propagate_to(tick.time)?;
@@ -282,23 +281,13 @@ impl<'a, E: Effects> March<'a, E> {
     fn finish(mut self) -> Result<Response, EngineError> {
         self.pay_out();
         if let Some(audit) = self.audit.take() {
-            let (momentum, energy) = audit.residuals(self.system, &self.audit_state());
-            self.response.proof.momentum_residual = momentum;
-            self.response.proof.energy_residual = energy;
+            self.response.proof.balance(self.system, &audit, &self.audit_state());
         }
         self.response.proof.smallest_margin = self.clarity.margin;
         self.response.proof.ties = self.clarity.ties;
-        if let Some(row) = self.system.observed_rows.first() {
-            self.response.final_displacement = dot(row, &self.q);
-            self.response.final_velocity = dot(row, &self.rate);
-        }
         self.response.final_particles = (0..self.particles.len()).map(|j| self.absolute(j)).collect();
         self.response.final_state = self.options.final_state.then(|| self.state());
-        if self.response.final_displacement.is_finite() && self.response.final_velocity.is_finite() {
-            Ok(self.response)
-        } else {
-            Err(EngineError::NotFinite { cycle: self.cycle })
-        }
+        self.response.at_end(self.system, [&self.q, &self.rate], self.cycle)
     }
 
     /// The state between two cycles, as a run may start from it.
@@ -314,11 +303,7 @@ impl<'a, E: Effects> March<'a, E> {
 
     /// y and y′ of a particle.
     fn absolute(&self, j: usize) -> [f64; 2] {
-        let particle = &self.system.particles[j];
-        let side = self.contacts[j].side();
-        let row = &side.face(particle).row;
-        let offset = if side == Side::Ceiling { particle.gap } else { 0.0 };
-        [dot(row, &self.q) + offset + self.particles[j].gap, dot(row, &self.rate) + self.particles[j].rate]
+        self.particles[j].absolute(&self.system.particles[j], self.contacts[j].side(), [&self.q, &self.rate])
     }
 
     /// The harmonic force's phase; a segment begins where another ended, so that the last answer is kept.
@@ -364,9 +349,7 @@ impl<'a, E: Effects> March<'a, E> {
         if self.averaged.holds(self.cycle) {
             self.response.counts.add(kind);
         }
-        let wanted = self.response.events.len() < self.options.record_events
-            || self.options.trace.as_ref().is_some_and(|trace| trace.covers(self.cycle));
-        if wanted {
+        if self.options.keeps_event(self.cycle, self.response.events.len()) {
             self.response.events.push(Event { cycle: self.cycle, time, particle, kind, approach, departure });
         }
     }
@@ -434,13 +417,6 @@ pub(crate) fn taped(system: &HybridSystem, options: &Options, states: States) ->
     let motion = if options.motion { Some(motion::name(system, &march.tape, options.average as usize)?) } else { None };
     let tape = std::mem::take(&mut march.tape);
     Ok((Response { motion, ..march.finish()? }, tape))
-}
-
-/// The proof of a run that was never audited.
-impl Default for Clarity {
-    fn default() -> Self {
-        Self { margin: f64::INFINITY, ties: 0 }
-    }
 }
 
 impl Proof {

@@ -21,7 +21,7 @@
 //! | `linear` | a run in which no event can happen, in closed form |
 //! | `fixed` | a fixed-step scheme, to show what the time step does to a published result |
 //! | `budget` | what a run may take |
-//! | `cholesky`, `elementary`, `exact`, `four`, `lanes`, `superposition`, `wide` | arithmetic, several numbers at a time |
+//! | `cholesky`, `elementary`, `exact`, `four`, `gauss`, `lanes`, `superposition`, `wide` | arithmetic, several numbers at a time |
 //!
 //! The engine knows no beam, no YAML and no file. It works with dense matrices of a hundred modes or so, not with large
 //! sparse systems.
@@ -51,6 +51,7 @@ mod fixed;
 mod flow;
 mod four;
 mod gains;
+mod gauss;
 mod guards;
 mod integral;
 mod lanes;

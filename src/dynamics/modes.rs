@@ -109,7 +109,8 @@ pub(crate) fn split(
     Ok(modes.fastest_first())
 }
 
-fn scale(acceleration: f64) -> f64 {
+/// The frequency that a coordinate has alone, 1 if it has none: the unit of its rate.
+pub(crate) fn scale(acceleration: f64) -> f64 {
     let omega = acceleration.abs().sqrt();
     if omega > 0.0 && omega.is_finite() { omega } else { 1.0 }
 }

@@ -1,5 +1,8 @@
 //! What proves a run: its balances close, and its events are decided by a margin.
 
+use super::audit::{Audit, State};
+use super::system::HybridSystem;
+
 /// What proves a run: residuals of the balances, and how clearly its events were decided.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Proof {
@@ -34,6 +37,11 @@ impl Default for Proof {
 }
 
 impl Proof {
+    /// Enters the balances of an audited run.
+    pub(crate) fn balance(&mut self, system: &HybridSystem, audit: &Audit, end: &State) {
+        (self.momentum_residual, self.energy_residual) = audit.residuals(system, end);
+    }
+
     /// The larger of both residuals; NaN if one of them is.
     #[must_use]
     pub fn residual(&self) -> f64 {

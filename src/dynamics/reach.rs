@@ -18,7 +18,7 @@ use std::rc::Rc;
 
 use super::EngineError;
 use super::cholesky::Cholesky;
-use super::contact::Side;
+use super::contact::Relative;
 use super::options::{Options, StartState, Until};
 use super::states::States;
 use super::system::{Drive, Face, HybridSystem, Law, Matrix, Particle, dot};
@@ -171,10 +171,8 @@ fn prove(system: &HybridSystem, options: &Options, ground: &Ground) -> Option<Ve
         return None;
     }
     if let StartState::Given { q, rate, particles } = &options.start {
-        let above = system.particles.iter().zip(particles).map(|(particle, (contact, gap, speed))| {
-            let face = contact.side().face(particle);
-            let offset = if contact.side() == Side::Ceiling { particle.gap } else { 0.0 };
-            [dot(&face.row, q) + offset + gap, dot(&face.row, rate) + speed]
+        let above = system.particles.iter().zip(particles).map(|(particle, &(contact, gap, speed))| {
+            Relative { gap, rate: speed }.absolute(particle, contact.side(), [q, rate])
         });
         far = beyond(system, ground, driven + (2.0 * above_rest(system, ground, q, rate, above)?).sqrt())?;
     }
@@ -226,10 +224,7 @@ fn above_rest(
 
 /// mg/k: how far a particle sinks into its floor.
 fn sunk(particle: &Particle, gravity: f64) -> f64 {
-    match particle.floor.law {
-        Law::Resilient { stiffness, .. } => particle.mass * gravity / stiffness,
-        Law::Rigid { .. } => 0.0,
-    }
+    particle.floor.law.stiffness().map_or(0.0, |stiffness| particle.mass * gravity / stiffness)
 }
 
 /// What is beyond the reach of motions with √(2H) ≤ `most`.
@@ -242,10 +237,7 @@ fn beyond(system: &HybridSystem, ground: &Ground, most: f64) -> Option<Vec<OutOf
                 far.push(OutOfReach { particle: j, surface, distance, reach });
             }
         };
-        let compression = |face: &Face| match face.law {
-            Law::Resilient { stiffness, .. } => most / stiffness.sqrt(),
-            Law::Rigid { .. } => 0.0,
-        };
+        let compression = |face: &Face| face.law.stiffness().map_or(0.0, |stiffness| most / stiffness.sqrt());
         if let Some(stop) = particle.floor.law.stop() {
             look(FarSurface::FloorStop, stop.length, sunk(particle, system.gravity) + compression(&particle.floor));
         }

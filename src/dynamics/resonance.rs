@@ -12,7 +12,7 @@
 use nalgebra::{Complex, DMatrix};
 
 use super::block::Block;
-use super::cluster;
+use super::cluster::{self, Pieces};
 use super::load::Steady;
 use super::spectral::Spectral;
 use super::system::dot;
@@ -58,10 +58,8 @@ struct Own {
 struct Parts {
     order: usize,
     omega: f64,
-    matrices: Vec<[f64; 4]>,
-    columns: Vec<Vec<f64>>,
-    /// By coordinates, rates, and cosine and sine of the drive.
-    rows: Vec<Vec<f64>>,
+    /// Their rows by coordinates, rates, and cosine and sine of the drive.
+    pieces: Pieces,
     cosine: Vec<f64>,
     sine: Vec<f64>,
     /// Rates of ζ that come from D, by cosine and sine: part of ζ′ and not of the rates λζ that block coordinates go with.
@@ -72,9 +70,8 @@ struct Parts {
 impl Parts {
     fn new(order: usize, omega: f64, lasts: f64) -> Self {
         let still = vec![0.0; order];
-        let (matrices, columns, rows) = (Vec::new(), Vec::new(), Vec::new());
         let pushed = [still.clone(), still.clone()];
-        Self { order, omega, matrices, columns, rows, cosine: still.clone(), sine: still, pushed, lasts }
+        Self { order, omega, pieces: Pieces::default(), cosine: still.clone(), sine: still, pushed, lasts }
     }
 
     /// c = P cos ωt + Q sin ωt with (B² + ω²) P = −ω g and ω Q = B P.
@@ -89,9 +86,9 @@ impl Parts {
             self.cosine[i] += own.columns[0][i] * x + own.columns[1][i] * y;
             self.sine[i] += own.columns[0][i] * turned[0] + own.columns[1][i] * turned[1];
         }
-        self.matrices.push(own.matrix);
-        self.columns.extend(own.columns);
-        self.rows.extend(own.rows.map(|mut row| {
+        self.pieces.matrices.push(own.matrix);
+        self.pieces.columns.extend(own.columns);
+        self.pieces.rows.extend(own.rows.map(|mut row| {
             row.extend([0.0; 2]);
             row
         }));
@@ -127,18 +124,15 @@ impl Parts {
             let (by_mode, by_drive) = (first[(0, 0)], first[(0, 1)]);
             let row: Vec<C> =
                 seen.iter().map(|entry| by_mode * entry).chain([by_drive, by_drive * C::new(0.0, 1.0)]).collect();
-            self.matrices.push([node.re, -node.im, node.im, node.re]);
             // Its rates are those of its places, so that each of the blocks moves by itself.
             let column: Vec<C> = shape.iter().copied().chain(shape.iter().map(|v| v * node)).collect();
-            self.columns.push(column.iter().map(|v| 2.0 * v.re).collect());
-            self.columns.push(column.iter().map(|v| -2.0 * v.im).collect());
-            self.rows.push(row.iter().map(|entry| entry.re).collect());
-            self.rows.push(row.iter().map(|entry| entry.im).collect());
+            self.pieces.turning(*node, 2.0, &column, &row);
         }
     }
 
     fn finish(self) -> (Spectral, Steady) {
-        let Self { order, omega, matrices, columns, mut rows, cosine, sine, pushed, lasts } = self;
+        let Self { order, omega, pieces, cosine, sine, pushed, lasts } = self;
+        let Pieces { matrices, columns, mut rows } = pieces;
         for row in &mut rows {
             for (phase, pushed) in pushed.iter().enumerate() {
                 let seen = dot(&row[order..2 * order], pushed);

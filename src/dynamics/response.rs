@@ -1,11 +1,12 @@
 //! What a run leaves behind: integrals of the observed motions, counts of events, the proof, and what was asked to be kept.
 
+use super::error::EngineError;
 use super::extremes::Extremes;
 use super::motion::Motion;
 use super::options::{Averaged, StartState};
 use super::proof::Proof;
 use super::sums::Sums;
-use super::system::{Event, EventKind};
+use super::system::{Event, EventKind, HybridSystem, dot};
 use super::trace::Sample;
 
 /// How a response came about.
@@ -52,6 +53,15 @@ pub struct Response {
 }
 
 impl Response {
+    /// The same, at a last state q, q′ of the structure; refused if that is no number.
+    pub(crate) fn at_end(self, system: &HybridSystem, state: [&[f64]; 2], cycle: u64) -> Result<Self, EngineError> {
+        let row = system.observed_rows.first();
+        let [final_displacement, final_velocity] = state.map(|x| row.map_or(0.0, |row| dot(row, x)));
+        let is_number = final_displacement.is_finite() && final_velocity.is_finite();
+        let response = Self { final_displacement, final_velocity, ..self };
+        if is_number { Ok(response) } else { Err(EngineError::NotFinite { cycle }) }
+    }
+
     /// The averaged window of the first observed motion.
     #[must_use]
     pub fn window(&self) -> Sums {

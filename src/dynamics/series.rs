@@ -46,7 +46,7 @@ struct Radii {
 }
 
 /// Shares of several blocks in a signal from now on.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy)]
 pub(crate) struct Shares {
     pub(crate) now: Phases,
     /// Bounds as in [`Block::amplitude`].

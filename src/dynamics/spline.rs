@@ -1,5 +1,7 @@
 //! Cubic spline through measured points ("not a knot" ends, as MATLAB's `spline`), end values outside.
 
+use super::gauss::eliminate;
+
 /// A curve y(x); constant beyond its first and last point.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Spline {
@@ -74,7 +76,7 @@ impl Spline {
     }
 }
 
-/// Second derivatives; dense elimination, the curves have a dozen points.
+/// Second derivatives; by a dense system, as the curves have a dozen points.
 fn curvature(x: &[f64], y: &[f64]) -> Vec<f64> {
     let n = x.len();
     if n < 3 {
@@ -102,24 +104,7 @@ fn curvature(x: &[f64], y: &[f64]) -> Vec<f64> {
         a[i][i + 1] = h[i];
         a[i][n] = 6.0 * ((y[i + 1] - y[i]) / h[i] - (y[i] - y[i - 1]) / h[i - 1]);
     }
-    for column in 0..n {
-        let pivot = (column..n).max_by(|&i, &j| a[i][column].abs().total_cmp(&a[j][column].abs())).unwrap_or(column);
-        a.swap(column, pivot);
-        let (upper, lower) = a.split_at_mut(column + 1);
-        let pivot_row = &upper[column];
-        for row in lower {
-            let factor = row[column] / pivot_row[column];
-            for (cell, above) in row.iter_mut().zip(pivot_row).skip(column) {
-                *cell -= factor * above;
-            }
-        }
-    }
-    let mut m = vec![0.0; n];
-    for i in (0..n).rev() {
-        let sum = (i + 1..n).fold(a[i][n], |sum, k| sum - a[i][k] * m[k]);
-        m[i] = sum / a[i][i];
-    }
-    m
+    eliminate(a)
 }
 
 #[cfg(test)]

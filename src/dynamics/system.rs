@@ -194,6 +194,11 @@ pub struct Tick {
     pub level: f64,
 }
 
+impl Tick {
+    /// A cycle without force.
+    pub(crate) const STILL: Self = Self { time: 0.0, impulse: 0.0, level: 0.0 };
+}
+
 /// F sin(ω t + φ).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Harmonic {
@@ -268,6 +273,18 @@ pub enum EventKind {
     StopRelease,
     /// The last of infinitely many impacts.
     ChatterEnd,
+}
+
+impl EventKind {
+    /// A contact is made, with a face or with its stop.
+    pub(crate) fn is_contact(self) -> bool {
+        matches!(self, Self::FloorContact | Self::CeilingContact | Self::FloorStop | Self::CeilingStop)
+    }
+
+    /// A contact is lost.
+    pub(crate) fn is_release(self) -> bool {
+        matches!(self, Self::FloorRelease | Self::CeilingRelease | Self::StopRelease)
+    }
 }
 
 /// An event in its place.

@@ -84,14 +84,10 @@ impl SampledParticle {
         };
         let mut sampled = Self { height, floor: rigid_floor, ceiling: rigid_ceiling, rigid_floor, rigid_ceiling };
         let resilient = contact.face(particle).is_some_and(|face| matches!(face.law, Law::Resilient { .. }));
-        if resilient {
+        let across = contact.across() == Hold::Pressed;
+        let compressed = [resilient.then_some(side), across.then_some(side.opposite())];
+        for side in compressed.into_iter().flatten() {
             match side {
-                Side::Floor => sampled.floor = height,
-                Side::Ceiling => sampled.ceiling = height,
-            }
-        }
-        if contact.across() == Hold::Pressed {
-            match side.opposite() {
                 Side::Floor => sampled.floor = height,
                 Side::Ceiling => sampled.ceiling = height,
             }

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Mutex;
 
-use shotdamp::dynamics::{Contact, Options, Proof, StartState, event_driven};
+use shotdamp::dynamics::{Contact, HybridSystem, Options, Proof, StartState, event_driven};
 use shotdamp::experiment::{
     Assumptions, Experiment, ExperimentId, Given, StrengthRecipe, load_assumptions, parse_experiment,
 };
@@ -12,7 +12,7 @@ use shotdamp::figure::{Beside, draw};
 use shotdamp::measure::{
     CycleSpec, CycleValue, Evaluated, Link, Measured, Request, SolverChoice, TraceColumn, evaluate,
 };
-use shotdamp::scene::compile;
+use shotdamp::scene::{ContactDamping, ContactEnd, Damper, Excitation, LimitStop, Scene, SingleMass, Surface, compile};
 use shotdamp::study::{Evaluate, IgnoreEvents, RowFailure, Shard, Simulation};
 use shotdamp::table::Table;
 
@@ -364,4 +364,41 @@ fn values_of_each_cycle_are_drawn_as_points_that_no_line_joins() {
     assert_eq!(dots.len(), 2, "a cloud each for up and down");
     // Five rows of two values each.
     assert!(dots.iter().all(|dots| dots.matches("h1").count() == 10), "{dots:?}");
+}
+
+#[test]
+fn what_a_state_is_carried_to_lies_no_deeper_than_its_stops_and_no_higher_than_its_ceiling() {
+    let system = |stop: Option<f64>, gap: f64| -> HybridSystem {
+        let mass = SingleMass { mass: 1.0, stiffness: 1000.0, damping: 3.0 };
+        let damping = ContactDamping::Constant(4.2);
+        let face = Surface::Resilient { stiffness: 1000.0, damping, ends: ContactEnd::ZeroGap };
+        let stop = stop.map(|length| LimitStop { length, restitution: 0.5 });
+        let dampers = vec![Damper { stop, ..Damper::between(face, 0.05, gap) }];
+        let impulses = Excitation::ImpulseTrain { impulse: 1.0, period: 0.2 };
+        compile(&Scene::on_one_mass(mass, 9.81, dampers, impulses)).unwrap()
+    };
+    let at = |contact, gap, rate| StartState::Given {
+        q: vec![0.01],
+        rate: vec![0.2],
+        particles: vec![(contact, gap, rate)],
+    };
+    let shallow = system(Some(0.02), 0.3);
+    for (from, to) in [
+        (at(Contact::FloorStop, -0.05, 0.0), at(Contact::FloorStop, -0.02, 0.0)),
+        (at(Contact::CeilingStop, 0.05, 0.0), at(Contact::CeilingStop, 0.02, 0.0)),
+        (at(Contact::Floor, -0.05, 0.1), at(Contact::Floor, -0.02, 0.1)),
+        (at(Contact::Ceiling, 0.05, 0.1), at(Contact::Ceiling, 0.02, 0.1)),
+        (at(Contact::Floor, -0.01, 0.1), at(Contact::Floor, -0.01, 0.1)),
+        (at(Contact::Flight, 0.4, 0.1), at(Contact::Flight, 0.3, 0.1)),
+        (StartState::StaticEquilibrium, StartState::StaticEquilibrium),
+    ] {
+        assert_eq!(from.carried_to(&shallow), Some(to));
+    }
+    // Without the stop, the ceiling or the particle there is no such state.
+    assert_eq!(at(Contact::FloorStop, -0.05, 0.0).carried_to(&system(None, 0.3)), None);
+    let mut open = system(None, 0.3);
+    open.particles[0].ceiling = None;
+    assert_eq!(at(Contact::Ceiling, 0.01, 0.0).carried_to(&open), None);
+    open.particles.clear();
+    assert_eq!(at(Contact::Flight, 0.01, 0.0).carried_to(&open), None);
 }

@@ -5,7 +5,7 @@
 
 use std::f64::consts::TAU;
 
-use shotdamp::dynamics::{EngineError, HybridSystem, Options, Response, TraceRequest, event_driven, fixed_step};
+use shotdamp::dynamics::{EngineError, HybridSystem, Options, Response, Tick, TraceRequest, event_driven, fixed_step};
 use shotdamp::scene::{
     ContactDamping, ContactEnd, Damper, Excitation, LimitStop, PulseShape, Scene, SingleMass, Surface, Walls, compile,
 };
@@ -227,4 +227,44 @@ fn a_step_that_fits_no_period_is_refused() {
         assert!(matches!(error, EngineError::TimeStep { .. }));
         assert!(error.to_string().contains("does not fit a forcing period of 0.2 s"));
     }
+}
+
+#[test]
+fn an_oscillator_between_impulses_has_the_rates_and_the_range_of_its_closed_form() {
+    // x = J/(m ω) sin ω t, twice J with a kick of the drive's own; two points, of which one moves twice as far.
+    let (impulse, mass) = (0.3, 1.0);
+    let structure = SingleMass { mass, stiffness: STIFFNESS, damping: 0.0 };
+    let drive = Excitation::ImpulseTrain { impulse, period: PERIOD };
+    let mut system = compile(&Scene::on_one_mass(structure, GRAVITY, vec![], drive)).unwrap();
+    system.observed_rows = vec![vec![1.0], vec![2.0]];
+    let options = Options { skip: 0, average: 1, kick: 1.0, extremes: true, cycle_rates: true, ..Options::default() };
+    let response = fixed_step(&system, &options, 1e-3).unwrap();
+    let (omega, speed) = (natural(), 2.0 * impulse / mass);
+    let [rates] = &response.cycle_rates[..] else { panic!("one cycle") };
+    assert!((rates.after[0] / speed - 1.0).abs() < 1e-14);
+    assert!((rates.before[0] - speed * (omega * PERIOD).cos()).abs() < 1e-12);
+    assert_eq!(rates.before[0], response.final_velocity);
+    let [first, second] = &response.observed[..] else { panic!("two points") };
+    for (value, expected) in first.extremes.displacement.into_iter().zip([-speed / omega, speed / omega]) {
+        assert!((value / expected - 1.0).abs() < 2e-4, "{value} for {expected}");
+    }
+    for (value, expected) in first.extremes.velocity.into_iter().zip([-speed, speed]) {
+        assert!((value / expected - 1.0).abs() < 1e-3, "{value} for {expected}");
+    }
+    // A factor of two changes no digit.
+    assert_eq!(second.extremes.displacement, first.extremes.displacement.map(|x| 2.0 * x));
+    assert_eq!(second.extremes.velocity, first.extremes.velocity.map(|x| 2.0 * x));
+    for (first, second) in first.halves.iter().zip(&second.halves) {
+        assert_eq!(second.displacement, 2.0 * first.displacement);
+        assert_eq!(second.deviation_square, 4.0 * first.deviation_square);
+        assert_eq!(second.velocity_square, 4.0 * first.velocity_square);
+    }
+
+    // Impulses that round to the end of the cycle are given at its last step.
+    for (time, impulse) in [(PERIOD - 2e-4, 0.2), (PERIOD - 1e-4, 0.5)] {
+        system.drive.ticks.push(Tick { time, impulse, level: 0.0 });
+    }
+    let response = fixed_step(&system, &Options { kick: 0.0, ..options }, 1e-3).unwrap();
+    let expected = (impulse * (omega * PERIOD).cos() + 0.7 * (omega * 1e-3).cos()) / mass;
+    assert!((response.final_velocity - expected).abs() < 1e-12, "{} for {expected}", response.final_velocity);
 }

@@ -11,6 +11,8 @@ use crate::dynamics::EngineError;
 use crate::dynamics::cholesky::Cholesky;
 use crate::dynamics::conservative::carried_mass;
 use crate::dynamics::contact::Side;
+use crate::dynamics::guards::spring_on_stop;
+use crate::dynamics::modes::scale;
 use crate::dynamics::system::{Contact, HybridSystem, Law, Matrix, Particle};
 
 /// One contact state over one time step.
@@ -156,10 +158,7 @@ impl<V: Vector> Propagator<V> {
             let law = side.face(particle).law;
             let push = push(law, damping[j], &w, &rate).times(away);
             if contact.holds(particle) {
-                let spring = match law {
-                    Law::Resilient { stiffness, stop: Some(stop), .. } => stiffness * stop.length / particle.mass,
-                    _ => 0.0,
-                };
+                let spring = spring_on_stop(particle, side);
                 let hold = along(&side.face(particle).row).plus_constant(system.gravity).times(away);
                 holds[j] = Some(guards.len());
                 guards.push(hold.plus_constant(-spring));
@@ -305,7 +304,7 @@ fn exponential(derivative: &[Signal], time_step: f64) -> Vec<Vec<f64>> {
     let size = derivative.len();
     let whole = size + 2;
     let scales: Vec<f64> =
-        (0..whole).map(|i| if i < size / 2 { frequency(derivative[size / 2 + i].0[i]) } else { 1.0 }).collect();
+        (0..whole).map(|i| if i < size / 2 { scale(derivative[size / 2 + i].0[i]) } else { 1.0 }).collect();
     let mut exponent = vec![0.0; whole * whole];
     let mut norm = 0.0_f64;
     for i in 0..size {
@@ -333,11 +332,6 @@ fn exponential(derivative: &[Signal], time_step: f64) -> Vec<Vec<f64>> {
     }
     (0..whole).for_each(|i| rest[i * whole + i] += 1.0);
     (0..whole).map(|j| (0..size).map(|i| rest[i * whole + j] / scales[i] * scales[j]).collect()).collect()
-}
-
-fn frequency(acceleration: f64) -> f64 {
-    let omega = acceleration.abs().sqrt();
-    if omega > 0.0 && omega.is_finite() { omega } else { 1.0 }
 }
 
 fn product(a: &[f64], b: &[f64], order: usize) -> Vec<f64> {

@@ -6,7 +6,7 @@ use super::vector::Vector;
 use crate::dynamics::audit::State;
 use crate::dynamics::budget;
 use crate::dynamics::contact::Side;
-use crate::dynamics::system::{Event, EventKind, Law, Particle, dot};
+use crate::dynamics::system::{Event, EventKind, Particle, dot};
 use crate::dynamics::trace::{Sample, SampledParticle};
 use crate::dynamics::{CycleRates, EngineError, Extremes, Observed, Sums};
 
@@ -33,9 +33,7 @@ impl<V: Vector> Run<'_, V> {
         if self.options.averages(self.cycle) {
             self.response.counts.add(kind);
         }
-        let wanted = self.response.events.len() < self.options.record_events
-            || self.options.trace.as_ref().is_some_and(|trace| trace.covers(self.cycle));
-        if wanted {
+        if self.options.keeps_event(self.cycle, self.response.events.len()) {
             let time = (self.step - self.schedule.cycle(self.cycle)) as f64 * self.time_step;
             self.response.events.push(Event { cycle: self.cycle, time, particle, kind, approach, departure });
         }
@@ -129,10 +127,8 @@ impl<V: Vector> Run<'_, V> {
         let state = self.motion.state.values();
         let compression = |j: usize| {
             let contact = self.contacts[j];
-            match contact.face(&self.system.particles[j]).map(|face| face.law) {
-                Some(Law::Resilient { stiffness, .. }) => [stiffness, self.relative(j, contact.side()).gap],
-                _ => [0.0, 0.0],
-            }
+            let stiffness = contact.face(&self.system.particles[j]).and_then(|face| face.law.stiffness());
+            stiffness.map_or([0.0; 2], |stiffness| [stiffness, self.relative(j, contact.side()).gap])
         };
         State {
             q: state[..n].to_vec(),

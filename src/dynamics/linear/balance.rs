@@ -8,7 +8,7 @@ use crate::dynamics::block::pairs;
 use crate::dynamics::budget;
 use crate::dynamics::flow::Flow;
 use crate::dynamics::integral::GAUSS;
-use crate::dynamics::system::{HybridSystem, Law, dot};
+use crate::dynamics::system::{HybridSystem, dot};
 
 /// Adds the cycles that `at` are the states of at the beginning.
 pub(super) fn pass(system: &HybridSystem, flow: &Flow, answer: &[f64], cycle: &Cycle, at: &Moments, audit: &mut Audit) {
@@ -67,10 +67,7 @@ pub(super) fn state(system: &HybridSystem, flow: &Flow, p: &[f64], rate: &[f64])
         let [gap, speed] = slot.map_or([0.0; 2], |slot| [p[n + slot], rate[n + slot]]);
         let face = &particle.floor.row;
         state.particles.push([dot(face, &state.q) + gap, dot(face, &state.rate) + speed]);
-        state.compressions.push(match particle.floor.law {
-            Law::Resilient { stiffness, .. } => [stiffness, gap],
-            Law::Rigid { .. } => [0.0; 2],
-        });
+        state.compressions.push(particle.floor.law.stiffness().map_or([0.0; 2], |stiffness| [stiffness, gap]));
     }
     state
 }

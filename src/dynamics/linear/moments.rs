@@ -50,9 +50,6 @@ impl Moments {
 
     pub(super) fn add(&mut self, other: &Self) {
         let count = self.count + other.count;
-        if !(count > 0.0) {
-            return;
-        }
         let share = other.count / count;
         let apart: Vec<[f64; 2]> = self.mean.iter().zip(&other.mean).map(|([a, b], [x, y])| [x - a, y - b]).collect();
         for (((k, l), sum), more) in pairs(apart.len()).zip(&mut self.spread).zip(&other.spread) {

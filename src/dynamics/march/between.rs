@@ -7,6 +7,7 @@ use super::March;
 use super::effects::Effects;
 use crate::dynamics::EngineError;
 use crate::dynamics::contact::{Crossing, Hold, Relative, STICKING_SPEED, Side};
+use crate::dynamics::contact_state::face_damping;
 use crate::dynamics::guards::{self, Slipped};
 use crate::dynamics::system::{Contact, Law};
 
@@ -72,7 +73,7 @@ impl<E: Effects> March<'_, E> {
             Change::Releases
                 if matches!(law, Law::Resilient { no_tension: true, .. }) && self.is_compressed(j, side) =>
             {
-                self.slip_between(j, side)?;
+                self.slip_smoothly(j, side)?;
             }
             Change::Releases => {
                 self.record(j, side.lost(), here.rate, here.rate);
@@ -80,7 +81,7 @@ impl<E: Effects> March<'_, E> {
                 jumps = true;
             }
             Change::Recovers => self.turn(j, side, Hold::Away)?,
-            Change::PushesAgain => self.slip_between(j, side)?,
+            Change::PushesAgain => self.slip_smoothly(j, side)?,
         }
         self.meet_at_once()?;
         if jumps { self.hold_on() } else { self.choose_flow() }
@@ -155,18 +156,24 @@ impl<E: Effects> March<'_, E> {
         }
     }
 
-    /// A face that cannot pull lets go while compressed, or pushes again.
-    fn slip_between(&mut self, j: usize, side: Side) -> Result<(), EngineError> {
+    /// A face that cannot pull lets go while compressed, or pushes again: the energy of its spring goes and comes.
+    pub(super) fn slip(&mut self, j: usize, side: Side) -> Result<(), EngineError> {
         let particle = &self.system.particles[j];
         let pressed = self.contacts[j].at(side, particle) == Hold::Pressed;
         let here = self.relative_to(j, side);
         self.record(j, if pressed { side.lost() } else { side.made() }, here.rate, here.rate);
         self.turn(j, side, if pressed { Hold::Released } else { Hold::Pressed })?;
-        self.is_smooth(j, side);
         if let (Some(audit), Law::Resilient { stiffness, .. }) = (&mut self.audit, side.face(particle).law) {
             let stored = 0.5 * stiffness * here.gap * here.gap;
             audit.loss(if pressed { stored } else { -stored });
         }
+        Ok(())
+    }
+
+    /// The same where its force has come to zero.
+    pub(super) fn slip_smoothly(&mut self, j: usize, side: Side) -> Result<(), EngineError> {
+        self.slip(j, side)?;
+        self.is_smooth(j, side);
         Ok(())
     }
 
@@ -178,12 +185,12 @@ impl<E: Effects> March<'_, E> {
             let (here, away) = (self.relative_to(j, side), side.away());
             let push = -away * (stiffness * here.gap + self.damping_on(j, side) * here.rate);
             match self.contacts[j].at(side, particle) {
-                Hold::Pressed if no_tension && push < 0.0 && self.is_compressed(j, side) => self.slip_between(j, side),
+                Hold::Pressed if no_tension && push < 0.0 && self.is_compressed(j, side) => self.slip_smoothly(j, side),
                 Hold::Pressed if (no_tension && push < 0.0) || (here.gap == 0.0 && away * here.rate > 0.0) => {
                     self.record(j, side.lost(), here.rate, here.rate);
                     self.turn(j, side, Hold::Away)
                 }
-                Hold::Released if push > 0.0 => self.slip_between(j, side),
+                Hold::Released if push > 0.0 => self.slip_smoothly(j, side),
                 Hold::Pressed | Hold::Released | Hold::Held | Hold::Away => Ok(()),
             }?;
         }
@@ -205,10 +212,7 @@ impl<E: Effects> March<'_, E> {
 
     /// Damping of a face, N s/m.
     fn damping_on(&self, j: usize, side: Side) -> f64 {
-        match side.face(&self.system.particles[j]).law {
-            Law::Resilient { damping, .. } => self.equivalent.unwrap_or(damping),
-            Law::Rigid { .. } => 0.0,
-        }
+        face_damping(side.face(&self.system.particles[j]).law, self.equivalent)
     }
 
     /// What the face across from this side pushes per mass, and how fast that grows, in the flow in force.
@@ -241,13 +245,8 @@ impl<E: Effects> March<'_, E> {
     /// Stiffness and compression of a second face that presses.
     pub(super) fn stored_across(&self, j: usize) -> Option<[f64; 2]> {
         let contact = self.contacts[j];
-        if contact.across() != Hold::Pressed {
-            return None;
-        }
         let side = contact.side().opposite();
-        match side.face(&self.system.particles[j]).law {
-            Law::Resilient { stiffness, .. } => Some([stiffness, self.relative_to(j, side).gap]),
-            Law::Rigid { .. } => None,
-        }
+        let stiffness = side.face(&self.system.particles[j]).law.stiffness()?;
+        (contact.across() == Hold::Pressed).then(|| [stiffness, self.relative_to(j, side).gap])
     }
 }

@@ -80,8 +80,7 @@ impl<E: Effects> March<'_, E> {
             }
             Crossing::Release => match side.face(particle).law {
                 Law::Resilient { no_tension: true, .. } if E::ALL && self.is_compressed(j, side) => {
-                    self.slip(j, side);
-                    self.smooth[j] = !self.sudden;
+                    self.slip_smoothly(j, side)?;
                 }
                 _ => {
                     // It leaves, or is at rest; what rounding has left of an approach would bring it back at once.
@@ -100,10 +99,7 @@ impl<E: Effects> March<'_, E> {
                     self.refer_to_floor(j);
                 }
             }
-            Crossing::Again => {
-                self.slip(j, side);
-                self.smooth[j] = !self.sudden;
-            }
+            Crossing::Again => self.slip_smoothly(j, side)?,
             Crossing::Meeting
             | Crossing::ReleaseAcross
             | Crossing::ToStopAcross
@@ -209,7 +205,7 @@ impl<E: Effects> March<'_, E> {
                     self.let_go(j, side);
                 } else if no_tension && -away * (stiffness * gap + self.damping_at(j) * rate) < 0.0 {
                     if self.is_compressed(j, side) {
-                        self.slip(j, side);
+                        self.slip(j, side)?;
                     } else {
                         self.particles[j].gap = 0.0;
                         self.let_go(j, side);
@@ -219,7 +215,7 @@ impl<E: Effects> March<'_, E> {
             (Contact::FloorReleased | Contact::CeilingReleased, Law::Resilient { stiffness, .. })
                 if -away * (stiffness * gap + self.damping_at(j) * rate) > 0.0 =>
             {
-                self.slip(j, side);
+                self.slip(j, side)?;
             }
             _ => {}
         }
@@ -334,21 +330,6 @@ impl<E: Effects> March<'_, E> {
         self.contacts[j] = Contact::Flight;
         if side == Side::Ceiling {
             self.refer_to_floor(j);
-        }
-    }
-
-    /// A face that cannot pull lets go while compressed, or pushes again: the energy of its spring goes and comes.
-    pub(super) fn slip(&mut self, j: usize, side: Side) {
-        let rate = self.particles[j].rate;
-        let pressed = self.contacts[j] == side.pressed();
-        self.record(j, if pressed { side.lost() } else { side.made() }, rate, rate);
-        self.changed = true;
-        self.contacts[j] = if pressed { side.released() } else { side.pressed() };
-        if let (Some(audit), Law::Resilient { stiffness, .. }) =
-            (&mut self.audit, side.face(&self.system.particles[j]).law)
-        {
-            let stored = 0.5 * stiffness * self.particles[j].gap * self.particles[j].gap;
-            audit.loss(if pressed { stored } else { -stored });
         }
     }
 }

@@ -6,7 +6,6 @@ use crate::dynamics::audit::{self, Force};
 use crate::dynamics::extremes::Stretch;
 use crate::dynamics::flow::DrivePhase;
 use crate::dynamics::integral;
-use crate::dynamics::system::{Contact, HybridSystem, Law};
 
 /// Panels that an integral may take before closed forms are cheaper, where a contact state is hardly ever visited twice.
 const FEW_PANELS: usize = 10;
@@ -97,22 +96,14 @@ impl<E: Effects> March<'_, E> {
             q: self.q[..self.system.mass.order].to_vec(),
             rate: self.rate[..self.system.mass.order].to_vec(),
             particles: (0..self.particles.len()).map(|j| self.absolute(j)).collect(),
-            compressions: (0..self.particles.len())
-                .map(|j| match side_stiffness(self.system, &self.contacts, j) {
-                    Some(stiffness) => [stiffness, self.particles[j].gap],
-                    None => [0.0, 0.0],
-                })
-                .collect(),
+            compressions: (0..self.particles.len()).map(|j| self.stored(j).unwrap_or_default()).collect(),
             across: (0..self.particles.len()).filter_map(|j| self.stored_across(j)).collect(),
         }
     }
-}
 
-fn side_stiffness(system: &HybridSystem, contacts: &[Contact], j: usize) -> Option<f64> {
-    let contact = contacts[j];
-    let face = contact.face(&system.particles[j])?;
-    match face.law {
-        Law::Resilient { stiffness, .. } => Some(stiffness),
-        Law::Rigid { .. } => None,
+    /// Stiffness and compression of the face that a particle presses into.
+    fn stored(&self, j: usize) -> Option<[f64; 2]> {
+        let face = self.contacts[j].face(&self.system.particles[j])?;
+        Some([face.law.stiffness()?, self.particles[j].gap])
     }
 }

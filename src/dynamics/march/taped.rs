@@ -5,7 +5,7 @@ use super::effects::Effects;
 use super::impacts::Touch;
 use crate::dynamics::collision::{self, Closed, Outcome};
 use crate::dynamics::contact::{Crossing, Side};
-use crate::dynamics::motion::{self, Instant, Jump, Kick};
+use crate::dynamics::motion::{self, End, Instant, Jump, Kick};
 use crate::dynamics::system::{Contact, Law, dot};
 use crate::dynamics::{Averaged, Counts, EngineError, Observed, Until};
 
@@ -110,13 +110,9 @@ impl<E: Effects> March<'_, E> {
 
     pub(super) fn end_taped_cycle(&mut self) {
         let n = self.system.mass.order;
-        let count = self.particles.len();
-        let mut state = Vec::with_capacity(2 * (n + count));
-        state.extend_from_slice(&self.q[..n]);
-        state.extend((0..count).map(|j| self.absolute(j)[0]));
-        state.extend_from_slice(&self.rate[..n]);
-        state.extend((0..count).map(|j| self.absolute(j)[1]));
-        self.tape.end_cycle(state, self.contacts.clone());
+        let particles: Vec<[f64; 2]> = (0..self.particles.len()).map(|j| self.absolute(j)).collect();
+        let structure = [&self.q[..n], &self.rate[..n]];
+        self.tape.end_cycle(End::new(structure, &particles, self.contacts.clone()));
     }
 
     /// At the end of a cycle: the period that is averaged from now on, if the run was to settle and just did.

@@ -37,7 +37,7 @@ pub use name::{Motion, MotionKind};
 pub use recurrence::Recurring;
 
 pub(super) use multipliers::Period;
-pub(super) use name::{kind, name};
+pub(super) use name::{NEUTRAL, kind, name};
 pub(super) use recurrence::{Scale, candidates, closest};
 pub(super) use settled::settled;
 pub(super) use tape::{End, Instant, Jump, Kick, Tape};

@@ -17,6 +17,7 @@ use super::tape::{Step, Tape};
 use crate::dynamics::EngineError;
 use crate::dynamics::block::Block;
 use crate::dynamics::contact::Side;
+use crate::dynamics::flow::Flow;
 use crate::dynamics::system::{Contact, HybridSystem};
 
 /// Share of the motion within which a state may be on its way to come again.
@@ -26,7 +27,7 @@ const SETTLED: f64 = 1e-6;
 /// The same where impacts at one instant leave no multipliers to prove it: the state itself comes again.
 const REPEATED: f64 = 1e-9;
 /// A multiplier of a motion without damping may round above 1 by this.
-const NEUTRAL: f64 = 1e-9;
+pub(in crate::dynamics) const NEUTRAL: f64 = 1e-9;
 /// Standard errors that make an exponent positive.
 const ERRORS: f64 = 3.0;
 /// A standard error above this, a cycle, does not tell zero from weak chaos.
@@ -206,15 +207,19 @@ pub(in crate::dynamics) fn name(system: &HybridSystem, tape: &Tape, window: usiz
 /// much smaller, from one half of them to the other, as [`STEADY`] asks for. Without an event all of it is a transient, but for what the
 /// drive repeats. Nothing dies away without any damping.
 fn shows_decay(system: &HybridSystem, tape: &Tape, window: usize) -> bool {
-    let steps = || tape.last(window).flat_map(|cycle| &cycle.steps);
-    let flows = steps().filter_map(|step| match step {
-        Step::Flow(flow, _) => Some(flow),
-        Step::Timed(_) | Step::Event(_) => None,
-    });
-    let rates = flows.flat_map(|flow| &flow.blocks[..flow.own]).map(Block::slowest).filter(|rate| *rate > 0.0);
+    let rates =
+        flows(tape, window).flat_map(|flow| &flow.blocks[..flow.own]).map(Block::slowest).filter(|rate| *rate > 0.0);
     let Some(slowest) = rates.reduce(f64::min) else { return true };
-    let has_events = steps().any(|step| matches!(step, Step::Event(_)));
+    let has_events = tape.last(window).flat_map(|cycle| &cycle.steps).any(|step| matches!(step, Step::Event(_)));
     has_events && libm::exp(-slowest * system.drive.period * (window / 2) as f64) < STEADY
+}
+
+/// What the last cycles of a tape went through.
+fn flows(tape: &Tape, cycles: usize) -> impl Iterator<Item = &Flow> {
+    tape.last(cycles).flat_map(|cycle| &cycle.steps).filter_map(|step| match step {
+        Step::Flow(flow, _) => Some(&**flow),
+        Step::Timed(_) | Step::Event(_) => None,
+    })
 }
 
 /// The motion, if it comes again after so many cycles.
@@ -250,12 +255,7 @@ fn closes(system: &HybridSystem, scale: &Scale, tape: &Tape, period: usize) -> R
 pub(in crate::dynamics) fn kind(system: &HybridSystem, tape: &Tape, period: usize) -> MotionKind {
     let periods = period as u32;
     let contacts = tape.last(period).map(|cycle| cycle.contacts).sum();
-    let visited = || {
-        tape.last(period).flat_map(|cycle| &cycle.steps).filter_map(|step| match step {
-            Step::Flow(flow, _) => Some(flow.modes.contacts.as_slice()),
-            Step::Timed(_) | Step::Event(_) => None,
-        })
-    };
+    let visited = || flows(tape, period).map(|flow| &flow.modes.contacts);
     let on_floor = |contact: &Contact| *contact != Contact::Flight && contact.side() == Side::Floor;
     let count = system.particles.len();
     if count > 0 && contacts == 0 && visited().all(|state| state.iter().all(on_floor)) {

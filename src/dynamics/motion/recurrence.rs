@@ -2,6 +2,7 @@
 
 use std::f64::consts::TAU;
 
+use super::exponent::mean;
 use super::tape::{End, Reach};
 use crate::dynamics::system::HybridSystem;
 
@@ -140,6 +141,5 @@ pub(super) fn closing(scale: &Scale, ends: &[End]) -> f64 {
     let Some((period, _)) = closest(scale, ends) else { return f64::NAN };
     let returns: Vec<f64> = (period..ends.len()).map(|i| scale.apart(&ends[i - period], &ends[i])).collect();
     let (first, second) = returns.split_at(returns.len() / 2);
-    let mean = |part: &[f64]| part.iter().sum::<f64>() / part.len() as f64;
     mean(second) / mean(first)
 }

@@ -106,6 +106,15 @@ pub(in crate::dynamics) struct End {
     pub(in crate::dynamics) contacts: Vec<Contact>,
 }
 
+impl End {
+    /// Of a structure at q, q′ with its particles at y, y′.
+    pub(in crate::dynamics) fn new([q, rate]: [&[f64]; 2], particles: &[[f64; 2]], contacts: Vec<Contact>) -> Self {
+        let of = |which: usize| particles.iter().map(move |at| at[which]);
+        let state = q.iter().copied().chain(of(0)).chain(rate.iter().copied()).chain(of(1)).collect();
+        Self { state, contacts }
+    }
+}
+
 /// The least and the largest of each number of the states so far.
 #[derive(Default)]
 pub(in crate::dynamics) struct Reach(Vec<[f64; 2]>);
@@ -151,10 +160,10 @@ impl Tape {
         self.jumps.clear();
     }
 
-    /// A cycle has ended at the state q, y, q′, y′.
-    pub(in crate::dynamics) fn end_cycle(&mut self, state: Vec<f64>, contacts: Vec<Contact>) {
-        self.reach.take(&state);
-        self.ends.push(End { state, contacts });
+    /// A cycle has ended.
+    pub(in crate::dynamics) fn end_cycle(&mut self, end: End) {
+        self.reach.take(&end.state);
+        self.ends.push(end);
     }
 
     pub(in crate::dynamics) fn flow(&mut self, flow: &Rc<Flow>, length: f64) {
@@ -163,13 +172,8 @@ impl Tape {
 
     pub(in crate::dynamics) fn count(&mut self, kind: EventKind) {
         let Some(cycle) = self.cycles.back_mut() else { return };
-        match kind {
-            EventKind::FloorContact | EventKind::CeilingContact | EventKind::FloorStop | EventKind::CeilingStop => {
-                cycle.contacts += 1;
-            }
-            EventKind::ChatterEnd => cycle.chatter = true,
-            EventKind::FloorRelease | EventKind::CeilingRelease | EventKind::StopRelease => {}
-        }
+        cycle.contacts += u64::from(kind.is_contact());
+        cycle.chatter |= kind == EventKind::ChatterEnd;
     }
 
     /// Within an event, or at an impulse of the drive; so many particles have just arrived.

@@ -3,11 +3,11 @@
 use super::corrector::{At, Path, length};
 use super::newton::closed;
 use super::origin::Origin;
-use super::shot::{Shot, absolute};
+use super::shot::Shot;
 use super::slowing::{GRAZES, Slowing};
 use super::special::{self, Between, Special};
 use super::{Orbit, OrbitError};
-use crate::dynamics::system::HybridSystem;
+use crate::dynamics::system::{HybridSystem, dot};
 
 /// A step below this share of the longest leads nowhere.
 const SHORTEST: f64 = 1e-11;
@@ -109,9 +109,7 @@ impl<E> Branch<E> {
     ) -> Result<Self, BranchError<E>> {
         let mut path = Path::new(system_at, orbit.cycles, along, parameter);
         let system = path.system(path.first())?;
-        let none = || OrbitError::NoConvergence { cycles: orbit.cycles, miss: f64::INFINITY };
-        let start = absolute(&system, &orbit.start).ok_or_else(none)?;
-        let (shot, distance) = closed(&system, start, orbit.cycles)?;
+        let (shot, distance) = closed(&system, orbit.begin(&system)?, orbit.cycles)?;
         let at = path.begin(shot, distance)?;
         Follower::new(path, along, &at).run(at)
     }
@@ -129,11 +127,9 @@ impl<E> Branch<E> {
         let mut path = Path::new(system_at, 2 * cycles, along, doubling.parameter);
         let share = path.first();
         let system = path.system(share)?;
-        let none = || OrbitError::NoConvergence { cycles, miss: f64::INFINITY };
-        let start = absolute(&system, &doubling.orbit.start).ok_or_else(none)?;
-        let (single, distance) = closed(&system, start, cycles)?;
+        let (single, distance) = closed(&system, doubling.orbit.begin(&system)?, cycles)?;
         // Neighbours of the doubled motion differ by the vector of the multiplier −1, and by no parameter.
-        let mut tangent = single.flipping().ok_or_else(none)?;
+        let mut tangent = single.flipping().ok_or_else(|| single.unsolved())?;
         tangent.push(0.0);
         let shot = Shot::new(&system, single.start.clone(), 2 * cycles, Some(&single.scale))?;
         let at = At { share, shot, distance, tangent, determinant: 0.0 };
@@ -150,15 +146,13 @@ impl<E> Branch<E> {
         along: Along,
     ) -> Result<[Self; 2], BranchError<E>> {
         let Orbit { cycles, distance, .. } = fork.orbit;
-        let none = || OrbitError::NoConvergence { cycles, miss: f64::INFINITY };
         let mut follow = |side: f64| {
             let mut path = Path::new(&mut system_at, cycles, along, fork.parameter);
             let share = path.first();
             let system = path.system(share)?;
-            let start = absolute(&system, &fork.orbit.start).ok_or_else(none)?;
-            let shot = Shot::new(&system, start, cycles, None)?;
+            let shot = Shot::new(&system, fork.orbit.begin(&system)?, cycles, None)?;
             // Neighbours differ by the vector of the multiplier 1, and by no parameter.
-            let [kept, _] = shot.kept().ok_or_else(none)?;
+            let [kept, _] = shot.kept().ok_or_else(|| shot.unsolved())?;
             let tangent = kept.iter().map(|x| side * x).chain([0.0]).collect();
             let at = At { share, shot, distance, tangent, determinant: 0.0 };
             Follower::new(path, along, &at).run(at)
@@ -265,8 +259,7 @@ impl<E, F: FnMut(f64) -> Result<HybridSystem, E>> Follower<F> {
             return self.change(at, next, step);
         }
         if turn(at, &next) < STRAIGHT {
-            let miss = next.shot.misses_by();
-            return Ok(Err(BranchError::Orbit(OrbitError::NoConvergence { cycles: self.path.cycles, miss })));
+            return Ok(Err(next.shot.unsolved().into()));
         }
         if at.shot.swaps_halves(&next.shot) {
             return Ok(Ok(Next::End(BranchEnd::HalfPeriod)));
@@ -426,10 +419,6 @@ fn slow_share(at: &At) -> Option<f64> {
 
 /// Cosine of the angle between the tangents of two points.
 fn turn(one: &At, other: &At) -> f64 {
-    let count = one.tangent.len() - 1;
-    let here: Vec<f64> = (0..count)
-        .map(|i| one.tangent[i] * one.shot.scale.unit(i) / other.shot.scale.unit(i))
-        .chain([one.tangent[count]])
-        .collect();
-    here.iter().zip(&other.tangent).fold(0.0, |sum, (a, b)| sum + a * b) / length(&here)
+    let here = one.onwards(&other.shot);
+    dot(&here, &other.tangent) / length(&here)
 }

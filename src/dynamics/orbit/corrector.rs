@@ -12,7 +12,7 @@ use super::newton::{CLOSED, size};
 use super::shot::{Contacts, Shot, state_after};
 use super::{OrbitError, elimination};
 use crate::dynamics::motion::End;
-use crate::dynamics::system::HybridSystem;
+use crate::dynamics::system::{HybridSystem, dot};
 
 /// Half the distance of the runs whose difference is ∂P/∂λ, as a share of the range: the largest.
 const DIFFERENCE: f64 = 1e-6;
@@ -44,6 +44,15 @@ pub(super) struct At {
     pub(super) tangent: Vec<f64>,
     /// Of [1 − M, −∂P/∂λ; tᵀ]; zero where branches cross.
     pub(super) determinant: f64,
+}
+
+impl At {
+    /// Its tangent in the units of another point.
+    pub(super) fn onwards(&self, other: &Shot) -> Vec<f64> {
+        let count = self.tangent.len() - 1;
+        let state = (0..count).map(|i| self.tangent[i] * self.shot.scale.unit(i) / other.scale.unit(i));
+        state.chain([self.tangent[count]]).collect()
+    }
 }
 
 /// What is followed.
@@ -107,7 +116,6 @@ impl<E, F: FnMut(f64) -> Result<HybridSystem, E>> Path<F> {
         let mut aside = vec![0.0; count + 1];
         let mut slope: Option<(Contacts, Vec<f64>)> = None;
         let mut last = f64::INFINITY;
-        let unsolved = |cycles: u32, miss: f64| BranchError::Orbit(OrbitError::NoConvergence { cycles, miss });
         for _ in 0..CORRECTIONS {
             let system = self.system(share)?;
             let shot = Shot::new(&system, start, self.cycles, Some(&from.shot.scale))?;
@@ -125,7 +133,7 @@ impl<E, F: FnMut(f64) -> Result<HybridSystem, E>> Path<F> {
             let across = (0..=count).fold(0.0, |sum, i| sum - from.tangent[i] * aside[i]);
             let rest: Vec<f64> = shot.miss.iter().copied().chain([across]).collect();
             let Some(moves) = elimination::solve(bordered(&shot, &by, &from.tangent), rest, &shot.places()) else {
-                return Err(unsolved(self.cycles, shot.misses_by()));
+                return Err(shot.unsolved().into());
             };
             let distance = size(&moves);
             // The speed of a slow contact is the root of what a state is known to.
@@ -133,22 +141,18 @@ impl<E, F: FnMut(f64) -> Result<HybridSystem, E>> Path<F> {
             if distance <= settled || (distance <= ROUNDING && distance > 0.5 * last) {
                 let distance = distance.min(CLOSED);
                 let shot = shot.in_own_units(&system);
-                let onwards: Vec<f64> = (0..count)
-                    .map(|i| from.tangent[i] * from.shot.scale.unit(i) / shot.scale.unit(i))
-                    .chain([from.tangent[count]])
-                    .collect();
-                let Solved { x: tangent, determinant } = self.tangent(&shot, share, &onwards)?;
+                let Solved { x: tangent, determinant } = self.tangent(&shot, share, &from.onwards(&shot))?;
                 return Ok(At { share, shot, distance, tangent, determinant });
             }
             aside.iter_mut().zip(&moves).for_each(|(aside, by)| *aside += by);
             if distance > last || length(&aside) > ASIDE * step.abs() {
-                return Err(unsolved(self.cycles, shot.misses_by()));
+                return Err(shot.unsolved().into());
             }
             start = shot.moved(&moves[..count]);
             share += moves[count];
             (slope, last) = (Some((contacts, by)), distance);
         }
-        Err(unsolved(self.cycles, last))
+        Err(OrbitError::NoConvergence { cycles: self.cycles, miss: last }.into())
     }
 
     /// ∂P/∂λ in units of the motion, by a difference of runs on both sides; of one side where the other has other contacts.
@@ -172,8 +176,7 @@ impl<E, F: FnMut(f64) -> Result<HybridSystem, E>> Path<F> {
             // A contact comes or goes in between.
             by *= 0.01;
         }
-        let missed = OrbitError::NoConvergence { cycles: self.cycles, miss: shot.misses_by() };
-        Err(error.unwrap_or(BranchError::Orbit(missed)))
+        Err(error.unwrap_or_else(|| shot.unsolved().into()))
     }
 
     /// Where the same start ends under another parameter; `None` by way of other contacts.
@@ -188,9 +191,8 @@ impl<E, F: FnMut(f64) -> Result<HybridSystem, E>> Path<F> {
         let by = self.slope(shot, share)?;
         let mut rest = vec![0.0; onwards.len()];
         rest[onwards.len() - 1] = 1.0;
-        let missed = OrbitError::NoConvergence { cycles: self.cycles, miss: shot.misses_by() };
         let solved = elimination::solved(bordered(shot, &by, onwards), rest, &shot.places());
-        let mut tangent = solved.ok_or(BranchError::Orbit(missed))?;
+        let mut tangent = solved.ok_or_else(|| shot.unsolved())?;
         let all = length(&tangent.x);
         tangent.x.iter_mut().for_each(|t| *t /= all);
         tangent.determinant *= all;
@@ -215,5 +217,5 @@ fn bordered(shot: &Shot, by: &[f64], across: &[f64]) -> DMatrix<f64> {
 }
 
 pub(super) fn length(z: &[f64]) -> f64 {
-    z.iter().fold(0.0, |sum, x| sum + x * x).sqrt()
+    dot(z, z).sqrt()
 }

@@ -14,8 +14,8 @@
 //! orbits take none of them, and are as exact as rounding lets a number of an orbit be known over u.
 
 use super::newton::{closed, size};
-use super::shot::{Sequence, Shot, absolute};
-use super::{Orbit, OrbitError};
+use super::shot::{Sequence, Shot};
+use super::{Orbit, OrbitError, lagrange};
 use crate::dynamics::motion::End;
 use crate::dynamics::system::HybridSystem;
 use crate::dynamics::{EngineError, Response};
@@ -103,9 +103,7 @@ pub(super) fn elasticity<E>(
     value: impl Fn(&Response) -> f64,
 ) -> Result<Elasticity, ElasticityError<E>> {
     let system = system_at(1.0).map_err(ElasticityError::System)?;
-    let none = || OrbitError::NoConvergence { cycles: orbit.cycles, miss: f64::INFINITY };
-    let start = absolute(&system, &orbit.start).ok_or_else(none)?;
-    let shot = Shot::new(&system, start, orbit.cycles, None)?;
+    let shot = Shot::new(&system, orbit.begin(&system)?, orbit.cycles, None)?;
     let number = value(shot.response());
     if !(number > 0.0) {
         return Err(ElasticityError::Zero);
@@ -199,12 +197,8 @@ impl<E, S: FnMut(f64) -> Result<HybridSystem, E>, A: Fn(&Response) -> f64> Sides
 
     /// Where the orbit at u starts, by the polynomial through the starts that are known.
     fn predicted(&self, u: f64) -> End {
-        let weights: Vec<f64> = (0..self.known.len())
-            .map(|i| {
-                let others = self.known.iter().enumerate().filter(|(k, _)| *k != i);
-                others.fold(1.0, |weight, (_, (other, _))| weight * (u - other) / (self.known[i].0 - other))
-            })
-            .collect();
+        let places: Vec<f64> = self.known.iter().map(|(u, _)| *u).collect();
+        let weights = lagrange::weights(&places, u);
         let own = &self.known[0].1;
         let number = |i: usize| self.known.iter().zip(&weights).map(|((_, end), weight)| weight * end.state[i]).sum();
         End { state: (0..own.state.len()).map(number).collect(), contacts: own.contacts.clone() }

@@ -8,7 +8,6 @@
 //! known to its rounding over d. But the determinant feels that by its square only. So the point is interpolated from orbits at
 //! some distance to both sides, as a zero of det(1 − M), for which no ∂P/∂λ is needed.
 
-use super::OrbitError;
 use super::branch::BranchError;
 use super::corrector::{At, Path};
 use super::lagrange::{combined, weights};
@@ -98,8 +97,7 @@ fn closed<E, F: FnMut(f64) -> Result<HybridSystem, E>>(
 ) -> Result<At, BranchError<E>> {
     let system = path.system(share)?;
     let first = Shot::new(&system, start, path.cycles, None)?;
-    let none = |shot: &Shot| OrbitError::NoConvergence { cycles: path.cycles, miss: shot.misses_by() };
-    let step = |shot: &Shot| shot.kept().and_then(|kept| shot.step_beside(&kept)).ok_or_else(|| none(shot));
+    let step = |shot: &Shot| shot.kept().and_then(|kept| shot.step_beside(&kept)).ok_or_else(|| shot.unsolved());
     let shot = Shot::new(&system, first.moved(&step(&first)?), path.cycles, None)?;
     let distance = size(&step(&shot)?);
     Ok(At { share, shot, distance, tangent, determinant: 0.0 })

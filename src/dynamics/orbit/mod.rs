@@ -58,7 +58,7 @@ mod shot;
 mod slowing;
 mod special;
 
-use super::motion::{Exponent, MotionKind, Multiplier};
+use super::motion::{End, Exponent, MotionKind, Multiplier, NEUTRAL};
 use super::options::StartState;
 use super::response::Response;
 use super::{EngineError, Options, system::HybridSystem};
@@ -66,9 +66,6 @@ use super::{EngineError, Options, system::HybridSystem};
 pub use branch::{Along, Branch, BranchEnd, BranchError, BranchPoint};
 pub use elasticity::{Elasticity, ElasticityError};
 pub use special::Special;
-
-/// A multiplier of a motion without damping may round above 1 by this.
-const NEUTRAL: f64 = 1e-9;
 
 /// A periodic motion.
 ///
@@ -151,6 +148,12 @@ impl Orbit {
         value: impl Fn(&Response) -> f64,
     ) -> Result<Elasticity, ElasticityError<E>> {
         elasticity::elasticity(self, system_at, value)
+    }
+
+    /// Its start, seen by an observer at rest.
+    fn begin(&self, system: &HybridSystem) -> Result<End, OrbitError> {
+        let none = OrbitError::NoConvergence { cycles: self.cycles, miss: f64::INFINITY };
+        shot::absolute(system, &self.start).ok_or(none)
     }
 
     /// No multiplier exceeds 1.

@@ -4,7 +4,9 @@ use std::ops::Range;
 
 use nalgebra::DMatrix;
 
+use super::corrector::length;
 use super::{Orbit, OrbitError, elimination};
+use crate::dynamics::contact::Relative;
 use crate::dynamics::march;
 use crate::dynamics::motion::{End, Period, Scale, Tape, kind};
 use crate::dynamics::states::States;
@@ -76,6 +78,11 @@ impl Shot {
         self.scale.apart(&self.start, self.end())
     }
 
+    /// It leads to no orbit.
+    pub(super) fn unsolved(&self) -> OrbitError {
+        OrbitError::NoConvergence { cycles: self.tape.ends.len() as u32, miss: self.misses_by() }
+    }
+
     /// By how much the second half of the period differs from the first, in units of the motion; `None` of an odd number of cycles.
     fn halves_differ(&self) -> Option<Vec<f64>> {
         let cycles = self.tape.ends.len();
@@ -85,7 +92,7 @@ impl Shot {
     /// The halves of the period change places between two neighbours: between them is a motion of half the period.
     pub(super) fn swaps_halves(&self, next: &Self) -> bool {
         let (Some(here), Some(there)) = (self.halves_differ(), next.halves_differ()) else { return false };
-        let [own, other] = [&here, &there].map(|difference| dot(difference, difference).sqrt());
+        let [own, other] = [&here, &there].map(|difference| length(difference));
         own.min(other) > DIFFERS && dot(&here, &there) < -0.5 * own * other
     }
 
@@ -161,13 +168,7 @@ impl Shot {
         if self.response.events.iter().any(|event| event.kind == EventKind::ChatterEnd) {
             return None;
         }
-        let made = |event: &&Event| match event.kind {
-            EventKind::FloorContact | EventKind::CeilingContact | EventKind::FloorStop | EventKind::CeilingStop => true,
-            EventKind::FloorRelease | EventKind::CeilingRelease | EventKind::StopRelease | EventKind::ChatterEnd => {
-                false
-            }
-        };
-        let events = self.response.events.iter().filter(made);
+        let events = self.response.events.iter().filter(|event| event.kind.is_contact());
         events.copied().min_by(|a, b| a.approach.abs().total_cmp(&b.approach.abs()))
     }
 
@@ -175,7 +176,7 @@ impl Shot {
     pub(super) fn flies_from_rest(&self, contact: &Event) -> bool {
         let of_particle = || self.response.events.iter().filter(|event| event.particle == contact.particle);
         let before = of_particle().take_while(|event| *event != contact).last().or_else(|| of_particle().next_back());
-        before.is_some_and(|event| is_release(event.kind) && event.departure == 0.0)
+        before.is_some_and(|event| event.kind.is_release() && event.departure == 0.0)
     }
 
     /// A speed as a share of the motion's.
@@ -214,7 +215,7 @@ impl Shot {
         let at = |event: &Event| since_start(event, period);
         let is_brief =
             |(i, release): &(usize, &Event)| {
-                is_release(release.kind)
+                release.kind.is_release()
                     && events[..*i].iter().rev().find(|event| event.particle == release.particle).is_some_and(
                         |landing| landing.departure == 0.0 && at(release) - at(landing) <= COINCIDES * period,
                     )
@@ -261,16 +262,12 @@ fn upside_down(kind: EventKind) -> EventKind {
     }
 }
 
-fn is_release(kind: EventKind) -> bool {
-    matches!(kind, EventKind::FloorRelease | EventKind::CeilingRelease | EventKind::StopRelease)
-}
-
 /// The vector of length 1 that a matrix shortens most.
 fn inverse_iteration(matrix: &DMatrix<f64>) -> Option<Vec<f64>> {
     let mut vector = vec![1.0; matrix.nrows()];
     for _ in 0..INVERSE_ITERATIONS {
         vector = elimination::solve(matrix.clone(), vector, &(0..0))?;
-        let length = dot(&vector, &vector).sqrt();
+        let length = length(&vector);
         vector.iter_mut().for_each(|x| *x /= length);
     }
     Some(vector)
@@ -357,13 +354,9 @@ pub(super) fn start_at(system: &HybridSystem, at: &End) -> StartState {
 /// The same state at rest in space: absolute places and rates.
 pub(super) fn absolute(system: &HybridSystem, start: &StartState) -> Option<End> {
     let StartState::Given { q, rate, particles } = start else { return None };
-    let mut state = q.clone();
-    let sides = || particles.iter().zip(&system.particles).map(|(at, particle)| (at, at.0.side(), particle));
-    state.extend(sides().map(|((contact, gap, _), side, particle)| {
-        let offset = if *contact != Contact::Flight && side != Contact::Floor.side() { particle.gap } else { 0.0 };
-        dot(&side.face(particle).row, q) + offset + gap
-    }));
-    state.extend(rate);
-    state.extend(sides().map(|((.., speed), side, particle)| dot(&side.face(particle).row, rate) + speed));
-    Some(End { state, contacts: particles.iter().map(|(contact, ..)| *contact).collect() })
+    let absolute = particles.iter().zip(&system.particles).map(|(&(contact, gap, speed), particle)| {
+        Relative { gap, rate: speed }.absolute(particle, contact.side(), [q, rate])
+    });
+    let contacts = particles.iter().map(|(contact, ..)| *contact).collect();
+    Some(End::new([q, rate], &absolute.collect::<Vec<_>>(), contacts))
 }

@@ -2,11 +2,10 @@
 
 use nalgebra::DMatrix;
 
-use super::NEUTRAL;
 use super::branch::BranchError;
 use super::corrector::{At, Path};
 use super::fork::{self, Fork};
-use crate::dynamics::motion::Multiplier;
+use crate::dynamics::motion::{Multiplier, NEUTRAL};
 use crate::dynamics::system::HybridSystem;
 
 /// Evaluations of a test function.

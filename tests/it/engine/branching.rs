@@ -107,7 +107,17 @@ fn a_cascade_doubles_again_where_the_iterated_map_does() {
         let expected = Ball::doubling(e, cycles as usize, attracts_at);
         close(&format!("doubling of {cycles} cycles"), doubles.parameter, expected, 1e-10);
         assert_eq!((doubles.orbit.cycles, &branch.end), (cycles, &BranchEnd::Range));
-        branch = Branch::doubled(systems, doubles, along).expect("it begins there");
+        let doubled = Branch::doubled(systems, doubles, along).expect("it begins there");
+        if cycles == 1 {
+            // Followed back, a doubled motion comes to the one that it began at.
+            let away = &doubled.points[doubled.points.len() / 2];
+            let down = Along { from: along.to, to: along.from, ..along };
+            let back = Branch::follow(systems, &away.orbit, away.parameter, down).expect("it has a first orbit");
+            let last = back.points.last().expect("it has points").parameter;
+            assert_eq!(back.end, BranchEnd::HalfPeriod);
+            within("its end", last, expected, along.step * (along.to - along.from));
+        }
+        branch = doubled;
     }
     assert!(branch.points[1..].iter().all(|point| point.orbit.cycles == 8));
 }
@@ -240,6 +250,15 @@ fn the_impact_pair_loses_its_symmetry_where_half_a_cycle_has_the_eigenvalue_minu
         let up = phase(one, EventKind::CeilingContact);
         within("mirror image", off(up, phase(other, EventKind::FloorContact)), 0.0, 1e-9);
         assert!(off(up, phase(one, EventKind::FloorContact)).abs() > 0.01);
+        // Followed back, they end where they began.
+        let back = Along { from: along.to, to: along.from, ..along };
+        for branch in &both {
+            let away = &branch.points[branch.points.len() / 2];
+            let back = Branch::follow(systems, &away.orbit, away.parameter, back).expect("it has a first orbit");
+            let last = back.points.last().expect("it has points").parameter;
+            assert_eq!(back.end, BranchEnd::Symmetry);
+            within("its end", last, expected, along.step * (along.to - along.from));
+        }
     }
 }
 

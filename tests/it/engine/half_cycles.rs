@@ -126,3 +126,13 @@ pub(super) fn no_array_is_refused_and_all_balance_whatever_their_order() {
         assert!(balance < 1e-9, "{what}: {:?}", end.proof);
     }
 }
+
+#[test]
+fn a_curve_through_three_points_is_their_parabola() {
+    let parabola = |x: f64| (x - 1.0) * (x - 1.0);
+    let curve = Spline::through(&[0.0, 1.0, 3.0].map(|x| [x, parabola(x)])).expect("a curve");
+    for x in [0.2, 0.9, 1.7, 2.5] {
+        assert!((curve.at(x) - parabola(x)).abs() < 1e-14, "{x}");
+    }
+    assert_eq!(Spline::through(&[[1.0, 0.0], [1.0, 2.0]]), None);
+}

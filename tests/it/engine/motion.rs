@@ -451,3 +451,21 @@ fn a_contact_whose_damping_remembers_has_no_name() {
     let error = event_driven(&remembers, &Options { motion: true, ..Options::default() });
     assert_eq!(error, Err(EngineError::DampingWithMemory));
 }
+
+#[test]
+fn every_name_of_a_motion_reads_back() {
+    for kind in [
+        MotionKind::AtRest,
+        MotionKind::Periodic { periods: 3, contacts: 7 },
+        MotionKind::Sticking { periods: 1, contacts: 2 },
+        MotionKind::CompletedChatter { periods: 2 },
+        MotionKind::QuasiPeriodic,
+        MotionKind::Chaotic,
+        MotionKind::NotSettled,
+    ] {
+        assert_eq!(kind.to_string().parse(), Ok(kind));
+    }
+    for text in ["", "periodic", "periodic 1", "periodic x:1", "sticking 1:x", "completed chatter 2:3", "resting 1:1"] {
+        assert!(text.parse::<MotionKind>().is_err(), "{text}");
+    }
+}
