@@ -185,12 +185,12 @@ impl<E: Effects> March<'_, E> {
             let (here, away) = (self.relative_to(j, side), side.away());
             let push = -away * (stiffness * here.gap + self.damping_on(j, side) * here.rate);
             match self.contacts[j].at(side, particle) {
-                Hold::Pressed if no_tension && push < 0.0 && self.is_compressed(j, side) => self.slip_smoothly(j, side),
+                Hold::Pressed if no_tension && push < 0.0 && self.is_compressed(j, side) => self.slip(j, side),
                 Hold::Pressed if (no_tension && push < 0.0) || (here.gap == 0.0 && away * here.rate > 0.0) => {
                     self.record(j, side.lost(), here.rate, here.rate);
                     self.turn(j, side, Hold::Away)
                 }
-                Hold::Released if push > 0.0 => self.slip_smoothly(j, side),
+                Hold::Released if push > 0.0 => self.slip(j, side),
                 Hold::Pressed | Hold::Released | Hold::Held | Hold::Away => Ok(()),
             }?;
         }

@@ -6,7 +6,7 @@ use nalgebra::DMatrix;
 
 use super::corrector::length;
 use super::{Orbit, OrbitError, elimination};
-use crate::dynamics::contact::Relative;
+use crate::dynamics::contact::{Relative, Side};
 use crate::dynamics::march;
 use crate::dynamics::motion::{End, Period, Scale, Tape, kind};
 use crate::dynamics::states::States;
@@ -323,8 +323,7 @@ pub(super) fn start_at(system: &HybridSystem, at: &End) -> StartState {
         let relative = |contact: Contact| {
             let side = contact.side();
             let row = &side.face(particle).row;
-            let offset =
-                if contact.face(particle).is_some() && side != Contact::Floor.side() { particle.gap } else { 0.0 };
+            let offset = if side == Side::Ceiling { particle.gap } else { 0.0 };
             (places[n + j] - dot(row, &places[..n]) - offset, rates[n + j] - dot(row, &rates[..n]))
         };
         let mut contact = at.contacts[j];

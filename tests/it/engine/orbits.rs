@@ -1,15 +1,16 @@
 //! Periodic motions found by Newton's method, and branches of them, against closed forms: stable and unstable ones, folds, doublings
 //! and grazes.
 
+use std::collections::BTreeSet;
 use std::convert::Infallible;
 use std::f64::consts::{PI, TAU};
 
 use nalgebra::{Matrix2, Matrix4, Vector2, Vector4};
 use shotdamp::dynamics::{
-    Along, Branch, BranchEnd, EventKind, HybridSystem, Multiplier, Options, Orbit, OrbitError, Special, StartState,
-    Until, event_driven,
+    Along, Branch, BranchEnd, Contact, EventKind, HybridSystem, Multiplier, Options, Orbit, OrbitError, Special,
+    StartState, Until, event_driven,
 };
-use shotdamp::scene::{Excitation, Scene};
+use shotdamp::scene::{ContactDamping, ContactEnd, Excitation, Scene, Surface};
 
 use super::bench::{GRAVITY, base, close, damper, in_flight, nothing, resilient, rigid, scene, system, within};
 use super::closed_forms::{Steady, expected, fixed_stop, masri_and_caughey, one_floor_impact, open, table};
@@ -152,6 +153,31 @@ fn an_orbit_is_found_from_the_end_of_a_run_and_in_its_shortest_period() {
     let settled = event_driven(&scene, &settles).expect("it runs");
     assert!(settled.settled.expect("it attracts").first <= 3);
     close("RMS", settled.window().rms_velocity(), double.response.window().rms_velocity(), 1e-12);
+}
+
+#[test]
+fn an_orbit_is_the_same_wherever_in_its_period_a_cycle_begins() {
+    let cannot_pull =
+        Surface::Resilient { stiffness: 300.0, damping: ContactDamping::Constant(6.0), ends: ContactEnd::ZeroForce };
+    let shaken = Excitation::Harmonic { force: 60.0, angular_frequency: 28.0 };
+    let beaten = system(&scene(base(1.0, 1000.0, 10.0), 0.0, damper(0.05, 0.05, cannot_pull), shaken));
+    let begins = (0..12).map(|place| {
+        let mut begun = beaten.clone();
+        begun.drive.harmonic.as_mut().expect("it is shaken").phase += TAU * f64::from(place) / 12.0 + 0.25;
+        let run = Options { skip: 0, average: 400, ..Options::default() };
+        let orbit = Orbit::after(&begun, &run).expect("it settles");
+        let StartState::Given { particles, .. } = &orbit.start else { panic!("an orbit starts somewhere") };
+        (particles[0].0, [orbit.response.window().rms_velocity(), orbit.multipliers[0].modulus])
+    });
+    let begins: Vec<(Contact, [f64; 2])> = begins.collect();
+    // With the particle in flight, at either face, and let go by either.
+    let contacts: BTreeSet<Contact> = begins.iter().map(|(contact, _)| *contact).collect();
+    assert!(contacts.len() == 5, "{contacts:?}");
+    let (_, [same_rms, same_multiplier]) = begins[0];
+    for (contact, [rms, multiplier]) in &begins {
+        close(&format!("RMS from {contact:?}"), *rms, same_rms, 1e-11);
+        close(&format!("multiplier from {contact:?}"), *multiplier, same_multiplier, 1e-8);
+    }
 }
 
 #[test]
