@@ -1,11 +1,12 @@
 """Instructions of a run, and how many of them belong to effects that its scene does not name.
 
+    export CARGO_PROFILE_RELEASE_STRIP=none CARGO_PROFILE_RELEASE_DEBUG=line-tables-only
     cargo build --release --bench instructions
     python3 benches/instructions.py target/release/deps/instructions-*     (needs valgrind)
 
-Each scene is run once and eleven times under `valgrind --tool=callgrind`; a tenth of the difference is a run with its contact
-states known. Lines of the engine that speak of an effect (what a scene without it has to pass by) are summed: their share is what
-the effect costs a scene that does not name it. Prints Markdown.
+The settings keep the tables that tell lines of the engine. Each scene is run once and eleven times under `valgrind --tool=callgrind`;
+a tenth of the difference is a run with its contact states known. Lines that speak of an effect (what a scene without it has to pass
+by) are summed: their share is what the effect costs a scene that does not name it. Prints Markdown.
 """
 
 import os
