@@ -57,8 +57,13 @@ impl Relative {
     /// y and y′ of a particle that is here relative to the face on one side, of a structure at q, q′.
     pub(crate) fn absolute(self, particle: &Particle, side: Side, [q, rate]: [&[f64]; 2]) -> [f64; 2] {
         let row = &side.face(particle).row;
-        let offset = if side == Side::Ceiling { particle.gap } else { 0.0 };
-        [dot(row, q) + offset + self.gap, dot(row, rate) + self.rate]
+        [dot(row, q) + side.height(particle) + self.gap, dot(row, rate) + self.rate]
+    }
+
+    /// The other way round: where a particle at y, y′ is relative to the face on one side.
+    pub(crate) fn of([y, y_rate]: [f64; 2], particle: &Particle, side: Side, [q, rate]: [&[f64]; 2]) -> Self {
+        let row = &side.face(particle).row;
+        Self { gap: y - dot(row, q) - side.height(particle), rate: y_rate - dot(row, rate) }
     }
 }
 
@@ -198,6 +203,14 @@ impl Side {
         match self {
             Self::Floor => 1.0,
             Self::Ceiling => -1.0,
+        }
+    }
+
+    /// How high above the floor it lies where the structure does not bend, m.
+    pub(crate) fn height(self, particle: &Particle) -> f64 {
+        match self {
+            Self::Floor => 0.0,
+            Self::Ceiling => particle.gap,
         }
     }
 

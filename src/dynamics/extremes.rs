@@ -68,7 +68,7 @@ pub(crate) struct Lookout {
     speeds: Vec<Four>,
     /// Kernels of 1, 2, 4, … steps.
     strides: Vec<Vec<Kernels>>,
-    /// Of them are of this segment.
+    /// How many of them are of this segment.
     known: usize,
     /// Kernels of a time.
     kernels: Vec<Kernels>,
@@ -116,9 +116,7 @@ impl Lookout {
             taken += 1;
             let t = if place == last { length } else { length * (place as f64 / steps) };
             if taken.is_multiple_of(STRIDES_IN_A_ROW) || place == last {
-                stretch.bank.kernels(stretch.blocks, t, &mut self.kernels);
-                let moved = self.start.iter().zip(stretch.bank.blocks()).zip(&self.kernels);
-                let moved = moved.map(|((from, blocks), kernels)| blocks.advance(*from, kernels));
+                let moved = moved(stretch, &self.start, t, &mut self.kernels);
                 self.now.iter_mut().zip(moved).for_each(|(now, moved)| *now = moved);
             } else {
                 self.know(stretch, step, doublings as usize);
@@ -129,11 +127,7 @@ impl Lookout {
             extremes.take(next.motion[0], next.motion[1]);
             for order in if jumps { 0..0 } else { 0..2 } {
                 let (start, kernels) = (&self.start, &mut self.kernels);
-                let at = |t: f64| {
-                    stretch.bank.kernels(stretch.blocks, t, kernels);
-                    let moved = start.iter().zip(stretch.bank.blocks()).zip(&*kernels);
-                    motion(stretch, moved.map(|((from, blocks), kernels)| blocks.advance(*from, kernels)), t)
-                };
+                let at = |t: f64| motion(stretch, moved(stretch, start, t, kernels), t);
                 if let Some(turn) = crest(order, here, next, || extremes.of(order), at) {
                     extremes.take(turn[0], turn[1]);
                 }
@@ -179,6 +173,19 @@ impl Lookout {
         });
         Bounds { bend: 2.0 * rest.p2.abs() + bend.sum(), snap: snap.sum(), fastest: fastest.largest() }
     }
+}
+
+/// Shares after `t` seconds, by the kernels of that time.
+#[inline(always)]
+fn moved<'a>(
+    stretch: Stretch<'a>,
+    start: &'a [Phases],
+    t: f64,
+    kernels: &'a mut [Kernels],
+) -> impl Iterator<Item = Phases> + 'a {
+    stretch.bank.kernels(stretch.blocks, t, kernels);
+    let each = start.iter().zip(stretch.bank.blocks()).zip(&*kernels);
+    each.map(|((from, blocks), kernels)| blocks.advance(*from, kernels))
 }
 
 #[inline(always)]

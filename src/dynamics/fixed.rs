@@ -269,8 +269,7 @@ impl<'a, V: Vector> Run<'a, V> {
     fn relative(&self, j: usize, side: Side) -> Relative {
         let particle = &self.system.particles[j];
         let (state, positions, gap) = (self.motion.state.values(), self.layout.positions(), self.layout.gap(j));
-        let offset = if side == Side::Ceiling { particle.gap } else { 0.0 };
-        let mut here = Relative { gap: state[gap] - offset, rate: state[gap + positions] };
+        let mut here = Relative { gap: state[gap] - side.height(particle), rate: state[gap + positions] };
         for (i, lead) in lead(particle, side).enumerate() {
             here.gap -= lead * state[i];
             here.rate -= lead * state[i + positions];
@@ -355,8 +354,7 @@ fn start(system: &HybridSystem, from: &StartState, layout: Layout) -> Result<(Ve
             for (j, ((contact, gap, speed), particle)) in particles.iter().zip(&system.particles).enumerate() {
                 let side = contact.side();
                 let ahead = |x: &[f64]| lead(particle, side).zip(x).fold(0.0, |sum, (lead, x)| sum + lead * x);
-                let offset = if side == Side::Ceiling { particle.gap } else { 0.0 };
-                state[layout.gap(j)] = gap + offset + ahead(q);
+                state[layout.gap(j)] = gap + side.height(particle) + ahead(q);
                 state[layout.gap(j) + positions] = speed + ahead(rate);
             }
             Ok((particles.iter().map(|(contact, ..)| *contact).collect(), state))

@@ -188,14 +188,10 @@ impl Square {
         // Several sums side by side, as each addition would have to wait for the one before.
         const MANY: usize = 4;
         let mut sums = [Four::ZERO; MANY];
-        let (weights, gained) = (self.pairs.as_chunks::<MANY>(), gains.second.as_chunks::<MANY>());
-        for (weights, gained) in weights.0.iter().zip(gained.0) {
+        for (weights, gained) in self.pairs.chunks(MANY).zip(gains.second.chunks(MANY)) {
             for ((sum, weights), gained) in sums.iter_mut().zip(weights).zip(gained) {
                 *sum = *sum + *weights * Four::new(*gained);
             }
-        }
-        for ((sum, weights), gained) in sums.iter_mut().zip(weights.1).zip(gained.1) {
-            *sum = *sum + *weights * Four::new(*gained);
         }
         let [a, b, c, d] = sums;
         ((a + b) + (c + d)).sum() + self.swing * gains.swing

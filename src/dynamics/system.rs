@@ -50,6 +50,11 @@ pub fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).fold(0.0, |sum, (x, y)| sum + x * y)
 }
 
+/// √(Σ xᵢ²).
+pub(crate) fn length(x: &[f64]) -> f64 {
+    dot(x, x).sqrt()
+}
+
 /// A structure with its particles and its drive.
 #[derive(Debug, Clone, PartialEq)]
 pub struct HybridSystem {

@@ -117,8 +117,7 @@ impl Layout {
 
     /// Position of particle j relative to a face: u, or w = u − h − (φ_c − φ_f)·q; and its rate.
     fn relative(self, particle: &Particle, j: usize, side: Side) -> [Signal; 2] {
-        let offset = if side == Side::Ceiling { particle.gap } else { 0.0 };
-        let mut position = self.unit(self.gap(j)).plus_constant(-offset);
+        let mut position = self.unit(self.gap(j)).plus_constant(-side.height(particle));
         let mut rate = self.unit(self.gap(j) + self.positions());
         for (i, lead) in lead(particle, side).enumerate() {
             position.0[i] -= lead;

@@ -124,9 +124,4 @@ impl Flow {
             place.low += short * dot(entries, &rates);
         }
     }
-
-    /// A harmonic force drives it.
-    pub(crate) fn has_harmonic(&self) -> bool {
-        self.harmonic.is_some()
-    }
 }

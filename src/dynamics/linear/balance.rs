@@ -6,6 +6,7 @@ use super::moments::Moments;
 use crate::dynamics::audit::{Audit, Passed, State};
 use crate::dynamics::block::pairs;
 use crate::dynamics::budget;
+use crate::dynamics::contact::{Relative, Side};
 use crate::dynamics::flow::Flow;
 use crate::dynamics::integral::GAUSS;
 use crate::dynamics::system::{HybridSystem, dot};
@@ -65,8 +66,8 @@ pub(super) fn state(system: &HybridSystem, flow: &Flow, p: &[f64], rate: &[f64])
     for (j, particle) in system.particles.iter().enumerate() {
         let slot = flow.modes.attached.iter().position(|&other| other == j);
         let [gap, speed] = slot.map_or([0.0; 2], |slot| [p[n + slot], rate[n + slot]]);
-        let face = &particle.floor.row;
-        state.particles.push([dot(face, &state.q) + gap, dot(face, &state.rate) + speed]);
+        let here = Relative { gap, rate: speed };
+        state.particles.push(here.absolute(particle, Side::Floor, [&state.q, &state.rate]));
         state.compressions.push(particle.floor.law.stiffness().map_or([0.0; 2], |stiffness| [stiffness, gap]));
     }
     state

@@ -32,6 +32,12 @@ pub(super) struct Doubled {
 }
 
 impl<E: Effects> March<'_, E> {
+    /// No error dies away.
+    #[inline(always)]
+    pub(super) fn is_undamped(&self) -> bool {
+        E::ALL && self.undamped
+    }
+
     /// The state at the end of a segment.
     #[cold]
     pub(super) fn arrive_doubled(&mut self, length: f64, end_drive: DrivePhase, found: Found) {
@@ -72,7 +78,7 @@ impl<E: Effects> March<'_, E> {
 
     /// Seconds from the time of an event by the clock to the instant at which its particle is at the face.
     fn lack(&self, Guard { particle: j, crossing, .. }: Guard, length: f64) -> f64 {
-        if crossing == Crossing::HalfCycle || self.flow.has_harmonic() {
+        if crossing == Crossing::HalfCycle || self.system.drive.harmonic.is_some() {
             return 0.0;
         }
         let particle = &self.system.particles[j];

@@ -67,7 +67,7 @@ impl<E: Effects> March<'_, E> {
         let (p, rate) = (&self.q[..flow.order], &self.rate[..flow.order]);
         flow.enter(p, rate, self.level, drive, &mut self.work, &mut self.c);
         self.c[2 * flow.blocks.len()..flow.width()].fill(0.0);
-        if E::ALL && self.undamped {
+        if self.is_undamped() {
             flow.enter_doubled([p, rate], self.level, drive, &mut self.c, &mut self.doubled.low);
         } else if self.response.proof.events >= MANY_EVENTS {
             flow.correct(p, rate, self.level, drive, &mut self.c);
@@ -182,7 +182,7 @@ impl<E: Effects> March<'_, E> {
         if let Some(request) = self.options.trace {
             self.sample(request, length, drive);
         }
-        if E::ALL && self.undamped {
+        if self.is_undamped() {
             self.arrive_doubled(length, end_drive, found);
         } else {
             self.arrive(length, end_drive);

@@ -1,13 +1,13 @@
 //! A branch of periodic motions: from point to point, with its special points, until it ends.
 
-use super::corrector::{At, Path, length};
+use super::corrector::{At, Path};
 use super::newton::closed;
 use super::origin::Origin;
 use super::shot::Shot;
 use super::slowing::{GRAZES, Slowing};
 use super::special::{self, Between, Special};
 use super::{Orbit, OrbitError};
-use crate::dynamics::system::{HybridSystem, dot};
+use crate::dynamics::system::{HybridSystem, dot, length};
 
 /// A step below this share of the longest leads nowhere.
 const SHORTEST: f64 = 1e-11;

@@ -12,7 +12,7 @@ use super::newton::{CLOSED, size};
 use super::shot::{Contacts, Shot, state_after};
 use super::{OrbitError, elimination};
 use crate::dynamics::motion::End;
-use crate::dynamics::system::{HybridSystem, dot};
+use crate::dynamics::system::{HybridSystem, length};
 
 /// Half the distance of the runs whose difference is ∂P/∂λ, as a share of the range: the largest.
 const DIFFERENCE: f64 = 1e-6;
@@ -214,8 +214,4 @@ fn bordered(shot: &Shot, by: &[f64], across: &[f64]) -> DMatrix<f64> {
         (false, true) => -by[i],
         (false, false) => closing[(i, k)],
     })
-}
-
-pub(super) fn length(z: &[f64]) -> f64 {
-    dot(z, z).sqrt()
 }

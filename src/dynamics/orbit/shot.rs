@@ -4,13 +4,12 @@ use std::ops::Range;
 
 use nalgebra::DMatrix;
 
-use super::corrector::length;
 use super::{Orbit, OrbitError, elimination};
-use crate::dynamics::contact::{Relative, Side};
+use crate::dynamics::contact::Relative;
 use crate::dynamics::march;
 use crate::dynamics::motion::{End, Period, Scale, Tape, kind};
 use crate::dynamics::states::States;
-use crate::dynamics::system::{Contact, Event, EventKind, HybridSystem, Law, dot};
+use crate::dynamics::system::{Contact, Event, EventKind, HybridSystem, Law, dot, length};
 use crate::dynamics::{Options, Response, StartState, budget};
 
 /// Away from a multiplier, so that the equations have a solution.
@@ -321,10 +320,10 @@ pub(super) fn start_at(system: &HybridSystem, at: &End) -> StartState {
     let (places, rates) = at.state.split_at(n + system.particles.len());
     let particles = system.particles.iter().enumerate().map(|(j, particle)| {
         let relative = |contact: Contact| {
-            let side = contact.side();
-            let row = &side.face(particle).row;
-            let offset = if side == Side::Ceiling { particle.gap } else { 0.0 };
-            (places[n + j] - dot(row, &places[..n]) - offset, rates[n + j] - dot(row, &rates[..n]))
+            let structure = [&places[..n], &rates[..n]];
+            let Relative { gap, rate } =
+                Relative::of([places[n + j], rates[n + j]], particle, contact.side(), structure);
+            (gap, rate)
         };
         let mut contact = at.contacts[j];
         let (mut gap, mut rate) = relative(contact);
