@@ -2,7 +2,8 @@
 //! tries as many.
 
 use shotdamp::dynamics::{
-    Allowance, Drive, EngineError, Harmonic, HybridSystem, Law, Limit, Options, Particle, Proof, Tick, event_driven,
+    Allowance, Drive, EngineError, Face, Harmonic, HybridSystem, Law, Limit, Options, Particle, Proof, SampledParticle,
+    Tick, TraceRequest, event_driven,
 };
 use shotdamp::scene::{ContactDamping, ContactEnd, Excitation, Surface, compile};
 
@@ -84,6 +85,55 @@ pub(super) fn no_drawn_scene_is_refused_unless_both_its_faces_are_rigid_and_meet
             Err(error) => panic!("seed {seed}: {error}"),
         }
     }
+}
+
+/// How far a particle is beyond where a face can be, the face drawn out, or the face beyond its stop, m; `away` is 1 for a floor, -1
+/// for a ceiling.
+fn beyond(face: &Face, away: f64, height: f64, surface: f64, unloaded: f64) -> f64 {
+    let drawn_out = away * (surface - unloaded);
+    let behind = away * (surface - height);
+    match face.law {
+        Law::Rigid { .. } => behind,
+        // One that cannot pull is left behind by its particle.
+        Law::Resilient { no_tension: true, stop, .. } => stop.map_or(0.0, |stop| away * (unloaded - height) - stop.length),
+        Law::Resilient { stop, .. } => {
+            let behind_stop = stop.map_or(f64::NEG_INFINITY, |stop| -drawn_out - stop.length);
+            drawn_out.max(behind).max(behind_stop)
+        }
+    }
+}
+
+#[test]
+pub(super) fn at_no_instant_is_a_particle_beyond_a_face_or_held_by_one_that_it_has_left() {
+    // An event that was passed over closes all balances. What it leaves behind is seen where the particle is.
+    let mut found = Vec::new();
+    for seed in 0..scenes(200) {
+        let scene = any_drawn_scene(seed);
+        let system = compile(&scene).unwrap_or_else(|error| panic!("seed {seed}: {error}"));
+        let trace = Some(TraceRequest { from_cycle: 0, to_cycle: 4, samples: 97 });
+        let options = Options { start: scene.start_state(), record_events: 0, trace, ..cycles(4) };
+        let limit = Limit { events: 3_000_000, ..Limit::default() };
+        let response = match Allowance::new(limit).simulate(|| event_driven(&system, &options)) {
+            Ok(response) => response,
+            Err(EngineError::Squeezed { particle, .. }) if is_rod(&system.particles[particle]) => continue,
+            Err(error) => panic!("seed {seed}: {error}"),
+        };
+        // Places are rounded to the largest there are.
+        let places = response.trace.iter().flat_map(|sample| &sample.particles).flat_map(|at| [at.height, at.rigid_floor]);
+        let size = places.fold(scene.gravity * system.drive.period.powi(2), |most, place| most.max(place.abs()));
+        for sample in &response.trace {
+            for (particle, at) in system.particles.iter().zip(&sample.particles) {
+                let SampledParticle { height, floor, ceiling, rigid_floor, rigid_ceiling } = *at;
+                let ceiling = particle.ceiling.as_ref().map(|face| beyond(face, -1.0, height, ceiling, rigid_ceiling));
+                let depth = beyond(&particle.floor, 1.0, height, floor, rigid_floor).max(ceiling.unwrap_or(0.0));
+                note("beyond a face", depth.max(0.0), 1e-12 * size);
+                if depth > 1e-12 * size {
+                    found.push(format!("seed {seed}, {} s: {depth:e} m of {size:e} m, {at:?}", sample.time));
+                }
+            }
+        }
+    }
+    assert!(found.is_empty(), "{found:#?}");
 }
 
 #[test]
