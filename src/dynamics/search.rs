@@ -44,6 +44,8 @@ const FASTEST: f64 = 4.8;
 const MANY: usize = 16;
 /// What is later than a known root by this factor does not come at the same time.
 const AFTER: f64 = 1.0 + 1e-12;
+/// Share of what a force is made of below which it is taken for zero where a contact state begins.
+const NO_FORCE: f64 = 1e-12;
 /// radius·t beyond which no window is taken for a rounding of the time to go.
 const MANY_TURNS: f64 = 1e6;
 /// radius·t below which a window polynomial leaves out less than rounding.
@@ -298,6 +300,14 @@ impl Search {
         let mut window = plan.window.min(1.25 * (horizon - now)).min(limit - now);
         plan.begun = true;
         let (survey, shares) = surveys.of(motion, signals, guard.signal, limit);
+        if !guard.distance
+            && now == 0.0
+            && guard.start == Start::Apart
+            && guard.parabola.p0 + guard.sign * survey.value < -NO_FORCE * (guard.parabola.p0.abs() + survey.reach)
+        {
+            // A force that has jumped, be it by less than the end of a window is known to: the contact state ends as it begins.
+            return Look::Root(Root { guard: index, guess: 0.0, high: 0.0, window });
+        }
         loop {
             let start = if now == 0.0 { guard.start } else { Start::Apart };
             let indivisible = window <= least.max(64.0 * f64::EPSILON * now);

@@ -286,7 +286,9 @@ impl<E: Effects> March<'_, E> {
     }
 
     /// Decides which of the candidates are held. Whether a face must push one of them depends on which others are held: the
-    /// pushes solve a problem of the same kind as the impulses of a collision, and are found in the same way.
+    /// pushes solve a problem of the same kind as the impulses of a collision, and are found in the same way: the first that is
+    /// wrong is turned round. So the last of n turns once at most, and each one before it twice as often as that behind it
+    /// (Murty 1974); what turns more often is nothing but rounding.
     fn hold(&mut self, candidates: Vec<Candidate>) -> Result<(), EngineError> {
         if candidates.is_empty() {
             return Ok(());
@@ -297,6 +299,7 @@ impl<E: Effects> March<'_, E> {
         for candidate in &candidates {
             self.fix(candidate, true);
         }
+        let most = |i: usize| 1_usize << (candidates.len() - 1 - i).min(16);
         for _ in 0..1 + 2 * candidates.len() + (1_usize << candidates.len().min(16)) {
             self.choose_flow()?;
             let mut wrong = None;
@@ -308,20 +311,20 @@ impl<E: Effects> March<'_, E> {
                 let able = grip.holds() && (grip.outweighs(candidate.speed) || !grip.is_nothing());
                 let fits = holds[i] == (enclosed || able);
                 // Neither way: what rounding has left of nothing.
-                let fits = fits || turns[i] > 1;
+                let fits = fits || turns[i] > most(i);
                 if !fits && wrong.is_none() {
                     wrong = Some(i);
                 }
             }
             let Some(i) = wrong else { break };
             turns[i] += 1;
-            holds[i] = if turns[i] > 1 { grips[i].grows() } else { !holds[i] };
+            holds[i] = if turns[i] > most(i) { grips[i].grows() } else { !holds[i] };
             self.fix(&candidates[i], holds[i]);
         }
-        for (((candidate, holds), grip), turns) in candidates.iter().zip(&holds).zip(&grips).zip(&turns) {
+        for (i, ((candidate, holds), grip)) in candidates.iter().zip(&holds).zip(&grips).enumerate() {
             let (j, side) = (candidate.particle, candidate.side);
             let at_rest = grip.outweighs(candidate.speed);
-            self.smooth[j] = at_rest && (grip.is_nothing() || *turns > 1);
+            self.smooth[j] = at_rest && (grip.is_nothing() || turns[i] > most(i));
             if at_rest && self.contacts[j].side() == side {
                 self.particles[j].rate = 0.0;
             }

@@ -69,8 +69,10 @@ fn badness(genes: &Genes) -> (f64, String) {
         let faces = [Some(&particle.floor), particle.ceiling.as_ref()];
         faces.into_iter().flatten().all(|face| match face.law {
             Law::Rigid { restitution } => restitution == 0.0,
-            // Stiffer ones take it too long.
-            Law::Resilient { no_tension, stiffness, .. } => !no_tension && stiffness < 1e5,
+            // Stiffer ones take it too long, and bounces on a stop that die out are no end to it.
+            Law::Resilient { no_tension, stiffness, stop, .. } => {
+                !no_tension && stiffness < 1e5 && stop.is_none_or(|stop| stop.restitution == 0.0)
+            }
         })
     };
     if balance < 1.0
