@@ -44,8 +44,8 @@ const FASTEST: f64 = 4.8;
 const MANY: usize = 16;
 /// What is later than a known root by this factor does not come at the same time.
 const AFTER: f64 = 1.0 + 1e-12;
-/// Share of what a force is made of below which it is taken for zero where a contact state begins.
-const NO_FORCE: f64 = 1e-12;
+/// Share of what a guard is the sum of that its rounding stays below.
+const ROUNDING: f64 = 1e-12;
 /// radius·t beyond which no window is taken for a rounding of the time to go.
 const MANY_TURNS: f64 = 1e6;
 /// radius·t below which a window polynomial leaves out less than rounding.
@@ -303,7 +303,7 @@ impl Search {
         if !guard.distance
             && now == 0.0
             && guard.start == Start::Apart
-            && guard.parabola.p0 + guard.sign * survey.value < -NO_FORCE * (guard.parabola.p0.abs() + survey.reach)
+            && guard.parabola.p0 + guard.sign * survey.value < -ROUNDING * (guard.parabola.p0.abs() + survey.reach)
         {
             // A force that has jumped, be it by less than the end of a window is known to: the contact state ends as it begins.
             return Look::Root(Root { guard: index, guess: 0.0, high: 0.0, window });
@@ -514,7 +514,7 @@ fn plan_of(
     }
     let (mut value, mut rate) = (guard.sign * survey.value, guard.sign * survey.rate);
     let mut fastest = f64::INFINITY;
-    let mut noise = 1e-12 * (here.p0.abs() + reach);
+    let mut noise = ROUNDING * (here.p0.abs() + reach);
     if width > 1 {
         let most = NOISE * (here.p0 + value - least);
         let mut slow = 0;
@@ -546,7 +546,7 @@ fn clear_by_bend(signal: Watched<'_>, bend: f64, guard: &Guard, clarity: &Clarit
     let curve =
         Parabola { p0: p0 + guard.sign * signal.sum.value, p1: p1 + guard.sign * signal.sum.rate, p2: p2 - 0.5 * bend };
     let margin = if guard.distance { clarity.margin } else { 0.0 };
-    clear_until(curve, 1e-12 * (p0.abs() + signal.size) + margin, margin)
+    clear_until(curve, ROUNDING * (p0.abs() + signal.size) + margin, margin)
 }
 
 /// How long a parabola keeps further from zero than `reach`; 0 if it is not so now, nor where it may come closer to that
