@@ -19,8 +19,13 @@ const MOST_EVENTS_AT_AN_INSTANT: u32 = 64;
 const MOST_EVENTS_IN_A_MOMENT: u32 = 256;
 const MOMENT: f64 = 1e-12;
 
-/// The longest time, in periods, for which contacts that do not settle are left alone.
-const LONGEST_BLINK: f64 = 1e-9;
+/// The longest time, in periods, for which contacts that do not settle are left alone: a force that begins at zero moves a structure
+/// at rest by t³, which is rounding for the longer the larger the places are.
+const LONGEST_BLINK: f64 = 1e-6;
+
+/// The time to the next event, in periods, after which contacts have settled: the next time they do not, they are left alone for as
+/// short as at first.
+const SETTLED: f64 = 1e-9;
 
 /// Events after which what rounding does at each of them adds up to more than the rest of it.
 const MANY_EVENTS: u64 = 10_000;
@@ -84,6 +89,7 @@ impl<E: Effects> March<'_, E> {
         // Near the start of a cycle the clock counts finer than its instants can be told apart later.
         let instant = f64::EPSILON * self.system.drive.period;
         let longest = LONGEST_BLINK * self.system.drive.period;
+        let settled = SETTLED * self.system.drive.period;
         let moment = MOMENT * self.system.drive.period;
         let (mut stuck, mut flickers, mut blink) = (0, 0, instant);
         let (mut last, mut begun) = (self.time, self.time);
@@ -93,7 +99,7 @@ impl<E: Effects> March<'_, E> {
                 return Err(budget::overrun().into());
             }
             if self.time > last + instant {
-                blink = if self.time > last + longest { instant } else { blink };
+                blink = if self.time > last + settled { instant } else { blink };
                 (stuck, last) = (0, self.time);
                 if self.time > begun + moment {
                     (flickers, begun) = (0, self.time);

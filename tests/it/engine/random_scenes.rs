@@ -85,8 +85,9 @@ fn drawn(seed: u64, trace: Option<TraceRequest>) -> Option<(Scene, HybridSystem,
 #[test]
 pub(super) fn no_drawn_scene_is_refused_unless_both_its_faces_are_rigid_and_meet() {
     // Behind the first ones: faces that cannot pull and let go of particles at rest, or of several at once, and particles without
-    // weight; each of them undid at one instant what it had just done.
-    let known = [688, 736, 1656, 1868, 2052, 2493, 3777, 4014, 4055, 4874, 5132, 5305];
+    // weight; each of them undid at one instant what it had just done. The last three are set in motion by a force that begins at zero,
+    // between faces without a gap: what they do is rounding for a millionth of a cycle.
+    let known = [688, 736, 1656, 1868, 2052, 2493, 3777, 4014, 4055, 4874, 5132, 5305, 40_418, 43_278, 48_717];
     for seed in (0..scenes(200)).chain(known) {
         if let Some((_, _, response)) = drawn(seed, None) {
             balanced(seed, response.proof);
@@ -137,8 +138,9 @@ pub(super) fn at_no_instant_is_a_particle_beyond_a_face_or_held_by_one_that_it_h
 #[test]
 pub(super) fn shorter_windows_find_the_same_events_in_drawn_scenes() {
     // Behind the first ones: a dashpot that jumps at the end of a half cycle made a face push again, by less than the window was known
-    // to; of particles held on their stops the first had to be let go and held again before the others were right.
-    let known = [46_777, 48_865, 53_230];
+    // to; of particles held on their stops the first had to be let go and held again before the others were right; the last did not
+    // settle by the shorter ones.
+    let known = [46_777, 48_865, 53_230, 45_207];
     let limit = Limit { events: 100_000, ..Limit::default() };
     let mut found = Vec::new();
     for seed in (0..scenes(60)).chain(known) {
