@@ -254,7 +254,7 @@ impl Audit {
             for ((particle, a), b) in system.particles.iter().zip(&begin.particles).zip(&end.particles) {
                 let share = dot(row, &particle.floor.row) * particle.mass;
                 residual += share * (b[1] - a[1] + system.gravity * self.duration);
-                passed += share.abs() * system.gravity * self.duration;
+                passed += (share * system.gravity).abs() * self.duration;
                 // What a free particle or structure exchanges without any force: at least what it came with.
                 for (state, [_, rate]) in [(begin, a), (end, b)] {
                     let face = dot(&particle.floor.row, &state.rate);
@@ -269,7 +269,7 @@ impl Audit {
         let fallen =
             system.particles.iter().zip(&begin.particles).zip(&end.particles).fold(0.0_f64, |sum, ((p, a), b)| {
                 // Two bodies that fall together for long are told apart from what they have fallen.
-                sum + p.mass * system.gravity * (b[0] - a[0]).abs()
+                sum + (p.mass * system.gravity * (b[0] - a[0])).abs()
             });
         let passed = (self.work_passed + self.dissipated + self.loss.abs() + fallen).max(energy(system, begin).abs());
         (momentum, residual.abs() / passed.max(f64::MIN_POSITIVE))

@@ -242,7 +242,9 @@ fn beyond(system: &HybridSystem, ground: &Ground, most: f64) -> Option<Vec<OutOf
             look(FarSurface::FloorStop, stop.length, sunk(particle, system.gravity) + compression(&particle.floor));
         }
         let Some(ceiling) = &particle.ceiling else { continue };
-        let height = 0.5 * most * most / (particle.mass * system.gravity);
+        let weight = particle.mass * system.gravity;
+        // Without weight, be it written −0, nothing ends its way.
+        let height = if weight > 0.0 { 0.5 * most * most / weight } else { f64::INFINITY };
         if height < particle.gap {
             look(FarSurface::Ceiling, particle.gap, height + approach(system, ground, particle, ceiling, most)?);
         }

@@ -215,10 +215,10 @@ pub struct Harmonic {
     pub phase: f64,
 }
 
-/// Equivalent viscous damping: c = curve(RMS of the observed acceleration over the half cycle before, in g).
+/// Equivalent viscous damping: c = curve(RMS of the observed acceleration over the half cycle before).
 #[derive(Debug, Clone, PartialEq)]
 pub struct HalfCycles {
-    /// The curve, tabulated finely enough to be read linearly: acceleration in g, then N s/m; end values outside.
+    /// The curve, tabulated finely enough to be read linearly: acceleration in m/s², then N s/m; end values outside.
     pub curve: super::Spline,
 }
 

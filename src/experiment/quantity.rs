@@ -256,7 +256,8 @@ impl Decimal<'_> {
         let exponent = self.exponent.checked_add(ten).ok_or_else(not_finite)?;
         let value: f64 = format!("{}e{exponent}", self.mantissa).parse().map_err(|_| not_finite())?;
         let underflow = value == 0.0 && self.mantissa.contains(|c| matches!(c, '1'..='9'));
-        if value.is_finite() && !underflow { Ok(value) } else { Err(not_finite()) }
+        // −0 is 0: nobody who writes it means another side.
+        if value.is_finite() && !underflow { Ok(value + 0.0) } else { Err(not_finite()) }
     }
 }
 

@@ -21,12 +21,10 @@ use super::structure::read_structure;
 use super::word::{from_word, word_of};
 use super::yaml::{Node, Value};
 use crate::measure::Comparison;
-use crate::scene::{KINDS, Kind};
+use crate::scene::{KINDS, Kind, STANDARD_GRAVITY};
 
 /// Stands where the file says `swept` until the sweep's first case takes its place.
 const PLACEHOLDER: f64 = 1.0;
-/// g₀ by convention, m/s²: gravity where neither experiment nor study gives one.
-const STANDARD_GRAVITY: f64 = 9.80665;
 
 /// Most dampers that a file may name.
 pub(super) const MOST_DAMPERS: usize = 64;

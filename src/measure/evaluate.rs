@@ -467,7 +467,7 @@ impl Case<'_> {
         let values = request.measures.iter().map(value).collect::<Result<Vec<_>, _>>()?;
         let mut lists = Vec::new();
         if whole {
-            let trace = |it: &History<'_>| kept::of_trace(&it.response.trace, it.scene.gravity);
+            let trace = |it: &History<'_>| kept::of_trace(&it.response.trace, it.scene.g());
             lists.extend(reading.history.iter().flat_map(trace));
             if let (Some(energies), Some(spec)) = (&energies, request.energies) {
                 lists.extend(energies.columns(spec));

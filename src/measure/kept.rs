@@ -16,7 +16,7 @@ const fn kept<F>(name: &'static str, unit: &'static str, of: F) -> Kept<F> {
     Kept { name, unit, of }
 }
 
-/// Of a sample of the time history, under this gravity.
+/// Of a sample of the time history, with g, m/s².
 type OfSample = fn(&Sample, f64) -> f64;
 
 const STRUCTURE: [Kept<OfSample>; 4] = [
@@ -37,10 +37,8 @@ const PARTICLE: [Kept<OfParticle>; 5] = [
     kept("rigid_ceiling", "m", |p| p.rigid_ceiling),
 ];
 
-const CONTACT: [Kept<OfSample>; 2] = [
-    kept("contact_damping", "N s/m", |s, _| s.damping),
-    kept("rms_acceleration", "g", |s, gravity| s.half_cycle_rms / gravity),
-];
+const CONTACT: [Kept<OfSample>; 2] =
+    [kept("contact_damping", "N s/m", |s, _| s.damping), kept("rms_acceleration", "g", |s, g| s.half_cycle_rms / g)];
 
 /// Of a cycle.
 type OfCycle = fn(&Energies, usize) -> f64;
@@ -102,9 +100,9 @@ pub fn shape_columns(shape: &ShapeSpec) -> Vec<&'static str> {
 }
 
 /// The lists of a time history.
-pub(super) fn of_trace(samples: &[Sample], gravity: f64) -> Vec<TraceColumn> {
+pub(super) fn of_trace(samples: &[Sample], g: f64) -> Vec<TraceColumn> {
     let list = |column: &Kept<OfSample>| {
-        let numbers = samples.iter().map(|sample| (column.of)(sample, gravity)).collect();
+        let numbers = samples.iter().map(|sample| (column.of)(sample, g)).collect();
         TraceColumn::new(column.name, column.unit, numbers)
     };
     let dampers = samples.first().map_or(0, |sample| sample.particles.len());

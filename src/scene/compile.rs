@@ -6,7 +6,8 @@
 
 use super::normal_modes::add_square;
 use super::{
-    ContactDamping, ContactEnd, Damper, Excitation, Matrices, PulseShape, Scene, SingleMass, Structure, Surface, Walls,
+    ContactDamping, ContactEnd, Curve, Damper, Excitation, Matrices, PulseShape, Scene, SingleMass, Structure, Surface,
+    Walls,
 };
 use crate::dynamics::{Drive, Face, HalfCycles, Harmonic, HybridSystem, Law, Matrix, Particle, Spline, Stop, Tick};
 
@@ -132,9 +133,11 @@ fn half_cycles(scene: &Scene) -> Result<Option<HalfCycles>, CompileError> {
             _ => return Err(CompileError::MixedDamping),
         }
     }
-    curve
-        .map(|points| Spline::through(points).map(|curve| HalfCycles { curve }).ok_or(CompileError::DampingCurve))
-        .transpose()
+    let through = |points: &Curve| {
+        let points: Vec<[f64; 2]> = points.iter().map(|[x, damping]| [x * scene.g(), *damping]).collect();
+        Spline::through(&points).map(|curve| HalfCycles { curve }).ok_or(CompileError::DampingCurve)
+    };
+    curve.map(through).transpose()
 }
 
 fn drive(excitation: &Excitation) -> Drive {

@@ -37,7 +37,17 @@ impl Scene {
             start: None,
         }
     }
+
+    /// g, in which the accelerations of damping curves and of time histories are given, m/s²: that of the scene, and [by
+    /// convention](STANDARD_GRAVITY) where nothing has weight.
+    #[must_use]
+    pub fn g(&self) -> f64 {
+        if self.gravity > 0.0 { self.gravity } else { STANDARD_GRAVITY }
+    }
 }
+
+/// g₀ by convention, m/s².
+pub const STANDARD_GRAVITY: f64 = 9.80665;
 
 /// Where the motion is observed.
 #[derive(Debug, Clone, PartialEq)]

@@ -16,7 +16,7 @@ mod switch;
 
 pub use compile::{CompileError, compile};
 pub use damper::{ContactDamping, ContactEnd, Curve, Damper, LimitStop, Surface, Walls};
-pub use definition::{Observation, Scene, Take};
+pub use definition::{Observation, STANDARD_GRAVITY, Scene, Take};
 pub use design::Design;
 pub use effect::{EffectUse, effects};
 pub use excitation::{Excitation, PulseShape};

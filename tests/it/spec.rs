@@ -224,6 +224,10 @@ pub(crate) fn a_unit_of_the_wrong_kind_is_told_in_words() {
     for text in [".inf", "-.inf", "inf", "NaN"] {
         assert!(parse_number(text).expect_err(text).to_string().ends_with("is not a finite number"), "{text}");
     }
+    // Nothing has no sign.
+    for zero in [parse_number("-0"), parse_quantity("-0.0 m/s^2", Dimension::Acceleration)] {
+        assert_eq!(zero.map(f64::to_bits), Ok(0));
+    }
 }
 
 #[test]

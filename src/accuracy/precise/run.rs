@@ -55,6 +55,9 @@ pub fn precise(system: &HybridSystem, options: &Options, patience: Duration) -> 
     }
     let mut rigid = 0;
     for particle in &system.particles {
+        if particle.is_enclosed() {
+            return Err(PreciseError::Unknown("rigid faces without a gap between them"));
+        }
         for face in [Some(&particle.floor), particle.ceiling.as_ref()].into_iter().flatten() {
             match face.law {
                 Law::Rigid { restitution } if restitution > 0.0 => {

@@ -27,7 +27,7 @@ impl<V: Vector> Run<'_, V> {
         if end.turned
             && let (Some(half), Some(half_cycles)) = (self.motion.half, &self.system.drive.half_cycles)
         {
-            self.equivalent = half_cycles.curve.at(half.last / self.system.gravity);
+            self.equivalent = half_cycles.curve.at(half.last);
         }
         self.choose_propagator()?;
         self.seam(0.5);

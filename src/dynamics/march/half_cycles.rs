@@ -10,7 +10,7 @@ use crate::dynamics::four::Four;
 const SMOOTH: f64 = 1e-9;
 /// Share of a place that rounding may have moved it by.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
-/// An acceleration that stays below so many times its rounding has died away.
+/// An acceleration that stays at or below so many times its rounding has died away; so has one that is nothing.
 const DIED_AWAY: f64 = 64.0;
 
 /// Bookkeeping of the equivalent viscous damping.
@@ -47,12 +47,11 @@ impl<E: Effects> March<'_, E> {
         // Below the curve's first point every half cycle gives the same damping: no need to follow them until something
         // happens. The bound holds to the end of the segment, and the half cycle under way is as weak.
         let [least, damping] = half_cycles.curve.lower_end();
-        let least = least * self.system.gravity;
         let weak = self.half.square <= least * least * self.half.length;
         let is_lowest = self.equivalent == Some(damping);
         let places = self.q.iter().zip(&flow.rows.bend_of_places);
         let rounding = ROUNDING * places.fold(0.0, |sum, (place, answer)| sum + place.abs() * answer);
-        let died_away = bound < DIED_AWAY * rounding;
+        let died_away = bound <= DIED_AWAY * rounding;
         if died_away || (bound < least && weak && is_lowest) {
             self.half = Half { idle: true, last: self.half.last, ..Half::default() };
             if !is_lowest {
@@ -132,7 +131,7 @@ impl<E: Effects> March<'_, E> {
         let Some(half_cycles) = &self.system.drive.half_cycles else { return };
         if self.half.length > 0.0 {
             self.half.last = (self.half.square / self.half.length).sqrt();
-            let value = half_cycles.curve.at(self.half.last / self.system.gravity);
+            let value = half_cycles.curve.at(self.half.last);
             self.equivalent = Some(value);
             self.changed = true;
         }

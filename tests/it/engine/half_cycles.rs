@@ -2,8 +2,10 @@
 //! away, arrays of light dampers whose contact states have nearly equal eigenvalues.
 
 use shotdamp::dynamics::{HalfCycles, HybridSystem, Matrix, Options, Response, Spline, TraceRequest, event_driven};
+use shotdamp::scene::{ContactDamping, ContactEnd, Damper, Excitation, Scene, Surface, compile};
 
 use super::arrays::{Dice, beam, blows, chain, cycles, particle, shape, spring};
+use super::bench::base;
 
 /// One mass of 1 kg on 1000 N/m with dampers of any size, and a curve that falls or grows.
 pub(super) fn on_one_mass(dice: &mut Dice, damping_ratio: f64, dampers: usize) -> HybridSystem {
@@ -17,8 +19,10 @@ pub(super) fn on_one_mass(dice: &mut Dice, damping_ratio: f64, dampers: usize) -
     system
 }
 
+/// By a curve over accelerations in g.
 fn renewed(system: &mut HybridSystem, curve: &[[f64; 2]]) {
-    system.drive.half_cycles = Some(HalfCycles { curve: Spline::through(curve).expect("a curve") });
+    let curve: Vec<[f64; 2]> = curve.iter().map(|[x, damping]| [x * system.gravity, *damping]).collect();
+    system.drive.half_cycles = Some(HalfCycles { curve: Spline::through(&curve).expect("a curve") });
 }
 
 fn settled(what: &str, system: &HybridSystem, options: &Options) -> Response {
@@ -135,4 +139,22 @@ fn a_curve_through_three_points_is_their_parabola() {
         assert!((curve.at(x) - parabola(x)).abs() < 1e-14, "{x}");
     }
     assert_eq!(Spline::through(&[[1.0, 0.0], [1.0, 2.0]]), None);
+}
+
+#[test]
+fn a_curve_is_read_in_g_also_where_nothing_has_weight() {
+    let points = vec![[0.5, 1.0], [5.0, 2.0]];
+    let floor = Surface::Resilient {
+        stiffness: 1000.0,
+        damping: ContactDamping::EquivalentViscous(points),
+        ends: ContactEnd::ZeroGap,
+    };
+    let curve = |gravity: f64| {
+        let dampers = vec![Damper::between(floor.clone(), 0.05, 0.1)];
+        let excitation = Excitation::ImpulseTrain { impulse: 0.1, period: 0.2 };
+        let system = compile(&Scene::on_one_mass(base(1.0, 500.0, 0.1), gravity, dampers, excitation));
+        system.expect("it compiles").drive.half_cycles.expect("it has a curve").curve
+    };
+    assert_eq!(curve(9.81).lower_end(), [0.5 * 9.81, 1.0]);
+    assert_eq!(curve(0.0).lower_end(), [0.5 * 9.80665, 1.0]);
 }

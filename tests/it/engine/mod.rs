@@ -31,6 +31,7 @@ mod resonance;
 mod search;
 mod settled;
 mod sticking;
+mod upside_down;
 mod walls;
 
 pub use bench::note;

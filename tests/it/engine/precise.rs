@@ -61,4 +61,9 @@ fn what_it_does_not_model_is_refused() {
         let refused = precise(&system, &Options::default(), PATIENCE);
         assert_eq!(refused, Err(PreciseError::Unknown("faces that cannot pull")), "{stop:?}");
     }
+    let law = Law::Rigid { restitution: 0.0 };
+    let mut system = chain(&[1.0], 500.0, 1.0);
+    system.particles.push(particle(0.05, 0.0, vec![1.0], [law, law]));
+    let refused = precise(&system, &Options::default(), PATIENCE);
+    assert_eq!(refused, Err(PreciseError::Unknown("rigid faces without a gap between them")));
 }

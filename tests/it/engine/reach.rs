@@ -108,3 +108,13 @@ pub(super) fn a_lone_particle_comes_as_far_as_the_bound() {
         assert_eq!(contacts > 0, reached, "a ceiling at {share} of the way");
     }
 }
+
+#[test]
+pub(super) fn without_weight_no_height_is_out_of_reach() {
+    // Also where a sign is left of nothing: −0.
+    let (mut system, options) = thrown(1.0, 10.0, None);
+    for gravity in [0.0, -0.0] {
+        system.gravity = gravity;
+        assert!(out_of_reach(&system, &options).is_empty(), "{gravity:?}");
+    }
+}
