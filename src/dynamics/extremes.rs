@@ -190,8 +190,7 @@ fn moved<'a>(
 
 #[inline(always)]
 fn node(stretch: Stretch<'_>, shares: &[Phases], time: f64) -> Node {
-    let [displacement, velocity, acceleration, _] = motion(stretch, shares.iter().copied(), time);
-    Node { time, motion: [displacement, velocity, acceleration] }
+    Node { time, motion: motion(stretch, shares.iter().copied(), time) }
 }
 
 /// The motion whose blocks have these shares.
@@ -222,7 +221,7 @@ struct Bounds {
 impl Bounds {
     /// For how long displacement and velocity keep within what is known of them.
     fn within(&self, here: &Node, known: &Extremes) -> f64 {
-        let [displacement, velocity, acceleration] = here.motion;
+        let [displacement, velocity, acceleration, _] = here.motion;
         let of = |order: usize, value: f64, slope: f64, curvature: f64| {
             let [low, high] = known.of(order);
             until(high - value, slope, curvature).min(until(value - low, -slope, curvature))

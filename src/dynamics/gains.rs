@@ -8,12 +8,12 @@
 //! solved when all are over, for every observed signal at once. Where two eigenvalues nearly cancel (undamped motion) G
 //! would lose digits, and [`super::integral`] takes its place.
 
-use super::Sums;
 use super::block::{Block, form, pairs, transposed};
 use super::four::Four;
 use super::lanes::WIDTH;
 use super::lyapunov::{Lyapunov, NEARLY_NEUTRAL};
 use super::signals::Row;
+use super::sums::About;
 
 /// The equations of a contact state's integrals.
 pub(crate) struct Closed {
@@ -199,23 +199,21 @@ impl Square {
 }
 
 impl Integrated {
-    /// The measures of a signal; velocities alone unless `displacement`.
-    pub(crate) fn of(&self, row: &Row, displacement: bool) -> Sums {
+    /// Those of a signal, about where gravity alone would hold it; velocities alone unless `displacement`.
+    pub(crate) fn of(&self, row: &Row, displacement: bool) -> About {
         let rates: Vec<f64> = row.weights.iter().flat_map(|[.., r0, r1]| [*r0, *r1]).collect();
         let [t, ft, fft] = self.time;
-        let sums = Sums { duration: t, velocity_square: form(&self.second, &rates), ..Sums::default() };
-        if !displacement || t == 0.0 {
+        let sums = About { duration: t, velocity_square: form(&self.second, &rates), ..About::default() };
+        if !displacement {
             return sums;
         }
         let values: Vec<f64> = row.weights.iter().flat_map(|[v0, v1, ..]| [*v0, *v1]).collect();
         let along = |sums: &[f64]| values.iter().zip(sums).fold(0.0, |sum, (v, c)| sum + v * c);
         let force = row.force.p0;
-        // From where gravity alone would hold it.
-        let moved = along(&self.first) + force * ft;
-        let square = form(&self.second, &values) + force * (2.0 * along(&self.forced) + force * fft);
-        Sums {
-            displacement: moved + row.gravity.p0 * t,
-            deviation_square: (square - moved * (moved / t)).max(0.0),
+        About {
+            place: row.gravity.p0,
+            moved: along(&self.first) + force * ft,
+            square: form(&self.second, &values) + force * (2.0 * along(&self.forced) + force * fft),
             ..sums
         }
     }
@@ -226,6 +224,7 @@ mod tests {
     use super::super::block::Phase;
     use super::super::integral::Panels;
     use super::super::parabola::Parabola;
+    use super::super::sums::Sums;
     use super::*;
 
     #[test]
@@ -258,7 +257,7 @@ mod tests {
         let mut gains = Gains::none(3);
         gains.visit(&start, &end, level, duration);
         let closed = Closed::new(&blocks, &matrices, Some(omega)).unwrap();
-        let integrals = closed.solve(&gains).of(&row, true);
+        let integrals = Sums::of(&[closed.solve(&gains).of(&row, true)]);
         assert!((integrals.displacement / sampled.displacement - 1.0).abs() < 1e-12);
         assert!((integrals.deviation_square / sampled.deviation_square - 1.0).abs() < 1e-12);
         assert!((integrals.velocity_square / sampled.velocity_square - 1.0).abs() < 1e-12);

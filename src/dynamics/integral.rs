@@ -1,12 +1,12 @@
 //! Integrals of a signal over a segment, by Gauss-Legendre panels so short that they are exact to rounding: for motion
 //! without damping and for brief stretches, where the closed forms of [`super::gains`] lose their digits.
 
-use super::Sums;
 use super::block::{Block, Phase};
 use super::budget;
 use super::four::Four;
 use super::lanes::{Lanes, WIDTH};
 use super::parabola::Parabola;
+use super::sums::{About, Sums};
 use super::wide::widened;
 
 /// Times the slowest turn of a contact state: stretches shorter than this leave next to nothing of the differences of end values
@@ -45,12 +45,7 @@ impl Integrand {
     /// The measures of its signal, of a stretch of `duration` seconds.
     pub(crate) fn sums(&self, duration: f64) -> Sums {
         let [moved, square, velocity_square] = self.integrals;
-        Sums {
-            duration,
-            displacement: self.place * duration + moved,
-            deviation_square: (square - moved * moved / duration).max(0.0),
-            velocity_square,
-        }
+        Sums::of(&[About { duration, place: self.place, moved, square, velocity_square }])
     }
 }
 

@@ -13,6 +13,21 @@ pub struct Sums {
     pub velocity_square: f64,
 }
 
+/// Integrals over a part of a stretch, of the displacement about a place that is near enough to the motion.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(crate) struct About {
+    /// s.
+    pub(crate) duration: f64,
+    /// x₀, m.
+    pub(crate) place: f64,
+    /// ∫ (x − x₀) dt.
+    pub(crate) moved: f64,
+    /// ∫ (x − x₀)² dt.
+    pub(crate) square: f64,
+    /// ∫ v² dt.
+    pub(crate) velocity_square: f64,
+}
+
 impl Sums {
     /// The same over both stretches.
     pub(crate) fn add(&mut self, more: Self) {
@@ -27,10 +42,30 @@ impl Sums {
         self.velocity_square += more.velocity_square;
     }
 
-    /// Of raw sums, about zero.
-    pub(crate) fn of_raw(duration: f64, displacement: f64, square: f64, velocity_square: f64) -> Self {
-        let deviation_square = (square - displacement * (displacement / duration)).max(0.0);
-        Self { duration, displacement, deviation_square, velocity_square }
+    /// Of parts whose own means need not be known: of what lasts a moment, rounding leaves none.
+    pub(crate) fn of(parts: &[About]) -> Self {
+        let longer = |a: &&About, b: &&About| a.duration.total_cmp(&b.duration);
+        let Some(origin) = parts.iter().max_by(longer).map(|part| part.place) else { return Self::default() };
+        let mut sums = Self::default();
+        for part in parts {
+            sums.duration += part.duration;
+            sums.displacement += (part.place - origin) * part.duration + part.moved;
+            sums.velocity_square += part.velocity_square;
+        }
+        if sums.duration > 0.0 {
+            let mean = sums.displacement / sums.duration;
+            for &About { duration, place, moved, square, .. } in parts {
+                let apart = (place - origin) - mean;
+                sums.deviation_square += square + apart * (2.0 * moved + apart * duration);
+            }
+        }
+        let Self { duration, displacement, deviation_square, velocity_square } = sums;
+        Self {
+            duration,
+            displacement: origin * duration + displacement,
+            deviation_square: deviation_square.max(0.0),
+            velocity_square,
+        }
     }
 
     /// RMS velocity, m/s.

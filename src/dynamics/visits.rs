@@ -45,21 +45,26 @@ impl Visits {
 
     /// Adds the integrals of all visits to the measures, and forgets them.
     pub(crate) fn pay_out(&mut self, displacement: bool, observed: &mut [Observed]) {
+        let mut parts = vec![Vec::new(); if displacement { observed.len() } else { 0 }];
         for (flow, gains) in self.states.drain(..) {
             let Some(closed) = flow.closed() else { continue };
-            let halves = observed.iter_mut().map(|of| &mut of.halves[self.half]);
             if displacement {
                 let integrated = closed.solve(&gains);
-                halves
+                parts
+                    .iter_mut()
                     .zip(&flow.rows.observed)
-                    .for_each(|(half, &row)| half.add(integrated.of(flow.rows.row(row), true)));
+                    .for_each(|(parts, &row)| parts.push(integrated.of(flow.rows.row(row), true)));
             } else {
+                let halves = observed.iter_mut().map(|of| &mut of.halves[self.half]);
                 for (half, square) in halves.zip(flow.squares(closed)) {
                     let (duration, velocity_square) = (gains.time[0], square.of(&gains));
                     half.add(Sums { duration, velocity_square, ..Sums::default() });
                 }
             }
             self.spare.push(gains);
+        }
+        for (of, parts) in observed.iter_mut().zip(&parts) {
+            of.halves[self.half].add(Sums::of(parts));
         }
     }
 }

@@ -6,9 +6,10 @@ use super::vector::Vector;
 use crate::dynamics::audit::State;
 use crate::dynamics::budget;
 use crate::dynamics::contact::Side;
+use crate::dynamics::sums::{About, Sums};
 use crate::dynamics::system::{Event, EventKind, Particle, dot};
 use crate::dynamics::trace::{Sample, SampledParticle};
-use crate::dynamics::{CycleRates, EngineError, Extremes, Observed, Sums};
+use crate::dynamics::{CycleRates, EngineError, Extremes, Observed};
 
 impl Observed {
     /// Motion no faster than what rounding makes is none.
@@ -77,8 +78,10 @@ impl<V: Vector> Run<'_, V> {
             }
             let half = self.options.averaged().half(self.cycle);
             let summed = |displacement: f64, [square, velocity_square]: [f64; 2]| {
-                let seen = if self.options.displacement { [displacement * weight, square * weight] } else { [0.0; 2] };
-                Sums::of_raw(tally.steps as f64 * weight, seen[0], seen[1], velocity_square * weight)
+                let [moved, square] =
+                    if self.options.displacement { [displacement * weight, square * weight] } else { [0.0; 2] };
+                let (duration, velocity_square) = (tally.steps as f64 * weight, velocity_square * weight);
+                Sums::of(&[About { duration, place: 0.0, moved, square, velocity_square }])
             };
             let first = (self.watch.displacement.dot(&tally.state), [tally.displacement_square, tally.velocity_square]);
             let more =

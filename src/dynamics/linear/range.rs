@@ -33,10 +33,10 @@ struct Grid {
 /// An instant of a segment.
 struct Node {
     time: f64,
-    /// Displacement, velocity and acceleration by each block coordinate at the segment's beginning.
+    /// The motion by each block coordinate at the segment's beginning.
     columns: Vec<Four>,
-    /// What they are beside those.
-    constant: [f64; 3],
+    /// What it is beside those.
+    constant: Four,
 }
 
 /// Takes `cycles` cycles, the first of them from the state `start`, into the range.
@@ -84,17 +84,17 @@ impl Grid {
                 for (block, [a, b, c, d]) in flow.blocks.iter().zip(&row.weights) {
                     let kernel = block.kernel(time);
                     for phase in [Phase { value: *a, rate: *c }, Phase { value: *b, rate: *d }] {
-                        let now = block.advance(phase, kernel);
-                        columns.push(Four::new([now.value, now.rate, block.acceleration(now).value, 0.0]));
+                        let mut motion = Motion::default();
+                        block.add_motion(&mut motion, block.advance(phase, kernel));
+                        columns.push(Four::new(motion));
                     }
                 }
                 let (driven, _) = row.outside(flow, segment.level, DrivePhase::of(&system.drive, segment.begin + time));
-                let mut constant = [rest, 0.0, 0.0];
+                let mut constant = [rest, 0.0, 0.0, 0.0];
                 if let (Some(phase), Some(block)) = (driven, flow.blocks.last()) {
-                    let parts = [phase.value, phase.rate, block.acceleration(phase).value];
-                    constant.iter_mut().zip(parts).for_each(|(sum, part)| *sum += part);
+                    block.add_motion(&mut constant, phase);
                 }
-                Node { time, columns, constant }
+                Node { time, columns, constant: Four::new(constant) }
             })
             .collect();
         Self { nodes, drive, rest }
@@ -106,8 +106,7 @@ impl Grid {
         let mut before: Option<crest::Node> = None;
         for node in &self.nodes {
             let free = node.columns.iter().zip(c).fold(Four::ZERO, |sum, (column, c)| sum + *column * *c);
-            let ([value, rate, bend, _], [rest, driven, driven_bend]) = (free.array(), node.constant);
-            let now = crest::Node { time: node.time, motion: [rest + value, driven + rate, driven_bend + bend] };
+            let now = crest::Node { time: node.time, motion: (node.constant + free).array() };
             range.take(now.motion[0], now.motion[1]);
             if let Some(last) = before {
                 for order in [0, 1] {

@@ -2,12 +2,12 @@
 
 use super::cycle::{Affine, Cycle, Segment, product, sum, times};
 use super::moments::{Moments, outer};
-use crate::dynamics::Sums;
 use crate::dynamics::block::{Block, Phase, pairs, transposed};
 use crate::dynamics::budget;
 use crate::dynamics::flow::{DrivePhase, Flow};
 use crate::dynamics::gains::{Closed, Gains};
 use crate::dynamics::integral::GAUSS;
+use crate::dynamics::sums::{About, Sums};
 use crate::dynamics::system::HybridSystem;
 
 /// A row of the flow: value and rate of each block's share by its two coordinates.
@@ -95,7 +95,7 @@ pub(super) fn integrals(
         let integrated = flow.closed().filter(|_| !flow.is_brief(segment.length)).map(gained);
         for (row, sum) in rows.iter().zip(&mut sums) {
             sum.add(match &integrated {
-                Some(integrated) => integrated.of(flow.rows.row(row.index), displacement),
+                Some(integrated) => Sums::of(&[integrated.of(flow.rows.row(row.index), displacement)]),
                 None => quadrature(flow, row, &start, segment),
             });
         }
@@ -167,12 +167,7 @@ fn quadrature(flow: &Flow, row: &Row, start: &Moments, segment: &Segment) -> Sum
         t0 += h;
     }
     let duration = count * segment.length;
-    Sums {
-        duration,
-        displacement: (rest + place) * duration + moved,
-        deviation_square: (square - moved * (moved / duration)).max(0.0),
-        velocity_square,
-    }
+    Sums::of(&[About { duration, place: rest + place, moved, square, velocity_square }])
 }
 
 /// Length of a panel: short against every block that still moves the signal visibly.
