@@ -20,6 +20,8 @@ pub(super) struct Motion<V> {
 pub(super) struct HalfCycle {
     /// Its sign; 0 before the first sample.
     pub(super) sign: f64,
+    /// A sample under the damping of its own has had that sign: until then the renewal may have thrown the acceleration back.
+    begun: bool,
     square: f64,
     count: f64,
     /// RMS of the last complete one, m/s².
@@ -81,7 +83,8 @@ impl HalfCycle {
     /// Takes a sample; true when it is the first of a new half cycle.
     #[inline(always)]
     fn take(&mut self, acceleration: f64) -> bool {
-        let turned = acceleration * self.sign < 0.0;
+        let against = acceleration * self.sign < 0.0;
+        let turned = against && self.begun;
         if turned {
             self.last = (self.square / self.count).sqrt();
             (self.square, self.count) = (0.0, 0.0);
@@ -89,6 +92,7 @@ impl HalfCycle {
         if turned || self.sign == 0.0 {
             self.sign = if acceleration < 0.0 { -1.0 } else { 1.0 };
         }
+        self.begun = !(turned || against);
         self.square += acceleration * acceleration;
         self.count += 1.0;
         turned

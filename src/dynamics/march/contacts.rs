@@ -21,8 +21,11 @@ impl<E: Effects> March<'_, E> {
     pub(super) fn cross(&mut self, j: usize, crossing: Crossing) -> Result<(), EngineError> {
         if E::ALL {
             if crossing == Crossing::HalfCycle {
-                self.half.sign = -self.half.sign;
                 self.half.touching = true;
+                if std::mem::take(&mut self.half.late) {
+                    return Ok(());
+                }
+                self.half.sign = -self.half.sign;
                 self.close_half_cycle();
                 return self.hold_on();
             }

@@ -1,4 +1,8 @@
 //! Equivalent viscous damping: the half cycles of the observed acceleration, each of which sets the next one's dashpots.
+//!
+//! A half cycle ends where the acceleration a changes its sign. There the dashpot of a particle that is pressed changes by Δc, and a
+//! jumps by Δc u′/m: half of the time back over zero. What then crosses zero a moment later is the same half cycle, which has begun
+//! late; taken for one of its own it would have next to no RMS, and set the dashpots to the curve's lower end.
 
 use super::March;
 use super::effects::Effects;
@@ -26,6 +30,8 @@ pub(super) struct Half {
     pub(super) last: f64,
     /// The crossing was smooth, so that the guard starts at zero.
     pub(super) touching: bool,
+    /// The damping that it began with has thrown the acceleration back over zero: its sign is still the one before.
+    pub(super) late: bool,
     /// Too weak to leave the curve's lower end, or to be told from rounding: not followed.
     pub(super) idle: bool,
 }
@@ -79,8 +85,14 @@ impl<E: Effects> March<'_, E> {
             return Ok(());
         }
         // New damping in a contact makes the acceleration jump: it no longer starts from zero.
-        self.half.touching = false;
+        let begins = std::mem::take(&mut self.half.touching);
         if total * self.half.sign >= 0.0 {
+            self.half.late = false;
+            return Ok(());
+        }
+        if begins || self.half.late {
+            // Back over zero, by a jump that the renewal itself has made: no half cycle is over, and none is to be that short.
+            self.half.late = true;
             return Ok(());
         }
         self.half.sign = -self.half.sign;

@@ -131,6 +131,7 @@ impl<E: Effects> March<'_, E> {
 
     /// After a jump of the force: the same, and what rests at a face without being pressed to it may be so from now on.
     pub(super) fn regrip(&mut self) -> Result<(), EngineError> {
+        self.half.touching = false;
         let mut touches = self.touches(&[])?;
         touches.retain(|touch| touch.closed.speed == 0.0);
         for touch in touches.iter().filter(|touch| !touch.on_stop) {

@@ -161,7 +161,8 @@ impl<E: Effects> March<'_, E> {
         if E::ALL
             && let (Some(bend), false) = (flow.rows.bend, self.half.idle)
         {
-            guards::half_cycle(bend, self.half.sign, self.half.touching, &mut self.search);
+            let sign = if self.half.late { -self.half.sign } else { self.half.sign };
+            guards::half_cycle(bend, sign, self.half.touching, &mut self.search);
         }
         Ok(())
     }
