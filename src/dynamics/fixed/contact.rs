@@ -2,7 +2,7 @@
 
 use super::Run;
 use super::propagator::lead;
-use super::stretch::Stretch;
+use super::stretch::{HalfCycle, Stretch};
 use super::vector::Vector;
 use crate::dynamics::EngineError;
 use crate::dynamics::audit::energy;
@@ -23,6 +23,7 @@ impl<V: Vector> Run<'_, V> {
             }
             let after = self.watch.velocity.dot(&self.motion.state);
             self.tally.velocity_square += after * after - before * before;
+            self.motion.half.iter_mut().for_each(HalfCycle::jumps);
         }
         if end.turned
             && let (Some(half), Some(half_cycles)) = (self.motion.half, &self.system.drive.half_cycles)

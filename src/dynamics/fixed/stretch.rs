@@ -80,6 +80,13 @@ impl<V: Vector> Tally<V> {
 }
 
 impl HalfCycle {
+    /// A contact makes the acceleration jump: a half cycle that has not begun is of the sign that this leaves.
+    pub(super) fn jumps(&mut self) {
+        if !self.begun {
+            self.sign = 0.0;
+        }
+    }
+
     /// Takes a sample; true when it is the first of a new half cycle.
     #[inline(always)]
     fn take(&mut self, acceleration: f64) -> bool {

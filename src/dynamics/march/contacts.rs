@@ -3,6 +3,7 @@
 
 use super::March;
 use super::effects::Effects;
+use super::half_cycles::Stage;
 use crate::dynamics::EngineError;
 use crate::dynamics::contact::{Crossing, Hold, Relative, Side};
 use crate::dynamics::guards;
@@ -21,15 +22,14 @@ impl<E: Effects> March<'_, E> {
     pub(super) fn cross(&mut self, j: usize, crossing: Crossing) -> Result<(), EngineError> {
         if E::ALL {
             if crossing == Crossing::HalfCycle {
-                self.half.touching = true;
-                if std::mem::take(&mut self.half.late) {
+                if std::mem::replace(&mut self.half.stage, Stage::Begins) == Stage::ThrownBack {
                     return Ok(());
                 }
                 self.half.sign = -self.half.sign;
                 self.close_half_cycle();
                 return self.hold_on();
             }
-            self.half.touching = false;
+            self.half.jumps();
             if self.contacts[j].is_between() || crossing == Crossing::Meeting {
                 self.smooth[j] = false;
                 return self.cross_between(j, crossing);

@@ -28,12 +28,38 @@ pub(super) struct Half {
     pub(super) length: f64,
     /// RMS of the last complete one, m/s².
     pub(super) last: f64,
-    /// The crossing was smooth, so that the guard starts at zero.
-    pub(super) touching: bool,
-    /// The damping that it began with has thrown the acceleration back over zero: its sign is still the one before.
-    pub(super) late: bool,
+    pub(super) stage: Stage,
     /// Too weak to leave the curve's lower end, or to be told from rounding: not followed.
     pub(super) idle: bool,
+}
+
+/// How far a half cycle has come.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(super) enum Stage {
+    /// Under way, or there is none yet.
+    #[default]
+    UnderWay,
+    /// It begins: the acceleration is zero.
+    Begins,
+    /// The damping that it began with has thrown the acceleration back over zero: its sign is still the one before.
+    ThrownBack,
+    /// After that something else has made the acceleration jump: it is of the sign that this leaves.
+    Open,
+}
+
+impl Half {
+    /// A contact, an impulse or the force makes the acceleration jump.
+    pub(super) fn jumps(&mut self) {
+        self.stage = match self.stage {
+            Stage::UnderWay | Stage::Begins => Stage::UnderWay,
+            Stage::ThrownBack | Stage::Open => Stage::Open,
+        };
+    }
+
+    /// The sign of the acceleration until its next crossing.
+    pub(super) fn sign_so_far(&self) -> f64 {
+        if self.stage == Stage::ThrownBack { -self.sign } else { self.sign }
+    }
 }
 
 impl<E: Effects> March<'_, E> {
@@ -73,27 +99,30 @@ impl<E: Effects> March<'_, E> {
         let smooth = total.abs() <= SMOOTH * bound + rounding;
         if self.half.sign == 0.0 {
             // From rest the first half cycle goes where the acceleration is about to go.
-            self.half.touching = smooth;
+            self.half.stage = if smooth { Stage::Begins } else { Stage::UnderWay };
             let first = if smooth { rate } else { total };
             self.half.sign = if first < 0.0 { -1.0 } else { 1.0 };
         }
-        if self.half.touching && smooth {
+        if self.half.stage == Stage::Begins && smooth {
             if rate * self.half.sign < 0.0 {
                 // The new damping turns the acceleration back before it has got anywhere.
                 self.half.sign = -self.half.sign;
             }
             return Ok(());
         }
-        // New damping in a contact makes the acceleration jump: it no longer starts from zero.
-        let begins = std::mem::take(&mut self.half.touching);
-        if total * self.half.sign >= 0.0 {
-            self.half.late = false;
-            return Ok(());
-        }
-        if begins || self.half.late {
-            // Back over zero, by a jump that the renewal itself has made: no half cycle is over, and none is to be that short.
-            self.half.late = true;
-            return Ok(());
+        let against = total * self.half.sign < 0.0;
+        match std::mem::take(&mut self.half.stage) {
+            _ if !against => return Ok(()),
+            Stage::UnderWay => {}
+            // By a jump that the renewal itself has made: no half cycle is over, and none is to be that short.
+            Stage::Begins | Stage::ThrownBack => {
+                self.half.stage = Stage::ThrownBack;
+                return Ok(());
+            }
+            Stage::Open => {
+                self.half.sign = -self.half.sign;
+                return Ok(());
+            }
         }
         self.half.sign = -self.half.sign;
         self.close_half_cycle();

@@ -52,7 +52,7 @@ impl<E: Effects> March<'_, E> {
                 audit.impulse(impulse, after - before);
             }
         }
-        self.half.touching = false;
+        self.half.jumps();
         self.settle(&[])
     }
 
@@ -131,7 +131,7 @@ impl<E: Effects> March<'_, E> {
 
     /// After a jump of the force: the same, and what rests at a face without being pressed to it may be so from now on.
     pub(super) fn regrip(&mut self) -> Result<(), EngineError> {
-        self.half.touching = false;
+        self.half.jumps();
         let mut touches = self.touches(&[])?;
         touches.retain(|touch| touch.closed.speed == 0.0);
         for touch in touches.iter().filter(|touch| !touch.on_stop) {
@@ -222,7 +222,7 @@ impl<E: Effects> March<'_, E> {
             if E::TAPED {
                 self.tape_exchange(&touches, &outcomes);
             }
-            self.half.touching = false;
+            self.half.jumps();
             outcomes
         } else {
             closed.iter().map(|contact| Outcome { speed: contact.speed, ..Outcome::default() }).collect()

@@ -2,6 +2,7 @@
 
 use super::March;
 use super::effects::Effects;
+use super::half_cycles::Stage;
 use crate::dynamics::EngineError;
 use crate::dynamics::budget;
 use crate::dynamics::contact::{Relative, Side};
@@ -161,8 +162,8 @@ impl<E: Effects> March<'_, E> {
         if E::ALL
             && let (Some(bend), false) = (flow.rows.bend, self.half.idle)
         {
-            let sign = if self.half.late { -self.half.sign } else { self.half.sign };
-            guards::half_cycle(bend, sign, self.half.touching, &mut self.search);
+            let begins = self.half.stage == Stage::Begins;
+            guards::half_cycle(bend, self.half.sign_so_far(), begins, &mut self.search);
         }
         Ok(())
     }
