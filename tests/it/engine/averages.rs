@@ -67,7 +67,7 @@ pub(super) fn the_audit_of_a_pulse_from_rest_closes_whatever_the_damping() {
 
 #[test]
 pub(super) fn what_is_measured_of_a_drawn_scene_is_what_its_time_history_shows() {
-    // Behind the first ones: contact states that last for 10⁻³⁰ s, whose own mean is all rounding; motion from rest, whose first crest
+    // Behind the first ones: contact states that last a moment, whose own mean is all rounding; motion from rest, whose first crest
     // has no slope before it.
     let known = [1656, 1153, 2961];
     let mut found = Vec::new();
