@@ -59,13 +59,9 @@ impl Sums {
                 sums.deviation_square += square + apart * (2.0 * moved + apart * duration);
             }
         }
-        let Self { duration, displacement, deviation_square, velocity_square } = sums;
-        Self {
-            duration,
-            displacement: origin * duration + displacement,
-            deviation_square: deviation_square.max(0.0),
-            velocity_square,
-        }
+        sums.displacement += origin * sums.duration;
+        sums.deviation_square = sums.deviation_square.max(0.0);
+        sums
     }
 
     /// RMS velocity, m/s.

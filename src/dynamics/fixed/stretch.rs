@@ -99,7 +99,7 @@ impl HalfCycle {
         if turned || self.sign == 0.0 {
             self.sign = if acceleration < 0.0 { -1.0 } else { 1.0 };
         }
-        self.begun = !(turned || against);
+        self.begun = !against;
         self.square += acceleration * acceleration;
         self.count += 1.0;
         turned

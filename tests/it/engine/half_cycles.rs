@@ -2,7 +2,7 @@
 //! away, arrays of light dampers whose contact states have nearly equal eigenvalues.
 
 use shotdamp::dynamics::{
-    HalfCycles, HybridSystem, Matrix, Options, Response, Spline, TraceRequest, event_driven, fixed_step,
+    Drive, HalfCycles, HybridSystem, Matrix, Options, Response, Spline, TraceRequest, event_driven, fixed_step,
 };
 use shotdamp::scene::{ContactDamping, ContactEnd, Damper, Excitation, Scene, Surface, compile};
 
@@ -27,6 +27,11 @@ fn renewed(system: &mut HybridSystem, curve: &[[f64; 2]]) {
     system.drive.half_cycles = Some(HalfCycles { curve: Spline::through(&curve).expect("a curve") });
 }
 
+/// Under impulses, with the curve that it has.
+fn strike(system: &mut HybridSystem, period: f64, impulse: f64) {
+    system.drive = Drive { half_cycles: system.drive.half_cycles.take(), ..blows(period, impulse) };
+}
+
 fn settled(what: &str, system: &HybridSystem, options: &Options) -> Response {
     let response = event_driven(system, options).unwrap_or_else(|error| panic!("{what}: {error}"));
     let proof = response.proof;
@@ -45,9 +50,7 @@ pub(super) fn a_base_without_damping_counts_its_half_cycles() {
     for seed in 0..60 {
         let mut dice = Dice(seed);
         let mut system = on_one_mass(&mut dice, 0.0, 1 + seed as usize % 3);
-        let half_cycles = system.drive.half_cycles.take();
-        system.drive = blows(dice.between(0.05, 0.5), dice.ratio(0.02, 3.0));
-        system.drive.half_cycles = half_cycles;
+        strike(&mut system, dice.between(0.05, 0.5), dice.ratio(0.02, 3.0));
         settled(&format!("seed {seed}"), &system, &cycles(30));
     }
 }
@@ -58,14 +61,12 @@ pub(super) fn half_cycles_end_where_motion_has_died_away() {
         let mut dice = Dice(seed);
         let damping_ratio = dice.ratio(0.03, 3.0);
         let mut system = on_one_mass(&mut dice, damping_ratio, 1 + seed as usize % 3);
-        let curve = system.drive.half_cycles.take();
-        let spline = curve.as_ref().expect("it has a curve").curve.clone();
+        let spline = system.drive.half_cycles.as_ref().expect("it has a curve").curve.clone();
         let lowest = spline.lower_end()[1];
         // Once, or again after a pause.
         let period = if seed % 2 == 0 { 100.0 } else { dice.between(40.0, 100.0) };
-        system.drive = blows(period, dice.ratio(0.02, 3.0));
+        strike(&mut system, period, dice.ratio(0.02, 3.0));
         system.drive.repeats = seed % 2 == 1;
-        system.drive.half_cycles = curve;
         let trace = Some(TraceRequest { from_cycle: 1, to_cycle: 2, samples: 20 });
         let end = settled(&format!("seed {seed}"), &system, &Options { trace, ..cycles(2) });
         let last = end.trace.last().expect("it was sampled");
@@ -173,9 +174,7 @@ fn a_dashpot_that_throws_the_acceleration_back_begins_no_half_cycle_but_its_own(
     for seed in 0..60 {
         let mut dice = Dice(seed);
         let mut system = on_one_mass(&mut dice, 0.01, 1);
-        let half_cycles = system.drive.half_cycles.take();
-        system.drive = blows(dice.between(0.05, 0.5), dice.ratio(0.02, 3.0));
-        system.drive.half_cycles = half_cycles;
+        strike(&mut system, dice.between(0.05, 0.5), dice.ratio(0.02, 3.0));
         let own = settled(&format!("seed {seed}"), &system, &cycles(4));
         if own.proof.events > 50 {
             // Steps that small do not follow it so far.
