@@ -6,8 +6,6 @@
 //! | pressed into a resilient face | compressed (or, if it cannot pull, while it pushes), and less than the stop | flight, stop |
 //! | held by a rigid face or a stop | the face can push | flight, or pressed |
 //! | at both faces, which move by themselves | each face by its own guards, as above | the other face alone |
-//!
-//! An impact with restitution ε exchanges the impulse P = −(1 + ε) u′/(1/mp + φ·M⁻¹φ).
 
 use super::system::{Contact, EventKind, Face, Law, Particle, Stop, dot};
 
@@ -184,6 +182,15 @@ impl Contact {
         })
     }
 
+    /// What is left when one of the faces does something else; `None` for a particle that both hold.
+    pub(crate) fn turned(self, side: Side, hold: Hold, particle: &Particle) -> Option<Self> {
+        let across = self.at(side.opposite(), particle);
+        match side {
+            Side::Floor => Self::of(hold, across, particle),
+            Side::Ceiling => Self::of(across, hold, particle),
+        }
+    }
+
     /// Held: moves as one with the face.
     pub(crate) fn holds(self, particle: &Particle) -> bool {
         self.face(particle).is_some() && !self.presses(particle)
@@ -318,28 +325,6 @@ impl Law {
         match self {
             Self::Rigid { restitution } => restitution,
             Self::Resilient { stop, .. } => stop.map_or(0.0, |stop| stop.restitution),
-        }
-    }
-}
-
-/// An impact: what it does to the structure and to the relative rate.
-pub(crate) struct Impact {
-    /// N s, on the particle, away from the face where positive.
-    pub(crate) impulse: f64,
-    /// Relative rate after.
-    pub(crate) departure: f64,
-    /// Energy lost, J.
-    pub(crate) loss: f64,
-}
-
-impl Impact {
-    /// The impact of a particle on a face with mobility φ·M⁻¹φ, by restitution; q′ changes by −`impulse`·M⁻¹φ.
-    pub(crate) fn new(mobility: f64, mass: f64, restitution: f64, approach: f64) -> Self {
-        let effective = mass / (1.0 + mass * mobility);
-        Self {
-            impulse: -(1.0 + restitution) * approach * effective,
-            departure: -restitution * approach,
-            loss: 0.5 * effective * (1.0 - restitution * restitution) * approach * approach,
         }
     }
 }

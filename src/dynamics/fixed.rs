@@ -20,11 +20,13 @@
 //! and nowhere lower.
 //!
 //! A particle that a rigid face cannot hold is let go a step after it struck, and counts as released; exact events let it go
-//! at once. Beyond that text: a held particle from which an impulse pulls its face away is let go at once (its share of the impulse
-//! would not vanish with Δt), and damping, stop and release without tension follow the event-driven driver's rules at the
-//! end of each step. What [`super::Proof`] holds then: the residuals of momentum and energy by trapezoidal sums (they show the
-//! scheme's own error: a spring that is noticed compressed has got that energy from nowhere), no ties, and NaN for the
-//! smallest margin, since nothing is certified.
+//! at once. Beyond that text, what would not vanish with Δt follows the rules of exact events: a held particle from which an
+//! impulse or another impact pulls its face away is let go at once, impacts of one step are one exchange of momentum
+//! ([`super::collision`]), a stop lets go at once what its spring throws back, and a particle between faces that move by
+//! themselves is at both. So do damping, stop and release without tension, at the end of each step. What [`super::Proof`]
+//! holds then: the residuals of momentum and energy by trapezoidal sums (they show the scheme's own error: a spring that is
+//! noticed compressed has got that energy from nowhere), no ties, and NaN for the smallest margin, since nothing is
+//! certified.
 
 mod contact;
 mod propagator;
@@ -37,8 +39,10 @@ use super::audit::{Audit, Passed};
 use super::budget;
 use super::cholesky::Cholesky;
 use super::contact::{Relative, Side};
+use super::contact_state::{dampings, face_damping};
 use super::flow::Flow;
-use super::system::{Contact, Drive, HybridSystem, Law, dot};
+use super::mobility::Mobilities;
+use super::system::{Contact, Drive, HybridSystem, dot};
 use super::{EngineError, Observed, Options, Response, StartState};
 use propagator::{Layout, Propagator, lead};
 use schedule::{Oscillator, Schedule, StepTick};
@@ -79,6 +83,9 @@ struct Run<'a, V: Vector> {
     // State beside what moves.
     motion: Motion<V>,
     contacts: Vec<Contact>,
+    /// Particles at something rigid that may move against it.
+    closing: Vec<Closing>,
+    mobilities: Mobilities,
     /// Equivalent viscous damping in force, N s/m.
     equivalent: f64,
     cycle: u64,
@@ -91,6 +98,14 @@ struct Run<'a, V: Vector> {
     response: Response,
     audit: Option<Audit>,
     passed: Passed,
+}
+
+/// A particle at a rigid face or on a stop, which it may move against.
+struct Closing {
+    particle: usize,
+    side: Side,
+    /// Held until now.
+    held: bool,
 }
 
 /// The next sample of the time history.
@@ -136,6 +151,8 @@ impl<'a, V: Vector> Run<'a, V> {
             now: 0,
             motion: Motion::new(&state, oscillator, half_cycles.map(|_| HalfCycle::default())),
             contacts,
+            closing: Vec::new(),
+            mobilities: Mobilities::default(),
             equivalent: half_cycles.map_or(0.0, |half| half.curve.upper_end()),
             cycle: 0,
             step: 0,
@@ -209,6 +226,7 @@ impl<'a, V: Vector> Run<'a, V> {
     /// A jump of the force.
     fn tick(&mut self, tick: StepTick) -> Result<(), EngineError> {
         self.motion.level = tick.level;
+        self.motion.half.iter_mut().for_each(HalfCycle::jumps);
         if tick.impulse == 0.0 { Ok(()) } else { self.impulse(tick.impulse) }
     }
 
@@ -239,7 +257,8 @@ impl<'a, V: Vector> Run<'a, V> {
 
     /// Makes the propagator of the contact state in force current, building it at the first visit.
     fn choose_propagator(&mut self) -> Result<(), EngineError> {
-        let damping: Vec<f64> = (0..self.contacts.len()).map(|j| self.damping(j)).collect();
+        let both = |j| [Side::Floor, Side::Ceiling].map(|side| self.damping(j, side));
+        let damping: Vec<[f64; 2]> = (0..self.contacts.len()).map(both).collect();
         let fits = |known: &Propagator<V>| known.contacts == self.contacts && known.damping == damping;
         if let Some(index) = self.propagators.iter().position(fits) {
             self.now = index;
@@ -256,13 +275,14 @@ impl<'a, V: Vector> Run<'a, V> {
         Ok(())
     }
 
-    /// Dashpot of the face that a particle is at, or of its floor in flight, N s/m.
-    fn damping(&self, j: usize) -> f64 {
-        match self.contacts[j].side().face(&self.system.particles[j]).law {
-            Law::Resilient { .. } if self.motion.half.is_some() => self.equivalent,
-            Law::Resilient { damping, .. } => damping,
-            Law::Rigid { .. } => 0.0,
-        }
+    /// What half cycles put in the place of the faces' own damping, N s/m.
+    fn equivalent(&self) -> Option<f64> {
+        self.motion.half.map(|_| self.equivalent)
+    }
+
+    /// Dashpot of a face, N s/m.
+    fn damping(&self, j: usize, side: Side) -> f64 {
+        face_damping(side.face(&self.system.particles[j]).law, self.equivalent())
     }
 
     /// Position relative to a face.
@@ -302,10 +322,8 @@ impl<'a, V: Vector> Run<'a, V> {
         self.response.proof.smallest_margin = f64::NAN;
         self.response.final_particles = (0..self.contacts.len()).map(|j| self.absolute(j)).collect();
         let quiet = without_harmonic(self.system);
-        for contacts in std::mem::take(&mut self.visited) {
-            self.contacts = contacts;
-            let damping: Vec<f64> = (0..self.contacts.len()).map(|j| self.damping(j)).collect();
-            let flow = Flow::build(&quiet, &self.contacts, &damping)?;
+        for contacts in &self.visited {
+            let flow = Flow::build(&quiet, contacts, &dampings(self.system, contacts, self.equivalent()))?;
             let highest = &mut self.response.highest_frequency;
             *highest = highest.max(flow.highest_frequency);
         }
@@ -336,17 +354,31 @@ fn start(system: &HybridSystem, from: &StartState, layout: Layout) -> Result<(Ve
     let mut state = vec![0.0; layout.size()];
     match from {
         StartState::StaticEquilibrium => {
-            let contacts = vec![Contact::Floor; layout.particles];
+            let mut contacts = vec![Contact::Floor; layout.particles];
             let damping = vec![0.0; layout.particles];
-            let flow = Flow::build(&without_harmonic(system), &contacts, &damping)?;
-            let (mut p, mut rate) = (vec![0.0; flow.order], vec![0.0; flow.order]);
-            let still = vec![0.0; 2 * flow.order];
-            flow.leave(&still, 0.0, 0.0, Default::default(), &mut Vec::new(), [&mut p, &mut rate]);
-            state[..n].copy_from_slice(&p[..n]);
-            for (i, &j) in flow.modes.attached.iter().enumerate() {
-                state[layout.gap(j)] = p[n + i];
+            loop {
+                let flow = Flow::build(&without_harmonic(system), &contacts, &damping)?;
+                let (mut p, mut rate) = (vec![0.0; flow.order], vec![0.0; flow.order]);
+                let still = vec![0.0; 2 * flow.order];
+                flow.leave(&still, 0.0, 0.0, Default::default(), &mut Vec::new(), [&mut p, &mut rate]);
+                state[..n].copy_from_slice(&p[..n]);
+                let mut fits = true;
+                for (i, &j) in flow.modes.attached.iter().enumerate() {
+                    let gap = &mut state[layout.gap(j)];
+                    *gap = p[n + i];
+                    if let Some(stop) = system.particles[j].floor.law.stop()
+                        && *gap < -stop.length
+                    {
+                        // Its weight alone presses the floor to the stop.
+                        *gap = -stop.length;
+                        contacts[j] = Contact::FloorStop;
+                        fits = false;
+                    }
+                }
+                if fits {
+                    return Ok((contacts, state));
+                }
             }
-            Ok((contacts, state))
         }
         StartState::Given { q, rate, particles } => {
             state[..n].copy_from_slice(q);

@@ -85,6 +85,7 @@ mod sums;
 mod superposition;
 mod survey;
 mod system;
+mod touch;
 mod trace;
 mod undamped;
 mod visits;
@@ -115,4 +116,4 @@ pub use system::{
 pub use trace::{Sample, SampledParticle, TraceRequest};
 
 /// Changes whenever the same scene may give other bits. A test holds the bits of fixed scenes against it.
-pub const SOLVER_VERSION: u32 = 18;
+pub const SOLVER_VERSION: u32 = 19;

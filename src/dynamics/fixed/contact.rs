@@ -1,15 +1,15 @@
 //! What the check at the end of a step leads to. The state has gone as far beyond a face as a step took it.
 
-use super::Run;
-use super::propagator::lead;
+use super::propagator::sides;
 use super::stretch::{HalfCycle, Stretch};
 use super::vector::Vector;
+use super::{Closing, Run};
 use crate::dynamics::EngineError;
 use crate::dynamics::audit::energy;
-use crate::dynamics::cholesky::Cholesky;
-use crate::dynamics::conservative::carried_mass;
-use crate::dynamics::contact::{Impact, Relative, STICKING_SPEED, Side};
-use crate::dynamics::system::{Contact, EventKind, Law, Particle, dot};
+use crate::dynamics::collision::{self, Closed};
+use crate::dynamics::contact::{Hold, Relative, STICKING_SPEED, Side};
+use crate::dynamics::system::{EventKind, Law, dot};
+use crate::dynamics::touch::{self, Exchange, Touch};
 
 impl<V: Vector> Run<'_, V> {
     /// The contact state for the next steps.
@@ -21,6 +21,7 @@ impl<V: Vector> Run<'_, V> {
             for j in 0..self.contacts.len() {
                 self.check(j)?;
             }
+            self.collide()?;
             let after = self.watch.velocity.dot(&self.motion.state);
             self.tally.velocity_square += after * after - before * before;
             self.motion.half.iter_mut().for_each(HalfCycle::jumps);
@@ -38,50 +39,64 @@ impl<V: Vector> Run<'_, V> {
     /// Whether the contact of a particle still holds, and what takes its place.
     fn check(&mut self, j: usize) -> Result<(), EngineError> {
         let particle = &self.system.particles[j];
-        let contact = self.contacts[j];
-        let side = contact.side();
-        let away = side.away();
-        let here = self.relative(j, side);
-        if contact == Contact::Flight {
-            if here.gap < 0.0 {
-                self.meet(j, Side::Floor, here)?;
-            } else if particle.ceiling.is_some() {
-                let ceiling = self.relative(j, Side::Ceiling);
-                if ceiling.gap > 0.0 {
-                    self.meet(j, Side::Ceiling, ceiling)?;
-                }
-            }
-        } else if contact.holds(particle) {
-            let propagator = &self.propagators[self.now];
-            if propagator.hold(j, &self.motion.state, self.motion.force()) < 0.0 {
-                self.let_go(j, side);
-            }
-        } else if let Law::Resilient { stiffness, no_tension, stop, .. } = side.face(particle).law {
-            let compressed = 0.5 * stiffness * here.gap * here.gap;
-            let pushes = away * (-stiffness * here.gap - self.damping(j) * here.rate) > 0.0;
-            if contact.presses(particle) {
-                if away * here.gap > 0.0 {
-                    self.let_go(j, side);
-                } else if no_tension && !pushes {
-                    self.record(j, side.lost(), here.rate, here.rate);
-                    self.contacts[j] = side.released();
-                    self.lose(compressed);
-                } else if let Some(stop) = stop
-                    && away * here.gap < -stop.length
-                {
-                    self.place(j, side, Relative { gap: -away * stop.length, ..here });
-                    if away * here.rate < 0.0 {
-                        self.strike(j, side, stop.restitution)?;
+        for side in sides(self.contacts[j], particle) {
+            let here = self.relative(j, side);
+            match self.contacts[j].at(side, particle) {
+                Hold::Away if side.away() * here.gap < 0.0 => {
+                    self.meet(j, side, here)?;
+                    if !particle.has_walls() {
+                        break;
                     }
                 }
-            } else if away * here.gap > 0.0 {
-                self.contacts[j] = Contact::Flight;
-            } else if pushes {
-                self.record(j, side.made(), here.rate, here.rate);
-                self.contacts[j] = side.pressed();
-                self.lose(-compressed);
+                Hold::Away => {}
+                Hold::Held => {
+                    let propagator = &self.propagators[self.now];
+                    if propagator.hold(j, &self.motion.state, self.motion.force()) < 0.0 {
+                        self.let_go(j, side)?;
+                    }
+                }
+                hold @ (Hold::Pressed | Hold::Released) => self.check_spring(j, side, hold, here)?,
             }
         }
+        Ok(())
+    }
+
+    /// The same for a face that is compressed, and pushes its particle or has let go of it.
+    fn check_spring(&mut self, j: usize, side: Side, hold: Hold, here: Relative) -> Result<(), EngineError> {
+        let Law::Resilient { stiffness, no_tension, stop, .. } = side.face(&self.system.particles[j]).law else {
+            return Ok(());
+        };
+        let away = side.away();
+        let compressed = 0.5 * stiffness * here.gap * here.gap;
+        let pushes = away * (-stiffness * here.gap - self.damping(j, side) * here.rate) > 0.0;
+        let is_back = away * here.gap > 0.0;
+        if hold == Hold::Released {
+            if is_back {
+                self.turn(j, side, Hold::Away)?;
+            } else if pushes {
+                self.record(j, side.made(), here.rate, here.rate);
+                self.turn(j, side, Hold::Pressed)?;
+                self.lose(-compressed);
+            }
+        } else if is_back {
+            self.let_go(j, side)?;
+        } else if no_tension && !pushes {
+            self.record(j, side.lost(), here.rate, here.rate);
+            self.turn(j, side, Hold::Released)?;
+            self.lose(compressed);
+        } else if let Some(stop) = stop
+            && away * here.gap < -stop.length
+        {
+            self.arrive(j, side, Relative { gap: -away * stop.length, ..here })?;
+        }
+        Ok(())
+    }
+
+    /// What one face does to a particle changes.
+    fn turn(&mut self, j: usize, side: Side, hold: Hold) -> Result<(), EngineError> {
+        let time = (self.step - self.schedule.cycle(self.cycle)) as f64 * self.time_step;
+        let after = self.contacts[j].turned(side, hold, &self.system.particles[j]);
+        self.contacts[j] = after.ok_or(EngineError::Squeezed { particle: j, cycle: self.cycle, time })?;
         Ok(())
     }
 
@@ -95,69 +110,93 @@ impl<V: Vector> Run<'_, V> {
     /// A particle in flight is found beyond a face.
     fn meet(&mut self, j: usize, side: Side, here: Relative) -> Result<(), EngineError> {
         match side.face(&self.system.particles[j]).law {
-            Law::Rigid { restitution } => {
-                self.place(j, side, Relative { gap: 0.0, ..here });
-                if side.away() * here.rate < 0.0 { self.strike(j, side, restitution) } else { Ok(()) }
-            }
+            Law::Rigid { .. } => self.arrive(j, side, Relative { gap: 0.0, ..here }),
             Law::Resilient { .. } => {
-                self.contacts[j] = side.pressed();
                 self.record(j, side.made(), here.rate, here.rate);
-                Ok(())
+                self.turn(j, side, Hold::Pressed)
             }
         }
     }
 
-    /// An impact on something rigid, where the particle is. It sticks below [`STICKING_SPEED`] if both then move the
-    /// same way; whether the face can hold it is asked at the end of the next step.
-    fn strike(&mut self, j: usize, side: Side, restitution: f64) -> Result<(), EngineError> {
-        let face = side.face(&self.system.particles[j]);
-        let stop = face.law.stop();
-        let here = self.relative(j, side);
-        self.contacts[j] = Contact::Flight;
-        let answer = Cholesky::new(&carried_mass(self.system, &self.contacts))?.solve(&face.row);
-        let mass = self.system.particles[j].mass;
-        let impact = Impact::new(dot(&face.row, &answer), mass, restitution, here.rate);
-        let jump: Vec<f64> = answer.iter().map(|a| -a * impact.impulse).collect();
-        self.kick_structure(&jump, |contact, particle| contact.holds(particle));
-        self.place(j, side, Relative { rate: impact.departure, ..here });
-        self.lose(impact.loss);
-        self.record(j, if stop.is_some() { side.hit() } else { side.made() }, here.rate, impact.departure);
-        let (n, positions) = (self.layout.n, self.layout.positions());
-        let speed = dot(&face.row, &self.motion.state.values()[positions..positions + n]);
-        let slow = impact.departure.abs() < STICKING_SPEED;
-        self.contacts[j] = match stop {
-            Some(_) if slow => side.stopped(),
-            Some(_) => side.pressed(),
-            None if slow && speed * (speed + impact.departure) > 0.0 => side.pressed(),
-            None => Contact::Flight,
-        };
-        if self.contacts[j].holds(&self.system.particles[j]) {
-            self.place(j, side, Relative { rate: 0.0, ..here });
+    /// A particle has come to something rigid: it is put there, and takes part in the step's collision if it moves into it.
+    fn arrive(&mut self, j: usize, side: Side, here: Relative) -> Result<(), EngineError> {
+        self.place(j, side, here);
+        if side.away() * here.rate < 0.0 {
+            self.closing.push(Closing { particle: j, side, held: false });
+            self.turn(j, side, Hold::Held)?;
+        }
+        Ok(())
+    }
+
+    /// The exchange of momentum among what moves into something rigid at this step and what is held, by the rule of exact
+    /// events. What is struck sticks below [`STICKING_SPEED`] if both then move the same way; whether the face can hold it is
+    /// asked at the end of the next step.
+    fn collide(&mut self) -> Result<(), EngineError> {
+        if self.closing.is_empty() {
+            return Ok(());
+        }
+        let mut touches = Vec::new();
+        for (j, particle) in self.system.particles.iter().enumerate() {
+            let (side, rate, held) = match self.closing.iter().find(|closing| closing.particle == j) {
+                Some(Closing { side, held, .. }) => (*side, self.relative(j, *side).rate, *held),
+                None if self.contacts[j].holds(particle) => (self.contacts[j].side(), 0.0, true),
+                None => continue,
+            };
+            touches.push(Touch::new(self.system, &mut self.mobilities, j, side, held, rate)?);
+        }
+        self.closing.clear();
+        let closed: Vec<Closed> = touches.iter().map(|touch| touch.closed).collect();
+        let outcomes = collision::collide(&closed, &touch::answers(self.system, &self.mobilities, &touches));
+        let Exchange { jump, loss } = Exchange::new(self.system, &self.mobilities, &touches, &outcomes);
+        self.kick_structure(&jump);
+        self.lose(loss);
+        for (touch, outcome) in touches.iter().zip(&outcomes) {
+            let Touch { particle: j, side, on_stop, held, closed, .. } = *touch;
+            let (away, struck) = (side.away(), outcome.pushed && closed.is_struck());
+            let departure = away * outcome.speed;
+            let (n, positions) = (self.layout.n, self.layout.positions());
+            let row = &side.face(&self.system.particles[j]).row;
+            let face = dot(row, &self.motion.state.values()[positions..positions + n]);
+            let sticks = on_stop || closed.both_ways || !struck || face * (face + departure) > 0.0;
+            let rests = outcome.speed < STICKING_SPEED && sticks;
+            let gap = self.relative(j, side).gap;
+            self.place(j, side, Relative { gap, rate: if rests { 0.0 } else { departure } });
+            if struck {
+                self.record(j, if on_stop { side.hit() } else { side.made() }, away * closed.speed, departure);
+            } else if held && !rests {
+                self.let_go(j, side)?;
+                continue;
+            }
+            let elsewhere = if on_stop { Hold::Pressed } else { Hold::Away };
+            self.turn(j, side, if rests { Hold::Held } else { elsewhere })?;
+        }
+        // A stop does not hold for a step what its spring throws back.
+        self.choose_propagator()?;
+        for Touch { particle: j, side, .. } in touches.into_iter().filter(|touch| touch.on_stop && !touch.held) {
+            if self.propagators[self.now].hold(j, &self.motion.state, self.motion.force()) < 0.0 {
+                self.turn(j, side, Hold::Pressed)?;
+            }
         }
         Ok(())
     }
 
     /// A face loses its particle.
-    fn let_go(&mut self, j: usize, side: Side) {
+    fn let_go(&mut self, j: usize, side: Side) -> Result<(), EngineError> {
         let rate = self.relative(j, side).rate;
-        let stopped = self.contacts[j] == side.stopped();
+        let particle = &self.system.particles[j];
+        let held = self.contacts[j].at(side, particle) == Hold::Held;
+        let stopped = held && side.face(particle).law.stop().is_some();
         self.record(j, if stopped { EventKind::StopRelease } else { side.lost() }, rate, rate);
-        self.contacts[j] = if stopped { side.pressed() } else { Contact::Flight };
+        self.turn(j, side, if stopped { Hold::Pressed } else { Hold::Away })
     }
 
-    /// The structure's velocity jumps. Particles that `follow` keep their velocity relative to their face, the others their own.
-    fn kick_structure(&mut self, jump: &[f64], follow: impl Fn(Contact, &Particle) -> bool) {
+    /// The structure's velocity jumps; the particles keep their own.
+    fn kick_structure(&mut self, jump: &[f64]) {
         let (positions, layout) = (self.layout.positions(), self.layout);
         let state = self.motion.state.values_mut();
         state[positions..].iter_mut().zip(jump).for_each(|(rate, jump)| *rate += jump);
         for (j, particle) in self.system.particles.iter().enumerate() {
-            let gap_rate = &mut state[layout.gap(j) + positions];
-            if follow(self.contacts[j], particle) {
-                let ahead = lead(particle, self.contacts[j].side());
-                *gap_rate += ahead.zip(jump).fold(0.0, |sum, (lead, jump)| sum + lead * jump);
-            } else {
-                *gap_rate -= dot(&particle.floor.row, jump);
-            }
+            state[layout.gap(j) + positions] -= dot(&particle.floor.row, jump);
         }
     }
 
@@ -167,25 +206,17 @@ impl<V: Vector> Run<'_, V> {
         self.seam(-0.5);
         let before = self.audit.is_some().then(|| energy(self.system, &self.audit_state()));
         let jump: Vec<f64> = self.jump.iter().map(|jump| impulse * jump).collect();
-        self.kick_structure(&jump, |_, _| false);
+        self.kick_structure(&jump);
         if let Some(before) = before {
             let after = energy(self.system, &self.audit_state());
             if let Some(audit) = &mut self.audit {
                 audit.impulse(impulse, after - before);
             }
         }
-        for j in 0..self.contacts.len() {
-            if !self.contacts[j].holds(&self.system.particles[j]) {
-                continue;
-            }
-            let side = self.contacts[j].side();
-            let away = side.away() * self.relative(j, side).rate;
-            if away < 0.0 {
-                self.strike(j, side, side.face(&self.system.particles[j]).law.restitution())?;
-            } else if away > 0.0 {
-                self.let_go(j, side);
-            }
-        }
+        let holds = |j: &usize| self.contacts[*j].holds(&self.system.particles[*j]);
+        let closing = |j: usize| Closing { particle: j, side: self.contacts[j].side(), held: true };
+        self.closing.extend((0..self.contacts.len()).filter(holds).map(closing));
+        self.collide()?;
         self.choose_propagator()?;
         self.seam(0.5);
         Ok(())

@@ -10,7 +10,7 @@ use super::vector::Vector;
 use crate::dynamics::EngineError;
 use crate::dynamics::cholesky::Cholesky;
 use crate::dynamics::conservative::carried_mass;
-use crate::dynamics::contact::Side;
+use crate::dynamics::contact::{Hold, Side};
 use crate::dynamics::guards::spring_on_stop;
 use crate::dynamics::modes::scale;
 use crate::dynamics::system::{Contact, HybridSystem, Law, Matrix, Particle};
@@ -19,8 +19,8 @@ use crate::dynamics::system::{Contact, HybridSystem, Law, Matrix, Particle};
 pub(super) struct Propagator<V: Vector> {
     /// Contact of each particle.
     pub(super) contacts: Vec<Contact>,
-    /// Contact damping in force, per particle, N s/m.
-    pub(super) damping: Vec<f64>,
+    /// Contact damping in force, per particle, at floor and ceiling, N s/m.
+    pub(super) damping: Vec<[f64; 2]>,
     /// A_d.
     pub(super) matrix: V::Matrix,
     /// a_d: weight and the rest position of a ceiling.
@@ -127,6 +127,15 @@ impl Layout {
     }
 }
 
+/// The faces that a contact state can change at: both in flight and where they move by themselves, else its own.
+pub(super) fn sides(contact: Contact, particle: &Particle) -> impl Iterator<Item = Side> {
+    let alone = contact != Contact::Flight && !particle.has_walls();
+    let is_asked = move |side: &Side| {
+        if alone { *side == contact.side() } else { *side == Side::Floor || particle.ceiling.is_some() }
+    };
+    [Side::Floor, Side::Ceiling].into_iter().filter(is_asked)
+}
+
 /// φ_s − φ_f: how a face moves ahead of the floor.
 pub(super) fn lead(particle: &Particle, side: Side) -> impl Iterator<Item = f64> {
     side.face(particle).row.iter().zip(&particle.floor.row).map(|(face, floor)| face - floor)
@@ -136,12 +145,13 @@ impl<V: Vector> Propagator<V> {
     pub(super) fn build(
         system: &HybridSystem,
         contacts: &[Contact],
-        damping: &[f64],
+        damping: &[[f64; 2]],
         time_step: f64,
     ) -> Result<Self, EngineError> {
         let layout = Layout::of(system);
         let (n, positions, size) = (layout.n, layout.positions(), layout.size());
-        let accelerations = accelerations(system, contacts, damping)?;
+        let pushes = Push::all(system, contacts, damping);
+        let accelerations = accelerations(system, contacts, &pushes)?;
         let along = |row: &[f64]| {
             row.iter().zip(&accelerations[..n]).fold(Signal::zero(size), |sum, (x, signal)| sum.plus(*x, signal))
         };
@@ -150,35 +160,36 @@ impl<V: Vector> Propagator<V> {
         let mut holds = vec![None; layout.particles];
         let mut dissipation = dashpots(&system.damping, layout);
         for (j, particle) in system.particles.iter().enumerate() {
-            let contact = contacts[j];
-            let side = contact.side();
-            let away = side.away();
-            let [w, rate] = layout.relative(particle, j, side);
-            let law = side.face(particle).law;
-            let push = push(law, damping[j], &w, &rate).times(away);
-            if contact.holds(particle) {
-                let spring = spring_on_stop(particle, side);
-                let hold = along(&side.face(particle).row).plus_constant(system.gravity).times(away);
-                holds[j] = Some(guards.len());
-                guards.push(hold.plus_constant(-spring));
-            } else if contact.presses(particle) {
-                dissipation.push(rate.times(damping[j].max(0.0).sqrt()));
-                if let Some(stop) = law.stop() {
-                    guards.push(w.clone().times(away).plus_constant(stop.length));
+            for side in sides(contacts[j], particle) {
+                let (law, away) = (side.face(particle).law, side.away());
+                let [w, rate] = layout.relative(particle, j, side);
+                let damping = damping[j][side as usize];
+                let push = push(law, damping, &w, &rate).times(away);
+                match contacts[j].at(side, particle) {
+                    Hold::Held if particle.is_enclosed() => {}
+                    Hold::Held => {
+                        let spring = spring_on_stop(particle, side);
+                        let hold = along(&side.face(particle).row).plus_constant(system.gravity);
+                        let hold = hold.plus(-1.0, &Push::acceleration(&pushes, j, system)).times(away);
+                        holds[j] = Some(guards.len());
+                        guards.push(hold.plus_constant(-spring));
+                    }
+                    Hold::Pressed => {
+                        dissipation.push(rate.times(damping.max(0.0).sqrt()));
+                        if let Some(stop) = law.stop() {
+                            guards.push(w.clone().times(away).plus_constant(stop.length));
+                        }
+                        guards.push(match law {
+                            Law::Resilient { no_tension: true, .. } => push,
+                            _ => w.times(-away),
+                        });
+                    }
+                    Hold::Released => {
+                        guards.push(w.times(-away));
+                        guards.push(push.times(-1.0));
+                    }
+                    Hold::Away => guards.push(w.times(away)),
                 }
-                guards.push(match law {
-                    Law::Resilient { no_tension: true, .. } => push,
-                    _ => w.times(-away),
-                });
-            } else if contact == Contact::Flight {
-                guards.push(w);
-                if particle.ceiling.is_some() {
-                    let [ceiling, _] = layout.relative(particle, j, Side::Ceiling);
-                    guards.push(ceiling.times(-1.0));
-                }
-            } else {
-                guards.push(w.times(-away));
-                guards.push(push.times(-1.0));
             }
         }
 
@@ -214,8 +225,38 @@ fn push(law: Law, damping: f64, w: &Signal, rate: &Signal) -> Signal {
     }
 }
 
+/// A resilient face that pushes its particle.
+struct Push {
+    particle: usize,
+    side: Side,
+    /// Upwards, N.
+    force: Signal,
+}
+
+impl Push {
+    fn all(system: &HybridSystem, contacts: &[Contact], damping: &[[f64; 2]]) -> Vec<Self> {
+        let layout = Layout::of(system);
+        let of = |(j, particle): (usize, _)| {
+            let is_pressed = move |side: &Side| contacts[j].at(*side, particle) == Hold::Pressed;
+            sides(contacts[j], particle).filter(is_pressed).map(move |side| {
+                let [w, rate] = layout.relative(particle, j, side);
+                let force = push(side.face(particle).law, damping[j][side as usize], &w, &rate);
+                Self { particle: j, side, force }
+            })
+        };
+        system.particles.iter().enumerate().flat_map(of).collect()
+    }
+
+    /// What all faces give one particle, upwards, m/s².
+    fn acceleration(all: &[Self], j: usize, system: &HybridSystem) -> Signal {
+        let zero = Signal::zero(Layout::of(system).size());
+        let on = all.iter().filter(|push| push.particle == j);
+        on.fold(zero, |sum, push| sum.plus(1.0 / system.particles[j].mass, &push.force))
+    }
+}
+
 /// q″ and u″ by state, weight and force.
-fn accelerations(system: &HybridSystem, contacts: &[Contact], damping: &[f64]) -> Result<Vec<Signal>, EngineError> {
+fn accelerations(system: &HybridSystem, contacts: &[Contact], pushes: &[Push]) -> Result<Vec<Signal>, EngineError> {
     let layout = Layout::of(system);
     let (n, size) = (layout.n, layout.size());
     let mut loads: Vec<Signal> = (0..n)
@@ -229,21 +270,17 @@ fn accelerations(system: &HybridSystem, contacts: &[Contact], damping: &[f64]) -
             load
         })
         .collect();
-    // N/mp of the particles that are pushed.
-    let mut pushes: Vec<Signal> = vec![Signal::zero(size); layout.particles];
-    for (j, particle) in system.particles.iter().enumerate() {
-        let side = contacts[j].side();
-        let face = side.face(particle);
-        if contacts[j].presses(particle) {
-            let [w, rate] = layout.relative(particle, j, side);
-            let force = push(face.law, damping[j], &w, &rate);
-            for (load, phi) in loads.iter_mut().zip(&face.row) {
-                *load = load.clone().plus(-phi, &force);
-            }
-            pushes[j] = force.times(1.0 / particle.mass);
-        } else if contacts[j].holds(particle) {
-            for (load, phi) in loads.iter_mut().zip(&face.row) {
-                *load = load.clone().plus_constant(-phi * particle.mass * system.gravity);
+    for Push { particle, side, force } in pushes {
+        for (load, phi) in loads.iter_mut().zip(&side.face(&system.particles[*particle]).row) {
+            *load = load.clone().plus(-phi, force);
+        }
+    }
+    // What a held particle weighs, and what pushes it, its face passes on to the structure.
+    for (j, (particle, contact)) in system.particles.iter().zip(contacts).enumerate() {
+        if contact.holds(particle) {
+            let on = Push::acceleration(pushes, j, system).plus_constant(-system.gravity);
+            for (load, phi) in loads.iter_mut().zip(&contact.side().face(particle).row) {
+                *load = load.clone().plus(phi * particle.mass, &on);
             }
         }
     }
@@ -263,7 +300,7 @@ fn accelerations(system: &HybridSystem, contacts: &[Contact], damping: &[f64]) -
             ahead(&mut lead(particle, contacts[j].side()))
         } else {
             let floor = ahead(&mut particle.floor.row.iter().copied());
-            pushes[j].clone().plus_constant(-system.gravity).plus(-1.0, &floor)
+            Push::acceleration(pushes, j, system).plus_constant(-system.gravity).plus(-1.0, &floor)
         };
         accelerations.push(gap);
     }

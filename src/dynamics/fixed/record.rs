@@ -5,7 +5,7 @@ use super::stretch::Tally;
 use super::vector::Vector;
 use crate::dynamics::audit::State;
 use crate::dynamics::budget;
-use crate::dynamics::contact::Side;
+use crate::dynamics::contact::{Hold, Side};
 use crate::dynamics::sums::{About, Sums};
 use crate::dynamics::system::{Event, EventKind, Particle, dot};
 use crate::dynamics::trace::{Sample, SampledParticle};
@@ -133,12 +133,18 @@ impl<V: Vector> Run<'_, V> {
             let stiffness = contact.face(&self.system.particles[j]).and_then(|face| face.law.stiffness());
             stiffness.map_or([0.0; 2], |stiffness| [stiffness, self.relative(j, contact.side()).gap])
         };
+        let across = |j: usize| {
+            let (contact, particle) = (self.contacts[j], &self.system.particles[j]);
+            let side = contact.side().opposite();
+            let stiffness = side.face(particle).law.stiffness().filter(|_| contact.across() == Hold::Pressed)?;
+            Some([stiffness, self.relative(j, side).gap])
+        };
         State {
             q: state[..n].to_vec(),
             rate: state[positions..positions + n].to_vec(),
             particles: (0..self.contacts.len()).map(|j| self.absolute(j)).collect(),
             compressions: (0..self.contacts.len()).map(compression).collect(),
-            across: Vec::new(),
+            across: (0..self.contacts.len()).filter_map(across).collect(),
         }
     }
 
@@ -156,7 +162,7 @@ impl<V: Vector> Run<'_, V> {
             displacement: dot(&self.system.observed_rows[0], &state[..n]),
             velocity: dot(&self.system.observed_rows[0], &state[positions..positions + n]),
             acceleration: self.propagators[self.now].acceleration.at(&self.motion.state, self.motion.force()),
-            damping: if self.contacts.is_empty() { 0.0 } else { self.damping(0) },
+            damping: if self.contacts.is_empty() { 0.0 } else { self.damping(0, self.contacts[0].side()) },
             half_cycle_rms: self.motion.half.map_or(0.0, |half| half.last),
             particles: self.system.particles.iter().enumerate().map(sampled).collect(),
         };

@@ -9,7 +9,7 @@ use crate::dynamics::EngineError;
 use crate::dynamics::contact::{Crossing, Hold, Relative, STICKING_SPEED, Side};
 use crate::dynamics::contact_state::face_damping;
 use crate::dynamics::guards::{self, Slipped};
-use crate::dynamics::system::{Contact, Law};
+use crate::dynamics::system::Law;
 
 /// Roundings of a distance that a bounce has to rise above.
 const SEVERAL: f64 = 16.0;
@@ -97,9 +97,8 @@ impl<E: Effects> March<'_, E> {
     /// What one face does to a particle changes; its state goes on referring to the face that its contact names.
     pub(super) fn turn(&mut self, j: usize, side: Side, hold: Hold) -> Result<(), EngineError> {
         let particle = &self.system.particles[j];
-        let (before, across) = (self.contacts[j], self.contacts[j].at(side.opposite(), particle));
-        let [floor, ceiling] = if side == Side::Floor { [hold, across] } else { [across, hold] };
-        let Some(after) = Contact::of(floor, ceiling, particle) else {
+        let before = self.contacts[j];
+        let Some(after) = before.turned(side, hold, particle) else {
             return Err(EngineError::Squeezed { particle: j, cycle: self.cycle, time: self.time });
         };
         if before.side() != after.side() {

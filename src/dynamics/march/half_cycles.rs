@@ -29,7 +29,7 @@ pub(super) struct Half {
     /// RMS of the last complete one, m/s².
     pub(super) last: f64,
     pub(super) stage: Stage,
-    /// Too weak to leave the curve's lower end, or to be told from rounding: not followed.
+    /// Too weak to be told from rounding: not followed.
     pub(super) idle: bool,
 }
 
@@ -76,17 +76,12 @@ impl<E: Effects> March<'_, E> {
             let each = flow.blocks.iter().zip(bends.each());
             each.fold(0.0, |sum, (block, phase)| sum + block.amplitude(phase, 0.0, self.system.drive.period))
         };
-        // Below the curve's first point every half cycle gives the same damping: no need to follow them until something
-        // happens. The bound holds to the end of the segment, and the half cycle under way is as weak.
-        let [least, damping] = half_cycles.curve.lower_end();
-        let weak = self.half.square <= least * least * self.half.length;
-        let is_lowest = self.equivalent == Some(damping);
         let places = self.q.iter().zip(&flow.rows.bend_of_places);
         let rounding = ROUNDING * places.fold(0.0, |sum, (place, answer)| sum + place.abs() * answer);
-        let died_away = bound <= DIED_AWAY * rounding;
-        if died_away || (bound < least && weak && is_lowest) {
+        if bound <= DIED_AWAY * rounding {
+            let [_, damping] = half_cycles.curve.lower_end();
             self.half = Half { idle: true, last: self.half.last, ..Half::default() };
-            if !is_lowest {
+            if self.equivalent != Some(damping) {
                 self.equivalent = Some(damping);
                 self.changed = true;
                 self.renew()?;

@@ -10,19 +10,7 @@ use crate::dynamics::collision::{self, Closed, Outcome};
 use crate::dynamics::contact::{Hold, Relative, STICKING_SPEED, Side};
 use crate::dynamics::guards::{Grip, Slipped};
 use crate::dynamics::system::{Contact, EventKind, Law, Particle, dot};
-
-/// A rigid contact that is closed.
-pub(super) struct Touch {
-    pub(super) particle: usize,
-    pub(super) side: Side,
-    /// On the stop of a resilient face.
-    on_stop: bool,
-    /// Held until now.
-    pub(super) held: bool,
-    /// Place of its mobility.
-    pub(super) mobility: usize,
-    pub(super) closed: Closed,
-}
+use crate::dynamics::touch::{self, Exchange, Touch};
 
 /// A particle that its face may hold from now on.
 pub(super) struct Candidate {
@@ -137,7 +125,7 @@ impl<E: Effects> March<'_, E> {
         for touch in touches.iter().filter(|touch| !touch.on_stop) {
             self.particles[touch.particle] = Relative::default();
         }
-        self.hold(touches.iter().map(Touch::rests).collect())?;
+        self.hold(touches.iter().map(Candidate::at_rest).collect())?;
         for j in 0..self.particles.len() {
             self.rest(j)?;
         }
@@ -180,33 +168,14 @@ impl<E: Effects> March<'_, E> {
                 (Contact::Flight, Side::Ceiling) => above().map_or(here.rate, |above| above.rate),
                 _ => here.rate,
             };
-            let both_ways = particle.is_enclosed();
-            let law = side.face(particle).law;
-            // All bounces across no gap happen at once.
-            let restitution = if both_ways { 0.0 } else { law.restitution() };
-            touches.push(Touch {
-                particle: j,
-                side,
-                on_stop: law.stop().is_some(),
-                held,
-                mobility: self.mobilities.find(self.system, j, side)?,
-                closed: Closed { mass: particle.mass, speed: side.away() * rate, restitution, both_ways },
-            });
+            touches.push(Touch::new(self.system, &mut self.mobilities, j, side, held, rate)?);
         }
         Ok(touches)
     }
 
     /// S of the closed contacts, row by row.
     pub(super) fn answers(&self, touches: &[Touch]) -> Vec<f64> {
-        let mut answers = Vec::with_capacity(touches.len() * touches.len());
-        for at in touches {
-            let row = &at.side.face(&self.system.particles[at.particle]).row;
-            for from in touches {
-                let answer = dot(row, self.mobilities.answer(from.mobility));
-                answers.push(at.side.away() * from.side.away() * answer);
-            }
-        }
-        answers
+        touch::answers(self.system, &self.mobilities, touches)
     }
 
     /// The exchange of momentum among all closed rigid contacts. Gives those that may be held.
@@ -267,14 +236,7 @@ impl<E: Effects> March<'_, E> {
 
     /// Gives the impulses of a collision to the structure; the faces of all particles that are not part of it move along.
     fn exchange(&mut self, touches: &[Touch], outcomes: &[Outcome]) {
-        let mut jump = vec![0.0; self.system.mass.order];
-        let mut loss = 0.0;
-        for (touch, outcome) in touches.iter().zip(outcomes) {
-            let impulse = touch.side.away() * outcome.impulse;
-            let answer = self.mobilities.answer(touch.mobility);
-            jump.iter_mut().zip(answer).for_each(|(jump, answer)| *jump -= impulse * answer);
-            loss -= 0.5 * outcome.impulse * (touch.closed.speed + outcome.speed);
-        }
+        let Exchange { jump, loss } = Exchange::new(self.system, &self.mobilities, touches, outcomes);
         for (j, particle) in self.system.particles.iter().enumerate() {
             if !touches.iter().any(|touch| touch.particle == j) {
                 self.particles[j].rate -= dot(&self.contacts[j].side().face(particle).row, &jump);
@@ -417,9 +379,9 @@ impl<E: Effects> March<'_, E> {
     }
 }
 
-impl Touch {
-    fn rests(&self) -> Candidate {
-        let Self { particle, side, on_stop, held, .. } = *self;
-        Candidate { particle, side, on_stop, held, speed: 0.0, restitution: 0.0 }
+impl Candidate {
+    fn at_rest(touch: &Touch) -> Self {
+        let Touch { particle, side, on_stop, held, .. } = *touch;
+        Self { particle, side, on_stop, held, speed: 0.0, restitution: 0.0 }
     }
 }

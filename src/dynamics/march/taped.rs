@@ -2,11 +2,11 @@
 
 use super::March;
 use super::effects::Effects;
-use super::impacts::Touch;
 use crate::dynamics::collision::{self, Closed, Outcome};
 use crate::dynamics::contact::{Crossing, Side};
 use crate::dynamics::motion::{self, End, Instant, Jump, Kick};
 use crate::dynamics::system::{Contact, Law, dot};
+use crate::dynamics::touch::Touch;
 use crate::dynamics::{Averaged, Counts, EngineError, Observed, Until};
 
 impl<E: Effects> March<'_, E> {

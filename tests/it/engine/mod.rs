@@ -30,6 +30,7 @@ mod repeated;
 mod resonance;
 mod search;
 mod settled;
+mod small_steps;
 mod sticking;
 mod upside_down;
 mod walls;
