@@ -284,13 +284,17 @@ fn pressed(
     let rows = flow.rows.guards[j];
     let own = signals.of(rows.first);
     let mut rest = own.rest;
-    let Law::Resilient { stiffness, no_tension, stop, .. } = side.face(particle).law else { return };
+    let law = &side.face(particle).law;
     // The start is known to the bit; what the blocks make of it would hide a contact that lasts a nanosecond.
     rest.p0 = here.gap - own.sum.value;
     if here.gap == 0.0 {
         rest.p1 = here.rate - own.sum.rate;
     }
-    let release = if no_tension && !state.plain {
+    let pushes_only = match law {
+        Law::Resilient { no_tension: true, stiffness, .. } if !state.plain => Some(*stiffness),
+        _ => None,
+    };
+    let release = if let Some(stiffness) = pushes_only {
         let damping = flow.modes.damping[j];
         let push = signals.of(rows.second);
         let force = Parabola { p0: stiffness * here.gap + damping * here.rate - push.sum.value, ..push.rest };
@@ -306,10 +310,10 @@ fn pressed(
         sign: -away,
         parabola: parabola.times(-away),
         start: begin,
-        distance: state.plain || !no_tension,
+        distance: pushes_only.is_none(),
     });
     if !state.plain
-        && let Some(stop) = stop
+        && let Some(stop) = law.stop()
     {
         // Positive until the compression is δ.
         guards.push(Guard {

@@ -139,26 +139,26 @@ impl States {
         &self.0.ground
     }
 
-    /// The flow of a contact state, built at the first visit, with the damping that half cycles have put in the place of the stated.
+    /// The flow of a contact state, if it is at hand.
     #[inline]
+    pub(crate) fn at_hand(&self, contacts: &[Contact]) -> Option<Rc<Flow>> {
+        let code = code(contacts)?;
+        let at_hand = self.0.at_hand.borrow();
+        at_hand[place(code)].as_ref().filter(|known| known.code == code).map(|known| Rc::clone(&known.flow))
+    }
+
+    /// The flow of a contact state, built at the first visit, with the damping that half cycles have put in the place of the stated.
     pub(crate) fn flow(
         &self,
         system: &HybridSystem,
         contacts: &[Contact],
         equivalent: Option<f64>,
     ) -> Result<Rc<Flow>, EngineError> {
-        let code = code(contacts).filter(|_| !self.0.half_cycles);
-        if let Some(code) = code
-            && let Some(known) = &self.0.at_hand.borrow()[place(code)]
-            && known.code == code
-        {
-            return Ok(Rc::clone(&known.flow));
-        }
         if !self.0.half_cycles && !contacts.iter().any(|contact| contact.is_between()) {
             // It has the stated dampings and no others.
             let build = || self.build(system, contacts, &dampings(system, contacts, None));
             let flow = visit(&self.0.flows, contacts, |_| true, build)?;
-            if let Some(code) = code {
+            if let Some(code) = code(contacts) {
                 self.0.at_hand.borrow_mut()[place(code)] = Some(AtHand { code, flow: Rc::clone(&flow) });
             }
             return Ok(flow);

@@ -206,7 +206,7 @@ impl<E: Effects> March<'_, E> {
             (_, Law::Resilient { stiffness, no_tension, .. }) if contact.presses(particle) => {
                 if gap == 0.0 && away * rate > 0.0 {
                     self.let_go(j, side);
-                } else if no_tension && -away * (stiffness * gap + self.damping_at(j) * rate) < 0.0 {
+                } else if E::ALL && no_tension && -away * (stiffness * gap + self.damping_at(j) * rate) < 0.0 {
                     if self.is_compressed(j, side) {
                         self.slip(j, side)?;
                     } else {
@@ -319,7 +319,7 @@ impl<E: Effects> March<'_, E> {
             let _always = self.turn(j, side, hold);
             return;
         }
-        if from_stop {
+        if E::ALL && from_stop {
             self.contacts[j] = side.pressed();
             return;
         }

@@ -47,7 +47,10 @@ impl<E: Effects> March<'_, E> {
             // Which of many dampings are still known hangs on the runs before; what is summed up together must not.
             self.pay_out();
         }
-        self.flow = self.states.flow(self.system, &self.contacts, self.equivalent)?;
+        self.flow = match self.states.at_hand(&self.contacts) {
+            Some(known) => known,
+            None => self.states.flow(self.system, &self.contacts, self.equivalent)?,
+        };
         let drive = &self.system.drive;
         let pause = drive.period / drive.ticks.len().max(1) as f64;
         self.is_brief = self.flow.is_brief(pause);
