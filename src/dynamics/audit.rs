@@ -9,11 +9,12 @@
 //!
 //! Both hold in chaotic runs too. They cannot show an event that was missed altogether; that is the search's certificate.
 
-use super::block::Kernel;
+use super::bank::Kernels;
 use super::budget;
+use super::contact::{Hold, Side};
 use super::flow::{DrivePhase, Flow};
 use super::integral::GAUSS;
-use super::system::{HybridSystem, dot};
+use super::system::{Contact, HybridSystem, dot};
 
 /// The physical state at an instant.
 #[derive(Debug, Clone, Default)]
@@ -26,6 +27,30 @@ pub(crate) struct State {
     pub(crate) compressions: Vec<[f64; 2]>,
     /// The same of second faces.
     pub(crate) across: Vec<[f64; 2]>,
+}
+
+impl State {
+    /// Of a structure at q, q′ with its particles at y, y′; `gap` is where one of them is relative to the face on one side.
+    pub(crate) fn new(
+        system: &HybridSystem,
+        contacts: &[Contact],
+        [q, rate]: [&[f64]; 2],
+        particles: Vec<[f64; 2]>,
+        gap: impl Fn(usize, Side) -> f64,
+    ) -> Self {
+        let spring = |j: usize, side: Side| Some([side.face(&system.particles[j]).law.stiffness()?, gap(j, side)]);
+        let own = |j: usize| contacts[j].face(&system.particles[j]).and_then(|_| spring(j, contacts[j].side()));
+        let across =
+            |j: usize| spring(j, contacts[j].side().opposite()).filter(|_| contacts[j].across() == Hold::Pressed);
+        let count = contacts.len();
+        Self {
+            q: q.to_vec(),
+            rate: rate.to_vec(),
+            particles,
+            compressions: (0..count).map(|j| own(j).unwrap_or_default()).collect(),
+            across: (0..count).filter_map(across).collect(),
+        }
+    }
 }
 
 /// What has passed since the window began.
@@ -95,29 +120,23 @@ struct Node {
 #[derive(Default)]
 struct Nodes {
     length: f64,
-    within: Vec<Vec<Kernel>>,
-    end: Vec<Kernel>,
+    within: Vec<Vec<Kernels>>,
+    end: Vec<Kernels>,
 }
 
 impl Nodes {
     fn set(&mut self, flow: &Flow, length: f64) {
-        if self.length == length {
-            return;
+        if self.length != length {
+            let within = GAUSS.iter().map(|[x, _]| flow.kernels(x * length)).collect();
+            *self = Self { length, within, end: flow.kernels(length) };
         }
-        let kernels = |t: f64| {
-            let mut kernels = vec![Kernel::NONE; flow.blocks.len()];
-            flow.bank.list(&flow.blocks, t, &mut kernels);
-            kernels
-        };
-        self.within = GAUSS.iter().map(|[x, _]| kernels(x * length)).collect();
-        self.end = kernels(length);
-        self.length = length;
     }
 }
 
 impl Audit {
-    pub(crate) fn begin(&mut self, state: State) {
-        *self = Self { position: vec![0.0; state.q.len()], begin: state, ..Self::default() };
+    /// From a state on.
+    pub(crate) fn from(state: State) -> Self {
+        Self { position: vec![0.0; state.q.len()], begin: state, ..Self::default() }
     }
 
     pub(crate) fn impulse(&mut self, impulse: f64, work: f64) {
@@ -169,7 +188,8 @@ impl Audit {
     fn panels(&mut self, system: &HybridSystem, flow: &Flow, start: &[f64], force: Force, length: f64) {
         let dissipation = flow.dissipation(system);
         let mut nodes = Nodes::default();
-        let (mut from, mut c) = (start.to_vec(), vec![0.0; start.len()]);
+        let (mut from, mut c) = (start.to_vec(), vec![0.0; flow.width()]);
+        from.resize(flow.width(), 0.0);
         let mut t0 = 0.0;
         // Σ w c over all nodes: where nothing but the blocks moves, their mean is all that positions and rates need.
         let mut sum = vec![0.0; start.len()];
@@ -177,16 +197,16 @@ impl Audit {
             let h = dissipation.panel(system, &flow.modes, |i| from[i].abs()).min(length - t0);
             nodes.set(flow, h);
             for ([x, weight], kernels) in GAUSS.iter().zip(&nodes.within) {
-                flow.move_blocks(|k| kernels[k], &from, &mut c);
+                flow.advance_all(kernels, &from, DrivePhase::default(), &mut c);
                 let w = weight * h;
                 if flow.is_free() {
                     sum.iter_mut().zip(&c).for_each(|(sum, c)| *sum += w * c);
-                    self.dissipated += w * dissipation.power(&c);
+                    self.dissipated += w * dissipation.power(&c[..start.len()]);
                 } else {
-                    self.node(system, flow, &c, Node { time: t0 + x * h, weight: w }, force);
+                    self.node(system, flow, &c[..start.len()], Node { time: t0 + x * h, weight: w }, force);
                 }
             }
-            flow.move_blocks(|k| nodes.end[k], &from, &mut c);
+            flow.advance_all(&nodes.end, &from, DrivePhase::default(), &mut c);
             std::mem::swap(&mut from, &mut c);
             t0 += h;
         }
@@ -198,9 +218,8 @@ impl Audit {
     /// One node of a panel, in physical coordinates.
     fn node(&mut self, system: &HybridSystem, flow: &Flow, c: &[f64], Node { time, weight }: Node, force: Force) {
         let n = system.mass.order;
-        let (mut p, mut rate) = (vec![0.0; flow.order], vec![0.0; flow.order]);
         let now = flow.drive_after(force.drive, time);
-        flow.leave(c, time, force.level, now, &mut Vec::new(), [&mut p, &mut rate]);
+        let [p, rate] = flow.left(c, time, force.level, now);
         self.position.iter_mut().zip(&p[..n]).for_each(|(sum, q)| *sum += weight * q);
         self.dissipated += weight * system.damping.form(&rate[..n], &rate[..n]);
         for (i, &j) in flow.modes.attached.iter().enumerate() {
@@ -221,9 +240,8 @@ impl Audit {
     /// Positions and work of a whole segment, from ∫ c dt.
     fn moved(&mut self, system: &HybridSystem, flow: &Flow, sum: &[f64], level: f64, length: f64) {
         let n = system.mass.order;
-        let (mut p, mut rate) = (vec![0.0; flow.order], vec![0.0; flow.order]);
         let mean: Vec<f64> = sum.iter().map(|c| c / length).collect();
-        flow.leave(&mean, 0.0, level, DrivePhase::default(), &mut Vec::new(), [&mut p, &mut rate]);
+        let [p, rate] = flow.left(&mean, 0.0, level, DrivePhase::default());
         self.position.iter_mut().zip(&p[..n]).for_each(|(sum, q)| *sum += length * q);
         let work = level * length * dot(&system.force_row, &rate[..n]);
         self.force += level * length;

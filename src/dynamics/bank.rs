@@ -252,17 +252,6 @@ impl Bank {
             kernels[k / WIDTH].set(k % WIDTH, each[k].kernel(t));
         }
     }
-
-    /// The same one by one.
-    pub(crate) fn list(&self, each: &[Block], t: f64, list: &mut [Kernel]) {
-        for (blocks, list) in self.blocks.iter().zip(list.chunks_mut(WIDTH)) {
-            let kernels = blocks.kernels(t);
-            list.iter_mut().enumerate().for_each(|(lane, kernel)| *kernel = kernels.at(lane));
-        }
-        for &k in &self.others {
-            list[k] = each[k].kernel(t);
-        }
-    }
 }
 
 #[cfg(test)]

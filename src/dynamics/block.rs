@@ -68,11 +68,6 @@ pub(crate) struct Phase {
     pub(crate) rate: f64,
 }
 
-impl Kernel {
-    /// After no time.
-    pub(crate) const NONE: Self = Self { c: 1.0, s: 0.0, turn: 0.0 };
-}
-
 impl Block {
     /// The block of the matrix [[p, q], [r, s]].
     pub(crate) fn new([p, q, r, s]: [f64; 4]) -> Self {

@@ -55,7 +55,6 @@ pub fn is_interrupted() -> bool {
 pub struct Allowance {
     limit: Limit,
     nanoseconds: AtomicU64,
-    cancelled: AtomicBool,
 }
 
 /// What an allowance ended with.
@@ -173,12 +172,7 @@ impl Allowance {
     /// Nothing of it spent.
     #[must_use]
     pub fn new(limit: Limit) -> Arc<Self> {
-        Arc::new(Self { limit, nanoseconds: AtomicU64::new(0), cancelled: AtomicBool::new(false) })
-    }
-
-    /// Ends every simulation under it, within milliseconds, from any thread.
-    pub fn cancel(&self) {
-        self.cancelled.store(true, Ordering::Relaxed);
+        Arc::new(Self { limit, nanoseconds: AtomicU64::new(0) })
     }
 
     /// Makes one simulation under it, on this thread.
@@ -203,11 +197,7 @@ impl Allowance {
 
     fn exhausted(&self, now: Duration) -> Option<Exhausted> {
         let before = Duration::from_nanos(self.nanoseconds.load(Ordering::Relaxed));
-        if self.cancelled.load(Ordering::Relaxed) {
-            Some(Exhausted::Cancelled)
-        } else {
-            (before + now > self.limit.time).then_some(Exhausted::Time(self.limit.time))
-        }
+        (before + now > self.limit.time).then_some(Exhausted::Time(self.limit.time))
     }
 }
 
@@ -359,15 +349,6 @@ mod tests {
             };
             assert_eq!(allowance.simulate(run).is_ok(), fine, "{events}");
         }
-    }
-
-    #[test]
-    fn another_thread_cancels() {
-        let allowance = Allowance::new(Limit::default());
-        let other = Arc::clone(&allowance);
-        let thread = std::thread::spawn(move || other.simulate(endless));
-        allowance.cancel();
-        assert!(thread.join().unwrap().unwrap_err().to_string().starts_with("stopped on request"));
     }
 
     #[test]

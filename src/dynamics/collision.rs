@@ -80,7 +80,7 @@ pub(crate) fn collide(closed: &[Closed], answers: &[f64]) -> Vec<Outcome> {
 pub(crate) fn push(closed: &[Closed], answers: &[f64], pushes: &[bool], wanted: &[f64]) -> Vec<f64> {
     let count = closed.len();
     let active: Vec<usize> = (0..count).filter(|&i| pushes[i]).collect();
-    let rows: Vec<Vec<f64>> = active
+    let mut rows: Vec<Vec<f64>> = active
         .iter()
         .map(|&i| {
             let own = |k: usize| if i == k { 1.0 } else { 0.0 };
@@ -89,8 +89,9 @@ pub(crate) fn push(closed: &[Closed], answers: &[f64], pushes: &[bool], wanted: 
         })
         .collect();
     let mut impulses = vec![0.0; count];
-    for (i, p) in active.iter().zip(eliminate(rows)) {
-        impulses[*i] = p;
+    eliminate(&mut rows);
+    for (i, row) in active.iter().zip(&rows) {
+        impulses[*i] = row[active.len()];
     }
     impulses
 }

@@ -93,14 +93,9 @@ pub(crate) fn face_of<'a>(system: &'a HybridSystem, contacts: &[Contact], j: usi
 /// M + Σ mp φ φᵀ over the particles that a face holds.
 pub(crate) fn carried_mass(system: &HybridSystem, contacts: &[Contact]) -> Matrix {
     let mut mass = system.mass.clone();
-    let n = mass.order;
     for (particle, contact) in system.particles.iter().zip(contacts) {
         if let (true, Some(face)) = (contact.holds(particle), contact.face(particle)) {
-            for i in 0..n {
-                for j in 0..n {
-                    mass.entries[i * n + j] += particle.mass * face.row[i] * face.row[j];
-                }
-            }
+            mass.add_square(particle.mass, &face.row);
         }
     }
     mass
@@ -115,15 +110,10 @@ fn mass_of(system: &HybridSystem, contacts: &[Contact], carried: &Matrix, attach
         mass.entries[i * order..][..n].copy_from_slice(&carried.entries[i * n..][..n]);
     }
     for (slot, &j) in attached.iter().enumerate() {
-        let particle = system.particles[j].mass;
         let mut row = face_of(system, contacts, j).row.clone();
         row.resize(order, 0.0);
         row[n + slot] = 1.0;
-        for (i, x) in row.iter().enumerate() {
-            for (k, y) in row.iter().enumerate() {
-                mass.entries[i * order + k] += particle * x * y;
-            }
-        }
+        mass.add_square(system.particles[j].mass, &row);
     }
     mass
 }

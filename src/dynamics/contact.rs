@@ -38,7 +38,7 @@ pub(crate) enum Crossing {
     Recovered,
     /// A released face pushes again.
     Again,
-    /// The observed acceleration changes its sign.
+    /// The base acceleration changes its sign.
     HalfCycle,
 }
 
@@ -130,6 +130,26 @@ impl Contact {
         set >> (self as u32) & 1 == 1
     }
 
+    /// The floor touches the particle; one that has let go of it does not.
+    #[must_use]
+    pub fn touches_floor(self) -> bool {
+        matches!(self, Self::Floor | Self::FloorStop | Self::FloorCeilingReleased | Self::HeldByFloorCeilingReleased)
+            || self.touches_both()
+    }
+
+    /// The ceiling does.
+    #[must_use]
+    pub fn touches_ceiling(self) -> bool {
+        matches!(
+            self,
+            Self::Ceiling | Self::CeilingStop | Self::CeilingFloorReleased | Self::HeldByCeilingFloorReleased
+        ) || self.touches_both()
+    }
+
+    fn touches_both(self) -> bool {
+        matches!(self, Self::Both | Self::HeldByFloor | Self::HeldByCeiling)
+    }
+
     /// At both faces.
     pub(crate) fn is_between(self) -> bool {
         self >= Self::Both
@@ -205,69 +225,50 @@ pub(crate) enum Side {
 }
 
 impl Side {
+    /// What belongs to it.
+    pub(crate) fn of<T>(self, floor: T, ceiling: T) -> T {
+        match self {
+            Self::Floor => floor,
+            Self::Ceiling => ceiling,
+        }
+    }
+
     /// +1 where "away from the face" is upwards.
     pub(crate) fn away(self) -> f64 {
-        match self {
-            Self::Floor => 1.0,
-            Self::Ceiling => -1.0,
-        }
+        self.of(1.0, -1.0)
     }
 
     /// How high above the floor it lies where the structure does not bend, m.
     pub(crate) fn height(self, particle: &Particle) -> f64 {
-        match self {
-            Self::Floor => 0.0,
-            Self::Ceiling => particle.gap,
-        }
+        self.of(0.0, particle.gap)
     }
 
     pub(crate) fn opposite(self) -> Self {
-        match self {
-            Self::Floor => Self::Ceiling,
-            Self::Ceiling => Self::Floor,
-        }
+        self.of(Self::Ceiling, Self::Floor)
     }
 
     pub(crate) fn pressed(self) -> Contact {
-        match self {
-            Self::Floor => Contact::Floor,
-            Self::Ceiling => Contact::Ceiling,
-        }
+        self.of(Contact::Floor, Contact::Ceiling)
     }
 
     pub(crate) fn stopped(self) -> Contact {
-        match self {
-            Self::Floor => Contact::FloorStop,
-            Self::Ceiling => Contact::CeilingStop,
-        }
+        self.of(Contact::FloorStop, Contact::CeilingStop)
     }
 
     pub(crate) fn released(self) -> Contact {
-        match self {
-            Self::Floor => Contact::FloorReleased,
-            Self::Ceiling => Contact::CeilingReleased,
-        }
+        self.of(Contact::FloorReleased, Contact::CeilingReleased)
     }
 
     pub(crate) fn made(self) -> EventKind {
-        match self {
-            Self::Floor => EventKind::FloorContact,
-            Self::Ceiling => EventKind::CeilingContact,
-        }
+        self.of(EventKind::FloorContact, EventKind::CeilingContact)
     }
 
     pub(crate) fn lost(self) -> EventKind {
-        match self {
-            Self::Floor => EventKind::FloorRelease,
-            Self::Ceiling => EventKind::CeilingRelease,
-        }
+        self.of(EventKind::FloorRelease, EventKind::CeilingRelease)
     }
 
     pub(crate) fn hit(self) -> EventKind {
-        match self {
-            Self::Floor => EventKind::FloorStop,
-            Self::Ceiling => EventKind::CeilingStop,
-        }
+        self.of(EventKind::FloorStop, EventKind::CeilingStop)
     }
 
     /// The face; a ceiling that cannot be met is never asked for.

@@ -344,13 +344,8 @@ fn accelerations(
 /// Stiffness matrix of p.
 fn stiffness_of(system: &HybridSystem, contacts: &[Contact], attached: &[usize], across: &[Across]) -> Matrix {
     let mut all = conservative::stiffness(system, contacts, attached);
-    let order = all.order;
     for across in across.iter().filter(|across| across.presses) {
-        for (i, x) in across.row.iter().enumerate() {
-            for (k, y) in across.row.iter().enumerate() {
-                all.entries[i * order + k] += across.stiffness * x * y;
-            }
-        }
+        all.add_square(across.stiffness, &across.row);
     }
     all
 }

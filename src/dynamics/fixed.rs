@@ -96,6 +96,7 @@ struct Run<'a, V: Vector> {
     tally: Tally<V>,
     visited: Vec<Vec<Contact>>,
     response: Response,
+    /// From the averaged window on.
     audit: Option<Audit>,
     passed: Passed,
 }
@@ -139,6 +140,7 @@ impl<'a, V: Vector> Run<'a, V> {
             system.drive.harmonic.map(|drive| Oscillator::new(drive, schedule.angle(drive, system.drive.period)));
         let half_cycles = system.drive.half_cycles.as_ref();
         let (contacts, state) = start(system, &options.start, layout)?;
+        let initial_contacts = contacts.clone();
         let mut run = Self {
             system,
             options,
@@ -161,9 +163,10 @@ impl<'a, V: Vector> Run<'a, V> {
             visited: Vec::new(),
             response: Response {
                 observed: vec![Observed::default(); system.observed_rows.len()],
+                initial_contacts,
                 ..Response::default()
             },
-            audit: options.audit.then(Audit::default),
+            audit: None,
             passed: Passed { position: vec![0.0; layout.n], ..Passed::default() },
         };
         run.seek_sample(0);
@@ -183,18 +186,21 @@ impl<'a, V: Vector> Run<'a, V> {
                 self.kick()?;
             }
             let first = self.schedule.cycle(cycle);
-            if cycle == 0 || self.schedule.repeats {
-                for i in 0..self.schedule.ticks.len() {
-                    let tick = self.schedule.ticks[i];
-                    self.advance_to(first + tick.step)?;
-                    self.tick(tick)?;
-                    if i == 0 {
-                        self.open_cycle();
-                    }
-                }
-            } else {
+            let driven = cycle == 0 || self.system.drive.repeats;
+            let ticks = if driven { self.schedule.ticks.len() } else { 0 };
+            if !driven {
                 self.motion.level = 0.0;
+            }
+            if ticks == 0 {
                 self.open_cycle();
+            }
+            for i in 0..ticks {
+                let tick = self.schedule.ticks[i];
+                self.advance_to(first + tick.step)?;
+                self.tick(tick)?;
+                if i == 0 {
+                    self.open_cycle();
+                }
             }
             self.advance_to(self.schedule.cycle(cycle + 1))?;
             self.end_cycle()?;
@@ -204,18 +210,10 @@ impl<'a, V: Vector> Run<'a, V> {
 
     fn begin_window(&mut self) {
         self.tally = self.new_tally();
-        if self.audit.is_some() {
-            let state = self.audit_state();
-            if let Some(audit) = &mut self.audit {
-                audit.begin(state);
-            }
+        if self.options.audit {
+            self.audit = Some(Audit::from(self.audit_state()));
             self.seam(0.5);
         }
-    }
-
-    /// The balances run from the averaged window on, to the end.
-    fn audited(&self) -> bool {
-        self.audit.is_some() && self.cycle >= u64::from(self.options.skip)
     }
 
     /// An impulse added at the start.
@@ -232,7 +230,7 @@ impl<'a, V: Vector> Run<'a, V> {
 
     /// Steps up to a step, and decides the contacts wherever a guard says so.
     fn advance_to(&mut self, until: u64) -> Result<(), EngineError> {
-        let audited = self.audited();
+        let audited = self.audit.is_some();
         while self.step < until {
             if self.step == self.samples.step {
                 self.sample();
@@ -358,9 +356,7 @@ fn start(system: &HybridSystem, from: &StartState, layout: Layout) -> Result<(Ve
             let damping = vec![0.0; layout.particles];
             loop {
                 let flow = Flow::build(&without_harmonic(system), &contacts, &damping)?;
-                let (mut p, mut rate) = (vec![0.0; flow.order], vec![0.0; flow.order]);
-                let still = vec![0.0; 2 * flow.order];
-                flow.leave(&still, 0.0, 0.0, Default::default(), &mut Vec::new(), [&mut p, &mut rate]);
+                let [p, _] = flow.left(&vec![0.0; 2 * flow.order], 0.0, 0.0, Default::default());
                 state[..n].copy_from_slice(&p[..n]);
                 let mut fits = true;
                 for (i, &j) in flow.modes.attached.iter().enumerate() {

@@ -9,8 +9,8 @@ use std::cell::{Cell, OnceCell};
 use std::rc::Rc;
 
 use super::EngineError;
-use super::bank::{Bank, Kernels, Propagator, turns_alone};
-use super::block::{Block, Kernel};
+use super::bank::{Bank, Kernels, Propagator};
+use super::block::Block;
 use super::conservative::Conservative;
 use super::contact_state::Modes;
 use super::dissipation::Dissipation;
@@ -20,7 +20,7 @@ use super::lanes::WIDTH;
 use super::load::{self, Load, Steady};
 use super::parabola::Parabola;
 use super::series::Series;
-use super::signals::{Row, Rows, Signals};
+use super::signals::{Row, Rows};
 use super::system::{Contact, Drive, HybridSystem, dot};
 
 /// One contact state, ready to be propagated.
@@ -305,36 +305,6 @@ impl Flow {
         }
     }
 
-    /// The same, by kernels one by one.
-    #[inline]
-    pub(crate) fn advance(&self, kernel: impl Fn(usize) -> Kernel, start: &[f64], drive: DrivePhase, end: &mut [f64]) {
-        self.move_blocks(kernel, start, end);
-        if self.harmonic.is_some() {
-            end[2 * self.own..2 * self.own + 2].copy_from_slice(&[drive.cosine, drive.sine]);
-        }
-    }
-
-    /// Propagates the coordinates of its own blocks by the kernels of a time.
-    #[inline]
-    pub(crate) fn move_blocks(&self, kernel: impl Fn(usize) -> Kernel, start: &[f64], end: &mut [f64]) {
-        let states = start.as_chunks::<2>().0.iter().zip(end.as_chunks_mut::<2>().0);
-        let blocks = self.modes.spectral.matrices.iter().zip(&self.blocks).zip(states);
-        for (k, (([p, q, r, s], Block { decay: a, .. }), (&[x, y], end))) in blocks.enumerate() {
-            let kernel = kernel(k);
-            *end = if turns_alone([*p, *q, *r, *s], *a) {
-                [kernel.c * x + kernel.turn * y, kernel.c * y - kernel.turn * x]
-            } else {
-                [kernel.c * x + kernel.s * ((p + a) * x + q * y), kernel.c * y + kernel.s * (r * x + (s + a) * y)]
-            };
-        }
-    }
-
-    /// The signals that are watched, at the start of a segment.
-    #[inline]
-    pub(crate) fn watch(&self, c: &[f64], force: f64, signals: &mut Signals) {
-        self.rows.watch(c, force, self.blocks.len(), signals);
-    }
-
     /// So short a time that the cube of what turns in it is below rounding.
     pub(crate) fn is_short(&self, time: f64) -> bool {
         self.blocks.iter().all(|block| block.radius * time < 5e-6)
@@ -345,9 +315,18 @@ impl Flow {
         self.blocks[..self.own].iter().any(|block| block.radius * time < super::integral::BRIEF)
     }
 
-    /// Seconds for which it may be followed without a new start.
-    pub(crate) fn lasts(&self) -> f64 {
-        self.modes.spectral.lasts
+    /// Kernels of a time.
+    pub(crate) fn kernels(&self, time: f64) -> Vec<Kernels> {
+        let mut kernels = vec![Kernels::NONE; self.bank.blocks().len()];
+        self.bank.kernels(&self.blocks, time, &mut kernels);
+        kernels
+    }
+
+    /// (p, p′) as [`Flow::leave`] has them, without a place to put them.
+    pub(crate) fn left(&self, c: &[f64], t: f64, force: f64, drive: DrivePhase) -> [Vec<f64>; 2] {
+        let [mut p, mut rate] = [vec![0.0; self.order], vec![0.0; self.order]];
+        self.leave(c, t, force, drive, &mut Vec::new(), [&mut p, &mut rate]);
+        [p, rate]
     }
 }
 

@@ -1,21 +1,26 @@
 //! Small dense systems by Gaussian elimination with partial pivoting; own loops, since their bits reach the results.
 
-/// x of A x = b; each row of A has its entry of b behind it.
-pub(crate) fn eliminate(mut rows: Vec<Vec<f64>>) -> Vec<f64> {
+/// Solves A x = b; each row of A has its entry of b behind it, and x is left there.
+#[inline(always)]
+pub(crate) fn eliminate<Row: AsRef<[f64]> + AsMut<[f64]>>(rows: &mut [Row]) {
     let order = rows.len();
     for column in 0..order {
-        let pivot = (column..order).max_by(|&i, &k| rows[i][column].abs().total_cmp(&rows[k][column].abs()));
+        let size = |i: &usize| rows[*i].as_ref()[column].abs();
+        let pivot = (column..order).max_by(|i, k| size(i).total_cmp(&size(k)));
         rows.swap(column, pivot.unwrap_or(column));
         for i in column + 1..order {
-            let factor = rows[i][column] / rows[column][column];
+            let (above, below) = rows.split_at_mut(i);
+            let (from, to) = (above[column].as_ref(), below[0].as_mut());
+            let factor = to[column] / from[column];
             for k in column..=order {
-                rows[i][k] -= factor * rows[column][k];
+                to[k] -= factor * from[k];
             }
         }
     }
-    let mut x = vec![0.0; order];
     for i in (0..order).rev() {
-        x[i] = (i + 1..order).fold(rows[i][order], |sum, k| sum - rows[i][k] * x[k]) / rows[i][i];
+        let (own, known) = rows[i..].split_first_mut().expect("there is one");
+        let own = own.as_mut();
+        let terms = own[i + 1..order].iter().zip(known);
+        own[order] = terms.fold(own[order], |sum, (entry, x)| sum - entry * x.as_ref()[order]) / own[i];
     }
-    x
 }

@@ -23,6 +23,8 @@ use super::window::Start;
 #[derive(Clone, Copy)]
 pub(crate) struct Contacts<'a> {
     pub(crate) system: &'a HybridSystem,
+    pub(crate) flow: &'a Flow,
+    pub(crate) signals: &'a Signals,
     pub(crate) contacts: &'a [Contact],
     pub(crate) particles: &'a [Relative],
     /// Let go smoothly: the first derivative that is not zero is of higher order.
@@ -54,28 +56,28 @@ pub(crate) struct Slipped {
 
 /// Sets the guards of every particle; remembers the path of those in flight.
 #[inline(always)]
-pub(crate) fn set(state: Contacts<'_>, flow: &Flow, signals: &Signals, search: &mut Search, paths: &mut [Parabola]) {
+pub(crate) fn set(state: Contacts<'_>, search: &mut Search, paths: &mut [Parabola]) {
     search.guards.clear();
     for (j, particle) in state.system.particles.iter().enumerate() {
         let contact = state.contacts[j];
         let guards = &mut search.guards;
         match contact {
-            Contact::Flight => paths[j] = in_flight(state, j, particle, flow, signals, guards),
+            Contact::Flight => paths[j] = in_flight(state, j, guards),
             Contact::FloorReleased | Contact::CeilingReleased | Contact::BothReleased => {
-                paths[j] = released(state, j, particle, flow, signals, guards);
+                paths[j] = released(state, j, guards);
             }
-            _ if contact.presses(particle) => pressed(state, j, particle, flow, signals, guards),
-            _ => held(state, j, particle, flow, signals, guards),
+            _ if contact.presses(particle) => pressed(state, j, guards),
+            _ => held(state, j, guards),
         }
         if state.has_walls
-            && let Some(rows) = flow.rows.guards[j].across
+            && let Some(rows) = state.flow.rows.guards[j].across
         {
-            across(state, j, particle, flow, signals, rows, &mut search.guards);
+            across(state, j, rows, &mut search.guards);
         }
     }
 }
 
-/// Adds one guard of the whole system: positive while the observed acceleration keeps its sign.
+/// Adds one guard of the whole system: positive while the base acceleration keeps its sign.
 pub(crate) fn half_cycle(signal: usize, sign: f64, touching: bool, search: &mut Search) {
     search.guards.push(Guard {
         particle: usize::MAX,
@@ -189,14 +191,9 @@ pub(crate) fn above(particle: &Particle, here: Relative, structure: Option<[&[f6
 }
 
 #[inline(always)]
-fn in_flight(
-    state: Contacts<'_>,
-    j: usize,
-    particle: &Particle,
-    flow: &Flow,
-    signals: &Signals,
-    guards: &mut Vec<Guard>,
-) -> Parabola {
+fn in_flight(state: Contacts<'_>, j: usize, guards: &mut Vec<Guard>) -> Parabola {
+    let Contacts { system, flow, signals, .. } = state;
+    let particle = &system.particles[j];
     let here = state.particles[j];
     let gravity = state.system.gravity;
     let rows = flow.rows.guards[j];
@@ -232,14 +229,9 @@ fn in_flight(
     path
 }
 
-fn released(
-    state: Contacts<'_>,
-    j: usize,
-    particle: &Particle,
-    flow: &Flow,
-    signals: &Signals,
-    guards: &mut Vec<Guard>,
-) -> Parabola {
+fn released(state: Contacts<'_>, j: usize, guards: &mut Vec<Guard>) -> Parabola {
+    let Contacts { system, flow, signals, .. } = state;
+    let particle = &system.particles[j];
     let side = state.contacts[j].side();
     let away = side.away();
     let rows = flow.rows.guards[j];
@@ -270,14 +262,9 @@ fn released(
 }
 
 #[inline(always)]
-fn pressed(
-    state: Contacts<'_>,
-    j: usize,
-    particle: &Particle,
-    flow: &Flow,
-    signals: &Signals,
-    guards: &mut Vec<Guard>,
-) {
+fn pressed(state: Contacts<'_>, j: usize, guards: &mut Vec<Guard>) {
+    let Contacts { system, flow, signals, .. } = state;
+    let particle = &system.particles[j];
     let here = state.particles[j];
     let side = state.contacts[j].side();
     let away = side.away();
@@ -330,15 +317,9 @@ fn pressed(
 
 /// The face across, which moves by itself: the way to it, or what it does to a particle that is at both.
 #[cold]
-fn across(
-    state: Contacts<'_>,
-    j: usize,
-    particle: &Particle,
-    flow: &Flow,
-    signals: &Signals,
-    rows: AcrossRows,
-    guards: &mut Vec<Guard>,
-) {
+fn across(state: Contacts<'_>, j: usize, rows: AcrossRows, guards: &mut Vec<Guard>) {
+    let Contacts { system, flow, signals, .. } = state;
+    let particle = &system.particles[j];
     let contact = state.contacts[j];
     let side = contact.side().opposite();
     let signal = signals.of(rows.way);
@@ -424,7 +405,9 @@ pub(crate) fn seen_from(side: Side, particle: &Particle, here: Relative, q: &[f6
     Relative { gap: here.gap + away * (particle.gap + shift(q)), rate: here.rate + away * shift(q_rate) }
 }
 
-fn held(state: Contacts<'_>, j: usize, particle: &Particle, flow: &Flow, signals: &Signals, guards: &mut Vec<Guard>) {
+fn held(state: Contacts<'_>, j: usize, guards: &mut Vec<Guard>) {
+    let Contacts { system, flow, signals, .. } = state;
+    let particle = &system.particles[j];
     if particle.is_enclosed() {
         return;
     }

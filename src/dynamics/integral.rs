@@ -186,16 +186,22 @@ fn weighted(values: [Four; REGISTERS]) -> f64 {
 /// rounding: of the 20th derivative of the square it leaves (10!)⁴/(21 (20!)³) 4.6²⁰, which is 10⁻¹⁷.
 const TURN_OF_A_PANEL: f64 = 4.6;
 
+/// Panels beyond which what has died away gets no more of them.
+const MANY_PANELS: f64 = 20_000.0;
+/// decay·t at which a block has died away to rounding.
+const DIED_AWAY: f64 = 40.0;
+
 /// How many panels make the rule exact to rounding over `duration`.
 pub(crate) fn panels(blocks: &[Block], duration: f64) -> usize {
-    let radius = blocks.iter().fold(0.0_f64, |largest, block| largest.max(block.radius));
-    // A cap, since far beyond it the fast blocks have died away.
-    (2.0 * radius * duration / TURN_OF_A_PANEL).ceil().clamp(1.0, 20_000.0) as usize
+    let wanted = |block: &Block| {
+        let panels = 2.0 * block.radius * duration / TURN_OF_A_PANEL;
+        if block.decay * duration > DIED_AWAY { panels.min(MANY_PANELS) } else { panels }
+    };
+    blocks.iter().map(wanted).fold(1.0, f64::max).ceil() as usize
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::block::Kernel;
     use super::*;
 
     /// The integrals of a signal about a place, node by node, each from the start.
@@ -205,8 +211,7 @@ mod tests {
         let mut sum = [0.0; 3];
         for (panel, [x, weight]) in (0..count).flat_map(|panel| GAUSS.map(|node| (panel, node))) {
             let t = (panel as f64 + x) * h;
-            let kernels: Vec<Kernel> = blocks.iter().map(|block| block.kernel(t)).collect();
-            let [value, rate, _] = super::super::signals::value(blocks, start, rest, &kernels, t);
+            let [value, rate, ..] = super::super::signals::motion(blocks, start, rest, |k| blocks[k].kernel(t), t);
             let value = value - place;
             let parts = [value, value * value, rate * rate];
             sum.iter_mut().zip(parts).for_each(|(sum, part)| *sum += weight * h * part);

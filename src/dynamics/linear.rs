@@ -21,7 +21,7 @@ mod two_impacts;
 use std::rc::Rc;
 
 use self::bound::Watch;
-use self::cycle::{Cycle, enter, leave};
+use self::cycle::{Cycle, enter};
 use self::moments::Moments;
 use self::signal::{Row, integrals};
 use self::struck::Struck;
@@ -65,26 +65,22 @@ impl<'a> Stretch<'a> {
     }
 }
 
-/// What became of the attempt to solve a run in closed form.
-pub(crate) enum Attempt {
-    /// It is linear.
-    Solved(Box<Response>),
-    /// It is not, or it is not proved to be.
-    Open,
-}
-
-/// Solves a run in closed form if it is proved to be linear.
-pub(crate) fn attempt(system: &HybridSystem, options: &Options, states: &States) -> Result<Attempt, EngineError> {
+/// Solves a run in closed form; `None` where it is not linear, or not proved to be.
+pub(crate) fn attempt(
+    system: &HybridSystem,
+    options: &Options,
+    states: &States,
+) -> Result<Option<Response>, EngineError> {
     if options.trace.is_some() || !may_be_linear(system, options) {
-        return Ok(Attempt::Open);
+        return Ok(None);
     }
     let flow = at_rest(system, states)?;
     if !is_closed(&flow) {
-        return Ok(Attempt::Open);
+        return Ok(None);
     }
     let run = Run::new(system, states, &flow, options)?;
-    let Some(margin) = run.margin() else { return Ok(Attempt::Open) };
-    Ok(Attempt::Solved(Box::new(run.respond(options, margin)?)))
+    let Some(margin) = run.margin() else { return Ok(None) };
+    run.respond(options, margin).map(Some)
 }
 
 /// The motion that comes again in every cycle once all transients are gone, with every particle held on its floor.
@@ -176,7 +172,7 @@ fn at_rest(system: &HybridSystem, states: &States) -> Result<Rc<Flow>, EngineErr
 
 /// Its cycles can be summed: each block has a place to rest, and holds for any number of them.
 fn is_closed(flow: &Flow) -> bool {
-    flow.lasts() == f64::INFINITY && flow.blocks.iter().all(|block| block.determinant > 0.0)
+    flow.modes.spectral.lasts == f64::INFINITY && flow.blocks.iter().all(|block| block.determinant > 0.0)
 }
 
 impl<'a> Run<'a> {
@@ -190,7 +186,7 @@ impl<'a> Run<'a> {
         let start = match &options.start {
             StartState::Given { q, rate, .. } if system.particles.is_empty() => enter(flow, q, rate, 0.0, phase),
             _ => {
-                let (p, _) = leave(flow, &vec![0.0; 2 * flow.order], 0.0, DrivePhase::default());
+                let [p, _] = flow.left(&vec![0.0; 2 * flow.order], 0.0, 0.0, DrivePhase::default());
                 enter(flow, &p, &vec![0.0; flow.order], 0.0, phase)
             }
         };
@@ -243,7 +239,7 @@ impl<'a> Run<'a> {
         let n = self.system.mass.order;
         let phase = DrivePhase::of(&self.system.drive, 0.0);
         let rates = |c: &[f64], level: f64| {
-            let (_, mut rate) = leave(self.flow, c, level, phase);
+            let [_, mut rate] = self.flow.left(c, 0.0, level, phase);
             rate.truncate(n);
             rate
         };
@@ -292,20 +288,20 @@ impl<'a> Run<'a> {
             response.cycle_rates = self.cycle_rates(options.cycles());
         }
         let (end, level) = self.before(options.cycles());
-        let (p, rate) = leave(flow, &end, level, DrivePhase::of(&system.drive, 0.0));
+        let [p, rate] = flow.left(&end, 0.0, level, DrivePhase::of(&system.drive, 0.0));
         let last = balance::state(system, flow, &p, &rate);
         response.final_state = options.final_state.then(|| on_floors(system, flow, &p, &rate));
         if options.audit {
             let (begin, level) = self.before(skip);
-            let (p, rate) = leave(flow, &begin, level, DrivePhase::of(&system.drive, 0.0));
-            let mut audit = Audit::default();
-            audit.begin(balance::state(system, flow, &p, &rate));
+            let [p, rate] = flow.left(&begin, 0.0, level, DrivePhase::of(&system.drive, 0.0));
+            let mut audit = Audit::from(balance::state(system, flow, &p, &rate));
             for Stretch { cycle, at, .. } in self.stretch(skip, options.cycles()) {
                 balance::pass(system, flow, &self.answer, cycle, &at, &mut audit);
             }
             response.proof.balance(system, &audit, &last);
         }
         response.final_particles = last.particles;
+        response.initial_contacts = vec![Contact::Floor; system.particles.len()];
         response.at_end(system, [&last.q, &last.rate], options.cycles())
     }
 }

@@ -69,7 +69,7 @@ pub(crate) struct March<'a, E> {
     cycle: u64,
     time: f64,
     level: f64,
-    // Half cycles of the observed acceleration.
+    // Half cycles of the base acceleration.
     half: Half,
     // Work space.
     search: Search,
@@ -78,8 +78,6 @@ pub(crate) struct March<'a, E> {
     /// Gap parabolas of the particles in flight.
     paths: Vec<Parabola>,
     signals: Signals,
-    /// M⁻¹ b: what a unit impulse does to q′.
-    answer: Vec<f64>,
     /// The crossing that is dealt with was due at once, when its segment began.
     sudden: bool,
     /// The contact state or its damping has changed since the flow was chosen.
@@ -96,6 +94,7 @@ pub(crate) struct March<'a, E> {
     visits: Visits,
     clarity: Clarity,
     response: Response,
+    /// From the averaged window on.
     audit: Option<Audit>,
     /// What names the motion; kept by a run on tape.
     tape: Tape,
@@ -116,7 +115,6 @@ impl<'a, E: Effects> March<'a, E> {
         };
         let equivalent = system.drive.half_cycles.as_ref().map(|half| half.curve.upper_end());
         let flow = states.flow(system, &contacts, equivalent)?;
-        let answer = states.ground().answer(system)?.to_vec();
         let mut march = Self {
             system,
             options,
@@ -143,7 +141,6 @@ impl<'a, E: Effects> March<'a, E> {
             lookout: Lookout::default(),
             paths: vec![Parabola::default(); count],
             signals: Signals::default(),
-            answer,
             sudden: false,
             changed: true,
             mobilities: Mobilities::default(),
@@ -159,7 +156,7 @@ impl<'a, E: Effects> March<'a, E> {
                 observed: vec![Observed::default(); system.observed_rows.len()],
                 ..Response::default()
             },
-            audit: options.audit.then(Audit::default),
+            audit: None,
             tape: Tape::default(),
             held: Vec::new(),
             effects: PhantomData,
@@ -168,6 +165,7 @@ impl<'a, E: Effects> March<'a, E> {
             return Err(EngineError::DampingWithMemory);
         }
         march.place(&options.start)?;
+        march.response.initial_contacts.clone_from(&march.contacts);
         Ok(march)
     }
 
@@ -203,10 +201,8 @@ impl<'a, E: Effects> March<'a, E> {
             super::StartState::Given { q, rate, particles } => {
                 self.q[..q.len()].copy_from_slice(q);
                 self.rate[..rate.len()].copy_from_slice(rate);
-                for (j, (contact, gap, rate)) in particles.iter().enumerate() {
-                    self.changed = true;
-                    self.contacts[j] = *contact;
-                    self.particles[j] = Relative { gap: *gap, rate: *rate };
+                for (at, (_, gap, rate)) in self.particles.iter_mut().zip(particles) {
+                    *at = Relative { gap: *gap, rate: *rate };
                 }
                 self.settle(&[])?;
             }
@@ -221,7 +217,8 @@ impl<'a, E: Effects> March<'a, E> {
 
     fn all_cycles(&mut self) -> Result<(), EngineError> {
         let mut cycles = self.options.cycles();
-        let audited = self.first_audited();
+        // Which cycles a run that settles will average is not known before.
+        let audited = if self.options.until == Until::Settled { 0 } else { self.averaged.first };
         let period = self.system.drive.period;
         while self.cycle < cycles {
             let cycle = self.cycle;
@@ -230,10 +227,10 @@ impl<'a, E: Effects> March<'a, E> {
                 self.tape.begin_cycle();
             }
             budget::reach(cycle, cycles);
-            if cycle == audited {
-                self.begin_audit();
+            if self.options.audit && cycle == audited {
+                self.audit = Some(Audit::from(self.audit_state()));
             }
-            let driven = cycle == 0 || self.system.drive.repeats;
+            let driven = (cycle == 0 || self.system.drive.repeats) && !self.system.drive.ticks.is_empty();
             let ticks: &[Tick] = if driven { &self.system.drive.ticks } else { &[Tick::STILL] };
             for (i, tick) in ticks.iter().enumerate() {
                 if tick.time > self.time {
@@ -259,23 +256,6 @@ impl<'a, E: Effects> March<'a, E> {
             self.cycle += 1;
         }
         Ok(())
-    }
-
-    /// The first cycle that momentum and energy are balanced in; which ones a run that settles will average is not known before.
-    fn first_audited(&self) -> u64 {
-        match self.options.until {
-            Until::Cycles => self.averaged.first,
-            Until::Settled => 0,
-        }
-    }
-
-    fn begin_audit(&mut self) {
-        if self.audit.is_some() {
-            let state = self.audit_state();
-            if let Some(audit) = &mut self.audit {
-                audit.begin(state);
-            }
-        }
     }
 
     fn finish(mut self) -> Result<Response, EngineError> {
@@ -341,17 +321,11 @@ impl<'a, E: Effects> March<'a, E> {
     }
 
     fn record_at(&mut self, particle: usize, kind: EventKind, time: f64, approach: f64, departure: f64) {
-        self.response.proof.events += 1;
         if E::TAPED {
             self.tape.count(kind);
         }
-        budget::count_event();
-        if self.averaged.holds(self.cycle) {
-            self.response.counts.add(kind);
-        }
-        if self.options.keeps_event(self.cycle, self.response.events.len()) {
-            self.response.events.push(Event { cycle: self.cycle, time, particle, kind, approach, departure });
-        }
+        let event = Event { cycle: self.cycle, time, particle, kind, approach, departure };
+        self.response.enter(event, self.averaged, self.options);
     }
 }
 
@@ -385,7 +359,7 @@ fn without(
         return run(system, options, states);
     }
     let has_walls = |system: &HybridSystem| system.particles.iter().any(Particle::has_walls);
-    let less = states.ground().without(system, far);
+    let less = reach::without(system, far);
     // What is known of a contact state depends on walls, not on stops nor on a ceiling that moves with its floor.
     let states = if has_walls(&less) == has_walls(system) { states } else { States::of(&less) };
     run(&less, options, states)

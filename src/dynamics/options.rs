@@ -45,11 +45,6 @@ impl Options {
         window.max(self.trace.map_or(0, |trace| trace.to_cycle))
     }
 
-    /// An event of a cycle is kept beside the `events` that are.
-    pub(crate) fn keeps_event(&self, cycle: u64, events: usize) -> bool {
-        events < self.record_events || self.trace.is_some_and(|trace| trace.covers(cycle))
-    }
-
     /// The run leaves what its motion is named from.
     pub(crate) fn is_taped(&self) -> bool {
         self.motion || self.until == Until::Settled
@@ -58,11 +53,6 @@ impl Options {
     /// The averaged window, unless the run settles before.
     pub(crate) fn averaged(&self) -> Averaged {
         Averaged { first: u64::from(self.skip), cycles: u64::from(self.average) }
-    }
-
-    /// The cycle belongs to the averaged window.
-    pub(crate) fn averages(&self, cycle: u64) -> bool {
-        self.averaged().holds(cycle)
     }
 }
 

@@ -13,8 +13,7 @@
 //! the last with ρ = φ_c − φ_f where the ceiling does not move as the floor does. R grows with every cycle that is driven: the
 //! bound serves far surfaces, short runs and single impulses.
 
-use std::cell::{OnceCell, RefCell};
-use std::rc::Rc;
+use std::cell::OnceCell;
 
 use super::EngineError;
 use super::cholesky::Cholesky;
@@ -65,8 +64,6 @@ pub(crate) struct Ground {
     stiffness: OnceCell<Option<Cholesky>>,
     sag: OnceCell<Option<Sag>>,
     takes: OnceCell<bool>,
-    /// The last system that was run with less than all its surfaces.
-    less: RefCell<Option<Rc<HybridSystem>>>,
 }
 
 /// What the weights of all particles do to a structure at rest.
@@ -105,19 +102,6 @@ impl Ground {
         self.sag.get_or_init(sag).as_ref()
     }
 
-    /// A system without these surfaces.
-    pub(crate) fn without(&self, system: &HybridSystem, far: &[OutOfReach]) -> Rc<HybridSystem> {
-        let mut particles = system.particles.clone();
-        far.iter().for_each(|far| drop_surface(&mut particles[far.particle], far.surface));
-        let mut last = self.less.borrow_mut();
-        if let Some(less) = last.as_ref().filter(|less| less.particles == particles && less.is_as_driven_as(system)) {
-            return Rc::clone(less);
-        }
-        let less = Rc::new(HybridSystem { particles, ..system.clone() });
-        *last = Some(Rc::clone(&less));
-        less
-    }
-
     /// Neither springs nor dashpots of the structure give energy.
     fn takes(&self, system: &HybridSystem) -> bool {
         *self.takes.get_or_init(|| {
@@ -132,17 +116,23 @@ impl Ground {
     }
 }
 
-fn drop_surface(particle: &mut Particle, surface: FarSurface) {
+/// A system without these surfaces.
+pub(crate) fn without(system: &HybridSystem, far: &[OutOfReach]) -> HybridSystem {
+    let mut less = system.clone();
     let stopless = |face: &mut Face| {
         if let Law::Resilient { stop, .. } = &mut face.law {
             *stop = None;
         }
     };
-    match surface {
-        FarSurface::Ceiling => particle.ceiling = None,
-        FarSurface::FloorStop => stopless(&mut particle.floor),
-        FarSurface::CeilingStop => particle.ceiling.iter_mut().for_each(stopless),
+    for OutOfReach { particle, surface, .. } in far {
+        let particle = &mut less.particles[*particle];
+        match surface {
+            FarSurface::Ceiling => particle.ceiling = None,
+            FarSurface::FloorStop => stopless(&mut particle.floor),
+            FarSurface::CeilingStop => particle.ceiling.iter_mut().for_each(stopless),
+        }
     }
+    less
 }
 
 /// The ceilings and limit stops that a run from event to event cannot reach; it does without their guards.

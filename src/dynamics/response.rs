@@ -1,12 +1,13 @@
 //! What a run leaves behind: integrals of the observed motions, counts of events, the proof, and what was asked to be kept.
 
+use super::budget;
 use super::error::EngineError;
 use super::extremes::Extremes;
 use super::motion::Motion;
-use super::options::{Averaged, StartState};
+use super::options::{Averaged, Options, StartState};
 use super::proof::Proof;
 use super::sums::Sums;
-use super::system::{Event, EventKind, HybridSystem, dot};
+use super::system::{Contact, Event, EventKind, HybridSystem, dot};
 use super::trace::Sample;
 
 /// How a response came about.
@@ -32,6 +33,8 @@ pub struct Response {
     pub counts: Counts,
     /// What proves the run.
     pub proof: Proof,
+    /// What each particle touches as the run begins.
+    pub initial_contacts: Vec<Contact>,
     /// Events kept.
     pub events: Vec<Event>,
     /// Time history.
@@ -60,6 +63,19 @@ impl Response {
         let is_number = final_displacement.is_finite() && final_velocity.is_finite();
         let response = Self { final_displacement, final_velocity, ..self };
         if is_number { Ok(response) } else { Err(EngineError::NotFinite { cycle }) }
+    }
+
+    /// Counts an event, and keeps it if that is asked for.
+    pub(crate) fn enter(&mut self, event: Event, averaged: Averaged, options: &Options) {
+        self.proof.events += 1;
+        budget::count_event();
+        if averaged.holds(event.cycle) {
+            self.counts.add(event.kind);
+        }
+        let traced = options.trace.is_some_and(|trace| trace.covers(event.cycle));
+        if traced || self.events.len() < options.record_events {
+            self.events.push(event);
+        }
     }
 
     /// The averaged window of the first observed motion.

@@ -23,15 +23,15 @@ fn simulated(system: &HybridSystem, options: &Options) -> Result<Response, Engin
         let attempt = match options.until {
             Until::Cycles => linear::attempt(system, options, &states)?,
             // A closed form visits no states that could come again.
-            Until::Settled => linear::Attempt::Open,
+            Until::Settled => None,
         };
         let mut response = match attempt {
-            linear::Attempt::Solved(response) if options.motion => {
+            Some(response) if options.motion => {
                 let taped = Options { audit: false, trace: None, record_events: 0, ..options.clone() };
-                Response { motion: march::march(system, &taped, states)?.motion, ..*response }
+                Response { motion: march::march(system, &taped, states)?.motion, ..response }
             }
-            linear::Attempt::Solved(response) => *response,
-            linear::Attempt::Open => march::march(system, options, states)?,
+            Some(response) => response,
+            None => march::march(system, options, states)?,
         };
         residual_bound::enter(system, options, &mut response);
         Ok(response)
@@ -53,8 +53,7 @@ pub fn fundamental_matrix(system: &HybridSystem, options: &Options) -> Result<Fu
 /// # Errors
 /// [`EngineError`] with the reason.
 pub fn is_linear(system: &HybridSystem, options: &Options) -> Result<bool, EngineError> {
-    let attempt = budget::within(|| linear::attempt(system, options, &States::of(system)))?;
-    Ok(matches!(attempt, linear::Attempt::Solved(_)))
+    Ok(budget::within(|| linear::attempt(system, options, &States::of(system)))?.is_some())
 }
 
 /// The steady state in closed form: what is left once all transients are gone. `None` unless it is proved that no particle

@@ -90,7 +90,7 @@ pub(crate) struct Clarity {
 }
 
 /// Work space of a search; kept between searches so that nothing is allocated.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(crate) struct Search {
     /// The guards.
     pub(crate) guards: Vec<Guard>,
@@ -147,27 +147,9 @@ impl Plan {
     }
 }
 
-/// What a look at a guard has brought.
-enum Look {
-    /// The proof goes as far as it is written down now.
-    Further,
-    /// It has a root.
-    Root(Root),
-}
-
 impl Search {
     pub(crate) fn new(window_factor: f64) -> Self {
-        Self {
-            guards: Vec::new(),
-            clear: Vec::new(),
-            plans: Vec::new(),
-            bends: Vec::new(),
-            surveys: Surveys::default(),
-            kernels: Vec::new(),
-            trial: Vec::new(),
-            window_factor,
-            shortest: 0.0,
-        }
+        Self { window_factor, ..Self::default() }
     }
 
     widened! {
@@ -205,7 +187,7 @@ impl Search {
             if !(clear < horizon - 4.0 * f64::EPSILON * horizon) || budget::spend(1) {
                 break;
             }
-            let Look::Root(root) = self.look(motion, signals, guard, horizon, limit, clarity) else { continue };
+            let Some(root) = self.look(motion, signals, guard, horizon, limit, clarity) else { continue };
             let time = self.polish(motion, signals, root, clarity);
             self.clear[guard] = f64::INFINITY;
             let earlier = match found {
@@ -269,7 +251,7 @@ impl Search {
         (self.clear.iter().position(|clear| *clear == least).unwrap_or(0), least)
     }
 
-    /// Extends the proof of one guard, or finds its root.
+    /// Extends the proof of one guard as far as it is written down then, or finds its root.
     #[inline(always)]
     fn look(
         &mut self,
@@ -279,7 +261,7 @@ impl Search {
         horizon: f64,
         limit: f64,
         clarity: &mut Clarity,
-    ) -> Look {
+    ) -> Option<Root> {
         let Self { guards, plans, clear: known, surveys, shortest: least, .. } = self;
         let (guard, plan, known) = (&guards[index], &mut plans[index], &mut known[index]);
         let ahead = *known - surveys.now;
@@ -294,7 +276,7 @@ impl Search {
         let now = surveys.now;
         if now + plan.quick > *known {
             *known = now + plan.quick;
-            return Look::Further;
+            return None;
         }
         // A little beyond the first root that is known, to see one that comes at the same time.
         let mut window = plan.window.min(1.25 * (horizon - now)).min(limit - now);
@@ -306,7 +288,7 @@ impl Search {
             && guard.parabola.p0 + guard.sign * survey.value < -ROUNDING * (guard.parabola.p0.abs() + survey.reach)
         {
             // A force that has jumped, be it by less than the end of a window is known to: the contact state ends as it begins.
-            return Look::Root(Root { guard: index, guess: 0.0, high: 0.0, window });
+            return Some(Root { guard: index, guess: 0.0, high: 0.0, window });
         }
         loop {
             let start = if now == 0.0 { guard.start } else { Start::Apart };
@@ -339,28 +321,28 @@ impl Search {
                     if guard.distance {
                         clarity.margin = clarity.margin.min(clearance);
                     }
-                    return Look::Further;
+                    return None;
                 }
                 // The one root of the window comes after one that is known.
                 Verdict::Root { high: 1.0, .. } if comes_later => {
                     *known = f64::INFINITY;
-                    return Look::Further;
+                    return None;
                 }
-                Verdict::Root { guess, high } => return Look::Root(Root { guard: index, guess, high, window }),
+                Verdict::Root { guess, high } => return Some(Root { guard: index, guess, high, window }),
                 // So far the slow blocks alone prove it; from there on with more of them.
                 Verdict::Until { sigma } if sigma > WORTH_A_STEP => {
                     *known = now + sigma * window;
-                    return Look::Further;
+                    return None;
                 }
                 Verdict::Unsure | Verdict::Until { .. } if indivisible => {
                     clarity.ties += 1;
                     clarity.margin = 0.0;
                     if ends_below {
-                        return Look::Root(Root { guard: index, guess: 1.0, high: 1.0, window });
+                        return Some(Root { guard: index, guess: 1.0, high: 1.0, window });
                     }
                     *known = now + window;
                     *least *= 4.0;
-                    return Look::Further;
+                    return None;
                 }
                 Verdict::Unsure | Verdict::Until { .. } => {
                     window *= match verdict {
@@ -371,7 +353,7 @@ impl Search {
                     if window < proven {
                         // Shorter than what is proven already: begin where that ends.
                         surveys.move_to(motion, now + proven);
-                        return Look::Further;
+                        return None;
                     }
                 }
             }

@@ -67,9 +67,11 @@ pub(crate) struct Rows {
     weights: Vec<[Four; 4]>,
     /// Bounds of the second derivatives of their shares, by |x| + |y|.
     bends: Vec<Four>,
-    /// Observed displacements; half cycles watch the first of them.
+    /// Observed displacements.
     pub(crate) observed: Vec<usize>,
-    /// Acceleration of the first of them, where half cycles follow it.
+    /// The base, watched where half cycles follow its acceleration.
+    pub(crate) base: usize,
+    /// That acceleration.
     pub(crate) bend: Option<usize>,
     /// What it answers to each place, block by block without sign: weights sink the springs, and there the places round however
     /// little they move.
@@ -211,10 +213,9 @@ impl Rows {
             padded.resize(modes.order, 0.0);
             signal(&padded)
         };
-        if let (Some(row), Some(_)) = (system.observed_rows.first(), &system.drive.half_cycles) {
-            let first = all.place(padded(row));
-            all.observed.push(first);
-            let bend = all.rows[first].acceleration(blocks);
+        if let (Some(row), Some(_)) = (system.base_row(), &system.drive.half_cycles) {
+            all.base = all.place(padded(row));
+            let bend = all.rows[all.base].acceleration(blocks);
             all.bend_of_places = modes
                 .spectral
                 .to_blocks
@@ -251,11 +252,11 @@ impl Rows {
                 Law::Rigid { .. } => row.clone(),
             };
             let (first, second) = match contact {
-                Contact::Flight if !drifts => (all.find(face), all.find(ceiling)),
+                Contact::Flight if !drifts => (all.place(face.clone()), all.place(ceiling.clone())),
                 Contact::Flight => (all.place(face.fixed(blocks)), all.place(ceiling.fixed(blocks))),
                 Contact::FloorReleased | Contact::CeilingReleased | Contact::BothReleased => {
                     let fixed = face.fixed(blocks);
-                    (all.find(&fixed), all.place(force(&fixed)))
+                    (all.place(fixed.clone()), all.place(force(&fixed)))
                 }
                 _ => match compression(j) {
                     Some(own) => {
@@ -289,7 +290,7 @@ impl Rows {
         };
         let registers = |row: &Row| blocks.chunks(WIDTH).zip(row.weights.chunks(WIDTH)).map(bends).collect::<Vec<_>>();
         all.bends = all.rows.iter().flat_map(registers).collect();
-        for row in &system.observed_rows[all.observed.len()..] {
+        for row in &system.observed_rows {
             let place = all.place(padded(row));
             all.observed.push(place);
         }
@@ -309,21 +310,10 @@ impl Rows {
 
     /// Where a row stands.
     fn place(&mut self, row: Row) -> usize {
-        self.known(&row).unwrap_or_else(|| self.append(row))
-    }
-
-    /// The same, with a copy only if it is new.
-    fn find(&mut self, row: &Row) -> usize {
-        self.known(row).unwrap_or_else(|| self.append(row.clone()))
-    }
-
-    fn known(&self, row: &Row) -> Option<usize> {
-        self.rows.iter().position(|known| known == row)
-    }
-
-    fn append(&mut self, row: Row) -> usize {
-        self.rows.push(row);
-        self.rows.len() - 1
+        self.rows.iter().position(|known| *known == row).unwrap_or_else(|| {
+            self.rows.push(row);
+            self.rows.len() - 1
+        })
     }
 
     /// A row, watched or not.
@@ -333,10 +323,7 @@ impl Rows {
 
     /// Row of the face on one side of particle j's enclosure.
     pub(crate) fn face(&self, j: usize, side: Side) -> usize {
-        match side {
-            Side::Floor => self.faces[j].floor,
-            Side::Ceiling => self.faces[j].ceiling,
-        }
+        side.of(self.faces[j].floor, self.faces[j].ceiling)
     }
 
     widened! {
@@ -435,16 +422,19 @@ fn together(weights: &[[f64; 4]]) -> [Four; 4] {
     [0, 1, 2, 3].map(|i| Four::padded(weights.iter().map(|weights| weights[i])))
 }
 
-/// Value, rate and acceleration of a signal after the time of `kernels`.
-pub(crate) fn value(blocks: &[Block], phases: &[Phase], rest: Parabola, kernels: &[Kernel], time: f64) -> [f64; 3] {
-    let mut sum = [rest.at(time), rest.rate(time), 2.0 * rest.p2];
-    for ((block, phase), kernel) in blocks.iter().zip(phases).zip(kernels) {
-        let now = block.advance(*phase, *kernel);
-        sum[0] += now.value;
-        sum[1] += now.rate;
-        sum[2] += block.acceleration(now).value;
+/// A signal, its rate, its acceleration and the rate of that after a time, by the kernels of its blocks.
+pub(crate) fn motion(
+    blocks: &[Block],
+    phases: &[Phase],
+    rest: Parabola,
+    kernel: impl Fn(usize) -> Kernel,
+    time: f64,
+) -> [f64; 4] {
+    let mut motion = [rest.at(time), rest.rate(time), 2.0 * rest.p2, 0.0];
+    for (k, (block, phase)) in blocks.iter().zip(phases).enumerate() {
+        block.add_motion(&mut motion, block.advance(*phase, kernel(k)));
     }
-    sum
+    motion
 }
 
 #[cfg(test)]

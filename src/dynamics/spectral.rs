@@ -8,6 +8,7 @@ use nalgebra::{ComplexField, DMatrix};
 
 use super::EngineError;
 use super::block::Block;
+use super::gauss::eliminate;
 use super::schur::{Iteration, schur};
 
 /// e^(At) = V diag(e^(Bₖt)) W, with W = V⁻¹ where there are as many blocks as coordinates ask for.
@@ -293,47 +294,22 @@ fn sylvester(t: &DMatrix<f64>, [left, right]: &[Piece; 2], load: &[[f64; 2]; 2])
             for k in 0..columns {
                 system[equation][a * columns + k] -= t[(right.first + k, right.first + b)];
             }
-            system[equation][4] = load[a][b];
+            system[equation][order] = load[a][b];
         }
     }
-    let solution = match order {
-        4 => solve_small::<4>(&mut system),
-        2 => solve_small::<2>(&mut system),
-        _ => solve_small::<1>(&mut system),
-    };
+    // A singular system gives infinities, which the condition check refuses.
+    match order {
+        4 => eliminate(&mut system[..4]),
+        2 => eliminate(&mut system[..2]),
+        _ => eliminate(&mut system[..1]),
+    }
     let mut x = [[0.0; 2]; 2];
     for a in 0..rows {
         for b in 0..columns {
-            x[a][b] = solution[a * columns + b];
+            x[a][b] = system[a * columns + b][order];
         }
     }
     x
-}
-
-/// Gaussian elimination with partial pivoting; a singular system gives infinities, which the condition check refuses.
-fn solve_small<const ORDER: usize>(system: &mut [[f64; 5]; 4]) -> [f64; 4] {
-    for column in 0..ORDER {
-        let pivot = (column..ORDER)
-            .max_by(|&i, &j| system[i][column].abs().total_cmp(&system[j][column].abs()))
-            .unwrap_or(column);
-        system.swap(column, pivot);
-        for row in column + 1..ORDER {
-            let factor = system[row][column] / system[column][column];
-            for k in column..ORDER {
-                system[row][k] -= factor * system[column][k];
-            }
-            system[row][4] -= factor * system[column][4];
-        }
-    }
-    let mut solution = [0.0; 4];
-    for row in (0..ORDER).rev() {
-        let mut sum = system[row][4];
-        for k in row + 1..ORDER {
-            sum -= system[row][k] * solution[k];
-        }
-        solution[row] = sum / system[row][row];
-    }
-    solution
 }
 
 /// Zero eigenvalues arrive as large as the rounding. A coordinate that only a dashpot holds (`creeps`) has one: it is set to

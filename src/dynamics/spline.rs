@@ -104,7 +104,8 @@ fn curvature(x: &[f64], y: &[f64]) -> Vec<f64> {
         a[i][i + 1] = h[i];
         a[i][n] = 6.0 * ((y[i + 1] - y[i]) / h[i] - (y[i] - y[i - 1]) / h[i - 1]);
     }
-    eliminate(a)
+    eliminate(&mut a);
+    a.iter().map(|row| row[n]).collect()
 }
 
 #[cfg(test)]

@@ -5,8 +5,7 @@
 //! the next one visits. A state is built when it is visited, and the same numbers come out whether it was known or not.
 
 use std::cell::RefCell;
-use std::collections::HashMap;
-use std::hash::{BuildHasherDefault, Hasher};
+use std::collections::BTreeMap;
 use std::rc::Rc;
 
 use super::EngineError;
@@ -28,39 +27,7 @@ thread_local! {
     static KNOWN: RefCell<Vec<Rc<Driven>>> = const { RefCell::new(Vec::new()) };
 }
 
-/// In no order that matters: they are looked up, and counted.
-type ByContact<T> = RefCell<HashMap<Vec<Contact>, Vec<Rc<T>>, BuildHasherDefault<Mixed>>>;
-
-/// A hash of few small numbers, which nobody chooses to collide.
-#[derive(Default)]
-struct Mixed(u64);
-
-impl Hasher for Mixed {
-    #[inline]
-    fn write(&mut self, bytes: &[u8]) {
-        bytes.iter().for_each(|byte| self.write_u64((*byte).into()));
-    }
-
-    #[inline]
-    fn write_u64(&mut self, number: u64) {
-        self.0 = (self.0.rotate_left(5) ^ number).wrapping_mul(0x517c_c1b7_2722_0a95);
-    }
-
-    #[inline]
-    fn write_isize(&mut self, number: isize) {
-        self.write_u64(number as u64);
-    }
-
-    #[inline]
-    fn write_usize(&mut self, number: usize) {
-        self.write_u64(number as u64);
-    }
-
-    #[inline]
-    fn finish(&self) -> u64 {
-        self.0
-    }
-}
+type ByContact<T> = RefCell<BTreeMap<Vec<Contact>, Vec<Rc<T>>>>;
 
 /// The contact states of a system: what its gap and the size and timing of its drive do not touch.
 pub(crate) struct States(Rc<Driven>);

@@ -37,6 +37,13 @@ impl Matrix {
         self.entries.chunks_exact(self.order).map(|row| dot(row, x)).collect()
     }
 
+    /// Adds `factor` x xᵀ.
+    pub(crate) fn add_square(&mut self, factor: f64, x: &[f64]) {
+        for (entries, a) in self.entries.chunks_exact_mut(self.order.max(1)).zip(x) {
+            entries.iter_mut().zip(x).for_each(|(entry, b)| *entry += factor * a * b);
+        }
+    }
+
     /// xᵀ A y.
     #[must_use]
     pub fn form(&self, x: &[f64], y: &[f64]) -> f64 {
@@ -80,18 +87,10 @@ pub struct HybridSystem {
 }
 
 impl HybridSystem {
-    /// They are the same but for their particles.
-    pub(crate) fn is_as_driven_as(&self, other: &Self) -> bool {
-        let Self { mass, damping, stiffness, gravity, particles: _, force_row, drive, observed_rows, momentum_rows } =
-            self;
-        *gravity == other.gravity
-            && *drive == other.drive
-            && *mass == other.mass
-            && *damping == other.damping
-            && *stiffness == other.stiffness
-            && *force_row == other.force_row
-            && *observed_rows == other.observed_rows
-            && *momentum_rows == other.momentum_rows
+    /// The base whose acceleration sets the damping by half cycles: the structure under the first particle, wherever it is observed.
+    pub(crate) fn base_row(&self) -> Option<&[f64]> {
+        let observed = || self.observed_rows.first().map(Vec::as_slice);
+        self.particles.first().map(|particle| particle.floor.row.as_slice()).or_else(observed)
     }
 
     /// Neither the structure nor a floor takes energy. Ceilings and stops do not count: a run may do without them.
@@ -169,7 +168,7 @@ pub struct Drive {
     pub repeats: bool,
     /// A harmonic force F sin(ω t + φ) beside them, with ω·period a multiple of 2π.
     pub harmonic: Option<Harmonic>,
-    /// Contact damping renewed at every half cycle of the observed acceleration.
+    /// Contact damping renewed at every half cycle of the base acceleration.
     pub half_cycles: Option<HalfCycles>,
 }
 
@@ -215,7 +214,7 @@ pub struct Harmonic {
     pub phase: f64,
 }
 
-/// Equivalent viscous damping: c = curve(RMS of the observed acceleration over the half cycle before).
+/// Equivalent viscous damping: c = curve(RMS of the base acceleration over the half cycle before).
 #[derive(Debug, Clone, PartialEq)]
 pub struct HalfCycles {
     /// The curve, tabulated finely enough to be read linearly: acceleration in m/s², then N s/m; end values outside.

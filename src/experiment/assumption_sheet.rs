@@ -186,6 +186,21 @@ pub struct Moved {
     pub assumptions: Assumptions,
 }
 
+impl AssumptionEntry {
+    /// The other values of its range, each as it is named in the label of a variant.
+    fn moves(&self) -> impl Iterator<Item = (String, &AssumptionValue)> {
+        self.range.iter().filter(|value| **value != self.value).enumerate().map(|(index, value)| {
+            let description = match value {
+                AssumptionValue::Number(number) => number.to_string(),
+                AssumptionValue::Choice(word) => word.clone(),
+                AssumptionValue::Curve(_) => format!("curve_{}", index + 1),
+                AssumptionValue::Places(_) => format!("places_{}", index + 1),
+            };
+            (description, value)
+        })
+    }
+}
+
 impl AssumptionSheet {
     /// The entries in the order of the file.
     pub fn iter(&self) -> impl Iterator<Item = (&AssumptionName, &AssumptionEntry)> {
@@ -233,19 +248,22 @@ impl AssumptionSheet {
         let mut variants = Vec::new();
         let in_force = self.assumptions();
         for (name, entry) in self.iter().filter(|(name, _)| of.contains(*name)) {
-            for (index, value) in entry.range.iter().filter(|value| **value != entry.value).enumerate() {
-                let description = match value {
-                    AssumptionValue::Number(number) => number.to_string(),
-                    AssumptionValue::Choice(word) => word.clone(),
-                    AssumptionValue::Curve(_) => format!("curve_{}", index + 1),
-                    AssumptionValue::Places(_) => format!("places_{}", index + 1),
-                };
+            for (description, value) in entry.moves() {
                 let mut assumptions = in_force.clone();
                 assumptions.values.insert(name.clone(), value.clone());
                 variants.push(Moved { label: format!("{name}={description}"), name: name.clone(), assumptions });
             }
         }
         variants
+    }
+
+    /// Some assumption is moved under this label.
+    #[must_use]
+    pub fn has_variant(&self, label: &str) -> bool {
+        let moves = |entry: &AssumptionEntry, to: &str| entry.moves().any(|(description, _)| description == to);
+        label
+            .split_once('=')
+            .is_some_and(|(name, to)| self.iter().any(|(own, entry)| own.as_str() == name && moves(entry, to)))
     }
 
     /// Names as they are declared, for suggestions.

@@ -2,8 +2,8 @@
 
 use std::ops::Range;
 
-use crate::dynamics::{Event, EventKind, Response};
-use crate::scene::{ParticleStart, Scene};
+use crate::dynamics::{Contact, Event, EventKind, Response};
+use crate::scene::{Scene, Surface};
 
 /// Share of these cycles that a particle spends on its floor or its ceiling, mean over the particles; 0 without any.
 pub(super) fn contact_share(response: &Response, scene: &Scene, cycles: Range<u64>) -> f64 {
@@ -17,13 +17,11 @@ fn of_particle(response: &Response, scene: &Scene, index: usize, cycles: &Range<
     let length = (cycles.end - cycles.start) as f64 * period;
     let since_begin = |event: &Event| (event.cycle as f64 - cycles.start as f64) * period + event.time;
     let events = || response.events.iter().filter(|event| event.particle == index);
-    let starts_in_flight = scene
-        .start
-        .as_ref()
-        .is_some_and(|start| matches!(start.particles.get(index), Some(ParticleStart::InFlight { .. })));
-    let of_floor = |event: &&Event| matches!(event.kind, EventKind::FloorContact | EventKind::FloorRelease);
-    let mut on_floor = events().find(of_floor).map_or(!starts_in_flight, |first| first.kind == EventKind::FloorRelease);
-    let (mut on_ceiling, mut last_was_floor) = (false, true);
+    let first = response.initial_contacts.get(index).copied().unwrap_or(Contact::Floor);
+    let (mut on_floor, mut on_ceiling) = (first.touches_floor(), first.touches_ceiling());
+    let damper = &scene.dampers[index];
+    // A rigid face lets go at once, unless it takes all of the speed.
+    let keeps = |face: &Surface, departure: f64| matches!(face, Surface::Resilient { .. }) || departure <= 0.0;
     let (mut since, mut sum) = (0.0, 0.0);
     for event in events() {
         let now = since_begin(event).clamp(0.0, length);
@@ -32,12 +30,12 @@ fn of_particle(response: &Response, scene: &Scene, index: usize, cycles: &Range<
         }
         since = now;
         match event.kind {
-            // A rigid face lets go at once, unless it takes all of the speed.
-            EventKind::FloorContact => (on_floor, last_was_floor) = (event.departure <= 0.0, true),
-            EventKind::CeilingContact => (on_ceiling, last_was_floor) = (event.departure >= 0.0, false),
+            EventKind::FloorContact => on_floor = keeps(&damper.floor, event.departure),
+            EventKind::CeilingContact => on_ceiling = keeps(&damper.ceiling, -event.departure),
             EventKind::FloorRelease => on_floor = false,
             EventKind::CeilingRelease => on_ceiling = false,
-            EventKind::ChatterEnd => (on_floor, on_ceiling) = (last_was_floor, !last_was_floor),
+            EventKind::ChatterEnd if event.approach > 0.0 => on_floor = true,
+            EventKind::ChatterEnd => on_ceiling = true,
             EventKind::FloorStop | EventKind::CeilingStop | EventKind::StopRelease => {}
         }
     }
@@ -61,7 +59,8 @@ mod tests {
         let at =
             |cycle, time, kind, departure| Event { cycle, time, particle: 0, kind, approach: departure, departure };
         let share = |events: &[Event]| {
-            let response = Response { events: events.to_vec(), ..Response::default() };
+            let initial_contacts = vec![Contact::Floor];
+            let response = Response { events: events.to_vec(), initial_contacts, ..Response::default() };
             contact_share(&response, &scene, 2..4)
         };
         let release = at(0, 0.1, EventKind::FloorRelease, 0.2);

@@ -165,17 +165,27 @@ fn equal(claim: &Equal, view: &View<'_>) -> Result<Decision, Absence> {
         }
     }
     let what = words::common(&claim.values).unwrap_or_default();
-    let found = format!("{what}{} ({} allowed)", difference(&values, claim.within), claim.within.words());
+    let found =
+        format!("{what}{} ({} allowed)", difference(&values, &claim.values, claim.within), claim.within.words());
     Ok(Decision { found, ..tally.decision()? })
 }
 
-/// Numbers and how far apart they are: `161.9 rad/s and 162.0 rad/s, 0.07 % apart`, `3.375, the same to the last bit`.
-fn difference(values: &[Extracted], within: Within) -> String {
+/// Numbers and how far apart they are: `161.9 rad/s and 162.0 rad/s, 0.07 % apart`, `3.375, the same to the last bit`,
+/// `2 × 12.84 rad/s and 25.69 rad/s, the same to the last bit`.
+fn difference(values: &[Extracted], sources: &[Extraction], within: Within) -> String {
+    let multiples = values.iter().zip(sources).map(|(one, source)| match source {
+        Extraction::Times(times) if times.factor.fract() == 0.0 => {
+            let of = with_unit(one.value / times.factor, 4, &one.unit);
+            Some(format!("{} × {of}", significant(times.factor, 4)))
+        }
+        _ => None,
+    });
+    let multiples: Vec<Option<String>> = multiples.collect();
     let (low, high) = values
         .iter()
         .map(|one| one.value)
         .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
-    if let (Some(first), true) = (values.first(), low == high) {
+    if let (Some(first), true) = (values.first(), low == high && multiples.iter().all(Option::is_none)) {
         return format!("{}, the same to the last bit", with_unit(first.value, 4, &first.unit));
     }
     let apart = match within {
@@ -189,8 +199,9 @@ fn difference(values: &[Extracted], within: Within) -> String {
         x if x == high => ends[1].clone(),
         x => with_unit(x, 4, &one.unit),
     };
-    let shown: Vec<String> = values.iter().map(shown).collect();
-    format!("{}, {apart} apart", shown.join(" and "))
+    let shown = values.iter().zip(multiples).map(|(one, multiple)| multiple.unwrap_or_else(|| shown(one)));
+    let shown = shown.collect::<Vec<_>>().join(" and ");
+    if low == high { format!("{shown}, the same to the last bit") } else { format!("{shown}, {apart} apart") }
 }
 
 /// Error of a difference of two (value, error). Numbers that are equal to the last bit come from the same motion, chaotic or
@@ -209,7 +220,8 @@ fn apart(claim: &Apart, view: &View<'_>) -> Result<Decision, Absence> {
         }
     }
     let what = words::common(&claim.values).unwrap_or_default();
-    let found = format!("{what}{} (at least {} required)", difference(&values, claim.by), claim.by.words());
+    let found =
+        format!("{what}{} (at least {} required)", difference(&values, &claim.values, claim.by), claim.by.words());
     Ok(Decision { found, ..tally.decision()? })
 }
 
@@ -316,7 +328,7 @@ fn agree(tally: &mut Tally, cells: &[Cell], within: Within, place: impl FnOnce()
                 Within::Relative(_) => percent(apart / low.value.abs().max(high.value.abs())),
                 Within::Absolute(_) => significant(apart, 3),
             };
-            format!("at most {shown} apart{} ({} allowed)", place(), within.words())
+            format!("up to {shown} apart{} ({} allowed)", place(), within.words())
         });
     }
 }

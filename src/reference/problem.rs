@@ -43,6 +43,11 @@ pub enum ReferenceMistake {
     /// A placeholder of no entry.
     #[error("a placeholder names `{0}`, which is no entry of the reference")]
     Placeholder(String),
+    /// A placeholder of no variant.
+    #[error(
+        "a placeholder moves `{0}`, which no run of that entry does: the page of its experiment lists the assumptions that are moved, as they are written here"
+    )]
+    Variant(String),
     /// The reason of an assumption cannot be read.
     #[error("the reason of `{name}` has {error}")]
     Reason {

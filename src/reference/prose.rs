@@ -33,7 +33,7 @@ pub struct Placeholder {
     /// The entry, `ch3-gap/order` or `order`; `None` for the one that is explained.
     pub entry: Option<String>,
     /// The assumption that is moved, as its variant is named.
-    moved: Option<String>,
+    pub moved: Option<String>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

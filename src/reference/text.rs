@@ -64,7 +64,7 @@ pub(crate) fn symbol(column: &str) -> String {
 
 /// What came out beside what is published, in the unit of the publication: `628 ± 65 mm/s, 21 % below 794.8 mm/s`. An instant,
 /// with the time `scale` between two of its kind, is told by the time between: `52.327 ± 0.010 s, 17 ms after 52.31 s: 3.4 u_val,
-/// 4.6 % of the time between two`.
+/// 4.6 % of the time between two such events`.
 pub(crate) fn measured(comparison: &Comparison, published: &Printed, scale: Option<f64>) -> String {
     let factor = published.half_unit() / comparison.u_data;
     let (value, uncertainty) =
@@ -77,7 +77,7 @@ pub(crate) fn measured(comparison: &Comparison, published: &Printed, scale: Opti
         let (late, units) = (with_unit(error.abs(), 2, "s"), significant(comparison.deviation(), 2));
         let share = percent(error.abs() / scale);
         return format!(
-            "{here}, {late} {} {datum}: {units} u_val, {share} of the time between two",
+            "{here}, {late} {} {datum}: {units} u_val, {share} of the time between two such events",
             side("after", "before")
         );
     }

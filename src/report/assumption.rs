@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use crate::experiment::AssumptionValue;
 use crate::text::number;
 
-use super::markdown::{Align, MarkdownTable, one_line};
+use super::markdown::{Align, MarkdownTable, details, one_line};
 use super::view::AssumptionView;
 
 /// The value of an assumption of this unit: `60 mm`, `9.81 m/s²`, `loaded`, a curve by its end points.
@@ -52,22 +52,29 @@ pub(super) fn without_source(inputs: &[String]) -> String {
 #[must_use]
 pub fn assumptions(assumptions: &[AssumptionView]) -> String {
     let head = "# Assumptions\n\nInputs that the study uses and does not state. [The study in one page](README.md)\n\n";
-    format!("{head}{}", table_with_entries(assumptions))
+    format!("{head}{}{}", table_with_counts(assumptions), dependents(assumptions))
 }
 
-fn table_with_entries(assumptions: &[AssumptionView]) -> String {
+fn table_with_counts(assumptions: &[AssumptionView]) -> String {
     let mut table = MarkdownTable::new(&[
         ("Assumption", Align::Left),
         ("Value", Align::Left),
         ("Why", Align::Left),
-        ("Entries that depend on it", Align::Left),
+        ("Entries that depend on it", Align::Right),
     ]);
     for assumption in assumptions {
-        let used_by = if assumption.used_by.is_empty() { "none".to_owned() } else { entries(&assumption.used_by) };
         let name = format!("<a id=\"{name}\"></a>`{name}`", name = assumption.name);
-        table.row([name, assumption.value.clone(), reason(assumption), used_by]);
+        table.row([name, assumption.value.clone(), reason(assumption), assumption.used_by.len().to_string()]);
     }
-    table.finish()
+    table.finish() + "\n"
+}
+
+/// The entries that depend on each assumption, closed.
+fn dependents(assumptions: &[AssumptionView]) -> String {
+    let used = assumptions.iter().filter(|assumption| !assumption.used_by.is_empty());
+    let lines: String =
+        used.map(|assumption| format!("- `{}`: {}.\n", assumption.name, entries(&assumption.used_by))).collect();
+    details("The entries that depend on each", &lines)
 }
 
 fn reason(assumption: &AssumptionView) -> String {

@@ -112,7 +112,7 @@ pub(super) fn section(continuation: &Continuation, table: &Table) -> String {
         ]);
     }
     format!(
-        "## Branches\n\n{}Motions that come again, by Newton's method on the exact flow, stable or not, in the order along each branch.\n\n",
+        "## Branches\n\n{}Periodic motions, stable or not, by Newton's method on the exact flow, in the order along each branch.\n\n",
         markdown.finish()
     )
 }

@@ -59,8 +59,9 @@ fn cross_validated(all: &[&Judged]) -> Option<String> {
     let numbers = come_out().filter(|one| kind(one) == Kind::Number).count();
     let count = come_out().count();
     (count > 0).then(|| {
-        let (fitted, numbers) = (fitted().count(), counted(numbers, "number", "numbers"));
-        format!("**Left out one at a time**, {count} of {fitted} fitted come out, {numbers} among them.")
+        let of = counted(fitted().count(), "fitted entry", "fitted entries");
+        let (numbers, predicted) = (counted(numbers, "number", "numbers"), if count == 1 { "is" } else { "are" });
+        format!("**Left out one at a time**, {count} of {of} ({numbers}) {predicted} still predicted by the others.")
     })
 }
 

@@ -36,9 +36,15 @@ pub(super) fn in_words(motions: &Motions) -> Option<String> {
     let late = motions.late();
     if let (Some(last), true) = (motions.settled_after.last(), late > 0) {
         let again = motions.settled_after.len();
-        let which = if late == again { "All".into() } else { format!("{late} of the") };
+        let of = match (late, again) {
+            (1, 1) => "The only one that repeats settles".into(),
+            (1, _) => format!("One of the {again} that repeat settles"),
+            _ if late == again => format!("All {again} that repeat settle"),
+            _ => format!("{late} of the {again} that repeat settle"),
+        };
+        let after = if late == 1 { format!("after {last}") } else { format!("the last after {last}") };
         text += &format!(
-            " {which} {again} whose motion comes again settle to a millionth only after the {} left out, the last after {last}.",
+            " {of} to a millionth only after the {} left out, {after}.",
             counted(motions.skip as usize, "cycle", "cycles"),
         );
     }
@@ -143,7 +149,7 @@ fn table(all: &[(&ExperimentView<'_>, &Motions)]) -> String {
     let mut table = MarkdownTable::new(&[
         ("Experiment", Align::Left),
         ("Rows", Align::Right),
-        ("Come again", Align::Right),
+        ("Repeat", Align::Right),
         ("Later than the cycles left out", Align::Right),
         ("Quasi-periodic", Align::Right),
         ("Chaotic", Align::Right),

@@ -76,7 +76,10 @@ pub fn what_stands(
     text += &section("Stands: agrees under every move", group(Robustness::Stands));
     text += &section("Does not stand: differs under every move", group(Robustness::Fails));
     text += &in_question(&questions);
-    text += &section("Cannot be decided: chaotic, or blocked by what no single input settles", group(Robustness::Open));
+    text += &section(
+        "Undecided, as they stand or under some move: chaotic, or blocked by what no single input settles",
+        group(Robustness::Open),
+    );
     text += &section("Agrees, but was used to choose an input", group(Robustness::Chosen));
     text += &section("Not tested: no unstated input of its experiment was moved", group(Robustness::NotMoved));
     text + &section("No result", group(Robustness::Missing))
@@ -168,7 +171,7 @@ fn in_short<'a>(group: &dyn Fn(Robustness) -> &'a [Line<'a>], questions: &[Quest
         (Robustness::Stands, "agree under every move"),
         (Robustness::Fails, "differ under every move"),
         (Robustness::Depends, "depend on one of them"),
-        (Robustness::Open, "cannot be decided"),
+        (Robustness::Open, "are undecided, as they stand or under some move"),
         (Robustness::Chosen, "were used to choose an input and prove nothing"),
         (Robustness::NotMoved, "were not tested, as no unstated input of their experiment was moved"),
         (Robustness::Missing, "have no result"),

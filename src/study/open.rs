@@ -224,8 +224,8 @@ impl Study {
         names.map(|name| (stem(name), name.as_str())).collect()
     }
 
-    /// Placeholders of entries that do not exist, in explanations and in the reasons of the assumptions. Those of an experiment
-    /// that this study does not have are no mistake: they show no number.
+    /// Placeholders of entries or variants that do not exist, in explanations and in the reasons of the assumptions. Those of an
+    /// experiment that this study does not have are no mistake: they show no number.
     fn lost_placeholders(&self) -> Vec<Unread> {
         let has = |id: &str| -> Option<bool> {
             let (experiment, _) = id.split_once('/')?;
@@ -236,13 +236,16 @@ impl Study {
         let lost = |file: &str, prose: &Prose| -> Vec<Unread> {
             let text = self.texts.files.get(file).map(|bytes| String::from_utf8_lossy(bytes)).unwrap_or_default();
             let names = prose.placeholders().filter_map(|one| one.entry.as_deref());
+            let moved = prose.placeholders().filter_map(|one| one.moved.as_deref());
             // A name without its experiment was checked with its file; in an assumption's reason it means nothing.
             let unknown = |name: &&str| has(name).map_or(file == ASSUMPTIONS, |has| !has);
-            let problem = |name: &str| {
+            let problem = |name: &str, mistake: fn(String) -> ReferenceMistake| {
                 let line = text.lines().position(|line| line.contains(name)).map_or(1, |line| line as u64 + 1);
-                ReferenceProblem::on_line(line, ReferenceMistake::Placeholder(name.into()))
+                Unread::reference(file, &text, ReferenceProblem::on_line(line, mistake(name.into())))
             };
-            names.filter(unknown).map(|name| Unread::reference(file, &text, problem(name))).collect()
+            let entries = names.filter(unknown).map(|name| problem(name, ReferenceMistake::Placeholder));
+            let variants = moved.filter(|label| !self.sheet.has_variant(label));
+            entries.chain(variants.map(|label| problem(label, ReferenceMistake::Variant))).collect()
         };
         let mut unread = Vec::new();
         for file in self.texts.files.keys().filter(|file| file.starts_with("reference/")) {

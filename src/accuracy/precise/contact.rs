@@ -199,7 +199,7 @@ impl Run<'_> {
 
     fn record(&mut self, particle: usize, kind: EventKind, approach: f64, departure: f64) {
         self.response.proof.events += 1;
-        if self.options.averages(self.cycle) {
+        if self.options.averaged().holds(self.cycle) {
             let counts = &mut self.response.counts;
             match kind {
                 EventKind::FloorContact => counts.floor_contacts += 1,

@@ -290,7 +290,7 @@ impl<'a> Run<'a> {
     }
 
     fn sum_up(&mut self, series: &Series, span: Double) {
-        if !self.options.averages(self.cycle) || span.near() <= 0.0 {
+        if !self.options.averaged().holds(self.cycle) || span.near() <= 0.0 {
             return;
         }
         let half = self.options.averaged().half(self.cycle);

@@ -17,13 +17,18 @@ impl<V: Vector> Run<'_, V> {
         self.seam(-0.5);
         if end.broken {
             // The sample of this step is the state that the check leaves behind.
-            let before = self.watch.velocity.dot(&self.motion.state);
+            let before = self.observed_velocities();
             for j in 0..self.contacts.len() {
                 self.check(j)?;
             }
             self.collide()?;
-            let after = self.watch.velocity.dot(&self.motion.state);
-            self.tally.velocity_square += after * after - before * before;
+            let mut changes = self
+                .observed_velocities()
+                .into_iter()
+                .zip(before)
+                .map(|(after, before)| after * after - before * before);
+            self.tally.velocity_square += changes.next().unwrap_or_default();
+            self.tally.more.iter_mut().zip(changes).for_each(|([_, square], change)| *square += change);
             self.motion.half.iter_mut().for_each(HalfCycle::jumps);
         }
         if end.turned
@@ -34,6 +39,11 @@ impl<V: Vector> Run<'_, V> {
         self.choose_propagator()?;
         self.seam(0.5);
         Ok(())
+    }
+
+    fn observed_velocities(&self) -> Vec<f64> {
+        let more = self.watch.more.iter().map(|[_, velocity]| velocity);
+        std::iter::once(&self.watch.velocity).chain(more).map(|row| row.dot(&self.motion.state)).collect()
     }
 
     /// Whether the contact of a particle still holds, and what takes its place.
@@ -163,7 +173,8 @@ impl<V: Vector> Run<'_, V> {
             self.place(j, side, Relative { gap, rate: if rests { 0.0 } else { departure } });
             if struck {
                 self.record(j, if on_stop { side.hit() } else { side.made() }, away * closed.speed, departure);
-            } else if held && !rests {
+            }
+            if held && !rests {
                 self.let_go(j, side)?;
                 continue;
             }

@@ -31,8 +31,9 @@ pub(super) struct Propagator<V: Vector> {
     pub(super) guards: Vec<Form<V>>,
     /// Which of them says how strongly a particle is held.
     holds: Vec<Option<usize>>,
-    /// Observed acceleration.
+    /// Observed acceleration, and that of the base.
     pub(super) acceleration: Form<V>,
+    pub(super) base_acceleration: Form<V>,
     /// The power of all dashpots is the sum of the squares of these.
     pub(super) dissipation: Vec<V>,
 }
@@ -205,6 +206,7 @@ impl<V: Vector> Propagator<V> {
             guards: guards.iter().map(Form::of).collect(),
             holds,
             acceleration: Form::of(&along(&system.observed_rows[0])),
+            base_acceleration: Form::of(&along(system.base_row().unwrap_or_default())),
             dissipation: dissipation.iter().map(|signal| V::of(&signal.0[..size])).collect(),
         })
     }

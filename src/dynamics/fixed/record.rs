@@ -4,8 +4,7 @@ use super::Run;
 use super::stretch::Tally;
 use super::vector::Vector;
 use crate::dynamics::audit::State;
-use crate::dynamics::budget;
-use crate::dynamics::contact::{Hold, Side};
+use crate::dynamics::contact::Side;
 use crate::dynamics::sums::{About, Sums};
 use crate::dynamics::system::{Event, EventKind, Particle, dot};
 use crate::dynamics::trace::{Sample, SampledParticle};
@@ -29,15 +28,9 @@ impl Observed {
 
 impl<V: Vector> Run<'_, V> {
     pub(super) fn record(&mut self, particle: usize, kind: EventKind, approach: f64, departure: f64) {
-        self.response.proof.events += 1;
-        budget::count_event();
-        if self.options.averages(self.cycle) {
-            self.response.counts.add(kind);
-        }
-        if self.options.keeps_event(self.cycle, self.response.events.len()) {
-            let time = (self.step - self.schedule.cycle(self.cycle)) as f64 * self.time_step;
-            self.response.events.push(Event { cycle: self.cycle, time, particle, kind, approach, departure });
-        }
+        let time = (self.step - self.schedule.cycle(self.cycle)) as f64 * self.time_step;
+        let event = Event { cycle: self.cycle, time, particle, kind, approach, departure };
+        self.response.enter(event, self.options.averaged(), self.options);
     }
 
     pub(super) fn new_tally(&self) -> Tally<V> {
@@ -71,7 +64,7 @@ impl<V: Vector> Run<'_, V> {
             }
         }
         let weight = self.time_step;
-        if self.options.averages(self.cycle) {
+        if self.options.averaged().holds(self.cycle) {
             for (of, range) in self.response.observed.iter_mut().zip(&tally.extremes) {
                 of.extremes.take(range.displacement[0], range.velocity[0]);
                 of.extremes.take(range.displacement[1], range.velocity[1]);
@@ -90,7 +83,7 @@ impl<V: Vector> Run<'_, V> {
                 of.halves[half].add(summed(displacement, squares));
             }
         }
-        if self.audited() {
+        if self.audit.is_some() {
             let passed = &mut self.passed;
             passed.duration += tally.steps as f64 * weight;
             passed.position.iter_mut().zip(tally.state.values()).for_each(|(sum, q)| *sum += q * weight);
@@ -105,7 +98,7 @@ impl<V: Vector> Run<'_, V> {
 
     /// Half a sample at the end of a smooth piece of the motion, added or taken off: sums over steps become trapezoidal.
     pub(super) fn seam(&mut self, half: f64) {
-        if !self.audited() {
+        if self.audit.is_none() {
             return;
         }
         let state = &self.motion.state;
@@ -128,24 +121,9 @@ impl<V: Vector> Run<'_, V> {
     pub(super) fn audit_state(&self) -> State {
         let (n, positions) = (self.layout.n, self.layout.positions());
         let state = self.motion.state.values();
-        let compression = |j: usize| {
-            let contact = self.contacts[j];
-            let stiffness = contact.face(&self.system.particles[j]).and_then(|face| face.law.stiffness());
-            stiffness.map_or([0.0; 2], |stiffness| [stiffness, self.relative(j, contact.side()).gap])
-        };
-        let across = |j: usize| {
-            let (contact, particle) = (self.contacts[j], &self.system.particles[j]);
-            let side = contact.side().opposite();
-            let stiffness = side.face(particle).law.stiffness().filter(|_| contact.across() == Hold::Pressed)?;
-            Some([stiffness, self.relative(j, side).gap])
-        };
-        State {
-            q: state[..n].to_vec(),
-            rate: state[positions..positions + n].to_vec(),
-            particles: (0..self.contacts.len()).map(|j| self.absolute(j)).collect(),
-            compressions: (0..self.contacts.len()).map(compression).collect(),
-            across: (0..self.contacts.len()).filter_map(across).collect(),
-        }
+        let structure = [&state[..n], &state[positions..positions + n]];
+        let particles = (0..self.contacts.len()).map(|j| self.absolute(j)).collect();
+        State::new(self.system, &self.contacts, structure, particles, |j, side| self.relative(j, side).gap)
     }
 
     /// Keeps the motion at this step, and looks for the next step to keep.

@@ -17,8 +17,6 @@ pub(super) struct Schedule {
     steps: f64,
     /// Jumps of the force within a cycle.
     pub(super) ticks: Vec<StepTick>,
-    /// False: they belong to the first cycle alone.
-    pub(super) repeats: bool,
 }
 
 /// A jump of the force, by steps into the cycle.
@@ -41,7 +39,7 @@ impl Schedule {
         let free = drive.harmonic.is_some() && !jumps;
         let steps = if free { period / time_step } else { (period / time_step).round().max(1.0) };
         let ticks = if free { Vec::new() } else { ticks(&drive.ticks, period, steps, time_step) };
-        Ok(Self { steps, ticks, repeats: drive.repeats })
+        Ok(Self { steps, ticks })
     }
 
     /// First step of a cycle.

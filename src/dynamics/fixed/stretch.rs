@@ -15,7 +15,7 @@ pub(super) struct Motion<V> {
     pub(super) half: Option<HalfCycle>,
 }
 
-/// The half cycle of the observed acceleration that is under way, from its samples at the end of each step.
+/// The half cycle of the base acceleration that is under way, from its samples at the end of each step.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct HalfCycle {
     /// Its sign; 0 before the first sample.
@@ -180,7 +180,7 @@ impl<V: Vector> Motion<V> {
             }
             let turned = match &mut self.half {
                 None => false,
-                Some(half) => half.take(propagator.acceleration.at(&state, force)),
+                Some(half) => half.take(propagator.base_acceleration.at(&state, force)),
             };
             if broken || turned {
                 end = Stretch { steps: step, broken, turned };

@@ -1,7 +1,7 @@
 //! The audit of a linear run: what passed through it, by Gauss-Legendre panels over the moments of all its cycles at once,
 //! held against the states at both ends.
 
-use super::cycle::{Affine, Cycle, leave};
+use super::cycle::{Affine, Cycle};
 use super::moments::Moments;
 use crate::dynamics::audit::{Audit, Passed, State};
 use crate::dynamics::block::pairs;
@@ -19,7 +19,7 @@ pub(super) fn pass(system: &HybridSystem, flow: &Flow, answer: &[f64], cycle: &C
     let mut now = at.clone();
     for segment in &cycle.segments {
         if segment.impulse != 0.0 {
-            let (_, rate) = leave(flow, &now.mean(), 0.0, segment.drive);
+            let [_, rate] = flow.left(&now.mean(), 0.0, 0.0, segment.drive);
             let work = segment.impulse * (dot(&system.force_row, &rate[..n]) + 0.5 * segment.impulse * push);
             audit.impulse(at.count * segment.impulse, at.count * work);
         }
@@ -37,7 +37,7 @@ pub(super) fn pass(system: &HybridSystem, flow: &Flow, answer: &[f64], cycle: &C
                 let t = t0 + x * h;
                 let moments = start.moved(&Affine::flow(flow, t));
                 let drive = flow.drive_after(segment.drive, t);
-                let (p, rate) = leave(flow, &moments.mean(), segment.level, drive);
+                let [p, rate] = flow.left(&moments.mean(), 0.0, segment.level, drive);
                 let w = weight * h * at.count;
                 passed.position.iter_mut().zip(&p).for_each(|(sum, q)| *sum += w * q);
                 let force = segment.level + drive.sine;
@@ -48,7 +48,7 @@ pub(super) fn pass(system: &HybridSystem, flow: &Flow, answer: &[f64], cycle: &C
                 passed.work_modulus += w * power.abs();
                 let mut dissipated = dissipation.of_moments(&moments.second());
                 if system.drive.harmonic.is_some() {
-                    let (_, driven) = leave(flow, &vec![0.0; 2 * flow.order], 0.0, drive);
+                    let [_, driven] = flow.left(&vec![0.0; 2 * flow.order], 0.0, 0.0, drive);
                     dissipated += dissipation.beside(system, &flow.modes, &driven, &moments.first(), moments.count);
                 }
                 passed.dissipated += weight * h * dissipated;
@@ -62,13 +62,12 @@ pub(super) fn pass(system: &HybridSystem, flow: &Flow, answer: &[f64], cycle: &C
 /// The physical state, every particle on its floor.
 pub(super) fn state(system: &HybridSystem, flow: &Flow, p: &[f64], rate: &[f64]) -> State {
     let n = system.mass.order;
-    let mut state = State { q: p[..n].to_vec(), rate: rate[..n].to_vec(), ..State::default() };
-    for (j, particle) in system.particles.iter().enumerate() {
+    let structure = [&p[..n], &rate[..n]];
+    let relative = |j: usize| {
         let slot = flow.modes.attached.iter().position(|&other| other == j);
-        let [gap, speed] = slot.map_or([0.0; 2], |slot| [p[n + slot], rate[n + slot]]);
-        let here = Relative { gap, rate: speed };
-        state.particles.push(here.absolute(particle, Side::Floor, [&state.q, &state.rate]));
-        state.compressions.push(particle.floor.law.stiffness().map_or([0.0; 2], |stiffness| [stiffness, gap]));
-    }
-    state
+        slot.map_or(Relative::default(), |slot| Relative { gap: p[n + slot], rate: rate[n + slot] })
+    };
+    let absolute = |(j, particle)| relative(j).absolute(particle, Side::Floor, structure);
+    let particles = system.particles.iter().enumerate().map(absolute).collect();
+    State::new(system, &flow.modes.contacts, structure, particles, |j, _| relative(j).gap)
 }

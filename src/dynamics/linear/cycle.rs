@@ -24,12 +24,14 @@ impl Affine {
 
     /// The free flow over a time.
     pub(super) fn flow(flow: &Flow, time: f64) -> Self {
-        let kernels: Vec<_> = flow.blocks.iter().map(|block| block.kernel(time)).collect();
-        let mut columns = [vec![0.0; 2 * flow.own], vec![0.0; 2 * flow.own]];
-        for (unit, column) in columns.iter_mut().enumerate() {
-            let start: Vec<f64> = (0..2 * flow.own).map(|i| if i % 2 == unit { 1.0 } else { 0.0 }).collect();
-            flow.move_blocks(|k| kernels[k], &start, column);
-        }
+        let kernels = flow.kernels(time);
+        let columns = [[1.0, 0.0], [0.0, 1.0]].map(|unit: [f64; 2]| {
+            let start: Vec<f64> = unit.into_iter().cycle().take(flow.width()).collect();
+            let mut end = vec![0.0; flow.width()];
+            flow.advance_all(&kernels, &start, DrivePhase::default(), &mut end);
+            end.truncate(2 * flow.own);
+            end
+        });
         let [x, y] = columns;
         let turn = x.chunks_exact(2).zip(y.chunks_exact(2)).map(|(x, y)| [x[0], y[0], x[1], y[1]]).collect();
         Self { turn, shift: vec![[0.0; 2]; flow.own] }
@@ -170,13 +172,6 @@ impl Cycle {
     }
 }
 
-/// (p, p′) of a state of block coordinates.
-pub(super) fn leave(flow: &Flow, c: &[f64], level: f64, drive: DrivePhase) -> (Vec<f64>, Vec<f64>) {
-    let (mut p, mut rate) = (vec![0.0; flow.order], vec![0.0; flow.order]);
-    flow.leave(c, 0.0, level, drive, &mut Vec::new(), [&mut p, &mut rate]);
-    (p, rate)
-}
-
 /// Block coordinates of (p, p′); those of the drive are its phase.
 pub(super) fn enter(flow: &Flow, p: &[f64], rate: &[f64], level: f64, drive: DrivePhase) -> Vec<f64> {
     let mut c = vec![0.0; 2 * flow.blocks.len()];
@@ -194,7 +189,7 @@ pub(super) fn jump(
     answer: &[f64],
 ) -> Vec<[f64; 2]> {
     let still = DrivePhase::default();
-    let (rest, _) = leave(flow, &vec![0.0; 2 * flow.order], before, still);
+    let [rest, _] = flow.left(&vec![0.0; 2 * flow.order], 0.0, before, still);
     let mut rate: Vec<f64> = answer.iter().map(|jump| impulse * jump).collect();
     for &j in &flow.modes.attached {
         // The particle itself is not struck: its compression changes against the structure.

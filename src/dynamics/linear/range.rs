@@ -7,11 +7,13 @@
 use super::cycle::{Cycle, Segment};
 use super::signal::Row;
 use crate::dynamics::Extremes;
-use crate::dynamics::block::{Block, Phase};
+use crate::dynamics::block::Phase;
 use crate::dynamics::budget;
 use crate::dynamics::crest::{self, Motion, crest};
 use crate::dynamics::flow::{DrivePhase, Flow};
 use crate::dynamics::four::Four;
+use crate::dynamics::parabola::Parabola;
+use crate::dynamics::signals::motion;
 use crate::dynamics::system::HybridSystem;
 
 /// Nodes a radian of whatever oscillates: the cubic between two of them is then close enough to judge a crest ([`crest`]).
@@ -27,7 +29,7 @@ struct Grid {
     /// Share of the harmonic force at the segment's beginning.
     drive: Option<Phase>,
     /// Beside the shares, m.
-    rest: f64,
+    rest: Parabola,
 }
 
 /// An instant of a segment.
@@ -97,7 +99,7 @@ impl Grid {
                 Node { time, columns, constant: Four::new(constant) }
             })
             .collect();
-        Self { nodes, drive, rest }
+        Self { nodes, drive, rest: Parabola { p0: rest, ..Parabola::default() } }
     }
 
     fn take(&self, flow: &Flow, row: &Row, c: &[f64], range: &mut Extremes) {
@@ -110,7 +112,7 @@ impl Grid {
             range.take(now.motion[0], now.motion[1]);
             if let Some(last) = before {
                 for order in [0, 1] {
-                    let at = |t: f64| motion(&flow.blocks, shares(), self.rest, t);
+                    let at = |t: f64| motion(&flow.blocks, shares(), self.rest, |k| flow.blocks[k].kernel(t), t);
                     if let Some(turn) = crest(order, last, now, || range.of(order), at) {
                         range.take(turn[0], turn[1]);
                     }
@@ -141,13 +143,4 @@ fn times(flow: &Flow, length: f64) -> Vec<f64> {
     }
     times.sort_by(f64::total_cmp);
     times
-}
-
-/// The motion after a time.
-fn motion(blocks: &[Block], shares: &[Phase], rest: f64, time: f64) -> Motion {
-    let mut motion = [rest, 0.0, 0.0, 0.0];
-    for (block, share) in blocks.iter().zip(shares) {
-        block.add_motion(&mut motion, block.advance(*share, block.kernel(time)));
-    }
-    motion
 }

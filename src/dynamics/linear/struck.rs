@@ -4,7 +4,7 @@
 use std::f64::consts::TAU;
 
 use super::Steady;
-use super::cycle::{Affine, jump, leave, times};
+use super::cycle::{Affine, jump, times};
 use crate::dynamics::EngineError;
 use crate::dynamics::cholesky::Cholesky;
 use crate::dynamics::flow::DrivePhase;
@@ -43,7 +43,7 @@ impl<'a> Struck<'a> {
         let bare = HybridSystem { particles: Vec::new(), ..system.clone() };
         let Some(steady) = Steady::of(&bare)? else { return Ok(None) };
         let (omega, row) = (harmonic.angular_frequency, &floor.row);
-        let (q, rate) = leave(&steady.flow, &steady.state, 0.0, DrivePhase::of(&bare.drive, 0.0));
+        let [q, rate] = steady.flow.left(&steady.state, 0.0, 0.0, DrivePhase::of(&bare.drive, 0.0));
         let amplitude = libm::hypot(dot(row, &q), dot(row, &rate) / omega);
         let answer = Cholesky::new(&system.mass)?.solve(row);
         let unit: Vec<f64> = jump(&bare, &steady.flow, 1.0, [0.0; 2], &answer).concat();
@@ -64,7 +64,7 @@ impl<'a> Struck<'a> {
     pub(super) fn answer(&self, time: f64) -> At {
         let flow = &self.steady.flow;
         let state = Affine::flow(flow, time).apply(&self.start);
-        let (q, rate) = leave(flow, &state, 0.0, DrivePhase::default());
+        let [q, rate] = flow.left(&state, 0.0, 0.0, DrivePhase::default());
         let row = &self.particle.floor.row;
         At { x: dot(row, &q), v: dot(row, &rate) }
     }

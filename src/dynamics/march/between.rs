@@ -240,12 +240,4 @@ impl<E: Effects> March<'_, E> {
         let growth = -other.away() * stiffness * here.rate - damping * bend;
         [push / particle.mass, growth / particle.mass]
     }
-
-    /// Stiffness and compression of a second face that presses.
-    pub(super) fn stored_across(&self, j: usize) -> Option<[f64; 2]> {
-        let contact = self.contacts[j];
-        let side = contact.side().opposite();
-        let stiffness = side.face(&self.system.particles[j]).law.stiffness()?;
-        (contact.across() == Hold::Pressed).then(|| [stiffness, self.relative_to(j, side).gap])
-    }
 }

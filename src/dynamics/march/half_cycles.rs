@@ -1,4 +1,4 @@
-//! Equivalent viscous damping: the half cycles of the observed acceleration, each of which sets the next one's dashpots.
+//! Equivalent viscous damping: the half cycles of the base acceleration, each of which sets the next one's dashpots.
 //!
 //! A half cycle ends where the acceleration a changes its sign. There the dashpot of a particle that is pressed changes by Δc, and a
 //! jumps by Δc u′/m: half of the time back over zero. What then crosses zero a moment later is the same half cycle, which has begun
@@ -129,7 +129,7 @@ impl<E: Effects> March<'_, E> {
         self.hold_on()?;
         let drive = self.drive_phase(self.time);
         self.enter_flow(drive);
-        self.flow.watch(&self.c, self.level, &mut self.signals);
+        self.flow.rows.watch(&self.c, self.level, self.flow.blocks.len(), &mut self.signals);
         Ok(())
     }
 
@@ -138,27 +138,28 @@ impl<E: Effects> March<'_, E> {
     pub(super) fn sum_up_half_cycle(&mut self, length: f64) {
         let together = self.integration(length) == Integration::Together;
         let averaged = together && length > 0.0 && self.averaged.holds(self.cycle);
-        let follows = !self.half.idle;
-        let flow = &self.flow;
-        let needed = if averaged { flow.rows.observed.len() } else { usize::from(follows) };
-        // Half cycles watch the first of them, so that its shares are known.
-        self.panels.clear();
-        for (place, &row) in flow.rows.observed.iter().take(needed).enumerate() {
-            if place == 0 {
-                let watched = self.signals.of(row);
-                self.panels.add(watched.each(), watched.rest);
-            } else {
-                let (shares, rest) = flow.rows.evaluate(row, &self.c, self.level, flow.blocks.len());
-                self.panels.add(shares.into_iter(), rest);
-            }
+        if self.half.idle && !averaged {
+            return;
         }
-        let integrands = self.panels.integrate(&flow.blocks, length);
-        if let (true, Some(first)) = (follows, integrands.first()) {
-            self.half.square += first.acceleration_square;
+        let rows = &self.flow.rows;
+        let base = self.signals.of(rows.base);
+        self.panels.clear();
+        self.panels.add(base.each(), base.rest);
+        let observed = || rows.observed.iter().filter(|_| averaged);
+        for &row in observed().filter(|row| **row != rows.base) {
+            let (shares, rest) = rows.evaluate(row, &self.c, self.level, self.flow.blocks.len());
+            self.panels.add(shares.into_iter(), rest);
+        }
+        let Some((base, others)) = self.panels.integrate(&self.flow.blocks, length).split_first() else { return };
+        if !self.half.idle {
+            self.half.square += base.acceleration_square;
             self.half.length += length;
         }
-        for (observed, signal) in self.response.observed.iter_mut().zip(integrands.iter().filter(|_| averaged)) {
-            observed.halves[self.visits.half].add(signal.sums(length));
+        let mut others = others.iter();
+        for (of, &row) in self.response.observed.iter_mut().zip(observed()) {
+            if let Some(signal) = if row == rows.base { Some(base) } else { others.next() } {
+                of.halves[self.visits.half].add(signal.sums(length));
+            }
         }
     }
 

@@ -17,23 +17,35 @@ pub(super) struct Candidate {
     particle: usize,
     side: Side,
     on_stop: bool,
-    /// Held until now, and not struck.
-    held: bool,
+    before: Before,
     /// Relative speed that is left: too slow a bounce to be followed.
     speed: f64,
     restitution: f64,
+}
+
+/// What a candidate comes from.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Before {
+    /// Held until now, and not struck.
+    Held,
+    /// Struck at this instant.
+    Struck,
+    /// It lies there without being held.
+    Apart,
 }
 
 impl<E: Effects> March<'_, E> {
     /// An impulse on the structure: a particle that is held receives its share through the face.
     pub(super) fn strike_structure(&mut self, impulse: f64) -> Result<(), EngineError> {
         let before = self.audit.is_some().then(|| crate::dynamics::audit::energy(self.system, &self.audit_state()));
+        // M⁻¹ b: what a unit impulse does to q′.
+        let answer = self.states.ground().answer(self.system)?;
         for j in 0..self.particles.len() {
             let row = &self.contacts[j].side().face(&self.system.particles[j]).row;
-            self.particles[j].rate -= impulse * dot(row, &self.answer);
+            self.particles[j].rate -= impulse * dot(row, answer);
             self.smooth[j] = false;
         }
-        self.rate.iter_mut().zip(&self.answer).for_each(|(rate, jump)| *rate += impulse * jump);
+        self.rate.iter_mut().zip(answer).for_each(|(rate, jump)| *rate += impulse * jump);
         if let Some(before) = before {
             let after = crate::dynamics::audit::energy(self.system, &self.audit_state());
             if let Some(audit) = &mut self.audit {
@@ -135,7 +147,7 @@ impl<E: Effects> March<'_, E> {
     fn candidate(&self, j: usize) -> Candidate {
         let side = self.contacts[j].side();
         let on_stop = self.is_on_stop(j, side);
-        Candidate { particle: j, side, on_stop, held: true, speed: 0.0, restitution: 0.0 }
+        Candidate { particle: j, side, on_stop, before: Before::Held, speed: 0.0, restitution: 0.0 }
     }
 
     /// The rigid contacts that are closed.
@@ -212,8 +224,13 @@ impl<E: Effects> March<'_, E> {
             self.particles[j] = Relative { gap, rate: away * outcome.speed };
             if outcome.speed <= slow {
                 let (speed, restitution) = (outcome.speed, closed.restitution);
-                candidates.push(Candidate { particle: j, side, on_stop, held: held && !struck, speed, restitution });
-            } else if held && !struck {
+                let before = match (struck, held) {
+                    (true, _) => Before::Struck,
+                    (false, true) => Before::Held,
+                    (false, false) => Before::Apart,
+                };
+                candidates.push(Candidate { particle: j, side, on_stop, before, speed, restitution });
+            } else if held {
                 self.let_go(j, side);
             } else {
                 self.part(j, side, on_stop);
@@ -297,7 +314,9 @@ impl<E: Effects> March<'_, E> {
                 }
                 self.particles[j].rate = 0.0;
             } else {
-                if candidate.held {
+                // What it was struck by took all of its speed and does not hold it: it is off again at once.
+                let off = candidate.before == Before::Struck && at_rest && !candidate.on_stop;
+                if candidate.before == Before::Held || off {
                     let kind = if candidate.on_stop { EventKind::StopRelease } else { side.lost() };
                     self.record(j, kind, 0.0, 0.0);
                 }
@@ -382,6 +401,7 @@ impl<E: Effects> March<'_, E> {
 impl Candidate {
     fn at_rest(touch: &Touch) -> Self {
         let Touch { particle, side, on_stop, held, .. } = *touch;
-        Self { particle, side, on_stop, held, speed: 0.0, restitution: 0.0 }
+        let before = if held { Before::Held } else { Before::Apart };
+        Self { particle, side, on_stop, before, speed: 0.0, restitution: 0.0 }
     }
 }

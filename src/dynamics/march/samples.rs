@@ -2,11 +2,10 @@
 
 use super::March;
 use super::effects::Effects;
-use crate::dynamics::block::Phase;
 use crate::dynamics::contact::Side;
 use crate::dynamics::flow::DrivePhase;
 use crate::dynamics::guards;
-use crate::dynamics::parabola::Parabola;
+use crate::dynamics::lanes::WIDTH;
 use crate::dynamics::signals;
 use crate::dynamics::system::Particle;
 use crate::dynamics::trace::{Sample, SampledParticle, TraceRequest};
@@ -19,22 +18,20 @@ impl<E: Effects> March<'_, E> {
         }
         let flow = &self.flow;
         let period = self.system.drive.period;
-        let (mut kernels, mut c) = (Vec::with_capacity(flow.blocks.len()), self.c.clone());
+        let mut c = self.c.clone();
         for i in request.next_sample(self.time, period).. {
             let instant = request.instant(i, period);
             let t = instant - self.time;
             if t > length || (t >= length && instant >= period) {
                 break;
             }
-            kernels.clear();
-            kernels.extend(flow.blocks.iter().map(|block| block.kernel(t)));
-            flow.advance(|k| kernels[k], &self.c, flow.drive_after(drive, t), &mut c);
-            let value = |(phases, rest): (&[Phase], Parabola)| signals::value(&flow.blocks, phases, rest, &kernels, t);
+            let kernels = flow.kernels(t);
+            flow.advance_all(&kernels, &self.c, flow.drive_after(drive, t), &mut c);
             let anywhere = |row: usize| {
                 let (phases, rest) = flow.rows.evaluate(row, &self.c, self.level, flow.blocks.len());
-                value((&phases, rest))
+                signals::motion(&flow.blocks, &phases, rest, |k| kernels[k / WIDTH].at(k % WIDTH), t)
             };
-            let [displacement, velocity, acceleration] = anywhere(flow.rows.observed[0]);
+            let [displacement, velocity, acceleration, _] = anywhere(flow.rows.observed[0]);
             let sampled = |(j, particle): (usize, &Particle)| {
                 let contact = self.contacts[j];
                 let faces = [Side::Floor, Side::Ceiling].map(|side| anywhere(flow.rows.face(j, side))[0]);

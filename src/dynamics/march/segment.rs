@@ -98,7 +98,8 @@ impl<E: Effects> March<'_, E> {
         let (mut stuck, mut flickers, mut blink) = (0, 0, instant);
         let (mut last, mut begun) = (self.time, self.time);
         while self.time < until {
-            self.segment(until)?;
+            self.set_guards()?;
+            self.follow(until)?;
             if budget::spend(1) {
                 return Err(budget::overrun().into());
             }
@@ -123,13 +124,6 @@ impl<E: Effects> March<'_, E> {
         Ok(())
     }
 
-    /// To the next event.
-    #[inline(always)]
-    fn segment(&mut self, until: f64) -> Result<(), EngineError> {
-        self.set_guards()?;
-        self.follow(until)
-    }
-
     /// Goes on without a look at the contacts, for so short a time that rounding moves them as far: what they do at this instant
     /// is rounding, and one of them undoes what another one does.
     #[cold]
@@ -152,6 +146,8 @@ impl<E: Effects> March<'_, E> {
         let flow = &self.flow;
         let state = Contacts {
             system: self.system,
+            flow,
+            signals: &self.signals,
             contacts: &self.contacts,
             particles: &self.particles,
             smooth: &self.smooth,
@@ -161,7 +157,7 @@ impl<E: Effects> March<'_, E> {
             has_walls: self.has_walls(),
             plain: !E::ALL,
         };
-        guards::set(state, flow, &self.signals, &mut self.search, &mut self.paths);
+        guards::set(state, &mut self.search, &mut self.paths);
         if E::ALL
             && let (Some(bend), false) = (flow.rows.bend, self.half.idle)
         {
@@ -175,7 +171,7 @@ impl<E: Effects> March<'_, E> {
     #[inline(always)]
     fn follow(&mut self, until: f64) -> Result<(), EngineError> {
         let (flow, drive) = (&self.flow, self.phase);
-        let limit = (until - self.time).min(flow.lasts());
+        let limit = (until - self.time).min(flow.modes.spectral.lasts);
         let found = self.search.run(flow, &self.signals, limit, &mut self.clarity);
         let length = match found {
             Found::Nothing => limit,

@@ -40,10 +40,7 @@ impl<E: Effects> March<'_, E> {
             }
         }
         let flow = &self.flow;
-        let first_audited = self.first_audited();
-        if let Some(audit) = &mut self.audit
-            && self.cycle >= first_audited
-        {
+        if let Some(audit) = &mut self.audit {
             audit.segment(self.system, flow, [&self.c, &self.c_end], Force { level: self.level, drive }, length);
         }
         if E::ALL && flow.rows.bend.is_some() {
@@ -92,18 +89,8 @@ impl<E: Effects> March<'_, E> {
     }
 
     pub(super) fn audit_state(&self) -> audit::State {
-        audit::State {
-            q: self.q[..self.system.mass.order].to_vec(),
-            rate: self.rate[..self.system.mass.order].to_vec(),
-            particles: (0..self.particles.len()).map(|j| self.absolute(j)).collect(),
-            compressions: (0..self.particles.len()).map(|j| self.stored(j).unwrap_or_default()).collect(),
-            across: (0..self.particles.len()).filter_map(|j| self.stored_across(j)).collect(),
-        }
-    }
-
-    /// Stiffness and compression of the face that a particle presses into.
-    fn stored(&self, j: usize) -> Option<[f64; 2]> {
-        let face = self.contacts[j].face(&self.system.particles[j])?;
-        Some([face.law.stiffness()?, self.particles[j].gap])
+        let structure = [&self.q, &self.rate].map(|x| &x[..self.system.mass.order]);
+        let particles = (0..self.particles.len()).map(|j| self.absolute(j)).collect();
+        audit::State::new(self.system, &self.contacts, structure, particles, |j, side| self.relative_to(j, side).gap)
     }
 }

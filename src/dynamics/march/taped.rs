@@ -3,7 +3,7 @@
 use super::March;
 use super::effects::Effects;
 use crate::dynamics::collision::{self, Closed, Outcome};
-use crate::dynamics::contact::{Crossing, Side};
+use crate::dynamics::contact::{Crossing, Hold, Side};
 use crate::dynamics::motion::{self, End, Instant, Jump, Kick};
 use crate::dynamics::system::{Contact, Law, dot};
 use crate::dynamics::touch::Touch;
@@ -26,23 +26,19 @@ impl<E: Effects> March<'_, E> {
 
     /// The gap that closes or opens at a crossing; none where a force comes to zero, where nothing jumps.
     fn gap_of(&self, j: usize, crossing: Crossing) -> Option<(usize, Side)> {
+        let (contact, particle) = (self.contacts[j], &self.system.particles[j]);
+        let (own, across) = (contact.side(), contact.side().opposite());
+        let opens = |side: Side| {
+            let at_gap = matches!(side.face(particle).law, Law::Resilient { no_tension: false, .. });
+            (at_gap && contact.at(side, particle) != Hold::Held).then_some((j, side))
+        };
         match crossing {
             Crossing::ToFloor => Some((j, Side::Floor)),
             Crossing::ToCeiling => Some((j, Side::Ceiling)),
-            Crossing::ToStop => Some((j, self.contacts[j].side())),
-            Crossing::Release => {
-                let side = self.contacts[j].side();
-                let at_gap =
-                    matches!(side.face(&self.system.particles[j]).law, Law::Resilient { no_tension: false, .. });
-                (at_gap && !self.contacts[j].holds(&self.system.particles[j])).then_some((j, side))
-            }
-            Crossing::Meeting | Crossing::ToStopAcross => Some((j, self.contacts[j].side().opposite())),
-            Crossing::ReleaseAcross => {
-                let side = self.contacts[j].side().opposite();
-                let at_gap =
-                    matches!(side.face(&self.system.particles[j]).law, Law::Resilient { no_tension: false, .. });
-                at_gap.then_some((j, side))
-            }
+            Crossing::ToStop => Some((j, own)),
+            Crossing::Meeting | Crossing::ToStopAcross => Some((j, across)),
+            Crossing::Release => opens(own),
+            Crossing::ReleaseAcross => opens(across),
             Crossing::Recovered
             | Crossing::Again
             | Crossing::RecoveredAcross

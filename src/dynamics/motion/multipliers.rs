@@ -6,6 +6,7 @@ use super::recurrence::Scale;
 use super::tangent::Tangent;
 use super::tape::{Cycle, Step, Tape};
 use crate::dynamics::EngineError;
+use crate::dynamics::block::Block;
 use crate::dynamics::schur::{Iteration, schur};
 use crate::dynamics::system::HybridSystem;
 
@@ -82,15 +83,8 @@ impl Period {
         let mut i = 0;
         while i < size {
             if i + 1 < size && t[(i + 1, i)] != 0.0 {
-                let (a, b, c, d) = (t[(i, i)], t[(i, i + 1)], t[(i + 1, i)], t[(i + 1, i + 1)]);
-                let (mean, half) = (0.5 * (a + d), 0.5 * (a - d));
-                let square = half * half + b * c;
-                let root = square.abs().sqrt();
-                if square < 0.0 {
-                    multipliers.extend([Multiplier::new(mean, root); 2]);
-                } else {
-                    multipliers.extend([Multiplier::new(mean + root, 0.0), Multiplier::new(mean - root, 0.0)]);
-                }
+                let pair = Block::new([t[(i, i)], t[(i, i + 1)], t[(i + 1, i)], t[(i + 1, i + 1)]]).eigenvalues();
+                multipliers.extend(pair.map(|[re, im]| Multiplier::new(re, im.abs())));
                 i += 2;
             } else {
                 multipliers.push(Multiplier::new(t[(i, i)], 0.0));

@@ -6,9 +6,8 @@
 use std::rc::Rc;
 
 use super::tape::{At, Crossing, Cycle, Jump, Step};
-use crate::dynamics::block::Kernel;
 use crate::dynamics::contact::Side;
-use crate::dynamics::flow::Flow;
+use crate::dynamics::flow::{DrivePhase, Flow};
 use crate::dynamics::system::{HybridSystem, dot};
 
 /// Carries vectors along a tape.
@@ -20,7 +19,6 @@ pub(super) struct Tangent<'a> {
     c: Vec<f64>,
     c_end: Vec<f64>,
     p: Vec<f64>,
-    kernels: Vec<Kernel>,
     bends: Vec<f64>,
     derivatives: [Vec<f64>; 2],
 }
@@ -33,7 +31,6 @@ impl<'a> Tangent<'a> {
             c: Vec::new(),
             c_end: Vec::new(),
             p: Vec::new(),
-            kernels: Vec::new(),
             bends: Vec::new(),
             derivatives: Default::default(),
         }
@@ -60,11 +57,11 @@ impl<'a> Tangent<'a> {
     fn flow(&mut self, flow: &Flow, length: f64, vectors: &mut [Vec<f64>]) {
         let (n, order) = (self.system.mass.order, flow.order);
         let half = n + self.system.particles.len();
-        let width = flow.modes.spectral.width();
-        self.kernels.clear();
-        self.kernels.extend(flow.blocks[..flow.own].iter().map(|block| block.kernel(length)));
-        self.c.resize(width, 0.0);
-        self.c_end.resize(width, 0.0);
+        let kernels = flow.kernels(length);
+        for c in [&mut self.c, &mut self.c_end] {
+            c.clear();
+            c.resize(flow.width(), 0.0);
+        }
         self.p.resize(2 * order, 0.0);
         for vector in vectors {
             for (p, x) in self.p.chunks_exact_mut(order.max(1)).zip(vector.chunks_exact(half)) {
@@ -75,7 +72,7 @@ impl<'a> Tangent<'a> {
                 }
             }
             flow.modes.to_blocks.sum(&self.p, &mut self.c);
-            flow.move_blocks(|k| self.kernels[k], &self.c, &mut self.c_end);
+            flow.advance_all(&kernels, &self.c, DrivePhase::default(), &mut self.c_end);
             flow.modes.columns.sum(&self.c_end, &mut self.p);
             for (j, particle) in self.system.particles.iter().enumerate() {
                 if flow.modes.contacts[j].face(particle).is_none() {

@@ -1,4 +1,4 @@
-//! Equivalent viscous damping by half cycles of the observed acceleration: bases with and without damping, motion that dies
+//! Equivalent viscous damping by half cycles of the base acceleration: bases with and without damping, motion that dies
 //! away, arrays of light dampers whose contact states have nearly equal eigenvalues.
 
 use shotdamp::dynamics::{
@@ -52,6 +52,25 @@ pub(super) fn a_base_without_damping_counts_its_half_cycles() {
         let mut system = on_one_mass(&mut dice, 0.0, 1 + seed as usize % 3);
         strike(&mut system, dice.between(0.05, 0.5), dice.ratio(0.02, 3.0));
         settled(&format!("seed {seed}"), &system, &cycles(30));
+    }
+}
+
+/// Where a structure is looked at changes nothing of what it does.
+#[test]
+fn the_damping_does_not_depend_on_the_point_that_is_observed() {
+    let mut system = beam(3, 20.0, 0.02);
+    let law = spring(2000.0, 0.0);
+    system.particles.push(particle(0.05, 0.02, shape(3, 0.9), [law, law]));
+    system.drive = blows(0.3, 0.5);
+    renewed(&mut system, &[[0.1, 1.0], [5.0, 8.0]]);
+    for solver in [|system: &HybridSystem| event_driven(system, &cycles(20)), |system: &HybridSystem| {
+        fixed_step(system, &cycles(20), 1e-4)
+    }] {
+        let ends = [0.3, 0.9].map(|x| {
+            system.observed_rows = vec![shape(3, x)];
+            solver(&system).expect("the scene has an answer").final_particles
+        });
+        assert_eq!(ends[0], ends[1]);
     }
 }
 

@@ -32,6 +32,7 @@ mod search;
 mod settled;
 mod small_steps;
 mod sticking;
+mod time_in_contact;
 mod upside_down;
 mod walls;
 
