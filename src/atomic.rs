@@ -9,6 +9,8 @@ use std::path::{Path, PathBuf};
 
 /// How a neighbour's name begins.
 const PREFIX: &str = ".shotdamp-";
+/// Links that are followed one after the other; more lead in a circle.
+const LINKS: u32 = 40;
 
 /// A file that could not be read or written, with its name.
 #[derive(Debug, thiserror::Error)]
@@ -36,14 +38,20 @@ pub fn from_here(path: &Path) -> String {
     below.filter(|below| !below.as_os_str().is_empty()).unwrap_or(path).display().to_string()
 }
 
-/// Writes the whole file or leaves it as it was; makes the folder if it is not there.
+/// Writes the whole file or leaves it as it was; makes the folder if it is not there. A link stays, and what it leads to is
+/// written. What is no regular file, such as a pipe or a device, takes the bytes as they come: another file in its place would
+/// not be what was meant.
 ///
 /// # Errors
 /// [`FileError`] with the system's reason.
 pub fn write(path: &Path, bytes: &[u8]) -> Result<(), FileError> {
     let fail = |source| FileError::new("write", path, source);
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    fs::create_dir_all(folder).map_err(fail)?;
+    let path = match target(path).map_err(fail)? {
+        Target::Whole(path) => path,
+        Target::Through => return File::create(path).and_then(|mut file| file.write_all(bytes)).map_err(fail),
+    };
+    let folder = folder_of(&path);
+    make_folder(folder).map_err(fail)?;
     let mut builder = tempfile::Builder::new();
     builder.prefix(PREFIX);
     // A temporary file is private by default; results are for all to read, as far as the umask lets them.
@@ -52,7 +60,7 @@ pub fn write(path: &Path, bytes: &[u8]) -> Result<(), FileError> {
     let mut file = builder.tempfile_in(folder).map_err(fail)?;
     file.write_all(bytes).map_err(fail)?;
     file.as_file().sync_all().map_err(fail)?;
-    file.persist(path).map_err(|error| fail(error.error))?;
+    file.persist(&path).map_err(|error| fail(error.error))?;
     // The new name itself is on disk only once its folder is; not every system lets a folder be opened.
     if let Ok(folder) = File::open(folder) {
         let _ = folder.sync_all();
@@ -60,12 +68,69 @@ pub fn write(path: &Path, bytes: &[u8]) -> Result<(), FileError> {
     Ok(())
 }
 
+/// What becomes of a path that is written to.
+enum Target {
+    /// This file is replaced as a whole; it may not be there yet.
+    Whole(PathBuf),
+    /// It is opened, and the bytes go into it.
+    Through,
+}
+
+fn target(path: &Path) -> io::Result<Target> {
+    if fs::metadata(path).is_ok_and(|meta| !meta.is_file() && !meta.is_dir()) {
+        return Ok(Target::Through);
+    }
+    let mut path = path.to_path_buf();
+    for _ in 0..LINKS {
+        let Ok(to) = fs::read_link(&path) else { return Ok(Target::Whole(path)) };
+        let folder = folder_of(&path);
+        // An open file of this or another process, which need not have a name any more.
+        if fs::canonicalize(folder).is_ok_and(|folder| folder.starts_with("/proc")) {
+            return Ok(Target::Through);
+        }
+        path = folder.join(to);
+    }
+    Err(io::Error::other("its links lead in a circle"))
+}
+
+/// Where a file that is written to this path comes to lie: without links, though it and its folders need not be there yet.
+#[must_use]
+pub fn place_of(path: &Path) -> PathBuf {
+    let path = match target(path) {
+        Ok(Target::Whole(path)) => path,
+        Ok(Target::Through) | Err(_) => path.to_path_buf(),
+    };
+    let path = std::path::absolute(&path).unwrap_or(path);
+    let real = |there: &Path| Some((fs::canonicalize(there).ok()?, path.strip_prefix(there).ok()?.to_path_buf()));
+    match path.ancestors().find_map(real) {
+        Some((there, rest)) if rest.as_os_str().is_empty() => there,
+        Some((there, rest)) => there.join(rest),
+        None => path,
+    }
+}
+
+/// Makes a folder with all above it.
+///
+/// # Errors
+/// The system's reason; where something else stands in the place of a folder, which, and what to do about it.
+pub fn make_folder(folder: &Path) -> io::Result<()> {
+    fs::create_dir_all(folder).map_err(|error| {
+        let in_the_way = folder.ancestors().find(|path| path.symlink_metadata().is_ok()).filter(|path| !path.is_dir());
+        in_the_way
+            .map_or(error, |path| io::Error::other(format!("`{}` is not a folder: move it away", from_here(path))))
+    })
+}
+
+fn folder_of(path: &Path) -> &Path {
+    path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
+}
+
 /// As [`write()`], but leaves a file alone that holds these bytes already. Returns whether it wrote.
 ///
 /// # Errors
 /// As [`write()`].
 pub fn write_if_changed(path: &Path, bytes: &[u8]) -> Result<bool, FileError> {
-    if fs::metadata(path).is_ok_and(|meta| meta.len() == bytes.len() as u64)
+    if fs::metadata(path).is_ok_and(|meta| meta.is_file() && meta.len() == bytes.len() as u64)
         && fs::read(path).is_ok_and(|old| old == bytes)
     {
         return Ok(false);

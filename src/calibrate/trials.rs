@@ -232,7 +232,7 @@ impl EventHandler for CumulativeEvents<'_> {
                 self.handler.on_event(&Event::Begun { experiments: *experiments, simulations });
             }
             // The end of one run is not the end of all.
-            Event::Ended | Event::Finished { .. } => {}
+            Event::Ended | Event::Finished { .. } | Event::Interrupted { .. } => {}
             other => self.handler.on_event(other),
         }
     }

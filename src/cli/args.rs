@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Parser, Subcommand};
 
+use super::destination::Destination;
 use crate::experiment::RowLimit;
 use crate::report::RELEASED;
 use crate::study::{Shard, Study};
@@ -80,7 +81,7 @@ Examples:
   shotdamp show ch3-limit-stop
   shotdamp show 'ch5-*'")]
     Show {
-        /// Id of the experiment
+        /// Id of the experiment, or its file
         id: String,
     },
     /// List what is stale; writes nothing
@@ -110,7 +111,7 @@ Examples:
   shotdamp effects ch3-limit-stop
   shotdamp effects 'ch5-measures-*'")]
     Effects {
-        /// Id of the experiment, or a pattern with * and ?
+        /// Id of the experiment, a pattern with * and ?, or its file
         id: String,
         #[command(flatten)]
         limit: LimitArgs,
@@ -139,7 +140,7 @@ Examples:
 /// Which experiments.
 #[derive(Debug, Default, Clone, clap::Args)]
 pub(super) struct Choice {
-    /// Ids, or patterns with * and ? [default: all]
+    /// Ids, patterns with * and ?, or files [default: all]
     #[arg(value_name = "PATTERN")]
     pub patterns: Vec<String>,
     /// Only experiments in this folder of `experiments/`
@@ -242,9 +243,9 @@ Examples:
   shotdamp report --html study.html
   shotdamp --root examples/classics report --html classics.html")]
 pub(super) struct ReportArgs {
-    /// The file to write
+    /// The file to write; `-`: standard output
     #[arg(long, value_name = "FILE")]
-    pub html: PathBuf,
+    pub html: Destination,
 }
 
 #[derive(Debug, thiserror::Error)]
@@ -266,7 +267,7 @@ Examples:
   shotdamp accuracy ch3-limit-stop
   shotdamp accuracy --all --longest 2")]
 pub(super) struct AccuracyArgs {
-    /// Ids, or patterns with * and ?
+    /// Ids, patterns with * and ?, or files
     #[arg(value_name = "PATTERN", conflicts_with = "all")]
     pub patterns: Vec<String>,
     /// All experiments, and the summary
@@ -288,7 +289,7 @@ Examples:
   shotdamp calibrate beam-arrays
   shotdamp calibrate all-chapters --jobs 2")]
 pub(super) struct CalibrateArgs {
-    /// Name of a file in `calibrations/`, without extension
+    /// Name of a file in `calibrations/`, without extension, or the file
     pub id: String,
     #[command(flatten)]
     pub limit: LimitArgs,
@@ -325,12 +326,13 @@ pub(super) struct CheckArgs {
     /// Check that each entry can fail
     #[arg(long)]
     pub self_test: bool,
-    /// Also write the verdicts as JUnit XML
+    /// Also write the verdicts as JUnit XML; `-`: to standard output, in their place
     #[arg(long, value_name = "FILE")]
-    pub junit: Option<PathBuf>,
-    /// Also write the summary that a pull request shows, as Markdown: changes against the committed verdicts first
+    pub junit: Option<Destination>,
+    /// Also write the summary that a pull request shows, as Markdown: changes against the committed verdicts first; `-`: to
+    /// standard output, in the place of the verdicts
     #[arg(long, value_name = "FILE")]
-    pub markdown: Option<PathBuf>,
+    pub markdown: Option<Destination>,
     /// The committed verdicts; by default those of this study's reports
     #[arg(long, value_name = "FILE", requires = "markdown")]
     pub against: Option<PathBuf>,

@@ -4,7 +4,7 @@ use super::args::{Args, CalibrateArgs};
 use super::error::CliError;
 use super::exit::Exit;
 use super::output::{print, print_unread};
-use super::select::open;
+use super::select::{hint, open};
 use crate::atomic;
 use crate::calibrate::{Running, calibration as calibration_page};
 use crate::experiment::{Experiment, ExperimentId, load_calibration};
@@ -14,6 +14,10 @@ use crate::study::{Engine, EventHandler, IgnoreEvents, Layout, LeftOutRecord, Pr
 pub(super) fn calibrate(layout: &Layout, args: &CalibrateArgs, common: &Args) -> Result<Exit, CliError> {
     let id: ExperimentId = args.id.parse()?;
     let mut study = open(layout)?;
+    let known = study.texts.calibrations();
+    if !known.contains(id.0.as_str()) {
+        return Err(CliError::NoCalibration { hint: hint(&id.0, &known, "ls calibrations"), id: id.0 });
+    }
     args.limit.apply(&mut study);
     let calibration = load_calibration(&layout.path(&format!("calibrations/{id}.yaml")), &study.sheet)?;
     print_unread(&study.unread);

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::args::CheckArgs;
+use super::destination::Destination;
 use super::error::CliError;
 use super::exit::Exit;
 use super::output::{print, print_document, print_error, print_unread, print_warnings};
@@ -19,6 +20,7 @@ const STEP_SUMMARY: &str = "GITHUB_STEP_SUMMARY";
 
 /// The verdicts, from the tables on disk.
 pub(super) fn check(layout: &Layout, args: &CheckArgs) -> Result<Exit, CliError> {
+    let alone = has_standard_output(layout, args)?;
     let study = open(layout)?;
     let chosen = choose(&study, &args.choice)?;
     print_unread(chosen.unread.iter().copied());
@@ -38,26 +40,38 @@ pub(super) fn check(layout: &Layout, args: &CheckArgs) -> Result<Exit, CliError>
         let (description, worst) = self_test(&study, &chosen);
         exit = exit.max(worst);
         // Standard output is the document's alone.
-        if args.json { print_error(&description) } else { text += &description }
+        if alone { print_error(&description) } else { text += &description }
     }
     if args.json {
-        print_document(&text)?
-    } else {
-        print(&text)?
+        print_document(&text)?;
+    } else if !alone {
+        print(&text)?;
     }
     if args.reports {
-        exit = exit.max(compare_reports(&study, &judgement, args)?);
+        exit = exit.max(compare_reports(&study, &judgement, alone)?);
     }
-    if let Some(file) = &args.junit {
-        atomic::write(file, report::junit(&view).as_bytes())?;
+    if let Some(to) = &args.junit {
+        to.write(&report::junit(&view))?;
     }
-    if let Some(file) = &args.markdown {
-        atomic::write(file, report::pull_request(&view, &committed(layout, args)?).as_bytes())?;
+    if let Some(to) = &args.markdown {
+        to.write(&report::pull_request(&view, &committed(layout, args)?))?;
     }
     if args.github {
         github(&view)?;
     }
     Ok(exit)
+}
+
+/// True if a document has standard output for itself; the errors of destinations come before all work.
+fn has_standard_output(layout: &Layout, args: &CheckArgs) -> Result<bool, CliError> {
+    let files = [&args.junit, &args.markdown].into_iter().flatten();
+    files.clone().try_for_each(|to| to.check(layout))?;
+    let documents = files.filter(|to| **to == Destination::StandardOutput).count() + usize::from(args.json);
+    // The annotations belong to a step's log.
+    if documents + usize::from(args.github) > 1 && documents > 0 {
+        return Err(CliError::TwoDocuments);
+    }
+    Ok(documents > 0)
 }
 
 /// The verdicts before; none if this study has never written any.
@@ -83,12 +97,12 @@ fn self_test(study: &Study, chosen: &Chosen<'_>) -> (String, Exit) {
     (description, if failures.is_empty() { Exit::AsExpected } else { Exit::Unexpected })
 }
 
-fn compare_reports(study: &Study, judgement: &Judgement, args: &CheckArgs) -> Result<Exit, CliError> {
+fn compare_reports(study: &Study, judgement: &Judgement, alone: bool) -> Result<Exit, CliError> {
     let departures = departures(study, judgement);
     for departure in &departures {
         print_error(&format!("error: {departure}\n"));
     }
-    if departures.is_empty() && !args.json {
+    if departures.is_empty() && !alone {
         print("reports are up to date\n")?;
     }
     Ok(if departures.is_empty() { Exit::AsExpected } else { Exit::Unexpected })

@@ -7,16 +7,21 @@ use super::args::CleanArgs;
 use super::error::CliError;
 use super::exit::Exit;
 use super::output::print;
+use super::select::open;
 use super::simulate::held;
 use crate::atomic::FileError;
-use crate::study::{Layout, Lock, Texts, earlier_tables, orphans};
+use crate::report::{extra_files, judge_all};
+use crate::study::{Layout, Lock, earlier_tables, orphans};
 
 /// Removes files of deleted experiments, and earlier tables.
 pub(super) fn clean(layout: &Layout, args: &CleanArgs) -> Result<Exit, CliError> {
     let _lock = Lock::of_study(layout, held(false))?;
     let mut names = BTreeSet::new();
     if args.orphans {
-        names.extend(orphans(layout, &Texts::read(layout)?));
+        let study = open(layout)?;
+        names.extend(orphans(layout, &study.texts));
+        // Also those that no record tells of, as in a study that was just cloned.
+        names.extend(extra_files(&study, &judge_all(&study)));
     }
     if args.earlier {
         names.extend(earlier_tables(layout));

@@ -18,8 +18,10 @@ pub(super) enum CliError {
     NoStudyAt(PathBuf),
     #[error("there are no experiments yet: write one into experiments/")]
     NoExperiments,
-    #[error("no experiment matches `{pattern}`; there are {known}")]
-    NoMatch { pattern: String, known: String },
+    #[error("no experiment matches `{pattern}`; {hint}")]
+    NoMatch { pattern: String, hint: String },
+    #[error("there is no calibration `{id}`; {hint}")]
+    NoCalibration { id: String, hint: String },
     #[error("`shotdamp {0}` needs the id of an experiment, or --all")]
     NothingChosen(&'static str),
     #[error("no experiment lies in experiments/{folder}; there are {known}")]
@@ -34,6 +36,10 @@ pub(super) enum CliError {
     NoResults(PathBuf),
     #[error("cannot compare {}: {problem}", from_here(.path))]
     Unreadable { path: PathBuf, problem: String },
+    #[error("`{path}` is or lies in `{part}` of this study, which holds its own files: name another place")]
+    Own { path: String, part: &'static str },
+    #[error("only one document can go to standard output: name a file for the others")]
+    TwoDocuments,
     #[error("there is an experiment `{0}` already")]
     Exists(String),
     #[error("there is no structure `{given}`; known are {known}")]

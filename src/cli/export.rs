@@ -1,6 +1,7 @@
 //! `shotdamp export --ro-crate DIR`.
 
 use super::args::ExportArgs;
+use super::destination::outside;
 use super::error::CliError;
 use super::exit::Exit;
 use super::output::{print, print_unread};
@@ -11,6 +12,7 @@ use crate::text::words::counted;
 
 /// Writes the chosen experiments with all their results into a folder for others.
 pub(super) fn export(layout: &Layout, args: &ExportArgs) -> Result<Exit, CliError> {
+    outside(layout, &args.ro_crate)?;
     let study = open(layout)?;
     let chosen = choose(&study, &args.choice)?;
     print_unread(chosen.unread.iter().copied());

@@ -1,4 +1,5 @@
-//! Ctrl-C: simulations end at their next look at the clock, what they have is kept, and the last line says so.
+//! Ctrl-C, or SIGTERM from a scheduler, or SIGHUP from a terminal that closes: simulations end at their next look at the clock,
+//! what they have is kept, and the last line says so.
 //!
 //! A computation that looks at no clock, such as the decomposition of a large matrix, is not waited for: the process ends
 //! within a second of the signal whatever its threads are at. Files are written whole or not at all.
@@ -8,7 +9,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, OnceLock};
 use std::time::Duration;
 
-use signal_hook::consts::SIGINT;
+use signal_hook::consts::{SIGINT, SIGTERM};
 
 use super::args::Command;
 use super::output::print_error;
@@ -18,7 +19,7 @@ use crate::dynamics::interrupt;
 const LOOK: Duration = Duration::from_millis(20);
 /// How long the threads have to end and to write what they have.
 const GRACE: Duration = Duration::from_millis(700);
-/// 128 + SIGINT, as a shell reports a program that was interrupted.
+/// 128 + SIGINT, as a shell reports a program that was interrupted; of the other signals, too: what is left is the same.
 const EXIT_CODE: i32 = 130;
 
 /// What is left of a command that was interrupted.
@@ -56,11 +57,31 @@ impl Kept {
 
 static KEPT: OnceLock<Kept> = OnceLock::new();
 
-/// Listens for Ctrl-C from now on.
+/// The signals that ask a command to end.
+fn signals() -> Vec<i32> {
+    let mut signals = vec![SIGINT, SIGTERM];
+    #[cfg(unix)]
+    if !outlives_terminal() {
+        signals.push(signal_hook::consts::SIGHUP);
+    }
+    signals
+}
+
+/// True under `nohup`, which sets SIGHUP to be ignored, and where that cannot be known: hearing the signal would undo it.
+#[cfg(unix)]
+fn outlives_terminal() -> bool {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let ignored = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
+    let ignored = ignored.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok());
+    ignored.is_none_or(|mask| mask >> (signal_hook::consts::SIGHUP - 1) & 1 == 1)
+}
+
+/// Listens for these signals from now on.
 pub(super) fn listen(kept: Kept) {
     let _ = KEPT.set(kept);
     let asked = Arc::new(AtomicBool::new(false));
-    if signal_hook::flag::register(SIGINT, Arc::clone(&asked)).is_err() {
+    let heard = signals().into_iter().filter(|signal| signal_hook::flag::register(*signal, Arc::clone(&asked)).is_ok());
+    if heard.count() == 0 {
         // The system goes on ending the process by itself.
         return;
     }

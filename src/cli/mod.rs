@@ -5,6 +5,7 @@ mod args;
 mod calibrate;
 mod check;
 mod clean;
+mod destination;
 mod diff;
 mod dry_run;
 mod effects;
@@ -42,9 +43,9 @@ use crate::dynamics::is_interrupted;
 /// could not run, is missing, or was asked for wrongly; 130 interrupted.
 #[must_use]
 pub fn main() -> ExitCode {
-    let args = Args::parse();
+    let mut args = Args::parse();
     output::set_style(args.quiet, args.color);
-    let outcome = dispatch(&args);
+    let outcome = dispatch(&mut args);
     if is_interrupted() {
         interrupt::end();
     }
@@ -53,13 +54,13 @@ pub fn main() -> ExitCode {
         // The reader closed the pipe: it has read enough.
         Err(error) if error.is_broken_pipe() => ExitCode::SUCCESS,
         Err(error) => {
-            output::print_error(&format!("error: {error}\n"));
+            output::print_failure(&error);
             Exit::CouldNot.into()
         }
     }
 }
 
-fn dispatch(args: &Args) -> Result<Exit, CliError> {
+fn dispatch(args: &mut Args) -> Result<Exit, CliError> {
     match &args.command {
         // What needs no study.
         Some(Command::Completions { shell }) => return completions(*shell),
@@ -67,6 +68,10 @@ fn dispatch(args: &Args) -> Result<Exit, CliError> {
         _ => {}
     }
     let layout = select::layout(args.root.as_deref())?;
+    if let Some(command) = &mut args.command {
+        select::name_files(&layout, command);
+    }
+    let args = &*args;
     if let Some(kept) = Kept::by(args.command.as_ref()) {
         interrupt::listen(kept);
     }

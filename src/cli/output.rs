@@ -4,6 +4,7 @@ use std::io::{self, IsTerminal, Write};
 use std::sync::OnceLock;
 
 use super::args::Colour;
+use super::error::CliError;
 use crate::experiment::Problems;
 use crate::study::Unread;
 use crate::text::words::counted;
@@ -62,22 +63,34 @@ pub(super) fn print_error(text: &str) {
 
 /// Prints the errors of files that could not be used, with their places; framed on a terminal.
 pub(super) fn print_unread<'a>(unread: impl IntoIterator<Item = &'a Unread>) {
-    let colour = style().colour;
     for one in unread {
         match one.problems() {
-            Some(problems) if colour || io::stderr().is_terminal() => print_error(&problems.fancy(colour)),
-            Some(problems) => print_error(&problems.to_string()),
+            Some(problems) => print_problems(problems),
             None => print_error(&format!("error: {one}\n")),
         }
     }
 }
 
+/// Prints why a command could not do its work.
+pub(super) fn print_failure(error: &CliError) {
+    match error {
+        // They bring their own head.
+        CliError::Text(problems) => print_problems(problems),
+        other => print_error(&format!("error: {other}\n")),
+    }
+}
+
+fn print_problems(problems: &Problems) {
+    let colour = style().colour;
+    let framed = colour || io::stderr().is_terminal();
+    print_error(&if framed { problems.fancy(colour) } else { problems.to_string() });
+}
+
 /// Prints warnings, unless nothing but errors is wanted; framed on a terminal.
 pub(super) fn print_warnings(warnings: Option<&Problems>) {
-    let Some(warnings) = warnings.filter(|_| !style().quiet) else { return };
-    let colour = style().colour;
-    let text = if colour || io::stderr().is_terminal() { warnings.fancy(colour) } else { warnings.to_string() };
-    print_error(&text);
+    if let Some(warnings) = warnings.filter(|_| !style().quiet) {
+        print_problems(warnings);
+    }
 }
 
 /// A table of text without lines: columns as wide as they need to be.

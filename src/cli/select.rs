@@ -3,9 +3,11 @@
 use std::collections::BTreeSet;
 use std::path::Path;
 
-use super::args::Choice;
+use super::args::{CheckArgs, Choice, Command, ExportArgs, GatherArgs, RunArgs, StatusArgs};
 use super::error::CliError;
 use super::exit::Exit;
+use crate::atomic::place_of;
+use crate::experiment::closest;
 use crate::report::Judgement;
 use crate::study::{ASSUMPTIONS, Item, Layout, STUDY, Snapshot, Study, Summary, Texts, Unread, folder_of, stem};
 
@@ -17,6 +19,40 @@ pub(super) fn layout(root: Option<&Path>) -> Result<Layout, CliError> {
     }
     let here = std::env::current_dir()?;
     Layout::find(&here).ok_or(CliError::NoStudy(here))
+}
+
+/// Puts ids in the place of paths to experiments and calibrations, as a shell completes them: `experiments/ch3/ch3-gap.yaml`, seen
+/// from here or from the folder of the study.
+pub(super) fn name_files(layout: &Layout, command: &mut Command) {
+    let experiments = |named: &mut String| name_file(layout, "experiments", named);
+    match command {
+        Command::Run(RunArgs { choice, .. })
+        | Command::Gather(GatherArgs { choice, .. })
+        | Command::Export(ExportArgs { choice, .. })
+        | Command::Status(StatusArgs { choice, .. })
+        | Command::Check(CheckArgs { choice, .. }) => choice.patterns.iter_mut().for_each(experiments),
+        Command::Accuracy(accuracy) => accuracy.patterns.iter_mut().for_each(experiments),
+        Command::Show { id } | Command::Effects { id, .. } => experiments(id),
+        Command::Calibrate(calibrate) => name_file(layout, "calibrations", &mut calibrate.id),
+        Command::Report(_)
+        | Command::List
+        | Command::Diff(_)
+        | Command::Clean(_)
+        | Command::New(_)
+        | Command::Schema(_)
+        | Command::Completions { .. }
+        | Command::Explain { .. } => {}
+    }
+}
+
+/// No id has a dot or a slash: what is the path of such a file is nothing else.
+fn name_file(layout: &Layout, folder: &str, named: &mut String) {
+    let path = Path::new(named.as_str());
+    let is_file = |path: &Path| path.is_file() && place_of(path).starts_with(place_of(&layout.path(folder)));
+    if path.extension().is_some_and(|ending| ending == "yaml") && (is_file(path) || is_file(&layout.root().join(path)))
+    {
+        *named = stem(named).to_owned();
+    }
 }
 
 /// Reads and plans the study.
@@ -123,7 +159,7 @@ pub(super) fn choose<'a>(study: &'a Study, choice: &Choice) -> Result<Chosen<'a>
     let stems: Vec<&str> = chosen.unread.iter().map(|unread| stem(unread.file())).collect();
     let answers = |pattern: &&String| chosen.ids().chain(stems.iter().copied()).any(|id| matches(pattern, id));
     if let Some(pattern) = choice.patterns.iter().find(|pattern| !blind && !answers(pattern)) {
-        return Err(CliError::NoMatch { pattern: pattern.clone(), known: known(study) });
+        return Err(no_match(pattern, &readable(study)));
     }
     if let Some(folder) = choice.folder.clone().filter(|_| chosen.is_empty()) {
         return Err(CliError::NoFolder { folder, known: folders(study) });
@@ -161,14 +197,27 @@ impl<'a> Chosen<'a> {
     }
 }
 
-fn known(study: &Study) -> String {
+/// The ids of all experiments that can be read.
+fn readable(study: &Study) -> BTreeSet<&str> {
     let planned = study.items.iter().map(|item| item.source.experiment.id.0.as_str());
-    let ids: BTreeSet<&str> = planned.chain(study.known.keys().map(String::as_str)).collect();
-    let ids: Vec<&str> = ids.into_iter().collect();
-    match ids.as_slice() {
-        [] => "none that can be read".into(),
-        few if few.len() <= 8 => few.join(", "),
-        many => format!("{}, … ({} in all; see `shotdamp list`)", many[..4].join(", "), many.len()),
+    planned.chain(study.known.keys().map(String::as_str)).collect()
+}
+
+/// The error of a pattern that none of the `ids` answers to.
+pub(super) fn no_match(pattern: &str, ids: &BTreeSet<&str>) -> CliError {
+    CliError::NoMatch { pattern: pattern.into(), hint: hint(pattern, ids, "shotdamp list") }
+}
+
+/// The name that was probably meant, or those that there are; `all` shows them.
+pub(super) fn hint(asked: &str, names: &BTreeSet<&str>, all: &str) -> String {
+    if let Some(name) = closest(asked, names.iter().copied()) {
+        return format!("did you mean `{name}`?");
+    }
+    let names: Vec<&str> = names.iter().copied().collect();
+    match names.as_slice() {
+        [] => "there are none that can be read".into(),
+        few if few.len() <= 8 => format!("there are {}", few.join(", ")),
+        many => format!("there are {}, … ({} in all; see `{all}`)", many[..4].join(", "), many.len()),
     }
 }
 

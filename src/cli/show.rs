@@ -13,7 +13,7 @@ use super::args::Choice;
 use super::error::CliError;
 use super::exit::Exit;
 use super::output::{columns, print, print_error, print_unread, simulations};
-use super::select::{choose, matches};
+use super::select::{choose, matches, no_match};
 use super::thresholds;
 use crate::accuracy::{idle_cases, out_of_reach_in_words, unreached_cases};
 use crate::dynamics::{Allowance, Limit, Until, in_words};
@@ -132,9 +132,12 @@ pub(super) fn show(layout: &Layout, id: &str) -> Result<Exit, CliError> {
 /// Makes all sections of all experiments.
 fn make(layout: &Layout, id: &str, made: &Sender<Made>) -> Result<Exit, CliError> {
     let texts = Texts::read(layout)?;
-    // A pattern that nothing answers to is told with all that there is.
-    let answered = texts.stems().iter().any(|stem| matches(id, stem));
-    let study = Study::of(layout.clone(), texts, &|stem| !answered || matches(id, stem));
+    let ids = texts.ids();
+    // Told from the names of the files: to read all of them may take longer than anyone waits.
+    if !ids.is_empty() && !texts.stems().iter().any(|stem| matches(id, stem)) {
+        return Err(no_match(id, &ids));
+    }
+    let study = Study::of(layout.clone(), texts, &|stem| matches(id, stem));
     let chosen = choose(&study, &Choice { patterns: vec![id.into()], folder: None })?;
     print_unread(chosen.unread.iter().copied());
     let experiments = u32::try_from(chosen.items.len()).unwrap_or(u32::MAX);

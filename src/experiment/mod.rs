@@ -90,3 +90,4 @@ pub use typed::{Located, from_yaml};
 pub(crate) use typed::{Spanned, position};
 pub(crate) use validate::{Cases, parse_with};
 pub use validate::{experiment_schema, parse_experiment};
+pub(crate) use word::closest;

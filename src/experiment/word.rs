@@ -53,7 +53,7 @@ impl<'de> Deserializer<'de> for NamesOnly<'_> {
 }
 
 /// The known word that an unknown one was probably meant to be.
-pub(super) fn closest<'k>(unknown: &str, known: impl IntoIterator<Item = &'k str>) -> Option<&'k str> {
+pub(crate) fn closest<'k>(unknown: &str, known: impl IntoIterator<Item = &'k str>) -> Option<&'k str> {
     let allowed = (unknown.chars().count() / 3).max(1);
     known
         .into_iter()

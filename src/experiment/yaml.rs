@@ -179,6 +179,14 @@ where
             }
             let value = self.next()??;
             let node = self.node(value, Some(key_span))?;
+            if key == "<<" {
+                self.findings.report::<()>(
+                    key_span,
+                    "merge keys (`<<`) are not accepted",
+                    Some("write out the keys that it stands for".into()),
+                );
+                continue;
+            }
             entries.push(Entry { key, key_span, node });
         }
     }

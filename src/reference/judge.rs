@@ -219,7 +219,11 @@ fn value(
         Err(absence) => return Err(absence),
     };
     let (datum, u_data) = published.converted_to(&simulated.unit).ok_or_else(|| {
-        Absence::Broken(format!("`{}` cannot be held against a column in `{}`", published.text(), simulated.unit))
+        let column = match simulated.unit.as_str() {
+            "" => "a column without unit".into(),
+            unit => format!("a column in `{unit}`"),
+        };
+        Absence::Broken(format!("`{}` cannot be held against {column}", published.text()))
     })?;
     // A feature that vanishes when an input is moved has no half range; it counts as a verdict that was not kept.
     let others: Vec<(&str, Option<Extracted>)> = moved(view, |variant| match from.take(variant) {

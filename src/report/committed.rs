@@ -6,12 +6,14 @@ use std::fs;
 use std::path::Path;
 
 use super::other_pages::is_written_otherwise;
-use super::pages::{NotDrawn, render};
+use super::pages::{NotDrawn, render, rendered};
 use super::verdicts::Judgement;
-use crate::study::Study;
+use crate::study::{Study, stem};
 
 /// Folders in folders below `reports/`; ends a walk that a link leads in a circle.
 const DEEPEST: u32 = 8;
+/// What a run writes below `reports/` for an experiment.
+const ENDINGS: [&str; 3] = ["md", "png", "svg"];
 /// Longest part of a line that is told.
 const LONGEST: usize = 160;
 
@@ -70,19 +72,34 @@ pub fn departures(study: &Study, judgement: &Judgement) -> Vec<Departure> {
     found.extend(
         unmade.map(|item| Departure { file: format!("reports of {}", item.source.experiment.id), how: How::NoTable }),
     );
-    let known: BTreeSet<&str> = expected.keys().map(String::as_str).collect();
-    let mut present = BTreeSet::new();
-    walk(&study.layout.path("reports"), "reports", DEEPEST, &mut present);
-    // Whose table is out of date has pages that cannot be told from those of an experiment that is gone.
-    let unmade = |file: &str| {
-        let stem = file.rsplit('/').next().and_then(|name| name.rsplit_once('.')).map_or("", |(stem, _)| stem);
-        study.items.iter().any(|item| item.record().is_none() && stem.starts_with(item.source.experiment.id.0.as_str()))
-    };
-    let otherwise = |file: &str| file.strip_prefix("reports/").is_some_and(is_written_otherwise);
-    let extra = present.into_iter().filter(|file| !known.contains(file.as_str()) && !unmade(file) && !otherwise(file));
-    found.extend(extra.map(|file| Departure { file, how: How::Extra }));
+    let extra = extra(study, &expected.into_keys().collect());
+    found.extend(extra.into_iter().map(|file| Departure { file, how: How::Extra }));
     found.sort_by(|a, b| a.file.cmp(&b.file));
     found
+}
+
+/// Every page and picture below `reports/` that nothing would write, by its name within the study.
+#[must_use]
+pub fn extra_files(study: &Study, judgement: &Judgement) -> BTreeSet<String> {
+    let mut files = extra(study, &rendered(study, judgement));
+    // Of what a run writes: anything else is somebody's own, and `departures` tells of it.
+    files.retain(|file| file.rsplit_once('.').is_some_and(|(_, ending)| ENDINGS.contains(&ending)));
+    files
+}
+
+/// The files below `reports/` that are none of the `expected`.
+fn extra(study: &Study, expected: &BTreeSet<String>) -> BTreeSet<String> {
+    let mut present = BTreeSet::new();
+    walk(&study.layout.path("reports"), "reports", DEEPEST, &mut present);
+    // Whose table is out of date, or whose file cannot be read, has pages that cannot be told from those of an experiment that is gone.
+    let mut unmade = study.texts.ids();
+    for item in study.items.iter().filter(|item| item.record().is_some()) {
+        unmade.remove(item.source.experiment.id.0.as_str());
+    }
+    let unmade = |file: &str| unmade.iter().any(|id| stem(file).starts_with(id));
+    let otherwise = |file: &str| file.strip_prefix("reports/").is_some_and(is_written_otherwise);
+    present.retain(|file| !expected.contains(file) && !unmade(file) && !otherwise(file));
+    present
 }
 
 /// `None` if they are the same.

@@ -96,6 +96,9 @@ fn accuracy(links: Option<&AccuracyLinks>) -> String {
 }
 
 fn figure(figure: &FigureView) -> String {
+    if let Some(why) = &figure.missing {
+        return format!("**Not drawn:** {} {}.\n\n", one_line(&figure.caption), capitalised(&one_line(why)));
+    }
     // The picture's text stands in brackets.
     let caption = one_line(&figure.caption).replace(['[', ']'], "");
     format!("![{caption}]({})\n\n", figure.link)

@@ -5,7 +5,7 @@ use std::fs;
 
 use rayon::prelude::*;
 
-use super::figures::{Said, picture, scene_name, shown, vector};
+use super::figures::{Said, figure_name, picture, scene_name, shown, vector};
 use super::publication::{inputs, reasons_beside, shows_same_scene};
 use super::verdicts::Judgement;
 use super::views;
@@ -110,7 +110,9 @@ pub(super) fn render(study: &Study, judgement: &Judgement) -> BTreeMap<String, R
     let mut files = BTreeMap::new();
     for page in &pages {
         let id = &page.item.source.experiment.id;
-        for (figure, picture) in figures.remove(id.0.as_str()).unwrap_or_default() {
+        let drawn = figures.remove(id.0.as_str()).unwrap_or_default();
+        let text = views::page(study, judgement, page.item, &undrawn(page, &drawn));
+        for (figure, picture) in drawn {
             for (name, form) in names(page, figure) {
                 files.insert(name, picture.as_ref().map(|picture| form.of(picture).to_vec()).map_err(Clone::clone));
             }
@@ -118,10 +120,19 @@ pub(super) fn render(study: &Study, judgement: &Judgement) -> BTreeMap<String, R
         if let Some((name, drawing)) = scene(study, page) {
             files.insert(name, Ok(drawing.into_bytes()));
         }
-        let text = views::page(study, judgement, page.item);
-        files.insert(format!("{}/{id}.md", page.folder), Ok(text.into_bytes()));
+        files.insert(page_of(page), Ok(text.into_bytes()));
     }
     files.extend(views::of_the_study(study, judgement).into_iter().map(|(name, text)| (name, Ok(text.into_bytes()))));
+    files
+}
+
+/// The names of all that [`render`] gives.
+pub(super) fn rendered(study: &Study, judgement: &Judgement) -> BTreeSet<String> {
+    let pages: Vec<Page<'_>> = study.items.iter().filter_map(|item| page(study, item)).collect();
+    let mut files: BTreeSet<String> = pages.iter().map(page_of).collect();
+    files.extend(pages.iter().flat_map(jobs).flat_map(|(page, figure)| names(page, figure).map(|(name, _)| name)));
+    files.extend(pages.iter().filter_map(|page| scene(study, page)).map(|(name, _)| name));
+    files.extend(views::of_the_study(study, judgement).into_iter().map(|(name, _)| name));
     files
 }
 
@@ -184,6 +195,11 @@ impl Form {
 fn names(page: &Page<'_>, figure: &FigureSpec) -> [(String, Form); 2] {
     let stem = figure_stem(&page.item.source.experiment, figure);
     [(Form::Svg, "svg"), (Form::Png, "png")].map(|(form, ending)| (format!("{}/{stem}.{ending}", page.folder), form))
+}
+
+/// Name of the page, within the study.
+fn page_of(page: &Page<'_>) -> String {
+    format!("{}/{}.md", page.folder, page.item.source.experiment.id)
 }
 
 /// Name of the drawing of what is simulated, within the study.
@@ -268,6 +284,15 @@ fn draw<'a>(
     by_id
 }
 
+/// Those of which there is no picture.
+fn undrawn(page: &Page<'_>, drawn: &Drawn<'_>) -> views::Undrawn {
+    let experiment = &page.item.source.experiment;
+    let why = |(figure, picture): &(&FigureSpec, Result<Picture, NotDrawn>)| {
+        Some((figure_name(experiment, figure), picture.as_ref().err()?.to_string()))
+    };
+    drawn.iter().filter_map(why).collect()
+}
+
 /// The verdicts of an experiment with their explanations as the file has them: their numbers are those of other tables, too.
 fn judged_as_written(judgement: &Judgement, reference: Option<&ReferenceFile>, id: &str) -> Vec<Judged> {
     let mut judged = judgement.verdicts.get(id).cloned().unwrap_or_default();
@@ -316,6 +341,8 @@ fn write_page(
     let mut files: BTreeMap<String, FileHash> = BTreeMap::new();
     let mut shown: BTreeMap<String, String> = BTreeMap::new();
     let mut whole = true;
+    let mut unwanted: BTreeSet<String> = page.record.files().cloned().collect();
+    let text = views::page(study, judgement, page.item, &undrawn(page, &drawn));
     // Those that were not drawn now are there already.
     for (_, figure) in jobs(page) {
         for (name, _) in names(page, figure) {
@@ -340,6 +367,8 @@ fn write_page(
             }
             Err(why) => {
                 whole = false;
+                // Also where no record tells of it, as in a study that was just cloned.
+                unwanted.extend(names(page, figure).map(|(name, _)| name));
                 // Failed rows are reported elsewhere, and are the reason.
                 if page.record.failures.rows == 0 {
                     published.problems.push(format!("{id}: {why}"));
@@ -353,12 +382,11 @@ fn write_page(
         published.written += usize::from(atomic::write_if_changed(&layout.path(&name), drawing.as_bytes())?);
         files.insert(name, FileHash::of(drawing.as_bytes()));
     }
-    let text = views::page(study, judgement, page.item);
-    let name = format!("{}/{id}.md", page.folder);
+    let name = page_of(page);
     published.written += usize::from(atomic::write_if_changed(&layout.path(&name), text.as_bytes())?);
     files.insert(name, FileHash::of(text.as_bytes()));
-    // A figure that was renamed or taken out does not stay behind.
-    for gone in old.iter().flat_map(|old| old.files.keys()).filter(|name| !files.contains_key(*name)) {
+    // A figure that was renamed or taken out, or has nothing to show any more, does not stay behind.
+    for gone in unwanted.iter().filter(|name| !files.contains_key(*name)) {
         let path = layout.path(gone);
         match fs::remove_file(&path) {
             Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
@@ -371,7 +399,11 @@ fn write_page(
         let outputs = files.keys().cloned().chain([table_name(id), record_name(id)]).collect();
         published.experiments.insert(id.0.clone(), (outputs, summary));
     }
-    let publication = whole.then(|| Publication { inputs: page.inputs.clone(), files, shown });
-    let record = Record { publication, ..page.record.clone() };
+    let (left, publication) = if whole {
+        (BTreeSet::new(), Some(Publication { inputs: page.inputs.clone(), files, shown }))
+    } else {
+        (files.into_keys().collect(), None)
+    };
+    let record = Record { publication, left, ..page.record.clone() };
     record.write(&layout.path(&record_name(id)))
 }

@@ -37,14 +37,7 @@ pub(super) fn reasons_beside(study: &Study, item: &Item, record: &Record, inputs
         ["table"] => format!("table of {id}"),
         _ => "this program".into(),
     });
-    for (name, hash) in &publication.files {
-        let path = study.layout.path(name);
-        if !path.is_file() {
-            reasons.push(Reason::FileMissing(name.clone()));
-        } else if !hash.matches(&path) {
-            reasons.push(Reason::FileAltered(name.clone()));
-        }
-    }
+    reasons.extend(publication.files.iter().filter_map(|(name, hash)| hash.departs(&study.layout.path(name), name)));
     reasons
 }
 

@@ -29,6 +29,8 @@ pub struct FigureView {
     pub link: String,
     /// One line under it.
     pub caption: String,
+    /// Why there is no such file; `None` if there is.
+    pub missing: Option<String>,
 }
 
 /// The measured page of what accuracy costs, as a link.

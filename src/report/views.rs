@@ -19,8 +19,11 @@ use crate::report::{
 use crate::scene::{Scene, effects};
 use crate::study::{Heading, Item, Motions, RunTimes, Study, Unread, table_name};
 
+/// Figures for which there is no picture, by the name that a page links, with the reason.
+pub(super) type Undrawn = BTreeMap<String, String>;
+
 /// The page of an experiment.
-pub(super) fn page(study: &Study, judgement: &Judgement, item: &Item) -> String {
+pub(super) fn page(study: &Study, judgement: &Judgement, item: &Item, undrawn: &Undrawn) -> String {
     let experiment = &item.source.experiment;
     let up = to_reports(item);
     let scenes = scenes(study, experiment);
@@ -32,7 +35,7 @@ pub(super) fn page(study: &Study, judgement: &Judgement, item: &Item) -> String 
         not_judged: study.references.get(&experiment.id.0).map_or(&[], |file| &file.not_judged),
         assumptions: &assumptions(study, judgement, &|name| item.used.contains(name), &|_| Vec::new()),
         effects: &effects(&scenes),
-        figures: &[figures(experiment), scene(experiment, &scenes)].concat(),
+        figures: &[figures(experiment, undrawn), scene(experiment, &scenes)].concat(),
         table_name: &table_name(&experiment.id),
         accuracy: accuracy(study, item, &up),
         to_reports: &up,
@@ -178,9 +181,11 @@ fn to_reports(item: &Item) -> String {
     "../".repeat(folders)
 }
 
-fn figures(experiment: &Experiment) -> Vec<FigureView> {
-    let view =
-        |figure: &FigureSpec| FigureView { link: figure_name(experiment, figure), caption: figure.caption.clone() };
+fn figures(experiment: &Experiment, undrawn: &Undrawn) -> Vec<FigureView> {
+    let view = |figure: &FigureSpec| {
+        let link = figure_name(experiment, figure);
+        FigureView { missing: undrawn.get(&link).cloned(), link, caption: figure.caption.clone() }
+    };
     experiment.figures.iter().map(view).collect()
 }
 
@@ -188,7 +193,7 @@ fn figures(experiment: &Experiment) -> Vec<FigureView> {
 fn scene(experiment: &Experiment, scenes: &[Scene]) -> Vec<FigureView> {
     let caption = "What is simulated; of a sweep its first case, with all places of dampers and forces.".into();
     let drawn = is_sketched(scenes);
-    drawn.then(|| FigureView { link: scene_name(experiment), caption }).into_iter().collect()
+    drawn.then(|| FigureView { link: scene_name(experiment), caption, missing: None }).into_iter().collect()
 }
 
 /// Ids of the entries whose experiments depend on an assumption.

@@ -53,8 +53,33 @@ pub enum Event<'a> {
         /// Processor time of its simulations, s; `None` if there were none.
         seconds: Option<f64>,
     },
+    /// An interrupt ended an experiment before its last row.
+    Interrupted {
+        /// Which.
+        experiment: &'a ExperimentId,
+        /// What there is of it.
+        left: Left,
+    },
     /// The run is over.
     Ended,
+}
+
+/// What an interrupt leaves of an experiment for the next run.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Left {
+    /// Nothing was simulated for it yet.
+    NotBegun,
+    /// Rows, which are kept.
+    Rows {
+        /// Those that have numbers.
+        done: usize,
+        /// All of them, as far as they were known.
+        rows: usize,
+    },
+    /// The journal of its searches.
+    Journal,
+    /// Nothing that could be used.
+    Nothing,
 }
 
 /// Handles the events of a run. Called from many threads.

@@ -6,7 +6,7 @@ use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use super::canonical::hash;
-use crate::atomic::FileError;
+use crate::atomic::{FileError, place_of};
 pub use crate::experiment::ASSUMPTIONS;
 
 /// No hand-written experiment is longer; a longer file is refused before it is read.
@@ -45,6 +45,13 @@ impl Layout {
         self.root.join(name)
     }
 
+    /// The part of the study that a file at this path would lie in, whichever way a link leads there; `None` outside of all.
+    #[must_use]
+    pub fn part_of(&self, path: &Path) -> Option<&'static str> {
+        let place = place_of(path);
+        PARTS.into_iter().find(|part| place.starts_with(place_of(&self.path(part))))
+    }
+
     /// The folder of tables and records.
     #[must_use]
     pub fn results(&self) -> PathBuf {
@@ -54,6 +61,9 @@ impl Layout {
 
 /// The name of the file in which a study says what it is.
 pub const STUDY: &str = "study.yaml";
+
+/// All that a study is read from, and all that a run writes.
+const PARTS: [&str; 7] = [STUDY, "experiments", "reference", "calibrations", "results", "reports", "schema"];
 
 /// The table of an experiment, within the study.
 #[must_use]

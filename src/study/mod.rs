@@ -59,7 +59,7 @@ mod work;
 
 pub use canonical::{Change, fingerprint};
 pub use evaluate::{Array, Engine, Evaluate, Simulation};
-pub use event::{Event, EventHandler, IgnoreEvents};
+pub use event::{Event, EventHandler, IgnoreEvents, Left};
 pub use extent::Extent;
 pub use forecast::forecast;
 pub use gather::{GatherError, gather};

@@ -44,8 +44,8 @@ pub fn orphans(layout: &Layout, texts: &Texts) -> BTreeSet<String> {
         }
         found.insert(format!("results/{name}"));
         if let Ok(record) = Record::read(&entry.path(), &id) {
-            let files = record.publication.into_iter().flat_map(|publication| publication.files.into_keys());
-            found.extend(files.filter(|file| file.starts_with("reports/") && layout.path(file).is_file()));
+            let files = record.files().filter(|file| file.starts_with("reports/") && layout.path(file).is_file());
+            found.extend(files.cloned());
         }
     }
     found

@@ -163,12 +163,8 @@ fn state(layout: &Layout, source: &Source, simulation: &Inputs) -> State {
         ["assumptions" | "sensitivity", ..] => ASSUMPTIONS.into(),
         _ => "this program".into(),
     });
-    let table = layout.path(&table_name(id));
-    if !table.is_file() {
-        reasons.push(Reason::FileMissing(table_name(id)));
-    } else if !record.table.matches(&table) {
-        reasons.push(Reason::FileAltered(table_name(id)));
-    }
+    let table = table_name(id);
+    reasons.extend(record.table.departs(&layout.path(&table), &table));
     match record {
         _ if !reasons.is_empty() => State::Stale(reasons),
         record if record.failures.rows > 0 => State::Failed(record),

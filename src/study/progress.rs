@@ -5,7 +5,7 @@ use std::sync::Mutex;
 
 use indicatif::{ProgressBar, ProgressStyle};
 
-use super::event::{Event, EventHandler};
+use super::event::{Event, EventHandler, Left};
 use crate::text::number::{quantity, significant};
 use crate::text::words::counted;
 
@@ -15,12 +15,12 @@ pub enum Progress {
     /// As a bar.
     Bar(ProgressBar),
     /// In lines.
-    Lines(Mutex<Left>),
+    Lines(Mutex<Ahead>),
 }
 
 /// What is left of a run.
 #[derive(Debug, Default)]
-pub struct Left {
+pub struct Ahead {
     experiments: usize,
     simulations: u64,
 }
@@ -79,6 +79,7 @@ fn show(bar: &ProgressBar, event: &Event<'_>) {
             let state = if failures.rows == 0 { "done" } else { "done, with failed rows" };
             bar.set_message(format!("{experiment} {state}"));
         }
+        Event::Interrupted { experiment, left } => bar.set_message(format!("{experiment}: {}", left_in_words(*left))),
         Event::Ended => bar.finish_and_clear(),
     }
 }
@@ -91,7 +92,18 @@ fn tried(sets: usize, given_up: usize, best: Option<f64>) -> String {
     format!("{} tried{stopped}; {best}", counted(sets, "set", "sets"))
 }
 
-impl Left {
+fn left_in_words(left: Left) -> String {
+    match left {
+        Left::NotBegun => "not begun".into(),
+        Left::Rows { done, rows } => {
+            format!("interrupted: {done} of {} done, kept; the next run goes on there", counted(rows, "row", "rows"))
+        }
+        Left::Journal => "interrupted: what it evaluated is kept; the next run goes on there".into(),
+        Left::Nothing => "interrupted before there was anything to keep; the next run begins it again".into(),
+    }
+}
+
+impl Ahead {
     /// The line about an event, if there is something to say: `ch3-gap: 3 rows in 1.2 s; 4 experiments left`.
     pub fn line(&mut self, event: &Event<'_>) -> Option<String> {
         match event {
@@ -118,6 +130,7 @@ impl Left {
                 let rows = counted(*rows, "row", "rows");
                 Some(format!("{experiment}: {rows}{failed}, {took}; {left}\n"))
             }
+            Event::Interrupted { experiment, left } => Some(format!("{experiment}: {}\n", left_in_words(*left))),
             Event::Tried { sets, given_up, best } => Some(tried(*sets, *given_up, *best) + "\n"),
             Event::Searched { .. } | Event::Ended => None,
         }

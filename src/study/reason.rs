@@ -33,6 +33,8 @@ pub enum Reason {
     FileMissing(String),
     /// An output is not what was written.
     FileAltered(String),
+    /// An output cannot be read, with what the system says.
+    FileUnreadable(String, String),
     /// Rows failed the last time.
     Failed(Failures),
     /// There is a table and no report of it.
@@ -97,6 +99,7 @@ impl fmt::Display for Reason {
             Self::MoreChanged { file, count } => write!(f, "{file}: and {count} more"),
             Self::FileMissing(name) => write!(f, "{name} is missing"),
             Self::FileAltered(name) => write!(f, "{name} is not what was written"),
+            Self::FileUnreadable(name, why) => write!(f, "{name} cannot be read: {why}"),
             Self::Failed(Failures { rows, first }) => write!(f, "{rows} rows failed; the first: {first}"),
             Self::NeverPublished => write!(f, "figures and report have not been made"),
         }

@@ -2,7 +2,7 @@
 //!
 //! The record holds the inputs and not only their hash, so that `status --why` can name the value that changed.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::Path;
 
@@ -10,6 +10,7 @@ use serde::{Deserialize, Serialize};
 
 use super::canonical::hash;
 use super::inputs::Inputs;
+use super::reason::Reason;
 use crate::atomic::{self, FileError};
 use crate::experiment::ExperimentId;
 
@@ -35,6 +36,9 @@ pub struct Record {
     pub failures: Failures,
     /// What verdicts, figures and report were made from, once they were made.
     pub publication: Option<Publication>,
+    /// Figures and report that were made before from something else, and may still be there, by their name within the study.
+    #[serde(default, skip_serializing_if = "BTreeSet::is_empty")]
+    pub left: BTreeSet<String>,
 }
 
 /// The rows of a table that could not be computed.
@@ -76,8 +80,23 @@ impl FileHash {
     /// True if the file at `path` holds these bytes.
     #[must_use]
     pub fn matches(&self, path: &Path) -> bool {
-        fs::metadata(path).is_ok_and(|meta| meta.len() == self.bytes)
-            && fs::read(path).is_ok_and(|bytes| Self::of(&bytes) == *self)
+        self.departs(path, "").is_none()
+    }
+
+    /// What is wrong with the file at `path`, which is called by `name`; `None` if it holds these bytes.
+    #[must_use]
+    pub fn departs(&self, path: &Path, name: &str) -> Option<Reason> {
+        let name = name.to_owned();
+        match fs::metadata(path) {
+            Ok(meta) if meta.len() != self.bytes && meta.is_file() => return Some(Reason::FileAltered(name)),
+            Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Some(Reason::FileMissing(name)),
+            _ => {}
+        }
+        match fs::read(path) {
+            Ok(bytes) if Self::of(&bytes) == *self => None,
+            Ok(_) => Some(Reason::FileAltered(name)),
+            Err(error) => Some(Reason::FileUnreadable(name, error.to_string())),
+        }
     }
 }
 
@@ -106,6 +125,11 @@ pub enum NoRecord {
 }
 
 impl Record {
+    /// Figures and report that are there, or may be.
+    pub fn files(&self) -> impl Iterator<Item = &String> {
+        self.left.iter().chain(self.publication.iter().flat_map(|publication| publication.files.keys()))
+    }
+
     /// Reads one.
     ///
     /// # Errors

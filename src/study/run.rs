@@ -16,7 +16,7 @@ use rayon::prelude::*;
 use super::basins::run_basins;
 use super::chain::units;
 use super::evaluate::Evaluate;
-use super::event::{Event, EventHandler};
+use super::event::{Event, EventHandler, Left};
 use super::job::{self, cost};
 use super::known_rows::KnownRows;
 use super::limited::Limited;
@@ -73,6 +73,28 @@ pub struct Finished {
     pub interrupted: bool,
 }
 
+impl Finished {
+    /// True if its rows can be kept for the next run. What the journal holds of an optimisation says more than its table, and half a
+    /// branch is followed again: neither says what a row was computed from.
+    #[must_use]
+    pub fn has_rows_to_keep(&self) -> bool {
+        !self.table.fingerprints.is_empty() && self.failures.rows < self.table.rows()
+    }
+
+    /// What an interrupt has left for the next run.
+    fn left(&self, task: Task<'_>) -> Left {
+        if self.has_rows_to_keep() {
+            let rows = self.table.rows();
+            return Left::Rows { done: rows - self.failures.rows, rows };
+        }
+        match task.experiment.row_source() {
+            _ if self.spent.is_nothing() => Left::NotBegun,
+            RowSource::Search(_) if task.journal.is_some() => Left::Journal,
+            _ => Left::Nothing,
+        }
+    }
+}
+
 /// Why a run is not complete.
 #[derive(Debug, thiserror::Error)]
 pub enum RunError {
@@ -117,19 +139,20 @@ pub fn run<T: Send + Sync>(
     let hand_over = |index: usize, mut finished: Finished| {
         finished.spent = meters[index].spent();
         let (rows, failures, seconds) = (finished.table.rows(), finished.failures.clone(), finished.spent.total());
-        // Only the thread that put the last row comes here, once.
-        let _ = taken[index].set(take(index, finished));
-        handler.on_event(&Event::Finished {
-            experiment: &tasks[index].experiment.id,
-            rows,
-            failures: &failures,
-            seconds,
-        });
+        let left = finished.interrupted.then(|| finished.left(tasks[index]));
+        // Only the thread that put the last row comes here, once; after an interrupt the watch may have come before.
+        if taken[index].set(take(index, finished)).is_ok() {
+            let experiment = &tasks[index].experiment.id;
+            handler.on_event(&match left {
+                Some(left) => Event::Interrupted { experiment, left },
+                None => Event::Finished { experiment, rows, failures: &failures, seconds },
+            });
+        }
     };
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).stack_size(STACK).build()?;
     let rescue = || {
         for (index, one) in work.iter().filter(|(index, one)| taken[*index].get().is_none() && one.has_rows()) {
-            take(*index, one.finish());
+            hand_over(*index, one.finish());
         }
     };
     beside(&rescue, || {

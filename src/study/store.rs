@@ -22,7 +22,8 @@ use crate::table::{ParquetError, parquet};
 pub fn save(layout: &Layout, item: &Item, finished: &Finished) -> Result<Record, ParquetError> {
     let id = &item.source.experiment.id;
     let path = layout.path(&table_name(id));
-    if let Ok(old) = Record::read(&layout.path(&record_name(id)), id)
+    let old = Record::read(&layout.path(&record_name(id)), id).ok();
+    if let Some(old) = &old
         && old.simulation != item.simulation
         && old.table.matches(&path)
     {
@@ -36,6 +37,7 @@ pub fn save(layout: &Layout, item: &Item, finished: &Finished) -> Result<Record,
         table: FileHash::of(&bytes),
         failures: finished.failures.clone(),
         publication: None,
+        left: old.iter().flat_map(Record::files).cloned().collect(),
     };
     record.write(&layout.path(&record_name(id)))?;
     earlier::tidy(layout, id, &record.table);
@@ -63,12 +65,7 @@ fn remove_journal(layout: &Layout, id: &ExperimentId) {
 /// # Errors
 /// [`ParquetError`] if they cannot be written.
 pub fn keep(layout: &Layout, item: &Item, finished: &Finished) -> Result<(), ParquetError> {
-    // What the journal holds of an optimisation says more than its table, and half a branch is followed again: neither says what a
-    // row was computed from.
-    if finished.table.fingerprints.is_empty() || finished.failures.rows == finished.table.rows() {
-        return Ok(());
-    }
-    earlier::add(layout, &item.source.experiment.id, &finished.table)
+    if finished.has_rows_to_keep() { earlier::add(layout, &item.source.experiment.id, &finished.table) } else { Ok(()) }
 }
 
 /// Held while files are written; other runs wait. The system gives it back when the process ends, however it ends.
@@ -107,6 +104,11 @@ impl Lock {
     /// [`LockError`] if another run holds it and `held` gives up, or if the folder cannot be made or locked.
     pub fn of_study(layout: &Layout, held: impl FnOnce(&str) -> Held) -> Result<Self, LockError> {
         let results = layout.results();
+        // That nothing can be written there is to be said before the work and not after it.
+        let reports = layout.path("reports");
+        if reports.symlink_metadata().is_ok() {
+            atomic::make_folder(&reports).map_err(|source| FileError::new("use", &reports, source))?;
+        }
         let lock = Self::take(&results, held)?;
         atomic::sweep(&results);
         atomic::sweep(&layout.path(spent::FOLDER));
@@ -128,7 +130,7 @@ impl Lock {
     fn take(folder: &Path, held: impl FnOnce(&str) -> Held) -> Result<Self, LockError> {
         let path = folder.join(".lock");
         let fail = |source| LockError::File(FileError::new("lock", &path, source));
-        fs::create_dir_all(folder).map_err(fail)?;
+        atomic::make_folder(folder).map_err(fail)?;
         let mut file = File::options().create(true).truncate(false).read(true).write(true).open(&path).map_err(fail)?;
         match file.try_lock() {
             Ok(()) => {}

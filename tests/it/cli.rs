@@ -138,7 +138,9 @@ fn status_names_the_input_that_changed() {
 #[test]
 fn what_nothing_answers_to_is_an_error() {
     let desk = Desk::new();
-    for arguments in [&["run", "ch3-gpa"][..], &["check", "ch4-*"], &["show", "gap"], &["status", "ch3-gap", "x*"]] {
+    for arguments in
+        [&["run", "ch3-elsewhere"][..], &["check", "ch4-*"], &["show", "gap"], &["status", "ch3-gap", "x*"]]
+    {
         let said = shotdamp(&desk, arguments);
         assert_eq!(said.code, 2, "{arguments:?}");
         assert!(said.err.contains("no experiment matches") && said.err.contains("ch3-gap, ch3-stop"), "{}", said.err);

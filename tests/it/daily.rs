@@ -202,6 +202,91 @@ fn what_a_deleted_experiment_left_is_removed() {
     assert_eq!(names(&desk, "reports/ch3"), ["ch3-stop-scene.svg", "ch3-stop.md", "ch3-stop.png", "ch3-stop.svg"]);
 }
 
+/// There is no `results/`, so that no record names the files.
+#[test]
+fn what_a_deleted_experiment_left_is_found_in_a_fresh_clone_too() {
+    let desk = simulated();
+    assert_eq!(shotdamp(&desk, &[]).code, 0);
+    fs::remove_dir_all(desk.layout.path("results")).unwrap();
+    for name in ["experiments/ch3/ch3-gap.yaml", "reference/ch3/ch3-gap.yaml"] {
+        fs::remove_file(desk.layout.path(name)).unwrap();
+    }
+    // Nobody but its owner knows what this is.
+    desk.put("reports/ch3/talk.pdf", "of a person");
+    let left =
+        ["ch3-gap-scene.svg", "ch3-gap.md", "ch3-gap.png", "ch3-gap.svg"].map(|name| format!("reports/ch3/{name}\n"));
+    let check = shotdamp(&desk, &["check", "--reports"]).err;
+    for file in &left {
+        assert!(check.contains(&format!("{}: nothing writes it; remove it", file.trim_end())), "{check}");
+    }
+    let clean = shotdamp(&desk, &["clean", "--orphans"]);
+    assert_eq!(clean.out, format!("{}4 files removed\n", left.concat()), "{}", clean.err);
+    let check = shotdamp(&desk, &["check", "--reports"]).err;
+    assert_eq!(check.matches("nothing writes it").count(), 1, "{check}");
+    let rest = ["ch3-stop-scene.svg", "ch3-stop.md", "ch3-stop.png", "ch3-stop.svg", "talk.pdf"];
+    assert_eq!(names(&desk, "reports/ch3"), rest);
+}
+
+#[test]
+fn an_experiment_may_be_named_by_its_file_as_a_shell_completes_it() {
+    let desk = simulated();
+    let file = desk.layout.path("experiments/ch3/ch3-gap.yaml");
+    let absolute = file.to_str().unwrap();
+    for path in [absolute, "experiments/ch3/ch3-gap.yaml"] {
+        for arguments in [&["status"][..], &["check"], &["show"], &["run", "--dry-run"], &["run", "--tables"]] {
+            let said = shotdamp(&desk, &[arguments, &[path]].concat());
+            assert_eq!((said.code, said.err.as_str()), (0, ""), "{arguments:?} {path}");
+            assert!(!said.out.contains("2 experiments") && !said.out.contains("ch3-stop"), "{}", said.out);
+        }
+    }
+    let mut below = command(&desk, &["status", "../ch3/ch3-gap.yaml", "ch3-stop.yaml"]);
+    let both = said_in(&mut below, file.parent().unwrap());
+    assert!(both.lines().last().is_some_and(|line| line.starts_with("2 experiments")), "{both}");
+    // A file of that name elsewhere is not meant.
+    let elsewhere = tempfile::tempdir().unwrap();
+    let other = elsewhere.path().join("ch3-gap.yaml");
+    fs::copy(&file, &other).unwrap();
+    for path in [other.to_str().unwrap(), "experiments/ch3/ch3-gone.yaml"] {
+        let said = shotdamp(&desk, &["status", path]);
+        assert!(said.code == 2 && said.err.contains("no experiment matches"), "{}", said.err);
+    }
+}
+
+fn said_in(command: &mut std::process::Command, folder: &std::path::Path) -> String {
+    String::from_utf8(command.current_dir(folder).output().unwrap().stdout).unwrap()
+}
+
+#[test]
+fn a_name_that_is_almost_right_gets_the_right_one() {
+    let desk = simulated();
+    for arguments in [&["run", "ch3-stpo"][..], &["show", "ch3-sto"], &["check", "ch-stop"], &["status", "Ch3-Stop"]] {
+        let said = shotdamp(&desk, arguments);
+        assert_eq!(said.code, 2);
+        assert!(said.err.ends_with("`; did you mean `ch3-stop`?\n"), "{arguments:?}: {}", said.err);
+    }
+    let none = shotdamp(&desk, &["calibrate", "nope"]);
+    assert_eq!(
+        (none.code, none.err.as_str()),
+        (2, "error: there is no calibration `nope`; there are none that can be read\n")
+    );
+    desk.put("calibrations/floors.yaml", "title: T\n");
+    let near = shotdamp(&desk, &["calibrate", "floor"]);
+    assert_eq!(near.err, "error: there is no calibration `floor`; did you mean `floors`?\n");
+    let wrong = shotdamp(&desk, &["calibrate", "calibrations/floors.yaml"]);
+    assert!(wrong.code == 2 && wrong.err.starts_with("error: a calibration lacks"), "{}", wrong.err);
+}
+
+#[test]
+fn a_table_that_cannot_be_read_is_not_called_another() {
+    let desk = simulated();
+    let table = desk.layout.path("results/ch3-gap.parquet");
+    fs::remove_file(&table).unwrap();
+    // A folder in its place can be read by nobody, not even by who may read every file.
+    fs::create_dir(&table).unwrap();
+    let status = shotdamp(&desk, &["status", "--why", "ch3-gap"]).out;
+    assert!(status.contains("    results/ch3-gap.parquet cannot be read: "), "{status}");
+}
+
 #[test]
 fn status_points_at_the_line_that_changed_and_counts_the_rows() {
     let desk = simulated();

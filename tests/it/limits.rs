@@ -80,12 +80,20 @@ fn the_limit_of_time_ends_a_row() {
 
 /// What came of a command that was interrupted while it was at work: its exit code, what it said, and how long it took to.
 fn interrupted(desk: &Desk, arguments: &[&str], after: Duration) -> (Option<i32>, String, Duration) {
-    let mut running = command(desk, arguments);
+    ended_by("INT", command(desk, arguments), arguments, after)
+}
+
+fn ended_by(
+    signal: &str,
+    mut running: Command,
+    arguments: &[&str],
+    after: Duration,
+) -> (Option<i32>, String, Duration) {
     let mut child = running.stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap();
     std::thread::sleep(after);
     assert!(child.try_wait().unwrap().is_none(), "{arguments:?} is at work");
     let begun = Instant::now();
-    Command::new("sh").args(["-c", &format!("kill -INT {}", child.id())]).status().unwrap();
+    Command::new("sh").args(["-c", &format!("kill -{signal} {}", child.id())]).status().unwrap();
     let mut said = String::new();
     child.stderr.take().unwrap().read_to_string(&mut said).unwrap();
     let code = child.wait().unwrap().code();
@@ -94,12 +102,16 @@ fn interrupted(desk: &Desk, arguments: &[&str], after: Duration) -> (Option<i32>
 
 const A_MOMENT: Duration = Duration::from_millis(1500);
 
-#[test]
-fn an_interrupted_run_keeps_the_rows_it_has() {
-    // The first row is over in a moment, the second never.
+/// Two rows: the first is over in a moment, the second never.
+fn half_endless() -> String {
     let rest =
         endless().replace("gap_ratio: swept", "gap_ratio: 50").replace("gap_ratio: [50]", "force_ratio: [1e-3, 5]");
-    let desk = study(&rest.replace("force_ratio: 5,", "force_ratio: swept,"));
+    rest.replace("force_ratio: 5,", "force_ratio: swept,")
+}
+
+#[test]
+fn an_interrupted_run_keeps_the_rows_it_has() {
+    let desk = study(&half_endless());
     let (code, said, took) = interrupted(&desk, &["run"], A_MOMENT);
     assert_eq!(code, Some(130), "{said}");
     assert!(said.lines().last().unwrap().starts_with("interrupted: finished rows are kept"), "{said}");
@@ -108,6 +120,47 @@ fn an_interrupted_run_keeps_the_rows_it_has() {
     assert!(!desk.layout.path("results/ch3-long.parquet").exists());
     let ahead = shotdamp(&desk, &["run", "--dry-run"]).out;
     assert!(ahead.contains("1 of 2 rows to simulate"), "{ahead}");
+}
+
+#[test]
+fn a_scheduler_that_ends_a_run_and_a_terminal_that_closes_are_heard_as_ctrl_c_is() {
+    for signal in ["TERM", "HUP"] {
+        let desk = study(&half_endless());
+        let (code, said, took) = ended_by(signal, command(&desk, &["run"]), &["run"], A_MOMENT);
+        assert_eq!(code, Some(130), "{signal}: {said}");
+        assert!(said.lines().last().unwrap().starts_with("interrupted: finished rows are kept"), "{signal}: {said}");
+        assert!(took < Duration::from_secs(1), "{signal}: {took:?}");
+        let ahead = shotdamp(&desk, &["run", "--dry-run"]).out;
+        assert!(ahead.contains("1 of 2 rows to simulate"), "{signal}: {ahead}");
+    }
+}
+
+#[test]
+fn nohup_keeps_a_run_going_when_the_terminal_closes() {
+    let desk = study(&endless());
+    let run = command(&desk, &["run"]);
+    let mut nohup = Command::new("nohup");
+    nohup.arg(run.get_program()).args(run.get_args());
+    let mut child = nohup.stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
+    std::thread::sleep(A_MOMENT);
+    Command::new("sh").args(["-c", &format!("kill -HUP {}", child.id())]).status().unwrap();
+    std::thread::sleep(A_MOMENT);
+    assert!(child.try_wait().unwrap().is_none(), "it goes on");
+    child.kill().unwrap();
+    child.wait().unwrap();
+}
+
+/// One thread has one experiment under way, and never comes to the others.
+#[test]
+fn an_interrupted_run_says_what_is_kept_of_each_experiment_and_calls_no_row_failed() {
+    let desk = study(&half_endless());
+    for id in ["ch3-more", "ch3-most"] {
+        desk.put(&format!("experiments/ch3/{id}.yaml"), &endless());
+    }
+    let (_, said, _) = interrupted(&desk, &["run", "--jobs", "1"], A_MOMENT);
+    assert!(!said.contains("failed") && !said.contains("restored") && !said.contains("left"), "{said}");
+    assert!(said.matches(": not begun\n").count() == 2, "{said}");
+    assert!(said.contains("ch3-long: interrupted: 1 of 2 rows done, kept; the next run goes on there\n"), "{said}");
 }
 
 #[test]

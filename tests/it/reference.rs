@@ -247,6 +247,10 @@ fn nothing_that_could_not_be_compared_reads_as_a_pass() {
         assert_eq!(judged.verdict, Verdict::Missing, "{table:?}");
         assert!(!judged.as_expected() && !judged.found.is_empty());
     }
+    let lengths = entry("value: \"3.4 mm\"\nfrom: {cell: {of: velocity_ratio}}");
+    let judged = judged_as(&lengths, TableState::Present(&good), &[]);
+    assert_eq!(judged.verdict, Verdict::Missing);
+    assert!(judged.found.contains("`3.4 mm` cannot be held against a column without unit"), "{}", judged.found);
     for state in [TableState::Stale, TableState::NotRun, TableState::Failed("no disk".into())] {
         assert_eq!(judged_as(&file, state, &[]).verdict, Verdict::Missing);
     }

@@ -147,7 +147,7 @@ fn progress_ends_where_it_was_said_to_end() {
                 Event::Begun { simulations, .. } => self.0.store(*simulations, Ordering::Relaxed),
                 Event::Simulated { count, .. } => drop(self.1.fetch_add(*count, Ordering::Relaxed)),
                 Event::Finished { rows, .. } => assert!(*rows > 120),
-                Event::Searched { .. } | Event::Tried { .. } | Event::Ended => {}
+                Event::Searched { .. } | Event::Tried { .. } | Event::Interrupted { .. } | Event::Ended => {}
             }
         }
     }

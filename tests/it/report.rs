@@ -133,6 +133,7 @@ fn figures() -> Vec<FigureView> {
     vec![FigureView {
         link: "ch3-limit-stop.png".into(),
         caption: "Velocity ratio ψ against f′, with and without stop.".into(),
+        missing: None,
     }]
 }
 

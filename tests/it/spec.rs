@@ -372,6 +372,10 @@ pub(crate) fn yaml_from_strangers_is_refused_before_anything_grows() {
     }
     let problems = parse(&bomb).expect_err("an alias bomb");
     assert!(problems.list.iter().any(|problem| problem.message == "aliases (`*name`) are not accepted"), "{problems}");
+    assert_eq!(
+        only_problem(&with("title: Limit stop", "title: Limit stop\n<<: {about: Elsewhere.}")),
+        "2:1 merge keys (`<<`) are not accepted | write out the keys that it stands for"
+    );
 
     for deep in
         ["[".repeat(100_000), "{a: ".repeat(100_000), (0..5_000).map(|i| format!("{}a:\n", " ".repeat(i))).collect()]

@@ -363,6 +363,7 @@ fn every_simulation_is_reported_once() {
                     self.0.lock().unwrap().push(format!("{experiment}: {rows} rows"));
                 }
                 Event::Searched { .. } | Event::Tried { .. } => panic!("nothing is searched for here"),
+                Event::Interrupted { .. } => panic!("nothing is interrupted here"),
                 Event::Ended => self.0.lock().unwrap().push("ended".into()),
             }
         }

@@ -51,7 +51,8 @@ pub fn html(study: &Study, judgement: &Judgement) -> Html {
         let experiment = &item.source.experiment;
         let id = experiment.id.0.as_str();
         let page = views::page_name(item);
-        let text = views::page(study, judgement, item);
+        // Here each figure says in its place why it is missing.
+        let text = views::page(study, judgement, item, &views::Undrawn::new());
         let here = Here { page: &page, section: id, links: &links, figures: &figures };
         sections.push(Section::new(id, &experiment.title, render(&text, &here)));
     }
