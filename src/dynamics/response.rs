@@ -7,7 +7,7 @@ use super::motion::Motion;
 use super::options::{Averaged, Options, StartState};
 use super::proof::Proof;
 use super::sums::Sums;
-use super::system::{Contact, Event, EventKind, HybridSystem, dot};
+use super::system::{Contact, Event, EventKind, HybridSystem, Particle, dot};
 use super::trace::Sample;
 
 /// How a response came about.
@@ -45,6 +45,8 @@ pub struct Response {
     pub final_velocity: f64,
     /// y and y′ of each particle at the end.
     pub final_particles: Vec<[f64; 2]>,
+    /// Height of each particle over its own floor at the end, where that would be if nothing compressed it, m.
+    pub final_heights: Vec<f64>,
     /// The state at the end of the last cycle, if asked for; a fixed step, whose cycles end up to a step late, has none.
     pub final_state: Option<StartState>,
     /// The motion that it ends in, if asked for.
@@ -56,12 +58,13 @@ pub struct Response {
 }
 
 impl Response {
-    /// The same, at a last state q, q′ of the structure; refused if that is no number.
+    /// The same, at a last state q, q′ of the structure and with its last particles; refused if that is no number.
     pub(crate) fn at_end(self, system: &HybridSystem, state: [&[f64]; 2], cycle: u64) -> Result<Self, EngineError> {
         let row = system.observed_rows.first();
         let [final_displacement, final_velocity] = state.map(|x| row.map_or(0.0, |row| dot(row, x)));
         let is_number = final_displacement.is_finite() && final_velocity.is_finite();
-        let response = Self { final_displacement, final_velocity, ..self };
+        let final_heights = heights(system, state[0], &self.final_particles);
+        let response = Self { final_displacement, final_velocity, final_heights, ..self };
         if is_number { Ok(response) } else { Err(EngineError::NotFinite { cycle }) }
     }
 
@@ -83,6 +86,12 @@ impl Response {
     pub fn window(&self) -> Sums {
         self.observed.first().map(Observed::window).unwrap_or_default()
     }
+}
+
+/// How high particles at y, y′ are over their floors, of a structure at q.
+fn heights(system: &HybridSystem, q: &[f64], particles: &[[f64; 2]]) -> Vec<f64> {
+    let over_floor = |(particle, [y, _]): (&Particle, &[f64; 2])| y - dot(&particle.floor.row, q);
+    system.particles.iter().zip(particles).map(over_floor).collect()
 }
 
 /// One observed motion over the averaged window.

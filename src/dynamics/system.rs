@@ -217,7 +217,7 @@ pub struct Harmonic {
 /// Equivalent viscous damping: c = curve(RMS of the base acceleration over the half cycle before).
 #[derive(Debug, Clone, PartialEq)]
 pub struct HalfCycles {
-    /// The curve, tabulated finely enough to be read linearly: acceleration in m/s², then N s/m; end values outside.
+    /// The curve: acceleration in m/s², then N s/m; end values outside.
     pub curve: super::Spline,
 }
 

@@ -180,7 +180,7 @@ impl SceneReader<'_> {
     }
 
     fn pulse(&self, keys: &Keys<'_>) -> Option<(Given, PulseShape)> {
-        let duration = keys.required("duration", "Duration of a pulse", |at| {
+        let duration = keys.required("duration", "Duration of a pulse, whole milliseconds of a binomial one", |at| {
             self.given(at, Takes::quantity(Dimension::Time), |at| {
                 self.swept_or(at, Parameter::PulseDuration, |at| at.above_zero(Dimension::Time))
             })
@@ -198,8 +198,9 @@ impl SceneReader<'_> {
         let Given::Stated(seconds) = duration else {
             return keys.wrong("a binomial pulse has a stated or swept duration");
         };
-        // One impulse a step of 1 ms.
-        let impulses = (seconds / 1e-3).round().clamp(1.0, 1e6) as u32;
-        Some((duration, PulseShape::Binomial { impulses }))
+        match PulseShape::binomial(seconds) {
+            Ok(shape) => Some((duration, shape)),
+            Err(error) => keys.wrong(&error.to_string()),
+        }
     }
 }

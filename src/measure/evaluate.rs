@@ -159,7 +159,7 @@ impl<'a> Prepared<'a> {
         let request = Request { measures: self.measures, rigour, ..Request::default() };
         let Self { subject, settings, .. } = self;
         let case = Case { subject, settings, request: &request, scene: &scene };
-        in_range(&scene, self.measures, case.run(&system, &self.reference, self.solver)?)
+        in_range(&scene, settings.average, self.measures, case.run(&system, &self.reference, self.solver)?)
     }
 
     pub(super) fn with_gaps(&self, gaps: &[f64]) -> (Scene, HybridSystem) {
@@ -198,7 +198,7 @@ pub fn evaluate(
         shape::watch_products(&mut system);
     }
     let reference = References::of(&subject, request, settings, solver)?;
-    in_range(&subject.scene, request.measures, case.run(&system, &reference, solver)?)
+    in_range(&subject.scene, settings.average, request.measures, case.run(&system, &reference, solver)?)
 }
 
 impl Case<'_> {

@@ -3,8 +3,8 @@
 use std::ops::Range;
 
 use super::evaluate::decay;
-use crate::dynamics::{Event, EventKind, Response, Sample, SampledParticle};
-use crate::scene::Scene;
+use crate::dynamics::{Drive, Event, EventKind, Response, Sample, SampledParticle};
+use crate::scene::{Scene, drive};
 
 /// A response with a trace, and the scene it is of.
 pub(super) struct History<'a> {
@@ -63,18 +63,31 @@ impl History<'_> {
         self.deepest(|it| it.ceiling - it.rigid_ceiling)
     }
 
-    /// Of the first particle.
-    fn deepest(&self, depth: fn(SampledParticle) -> f64) -> f64 {
-        self.response.trace.iter().fold(0.0, |deepest, sample| f64::max(deepest, depth(sample.first())))
+    /// Of all particles; a face that is not there is no number.
+    fn deepest(&self, depth: fn(&SampledParticle) -> f64) -> f64 {
+        let depths = self.response.trace.iter().flat_map(|sample| sample.particles.iter().map(depth));
+        depths.fold(0.0, f64::max)
     }
 
-    /// Shortest time between the start of a forcing cycle and an event of this kind, s; infinite if there is none. A scheme with
-    /// steps ends its cycles up to one step late: what happens there happens with the start of the next.
+    /// Shortest time between an impulse and an event of this kind, whichever comes first, s; infinite if there is no such event,
+    /// NaN if there is no impulse. A scheme with steps ends its cycles up to one step late: what happens there happens with the
+    /// start of the next.
     pub(super) fn lag(&self, kind: EventKind) -> f64 {
-        let period = self.scene.excitation.period();
+        let Drive { period, ticks, repeats, .. } = drive(&self.scene.excitation);
+        let struck = || ticks.iter().filter(|tick| tick.impulse != 0.0).map(|tick| tick.time);
+        let in_history = repeats || self.cycles.start == 0;
+        let Some(first) = struck().next().filter(|_| in_history) else { return f64::NAN };
+        let lag = |event: &Event| {
+            if !repeats {
+                // The first cycle alone is struck.
+                let now = event.cycle as f64 * period + event.time;
+                return struck().map(|time| (now - time).abs()).fold(f64::INFINITY, f64::min);
+            }
+            let next = (period + first - event.time).max(0.0);
+            struck().map(|time| (event.time - time).abs()).fold(next, f64::min)
+        };
         let here = |event: &&Event| event.kind == kind && self.cycles.contains(&event.cycle);
-        let lags = self.response.events.iter().filter(here);
-        lags.map(|event| event.time.min(period - event.time).max(0.0)).fold(f64::INFINITY, f64::min)
+        self.response.events.iter().filter(here).map(lag).fold(f64::INFINITY, f64::min)
     }
 }
 
@@ -100,28 +113,42 @@ fn crest(a: &Sample, b: &Sample) -> Peak {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{Excitation, SingleMass};
+    use crate::scene::{Excitation, PulseShape, SingleMass};
 
     #[test]
     fn what_a_step_has_put_behind_the_end_of_its_cycle_comes_with_the_next_impulse() {
         let mass = SingleMass { mass: 1.0, stiffness: 1000.0, damping: 3.0 };
         let scene =
             Scene::on_one_mass(mass, 9.81, Vec::new(), Excitation::ImpulseTrain { impulse: 1.0, period: 0.198_69 });
-        let at = |time| Event {
-            cycle: 3,
-            time,
-            particle: 0,
-            kind: EventKind::FloorContact,
-            approach: -1.0,
-            departure: -1.0,
-        };
-        let lag = |times: &[f64]| {
-            let response = Response { events: times.iter().map(|&time| at(time)).collect(), ..Response::default() };
-            History { response: &response, scene: &scene, cycles: 3..4 }.lag(EventKind::FloorContact)
-        };
         // 199 steps of 1 ms.
-        assert_eq!(lag(&[0.05, 0.198_999]), 0.0);
-        assert_eq!(lag(&[0.05, 0.17]), 0.198_69 - 0.17);
-        assert_eq!(lag(&[]), f64::INFINITY);
+        assert_eq!(lag(&scene, 3, &[0.05, 0.198_999]), 0.0);
+        assert_eq!(lag(&scene, 3, &[0.05, 0.17]), 0.198_69 - 0.17);
+        assert_eq!(lag(&scene, 3, &[]), f64::INFINITY);
+    }
+
+    #[test]
+    fn a_lag_is_counted_from_impulses_and_not_from_cycles_without_one() {
+        let mass = SingleMass { mass: 1.0, stiffness: 1000.0, damping: 3.0 };
+        let of = |excitation, cycle, time| lag(&Scene::on_one_mass(mass, 9.81, Vec::new(), excitation), cycle, &[time]);
+        let once = Excitation::SingleImpulse { impulse: 1.0, cycle: 0.2 };
+        assert_eq!(of(once.clone(), 0, 0.177), 0.177);
+        assert!(of(once, 3, 0.177).is_nan());
+        let pulse = |shape| Excitation::PulseTrain { impulse: 1.0, period: 0.2, duration: 0.01, shape };
+        // The last of ten stands at 9 ms.
+        let binomial = of(pulse(PulseShape::Binomial { impulses: 10 }), 3, 0.01);
+        assert!((binomial - 0.001).abs() < 1e-15, "{binomial}");
+        let harmonic = Excitation::Harmonic { force: 1.0, angular_frequency: 30.0 };
+        let silence = Excitation::SingleImpulse { impulse: 0.0, cycle: 0.2 };
+        for without in [pulse(PulseShape::Rectangular), harmonic, silence] {
+            assert!(of(without.clone(), 0, 0.01).is_nan(), "{without:?}");
+        }
+    }
+
+    /// Of floor contacts at these times in one cycle, which is the time history.
+    fn lag(scene: &Scene, cycle: u64, times: &[f64]) -> f64 {
+        let at =
+            |&time| Event { cycle, time, particle: 0, kind: EventKind::FloorContact, approach: -1.0, departure: -1.0 };
+        let response = Response { events: times.iter().map(at).collect(), ..Response::default() };
+        History { response: &response, scene, cycles: cycle..cycle + 1 }.lag(EventKind::FloorContact)
     }
 }

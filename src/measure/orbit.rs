@@ -70,7 +70,7 @@ impl Orbit {
             trace: Vec::new(),
             end: None,
         };
-        in_range(scene, measures, evaluated)
+        in_range(scene, self.cycles, measures, evaluated)
     }
 }
 

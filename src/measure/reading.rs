@@ -53,13 +53,12 @@ impl Reading<'_> {
         let response = self.response.ok_or(EvaluateError::NoRun(measure))?;
         let undamped = || self.undamped.ok_or(EvaluateError::NoRun(measure));
         let trace = || self.history.as_ref().ok_or(EvaluateError::NeedsTrace(measure));
-        let window = response.window();
         Ok(match measure {
             Measure::VelocityRatio => self.rms_velocity(undamped()?) / self.rms_velocity(response),
             Measure::DisplacementRatio => self.std_displacement(undamped()?) / self.std_displacement(response),
             Measure::RmsVelocity => self.rms_velocity(response),
             Measure::StdDisplacement => self.std_displacement(response),
-            Measure::MeanDisplacement => window.mean_displacement(),
+            Measure::MeanDisplacement => self.mean_displacement(response),
             Measure::UndampedRmsVelocity => self.rms_velocity(undamped()?),
             Measure::FloorImpacts => response.counts.floor_contacts as f64,
             Measure::CeilingImpacts => response.counts.ceiling_contacts as f64,
@@ -94,9 +93,7 @@ impl Reading<'_> {
             Measure::MassMeasure => self.energies.ok_or(EvaluateError::NoRun(measure))?.mass_measure(),
             Measure::FinalDisplacement => response.final_displacement,
             Measure::FinalVelocity => response.final_velocity,
-            Measure::FinalHeight => {
-                response.final_particles.first().map_or(f64::NAN, |[y, _]| y - response.final_displacement)
-            }
+            Measure::FinalHeight => response.final_heights.first().copied().unwrap_or(f64::NAN),
             Measure::FloorImpactTime
             | Measure::FloorImpactInterval
             | Measure::FloorIntervalChange
@@ -171,6 +168,12 @@ impl Reading<'_> {
         self.taken(response, |observed| Sums::std_displacement(&observed.window()))
     }
 
+    /// The largest is the one of largest modulus, with its sign: a mean may lie on either side.
+    fn mean_displacement(&self, response: &Response) -> f64 {
+        let farther = |a: f64, b: f64| if b.abs() > a.abs() { b } else { a };
+        self.taken_by(response, |observed| Sums::mean_displacement(&observed.window()), farther)
+    }
+
     fn displacement_amplitude(&self, response: &Response) -> f64 {
         self.taken(response, |observed| half_range(observed.extremes.displacement))
     }
@@ -181,10 +184,15 @@ impl Reading<'_> {
 
     /// One number of all observed points.
     fn taken(&self, response: &Response, of: impl Fn(&Observed) -> f64) -> f64 {
+        self.taken_by(response, of, f64::max)
+    }
+
+    /// The same, of numbers among which the larger of two is not simply the one that is more.
+    fn taken_by(&self, response: &Response, of: impl Fn(&Observed) -> f64, larger: impl Fn(f64, f64) -> f64) -> f64 {
         let points = self.scene.observed.points.len();
         let values = response.observed[..points].iter().map(of);
         match self.scene.observed.take {
-            Take::Largest => values.reduce(f64::max).unwrap_or(f64::NAN),
+            Take::Largest => values.reduce(larger).unwrap_or(f64::NAN),
             Take::Mean => values.sum::<f64>() / points as f64,
         }
     }

@@ -50,11 +50,12 @@ impl Measure {
     /// Why this measure has no number where nothing went wrong, in a run of this motion, if it is known.
     fn why_undefined(self, motion: Option<MotionKind>, one: &Measured) -> &'static str {
         match self {
+            Self::FloorImpactLag | Self::CeilingImpactLag => "no impulse stands in the time history",
             Self::LastPeak | Self::PeakVariation | Self::PeakDecayError => "the time history has no crest",
             Self::NaturalFrequency | Self::CleanNaturalFrequency | Self::ExactNaturalFrequency | Self::Mac => {
                 "there is no such mode"
             }
-            Self::Drift => "nothing moves",
+            Self::Drift => "nothing moves, or a single cycle is averaged, which has no halves",
             Self::FinalHeight => "there is no particle",
             Self::LyapunovExponent => match motion.map(MotionKind::repeats) {
                 Some(false) => "particles are struck at one instant, or the cycles are too few",
@@ -80,18 +81,25 @@ impl Measure {
     }
 }
 
-/// What was evaluated, if every number is one, or undefined for a reason that has a name.
+/// What was evaluated of so many averaged cycles, if every number is one, or undefined for a reason that has a name.
 ///
 /// # Errors
 /// [`EvaluateError::OutOfRange`] for the first number that left the range of numbers.
-pub(super) fn in_range(scene: &Scene, measures: &[Measure], evaluated: Evaluated) -> Result<Evaluated, EvaluateError> {
+pub(super) fn in_range(
+    scene: &Scene,
+    cycles: u32,
+    measures: &[Measure],
+    evaluated: Evaluated,
+) -> Result<Evaluated, EvaluateError> {
     for (measure, measured) in measures.iter().zip(&evaluated.measured) {
         let value = measured.value;
         let fine = match measure {
-            // Infinite where nothing is hit.
-            Measure::FloorImpactLag | Measure::CeilingImpactLag => !value.is_nan(),
+            // Infinite where nothing is hit, undefined where nothing strikes.
+            Measure::FloorImpactLag | Measure::CeilingImpactLag => true,
             // Of a run that does not leave the rest that it starts from.
             Measure::ShortestPeriod => value > 0.0,
+            // The second half of one cycle is empty.
+            Measure::Drift if cycles < 2 => true,
             _ if value.is_nan() => !measure.is_of_any_motion() || scene.excitation.is_silent(),
             _ => value.is_finite(),
         };

@@ -25,9 +25,16 @@ pub enum CompileError {
         "a particle without mass cannot press into a resilient floor (the contact is singular): give it a mass, however small"
     )]
     MasslessContact,
-    /// Floor and ceiling of different kinds of damping.
-    #[error("equivalent viscous damping holds for floor and ceiling together; state it for both")]
+    /// Surfaces of different kinds of damping.
+    #[error(
+        "equivalent viscous damping holds for floor and ceiling of all dampers together; state it for each of them"
+    )]
     MixedDamping,
+    /// Surfaces have curves of their own.
+    #[error(
+        "equivalent viscous damping goes by one curve, and these surfaces have several: give floors and ceilings of all dampers the same `damping_curve`"
+    )]
+    SeveralCurves,
     /// The damping curve is no curve.
     #[error("the equivalent damping curve needs points with increasing accelerations")]
     DampingCurve,
@@ -120,27 +127,38 @@ fn face(damper: &Damper, surface: &Surface, row: &[f64]) -> Result<Face, Compile
     Ok(Face { row: row.to_vec(), law })
 }
 
+/// The drive holds one curve, which all surfaces with a dashpot share.
 fn half_cycles(scene: &Scene) -> Result<Option<HalfCycles>, CompileError> {
-    let mut curve = None;
+    let (mut curves, mut has_constants) = (Vec::new(), false);
     for damper in &scene.dampers {
-        let kinds = [&damper.floor, &damper.ceiling].map(|surface| match surface {
-            Surface::Resilient { damping: ContactDamping::EquivalentViscous(points), .. } => Some(points),
-            _ => None,
-        });
-        match kinds {
-            [None, None] if curve.is_none() => {}
-            [Some(points), Some(_)] => curve = Some(points),
+        let surfaces = [&damper.floor, &damper.ceiling];
+        match surfaces.map(curve_of) {
+            [Some(floor), Some(ceiling)] => curves.extend([floor, ceiling]),
+            [None, None] => has_constants |= surfaces.iter().any(|it| matches!(it, Surface::Resilient { .. })),
             _ => return Err(CompileError::MixedDamping),
         }
     }
-    let through = |points: &Curve| {
-        let points: Vec<[f64; 2]> = points.iter().map(|[x, damping]| [x * scene.g(), *damping]).collect();
-        Spline::through(&points).map(|curve| HalfCycles { curve }).ok_or(CompileError::DampingCurve)
-    };
-    curve.map(through).transpose()
+    let Some(curve) = curves.first() else { return Ok(None) };
+    if has_constants {
+        return Err(CompileError::MixedDamping);
+    }
+    if curves.iter().any(|other| other != curve) {
+        return Err(CompileError::SeveralCurves);
+    }
+    let points: Vec<[f64; 2]> = curve.iter().map(|[x, damping]| [x * scene.g(), *damping]).collect();
+    let curve = Spline::through(&points).ok_or(CompileError::DampingCurve)?;
+    Ok(Some(HalfCycles { curve }))
 }
 
-fn drive(excitation: &Excitation) -> Drive {
+fn curve_of(surface: &Surface) -> Option<&Curve> {
+    match surface {
+        Surface::Resilient { damping: ContactDamping::EquivalentViscous(points), .. } => Some(points),
+        _ => None,
+    }
+}
+
+/// What an excitation is to the engine.
+pub(crate) fn drive(excitation: &Excitation) -> Drive {
     let quiet =
         |period: f64, ticks: Vec<Tick>| Drive { period, ticks, repeats: true, harmonic: None, half_cycles: None };
     let once = |impulse: f64| vec![Tick { time: 0.0, impulse, level: 0.0 }];

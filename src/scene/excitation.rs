@@ -77,9 +77,32 @@ impl Excitation {
 pub enum PulseShape {
     /// Constant force over the duration.
     Rectangular,
-    /// Impulses with binomial weights, one a millisecond of the duration.
+    /// Impulses with binomial weights, one at the begin of each millisecond of the duration.
     Binomial {
-        /// n: impulses a pulse, spaced duration/n, weights C(n−1, i)/2^(n−1).
+        /// n: impulses a pulse, spaced duration/n, the last of them that long before its end; weights C(n−1, i)/2^(n−1).
         impulses: u32,
     },
+}
+
+impl PulseShape {
+    /// Binomial, over so many seconds.
+    ///
+    /// # Errors
+    /// [`NoBinomialPulse`] unless these are whole milliseconds, from one to a million.
+    pub fn binomial(duration: f64) -> Result<Self, NoBinomialPulse> {
+        let steps = duration / 1e-3;
+        let whole = steps.round();
+        // As near as units and decimals leave it.
+        let is_whole = (1.0..=1e6).contains(&whole) && (steps - whole).abs() <= 1e-9 * whole;
+        if is_whole { Ok(Self::Binomial { impulses: whole as u32 }) } else { Err(NoBinomialPulse { duration }) }
+    }
+}
+
+/// A duration that no binomial pulse has.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[error(
+    "a binomial pulse has impulses at 0, 1 ms, 2 ms, …: its duration is a whole number of milliseconds, from 1 ms to 1000 s, not {duration} s"
+)]
+pub struct NoBinomialPulse {
+    duration: f64,
 }

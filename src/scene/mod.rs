@@ -14,12 +14,13 @@ mod start;
 mod structure;
 mod switch;
 
+pub(crate) use compile::drive;
 pub use compile::{CompileError, compile};
 pub use damper::{ContactDamping, ContactEnd, Curve, Damper, LimitStop, Surface, Walls};
 pub use definition::{Observation, STANDARD_GRAVITY, Scene, Take};
 pub use design::Design;
 pub use effect::{EffectUse, effects};
-pub use excitation::{Excitation, PulseShape};
+pub use excitation::{Excitation, NoBinomialPulse, PulseShape};
 pub use normal_modes::{NormalMode, add_square, normal_modes};
 pub use start::{ParticleStart, Start, StartError};
 pub use structure::{

@@ -34,6 +34,7 @@ mod guide;
 mod html;
 mod limits;
 mod made_up;
+mod measures;
 mod mutations;
 mod optimise;
 mod optimised;

@@ -9,7 +9,7 @@ use shotdamp::experiment::{
     parse_number, parse_quantity,
 };
 use shotdamp::measure::{Measure, SolverChoice};
-use shotdamp::scene::{ContactDamping, Excitation, Surface};
+use shotdamp::scene::{ContactDamping, Excitation, PulseShape, Surface};
 use shotdamp::text::words;
 
 const GOOD: &str = "\
@@ -513,6 +513,31 @@ pub(crate) fn sweeps_are_products_pairs_points_and_unions() {
     );
     let paired = with(sweep, "  paired: {force_ratio: [1, 2], mass_ratio: [1]}\n").replace("by: stop", "by: solver");
     assert_eq!(only_problem(&paired), "13:33 paired ranges are of equal length: 1 values here, 2 in the first");
+}
+
+#[test]
+fn a_binomial_pulse_lasts_whole_milliseconds() {
+    let train = "impulse_train: {force_ratio: swept, frequency_ratio: 1}";
+    let pulses = |shape: &str, duration: &str| {
+        let pulses =
+            format!("pulse_train: {{shape: {shape}, duration: {duration}, force_ratio: swept, frequency_ratio: 1}}");
+        with(train, &pulses)
+    };
+    for (duration, impulses) in [("1 ms", 1), ("10 ms", 10), ("0.1 s", 100), ("29 ms", 29)] {
+        let read = good(&pulses("binomial", duration));
+        let scene = read.recipe_of(&read.cases[0]).unwrap().resolve(&assumptions()).unwrap();
+        let Excitation::PulseTrain { shape, .. } = scene.excitation else { panic!("{duration}") };
+        assert_eq!(shape, PulseShape::Binomial { impulses }, "{duration}");
+    }
+    let refused = "a binomial pulse has impulses at 0, 1 ms, 2 ms, …: its duration is a whole number of milliseconds";
+    for duration in ["0.4 ms", "2.5 ms", "1.000001 ms"] {
+        let problem = only_problem(&pulses("binomial", duration));
+        assert!(problem.starts_with("11:") && problem.contains(refused), "{duration}: {problem}");
+        good(&pulses("rectangular", duration));
+    }
+    let swept = pulses("binomial", "swept").replace("  stop: [", "  pulse_duration: [2 ms, 2.5 ms]\n  stop: [");
+    let problem = only_problem(&swept.replace("by: stop", "by: [stop, pulse_duration]"));
+    assert!(problem.contains(refused) && problem.contains("pulse_duration = 0.0025"), "{problem}");
 }
 
 #[test]

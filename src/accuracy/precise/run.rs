@@ -232,6 +232,8 @@ impl<'a> Run<'a> {
         }
         let (y, w) = (&self.state.y, &self.state.w);
         self.response.final_particles = y.iter().zip(w).map(|(y, w)| [y.near(), w.near()]).collect();
+        let floors = self.system.particles.iter().map(|particle| dot(&particle.floor.row, &self.state.q));
+        self.response.final_heights = y.iter().zip(floors).map(|(y, floor)| (*y - floor).near()).collect();
         let proof = &mut self.response.proof;
         (proof.momentum_residual, proof.energy_residual, proof.smallest_margin) = (f64::NAN, f64::NAN, f64::NAN);
         self.response

@@ -263,10 +263,11 @@ impl Recipe {
             }
             Parameter::PulseDuration => match &mut self.excitation.kind {
                 ExcitationKind::PulseTrain { duration, shape, .. } => {
-                    *duration = number()?.into();
-                    if let PulseShape::Binomial { impulses } = shape {
-                        // One impulse a step of 1 ms.
-                        *impulses = (number()? / 1e-3).round().max(1.0) as u32;
+                    let seconds = number()?;
+                    *duration = seconds.into();
+                    if matches!(shape, PulseShape::Binomial { .. }) {
+                        let binomial = PulseShape::binomial(seconds);
+                        *shape = binomial.map_err(|error| RecipeError::OutOfRange(error.to_string()))?;
                     }
                 }
                 _ => return Err(nothing("no pulse")),

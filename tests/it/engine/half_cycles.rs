@@ -4,7 +4,7 @@
 use shotdamp::dynamics::{
     Drive, HalfCycles, HybridSystem, Matrix, Options, Response, Spline, TraceRequest, event_driven, fixed_step,
 };
-use shotdamp::scene::{ContactDamping, ContactEnd, Damper, Excitation, Scene, Surface, compile};
+use shotdamp::scene::{CompileError, ContactDamping, ContactEnd, Damper, Excitation, Scene, Surface, compile};
 
 use super::arrays::{Dice, beam, blows, chain, cycles, particle, shape, spring};
 use super::bench::{base, within};
@@ -183,6 +183,30 @@ fn a_curve_is_read_in_g_also_where_nothing_has_weight() {
     };
     assert_eq!(curve(9.81).lower_end(), [0.5 * 9.81, 1.0]);
     assert_eq!(curve(0.0).lower_end(), [0.5 * 9.80665, 1.0]);
+}
+
+#[test]
+fn all_dampers_go_by_one_damping_curve_or_the_scene_is_refused() {
+    let surface = |damping| Surface::Resilient { stiffness: 1000.0, damping, ends: ContactEnd::ZeroGap };
+    let curve = |low: f64| surface(ContactDamping::EquivalentViscous(vec![[0.5, low], [5.0, 2.0]]));
+    let (constant, rigid) = (surface(ContactDamping::Constant(1.0)), Surface::Rigid { restitution: 0.5 });
+    let scene = |dampers: Vec<Damper>| {
+        let excitation = Excitation::ImpulseTrain { impulse: 0.1, period: 0.2 };
+        compile(&Scene::on_one_mass(base(1.0, 500.0, 0.1), 9.81, dampers, excitation))
+    };
+    let of = |floors: [&Surface; 2]| scene(floors.map(|floor| Damper::between(floor.clone(), 0.05, 0.1)).to_vec());
+    let (low, high) = (curve(1.0), curve(1.5));
+    for accepted in [[&low, &low], [&rigid, &low], [&low, &rigid]] {
+        assert!(of(accepted).is_ok_and(|system| system.drive.half_cycles.is_some()), "{accepted:?}");
+    }
+    for several in [[&low, &high], [&high, &low]] {
+        assert_eq!(of(several).err(), Some(CompileError::SeveralCurves));
+    }
+    for mixed in [[&low, &constant], [&constant, &low]] {
+        assert_eq!(of(mixed).err(), Some(CompileError::MixedDamping));
+    }
+    let two = Damper { ceiling: high, ..Damper::between(low, 0.05, 0.1) };
+    assert_eq!(scene(vec![two]).err(), Some(CompileError::SeveralCurves));
 }
 
 #[test]

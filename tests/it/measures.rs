@@ -1,0 +1,161 @@
+//! Measures say what they are called: of the particle that they name, at the points that count, and undefined where they have no meaning.
+
+use shotdamp::experiment::{Assumptions, Experiment, Problems, load_assumptions, parse_experiment};
+use shotdamp::measure::{Evaluated, Request, SolverChoice, evaluate};
+
+const BEAM: &str = "cantilever_beam: {length: 1 m, width: 30 mm, thickness: 5 mm, youngs_modulus: 200 GPa, density: 7800 kg/m^3, rayleigh: 5e-5, modes: 3}";
+const MASS: &str = "single_mass: {mass: 1 kg, stiffness: 1000 N/m, damping_ratio: 0.05}";
+const FLOOR: &str = "{resilient: {stiffness_ratio: 1, damping_ratio: 0.1}}";
+const IMPULSES: &str = "{impulse_train: {force_ratio: 4, frequency_ratio: 1}}";
+const STEPS: SolverChoice = SolverChoice::FixedStep { time_step: 1e-5 };
+
+fn assumptions() -> Assumptions {
+    let file = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("experiments/assumptions.yaml");
+    load_assumptions(&file).unwrap_or_else(|problems| panic!("{problems}")).assumptions()
+}
+
+/// An experiment of a structure, the rest of its scene, and what follows the scene.
+fn parse(structure: &str, scene: &str, rest: &str) -> Result<Experiment, Problems> {
+    let text = format!(
+        "title: Test\nsource: {{chapter: 4, section: '4.3'}}\nabout: A test.\nscene:\n  structure: {{{structure}}}\n{scene}\n{rest}\n\
+         figure: {{x: momentum_residual, y: energy_residual, caption: None.}}\n"
+    );
+    parse_experiment(&"ch4-test".parse().unwrap(), "ch4-test.yaml", &text, &assumptions())
+}
+
+fn experiment(structure: &str, scene: &str, rest: &str) -> Experiment {
+    parse(structure, scene, rest).unwrap_or_else(|problems| panic!("{problems}"))
+}
+
+/// A mass with one damper, the faces of which are such, and what drives it.
+fn on_mass(floor: &str, excitation: &str) -> String {
+    format!("  dampers: [{{mass_ratio: 0.05, gap_ratio: 50, floor: {floor}}}]\n  excitation: {excitation}")
+}
+
+/// Evaluates the first case of an experiment.
+fn evaluated(experiment: &Experiment, solver: SolverChoice) -> Evaluated {
+    let recipe = experiment.recipe_of(&experiment.cases[0]).unwrap();
+    let request = Request { measures: &experiment.measures, trace: experiment.trace.as_ref(), ..Request::default() };
+    let subject = recipe.subject(&assumptions(), request.needs()).unwrap();
+    evaluate(subject, solver, &experiment.settings, &request).unwrap()
+}
+
+fn values(evaluated: &Evaluated) -> Vec<f64> {
+    evaluated.measured.iter().map(|measured| measured.value).collect()
+}
+
+#[test]
+fn the_height_of_a_particle_is_over_its_own_floor_whatever_point_is_observed() {
+    let height = |observe: &str, gap: &str, impulse: &str, solver: SolverChoice| {
+        let scene = format!(
+            "  observe: {{points: [{observe}], take: largest}}\n  dampers: [{{at: 0.4, mass_ratio: 0.05, mass_reading: total, \
+             particle_share: 0.5, gap: {gap}, floor: {{rigid: {{restitution: 0}}}}}}]\n  excitation: {{impulse_train: {{at: 1, \
+             impulse: {impulse}, frequency_ratio: 1}}}}"
+        );
+        let rest = "run: {skip: 1 cycles, average: 2 cycles}\nmeasure: [final_height, final_displacement]";
+        values(&evaluated(&experiment(BEAM, &scene, rest), solver))
+    };
+    for solver in [SolverChoice::EventDriven, STEPS] {
+        // Thrown up and about, and never below its floor.
+        let [own, tip] = ["0.4", "1"].map(|point| height(point, "5 mm", "0.2 N s", solver));
+        assert_eq!(own[0], tip[0], "{solver:?}");
+        assert_ne!(own[1], tip[1], "{solver:?}");
+        assert!((0.0..=5e-3).contains(&own[0]), "{solver:?}: {own:?}");
+        // Too weak to lift it.
+        let [rests, moves] = height("1", "5 mm", "1e-4 N s", solver)[..] else { panic!() };
+        assert!(rests.abs() < 1e-15 && moves.abs() > 1e-6, "{solver:?}: {rests} over the floor, tip at {moves}");
+    }
+}
+
+#[test]
+fn a_mean_displacement_of_several_points_is_taken_as_their_other_numbers_are() {
+    // Particles that rest on it bend a beam downwards: by more at the tip, which stands last.
+    let mean = |observe: &str| {
+        let scene = format!(
+            "  observe: {observe}\n  dampers: [{{at: 1, mass_ratio: 0.1, mass_reading: total, particle_share: 0.5, gap: infinite, \
+             floor: {{rigid: {{restitution: 0}}}}}}]\n  excitation: {{impulse_train: {{at: 1, impulse: 1e-6 N s, frequency_ratio: 1}}}}"
+        );
+        values(&evaluated(&experiment(BEAM, &scene, "measure: [mean_displacement]"), SolverChoice::EventDriven))[0]
+    };
+    let own = [0.5, 0.8, 1.0].map(|point| mean(&format!("{{points: [{point}], take: largest}}")));
+    assert!(own[2] < own[1] && own[1] < own[0] && own[0] < 0.0, "{own:?}");
+    assert_eq!(mean("{points: [0.5, 0.8, 1], take: largest}"), own[2]);
+    let taken = mean("{points: [0.5, 0.8, 1], take: mean}");
+    assert!((taken - own.iter().sum::<f64>() / 3.0).abs() < 1e-14, "{taken} of {own:?}");
+}
+
+#[test]
+fn the_drift_of_a_single_cycle_is_undefined_and_nothing_else_is() {
+    let of_cycles = |cycles: u32| {
+        let rest = format!("run: {{skip: 0 cycles, average: {cycles} cycles}}\nmeasure: [drift, rms_velocity]");
+        let experiment = experiment(MASS, &on_mass(FLOOR, IMPULSES), &rest);
+        let evaluated = evaluated(&experiment, SolverChoice::EventDriven);
+        (values(&evaluated), evaluated.undefined(&experiment.measures))
+    };
+    let (one, why) = of_cycles(1);
+    assert!(one[0].is_nan() && one[1] > 0.0, "{one:?}");
+    assert_eq!(why, "drift undefined: nothing moves, or a single cycle is averaged, which has no halves");
+    // From rest the second half is the faster one: a drift is a modulus.
+    let (three, why) = of_cycles(3);
+    assert!(three[0] > 0.0 && why.is_empty(), "{three:?}, {why}");
+    let rms = |skip: u32, cycles: u32| {
+        let rest = format!("run: {{skip: {skip} cycles, average: {cycles} cycles}}\nmeasure: [rms_velocity]");
+        values(&evaluated(&experiment(MASS, &on_mass(FLOOR, IMPULSES), &rest), SolverChoice::EventDriven))[0]
+    };
+    // Two cycles against the last one.
+    let want = (rms(0, 2) / rms(2, 1) - 1.0).abs();
+    assert!((three[0] - want).abs() < 1e-9, "{} instead of {want}", three[0]);
+}
+
+#[test]
+fn lags_are_undefined_with_a_reason_where_no_impulse_stands() {
+    let lags = |excitation: &str, from: u32| {
+        let rest = format!(
+            "run: {{skip: 0 cycles, average: 6 cycles}}\ntrace: {{from: {from} cycles, to: 6 cycles, samples_per_cycle: 50}}\n\
+             measure: [floor_impact_lag, ceiling_impact_lag, rms_velocity]"
+        );
+        let experiment = experiment(MASS, &on_mass(FLOOR, excitation), &rest);
+        let evaluated = evaluated(&experiment, SolverChoice::EventDriven);
+        (values(&evaluated), evaluated.undefined(&experiment.measures))
+    };
+    let reason = "floor_impact_lag, ceiling_impact_lag undefined: no impulse stands in the time history";
+    let once = "{single_impulse: {force_ratio: 8, frequency_ratio: 1}}";
+    for (excitation, from) in [("{harmonic: {force_ratio: 8, frequency_ratio: 1}}", 0), ("none", 0), (once, 1)] {
+        let (lags, why) = lags(excitation, from);
+        assert!(lags[0].is_nan() && lags[1].is_nan(), "{excitation}: {lags:?}");
+        assert!(why.contains(reason), "{excitation}: {why}");
+    }
+    // What one impulse throws up is on its way for a good part of a cycle.
+    let (thrown, why) = lags(once, 0);
+    assert!(thrown[0] > 0.05 && why.is_empty(), "{thrown:?}, {why}");
+    let (train, why) = lags(IMPULSES, 0);
+    assert!(train[0] >= 0.0 && train[0] < 0.1 && why.is_empty(), "{train:?}, {why}");
+}
+
+#[test]
+fn the_largest_compression_is_that_of_all_dampers() {
+    let of = |dampers: &[&str]| {
+        let dampers: Vec<String> = dampers
+            .iter()
+            .map(|gap| {
+                format!(
+                    "{{at: 1, mass_ratio: 0.02, mass_reading: total, particle_share: 0.5, gap: {gap}, floor: {{resilient: \
+                     {{stiffness: 20 kN/m, damping_ratio: 0.1}}}}}}"
+                )
+            })
+            .collect();
+        let scene = format!(
+            "  dampers: [{}]\n  excitation: {{impulse_train: {{at: 1, impulse: 0.2 N s, frequency_ratio: 1}}}}",
+            dampers.join(", ")
+        );
+        let rest = "run: {skip: 0 cycles, average: 4 cycles}\ntrace: {from: 0 cycles, to: 4 cycles, samples_per_cycle: 200}\n\
+                    measure: [floor_compression, ceiling_compression]";
+        values(&evaluated(&experiment(BEAM, &scene, rest), SolverChoice::EventDriven))
+    };
+    let (near, far) = (of(&["1 mm", "80 mm"]), of(&["80 mm", "1 mm"]));
+    assert!(near.iter().all(|depth| *depth > 1e-5), "{near:?}");
+    for (a, b) in near.iter().zip(&far) {
+        // A hundred impacts let rounding grow.
+        assert!((a / b - 1.0).abs() < 1e-5, "{near:?} and {far:?}");
+    }
+}
