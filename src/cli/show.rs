@@ -19,7 +19,7 @@ use crate::accuracy::{idle_cases, out_of_reach_in_words, unreached_cases};
 use crate::dynamics::{Allowance, Limit, Until, in_words};
 use crate::experiment::{Continuation, Experiment, RowSource};
 use crate::measure::Settings;
-use crate::report::{scenes, value_in_words};
+use crate::report::{LastVerdicts, VERDICTS, scenes, value_in_words};
 use crate::scene::{Scene, effects};
 use crate::study::{Item, Layout, State, Study, Texts, forecast};
 use crate::text::words::{counted, of_key};
@@ -237,9 +237,12 @@ fn idle(experiment: &Experiment, scenes: &[Scene]) -> String {
 
 fn assumptions(study: &Study, item: &Item) -> String {
     let mut text = String::from(if item.used.is_empty() { "" } else { "\nAssumptions\n" });
+    // Reasons quote entries of other experiments, too, which are not read here.
+    let verdicts = std::fs::read_to_string(study.layout.path(VERDICTS)).unwrap_or_default();
+    let verdicts = LastVerdicts::read(&verdicts);
     for (name, entry) in study.sheet.iter().filter(|(name, _)| item.used.contains(*name)) {
         text += &format!("  {name} = {}\n", value_in_words(entry.kind.unit(), &entry.value));
-        text += &wrapped(&entry.reason, "      ", 100);
+        text += &wrapped(&verdicts.reason(&entry.reason), "      ", 100);
     }
     text
 }

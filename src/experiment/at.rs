@@ -170,6 +170,11 @@ impl<'t> At<'t> {
         matches!(self, Self::Node(node, _) if is_one(&node.value))
     }
 
+    /// It is a sketch of all files, not one of them.
+    pub fn is_sketch(self) -> bool {
+        matches!(self, Self::Sketch(_))
+    }
+
     /// It says this word, which is one that it may say.
     pub fn is_word(self, word: &str) -> bool {
         match self {

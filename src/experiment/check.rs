@@ -230,6 +230,56 @@ impl Checks<'_> {
         }
     }
 
+    /// What a sweep sets is left to it in the scene: a value that the scene states is not replaced without a word.
+    pub fn marked(
+        &self,
+        scene: &ReadScene,
+        cases: &[Case],
+        places: &BTreeMap<Parameter, Span>,
+        mean_over: &ReadSweep,
+        looked_for: Option<(&Maximise, Span)>,
+    ) {
+        let of_sweep = places.iter().map(|(parameter, at)| (*parameter, *at, cases));
+        let of_mean = mean_over.places.iter().map(|(parameter, at)| (*parameter, *at, mean_over.cases.as_slice()));
+        for (parameter, at, cases) in of_sweep.chain(of_mean) {
+            // A case that leaves it out has the value that the scene states; of several dampers it is not known which the others mean.
+            let several = parameter.is_of_dampers() && scene.recipe.dampers.len() > 1;
+            if several || cases.iter().all(|case| sets_or_leaves_out(case, parameter)) {
+                let first = cases.iter().find_map(|case| case.get(parameter));
+                self.marked_for(scene, parameter, first, "swept", at);
+            }
+        }
+        if let Some((maximise, at)) = looked_for {
+            let first = maximise.grid.first().copied().map(ParameterValue::Number);
+            self.marked_for(scene, maximise.over, first, "varied", at);
+        }
+    }
+
+    fn marked_for(
+        &self,
+        scene: &ReadScene,
+        parameter: Parameter,
+        first: Option<ParameterValue>,
+        varied: &str,
+        at: Span,
+    ) {
+        let mark = parameter.mark();
+        let is_marked = || scene.swept.iter().any(|(marked, _)| *marked == parameter);
+        // A scene without such a place is refused where its cases are tried.
+        let has_place = || first.is_some_and(|first| scene.recipe.clone().set(parameter, first).is_ok());
+        if mark.is_empty() || is_marked() || !has_place() {
+            return;
+        }
+        let part = match parameter.part() {
+            Some(Part::Structure) => "the structure",
+            Some(Part::Excitation) => "the excitation",
+            _ => "every damper that shall have it",
+        };
+        let message = format!("`{}` is {varied}, but nothing in the scene is left to it", word_of(parameter));
+        let help = format!("write `{mark}` in {part}; what a scene states beside is kept");
+        self.findings.report::<()>(at, message, Some(help));
+    }
+
     /// What is averaged over is not swept or maximised over as well.
     pub fn mean_over(&self, mean_over: &ReadSweep, places: &BTreeMap<Parameter, Span>, maximise: Option<&Maximise>) {
         for (parameter, span) in &mean_over.places {
@@ -357,8 +407,14 @@ impl Checks<'_> {
     /// Resolves every case; `place` says where a parameter is swept, or else where a part of the scene stands, or all of it.
     pub fn scenes(&self, experiment: &Experiment, place: impl Fn(Option<Parameter>, Option<Part>) -> Span) {
         let mut met = BTreeSet::new();
-        for case in &experiment.cases {
-            let Err(refusal) = self.scene(experiment, case) else { continue };
+        let tried: Vec<_> = experiment.cases.iter().map(|case| (case, self.scene(experiment, case))).collect();
+        // A sweep may pass over a support: that row fails with this reason, and no other.
+        let passes = tried.iter().any(|(_, tried)| tried.is_ok());
+        for (case, tried) in tried {
+            let Err(refusal) = tried else { continue };
+            if passes && refusal.still && MOVE_THE_FORCE.iter().any(|parameter| case.get(*parameter).is_some()) {
+                continue;
+            }
             if met.insert(refusal.message.clone()) && met.len() <= MOST_TOLD {
                 let description = case.describe();
                 let message = if description.is_empty() {
@@ -424,17 +480,23 @@ fn sets_or_leaves_out(case: &Case, parameter: Parameter) -> bool {
     case.get(parameter).is_some() || (clean && parameter.is_of_dampers())
 }
 
+/// Parameters that move the force.
+const MOVE_THE_FORCE: [Parameter; 3] = [Parameter::ForceX, Parameter::ForceY, Parameter::Place];
+
 /// Why a case cannot run.
+#[derive(Default)]
 struct Refusal {
     message: String,
     parameter: Option<Parameter>,
     /// The part of the scene that is meant.
     part: Option<Part>,
+    /// It stands where nothing moves.
+    still: bool,
 }
 
 impl From<String> for Refusal {
     fn from(message: String) -> Self {
-        Self { message, parameter: None, part: None }
+        Self { message, ..Self::default() }
     }
 }
 
@@ -444,11 +506,14 @@ impl From<RecipeError> for Refusal {
             RecipeError::NothingToVary { parameter, what } => Self {
                 message: format!("`{}` is swept, but the scene has {what}", word_of(parameter)),
                 parameter: Some(parameter),
-                part: None,
+                ..Self::default()
             },
             error @ RecipeError::Assumption(_) => error.to_string().into(),
             RecipeError::OutOfRange(message) => message.into(),
-            RecipeError::Part { part, message } => Self { message, parameter: None, part: Some(part) },
+            RecipeError::Part { part, message } => Self { message, part: Some(part), ..Self::default() },
+            error @ RecipeError::Still { part, .. } => {
+                Self { message: error.to_string(), part: Some(part), still: true, ..Self::default() }
+            }
         }
     }
 }
@@ -485,7 +550,7 @@ fn remembers(scene: &Scene, case: &Case) -> Result<(), Refusal> {
 /// The corners of a box of random starts are starts.
 fn boxed(scene: &Scene, experiment: &Experiment) -> Result<(), Refusal> {
     let Some(starts) = &experiment.starts else { return Ok(()) };
-    let refuse = |message: String| Refusal { message, parameter: None, part: Some(Part::Start) };
+    let refuse = |message: String| Refusal { message, part: Some(Part::Start), ..Refusal::default() };
     if starts.endless(scene).is_some() {
         return Err(refuse("a share of the gap clearance needs a ceiling, and this gap is infinite".into()));
     }

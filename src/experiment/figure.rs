@@ -16,6 +16,9 @@ use super::word::word_of;
 use super::yaml::Value;
 use crate::measure::Measure;
 
+/// What stands after the id in the name of the drawing of what is simulated; no figure has it.
+pub(crate) const SCENE_DRAWING: &str = "scene";
+
 /// Reads a figure; `columns` is `None` where the parts that make them were wrong themselves.
 pub(super) struct FigureReader<'t> {
     pub findings: &'t Findings,
@@ -262,12 +265,16 @@ fn name(at: At<'_>) -> Option<String> {
     at.form(
         |node, findings| {
             let name = scalar(node, findings)?;
+            if name == SCENE_DRAWING {
+                let help = Some("give the figure another name".to_owned());
+                return findings.report(node.span, format!("`{name}` names the drawing of the scene"), help);
+            }
             if is_name(name) {
                 return Some(name.into());
             }
             findings.wrong(node.span, format!("`{name}` cannot name a figure: use letters, digits, `-` and `_`"))
         },
-        |it| json!({"description": it.about(), "type": "string", "pattern": NAME}),
+        |it| json!({"description": it.about(), "type": "string", "pattern": NAME, "not": {"const": SCENE_DRAWING}}),
     )
 }
 

@@ -67,6 +67,7 @@ pub use definition::{
 };
 pub use diagnostic::{Place, Problem, Problems, Severity};
 pub(crate) use edit::{Written, set_keys};
+pub(crate) use figure::SCENE_DRAWING;
 pub use limit::{NoLimit, RowLimit};
 pub use line::line_of;
 pub use load::{load_assumptions, load_experiment};
@@ -77,8 +78,8 @@ pub use recipe::{
     ContactDampingRatio, ContactDampingRecipe, Coordinate, DamperRecipe, ExcitationKind, ExcitationRecipe, Filling,
     FloorStiffness, ForcingOrNatural, GapRecipe, GapWord, Given, ImpulseTime, ImpulseTimeRecipe, MassReading,
     MassRecipe, ObserveRecipe, Parameter, ParameterValue, Part, PlaceRecipe, PointsRecipe, Recipe, RecipeError,
-    Reference, Slot, StiffnessRecipe, StopRecipe, StrengthRecipe, StructureRecipe, SurfaceRecipe, TimingRecipe,
-    WallRecipe,
+    Reference, Slot, StiffnessRecipe, StopRecipe, StrengthRecipe, StructureRecipe, SurfaceRecipe, SweptSlots,
+    TimingRecipe, WallRecipe,
 };
 pub(crate) use refined::{Curve, by_strength, curves};
 pub use refined::{Refinement, Threshold};

@@ -13,7 +13,7 @@ use super::recipe::{
 };
 use super::scene::{AT, MOST_DAMPERS, SceneReader};
 use super::schema::parts::between;
-use super::yaml::Value;
+use super::yaml::{Node, Value};
 use crate::scene::{Kind, Take};
 
 impl SceneReader<'_> {
@@ -84,7 +84,7 @@ impl SceneReader<'_> {
     pub(super) fn observe(&self, at: At<'_>, kind: &'static Kind) -> Option<ObserveRecipe> {
         // Observed points are not swept.
         let point = |at: At<'_>| match at {
-            At::Node(..) if at.is_word("swept") => at.wrong("observed points cannot be swept"),
+            At::Node(node, _) if says_swept(node) => at.wrong("observed points cannot be swept"),
             _ => self.place(at, kind, [Parameter::DamperX, Parameter::DamperY]),
         };
         let one = |at: At<'_>| {
@@ -136,6 +136,15 @@ impl SceneReader<'_> {
             margin: margin?,
             order: order?,
         })
+    }
+}
+
+/// A coordinate of this place says `swept`.
+fn says_swept(place: &Node) -> bool {
+    match &place.value {
+        Value::Scalar(word) => word == "swept",
+        Value::Sequence(items) => items.iter().any(says_swept),
+        _ => false,
     }
 }
 

@@ -6,6 +6,7 @@ use serde::de::DeserializeOwned;
 
 use super::diagnostic::{Findings, Span};
 use super::quantity::{Dimension, QuantityError, parse_number, parse_quantity};
+use super::recipe::Parameter;
 use super::word::{closest, from_word, words};
 use super::yaml::{Node, Value};
 
@@ -77,6 +78,11 @@ pub(super) fn boolean(node: &Node, findings: &Findings) -> Option<bool> {
 }
 
 fn measured(node: &Node, findings: &Findings, parsed: Result<f64, QuantityError>) -> Option<f64> {
+    if matches!(&node.value, Value::Scalar(word) if word == "swept") {
+        let parameters = words::<Parameter>().iter().map(|word| format!("`{word}`")).collect::<Vec<_>>().join(", ");
+        let help = Some(format!("give it a value here; a sweep varies {parameters}"));
+        return findings.report(node.span, "no sweep varies this key", help);
+    }
     parsed.map_err(|error| findings.report::<()>(node.span, error.to_string(), error.help())).ok()
 }
 

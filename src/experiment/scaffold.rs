@@ -22,7 +22,7 @@ pub fn scaffold(id: &ExperimentId, structure: &str, schema: &str) -> Option<Stri
         .collect();
     let place = match kind.sides.len() {
         0 => "",
-        1 => "1",
+        1 => "0.5",
         _ => "[0.5, 0.5]",
     };
     // A single mass has no places, and a spring that a floor can be compared with.

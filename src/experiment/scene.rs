@@ -1,6 +1,7 @@
 //! The `scene` of an experiment: nodes to a [`Recipe`].
 
 use std::cell::RefCell;
+use std::collections::BTreeSet;
 
 use serde::de::DeserializeOwned;
 use serde_json::json;
@@ -14,7 +15,7 @@ use super::quantity::{Dimension, parse_number};
 use super::recipe::{
     AssumptionName, Assumptions, Carried, ContactDampingConstant, ContactDampingRatio, ContactDampingRecipe,
     DamperRecipe, Filling, FloorStiffness, GapRecipe, Given, MassReading, MassRecipe, Parameter, Part, Recipe,
-    Reference, Slot, StiffnessRecipe, StopRecipe, SurfaceRecipe, WallRecipe,
+    Reference, Slot, StiffnessRecipe, StopRecipe, SurfaceRecipe, SweptSlots, WallRecipe,
 };
 use super::schema::assumptions;
 use super::structure::read_structure;
@@ -79,7 +80,7 @@ fn describe(it: &Sketch<'_>, recipe: impl Fn(At<'_>, &'static Kind) -> Option<Re
 
 pub(super) struct SceneReader<'t> {
     pub(super) assumptions: &'t Assumptions,
-    /// Stands for a structure that is wrong, or that a schema does not know.
+    /// Stands for the structure that a schema does not know.
     unknown: &'static Kind,
     pub(super) swept: RefCell<Vec<(Parameter, Span)>>,
     optimised: RefCell<Vec<Span>>,
@@ -96,8 +97,14 @@ impl SceneReader<'_> {
             self.parts.borrow_mut().push((Part::Structure, at.span()));
             at.named("structure", vibrating, |at| read_structure(at, self))
         });
-        // What dampers and excitation may say depends on the structure.
-        let kind = structure.as_ref().map_or(self.unknown, |structure| structure.kind);
+        // What dampers and excitation may say depends on the structure, also on one that has a mistake of its own.
+        let named = || at.is_sketch().then_some(self.unknown).or_else(|| kind_named(keys.get("structure")?));
+        let Some(kind) = structure.as_ref().map(|structure| structure.kind).or_else(named) else {
+            for key in ["gravity", "undamped_mass", "mass_measure", "dampers", "excitation", "start", "observe"] {
+                keys.get(key);
+            }
+            return keys.close().and(None);
+        };
         let gravity = keys.optional("gravity", Slot::Gravity.about(), |at| {
             self.slot(at, Slot::Gravity, kind, |at| at.quantity(Dimension::Acceleration))
         });
@@ -158,6 +165,7 @@ impl SceneReader<'_> {
 
     fn damper(&self, at: At<'_>, kind: &'static Kind) -> Option<DamperRecipe> {
         let keys = at.keys("a damper")?;
+        let first = self.swept.borrow().len();
         // One mass has one mode and no enclosure unless the file names one; on a beam or plate there always is one.
         let lumped = kind.is_lumped();
         let place = self.at(&keys, kind, [Parameter::DamperX, Parameter::DamperY]);
@@ -165,6 +173,7 @@ impl SceneReader<'_> {
         let masses =
             [("mass_ratio", "m′: mass of the damper over that of the structure"), ("mass", "Mass of the damper")];
         let mass = keys.exactly_one(&masses, |key, at| match key {
+            "mass" if says_swept(at) => by_ratio(at, "mass", Parameter::MassRatio),
             "mass" => self.quantity(at, Dimension::Mass).map(MassRecipe::Mass),
             _ => self.sweepable(at, Parameter::MassRatio).map(MassRecipe::Ratio),
         });
@@ -189,14 +198,18 @@ impl SceneReader<'_> {
             ("gap", "Gap clearance between floor and ceiling"),
         ];
         let gap = keys.exactly_one(&gaps, |key, at| self.gap(key, at));
-        let floor = keys.required("floor", "The surface that the particle lands on", |at| self.surface(at, kind));
-        let ceiling =
-            keys.optional("ceiling", "The surface above; like the floor unless stated", |at| self.surface(at, kind));
+        let surface = |at: At<'_>| {
+            let first = self.swept.borrow().len();
+            Some((self.surface(at, kind)?, self.swept_since(first)))
+        };
+        let floor = keys.required("floor", "The surface that the particle lands on", surface);
+        let ceiling = keys.optional("ceiling", "The surface above; like the floor unless stated", surface);
         let stop = keys.optional("stop", "A limit stop", |at| self.stop(at, kind));
         let walls = keys.optional("walls", "Soft walls", |at| self.walls(at, kind));
         keys.close()?;
-        let floor = floor?;
-        let ceiling = ceiling?.unwrap_or_else(|| floor.clone());
+        let (floor, floor_swept) = floor?;
+        let (ceiling, ceiling_swept) = ceiling?.unwrap_or_else(|| (floor.clone(), floor_swept.clone()));
+        let swept = SweptSlots { all: self.swept_since(first), floor: floor_swept, ceiling: ceiling_swept };
         Some(DamperRecipe {
             at: place?,
             array: array?,
@@ -210,7 +223,13 @@ impl SceneReader<'_> {
             ceiling,
             stop: stop?,
             walls: walls?,
+            swept,
         })
+    }
+
+    /// What has been left to a sweep since so many slots were.
+    fn swept_since(&self, first: usize) -> BTreeSet<Parameter> {
+        self.swept.borrow()[first..].iter().map(|(parameter, _)| *parameter).collect()
     }
 
     fn gap(&self, key: &str, at: At<'_>) -> Option<GapRecipe> {
@@ -220,6 +239,9 @@ impl SceneReader<'_> {
         if at.is_word("optimised") {
             self.optimised.borrow_mut().push(at.span());
             return Some(GapRecipe::Gap(Given::Stated(PLACEHOLDER)));
+        }
+        if key == "gap" && says_swept(at) {
+            return by_ratio(at, "gap", Parameter::GapRatio);
         }
         let is_list = |value: &Value| matches!(value, Value::Sequence(_));
         if key != "gap" {
@@ -465,6 +487,26 @@ impl SceneReader<'_> {
     ) -> Option<Option<AssumptionName>> {
         assumption(&self.assumptions.sheet, at, takes, place)
     }
+}
+
+/// The kind of structure that is named, whether its values can be read or not.
+fn kind_named(structure: At<'_>) -> Option<&'static Kind> {
+    match structure {
+        At::Node(Node { value: Value::Mapping(entries), .. }, _) => Kind::named(&entries.first()?.key),
+        _ => None,
+    }
+}
+
+/// It says `swept`, where no sweep has a parameter of this key.
+fn says_swept(at: At<'_>) -> bool {
+    at.holds(|value| matches!(value, Value::Scalar(word) if word == "swept"))
+}
+
+/// A quantity that a sweep varies by its dimensionless parameter alone.
+fn by_ratio<T>(at: At<'_>, key: &str, parameter: Parameter) -> Option<T> {
+    let ratio = word_of(parameter);
+    let help = format!("write `{}` here, and the values of `{ratio}` in `sweep`", parameter.mark());
+    at.report(format!("`{key}` is not swept, `{ratio}` is"), Some(help))
 }
 
 /// The assumption that `{assumed: NAME}` names; `None`: it does not say so, `Some(None)`: it names none that fits.

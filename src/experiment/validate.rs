@@ -148,6 +148,7 @@ impl<'t> ExperimentReader<'t> {
         let unordered = unordered.iter().find_map(|(key, what)| Some((*what, keys.span_of(key)?)));
         let (scene_at, optimise_at) = (place("scene"), place("optimise"));
         let figures_at = place(if keys.span_of("figure").is_some() { "figure" } else { "figures" });
+        let looked_for_at = place(if keys.span_of("maximise").is_some() { "maximise" } else { "onset" });
 
         let kept = match (&trace, &energies, &shape, &each_cycle) {
             (Some(trace), Some(energies), Some(shape), Some(each_cycle)) => {
@@ -247,6 +248,8 @@ impl<'t> ExperimentReader<'t> {
                 .wrong::<()>(*at, "what is measured here is read off the model: there is no run to go on from");
         }
         checks.coverage(&scene, &cases, &places, &mean_over, maximise.as_ref());
+        let looked_for = maximise.as_ref().map(|maximise| (maximise, looked_for_at));
+        checks.marked(&scene, &cases, &places, &mean_over, looked_for);
         checks.amount(&cases, &sweep.refined, maximise.as_ref(), inner.len(), scene_at);
         fill_placeholders(&mut scene.recipe, &cases, &sweep.swept, maximise.as_ref());
         fill_placeholders(&mut scene.recipe, &inner, &mean_over.swept, None);

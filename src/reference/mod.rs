@@ -53,7 +53,7 @@ pub use predicate::Predicate;
 pub use price::Price;
 pub use printed::{Printed, PrintedError};
 pub use problem::{ReferenceMistake, ReferenceProblem};
-pub use prose::{Placeholder, Prose, ProseError, numbers};
+pub use prose::{CameOut, Placeholder, Prose, ProseError, numbers};
 pub use resonance::{Feature, PrintedPeak, Which};
 pub use schema::reference_schema;
 pub use selection::{Allowed, Selection};

@@ -44,6 +44,27 @@ enum Wanted {
     Off,
 }
 
+/// What came out for an entry, as far as prose quotes it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CameOut<'a> {
+    /// In words.
+    pub found: &'a str,
+    /// The same with one assumption moved, by the name of its variant.
+    pub moved: Vec<(&'a str, &'a str)>,
+    /// The error of a number, and the published number.
+    pub error: Option<[f64; 2]>,
+}
+
+impl<'a> From<&'a Judged> for CameOut<'a> {
+    fn from(judged: &'a Judged) -> Self {
+        Self {
+            found: &judged.found,
+            moved: judged.moved.iter().map(|moved| (moved.variant.as_str(), moved.found.as_str())).collect(),
+            error: judged.comparison.as_ref().map(|comparison| [comparison.error(), comparison.published]),
+        }
+    }
+}
+
 /// Why a text is no prose.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum ProseError {
@@ -86,11 +107,17 @@ impl Prose {
     /// The text with the numbers of the entries that `entry` finds; what has no number yet is `n/a`.
     #[must_use]
     pub fn filled<'a>(&self, entry: impl Fn(Option<&str>) -> Option<&'a Judged>) -> String {
+        self.filled_or("n/a", |name| entry(name).map(CameOut::from))
+    }
+
+    /// The same from whatever holds what came out; `unknown` stands for what has no number.
+    #[must_use]
+    pub fn filled_or<'a>(&self, unknown: &str, entry: impl Fn(Option<&str>) -> Option<CameOut<'a>>) -> String {
         let piece = |piece: &Piece| match piece {
             Piece::Text(text) => text.clone(),
             Piece::Placeholder(placeholder) => entry(placeholder.entry.as_deref())
-                .and_then(|judged| placeholder.of(judged))
-                .unwrap_or_else(|| "n/a".into()),
+                .and_then(|entry| placeholder.of(&entry))
+                .unwrap_or_else(|| unknown.into()),
         };
         self.pieces.iter().map(piece).collect()
     }
@@ -116,16 +143,16 @@ impl Placeholder {
         Ok(Self { what, entry, moved })
     }
 
-    fn of(&self, judged: &Judged) -> Option<String> {
-        if let Some(variant) = &self.moved {
-            return Some(judged.moved.iter().find(|moved| moved.variant == *variant)?.found.clone());
+    fn of(&self, entry: &CameOut<'_>) -> Option<String> {
+        if let Some(wanted) = &self.moved {
+            return entry.moved.iter().find(|(variant, _)| variant == wanted).map(|(_, found)| (*found).to_owned());
         }
         match self.what {
-            Wanted::Here(n) => numbers(&judged.found).into_iter().nth(n - 1),
+            Wanted::Here(n) => numbers(entry.found).into_iter().nth(n - 1),
             Wanted::Off => {
-                let comparison = judged.comparison.as_ref()?;
-                let side = if comparison.error() < 0.0 { "less" } else { "more" };
-                Some(format!("{} {side}", super::text::percent(comparison.error().abs() / comparison.published.abs())))
+                let [error, published] = entry.error?;
+                let side = if error < 0.0 { "less" } else { "more" };
+                Some(format!("{} {side}", super::text::percent(error.abs() / published.abs())))
             }
         }
     }

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use serde_json::json;
 
 use super::quoted::quoted;
-use crate::experiment::{Drawing, Experiment, FigureSpec, LineColour};
+use crate::experiment::{Drawing, Experiment, FigureSpec, LineColour, SCENE_DRAWING};
 use crate::figure::{Beside, FigureError, Picture, Quoted, draw, draw_svg, figure_stem};
 use crate::reference::{Judged, ReferenceFile};
 use crate::study::{FileHash, PRESENTATION_VERSION, fingerprint};
@@ -14,7 +14,7 @@ use crate::table::Table;
 /// File name of the drawing of what an experiment simulates.
 #[must_use]
 pub fn scene_name(experiment: &Experiment) -> String {
-    format!("{}-scene.svg", experiment.id)
+    format!("{}-{SCENE_DRAWING}.svg", experiment.id)
 }
 
 /// File name of a figure as pages show it: PNG, or SVG where it moves.

@@ -70,6 +70,7 @@ pub use movement::{Moved, Movement, between_tables, between_verdicts, standing};
 pub use overview::overview_svg;
 pub use page::page;
 pub use pages::{NotDrawn, Published, VERDICTS, publish};
+pub use prose::LastVerdicts;
 pub use publication::publication_reasons;
 pub use pull_request::{PULL_REQUEST_LIMIT, pull_request};
 pub use ro_crate::{CrateError, RELEASED, export_crate};

@@ -1,7 +1,8 @@
 //! A scene in words and SI units, for a person who asks what is simulated.
 
 use super::{
-    ContactDamping, ContactEnd, Damper, Excitation, Observation, Point, PulseShape, Scene, Start, Surface, Take,
+    ContactDamping, ContactEnd, Damper, Excitation, Observation, Point, PulseShape, Scene, Start, Structure, Surface,
+    Take,
 };
 use crate::text::number::{compact, quantity};
 
@@ -15,6 +16,7 @@ impl Scene {
         let model = self.structure.model();
         let sides = model.sides();
         let mut lines = vec![model.describe()];
+        lines.extend(off_the_continuous(&self.structure));
         if self.dampers.is_empty() {
             lines.push("no damper".into());
         } else {
@@ -28,6 +30,20 @@ impl Scene {
         lines.extend(self.start.as_ref().map(Start::describe));
         lines
     }
+}
+
+/// The first natural frequency where a model of few coordinates has another than the continuous structure.
+fn off_the_continuous(structure: &Structure) -> Option<String> {
+    let model = structure.model();
+    let (own, exact) = (*model.natural_frequencies().first()?, model.exact_frequency(1)?);
+    let off = own / exact - 1.0;
+    (off.abs() > 0.01).then(|| {
+        let side = if off > 0.0 { "above" } else { "below" };
+        let (own, percent) = (value(own, "rad/s"), compact(100.0 * off.abs(), 2));
+        format!(
+            "first natural frequency {own}, {percent} % {side} the continuous structure's: more modes bring it nearer"
+        )
+    })
 }
 
 impl Damper {

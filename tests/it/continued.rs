@@ -123,7 +123,9 @@ fn what_holds_until_it_is_left_shows_as_hysteresis() {
 
 #[test]
 fn a_chain_is_the_same_for_any_number_of_threads_and_of_shards() {
-    let text = RELAY.replace("  force_ratio: [", "  gap_ratio: [10, 20, 50]\n  along: force_ratio\n  force_ratio: [");
+    let text = RELAY
+        .replace("gap_ratio: 50", "gap_ratio: swept")
+        .replace("  force_ratio: [", "  gap_ratio: [10, 20, 50]\n  along: force_ratio\n  force_ratio: [");
     let bytes = [1, 2, 7].map(|threads| {
         let desk = desk(&text);
         desk.run(threads, &relay(), &IgnoreEvents);

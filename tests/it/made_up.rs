@@ -5,7 +5,7 @@ use shotdamp::experiment::{
     Axis, AxisScale, Band, Carried, Case, ContactDampingRecipe, DamperRecipe, Drawing, ExcitationKind,
     ExcitationRecipe, Experiment, ExperimentId, FigureSpec, ForcingOrNatural, GapRecipe, Given, ImpulseTimeRecipe,
     MassReading, MassRecipe, ObserveRecipe, Panel, Parameter, PlaceRecipe, PointsRecipe, Recipe, Reference, Source,
-    StiffnessRecipe, StopRecipe, StrengthRecipe, StructureRecipe, SurfaceRecipe, TimingRecipe,
+    StiffnessRecipe, StopRecipe, StrengthRecipe, StructureRecipe, SurfaceRecipe, SweptSlots, TimingRecipe,
 };
 use shotdamp::measure::{Comparison, Measure, NamedRows, Settings, SolverChoice};
 use shotdamp::scene::Take;
@@ -46,6 +46,7 @@ pub fn limit_stop() -> Experiment {
                     restitution: Given::Assumed("stop_restitution".into()),
                 }),
                 walls: None,
+                swept: SweptSlots::default(),
             }],
             without_dampers: false,
             excitation: ExcitationRecipe {

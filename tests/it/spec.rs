@@ -107,7 +107,6 @@ pub(crate) fn comments_order_and_units_do_not_change_the_meaning() {
             "  force_ratio: {log: {from: 0.1, to: 100, points: 61}}\n  stop: [with, without]\n",
             "  stop: [with, without]\n  force_ratio: {log: {points: 61, to: 1e2, from: 0.1}}\n",
         ),
-        with("force_ratio: swept", "force_ratio: 7"),
         with("run: {solver: event_driven, skip: 25 cycles, ", "run: {"),
         with("solver: event_driven", "solver: [event_driven]"),
     ];

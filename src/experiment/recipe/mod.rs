@@ -11,6 +11,7 @@ mod place;
 mod resolve;
 mod slot;
 mod structure;
+mod swept;
 
 pub use given::{Assumable, AssumptionName, AssumptionValue, Assumptions, Given};
 pub use parameter::{Parameter, ParameterValue, Takes};
@@ -23,3 +24,4 @@ pub use parts::{
 pub use place::{Coordinate, PlaceRecipe};
 pub use slot::Slot;
 pub use structure::StructureRecipe;
+pub use swept::SweptSlots;

@@ -116,6 +116,8 @@ struct Description {
     symbol: &'static str,
     /// The part of a scene that it belongs to.
     of: Option<Part>,
+    /// How a scene leaves it to a sweep; empty for what switches a part on or off, or says by itself what it varies.
+    mark: &'static str,
 }
 
 /// What values a parameter takes.
@@ -141,38 +143,41 @@ impl Parameter {
         use Dimension::{AngularFrequency, Force, Impulse, Length, Time};
         use ParameterValue as Value;
         use Takes::{Quantity, Ratio, RatioOrInfinite, Words};
-        let (symbol, takes, of) = match self {
-            Self::ForceRatio => ("f′", Ratio, EXCITATION),
-            Self::BaseAmplitudeRatio => ("aω²/g", Ratio, EXCITATION),
-            Self::FrequencyRatio => ("ω′", Ratio, EXCITATION),
-            Self::MassRatio => ("m′", Ratio, DAMPER),
-            Self::GapRatio => ("h′", RatioOrInfinite, DAMPER),
-            Self::DampingRatio => ("c′", Ratio, STRUCTURE),
-            Self::FloorStiffnessRatio => ("kf/ks", Ratio, DAMPER),
-            Self::ContactDampingRatio => ("ζf", Ratio, DAMPER),
-            Self::WallStiffnessRatio => ("kw/ks", RatioOrInfinite, DAMPER),
-            Self::Stop => ("", Words(&[Value::With, Value::Without]), DAMPER),
-            Self::StopLength => ("δ", Quantity(Length), DAMPER),
-            Self::PulseDuration => ("", Quantity(Time), EXCITATION),
-            Self::Dampers => ("", Words(&[Value::With, Value::Without]), None),
-            Self::FloorTuning => ("", Words(&[Value::Tuned, Value::Untuned]), DAMPER),
-            Self::MassReading => ("", Words(&[Value::Total, Value::Modal]), DAMPER),
-            Self::Mode | Self::Place => ("", Ratio, None),
-            Self::ForcedMode => ("", Ratio, EXCITATION),
-            Self::Modes => ("", Ratio, STRUCTURE),
-            Self::Length | Self::Width | Self::Thickness => ("", Quantity(Length), STRUCTURE),
-            Self::Rayleigh => ("λ", Ratio, STRUCTURE),
-            Self::DamperCount | Self::ParticleShare => ("", Ratio, DAMPER),
-            Self::ForceX => ("xF/Lx", Ratio, EXCITATION),
-            Self::ForceY => ("yF/Ly", Ratio, EXCITATION),
-            Self::DamperX => ("x/Lx", Ratio, DAMPER),
-            Self::DamperY => ("y/Ly", Ratio, DAMPER),
-            Self::Force => ("F", Quantity(Force), EXCITATION),
-            Self::Impulse => ("J", Quantity(Impulse), EXCITATION),
-            Self::AngularFrequency => ("ω", Quantity(AngularFrequency), EXCITATION),
-            Self::Filling => ("", Words(&[Value::Uniform, Value::Optimised]), DAMPER),
+        let (symbol, takes, of, mark) = match self {
+            Self::ForceRatio => ("f′", Ratio, EXCITATION, "force_ratio: swept"),
+            Self::BaseAmplitudeRatio => ("aω²/g", Ratio, EXCITATION, "base_amplitude_ratio: swept"),
+            Self::FrequencyRatio => ("ω′", Ratio, EXCITATION, "frequency_ratio: swept"),
+            Self::MassRatio => ("m′", Ratio, DAMPER, "mass_ratio: swept"),
+            Self::GapRatio => ("h′", RatioOrInfinite, DAMPER, "gap_ratio: swept"),
+            Self::DampingRatio => ("c′", Ratio, STRUCTURE, "damping_ratio: swept"),
+            Self::FloorStiffnessRatio => ("kf/ks", Ratio, DAMPER, "floor: {resilient: {stiffness_ratio: swept, …}}"),
+            Self::ContactDampingRatio => ("ζf", Ratio, DAMPER, "floor: {resilient: {damping_ratio: swept, …}}"),
+            Self::WallStiffnessRatio => ("kw/ks", RatioOrInfinite, DAMPER, "walls: {stiffness_ratio: swept, …}"),
+            Self::Stop => ("", Words(&[Value::With, Value::Without]), DAMPER, ""),
+            Self::StopLength => ("δ", Quantity(Length), DAMPER, "stop: {length: swept}"),
+            Self::PulseDuration => ("", Quantity(Time), EXCITATION, "duration: swept"),
+            Self::Dampers => ("", Words(&[Value::With, Value::Without]), None, ""),
+            Self::FloorTuning => ("", Words(&[Value::Tuned, Value::Untuned]), DAMPER, ""),
+            Self::MassReading => ("", Words(&[Value::Total, Value::Modal]), DAMPER, "mass_reading: swept"),
+            Self::Mode | Self::Place => ("", Ratio, None, ""),
+            Self::ForcedMode => ("", Ratio, EXCITATION, "forced_mode: swept"),
+            Self::Modes => ("", Ratio, STRUCTURE, "modes: swept"),
+            Self::Length => ("", Quantity(Length), STRUCTURE, "length: swept"),
+            Self::Width => ("", Quantity(Length), STRUCTURE, "width: swept"),
+            Self::Thickness => ("", Quantity(Length), STRUCTURE, "thickness: swept"),
+            Self::Rayleigh => ("λ", Ratio, STRUCTURE, "rayleigh: swept"),
+            Self::DamperCount => ("", Ratio, DAMPER, "array: {count: swept, …}"),
+            Self::ParticleShare => ("", Ratio, DAMPER, "particle_share: swept"),
+            Self::ForceX => ("xF/Lx", Ratio, EXCITATION, "at: swept"),
+            Self::ForceY => ("yF/Ly", Ratio, EXCITATION, "at: [0.5, swept]"),
+            Self::DamperX => ("x/Lx", Ratio, DAMPER, "at: swept"),
+            Self::DamperY => ("y/Ly", Ratio, DAMPER, "at: [0.5, swept]"),
+            Self::Force => ("F", Quantity(Force), EXCITATION, "force: swept"),
+            Self::Impulse => ("J", Quantity(Impulse), EXCITATION, "impulse: swept"),
+            Self::AngularFrequency => ("ω", Quantity(AngularFrequency), EXCITATION, "angular_frequency: swept"),
+            Self::Filling => ("", Words(&[Value::Uniform, Value::Optimised]), DAMPER, ""),
         };
-        Description { takes, symbol, of }
+        Description { takes, symbol, of, mark }
     }
 
     /// What values it takes.
@@ -223,6 +228,11 @@ impl Parameter {
         self.description().of
     }
 
+    /// How a scene leaves it to a sweep, `gap_ratio: swept`; empty where no value that a scene states is replaced.
+    pub(crate) fn mark(self) -> &'static str {
+        self.description().mark
+    }
+
     /// True for what a clean structure has no use for.
     pub(crate) fn is_of_dampers(self) -> bool {
         self.part() == DAMPER
@@ -238,7 +248,7 @@ fn number(parameter: Parameter, value: ParameterValue) -> Result<f64, RecipeErro
 }
 
 impl Recipe {
-    /// Gives `parameter` the value of a sweep point.
+    /// Gives `parameter` the value of a sweep point: where the scene says `swept`, or else in every place that it has.
     ///
     /// # Errors
     /// [`RecipeError::NothingToVary`] if the scene has no such parameter.
@@ -298,7 +308,8 @@ impl Recipe {
                 if self.dampers.is_empty() {
                     return Err(nothing("no damper"));
                 }
-                for damper in &mut self.dampers {
+                let marked = self.dampers.iter().any(|damper| damper.swept.hold(parameter));
+                for damper in self.dampers.iter_mut().filter(|damper| !marked || damper.swept.hold(parameter)) {
                     damper.set(parameter, value)?;
                 }
             }
@@ -340,7 +351,10 @@ impl DamperRecipe {
                 };
             }
             Parameter::FloorStiffnessRatio | Parameter::ContactDampingRatio | Parameter::FloorTuning => {
-                for surface in [&mut self.floor, &mut self.ceiling] {
+                let [floor, ceiling] = self.swept.surfaces(parameter);
+                for (surface, _) in
+                    [(&mut self.floor, floor), (&mut self.ceiling, ceiling)].into_iter().filter(|it| it.1)
+                {
                     let SurfaceRecipe::Resilient { stiffness, damping, .. } = surface else {
                         return Err(nothing("a rigid surface"));
                     };

@@ -8,6 +8,7 @@ use super::given::{AssumptionName, Given};
 use super::parameter::Parameter;
 use super::place::PlaceRecipe;
 use super::structure::StructureRecipe;
+use super::swept::SweptSlots;
 use crate::experiment::assumption_sheet::ASSUMPTIONS;
 use crate::measure::Comparison;
 use crate::scene::{Curve, PulseShape, Start, StartError, StructureError, Take};
@@ -87,6 +88,9 @@ pub struct DamperRecipe {
     pub stop: Option<StopRecipe>,
     /// Soft walls (Model 3).
     pub walls: Option<WallRecipe>,
+    /// What of it a sweep sets.
+    #[serde(skip)]
+    pub swept: SweptSlots,
 }
 
 /// An array of equal dampers.
@@ -450,7 +454,19 @@ pub enum RecipeError {
     /// A value that physics refuses.
     #[error("{0}")]
     OutOfRange(String),
-    /// The same, where it is known which part of the scene is meant.
+    /// A force acts, or motion is observed, where the structure does not move.
+    #[error(
+        "{what} stands where {structure} does not move, since every mode shape is zero there: move it off the support"
+    )]
+    Still {
+        /// Which part.
+        part: Part,
+        /// The force, or what is observed.
+        what: &'static str,
+        /// The structure.
+        structure: &'static str,
+    },
+    /// The same as out of range, where it is known which part of the scene is meant.
     #[error("{message}")]
     Part {
         /// Which part.

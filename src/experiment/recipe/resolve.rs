@@ -129,6 +129,13 @@ impl Recipe {
         let silent = self.excitation.is_silent() && self.excitation.at.0.is_empty();
         let force_at = if silent { Point::default() } else { places.point(&self.excitation.at, Part::Excitation)? };
         let observed = self.observe.resolve(&base, &places)?;
+        let still = |part, what| RecipeError::Still { part, what, structure: kind.what };
+        if !self.excitation.is_silent() && !places.moves(force_at) {
+            return Err(still(Part::Excitation, "the force"));
+        }
+        if !observed.points.iter().any(|point| places.moves(*point)) {
+            return Err(still(Part::Observe, "the observed point"));
+        }
         let start = self.start.clone().map(|start| if self.without_dampers { start.of_structure() } else { start });
         let scene = Scene { structure, gravity, dampers, excitation, force_at, observed, start };
         scene.check_start()?;

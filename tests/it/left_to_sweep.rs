@@ -1,0 +1,143 @@
+//! What a scene leaves to a sweep varies, and what it states beside is kept.
+
+use shotdamp::experiment::{Assumptions, Experiment, GapRecipe, Problems, parse_experiment};
+use shotdamp::scene::{Damper, Scene, Surface};
+
+const MASS: &str = "{single_mass: {mass: 2 kg, stiffness: 5000 N/m, damping_ratio: 0.02}}";
+const BEAM: &str = "{clamped_beam: {length: 1 m, width: 30 mm, thickness: 5 mm, youngs_modulus: 200 GPa, density: 7800 kg/m^3, rayleigh: 5e-5, modes: 4}}";
+const RIGID: &str = "floor: {rigid: {restitution: 0.6}}";
+const HARMONIC: &str = "harmonic: {force: 10 N, frequency_ratio: 1}";
+
+/// Two dampers, or one, and what is swept.
+fn text(structure: &str, dampers: &[&str], excitation: &str, rest: &str) -> String {
+    let dampers: String = dampers.iter().map(|damper| format!("    - {{{damper}}}\n")).collect();
+    format!(
+        "title: t\nabout: a\nrun: {{skip: 2 cycles, average: 5 cycles}}\nscene:\n  structure: {structure}\n  dampers:\n{dampers}  excitation: {{{excitation}}}\n\
+         measure: velocity_ratio\n{rest}\n"
+    )
+}
+
+fn parse(text: &str) -> Result<Experiment, Problems> {
+    parse_experiment(&"x".parse().unwrap(), "mine.yaml", text, &Assumptions::default())
+}
+
+fn scene(experiment: &Experiment, case: usize) -> Scene {
+    experiment.recipe_of(&experiment.cases[case]).unwrap().resolve(&Assumptions::default()).unwrap()
+}
+
+/// A number of both dampers in each case.
+fn both(text: &str, number: impl Fn(&Damper) -> f64) -> Vec<[f64; 2]> {
+    let experiment = parse(text).unwrap_or_else(|problems| panic!("{problems}"));
+    let in_case = |case| {
+        let scene = scene(&experiment, case);
+        [0, 1].map(|damper| number(&scene.dampers[damper]))
+    };
+    (0..experiment.cases.len()).map(in_case).collect()
+}
+
+fn refused(text: &str) -> String {
+    parse(text).expect_err(text).to_string()
+}
+
+#[test]
+fn a_sweep_leaves_other_dampers_what_they_state() {
+    let first = |damper: &str| format!("mass: 100 g, {damper}, {RIGID}");
+    let gaps = text(
+        MASS,
+        &[&first("gap_ratio: swept"), &first("gap_ratio: 2")],
+        HARMONIC,
+        "sweep: {gap_ratio: [1, 5, infinite]}",
+    );
+    let unit = 9.80665 * 2.0 / 5000.0;
+    for (got, want) in
+        both(&gaps, |damper| damper.gap / unit).iter().zip([[1.0, 2.0], [5.0, 2.0], [f64::INFINITY, 2.0]])
+    {
+        assert!((got[0] == want[0] || (got[0] - want[0]).abs() < 1e-12) && (got[1] - want[1]).abs() < 1e-12, "{got:?}");
+    }
+
+    let masses = [format!("mass_ratio: swept, gap: 5 mm, {RIGID}"), format!("mass: 20 g, gap: 5 mm, {RIGID}")];
+    let masses = text(MASS, &[&masses[0], &masses[1]], HARMONIC, "sweep: {mass_ratio: [0.1, 0.2]}");
+    assert_eq!(both(&masses, |damper| damper.particle_mass), [[0.2, 0.02], [0.4, 0.02]]);
+
+    let at = |at: &str| format!("at: {at}, mass_ratio: 0.05, particle_share: 0.5, gap: 5 mm, {RIGID}");
+    let places = text(
+        BEAM,
+        &[&at("swept"), &at("0.8")],
+        "harmonic: {at: 0.5, force: 1 N, frequency_ratio: 1}",
+        "sweep: {damper_x: [0.25, 0.5]}",
+    );
+    assert_eq!(both(&places, |damper| damper.at.x), [[0.25, 0.8], [0.5, 0.8]]);
+}
+
+#[test]
+fn a_sweep_of_floors_leaves_a_ceiling_what_it_states() {
+    let faces = |ceiling: &str| {
+        let damper = format!(
+            "mass: 100 g, gap: 5 mm, floor: {{resilient: {{stiffness_ratio: swept, damping_ratio: 0.1}}}}{ceiling}"
+        );
+        let text = text(MASS, &[&damper], HARMONIC, "sweep: {floor_stiffness_ratio: [1, 2]}");
+        let scene = scene(&parse(&text).unwrap(), 1);
+        [&scene.dampers[0].floor, &scene.dampers[0].ceiling].map(|surface| match surface {
+            Surface::Resilient { stiffness, .. } => stiffness / 5000.0,
+            Surface::Rigid { .. } => f64::INFINITY,
+        })
+    };
+    assert_eq!(faces(", ceiling: {resilient: {stiffness_ratio: 9, damping_ratio: 0.1}}"), [2.0, 9.0]);
+    assert_eq!(faces(", ceiling: {rigid: {restitution: 0.6}}"), [2.0, f64::INFINITY]);
+    assert_eq!(faces(""), [2.0, 2.0], "a ceiling that is not stated is like the floor");
+}
+
+#[test]
+fn an_axis_that_nothing_is_left_to_is_refused_at_its_key() {
+    let damper = format!("mass: 100 g, gap: 5 mm, {RIGID}");
+    let of = |axis: &str, values: &str| text(MASS, &[&damper], HARMONIC, &format!("sweep: {{{axis}: {values}}}"));
+    for (axis, values, mark) in [
+        ("mass_ratio", "[0.1, 0.2]", "`mass_ratio: swept` in every damper"),
+        ("gap_ratio", "[1, 5]", "`gap_ratio: swept` in every damper"),
+        ("force", "[1 N, 2 N]", "`force: swept` in the excitation"),
+        ("frequency_ratio", "[0.9, 1]", "`frequency_ratio: swept` in the excitation"),
+        ("damping_ratio", "[0.01, 0.02]", "`damping_ratio: swept` in the structure"),
+    ] {
+        let said = refused(&of(axis, values));
+        assert!(said.contains(&format!("`{axis}` is swept, but nothing in the scene is left to it")), "{said}");
+        assert!(said.contains(mark) && said.contains("mine.yaml:10:9"), "{said}");
+        assert_eq!(said.matches("error").count(), 1, "{said}");
+    }
+    let maximised = text(MASS, &[&damper], HARMONIC, "maximise: {velocity_ratio: {over: force, in: [1 N, 2 N]}}");
+    assert!(refused(&maximised).contains("`force` is varied, but nothing in the scene is left to it"));
+}
+
+/// What switches a part on or off replaces no number; a value that only some cases set is that of the others.
+#[test]
+fn switches_need_no_mark_and_a_stated_value_is_that_of_cases_that_leave_it_out() {
+    let damper = format!("mass: 100 g, gap_ratio: 3, {RIGID}");
+    assert!(parse(&text(MASS, &[&damper], HARMONIC, "sweep: {dampers: [with, without]}")).is_ok());
+    let some = "sweep: {union: {a: {gap_ratio: [1, 5]}, b: {dampers: [with]}}}";
+    let experiment = parse(&text(MASS, &[&damper], HARMONIC, some)).unwrap();
+    let last = experiment.recipe_of(experiment.cases.last().unwrap()).unwrap();
+    assert_eq!(last.dampers[0].gap, GapRecipe::Ratio(3.0.into()));
+    let two = refused(&text(MASS, &[&damper, &damper], HARMONIC, some));
+    assert!(two.contains("nothing in the scene is left to it"), "which of the two is not known: {two}");
+}
+
+#[test]
+fn a_key_that_no_sweep_varies_says_what_to_sweep_instead() {
+    for (damper, words, help) in [
+        (format!("mass: 100 g, gap: swept, {RIGID}"), "`gap` is not swept, `gap_ratio` is", "`gap_ratio: swept`"),
+        (format!("mass: swept, gap: 5 mm, {RIGID}"), "`mass` is not swept, `mass_ratio` is", "`mass_ratio: swept`"),
+        (
+            "mass: 100 g, gap: 5 mm, floor: {rigid: {restitution: swept}}".to_owned(),
+            "no sweep varies this key",
+            "`contact_damping_ratio`",
+        ),
+    ] {
+        let said = refused(&text(MASS, &[&damper], HARMONIC, ""));
+        assert!(said.contains(words) && said.contains(help), "{said}");
+    }
+    let stiffness = MASS.replace("5000 N/m", "swept");
+    let said = refused(&text(&stiffness, &[], HARMONIC, "").replace("  dampers:\n", ""));
+    assert!(said.contains("no sweep varies this key") && said.contains("`frequency_ratio`"), "{said}");
+    let observed = text(BEAM, &[], "harmonic: {at: 0.5, force: 1 N, frequency_ratio: 1}", "")
+        .replace("  dampers:\n", "  observe: [swept]\n");
+    assert!(refused(&observed).contains("observed points cannot be swept"));
+}

@@ -1,0 +1,52 @@
+//! One mistake is told once, and what would go wrong later is told at once.
+
+use shotdamp::experiment::{Assumptions, parse_experiment};
+
+const BEAM: &str = "
+title: t
+about: a
+scene:
+  structure: {cantilever_beam: {length: 1 m, width: 30 mm, thickness: 5 mm, youngs_modulus: 70 GPa, density: 2700 kg/m^3, rayleigh: 5e-5, modes: 4}}
+  dampers: [{at: 1, mass_ratio: 0.05, particle_share: 0.5, gap_ratio: 50, floor: {rigid: {restitution: 0.6}}}]
+  excitation: {impulse_train: {at: 1, force_ratio: swept, frequency_ratio: 1}}
+sweep: {force_ratio: [1, 2]}
+run: {skip: 2 cycles, average: 5 cycles}
+measure: velocity_ratio
+figure: {x: force_ratio, y: velocity_ratio, caption: c}
+";
+
+/// What is said of the beam with one thing changed.
+fn said(from: &str, to: &str) -> Vec<String> {
+    assert!(BEAM.contains(from), "{from}");
+    let text = BEAM.replacen(from, to, 1);
+    let read = parse_experiment(&"x".parse().unwrap(), "mine.yaml", &text, &Assumptions::default());
+    read.map_or_else(|problems| problems.list.iter().map(|one| one.message.clone()).collect(), |_| Vec::new())
+}
+
+#[test]
+fn a_mistake_in_a_structure_is_the_only_one() {
+    assert_eq!(said("cantilever_beam", "cantilever_beam"), [""; 0]);
+    for (from, to, what) in [
+        ("70 GPa", "70", "`70` has no unit"),
+        ("rayleigh: 5e-5", "rayleigh: -5e-5", "cannot be negative"),
+        ("cantilever_beam", "cantilver_beam", "`cantilver_beam`"),
+        ("density", "densty", "densty"),
+    ] {
+        let said = said(from, to);
+        assert!(said.iter().any(|one| one.contains(what)), "{said:?}");
+        assert!(!said.iter().any(|one| one.contains("`at`")), "{said:?}");
+    }
+    assert_eq!(said("70 GPa", "70").len(), 1);
+    assert_eq!(said("rayleigh: 5e-5", "rayleigh: -5e-5").len(), 1);
+    // Mistakes beside it are still told.
+    let text = BEAM.replace("70 GPa", "70").replace("gap_ratio: 50", "gap_ratio: -1");
+    let problems = parse_experiment(&"x".parse().unwrap(), "mine.yaml", &text, &Assumptions::default()).unwrap_err();
+    assert_eq!(problems.list.len(), 2, "{problems}");
+}
+
+#[test]
+fn no_figure_takes_the_name_of_the_drawing_of_the_scene() {
+    let named = |name: &str| said("figure: {x", &format!("figure: {{name: {name}, x"));
+    assert_eq!(named("scene"), ["`scene` names the drawing of the scene"]);
+    assert_eq!(named("gaps"), [""; 0]);
+}
