@@ -99,7 +99,7 @@ pub(super) fn conclude(study: &Study, choice: &Choice, done: Done) -> Result<Exi
     }
     let all_worked = done.problems.is_empty() && published.problems.is_empty() && !failed;
     let exit = chosen.exit(&judgement).max(if all_worked { Exit::AsExpected } else { Exit::CouldNot });
-    let written = published.written;
+    let (written, elsewhere) = (published.written, published.elsewhere);
     if !done.tables_only {
         take_snapshot(study, published)?;
     }
@@ -109,6 +109,13 @@ pub(super) fn conclude(study: &Study, choice: &Choice, done: Done) -> Result<Exi
         let restored = if restored == 0 { String::new() } else { format!(", {restored} restored") };
         let written = format!("{} written", counted(written, "figure or report", "figures and reports"));
         print(&format!("{all}: {experiments} {verb}{restored}; {written}.\n"))?;
+    }
+    if elsewhere > 0 {
+        let of = counted(elsewhere, "experiment", "experiments");
+        print(&format!(
+            "The pages of the whole study stay as they are: they have verdicts of {of} without a table here; `shotdamp run` makes all tables, \
+             and then these pages.\n"
+        ))?;
     }
     print(&verdicts_of(&judgement, &chosen.ids))?;
     Ok(exit)

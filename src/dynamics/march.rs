@@ -324,7 +324,7 @@ impl<'a, E: Effects> March<'a, E> {
         if E::TAPED {
             self.tape.count(kind);
         }
-        let event = Event { cycle: self.cycle, time, particle, kind, approach, departure };
+        let event = Event { cycle: self.cycle, time, particle, kind, approach, departure, lasts: kind.is_contact() };
         self.response.enter(event, self.averaged, self.options);
     }
 }

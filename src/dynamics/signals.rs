@@ -213,7 +213,7 @@ impl Rows {
             padded.resize(modes.order, 0.0);
             signal(&padded)
         };
-        if let (Some(row), Some(_)) = (system.base_row(), &system.drive.half_cycles) {
+        if let Some(row) = system.base_row() {
             all.base = all.place(padded(row));
             let bend = all.rows[all.base].acceleration(blocks);
             all.bend_of_places = modes

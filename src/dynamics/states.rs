@@ -37,7 +37,8 @@ struct Driven {
     undriven: Rc<Undriven>,
     force_row: Vec<f64>,
     observed_rows: Vec<Vec<f64>>,
-    half_cycles: bool,
+    /// φ of the base where half cycles follow it.
+    base: Option<Vec<f64>>,
     frequency: Option<f64>,
     ground: Ground,
     flows: ByContact<Flow>,
@@ -121,7 +122,7 @@ impl States {
         contacts: &[Contact],
         equivalent: Option<f64>,
     ) -> Result<Rc<Flow>, EngineError> {
-        if !self.0.half_cycles && !contacts.iter().any(|contact| contact.is_between()) {
+        if self.0.base.is_none() && !contacts.iter().any(|contact| contact.is_between()) {
             // It has the stated dampings and no others.
             let build = || self.build(system, contacts, &dampings(system, contacts, None));
             let flow = visit(&self.0.flows, contacts, |_| true, build)?;
@@ -183,7 +184,7 @@ impl Driven {
             undriven,
             force_row: system.force_row.clone(),
             observed_rows: system.observed_rows.clone(),
-            half_cycles: system.drive.half_cycles.is_some(),
+            base: system.base_row().map(<[f64]>::to_vec),
             frequency: system.drive.harmonic.map(|drive| drive.angular_frequency),
             ground: Ground::default(),
             flows: ByContact::default(),
@@ -193,7 +194,7 @@ impl Driven {
 
     fn fits(&self, system: &HybridSystem) -> bool {
         self.frequency == system.drive.harmonic.map(|drive| drive.angular_frequency)
-            && self.half_cycles == system.drive.half_cycles.is_some()
+            && self.base.as_deref() == system.base_row()
             && self.force_row == system.force_row
             && self.observed_rows == system.observed_rows
             && self.undriven.fits(system)

@@ -87,10 +87,9 @@ pub struct HybridSystem {
 }
 
 impl HybridSystem {
-    /// The base whose acceleration sets the damping by half cycles: the structure under the first particle, wherever it is observed.
+    /// The base whose acceleration sets the damping by half cycles.
     pub(crate) fn base_row(&self) -> Option<&[f64]> {
-        let observed = || self.observed_rows.first().map(Vec::as_slice);
-        self.particles.first().map(|particle| particle.floor.row.as_slice()).or_else(observed)
+        self.drive.half_cycles.as_ref().map(|half| half.base.as_slice())
     }
 
     /// Neither the structure nor a floor takes energy. Ceilings and stops do not count: a run may do without them.
@@ -219,6 +218,8 @@ pub struct Harmonic {
 pub struct HalfCycles {
     /// The curve: acceleration in m/s², then N s/m; end values outside.
     pub curve: super::Spline,
+    /// φ of the base: its displacement is φ·q.
+    pub base: Vec<f64>,
 }
 
 /// What a particle touches.
@@ -306,4 +307,6 @@ pub struct Event {
     pub approach: f64,
     /// Relative velocity just after, m/s.
     pub departure: f64,
+    /// A contact that is made goes on: a face that is rigid lets go at once of what bounces, and of what it does not push.
+    pub lasts: bool,
 }

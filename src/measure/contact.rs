@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use crate::dynamics::{Contact, Event, EventKind, Response};
-use crate::scene::{Scene, Surface};
+use crate::scene::Scene;
 
 /// Share of these cycles that a particle spends on its floor or its ceiling, mean over the particles; 0 without any.
 pub(super) fn contact_share(response: &Response, scene: &Scene, cycles: Range<u64>) -> f64 {
@@ -19,9 +19,6 @@ fn of_particle(response: &Response, scene: &Scene, index: usize, cycles: &Range<
     let events = || response.events.iter().filter(|event| event.particle == index);
     let first = response.initial_contacts.get(index).copied().unwrap_or(Contact::Floor);
     let (mut on_floor, mut on_ceiling) = (first.touches_floor(), first.touches_ceiling());
-    let damper = &scene.dampers[index];
-    // A rigid face lets go at once, unless it takes all of the speed.
-    let keeps = |face: &Surface, departure: f64| matches!(face, Surface::Resilient { .. }) || departure <= 0.0;
     let (mut since, mut sum) = (0.0, 0.0);
     for event in events() {
         let now = since_begin(event).clamp(0.0, length);
@@ -30,8 +27,8 @@ fn of_particle(response: &Response, scene: &Scene, index: usize, cycles: &Range<
         }
         since = now;
         match event.kind {
-            EventKind::FloorContact => on_floor = keeps(&damper.floor, event.departure),
-            EventKind::CeilingContact => on_ceiling = keeps(&damper.ceiling, -event.departure),
+            EventKind::FloorContact => on_floor = event.lasts,
+            EventKind::CeilingContact => on_ceiling = event.lasts,
             EventKind::FloorRelease => on_floor = false,
             EventKind::CeilingRelease => on_ceiling = false,
             EventKind::ChatterEnd if event.approach > 0.0 => on_floor = true,
@@ -56,8 +53,15 @@ mod tests {
         let excitation = Excitation::ImpulseTrain { impulse: 1.0, period: 0.5 };
         let damper = Damper::between(Surface::Rigid { restitution: 0.0 }, 0.05, 0.1);
         let scene = Scene::on_one_mass(mass, 9.81, vec![damper], excitation);
-        let at =
-            |cycle, time, kind, departure| Event { cycle, time, particle: 0, kind, approach: departure, departure };
+        let at = |cycle, time, kind: EventKind, departure| Event {
+            cycle,
+            time,
+            particle: 0,
+            kind,
+            approach: departure,
+            departure,
+            lasts: departure <= 0.0 || kind == EventKind::CeilingContact,
+        };
         let share = |events: &[Event]| {
             let initial_contacts = vec![Contact::Floor];
             let response = Response { events: events.to_vec(), initial_contacts, ..Response::default() };

@@ -146,8 +146,15 @@ mod tests {
 
     /// Of floor contacts at these times in one cycle, which is the time history.
     fn lag(scene: &Scene, cycle: u64, times: &[f64]) -> f64 {
-        let at =
-            |&time| Event { cycle, time, particle: 0, kind: EventKind::FloorContact, approach: -1.0, departure: -1.0 };
+        let at = |&time| Event {
+            cycle,
+            time,
+            particle: 0,
+            kind: EventKind::FloorContact,
+            approach: -1.0,
+            departure: -1.0,
+            lasts: true,
+        };
         let response = Response { events: times.iter().map(at).collect(), ..Response::default() };
         History { response: &response, scene, cycles: cycle..cycle + 1 }.lag(EventKind::FloorContact)
     }

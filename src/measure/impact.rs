@@ -7,14 +7,12 @@ use std::f64::consts::TAU;
 
 use super::Measure;
 use crate::dynamics::{Event, EventKind, Response};
-use crate::scene::{Scene, Surface};
+use crate::scene::Scene;
 
 /// The events of the averaged window, with their time since the start of the run.
 pub(super) struct Impacts<'a> {
     events: Vec<&'a Event>,
     period: f64,
-    /// A rigid floor lets go at once, unless it takes all of the speed.
-    is_rigid: bool,
 }
 
 /// A contact with the floor from begin to end.
@@ -27,8 +25,7 @@ impl<'a> Impacts<'a> {
     /// Of a run from its cycle `first` on.
     pub(super) fn of(response: &'a Response, scene: &Scene, first: u64) -> Self {
         let kept = |event: &&Event| event.cycle >= first && event.particle == 0;
-        let is_rigid = scene.dampers.first().is_some_and(|damper| matches!(damper.floor, Surface::Rigid { .. }));
-        Self { events: response.events.iter().filter(kept).collect(), period: scene.excitation.period(), is_rigid }
+        Self { events: response.events.iter().filter(kept).collect(), period: scene.excitation.period() }
     }
 
     /// NaN where there is no such event.
@@ -84,7 +81,8 @@ impl<'a> Impacts<'a> {
             match event.kind {
                 EventKind::FloorRelease => end = Some(*event),
                 _ if !begins(event) => {}
-                _ if self.is_rigid && event.departure > 0.0 => found = Some(Contact { begin: event, end: event }),
+                // A rigid face lets go at once.
+                _ if !event.lasts => found = Some(Contact { begin: event, end: event }),
                 _ => found = end.map(|end| Contact { begin: event, end }),
             }
             if found.is_some() {

@@ -6,14 +6,16 @@ use std::fs;
 use rayon::prelude::*;
 
 use super::figures::{Said, figure_name, picture, scene_name, shown, vector};
+use super::json::read_json;
 use super::publication::{inputs, reasons_beside, shows_same_scene};
+use super::tally::word;
 use super::verdicts::Judgement;
 use super::views;
 use crate::atomic::{self, FileError};
 use crate::experiment::{Experiment, FigureSpec};
 use crate::figure::{FigureError, Picture, figure_stem, sketch};
 use crate::measure::rounded;
-use crate::reference::{Judged, ReferenceFile};
+use crate::reference::{Judged, ReferenceFile, Verdict};
 use crate::study::{
     FileHash, Heading, Inputs, Item, Publication, Record, State, Study, Summary, record_name, stem, table_name,
 };
@@ -59,6 +61,8 @@ pub struct Published {
     pub experiments: BTreeMap<String, (BTreeSet<String>, Summary)>,
     /// Files of the study as a whole.
     pub of_the_study: BTreeSet<String>,
+    /// Experiments without a table here that those files have verdicts of: they are left as they are.
+    pub elsewhere: usize,
     /// Files that were written.
     pub written: usize,
     /// Figures that were drawn; those that would show the same as before are not.
@@ -96,11 +100,25 @@ pub fn publish(study: &Study, judgement: &Judgement, ids: &BTreeSet<&str>) -> Re
         let drawn = figures.remove(id).unwrap_or_default();
         write_page(study, judgement, page, drawn, &mut published)?;
     }
-    for (name, text) in views::of_the_study(study, judgement) {
-        published.written += usize::from(atomic::write_if_changed(&study.layout.path(&name), text.as_bytes())?);
-        published.of_the_study.insert(name);
+    published.elsewhere = judged_elsewhere(study);
+    if published.elsewhere == 0 {
+        for (name, text) in views::of_the_study(study, judgement) {
+            published.written += usize::from(atomic::write_if_changed(&study.layout.path(&name), text.as_bytes())?);
+            published.of_the_study.insert(name);
+        }
     }
     Ok(published)
+}
+
+/// How many experiments without a table have a verdict in the reports, as in a study that was just cloned: the pages of the whole study
+/// would lose what is known of them.
+fn judged_elsewhere(study: &Study) -> usize {
+    let verdicts = fs::read_to_string(study.layout.path(VERDICTS)).unwrap_or_default();
+    let verdicts = read_json(&verdicts).unwrap_or_default();
+    let judged = verdicts.iter().filter(|one| one.verdict != word(Verdict::Missing));
+    let judged: BTreeSet<&str> = judged.filter_map(|one| Some(one.id.split_once('/')?.0)).collect();
+    let (ids, tables) = (study.texts.ids(), study.tables());
+    judged.iter().filter(|id| ids.contains(*id) && !tables.contains_key(*id)).count()
 }
 
 /// Everything that a run would write under `reports/`, by name within the study; or why it cannot be made.

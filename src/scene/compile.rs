@@ -52,9 +52,9 @@ pub fn compile(scene: &Scene) -> Result<HybridSystem, CompileError> {
         }
         _ => None,
     };
-    let drive = Drive { half_cycles: half_cycles(scene)?, ..drive(&scene.excitation) };
+    let curve = curve(scene)?;
     if let Some(walls) = walls {
-        return with_walls(scene, walls, drive);
+        return with_walls(scene, walls, curve);
     }
     let model = scene.structure.model();
     let Matrices { mut mass, damping, stiffness } = model.matrices();
@@ -72,8 +72,8 @@ pub fn compile(scene: &Scene) -> Result<HybridSystem, CompileError> {
         damping,
         stiffness,
         gravity: scene.gravity,
+        drive: drive_of(scene, curve, &particles),
         particles,
-        drive,
         observed_rows: scene.observed.points.iter().map(|point| model.shape(*point)).collect(),
         // Contact forces are internal along every row, since floor and ceiling move alike; along this one the force is felt.
         momentum_rows: vec![force_row.clone()],
@@ -82,21 +82,23 @@ pub fn compile(scene: &Scene) -> Result<HybridSystem, CompileError> {
 }
 
 /// One mass with a third body.
-fn with_walls(scene: &Scene, walls: Walls, drive: Drive) -> Result<HybridSystem, CompileError> {
+fn with_walls(scene: &Scene, walls: Walls, curve: Option<Spline>) -> Result<HybridSystem, CompileError> {
     let Structure::SingleMass(SingleMass { mass, stiffness, damping }) = scene.structure else {
         return Err(CompileError::WallsOnArray { dampers: scene.dampers.len() });
     };
     let (base, top) = (vec![1.0, 0.0], vec![1.0, 1.0]);
     let third = walls.ceiling_mass;
     let mass = mass + scene.dampers.iter().map(|damper| damper.enclosure_mass).sum::<f64>();
+    let particles =
+        scene.dampers.iter().map(|damper| particle(damper, &base, &top)).collect::<Result<Vec<Particle>, _>>()?;
     Ok(HybridSystem {
         mass: Matrix { order: 2, entries: vec![mass, third, third, third] },
         damping: Matrix::diagonal(&[damping, walls.damping]),
         stiffness: Matrix::diagonal(&[stiffness, walls.stiffness]),
         gravity: scene.gravity,
-        particles: scene.dampers.iter().map(|damper| particle(damper, &base, &top)).collect::<Result<_, _>>()?,
+        drive: drive_of(scene, curve, &particles),
+        particles,
         force_row: base.clone(),
-        drive,
         observed_rows: vec![base.clone()],
         momentum_rows: vec![base],
     })
@@ -127,8 +129,15 @@ fn face(damper: &Damper, surface: &Surface, row: &[f64]) -> Result<Face, Compile
     Ok(Face { row: row.to_vec(), law })
 }
 
-/// The drive holds one curve, which all surfaces with a dashpot share.
-fn half_cycles(scene: &Scene) -> Result<Option<HalfCycles>, CompileError> {
+/// The excitation, and the half cycles of the base under the first particle, if there is a curve that they are read by.
+fn drive_of(scene: &Scene, curve: Option<Spline>, particles: &[Particle]) -> Drive {
+    let base = particles.first().map(|first| first.floor.row.clone());
+    let half_cycles = curve.zip(base).map(|(curve, base)| HalfCycles { curve, base });
+    Drive { half_cycles, ..drive(&scene.excitation) }
+}
+
+/// Of equivalent viscous damping: all surfaces with a dashpot share it.
+fn curve(scene: &Scene) -> Result<Option<Spline>, CompileError> {
     let (mut curves, mut has_constants) = (Vec::new(), false);
     for damper in &scene.dampers {
         let surfaces = [&damper.floor, &damper.ceiling];
@@ -146,8 +155,7 @@ fn half_cycles(scene: &Scene) -> Result<Option<HalfCycles>, CompileError> {
         return Err(CompileError::SeveralCurves);
     }
     let points: Vec<[f64; 2]> = curve.iter().map(|[x, damping]| [x * scene.g(), *damping]).collect();
-    let curve = Spline::through(&points).ok_or(CompileError::DampingCurve)?;
-    Ok(Some(HalfCycles { curve }))
+    Spline::through(&points).ok_or(CompileError::DampingCurve).map(Some)
 }
 
 fn curve_of(surface: &Surface) -> Option<&Curve> {

@@ -304,3 +304,20 @@ fn status_points_at_the_line_that_changed_and_counts_the_rows() {
         assert!(status.contains(&format!("\n    {to_do} of 30 rows to simulate\n")), "{status}");
     }
 }
+
+#[test]
+fn one_experiment_run_in_a_fresh_clone_leaves_the_pages_of_the_whole_study() {
+    let desk = simulated();
+    assert_eq!(shotdamp(&desk, &["run", "-q"]).code, 0);
+    let pages = ["README.md", "what-stands.md", "verdicts.json"].map(|page| format!("reports/{page}"));
+    let read = || pages.each_ref().map(|page| fs::read_to_string(desk.layout.path(page)).unwrap());
+    let committed = read();
+    // Reports are committed, tables are not.
+    fs::remove_dir_all(desk.layout.path("results")).unwrap();
+    let run = shotdamp(&desk, &["run", "ch3-gap"]);
+    assert!(run.out.contains("verdicts of 1 experiment without a table here"), "{}{}", run.out, run.err);
+    assert_eq!(read(), committed);
+    let whole = shotdamp(&desk, &["run"]);
+    assert!(!whole.out.contains("without a table"), "{}", whole.out);
+    assert_ne!(read(), committed, "the tables were made up before");
+}

@@ -471,7 +471,13 @@ pub(crate) fn a_refined_range_starts_evenly_and_says_what_it_lacks() {
 pub(crate) fn sweeps_are_products_pairs_points_and_unions() {
     let sweep = "  force_ratio: {log: {from: 0.1, to: 100, points: 61}}\n  stop: [with, without]\n";
     let cases = |text: &str, by: &str| {
-        let experiment = good(&with(sweep, text).replace("by: stop", by));
+        let mut experiment = with(sweep, text).replace("by: stop", by);
+        for (key, stated) in [("mass_ratio", "mass_ratio: 0.05"), ("gap_ratio", "gap: 490.5 mm")] {
+            if text.contains(key) {
+                experiment = experiment.replace(stated, &format!("{key}: swept"));
+            }
+        }
+        let experiment = good(&experiment);
         let description: Vec<_> =
             experiment.cases.iter().map(|case| format!("{}:{}", case.sweep, case.describe())).collect();
         (experiment, description)

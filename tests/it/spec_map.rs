@@ -9,8 +9,8 @@ source: {chapter: 3, section: 3.6.7}
 about: A map.
 scene:
   structure: {single_mass: {mass: 1 kg, stiffness: 1000 N/m, damping_ratio: 0.05}}
-  dampers: [{mass_ratio: 0.05, gap: 490 mm, floor: {rigid: {restitution: 0.5}}}]
-  excitation: {harmonic: {base_amplitude_ratio: 1, frequency_ratio: 1}}
+  dampers: [{mass_ratio: 0.05, gap_ratio: swept, floor: {rigid: {restitution: 0.5}}}]
+  excitation: {harmonic: {base_amplitude_ratio: swept, frequency_ratio: 1}}
 sweep: {base_amplitude_ratio: [1, 2], gap_ratio: [10, 50]}
 measure: velocity_ratio
 FIGURE

@@ -211,7 +211,8 @@ impl Run<'_> {
         }
         if self.response.events.len() < self.options.record_events {
             let (cycle, time) = (self.cycle, self.time.near());
-            self.response.events.push(Event { cycle, time, particle, kind, approach, departure });
+            let lasts = matches!(kind, EventKind::FloorContact | EventKind::CeilingContact);
+            self.response.events.push(Event { cycle, time, particle, kind, approach, departure, lasts });
         }
     }
 }

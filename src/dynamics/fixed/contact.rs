@@ -172,9 +172,9 @@ impl<V: Vector> Run<'_, V> {
             let gap = self.relative(j, side).gap;
             self.place(j, side, Relative { gap, rate: if rests { 0.0 } else { departure } });
             if struck {
-                self.record(j, if on_stop { side.hit() } else { side.made() }, away * closed.speed, departure);
-            }
-            if held && !rests {
+                let kind = if on_stop { side.hit() } else { side.made() };
+                self.record_contact(j, kind, [away * closed.speed, departure], rests);
+            } else if held && !rests {
                 self.let_go(j, side)?;
                 continue;
             }

@@ -28,8 +28,13 @@ impl Observed {
 
 impl<V: Vector> Run<'_, V> {
     pub(super) fn record(&mut self, particle: usize, kind: EventKind, approach: f64, departure: f64) {
+        self.record_contact(particle, kind, [approach, departure], kind.is_contact());
+    }
+
+    pub(super) fn record_contact(&mut self, particle: usize, kind: EventKind, speeds: [f64; 2], lasts: bool) {
+        let [approach, departure] = speeds;
         let time = (self.step - self.schedule.cycle(self.cycle)) as f64 * self.time_step;
-        let event = Event { cycle: self.cycle, time, particle, kind, approach, departure };
+        let event = Event { cycle: self.cycle, time, particle, kind, approach, departure, lasts };
         self.response.enter(event, self.options.averaged(), self.options);
     }
 

@@ -218,6 +218,7 @@ impl<E: Effects> March<'_, E> {
             if struck {
                 let kind = if on_stop { side.hit() } else { side.made() };
                 self.record(j, kind, away * closed.speed, away * outcome.speed);
+                self.lasts(j, false);
             }
             self.changed = true;
             self.smooth[j] = false;
@@ -230,7 +231,7 @@ impl<E: Effects> March<'_, E> {
                     (false, false) => Before::Apart,
                 };
                 candidates.push(Candidate { particle: j, side, on_stop, before, speed, restitution });
-            } else if held {
+            } else if held && !struck {
                 self.let_go(j, side);
             } else {
                 self.part(j, side, on_stop);
@@ -309,14 +310,14 @@ impl<E: Effects> March<'_, E> {
                 self.particles[j].rate = 0.0;
             }
             if *holds {
-                if !at_rest {
-                    self.end_chatter(candidate, *grip)?;
+                match candidate.before {
+                    _ if !at_rest => self.end_chatter(candidate, *grip)?,
+                    Before::Struck => self.lasts(j, true),
+                    Before::Held | Before::Apart => {}
                 }
                 self.particles[j].rate = 0.0;
             } else {
-                // What it was struck by took all of its speed and does not hold it: it is off again at once.
-                let off = candidate.before == Before::Struck && at_rest && !candidate.on_stop;
-                if candidate.before == Before::Held || off {
+                if candidate.before == Before::Held {
                     let kind = if candidate.on_stop { EventKind::StopRelease } else { side.lost() };
                     self.record(j, kind, 0.0, 0.0);
                 }
@@ -329,6 +330,15 @@ impl<E: Effects> March<'_, E> {
             }
         }
         self.choose_flow()
+    }
+
+    /// Whether the contact that has just been made goes on.
+    fn lasts(&mut self, j: usize, lasts: bool) {
+        let now = (self.cycle, self.time);
+        let mut events = self.response.events.iter_mut().rev().take_while(|event| (event.cycle, event.time) == now);
+        if let Some(event) = events.find(|event| event.particle == j && event.kind.is_contact()) {
+            event.lasts = lasts;
+        }
     }
 
     /// Holds a candidate, or does not; its state goes on referring to the face.

@@ -24,7 +24,9 @@ pub(super) fn on_one_mass(dice: &mut Dice, damping_ratio: f64, dampers: usize) -
 /// By a curve over accelerations in g.
 fn renewed(system: &mut HybridSystem, curve: &[[f64; 2]]) {
     let curve: Vec<[f64; 2]> = curve.iter().map(|[x, damping]| [x * system.gravity, *damping]).collect();
-    system.drive.half_cycles = Some(HalfCycles { curve: Spline::through(&curve).expect("a curve") });
+    let base =
+        system.particles.first().map_or_else(|| system.observed_rows[0].clone(), |first| first.floor.row.clone());
+    system.drive.half_cycles = Some(HalfCycles { curve: Spline::through(&curve).expect("a curve"), base });
 }
 
 /// Under impulses, with the curve that it has.
@@ -63,9 +65,10 @@ fn the_damping_does_not_depend_on_the_point_that_is_observed() {
     system.particles.push(particle(0.05, 0.02, shape(3, 0.9), [law, law]));
     system.drive = blows(0.3, 0.5);
     renewed(&mut system, &[[0.1, 1.0], [5.0, 8.0]]);
-    for solver in [|system: &HybridSystem| event_driven(system, &cycles(20)), |system: &HybridSystem| {
-        fixed_step(system, &cycles(20), 1e-4)
-    }] {
+    for solver in [
+        |system: &HybridSystem| event_driven(system, &cycles(20)),
+        |system: &HybridSystem| fixed_step(system, &cycles(20), 1e-4),
+    ] {
         let ends = [0.3, 0.9].map(|x| {
             system.observed_rows = vec![shape(3, x)];
             solver(&system).expect("the scene has an answer").final_particles

@@ -17,17 +17,10 @@ const MEASURES: [Measure; 4] =
 
 fn measured(scene: Scene, skip: u32, average: u32) -> [f64; 4] {
     let subject = Subject { scene, undamped: None, comparison: None, mode: 1 };
-    let settings = Settings {
-        skip,
-        average,
-        until: Until::Cycles,
-        round_period_to: None,
-        ensemble: 0,
-        named: NamedRows::Results,
-    };
+    let settings =
+        Settings { skip, average, until: Until::Cycles, round_period_to: None, ensemble: 0, named: NamedRows::Results };
     let request = Request { measures: &MEASURES, ..Request::default() };
-    let evaluated =
-        evaluate(subject, SolverChoice::EventDriven, &settings, &request).expect("the scene has an answer");
+    let evaluated = evaluate(subject, SolverChoice::EventDriven, &settings, &request).expect("the scene has an answer");
     std::array::from_fn(|i| evaluated.measured[i].value)
 }
 
@@ -90,11 +83,8 @@ fn a_particle_that_begins_on_its_floor_is_in_contact_from_the_start() {
 fn chatter_on_the_floor_ends_no_contact_with_a_ceiling_that_presses() {
     let ceiling = spring(300.0, 5.0, ContactEnd::ZeroGap);
     let walls = Walls { stiffness: 500.0, damping: 1.0, ceiling_mass: 0.1 };
-    let damper = Damper {
-        ceiling,
-        walls: Some(walls),
-        ..Damper::between(Surface::Rigid { restitution: 0.3 }, 0.05, 0.001)
-    };
+    let damper =
+        Damper { ceiling, walls: Some(walls), ..Damper::between(Surface::Rigid { restitution: 0.3 }, 0.05, 0.001) };
     let [share, ..] = measured(on_base(damper, harmonic(20.0, 0.1)), 1, 4);
     within("between a rigid floor and a soft ceiling", share, 0.742_652, 1e-5);
 }
