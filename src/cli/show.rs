@@ -142,10 +142,13 @@ fn make(layout: &Layout, id: &str, made: &Sender<Made>) -> Result<Exit, CliError
     print_unread(chosen.unread.iter().copied());
     let experiments = u32::try_from(chosen.items.len()).unwrap_or(u32::MAX);
     let _ = made.send(Made::Read { experiments });
+    // Reasons quote entries of other experiments, too, which are not read here.
+    let verdicts = std::fs::read_to_string(layout.path(VERDICTS)).unwrap_or_default();
+    let verdicts = LastVerdicts::read(&verdicts);
     for (index, item) in chosen.items.iter().enumerate() {
         let mut all = None;
         for section in IN_ORDER_OF_COST {
-            let text = describe(&study, item, section, &mut all);
+            let text = describe(&study, &verdicts, item, section, &mut all);
             let _ = made.send(Made::Section(index, section, text));
         }
     }
@@ -153,7 +156,13 @@ fn make(layout: &Layout, id: &str, made: &Sender<Made>) -> Result<Exit, CliError
 }
 
 /// A section; `all` keeps the scenes of all cases once they are there.
-fn describe(study: &Study, item: &Item, section: Section, all: &mut Option<Vec<Scene>>) -> String {
+fn describe(
+    study: &Study,
+    verdicts: &LastVerdicts,
+    item: &Item,
+    section: Section,
+    all: &mut Option<Vec<Scene>>,
+) -> String {
     let experiment = &item.source.experiment;
     match section {
         Section::Heading => heading(item),
@@ -163,7 +172,7 @@ fn describe(study: &Study, item: &Item, section: Section, all: &mut Option<Vec<S
             let idle = idle(experiment, all.get_or_insert_with(|| scenes(study, experiment)));
             idle + &thresholds::in_words(study, experiment)
         }
-        Section::Assumptions => assumptions(study, item),
+        Section::Assumptions => assumptions(study, verdicts, item),
         Section::Cases => cases(item),
         Section::Warnings => {
             let warnings = forecast(experiment, &study.sheet.assumptions());
@@ -235,11 +244,8 @@ fn idle(experiment: &Experiment, scenes: &[Scene]) -> String {
     text
 }
 
-fn assumptions(study: &Study, item: &Item) -> String {
+fn assumptions(study: &Study, verdicts: &LastVerdicts, item: &Item) -> String {
     let mut text = String::from(if item.used.is_empty() { "" } else { "\nAssumptions\n" });
-    // Reasons quote entries of other experiments, too, which are not read here.
-    let verdicts = std::fs::read_to_string(study.layout.path(VERDICTS)).unwrap_or_default();
-    let verdicts = LastVerdicts::read(&verdicts);
     for (name, entry) in study.sheet.iter().filter(|(name, _)| item.used.contains(*name)) {
         text += &format!("  {name} = {}\n", value_in_words(entry.kind.unit(), &entry.value));
         text += &wrapped(&verdicts.reason(&entry.reason), "      ", 100);

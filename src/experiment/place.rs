@@ -142,9 +142,8 @@ impl SceneReader<'_> {
 /// A coordinate of this place says `swept`.
 fn says_swept(place: &Node) -> bool {
     match &place.value {
-        Value::Scalar(word) => word == "swept",
         Value::Sequence(items) => items.iter().any(says_swept),
-        _ => false,
+        value => value.is_swept(),
     }
 }
 

@@ -78,7 +78,7 @@ pub(super) fn boolean(node: &Node, findings: &Findings) -> Option<bool> {
 }
 
 fn measured(node: &Node, findings: &Findings, parsed: Result<f64, QuantityError>) -> Option<f64> {
-    if matches!(&node.value, Value::Scalar(word) if word == "swept") {
+    if node.value.is_swept() {
         let parameters = words::<Parameter>().iter().map(|word| format!("`{word}`")).collect::<Vec<_>>().join(", ");
         let help = Some(format!("give it a value here; a sweep varies {parameters}"));
         return findings.report(node.span, "no sweep varies this key", help);

@@ -173,7 +173,7 @@ impl SceneReader<'_> {
         let masses =
             [("mass_ratio", "m′: mass of the damper over that of the structure"), ("mass", "Mass of the damper")];
         let mass = keys.exactly_one(&masses, |key, at| match key {
-            "mass" if says_swept(at) => by_ratio(at, "mass", Parameter::MassRatio),
+            "mass" if at.holds(Value::is_swept) => by_ratio(at, "mass", Parameter::MassRatio),
             "mass" => self.quantity(at, Dimension::Mass).map(MassRecipe::Mass),
             _ => self.sweepable(at, Parameter::MassRatio).map(MassRecipe::Ratio),
         });
@@ -240,7 +240,7 @@ impl SceneReader<'_> {
             self.optimised.borrow_mut().push(at.span());
             return Some(GapRecipe::Gap(Given::Stated(PLACEHOLDER)));
         }
-        if key == "gap" && says_swept(at) {
+        if key == "gap" && at.holds(Value::is_swept) {
             return by_ratio(at, "gap", Parameter::GapRatio);
         }
         let is_list = |value: &Value| matches!(value, Value::Sequence(_));
@@ -495,11 +495,6 @@ fn kind_named(structure: At<'_>) -> Option<&'static Kind> {
         At::Node(Node { value: Value::Mapping(entries), .. }, _) => Kind::named(&entries.first()?.key),
         _ => None,
     }
-}
-
-/// It says `swept`, where no sweep has a parameter of this key.
-fn says_swept(at: At<'_>) -> bool {
-    at.holds(|value| matches!(value, Value::Scalar(word) if word == "swept"))
 }
 
 /// A quantity that a sweep varies by its dimensionless parameter alone.

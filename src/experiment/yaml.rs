@@ -28,6 +28,13 @@ pub(super) enum Value {
     Mapping(Vec<Entry>),
 }
 
+impl Value {
+    /// It is the word that leaves a value to a sweep.
+    pub fn is_swept(&self) -> bool {
+        matches!(self, Self::Scalar(word) if word == "swept")
+    }
+}
+
 /// A key and its value.
 #[derive(Debug)]
 pub(super) struct Entry {

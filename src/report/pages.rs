@@ -113,12 +113,17 @@ pub fn publish(study: &Study, judgement: &Judgement, ids: &BTreeSet<&str>) -> Re
 /// How many experiments without a table have a verdict in the reports, as in a study that was just cloned: the pages of the whole study
 /// would lose what is known of them.
 fn judged_elsewhere(study: &Study) -> usize {
+    let tables = study.tables();
+    let mut without_table = study.texts.ids();
+    without_table.retain(|id| !tables.contains_key(id));
+    if without_table.is_empty() {
+        return 0;
+    }
     let verdicts = fs::read_to_string(study.layout.path(VERDICTS)).unwrap_or_default();
     let verdicts = read_json(&verdicts).unwrap_or_default();
     let judged = verdicts.iter().filter(|one| one.verdict != word(Verdict::Missing));
     let judged: BTreeSet<&str> = judged.filter_map(|one| Some(one.id.split_once('/')?.0)).collect();
-    let (ids, tables) = (study.texts.ids(), study.tables());
-    judged.iter().filter(|id| ids.contains(*id) && !tables.contains_key(*id)).count()
+    judged.intersection(&without_table).count()
 }
 
 /// Everything that a run would write under `reports/`, by name within the study; or why it cannot be made.

@@ -75,6 +75,20 @@ measure: [velocity_ratio, displacement_ratio]
 figure: {x: gap_ratio, y: velocity_ratio, caption: One curve.}
 ";
 
+/// Three rows that end in a moment, without a figure.
+pub const THREE_GAPS: &str = "
+title: Long
+source: {chapter: 3, section: '3'}
+about: Three gaps.
+scene:
+  structure: {single_mass: {mass: 1 kg, stiffness: 1000 N/m, damping_ratio: 0.05}}
+  dampers: [{mass_ratio: 0.05, gap_ratio: swept, floor: {rigid: {restitution: 0.5}}}]
+  excitation: {harmonic: {force_ratio: 5, frequency_ratio: 1}}
+sweep: {gap_ratio: [10, 50, 90]}
+run: {skip: 2 cycles, average: 8 cycles, ensemble: none, sensitivity: none}
+measure: [rms_velocity]
+";
+
 pub const STOP_REFERENCE: &str = "
 entries:
   - id: at-two
@@ -107,6 +121,17 @@ impl Desk {
     /// In memory where the system has a folder there: for tests of many runs that would wait for the disk.
     pub fn in_memory() -> Self {
         Self::in_folder(tempfile::tempdir_in("/dev/shm").or_else(|_| tempfile::tempdir()).unwrap())
+    }
+
+    /// The same with this experiment alone, and no entries.
+    pub fn of_one(name: &str, text: &str) -> Self {
+        let desk = Self::in_memory();
+        for name in ["experiments/ch3/ch3-stop.yaml", "experiments/ch3/ch3-gap.yaml"] {
+            fs::remove_file(desk.layout.path(name)).unwrap();
+        }
+        fs::remove_dir_all(desk.layout.path("reference")).unwrap();
+        desk.put(name, text);
+        desk
     }
 
     fn in_folder(folder: tempfile::TempDir) -> Self {

@@ -1,45 +1,24 @@
 //! What a person sees of a row that would not end, and of one that says nothing.
 
-use std::fs;
 use std::io::Read;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-use crate::desk::{Desk, command, shotdamp};
-
-/// Three rows that end in a moment.
-const LONG: &str = "
-title: Long
-source: {chapter: 3, section: '3'}
-about: Three gaps.
-scene:
-  structure: {single_mass: {mass: 1 kg, stiffness: 1000 N/m, damping_ratio: 0.05}}
-  dampers: [{mass_ratio: 0.05, gap_ratio: swept, floor: {rigid: {restitution: 0.5}}}]
-  excitation: {harmonic: {force_ratio: 5, frequency_ratio: 1}}
-sweep: {gap_ratio: [10, 50, 90]}
-run: {skip: 2 cycles, average: 8 cycles, ensemble: none, sensitivity: none}
-measure: [rms_velocity]
-";
+use crate::desk::{Desk, THREE_GAPS, command, shotdamp};
 
 fn study(text: &str) -> Desk {
-    let desk = Desk::in_memory();
-    for name in ["experiments/ch3/ch3-stop.yaml", "experiments/ch3/ch3-gap.yaml"] {
-        fs::remove_file(desk.layout.path(name)).unwrap();
-    }
-    fs::remove_dir_all(desk.layout.path("reference")).unwrap();
-    desk.put("experiments/ch3/ch3-long.yaml", text);
-    desk
+    Desk::of_one("experiments/ch3/ch3-long.yaml", text)
 }
 
 /// One row, of ten million cycles.
 fn endless() -> String {
-    let swept = LONG.replace("average: 8 cycles", "average: 10000000 cycles");
+    let swept = THREE_GAPS.replace("average: 8 cycles", "average: 10000000 cycles");
     swept.replace("[10, 50, 90]", "[50]")
 }
 
 #[test]
 fn a_row_at_its_limit_fails_with_the_reason_and_a_higher_limit_resumes_there() {
-    let desk = study(LONG);
+    let desk = study(THREE_GAPS);
     let said = shotdamp(&desk, &["run", "--row-limit", "20 events"]);
     assert_eq!(said.code, 2);
     assert!(
@@ -60,7 +39,7 @@ fn a_row_at_its_limit_fails_with_the_reason_and_a_higher_limit_resumes_there() {
     // A limit that is not reached leaves no trace.
     desk.put(
         "experiments/ch3/ch3-long.yaml",
-        &LONG.replace("ensemble: none", "ensemble: none, limit: {events: 1e6, time: 2 h}"),
+        &THREE_GAPS.replace("ensemble: none", "ensemble: none, limit: {events: 1e6, time: 2 h}"),
     );
     assert!(shotdamp(&desk, &["run", "--dry-run"]).out.contains("0 of 1 experiment would be simulated"));
     assert_eq!(shotdamp(&desk, &["run", "--force"]).code, 0);
@@ -224,7 +203,7 @@ fn an_interrupt_does_not_wait_for_a_large_matrix() {
 
 #[test]
 fn show_ends_soon_and_says_what_it_left_out() {
-    let many = LONG.replace("mass_ratio: 0.05, ", "mass_ratio: swept, ").replace(
+    let many = THREE_GAPS.replace("mass_ratio: 0.05, ", "mass_ratio: swept, ").replace(
         "{gap_ratio: [10, 50, 90]}",
         "{gap_ratio: {log: {from: 1, to: 100, points: 1000}}, mass_ratio: {log: {from: 0.01, to: 0.1, points: 90}}}",
     );
@@ -244,19 +223,20 @@ fn show_ends_soon_and_says_what_it_left_out() {
         assert!(took < 2.0, "{took} s\n{told}");
         assert!(told.contains("takes more than 1.5 s") || told.contains("Fingerprint"), "{told}");
     }
-    let said = shotdamp(&study(LONG), &["show", "ch3-long"]);
+    let said = shotdamp(&study(THREE_GAPS), &["show", "ch3-long"]);
     assert!(!said.out.contains("Left out") && said.out.contains("Fingerprint"), "{}", said.out);
 }
 
 #[test]
 fn what_will_take_long_or_say_nothing_is_told_beforehand() {
-    let fixed =
-        LONG.replace("run: {", "run: {solver: {fixed_step: {time_step: 1 ns}}, ").replace("average: 8", "average: 100");
+    let fixed = THREE_GAPS
+        .replace("run: {", "run: {solver: {fixed_step: {time_step: 1 ns}}, ")
+        .replace("average: 8", "average: 100");
     for (text, warning) in [
         (fixed.as_str(), "fixed steps take about"),
-        (&LONG.replace("restitution: 0.5", "restitution: 1"), "may bounce without end"),
+        (&THREE_GAPS.replace("restitution: 0.5", "restitution: 1"), "may bounce without end"),
         (
-            &LONG.replace("force_ratio: 5", "force_ratio: 0").replace("[rms", "[velocity_ratio, rms"),
+            &THREE_GAPS.replace("force_ratio: 5", "force_ratio: 0").replace("[rms", "[velocity_ratio, rms"),
             "the excitation is zero",
         ),
     ] {
@@ -272,7 +252,7 @@ fn what_will_take_long_or_say_nothing_is_told_beforehand() {
 
 #[test]
 fn a_ratio_of_nothing_to_nothing_is_undefined_everywhere() {
-    let text = LONG.replace("force_ratio: 5", "force_ratio: 0").replace("[rms", "[velocity_ratio, rms");
+    let text = THREE_GAPS.replace("force_ratio: 5", "force_ratio: 0").replace("[rms", "[velocity_ratio, rms");
     let figure = "figure: {x: gap_ratio, y: velocity_ratio, caption: Nothing.}\n";
     let desk = study(&(text + figure));
     let said = shotdamp(&desk, &["run"]);
@@ -291,7 +271,7 @@ fn a_ratio_of_nothing_to_nothing_is_undefined_everywhere() {
 #[test]
 fn numbers_without_balance_count_for_no_entry() {
     // A damping far beyond critical leaves few digits of the energy.
-    let text = LONG
+    let text = THREE_GAPS
         .replace("{rigid: {restitution: 0.5}}", "{resilient: {stiffness_ratio: 1, damping_ratio: 0.15}}")
         .replace("damping_ratio: 0.05}}", "damping_ratio: 1e4}}")
         .replace("harmonic", "impulse_train");

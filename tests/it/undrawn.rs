@@ -2,32 +2,18 @@
 
 use std::fs;
 
-use crate::desk::{Desk, shotdamp};
+use crate::desk::{Desk, THREE_GAPS, shotdamp};
 
-/// Three rows that end in a moment.
-const DRAWN: &str = "
-title: Drawn
-source: {chapter: 3, section: '3'}
-about: Three gaps.
-scene:
-  structure: {single_mass: {mass: 1 kg, stiffness: 1000 N/m, damping_ratio: 0.05}}
-  dampers: [{mass_ratio: 0.05, gap_ratio: swept, floor: {rigid: {restitution: 0.5}}}]
-  excitation: {harmonic: {force_ratio: 5, frequency_ratio: 1}}
-sweep: {gap_ratio: [10, 50, 90]}
-run: {skip: 2 cycles, average: 8 cycles, ensemble: none, sensitivity: none}
-measure: [velocity_ratio]
-";
 const FIGURE: &str = "figure: {x: gap_ratio, y: velocity_ratio, caption: Three points.}\n";
 const FILE: &str = "experiments/ch3/ch3-drawn.yaml";
 
+/// Three rows of what the figure draws.
+fn drawn() -> String {
+    THREE_GAPS.replace("rms_velocity", "velocity_ratio")
+}
+
 fn study() -> Desk {
-    let desk = Desk::in_memory();
-    for name in ["experiments/ch3/ch3-stop.yaml", "experiments/ch3/ch3-gap.yaml"] {
-        fs::remove_file(desk.layout.path(name)).unwrap();
-    }
-    fs::remove_dir_all(desk.layout.path("reference")).unwrap();
-    desk.put(FILE, &(DRAWN.to_owned() + FIGURE));
-    desk
+    Desk::of_one(FILE, &(drawn() + FIGURE))
 }
 
 /// Names of the pictures of the figure.
@@ -57,13 +43,13 @@ fn without_a_force_there_is_no_picture_and_with_one_there_is_again() {
     assert_eq!(shotdamp(&desk, &["run"]).code, 0);
     assert_eq!(pictures(&desk).len(), 2);
     assert!(page(&desk).contains("![Three points.](ch3-drawn.png)"));
-    desk.put(FILE, &(DRAWN.replace("force_ratio: 5", "force_ratio: 0") + FIGURE));
+    desk.put(FILE, &(drawn().replace("force_ratio: 5", "force_ratio: 0") + FIGURE));
     for _ in 0..2 {
         let said = shotdamp(&desk, &["run"]);
         assert!(said.code == 2 && said.err.contains("has nothing to draw"), "{}", said.err);
         says_that_there_is_none(&desk, "neither run moves");
     }
-    desk.put(FILE, &(DRAWN.to_owned() + FIGURE));
+    desk.put(FILE, &(drawn() + FIGURE));
     assert_eq!(shotdamp(&desk, &["run"]).code, 0);
     assert_eq!(pictures(&desk).len(), 2);
 }
@@ -90,7 +76,7 @@ fn a_figure_that_is_taken_out_takes_its_pictures_along() {
             // Some rows fail, others are drawn.
             shotdamp(&desk, &["run", "--force", before, "60 events"]);
         }
-        let after = if after.is_empty() { DRAWN.to_owned() } else { DRAWN.replace("average: 8", after) };
+        let after = if after.is_empty() { drawn() } else { drawn().replace("average: 8", after) };
         desk.put(FILE, &after);
         let said = shotdamp(&desk, &["run"]);
         assert_eq!(said.code, 0, "{}", said.err);
@@ -105,7 +91,7 @@ fn a_picture_that_no_record_knows_goes_too() {
     let desk = study();
     assert_eq!(shotdamp(&desk, &["run"]).code, 0);
     fs::remove_dir_all(desk.layout.path("results")).unwrap();
-    desk.put(FILE, &(DRAWN.replace("force_ratio: 5", "force_ratio: 0") + FIGURE));
+    desk.put(FILE, &(drawn().replace("force_ratio: 5", "force_ratio: 0") + FIGURE));
     assert_eq!(shotdamp(&desk, &["run"]).code, 2);
     says_that_there_is_none(&desk, "neither run moves");
 }

@@ -211,7 +211,7 @@ impl Run<'_> {
         }
         if self.response.events.len() < self.options.record_events {
             let (cycle, time) = (self.cycle, self.time.near());
-            let lasts = matches!(kind, EventKind::FloorContact | EventKind::CeilingContact);
+            let lasts = kind.is_contact();
             self.response.events.push(Event { cycle, time, particle, kind, approach, departure, lasts });
         }
     }
