@@ -60,6 +60,15 @@ pub(crate) struct Flow {
     pub(crate) place: Cell<usize>,
 }
 
+/// Room for so many numbers, whatever stands there.
+#[inline(always)]
+fn room(work: &mut Vec<f64>, count: usize) -> &mut [f64] {
+    if work.len() < count {
+        work.resize(count, 0.0);
+    }
+    &mut work[..count]
+}
+
 impl Flow {
     /// Builds the flow of a contact state with the contact damping now in force.
     pub(crate) fn build(system: &HybridSystem, contacts: &[Contact], damping: &[f64]) -> Result<Self, EngineError> {
@@ -186,7 +195,7 @@ impl Flow {
         c: &mut [f64],
     ) {
         let (order, size) = (self.order, self.modes.spectral.width());
-        work.resize(2 * order, 0.0);
+        let work = room(work, 2 * order);
         let (positions, velocities) = work.split_at_mut(order);
         for (i, (position, velocity)) in positions.iter_mut().zip(velocities).enumerate() {
             [*position, *velocity] = self.free(i, [p[i], rate[i]], force, drive);
@@ -256,7 +265,7 @@ impl Flow {
     ) {
         let (order, width) = (self.order, self.modes.spectral.width());
         let (p, rate) = (&mut p[..order], &mut rate[..order]);
-        work.resize(2 * order, 0.0);
+        let work = room(work, 2 * order);
         // There may be more blocks than coordinates; those that `c` has none for are at rest.
         self.modes.columns.sum_by_registers(c, work);
         let (positions, rates) = work.split_at(order);
@@ -305,9 +314,14 @@ impl Flow {
         }
     }
 
+    /// The largest radius of a block, 1/s; 0 where nothing moves.
+    pub(crate) fn fastest(&self) -> f64 {
+        self.series.fastest.first().copied().unwrap_or_default()
+    }
+
     /// So short a time that the cube of what turns in it is below rounding.
     pub(crate) fn is_short(&self, time: f64) -> bool {
-        self.blocks.iter().all(|block| block.radius * time < 5e-6)
+        self.fastest() * time < 5e-6
     }
 
     /// So short a time that its slowest block has hardly turned.

@@ -103,7 +103,7 @@ const SHORT: f64 = 1e-3;
 /// So short a time that a gap is followed by its derivatives: as the sum of its parts it would be all rounding.
 #[inline]
 pub(crate) fn is_short(flow: &Flow, time: f64) -> bool {
-    flow.blocks.iter().all(|block| block.radius * time < SHORT)
+    flow.fastest() * time < SHORT
 }
 
 /// A gap after a short time, from where it is: its acceleration is `constant` plus `sign` times that of the shares.

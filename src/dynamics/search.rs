@@ -234,15 +234,6 @@ impl Search {
 
     #[inline(always)]
     fn least_clear(&self) -> (usize, f64) {
-        if self.bends.is_empty() {
-            let mut least = (0, f64::INFINITY);
-            for (guard, clear) in self.clear.iter().enumerate() {
-                if *clear < least.1 {
-                    least = (guard, *clear);
-                }
-            }
-            return least;
-        }
         let smaller = |a: f64, b: f64| if b < a { b } else { a };
         let (fours, rest) = self.clear.as_chunks();
         let each = fours.iter().map(|clear| Four::new(*clear));

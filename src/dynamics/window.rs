@@ -1,5 +1,6 @@
 //! One guard over one window: its polynomial with a bound on what that leaves out, and what the two prove.
 
+use super::four::Four;
 use super::parabola::Parabola;
 use super::polynomial::{Coefficients, DEGREE, bernstein, evaluate};
 use super::series::{Bounds, Series, Shares, Span};
@@ -317,13 +318,17 @@ impl Signs {
 
     #[inline(always)]
     fn of(b: &Coefficients, doubt: f64) -> Self {
-        let (mut positive, mut negative) = (0, 0);
-        for (i, b) in b.iter().enumerate() {
-            // Masks as wide as the numbers, so that two fit a register.
-            positive |= if *b > doubt { 1 << i } else { 0 };
-            negative |= if *b < -doubt { 1 << i } else { 0 };
+        // Their bits are summed up as numbers, several at a time; those of 2⁵² + n end in those of n.
+        const MANY: f64 = (1_u64 << 52) as f64;
+        let behind = (1 << (DEGREE + 1)) as f64;
+        let (mut sum, mut bits) = (Four::ZERO, Four::new([1.0, 2.0, 4.0, 8.0]));
+        for b in b.as_chunks().0 {
+            let positive = Four::new(*b).zip(bits, |b, bit| if b > doubt { bit } else { 0.0 });
+            let negative = Four::new(*b).zip(bits * behind, |b, bit| if b < -doubt { bit } else { 0.0 });
+            (sum, bits) = (sum + positive + negative, bits * 16.0);
         }
-        Self { positive, negative }
+        let both = (sum.sum() + MANY).to_bits();
+        Self { positive: both & Self::ALL, negative: both >> (DEGREE + 1) & Self::ALL }
     }
 
     /// Positive, then doubtful, then negative.
