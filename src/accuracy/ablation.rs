@@ -160,7 +160,7 @@ fn case(
     let trial = trial(recipe, experiment, assumptions)?;
     let limit_stop = usual_stop(recipe, assumptions);
     let own = event_driven(&trial.system, &trial.options)?;
-    let bare = event_driven(&trial.undamped, &trial.options)?;
+    let bare = event_driven(&trial.undamped, &trial.undamped_options)?;
     let base = Base { values: trial.read(&own, &bare)?, trial: &trial, bare: &bare };
     let closed_form = own.method == Method::ClosedForm;
     let far = out_of_reach(&trial.system, &trial.options);
@@ -176,7 +176,10 @@ fn case(
             Switching::Not(_) if *in_force == 0 => Outcome::Not((*why_not).into()),
             Switching::Not(why) => Outcome::Not(why.into()),
             Switching::Off(scene) | Switching::On(scene) => match compile(&scene) {
-                Ok(system) => base.with(&system, &bare),
+                Ok(system) => {
+                    let options = Options { start: scene.start_state(), ..trial.options.clone() };
+                    base.with(Instead { system: &system, options: &options, trial: &trial }, &bare)
+                }
                 Err(error) => Outcome::Not(error.to_string()),
             },
         },
@@ -201,6 +204,14 @@ fn usual_stop(recipe: &Recipe, assumptions: &Assumptions) -> Option<LimitStop> {
     stop.resolve(assumptions).ok()
 }
 
+/// What takes the place of a case: another system, with its start and what reads its measures.
+#[derive(Clone, Copy)]
+struct Instead<'a> {
+    system: &'a HybridSystem,
+    options: &'a Options,
+    trial: &'a Trial<'a>,
+}
+
 /// The case as it is.
 struct Base<'a> {
     trial: &'a Trial<'a>,
@@ -210,20 +221,21 @@ struct Base<'a> {
 
 impl Base<'_> {
     fn times(&self, system: &HybridSystem) -> Times {
-        Times::of(|| drop(std::hint::black_box(event_driven(system, &self.trial.options))), PATIENCE)
+        times(system, &self.trial.options)
     }
 
     /// The case with another system in its place.
-    fn with(&self, system: &HybridSystem, bare: &Response) -> Outcome {
+    fn with(&self, instead: Instead<'_>, bare: &Response) -> Outcome {
+        let Instead { system, options, trial } = instead;
         let run = || -> Result<(u64, Vec<f64>), NoAccuracy> {
-            let response = event_driven(system, &self.trial.options)?;
-            Ok((response.proof.events, self.trial.read(&response, bare)?))
+            let response = event_driven(system, options)?;
+            Ok((response.proof.events, trial.read(&response, bare)?))
         };
         match run() {
             Err(error) => Outcome::Not(error.to_string()),
             Ok((events, values)) => {
                 let (worst, change) = worst(&self.trial.measures, &values, &self.values);
-                Outcome::Changed { change, worst, events, times: self.times(system) }
+                Outcome::Changed { change, worst, events, times: times(system, options) }
             }
         }
     }
@@ -235,10 +247,13 @@ impl Base<'_> {
             system.damping.entries.fill(0.0);
             system
         };
-        match event_driven(&still(&self.trial.undamped), &self.trial.options) {
-            Ok(bare) => self.with(&still(&self.trial.system), &bare),
+        let trial = self.trial;
+        let system = still(&trial.system);
+        let instead = Instead { system: &system, options: &trial.options, trial };
+        match event_driven(&still(&trial.undamped), &trial.undamped_options) {
+            Ok(bare) => self.with(instead, &bare),
             Err(error @ EngineError::UndampedResonance { .. }) => Outcome::Not(error.to_string()),
-            Err(_) => self.with(&still(&self.trial.system), self.bare),
+            Err(_) => self.with(instead, self.bare),
         }
     }
 
@@ -251,10 +266,15 @@ impl Base<'_> {
             .and_then(|()| trial(&recipe, experiment, assumptions).map_err(|error| error.to_string()));
         match other {
             Err(error) => Outcome::Not(error),
-            Ok(other) => match event_driven(&other.undamped, &self.trial.options) {
-                Ok(bare) => self.with(&other.system, &bare),
+            Ok(other) => match event_driven(&other.undamped, &other.undamped_options) {
+                Ok(bare) => self.with(Instead { system: &other.system, options: &other.options, trial: &other }, &bare),
                 Err(error) => Outcome::Not(error.to_string()),
             },
         }
     }
+}
+
+/// How long a run takes.
+fn times(system: &HybridSystem, options: &Options) -> Times {
+    Times::of(|| drop(std::hint::black_box(event_driven(system, options))), PATIENCE)
 }

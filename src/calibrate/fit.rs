@@ -22,6 +22,9 @@ pub enum CalibrationError {
     /// An entry that the reference lacks.
     #[error("`{0}` is no entry of an experiment of this study")]
     NoEntry(String),
+    /// An entry with two parts at once.
+    #[error("`{0}` is both in `fit` and in `hold_out`: what was fitted tests nothing")]
+    FittedAndHeldOut(String),
     /// A value that leaves an experiment no cycle to average.
     #[error(
         "`{input}` has a value with which `{experiment}` averages no whole number of cycles up to cycle {to}: give it whole numbers below {to}"
@@ -239,22 +242,27 @@ fn profiles(calibration: &Calibration, trail: &Trail) -> Vec<Profile> {
     calibration.inputs.iter().enumerate().map(|(which, input)| of(which, input.tried.count())).collect()
 }
 
-/// Entries by their ids; `EXPERIMENT/*` stands for all of an experiment that are not `taken`.
+/// Entries by their ids, each once; `EXPERIMENT/*` stands for all of an experiment that are not `taken`, and nothing else may be.
 fn chosen<'a>(
     ids: &[String],
     references: &'a BTreeMap<String, ReferenceFile>,
     taken: &BTreeSet<&str>,
 ) -> Result<Vec<Asked<'a>>, CalibrationError> {
-    let mut chosen = Vec::new();
+    let mut chosen: Vec<Asked<'a>> = Vec::new();
     for id in ids {
+        if taken.contains(id.as_str()) {
+            return Err(CalibrationError::FittedAndHeldOut(id.clone()));
+        }
         let none = || CalibrationError::NoEntry(id.clone());
         let (experiment, name) = id.split_once('/').ok_or_else(none)?;
         let file = references.get(experiment).ok_or_else(none)?;
         let wanted = |entry: &&Entry| if name == "*" { !taken.contains(entry.id.as_str()) } else { entry.id == *id };
-        let before = chosen.len();
-        chosen.extend(file.entries.iter().filter(wanted).map(|entry| (file.experiment.as_str(), entry)));
-        if chosen.len() == before {
-            return Err(none());
+        let mut found = file.entries.iter().filter(wanted).peekable();
+        found.peek().ok_or_else(none)?;
+        for entry in found {
+            if chosen.iter().all(|(_, known)| known.id != entry.id) {
+                chosen.push((file.experiment.as_str(), entry));
+            }
         }
     }
     Ok(chosen)

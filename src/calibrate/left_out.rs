@@ -30,6 +30,14 @@ pub struct LeftOut {
     pub by_chance: f64,
 }
 
+impl LeftOut {
+    /// Whether some set does not bring it near its number: one that any set brings there is no prediction.
+    #[must_use]
+    pub fn tells_sets_apart(&self) -> bool {
+        self.by_chance < 1.0
+    }
+}
+
 /// Leaves out each entry of `fit` in turn. Of each of `sets` the errors of all entries are given. An entry is left away where no
 /// set gives all others a number.
 pub(super) fn left_out(

@@ -99,7 +99,7 @@ fn left_out(calibration: &Calibration, result: &Calibrated) -> String {
          residual without it comes within a tenth of the least one. Given are the entry’s errors under these sets, and the values \
          that the best set of all entries does not have. By chance: the share of all sets that bring it within a tenth of its \
          number, or as its tolerance says. An entry *comes out* if both ends of its errors would still get the verdict `fitted`, \
-         with its uncertainties; the index counts them.\n\n{}",
+         with its uncertainties, and if not every set brings it there; the index counts them.\n\n{}",
         table.finish(),
     )
 }

@@ -38,7 +38,8 @@ pub(super) fn calibrate(layout: &Layout, args: &CalibrateArgs, common: &Args) ->
     let page = calibration_page(&calibration, &result);
     atomic::write_if_changed(&layout.path(&format!("reports/calibrations/{id}.md")), page.as_bytes())?;
     if calibration.leave_one_out {
-        let errors = result.left_out.iter().map(|one| (one.id.clone(), one.errors)).collect();
+        let predicted = result.left_out.iter().filter(|one| one.tells_sets_apart());
+        let errors = predicted.map(|one| (one.id.clone(), one.errors)).collect();
         let record = LeftOutRecord::of(&calibration, errors);
         atomic::write_if_changed(&layout.path(&LeftOutRecord::name(&id.0)), record.text().as_bytes())?;
     }

@@ -65,16 +65,13 @@ impl Stretch {
         self.take(view, |line| mean_of(line, |a, b| (a + b) / 2.0))
     }
 
-    /// √ of the mean of (y − mean)².
+    /// √ of the mean of (y − mean)² of the points, each of which counts by the stretch around it: on an even grid what a program gives
+    /// for the list of them.
     pub(crate) fn standard_deviation(&self, view: &View<'_>) -> Result<Extracted, Absence> {
         self.take(view, |line| {
             let mean = mean_of(line, |a, b| (a + b) / 2.0);
-            // Exact for a straight line between two points.
-            mean_of(line, |a, b| {
-                let (a, b) = (a - mean, b - mean);
-                (a * a + a * b + b * b) / 3.0
-            })
-            .sqrt()
+            let square = |y: f64| (y - mean) * (y - mean);
+            mean_of(line, |a, b| (square(a) + square(b)) / 2.0).sqrt()
         })
     }
 

@@ -48,7 +48,7 @@ pub(crate) fn verdict(comparison: &Comparison, scale: Option<f64>, fitted: bool)
         } else if comparison.spread * comparison.spread > comparison.u_num * comparison.u_num / 2.0 {
             (Verdict::Undecidable, "the chaotic spread alone is")
         } else {
-            (Verdict::Undecidable, "the sweep's grid and the run's own error alone are")
+            (Verdict::Undecidable, "the run's own error, the sweep's grid and the digits of a printed place alone are")
         };
         let width = super::text::percent(simulated / scale);
         return (verdict, Some(format!("cannot be tested: {cause} ±{width}")));

@@ -2,6 +2,7 @@
 
 use std::cmp::Ordering;
 
+use super::compare::COVERAGE;
 use super::extract::Extracted;
 use super::extraction::Extraction;
 use super::line::{common, lines};
@@ -243,7 +244,7 @@ fn between(claim: &Between, view: &View<'_>) -> Result<Decision, Absence> {
     };
     // Below the digits shown it is rounding and not worth a reader's time.
     let shown = if value.run > 1e-4 * value.value.abs() {
-        let (number, error) = with_uncertainty(value.value, value.run);
+        let (number, error) = with_uncertainty(value.value, COVERAGE * value.run);
         let unit = if value.unit.is_empty() { String::new() } else { format!(" {}", value.unit) };
         format!("{number} ± {error}{unit}")
     } else {
@@ -322,8 +323,9 @@ fn line_above(claim: &LineAbove, view: &View<'_>) -> Result<Decision, Absence> {
 fn agree(tally: &mut Tally, cells: &[Cell], within: Within, place: impl FnOnce() -> String) {
     if let Some((low, high)) = extremes(cells) {
         let apart = high.value - low.value;
-        let margin = within.allows(low.value, high.value) - apart;
-        tally.require(margin, joint([low.value, low.run], [high.value, high.run]), || {
+        let allowed = within.allows(low.value, high.value);
+        let scale = if allowed > 0.0 { allowed } else { 1.0 };
+        tally.require_in(scale, allowed - apart, joint([low.value, low.run], [high.value, high.run]), || {
             let shown = match within {
                 Within::Relative(_) => percent(apart / low.value.abs().max(high.value.abs())),
                 Within::Absolute(_) => significant(apart, 3),
@@ -336,7 +338,10 @@ fn agree(tally: &mut Tally, cells: &[Cell], within: Within, place: impl FnOnce()
 fn paths_cross(claim: &PathsCross, view: &View<'_>) -> Result<Decision, Absence> {
     let rows = view.rows(claim.source(), None)?;
     let (one, other) = (view.path(&rows, &claim.of)?, view.path(&rows, &claim.other)?);
-    let unit = view.unit(&rows, &claim.of)?;
+    let (unit, others) = (view.unit(&rows, &claim.of)?, view.unit(&rows, &claim.other)?);
+    if unit != others {
+        return Err(Absence::Broken(format!("`{}` in `{unit}` against `{}` in `{others}`", claim.of, claim.other)));
+    }
     let apart = || one.iter().zip(other).map(|(a, b)| a - b);
     let (above, below) = (apart().fold(f64::NEG_INFINITY, f64::max), -apart().fold(f64::INFINITY, f64::min));
     let mut tally = Tally::new();

@@ -90,7 +90,7 @@ pub struct Entry {
     pub expected: Verdict,
     /// Why, where that is not [`Verdict::Reproduced`]; otherwise a note, or empty. With placeholders, see [`Prose`].
     pub explanation: String,
-    /// Inputs that the study does not give and without which the entry cannot be judged.
+    /// Inputs that the study does not give and without which a claim cannot be judged.
     pub blocked_by: Vec<String>,
     /// The line of the file on which it starts, counted from 1; no part of what it means.
     #[serde(skip)]
@@ -339,8 +339,12 @@ impl RawEntry {
         if let Err(error) = Prose::parse(self.explanation.as_deref().unwrap_or_default()) {
             wrong.push(EntryMistake::Explanation(error));
         }
-        if expected == Verdict::Blocked && self.blocked_by.is_empty() {
+        let is_number = self.value.is_some() || self.peak.is_some();
+        if expected == Verdict::Blocked && self.blocked_by.is_empty() && !is_number {
             wrong.push(EntryMistake::NotBlockedBy);
+        }
+        if is_number && !self.blocked_by.is_empty() {
+            wrong.push(EntryMistake::NumberBlockedBy);
         }
         let threshold_reason = self.threshold_reason.clone().unwrap_or_default().trim().to_string();
         let kinds = [

@@ -23,6 +23,10 @@ pub enum EntryMistake {
     Placeholder(String),
     #[error("expects `blocked` and needs `blocked_by`: which input the study does not give")]
     NotBlockedBy,
+    #[error(
+        "has `blocked_by`, which belongs to claims: what a number waits for is read off its moved assumptions; an input without one needs an assumption with a `range`"
+    )]
+    NumberBlockedBy,
     #[error("needs exactly one of `value` with `from`, `claim`, `peak`, `curve` or `mode_shape`")]
     NotOneKind,
     #[error("has a `value` that cannot be read: {0}")]

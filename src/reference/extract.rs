@@ -246,7 +246,8 @@ impl Parting {
         };
         let fraction = percent(self.fraction);
         let unit = both[0].1.over_unit.clone();
-        match shared.iter().position(|(_, cells)| apart(cells)) {
+        let stay_apart = |i: usize| shared[i..].iter().take(2).all(|(_, cells)| apart(cells));
+        match (0..shared.len()).find(|i| stay_apart(*i)) {
             None => Err(Absence::Nowhere(format!("the lines never part by {fraction}"))),
             Some(0) => {
                 Err(Absence::Nowhere(format!("the lines are more than {fraction} apart from the first point on")))

@@ -8,6 +8,8 @@ use super::line::Pair;
 use super::resonance::Peak;
 use super::selection::Selection;
 use super::view::Source;
+use crate::measure::Measure;
+use crate::text::words::of_key;
 
 /// How a number is taken out of a table.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -35,7 +37,8 @@ pub enum Extraction {
     Crossing(Crossing),
     /// The first parameter value at which a measure exceeds a level.
     FirstAbove(FirstAbove),
-    /// The first parameter value at which two lines differ by more than a fraction of their mean, and by more than chance.
+    /// The first parameter value at which two lines differ by more than a fraction of their mean, and by more than chance, and at
+    /// the next one, too: a single point may be a run that has not settled.
     Parting(Parting),
     /// The first parameter value at which two lines change places.
     Meeting(Meeting),
@@ -272,6 +275,16 @@ impl Direction {
 }
 
 impl Extraction {
+    /// Whether it takes a number of events, which has no digits to come.
+    pub(crate) fn is_count(&self) -> bool {
+        let of = match self {
+            Self::Cell(cells) | Self::Largest(cells) | Self::Smallest(cells) => &cells.of,
+            Self::Maximum(along) | Self::Minimum(along) => &along.of,
+            _ => return false,
+        };
+        Measure::ALL.iter().any(|measure| measure.is_count() && of_key(measure) == *of)
+    }
+
     /// True if every number written into it is finite.
     pub(crate) fn is_sound(&self) -> bool {
         match self {

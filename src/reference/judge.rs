@@ -18,9 +18,12 @@ use super::printed::Printed;
 use super::resonance::PrintedPeak;
 use super::tally::{Decision, Outcome};
 use super::text::{measured, significant};
-use super::verdict::{Comparison, Judged, Moved, Part, Role, Verdict};
+use super::verdict::{Comparison, Judged, Kind, Moved, Part, Role, Verdict};
 use super::view::{Absence, Reads, Tables, View};
 use crate::table::BASELINE;
+
+/// Share of u_input² that is most of it.
+const MOST: f64 = 0.8;
 
 /// Gives every entry of a file its verdict. `fitted` holds the ids of the entries that an assumption was fitted to; whether a
 /// calibration knows them is left to the caller ([`Judged::role`]).
@@ -57,6 +60,8 @@ pub(crate) fn judge_entry(
             };
             decide(predicate, &view).and_then(|baseline| {
                 let others = moved(&view, |variant| decide(predicate, variant))?;
+                let blocked = !entry.blocked_by.is_empty();
+                let verdict = |outcome| if blocked { Verdict::Blocked } else { verdict(outcome) };
                 let description = |(variant, other): &(&str, Decision)| Moved {
                     variant: (*variant).into(),
                     found: in_words(other.outcome).into(),
@@ -65,8 +70,13 @@ pub(crate) fn judge_entry(
                     kept: other.outcome == baseline.outcome,
                 };
                 let moved: Vec<Moved> = others.iter().map(description).collect();
+                let mut found = format!("{}: {}", in_words(baseline.outcome), baseline.found);
+                if blocked {
+                    found += &format!(" (not stated: {})", entry.blocked_by.join(", "));
+                }
                 Ok(Judgement {
-                    found: format!("{}: {}", in_words(baseline.outcome), baseline.found),
+                    found,
+                    blocked_by: entry.blocked_by.clone(),
                     robust: robust(&moved),
                     moved,
                     fit: predicate.fit(&view),
@@ -75,11 +85,7 @@ pub(crate) fn judge_entry(
             })
         }
     };
-    let mut judgement = judgement.unwrap_or_else(|absence| Judgement::missing(&absence));
-    if !entry.blocked_by.is_empty() && judgement.verdict != Verdict::Missing {
-        judgement.verdict = Verdict::Blocked;
-        judgement.found = format!("{} (not stated: {})", judgement.found, entry.blocked_by.join(", "));
-    }
+    let judgement = judgement.unwrap_or_else(|absence| Judgement::missing(&absence));
     let tolerance_reason = match &entry.check {
         Check::Value { tolerance, .. } | Check::Peak { tolerance, .. } => {
             tolerance.as_ref().map(|tolerance| tolerance.reason.clone())
@@ -89,6 +95,10 @@ pub(crate) fn judge_entry(
     Judged {
         id: entry.id.clone(),
         experiment: experiment.into(),
+        kind: match entry.check {
+            Check::Value { .. } | Check::Peak { .. } => Kind::Number,
+            Check::Claim { .. } => Kind::Claim,
+        },
         statement: entry.says.clone(),
         place: entry.place.clone(),
         verdict: judgement.verdict,
@@ -98,7 +108,7 @@ pub(crate) fn judge_entry(
         parts: judgement.parts,
         fit: judgement.fit,
         explanation: entry.explanation.clone(),
-        blocked_by: entry.blocked_by.clone(),
+        blocked_by: judgement.blocked_by,
         tolerance_reason,
         robust: judgement.robust,
         moved: judgement.moved,
@@ -122,6 +132,7 @@ struct Judgement {
     comparison: Option<Comparison>,
     parts: Vec<Part>,
     fit: Option<Fit>,
+    blocked_by: Vec<String>,
     robust: Option<(u32, u32)>,
     moved: Vec<Moved>,
 }
@@ -134,6 +145,7 @@ impl Judgement {
             comparison: None,
             parts: Vec::new(),
             fit: None,
+            blocked_by: Vec::new(),
             robust: None,
             moved: Vec::new(),
         }
@@ -160,6 +172,9 @@ fn numbers(view: &View<'_>, peak: &PrintedPeak, by_hand: Option<&Tolerance>, fit
     // smallest count is.
     let robust = judged.iter().filter_map(|(_, judgement)| judgement.robust).min();
     let found: Vec<String> = judged.iter().map(|(name, judgement)| format!("{name} {}", judgement.found)).collect();
+    let mut blocked_by: Vec<String> = judged.iter().flat_map(|(_, judgement)| judgement.blocked_by.clone()).collect();
+    blocked_by.sort();
+    blocked_by.dedup();
     let parts = judged.into_iter().map(|(name, Judgement { verdict, found, comparison, .. })| Part {
         name: name.into(),
         verdict,
@@ -167,7 +182,13 @@ fn numbers(view: &View<'_>, peak: &PrintedPeak, by_hand: Option<&Tolerance>, fit
         comparison,
     });
     let parts = parts.collect();
-    Judgement { found: found.join("; "), parts, robust, ..Judgement::of(verdict.unwrap_or(Verdict::Missing)) }
+    Judgement {
+        found: found.join("; "),
+        parts,
+        blocked_by,
+        robust,
+        ..Judgement::of(verdict.unwrap_or(Verdict::Missing))
+    }
 }
 
 /// How bad a verdict is among several.
@@ -218,7 +239,7 @@ fn value(
         }
         Err(absence) => return Err(absence),
     };
-    let (datum, u_data) = published.converted_to(&simulated.unit).ok_or_else(|| {
+    let (datum, half_unit) = published.converted_to(&simulated.unit).ok_or_else(|| {
         let column = match simulated.unit.as_str() {
             "" => "a column without unit".into(),
             unit => format!("a column in `{unit}`"),
@@ -230,16 +251,18 @@ fn value(
         Err(Absence::Nowhere(_)) => Ok(None),
         other => other.map(Some),
     })?;
+    let shares = input_shares(simulated.value, &others);
+    let from_inputs = shares.iter().map(|(_, square)| square).sum::<f64>().sqrt();
     let comparison = Comparison {
         simulated: simulated.value,
         published: datum,
         u_num: libm::hypot(simulated.run, simulated.spread),
-        u_input: libm::hypot(u_input(simulated.value, &others), from.left_by_tolerances(view)),
-        u_data,
+        u_input: libm::hypot(from_inputs, from.left_by_tolerances(view)),
+        u_data: if from.is_count() { 0.0 } else { half_unit },
         spread: simulated.spread,
         tolerance_by_hand: by_hand.map(|tolerance| match tolerance.size {
             ToleranceSize::Relative(fraction) => fraction * datum.abs(),
-            ToleranceSize::Absolute(distance) => distance * (u_data / published.half_unit()),
+            ToleranceSize::Absolute(distance) => distance * (half_unit / published.half_unit()),
         }),
     };
     let (verdict, remark) = compare::verdict(&comparison, simulated.scale, fitted);
@@ -261,19 +284,39 @@ fn value(
     if let Some(remark) = remark {
         found = format!("{found}; {remark}");
     }
+    let blocked_by = if verdict == Verdict::Blocked { most_of(&shares) } else { Vec::new() };
+    if !blocked_by.is_empty() {
+        found += &format!(", most of it `{}`", blocked_by.join("`, `"));
+    }
     let robust = robust(&moved);
-    Ok(Judgement { found, comparison: Some(comparison), robust, moved, ..Judgement::of(verdict) })
+    Ok(Judgement { found, comparison: Some(comparison), blocked_by, robust, moved, ..Judgement::of(verdict) })
 }
 
-/// Half the range that each assumption gives the value, root-sum-square. A variant is named `assumption=value`.
-fn u_input(baseline: f64, others: &[(&str, Option<Extracted>)]) -> f64 {
+/// What each assumption adds to u_input², largest first: the square of half the range that it gives the value. A variant is named
+/// `assumption=value`.
+fn input_shares<'a>(baseline: f64, others: &[(&'a str, Option<Extracted>)]) -> Vec<(&'a str, f64)> {
     let mut ranges: BTreeMap<&str, (f64, f64)> = BTreeMap::new();
     for (variant, other) in others.iter().filter_map(|(variant, other)| Some((variant, other.as_ref()?))) {
         let assumption = variant.split_once('=').map_or(*variant, |(name, _)| name);
         let range = ranges.entry(assumption).or_insert((baseline, baseline));
         *range = (range.0.min(other.value), range.1.max(other.value));
     }
-    ranges.values().map(|(low, high)| (high - low) * (high - low) / 4.0).sum::<f64>().sqrt()
+    let mut shares: Vec<_> =
+        ranges.into_iter().map(|(assumption, (low, high))| (assumption, (high - low) * (high - low) / 4.0)).collect();
+    shares.sort_by(|a, b| b.1.total_cmp(&a.1));
+    shares
+}
+
+/// The assumptions that make up most of u_input: as many of the largest as it takes.
+fn most_of(shares: &[(&str, f64)]) -> Vec<String> {
+    let whole: f64 = shares.iter().map(|(_, square)| square).sum();
+    let mut so_far = 0.0;
+    let needed = shares.iter().take_while(|(_, square)| {
+        let more = so_far < MOST * whole;
+        so_far += square;
+        more
+    });
+    needed.map(|(assumption, _)| (*assumption).to_owned()).collect()
 }
 
 /// Judges one entry and tells which cells of its own table decided it.

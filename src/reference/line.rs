@@ -77,7 +77,7 @@ impl Pair<'_> {
     pub(crate) fn lead(&self, view: &View<'_>, source: Source<'_>) -> Result<Line, Absence> {
         let all = lines(view, source, self.of, self.over, self.by)?;
         let line = |level: &str| {
-            let found = all.iter().find(|(allowed, _)| *allowed == Allowed::Text(level.into()));
+            let found = all.iter().find(|(allowed, _)| allowed.is_level(level));
             found.cloned().ok_or_else(|| Absence::NoRow(format!("no line with {} = {level}", self.by)))
         };
         let pair = vec![line(self.above)?, line(self.below)?];

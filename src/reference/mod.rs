@@ -59,5 +59,5 @@ pub use schema::reference_schema;
 pub use selection::{Allowed, Selection};
 pub use self_test::{Flaw, SelfTestFailure, self_test};
 pub(crate) use text::symbol;
-pub use verdict::{Comparison, Judged, Moved, Part, Role, Verdict};
+pub use verdict::{Comparison, Judged, Kind, Moved, Part, Role, Verdict};
 pub use view::{TableState, Tables};

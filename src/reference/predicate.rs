@@ -423,6 +423,9 @@ impl Predicate {
             Self::Apart(claim) if claim.values.len() < 2 => return Some("inequality needs two numbers or more"),
             Self::Apart(claim) => near(claim.by) && claim.values.iter().all(Extraction::is_sound),
             Self::Between(Between { from: None, to: None, .. }) => return Some("give `from`, `to` or both"),
+            Self::Between(Between { from: Some(from), to: Some(to), .. }) if from > to => {
+                return Some("no number lies between: `from` is above `to`");
+            }
             Self::Between(claim) => {
                 claim.value.is_sound() && [claim.from, claim.to].iter().flatten().all(|end| end.is_finite())
             }
@@ -438,6 +441,9 @@ impl Predicate {
             Self::LevelsOff(claim) => fraction(claim.within) && claim.from.is_finite(),
             Self::Peaks(Peaks { at_least: None, at_most: None, .. }) => {
                 return Some("give `at_least`, `at_most` or both");
+            }
+            Self::Peaks(Peaks { at_least: Some(least), at_most: Some(most), .. }) if least > most => {
+                return Some("no number of peaks is both: `at_least` is above `at_most`");
             }
             Self::Peaks(claim) => fraction(claim.prominence),
             Self::Onsets(claim) if claim.order.len() < 2 => return Some("an order needs two onsets or more"),

@@ -5,6 +5,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::measure::Measure;
+
 /// A number with its unit, as printed.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "String", into = "String")]
@@ -28,11 +30,11 @@ pub enum PrintedError {
 
 /// Units by dimension, with their factor to the first of the dimension.
 const UNITS: [(&str, &[(&str, f64)]); 8] = [
-    ("a length", &[("m", 1.0), ("mm", 1e-3), ("cm", 1e-2)]),
+    ("a length", &[("m", 1.0), ("mm", 1e-3), ("cm", 1e-2), ("µm", 1e-6)]),
     ("a velocity", &[("m/s", 1.0), ("mm/s", 1e-3)]),
     ("a time", &[("s", 1.0), ("ms", 1e-3)]),
     ("a frequency", &[("Hz", 1.0), ("rad/s", 1.0 / std::f64::consts::TAU)]),
-    ("a force", &[("N", 1.0)]),
+    ("a force", &[("N", 1.0), ("kN", 1e3)]),
     ("an angle", &[("rad", 1.0)]),
     ("an acceleration", &[("m/s²", 1.0), ("g", 9.81)]),
     ("dimensionless", &[("", 1.0)]),
@@ -69,7 +71,9 @@ impl Printed {
         if !value.is_finite() || !half_unit.is_finite() || half_unit == 0.0 {
             return Err(wrong());
         }
-        if unit(symbol).is_none() {
+        // What a measure is counted in can be printed, too, as it stands.
+        let of_a_measure = || Measure::ALL.iter().any(|measure| measure.unit() == symbol);
+        if unit(symbol).is_none() && !of_a_measure() {
             let known: Vec<&str> = UNITS
                 .iter()
                 .flat_map(|(_, units)| units.iter().map(|(symbol, _)| *symbol))
@@ -107,9 +111,11 @@ impl Printed {
     /// Value and u_D in another unit of the same dimension; `None` if it is of another dimension.
     #[must_use]
     pub fn converted_to(&self, symbol: &str) -> Option<(f64, f64)> {
+        if self.unit == symbol {
+            return Some((self.value, self.half_unit));
+        }
         let ((own, from), (other, to)) = (unit(&self.unit)?, unit(symbol)?);
-        // One unit is no conversion, to the bit.
-        let factor = if self.unit == symbol { 1.0 } else { from / to };
+        let factor = from / to;
         (own == other).then_some((self.value * factor, self.half_unit * factor))
     }
 }

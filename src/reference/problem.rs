@@ -43,6 +43,9 @@ pub enum ReferenceMistake {
     /// A placeholder of no entry.
     #[error("a placeholder names `{0}`, which is no entry of the reference")]
     Placeholder(String),
+    /// A list with an entry that there is not.
+    #[error("`{0}` is no entry of the reference: write `experiment/entry`")]
+    NoSuchEntry(String),
     /// A placeholder of no variant.
     #[error(
         "a placeholder moves `{0}`, which no run of that entry does: the page of its experiment lists the assumptions that are moved, as they are written here"

@@ -39,8 +39,11 @@ pub fn reference_schema() -> Value {
         .optional("threshold_reason", text("Why the thresholds of a claim are what they are"))
         .optional("expected", expected)
         .optional("explanation", text("Why it is expected to differ, to be blocked or undecidable; or a note"))
-        .optional("blocked_by", list("Inputs that the study does not give", text("An input")))
-        .rule(json!({"if": {"required": ["value"]}, "then": {"required": ["from"]}}))
+        .optional("blocked_by", list("Inputs that the study does not give and a claim waits for", text("An input")))
+        .rule(
+            json!({"if": {"required": ["value"]}, "then": {"required": ["from"], "not": {"required": ["blocked_by"]}}}),
+        )
+        .rule(json!({"if": {"required": ["peak"]}, "then": {"not": {"required": ["blocked_by"]}}}))
         .rule(json!({
             "if": {"required": ["expected"], "properties": {"expected": {"not": {"const": "reproduced"}}}},
             "then": {"required": ["explanation"]},

@@ -32,6 +32,17 @@ pub enum Allowed {
     },
 }
 
+impl Allowed {
+    /// Whether it is the level of this name: `with`, or `0.05` in a column of numbers.
+    pub(crate) fn is_level(&self, name: &str) -> bool {
+        match self {
+            Self::Text(word) => word == name,
+            Self::Number(x) => name.parse().is_ok_and(|level| same(*x, level)),
+            Self::OneOf(_) | Self::Range { .. } => false,
+        }
+    }
+}
+
 impl Selection {
     /// These conditions, and `more`; where both speak of a column, `more` holds.
     #[must_use]

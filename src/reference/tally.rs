@@ -28,6 +28,8 @@ pub(crate) struct Tally {
 struct Requirement {
     outcome: Outcome,
     margin: f64,
+    /// What margins are compared in.
+    scale: f64,
     u: f64,
     says: String,
 }
@@ -40,6 +42,11 @@ impl Tally {
 
     /// `margin` ± `u` is to be positive (or zero, where nothing is uncertain).
     pub(crate) fn require(&mut self, margin: f64, u: f64, says: impl FnOnce() -> String) {
+        self.require_in(1.0, margin, u, says);
+    }
+
+    /// As [`Tally::require`]; margins are compared in units of `scale`, as a millimetre is much of one number and little of another.
+    pub(crate) fn require_in(&mut self, scale: f64, margin: f64, u: f64, says: impl FnOnce() -> String) {
         let outcome = if margin >= 2.0 * u {
             Outcome::Holds
         } else if margin <= -2.0 * u {
@@ -49,10 +56,13 @@ impl Tally {
         };
         let worse = match &self.worst {
             None => true,
-            Some(worst) => outcome > worst.outcome || (outcome == worst.outcome && margin < worst.margin),
+            Some(worst) => {
+                let smaller = || margin / scale < worst.margin / worst.scale;
+                outcome > worst.outcome || (outcome == worst.outcome && smaller())
+            }
         };
         if worse {
-            self.worst = Some(Requirement { outcome, margin, u, says: says() });
+            self.worst = Some(Requirement { outcome, margin, scale, u, says: says() });
         }
     }
 

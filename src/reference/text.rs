@@ -66,7 +66,8 @@ pub(crate) fn symbol(column: &str) -> String {
 /// with the time `scale` between two of its kind, is told by the time between: `52.327 ± 0.010 s, 17 ms after 52.31 s: 3.4 u_val,
 /// 4.6 % of the time between two such events`.
 pub(crate) fn measured(comparison: &Comparison, published: &Printed, scale: Option<f64>) -> String {
-    let factor = published.half_unit() / comparison.u_data;
+    // A count has no unit.
+    let factor = if comparison.u_data > 0.0 { published.half_unit() / comparison.u_data } else { 1.0 };
     let (value, uncertainty) =
         number::with_uncertainty(comparison.simulated * factor, COVERAGE * comparison.u_val() * factor);
     let unit = if published.unit().is_empty() { String::new() } else { format!(" {}", published.unit()) };

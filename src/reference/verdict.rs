@@ -35,7 +35,7 @@ pub struct Comparison {
     pub u_num: f64,
     /// u_input: from the sensitivity to the unstated inputs.
     pub u_input: f64,
-    /// u_D: half a unit of the last printed digit.
+    /// u_D: half a unit of the last printed digit; 0 of a number of events.
     pub u_data: f64,
     /// Spread of the ensemble at that point (standard deviation).
     pub spread: f64,
@@ -107,6 +107,9 @@ pub struct Judged {
     pub id: String,
     /// The experiment that it reads.
     pub experiment: String,
+    /// What it asks for.
+    #[serde(default)]
+    pub kind: Kind,
     /// What the study says, in one line.
     pub statement: String,
     /// Where it stands: `s. 3.6.5, Fig. 23`.
@@ -125,7 +128,8 @@ pub struct Judged {
     pub fit: Option<Fit>,
     /// Why it is expected to differ, to be blocked or undecidable; the entry's own note. Markdown.
     pub explanation: String,
-    /// Inputs that the study does not give and without which the entry cannot be judged.
+    /// Inputs that the study does not give and without which the entry cannot be judged: those that a claim names, and the
+    /// assumptions that make up most of a number's u_input.
     #[serde(default)]
     pub blocked_by: Vec<String>,
     /// Why a tolerance was set by hand, if it was.
@@ -141,6 +145,17 @@ pub struct Judged {
     pub motion: Option<MotionBehind>,
     /// Whether it had a say in the choice of inputs.
     pub role: Role,
+}
+
+/// A number or a claim.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Kind {
+    /// A published number, or those of a resonance.
+    Number,
+    /// A claim in words, a curve or a shape.
+    #[default]
+    Claim,
 }
 
 /// The part of an entry in the choice of the inputs that the study does not state.

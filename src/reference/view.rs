@@ -372,7 +372,7 @@ impl<'a> View<'a> {
         };
         let path = lists[row].as_slice();
         if path.is_empty() {
-            // Variants keep no time history.
+            // A row of maximised points keeps none, nor does one of another sweep.
             return Err(Absence::NoRow(format!("the time history `{of}` is empty")));
         }
         self.note_all(rows, found, Role::Path);

@@ -46,13 +46,13 @@ fn conclusion(judged: &[Judged]) -> String {
     format!("{}: {} of {all} ({}).", outcome(&tally), tally.agreeing(), tally.describe())
 }
 
-/// What became of these entries together, in a word or two.
+/// What became of these entries together, in a word or two. What was fitted is no evidence.
 pub(super) fn outcome(tally: &Tally) -> &'static str {
-    let all = tally.total();
-    match tally.agreeing() {
-        _ if all == 0 || tally.has(Verdict::Missing) => "Not complete",
-        agree if agree == all && !tally.has(Verdict::Reproduced) => "Fitted, not tested",
-        agree if agree == all => "Stands",
+    let evidence = tally.total() - tally.count(Verdict::Fitted);
+    match tally.count(Verdict::Reproduced) {
+        _ if tally.total() == 0 || tally.has(Verdict::Missing) => "Not complete",
+        _ if evidence == 0 => "Fitted, not tested",
+        agree if agree == evidence => "Stands",
         0 if !tally.has(Verdict::Differs) => "Cannot be decided",
         0 => "Does not stand",
         _ => "Stands in part",

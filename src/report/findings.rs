@@ -1,7 +1,7 @@
 //! What the publication concludes, and what became of it: the verdicts of the entries that decide each conclusion.
 
 use crate::experiment::{AboutStudy, Finding};
-use crate::reference::Judged;
+use crate::reference::{Judged, Verdict};
 
 use super::comparison::{explanation, lead, outcome};
 use super::markdown::{Align, MarkdownTable, first_sentence};
@@ -34,7 +34,11 @@ fn row(finding: &Finding, experiments: &[ExperimentView<'_>]) -> [String; 3] {
     let why = lead(all.iter().copied()).filter(|lead| !agrees(lead.verdict));
     let why = why.map_or_else(String::new, |lead| first_sentence(&explanation(lead)));
     let tally = Tally::of(all);
-    let (agree, all) = (tally.agreeing(), tally.total());
-    let share = if agree > 0 && agree < all { format!(", {agree} of {all}") } else { String::new() };
+    let (agree, fitted) = (tally.count(Verdict::Reproduced), tally.count(Verdict::Fitted));
+    let evidence = tally.total() - fitted;
+    let mut share = if agree > 0 && agree < evidence { format!(", {agree} of {evidence}") } else { String::new() };
+    if fitted > 0 && evidence > 0 {
+        share += &format!("; {fitted} more fitted");
+    }
     [finding.says.clone(), format!("**{}**{share} {links}", outcome(&tally).to_lowercase()), why]
 }

@@ -3,11 +3,11 @@
 use std::collections::BTreeMap;
 
 use crate::experiment::AboutStudy;
-use crate::reference::{Judged, Role, Verdict};
+use crate::reference::{Judged, Kind, Role, Verdict};
 
 use super::findings;
 use super::markdown::one_line;
-use super::tally::{Kind, Tally, agrees, kind};
+use super::tally::{Tally, agrees};
 use super::view::ExperimentView;
 use super::what_stands::PAGE as WHAT_STANDS;
 use crate::text::words::counted;
@@ -30,7 +30,7 @@ pub(super) fn section(about: &AboutStudy, experiments: &[ExperimentView<'_>]) ->
 }
 
 fn counts(all: &[&Judged]) -> String {
-    let of = |wanted: Kind| Tally::of(all.iter().copied().filter(|one| kind(one) == wanted));
+    let of = |wanted: Kind| Tally::of(all.iter().copied().filter(|one| one.kind == wanted));
     let (numbers, claims) = (of(Kind::Number), of(Kind::Claim));
     let mut sentences: Vec<String> = Vec::new();
     for (tally, one, many) in [(numbers, "number", "numbers"), (claims, "claim", "claims")] {
@@ -56,7 +56,7 @@ fn counts(all: &[&Judged]) -> String {
 fn cross_validated(all: &[&Judged]) -> Option<String> {
     let fitted = || all.iter().filter(|one| one.verdict == Verdict::Fitted);
     let come_out = || fitted().filter(|one| one.role == Role::CrossValidated);
-    let numbers = come_out().filter(|one| kind(one) == Kind::Number).count();
+    let numbers = come_out().filter(|one| one.kind == Kind::Number).count();
     let count = come_out().count();
     (count > 0).then(|| {
         let of = counted(fitted().count(), "fitted entry", "fitted entries");
@@ -75,11 +75,12 @@ fn stands(experiments: &[ExperimentView<'_>]) -> String {
         return String::new();
     }
     standing.sort_by_key(|view| std::cmp::Reverse(evidence(view)));
+    let judged = experiments.iter().filter(|view| !view.judged.is_empty()).count();
     let links = standing.iter().map(|view| format!("{} ({})", link(view), evidence(view)));
     format!(
         "- **Stands:** every statement agrees in {} of {}: {}.\n",
         standing.len(),
-        counted(experiments.len(), "experiment", "experiments"),
+        counted(judged, "experiment with statements", "experiments with statements"),
         some(links.collect())
     )
 }

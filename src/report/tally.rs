@@ -55,18 +55,6 @@ pub(super) fn shown(judged: &Judged) -> String {
     if judged.as_expected() { verdict } else { format!("**{verdict}** (expected: {})", word(judged.expected)) }
 }
 
-/// A number or a claim.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Kind {
-    Number,
-    Claim,
-}
-
-/// What an entry is; one without a result counts as a claim.
-pub(super) fn kind(judged: &Judged) -> Kind {
-    if judged.comparisons().next().is_some() { Kind::Number } else { Kind::Claim }
-}
-
 /// The role of an entry as a page tells it; empty where it has none.
 pub(super) fn role(judged: &Judged) -> &'static str {
     match judged.role {
@@ -98,6 +86,11 @@ impl Tally {
         self.counts.iter().sum()
     }
 
+    /// How many have this verdict.
+    pub(super) fn count(&self, verdict: Verdict) -> usize {
+        self.each().filter(|(one, _)| *one == verdict).map(|(_, count)| count).sum()
+    }
+
     /// How many agree with the study.
     pub(super) fn agreeing(&self) -> usize {
         self.each().filter(|(verdict, _)| agrees(*verdict)).map(|(_, count)| count).sum()
@@ -105,7 +98,7 @@ impl Tally {
 
     /// True if some entry has this verdict.
     pub(super) fn has(&self, verdict: Verdict) -> bool {
-        self.each().any(|(one, count)| one == verdict && count > 0)
+        self.count(verdict) > 0
     }
 
     /// Each verdict with its count.

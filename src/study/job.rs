@@ -100,11 +100,6 @@ pub(super) fn simulations(experiment: &Experiment, variants: &[Variant]) -> u64 
     of_case.iter().sum::<u64>() + added.sum::<u64>()
 }
 
-/// True if the row keeps its time history; variants are compared by their measures alone.
-pub(super) fn keeps_trace(experiment: &Experiment, job: &Job) -> bool {
-    experiment.trace.is_some() && job.variant == 0
-}
-
 /// True if the row's measures cannot be computed without a time history.
 pub(super) fn measures_need_trace(measures: &[Measure]) -> bool {
     measures.iter().any(|measure| measure.needs_trace())

@@ -8,7 +8,7 @@ use super::left_out::{LeftOutRecord, PredictedErrors};
 use super::load::text;
 use crate::experiment::{AboutStudy, AssumptionSheet, Calibration, Cases, Problems, RowLimit, parse_calibration};
 use crate::reference::{Check, Prose, ReferenceFile, ReferenceMistake, ReferenceProblem, Role, parse_reference};
-use crate::study::{ASSUMPTIONS, Item, Layout, Loaded, Refused, Sensitivity, Summary, Texts, Used, stem};
+use crate::study::{ASSUMPTIONS, Item, Layout, Loaded, Refused, STUDY, Sensitivity, Summary, Texts, Used, stem};
 use crate::text::utf8::decode;
 
 /// The study: what was read and planned, and the experiments that are up to date and need not be.
@@ -137,7 +137,7 @@ impl Study {
     fn complete(mut self) -> Self {
         self.calibrations = calibrations(&self.texts, &self.sheet, &mut self.unread);
         self.left_out = LeftOutRecord::all(&self.texts, &self.calibrations);
-        let lost = self.lost_placeholders();
+        let lost = self.lost_names();
         self.unread.extend(lost);
         self
     }
@@ -224,37 +224,42 @@ impl Study {
         names.map(|name| (stem(name), name.as_str())).collect()
     }
 
-    /// Placeholders of entries or variants that do not exist, in explanations and in the reasons of the assumptions. Those of an
-    /// experiment that this study does not have are no mistake: they show no number.
-    fn lost_placeholders(&self) -> Vec<Unread> {
+    /// Names of entries or variants that do not exist: in placeholders, in what assumptions and calibrations were fitted to, in the
+    /// conclusions. Those of an experiment that this study does not have are no mistake: an export has a part of the entries.
+    fn lost_names(&self) -> Vec<Unread> {
         let has = |id: &str| -> Option<bool> {
             let (experiment, _) = id.split_once('/')?;
             let planned = self.references.get(experiment).map(|file| file.entries.iter().any(|entry| entry.id == id));
             let known = self.known.get(experiment).map(|known| known.judged.iter().any(|one| one.id == id));
             Some(planned.or(known).unwrap_or(true))
         };
-        let lost = |file: &str, prose: &Prose| -> Vec<Unread> {
+        let problem = |file: &str, name: &str, mistake: fn(String) -> ReferenceMistake| {
             let text = self.texts.files.get(file).map(|bytes| String::from_utf8_lossy(bytes)).unwrap_or_default();
+            let line = text.lines().position(|line| line.contains(name)).map_or(1, |line| line as u64 + 1);
+            Unread::reference(file, &text, ReferenceProblem::on_line(line, mistake(name.into())))
+        };
+        let in_prose = |file: &str, prose: &Prose| -> Vec<Unread> {
             let names = prose.placeholders().filter_map(|one| one.entry.as_deref());
             let moved = prose.placeholders().filter_map(|one| one.moved.as_deref());
             // A name without its experiment was checked with its file; in an assumption's reason it means nothing.
             let unknown = |name: &&str| has(name).map_or(file == ASSUMPTIONS, |has| !has);
-            let problem = |name: &str, mistake: fn(String) -> ReferenceMistake| {
-                let line = text.lines().position(|line| line.contains(name)).map_or(1, |line| line as u64 + 1);
-                Unread::reference(file, &text, ReferenceProblem::on_line(line, mistake(name.into())))
-            };
-            let entries = names.filter(unknown).map(|name| problem(name, ReferenceMistake::Placeholder));
+            let entries = names.filter(unknown).map(|name| problem(file, name, ReferenceMistake::Placeholder));
             let variants = moved.filter(|label| !self.sheet.has_variant(label));
-            entries.chain(variants.map(|label| problem(label, ReferenceMistake::Variant))).collect()
+            entries.chain(variants.map(|label| problem(file, label, ReferenceMistake::Variant))).collect()
+        };
+        let in_list = |file: &str, names: &[String]| -> Vec<Unread> {
+            let unknown = |name: &&String| !has(name).unwrap_or(false);
+            names.iter().filter(unknown).map(|name| problem(file, name, ReferenceMistake::NoSuchEntry)).collect()
         };
         let mut unread = Vec::new();
         for file in self.texts.files.keys().filter(|file| file.starts_with("reference/")) {
             let entries = self.references.get(stem(file)).into_iter().flat_map(|reference| &reference.entries);
-            unread.extend(entries.flat_map(|entry| lost(file, &entry.prose())));
+            unread.extend(entries.flat_map(|entry| in_prose(file, &entry.prose())));
         }
         for (name, assumption) in self.sheet.iter() {
+            unread.extend(in_list(ASSUMPTIONS, &assumption.fitted_to));
             match Prose::parse(&assumption.reason) {
-                Ok(prose) => unread.extend(lost(ASSUMPTIONS, &prose)),
+                Ok(prose) => unread.extend(in_prose(ASSUMPTIONS, &prose)),
                 Err(error) => {
                     let mistake = ReferenceMistake::Reason { name: name.clone(), error };
                     let text = self.texts.files.get(ASSUMPTIONS).map(|bytes| String::from_utf8_lossy(bytes));
@@ -262,6 +267,13 @@ impl Study {
                     unread.push(Unread::reference(ASSUMPTIONS, &text.unwrap_or_default(), problem));
                 }
             }
+        }
+        unread.extend(self.about.findings.iter().flat_map(|finding| in_list(STUDY, &finding.entries)));
+        for file in self.texts.files.keys().filter(|file| file.starts_with("calibrations/")) {
+            let Some(Calibration { fit, hold_out, .. }) = self.calibrations.get(stem(file)) else { continue };
+            // All entries of an experiment are asked for by its name.
+            let one_by_one = fit.iter().chain(hold_out).filter(|name| !name.ends_with("/*")).cloned();
+            unread.extend(in_list(file, &one_by_one.collect::<Vec<_>>()));
         }
         unread
     }

@@ -87,7 +87,7 @@ pub(super) fn table(
         texts(&|row| outcomes[row].as_ref().err().map(ToString::to_string).unwrap_or_default()),
     ));
     columns.extend(doubt::undefined(&experiment.measures, evaluated.iter().copied()));
-    columns.extend(histories(jobs, outcomes));
+    columns.extend(histories(experiment, jobs, outcomes));
     Table { columns, metadata, fingerprints }
 }
 
@@ -127,9 +127,9 @@ fn swept_column(experiment: &Experiment, jobs: &[Job], parameter: Parameter) -> 
 }
 
 /// The list columns: every name that some row has samples of, in the order of the first that has; empty where a row has none.
-fn histories(jobs: &[Job], outcomes: &[&Outcome]) -> Vec<Column> {
+fn histories(experiment: &Experiment, jobs: &[Job], outcomes: &[&Outcome]) -> Vec<Column> {
     let of_row = |row: usize| -> &[TraceColumn] {
-        let kept = jobs[row].variant == 0;
+        let kept = jobs[row].variant == 0 || experiment.trace.is_some();
         outcomes[row].as_ref().ok().filter(|_| kept).map_or(&[], |row| &row.evaluated.trace)
     };
     let mut columns: Vec<Column> = Vec::new();

@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use super::chain;
 use super::evaluate::{Evaluate, Simulation, evaluate_guarded};
 use super::event::{Event, EventHandler};
-use super::job::{Job, evaluations, jobs, keeps_trace, measures_need_trace};
+use super::job::{Job, evaluations, jobs, measures_need_trace};
 use super::limited::Limited;
 use super::maximise::Along;
 use super::mean::Averaging;
@@ -166,15 +166,15 @@ pub(super) fn asked<'a>(
     variant: &'a Variant,
     job: &Job,
 ) -> Simulation<'a> {
-    let wanted = keeps_trace(experiment, job) || measures_need_trace(&experiment.measures);
     Simulation {
         recipe,
         assumptions: &variant.assumptions,
         solver: job.solver,
         settings: experiment.settings_under(&variant.assumptions),
         measures: &experiment.measures,
-        trace: experiment.trace.as_ref().filter(|_| wanted),
-        // Only the baseline keeps its lists; a measure of a shape needs it everywhere.
+        // An instant that an entry reads off a time history has to be moved with the inputs.
+        trace: experiment.trace.as_ref(),
+        // Other lists are the baseline's alone; a measure of a shape needs it everywhere.
         energies: experiment.energies.as_ref().filter(|_| job.variant == 0),
         shape: experiment.shape.as_ref().filter(|_| job.variant == 0 || needs_shape(experiment)),
         each_cycle: experiment.each_cycle.as_ref().filter(|_| job.variant == 0),
@@ -218,8 +218,7 @@ fn simulate(
     // The row itself is a result: the point once more, with all that proves it.
     let mut there = recipe.clone();
     there.set(maximise.over, crate::experiment::ParameterValue::Number(place.at))?;
-    let wanted = simulation.trace.filter(|_| keeps_trace(experiment, job) || trace.is_some());
-    let evaluated = evaluate_guarded(evaluate, &Simulation { recipe: &there, trace: wanted, ..simulation })?;
+    let evaluated = evaluate_guarded(evaluate, &Simulation { recipe: &there, ..simulation })?;
     done();
     Ok(Row { evaluated, place: Some(place) })
 }

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::fs;
 
 use roxmltree::Document;
-use shotdamp::reference::{Comparison, Judged, Price, Role, Verdict, accept, parse_reference};
+use shotdamp::reference::{Comparison, Judged, Kind, Price, Role, Verdict, accept, parse_reference};
 use shotdamp::report::{CheckView, CheckedEntry, SUMMARY_LIMIT, Trouble, annotations, json, junit, step_summary};
 
 use crate::desk::{Desk, GAP, GAP_REFERENCE, command, said, shotdamp, simulated};
@@ -14,6 +14,7 @@ fn judged(id: &str, verdict: Verdict, expected: Verdict) -> Judged {
     Judged {
         id: id.into(),
         experiment: experiment.into(),
+        kind: Kind::Claim,
         statement: "ψ < 2 & \"more\"".into(),
         place: "s. 3.6.3, Fig. 18".into(),
         verdict,

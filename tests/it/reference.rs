@@ -214,11 +214,21 @@ fn a_tolerance_set_by_hand_holds_and_is_shown_with_its_reason() {
 }
 
 #[test]
-fn an_entry_without_a_given_input_is_blocked_and_shows_what_came_out() {
-    let body = format!("{CELL}\nexpected: blocked\nblocked_by: [stop length]\nexplanation: Not stated.");
-    let judged = judged(&body, &variants(&[("baseline", 1.52)], 0.0, 0.0, 1));
-    assert_eq!(judged.verdict, Verdict::Blocked);
-    assert!(judged.as_expected() && judged.found.contains("stop length") && judged.found.contains("1.52"));
+fn a_number_is_blocked_by_the_inputs_that_move_it_most_and_a_claim_by_those_that_it_names() {
+    let moves = [("baseline", 1.52), ("stop_length=0.1", 2.5), ("gravity=9.8", 1.53)];
+    let number =
+        judged(&format!("{CELL}\nexpected: blocked\nexplanation: Not stated."), &variants(&moves, 0.0, 0.0, 1));
+    assert_eq!((number.verdict, number.blocked_by), (Verdict::Blocked, vec!["stop_length".to_owned()]));
+    assert!(number.found.contains("stop_length") && number.found.contains("1.52"), "{}", number.found);
+    // Beyond all that the moves explain a number differs, whatever it waits for.
+    let far = judged(CELL, &variants(&[("baseline", 9.0), ("stop_length=0.1", 10.0)], 0.0, 0.0, 1));
+    assert_eq!(far.verdict, Verdict::Differs);
+
+    let claim = "claim: {between: {value: {cell: {of: velocity_ratio}}, to: 1.6}}\nthreshold_reason: for the test\n\
+                 expected: blocked\nblocked_by: [stop length]\nexplanation: Not stated.";
+    let claim = judged(claim, &variants(&moves, 0.0, 0.0, 1));
+    assert_eq!((claim.verdict, claim.robust), (Verdict::Blocked, Some((1, 2))));
+    assert!(claim.found.contains("stop length") && claim.moved.iter().all(|moved| moved.verdict == Verdict::Blocked));
 }
 
 #[test]

@@ -5,7 +5,7 @@
 use std::collections::BTreeMap;
 
 use shotdamp::experiment::{AboutStudy, AssumptionValue, Finding};
-use shotdamp::reference::{Comparison, Judged, Price, Role, Verdict};
+use shotdamp::reference::{Comparison, Judged, Kind, Price, Role, Verdict};
 use shotdamp::report::{
     AccuracyLinks, AssumptionView, ExperimentView, FigureView, PageView, assumptions as assumptions_page, index,
     overview_svg, page, strip_svg, summary, tolerances, value_in_words,
@@ -31,6 +31,7 @@ fn entry(id: &str, verdict: Verdict) -> Judged {
     Judged {
         id: format!("ch3-limit-stop/{id}"),
         experiment: "ch3-limit-stop".into(),
+        kind: Kind::Claim,
         statement: "Both curves have the same maximum at the same f′".into(),
         place: "s. 3.6.3, Fig. 18".into(),
         verdict,

@@ -241,10 +241,28 @@ fn bad_files_are_refused_by_schema_and_reader_alike() {
         ("says: Two.", "says: Two., expected: missing, explanation: x"),
         ("says: Two.", "says: Two., expected: differs"),
         ("says: Two.", "says: Two., tolerance: {relative: 0.1}"),
+        ("says: Two.", "says: Two., blocked_by: [impulse]"),
     ] {
         let text = good.replacen(right, wrong, 1);
         assert!(passes(&reference, &text).is_err(), "the schema accepts {wrong}");
         assert!(parse_reference("ch3-x", &text).is_err(), "read: {wrong}");
+    }
+}
+
+/// The rules of each way to take a number and of each claim are told where one looks for them.
+#[test]
+fn the_rules_of_verdicts_leave_out_no_word() {
+    let rules = fs::read_to_string(here("reference/README.md")).unwrap();
+    let schema = reference_schema();
+    let entry = &schema["properties"]["entries"]["items"]["properties"];
+    for of in ["claim", "from"] {
+        let words = entry[of]["propertyNames"]["enum"].as_array().unwrap();
+        assert!(words.len() > 15, "{words:?}");
+        for word in words.iter().map(|word| word.as_str().unwrap()) {
+            let row =
+                |line: &str| line.starts_with("| ") && line.split('|').nth(1).unwrap().contains(&format!("`{word}`"));
+            assert!(rules.lines().any(row), "`{word}` has no row in reference/README.md");
+        }
     }
 }
 
