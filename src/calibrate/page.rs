@@ -182,15 +182,15 @@ fn residuals(calibration: &Calibration, result: &Calibrated) -> String {
         Residual::Relative => "relative errors",
         Residual::Logarithmic => "logarithmic errors, ln(here/study)",
     };
-    let weighed = match calibration.ensemble {
-        0 => "",
-        _ => {
-            " and an error e of a number with a chaotic spread σ adds W² e²/(W² + σ²) + W² ln(1 + σ²/W²) in the place of e², W a tenth of it"
-        }
+    let weighed = "an error e of a number with a chaotic spread σ adds W² e²/(W² + σ²) + W² ln(1 + σ²/W²) in the place of e², W a tenth of it";
+    // Without an ensemble in the search there is a spread in the results alone.
+    let [in_search, in_results] = match calibration.ensemble {
+        0 => [String::new(), format!(", where {weighed}")],
+        _ => [format!(" and {weighed}"), String::new()],
     };
     format!(
-        "Residual: root mean square of the fitted entries’ {errors}, where a claim that fails counts as 100 %{weighed}. Best: \
-         **{}**; with the inputs in force: {}. As results, with ensembles: {best} and {in_force}.",
+        "Residual: root mean square of the fitted entries’ {errors}, where a claim that fails counts as 100 %{in_search}. Best: \
+         **{}**; with the inputs in force: {}. As results, with ensembles{in_results}: {best} and {in_force}.",
         share(result.best),
         share(result.in_force),
     )

@@ -322,3 +322,12 @@ fn a_value_that_leaves_no_cycle_to_average_is_refused() {
         "`before` has a value with which `ch3-stop` averages no whole number of cycles up to cycle 125: give it whole numbers below 125"
     );
 }
+
+#[test]
+fn an_entry_counts_once_and_has_one_part() {
+    let twice = STOP.replace("fit: [ch3-stop/at-two]", "fit: [ch3-stop/at-two, ch3-stop/at-two]");
+    assert_eq!(run(&twice).fitted, run(STOP).fitted);
+    let both = STOP.replace("hold_out: [ch3-gap/*]", "hold_out: [ch3-stop/at-two]");
+    let refused = on(&Desk::new(), &read(&both), 1).unwrap_err();
+    assert!(matches!(&refused, CalibrationError::FittedAndHeldOut(id) if id == "ch3-stop/at-two"), "{refused}");
+}

@@ -7,7 +7,7 @@ use std::process::{Command, Stdio};
 
 use assert_cmd::cargo::CommandCargoExt;
 
-use crate::desk::{ASSUMPTIONS, Desk, GAP, GAP_REFERENCE, STOP, STOP_REFERENCE, shotdamp, simulated};
+use crate::desk::{ASSUMPTIONS, Desk, GAP, GAP_REFERENCE, STOP, STOP_REFERENCE, said, shotdamp, simulated};
 
 /// Every file below the folder with its bytes, except the times that runs have taken and the snapshot, which holds times of files.
 pub fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
@@ -238,6 +238,21 @@ fn a_damaged_table_is_simulated_again() {
     assert_eq!(shotdamp(&desk, &["check", "ch3-gap"]).code, 2);
     let status = shotdamp(&desk, &["status", "--why", "ch3-gap"]);
     assert!(status.out.contains("results/ch3-gap.parquet is not what was written"), "{}", status.out);
+}
+
+/// A start is the structure's alone in the run without dampers, and energies of one mode are those of one mode.
+#[test]
+fn effects_of_a_given_start_and_of_energy_measures_are_switched() {
+    for (root, id, effect) in
+        [("examples/classics", "dropped-ball", "gravity"), (".", "ch5-measures-centre", "further modes")]
+    {
+        let root = Path::new(env!("CARGO_MANIFEST_DIR")).join(root);
+        let mut command = Command::cargo_bin("shotdamp").unwrap();
+        command.arg("--root").arg(root).args(["effects", id]);
+        let done = said(command);
+        assert_eq!(done.code, 0, "{id}: {}", done.err);
+        assert!(done.out.contains(&format!("| {effect} | in force | off |")), "{}", done.out);
+    }
 }
 
 #[test]

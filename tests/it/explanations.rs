@@ -10,6 +10,8 @@ use shotdamp::reference::{Check, Entry, Judged, Prose, load_reference, numbers, 
 use shotdamp::report::{ExperimentView, index};
 use shotdamp::study::{Heading, Layout, Study, Texts};
 
+use crate::desk::{ASSUMPTIONS, Desk, shotdamp};
+
 const ENTRY: &str = "entries:\n  - id: optimum\n    place: s. 1\n    says: It is 2.5.\n    value: \"2.5\"\n    from: {maximum: {of: velocity_ratio, over: gap_ratio}}\n    explanation: ";
 
 #[test]
@@ -28,6 +30,25 @@ fn a_placeholder_that_is_none_is_an_error_with_its_line() {
         assert!(problems.starts_with("line 2, column") && problems.contains(said), "{problems}");
     }
     assert!(parse_reference("ch3-gap", &format!("{ENTRY}\"It is {{here: optimum}}, {{off}}.\"\n")).is_ok());
+}
+
+#[test]
+fn a_list_of_entries_that_names_none_is_an_error_with_its_line() {
+    let asked = "title: T\nabout: A.\ncalibrate: {stop_length: [50 mm, 60 mm]}\nfit: [ch3-gap/grows]\n";
+    let about = "title: T\nabout: A.\nfindings: [{says: It grows., entries: [ch3-gap/grows]}]\n";
+    let fitted = ASSUMPTIONS.replacen("reason: fits,", "fitted_to: [ch3-gap/grows], reason: fits,", 1);
+    for (file, text) in
+        [("experiments/assumptions.yaml", fitted.as_str()), ("calibrations/it.yaml", asked), ("study.yaml", about)]
+    {
+        let desk = Desk::new();
+        desk.put(file, text);
+        let fine = shotdamp(&desk, &["check"]);
+        assert!(!fine.err.contains("no entry"), "{file}: {}", fine.err);
+        desk.put(file, &text.replace("ch3-gap/grows", "ch3-gap/grow"));
+        let lost = shotdamp(&desk, &["check"]);
+        assert_eq!(lost.code, 2, "{file}: {}", lost.err);
+        assert!(lost.err.contains("`ch3-gap/grow` is no entry") && lost.err.contains(file), "{file}: {}", lost.err);
+    }
 }
 
 #[test]

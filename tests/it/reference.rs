@@ -321,6 +321,43 @@ fn the_baseline_and_the_event_driven_solver_are_meant_unless_an_entry_says_other
 }
 
 #[test]
+fn four_impacts_are_not_five() {
+    let table = |count: f64| {
+        let mut table = variants(&[("baseline", count)], 0.0, 0.0, 1);
+        for column in &mut table.columns {
+            column.name = column.name.replace("velocity_ratio", "floor_impacts");
+        }
+        table
+    };
+    let five = "value: \"5\"\nfrom: {cell: {of: floor_impacts}}";
+    assert_eq!(verdict(five, &table(5.0)), Verdict::Reproduced);
+    assert_eq!(verdict(five, &table(4.0)), Verdict::Differs);
+}
+
+#[test]
+fn one_point_alone_is_no_parting_of_two_lines() {
+    let table = lines(&[("event_driven", [0.0, 1.0, 2.0, 1.0, 0.5]), ("fixed_step_1e-2s", [0.0, 1.5, 2.0, 1.5, 2.0])]);
+    let parting = "value: \"3\"\nfrom: {parting: {of: velocity_ratio, over: force_ratio, by: solver, fraction: 0.1}}";
+    let comparison = judged(parting, &table).comparison.unwrap();
+    assert!((comparison.simulated - 3.0).abs() < 1e-12, "{comparison:?}");
+}
+
+#[test]
+fn lines_may_be_told_apart_by_numbers() {
+    let mut table = lines(&[("light", [1.0, 1.2, 1.4, 1.6, 1.8]), ("heavy", [1.1, 1.3, 1.5, 1.7, 1.9])]);
+    table.columns.retain(|column| column.name != "solver");
+    table.columns.push(text("solver", &["event_driven"; 10]));
+    table.columns.push(float("mass_ratio", &[[0.05; 5], [0.1; 5]].concat()));
+    let above = |one: &str, other: &str| {
+        format!(
+            "claim: {{line_above: {{of: velocity_ratio, over: force_ratio, by: mass_ratio, above: {one}, below: {other}}}}}"
+        )
+    };
+    assert_eq!(verdict(&above("0.1", "0.05"), &table), Verdict::Reproduced);
+    assert_eq!(verdict(&above("0.05", "0.1"), &table), Verdict::Differs);
+}
+
+#[test]
 fn numbers_of_a_curve_are_read_as_a_study_quotes_them() {
     let table = lines(&[("event_driven", [0.0, 1.0, 2.0, 1.0, 0.5]), ("fixed_step_1e-2s", [0.0, 1.0, 2.0, 1.5, 2.0])]);
     for (value, from) in [
