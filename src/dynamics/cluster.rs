@@ -12,8 +12,7 @@
 
 use nalgebra::{Complex, DMatrix};
 
-use super::block::Block;
-use super::spectral::{Spectral, inverse_of_unit_upper, product};
+use super::spectral::{Spectral, inverse_of_unit_upper, piece, product};
 
 type C = Complex<f64>;
 
@@ -67,7 +66,7 @@ impl Triangular {
         let mut form = Self { q: complex(q), t: complex(t) };
         for i in 0..t.nrows().saturating_sub(1) {
             if t[(i + 1, i)] != 0.0 {
-                let (a, b, c, d) = (t[(i, i)], t[(i, i + 1)], t[(i + 1, i)], t[(i + 1, i + 1)]);
+                let [a, b, c, d] = piece(t, i);
                 let half = 0.5 * (a - d);
                 let discriminant = half * half + b * c;
                 let root = discriminant.abs().sqrt();
@@ -258,13 +257,8 @@ impl Parts {
                 rows.push(row.clone());
             }
         }
-        Spectral {
-            from_blocks: (0..order).flat_map(|i| columns.iter().map(move |column| column[i])).collect(),
-            to_blocks: rows.concat(),
-            blocks: matrices.iter().map(|matrix| Block::new(*matrix)).collect(),
-            matrices,
-            lasts,
-        }
+        let from_blocks = (0..order).flat_map(|i| columns.iter().map(move |column| column[i])).collect();
+        Spectral::new(from_blocks, rows.concat(), matrices, lasts)
     }
 }
 
@@ -281,24 +275,14 @@ mod tests {
         let zeta = (mass_ratio / (1.0 + mass_ratio)).sqrt() * (1.0 + apart);
         let (k, c) = (omega * omega, 2.0 * zeta * omega);
         // Coordinates (u, w, u′, w′) with w relative to the mass.
-        [
-            0.0,
-            0.0,
-            1.0,
-            0.0, //
-            0.0,
-            0.0,
-            0.0,
-            1.0, //
-            -1.0,
-            mass_ratio * k,
-            0.0,
-            mass_ratio * c, //
-            1.0,
-            -(1.0 + mass_ratio) * k,
-            0.0,
-            -(1.0 + mass_ratio) * c,
-        ]
+        #[rustfmt::skip]
+        let matrix = [
+            0.0, 0.0, 1.0, 0.0,
+            0.0, 0.0, 0.0, 1.0,
+            -1.0, mass_ratio * k, 0.0, mass_ratio * c,
+            1.0, -(1.0 + mass_ratio) * k, 0.0, -(1.0 + mass_ratio) * c,
+        ];
+        matrix
     }
 
     /// e^(At) by Taylor's series of a short time, squared again and again.

@@ -206,8 +206,8 @@ impl Flow {
         position -= self.modes.gravity.rest[i];
         position -= force * self.force.rest[i];
         if let Some(steady) = &self.harmonic {
-            position -= steady.cosine[i] * drive.cosine + steady.sine[i] * drive.sine;
-            velocity -= steady.omega * (steady.sine[i] * drive.cosine - steady.cosine[i] * drive.sine);
+            let [place, rate] = steady.at(i, drive);
+            (position, velocity) = (position - place, velocity - rate);
         }
         if self.drifts {
             velocity -= self.modes.gravity.rest_rate[i] + force * self.force.rest_rate[i];
@@ -269,8 +269,9 @@ impl Flow {
         }
         if let Some(steady) = &self.harmonic {
             for i in 0..order {
-                p[i] += steady.cosine[i] * drive.cosine + steady.sine[i] * drive.sine;
-                rate[i] += steady.omega * (steady.sine[i] * drive.cosine - steady.cosine[i] * drive.sine);
+                let [place, velocity] = steady.at(i, drive);
+                p[i] += place;
+                rate[i] += velocity;
             }
         }
         if !self.drifts {
@@ -322,11 +323,52 @@ impl Flow {
         kernels
     }
 
+    /// (p, p′) as the loads alone have them: nothing moves freely.
+    pub(crate) fn at_rest(&self, force: f64, drive: DrivePhase) -> [Vec<f64>; 2] {
+        self.left(&vec![0.0; 2 * self.order], 0.0, force, drive)
+    }
+
     /// (p, p′) as [`Flow::leave`] has them, without a place to put them.
     pub(crate) fn left(&self, c: &[f64], t: f64, force: f64, drive: DrivePhase) -> [Vec<f64>; 2] {
         let [mut p, mut rate] = [vec![0.0; self.order], vec![0.0; self.order]];
         self.leave(c, t, force, drive, &mut Vec::new(), [&mut p, &mut rate]);
         [p, rate]
+    }
+}
+
+/// Static equilibrium, every particle on its floor or, where its weight alone presses it there, on the floor's stop.
+pub(crate) struct Rest {
+    pub(crate) contacts: Vec<Contact>,
+    pub(crate) q: Vec<f64>,
+    /// Where the particles are relative to their floors, m.
+    pub(crate) gaps: Vec<f64>,
+}
+
+impl Rest {
+    /// Of a system whose contact states have these flows.
+    pub(crate) fn of(
+        system: &HybridSystem,
+        mut flow: impl FnMut(&[Contact]) -> Result<Rc<Flow>, EngineError>,
+    ) -> Result<Self, EngineError> {
+        let count = system.particles.len();
+        let (mut contacts, mut gaps) = (vec![Contact::Floor; count], vec![0.0; count]);
+        loop {
+            let flow = flow(&contacts)?;
+            let [mut q, _] = flow.at_rest(0.0, DrivePhase::default());
+            let compressions = q.split_off(system.mass.order);
+            let mut fits = true;
+            for (&j, gap) in flow.modes.attached.iter().zip(compressions) {
+                gaps[j] = gap;
+                if let Some(stop) = system.particles[j].floor.law.stop()
+                    && gap < -stop.length
+                {
+                    (gaps[j], contacts[j], fits) = (-stop.length, Contact::FloorStop, false);
+                }
+            }
+            if fits {
+                return Ok(Self { contacts, q, gaps });
+            }
+        }
     }
 }
 

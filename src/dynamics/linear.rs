@@ -23,13 +23,14 @@ use std::rc::Rc;
 use self::bound::Watch;
 use self::cycle::{Cycle, enter};
 use self::moments::Moments;
-use self::signal::{Row, integrals};
+use self::signal::integrals;
 use self::struck::Struck;
 use super::audit::Audit;
 use super::budget;
 use super::flow::{DrivePhase, Flow};
+use super::signals::Row;
 use super::states::States;
-use super::system::{Contact, HybridSystem, Law, Tick};
+use super::system::{Contact, HybridSystem, Tick};
 use super::{
     CycleRates, EngineError, Extremes, Method, Observed, Options, Proof, Response, StartState, SteadyMotion,
     SteadyState, Sums,
@@ -126,10 +127,10 @@ pub(crate) fn steady_state(system: &HybridSystem) -> Result<Option<SteadyState>,
         transient: &vec![0.0; steady.len()],
     };
     let Some(margin) = watch.margin() else { return Ok(None) };
-    let rows: Vec<Row> = flow.rows.observed.iter().map(|&row| Row::new(&flow, row)).collect();
+    let rows: Vec<&Row> = flow.rows.observed.iter().map(|&row| flow.rows.row(row)).collect();
     let at = Moments::over(&cycle.map, &steady, 1);
     let parts = integrals(system, &flow, &rows, &cycle, &at, true);
-    let motion = |(row, part): (&Row, Sums)| {
+    let motion = |(row, part): (&&Row, Sums)| {
         let mut extremes = Extremes::default();
         range::take(system, &flow, row, &cycle, &steady, 1, &mut extremes);
         SteadyMotion { cycle: part, extremes }
@@ -158,7 +159,7 @@ pub(crate) fn ceiling_graze(system: &HybridSystem) -> Result<Option<f64>, Engine
 fn may_be_linear(system: &HybridSystem, options: &Options) -> bool {
     let placed = options.start == StartState::StaticEquilibrium;
     let struck = options.kick != 0.0 || system.drive.ticks.iter().any(|tick| tick.impulse != 0.0);
-    let thrown = struck && system.particles.iter().any(|particle| matches!(particle.floor.law, Law::Rigid { .. }));
+    let thrown = struck && system.particles.iter().any(|particle| particle.floor.law.is_rigid());
     // A force that stays on when the jumps of the first cycle do not come again makes a cycle like no other.
     let once = !system.drive.repeats && system.drive.ticks.last().is_some_and(|tick| tick.level != 0.0);
     !once && (system.particles.is_empty() || (placed && !thrown && system.drive.half_cycles.is_none()))
@@ -186,7 +187,7 @@ impl<'a> Run<'a> {
         let start = match &options.start {
             StartState::Given { q, rate, .. } if system.particles.is_empty() => enter(flow, q, rate, 0.0, phase),
             _ => {
-                let [p, _] = flow.left(&vec![0.0; 2 * flow.order], 0.0, 0.0, DrivePhase::default());
+                let [p, _] = flow.at_rest(0.0, DrivePhase::default());
                 enter(flow, &p, &vec![0.0; flow.order], 0.0, phase)
             }
         };
@@ -259,7 +260,7 @@ impl<'a> Run<'a> {
 
     fn respond(&self, options: &Options, margin: f64) -> Result<Response, EngineError> {
         let (system, flow) = (self.system, self.flow);
-        let rows: Vec<Row> = flow.rows.observed.iter().map(|&row| Row::new(flow, row)).collect();
+        let rows: Vec<&Row> = flow.rows.observed.iter().map(|&row| flow.rows.row(row)).collect();
         let (skip, average) = (u64::from(options.skip), u64::from(options.average));
         let bounds = [skip, skip + average.div_ceil(2), skip + average];
         let mut response = Response {

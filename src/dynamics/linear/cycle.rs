@@ -189,7 +189,7 @@ pub(super) fn jump(
     answer: &[f64],
 ) -> Vec<[f64; 2]> {
     let still = DrivePhase::default();
-    let [rest, _] = flow.left(&vec![0.0; 2 * flow.order], 0.0, before, still);
+    let [rest, _] = flow.at_rest(before, still);
     let mut rate: Vec<f64> = answer.iter().map(|jump| impulse * jump).collect();
     for &j in &flow.modes.attached {
         // The particle itself is not struck: its compression changes against the structure.

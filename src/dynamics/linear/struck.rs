@@ -8,7 +8,7 @@ use super::cycle::{Affine, jump, times};
 use crate::dynamics::EngineError;
 use crate::dynamics::cholesky::Cholesky;
 use crate::dynamics::flow::DrivePhase;
-use crate::dynamics::system::{Face, HybridSystem, Law, Particle, dot};
+use crate::dynamics::system::{Face, HybridSystem, Particle, dot};
 
 /// Place and velocity.
 #[derive(Clone, Copy)]
@@ -72,10 +72,7 @@ impl<'a> Struck<'a> {
 
 /// ε of a rigid face.
 pub(super) fn restitution(face: &Face) -> Option<f64> {
-    match face.law {
-        Law::Rigid { restitution } => Some(restitution),
-        Law::Resilient { .. } => None,
-    }
+    face.law.is_rigid().then(|| face.law.restitution())
 }
 
 /// The velocity of the harmonic share at an impact: (1 + ε) H′ is what the particle asks of the face, after + ε before, less what the

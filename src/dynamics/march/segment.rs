@@ -162,7 +162,7 @@ impl<E: Effects> March<'_, E> {
             && let (Some(bend), false) = (flow.rows.bend, self.half.idle)
         {
             let begins = self.half.stage == Stage::Begins;
-            guards::half_cycle(bend, self.half.sign_so_far(), begins, &mut self.search);
+            self.search.guards.push(Guard::half_cycle(bend, self.half.sign_so_far(), begins));
         }
         Ok(())
     }
