@@ -162,6 +162,10 @@ pub(super) fn lagrange(t: &DMatrix<C>, nodes: &[C], j: usize, mut rows: DMatrix<
     rows
 }
 
+fn numbers<'a>(of: impl Iterator<Item = &'a C>) -> Vec<C> {
+    of.copied().collect()
+}
+
 /// Blocks as they are found, with their columns of V and rows of W.
 #[derive(Default)]
 pub(super) struct Pieces {
@@ -197,8 +201,7 @@ impl Parts {
 
     /// An eigenvalue that stands alone; of a complex pair the upper one speaks for both.
     fn single(&mut self, eigenvalue: C, v: &DMatrix<C>, w: &DMatrix<C>, i: usize) {
-        let (column, row): (Vec<C>, Vec<C>) =
-            (v.column(i).iter().copied().collect(), w.row(i).iter().copied().collect());
+        let (column, row) = (numbers(v.column(i).iter()), numbers(w.row(i).iter()));
         if eigenvalue.im == 0.0 {
             let real = |numbers: Vec<C>| numbers.iter().map(|z| z.re).collect();
             self.real.push((eigenvalue.re, real(column), real(row)));
@@ -236,8 +239,7 @@ impl Parts {
         for j in 0..NODES {
             let rows = lagrange(&own, &nodes, j, rows.into_owned());
             for i in 0..count {
-                let (column, row): (Vec<C>, Vec<C>) =
-                    (columns.column(i).iter().copied().collect(), rows.row(i).iter().copied().collect());
+                let (column, row) = (numbers(columns.column(i).iter()), numbers(rows.row(i).iter()));
                 self.pieces.turning(nodes[j], if on_axis { 1.0 } else { 2.0 }, &column, &row);
             }
         }

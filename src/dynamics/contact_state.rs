@@ -147,7 +147,7 @@ impl Modes {
                 super::modes::split(accelerations, &modes.bare.mass, stiffness.as_ref(), iteration)?
             }
         };
-        modes.to_blocks = by_coordinates(&modes.spectral);
+        modes.to_blocks = Superposition::new(modes.spectral.width(), &modes.spectral.to_blocks);
         modes.columns = by_columns(&modes.spectral, 2 * order);
         modes.gravity = modes.load(system, &modes.falls(system));
         Ok(modes)
@@ -188,7 +188,7 @@ impl Modes {
         let (spectral, steady) = super::resonance::split(&self.spectral, self.order, push, omega)?;
         let gravity = self.load_on(system, &self.falls(system), &spectral);
         let modes = Self {
-            to_blocks: by_coordinates(&spectral),
+            to_blocks: Superposition::new(spectral.width(), &spectral.to_blocks),
             columns: by_columns(&spectral, 2 * self.order),
             spectral,
             gravity,
@@ -243,12 +243,6 @@ pub(crate) fn contact_damping(system: &HybridSystem, contacts: &[Contact], j: us
     let (particle, side) = (&system.particles[j], contacts[j].side());
     let compressed = |_: &f64| matches!(contacts[j].at(side, particle), Hold::Pressed | Hold::Released);
     face_damping(side.face(particle).law, equivalent.filter(compressed))
-}
-
-/// Block coordinates by coordinates and rates.
-fn by_coordinates(spectral: &Spectral) -> Superposition {
-    let width = spectral.width();
-    Superposition::new(width, spectral.to_blocks.chunks_exact(width.max(1)).map(|row| row.iter().copied()))
 }
 
 /// The way back from the blocks to so many coordinates and rates, column by column.

@@ -306,9 +306,10 @@ impl Flow {
         }
     }
 
-    /// So short a time that the cube of what turns in it is below rounding.
-    pub(crate) fn is_short(&self, time: f64) -> bool {
-        self.blocks.iter().all(|block| block.radius * time < 5e-6)
+    /// So short a time that radius·t of every block is below `turn`.
+    #[inline]
+    pub(crate) fn turns_below(&self, turn: f64, time: f64) -> bool {
+        self.blocks.iter().all(|block| block.radius * time < turn)
     }
 
     /// So short a time that its slowest block has hardly turned.
@@ -321,6 +322,36 @@ impl Flow {
         let mut kernels = vec![Kernels::NONE; self.bank.blocks().len()];
         self.bank.kernels(&self.blocks, time, &mut kernels);
         kernels
+    }
+
+    /// The harmonic drive's phase `t` seconds later.
+    pub(crate) fn drive_after(&self, drive: DrivePhase, t: f64) -> DrivePhase {
+        let Some(steady) = &self.harmonic else { return drive };
+        let (sine, cosine) = super::elementary::sin_cos(steady.omega * t);
+        DrivePhase {
+            cosine: drive.cosine * cosine - drive.sine * sine,
+            sine: drive.sine * cosine + drive.cosine * sine,
+        }
+    }
+
+    /// ∫ c dt between two states of free motion, from c′ = B c; every block has a place to rest.
+    pub(crate) fn integrated(&self, start: &[f64], end: &[f64]) -> Vec<f64> {
+        let mut integral = Vec::with_capacity(end.len());
+        for ((block, [p, q, r, s]), i) in self.blocks.iter().zip(&self.modes.spectral.matrices).zip((0..).step_by(2)) {
+            let (x, y) = (end[i] - start[i], end[i + 1] - start[i + 1]);
+            integral.extend([(s * x - q * y) / block.determinant, (p * y - r * x) / block.determinant]);
+        }
+        integral
+    }
+
+    /// Nothing moves but its blocks: no drive, and every load has a place to rest.
+    pub(crate) fn is_free(&self) -> bool {
+        self.harmonic.is_none() && !self.drifts
+    }
+
+    /// What its dashpots take; worked out at the first audit.
+    pub(crate) fn dissipation(&self, system: &HybridSystem) -> &Dissipation {
+        self.dissipation.get_or_init(|| Dissipation::new(system, &self.modes, self.is_free()))
     }
 
     /// (p, p′) as the loads alone have them: nothing moves freely.
@@ -404,37 +435,5 @@ impl DrivePhase {
             let (sine, cosine) = super::elementary::sin_cos(harmonic.angular_frequency * time + harmonic.phase);
             Self { cosine: harmonic.force * cosine, sine: harmonic.force * sine }
         })
-    }
-}
-
-impl Flow {
-    /// The harmonic drive's phase `t` seconds later.
-    pub(crate) fn drive_after(&self, drive: DrivePhase, t: f64) -> DrivePhase {
-        let Some(steady) = &self.harmonic else { return drive };
-        let (sine, cosine) = super::elementary::sin_cos(steady.omega * t);
-        DrivePhase {
-            cosine: drive.cosine * cosine - drive.sine * sine,
-            sine: drive.sine * cosine + drive.cosine * sine,
-        }
-    }
-
-    /// ∫ c dt between two states of free motion, from c′ = B c; every block has a place to rest.
-    pub(crate) fn integrated(&self, start: &[f64], end: &[f64]) -> Vec<f64> {
-        let mut integral = Vec::with_capacity(end.len());
-        for ((block, [p, q, r, s]), i) in self.blocks.iter().zip(&self.modes.spectral.matrices).zip((0..).step_by(2)) {
-            let (x, y) = (end[i] - start[i], end[i + 1] - start[i + 1]);
-            integral.extend([(s * x - q * y) / block.determinant, (p * y - r * x) / block.determinant]);
-        }
-        integral
-    }
-
-    /// Nothing moves but its blocks: no drive, and every load has a place to rest.
-    pub(crate) fn is_free(&self) -> bool {
-        self.harmonic.is_none() && !self.drifts
-    }
-
-    /// What its dashpots take; worked out at the first audit.
-    pub(crate) fn dissipation(&self, system: &HybridSystem) -> &Dissipation {
-        self.dissipation.get_or_init(|| Dissipation::new(system, &self.modes, self.is_free()))
     }
 }

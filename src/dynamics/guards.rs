@@ -110,14 +110,9 @@ fn flight_path(face: Watched<'_>, here: Relative, gravity: f64) -> Parabola {
     Parabola { p0: here.gap + face.sum.value, p1: here.rate + face.sum.rate, p2: -0.5 * gravity - face.rest.p2 }
 }
 
-/// radius·t below which the fifth derivative of a gap moves nothing.
-const SHORT: f64 = 1e-3;
-
-/// So short a time that a gap is followed by its derivatives: as the sum of its parts it would be all rounding.
-#[inline]
-pub(crate) fn is_short(flow: &Flow, time: f64) -> bool {
-    flow.blocks.iter().all(|block| block.radius * time < SHORT)
-}
+/// radius·t below which the fifth derivative of a gap moves nothing: a gap is followed by its derivatives, as the sum of its parts would
+/// be all rounding.
+pub(crate) const SHORT: f64 = 1e-3;
 
 /// A gap after a short time, from where it is: its acceleration is `constant` plus `sign` times that of the shares.
 #[cold]
@@ -153,7 +148,7 @@ pub(crate) fn fly(
     time: f64,
 ) -> Relative {
     let row = flow.rows.guards[j].first;
-    if is_short(flow, time) {
+    if flow.turns_below(SHORT, time) {
         return creep(flow, 2.0 * path.p2, -1.0, signals.of(row), here, time);
     }
     let face = flow.rows.row(row).shares(c);

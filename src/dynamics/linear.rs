@@ -72,13 +72,10 @@ pub(crate) fn attempt(
     options: &Options,
     states: &States,
 ) -> Result<Option<Response>, EngineError> {
-    if options.trace.is_some() || !may_be_linear(system, options) {
+    if options.trace.is_some() {
         return Ok(None);
     }
-    let flow = at_rest(system, states)?;
-    if !is_closed(&flow) {
-        return Ok(None);
-    }
+    let Some(flow) = closed_flow(system, options, states)? else { return Ok(None) };
     let run = Run::new(system, states, &flow, options)?;
     let Some(margin) = run.margin() else { return Ok(None) };
     run.respond(options, margin).map(Some)
@@ -95,14 +92,11 @@ struct Steady {
 impl Steady {
     /// `None` where there is no such motion, or where it is not linear.
     fn of(system: &HybridSystem) -> Result<Option<Self>, EngineError> {
-        if !may_be_linear(system, &Options::default()) || !(system.drive.repeats || system.drive.ticks.is_empty()) {
+        if !(system.drive.repeats || system.drive.ticks.is_empty()) {
             return Ok(None);
         }
         let states = States::of(system);
-        let flow = at_rest(system, &states)?;
-        if !is_closed(&flow) {
-            return Ok(None);
-        }
+        let Some(flow) = closed_flow(system, &Options::default(), &states)? else { return Ok(None) };
         let answer = states.ground().answer(system)?;
         let before = system.drive.ticks.last().map_or(0.0, |tick| tick.level);
         let cycle = regular(system, &flow, before, answer);
@@ -155,25 +149,20 @@ pub(crate) fn ceiling_graze(system: &HybridSystem) -> Result<Option<f64>, Engine
     Ok(Struck::of(system)?.as_ref().and_then(ceiling_graze::share))
 }
 
-/// False where a look at the scene shows that it is not linear.
-fn may_be_linear(system: &HybridSystem, options: &Options) -> bool {
+/// The flow with every particle on its floor, if its cycles can be summed: each block has a place to rest, and holds for any number of
+/// them. `None` as well where a look at the scene shows that the run is not linear.
+fn closed_flow(system: &HybridSystem, options: &Options, states: &States) -> Result<Option<Rc<Flow>>, EngineError> {
     let placed = options.start == StartState::StaticEquilibrium;
     let struck = options.kick != 0.0 || system.drive.ticks.iter().any(|tick| tick.impulse != 0.0);
     let thrown = struck && system.particles.iter().any(|particle| particle.floor.law.is_rigid());
     // A force that stays on when the jumps of the first cycle do not come again makes a cycle like no other.
     let once = !system.drive.repeats && system.drive.ticks.last().is_some_and(|tick| tick.level != 0.0);
-    !once && (system.particles.is_empty() || (placed && !thrown && system.drive.half_cycles.is_none()))
-}
-
-/// The flow with every particle on its floor.
-fn at_rest(system: &HybridSystem, states: &States) -> Result<Rc<Flow>, EngineError> {
-    let contacts = vec![Contact::Floor; system.particles.len()];
-    states.flow(system, &contacts, None)
-}
-
-/// Its cycles can be summed: each block has a place to rest, and holds for any number of them.
-fn is_closed(flow: &Flow) -> bool {
-    flow.modes.spectral.lasts == f64::INFINITY && flow.blocks.iter().all(|block| block.determinant > 0.0)
+    if once || !(system.particles.is_empty() || (placed && !thrown && system.drive.half_cycles.is_none())) {
+        return Ok(None);
+    }
+    let flow = states.flow(system, &vec![Contact::Floor; system.particles.len()], None)?;
+    let rests = flow.modes.spectral.lasts == f64::INFINITY && flow.blocks.iter().all(|block| block.determinant > 0.0);
+    Ok(rests.then_some(flow))
 }
 
 impl<'a> Run<'a> {

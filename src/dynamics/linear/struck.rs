@@ -48,8 +48,8 @@ impl<'a> Struck<'a> {
         let answer = Cholesky::new(&system.mass)?.solve(row);
         let unit: Vec<f64> = jump(&bare, &steady.flow, 1.0, [0.0; 2], &answer).concat();
         let mut train = Affine::flow(&steady.flow, TAU / omega);
-        let struck = train.turn.iter().zip(unit.chunks_exact(2));
-        train.shift = struck.map(|(turn, jump)| times(*turn, [jump[0], jump[1]])).collect();
+        let struck = train.turn.iter().zip(unit.as_chunks().0);
+        train.shift = struck.map(|(turn, jump)| times(*turn, *jump)).collect();
         let Some(before) = train.fixed_point().filter(|_| amplitude > 0.0) else { return Ok(None) };
         let start = before.iter().zip(&unit).map(|(before, jump)| before + jump).collect();
         Ok(Some(Self { particle, ceiling, gravity: system.gravity, omega, amplitude, steady, start }))

@@ -59,7 +59,7 @@ impl<E: Effects> March<'_, E> {
         let (places, rates) = self.doubled.end.split_at(self.flow.order);
         self.q.iter_mut().zip(places).for_each(|(q, place)| *q = place.rounded());
         self.rate.iter_mut().zip(rates).for_each(|(rate, of)| *rate = of.rounded());
-        if guards::is_short(&self.flow, length) {
+        if self.flow.turns_below(guards::SHORT, length) {
             // Gaps have been followed by their derivatives.
             return;
         }

@@ -339,9 +339,6 @@ pub(super) fn start_at(system: &HybridSystem, at: &End) -> StartState {
 /// The same state at rest in space: absolute places and rates.
 pub(super) fn absolute(system: &HybridSystem, start: &StartState) -> Option<End> {
     let StartState::Given { q, rate, particles } = start else { return None };
-    let absolute = particles.iter().zip(&system.particles).map(|(&(contact, gap, speed), particle)| {
-        Relative { gap, rate: speed }.absolute(particle, contact.side(), [q, rate])
-    });
     let contacts = particles.iter().map(|(contact, ..)| *contact).collect();
-    Some(End::new([q, rate], &absolute.collect::<Vec<_>>(), contacts))
+    Some(End::new([q, rate], &start.absolute(system)?, contacts))
 }
