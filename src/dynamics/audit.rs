@@ -87,6 +87,17 @@ pub(crate) struct Passed {
     pub(crate) work_modulus: f64,
 }
 
+impl Passed {
+    /// Adds a force and its power, times a weight.
+    #[inline(always)]
+    pub(crate) fn drive(&mut self, weight: f64, force: f64, power: f64) {
+        self.force += weight * force;
+        self.force_modulus += weight * force.abs();
+        self.work += weight * power;
+        self.work_modulus += weight * power.abs();
+    }
+}
+
 /// Kinetic, gravitational and elastic energy, J.
 pub(crate) fn energy(system: &HybridSystem, state: &State) -> f64 {
     let mut energy = 0.5 * system.mass.form(&state.rate, &state.rate) + 0.5 * system.stiffness.form(&state.q, &state.q);

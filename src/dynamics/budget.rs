@@ -149,12 +149,6 @@ struct Account {
     begun: ThreadTime,
 }
 
-impl Account {
-    fn elapsed(&self) -> Duration {
-        self.begun.elapsed()
-    }
-}
-
 thread_local! {
     /// Units until the next look.
     static UNITS: Cell<u32> = const { Cell::new(UNITS_A_LOOK) };
@@ -183,7 +177,7 @@ impl Allowance {
             fn drop(&mut self) {
                 let ended = ACCOUNT.replace(self.0.take());
                 if let Some(ended) = ended {
-                    let nanoseconds = u64::try_from(ended.elapsed().as_nanos()).unwrap_or(u64::MAX);
+                    let nanoseconds = u64::try_from(ended.begun.elapsed().as_nanos()).unwrap_or(u64::MAX);
                     ended.allowance.nanoseconds.fetch_add(nanoseconds, Ordering::Relaxed);
                 }
                 begin(ACCOUNT.with_borrow(|outer| outer.as_ref().map(|outer| outer.allowance.limit.events)));
@@ -226,7 +220,7 @@ pub(crate) fn spend(units: u32) -> bool {
 #[inline(never)]
 fn look() -> bool {
     if EXHAUSTED.get().is_none() {
-        let of = |account: &Account| account.allowance.exhausted(account.elapsed());
+        let of = |account: &Account| account.allowance.exhausted(account.begun.elapsed());
         let of_all = is_interrupted().then_some(Exhausted::Cancelled);
         EXHAUSTED.set(of_all.or_else(|| ACCOUNT.with_borrow(|account| account.as_ref().and_then(of))));
     }
@@ -238,7 +232,7 @@ fn look() -> bool {
 /// Counts work that cannot be broken off, before it is begun; true if what is left does not suffice for it.
 pub(crate) fn spend_ahead(units: u32) -> bool {
     let too_much = |account: &Account| {
-        let after = account.elapsed() + Duration::from_micros(units.into());
+        let after = account.begun.elapsed() + Duration::from_micros(units.into());
         account.allowance.exhausted(after)
     };
     if let Some(by) = ACCOUNT.with_borrow(|account| account.as_ref().and_then(too_much)) {
@@ -306,7 +300,8 @@ pub(crate) fn within<T>(run: impl FnOnce() -> Result<T, EngineError>) -> Result<
 #[cold]
 pub(crate) fn overrun() -> Overrun {
     let ((cycle, cycles), events, runs) = (CYCLE.get(), EVENTS.get(), RUNS.get());
-    let time = ACCOUNT.with_borrow(|account| account.as_ref().map_or(Duration::ZERO, Account::elapsed));
+    let time =
+        ACCOUNT.with_borrow(|account| account.as_ref().map_or(Duration::ZERO, |account| account.begun.elapsed()));
     let exhausted = EXHAUSTED.get().unwrap_or(Exhausted::Cancelled);
     Overrun { exhausted, cycle, cycles, events, runs, time }
 }

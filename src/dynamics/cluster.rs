@@ -12,8 +12,7 @@
 
 use nalgebra::{Complex, DMatrix};
 
-use super::block::Block;
-use super::spectral::{Spectral, inverse_of_unit_upper, product};
+use super::spectral::{Spectral, inverse_of_unit_upper, piece, product};
 
 type C = Complex<f64>;
 
@@ -67,7 +66,7 @@ impl Triangular {
         let mut form = Self { q: complex(q), t: complex(t) };
         for i in 0..t.nrows().saturating_sub(1) {
             if t[(i + 1, i)] != 0.0 {
-                let (a, b, c, d) = (t[(i, i)], t[(i, i + 1)], t[(i + 1, i)], t[(i + 1, i + 1)]);
+                let [a, b, c, d] = piece(t, i);
                 let half = 0.5 * (a - d);
                 let discriminant = half * half + b * c;
                 let root = discriminant.abs().sqrt();
@@ -163,6 +162,10 @@ pub(super) fn lagrange(t: &DMatrix<C>, nodes: &[C], j: usize, mut rows: DMatrix<
     rows
 }
 
+fn numbers<'a>(of: impl Iterator<Item = &'a C>) -> Vec<C> {
+    of.copied().collect()
+}
+
 /// Blocks as they are found, with their columns of V and rows of W.
 #[derive(Default)]
 pub(super) struct Pieces {
@@ -198,8 +201,7 @@ impl Parts {
 
     /// An eigenvalue that stands alone; of a complex pair the upper one speaks for both.
     fn single(&mut self, eigenvalue: C, v: &DMatrix<C>, w: &DMatrix<C>, i: usize) {
-        let (column, row): (Vec<C>, Vec<C>) =
-            (v.column(i).iter().copied().collect(), w.row(i).iter().copied().collect());
+        let (column, row) = (numbers(v.column(i).iter()), numbers(w.row(i).iter()));
         if eigenvalue.im == 0.0 {
             let real = |numbers: Vec<C>| numbers.iter().map(|z| z.re).collect();
             self.real.push((eigenvalue.re, real(column), real(row)));
@@ -237,8 +239,7 @@ impl Parts {
         for j in 0..NODES {
             let rows = lagrange(&own, &nodes, j, rows.into_owned());
             for i in 0..count {
-                let (column, row): (Vec<C>, Vec<C>) =
-                    (columns.column(i).iter().copied().collect(), rows.row(i).iter().copied().collect());
+                let (column, row) = (numbers(columns.column(i).iter()), numbers(rows.row(i).iter()));
                 self.pieces.turning(nodes[j], if on_axis { 1.0 } else { 2.0 }, &column, &row);
             }
         }
@@ -258,13 +259,8 @@ impl Parts {
                 rows.push(row.clone());
             }
         }
-        Spectral {
-            from_blocks: (0..order).flat_map(|i| columns.iter().map(move |column| column[i])).collect(),
-            to_blocks: rows.concat(),
-            blocks: matrices.iter().map(|matrix| Block::new(*matrix)).collect(),
-            matrices,
-            lasts,
-        }
+        let from_blocks = (0..order).flat_map(|i| columns.iter().map(move |column| column[i])).collect();
+        Spectral::new(from_blocks, rows.concat(), matrices, lasts)
     }
 }
 
@@ -281,24 +277,14 @@ mod tests {
         let zeta = (mass_ratio / (1.0 + mass_ratio)).sqrt() * (1.0 + apart);
         let (k, c) = (omega * omega, 2.0 * zeta * omega);
         // Coordinates (u, w, u′, w′) with w relative to the mass.
-        [
-            0.0,
-            0.0,
-            1.0,
-            0.0, //
-            0.0,
-            0.0,
-            0.0,
-            1.0, //
-            -1.0,
-            mass_ratio * k,
-            0.0,
-            mass_ratio * c, //
-            1.0,
-            -(1.0 + mass_ratio) * k,
-            0.0,
-            -(1.0 + mass_ratio) * c,
-        ]
+        #[rustfmt::skip]
+        let matrix = [
+            0.0, 0.0, 1.0, 0.0,
+            0.0, 0.0, 0.0, 1.0,
+            -1.0, mass_ratio * k, 0.0, mass_ratio * c,
+            1.0, -(1.0 + mass_ratio) * k, 0.0, -(1.0 + mass_ratio) * c,
+        ];
+        matrix
     }
 
     /// e^(At) by Taylor's series of a short time, squared again and again.

@@ -104,14 +104,10 @@ pub(crate) fn carried_mass(system: &HybridSystem, contacts: &[Contact]) -> Matri
 /// Mass matrix of p = (q, w): each particle in contact moves with φ·q + w.
 fn mass_of(system: &HybridSystem, contacts: &[Contact], carried: &Matrix, attached: &[usize]) -> Matrix {
     let n = carried.order;
-    let mut mass = Matrix::diagonal(&vec![0.0; n + attached.len()]);
-    let order = mass.order;
-    for i in 0..n {
-        mass.entries[i * order..][..n].copy_from_slice(&carried.entries[i * n..][..n]);
-    }
+    let mut mass = carried.padded(n + attached.len());
     for (slot, &j) in attached.iter().enumerate() {
         let mut row = face_of(system, contacts, j).row.clone();
-        row.resize(order, 0.0);
+        row.resize(mass.order, 0.0);
         row[n + slot] = 1.0;
         mass.add_square(system.particles[j].mass, &row);
     }
@@ -120,12 +116,9 @@ fn mass_of(system: &HybridSystem, contacts: &[Contact], carried: &Matrix, attach
 
 /// Stiffness matrix of p: a coordinate of its own for the spring of every face.
 pub(crate) fn stiffness(system: &HybridSystem, contacts: &[Contact], attached: &[usize]) -> Matrix {
-    let n = system.stiffness.order;
+    let mut all = system.stiffness.padded(system.stiffness.order + attached.len());
     let springs = attached.iter().map(|&j| face_of(system, contacts, j).law.stiffness().unwrap_or(0.0));
-    let mut all = Matrix::diagonal(&std::iter::repeat_n(0.0, n).chain(springs).collect::<Vec<_>>());
-    let order = all.order;
-    for i in 0..n {
-        all.entries[i * order..][..n].copy_from_slice(&system.stiffness.entries[i * n..][..n]);
-    }
+    let diagonal = all.entries.iter_mut().step_by(all.order + 1).skip(system.stiffness.order);
+    diagonal.zip(springs).for_each(|(entry, spring)| *entry = spring);
     all
 }

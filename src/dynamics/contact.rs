@@ -16,30 +16,41 @@ pub(crate) const STICKING_SPEED: f64 = 1e-9;
 /// Where a guard leads.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Crossing {
-    /// Flight ends on the floor.
-    ToFloor,
-    /// Flight ends at the ceiling.
-    ToCeiling,
-    /// A face lets go.
-    Release,
-    /// The face across, which moves by itself, reaches a particle that is still at this one.
-    Meeting,
-    /// At both faces: the one that the state does not refer to lets go.
-    ReleaseAcross,
-    /// The same: it reaches its stop.
-    ToStopAcross,
-    /// The same: released, it is back at its place.
-    RecoveredAcross,
-    /// The same: released, it pushes again.
-    AgainAcross,
-    /// A compressed face reaches its stop.
-    ToStop,
-    /// A released face is back at its place.
-    Recovered,
-    /// A released face pushes again.
-    Again,
+    /// Flight ends at a face.
+    To(Side),
+    /// Something happens at the face that the state refers to.
+    Own(Change),
+    /// At the one across, which moves by itself.
+    Across(Change),
     /// The base acceleration changes its sign.
     HalfCycle,
+}
+
+/// What happens at a face.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Change {
+    /// It reaches a particle that flies, or is still at the other one.
+    Meets,
+    /// It lets go.
+    Releases,
+    /// Compressed, it reaches its stop.
+    Stops,
+    /// Released, it is back at its place.
+    Recovers,
+    /// Released, it pushes again.
+    PushesAgain,
+}
+
+impl Crossing {
+    /// What happens to a particle whose state refers to the face on this side, and at which face.
+    pub(crate) fn at(self, own: Side) -> Option<(Side, Change)> {
+        match self {
+            Self::To(side) => Some((side, Change::Meets)),
+            Self::Own(change) => Some((own, change)),
+            Self::Across(change) => Some((own.opposite(), change)),
+            Self::HalfCycle => None,
+        }
+    }
 }
 
 /// Motion of a particle relative to the face it is at, or to the floor in flight.
@@ -65,33 +76,6 @@ impl Relative {
     }
 }
 
-const fn set(contacts: &[Contact]) -> u32 {
-    let (mut set, mut i) = (0, 0);
-    while i < contacts.len() {
-        set |= 1 << contacts[i] as u32;
-        i += 1;
-    }
-    set
-}
-
-/// No face moves the particle.
-const FREE: u32 = {
-    use Contact::{BothReleased, CeilingReleased, Flight, FloorReleased};
-    set(&[Flight, FloorReleased, CeilingReleased, BothReleased])
-};
-/// The state refers to the ceiling.
-const AT_CEILING: u32 = {
-    use Contact::{
-        Ceiling, CeilingFloorReleased, CeilingReleased, CeilingStop, HeldByCeiling, HeldByCeilingFloorReleased,
-    };
-    set(&[Ceiling, CeilingStop, CeilingReleased, CeilingFloorReleased, HeldByCeiling, HeldByCeilingFloorReleased])
-};
-/// Pressed into the face that the state refers to, or held by it if that is rigid.
-const PRESSED: u32 = {
-    use Contact::{Both, Ceiling, CeilingFloorReleased, Floor, FloorCeilingReleased};
-    set(&[Floor, Ceiling, Both, FloorCeilingReleased, CeilingFloorReleased])
-};
-
 /// What one face does to a particle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Hold {
@@ -106,28 +90,39 @@ pub(crate) enum Hold {
 }
 
 impl Contact {
+    /// The side that it refers to; flight refers to the floor.
+    #[inline]
+    pub(crate) fn side(self) -> Side {
+        let at_ceiling = matches!(
+            self,
+            Self::Ceiling
+                | Self::CeilingStop
+                | Self::CeilingReleased
+                | Self::CeilingFloorReleased
+                | Self::HeldByCeiling
+                | Self::HeldByCeilingFloorReleased
+        );
+        if at_ceiling { Side::Ceiling } else { Side::Floor }
+    }
+
     /// The face that the particle moves with: the one that holds it, else the one that it is pressed into, the floor first.
     #[inline]
     pub(crate) fn face(self, particle: &Particle) -> Option<&Face> {
-        if self.is_in(FREE) {
-            None
-        } else if self.is_in(AT_CEILING) {
-            particle.ceiling.as_ref()
-        } else {
-            Some(&particle.floor)
+        match self {
+            Self::Flight | Self::FloorReleased | Self::CeilingReleased | Self::BothReleased => None,
+            _ if self.side() == Side::Ceiling => particle.ceiling.as_ref(),
+            _ => Some(&particle.floor),
         }
     }
 
     /// Pressed into a resilient face.
     #[inline]
     pub(crate) fn presses(self, particle: &Particle) -> bool {
-        self.is_in(PRESSED) && matches!(self.face(particle).map(|face| face.law), Some(Law::Resilient { .. }))
-    }
-
-    /// One of a set, by its place in the list of contacts.
-    #[inline]
-    fn is_in(self, set: u32) -> bool {
-        set >> (self as u32) & 1 == 1
+        let pressed = matches!(
+            self,
+            Self::Floor | Self::Ceiling | Self::Both | Self::FloorCeilingReleased | Self::CeilingFloorReleased
+        );
+        pressed && self.face(particle).is_some_and(|face| !face.law.is_rigid())
     }
 
     /// The floor touches the particle; one that has let go of it does not.
@@ -158,7 +153,7 @@ impl Contact {
     /// What the face across from the one that the state refers to does.
     pub(crate) fn across(self) -> Hold {
         match self {
-            Self::Both | Self::HeldByFloor | Self::HeldByCeiling => Hold::Pressed,
+            _ if self.touches_both() => Hold::Pressed,
             _ if self.is_between() => Hold::Released,
             _ => Hold::Away,
         }
@@ -280,17 +275,10 @@ impl Side {
     }
 }
 
-impl Contact {
-    /// The side that a contact refers to; flight refers to the floor.
-    pub(crate) fn side(self) -> Side {
-        if self.is_in(AT_CEILING) { Side::Ceiling } else { Side::Floor }
-    }
-}
-
 impl Particle {
     /// Between rigid faces without a gap: a part of the structure, which no face ever loses.
     pub(crate) fn is_enclosed(&self) -> bool {
-        let rigid = |face: &Face| matches!(face.law, Law::Rigid { .. });
+        let rigid = |face: &Face| face.law.is_rigid();
         self.has_no_gap() && rigid(&self.floor) && self.ceiling.as_ref().is_some_and(rigid)
     }
 
@@ -306,6 +294,10 @@ impl Particle {
 }
 
 impl Law {
+    pub(crate) fn is_rigid(self) -> bool {
+        matches!(self, Self::Rigid { .. })
+    }
+
     /// N/m; none of a rigid face.
     pub(crate) fn stiffness(self) -> Option<f64> {
         match self {
@@ -319,6 +311,11 @@ impl Law {
             Self::Resilient { stop, .. } => stop,
             Self::Rigid { .. } => None,
         }
+    }
+
+    /// How far it can be compressed to its stop, m.
+    pub(crate) fn depth(self) -> f64 {
+        self.stop().map_or(0.0, |stop| stop.length)
     }
 
     /// Restitution of what holds a particle: a rigid face, or the stop of a resilient one.

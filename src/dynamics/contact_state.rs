@@ -78,11 +78,11 @@ pub(crate) fn way_across(particle: &Particle, contact: Contact, slot: Option<usi
 
 /// That way at rest: the gap, and how deep the particle is held in its own face.
 pub(crate) fn constant_across(particle: &Particle, contact: Contact) -> f64 {
-    let stop = contact.side().face(particle).law.stop().filter(|_| contact.holds(particle));
-    particle.gap + stop.map_or(0.0, |stop| stop.length)
+    particle.gap + if contact.holds(particle) { contact.side().face(particle).law.depth() } else { 0.0 }
 }
 
 /// The modes of one contact state.
+#[derive(Clone)]
 pub(crate) struct Modes {
     /// Contact of each particle.
     pub(crate) contacts: Vec<Contact>,
@@ -147,10 +147,20 @@ impl Modes {
                 super::modes::split(accelerations, &modes.bare.mass, stiffness.as_ref(), iteration)?
             }
         };
-        modes.to_blocks = by_coordinates(&modes.spectral);
+        modes.to_blocks = Superposition::new(modes.spectral.width(), &modes.spectral.to_blocks);
         modes.columns = by_columns(&modes.spectral, 2 * order);
         modes.gravity = modes.load(system, &modes.falls(system));
         Ok(modes)
+    }
+
+    /// Which of the attached particles j is.
+    pub(crate) fn slot(&self, j: usize) -> Option<usize> {
+        self.attached.iter().position(|&attached| attached == j)
+    }
+
+    /// The second face of particle j.
+    pub(crate) fn across(&self, j: usize) -> Option<&Across> {
+        self.across.iter().find(|across| across.particle == j)
     }
 
     /// Accelerations of p by (p, p′): order rows of 2·order numbers.
@@ -178,18 +188,11 @@ impl Modes {
         let (spectral, steady) = super::resonance::split(&self.spectral, self.order, push, omega)?;
         let gravity = self.load_on(system, &self.falls(system), &spectral);
         let modes = Self {
-            contacts: self.contacts.clone(),
-            damping: self.damping.clone(),
-            across: self.across.clone(),
-            order: self.order,
-            attached: self.attached.clone(),
-            accelerations: self.accelerations.clone(),
-            to_blocks: by_coordinates(&spectral),
+            to_blocks: Superposition::new(spectral.width(), &spectral.to_blocks),
             columns: by_columns(&spectral, 2 * self.order),
             spectral,
             gravity,
-            bare: Rc::clone(&self.bare),
-            is_normal: self.is_normal,
+            ..self.clone()
         };
         Some((modes, steady))
     }
@@ -221,7 +224,7 @@ impl Modes {
         let mut falls = self.answer(system, &weight);
         falls[n..].iter_mut().for_each(|fall| *fall -= system.gravity);
         for across in self.across.iter().filter(|across| across.presses) {
-            if let Some(slot) = self.attached.iter().position(|&j| j == across.particle) {
+            if let Some(slot) = self.slot(across.particle) {
                 falls[n + slot] += across.force()[0] * across.constant / system.particles[across.particle].mass;
             }
         }
@@ -240,12 +243,6 @@ pub(crate) fn contact_damping(system: &HybridSystem, contacts: &[Contact], j: us
     let (particle, side) = (&system.particles[j], contacts[j].side());
     let compressed = |_: &f64| matches!(contacts[j].at(side, particle), Hold::Pressed | Hold::Released);
     face_damping(side.face(particle).law, equivalent.filter(compressed))
-}
-
-/// Block coordinates by coordinates and rates.
-fn by_coordinates(spectral: &Spectral) -> Superposition {
-    let width = spectral.width();
-    Superposition::new(width, spectral.to_blocks.chunks_exact(width.max(1)).map(|row| row.iter().copied()))
 }
 
 /// The way back from the blocks to so many coordinates and rates, column by column.

@@ -293,19 +293,25 @@ impl Problem<'_> {
 /// Modes whose coordinates stand at these places.
 #[inline(always)]
 fn found(lambda: Complexes, squares: &[Four], x: &[Complexes], places: &[[usize; WIDTH]]) -> Found {
-    let (mut sum, mut stiff) = (Complexes::ZERO, Complexes::ZERO);
     let mut shape = vec![Complexes::ZERO; x.len()];
-    for ((x, square), places) in x.iter().zip(squares).zip(places) {
-        let own = x.times(*x);
-        sum = sum.plus(own);
-        stiff = stiff.plus(own.scaled(*square));
+    for (x, places) in x.iter().zip(places) {
         for (lane, place) in places.iter().enumerate() {
             let to = &mut shape[*place];
             to.re.set(lane, x.re.at(lane));
             to.im.set(lane, x.im.at(lane));
         }
     }
+    let [sum, stiff] = norms(x, squares);
     Found { lambda, shape, size: lambda.times(lambda).times(sum).minus(stiff) }
+}
+
+/// xᵀx and xᵀΩ²x.
+#[inline(always)]
+fn norms(x: &[Complexes], squares: &[Four]) -> [Complexes; 2] {
+    x.iter().zip(squares).fold([Complexes::ZERO; 2], |[sum, stiff], (x, square)| {
+        let own = x.times(*x);
+        [sum.plus(own), stiff.plus(own.scaled(*square))]
+    })
 }
 
 /// Room to work in.
@@ -360,12 +366,7 @@ fn newton(lambda: Complexes, squares: &[Four], damping: &[Four], work: &mut Work
         }
         x[i] = sum;
     }
-    let (mut sum, mut stiff) = (Complexes::ZERO, Complexes::ZERO);
-    for (own, square) in x.iter().zip(squares) {
-        let own = own.times(*own);
-        sum = sum.plus(own);
-        stiff = stiff.plus(own.scaled(*square));
-    }
+    let [sum, stiff] = norms(x, squares);
     // r = λ² xᵀx + λ xᵀC x + xᵀΩ²x leaves no need of C in r′ = (σ + r)/λ.
     let inverse = square.times(sum).minus(stiff).plus(r).inverse().times(lambda);
     let step = r.times(inverse);
@@ -390,6 +391,7 @@ fn fourth_power(x: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::super::schur::Iteration;
+    use super::super::schur::tests::numbers;
     use super::super::system::Matrix;
     use super::*;
 
@@ -475,17 +477,9 @@ mod tests {
         }
     }
 
-    fn numbers() -> impl FnMut(f64, f64) -> f64 {
-        let mut state = 1_u64;
-        move |low, high| {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            low + (high - low) * ((state >> 11) as f64 / (1_u64 << 53) as f64)
-        }
-    }
-
     #[test]
     fn modes_under_dashpots_are_as_exact_as_those_of_a_schur_form() {
-        let mut number = numbers();
+        let mut number = numbers(1);
         // Dashpots by what is critical for a particle alone; which share of the systems must come from their normal modes.
         for (least, most, share) in [(0.01, 0.1, 0.95), (0.1, 0.3, 0.95), (0.3, 0.6, 0.8), (0.6, 2.0, 0.0)] {
             let (mut drawn, mut split, mut means) = (0, 0, [[0.0; 2]; 2]);
@@ -519,7 +513,7 @@ mod tests {
 
     #[test]
     fn what_is_overdamped_is_left_to_the_schur_form_and_modes_that_are_twice_the_same_are_split_well_or_not_at_all() {
-        let mut number = numbers();
+        let mut number = numbers(1);
         assert!(Drawn::new(&mut number, 4, 2, 3.0).split().is_none());
         // More particles of one kind than modes: some of theirs are one, and any of their shapes will do.
         for seed in 0..200 {
@@ -534,7 +528,7 @@ mod tests {
 
     #[test]
     fn every_processor_finds_the_same_bits() {
-        let mut number = numbers();
+        let mut number = numbers(1);
         for _ in 0..50 {
             let system = Drawn::new(&mut number, 5, 3, 0.3);
             let modes = NormalModes::new(&system.stiffness, &system.mass).expect("springs are positive");

@@ -89,13 +89,15 @@ pub(crate) fn sin_cos_lanes<const N: usize>(x: Lanes<N>) -> (Lanes<N>, Lanes<N>)
     (sines, cosines)
 }
 
-/// Where some lane is out of range, each by itself.
+/// Where some lane is out of range, each by itself; out of the way of the registers that all others need.
 #[cold]
+#[inline(never)]
 fn exp_beyond(x: f64) -> f64 {
     if x.abs() < 700.0 { exp(x) } else { libm::exp(x) }
 }
 
 #[cold]
+#[inline(never)]
 fn sin_cos_beyond(x: f64) -> (f64, f64) {
     if x.abs() < 1e5 { sin_cos(x) } else { libm::sincos(x) }
 }

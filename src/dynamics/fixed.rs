@@ -35,12 +35,14 @@ mod schedule;
 mod stretch;
 mod vector;
 
+use std::rc::Rc;
+
 use super::audit::{Audit, Passed};
 use super::budget;
 use super::cholesky::Cholesky;
 use super::contact::{Relative, Side};
 use super::contact_state::{dampings, face_damping};
-use super::flow::Flow;
+use super::flow::{Flow, Rest};
 use super::mobility::Mobilities;
 use super::system::{Contact, Drive, HybridSystem, dot};
 use super::{EngineError, Observed, Options, Response, StartState};
@@ -183,7 +185,7 @@ impl<'a, V: Vector> Run<'a, V> {
                 self.begin_window();
             }
             if cycle == 0 && self.options.kick != 0.0 {
-                self.kick()?;
+                self.impulse(self.options.kick * self.system.drive.scale())?;
             }
             let first = self.schedule.cycle(cycle);
             let driven = cycle == 0 || self.system.drive.repeats;
@@ -214,11 +216,6 @@ impl<'a, V: Vector> Run<'a, V> {
             self.audit = Some(Audit::from(self.audit_state()));
             self.seam(0.5);
         }
-    }
-
-    /// An impulse added at the start.
-    fn kick(&mut self) -> Result<(), EngineError> {
-        self.impulse(self.options.kick * self.system.drive.scale())
     }
 
     /// A jump of the force.
@@ -286,7 +283,7 @@ impl<'a, V: Vector> Run<'a, V> {
     /// Position relative to a face.
     fn relative(&self, j: usize, side: Side) -> Relative {
         let particle = &self.system.particles[j];
-        let (state, positions, gap) = (self.motion.state.values(), self.layout.positions(), self.layout.gap(j));
+        let (state, positions, gap) = (self.motion.state.as_ref(), self.layout.positions(), self.layout.gap(j));
         let mut here = Relative { gap: state[gap] - side.height(particle), rate: state[gap + positions] };
         for (i, lead) in lead(particle, side).enumerate() {
             here.gap -= lead * state[i];
@@ -300,7 +297,7 @@ impl<'a, V: Vector> Run<'a, V> {
         let now = self.relative(j, side);
         let (positions, gap) = (self.layout.positions(), self.layout.gap(j));
         let particle = &self.system.particles[j];
-        let state = self.motion.state.values_mut();
+        let state = self.motion.state.as_mut();
         if side == Side::Floor {
             (state[gap], state[gap + positions]) = (here.gap, here.rate);
         } else if particle.ceiling.as_ref().is_some_and(|face| face.row == particle.floor.row) {
@@ -329,14 +326,14 @@ impl<'a, V: Vector> Run<'a, V> {
         let rounding = self.rounding_of(&rest);
         self.response.observed.iter_mut().for_each(|of| of.rest_below(rounding));
         let (n, positions) = (self.layout.n, self.layout.positions());
-        let state = self.motion.state.values();
+        let state = self.motion.state.as_ref();
         self.response.at_end(self.system, [&state[..n], &state[positions..positions + n]], self.cycle)
     }
 
     /// y and y′ of a particle.
     fn absolute(&self, j: usize) -> [f64; 2] {
         let (n, positions, gap) = (self.layout.n, self.layout.positions(), self.layout.gap(j));
-        let (state, floor) = (self.motion.state.values(), &self.system.particles[j].floor.row);
+        let (state, floor) = (self.motion.state.as_ref(), &self.system.particles[j].floor.row);
         [dot(floor, &state[..n]) + state[gap], dot(floor, &state[positions..positions + n]) + state[gap + positions]]
     }
 }
@@ -352,29 +349,12 @@ fn start(system: &HybridSystem, from: &StartState, layout: Layout) -> Result<(Ve
     let mut state = vec![0.0; layout.size()];
     match from {
         StartState::StaticEquilibrium => {
-            let mut contacts = vec![Contact::Floor; layout.particles];
-            let damping = vec![0.0; layout.particles];
-            loop {
-                let flow = Flow::build(&without_harmonic(system), &contacts, &damping)?;
-                let [p, _] = flow.left(&vec![0.0; 2 * flow.order], 0.0, 0.0, Default::default());
-                state[..n].copy_from_slice(&p[..n]);
-                let mut fits = true;
-                for (i, &j) in flow.modes.attached.iter().enumerate() {
-                    let gap = &mut state[layout.gap(j)];
-                    *gap = p[n + i];
-                    if let Some(stop) = system.particles[j].floor.law.stop()
-                        && *gap < -stop.length
-                    {
-                        // Its weight alone presses the floor to the stop.
-                        *gap = -stop.length;
-                        contacts[j] = Contact::FloorStop;
-                        fits = false;
-                    }
-                }
-                if fits {
-                    return Ok((contacts, state));
-                }
-            }
+            let (quiet, damping) = (without_harmonic(system), vec![0.0; layout.particles]);
+            let flow = |contacts: &[Contact]| Flow::build(&quiet, contacts, &damping).map(Rc::new);
+            let Rest { contacts, q, gaps } = Rest::of(system, flow)?;
+            state[..n].copy_from_slice(&q);
+            state[n..positions].copy_from_slice(&gaps);
+            Ok((contacts, state))
         }
         StartState::Given { q, rate, particles } => {
             state[..n].copy_from_slice(q);

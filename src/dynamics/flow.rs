@@ -215,8 +215,8 @@ impl Flow {
         position -= self.modes.gravity.rest[i];
         position -= force * self.force.rest[i];
         if let Some(steady) = &self.harmonic {
-            position -= steady.cosine[i] * drive.cosine + steady.sine[i] * drive.sine;
-            velocity -= steady.omega * (steady.sine[i] * drive.cosine - steady.cosine[i] * drive.sine);
+            let [place, rate] = steady.at(i, drive);
+            (position, velocity) = (position - place, velocity - rate);
         }
         if self.drifts {
             velocity -= self.modes.gravity.rest_rate[i] + force * self.force.rest_rate[i];
@@ -278,8 +278,9 @@ impl Flow {
         }
         if let Some(steady) = &self.harmonic {
             for i in 0..order {
-                p[i] += steady.cosine[i] * drive.cosine + steady.sine[i] * drive.sine;
-                rate[i] += steady.omega * (steady.sine[i] * drive.cosine - steady.cosine[i] * drive.sine);
+                let [place, velocity] = steady.at(i, drive);
+                p[i] += place;
+                rate[i] += velocity;
             }
         }
         if !self.drifts {
@@ -314,14 +315,10 @@ impl Flow {
         }
     }
 
-    /// The largest radius of a block, 1/s; 0 where nothing moves.
-    pub(crate) fn fastest(&self) -> f64 {
-        self.series.fastest.first().copied().unwrap_or_default()
-    }
-
-    /// So short a time that the cube of what turns in it is below rounding.
-    pub(crate) fn is_short(&self, time: f64) -> bool {
-        self.fastest() * time < 5e-6
+    /// So short a time that radius·t of every block, and so of the fastest, is below `turn`.
+    #[inline]
+    pub(crate) fn turns_below(&self, turn: f64, time: f64) -> bool {
+        self.series.fastest.first().copied().unwrap_or_default() * time < turn
     }
 
     /// So short a time that its slowest block has hardly turned.
@@ -336,11 +333,82 @@ impl Flow {
         kernels
     }
 
+    /// The harmonic drive's phase `t` seconds later.
+    pub(crate) fn drive_after(&self, drive: DrivePhase, t: f64) -> DrivePhase {
+        let Some(steady) = &self.harmonic else { return drive };
+        let (sine, cosine) = super::elementary::sin_cos(steady.omega * t);
+        DrivePhase {
+            cosine: drive.cosine * cosine - drive.sine * sine,
+            sine: drive.sine * cosine + drive.cosine * sine,
+        }
+    }
+
+    /// ∫ c dt between two states of free motion, from c′ = B c; every block has a place to rest.
+    pub(crate) fn integrated(&self, start: &[f64], end: &[f64]) -> Vec<f64> {
+        let mut integral = Vec::with_capacity(end.len());
+        for ((block, [p, q, r, s]), i) in self.blocks.iter().zip(&self.modes.spectral.matrices).zip((0..).step_by(2)) {
+            let (x, y) = (end[i] - start[i], end[i + 1] - start[i + 1]);
+            integral.extend([(s * x - q * y) / block.determinant, (p * y - r * x) / block.determinant]);
+        }
+        integral
+    }
+
+    /// Nothing moves but its blocks: no drive, and every load has a place to rest.
+    pub(crate) fn is_free(&self) -> bool {
+        self.harmonic.is_none() && !self.drifts
+    }
+
+    /// What its dashpots take; worked out at the first audit.
+    pub(crate) fn dissipation(&self, system: &HybridSystem) -> &Dissipation {
+        self.dissipation.get_or_init(|| Dissipation::new(system, &self.modes, self.is_free()))
+    }
+
+    /// (p, p′) as the loads alone have them: nothing moves freely.
+    pub(crate) fn at_rest(&self, force: f64, drive: DrivePhase) -> [Vec<f64>; 2] {
+        self.left(&vec![0.0; 2 * self.order], 0.0, force, drive)
+    }
+
     /// (p, p′) as [`Flow::leave`] has them, without a place to put them.
     pub(crate) fn left(&self, c: &[f64], t: f64, force: f64, drive: DrivePhase) -> [Vec<f64>; 2] {
         let [mut p, mut rate] = [vec![0.0; self.order], vec![0.0; self.order]];
         self.leave(c, t, force, drive, &mut Vec::new(), [&mut p, &mut rate]);
         [p, rate]
+    }
+}
+
+/// Static equilibrium, every particle on its floor or, where its weight alone presses it there, on the floor's stop.
+pub(crate) struct Rest {
+    pub(crate) contacts: Vec<Contact>,
+    pub(crate) q: Vec<f64>,
+    /// Where the particles are relative to their floors, m.
+    pub(crate) gaps: Vec<f64>,
+}
+
+impl Rest {
+    /// Of a system whose contact states have these flows.
+    pub(crate) fn of(
+        system: &HybridSystem,
+        mut flow: impl FnMut(&[Contact]) -> Result<Rc<Flow>, EngineError>,
+    ) -> Result<Self, EngineError> {
+        let count = system.particles.len();
+        let (mut contacts, mut gaps) = (vec![Contact::Floor; count], vec![0.0; count]);
+        loop {
+            let flow = flow(&contacts)?;
+            let [mut q, _] = flow.at_rest(0.0, DrivePhase::default());
+            let compressions = q.split_off(system.mass.order);
+            let mut fits = true;
+            for (&j, gap) in flow.modes.attached.iter().zip(compressions) {
+                gaps[j] = gap;
+                if let Some(stop) = system.particles[j].floor.law.stop()
+                    && gap < -stop.length
+                {
+                    (gaps[j], contacts[j], fits) = (-stop.length, Contact::FloorStop, false);
+                }
+            }
+            if fits {
+                return Ok(Self { contacts, q, gaps });
+            }
+        }
     }
 }
 
@@ -376,37 +444,5 @@ impl DrivePhase {
             let (sine, cosine) = super::elementary::sin_cos(harmonic.angular_frequency * time + harmonic.phase);
             Self { cosine: harmonic.force * cosine, sine: harmonic.force * sine }
         })
-    }
-}
-
-impl Flow {
-    /// The harmonic drive's phase `t` seconds later.
-    pub(crate) fn drive_after(&self, drive: DrivePhase, t: f64) -> DrivePhase {
-        let Some(steady) = &self.harmonic else { return drive };
-        let (sine, cosine) = super::elementary::sin_cos(steady.omega * t);
-        DrivePhase {
-            cosine: drive.cosine * cosine - drive.sine * sine,
-            sine: drive.sine * cosine + drive.cosine * sine,
-        }
-    }
-
-    /// ∫ c dt between two states of free motion, from c′ = B c; every block has a place to rest.
-    pub(crate) fn integrated(&self, start: &[f64], end: &[f64]) -> Vec<f64> {
-        let mut integral = Vec::with_capacity(end.len());
-        for ((block, [p, q, r, s]), i) in self.blocks.iter().zip(&self.modes.spectral.matrices).zip((0..).step_by(2)) {
-            let (x, y) = (end[i] - start[i], end[i + 1] - start[i + 1]);
-            integral.extend([(s * x - q * y) / block.determinant, (p * y - r * x) / block.determinant]);
-        }
-        integral
-    }
-
-    /// Nothing moves but its blocks: no drive, and every load has a place to rest.
-    pub(crate) fn is_free(&self) -> bool {
-        self.harmonic.is_none() && !self.drifts
-    }
-
-    /// What its dashpots take; worked out at the first audit.
-    pub(crate) fn dissipation(&self, system: &HybridSystem) -> &Dissipation {
-        self.dissipation.get_or_init(|| Dissipation::new(system, &self.modes, self.is_free()))
     }
 }

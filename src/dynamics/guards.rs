@@ -10,7 +10,7 @@
 //! Where floor and ceiling do not move as one, the face across has guards too: the way to it, or those of a face that touches.
 
 use super::block::Phase;
-use super::contact::{Crossing, Hold, Relative, Side};
+use super::contact::{Change, Crossing, Hold, Relative, Side};
 use super::contact_state::constant_across;
 use super::flow::Flow;
 use super::parabola::Parabola;
@@ -77,17 +77,30 @@ pub(crate) fn set(state: Contacts<'_>, search: &mut Search, paths: &mut [Parabol
     }
 }
 
-/// Adds one guard of the whole system: positive while the base acceleration keeps its sign.
-pub(crate) fn half_cycle(signal: usize, sign: f64, touching: bool, search: &mut Search) {
-    search.guards.push(Guard {
-        particle: usize::MAX,
-        crossing: Crossing::HalfCycle,
-        signal,
-        sign,
-        parabola: Parabola::default(),
-        start: touching_once(touching),
-        distance: false,
-    });
+impl Guard {
+    /// Of a distance, whose clearance counts as a margin.
+    #[inline(always)]
+    fn distance(
+        particle: usize,
+        crossing: Crossing,
+        signal: usize,
+        sign: f64,
+        parabola: Parabola,
+        start: Start,
+    ) -> Self {
+        Self { particle, crossing, signal, sign, parabola, start, distance: true }
+    }
+
+    /// Of a force or an acceleration.
+    #[inline(always)]
+    fn force(particle: usize, crossing: Crossing, signal: usize, sign: f64, parabola: Parabola, start: Start) -> Self {
+        Self { distance: false, ..Self::distance(particle, crossing, signal, sign, parabola, start) }
+    }
+
+    /// Of the whole system: positive while the base acceleration keeps its sign.
+    pub(crate) fn half_cycle(signal: usize, sign: f64, touching: bool) -> Self {
+        Self::force(usize::MAX, Crossing::HalfCycle, signal, sign, Parabola::default(), touching_once(touching))
+    }
 }
 
 /// The parabola of a gap in flight. The particle falls by itself and the blocks of the face are taken off it, so that the
@@ -97,14 +110,9 @@ fn flight_path(face: Watched<'_>, here: Relative, gravity: f64) -> Parabola {
     Parabola { p0: here.gap + face.sum.value, p1: here.rate + face.sum.rate, p2: -0.5 * gravity - face.rest.p2 }
 }
 
-/// radius·t below which the fifth derivative of a gap moves nothing.
-const SHORT: f64 = 1e-3;
-
-/// So short a time that a gap is followed by its derivatives: as the sum of its parts it would be all rounding.
-#[inline]
-pub(crate) fn is_short(flow: &Flow, time: f64) -> bool {
-    flow.fastest() * time < SHORT
-}
+/// radius·t below which the fifth derivative of a gap moves nothing: a gap is followed by its derivatives, as the sum of its parts would
+/// be all rounding.
+pub(crate) const SHORT: f64 = 1e-3;
 
 /// A gap after a short time, from where it is: its acceleration is `constant` plus `sign` times that of the shares.
 #[cold]
@@ -140,7 +148,7 @@ pub(crate) fn fly(
     time: f64,
 ) -> Relative {
     let row = flow.rows.guards[j].first;
-    if is_short(flow, time) {
+    if flow.turns_below(SHORT, time) {
         return creep(flow, 2.0 * path.p2, -1.0, signals.of(row), here, time);
     }
     let face = flow.rows.row(row).shares(c);
@@ -200,15 +208,8 @@ fn in_flight(state: Contacts<'_>, j: usize, guards: &mut Vec<Guard>) -> Parabola
     let face = signals.of(rows.first);
     let path = flight_path(face, here, gravity);
     // u = path − blocks.
-    guards.push(Guard {
-        particle: j,
-        crossing: Crossing::ToFloor,
-        signal: rows.first,
-        sign: -1.0,
-        parabola: path,
-        start: start(here.gap, here.rate, state.smooth[j], face, 0.0),
-        distance: true,
-    });
+    let begin = start(here.gap, here.rate, state.smooth[j], face, 0.0);
+    guards.push(Guard::distance(j, Crossing::To(Side::Floor), rows.first, -1.0, path, begin));
     let structure = state.structure(particle);
     let Some(relative) = above(particle, here, structure) else { return path };
     let (above, face) = if structure.is_some() {
@@ -217,15 +218,8 @@ fn in_flight(state: Contacts<'_>, j: usize, guards: &mut Vec<Guard>) -> Parabola
     } else {
         (Parabola { p0: path.p0 - particle.gap, ..path }, face)
     };
-    guards.push(Guard {
-        particle: j,
-        crossing: Crossing::ToCeiling,
-        signal: rows.second,
-        sign: 1.0,
-        parabola: above.negative(),
-        start: start(-relative.gap, -relative.rate, state.smooth[j], face, particle.gap),
-        distance: true,
-    });
+    let begin = start(-relative.gap, -relative.rate, state.smooth[j], face, particle.gap);
+    guards.push(Guard::distance(j, Crossing::To(Side::Ceiling), rows.second, 1.0, above.negative(), begin));
     path
 }
 
@@ -237,26 +231,13 @@ fn released(state: Contacts<'_>, j: usize, guards: &mut Vec<Guard>) -> Parabola 
     let rows = flow.rows.guards[j];
     let path = flight_path(signals.of(rows.first), state.particles[j], state.system.gravity);
     // Compression, −u at the floor; u = path − blocks.
-    guards.push(Guard {
-        particle: j,
-        crossing: Crossing::Recovered,
-        signal: rows.first,
-        sign: away,
-        parabola: path.times(-away),
-        start: Start::Apart,
-        distance: true,
-    });
+    let recovers = Crossing::Own(Change::Recovers);
+    guards.push(Guard::distance(j, recovers, rows.first, away, path.times(-away), Start::Apart));
     if let Law::Resilient { stiffness, .. } = side.face(particle).law {
         let damping = flow.modes.damping[j];
-        guards.push(Guard {
-            particle: j,
-            crossing: Crossing::Again,
-            signal: rows.second,
-            sign: -away,
-            parabola: path.spring_and_dashpot(stiffness, damping).times(away),
-            start: force_start(state.particles[j], stiffness, damping, state.smooth[j], signals.of(rows.second)),
-            distance: false,
-        });
+        let force = path.spring_and_dashpot(stiffness, damping).times(away);
+        let begin = force_start(state.particles[j], stiffness, damping, state.smooth[j], signals.of(rows.second));
+        guards.push(Guard::force(j, Crossing::Own(Change::PushesAgain), rows.second, -away, force, begin));
     }
     path
 }
@@ -277,41 +258,26 @@ fn pressed(state: Contacts<'_>, j: usize, guards: &mut Vec<Guard>) {
     if here.gap == 0.0 {
         rest.p1 = here.rate - own.sum.rate;
     }
-    let pushes_only = match law {
-        Law::Resilient { no_tension: true, stiffness, .. } if !state.plain => Some(*stiffness),
-        _ => None,
-    };
-    let release = if let Some(stiffness) = pushes_only {
-        let damping = flow.modes.damping[j];
-        let push = signals.of(rows.second);
-        let force = Parabola { p0: stiffness * here.gap + damping * here.rate - push.sum.value, ..push.rest };
-        (rows.second, force, force_start(here, stiffness, damping, state.smooth[j], push))
-    } else {
-        (rows.first, rest, start(-away * here.gap, -away * here.rate, state.smooth[j], own, 0.0))
-    };
-    let (signal, parabola, begin) = release;
-    guards.push(Guard {
-        particle: j,
-        crossing: Crossing::Release,
-        signal,
-        sign: -away,
-        parabola: parabola.times(-away),
-        start: begin,
-        distance: pushes_only.is_none(),
+    let releases = Crossing::Own(Change::Releases);
+    guards.push(match law {
+        Law::Resilient { no_tension: true, stiffness, .. } if !state.plain => {
+            let (damping, push) = (flow.modes.damping[j], signals.of(rows.second));
+            let force = Parabola { p0: stiffness * here.gap + damping * here.rate - push.sum.value, ..push.rest };
+            let begin = force_start(here, *stiffness, damping, state.smooth[j], push);
+            Guard::force(j, releases, rows.second, -away, force.times(-away), begin)
+        }
+        _ => {
+            let begin = start(-away * here.gap, -away * here.rate, state.smooth[j], own, 0.0);
+            Guard::distance(j, releases, rows.first, -away, rest.times(-away), begin)
+        }
     });
     if !state.plain
         && let Some(stop) = law.stop()
     {
         // Positive until the compression is δ.
-        guards.push(Guard {
-            particle: j,
-            crossing: Crossing::ToStop,
-            signal: rows.first,
-            sign: away,
-            parabola: Parabola { p0: away * rest.p0 + stop.length, ..rest.times(away) },
-            start: start(away * here.gap + stop.length, away * here.rate, state.smooth[j], own, stop.length),
-            distance: true,
-        });
+        let left = Parabola { p0: away * rest.p0 + stop.length, ..rest.times(away) };
+        let begin = start(away * here.gap + stop.length, away * here.rate, state.smooth[j], own, stop.length);
+        guards.push(Guard::distance(j, Crossing::Own(Change::Stops), rows.first, away, left, begin));
     }
 }
 
@@ -341,57 +307,46 @@ fn across(state: Contacts<'_>, j: usize, rows: AcrossRows, guards: &mut Vec<Guar
         Some(Slipped { order, .. }) => Start::Touching { order, slope: 0.0 },
         None => start(now.gap, now.rate, false, signal, size),
     };
-    let guard = |crossing, parabola, sign, start| Guard {
-        particle: j,
-        crossing,
-        signal: rows.way,
-        sign,
-        parabola,
-        start,
-        distance: true,
-    };
+    let guard =
+        |change, parabola, sign, start| Guard::distance(j, Crossing::Across(change), rows.way, sign, parabola, start);
     let Law::Resilient { stiffness, no_tension, stop, .. } = side.face(particle).law else {
-        guards.push(guard(Crossing::Meeting, way, sign, apart()));
+        guards.push(guard(Change::Meets, way, sign, apart()));
         return;
     };
-    let damping = flow.modes.across.iter().find(|across| across.particle == j).map_or(0.0, |across| across.damping);
+    let damping = flow.modes.across(j).map_or(0.0, |across| across.damping);
     // k v + c v′, zero where the push is: its sign folded in by `pushes`.
-    let force = |crossing, pushes: f64| Guard {
-        particle: j,
-        crossing,
-        signal: rows.force,
-        sign: -pushes * sign,
-        parabola: way.spring_and_dashpot(stiffness, damping).times(-pushes),
-        start: match force_start(now, stiffness, damping, slipped.is_some(), signals.of(rows.force)) {
+    let force = |change, pushes: f64| {
+        let begin = match force_start(now, stiffness, damping, slipped.is_some(), signals.of(rows.force)) {
             Start::Apart
                 if (stiffness * now.gap + damping * now.rate).abs() < 4.0 * f64::EPSILON * stiffness * size =>
             {
                 touching_once(true)
             }
             start => start,
-        },
-        distance: false,
+        };
+        let parabola = way.spring_and_dashpot(stiffness, damping).times(-pushes);
+        Guard::force(j, Crossing::Across(change), rows.force, -pushes * sign, parabola, begin)
     };
     match contact.across() {
         Hold::Away | Hold::Held => {
-            guards.push(guard(Crossing::Meeting, way, sign, apart()));
+            guards.push(guard(Change::Meets, way, sign, apart()));
         }
         Hold::Pressed => {
             if no_tension {
-                guards.push(force(Crossing::ReleaseAcross, 1.0));
+                guards.push(force(Change::Releases, 1.0));
             } else {
                 let begin = start(-now.gap, -now.rate, false, signal, size);
-                guards.push(guard(Crossing::ReleaseAcross, way.negative(), -sign, begin));
+                guards.push(guard(Change::Releases, way.negative(), -sign, begin));
             }
             if let Some(stop) = stop {
                 let left = Parabola { p0: way.p0 + stop.length, ..way };
                 let begin = start(now.gap + stop.length, now.rate, false, signal, size + stop.length);
-                guards.push(guard(Crossing::ToStopAcross, left, sign, begin));
+                guards.push(guard(Change::Stops, left, sign, begin));
             }
         }
         Hold::Released => {
-            guards.push(guard(Crossing::RecoveredAcross, way.negative(), -sign, Start::Apart));
-            guards.push(force(Crossing::AgainAcross, -1.0));
+            guards.push(guard(Change::Recovers, way.negative(), -sign, Start::Apart));
+            guards.push(force(Change::PushesAgain, -1.0));
         }
     }
 }
@@ -416,21 +371,14 @@ fn held(state: Contacts<'_>, j: usize, guards: &mut Vec<Guard>) {
     let rest = signals.of(signal).rest;
     let offset = rest.p0 + state.system.gravity - side.away() * spring_on_stop(particle, side);
     let mut parabola = Parabola { p0: side.away() * offset, p1: 0.0, p2: 0.0 };
-    if let Some(across) = flow.modes.across.iter().find(|across| across.particle == j && across.presses) {
+    if let Some(across) = flow.modes.across(j).filter(|across| across.presses) {
         // What the face across pushes.
         let push = Parabola { p0: across.constant * across.stiffness, ..Parabola::default() };
         let moving = Parabola { p0: 0.0, ..rest };
         parabola = parabola.plus(moving.times(side.away())).plus(push.times(-1.0 / particle.mass));
     }
-    guards.push(Guard {
-        particle: j,
-        crossing: Crossing::Release,
-        signal,
-        sign: side.away(),
-        parabola,
-        start: touching_once(state.smooth[j]),
-        distance: false,
-    });
+    let (releases, begin) = (Crossing::Own(Change::Releases), touching_once(state.smooth[j]));
+    guards.push(Guard::force(j, releases, signal, side.away(), parabola, begin));
 }
 
 /// How the force of spring and dashpot starts: at zero where the contact has just begun or ended smoothly, and where it
@@ -461,10 +409,8 @@ fn touching_once(touching: bool) -> Start {
 
 /// kδ/mp: what the spring of a face held on its stop pushes by itself, per mass.
 pub(crate) fn spring_on_stop(particle: &Particle, side: Side) -> f64 {
-    match side.face(particle).law {
-        Law::Resilient { stiffness, stop: Some(stop), .. } => stiffness * stop.length / particle.mass,
-        _ => 0.0,
-    }
+    let law = side.face(particle).law;
+    law.stiffness().map_or(0.0, |stiffness| stiffness * law.depth() / particle.mass)
 }
 
 /// How a face holds a particle that does not move against it.

@@ -23,13 +23,14 @@ use std::rc::Rc;
 use self::bound::Watch;
 use self::cycle::{Cycle, enter};
 use self::moments::Moments;
-use self::signal::{Row, integrals};
+use self::signal::integrals;
 use self::struck::Struck;
 use super::audit::Audit;
 use super::budget;
 use super::flow::{DrivePhase, Flow};
+use super::signals::Row;
 use super::states::States;
-use super::system::{Contact, HybridSystem, Law, Tick};
+use super::system::{Contact, HybridSystem, Tick};
 use super::{
     CycleRates, EngineError, Extremes, Method, Observed, Options, Proof, Response, StartState, SteadyMotion,
     SteadyState, Sums,
@@ -71,13 +72,10 @@ pub(crate) fn attempt(
     options: &Options,
     states: &States,
 ) -> Result<Option<Response>, EngineError> {
-    if options.trace.is_some() || !may_be_linear(system, options) {
+    if options.trace.is_some() {
         return Ok(None);
     }
-    let flow = at_rest(system, states)?;
-    if !is_closed(&flow) {
-        return Ok(None);
-    }
+    let Some(flow) = closed_flow(system, options, states)? else { return Ok(None) };
     let run = Run::new(system, states, &flow, options)?;
     let Some(margin) = run.margin() else { return Ok(None) };
     run.respond(options, margin).map(Some)
@@ -94,14 +92,11 @@ struct Steady {
 impl Steady {
     /// `None` where there is no such motion, or where it is not linear.
     fn of(system: &HybridSystem) -> Result<Option<Self>, EngineError> {
-        if !may_be_linear(system, &Options::default()) || !(system.drive.repeats || system.drive.ticks.is_empty()) {
+        if !(system.drive.repeats || system.drive.ticks.is_empty()) {
             return Ok(None);
         }
         let states = States::of(system);
-        let flow = at_rest(system, &states)?;
-        if !is_closed(&flow) {
-            return Ok(None);
-        }
+        let Some(flow) = closed_flow(system, &Options::default(), &states)? else { return Ok(None) };
         let answer = states.ground().answer(system)?;
         let before = system.drive.ticks.last().map_or(0.0, |tick| tick.level);
         let cycle = regular(system, &flow, before, answer);
@@ -126,10 +121,10 @@ pub(crate) fn steady_state(system: &HybridSystem) -> Result<Option<SteadyState>,
         transient: &vec![0.0; steady.len()],
     };
     let Some(margin) = watch.margin() else { return Ok(None) };
-    let rows: Vec<Row> = flow.rows.observed.iter().map(|&row| Row::new(&flow, row)).collect();
+    let rows: Vec<&Row> = flow.rows.observed.iter().map(|&row| flow.rows.row(row)).collect();
     let at = Moments::over(&cycle.map, &steady, 1);
     let parts = integrals(system, &flow, &rows, &cycle, &at, true);
-    let motion = |(row, part): (&Row, Sums)| {
+    let motion = |(row, part): (&&Row, Sums)| {
         let mut extremes = Extremes::default();
         range::take(system, &flow, row, &cycle, &steady, 1, &mut extremes);
         SteadyMotion { cycle: part, extremes }
@@ -154,25 +149,20 @@ pub(crate) fn ceiling_graze(system: &HybridSystem) -> Result<Option<f64>, Engine
     Ok(Struck::of(system)?.as_ref().and_then(ceiling_graze::share))
 }
 
-/// False where a look at the scene shows that it is not linear.
-fn may_be_linear(system: &HybridSystem, options: &Options) -> bool {
+/// The flow with every particle on its floor, if its cycles can be summed: each block has a place to rest, and holds for any number of
+/// them. `None` as well where a look at the scene shows that the run is not linear.
+fn closed_flow(system: &HybridSystem, options: &Options, states: &States) -> Result<Option<Rc<Flow>>, EngineError> {
     let placed = options.start == StartState::StaticEquilibrium;
     let struck = options.kick != 0.0 || system.drive.ticks.iter().any(|tick| tick.impulse != 0.0);
-    let thrown = struck && system.particles.iter().any(|particle| matches!(particle.floor.law, Law::Rigid { .. }));
+    let thrown = struck && system.particles.iter().any(|particle| particle.floor.law.is_rigid());
     // A force that stays on when the jumps of the first cycle do not come again makes a cycle like no other.
     let once = !system.drive.repeats && system.drive.ticks.last().is_some_and(|tick| tick.level != 0.0);
-    !once && (system.particles.is_empty() || (placed && !thrown && system.drive.half_cycles.is_none()))
-}
-
-/// The flow with every particle on its floor.
-fn at_rest(system: &HybridSystem, states: &States) -> Result<Rc<Flow>, EngineError> {
-    let contacts = vec![Contact::Floor; system.particles.len()];
-    states.flow(system, &contacts, None)
-}
-
-/// Its cycles can be summed: each block has a place to rest, and holds for any number of them.
-fn is_closed(flow: &Flow) -> bool {
-    flow.modes.spectral.lasts == f64::INFINITY && flow.blocks.iter().all(|block| block.determinant > 0.0)
+    if once || !(system.particles.is_empty() || (placed && !thrown && system.drive.half_cycles.is_none())) {
+        return Ok(None);
+    }
+    let flow = states.flow(system, &vec![Contact::Floor; system.particles.len()], None)?;
+    let rests = flow.modes.spectral.lasts == f64::INFINITY && flow.blocks.iter().all(|block| block.determinant > 0.0);
+    Ok(rests.then_some(flow))
 }
 
 impl<'a> Run<'a> {
@@ -186,7 +176,7 @@ impl<'a> Run<'a> {
         let start = match &options.start {
             StartState::Given { q, rate, .. } if system.particles.is_empty() => enter(flow, q, rate, 0.0, phase),
             _ => {
-                let [p, _] = flow.left(&vec![0.0; 2 * flow.order], 0.0, 0.0, DrivePhase::default());
+                let [p, _] = flow.at_rest(0.0, DrivePhase::default());
                 enter(flow, &p, &vec![0.0; flow.order], 0.0, phase)
             }
         };
@@ -259,7 +249,7 @@ impl<'a> Run<'a> {
 
     fn respond(&self, options: &Options, margin: f64) -> Result<Response, EngineError> {
         let (system, flow) = (self.system, self.flow);
-        let rows: Vec<Row> = flow.rows.observed.iter().map(|&row| Row::new(flow, row)).collect();
+        let rows: Vec<&Row> = flow.rows.observed.iter().map(|&row| flow.rows.row(row)).collect();
         let (skip, average) = (u64::from(options.skip), u64::from(options.average));
         let bounds = [skip, skip + average.div_ceil(2), skip + average];
         let mut response = Response {

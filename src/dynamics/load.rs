@@ -3,11 +3,12 @@
 
 use nalgebra::DMatrix;
 
+use super::flow::DrivePhase;
 use super::spectral::Spectral;
 
 /// Answer of a contact state to a constant load: p = rest + rest_rate·t, p′ = rest_rate, and slope·t + bend·t² in the
 /// coordinates of the blocks that drift.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub(crate) struct Load {
     pub(crate) rest: Vec<f64>,
     pub(crate) rest_rate: Vec<f64>,
@@ -93,10 +94,15 @@ impl Steady {
         let solution = system.lu().solve(&load).filter(|x| x.iter().all(|v| v.is_finite()));
         let most = push.iter().fold(0.0_f64, |most, a| most.max(a.abs())) / (omega * omega) * largest;
         let solution = solution.filter(|x| x.iter().all(|v| v.abs() <= most))?;
-        Some(Self {
-            omega,
-            cosine: solution.iter().take(order).copied().collect(),
-            sine: solution.iter().skip(order).copied().collect(),
-        })
+        let (cosine, sine) = solution.as_slice().split_at(order);
+        Some(Self { omega, cosine: cosine.to_vec(), sine: sine.to_vec() })
+    }
+
+    /// Place and rate of a coordinate at a phase of the drive.
+    #[inline(always)]
+    pub(crate) fn at(&self, i: usize, drive: DrivePhase) -> [f64; 2] {
+        let (cosine, sine) = (self.cosine[i], self.sine[i]);
+        let rate = self.omega * (sine * drive.cosine - cosine * drive.sine);
+        [cosine * drive.cosine + sine * drive.sine, rate]
     }
 }

@@ -21,7 +21,7 @@ use super::audit::Audit;
 use super::budget;
 use super::contact::Relative;
 use super::extremes::Lookout;
-use super::flow::{DrivePhase, Flow};
+use super::flow::{DrivePhase, Flow, Rest};
 use super::guards::Slipped;
 use super::integral::Panels;
 use super::mobility::Mobilities;
@@ -172,42 +172,27 @@ impl<'a, E: Effects> March<'a, E> {
     /// Start: as asked, or static equilibrium with every particle on its floor.
     fn place(&mut self, start: &super::StartState) -> Result<(), EngineError> {
         match start {
-            super::StartState::StaticEquilibrium => loop {
-                self.choose_flow()?;
-                let drive = DrivePhase::default();
-                let flow = &self.flow;
-                self.c.fill(0.0);
-                flow.leave(&self.c, 0.0, 0.0, drive, &mut self.work, [&mut self.q, &mut self.rate]);
-                let n = self.system.mass.order;
-                self.rate.fill(0.0);
-                let mut fits = true;
-                for (i, &j) in flow.modes.attached.iter().enumerate() {
-                    self.particles[j].gap = self.q[n + i];
-                    if let Some(stop) = self.system.particles[j].floor.law.stop()
-                        && self.particles[j].gap < -stop.length
-                    {
-                        // Its weight alone presses the floor to the stop.
-                        self.particles[j].gap = -stop.length;
-                        self.contacts[j] = Contact::FloorStop;
-                        fits = false;
-                    }
-                }
-                if fits {
-                    // Nothing presses a particle without weight: what the drive is about to do decides.
-                    return if self.system.gravity > 0.0 { Ok(()) } else { self.settle(&[]) };
-                }
-                self.changed = true;
-            },
+            super::StartState::StaticEquilibrium => {
+                let Rest { q, gaps, .. } = Rest::of(self.system, |contacts| {
+                    self.contacts.clone_from_slice(contacts);
+                    self.changed = true;
+                    self.choose_flow()?;
+                    Ok(Rc::clone(&self.flow))
+                })?;
+                self.q[..q.len()].copy_from_slice(&q);
+                self.particles.iter_mut().zip(gaps).for_each(|(particle, gap)| particle.gap = gap);
+                // Nothing presses a particle without weight: what the drive is about to do decides.
+                if self.system.gravity > 0.0 { Ok(()) } else { self.settle(&[]) }
+            }
             super::StartState::Given { q, rate, particles } => {
                 self.q[..q.len()].copy_from_slice(q);
                 self.rate[..rate.len()].copy_from_slice(rate);
                 for (at, (_, gap, rate)) in self.particles.iter_mut().zip(particles) {
                     *at = Relative { gap: *gap, rate: *rate };
                 }
-                self.settle(&[])?;
+                self.settle(&[])
             }
         }
-        Ok(())
     }
 
     fn run(mut self) -> Result<Response, EngineError> {

@@ -28,12 +28,11 @@ impl Mobilities {
         if let Some(index) = self.known.iter().position(|known| known.particle == particle && known.side == side) {
             return Ok(index);
         }
-        let factor = match self.factor.take() {
+        let factor = match &mut self.factor {
             Some(factor) => factor,
-            None => Cholesky::new(&system.mass)?,
+            none => none.insert(Cholesky::new(&system.mass)?),
         };
         let answer = factor.solve(&side.face(&system.particles[particle]).row);
-        self.factor = Some(factor);
         self.known.push(Mobility { particle, side, answer });
         Ok(self.known.len() - 1)
     }

@@ -6,7 +6,6 @@
 //! the defective zeros that it could not tell apart.
 
 use super::EngineError;
-use super::block::Block;
 use super::cholesky::Cholesky;
 use super::schur::Iteration;
 use super::spectral::Spectral;
@@ -69,44 +68,34 @@ pub(crate) fn split(
     };
 
     let (within, width) = (inner.width(), inner.width() + 2 * rigid.len());
-    let mut modes = Spectral {
-        from_blocks: vec![0.0; size * width],
-        to_blocks: vec![0.0; size * width],
-        matrices: inner.matrices,
-        blocks: inner.blocks,
-        lasts: inner.lasts,
-    };
+    let [mut from_blocks, mut to_blocks] = [vec![0.0; size * width], vec![0.0; size * width]];
+    let mut matrices = inner.matrices;
     for (i, &row) in elastic.iter().enumerate() {
         for (half, unit) in [(0, frequency[i]), (1, 1.0)] {
             for k in 0..within {
                 let (inside, outside) = (half * count + i, half * order + row);
-                modes.from_blocks[outside * width + k] = inner.from_blocks[inside * within + k] / unit;
-                modes.to_blocks[outside * width + k] = inner.to_blocks[k * 2 * count + inside] * unit;
+                from_blocks[outside * width + k] = inner.from_blocks[inside * within + k] / unit;
+                to_blocks[outside * width + k] = inner.to_blocks[k * 2 * count + inside] * unit;
             }
         }
     }
-    if rigid.is_empty() {
-        return Ok(modes.fastest_first());
-    }
-
     for (r, &row) in rigid.iter().enumerate() {
         for half in 0..2 {
             let column = within + 2 * r + half;
             let outside = half * order + row;
-            modes.from_blocks[outside * width + column] = 1.0;
-            modes.to_blocks[outside * width + column] = 1.0;
+            from_blocks[outside * width + column] = 1.0;
+            to_blocks[outside * width + column] = 1.0;
             for (e, &other) in elastic.iter().enumerate() {
                 let inside = half * order + other;
-                modes.to_blocks[inside * width + column] = shift[e][r];
+                to_blocks[inside * width + column] = shift[e][r];
                 for k in 0..within {
-                    modes.from_blocks[outside * width + k] -= shift[e][r] * modes.from_blocks[inside * width + k];
+                    from_blocks[outside * width + k] -= shift[e][r] * from_blocks[inside * width + k];
                 }
             }
         }
-        modes.matrices.push([0.0, 1.0, 0.0, 0.0]);
-        modes.blocks.push(Block::new([0.0, 1.0, 0.0, 0.0]));
+        matrices.push([0.0, 1.0, 0.0, 0.0]);
     }
-    Ok(modes.fastest_first())
+    Ok(Spectral::new(from_blocks, to_blocks, matrices, inner.lasts).fastest_first())
 }
 
 /// The frequency that a coordinate has alone, 1 if it has none: the unit of its rate.

@@ -2,7 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::system::Contact;
+use super::contact::Relative;
+use super::system::{Contact, HybridSystem, Particle};
 use super::trace::TraceRequest;
 
 /// How a system is run.
@@ -130,4 +131,15 @@ pub enum StartState {
         /// Contact, gap coordinate and relative rate of each particle; at a ceiling relative to that.
         particles: Vec<(Contact, f64, f64)>,
     },
+}
+
+impl StartState {
+    /// y and y′ of each particle; `None` at static equilibrium.
+    pub(crate) fn absolute(&self, system: &HybridSystem) -> Option<Vec<[f64; 2]>> {
+        let Self::Given { q, rate, particles } = self else { return None };
+        let absolute = |(&(contact, gap, speed), particle): (&(Contact, f64, f64), &Particle)| {
+            Relative { gap, rate: speed }.absolute(particle, contact.side(), [q, rate])
+        };
+        Some(particles.iter().zip(&system.particles).map(absolute).collect())
+    }
 }

@@ -17,7 +17,6 @@ use std::cell::OnceCell;
 
 use super::EngineError;
 use super::cholesky::Cholesky;
-use super::contact::Relative;
 use super::options::{Options, StartState, Until};
 use super::states::States;
 use super::system::{Drive, Face, HybridSystem, Law, Matrix, Particle, dot};
@@ -160,11 +159,8 @@ fn prove(system: &HybridSystem, options: &Options, ground: &Ground) -> Option<Ve
     if far.is_empty() {
         return None;
     }
-    if let StartState::Given { q, rate, particles } = &options.start {
-        let above = system.particles.iter().zip(particles).map(|(particle, &(contact, gap, speed))| {
-            Relative { gap, rate: speed }.absolute(particle, contact.side(), [q, rate])
-        });
-        far = beyond(system, ground, driven + (2.0 * above_rest(system, ground, q, rate, above)?).sqrt())?;
+    if let (StartState::Given { q, rate, .. }, Some(particles)) = (&options.start, options.start.absolute(system)) {
+        far = beyond(system, ground, driven + (2.0 * above_rest(system, ground, q, rate, &particles)?).sqrt())?;
     }
     takes_energy(system, ground, &far).then_some(far)
 }
@@ -183,20 +179,14 @@ fn passed(drive: &Drive, options: &Options) -> f64 {
 }
 
 /// H of a state, of whose particles y and y′ are given.
-fn above_rest(
-    system: &HybridSystem,
-    ground: &Ground,
-    q: &[f64],
-    rate: &[f64],
-    particles: impl Iterator<Item = [f64; 2]>,
-) -> Option<f64> {
+fn above_rest(system: &HybridSystem, ground: &Ground, q: &[f64], rate: &[f64], particles: &[[f64; 2]]) -> Option<f64> {
     let squeezed = |face: &Face, depth: f64| match face.law {
         Law::Resilient { stiffness, .. } if depth > 0.0 => 0.5 * stiffness * depth * depth,
         _ => 0.0,
     };
     let mut energy = 0.5 * system.mass.form(rate, rate) + 0.5 * system.stiffness.form(q, q);
     let mut size = energy;
-    for (particle, [y, speed]) in system.particles.iter().zip(particles) {
+    for (particle, &[y, speed]) in system.particles.iter().zip(particles) {
         let weight = particle.mass * system.gravity;
         energy += 0.5 * particle.mass * speed * speed
             + weight * y

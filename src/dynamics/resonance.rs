@@ -139,13 +139,9 @@ impl Parts {
                 row[2 * order + phase] -= seen;
             }
         }
-        let spectral = Spectral {
-            from_blocks: (0..2 * order).flat_map(|i| columns.iter().map(move |column| column[i])).collect(),
-            to_blocks: (0..2 * order + 2).flat_map(|i| rows.iter().map(move |row| row[i])).collect(),
-            blocks: matrices.iter().map(|matrix| Block::new(*matrix)).collect(),
-            matrices,
-            lasts,
-        };
+        let from_blocks = (0..2 * order).flat_map(|i| columns.iter().map(move |column| column[i])).collect();
+        let to_blocks = (0..2 * order + 2).flat_map(|i| rows.iter().map(move |row| row[i])).collect();
+        let spectral = Spectral::new(from_blocks, to_blocks, matrices, lasts);
         (spectral.fastest_first(), Steady { omega, cosine, sine })
     }
 }

@@ -166,18 +166,22 @@ impl Francis {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
+
+    /// Numbers between two bounds, drawn evenly.
+    pub(crate) fn numbers(mut state: u64) -> impl FnMut(f64, f64) -> f64 {
+        move |low, high| {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            low + (high - low) * ((state >> 11) as f64 / (1_u64 << 53) as f64)
+        }
+    }
 
     #[test]
     fn equal_slow_eigenvalues_beside_fast_ones_are_decomposed() {
         // Light particles of one kind on dashpots of one kind, on oscillators: as many eigenvalues near k/c.
         for seed in 0..300_u64 {
-            let mut state = seed;
-            let mut number = |low: f64, high: f64| {
-                state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-                low + (high - low) * ((state >> 11) as f64 / (1_u64 << 53) as f64)
-            };
+            let mut number = numbers(seed);
             let (modes, particles) = (number(2.0, 6.99) as usize, number(4.0, 6.99) as usize);
             let (mass, stiffness, damping) = (number(5e-4, 5e-3), number(1e2, 1e3), number(10.0, 50.0));
             let count = modes + particles;

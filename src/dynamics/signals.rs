@@ -168,6 +168,15 @@ impl Row {
         Phase { value: v0 + v1, rate: r0 + r1 }
     }
 
+    /// Its shares in the blocks that `c` holds the coordinates of.
+    pub(crate) fn phases(&self, c: &[f64]) -> impl Iterator<Item = Phase> {
+        let share = |(&[v0, v1, r0, r1], &[x, y]): (&[f64; 4], &[f64; 2])| Phase {
+            value: v0 * x + v1 * y,
+            rate: r0 * x + r1 * y,
+        };
+        self.weights.iter().zip(c.as_chunks().0).map(share)
+    }
+
     /// What constant loads add, under this force.
     #[inline(always)]
     fn rest(&self, force: f64) -> Parabola {
@@ -192,12 +201,9 @@ fn across(
     let way = match (contact, contact.face(particle)) {
         (Contact::Flight, _) => return None,
         (_, None) => padded(&contact.side().opposite().face(particle).row).fixed(blocks),
-        (_, Some(_)) => {
-            let slot = modes.attached.iter().position(|&a| a == j);
-            signal(&way_across(particle, contact, slot, modes.attached.len()))
-        }
+        (_, Some(_)) => signal(&way_across(particle, contact, modes.slot(j), modes.attached.len())),
     };
-    let force = match modes.across.iter().find(|across| across.particle == j) {
+    let force = match modes.across(j) {
         Some(across) => way.mixed(blocks, across.stiffness, across.damping),
         None => way.clone(),
     };
@@ -230,7 +236,7 @@ impl Rows {
         }
         let compression = |j: usize| {
             let mut unit = vec![0.0; modes.order];
-            unit[system.mass.order + modes.attached.iter().position(|&a| a == j)?] = 1.0;
+            unit[system.mass.order + modes.slot(j)?] = 1.0;
             Some(signal(&unit))
         };
         let faces = |particle: &Particle| {
@@ -269,8 +275,7 @@ impl Rows {
                     None => {
                         let mut bend = face.acceleration(blocks);
                         // What the face across pushes, the face that holds the particle pushes back.
-                        if let Some(across) = modes.across.iter().find(|across| across.particle == j && across.presses)
-                        {
+                        if let Some(across) = modes.across(j).filter(|across| across.presses) {
                             let pull = signal(&across.row).mixed(blocks, across.stiffness, across.damping);
                             bend = bend.plus(&pull, -side.away() / particle.mass);
                         }
@@ -371,11 +376,7 @@ impl Rows {
     /// Evaluates any row.
     pub(crate) fn evaluate(&self, row: usize, c: &[f64], force: f64, width: usize) -> (Vec<Phase>, Parabola) {
         let row = &self.rows[row];
-        let share = |(&[v0, v1, r0, r1], &[x, y]): (&[f64; 4], &[f64; 2])| Phase {
-            value: v0 * x + v1 * y,
-            rate: r0 * x + r1 * y,
-        };
-        let mut phases: Vec<Phase> = row.weights.iter().zip(c.as_chunks::<2>().0).map(share).collect();
+        let mut phases: Vec<Phase> = row.phases(c).collect();
         phases.resize(width, Phase::default());
         (phases, row.rest(force))
     }

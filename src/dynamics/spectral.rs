@@ -12,6 +12,7 @@ use super::gauss::eliminate;
 use super::schur::{Iteration, schur};
 
 /// e^(At) = V diag(e^(Bₖt)) W, with W = V⁻¹ where there are as many blocks as coordinates ask for.
+#[derive(Clone)]
 pub(crate) struct Spectral {
     /// V, row by row, order × 2·blocks.
     pub(crate) from_blocks: Vec<f64>,
@@ -36,17 +37,17 @@ const LARGEST_STEP: f64 = 1e-6;
 impl Default for Spectral {
     /// Of no coordinates.
     fn default() -> Self {
-        Self {
-            from_blocks: Vec::new(),
-            to_blocks: Vec::new(),
-            matrices: Vec::new(),
-            blocks: Vec::new(),
-            lasts: f64::INFINITY,
-        }
+        Self::new(Vec::new(), Vec::new(), Vec::new(), f64::INFINITY)
     }
 }
 
 impl Spectral {
+    /// Of blocks with these entries.
+    pub(crate) fn new(from_blocks: Vec<f64>, to_blocks: Vec<f64>, matrices: Vec<[f64; 4]>, lasts: f64) -> Self {
+        let blocks = matrices.iter().map(|matrix| Block::new(*matrix)).collect();
+        Self { from_blocks, to_blocks, matrices, blocks, lasts }
+    }
+
     /// The same with its fastest blocks first, as a search for events leaves them out.
     pub(crate) fn fastest_first(self) -> Self {
         let mut order: Vec<usize> = (0..self.blocks.len()).collect();
@@ -59,13 +60,8 @@ impl Spectral {
             }
             sorted.into_flattened()
         };
-        Self {
-            from_blocks: sorted(&self.from_blocks),
-            to_blocks: sorted(&self.to_blocks),
-            matrices: order.iter().map(|&k| self.matrices[k]).collect(),
-            blocks: order.iter().map(|&k| self.blocks[k]).collect(),
-            lasts: self.lasts,
-        }
+        let matrices = order.iter().map(|&k| self.matrices[k]).collect();
+        Self::new(sorted(&self.from_blocks), sorted(&self.to_blocks), matrices, self.lasts)
     }
 
     /// Block coordinates: two a block.
@@ -81,7 +77,8 @@ impl Spectral {
     /// Splits `matrix` (row by row, of even `order`).
     pub(crate) fn split(order: usize, matrix: &[f64], iteration: Iteration) -> Result<Self, EngineError> {
         if order == 2 {
-            return Ok(Self::single(matrix));
+            let unit = vec![1.0, 0.0, 0.0, 1.0];
+            return Ok(Self::new(unit.clone(), unit, matrix.as_chunks().0.to_vec(), f64::INFINITY));
         }
         let a = DMatrix::from_row_slice(order, order, matrix);
         let creeps = a.as_slice().chunks_exact(order).any(|column| column.iter().all(|entry| *entry == 0.0));
@@ -94,41 +91,14 @@ impl Spectral {
         }
         let mut v = product(&q, &x);
         let mut w = product(&y, &q.transpose());
-        let slowest = firsts.iter().map(|&i| radius(&t, i)).fold(f64::INFINITY, f64::min);
+        let slowest = firsts.iter().map(|&i| Block::new(piece(&t, i)).radius).fold(f64::INFINITY, f64::min);
         if norm > WIDE * slowest {
             let a = DMatrix::from_row_slice(order, order, matrix);
             refine(&a, &mut v, &mut w, &mut t, &firsts);
         }
-        let mut spectral = Self {
-            from_blocks: vec![0.0; order * order],
-            to_blocks: vec![0.0; order * order],
-            matrices: Vec::with_capacity(order / 2),
-            blocks: Vec::with_capacity(order / 2),
-            lasts: f64::INFINITY,
-        };
-        for i in firsts {
-            let entries = settle([t[(i, i)], t[(i, i + 1)], t[(i + 1, i)], t[(i + 1, i + 1)]], norm, creeps);
-            spectral.matrices.push(entries);
-            spectral.blocks.push(Block::new(entries));
-        }
-        for i in 0..order {
-            for k in 0..order {
-                spectral.from_blocks[i * order + k] = v[(i, k)];
-                spectral.to_blocks[i * order + k] = w[(i, k)];
-            }
-        }
-        Ok(spectral)
-    }
-
-    fn single(matrix: &[f64]) -> Self {
-        let entries = [matrix[0], matrix[1], matrix[2], matrix[3]];
-        Self {
-            from_blocks: vec![1.0, 0.0, 0.0, 1.0],
-            to_blocks: vec![1.0, 0.0, 0.0, 1.0],
-            matrices: vec![entries],
-            blocks: vec![Block::new(entries)],
-            lasts: f64::INFINITY,
-        }
+        let matrices = firsts.iter().map(|&i| settle(piece(&t, i), norm, creeps)).collect();
+        let by_rows = |matrix: DMatrix<f64>| matrix.transpose().as_slice().to_vec();
+        Ok(Self::new(by_rows(v), by_rows(w), matrices, f64::INFINITY))
     }
 }
 
@@ -215,11 +185,7 @@ fn refine(a: &DMatrix<f64>, v: &mut DMatrix<f64>, w: &mut DMatrix<f64>, t: &mut 
     let inner = product(w, &product(a, v));
     let mut x = DMatrix::identity(order, order);
     for &left in firsts {
-        for a in 0..2 {
-            for b in 0..2 {
-                t[(left + a, left + b)] = inner[(left + a, left + b)];
-            }
-        }
+        t.view_mut((left, left), (2, 2)).copy_from(&inner.view((left, left), (2, 2)));
     }
     for &left in firsts {
         for &right in firsts.iter().filter(|&&right| right != left) {
@@ -227,11 +193,7 @@ fn refine(a: &DMatrix<f64>, v: &mut DMatrix<f64>, w: &mut DMatrix<f64>, t: &mut 
             let pieces = [left, right].map(|first| Piece { first, size: 2 });
             let step = sylvester(t, &pieces, &load);
             if step.iter().flatten().all(|x| x.abs() < LARGEST_STEP) {
-                for (a, row) in step.iter().enumerate() {
-                    for (b, cell) in row.iter().enumerate() {
-                        x[(left + a, right + b)] = *cell;
-                    }
-                }
+                put(&mut x, [left, right], step);
             }
         }
     }
@@ -240,8 +202,16 @@ fn refine(a: &DMatrix<f64>, v: &mut DMatrix<f64>, w: &mut DMatrix<f64>, t: &mut 
     invert_again(v, w);
 }
 
-fn radius(t: &DMatrix<f64>, first: usize) -> f64 {
-    Block::new([t[(first, first)], t[(first, first + 1)], t[(first + 1, first)], t[(first + 1, first + 1)]]).radius
+/// The entries of the piece of order two that begins at `i`.
+pub(super) fn piece(t: &DMatrix<f64>, i: usize) -> [f64; 4] {
+    [t[(i, i)], t[(i, i + 1)], t[(i + 1, i)], t[(i + 1, i + 1)]]
+}
+
+/// Puts the piece of two rows and two columns there that begins at `i`, `j`.
+fn put(matrix: &mut DMatrix<f64>, [i, j]: [usize; 2], piece: [[f64; 2]; 2]) {
+    for (a, b) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+        matrix[(i + a, j + b)] = piece[a][b];
+    }
 }
 
 /// W ← W + (1 − W V) W.
@@ -268,12 +238,7 @@ fn decouple(t: &DMatrix<f64>, firsts: &[usize]) -> (DMatrix<f64>, DMatrix<f64>) 
                 }
             }
             let pieces = [left, right].map(|first| Piece { first, size: 2 });
-            let solution = sylvester(t, &pieces, &load);
-            for (a, row) in solution.iter().enumerate() {
-                for (b, cell) in row.iter().enumerate() {
-                    x[(left + a, right + b)] = *cell;
-                }
-            }
+            put(&mut x, [left, right], sylvester(t, &pieces, &load));
         }
     }
     let y = inverse_of_unit_upper(&x);

@@ -15,16 +15,13 @@ pub(crate) struct Superposition {
 }
 
 impl Superposition {
-    /// Of rows of `length` numbers each.
-    pub(crate) fn new<Row: IntoIterator<Item = f64>>(length: usize, of: impl IntoIterator<Item = Row>) -> Self {
+    /// Of rows of `length` numbers each, one after the other.
+    pub(crate) fn new(length: usize, entries: &[f64]) -> Self {
         let registers = length.div_ceil(WIDTH);
-        let of = of.into_iter();
-        let mut rows = Vec::with_capacity(of.size_hint().0 * registers);
-        for row in of {
-            let first = rows.len();
-            rows.resize(first + registers, [0.0; WIDTH]);
-            let to = &mut rows[first..].as_flattened_mut()[..length];
-            to.iter_mut().zip(row).for_each(|(to, from)| *to = from);
+        let count = entries.len() / length.max(1);
+        let mut rows = vec![[0.0; WIDTH]; count * registers];
+        for (to, from) in rows.chunks_exact_mut(registers.max(1)).zip(entries.chunks_exact(length.max(1))) {
+            to.as_flattened_mut()[..length].copy_from_slice(from);
         }
         Self { length, registers, rows }
     }
@@ -126,10 +123,7 @@ mod tests {
             let number = |i: u32| libm::sin(f64::from(i) * 0.37);
             let x: Vec<f64> = (0..7).map(number).collect();
             let entries: Vec<f64> = (0..7 * length).map(|i| number(i + 11)).collect();
-            let matrix = Superposition::new(
-                length as usize,
-                entries.chunks(length.max(1) as usize).map(|row| row.iter().copied()),
-            );
+            let matrix = Superposition::new(length as usize, &entries);
             let mut expected = vec![0.0; length as usize];
             for (x, row) in x.iter().zip(entries.chunks(length.max(1) as usize)) {
                 expected.iter_mut().zip(row).for_each(|(sum, entry)| *sum += entry * x);

@@ -37,6 +37,15 @@ impl Matrix {
         self.entries.chunks_exact(self.order).map(|row| dot(row, x)).collect()
     }
 
+    /// The same with zeros behind it, up to this order.
+    pub(crate) fn padded(&self, order: usize) -> Self {
+        let mut entries = vec![0.0; order * order];
+        for (row, own) in entries.chunks_exact_mut(order.max(1)).zip(self.entries.chunks_exact(self.order.max(1))) {
+            row[..self.order].copy_from_slice(own);
+        }
+        Self { order, entries }
+    }
+
     /// Adds `factor` x xᵀ.
     pub(crate) fn add_square(&mut self, factor: f64, x: &[f64]) {
         for (entries, a) in self.entries.chunks_exact_mut(self.order.max(1)).zip(x) {

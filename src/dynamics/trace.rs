@@ -1,7 +1,7 @@
 //! Time histories: the motion at evenly spaced instants of a few cycles, evaluated on the exact flow.
 
 use super::contact::{Hold, Side};
-use super::system::{Contact, Law, Particle};
+use super::system::{Contact, Particle};
 
 /// Which instants to keep.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -78,12 +78,9 @@ impl SampledParticle {
         let side = contact.side();
         let clearance = if particle.ceiling.is_some() { particle.gap } else { f64::NAN };
         let (rigid_floor, rigid_ceiling) = (floor, ceiling + clearance);
-        let height = match side {
-            Side::Floor => floor + gap,
-            Side::Ceiling => ceiling + particle.gap + gap,
-        };
+        let height = side.of(floor, ceiling + particle.gap) + gap;
         let mut sampled = Self { height, floor: rigid_floor, ceiling: rigid_ceiling, rigid_floor, rigid_ceiling };
-        let resilient = contact.face(particle).is_some_and(|face| matches!(face.law, Law::Resilient { .. }));
+        let resilient = contact.face(particle).is_some_and(|face| !face.law.is_rigid());
         let across = contact.across() == Hold::Pressed;
         let compressed = [resilient.then_some(side), across.then_some(side.opposite())];
         for side in compressed.into_iter().flatten() {

@@ -4,7 +4,6 @@
 //! [[0, ω], [−ω, 0]] to the bit: no rounding damps it or feeds it, and places do not mix with rates, so that a motion can be run
 //! backwards. Jacobi's rotations keep the digits of slow modes beside fast ones (Demmel & Veselić, SIAM J. Matrix Anal. Appl. 13, 1992).
 
-use super::block::Block;
 use super::cholesky::Cholesky;
 use super::spectral::Spectral;
 use super::system::{Matrix, dot};
@@ -63,23 +62,17 @@ impl NormalModes {
     fn undamped(&self) -> Spectral {
         let n = self.omega.len();
         let width = 2 * n;
-        let mut spectral = Spectral {
-            from_blocks: vec![0.0; width * width],
-            to_blocks: vec![0.0; width * width],
-            ..Spectral::default()
-        };
+        let [mut from_blocks, mut to_blocks] = [vec![0.0; width * width], vec![0.0; width * width]];
         for (k, &omega) in self.omega.iter().enumerate() {
             for i in 0..n {
-                spectral.from_blocks[i * width + 2 * k] = self.shapes[k][i] / omega;
-                spectral.from_blocks[(n + i) * width + 2 * k + 1] = self.shapes[k][i];
-                spectral.to_blocks[2 * k * width + i] = self.inverse[k][i] * omega;
-                spectral.to_blocks[(2 * k + 1) * width + n + i] = self.inverse[k][i];
+                from_blocks[i * width + 2 * k] = self.shapes[k][i] / omega;
+                from_blocks[(n + i) * width + 2 * k + 1] = self.shapes[k][i];
+                to_blocks[2 * k * width + i] = self.inverse[k][i] * omega;
+                to_blocks[(2 * k + 1) * width + n + i] = self.inverse[k][i];
             }
-            let entries = [0.0, omega, -omega, 0.0];
-            spectral.matrices.push(entries);
-            spectral.blocks.push(Block::new(entries));
         }
-        spectral
+        let matrices = self.omega.iter().map(|&omega| [0.0, omega, -omega, 0.0]).collect();
+        Spectral::new(from_blocks, to_blocks, matrices, f64::INFINITY)
     }
 }
 

@@ -166,7 +166,7 @@ impl<V: Vector> Run<'_, V> {
             let departure = away * outcome.speed;
             let (n, positions) = (self.layout.n, self.layout.positions());
             let row = &side.face(&self.system.particles[j]).row;
-            let face = dot(row, &self.motion.state.values()[positions..positions + n]);
+            let face = dot(row, &self.motion.state.as_ref()[positions..positions + n]);
             let sticks = on_stop || closed.both_ways || !struck || face * (face + departure) > 0.0;
             let rests = outcome.speed < STICKING_SPEED && sticks;
             let gap = self.relative(j, side).gap;
@@ -204,7 +204,7 @@ impl<V: Vector> Run<'_, V> {
     /// The structure's velocity jumps; the particles keep their own.
     fn kick_structure(&mut self, jump: &[f64]) {
         let (positions, layout) = (self.layout.positions(), self.layout);
-        let state = self.motion.state.values_mut();
+        let state = self.motion.state.as_mut();
         state[positions..].iter_mut().zip(jump).for_each(|(rate, jump)| *rate += jump);
         for (j, particle) in self.system.particles.iter().enumerate() {
             state[layout.gap(j) + positions] -= dot(&particle.floor.row, jump);
@@ -218,11 +218,9 @@ impl<V: Vector> Run<'_, V> {
         let before = self.audit.is_some().then(|| energy(self.system, &self.audit_state()));
         let jump: Vec<f64> = self.jump.iter().map(|jump| impulse * jump).collect();
         self.kick_structure(&jump);
-        if let Some(before) = before {
-            let after = energy(self.system, &self.audit_state());
-            if let Some(audit) = &mut self.audit {
-                audit.impulse(impulse, after - before);
-            }
+        let work = before.map(|before| energy(self.system, &self.audit_state()) - before);
+        if let (Some(audit), Some(work)) = (&mut self.audit, work) {
+            audit.impulse(impulse, work);
         }
         let holds = |j: &usize| self.contacts[*j].holds(&self.system.particles[*j]);
         let closing = |j: usize| Closing { particle: j, side: self.contacts[j].side(), held: true };

@@ -52,7 +52,7 @@ impl<V: Vector> Run<'_, V> {
 
     fn structure_rates(&self) -> &[f64] {
         let positions = self.layout.positions();
-        &self.motion.state.values()[positions..positions + self.layout.n]
+        &self.motion.state.as_ref()[positions..positions + self.layout.n]
     }
 
     /// Books a cycle's sums.
@@ -91,12 +91,12 @@ impl<V: Vector> Run<'_, V> {
         if self.audit.is_some() {
             let passed = &mut self.passed;
             passed.duration += tally.steps as f64 * weight;
-            passed.position.iter_mut().zip(tally.state.values()).for_each(|(sum, q)| *sum += q * weight);
-            passed.dissipated += tally.dissipated * weight;
-            passed.force += tally.force * weight;
-            passed.force_modulus += tally.force_modulus * weight;
-            passed.work += tally.work;
-            passed.work_modulus += tally.work_modulus;
+            passed.position.iter_mut().zip(tally.state.as_ref()).for_each(|(sum, q)| *sum += q * weight);
+            passed.dissipated += tally.passed.dissipated * weight;
+            passed.force += tally.passed.force * weight;
+            passed.force_modulus += tally.passed.force_modulus * weight;
+            passed.work += tally.passed.work;
+            passed.work_modulus += tally.passed.work_modulus;
         }
         Ok(())
     }
@@ -108,7 +108,7 @@ impl<V: Vector> Run<'_, V> {
         }
         let state = &self.motion.state;
         let weight = half * self.time_step;
-        self.passed.position.iter_mut().zip(state.values()).for_each(|(sum, q)| *sum += weight * q);
+        self.passed.position.iter_mut().zip(state.as_ref()).for_each(|(sum, q)| *sum += weight * q);
         for row in &self.propagators[self.now].dissipation {
             let rate = row.dot(state);
             self.passed.dissipated += weight * rate * rate;
@@ -125,7 +125,7 @@ impl<V: Vector> Run<'_, V> {
 
     pub(super) fn audit_state(&self) -> State {
         let (n, positions) = (self.layout.n, self.layout.positions());
-        let state = self.motion.state.values();
+        let state = self.motion.state.as_ref();
         let structure = [&state[..n], &state[positions..positions + n]];
         let particles = (0..self.contacts.len()).map(|j| self.absolute(j)).collect();
         State::new(self.system, &self.contacts, structure, particles, |j, side| self.relative(j, side).gap)
@@ -134,7 +134,7 @@ impl<V: Vector> Run<'_, V> {
     /// Keeps the motion at this step, and looks for the next step to keep.
     pub(super) fn sample(&mut self) {
         let (n, positions) = (self.layout.n, self.layout.positions());
-        let state = self.motion.state.values();
+        let state = self.motion.state.as_ref();
         let sampled = |(j, particle): (usize, &Particle)| {
             let side = self.contacts[j].side();
             let faces = [Side::Floor, Side::Ceiling].map(|side| dot(&side.face(particle).row, &state[..n]));

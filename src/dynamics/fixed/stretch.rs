@@ -4,6 +4,7 @@ use super::propagator::Propagator;
 use super::schedule::Oscillator;
 use super::vector::Vector;
 use crate::dynamics::Extremes;
+use crate::dynamics::audit::Passed;
 
 /// What moves.
 pub(super) struct Motion<V> {
@@ -41,7 +42,6 @@ pub(super) struct Watch<V> {
 }
 
 /// Sums over the states at the ends of steps.
-#[derive(Debug, Clone)]
 pub(super) struct Tally<V> {
     pub(super) steps: u64,
     pub(super) state: V,
@@ -51,14 +51,8 @@ pub(super) struct Tally<V> {
     pub(super) more: Vec<[f64; 2]>,
     /// Ranges of all observed points; empty unless asked for.
     pub(super) extremes: Vec<Extremes>,
-    /// Audit only. Power of the dashpots, W.
-    pub(super) dissipated: f64,
-    /// Force, and its modulus, N.
-    pub(super) force: f64,
-    pub(super) force_modulus: f64,
-    /// Its work, and the sum of the moduli, J.
-    pub(super) work: f64,
-    pub(super) work_modulus: f64,
+    /// Audit only: powers and forces in the place of their integrals, no times and no positions.
+    pub(super) passed: Passed,
 }
 
 impl<V: Vector> Tally<V> {
@@ -70,11 +64,7 @@ impl<V: Vector> Tally<V> {
             velocity_square: 0.0,
             more: vec![[0.0; 2]; more],
             extremes: if extremes { vec![Extremes::default(); 1 + more] } else { Vec::new() },
-            dissipated: 0.0,
-            force: 0.0,
-            force_modulus: 0.0,
-            work: 0.0,
-            work_modulus: 0.0,
+            passed: Passed::default(),
         }
     }
 }
@@ -158,16 +148,13 @@ impl<V: Vector> Motion<V> {
             if AUDIT {
                 for row in &propagator.dissipation {
                     let rate = row.dot(&state);
-                    tally.dissipated += rate * rate;
+                    tally.passed.dissipated += rate * rate;
                 }
                 if forced {
                     let here = watch.forced.dot(&state);
                     let work = force * (here - place);
                     place = here;
-                    tally.work += work;
-                    tally.work_modulus += work.abs();
-                    tally.force += force;
-                    tally.force_modulus += force.abs();
+                    tally.passed.drive(1.0, force, work);
                 }
             }
             if let Some(oscillator) = &mut oscillator {

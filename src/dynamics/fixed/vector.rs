@@ -2,13 +2,11 @@
 //! without a loop or an allocation; of any length for the others. All sums run in one fixed order.
 
 /// A state vector, its matrix, and the four operations of a step.
-pub(super) trait Vector {
+pub(super) trait Vector: AsRef<[f64]> + AsMut<[f64]> {
     /// A square matrix of the same order, by columns.
     type Matrix;
     fn of(values: &[f64]) -> Self;
     fn matrix(columns: &[Vec<f64>]) -> Self::Matrix;
-    fn values(&self) -> &[f64];
-    fn values_mut(&mut self) -> &mut [f64];
     /// Moves the vector out, to work on it outside of its owner; what stays behind is to be overwritten.
     fn take(&mut self) -> Self;
     /// into = matrix·from + offset + input·u.
@@ -26,14 +24,6 @@ impl<const D: usize> Vector for [f64; D] {
 
     fn matrix(columns: &[Vec<f64>]) -> Self::Matrix {
         std::array::from_fn(|j| columns.get(j).map_or([0.0; D], |column| Self::of(column)))
-    }
-
-    fn values(&self) -> &[f64] {
-        self
-    }
-
-    fn values_mut(&mut self) -> &mut [f64] {
-        self
     }
 
     #[inline(always)]
@@ -85,14 +75,6 @@ impl Vector for Vec<f64> {
 
     fn matrix(columns: &[Vec<f64>]) -> Self::Matrix {
         columns.to_vec()
-    }
-
-    fn values(&self) -> &[f64] {
-        self
-    }
-
-    fn values_mut(&mut self) -> &mut [f64] {
-        self
     }
 
     fn take(&mut self) -> Self {

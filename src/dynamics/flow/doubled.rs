@@ -47,12 +47,7 @@ impl Flow {
         sum.add(sign * part(&self.modes.gravity));
         sum.add_product(sign * part(&self.force), force);
         if let Some(steady) = &self.harmonic {
-            let (cosine, sine) = (steady.cosine[i], steady.sine[i]);
-            sum.add(if half == 0 {
-                sign * (cosine * drive.cosine + sine * drive.sine)
-            } else {
-                sign * (steady.omega * (sine * drive.cosine - cosine * drive.sine))
-            });
+            sum.add(sign * steady.at(i, drive)[half]);
         }
     }
 

@@ -41,14 +41,10 @@ pub(super) fn pass(system: &HybridSystem, flow: &Flow, answer: &[f64], cycle: &C
                 let w = weight * h * at.count;
                 passed.position.iter_mut().zip(&p).for_each(|(sum, q)| *sum += w * q);
                 let force = segment.level + drive.sine;
-                let power = force * dot(&system.force_row, &rate[..n]);
-                passed.force += w * force;
-                passed.force_modulus += w * force.abs();
-                passed.work += w * power;
-                passed.work_modulus += w * power.abs();
+                passed.drive(w, force, force * dot(&system.force_row, &rate[..n]));
                 let mut dissipated = dissipation.of_moments(&moments.second());
                 if system.drive.harmonic.is_some() {
-                    let [_, driven] = flow.left(&vec![0.0; 2 * flow.order], 0.0, 0.0, drive);
+                    let [_, driven] = flow.at_rest(0.0, drive);
                     dissipated += dissipation.beside(system, &flow.modes, &driven, &moments.first(), moments.count);
                 }
                 passed.dissipated += weight * h * dissipated;
@@ -64,8 +60,7 @@ pub(super) fn state(system: &HybridSystem, flow: &Flow, p: &[f64], rate: &[f64])
     let n = system.mass.order;
     let structure = [&p[..n], &rate[..n]];
     let relative = |j: usize| {
-        let slot = flow.modes.attached.iter().position(|&other| other == j);
-        slot.map_or(Relative::default(), |slot| Relative { gap: p[n + slot], rate: rate[n + slot] })
+        flow.modes.slot(j).map_or(Relative::default(), |slot| Relative { gap: p[n + slot], rate: rate[n + slot] })
     };
     let absolute = |(j, particle)| relative(j).absolute(particle, Side::Floor, structure);
     let particles = system.particles.iter().enumerate().map(absolute).collect();

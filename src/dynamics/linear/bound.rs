@@ -6,18 +6,18 @@
 //! decides nothing says nothing: then the run is simulated.
 
 use super::cycle::Cycle;
-use super::signal::Row;
 use crate::dynamics::block::{Block, Phase};
 use crate::dynamics::budget;
 use crate::dynamics::flow::Flow;
+use crate::dynamics::signals::Row;
 use crate::dynamics::system::{HybridSystem, Law};
 
 /// Bisections after which a guard counts as undecided.
 const MOST_PIECES: usize = 400;
 
 /// What must stay positive: a constant and a signal.
-pub(super) struct Guard {
-    pub(super) row: Row,
+pub(super) struct Guard<'a> {
+    pub(super) row: &'a Row,
     sign: f64,
     /// Beside the row's own rest.
     constant: f64,
@@ -56,10 +56,10 @@ impl Watch<'_> {
 }
 
 /// What must stay positive while every particle rests on its floor.
-pub(super) fn guards(system: &HybridSystem, flow: &Flow) -> Vec<Guard> {
+pub(super) fn guards<'a>(system: &HybridSystem, flow: &'a Flow) -> Vec<Guard<'a>> {
     let mut guards = Vec::new();
     for (particle, rows) in system.particles.iter().zip(&flow.rows.guards) {
-        let guard = |row, sign, constant, is_distance| Guard { row: Row::new(flow, row), sign, constant, is_distance };
+        let guard = |row, sign, constant, is_distance| Guard { row: flow.rows.row(row), sign, constant, is_distance };
         guards.extend(rows.across.map(|across| guard(across.way, 1.0, particle.gap, true)));
         match particle.floor.law {
             Law::Resilient { no_tension, stop, .. } => {
@@ -74,21 +74,20 @@ pub(super) fn guards(system: &HybridSystem, flow: &Flow) -> Vec<Guard> {
     guards
 }
 
-impl Guard {
+impl Guard<'_> {
     /// Its value at one of its row.
     pub(super) fn of(&self, row: f64) -> f64 {
         self.constant + self.sign * row
     }
 
     /// Shares of the guard from those of its row.
-    fn shares(&self, phases: Vec<Phase>) -> Vec<Phase> {
-        let signed = |share: Phase| Phase { value: self.sign * share.value, rate: self.sign * share.rate };
-        phases.into_iter().map(signed).collect()
+    fn shares(&self, phases: impl Iterator<Item = Phase>) -> Vec<Phase> {
+        phases.map(|share| Phase { value: self.sign * share.value, rate: self.sign * share.rate }).collect()
     }
 
     /// Bound on the guard's transient from the state `a` on, for ever.
     fn transient(&self, flow: &Flow, a: &[f64]) -> Option<f64> {
-        let shares = self.shares(self.row.shares(a));
+        let shares = self.shares(self.row.phases(a));
         flow.blocks.iter().zip(shares).try_fold(0.0, |sum, (block, share)| Some(sum + for_ever(block, share)?))
     }
 
@@ -99,10 +98,8 @@ impl Guard {
         for segment in &cycle.segments {
             let start = segment.jump.apply(&state);
             state = segment.flow.apply(&start);
-            let mut phases = self.row.shares(&start);
             let (drive, rest) = self.row.outside(flow, segment.level, segment.drive);
-            phases.extend(drive);
-            let shares = self.shares(phases);
+            let shares = self.shares(self.row.phases(&start).chain(drive));
             let signal = Signal { blocks: &flow.blocks, shares, constant: self.constant + self.sign * rest };
             lowest = lowest.min(signal.lowest(segment.length, least)?);
         }

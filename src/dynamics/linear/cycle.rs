@@ -33,7 +33,7 @@ impl Affine {
             end
         });
         let [x, y] = columns;
-        let turn = x.chunks_exact(2).zip(y.chunks_exact(2)).map(|(x, y)| [x[0], y[0], x[1], y[1]]).collect();
+        let turn = x.as_chunks().0.iter().zip(y.as_chunks().0).map(|([a, c], [b, d])| [*a, *b, *c, *d]).collect();
         Self { turn, shift: vec![[0.0; 2]; flow.own] }
     }
 
@@ -49,8 +49,8 @@ impl Affine {
     /// Where a state goes.
     pub(super) fn apply(&self, c: &[f64]) -> Vec<f64> {
         let mut moved = Vec::with_capacity(c.len());
-        for ((turn, shift), pair) in self.turn.iter().zip(&self.shift).zip(c.chunks_exact(2)) {
-            moved.extend(sum(times(*turn, [pair[0], pair[1]]), *shift));
+        for ((turn, shift), pair) in self.turn.iter().zip(&self.shift).zip(c.as_chunks().0) {
+            moved.extend(sum(times(*turn, *pair), *shift));
         }
         moved
     }
@@ -189,12 +189,12 @@ pub(super) fn jump(
     answer: &[f64],
 ) -> Vec<[f64; 2]> {
     let still = DrivePhase::default();
-    let [rest, _] = flow.left(&vec![0.0; 2 * flow.order], 0.0, before, still);
+    let [rest, _] = flow.at_rest(before, still);
     let mut rate: Vec<f64> = answer.iter().map(|jump| impulse * jump).collect();
     for &j in &flow.modes.attached {
         // The particle itself is not struck: its compression changes against the structure.
         let face = crate::dynamics::system::dot(&system.particles[j].floor.row, answer);
         rate.push(-impulse * face);
     }
-    enter(flow, &rest, &rate, after, still).chunks_exact(2).map(|pair| [pair[0], pair[1]]).collect()
+    enter(flow, &rest, &rate, after, still).as_chunks().0.to_vec()
 }

@@ -25,8 +25,7 @@ impl Moments {
 
     /// Of one state.
     fn of(c: &[f64]) -> Self {
-        let mean: Vec<[f64; 2]> = c.chunks_exact(2).map(|pair| [pair[0], pair[1]]).collect();
-        Self { count: 1.0, ..Self { mean, ..Self::none(c.len() / 2) } }
+        Self { count: 1.0, mean: c.as_chunks().0.to_vec(), ..Self::none(c.len() / 2) }
     }
 
     /// Of `cycles` states, the first of them `start` and each the `map` of the one before.

@@ -5,7 +5,6 @@
 //! closed in on, by Newton on the exact flow.
 
 use super::cycle::{Cycle, Segment};
-use super::signal::Row;
 use crate::dynamics::Extremes;
 use crate::dynamics::block::Phase;
 use crate::dynamics::budget;
@@ -13,7 +12,7 @@ use crate::dynamics::crest::{self, Motion, crest};
 use crate::dynamics::flow::{DrivePhase, Flow};
 use crate::dynamics::four::Four;
 use crate::dynamics::parabola::Parabola;
-use crate::dynamics::signals::motion;
+use crate::dynamics::signals::{Row, motion};
 use crate::dynamics::system::HybridSystem;
 
 /// Nodes a radian of whatever oscillates: the cubic between two of them is then close enough to judge a crest ([`crest`]).
@@ -82,8 +81,8 @@ impl Grid {
         let nodes = times(flow, segment.length)
             .into_iter()
             .map(|time| {
-                let mut columns = Vec::with_capacity(2 * flow.blocks.len());
-                for (block, [a, b, c, d]) in flow.blocks.iter().zip(&row.weights) {
+                let mut columns = Vec::with_capacity(2 * flow.own);
+                for (block, [a, b, c, d]) in flow.blocks[..flow.own].iter().zip(&row.weights) {
                     let kernel = block.kernel(time);
                     for phase in [Phase { value: *a, rate: *c }, Phase { value: *b, rate: *d }] {
                         let mut motion = Motion::default();
@@ -104,7 +103,7 @@ impl Grid {
 
     fn take(&self, flow: &Flow, row: &Row, c: &[f64], range: &mut Extremes) {
         let shares = std::cell::OnceCell::new();
-        let shares = || -> &Vec<Phase> { shares.get_or_init(|| row.shares(c).into_iter().chain(self.drive).collect()) };
+        let shares = || -> &Vec<Phase> { shares.get_or_init(|| row.phases(c).chain(self.drive).collect()) };
         let mut before: Option<crest::Node> = None;
         for node in &self.nodes {
             let free = node.columns.iter().zip(c).fold(Four::ZERO, |sum, (column, c)| sum + *column * *c);

@@ -1,4 +1,4 @@
-//! Signals of a flow as rows over its block coordinates, and their integrals over many cycles at once.
+//! Signals of a flow over many cycles at once, and their integrals.
 
 use super::cycle::{Affine, Cycle, Segment, product, sum, times};
 use super::moments::{Moments, outer};
@@ -7,39 +7,18 @@ use crate::dynamics::budget;
 use crate::dynamics::flow::{DrivePhase, Flow};
 use crate::dynamics::gains::{Closed, Gains};
 use crate::dynamics::integral::GAUSS;
+use crate::dynamics::signals::Row;
 use crate::dynamics::sums::{About, Sums};
 use crate::dynamics::system::HybridSystem;
 
-/// A row of the flow: value and rate of each block's share by its two coordinates.
-pub(super) struct Row {
-    /// Which row of the flow.
-    pub(super) index: usize,
-    /// [[value by x, by y], [rate by x, by y]].
-    pub(super) weights: Vec<[f64; 4]>,
-}
-
 impl Row {
-    pub(super) fn new(flow: &Flow, index: usize) -> Self {
-        Self { index, weights: flow.rows.row(index).weights[..flow.own].to_vec() }
-    }
-
     /// Its share of the harmonic force, if there is one, and its rest under a constant force.
     pub(super) fn outside(&self, flow: &Flow, level: f64, drive: DrivePhase) -> (Option<Phase>, f64) {
-        let row = flow.rows.row(self.index);
-        let share = row.weights.get(flow.own).map(|weights| {
+        let share = self.weights.get(flow.own).map(|weights| {
             let [value, rate] = times(*weights, [drive.cosine, drive.sine]);
             Phase { value, rate }
         });
-        (share, row.gravity.p0 + level * row.force.p0)
-    }
-
-    /// Shares of its own blocks in a state.
-    pub(super) fn shares(&self, c: &[f64]) -> Vec<Phase> {
-        let share = |(weights, pair): (&[f64; 4], &[f64])| {
-            let [value, rate] = times(*weights, [pair[0], pair[1]]);
-            Phase { value, rate }
-        };
-        self.weights.iter().zip(c.chunks_exact(2)).map(share).collect()
+        (share, self.gravity.p0 + level * self.force.p0)
     }
 
     /// Mean of value and rate beside `outside` over the states of several cycles, and Σ of their squares about it.
@@ -75,7 +54,7 @@ impl Row {
 pub(super) fn integrals(
     system: &HybridSystem,
     flow: &Flow,
-    rows: &[Row],
+    rows: &[&Row],
     cycle: &Cycle,
     at: &Moments,
     displacement: bool,
@@ -95,7 +74,7 @@ pub(super) fn integrals(
         let integrated = flow.closed().filter(|_| !flow.is_brief(segment.length)).map(gained);
         for (row, sum) in rows.iter().zip(&mut sums) {
             sum.add(match &integrated {
-                Some(integrated) => Sums::of(&[integrated.of(flow.rows.row(row.index), displacement)]),
+                Some(integrated) => Sums::of(&[integrated.of(row, displacement)]),
                 None => quadrature(flow, row, &start, segment),
             });
         }

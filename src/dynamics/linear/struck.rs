@@ -8,7 +8,7 @@ use super::cycle::{Affine, jump, times};
 use crate::dynamics::EngineError;
 use crate::dynamics::cholesky::Cholesky;
 use crate::dynamics::flow::DrivePhase;
-use crate::dynamics::system::{Face, HybridSystem, Law, Particle, dot};
+use crate::dynamics::system::{Face, HybridSystem, Particle, dot};
 
 /// Place and velocity.
 #[derive(Clone, Copy)]
@@ -48,8 +48,8 @@ impl<'a> Struck<'a> {
         let answer = Cholesky::new(&system.mass)?.solve(row);
         let unit: Vec<f64> = jump(&bare, &steady.flow, 1.0, [0.0; 2], &answer).concat();
         let mut train = Affine::flow(&steady.flow, TAU / omega);
-        let struck = train.turn.iter().zip(unit.chunks_exact(2));
-        train.shift = struck.map(|(turn, jump)| times(*turn, [jump[0], jump[1]])).collect();
+        let struck = train.turn.iter().zip(unit.as_chunks().0);
+        train.shift = struck.map(|(turn, jump)| times(*turn, *jump)).collect();
         let Some(before) = train.fixed_point().filter(|_| amplitude > 0.0) else { return Ok(None) };
         let start = before.iter().zip(&unit).map(|(before, jump)| before + jump).collect();
         Ok(Some(Self { particle, ceiling, gravity: system.gravity, omega, amplitude, steady, start }))
@@ -72,10 +72,7 @@ impl<'a> Struck<'a> {
 
 /// ε of a rigid face.
 pub(super) fn restitution(face: &Face) -> Option<f64> {
-    match face.law {
-        Law::Rigid { restitution } => Some(restitution),
-        Law::Resilient { .. } => None,
-    }
+    face.law.is_rigid().then(|| face.law.restitution())
 }
 
 /// The velocity of the harmonic share at an impact: (1 + ε) H′ is what the particle asks of the face, after + ε before, less what the

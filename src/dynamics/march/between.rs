@@ -6,7 +6,7 @@
 use super::March;
 use super::effects::Effects;
 use crate::dynamics::EngineError;
-use crate::dynamics::contact::{Crossing, Hold, Relative, STICKING_SPEED, Side};
+use crate::dynamics::contact::{Change, Crossing, Hold, Relative, STICKING_SPEED, Side};
 use crate::dynamics::contact_state::face_damping;
 use crate::dynamics::guards::{self, Slipped};
 use crate::dynamics::system::Law;
@@ -14,34 +14,10 @@ use crate::dynamics::system::Law;
 /// Roundings of a distance that a bounce has to rise above.
 const SEVERAL: f64 = 16.0;
 
-/// What happens at one of the faces.
-#[derive(Clone, Copy)]
-enum Change {
-    Meets,
-    Releases,
-    Stops,
-    Recovers,
-    PushesAgain,
-}
-
 impl<E: Effects> March<'_, E> {
     /// A crossing of a particle that is at both faces, or comes to be.
     pub(super) fn cross_between(&mut self, j: usize, crossing: Crossing) -> Result<(), EngineError> {
-        let own = self.contacts[j].side();
-        let across = own.opposite();
-        let (side, change) = match crossing {
-            Crossing::Meeting => (across, Change::Meets),
-            Crossing::Release => (own, Change::Releases),
-            Crossing::ReleaseAcross => (across, Change::Releases),
-            Crossing::ToStop => (own, Change::Stops),
-            Crossing::ToStopAcross => (across, Change::Stops),
-            Crossing::Recovered => (own, Change::Recovers),
-            Crossing::RecoveredAcross => (across, Change::Recovers),
-            Crossing::Again => (own, Change::PushesAgain),
-            Crossing::AgainAcross => (across, Change::PushesAgain),
-            // Of flight alone, and of no particle.
-            Crossing::ToFloor | Crossing::ToCeiling | Crossing::HalfCycle => return Ok(()),
-        };
+        let Some((side, change)) = crossing.at(self.contacts[j].side()) else { return Ok(()) };
         let particle = &self.system.particles[j];
         let law = side.face(particle).law;
         let here = self.relative_to(j, side);
@@ -105,7 +81,7 @@ impl<E: Effects> March<'_, E> {
             self.particles[j] = self.relative_to(j, after.side());
         }
         if hold == Hold::Held {
-            self.particles[j].gap = -side.away() * side.face(particle).law.stop().map_or(0.0, |stop| stop.length);
+            self.particles[j].gap = -side.away() * side.face(particle).law.depth();
         }
         self.changed = true;
         self.contacts[j] = after;

@@ -5,14 +5,9 @@ use super::March;
 use super::effects::Effects;
 use super::half_cycles::Stage;
 use crate::dynamics::EngineError;
-use crate::dynamics::contact::{Crossing, Hold, Relative, Side};
+use crate::dynamics::contact::{Change, Crossing, Hold, Relative, Side};
 use crate::dynamics::guards;
 use crate::dynamics::system::{Contact, EventKind, Face, Law, Particle, dot};
-
-/// How far a face can be compressed to its stop.
-fn depth(face: &Face) -> f64 {
-    face.law.stop().map_or(0.0, |stop| stop.length)
-}
 
 /// Rigid faces closer to each other than this share of their way have met.
 const CLOSED: f64 = 1e-9;
@@ -30,7 +25,7 @@ impl<E: Effects> March<'_, E> {
                 return self.hold_on();
             }
             self.half.jumps();
-            if self.contacts[j].is_between() || crossing == Crossing::Meeting {
+            if self.contacts[j].is_between() || matches!(crossing, Crossing::Across(_)) {
                 self.smooth[j] = false;
                 return self.cross_between(j, crossing);
             }
@@ -42,7 +37,7 @@ impl<E: Effects> March<'_, E> {
         let mut jumps = false;
         match crossing {
             // A particle that a rounding has put behind a face which it is leaving has not met it.
-            Crossing::ToFloor => {
+            Crossing::To(Side::Floor) => {
                 self.particles[j].gap = 0.0;
                 if self.particles[j].rate < 0.0 {
                     match particle.floor.law {
@@ -52,7 +47,7 @@ impl<E: Effects> March<'_, E> {
                     jumps = true;
                 }
             }
-            Crossing::ToCeiling => {
+            Crossing::To(Side::Ceiling) => {
                 if let (Some(ceiling), Some(above)) = (&particle.ceiling, self.ceiling_relative(j)) {
                     match ceiling.law {
                         _ if !(above.rate > 0.0) => {
@@ -67,13 +62,13 @@ impl<E: Effects> March<'_, E> {
                     }
                 }
             }
-            Crossing::ToStop => {
+            Crossing::Own(Change::Stops) => {
                 if let Some(stop) = side.face(particle).law.stop() {
                     self.particles[j].gap = -side.away() * stop.length;
                     return self.strike(j, side);
                 }
             }
-            Crossing::Release if E::ALL && self.contacts[j].holds(particle) => {
+            Crossing::Own(Change::Releases) if E::ALL && self.contacts[j].holds(particle) => {
                 if self.sudden {
                     return self.hold_on();
                 }
@@ -81,7 +76,7 @@ impl<E: Effects> March<'_, E> {
                 self.let_go(j, side);
                 self.smooth[j] = true;
             }
-            Crossing::Release => match side.face(particle).law {
+            Crossing::Own(Change::Releases) => match side.face(particle).law {
                 Law::Resilient { no_tension: true, .. } if E::ALL && self.is_compressed(j, side) => {
                     self.slip_smoothly(j, side)?;
                 }
@@ -94,7 +89,7 @@ impl<E: Effects> March<'_, E> {
                     jumps = true;
                 }
             },
-            Crossing::Recovered => {
+            Crossing::Own(Change::Recovers) => {
                 self.particles[j].gap = 0.0;
                 self.changed = true;
                 self.contacts[j] = Contact::Flight;
@@ -102,13 +97,8 @@ impl<E: Effects> March<'_, E> {
                     self.refer_to_floor(j);
                 }
             }
-            Crossing::Again => self.slip_smoothly(j, side)?,
-            Crossing::Meeting
-            | Crossing::ReleaseAcross
-            | Crossing::ToStopAcross
-            | Crossing::RecoveredAcross
-            | Crossing::AgainAcross
-            | Crossing::HalfCycle => {}
+            Crossing::Own(Change::PushesAgain) => self.slip_smoothly(j, side)?,
+            Crossing::Own(Change::Meets) | Crossing::Across(_) | Crossing::HalfCycle => {}
         }
         if E::ALL {
             self.meet_at_once()?;
@@ -139,7 +129,8 @@ impl<E: Effects> March<'_, E> {
                 && !yields(&particle.floor)
                 && particle.ceiling.as_ref().is_some_and(|ceiling| {
                     let rows = || ceiling.row.iter().zip(&particle.floor.row).zip(&self.q);
-                    let rest = particle.gap + [&particle.floor, ceiling].iter().map(|face| depth(face)).sum::<f64>();
+                    let rest =
+                        particle.gap + [&particle.floor, ceiling].iter().map(|face| face.law.depth()).sum::<f64>();
                     let way = rows().fold(rest, |sum, ((above, below), q)| sum + (above - below) * q);
                     let size =
                         rows().fold(rest, |sum, ((above, below), q)| sum + (above * q).abs() + (below * q).abs());
@@ -268,27 +259,26 @@ impl<E: Effects> March<'_, E> {
 
     /// Position relative to the ceiling, for a particle whose state refers to the floor.
     pub(super) fn ceiling_relative(&self, j: usize) -> Option<Relative> {
-        let particle = &self.system.particles[j];
-        let ceiling = particle.ceiling.as_ref()?;
-        let floor = self.particles[j];
-        if !self.moves_by_itself(particle) {
-            return Some(Relative { gap: floor.gap - particle.gap, rate: floor.rate });
-        }
-        let shift = |x: &[f64]| dot(&ceiling.row, x) - dot(&particle.floor.row, x);
-        Some(Relative { gap: floor.gap - particle.gap - shift(&self.q), rate: floor.rate - shift(&self.rate) })
+        self.referred(j, Side::Ceiling)
     }
 
     /// Refers a particle that leaves the ceiling to the floor again.
     pub(super) fn refer_to_floor(&mut self, j: usize) {
+        if let Some(here) = self.referred(j, Side::Floor) {
+            self.particles[j] = here;
+        }
+    }
+
+    /// Position relative to the face on this side, for a particle whose state refers to the other one.
+    fn referred(&self, j: usize, to: Side) -> Option<Relative> {
         let particle = &self.system.particles[j];
-        let Some(ceiling) = particle.ceiling.as_ref() else { return };
-        let here = self.particles[j];
-        self.particles[j] = if self.moves_by_itself(particle) {
-            let shift = |x: &[f64]| dot(&ceiling.row, x) - dot(&particle.floor.row, x);
-            Relative { gap: here.gap + particle.gap + shift(&self.q), rate: here.rate + shift(&self.rate) }
-        } else {
-            Relative { gap: here.gap + particle.gap, rate: here.rate }
-        };
+        let ceiling = particle.ceiling.as_ref()?;
+        let (Relative { gap, rate }, away) = (self.particles[j], to.away());
+        if !self.moves_by_itself(particle) {
+            return Some(Relative { gap: gap + away * particle.gap, rate });
+        }
+        let shift = |x: &[f64]| away * (dot(&ceiling.row, x) - dot(&particle.floor.row, x));
+        Some(Relative { gap: gap + away * particle.gap + shift(&self.q), rate: rate + shift(&self.rate) })
     }
 
     /// The ceiling of a particle does not move with its floor.

@@ -6,10 +6,11 @@
 use super::March;
 use super::effects::Effects;
 use crate::dynamics::EngineError;
+use crate::dynamics::audit::energy;
 use crate::dynamics::collision::{self, Closed, Outcome};
 use crate::dynamics::contact::{Hold, Relative, STICKING_SPEED, Side};
 use crate::dynamics::guards::{Grip, Slipped};
-use crate::dynamics::system::{Contact, EventKind, Law, Particle, dot};
+use crate::dynamics::system::{Contact, EventKind, Particle, dot};
 use crate::dynamics::touch::{self, Exchange, Touch};
 
 /// A particle that its face may hold from now on.
@@ -37,7 +38,7 @@ enum Before {
 impl<E: Effects> March<'_, E> {
     /// An impulse on the structure: a particle that is held receives its share through the face.
     pub(super) fn strike_structure(&mut self, impulse: f64) -> Result<(), EngineError> {
-        let before = self.audit.is_some().then(|| crate::dynamics::audit::energy(self.system, &self.audit_state()));
+        let before = self.audit.is_some().then(|| energy(self.system, &self.audit_state()));
         // M⁻¹ b: what a unit impulse does to q′.
         let answer = self.states.ground().answer(self.system)?;
         for j in 0..self.particles.len() {
@@ -46,11 +47,9 @@ impl<E: Effects> March<'_, E> {
             self.smooth[j] = false;
         }
         self.rate.iter_mut().zip(answer).for_each(|(rate, jump)| *rate += impulse * jump);
-        if let Some(before) = before {
-            let after = crate::dynamics::audit::energy(self.system, &self.audit_state());
-            if let Some(audit) = &mut self.audit {
-                audit.impulse(impulse, after - before);
-            }
+        let work = before.map(|before| energy(self.system, &self.audit_state()) - before);
+        if let (Some(audit), Some(work)) = (&mut self.audit, work) {
+            audit.impulse(impulse, work);
         }
         self.half.jumps();
         self.settle(&[])
@@ -84,7 +83,7 @@ impl<E: Effects> March<'_, E> {
             let stop = side.face(particle).law.stop()?;
             return reached(side, Relative { gap: gap + side.away() * stop.length, rate }).then_some(side);
         }
-        let rigid = |side: Side| matches!(side.face(particle).law, Law::Rigid { .. });
+        let rigid = |side: Side| side.face(particle).law.is_rigid();
         let flies = |side: Side| contact == Contact::Flight && rigid(side);
         if flies(Side::Floor) && reached(Side::Floor, self.particles[j]) {
             return Some(Side::Floor);
@@ -157,7 +156,7 @@ impl<E: Effects> March<'_, E> {
             let contact = self.contacts[j];
             let here = self.particles[j];
             let held = contact.holds(particle);
-            let rigid = |side: Side| matches!(side.face(particle).law, Law::Rigid { .. });
+            let rigid = |side: Side| side.face(particle).law.is_rigid();
             let above = || self.ceiling_relative(j);
             let side = if let Some((_, side)) = arrived.iter().find(|(other, _)| *other == j) {
                 *side

@@ -7,7 +7,7 @@
 
 use super::March;
 use super::effects::Effects;
-use crate::dynamics::contact::{Crossing, Relative};
+use crate::dynamics::contact::{Change, Crossing, Relative, Side};
 use crate::dynamics::exact::Twice;
 use crate::dynamics::flow::DrivePhase;
 use crate::dynamics::guards;
@@ -59,7 +59,7 @@ impl<E: Effects> March<'_, E> {
         let (places, rates) = self.doubled.end.split_at(self.flow.order);
         self.q.iter_mut().zip(places).for_each(|(q, place)| *q = place.rounded());
         self.rate.iter_mut().zip(rates).for_each(|(rate, of)| *rate = of.rounded());
-        if guards::is_short(&self.flow, length) {
+        if self.flow.turns_below(guards::SHORT, length) {
             // Gaps have been followed by their derivatives.
             return;
         }
@@ -85,15 +85,15 @@ impl<E: Effects> March<'_, E> {
         let contact = self.contacts[j];
         let side = contact.side();
         let target = match (crossing, side.face(particle).law) {
-            (Crossing::ToFloor | Crossing::Recovered, _) => 0.0,
-            (Crossing::Release, Law::Resilient { .. }) if contact.presses(particle) => 0.0,
-            (Crossing::ToCeiling, _) if !self.has_walls() => particle.gap,
-            (Crossing::ToStop, Law::Resilient { stop: Some(stop), .. }) => -side.away() * stop.length,
+            (Crossing::To(Side::Floor) | Crossing::Own(Change::Recovers), _) => 0.0,
+            (Crossing::Own(Change::Releases), Law::Resilient { .. }) if contact.presses(particle) => 0.0,
+            (Crossing::To(Side::Ceiling), _) if !self.has_walls() => particle.gap,
+            (Crossing::Own(Change::Stops), law) => -side.away() * law.depth(),
             _ => return 0.0,
         };
         let (n, order) = (self.system.mass.order, self.flow.order);
         let (places, rates) = self.doubled.end.split_at(order);
-        let [mut gap, rate] = match self.flow.modes.attached.iter().position(|&attached| attached == j) {
+        let [mut gap, rate] = match self.flow.modes.slot(j) {
             Some(slot) => [places[n + slot], rates[n + slot]],
             None => self.flown(j, [length, 0.0], places.iter().copied(), rates.iter().copied()),
         };

@@ -31,6 +31,9 @@ const SETTLED: f64 = 1e-9;
 /// Events after which what rounding does at each of them adds up to more than the rest of it.
 const MANY_EVENTS: u64 = 10_000;
 
+/// radius·t below which t³ is rounding.
+const CUBE_IS_NOTHING: f64 = 5e-6;
+
 impl<E: Effects> March<'_, E> {
     /// Damping of the face that particle j's contact refers to, N s/m.
     pub(super) fn damping_at(&self, j: usize) -> f64 {
@@ -162,7 +165,7 @@ impl<E: Effects> March<'_, E> {
             && let (Some(bend), false) = (flow.rows.bend, self.half.idle)
         {
             let begins = self.half.stage == Stage::Begins;
-            guards::half_cycle(bend, self.half.sign_so_far(), begins, &mut self.search);
+            self.search.guards.push(Guard::half_cycle(bend, self.half.sign_so_far(), begins));
         }
         Ok(())
     }
@@ -224,7 +227,7 @@ impl<E: Effects> March<'_, E> {
             let contact = self.contacts[j];
             if contact.face(particle).is_none() {
                 if self.smooth[j]
-                    && flow.is_short(length)
+                    && flow.turns_below(CUBE_IS_NOTHING, length)
                     && let Some(side) = self.lies_at(j)
                 {
                     // Let go at the same instant as another: u = u‴t³/6 is still nothing, and is kept so to the bit.
@@ -245,7 +248,7 @@ impl<E: Effects> March<'_, E> {
             }
         }
         let flow = &self.flow;
-        let short = guards::is_short(flow, length);
+        let short = flow.turns_below(guards::SHORT, length);
         for (i, &j) in flow.modes.attached.iter().enumerate() {
             self.particles[j] = match flow.rows.faces[j].compression {
                 Some(_) if short => {

@@ -3,7 +3,7 @@
 use super::March;
 use super::effects::Effects;
 use crate::dynamics::collision::{self, Closed, Outcome};
-use crate::dynamics::contact::{Crossing, Hold, Side};
+use crate::dynamics::contact::{Change, Crossing, Hold, Side};
 use crate::dynamics::motion::{self, End, Instant, Jump, Kick};
 use crate::dynamics::system::{Contact, Law, dot};
 use crate::dynamics::touch::Touch;
@@ -27,24 +27,16 @@ impl<E: Effects> March<'_, E> {
     /// The gap that closes or opens at a crossing; none where a force comes to zero, where nothing jumps.
     fn gap_of(&self, j: usize, crossing: Crossing) -> Option<(usize, Side)> {
         let (contact, particle) = (self.contacts[j], &self.system.particles[j]);
-        let (own, across) = (contact.side(), contact.side().opposite());
-        let opens = |side: Side| {
-            let at_gap = matches!(side.face(particle).law, Law::Resilient { no_tension: false, .. });
-            (at_gap && contact.at(side, particle) != Hold::Held).then_some((j, side))
+        let (side, change) = crossing.at(contact.side())?;
+        let has_gap = match change {
+            Change::Meets | Change::Stops => true,
+            Change::Releases => {
+                let at_gap = matches!(side.face(particle).law, Law::Resilient { no_tension: false, .. });
+                at_gap && contact.at(side, particle) != Hold::Held
+            }
+            Change::Recovers | Change::PushesAgain => false,
         };
-        match crossing {
-            Crossing::ToFloor => Some((j, Side::Floor)),
-            Crossing::ToCeiling => Some((j, Side::Ceiling)),
-            Crossing::ToStop => Some((j, own)),
-            Crossing::Meeting | Crossing::ToStopAcross => Some((j, across)),
-            Crossing::Release => opens(own),
-            Crossing::ReleaseAcross => opens(across),
-            Crossing::Recovered
-            | Crossing::Again
-            | Crossing::RecoveredAcross
-            | Crossing::AgainAcross
-            | Crossing::HalfCycle => None,
-        }
+        has_gap.then_some((j, side))
     }
 
     fn instant(&mut self) -> Instant {

@@ -8,6 +8,7 @@ use super::tape::{Cycle, Step, Tape};
 use crate::dynamics::EngineError;
 use crate::dynamics::block::Block;
 use crate::dynamics::schur::{Iteration, schur};
+use crate::dynamics::spectral::piece;
 use crate::dynamics::system::HybridSystem;
 
 /// A Floquet multiplier; of a complex pair the one above the axis.
@@ -34,7 +35,7 @@ pub struct Fundamental {
 
 impl Fundamental {
     /// Of the last cycles of a run.
-    pub(in crate::dynamics) fn of(system: &HybridSystem, tape: &Tape, cycles: usize) -> Result<Self, EngineError> {
+    pub(crate) fn of(system: &HybridSystem, tape: &Tape, cycles: usize) -> Result<Self, EngineError> {
         let scale = Scale::new(system, &tape.reach);
         let map = Period::new(system, &scale, tape.last(cycles));
         let size = map.matrix.nrows();
@@ -49,18 +50,14 @@ impl Fundamental {
 }
 
 /// The map of a period about the run, in units of the motion.
-pub(in crate::dynamics) struct Period {
-    pub(in crate::dynamics) matrix: DMatrix<f64>,
+pub(crate) struct Period {
+    pub(crate) matrix: DMatrix<f64>,
     /// What its determinant has to be.
     contraction: f64,
 }
 
 impl Period {
-    pub(in crate::dynamics) fn new<'t>(
-        system: &HybridSystem,
-        scale: &Scale,
-        cycles: impl Iterator<Item = &'t Cycle>,
-    ) -> Self {
+    pub(crate) fn new<'t>(system: &HybridSystem, scale: &Scale, cycles: impl Iterator<Item = &'t Cycle>) -> Self {
         let mut tangent = Tangent::new(system);
         let size = tangent.size();
         let units: Vec<f64> = (0..size).map(|i| scale.unit(i)).collect();
@@ -76,14 +73,14 @@ impl Period {
     }
 
     /// All multipliers, largest first.
-    pub(in crate::dynamics) fn multipliers(&self) -> Result<Vec<Multiplier>, EngineError> {
+    pub(crate) fn multipliers(&self) -> Result<Vec<Multiplier>, EngineError> {
         let size = self.matrix.nrows();
         let [_, t] = schur(self.matrix.clone(), Iteration::Library)?;
         let mut multipliers = Vec::with_capacity(size);
         let mut i = 0;
         while i < size {
             if i + 1 < size && t[(i + 1, i)] != 0.0 {
-                let pair = Block::new([t[(i, i)], t[(i, i + 1)], t[(i + 1, i)], t[(i + 1, i + 1)]]).eigenvalues();
+                let pair = Block::new(piece(&t, i)).eigenvalues();
                 multipliers.extend(pair.map(|[re, im]| Multiplier::new(re, im.abs())));
                 i += 2;
             } else {
@@ -96,7 +93,7 @@ impl Period {
     }
 
     /// |det M − e^(∫ tr) Π ε²|, over the product of the columns' lengths: the most that the determinant could be.
-    pub(in crate::dynamics) fn residual(&self) -> f64 {
+    pub(crate) fn residual(&self) -> f64 {
         let lengths: f64 = self.matrix.column_iter().map(|column| column.norm()).product();
         let off = (self.matrix.determinant() - self.contraction).abs();
         if off == 0.0 { 0.0 } else { off / lengths.max(self.contraction) }

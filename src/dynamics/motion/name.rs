@@ -27,7 +27,7 @@ const SETTLED: f64 = 1e-6;
 /// The same where impacts at one instant leave no multipliers to prove it: the state itself comes again.
 const REPEATED: f64 = 1e-9;
 /// A multiplier of a motion without damping may round above 1 by this.
-pub(in crate::dynamics) const NEUTRAL: f64 = 1e-9;
+pub(crate) const NEUTRAL: f64 = 1e-9;
 /// Standard errors that make an exponent positive.
 const ERRORS: f64 = 3.0;
 /// A standard error above this, a cycle, does not tell zero from weak chaos.
@@ -176,7 +176,7 @@ impl FromStr for MotionKind {
 }
 
 /// Names the motion that a tape ends in; exponents are of its last `window` cycles.
-pub(in crate::dynamics) fn name(system: &HybridSystem, tape: &Tape, window: usize) -> Result<Motion, EngineError> {
+pub(crate) fn name(system: &HybridSystem, tape: &Tape, window: usize) -> Result<Motion, EngineError> {
     let scale = Scale::new(system, &tape.reach);
     for period in candidates(&scale, &tape.ends, NEAR) {
         if let Some(motion) = closes(system, &scale, tape, period)? {
@@ -252,7 +252,7 @@ fn closes(system: &HybridSystem, scale: &Scale, tape: &Tape, period: usize) -> R
 }
 
 /// What comes again after so many cycles.
-pub(in crate::dynamics) fn kind(system: &HybridSystem, tape: &Tape, period: usize) -> MotionKind {
+pub(crate) fn kind(system: &HybridSystem, tape: &Tape, period: usize) -> MotionKind {
     let periods = period as u32;
     let contacts = tape.last(period).map(|cycle| cycle.contacts).sum();
     let visited = || flows(tape, period).map(|flow| &flow.modes.contacts);

@@ -16,7 +16,7 @@ const LEAST: f64 = 1e-2;
 
 /// The motion's own units: what its lengths and speeds reach, of structure and particles each.
 #[derive(Debug, Clone, PartialEq)]
-pub(in crate::dynamics) struct Scale {
+pub(crate) struct Scale {
     /// Coordinates of the structure.
     order: usize,
     /// Coordinates of structure and particles.
@@ -27,7 +27,7 @@ pub(in crate::dynamics) struct Scale {
 }
 
 impl Scale {
-    pub(in crate::dynamics) fn new(system: &HybridSystem, reach: &Reach) -> Self {
+    pub(crate) fn new(system: &HybridSystem, reach: &Reach) -> Self {
         let order = system.mass.order;
         let half = order + system.particles.len();
         let reach = |first: usize, count: usize| {
@@ -49,7 +49,7 @@ impl Scale {
     }
 
     /// Of one period, whose ends say little: the structure moves at `speed` on average.
-    pub(in crate::dynamics) fn of_period(system: &HybridSystem, reach: &Reach, speed: f64) -> Self {
+    pub(crate) fn of_period(system: &HybridSystem, reach: &Reach, speed: f64) -> Self {
         let mut scale = Self::new(system, reach);
         let moves = [speed * system.drive.period / TAU, speed];
         for ((structure, particles), least) in scale.structure.iter_mut().zip(&mut scale.particles).zip(moves) {
@@ -60,25 +60,25 @@ impl Scale {
     }
 
     /// The unit of number `i` of a state.
-    pub(in crate::dynamics) fn unit(&self, i: usize) -> f64 {
+    pub(crate) fn unit(&self, i: usize) -> f64 {
         let of = if i % self.half < self.order { self.structure } else { self.particles };
         of[i / self.half]
     }
 
     /// The unit that number `i` of a state rounds in, relative to its own: particles and structure move with each other.
-    pub(in crate::dynamics) fn rounds(&self, i: usize) -> f64 {
+    pub(crate) fn rounds(&self, i: usize) -> f64 {
         let kind = i / self.half;
         self.structure[kind].max(self.particles[kind]) / self.unit(i)
     }
 
     /// From one state to another.
-    pub(in crate::dynamics) fn miss(&self, from: &End, to: &End) -> impl Iterator<Item = f64> {
+    pub(crate) fn miss(&self, from: &End, to: &End) -> impl Iterator<Item = f64> {
         let pairs = from.state.iter().zip(&to.state).enumerate();
         pairs.map(|(i, (from, to))| (to - from) / self.unit(i))
     }
 
     /// The largest part of the way from one state to another; infinite between different contacts.
-    pub(in crate::dynamics) fn apart(&self, one: &End, other: &End) -> f64 {
+    pub(crate) fn apart(&self, one: &End, other: &End) -> f64 {
         if one.contacts != other.contacts {
             return f64::INFINITY;
         }
@@ -115,14 +115,14 @@ impl Recurring {
 }
 
 /// Periods after which the last state has come again to within `near`, the shortest first.
-pub(in crate::dynamics) fn candidates(scale: &Scale, ends: &[End], near: f64) -> Vec<usize> {
+pub(crate) fn candidates(scale: &Scale, ends: &[End], near: f64) -> Vec<usize> {
     let Some((last, before)) = ends.split_last() else { return Vec::new() };
     let close = before.iter().rev().take(LONGEST).enumerate().filter(|(_, end)| scale.apart(end, last) <= near);
     close.map(|(i, _)| i + 1).take(TRIED).collect()
 }
 
 /// The period after which the last state comes closest to itself, and how close.
-pub(in crate::dynamics) fn closest(scale: &Scale, ends: &[End]) -> Option<(usize, f64)> {
+pub(crate) fn closest(scale: &Scale, ends: &[End]) -> Option<(usize, f64)> {
     let (last, before) = ends.split_last()?;
     let returns = before.iter().rev().take(LONGEST).enumerate().map(|(i, end)| (i + 1, scale.apart(end, last)));
     returns.min_by(|a, b| a.1.total_cmp(&b.1))

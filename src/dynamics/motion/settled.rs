@@ -18,7 +18,7 @@ const MISSED: f64 = 100.0 * SETTLED;
 const ATTRACTS: f64 = 1.0 - 1e-3;
 
 /// Cycles of the period in which the run has settled.
-pub(in crate::dynamics) fn settled(system: &HybridSystem, tape: &Tape) -> Result<Option<u64>, EngineError> {
+pub(crate) fn settled(system: &HybridSystem, tape: &Tape) -> Result<Option<u64>, EngineError> {
     if !system.drive.repeats {
         return Ok(None);
     }

@@ -169,10 +169,7 @@ impl<'a> Tangent<'a> {
         for (j, particle) in self.system.particles.iter().enumerate() {
             derivative.push(match modes.contacts[j].face(particle) {
                 None => -self.system.gravity,
-                Some(face) => {
-                    let slot = modes.attached.iter().position(|&other| other == j);
-                    dot(&face.row, &bends[..n]) + slot.map_or(0.0, |i| bends[n + i])
-                }
+                Some(face) => dot(&face.row, &bends[..n]) + modes.slot(j).map_or(0.0, |i| bends[n + i]),
             });
         }
     }

@@ -13,30 +13,30 @@ const KEPT: usize = 4096;
 
 /// The record of a run.
 #[derive(Default)]
-pub(in crate::dynamics) struct Tape {
+pub(crate) struct Tape {
     /// The last cycles.
     cycles: VecDeque<Cycle>,
     /// States at the ends of all cycles.
-    pub(in crate::dynamics) ends: Vec<End>,
+    pub(crate) ends: Vec<End>,
     /// What they reach.
-    pub(in crate::dynamics) reach: Reach,
+    pub(crate) reach: Reach,
     /// Exchanges of momentum in the event under way.
     jumps: Vec<Jump>,
 }
 
 /// One cycle of the drive.
 #[derive(Default)]
-pub(in crate::dynamics) struct Cycle {
+pub(crate) struct Cycle {
     pub(super) steps: Vec<Step>,
     /// Numbers of its instants, one after the other: a list of its own for each would cost more than the run.
     numbers: Vec<f64>,
     /// Contacts made, stops hit among them.
-    pub(in crate::dynamics) contacts: u64,
+    pub(crate) contacts: u64,
     /// Infinitely many impacts came to their end.
-    pub(in crate::dynamics) chatter: bool,
+    pub(crate) chatter: bool,
     /// Particles struck at one instant: a moved start would put their impacts into one order or the other, and no single
     /// matrix says what comes of both.
-    pub(in crate::dynamics) blurred: bool,
+    pub(crate) blurred: bool,
 }
 
 /// What happens to a tangent vector.
@@ -61,7 +61,7 @@ pub(super) struct Crossing {
 }
 
 /// A state with the flow in force; its numbers stand in the cycle.
-pub(in crate::dynamics) struct Instant {
+pub(crate) struct Instant {
     flow: Rc<Flow>,
     /// Where they begin.
     from: usize,
@@ -80,35 +80,35 @@ pub(super) struct At<'a> {
 }
 
 /// An exchange of momentum: impulses that are linear in the speeds before it.
-pub(in crate::dynamics) struct Jump {
-    pub(in crate::dynamics) kicks: Vec<Kick>,
+pub(crate) struct Jump {
+    pub(crate) kicks: Vec<Kick>,
     /// Impulses per particle mass, by the speeds along the normals, row by row.
-    pub(in crate::dynamics) impulses: Vec<f64>,
+    pub(crate) impulses: Vec<f64>,
     /// The faces hold their particles from now on.
-    pub(in crate::dynamics) holds: bool,
+    pub(crate) holds: bool,
 }
 
 /// A contact that takes part in it.
-pub(in crate::dynamics) struct Kick {
-    pub(in crate::dynamics) particle: usize,
-    pub(in crate::dynamics) side: Side,
+pub(crate) struct Kick {
+    pub(crate) particle: usize,
+    pub(crate) side: Side,
     /// M⁻¹φ.
-    pub(in crate::dynamics) answer: Vec<f64>,
+    pub(crate) answer: Vec<f64>,
     /// Restitution of a contact that is struck.
-    pub(in crate::dynamics) restitution: Option<f64>,
+    pub(crate) restitution: Option<f64>,
 }
 
 /// The state at the end of a cycle.
 #[derive(Debug, Clone, PartialEq)]
-pub(in crate::dynamics) struct End {
+pub(crate) struct End {
     /// q, y, q′, y′.
-    pub(in crate::dynamics) state: Vec<f64>,
-    pub(in crate::dynamics) contacts: Vec<Contact>,
+    pub(crate) state: Vec<f64>,
+    pub(crate) contacts: Vec<Contact>,
 }
 
 impl End {
     /// Of a structure at q, q′ with its particles at y, y′.
-    pub(in crate::dynamics) fn new([q, rate]: [&[f64]; 2], particles: &[[f64; 2]], contacts: Vec<Contact>) -> Self {
+    pub(crate) fn new([q, rate]: [&[f64]; 2], particles: &[[f64; 2]], contacts: Vec<Contact>) -> Self {
         let of = |which: usize| particles.iter().map(move |at| at[which]);
         let state = q.iter().copied().chain(of(0)).chain(rate.iter().copied()).chain(of(1)).collect();
         Self { state, contacts }
@@ -117,10 +117,10 @@ impl End {
 
 /// The least and the largest of each number of the states so far.
 #[derive(Default)]
-pub(in crate::dynamics) struct Reach(Vec<[f64; 2]>);
+pub(crate) struct Reach(Vec<[f64; 2]>);
 
 impl Reach {
-    pub(in crate::dynamics) fn take(&mut self, state: &[f64]) {
+    pub(crate) fn take(&mut self, state: &[f64]) {
         self.0.resize(state.len(), [f64::INFINITY, f64::NEG_INFINITY]);
         for ([low, high], x) in self.0.iter_mut().zip(state) {
             (*low, *high) = (low.min(*x), high.max(*x));
@@ -145,7 +145,7 @@ impl Cycle {
 
 impl Tape {
     /// A cycle begins.
-    pub(in crate::dynamics) fn begin_cycle(&mut self) {
+    pub(crate) fn begin_cycle(&mut self) {
         // About as long as the last one.
         let (steps, numbers) = self.cycles.back().map_or((0, 0), |last| (last.steps.len(), last.numbers.len()));
         if self.cycles.len() == KEPT {
@@ -161,23 +161,23 @@ impl Tape {
     }
 
     /// A cycle has ended.
-    pub(in crate::dynamics) fn end_cycle(&mut self, end: End) {
+    pub(crate) fn end_cycle(&mut self, end: End) {
         self.reach.take(&end.state);
         self.ends.push(end);
     }
 
-    pub(in crate::dynamics) fn flow(&mut self, flow: &Rc<Flow>, length: f64) {
+    pub(crate) fn flow(&mut self, flow: &Rc<Flow>, length: f64) {
         self.enter(Step::Flow(Rc::clone(flow), length));
     }
 
-    pub(in crate::dynamics) fn count(&mut self, kind: EventKind) {
+    pub(crate) fn count(&mut self, kind: EventKind) {
         let Some(cycle) = self.cycles.back_mut() else { return };
         cycle.contacts += u64::from(kind.is_contact());
         cycle.chatter |= kind == EventKind::ChatterEnd;
     }
 
     /// Within an event, or at an impulse of the drive; so many particles have just arrived.
-    pub(in crate::dynamics) fn jump(&mut self, jump: Jump, arrived: usize) {
+    pub(crate) fn jump(&mut self, jump: Jump, arrived: usize) {
         if let Some(cycle) = self.cycles.back_mut() {
             cycle.blurred |= arrived > 1;
         }
@@ -185,7 +185,7 @@ impl Tape {
     }
 
     /// What was at an instant of the drive.
-    pub(in crate::dynamics) fn timed(&mut self) {
+    pub(crate) fn timed(&mut self) {
         let jumps = std::mem::take(&mut self.jumps);
         if !jumps.is_empty() {
             self.enter(Step::Timed(jumps));
@@ -193,7 +193,7 @@ impl Tape {
     }
 
     /// An instant by its numbers: coordinates of the flow, their rates, and y′ of each particle.
-    pub(in crate::dynamics) fn instant(&mut self, flow: &Rc<Flow>, numbers: impl Iterator<Item = f64>) -> Instant {
+    pub(crate) fn instant(&mut self, flow: &Rc<Flow>, numbers: impl Iterator<Item = f64>) -> Instant {
         let mut from = 0;
         if let Some(cycle) = self.cycles.back_mut() {
             from = cycle.numbers.len();
@@ -202,19 +202,13 @@ impl Tape {
         Instant { flow: Rc::clone(flow), from }
     }
 
-    pub(in crate::dynamics) fn event(
-        &mut self,
-        gap: Option<(usize, Side)>,
-        before: Instant,
-        after: Instant,
-        force: f64,
-    ) {
+    pub(crate) fn event(&mut self, gap: Option<(usize, Side)>, before: Instant, after: Instant, force: f64) {
         let jumps = std::mem::take(&mut self.jumps);
         self.enter(Step::Event(Crossing { gap, before, jumps, after, force }));
     }
 
     /// What the states at the ends of cycles and at their events reach, as far as those are known.
-    pub(in crate::dynamics) fn reach_with_events(&self, order: usize, particles: usize) -> Reach {
+    pub(crate) fn reach_with_events(&self, order: usize, particles: usize) -> Reach {
         let mut reach = Reach::default();
         self.ends.iter().for_each(|end| reach.take(&end.state));
         for cycle in &self.cycles {
@@ -240,7 +234,7 @@ impl Tape {
     }
 
     /// The last `count` cycles that are kept.
-    pub(in crate::dynamics) fn last(&self, count: usize) -> impl Iterator<Item = &Cycle> {
+    pub(crate) fn last(&self, count: usize) -> impl Iterator<Item = &Cycle> {
         self.cycles.range(self.cycles.len() - count.min(self.cycles.len())..)
     }
 }

@@ -207,11 +207,5 @@ fn slow(shot: &Shot) -> f64 {
 
 /// [1 − M, −∂P/∂λ; tᵀ].
 fn bordered(shot: &Shot, by: &[f64], across: &[f64]) -> DMatrix<f64> {
-    let count = by.len();
-    let closing = shot.closing();
-    DMatrix::from_fn(count + 1, count + 1, |i, k| match (i == count, k == count) {
-        (true, _) => across[k],
-        (false, true) => -by[i],
-        (false, false) => closing[(i, k)],
-    })
+    elimination::bordered(&shot.closing(), across, |i| -by[i])
 }

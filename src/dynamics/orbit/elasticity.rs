@@ -164,9 +164,7 @@ impl<E, S: FnMut(f64) -> Result<HybridSystem, E>, A: Fn(&Response) -> f64> Sides
         let system = (self.system_at)(libm::exp(u)).map_err(ElasticityError::System)?;
         let shot = match self.closed(&system, u) {
             Ok(shot) => shot,
-            Err(OrbitError::Engine(EngineError::Overrun(overrun))) => {
-                return Err(OrbitError::Engine(EngineError::Overrun(overrun)).into());
-            }
+            Err(error @ OrbitError::Engine(EngineError::Overrun(_))) => return Err(error.into()),
             Err(OrbitError::Grazes { .. }) => return Ok(Err(Wide::Contacts)),
             Err(_) => return Ok(Err(Wide::Orbit)),
         };

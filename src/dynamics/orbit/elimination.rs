@@ -18,6 +18,16 @@ pub(super) struct Solved {
     pub(super) determinant: f64,
 }
 
+/// A with one more row and one more column, which ends with the last of the row's numbers.
+pub(super) fn bordered(a: &DMatrix<f64>, row: &[f64], column: impl Fn(usize) -> f64) -> DMatrix<f64> {
+    let count = a.nrows();
+    DMatrix::from_fn(count + 1, count + 1, |i, k| match (i == count, k == count) {
+        (true, _) => row[k],
+        (false, true) => column(i),
+        (false, false) => a[(i, k)],
+    })
+}
+
 /// x of A x = b; `None` where a number is not finite. Of the unknowns that could be left open, those are that come `late`.
 pub(super) fn solve(a: DMatrix<f64>, b: Vec<f64>, late: &Range<usize>) -> Option<Vec<f64>> {
     solved(a, b, late).map(|solved| solved.x)

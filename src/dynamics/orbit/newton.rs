@@ -37,12 +37,8 @@ pub(super) fn after(system: &HybridSystem, options: &Options) -> Result<Orbit, O
     let named = Options { motion: true, ..options.clone() };
     let (response, tape) = budget::within(|| march::taped(system, &named, States::of(system)))?;
     let scale = Scale::new(system, &tape.reach);
-    let mut error = match response.motion {
-        Some(motion) if motion.kind == MotionKind::Chaotic && motion.exponent.is_some() => {
-            motion.exponent.map(|exponent| OrbitError::Chaotic { exponent })
-        }
-        _ => None,
-    };
+    let chaotic = response.motion.filter(|motion| motion.kind == MotionKind::Chaotic);
+    let mut error = chaotic.and_then(|motion| motion.exponent).map(|exponent| OrbitError::Chaotic { exponent });
     if error.is_none() {
         for period in candidates(&scale, &tape.ends, NEAR) {
             let last = tape.ends[tape.ends.len() - 1].clone();

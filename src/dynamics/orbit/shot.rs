@@ -9,7 +9,7 @@ use crate::dynamics::contact::Relative;
 use crate::dynamics::march;
 use crate::dynamics::motion::{End, Period, Scale, Tape, kind};
 use crate::dynamics::states::States;
-use crate::dynamics::system::{Contact, Event, EventKind, HybridSystem, Law, dot, length};
+use crate::dynamics::system::{Contact, Event, EventKind, HybridSystem, dot, length};
 use crate::dynamics::{Options, Response, StartState, budget};
 
 /// Away from a multiplier, so that the equations have a solution.
@@ -127,17 +127,11 @@ impl Shot {
 
     /// Newton's step where a multiplier is 1, with nothing along the vector of that multiplier: an imperfection takes its place.
     pub(super) fn step_beside(&self, [kept, left]: &[Vec<f64>; 2]) -> Option<Vec<f64>> {
-        let size = self.miss.len();
-        let closing = self.closing();
-        let equations = DMatrix::from_fn(size + 1, size + 1, |i, k| match (i == size, k == size) {
-            (true, true) => 0.0,
-            (true, false) => kept[k],
-            (false, true) => left[i],
-            (false, false) => closing[(i, k)],
-        });
+        let row: Vec<f64> = kept.iter().copied().chain([0.0]).collect();
+        let equations = elimination::bordered(&self.closing(), &row, |i| left[i]);
         let rest = self.miss.iter().copied().chain([0.0]).collect();
         let mut step = elimination::solve(equations, rest, &self.places())?;
-        step.truncate(size);
+        step.truncate(self.miss.len());
         Some(step)
     }
 
@@ -320,31 +314,24 @@ pub(super) fn start_at(system: &HybridSystem, at: &End) -> StartState {
     let (places, rates) = at.state.split_at(n + system.particles.len());
     let particles = system.particles.iter().enumerate().map(|(j, particle)| {
         let relative = |contact: Contact| {
-            let structure = [&places[..n], &rates[..n]];
-            let Relative { gap, rate } =
-                Relative::of([places[n + j], rates[n + j]], particle, contact.side(), structure);
-            (gap, rate)
+            Relative::of([places[n + j], rates[n + j]], particle, contact.side(), [&places[..n], &rates[..n]])
         };
         let mut contact = at.contacts[j];
-        let (mut gap, mut rate) = relative(contact);
-        let away = contact.side().away();
+        let mut here = relative(contact);
+        let side = contact.side();
         if contact.holds(particle) {
-            let stop = contact.side().face(particle).law.stop();
-            (gap, rate) = (stop.map_or(0.0, |stop| -away * stop.length), 0.0);
-        } else if contact.presses(particle) && away * gap > 0.0 {
+            here = Relative { gap: 0.0 - side.away() * side.face(particle).law.depth(), rate: 0.0 };
+        } else if contact.presses(particle) && side.away() * here.gap > 0.0 {
             contact = Contact::Flight;
-            (gap, rate) = relative(contact);
+            here = relative(contact);
         } else if contact == Contact::Flight {
-            let inside = |face: Contact| {
-                let resilient = matches!(face.face(particle).map(|face| face.law), Some(Law::Resilient { .. }));
-                resilient && face.side().away() * relative(face).0 < 0.0
-            };
-            if let Some(face) = [Contact::Floor, Contact::Ceiling].into_iter().find(|face| inside(*face)) {
+            let inside = |face: &Contact| face.presses(particle) && face.side().away() * relative(*face).gap < 0.0;
+            if let Some(face) = [Contact::Floor, Contact::Ceiling].into_iter().find(inside) {
                 contact = face;
-                (gap, rate) = relative(contact);
+                here = relative(contact);
             }
         }
-        (contact, gap, rate)
+        (contact, here.gap, here.rate)
     });
     StartState::Given { q: places[..n].to_vec(), rate: rates[..n].to_vec(), particles: particles.collect() }
 }
@@ -352,9 +339,6 @@ pub(super) fn start_at(system: &HybridSystem, at: &End) -> StartState {
 /// The same state at rest in space: absolute places and rates.
 pub(super) fn absolute(system: &HybridSystem, start: &StartState) -> Option<End> {
     let StartState::Given { q, rate, particles } = start else { return None };
-    let absolute = particles.iter().zip(&system.particles).map(|(&(contact, gap, speed), particle)| {
-        Relative { gap, rate: speed }.absolute(particle, contact.side(), [q, rate])
-    });
     let contacts = particles.iter().map(|(contact, ..)| *contact).collect();
-    Some(End::new([q, rate], &absolute.collect::<Vec<_>>(), contacts))
+    Some(End::new([q, rate], &start.absolute(system)?, contacts))
 }
