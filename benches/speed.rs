@@ -243,6 +243,8 @@ fn figure() -> FigureSpec {
         label: Some(label.into()),
         scale: AxisScale::Log,
         reach: None,
+        range: None,
+        unit: None,
     };
     FigureSpec {
         name: String::new(),

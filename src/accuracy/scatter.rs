@@ -3,7 +3,7 @@
 
 use super::measured::Contender;
 use super::page::{AccuracyView, LEAST, Over, cheapest, fixed_steps, over};
-use crate::experiment::{Axis, AxisScale, Band, Drawing, FigureSpec, Joined, Level, Panel};
+use crate::experiment::{Axis, AxisScale, AxisUnit, Band, Drawing, FigureSpec, Joined, Level, Panel};
 use crate::figure::{FigureError, Picture, draw_table};
 use crate::table::{BASELINE, Column, Data, Table};
 use crate::text::number::significant;
@@ -120,6 +120,8 @@ fn figure(wanted: Vec<f64>) -> FigureSpec {
         label: Some(label.into()),
         scale: AxisScale::Log,
         reach: None,
+        range: None,
+        unit: (column == "time").then(|| AxisUnit { symbol: "s".into(), worth: 1.0 }),
     };
     let label = |first: bool| if first { "u_val of a number: accurate enough from here on" } else { "" };
     let guide = |(index, at): (usize, f64)| Level { at, label: label(index == 0).into() };

@@ -8,8 +8,8 @@ use super::continuation::BranchColumn;
 use super::definition::{Joined, Maximise};
 use super::schema::parts::any_of;
 use super::starts::{BasinColumn, START_LISTS, Starts};
-use super::word::{word_of, words};
-use crate::measure::{CycleValue, Measure, PROOF, energy_columns, of_another_damper, trace_columns};
+use super::word::{from_word, word_of, words};
+use crate::measure::{CycleValue, Measure, PROOF, energy_columns, of_another_damper, trace_columns, unit_of_list};
 
 /// What a column holds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -156,6 +156,13 @@ impl Columns {
         let role = |name: &str| self.list.iter().find(|(column, _)| column == name).map(|(_, role)| *role);
         // How many dampers a row has is known when it is drawn.
         role(name).or_else(|| role(of_another_damper(name)?))
+    }
+
+    /// The unit of a column of this name; `None` for one that is neither a parameter nor measured nor kept.
+    pub fn unit(name: &str) -> Option<&'static str> {
+        let measured = ["_num", "_spread"].iter().find_map(|suffix| name.strip_suffix(suffix)).unwrap_or(name);
+        let parameter = from_word(name).map(Parameter::unit);
+        parameter.or_else(|| from_word(measured).map(Measure::unit)).or_else(|| unit_of_list(name))
     }
 
     /// All names.

@@ -614,8 +614,21 @@ pub struct Axis {
     pub label: Option<String>,
     /// Linear or logarithmic.
     pub scale: AxisScale,
-    /// The axis reaches at least from the one to the other, whatever the data.
+    /// The axis reaches at least from the one to the other, whatever the data; in the column's unit.
     pub reach: Option<[f64; 2]>,
+    /// Of an x axis: only what lies between the two is drawn; in the column's unit.
+    pub range: Option<[f64; 2]>,
+    /// The unit of its numbers, where it is not left to the size of the data.
+    pub unit: Option<AxisUnit>,
+}
+
+/// A unit that an axis is labelled in.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct AxisUnit {
+    /// As a reader sees it: `mm`, `Hz`.
+    pub symbol: String,
+    /// What one of it is in the column's unit: 0.001 for mm, 2π for Hz.
+    pub worth: f64,
 }
 
 /// Scale of an axis.

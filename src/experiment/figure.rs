@@ -5,10 +5,11 @@ use serde_json::json;
 use super::at::At;
 use super::columns::{Columns, Role};
 use super::definition::{
-    AnimationSpec, Axis, AxisScale, Band, Drawing, FigureSpec, Level, Only, Panel, PeakMarks, Strip,
+    AnimationSpec, Axis, AxisScale, AxisUnit, Band, Drawing, FigureSpec, Level, Only, Panel, PeakMarks, Strip,
 };
 use super::diagnostic::{Findings, Span};
 use super::keys::Keys;
+use super::quantity::worth;
 use super::reader::{number, scalar, unknown};
 use super::schema::parts;
 use super::sweep::{NAME, is_name};
@@ -122,7 +123,7 @@ impl FigureReader<'_> {
 
     /// What a panel does not say itself it takes over from its figure.
     fn panel(&self, keys: &Keys<'_>, figure: Option<&Keys<'_>>) -> Option<Panel> {
-        let x = match keys.inherited(figure, "x", "What runs along the x axis", |at| self.axis(at)) {
+        let x = match keys.inherited(figure, "x", "What runs along the x axis", |at| self.x_axis(at)) {
             Some(None) => keys.lacks("x"),
             x => x.flatten(),
         };
@@ -164,14 +165,17 @@ impl FigureReader<'_> {
                 );
             }
         }
-        let y = y.into_iter().map(|(axis, _)| axis).collect();
+        let y: Vec<Axis> = y.into_iter().map(|(axis, _)| axis).collect();
+        let worth = y.first().and_then(|axis| axis.unit.as_ref()).map_or(1.0, |unit| unit.worth);
+        let mut guides = guides?.unwrap_or_default();
+        guides.iter_mut().for_each(|guide| guide.at *= worth);
         Some(Panel {
             x,
             y,
             by: by?.unwrap_or_default(),
             band: band?.unwrap_or(Band::None),
             over_first: over_first?.unwrap_or(false),
-            guides: guides?.unwrap_or_default(),
+            guides,
             markers: markers?.unwrap_or(false),
             peaks: peaks?,
             strip: strip?,
@@ -189,34 +193,67 @@ impl FigureReader<'_> {
         at.report("the kind of motion is not measured in this experiment", Some("add `motion` to `measure`".into()))
     }
 
-    /// A column's name, or `{column: …, scale: log, label: …, reach: [0, 1]}`.
+    /// A column's name, or `{column: …, scale: log, label: …, unit: mm, reach: [0, 1]}`.
     pub(super) fn axis(&self, at: At<'_>) -> Option<(Axis, Option<Role>)> {
+        at.named("axis", "A column, or {column, scale, label, unit, reach}", |at| self.any_axis(at, false))
+    }
+
+    /// As [`FigureReader::axis`], of which a part may be drawn alone: `range: [170, 210]`.
+    fn x_axis(&self, at: At<'_>) -> Option<(Axis, Option<Role>)> {
+        at.named("x_axis", "A column, or {column, scale, label, unit, reach, range}", |at| self.any_axis(at, true))
+    }
+
+    fn any_axis(&self, at: At<'_>, may_be_a_part: bool) -> Option<(Axis, Option<Role>)> {
         let plain = |at: At<'_>| {
             let (column, span) = column_name(at)?;
             let role = self.column(&column, span, |role| role != Role::Label)?;
-            Some((Axis { column, label: None, scale: AxisScale::Linear, reach: None }, role))
+            let axis = Axis { column, label: None, scale: AxisScale::Linear, reach: None, range: None, unit: None };
+            Some((axis, role))
         };
-        at.named("axis", "A column, or {column, scale, label, reach}", |at| {
-            at.either(|value| matches!(value, Value::Mapping(_)), |at| self.long_axis(at), plain)
-        })
+        at.either(|value| matches!(value, Value::Mapping(_)), |at| self.long_axis(at, may_be_a_part), plain)
     }
 
-    fn long_axis(&self, at: At<'_>) -> Option<(Axis, Option<Role>)> {
+    fn long_axis(&self, at: At<'_>, may_be_a_part: bool) -> Option<(Axis, Option<Role>)> {
         let keys = at.keys("an axis")?;
         let column = keys.required("column", "The column", column_name);
         let label = keys.optional("label", "Its label, in place of the column's own words", |at| at.text());
         let scale = keys.optional("scale", "Its scale", |at| at.word::<AxisScale>("scale"));
-        let reach = keys.optional("reach", "From one number to a larger one", read_reach);
+        let unit =
+            keys.optional("unit", "The unit of its numbers and of those that stand here: mm, Hz", |at| at.text());
+        let reach = keys.optional("reach", "From one number to a larger one, at least", read_reach);
+        let part = "From one number to a larger one: only what lies between them is drawn";
+        let range = keys.optional_where(may_be_a_part, "range", part, read_reach);
+        let unit_at = keys.span_of("unit");
         keys.close()?;
         let (column, span) = column?;
         let role = self.column(&column, span, |role| role != Role::Label)?;
-        let axis = Axis { column, label: label?, scale: scale?.unwrap_or_default(), reach: reach? };
-        if let (AxisScale::Log, Some([from, _])) = (axis.scale, axis.reach)
-            && from <= 0.0
-        {
+        let unit = match (unit?, unit_at) {
+            (Some(symbol), Some(unit_at)) => Some(self.unit(symbol, &column, unit_at)?),
+            _ => None,
+        };
+        let worth = unit.as_ref().map_or(1.0, |unit| unit.worth);
+        let to_column = |ends: Option<[f64; 2]>| ends.map(|ends| ends.map(|end| worth * end));
+        let (reach, range) = (to_column(reach?), to_column(range?));
+        let axis = Axis { column, label: label?, scale: scale?.unwrap_or_default(), reach, range, unit };
+        let not_positive = |ends: &[f64; 2]| ends[0] <= 0.0;
+        if axis.scale == AxisScale::Log && axis.reach.iter().chain(&axis.range).any(not_positive) {
             return at.wrong("a logarithmic axis reaches from a number above zero");
         }
         Some((axis, role))
+    }
+
+    /// A unit that the numbers of a column can be shown in.
+    fn unit(&self, symbol: String, column: &str, at: Span) -> Option<AxisUnit> {
+        let Some(of) = Columns::unit(column).filter(|of| !of.is_empty()) else {
+            return self.findings.wrong(at, format!("the numbers of `{column}` have no unit that can be chosen"));
+        };
+        match worth(&symbol, of) {
+            Ok(worth) => Some(AxisUnit { symbol, worth }),
+            Err(error) => {
+                let help = format!("`{column}` is in {of}; leave `unit` out, or write one of the same kind");
+                self.findings.report(at, error.to_string(), Some(help))
+            }
+        }
     }
 
     /// A column that splits rows into lines.

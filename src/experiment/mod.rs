@@ -62,8 +62,8 @@ pub use calibration::{
 pub use continuation::{BranchColumn, Continuation, RowSource, Stability};
 pub use continued::{ContinuedSweep, Direction};
 pub use definition::{
-    AnimationSpec, Axis, AxisScale, Band, Best, Case, Drawing, Experiment, ExperimentId, FigureSpec, IdError, Joined,
-    Level, MapSpec, Mark, Maximise, Only, Panel, PeakMarks, SearchPoint, Source, Strip, Transient,
+    AnimationSpec, Axis, AxisScale, AxisUnit, Band, Best, Case, Drawing, Experiment, ExperimentId, FigureSpec, IdError,
+    Joined, Level, MapSpec, Mark, Maximise, Only, Panel, PeakMarks, SearchPoint, Source, Strip, Transient,
 };
 pub use diagnostic::{Place, Problem, Problems, Severity};
 pub(crate) use edit::{Written, set_keys};

@@ -172,6 +172,9 @@ struct Powers {
     cycle: i32,
 }
 
+/// Those of cycles a second.
+const HERTZ: Powers = Powers { kilogram: 0, metre: 0, second: -1, angle: 0, cycle: 1 };
+
 /// A unit: powers of the base units, and the power of ten that turns it into SI.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 struct Unit {
@@ -196,11 +199,40 @@ pub fn parse_quantity(text: &str, wanted: Dimension) -> Result<f64, QuantityErro
     if unit.powers == wanted.powers() {
         return Ok(value);
     }
-    let hertz = Powers { second: -1, cycle: 1, ..Powers::default() };
-    if wanted == Dimension::AngularFrequency && unit.powers == hertz {
+    if wanted == Dimension::AngularFrequency && unit.powers == HERTZ {
         return Ok(value * TAU);
     }
     Err(QuantityError::WrongKind { text: text.into(), wanted })
+}
+
+/// Why numbers of one unit cannot be shown in another.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub(super) enum ConversionError {
+    /// A symbol that is no unit.
+    #[error("`{0}` is not a unit that is known here")]
+    Unknown(String),
+    /// Of another kind.
+    #[error("numbers in {of} cannot be shown in {unit}")]
+    OtherKind {
+        /// Wanted.
+        unit: String,
+        /// What there is.
+        of: String,
+    },
+}
+
+/// What one `unit` is in `of`: 0.001 for mm in m, 2π for Hz in rad/s.
+pub(super) fn worth(unit: &str, of: &str) -> Result<f64, ConversionError> {
+    let other_kind = || ConversionError::OtherKind { unit: unit.into(), of: of.into() };
+    let wanted = parse_unit(unit).map_err(|_| ConversionError::Unknown(unit.into()))?;
+    let Unit { powers, ten } = parse_unit(of).map_err(|_| other_kind())?;
+    let cycles = powers == Dimension::AngularFrequency.powers() && wanted.powers == HERTZ;
+    if wanted.powers != powers && !cycles {
+        return Err(other_kind());
+    }
+    let power_of_ten =
+        Decimal { mantissa: "1", exponent: 0 }.value(wanted.ten - ten, unit).map_err(|_| other_kind())?;
+    Ok(if cycles { power_of_ten * TAU } else { power_of_ten })
 }
 
 /// Reads a number without a unit.
@@ -343,7 +375,7 @@ fn symbol_unit(symbol: &str) -> Option<Unit> {
             "s" => Unit { powers: Powers { second: 1, ..powers }, ten: 0 },
             "N" => Unit { powers: Dimension::Force.powers(), ten: 0 },
             "Pa" => Unit { powers: Dimension::Stress.powers(), ten: 0 },
-            "Hz" => Unit { powers: Powers { second: -1, cycle: 1, ..powers }, ten: 0 },
+            "Hz" => Unit { powers: HERTZ, ten: 0 },
             "rad" => Unit { powers: Powers { angle: 1, ..powers }, ten: 0 },
             _ => return None,
         })

@@ -14,17 +14,16 @@ use super::group::Group;
 use super::label;
 use super::line::Source;
 use super::style::{
-    BLUE_INK, CURVE, Color, FRAME, GREY, GRID, GUIDE, INK, LABEL_TEXT, LEGEND_TEXT, Look, NOTE_TEXT, PALE, SPACE,
-    TICK_TEXT, WIDTH,
+    BLUE_INK, CURVE, Color, FRAME, GREY, GRID, GUIDE, INK, LABEL_TEXT, LEGEND_TEXT, Look, PALE, SPACE, TICK_TEXT, WIDTH,
 };
 use crate::experiment::{AnimationSpec, AxisScale};
 use crate::measure::column_of_damper;
 use crate::table::Data;
 
 /// Height of a row, and of what stands above and below its frames.
-const ROW: f64 = 620.0;
-const ABOVE: f64 = 100.0;
-const BELOW: f64 = 110.0;
+const ROW: f64 = 660.0;
+const ABOVE: f64 = 124.0;
+const BELOW: f64 = 126.0;
 /// Left and right edges of the enclosure and of the paths.
 const MODEL: [f64; 2] = [70.0, 430.0];
 const PATHS: [f64; 2] = [620.0, 1400.0];
@@ -154,7 +153,7 @@ impl Row<'_> {
         let x = Axis::new(AxisScale::Linear, Extent { least: first, largest: last }, Room::Tight, "s");
         let slow = (PLAYS / (last - first)).ceil().max(1.0);
         let clock = Clock { first, last, plays: slow * (last - first) };
-        let slowed = if slow > 1.0 { format!("slowed {slow} times") } else { "as fast as it is".to_owned() };
+        let slowed = if slow > 1.0 { format!("slowed down {slow} times") } else { "in real time".to_owned() };
         let title = if run.title.is_empty() { slowed } else { format!("{}, {slowed}", run.title) };
         write(sheet, Point { x: MODEL[0], y: self.top + LEGEND_TEXT }, &title, LEGEND_TEXT, Anchor::Left, INK);
         self.axes(sheet, &frame, &x);
@@ -247,10 +246,11 @@ impl Row<'_> {
         }
         let corners = frame.corners();
         sheet.line(&[corners[0], corners[1], corners[2], corners[3], corners[0]], Pen::solid(INK, FRAME));
-        let below = Point { y: frame.bottom + SPACE + TICK_TEXT + LABEL_TEXT / 2.0, ..frame.at(0.5, 0.0) };
+        let below = Point { y: frame.bottom + 2.0 * SPACE + TICK_TEXT + LABEL_TEXT / 2.0, ..frame.at(0.5, 0.0) };
         write(sheet, below, "Time (s)", LABEL_TEXT, Anchor::Centre, INK);
-        let at = Point { x: frame.left - SPACE, y: self.top + ABOVE - SPACE - NOTE_TEXT / 2.0 };
-        write(sheet, at, &self.y.unit, NOTE_TEXT, Anchor::Right, INK);
+        let at = Point { x: MODEL[1] + SPACE + LABEL_TEXT / 2.0, ..frame.at(0.0, 0.5) };
+        let text = &label::with_unit("displacement", &self.y.unit);
+        sheet.text(at, &Lettering { text, size: LABEL_TEXT, anchor: Anchor::Centre, upright: true, color: INK });
     }
 
     /// Paints a part that follows its keyframes.

@@ -1,6 +1,6 @@
 //! Axes: from numbers to the share of the axis they lie at, with ticks and their labels.
 
-use crate::experiment::AxisScale;
+use crate::experiment::{AxisScale, AxisUnit};
 use crate::text::number::Prefix;
 
 /// Least and largest number that an axis has to show.
@@ -91,7 +91,7 @@ pub(super) struct Tick {
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Axis {
     scale: AxisScale,
-    /// Ends, as logarithms on a logarithmic axis.
+    /// Ends in the table's unit, as logarithms on a logarithmic axis.
     from: f64,
     to: f64,
     /// The displayed number is the table's over this: a prefix of the unit or a power of ten.
@@ -138,8 +138,17 @@ impl Axis {
             Room::Tight => 0.0,
             Room::Airy => 0.05 * (high - low),
         };
-        let unit = unit.to_owned();
-        Self { scale: AxisScale::Log, from: low - margin, to: high + margin, factor: 1.0, unit }
+        // Powers of ten are read off such an axis itself: it needs none in its unit.
+        let Displayed { factor, unit } = Displayed::prefixed(largest, unit);
+        Self { scale: AxisScale::Log, from: low - margin, to: high + margin, factor, unit }
+    }
+
+    /// The same with its numbers in the unit that was chosen, if one was.
+    pub(super) fn in_unit(self, chosen: Option<&AxisUnit>) -> Self {
+        match chosen {
+            Some(AxisUnit { symbol, worth }) => Self { factor: *worth, unit: symbol.clone(), ..self },
+            None => self,
+        }
     }
 
     /// The share of the axis at which a number lies; `None` for one that cannot be shown.
@@ -188,61 +197,110 @@ impl Axis {
 
     fn linear_ticks(&self, most: u32) -> Vec<Tick> {
         let (from, to) = (self.from / self.factor, self.to / self.factor);
-        let Step { size, decimals } = Step::at_least((to - from) / f64::from(most));
-        let slack = 1e-9 * (to - from);
-        let mut ticks = Vec::new();
-        let mut index = ((from - slack) / size).ceil();
-        while index * size <= to + slack {
-            // Negative zero has no place on an axis.
-            let value = index * size + 0.0;
-            let label = format!("{value:.decimals$}").replace('-', "−");
-            ticks.push(Tick { at: (value - from) / (to - from), label });
-            index += 1.0;
-        }
-        ticks
+        let at = |value: f64| (value - from) / (to - from);
+        even([from, to], most).into_iter().map(|(value, label)| Tick { at: at(value), label }).collect()
     }
 
     fn log_ticks(&self, most: u32) -> Vec<Tick> {
-        const SLACK: f64 = 1e-9;
-        let decades = self.decades();
-        let within = decades.clone().filter(|n| self.holds(f64::from(*n), SLACK)).count();
-        let every = within.div_ceil(usize::try_from(most).unwrap_or(1)).max(1);
-        // Short axes carry plain numbers: 1, 2, 5 of each decade, or all digits where that would be too few.
-        let short = within < 2;
-        let sparse = decades
-            .clone()
-            .flat_map(|n| [1_u8, 2, 5].map(|digit| f64::from(n) + libm::log10(f64::from(digit))))
-            .filter(|along| self.holds(*along, SLACK))
-            .count()
-            < 3;
-        let mut ticks = Vec::new();
-        for exponent in decades {
-            for digit in 1..=9_u8 {
-                let along = f64::from(exponent) + libm::log10(f64::from(digit));
-                if !self.holds(along, SLACK) {
-                    continue;
-                }
-                let label = if short && (sparse || matches!(digit, 1 | 2 | 5)) {
-                    plain(digit, exponent)
-                } else if !short && digit == 1 && usize::try_from(exponent.unsigned_abs()).unwrap_or(0) % every == 0 {
-                    power_of_ten(exponent)
-                } else {
-                    String::new()
-                };
-                ticks.push(Tick { at: (along - self.from) / (self.to - self.from), label });
-            }
+        let shown = libm::log10(self.factor);
+        let range = Decades { from: self.from - shown, to: self.to - shown };
+        let most = usize::try_from(most).unwrap_or(1);
+        let labels = range.labels(most);
+        if labels == Labels::Even {
+            let ends = [range.from, range.to].map(libm::exp10);
+            let at = |value: f64| range.share(libm::log10(value));
+            let most = u32::try_from(most).unwrap_or(1);
+            return even(ends, most).into_iter().map(|(value, label)| Tick { at: at(value), label }).collect();
         }
-        ticks
+        let label = |digit: u8, exponent: i32| match labels {
+            Labels::Powers { every } if digit == 1 && exponent.unsigned_abs().is_multiple_of(every) => {
+                power_of_ten(exponent)
+            }
+            Labels::Digits(digits) if digits.contains(&digit) => plain(digit, exponent),
+            _ => String::new(),
+        };
+        let tick = |(digit, exponent)| Tick { at: range.share(along(digit, exponent)), label: label(digit, exponent) };
+        range.places(&EVERY_DIGIT).map(tick).collect()
+    }
+}
+
+const EVERY_DIGIT: [u8; 9] = [1, 2, 3, 4, 5, 6, 7, 8, 9];
+
+/// The displayed ends of a logarithmic axis, as logarithms.
+#[derive(Clone, Copy)]
+struct Decades {
+    from: f64,
+    to: f64,
+}
+
+/// Which ticks of a logarithmic axis carry a number.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Labels {
+    /// Every so many powers of ten.
+    Powers { every: u32 },
+    /// These digits of each decade, in plain notation.
+    Digits(&'static [u8]),
+    /// Those of a linear axis: the range is too short for digits.
+    Even,
+}
+
+impl Decades {
+    /// The fewest labels that leave three to be read, as it takes three to see that the axis is logarithmic.
+    fn labels(self, most: usize) -> Labels {
+        const FEW: usize = 3;
+        const OF_A_DECADE: [&[u8]; 2] = [&[1, 2, 5], &[1, 3]];
+        let count = |digits: &[u8]| self.places(digits).count();
+        let powers = count(&[1]);
+        let every = u32::try_from(powers.div_ceil(most.max(1))).unwrap_or(1).max(1);
+        // Beyond these a plain number is longer than its power of ten.
+        let is_plain = self.from > -5.0 && self.to < 5.0;
+        if powers >= FEW && every == 1 && self.from > -2.5 && self.to < 3.5 {
+            return Labels::Digits(&[1]);
+        }
+        if powers >= FEW || !is_plain {
+            return Labels::Powers { every };
+        }
+        let fits = |digits: &&&[u8]| (FEW..=most.max(FEW)).contains(&count(digits));
+        match OF_A_DECADE.iter().find(fits) {
+            Some(digits) => Labels::Digits(digits),
+            None if powers == 2 => Labels::Powers { every },
+            None if count(&EVERY_DIGIT) >= FEW => Labels::Digits(&EVERY_DIGIT),
+            None => Labels::Even,
+        }
     }
 
-    fn holds(&self, along: f64, slack: f64) -> bool {
-        along >= self.from - slack && along <= self.to + slack
-    }
-
+    /// Digits and exponents that lie on the axis, in ascending order.
     #[expect(clippy::cast_possible_truncation, reason = "decimal exponents of doubles lie within ±324")]
-    fn decades(&self) -> std::ops::RangeInclusive<i32> {
-        (self.from.floor() as i32)..=(self.to.ceil() as i32)
+    fn places(self, digits: &[u8]) -> impl Iterator<Item = (u8, i32)> {
+        const SLACK: f64 = 1e-9;
+        let all = (self.from.floor() as i32..=self.to.ceil() as i32)
+            .flat_map(move |exponent| digits.iter().map(move |digit| (*digit, exponent)));
+        all.filter(move |(digit, exponent)| (self.from - SLACK..=self.to + SLACK).contains(&along(*digit, *exponent)))
     }
+
+    fn share(self, along: f64) -> f64 {
+        (along - self.from) / (self.to - self.from)
+    }
+}
+
+/// The logarithm of `digit`·10^`exponent`.
+fn along(digit: u8, exponent: i32) -> f64 {
+    f64::from(exponent) + libm::log10(f64::from(digit))
+}
+
+/// Even numbers between two others, about `most` of them, each with its label.
+fn even([from, to]: [f64; 2], most: u32) -> Vec<(f64, String)> {
+    let Step { size, decimals } = Step::at_least((to - from) / f64::from(most));
+    let slack = 1e-9 * (to - from);
+    let mut found = Vec::new();
+    let mut index = ((from - slack) / size).ceil();
+    while index * size <= to + slack {
+        // Negative zero has no place on an axis.
+        let value = index * size + 0.0;
+        found.push((value, format!("{value:.decimals$}").replace('-', "−")));
+        index += 1.0;
+    }
+    found
 }
 
 /// The unit that suits the numbers of an axis.
@@ -252,15 +310,22 @@ struct Displayed {
 }
 
 impl Displayed {
-    fn choose(size: f64, unit: &str) -> Self {
+    /// By a prefix, where the unit takes one.
+    fn prefixed(size: f64, unit: &str) -> Self {
         // Velocities below 1 m/s are quoted in mm/s.
         let Prefix { symbol, factor } = if unit == "m/s" && (1e-3..1.0).contains(&size) {
             Prefix { symbol: "m", factor: 1e-3 }
         } else {
             Prefix::of(size, unit)
         };
-        if factor != 1.0 || (1e-2..1e5).contains(&size) || size == 0.0 {
-            return Self { factor, unit: format!("{symbol}{unit}") };
+        Self { factor, unit: format!("{symbol}{unit}") }
+    }
+
+    /// By a prefix, or else by a power of ten.
+    fn choose(size: f64, unit: &str) -> Self {
+        let prefixed = Self::prefixed(size, unit);
+        if prefixed.factor != 1.0 || (1e-2..1e5).contains(&size) || size == 0.0 {
+            return prefixed;
         }
         #[expect(clippy::cast_possible_truncation, reason = "decimal exponents of doubles lie within ±324")]
         let exponent = libm::log10(size).floor() as i32;

@@ -164,6 +164,19 @@ impl Sheet {
         );
     }
 
+    /// Straight strokes, hundreds of them as one path.
+    pub(super) fn strokes(&self, strokes: &[[Point; 2]], pen: Pen) {
+        let mut d = String::new();
+        for [(x, y), (to_x, to_y)] in strokes.iter().map(|ends| ends.map(place)) {
+            _ = write!(d, "M{x} {y}l{} {}", to_x - x, to_y - y);
+        }
+        let (color, width) = (pen.color, whole(pen.width));
+        _ = writeln!(
+            self.text.borrow_mut(),
+            "<path fill=\"none\" stroke=\"{color}\" stroke-width=\"{width}\" d=\"{d}\"/>"
+        );
+    }
+
     /// A circle.
     pub(super) fn ring(&self, centre: Point, radius: f64, pen: Pen) {
         self.put(&Circle::new(place(centre), whole(radius), pen.style()));

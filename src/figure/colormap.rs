@@ -3,9 +3,7 @@
 //! viridis (van der Walt and Smith, 2015) from small to large; Brewer's RdBu reversed, which runs from blue over white to
 //! red, where a number in the middle has a meaning of its own.
 
-use crate::experiment::AxisScale;
-
-use super::axis::{Axis, Extent, Room, Tick};
+use super::axis::{Axis, Tick};
 use super::style::Color;
 
 /// Every 17th of viridis' 256 colours.
@@ -66,8 +64,7 @@ pub(super) enum Steps {
 }
 
 impl Shades {
-    pub(super) fn new(scale: AxisScale, extent: Extent, centre: Option<f64>, unit: &str, steps: Steps) -> Self {
-        let axis = Axis::new(scale, extent, Room::Tight, unit);
+    pub(super) fn new(axis: Axis, centre: Option<f64>, steps: Steps) -> Self {
         let bounds = match steps {
             Steps::Smooth => Vec::new(),
             Steps::Bands => {

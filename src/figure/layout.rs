@@ -30,20 +30,29 @@ pub(super) struct Place {
     pub y_label: Vec<String>,
 }
 
-/// Height of a figure of panels with strips of these heights, which take nothing from the frames.
-pub(super) fn figure_height(strips: impl ExactSizeIterator<Item = f64>) -> f64 {
-    height(strips.len()) + strips.sum::<f64>()
+/// Numbers and label of an x axis.
+const X_LABELS: f64 = TICK_TEXT + LABEL_TEXT + 4.0 * SPACE;
+
+/// Height of a figure of these panels: legends above frames, strips, and any x axis but the last take nothing from the frames.
+pub(super) fn figure_height(needs: &[Needs]) -> f64 {
+    let legends: f64 = needs.iter().map(|need| (need.above - least_above(needs)).max(0.0)).sum();
+    let axes = needs.iter().filter(|need| need.x_labels).skip(1).map(|_| X_LABELS).sum::<f64>();
+    height(needs.len()) + needs.iter().map(|need| need.strips).sum::<f64>() + legends + axes
+}
+
+/// Above a frame without a legend there: a panel's letter, if there are several.
+fn least_above(needs: &[Needs]) -> f64 {
+    if needs.len() > 1 { LABEL_TEXT + SPACE } else { 2.0 * SPACE }
 }
 
 /// The panels' places.
 pub(super) fn places(needs: &[Needs]) -> Vec<Place> {
-    let letter = if needs.len() > 1 { LABEL_TEXT + SPACE } else { 2.0 * SPACE };
-    let labels = |need: &Needs| if need.x_labels { TICK_TEXT + LABEL_TEXT + 4.0 * SPACE } else { SPACE };
+    let labels = |need: &Needs| if need.x_labels { X_LABELS } else { SPACE };
     let below = |need: &Needs| need.strips + labels(need);
-    let above = |need: &Needs| need.above.max(letter);
+    let above = |need: &Needs| need.above.max(least_above(needs));
     let taken: f64 = needs.iter().map(|need| above(need) + below(need)).sum();
     let panels = u32::try_from(needs.len().max(1)).map_or(1.0, f64::from);
-    let each = ((figure_height(needs.iter().map(|need| need.strips)) - taken) / panels).max(1.0);
+    let each = ((figure_height(needs) - taken) / panels).max(1.0);
 
     // A label may be a little longer than its frame is high.
     let longest = each + 2.0 * SPACE;

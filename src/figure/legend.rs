@@ -9,15 +9,22 @@ use super::geometry::{Point, Rect};
 use super::line::{Curve, Join};
 use super::paint;
 use super::quoted::{self, Quoted};
+use super::strip;
 use super::style::{
     BAND_OPACITY, CURVE, Color, GREY, GUIDE, GUIDE_DASH, INK, KindOfMotion, LEGEND_LINE, LEGEND_ROW, LEGEND_TEXT, Look,
-    Marker, PAPER, QUOTED, QUOTED_OPACITY, SPACE,
+    Marker, PAPER, QUOTED, SPACE,
 };
+
+/// Width of a kind of motion.
+const SWATCH: f64 = 42.0;
 
 /// What is drawn before a legend's text.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Sign {
-    Line { look: Look, marker: bool },
+    Line {
+        look: Look,
+        marker: bool,
+    },
     Marker(Look),
     Dot(Look),
     Band(Color),
@@ -28,6 +35,8 @@ enum Sign {
     Impulse,
     Motion(KindOfMotion),
     Special(Special),
+    /// None: the text is a heading of what follows.
+    Heading,
 }
 
 /// One row of a legend.
@@ -84,7 +93,8 @@ impl Legend {
                     },
                     text: curve.name.full(),
                 };
-                curves.iter().map(line).collect()
+                // A level alone has its name on it.
+                curves.iter().filter(|curve| !curve.samples.is_empty()).map(line).collect()
             }));
         }
         if band && panel.band != Band::Stacked {
@@ -100,10 +110,10 @@ impl Legend {
             entries.push(Entry { sign: Sign::Band(color), text });
         }
         if points {
-            entries.push(Entry { sign: Sign::Quoted, text: "study ± 2 u_val".into() });
+            entries.push(Entry { sign: Sign::Quoted, text: "study ± tolerance".into() });
         }
         if quoted.iter().any(|one| !one.is_point() && one.tolerance.is_some()) {
-            let text = if points { "place or level ± 2 u_val" } else { "study ± 2 u_val" };
+            let text = if points { "place or level ± tolerance" } else { "study ± tolerance" };
             entries.push(Entry { sign: Sign::Tolerance, text: text.into() });
         }
         Self { entries, indent: 0.0 }
@@ -116,8 +126,10 @@ impl Legend {
         self.entries.extend(shown.map(|(_, sign, text)| Entry { sign, text: text.into() }));
     }
 
-    /// Names the colours of strips.
+    /// Names the colours of strips, under a heading: they are none of the lines'.
     pub(super) fn name_motions(&mut self, classes: &[KindOfMotion]) {
+        let heading = Entry { sign: Sign::Heading, text: "motion:".into() };
+        self.entries.extend(Some(heading).filter(|_| !classes.is_empty()));
         let named = classes.iter().map(|class| Entry { sign: Sign::Motion(*class), text: class.words().into() });
         self.entries.extend(named);
     }
@@ -207,7 +219,7 @@ impl Legend {
             let mut at = Point { x: frame.left + self.indent, y: top + LEGEND_ROW * (f64::from(index) + 0.5) };
             for entry in row {
                 entry.draw(sheet, at);
-                at.x += entry.width() + 3.0 * SPACE;
+                at.x += entry.width() + entry.apart();
             }
         }
     }
@@ -216,11 +228,13 @@ impl Legend {
         let mut rows = Vec::new();
         let (mut start, mut used) = (0, 0.0);
         for (index, entry) in self.entries.iter().enumerate() {
-            if index > start && used + entry.width() > width {
+            // What a heading stands before begins a row.
+            let is_heading = entry.sign == Sign::Heading;
+            if index > start && (is_heading || used + entry.width() > width) {
                 rows.push(&self.entries[start..index]);
                 (start, used) = (index, 0.0);
             }
-            used += entry.width() + 3.0 * SPACE;
+            used += entry.width() + entry.apart();
         }
         rows.push(&self.entries[start..]);
         rows
@@ -257,10 +271,28 @@ fn rows_high(rows: usize) -> f64 {
 
 impl Entry {
     fn width(&self) -> f64 {
-        LEGEND_LINE + SPACE + text_width(&self.text, LEGEND_TEXT)
+        self.sign_width() + text_width(&self.text, LEGEND_TEXT)
+    }
+
+    /// With the space before the text.
+    fn sign_width(&self) -> f64 {
+        match self.sign {
+            Sign::Heading => 0.0,
+            Sign::Motion(_) => SWATCH + SPACE,
+            _ => LEGEND_LINE + SPACE,
+        }
+    }
+
+    /// From the next one in its row.
+    fn apart(&self) -> f64 {
+        match self.sign {
+            Sign::Heading | Sign::Motion(_) => 2.0 * SPACE,
+            _ => 3.0 * SPACE,
+        }
     }
 
     fn draw(&self, sheet: &Sheet, at: Point) {
+        let text_at = Point { x: at.x + self.sign_width(), ..at };
         let end = Point { x: at.x + LEGEND_LINE, ..at };
         let middle = Point { x: at.x + LEGEND_LINE / 2.0, ..at };
         match self.sign {
@@ -284,14 +316,14 @@ impl Entry {
                 quoted::diamond(sheet, middle, 0.8 * QUOTED);
             }
             Sign::Tolerance => {
-                let half = LEGEND_ROW * 0.3;
-                let place = Rect { left: at.x, top: at.y - half, right: end.x, bottom: at.y + half };
-                sheet.fill(&place.corners(), INK, QUOTED_OPACITY);
                 sheet.line(&[at, end], Pen { color: INK, width: GUIDE, dash: quoted::DASH });
+                quoted::bar(sheet, [-0.35, 0.35].map(|down| Point { y: at.y + down * LEGEND_ROW, ..middle }));
             }
             Sign::Motion(class) => {
-                sheet.cell(&Rect { left: at.x, top: at.y - 12.0, right: end.x, bottom: at.y + 12.0 }, class.color());
+                let place = Rect { left: at.x, top: at.y - 12.0, right: at.x + SWATCH, bottom: at.y + 12.0 };
+                strip::cell(sheet, &place, class);
             }
+            Sign::Heading => {}
             Sign::Special(kind) => paint::marker(sheet, middle, Look::of_special(kind)),
             Sign::Bar => {
                 let place = Rect { left: at.x, top: at.y - 6.0, right: end.x, bottom: at.y + 6.0 };
@@ -303,9 +335,8 @@ impl Entry {
             }
             Sign::Guide => sheet.line(&[at, end], Pen { color: GREY, width: GUIDE, dash: GUIDE_DASH }),
         }
-        let at = Point { x: end.x + SPACE, ..at };
         let lettering =
             Lettering { text: &self.text, size: LEGEND_TEXT, anchor: Anchor::Left, upright: false, color: INK };
-        sheet.text(at, &lettering)
+        sheet.text(text_at, &lettering)
     }
 }

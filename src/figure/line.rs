@@ -40,12 +40,23 @@ impl Sample {
         Self::bare(f64::NAN, f64::NAN)
     }
 
+    /// On the straight way to the next sample, the place at `x`; `None` if it does not lie between the two.
+    fn towards(self, next: Self, x: f64) -> Option<Self> {
+        let share = (x - self.x) / (next.x - self.x);
+        let mix = |a: f64, b: f64| a + share * (b - a);
+        (share > 0.0 && share < 1.0).then(|| Self {
+            x,
+            y: mix(self.y, next.y),
+            band: [mix(self.band[0], next.band[0]), mix(self.band[1], next.band[1])],
+        })
+    }
+
     fn divided_by(self, one: f64) -> Self {
         Self { x: self.x, y: self.y / one, band: self.band.map(|edge| edge / one) }
     }
 }
 
-/// The value that a curve takes at infinite x.
+/// The value that a curve takes at infinite x, or without an x.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct AtInfinity {
     pub y: f64,
@@ -111,8 +122,29 @@ impl Curve {
         self.at_infinity.is_none() && !self.samples.windows(2).any(|pair| pair.iter().all(seen))
     }
 
+    /// Only what lies between two places, up to where the line crosses them.
+    pub(super) fn cut_to(&mut self, [from, to]: [f64; 2]) {
+        let holds = |x: f64| x >= from && x <= to;
+        let mut kept: Vec<Sample> = Vec::new();
+        let mut before: Option<Sample> = None;
+        for &here in &self.samples {
+            if let Some(before) = before.filter(|_| self.join == Join::Line) {
+                let bounds = if before.x < here.x { [from, to] } else { [to, from] };
+                kept.extend(bounds.into_iter().filter_map(|bound| before.towards(here, bound)));
+                if !holds(here.x) {
+                    kept.push(Sample::gap());
+                }
+            }
+            if holds(here.x) || here.x.is_nan() {
+                kept.push(here);
+            }
+            before = Some(here);
+        }
+        self.samples = kept;
+    }
+
     /// True if there is anything to see.
-    fn shows(&self) -> bool {
+    pub(super) fn shows(&self) -> bool {
         self.at_infinity.is_some() || self.samples.iter().any(|sample| sample.y.is_finite())
     }
 }
@@ -148,6 +180,9 @@ impl<'a> Source<'a> {
         Ok(axis.label.clone().unwrap_or_else(|| label::of_column(self.experiment, column)))
     }
 }
+
+/// The column of seeds. They have no order, so that no line joins them; what needs none is a level across.
+const SEED: &str = "seed";
 
 /// The curves of a panel in the order of its y columns and of the table's rows; none without a number.
 pub(super) fn curves(source: Source<'_>, panel: &Panel) -> Result<Vec<Curve>, FigureError> {
@@ -315,12 +350,17 @@ fn fill(
                 let (Some(at), Some(y)) = (number(x, row), number(y, row)) else { continue };
                 if at.is_finite() {
                     curve.samples.push(Sample::within(at, y, spread.and_then(|spread| number(spread, row))));
+                } else if x.name == SEED && y.is_finite() {
+                    curve.at_infinity = Some(AtInfinity { y, label: curve.name.full() });
                 } else if at == f64::INFINITY && y.is_finite() {
                     let label = label::of_cell(x, row).unwrap_or_default();
                     curve.at_infinity = Some(AtInfinity { y, label });
                 }
             }
             curve.samples.sort_by(|a, b| a.x.total_cmp(&b.x));
+            if x.name == SEED {
+                curve.samples = curve.samples.iter().flat_map(|sample| [*sample, Sample::gap()]).collect();
+            }
             Ok(())
         }
     }

@@ -93,7 +93,7 @@ impl<'a> Map<'a> {
                     ends.into_iter().chain(panel.marks.iter().map(marks)).collect::<Vec<_>>()
                 });
                 let extent = Extent::of(ends.chain(axis.reach.into_iter().flatten()), axis.scale)?;
-                Some(Axis::new(axis.scale, extent, Room::Tight, unit))
+                Some(Axis::new(axis.scale, extent, Room::Tight, unit).in_unit(axis.unit.as_ref()))
             };
         let x = along(&spec.x, |field| &field.x, |at| at.x, &columns.x.unit).ok_or_else(nothing)?;
         let y = along(&spec.y, |field| &field.y, |at| at.y, &columns.y.unit).ok_or_else(nothing)?;
@@ -101,7 +101,8 @@ impl<'a> Map<'a> {
         let values = values.chain(spec.value.reach.into_iter().flatten());
         let extent = Extent::of(values, spec.value.scale).ok_or_else(nothing)?;
         let steps = if smooth { Steps::Bands } else { Steps::Smooth };
-        let shades = Shades::new(spec.value.scale, extent, spec.centre, &columns.value.unit, steps);
+        let axis = Axis::new(spec.value.scale, extent, Room::Tight, &columns.value.unit);
+        let shades = Shades::new(axis.in_unit(spec.value.unit.as_ref()), spec.centre, steps);
         let value_name = source.label(&spec.value)?;
         let spread = largest_spread(source, columns.value)
             .map_or_else(String::new, |spread| format!(", s.d. at most {} %", compact(100.0 * spread, 2)));

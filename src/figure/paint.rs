@@ -16,8 +16,8 @@ use super::panel::Panel;
 use super::peak::peaks;
 use super::strip;
 use super::style::{
-    BAND_OPACITY, CURVE, Color, FRAME, GREY, GRID, GUIDE, GUIDE_DASH, INK, LABEL_TEXT, Look, MARKER, MINOR_TICK,
-    Marker, NOTE_TEXT, PALE, PAPER, SPACE, STACK_OPACITY, TICK, TICK_TEXT,
+    BAND_OPACITY, CLOSER_OPACITY, CURVE, Color, FRAME, GREY, GRID, GUIDE, GUIDE_DASH, INK, LABEL_TEXT, Look, MARKER,
+    MINOR_TICK, Marker, NOTE_TEXT, PALE, PAPER, SPACE, STACK_OPACITY, TICK, TICK_TEXT,
 };
 
 /// Where a panel's legend goes.
@@ -49,8 +49,13 @@ pub(super) fn panel(
             sheet.fill(&band, curve.look.color, opacity);
         }
     }
-    for one in &panel.quoted {
-        one.uncertainty(sheet, panel, frame);
+    for [from, to] in &panel.closer {
+        let [left, right] = [from, to].map(|end| panel.x.share_clamped(*end));
+        let corners = [frame.at(left, 0.0), frame.at(left, 1.0), frame.at(right, 1.0), frame.at(right, 0.0)];
+        sheet.fill(&corners, INK, CLOSER_OPACITY);
+    }
+    for (number, one) in panel.quoted.iter().enumerate() {
+        one.uncertainty(number, sheet, panel, frame);
     }
     for guide in &panel.spec.guides {
         // A legend names it.
@@ -74,8 +79,8 @@ pub(super) fn panel(
     for one in &panel.quoted {
         one.draw(sheet, panel, frame);
     }
-    for one in &panel.quoted {
-        one.write(sheet, panel, frame, &mut taken);
+    for (number, one) in panel.quoted.iter().enumerate() {
+        one.write(number, sheet, panel, frame, &mut taken);
     }
     axes(sheet, panel, frame, x_labels);
     strip::draw(sheet, panel, frame);

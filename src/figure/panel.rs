@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use crate::experiment::{self, AxisScale};
+use crate::experiment::{self, Band};
 
 use super::axis::{Axis, Extent, Room, Tick};
 use super::branch::{SpecialPoint, special_points};
@@ -45,8 +45,8 @@ impl Reach {
         Self { extent: self.extent.union(other.extent), room }
     }
 
-    fn axis(self, scale: AxisScale, unit: &str) -> Axis {
-        Axis::new(scale, self.extent, self.room, unit)
+    fn axis(self, spec: &experiment::Axis, unit: &str) -> Axis {
+        Axis::new(spec.scale, self.extent, self.room, unit).in_unit(spec.unit.as_ref())
     }
 }
 
@@ -72,6 +72,12 @@ fn agrees(one: &[Sample], other: &[Sample], y: &Axis) -> bool {
     one.len() == other.len() && 2 * one.iter().zip(other).filter(close).count() > one.len()
 }
 
+/// Whether a panel draws a part of what another one draws.
+fn is_part_of(part: &experiment::Panel, whole: &experiment::Panel) -> bool {
+    let draws = |column: &str| part.y.iter().any(|axis| axis.column == column);
+    part.x.column == whole.x.column && whole.y.iter().any(|axis| draws(&axis.column))
+}
+
 /// One pair of axes with its curves.
 pub(super) struct Panel<'a> {
     pub spec: &'a experiment::Panel,
@@ -83,6 +89,8 @@ pub(super) struct Panel<'a> {
     pub x_label: String,
     pub y_label: String,
     pub quoted: Vec<&'a Quoted>,
+    /// Parts of the x axis that other panels of the figure draw alone.
+    pub closer: Vec<[f64; 2]>,
     pub contacts: Vec<Contact>,
     /// Period of the impulses, s, where the panel shows their moments.
     pub impulses: Option<f64>,
@@ -98,6 +106,11 @@ impl<'a> Panel<'a> {
         beside: Beside<'a>,
     ) -> Result<Self, FigureError> {
         let mut curves = curves(source, spec)?;
+        let shown = |x: f64| spec.x.range.is_none_or(|[from, to]| x >= from && x <= to);
+        if let Some(range) = spec.x.range {
+            curves.iter_mut().for_each(|curve| curve.cut_to(range));
+            curves.retain(Curve::shows);
+        }
         let nothing = || FigureError::Nothing { figure: source.figure.to_owned() };
         let (x_scale, y_scale) = (spec.x.scale, spec.y.first().ok_or_else(nothing)?.scale);
         let (x_unit, y_unit) = (&source.column(&spec.x.column)?.unit, &source.column(&spec.y[0].column)?.unit);
@@ -109,26 +122,33 @@ impl<'a> Panel<'a> {
         let y_extent = Extent::of(ends.chain(limits).chain(marks), y_scale).ok_or_else(nothing)?;
         let quoted: Vec<&Quoted> =
             beside.quoted.iter().filter(|one| one.fits(spec) && one.leaves_room(y_extent, y_scale)).collect();
+        let closer = source.panels.iter().filter(|other| spec.x.range.is_none() && is_part_of(other, spec));
+        let closer = closer.filter_map(|other| other.x.range).collect();
 
         let seen = samples().filter(|sample| sample.y.is_finite()).map(|sample| sample.x);
         let wanted = quoted.iter().filter_map(|one| one.x()).chain(spec.x.reach.into_iter().flatten());
-        let x_reach = Reach {
-            extent: Extent::of(seen.chain(wanted), x_scale).ok_or_else(nothing)?,
-            room: if spec.markers || quoted.iter().any(|one| one.is_point()) { Room::Airy } else { Room::Tight },
+        let marked = spec.markers || spec.band == Band::Seeds || quoted.iter().any(|one| one.is_point());
+        let x_reach = match spec.x.range {
+            Some([least, largest]) => Reach { extent: Extent { least, largest }, room: Room::Tight },
+            None => Reach {
+                extent: Extent::of(seen.chain(wanted), x_scale).ok_or_else(nothing)?,
+                room: if marked { Room::Airy } else { Room::Tight },
+            },
         };
-        let x = x_reach.axis(x_scale, x_unit);
+        let x = x_reach.axis(&spec.x, x_unit);
 
         // A spread that nobody can see needs no word in the legend.
         let visible = VISIBLE_SPREAD * (y_extent.largest - y_extent.least);
         let band = samples().any(|sample| sample.band[1] - sample.band[0] > 2.0 * visible);
         let mut legend = Legend::new(&curves, spec, band, &quoted);
-        let contacts = contacts(source, spec)?;
+        let mut contacts = contacts(source, spec)?;
+        contacts.retain(|contact| shown(contact.from) || shown(contact.to));
         let impulses = beside.impulses.filter(|_| !contacts.is_empty());
         let visible = VISIBLE_CONTACT * (x_reach.extent.largest - x_reach.extent.least);
         legend.name_instants(contacts.iter().any(|contact| contact.to - contact.from > visible), impulses.is_some());
         let strips = strip::strips(source, spec, &curves)?;
-        legend.name_motions(&strip::classes(&strips));
-        let special_points = special_points(source, spec)?;
+        let mut special_points = special_points(source, spec)?;
+        special_points.retain(|point| shown(point.x));
         legend.name_special_points(&special_points);
         let mut y_extent = quoted.iter().filter_map(|one| one.y()).fold(y_extent, |extent, y| extent.with(y, y_scale));
         for guide in &spec.guides {
@@ -142,10 +162,12 @@ impl<'a> Panel<'a> {
         if !legend.is_empty() {
             legend.name_guides(&spec.guides);
         }
+        // Theirs is a scale of its own, apart from the lines.
+        legend.name_motions(&strip::classes(&strips, spec.x.range));
         if spec.peaks.is_some() {
             y_extent = y_extent.with_headroom(PEAK_ROOM, y_scale);
         }
-        let y = Axis::new(y_scale, y_extent, Room::Airy, y_unit);
+        let y = Axis::new(y_scale, y_extent, Room::Airy, y_unit).in_unit(spec.y[0].unit.as_ref());
         widen_hidden(&mut curves, &y);
         let x_name = source.label(&spec.x)?;
         let mut y_names = spec.y.iter().map(|axis| source.label(axis)).collect::<Result<Vec<_>, _>>()?;
@@ -163,6 +185,7 @@ impl<'a> Panel<'a> {
             x,
             y,
             quoted,
+            closer,
             contacts,
             impulses,
             strips,
@@ -170,14 +193,19 @@ impl<'a> Panel<'a> {
         })
     }
 
-    /// How far the x axis has to reach, if it is this column's.
+    /// How far the x axis has to reach, if it is this column's and shows all of it.
     pub(super) fn x_reach(&self, column: &str) -> Option<Reach> {
-        (self.spec.x.column == column).then_some(self.x_reach)
+        (self.spec.x.column == column && self.spec.x.range.is_none()).then_some(self.x_reach)
     }
 
     /// Panels above each other share the limits of their axis.
     pub(super) fn reach_in_x(&mut self, reach: Reach) {
-        self.x = reach.axis(self.spec.x.scale, &self.x_unit);
+        self.x = reach.axis(&self.spec.x, &self.x_unit);
+    }
+
+    /// Whether another panel of the figure shows this place closer, and has the labels of what stands there.
+    pub(super) fn is_shown_closer(&self, x: f64) -> bool {
+        self.closer.iter().any(|[from, to]| x >= *from && x <= *to)
     }
 
     pub(super) fn x_ticks(&self) -> Vec<Tick> {
@@ -271,8 +299,8 @@ impl<'a> Panel<'a> {
                 .boxes
                 .extend(sign.map(|at| Rect { left: at.x, top: at.y, right: at.x, bottom: at.y }.grown(MARKER)));
         }
-        for one in &self.quoted {
-            one.obstacle(self, frame, &mut obstacles);
+        for (number, one) in self.quoted.iter().enumerate() {
+            one.obstacle(number, self, frame, &mut obstacles);
         }
         obstacles
     }

@@ -1,18 +1,22 @@
 //! What the study's text says of a figure: a number with its place is an open diamond, a place alone a vertical line, a value
-//! alone a horizontal one. About each the tolerance of its verdict, 2 u_val, and u_D, half a unit of its last digit.
+//! alone a horizontal one. Across each a bar: the tolerance of its verdict, and thick u_D, half a unit of its last digit.
 
 use super::axis::{Axis, Extent};
 use super::canvas::{Anchor, Lettering, Pen, Sheet, text_width};
 use super::geometry::{Point, Rect};
 use super::legend::Obstacles;
 use super::panel::Panel;
-use super::style::{CURVE, GUIDE, INK, NOTE_TEXT, PAPER, QUOTED, QUOTED_OPACITY, SPACE};
+use super::style::{CURVE, GRID, GUIDE, INK, NOTE_TEXT, PAPER, QUOTED, SPACE};
 use crate::experiment::{self, AxisScale};
+use crate::text::number::compact;
 
 /// Dash of what stands for a missing coordinate.
 pub(super) const DASH: &[f64] = &[16.0, 8.0];
 /// A value far outside of the curves would leave them no room: how many times their own range it may take.
 const STRETCH: f64 = 3.0;
+/// Where the bar of the first line of a panel stands, as a share of the frame from its end, and the distance of the next.
+const FIRST_BAR: f64 = 0.04;
+const BAR_APART: f64 = 0.035;
 
 /// A number that the study's text quotes.
 #[derive(Debug, Clone, PartialEq)]
@@ -64,6 +68,8 @@ impl Quoted {
         panel.y.iter().any(|axis| axis.column == self.column)
             && self.over.as_ref().is_none_or(|over| *over == panel.x.column)
             && !panel.over_first
+            // What is said of a whole curve is not said of a part.
+            && panel.x.range.is_none_or(|[from, to]| self.x().is_some_and(|x| x >= from && x <= to))
     }
 
     pub(super) fn x(&self) -> Option<f64> {
@@ -94,9 +100,12 @@ impl Quoted {
         span(curves.with(y, scale)) <= (1.0 + STRETCH) * span(curves)
     }
 
-    /// What it takes of a frame.
-    pub(super) fn obstacle(&self, panel: &Panel<'_>, frame: &Rect, obstacles: &mut Obstacles) {
+    /// What it takes of a frame, as `number` of the panel.
+    pub(super) fn obstacle(&self, number: usize, panel: &Panel<'_>, frame: &Rect, obstacles: &mut Obstacles) {
         let at = self.place(panel, frame);
+        if let Some(ends) = self.visible_bar(number, panel, frame).filter(|_| !self.is_point()) {
+            obstacles.lines.push(ends.map(|(end, _)| end).to_vec());
+        }
         match self.at {
             QuotedAt::Point { .. } => {
                 let spot = Rect { left: at.x, top: at.y, right: at.x, bottom: at.y };
@@ -116,32 +125,57 @@ impl Quoted {
         frame.at(along(&panel.x, self.x()), along(&panel.y, self.y()))
     }
 
-    /// Bands and bars, which lie below the curves.
-    pub(super) fn uncertainty(&self, sheet: &Sheet, panel: &Panel<'_>, frame: &Rect) {
-        let Some(tolerance) = self.tolerance else { return };
-        let ends = |axis: &Axis, at: f64, half: f64| [at - half, at + half].map(|end| axis.share_clamped(end));
+    /// Its bars, which lie below the curves, as `number` of the panel.
+    pub(super) fn uncertainty(&self, number: usize, sheet: &Sheet, panel: &Panel<'_>, frame: &Rect) {
+        let Some(ends) = self.visible_bar(number, panel, frame) else { return };
+        let [from, to] = ends.map(|(end, _)| end);
+        sheet.line(&[from, to], Pen::solid(INK, GUIDE));
+        // Where it goes on beyond the frame it has no end.
+        for (end, _) in ends.into_iter().filter(|(_, is_within)| *is_within) {
+            cap(sheet, end, from.x == to.x);
+        }
+        let [from, to] = self.bar(self.u_data, number, panel, frame).map(|(end, _)| end);
+        sheet.line(&[from, to], Pen::solid(INK, 2.0 * CURVE));
+    }
+
+    /// The bar of its tolerance; none where it goes on beyond the frame at both ends, as a line from edge to edge says nothing.
+    fn visible_bar(&self, number: usize, panel: &Panel<'_>, frame: &Rect) -> Option<[(Point, bool); 2]> {
+        let ends = self.bar(self.tolerance?, number, panel, frame);
+        ends.iter().any(|(_, is_within)| *is_within).then_some(ends)
+    }
+
+    /// As printed, with the tolerance where no bar shows it.
+    fn text(&self, number: usize, panel: &Panel<'_>, frame: &Rect) -> String {
+        let axis = if matches!(self.at, QuotedAt::Place(_) | QuotedAt::Point { known: Known::X, .. }) {
+            &panel.x
+        } else {
+            &panel.y
+        };
+        match (self.tolerance, self.visible_bar(number, panel, frame)) {
+            (Some(tolerance), None) => {
+                let tolerance = format!("{} {}", compact(axis.displayed(tolerance), 2), axis.unit);
+                format!("{} (± {})", self.label, tolerance.trim_end())
+            }
+            _ => self.label.clone(),
+        }
+    }
+
+    /// The ends of a bar of this half width, and whether they lie within the frame. The bars of lines stand beside each other.
+    fn bar(&self, half: f64, number: usize, panel: &Panel<'_>, frame: &Rect) -> [(Point, bool); 2] {
+        let row = u32::try_from(number).map_or(0.0, f64::from);
+        let ends = |axis: &Axis, at: f64| {
+            [at - half, at + half].map(|end| (axis.share_clamped(end), axis.share(end).is_some_and(is_share)))
+        };
+        let across = |y: f64, along: f64| ends(&panel.x, along).map(|(share, within)| (frame.at(share, y), within));
         let at = self.place(panel, frame);
+        let up = |x: f64, along: f64| {
+            ends(&panel.y, along).map(|(share, within)| (Point { x, y: frame.at(0.0, share).y }, within))
+        };
         match self.at {
-            QuotedAt::Place(x) => {
-                let [low, high] = ends(&panel.x, x, tolerance);
-                fill(sheet, &[frame.at(low, 0.0), frame.at(low, 1.0), frame.at(high, 1.0), frame.at(high, 0.0)]);
-            }
-            QuotedAt::Level(y) => {
-                let [low, high] = ends(&panel.y, y, tolerance);
-                fill(sheet, &[frame.at(0.0, low), frame.at(0.0, high), frame.at(1.0, high), frame.at(1.0, low)]);
-            }
-            QuotedAt::Point { x, y, known } => {
-                for (half, width) in [(tolerance, GUIDE), (self.u_data, 2.0 * CURVE)] {
-                    let bar = match known {
-                        Known::X => ends(&panel.x, x, half).map(|share| Point { x: frame.at(share, 0.0).x, ..at }),
-                        Known::Y => ends(&panel.y, y, half).map(|share| Point { y: frame.at(0.0, share).y, ..at }),
-                    };
-                    sheet.line(&bar, Pen::solid(INK, width));
-                    if width == GUIDE {
-                        bar.into_iter().for_each(|end| cap(sheet, end, known));
-                    }
-                }
-            }
+            QuotedAt::Place(x) => across((FIRST_BAR + BAR_APART * row).min(1.0), x),
+            QuotedAt::Level(y) => up(frame.at((1.0 - FIRST_BAR - BAR_APART * row).max(0.0), 0.0).x, y),
+            QuotedAt::Point { x, known: Known::X, .. } => across(panel.y.share_clamped(self.y().unwrap_or(x)), x),
+            QuotedAt::Point { y, known: Known::Y, .. } => up(at.x, y),
         }
     }
 
@@ -156,10 +190,14 @@ impl Quoted {
         }
     }
 
-    /// The label, where nothing is in its way.
-    pub(super) fn write(&self, sheet: &Sheet, panel: &Panel<'_>, frame: &Rect, taken: &mut Obstacles) {
+    /// The label, where nothing is in its way, as `number` of the panel.
+    pub(super) fn write(&self, number: usize, sheet: &Sheet, panel: &Panel<'_>, frame: &Rect, taken: &mut Obstacles) {
+        if self.x().is_some_and(|x| panel.is_shown_closer(x)) {
+            return;
+        }
         let at = self.place(panel, frame);
-        let (width, half) = (text_width(&self.label, NOTE_TEXT), NOTE_TEXT / 2.0);
+        let text = self.text(number, panel, frame);
+        let (width, half) = (text_width(&text, NOTE_TEXT), NOTE_TEXT / 2.0);
         let about = |x: f64, y: f64| Rect { left: x, top: y - half, right: x + width, bottom: y + half };
         let aside = [at.x + SPACE / 2.0, at.x - SPACE / 2.0 - width];
         let places: Vec<Rect> = match self.at {
@@ -188,23 +226,43 @@ impl Quoted {
         let legible = || inside().find(|place| taken.leave_boxes_free(&place.grown(1.0)));
         let Some(place) = free.or_else(legible).or_else(|| inside().next()).copied() else { return };
         taken.boxes.push(place);
+        if self.is_point() {
+            lead(sheet, at, &place);
+        }
         sheet.fill(&place.corners(), PAPER, 0.85);
-        let lettering =
-            Lettering { text: &self.label, size: NOTE_TEXT, anchor: Anchor::Left, upright: false, color: INK };
+        let lettering = Lettering { text: &text, size: NOTE_TEXT, anchor: Anchor::Left, upright: false, color: INK };
         sheet.text(place.at(0.0, 0.5), &lettering);
     }
 }
 
-fn fill(sheet: &Sheet, corners: &[Point]) {
-    sheet.fill(corners, INK, QUOTED_OPACITY);
+fn is_share(share: f64) -> bool {
+    (0.0..=1.0).contains(&share)
+}
+
+/// A bar with both its ends.
+pub(super) fn bar(sheet: &Sheet, ends: [Point; 2]) {
+    sheet.line(&ends, Pen::solid(INK, GUIDE));
+    ends.into_iter().for_each(|end| cap(sheet, end, ends[0].x == ends[1].x));
+}
+
+/// A line from a diamond to its label, where the two are apart.
+fn lead(sheet: &Sheet, at: Point, label: &Rect) {
+    let near = Point { x: at.x.clamp(label.left, label.right), y: at.y.clamp(label.top, label.bottom) };
+    let (dx, dy) = (near.x - at.x, near.y - at.y);
+    let length = libm::hypot(dx, dy);
+    if length > 2.0 * QUOTED {
+        let share = QUOTED / length;
+        sheet.line(&[Point { x: at.x + share * dx, y: at.y + share * dy }, near], Pen::solid(INK, GRID));
+    }
 }
 
 /// The end of a bar.
-fn cap(sheet: &Sheet, end: Point, known: Known) {
+fn cap(sheet: &Sheet, end: Point, is_upright: bool) {
     let reach = QUOTED / 2.0;
-    let ends = match known {
-        Known::X => [-reach, reach].map(|by| Point { y: end.y + by, ..end }),
-        Known::Y => [-reach, reach].map(|by| Point { x: end.x + by, ..end }),
+    let ends = if is_upright {
+        [-reach, reach].map(|by| Point { x: end.x + by, ..end })
+    } else {
+        [-reach, reach].map(|by| Point { y: end.y + by, ..end })
     };
     sheet.line(&ends, Pen::solid(INK, GUIDE));
 }

@@ -17,7 +17,6 @@ use super::map_layout::MapLayout;
 use super::paint::{self, LegendPlace};
 use super::panel::{Panel, Reach};
 use super::quoted::Quoted;
-use super::strip;
 use super::style::{LETTER, WIDTH};
 use super::{map_paint, raster};
 
@@ -153,7 +152,7 @@ fn lines(source: Source<'_>, beside: Beside<'_>) -> Result<String, FigureError> 
     if panels.len() > 1 {
         panels.iter_mut().for_each(|panel| panel.legend.indent = LETTER);
     }
-    let arranged = arranged(&panels);
+    let (arranged, height) = arranged(&panels);
     let paint = |sheet: &super::canvas::Sheet| {
         let letters = ('a'..='z').map(Some).chain(std::iter::repeat(None));
         for (arranged, (panel, letter)) in arranged.iter().zip(panels.iter().zip(letters)) {
@@ -161,7 +160,7 @@ fn lines(source: Source<'_>, beside: Beside<'_>) -> Result<String, FigureError> 
             paint::panel(sheet, panel, &arranged.place, arranged.legend, letter, arranged.x_labels);
         }
     };
-    Ok(svg(WIDTH, figure_height(panels.iter().map(|panel| strip::height(&panel.strips))), paint))
+    Ok(svg(WIDTH, height, paint))
 }
 
 /// What surrounds a panel.
@@ -171,14 +170,17 @@ struct Arranged {
     x_labels: bool,
 }
 
-/// Legends go inside where the data leave room; those that find none go above, and the frames make way for them.
-fn arranged(panels: &[Panel<'_>]) -> Vec<Arranged> {
+/// Legends go inside where the data leave room; those that find none go above, and make the figure higher. With its height.
+fn arranged(panels: &[Panel<'_>]) -> (Vec<Arranged>, f64) {
     let x_labels: Vec<bool> = (0..panels.len())
-        .map(|index| panels.get(index + 1).is_none_or(|below| below.x_label != panels[index].x_label))
+        .map(|index| {
+            panels
+                .get(index + 1)
+                .is_none_or(|below| (&below.x_label, &below.x) != (&panels[index].x_label, &panels[index].x))
+        })
         .collect();
     let mut above = vec![0.0; panels.len()];
-    // A legend put above makes the other frames lower, so that another one may lose its place, or a label takes two lines and the
-    // frames become narrower. Each round but the last moves or raises one legend at least.
+    // A legend put above may take more rows where frames are narrower. Each round but the last moves or raises one legend at least.
     loop {
         let needs: Vec<Needs> =
             panels.iter().zip(&above).zip(&x_labels).map(|((panel, &above), &x)| panel.needs(above, x)).collect();
@@ -201,7 +203,7 @@ fn arranged(panels: &[Panel<'_>]) -> Vec<Arranged> {
             arranged.push(Arranged { place, legend, x_labels: x_labels[index] });
         }
         if !moved {
-            return arranged;
+            return (arranged, figure_height(&needs));
         }
     }
 }

@@ -7,13 +7,15 @@ use super::geometry::{Point, Rect};
 use super::group::{Group, number};
 use super::line::{Curve, Source};
 use super::panel::Panel;
-use super::style::{KindOfMotion, Look, SPACE};
+use super::style::{GREY, GRID, KindOfMotion, Look, SPACE, TICK_TEXT};
 use crate::dynamics::MotionKind;
 use crate::experiment;
 use crate::measure::Measure;
 use crate::table::Data;
 use crate::text::words;
 
+/// Between the lines of a hatching.
+const HATCH: f64 = 12.0;
 /// Height of a strip.
 const HEIGHT: f64 = 24.0;
 /// Between the frame and the first, and from one to the next.
@@ -56,14 +58,38 @@ pub(super) fn strips(
 }
 
 /// The classes that strips show, in their order.
-pub(super) fn classes(strips: &[Strip]) -> Vec<KindOfMotion> {
-    let seen: Vec<_> = strips.iter().flat_map(|strip| &strip.points).map(|(_, kind)| class(*kind)).collect();
+pub(super) fn classes(strips: &[Strip], range: Option<[f64; 2]>) -> Vec<KindOfMotion> {
+    let shown = |x: f64| range.is_none_or(|[from, to]| x >= from && x <= to);
+    let points = strips.iter().flat_map(|strip| &strip.points).filter(|(x, _)| shown(*x));
+    let seen: Vec<_> = points.map(|(_, kind)| class(*kind)).collect();
     KindOfMotion::ALL.into_iter().filter(|class| seen.contains(class)).collect()
 }
 
 /// Height that strips take below the frame.
 pub(super) fn height(strips: &[Strip]) -> f64 {
-    (HEIGHT + APART) * u32::try_from(strips.len()).map_or(0.0, f64::from)
+    first(strips) + (HEIGHT + APART) * u32::try_from(strips.len()).map_or(0.0, f64::from)
+}
+
+/// Between the frame and the first strip: a piece of line before it keeps clear of the lowest number of the y axis.
+fn first(strips: &[Strip]) -> f64 {
+    if strips.iter().any(|strip| strip.look.is_some()) { TICK_TEXT / 2.0 - APART } else { 0.0 }
+}
+
+/// Draws a cell in the colours of a kind of motion; what has not settled is of no kind, and hatched.
+pub(super) fn cell(sheet: &Sheet, place: &Rect, kind: KindOfMotion) {
+    sheet.cell(place, kind.color());
+    if kind != KindOfMotion::NotSettled {
+        return;
+    }
+    let height = place.height();
+    let mut strokes = Vec::new();
+    let mut foot = place.left - height + HATCH;
+    while foot < place.right {
+        let (low, high) = ((place.left - foot).max(0.0), (place.right - foot).min(height));
+        strokes.push([low, high].map(|along| Point { x: foot + along, y: place.bottom - along }));
+        foot += HATCH;
+    }
+    sheet.strokes(&strokes, Pen::solid(GREY, GRID));
 }
 
 /// The class that a kind of motion is drawn as.
@@ -84,7 +110,7 @@ fn class(kind: MotionKind) -> KindOfMotion {
 
 /// Draws the strips, each point's colour reaching halfway to its neighbours.
 pub(super) fn draw(sheet: &Sheet, panel: &Panel<'_>, frame: &Rect) {
-    let mut top = frame.bottom + APART;
+    let mut top = frame.bottom + APART + first(&panel.strips);
     for strip in &panel.strips {
         if let Some(Look { color, width, dash, .. }) = strip.look {
             let at = Point { x: frame.left - SPACE, y: top + HEIGHT / 2.0 };
@@ -100,10 +126,13 @@ pub(super) fn draw(sheet: &Sheet, panel: &Panel<'_>, frame: &Rect) {
             let next = from + count;
             let left = if from == 0 { places[0].0 } else { halfway(from - 1, from) };
             let right = if next == places.len() { places[next - 1].0 } else { halfway(next - 1, next) };
+            from = next;
+            if right < 0.0 || left > 1.0 {
+                continue;
+            }
             let [left, right] = [left, right].map(|share| frame.at(share.clamp(0.0, 1.0), 0.0).x);
             let place = Rect { left, top, right: right.max(left + 2.0), bottom: top + HEIGHT };
-            sheet.group(&Attributes::note(&kind.to_string()), || sheet.cell(&place, class(kind).color()));
-            from = next;
+            sheet.group(&Attributes::note(&kind.to_string()), || cell(sheet, &place, class(kind)));
         }
         top += HEIGHT + APART;
     }

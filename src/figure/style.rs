@@ -52,8 +52,8 @@ pub(super) const TALLEST_MAP: f64 = 1500.0;
 pub(super) const BAND_OPACITY: f64 = 0.22;
 /// Of lines that stand on each other.
 pub(super) const STACK_OPACITY: f64 = 0.55;
-/// Of the band of 2 u_val about a place or a value that the study quotes.
-pub(super) const QUOTED_OPACITY: f64 = 0.1;
+/// Of the part of an axis that another panel shows closer.
+pub(super) const CLOSER_OPACITY: f64 = 0.07;
 
 /// Height of a figure with so many panels.
 pub(super) fn height(panels: usize) -> f64 {
@@ -82,8 +82,6 @@ impl std::fmt::Display for Color {
 pub(super) const INK: Color = Color(0x1A, 0x1A, 0x1A);
 pub(super) const GREY: Color = Color(0x70, 0x70, 0x70);
 pub(super) const PALE: Color = Color(0xE4, 0xE4, 0xE4);
-/// A particle that rests on its floor.
-const REST: Color = Color(0xB8, 0xB8, 0xB8);
 pub(super) const PAPER: Color = Color(0xFF, 0xFF, 0xFF);
 
 pub(super) const VERMILION: Color = OKABE_ITO[1];
@@ -100,7 +98,7 @@ const OKABE_ITO: [Color; 7] = [
     Color(0x00, 0x00, 0x00),
 ];
 
-/// Kinds of motion as a strip tells them apart.
+/// Kinds of motion as a strip tells them apart: the less orderly, the darker, in a hue that no line has.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum KindOfMotion {
     AtRest,
@@ -117,12 +115,12 @@ impl KindOfMotion {
 
     pub(super) fn color(self) -> Color {
         match self {
-            Self::AtRest => REST,
-            Self::OneToOne => OKABE_ITO[5],
-            Self::OtherPeriodic => OKABE_ITO[0],
-            Self::QuasiPeriodic => OKABE_ITO[2],
-            Self::Chaotic => OKABE_ITO[1],
-            Self::NotSettled => OKABE_ITO[4],
+            Self::AtRest => Color(0xD9, 0xD9, 0xD9),
+            Self::OneToOne => Color(0xC9, 0xB8, 0xE8),
+            Self::OtherPeriodic => Color(0x96, 0x78, 0xCE),
+            Self::QuasiPeriodic => Color(0x63, 0x3A, 0xA3),
+            Self::Chaotic => Color(0x2A, 0x0A, 0x4F),
+            Self::NotSettled => PAPER,
         }
     }
 

@@ -1,6 +1,6 @@
 //! Work-precision diagrams: error against wall time, both logarithmic.
 
-use crate::experiment::{Axis, AxisScale, Band, Drawing, FigureSpec, Joined, Level, Panel};
+use crate::experiment::{Axis, AxisScale, AxisUnit, Band, Drawing, FigureSpec, Joined, Level, Panel};
 
 /// The figure of a table with the columns `solver`, `case`, `time` (s), `error` and `event_error`; all panels show the `times` from the
 /// first to the second; `floor` is the error below which chaos leaves no meaning.
@@ -11,6 +11,9 @@ pub fn work_precision(times: [f64; 2], floor: Option<f64>, events: bool) -> Figu
         label: Some(label.into()),
         scale: AxisScale::Log,
         reach,
+        range: None,
+        // Beside each other, figures are compared in one unit.
+        unit: (column == "time").then(|| AxisUnit { symbol: "s".into(), worth: 1.0 }),
     };
     let panel = |column: &str, label: &str, guides: Vec<Level>| Panel {
         x: axis("time", "Wall time of a run", Some(times)),

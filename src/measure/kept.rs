@@ -82,6 +82,16 @@ pub fn of_another_damper(name: &str) -> Option<&'static str> {
     (column_of_damper(column, number - 1) == name).then_some(known.name)
 }
 
+/// The unit of a list of a time history or of cycles.
+#[must_use]
+pub fn unit_of_list(name: &str) -> Option<&'static str> {
+    let samples = STRUCTURE.iter().chain(&CONTACT).map(|column| (column.name, column.unit));
+    let particles = PARTICLE.iter().map(|column| (column.name, column.unit));
+    let cycles = ENERGIES.iter().map(|column| (column.name, column.unit));
+    let name = of_another_damper(name).unwrap_or(name);
+    samples.chain(particles).chain(cycles).find(|(known, _)| *known == name).map(|(_, unit)| unit)
+}
+
 /// Names of the lists of kinetic energies.
 #[must_use]
 pub fn energy_columns() -> Vec<&'static str> {

@@ -31,6 +31,7 @@ pub use ending::{Ending, FromStarts};
 pub use evaluate::{Link, Prepared, Request, evaluate, rounded};
 pub use kept::{
     PROOF, ProofColumn, ProofOf, column_of_damper, energy_columns, of_another_damper, shape_columns, trace_columns,
+    unit_of_list,
 };
 pub use measures::{Facts, Measure, ReadOff, Runs, Under, column_words};
 pub use request::{

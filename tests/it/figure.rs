@@ -1,7 +1,10 @@
 //! Figures. Each test leaves its picture in `target/tmp`, to be looked at.
 
+use std::collections::BTreeSet;
+
 use shotdamp::experiment::{
-    Axis, AxisScale, Band, Experiment, FigureSpec, Level, Maximise, Panel, Parameter, PeakMarks, SearchPoint, Strip,
+    Axis, AxisScale, AxisUnit, Band, Experiment, FigureSpec, Level, Maximise, Panel, Parameter, PeakMarks, SearchPoint,
+    Strip,
 };
 use shotdamp::figure::{Beside, FigureError, Known, Picture, Quoted, QuotedAt, draw};
 use shotdamp::measure::Measure;
@@ -60,7 +63,8 @@ fn four_lines_with_the_spread_of_the_ensemble() {
     let spec = figure(vec![Panel { guides, ..amplitude_panel() }]);
     let quoted = [study("velocity_ratio", "force_ratio", QuotedAt::Place(2.5))];
     let png = picture("amplitude", &limit_stop(), &spec, &limit_stop_table(), &quoted);
-    assert_eq!(size(&png), (1440, 960));
+    // The legend stands above the frame, which is as high as without one.
+    assert_eq!(size(&png), (1440, 960 + 150));
 }
 
 #[test]
@@ -139,14 +143,14 @@ fn panels_stand_above_one_x_axis() {
     let lower = Panel { by: vec!["stop".into()], ..panel("force_ratio", AxisScale::Log, &["ceiling_impacts"]) };
     let table = table.select(&table.rows_where("solver", "event_driven"));
     let png = picture("two-panels", &limit_stop(), &figure(vec![amplitude_panel(), lower]), &table, &[]);
-    assert_eq!(size(&png), (1440, 1200));
+    assert_eq!(size(&png), (1440, 1200 + 72));
 }
 
 #[test]
 fn a_legend_above_its_panel_stays_on_the_sheet_and_is_not_said_twice() {
     let cases = ["m′ = 0.02, aω²/g = 1.73", "m′ = 0.1, aω²/g = 1.73", "m′ = 0.19, aω²/g = 1.73"];
     let solvers = ["event_driven", "fixed_step"];
-    let times = log_range(1e-4, 1e-1, 11);
+    let times = log_range(1e-4, 1e-1, 10);
     let rows: Vec<(&str, &str, f64)> = solvers
         .iter()
         .flat_map(|solver| cases.iter().flat_map(|case| times.iter().map(|time| (*solver, *case, *time))))
@@ -343,6 +347,87 @@ fn a_strip_below_the_frame_says_which_motion_each_point_belongs_to() {
         assert!(drawn.contains(&format!(">{named}<")), "{named}: {drawn}");
     }
     assert!(!drawn.contains(">quasi-periodic<"));
+    // The colours are the strip's alone, and the legend says so.
+    assert!(drawn.contains(">motion:<"), "{drawn}");
+    let filled = |rest: &str| rest.split_once("fill=\"").map(|(_, fill)| fill[..7].to_owned());
+    let cells: BTreeSet<String> = drawn.split("data-note=\"").skip(1).filter_map(filled).collect();
+    assert_eq!(cells.len(), 5, "{cells:?}");
+    for line in ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000"] {
+        assert!(!cells.contains(line), "{line} is a line's");
+    }
+}
+
+/// The texts of a drawing that are numbers, as a reader sees them.
+fn numbers_in(svg: &str) -> Vec<f64> {
+    lines_of_text(svg).iter().filter_map(|(text, _)| text.replace('−', "-").parse().ok()).collect()
+}
+
+#[test]
+fn a_logarithmic_axis_has_three_numbers_at_least() {
+    let drawn = |from: f64, to: f64, unit: &str| {
+        let gaps = log_range(from, to, 20);
+        let ratios = gaps.iter().map(|gap| gap / from - 1.0).collect();
+        let table = Table::default()
+            .with(numbers("gap", "h", unit, gaps))
+            .with(texts("variant", ["baseline"; 20]))
+            .with(numbers("velocity_ratio", "ψ", "", ratios));
+        let mut one = panel("gap", AxisScale::Log, &["velocity_ratio"]);
+        one.y[0].label = Some("ratio".into());
+        let svg = picture("short-log", &limit_stop(), &figure(vec![one]), &table, &[]).svg;
+        // Those of the y axis begin at 0 and stand at the end.
+        let numbers = numbers_in(&svg);
+        let y = numbers.iter().rposition(|number| *number == 0.0).unwrap();
+        (numbers[..y].to_vec(), svg)
+    };
+    assert_eq!(drawn(2.5, 3.6, "").0, [2.6, 2.8, 3.0, 3.2, 3.4, 3.6]);
+    assert_eq!(drawn(1.5, 6.0, "").0, [2.0, 3.0, 4.0, 5.0, 6.0]);
+    assert_eq!(drawn(1e-4, 8e-3, "m").0, [0.1, 0.2, 0.5, 1.0, 2.0, 5.0]);
+    let (numbers, svg) = drawn(1e-4, 8.37e-2, "m");
+    assert_eq!(numbers, [0.1, 1.0, 10.0]);
+    assert!(svg.contains(">Gap h (mm)<"), "{svg}");
+}
+
+/// The resonance of [`a_part_of_the_axis_is_a_panel_of_its_own`].
+fn resonance() -> Table {
+    let frequencies: Vec<f64> = (0..121).map(|i| 2.0 * std::f64::consts::PI * (10.0 + 0.5 * f64::from(i))).collect();
+    let ratios = frequencies.iter().map(|w| 1.0 + 5.0 / (1.0 + (w / 6.0 - 31.4).powi(2))).collect();
+    Table::default()
+        .with(numbers("angular_frequency", "ω", "rad/s", frequencies))
+        .with(texts("variant", ["baseline"; 121]))
+        .with(numbers("velocity_ratio", "ψ", "", ratios))
+}
+
+#[test]
+fn numbers_stand_in_the_unit_that_an_axis_names() {
+    let mut one = panel("angular_frequency", AxisScale::Linear, &["velocity_ratio"]);
+    one.x.unit = Some(AxisUnit { symbol: "Hz".into(), worth: std::f64::consts::TAU });
+    one.x.label = Some("frequency".into());
+    let svg = picture("hertz", &limit_stop(), &figure(vec![one]), &resonance(), &[]).svg;
+    assert!(svg.contains(">Frequency (Hz)<"), "{svg}");
+    assert!([10.0, 40.0, 70.0].iter().all(|frequency| numbers_in(&svg).contains(frequency)), "{svg}");
+}
+
+#[test]
+fn a_part_of_the_axis_is_a_panel_of_its_own() {
+    let whole = panel("angular_frequency", AxisScale::Linear, &["velocity_ratio"]);
+    let mut part = whole.clone();
+    part.x.range = Some([170.0, 205.0]);
+    let at = |x: f64, y: f64| study("velocity_ratio", "angular_frequency", QuotedAt::Point { x, y, known: Known::Y });
+    let quoted = [
+        Quoted { label: "within".into(), ..at(188.0, 5.8) },
+        Quoted { label: "outside".into(), ..at(300.0, 1.1) },
+        Quoted { label: "of all".into(), at: QuotedAt::Level(1.4), ..at(0.0, 0.0) },
+    ];
+    let svg = picture("part", &limit_stop(), &figure(vec![whole, part]), &resonance(), &quoted).svg;
+    // Each number is named where it is seen best, and each panel has an axis of its own.
+    for label in ["within", "outside", "of all"] {
+        assert_eq!(svg.matches(&format!(">{label}<")).count(), 1, "{label}");
+    }
+    assert_eq!(svg.matches(">Angular frequency ω (rad/s)<").count(), 2);
+    assert!([100.0, 175.0, 200.0].iter().all(|frequency| numbers_in(&svg).contains(frequency)), "{svg}");
+    // The line runs to both edges of the part.
+    let part = svg.split("data-frame=").nth(2).unwrap();
+    assert!(part.contains("data-x=\"linear 170 205\""), "{part}");
 }
 
 #[test]

@@ -44,6 +44,25 @@ fn a_map_is_read_with_what_is_usual_filled_in() {
 }
 
 #[test]
+fn an_axis_in_a_unit_of_its_own_is_read_in_that_unit() {
+    let figure = "trace: {from: 0 cycles, to: 1 cycles, samples_per_cycle: 10}
+figure:
+  caption: A history.
+  x: {column: time, unit: ms, range: [10, 20]}
+  y: {column: base_velocity, unit: cm/s, reach: [-1, 1]}
+  guides: [{at: 2}]";
+    let experiment = read(figure).unwrap_or_else(|problems| panic!("{problems}"));
+    let Drawing::Lines(panels) = &experiment.figures[0].drawing else { panic!("lines") };
+    let (x, y) = (&panels[0].x, &panels[0].y[0]);
+    assert_eq!((x.range, y.reach, panels[0].guides[0].at), (Some([0.01, 0.02]), Some([-0.01, 0.01]), 0.02));
+    assert_eq!(x.unit.as_ref().map(|unit| unit.symbol.as_str()), Some("ms"));
+    for (wrong, says) in [("mm", "numbers in s cannot be shown in mm"), ("ell", "`ell` is not a unit")] {
+        let problems = read(&figure.replace("unit: ms", &format!("unit: {wrong}"))).expect_err(wrong);
+        assert!(problems.to_string().contains(says), "{problems}");
+    }
+}
+
+#[test]
 fn mistakes_in_a_map_are_told_where_they_stand() {
     let map = "x: base_amplitude_ratio, y: gap_ratio, value: velocity_ratio";
     // The part of the figure that the mistake is told at stands between ‹ and ›.
@@ -69,6 +88,14 @@ fn mistakes_in_a_map_are_told_where_they_stand() {
         (
             "figure: {caption: It., ‹x›: {column: gap_ratio, scale: log, reach: [0, 1]}, y: velocity_ratio}".into(),
             "above zero",
+        ),
+        (
+            "figure: {caption: It., x: {column: gap_ratio, unit: ‹mm›}, y: velocity_ratio}".into(),
+            "have no unit that can be chosen",
+        ),
+        (
+            "figure: {caption: It., x: gap_ratio, y: {column: velocity_ratio, ‹range›: [1, 2]}}".into(),
+            "an axis has no key `range`",
         ),
         ("figure: {caption: It., x: gap_ratio, y: velocity_ratio, peaks: {prominence: ‹2›}}".into(), "between 0 and 1"),
         ("figure: {caption: It., x: gap_ratio, y: velocity_ratio, strip: ‹chaos›}".into(), "is not a strip"),
