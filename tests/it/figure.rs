@@ -150,7 +150,7 @@ fn panels_stand_above_one_x_axis() {
 fn a_legend_above_its_panel_stays_on_the_sheet_and_is_not_said_twice() {
     let cases = ["m′ = 0.02, aω²/g = 1.73", "m′ = 0.1, aω²/g = 1.73", "m′ = 0.19, aω²/g = 1.73"];
     let solvers = ["event_driven", "fixed_step"];
-    let times = log_range(1e-4, 1e-1, 10);
+    let times = log_range(1e-4, 1e-1, 8);
     let rows: Vec<(&str, &str, f64)> = solvers
         .iter()
         .flat_map(|solver| cases.iter().flat_map(|case| times.iter().map(|time| (*solver, *case, *time))))
