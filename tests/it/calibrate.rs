@@ -322,3 +322,14 @@ fn a_value_that_leaves_no_cycle_to_average_is_refused() {
         "`before` has a value with which `ch3-stop` averages no whole number of cycles up to cycle 125: give it whole numbers below 125"
     );
 }
+
+#[test]
+fn a_calibration_whose_page_cannot_be_written_is_refused_before_it_begins() {
+    let desk = Desk::new();
+    desk.put("calibrations/it.yaml", STOP);
+    // In the place of the folder, which nobody can write into.
+    desk.put("reports/calibrations", "");
+    let said = shotdamp(&desk, &["calibrate", "it"]);
+    assert!(said.code == 2 && said.err.contains("cannot write "), "{}", said.err);
+    assert!(!said.err.contains("tried") && !desk.layout.path("results/calibrations").exists(), "{}", said.err);
+}
