@@ -114,7 +114,7 @@ fn rows(view: &EntryView<'_>) -> String {
                 format!("{} % off", number::signed(100.0 * off, 2))
             });
         // A reason is a sentence, and no column is as wide as one.
-        let reason = (one.moved.verdict == Verdict::Missing).then(|| one.moved.found.as_str());
+        let reason = (one.moved.verdict == Verdict::Missing).then_some(one.moved.found.as_str());
         reasons.push(reason);
         rows.push([
             format!("{}: {from} → {to}", one.name),
