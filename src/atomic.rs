@@ -68,6 +68,16 @@ pub fn write(path: &Path, bytes: &[u8]) -> Result<(), FileError> {
     Ok(())
 }
 
+/// The error that [`write`] would meet in the folder of this file, before there is anything to write; leaves nothing behind.
+///
+/// # Errors
+/// [`FileError`] with the system's reason.
+pub fn check_writable(path: &Path) -> Result<(), FileError> {
+    let folder = path.ancestors().skip(1).find(|folder| folder.exists()).unwrap_or(Path::new("."));
+    let probe = tempfile::Builder::new().prefix(PREFIX).tempfile_in(folder);
+    probe.map(drop).map_err(|source| FileError::new("write", path, source))
+}
+
 /// What becomes of a path that is written to.
 enum Target {
     /// This file is replaced as a whole; it may not be there yet.

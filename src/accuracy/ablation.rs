@@ -83,7 +83,7 @@ pub enum Outcome {
 /// [`NoAccuracy`] if a case as it is does not run.
 pub fn ablation(experiment: &Experiment, assumptions: &Assumptions) -> Result<Vec<Ablation>, NoAccuracy> {
     if experiment.optimise.is_some() {
-        return Err(NoAccuracy::Nothing);
+        return Err(NoAccuracy::Optimisation);
     }
     let within = || Allowance::new(experiment.limit);
     let cases = within().simulate(|| representative(experiment, assumptions))?;

@@ -134,6 +134,9 @@ pub enum NoAccuracy {
     /// Nothing is simulated.
     #[error("no case has a damper whose motion takes time to simulate")]
     Nothing,
+    /// Its runs are trials of a search.
+    #[error("it is an optimisation, whose runs are trials of a search; name an experiment that runs one of its arrays")]
+    Optimisation,
     /// A case has no scene.
     #[error(transparent)]
     Recipe(#[from] RecipeError),
@@ -178,7 +181,7 @@ struct CaseErrors {
 /// [`NoAccuracy`] with the reason.
 pub fn errors(experiment: &Experiment, assumptions: &Assumptions, longest: Duration) -> Result<Errors, NoAccuracy> {
     if experiment.optimise.is_some() {
-        return Err(NoAccuracy::Nothing);
+        return Err(NoAccuracy::Optimisation);
     }
     let within = || Allowance::new(experiment.limit);
     let chosen = within().simulate(|| representative(experiment, assumptions))?;

@@ -2,10 +2,11 @@
 
 use std::path::PathBuf;
 
+use clap::builder::PossibleValuesParser;
 use clap::{Parser, Subcommand};
 
 use super::destination::Destination;
-use crate::experiment::RowLimit;
+use crate::experiment::{RowLimit, structures};
 use crate::report::RELEASED;
 use crate::study::{Shard, Study};
 
@@ -73,7 +74,7 @@ pub(super) enum Command {
     #[command(after_help = "\
 Examples:
   shotdamp list
-  shotdamp list | grep Fig. 18                the experiment that draws a figure of the study")]
+  shotdamp list | grep 'Fig. 18'              the experiment that draws a figure of the study")]
     List,
     /// Describe an experiment: scene, effects in force, assumptions used, cases
     #[command(after_help = "\
@@ -249,15 +250,29 @@ pub(super) struct ReportArgs {
 }
 
 #[derive(Debug, thiserror::Error)]
-#[error("write a date as 2026-11-21")]
+#[error("there is no such day; write a date as 2026-11-21")]
 struct DateError;
 
 fn date(text: &str) -> Result<String, DateError> {
-    let parts: Vec<Option<u32>> = text.split('-').map(|part| part.parse().ok()).collect();
+    let is_number = |part: &str| part.bytes().all(|byte| byte.is_ascii_digit());
+    let parts: Vec<Option<u32>> = text.split('-').map(|part| part.parse().ok().filter(|_| is_number(part))).collect();
     let lengths = text.split('-').map(str::len);
     match parts.as_slice() {
-        [Some(_), Some(1..=12), Some(1..=31)] if lengths.eq([4, 2, 2]) => Ok(text.into()),
+        [Some(year), Some(month), Some(day)] if lengths.eq([4, 2, 2]) && (1..=days_of(*month, *year)).contains(day) => {
+            Ok(text.into())
+        }
         _ => Err(DateError),
+    }
+}
+
+/// Days of a month of the Gregorian calendar; none of a month that there is not.
+fn days_of(month: u32, year: u32) -> u32 {
+    let is_leap = year.is_multiple_of(4) && (!year.is_multiple_of(100) || year.is_multiple_of(400));
+    match month {
+        2 => 28 + u32::from(is_leap),
+        4 | 6 | 9 | 11 => 30,
+        1..=12 => 31,
+        _ => 0,
     }
 }
 
@@ -389,7 +404,7 @@ pub(super) struct NewArgs {
     #[arg(long, value_name = "DIR")]
     pub folder: Option<String>,
     /// Kind of structure
-    #[arg(long, value_name = "KIND", default_value = "single_mass")]
+    #[arg(long, value_name = "KIND", default_value = "single_mass", value_parser = PossibleValuesParser::new(structures()))]
     pub structure: String,
 }
 
@@ -418,17 +433,19 @@ pub(super) enum SchemaOf {
 }
 
 #[derive(Debug, clap::Args)]
-#[command(after_help = "\
+#[command(group(clap::ArgGroup::new("what").required(true).multiple(true)), after_help = "\
+Name at least one of --orphans and --earlier.
+
 Examples:
   shotdamp clean --orphans --dry-run
   shotdamp clean --orphans
   shotdamp clean --earlier                    free disk space; going back to earlier inputs then re-simulates")]
 pub(super) struct CleanArgs {
     /// Remove tables, records, figures and pages of experiments and calibrations whose files no longer exist
-    #[arg(long, required_unless_present = "earlier")]
+    #[arg(long, group = "what")]
     pub orphans: bool,
     /// Remove earlier tables, which are kept so that going back to earlier inputs simulates nothing
-    #[arg(long)]
+    #[arg(long, group = "what")]
     pub earlier: bool,
     /// Print what would be removed, and stop
     #[arg(long)]

@@ -18,6 +18,9 @@ pub(super) fn calibrate(layout: &Layout, args: &CalibrateArgs, common: &Args) ->
     if !known.contains(id.0.as_str()) {
         return Err(CliError::NoCalibration { hint: hint(&id.0, &known, "ls calibrations"), id: id.0 });
     }
+    // Before hours of work, not after them.
+    let page_name = format!("reports/calibrations/{id}.md");
+    atomic::check_writable(&layout.path(&page_name))?;
     args.limit.apply(&mut study);
     let calibration = load_calibration(&layout.path(&format!("calibrations/{id}.yaml")), &study.sheet)?;
     print_unread(&study.unread);
@@ -36,7 +39,7 @@ pub(super) fn calibrate(layout: &Layout, args: &CalibrateArgs, common: &Args) ->
         handler,
     )?;
     let page = calibration_page(&calibration, &result);
-    atomic::write_if_changed(&layout.path(&format!("reports/calibrations/{id}.md")), page.as_bytes())?;
+    atomic::write_if_changed(&layout.path(&page_name), page.as_bytes())?;
     if calibration.leave_one_out {
         let predicted = result.left_out.iter().filter(|one| one.tells_sets_apart());
         let errors = predicted.map(|one| (one.id.clone(), one.errors)).collect();

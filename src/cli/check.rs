@@ -9,7 +9,7 @@ use super::exit::Exit;
 use super::output::{print, print_document, print_error, print_unread, print_warnings};
 use super::select::{Chosen, choose, open};
 use crate::atomic::{self, FileError};
-use crate::reference;
+use crate::reference::{self, Verdict};
 use crate::report::{
     self, CheckView, Judgement, Standing, check_view, departures, doubts, judge_all, self_test_all, summary_of,
 };
@@ -31,11 +31,8 @@ pub(super) fn check(layout: &Layout, args: &CheckArgs) -> Result<Exit, CliError>
     }
     let mut exit = chosen.exit(&judgement);
     let view = check_view(&study, &judgement, &chosen.ids, &chosen.unread);
-    let mut text = if args.json {
-        report::json(&view)
-    } else {
-        summary_of(&judgement, &chosen.ids) + &doubts(&judgement, &chosen.ids)
-    };
+    let mut text =
+        if args.json { report::json(&view) } else { summary(&judgement, &chosen) + &doubts(&judgement, &chosen.ids) };
     if args.self_test {
         let (description, worst) = self_test(&study, &chosen);
         exit = exit.max(worst);
@@ -60,6 +57,12 @@ pub(super) fn check(layout: &Layout, args: &CheckArgs) -> Result<Exit, CliError>
         github(&view)?;
     }
     Ok(exit)
+}
+
+/// The verdicts in words; nothing where all that was chosen could not be read, which has been said.
+fn summary(judgement: &Judgement, chosen: &Chosen<'_>) -> String {
+    let judged = chosen.ids.iter().any(|id| judgement.verdicts.get(*id).is_some_and(|judged| !judged.is_empty()));
+    if judged || chosen.unread.is_empty() { summary_of(judgement, &chosen.ids) } else { String::new() }
 }
 
 /// True if a document has standard output for itself; the errors of destinations come before all work.
@@ -133,6 +136,9 @@ fn accept(study: &Study, judgement: &Judgement, id: &str, reason: &str) -> Resul
     let name = *study.reference_names().get(experiment).ok_or_else(unknown)?;
     let (reference, bytes) = study.references.get(experiment).zip(study.texts.files.get(name)).ok_or_else(unknown)?;
     let text = String::from_utf8_lossy(bytes);
+    if judged.verdict == Verdict::Blocked {
+        return Err(CliError::AcceptBlocked { id: id.into(), found: judged.found.clone() });
+    }
     let changed = reference::accept(reference, &text, judged, reason)?;
     atomic::write(&study.layout.path(name), changed.as_bytes())?;
     let verdict = |verdict| crate::text::words::of_key(verdict);

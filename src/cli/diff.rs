@@ -55,6 +55,9 @@ impl Side {
         let unreadable = |path: &Path, problem: String| CliError::Unreadable { path: path.to_path_buf(), problem };
         let verdicts = if path.is_dir() { path.join("verdicts.json") } else { path.to_path_buf() };
         if verdicts.is_file() {
+            if verdicts.extension().is_some_and(|ending| ending == "parquet") {
+                return Err(CliError::OneTable(verdicts));
+            }
             let text = fs::read_to_string(&verdicts).map_err(|error| unreadable(&verdicts, error.to_string()))?;
             return report::read_json(&text)
                 .map(Self::Verdicts)

@@ -30,10 +30,17 @@ pub(super) enum CliError {
         "`{0}` cannot name a folder of experiments/: write names of letters, digits, `-` and `_`, with `/` between them"
     )]
     Folder(String),
+    #[error(
+        "`{id}` is blocked, which no accepted verdict changes: {found}; once the study states what is missing, take \
+         `blocked_by` out of the entry"
+    )]
+    AcceptBlocked { id: String, found: String },
     #[error("there is no entry `{0}`; entries are named experiment/entry, as `shotdamp check` shows them")]
     NoEntry(String),
     #[error("{} holds neither tables (*.parquet) nor verdicts (verdicts.json)", from_here(.0))]
     NoResults(PathBuf),
+    #[error("{} is a single table: name the folder that it lies in", from_here(.0))]
+    OneTable(PathBuf),
     #[error("cannot compare {}: {problem}", from_here(.path))]
     Unreadable { path: PathBuf, problem: String },
     #[error("`{path}` is or lies in `{part}` of this study, which holds its own files: name another place")]
@@ -42,8 +49,6 @@ pub(super) enum CliError {
     TwoDocuments,
     #[error("there is an experiment `{0}` already")]
     Exists(String),
-    #[error("there is no structure `{given}`; known are {known}")]
-    NoStructure { given: String, known: String },
     #[error(transparent)]
     Accept(#[from] AcceptError),
     #[error(transparent)]

@@ -3,16 +3,19 @@
 use std::collections::BTreeMap;
 
 use super::args::{Args, LimitArgs};
+use super::dry_run::processors;
 use super::error::CliError;
 use super::exit::Exit;
-use super::output::{print, print_unread};
+use super::output::{print, print_progress, print_unread};
 use super::select::{matches, open};
 use crate::calibrate::{CalibrationError, Read, moved_alone};
-use crate::experiment::Experiment;
+use crate::dynamics::is_interrupted;
+use crate::experiment::{AssumptionName, AssumptionValue, Experiment};
 use crate::reference::{Found, Judged, Moved};
 use crate::report::{Trial, entry, explanations, judge_all, untried};
-use crate::study::{Engine, EventHandler, IgnoreEvents, Layout, Progress, Study};
+use crate::study::{Engine, EventHandler, IgnoreEvents, Layout, Progress, RunError, Study};
 use crate::text::number::significant;
+use crate::text::words::counted;
 
 /// How sensitive entries are to each assumption: from the tables on disk, and with a limit for them from simulations made for
 /// it.
@@ -31,9 +34,13 @@ pub(super) fn explain(
         limit.apply(&mut study);
         for judged in judgement.verdicts.values().flatten().filter(|judged| wanted(&judged.id)) {
             trials.insert(judged.id.clone(), tried(&study, judged, common)?);
+            if is_interrupted() {
+                break;
+            }
         }
     }
-    let texts = explanations(&study, &judgement, &trials, wanted);
+    let reached = |id: &str| !is_interrupted() || trials.contains_key(id);
+    let texts = explanations(&study, &judgement, &trials, |id| wanted(id) && reached(id));
     if texts.is_empty() {
         return Err(CliError::NoEntry(pattern.into()));
     }
@@ -41,19 +48,37 @@ pub(super) fn explain(
     Ok(if study.unread.is_empty() { Exit::AsExpected } else { Exit::CouldNot })
 }
 
-/// The entry with each assumption moved that the tables on disk have not.
+/// The entry with each assumption moved that the tables on disk have not; after an interrupt those that were done by then.
 fn tried(study: &Study, judged: &Judged, common: &Args) -> Result<Vec<Trial>, CliError> {
     let Some(entry) = entry(study, judged) else { return Ok(Vec::new()) };
     let moves = untried(study, judged);
     let experiments: Vec<&Experiment> = study.items.iter().map(|item| &item.source.experiment).collect();
-    let progress = Progress::new();
-    let handler: &dyn EventHandler = if common.quiet { &IgnoreEvents } else { &progress };
     let asked = (judged.experiment.as_str(), entry);
     let in_force = study.sheet.assumptions();
-    let reads = moved_alone(asked, &moves, &experiments, &in_force, common.threads(), &Engine, handler)
-        .map_err(CalibrationError::from)?;
-    let trial = |((name, to), read)| Trial { name, to, moved: moved(judged, read) };
-    Ok(moves.into_iter().zip(reads).map(trial).collect())
+    let mut trials = Vec::new();
+    // As many at once as there are threads: each portion ends with a line, and outlasts an interrupt of the next.
+    for portion in moves.chunks(common.jobs.map_or_else(processors, usize::from)) {
+        let progress = Progress::new();
+        let handler: &dyn EventHandler = if common.quiet { &IgnoreEvents } else { &progress };
+        let reads = moved_alone(asked, portion, &experiments, &in_force, common.threads(), &Engine, handler);
+        let reads = match reads {
+            Err(RunError::Interrupted) => break,
+            reads => reads.map_err(CalibrationError::from)?,
+        };
+        let trial = |((name, to), read): (&(AssumptionName, AssumptionValue), Read)| Trial {
+            name: name.clone(),
+            to: to.clone(),
+            moved: moved(judged, read),
+        };
+        trials.extend(portion.iter().zip(reads).map(trial));
+        print_progress(&format!(
+            "{}: {} of {} simulated\n",
+            judged.id,
+            trials.len(),
+            counted(moves.len(), "changed assumption", "changed assumptions")
+        ));
+    }
+    Ok(trials)
 }
 
 /// A number keeps the uncertainties that it has in force.

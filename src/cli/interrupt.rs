@@ -29,8 +29,10 @@ pub(super) enum Kept {
     Rows,
     /// Pages of the experiments that were done.
     Pages,
-    /// What was there before.
-    Nothing,
+    /// What a calibration evaluated.
+    Evaluations,
+    /// What was printed.
+    Printed,
 }
 
 impl Kept {
@@ -39,9 +41,8 @@ impl Kept {
         match command {
             None | Some(Command::Run(_)) => Some(Self::Rows),
             Some(Command::Accuracy(_)) => Some(Self::Pages),
-            Some(Command::Calibrate(_) | Command::Effects { .. } | Command::Explain { run: true, .. }) => {
-                Some(Self::Nothing)
-            }
+            Some(Command::Calibrate(_)) => Some(Self::Evaluations),
+            Some(Command::Effects { .. } | Command::Explain { run: true, .. }) => Some(Self::Printed),
             _ => None,
         }
     }
@@ -50,7 +51,10 @@ impl Kept {
         match self {
             Self::Rows => "interrupted: finished rows are kept, and the same command continues from them\n",
             Self::Pages => "interrupted: the pages of finished experiments are written, all others are as before\n",
-            Self::Nothing => "interrupted: nothing was written\n",
+            Self::Evaluations => {
+                "interrupted: no page was written; what was evaluated is kept, and the same command continues from there\n"
+            }
+            Self::Printed => "interrupted: what is printed is all that was finished; nothing was written\n",
         }
     }
 }
@@ -103,7 +107,7 @@ pub(super) fn listen(kept: Kept) {
 pub(super) fn end() -> ! {
     static LINE: std::sync::Once = std::sync::Once::new();
     LINE.call_once(|| {
-        print_error(KEPT.get().copied().unwrap_or(Kept::Nothing).line());
+        print_error(KEPT.get().copied().unwrap_or(Kept::Printed).line());
         std::process::exit(EXIT_CODE);
     });
     std::process::exit(EXIT_CODE);

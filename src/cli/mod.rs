@@ -64,7 +64,14 @@ fn dispatch(args: &mut Args) -> Result<Exit, CliError> {
     match &args.command {
         // What needs no study.
         Some(Command::Completions { shell }) => return completions(*shell),
-        Some(Command::Schema(args::SchemaArgs { of: Some(of) })) => return schema::print_one(*of),
+        Some(Command::Schema(args::SchemaArgs { of: Some(of) })) => {
+            let layout = match select::layout(args.root.as_deref()) {
+                // Asked for outside of every study, which is no mistake.
+                Err(CliError::NoStudy(_)) => None,
+                found => Some(found?),
+            };
+            return schema::print_one(layout.as_ref(), *of);
+        }
         _ => {}
     }
     let layout = select::layout(args.root.as_deref())?;
@@ -101,7 +108,7 @@ fn dispatch(args: &mut Args) -> Result<Exit, CliError> {
         Some(Command::Diff(diff)) => diff::diff(&layout, diff),
         Some(Command::Clean(clean)) => clean::clean(&layout, clean),
         Some(Command::New(new)) => new::new(&layout, new),
-        Some(Command::Schema(schema)) => schema::schema(&layout, schema),
+        Some(Command::Schema(_)) => schema::write(&layout),
         Some(Command::Completions { shell }) => completions(*shell),
         Some(Command::Accuracy(args)) => accuracy::measure(&layout, args),
         Some(Command::Calibrate(calibrate)) => calibrate::calibrate(&layout, calibrate, args),

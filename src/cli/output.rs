@@ -61,6 +61,13 @@ pub(super) fn print_error(text: &str) {
     let _ = io::stderr().lock().write_all(text.as_bytes());
 }
 
+/// Prints how far a command is, unless nothing but errors is wanted.
+pub(super) fn print_progress(text: &str) {
+    if !style().quiet {
+        print_error(text);
+    }
+}
+
 /// Prints the errors of files that could not be used, with their places; framed on a terminal.
 pub(super) fn print_unread<'a>(unread: impl IntoIterator<Item = &'a Unread>) {
     for one in unread {

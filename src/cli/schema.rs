@@ -2,7 +2,7 @@
 
 use clap::ValueEnum;
 
-use super::args::{SchemaArgs, SchemaOf};
+use super::args::SchemaOf;
 use super::error::CliError;
 use super::exit::Exit;
 use super::output::{print, print_document};
@@ -37,26 +37,28 @@ impl SchemaOf {
     }
 }
 
-/// Prints one schema; needs no study, and so offers no names of assumptions.
-pub(super) fn print_one(of: SchemaOf) -> Result<Exit, CliError> {
-    print_document(&of.text(&AssumptionSheet::default()))?;
+/// Prints one schema, as [`write_all`] writes it into this study; outside of a study it offers no names of assumptions.
+pub(super) fn print_one(layout: Option<&Layout>, of: SchemaOf) -> Result<Exit, CliError> {
+    print_document(&of.text(&layout.map(sheet).unwrap_or_default()))?;
     Ok(Exit::AsExpected)
 }
 
 /// Writes all of them.
-pub(super) fn schema(layout: &Layout, args: &SchemaArgs) -> Result<Exit, CliError> {
-    if let Some(of) = args.of {
-        return print_one(of);
-    }
+pub(super) fn write(layout: &Layout) -> Result<Exit, CliError> {
     write_all(layout)?;
     let description: Vec<String> = SchemaOf::value_variants().iter().map(|of| format!("{}\n", of.file())).collect();
     print(&description.concat())?;
     Ok(Exit::AsExpected)
 }
 
-/// Writes those that are not what they should be; while the assumptions cannot be read, without their names.
+/// The assumptions of a study; none while they cannot be read.
+fn sheet(layout: &Layout) -> AssumptionSheet {
+    load_assumptions(&layout.path(ASSUMPTIONS)).unwrap_or_default()
+}
+
+/// Writes those that are not what they should be.
 pub(super) fn write_all(layout: &Layout) -> Result<(), FileError> {
-    let sheet = load_assumptions(&layout.path(ASSUMPTIONS)).unwrap_or_default();
+    let sheet = sheet(layout);
     for of in SchemaOf::value_variants() {
         atomic::write_if_changed(&layout.path(of.file()), of.text(&sheet).as_bytes())?;
     }

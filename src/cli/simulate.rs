@@ -103,7 +103,7 @@ pub(super) fn print_failures(chosen: &Chosen<'_>) -> bool {
             failed = true;
             let failures = &record.failures;
             let id = &item.source.experiment.id;
-            print_error(&format!("error: {id}: {} rows failed; the first: {}\n", failures.rows, failures.first));
+            print_error(&format!("error: {id}: {failures}\n"));
         }
     }
     failed

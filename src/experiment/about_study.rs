@@ -38,6 +38,31 @@ pub struct AboutStudy {
     pub colours: BTreeMap<String, LineColour>,
     /// What it concludes.
     pub findings: Vec<Finding>,
+    /// Who made it.
+    pub authors: Vec<Author>,
+    /// How it may be used; each by itself, where there are several.
+    pub licences: Vec<Licence>,
+}
+
+/// Who made a study.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Author {
+    /// By name.
+    Person(String),
+    /// By name.
+    Organisation(String),
+}
+
+/// A licence: its SPDX identifier, `CC-BY-4.0`, or where its text stands.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Licence(pub String);
+
+impl Licence {
+    /// Where its text stands.
+    #[must_use]
+    pub fn address(&self) -> String {
+        if self.0.contains("://") { self.0.clone() } else { format!("https://spdx.org/licenses/{}", self.0) }
+    }
 }
 
 /// A conclusion of the publication.
@@ -130,6 +155,10 @@ fn read_about(at: At<'_>) -> Option<AboutStudy> {
     let chapters = keys.optional("chapters", subjects, read_chapters);
     let colours = keys.optional("colours", "Colours of lines of these names, in every figure", read_colours);
     let concluded = keys.optional("findings", "What the publication concludes", |at| at.list(read_finding));
+    let who = "Who made the study, for those it is handed on to: names, or {organisation: …}";
+    let authors = keys.optional("author", who, |at| at.one_or_more(read_author));
+    let terms = "How it may be used: an SPDX identifier such as CC-BY-4.0, or the address of a licence; each by itself, if several";
+    let licences = keys.optional("licence", terms, |at| at.one_or_more(read_licence));
     keys.close()?;
     Some(AboutStudy {
         title: title?,
@@ -138,7 +167,29 @@ fn read_about(at: At<'_>) -> Option<AboutStudy> {
         chapters: chapters?.unwrap_or_default(),
         colours: colours?.unwrap_or_default(),
         findings: concluded?.unwrap_or_default(),
+        authors: authors?.unwrap_or_default(),
+        licences: licences?.unwrap_or_default(),
     })
+}
+
+fn read_author(at: At<'_>) -> Option<Author> {
+    let organisation = |at: At<'_>| {
+        let keys = at.keys("an author")?;
+        let name = keys.required("organisation", "Its name", |at| at.text());
+        keys.close()?;
+        name.map(Author::Organisation)
+    };
+    at.either(|value| matches!(value, Value::Mapping(_)), organisation, |at| at.text().map(Author::Person))
+}
+
+fn read_licence(at: At<'_>) -> Option<Licence> {
+    let text = at.text()?;
+    let is_identifier = text.chars().all(|c| c.is_ascii_alphanumeric() || "-.+".contains(c));
+    if is_identifier || text.starts_with("https://") || text.starts_with("http://") {
+        return Some(Licence(text));
+    }
+    let help = "write an SPDX identifier, `CC-BY-4.0`, or an address; of several licences a list, `[MIT, Apache-2.0]`";
+    at.report(format!("`{text}` is not one licence"), Some(help.into()))
 }
 
 fn read_finding(at: At<'_>) -> Option<Finding> {

@@ -2,11 +2,12 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::recipe::{Assumptions, ExcitationKind, Parameter, ParameterValue, Part, RecipeError};
+use super::recipe::{AssumptionName, Assumptions, ExcitationKind, Parameter, ParameterValue, Part, RecipeError};
 use crate::dynamics::Until;
 use crate::measure::{CycleSpec, EnergySpec, Measure, Settings, ShapeSpec, SolverChoice, Tolerance, TraceSpec, Under};
 use crate::scene::Scene;
 
+use super::assumption_sheet::AssumptionSheet;
 use super::continued::ContinuedSweep;
 use super::definition::{Case, Drawing, Experiment, FigureSpec, Maximise, Panel, SearchPoint};
 use super::diagnostic::{Findings, Span};
@@ -263,7 +264,12 @@ impl Checks<'_> {
         varied: &str,
         at: Span,
     ) {
-        let mark = parameter.mark();
+        let places = scene.recipe.dampers.iter().map(|damper| &damper.at).chain([&scene.recipe.excitation.at]);
+        let is_plate = places.map(|place| place.0.len()).max() == Some(2);
+        let mark = match parameter {
+            Parameter::DamperX | Parameter::ForceX if is_plate => "at: [swept, 0.5]",
+            _ => parameter.mark(),
+        };
         let is_marked = || scene.swept.iter().any(|(marked, _)| *marked == parameter);
         // A scene without such a place is refused where its cases are tried.
         let has_place = || first.is_some_and(|first| scene.recipe.clone().set(parameter, first).is_ok());
@@ -278,6 +284,25 @@ impl Checks<'_> {
         let message = format!("`{}` is {varied}, but nothing in the scene is left to it", word_of(parameter));
         let help = format!("write `{mark}` in {part}; what a scene states beside is kept");
         self.findings.report::<()>(at, message, Some(help));
+    }
+
+    /// To move what no number depends on would look like a result.
+    pub fn sensitivity(
+        &self,
+        moved: Option<&BTreeMap<AssumptionName, Span>>,
+        experiment: &Experiment,
+        sheet: &AssumptionSheet,
+    ) {
+        let Some(moved) = moved.filter(|moved| !moved.is_empty() && !self.findings.any()) else { return };
+        let used = experiment.assumptions_used(sheet);
+        for (name, at) in moved.iter().filter(|(name, _)| !used.contains(*name)) {
+            let used: Vec<String> = used.iter().map(|name| format!("`{name}`")).collect();
+            let help = match used.as_slice() {
+                [] => "write `sensitivity: none`: it depends on no assumption".into(),
+                used => format!("take it out; it depends on {}", used.join(", ")),
+            };
+            self.findings.report::<()>(*at, format!("this experiment does not depend on `{name}`"), Some(help));
+        }
     }
 
     /// What is averaged over is not swept or maximised over as well.

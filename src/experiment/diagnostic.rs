@@ -209,6 +209,11 @@ impl Findings {
         None
     }
 
+    /// True if there is a problem.
+    pub fn any(&self) -> bool {
+        !self.list.borrow().is_empty()
+    }
+
     /// True when no more will be told.
     pub fn is_full(&self) -> bool {
         self.list.borrow().len() >= MOST_TOLD

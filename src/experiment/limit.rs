@@ -22,7 +22,7 @@ const MOST_EVENTS: f64 = 1e15;
 /// A limit of which parts may be left as they are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct RowLimit {
-    /// Events of a simulation.
+    /// Events of all runs of a row together.
     pub events: Option<u64>,
     /// Processor time of a row.
     pub time: Option<Duration>,
@@ -63,9 +63,10 @@ impl FromStr for RowLimit {
 /// Reads the mapping of an experiment.
 pub(super) fn read_limit(at: At<'_>) -> Option<Limit> {
     let keys = at.keys("a limit")?;
-    let events = keys.optional("events", "Events of a simulation; 1e8 unless stated", |at| {
-        let read =
-            |node: &Node, findings: &Findings| part(node, events, "a number of events, one at least", "1e8", findings);
+    let events = keys.optional("events", "Events of all runs of a row together; 1e8 unless stated", |at| {
+        let read = |node: &Node, findings: &Findings| {
+            part(node, events, "a whole number of events from 1 to 1e15", "1e8", findings)
+        };
         at.form(read, |it| parts::between(it.about(), 1.0, MOST_EVENTS))
     });
     let time = keys.optional("time", "Processor time of a row; 10 min unless stated", |at| {

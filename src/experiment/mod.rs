@@ -50,7 +50,9 @@ mod validate;
 mod word;
 mod yaml;
 
-pub use about_study::{AboutStudy, Finding, LineColour, Publication, PublicationKind, parse_study, study_schema};
+pub use about_study::{
+    AboutStudy, Author, Finding, Licence, LineColour, Publication, PublicationKind, parse_study, study_schema,
+};
 pub use assumption_reader::parse_assumptions;
 pub use assumption_sheet::{
     ASSUMPTIONS, AssumptionEntry, AssumptionKind, AssumptionSheet, Cycles, Moved, Quantity, Takes,

@@ -52,6 +52,12 @@ pub(super) fn kind(node: &Node) -> &'static str {
 pub(super) fn scalar<'t>(node: &'t Node, findings: &Findings) -> Option<&'t str> {
     match &node.value {
         Value::Scalar(text) => Some(text),
+        Value::Mapping(entries)
+            if let [entry] = entries.as_slice()
+                && closest(&entry.key, ["assumed"]).is_some() =>
+        {
+            no_such(findings, entry.key_span, "key of a value", &entry.key, &["assumed"])
+        }
         _ => findings.wrong(node.span, format!("a single value is wanted here, not {}", kind(node))),
     }
 }

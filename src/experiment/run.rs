@@ -1,6 +1,6 @@
 //! The `run` of an experiment: solvers, cycles, and what is done besides.
 
-use std::collections::BTreeSet;
+use std::collections::BTreeMap;
 
 use serde_json::json;
 
@@ -31,7 +31,8 @@ pub(super) struct Run {
     /// Where it says that runs are to settle.
     pub settled_at: Option<Span>,
     pub limit: Limit,
-    pub moved: Option<BTreeSet<AssumptionName>>,
+    /// The assumptions that are moved, and where each stands.
+    pub moved: Option<BTreeMap<AssumptionName, Span>>,
 }
 
 /// A run as an experiment states it.
@@ -46,7 +47,7 @@ struct GivenRun {
     round_period_to: Option<f64>,
     ensemble: Option<u32>,
     limit: Option<Limit>,
-    moved: Option<BTreeSet<AssumptionName>>,
+    moved: Option<BTreeMap<AssumptionName, Span>>,
 }
 
 /// Cycles that are left out.
@@ -130,10 +131,10 @@ fn given_run(at: At<'_>, sheet: &AssumptionSheet) -> Option<GivenRun> {
         .optional("ensemble", perturbed, |at| if at.is_word("none") { Some(0) } else { at.count("members", 10_000) });
     let moved = keys.optional("sensitivity", "Assumptions that are moved, or none", |at| {
         if at.is_word("none") {
-            return Some(BTreeSet::new());
+            return Some(BTreeMap::new());
         }
         let name = |at: At<'_>| at.form(|node, findings| sheet.named(node, findings), |_| assumptions::any(sheet));
-        at.one_or_more(name).map(|names| names.into_iter().collect())
+        at.one_or_more(|at| Some((name(at)?, at.span()))).map(|names| names.into_iter().collect())
     });
     let most = "The most that a row may take; one that reaches it has failed, with the reason, and the others go on";
     let limit = keys.optional("limit", most, read_limit);

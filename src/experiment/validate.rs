@@ -276,7 +276,7 @@ impl<'t> ExperimentReader<'t> {
             settings: Settings { named: named_rows(&measures, maximise.as_ref()), ..run.settings },
             transient: run.transient.map(|(transient, _)| transient),
             limit: run.limit,
-            moved: run.moved,
+            moved: run.moved.as_ref().map(|moved| moved.keys().cloned().collect()),
             maximise,
             refined: sweep.refined.into_iter().map(|(refinement, _)| refinement).collect(),
             continued: sweep.continued.into_iter().map(|(continuation, _)| continuation).collect(),
@@ -311,6 +311,7 @@ impl<'t> ExperimentReader<'t> {
             let at_part = || parts.iter().find(|(known, _)| Some(*known) == part).map(|(_, span)| *span);
             swept.or_else(at_part).unwrap_or(scene_at)
         });
+        checks.sensitivity(run.moved.as_ref(), &experiment, &self.assumptions.sheet);
         Some(experiment)
     }
 

@@ -87,10 +87,16 @@ pub fn extra_files(study: &Study, judgement: &Judgement) -> BTreeSet<String> {
     files
 }
 
-/// The files below `reports/` that are none of the `expected`.
-fn extra(study: &Study, expected: &BTreeSet<String>) -> BTreeSet<String> {
+/// All files below `reports/`.
+pub(super) fn present(study: &Study) -> BTreeSet<String> {
     let mut present = BTreeSet::new();
     walk(&study.layout.path("reports"), "reports", DEEPEST, &mut present);
+    present
+}
+
+/// The files below `reports/` that are none of the `expected`.
+fn extra(study: &Study, expected: &BTreeSet<String>) -> BTreeSet<String> {
+    let mut present = present(study);
     // Whose table is out of date, or whose file cannot be read, has pages that cannot be told from those of an experiment that is gone.
     let mut unmade = study.texts.ids();
     for item in study.items.iter().filter(|item| item.record().is_some()) {

@@ -1,7 +1,7 @@
 //! What an entry depends on: how far each assumption, moved alone, shifts what came out, and which move would change its verdict.
 
 use crate::experiment::{AssumptionName, AssumptionValue};
-use crate::reference::{Judged, Moved, Role, Verdict};
+use crate::reference::{Judged, Moved, Printed, Role, Verdict};
 use crate::text::number;
 
 use super::assumption::value_in_words;
@@ -13,6 +13,8 @@ use super::tally::{shown, word};
 pub struct EntryView<'a> {
     /// The entry and its verdict.
     pub judged: &'a Judged,
+    /// The published number, where it is one.
+    pub printed: Option<&'a Printed>,
     /// The moves that were run.
     pub moves: Vec<MoveView<'a>>,
     /// Assumptions that its experiment depends on and that were not moved.
@@ -85,12 +87,23 @@ fn shift(view: &EntryView<'_>, one: &MoveView<'_>) -> Option<f64> {
     Some((one.moved.value? - comparison.simulated) / comparison.published.abs())
 }
 
+/// What came out, in the unit of the published number.
+fn found(view: &EntryView<'_>, moved: &Moved) -> String {
+    let (Some(value), Some(comparison), Some(printed)) = (moved.value, view.judged.comparison.as_ref(), view.printed)
+    else {
+        return moved.found.clone();
+    };
+    let number = number::significant(value * printed.half_unit() / comparison.u_data, 4);
+    format!("{number} {}", printed.unit()).trim_end().into()
+}
+
 fn rows(view: &EntryView<'_>) -> String {
     let mut moves: Vec<&MoveView<'_>> = view.moves.iter().collect();
     // A claim has no size: those that turn it come first.
     let weight = |one: &MoveView<'_>| shift(view, one).map_or(f64::from(u8::from(!one.moved.kept)), f64::abs);
     moves.sort_by(|a, b| weight(b).total_cmp(&weight(a)));
     let mut rows: Vec<[String; 5]> = Vec::new();
+    let mut reasons: Vec<Option<&str>> = Vec::new();
     for one in moves {
         let (from, to) = (value_in_words(one.unit, one.from), value_in_words(one.unit, one.to));
         let shifted =
@@ -100,9 +113,12 @@ fn rows(view: &EntryView<'_>) -> String {
                 let off = (value - comparison.published) / comparison.published.abs();
                 format!("{} % off", number::signed(100.0 * off, 2))
             });
+        // A reason is a sentence, and no column is as wide as one.
+        let reason = (one.moved.verdict == Verdict::Missing).then_some(one.moved.found.as_str());
+        reasons.push(reason);
         rows.push([
             format!("{}: {from} → {to}", one.name),
-            one.moved.found.clone(),
+            if reason.is_some() { "no result".into() } else { found(view, one.moved) },
             shifted,
             off,
             word(one.moved.verdict).into(),
@@ -111,10 +127,13 @@ fn rows(view: &EntryView<'_>) -> String {
     let width = |column: usize| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0);
     let widths: Vec<usize> = (0..5).map(width).collect();
     let mut text = String::new();
-    for row in &rows {
+    for (row, reason) in rows.iter().zip(reasons) {
         let cell =
             |column: usize| format!("{}{}", row[column], " ".repeat(widths[column] - row[column].chars().count()));
         text += &format!("  {}\n", (0..5).map(cell).collect::<Vec<_>>().join("  ").trim_end());
+        if let Some(reason) = reason {
+            text += &format!("    {}\n", one_line(reason));
+        }
     }
     text
 }

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::verdicts::Judgement;
 use crate::experiment::{AssumptionEntry, AssumptionName, AssumptionValue, Tried};
-use crate::reference::{Entry, Judged, Moved};
+use crate::reference::{Check, Entry, Judged, Moved};
 use crate::report::{self, EntryView, MoveView};
 use crate::study::{Item, Study, Variant};
 
@@ -108,5 +108,9 @@ fn view<'a>(
     };
     let unmoved = names(&|name, _| used(name) && moves.iter().all(|one| one.name != name));
     let chosen_by = names(&|_, entry| entry.fitted_to.contains(&judged.id));
-    EntryView { judged, moves, unmoved, chosen_by }
+    let printed = entry(study, judged).and_then(|entry| match &entry.check {
+        Check::Value { published, .. } => Some(published),
+        _ => None,
+    });
+    EntryView { judged, printed, moves, unmoved, chosen_by }
 }

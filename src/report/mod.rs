@@ -11,6 +11,7 @@ mod coexisting;
 mod committed;
 pub(crate) mod comparison;
 mod console;
+mod dead_links;
 mod diff;
 mod doubts;
 mod explain;

@@ -2,19 +2,24 @@
 //! them that machines read (RO-Crate 1.1, JSON-LD). Each run is an action with its inputs and its results; each column of a
 //! table is a variable with its unit.
 //!
-//! Only what is up to date goes in, and the folder appears as a whole or not at all.
+//! Only what is up to date goes in, and the folder appears as a whole or not at all. With all experiments it holds the whole study,
+//! which `shotdamp` can open there; with some of them their pages have no links to what is left out.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 
 use serde_json::{Value, json};
 
+use super::committed::present;
+use super::dead_links::without_dead_links;
 use super::publication::publication_reasons;
+use super::verdicts::judge_all;
+use super::views;
 use crate::atomic::{self, FileError};
-use crate::experiment::AboutStudy;
+use crate::experiment::{AboutStudy, Author, Licence};
 use crate::reference::ReferenceFile;
-use crate::study::{ASSUMPTIONS, FileHash, Item, Record, State, Study, table_name};
+use crate::study::{ASSUMPTIONS, FileHash, Item, Record, STUDY, State, Study, record_name, table_name};
 use crate::table::{ParquetError, Table, parquet};
 
 /// When this version was released; a crate has to say when it was published, and nobody's clock is asked.
@@ -22,8 +27,6 @@ pub const RELEASED: &str = "2026-11-21";
 
 const CONTEXT: &str = "https://w3id.org/ro/crate/1.1/context";
 const CONFORMS_TO: &str = "https://w3id.org/ro/crate/1.1";
-const LICENCES: [(&str, &str); 2] =
-    [("https://spdx.org/licenses/MIT", "MIT License"), ("https://spdx.org/licenses/Apache-2.0", "Apache License 2.0")];
 
 /// Why there is no crate.
 #[derive(Debug, thiserror::Error)]
@@ -58,9 +61,14 @@ pub fn export_crate(study: &Study, items: &[&Item], folder: &Path, published: &s
             _ => stale.push(item.source.experiment.id.to_string()),
         }
     }
+    let is_whole = items.len() == study.texts.ids().len();
+    if is_whole && stale.is_empty() {
+        stale = crated.add_rest(study)?;
+    }
     if !stale.is_empty() {
         return Err(CrateError::NotUpToDate(stale));
     }
+    crated.leave_out_dead_links();
     let description =
         serde_json::to_string_pretty(&crated.metadata(&study.about, published)).unwrap_or_default() + "\n";
     crated.files.insert("ro-crate-metadata.json".into(), description.into_bytes());
@@ -103,6 +111,9 @@ impl Crate {
             self.text(study, &item.source.file, format!("Experiment: {}", experiment.title)),
             self.text(study, ASSUMPTIONS, "Assumptions: the inputs that the study leaves open".into()),
         ];
+        if study.texts.files.contains_key(STUDY) {
+            inputs.push(self.text(study, STUDY, "Study: what it is, and what it concludes".into()));
+        }
         let is_of = |name: &&String| name.starts_with("reference/") && name.ends_with(&format!("/{id}.yaml"));
         if let Some(name) = study.texts.files.keys().find(is_of) {
             let entries = study.references.get(&id.0).map_or(0, |file: &ReferenceFile| file.entries.len());
@@ -114,6 +125,8 @@ impl Crate {
         let columns = self.columns(&table);
         let mut results = vec![self.file(&name, &format!("Table: {}", experiment.title), bytes)];
         self.describe(&name, "variableMeasured", columns);
+        let kept = record_name(id);
+        results.push(self.file(&kept, &format!("Record: {}", experiment.title), read(study, &kept)?));
         for (name, hash) in record.publication.iter().flat_map(|publication| &publication.files) {
             let kind = if name.ends_with(".md") { "Page" } else { "Figure" };
             let bytes = read_as_recorded(study, name, hash)?;
@@ -135,6 +148,37 @@ impl Crate {
         Ok(())
     }
 
+    /// All that belongs to no experiment: every other text, and every report. Returns the reports that are not up to date.
+    fn add_rest(&mut self, study: &Study) -> Result<Vec<String>, CrateError> {
+        for name in study.texts.files.keys() {
+            if !self.files.contains_key(name) {
+                self.text(study, name, name.clone());
+            }
+        }
+        for name in present(study) {
+            if !self.files.contains_key(&name) {
+                self.file(&name, &name, read(study, &name)?);
+            }
+        }
+        let now = views::of_the_study(study, &judge_all(study));
+        let departs =
+            |(name, text): &(String, String)| self.files.get(name).is_none_or(|bytes| bytes != text.as_bytes());
+        Ok(now.into_iter().filter(departs).map(|(name, _)| name).collect())
+    }
+
+    fn leave_out_dead_links(&mut self) {
+        let names: BTreeSet<String> = self.files.keys().cloned().collect();
+        let pages = self.files.iter_mut().filter(|(name, _)| name.ends_with(".md"));
+        for (name, bytes) in pages {
+            let Ok(text) = std::str::from_utf8(bytes) else { continue };
+            let page = without_dead_links(text, name, |name| names.contains(name));
+            if let Some(Value::Object(entity)) = self.entities.get_mut(name) {
+                entity.insert("contentSize".into(), page.len().to_string().into());
+            }
+            *bytes = page.into_bytes();
+        }
+    }
+
     /// One of the study's texts as it was when it was read.
     fn text(&mut self, study: &Study, name: &str, title: String) -> Value {
         let bytes = study.texts.files.get(name).cloned().unwrap_or_default();
@@ -147,6 +191,8 @@ impl Crate {
             Some("png") => "image/png",
             Some("svg") => "image/svg+xml",
             Some("md") => "text/markdown",
+            Some("json") => "application/json",
+            Some("html") => "text/html",
             _ => "application/yaml",
         };
         let entity = json!({
@@ -189,7 +235,6 @@ impl Crate {
 
     fn metadata(&self, about: &AboutStudy, published: &str) -> Value {
         let parts: Vec<Value> = self.files.keys().map(|name| json!({"@id": name})).collect();
-        let licences: Vec<Value> = LICENCES.iter().map(|(id, _)| json!({"@id": id})).collect();
         let mut graph = vec![
             json!({
                 "@id": "ro-crate-metadata.json",
@@ -203,13 +248,9 @@ impl Crate {
                 "name": about.title.as_deref().unwrap_or("A study"),
                 "description": "Experiments with the numbers and claims that they are compared with, tables, figures and verdicts",
                 "datePublished": published,
-                "license": licences,
-                "author": {"@id": "#authors"},
-                "publisher": {"@id": "#authors"},
                 "hasPart": parts,
                 "mentions": single_or_all(self.actions.clone()),
             }),
-            json!({"@id": "#authors", "@type": "Organization", "name": "The shotdamp authors"}),
             json!({
                 "@id": "#shotdamp",
                 "@type": "SoftwareApplication",
@@ -223,8 +264,26 @@ impl Crate {
             graph[1]["citation"] = json!({"@id": "#study"});
             graph.push(json!({"@id": "#study", "@type": source.kind, "name": source.name}));
         }
-        let licence = |(id, name): &(&str, &str)| json!({"@id": id, "@type": "CreativeWork", "name": name});
-        graph.extend(LICENCES.iter().map(licence));
+        let mut refer = |keys: &[&str], entities: Vec<Value>| {
+            if entities.is_empty() {
+                return;
+            }
+            let ids: Vec<Value> = entities.iter().map(|entity| json!({"@id": entity["@id"]})).collect();
+            for key in keys {
+                graph[1][*key] = single_or_all(ids.clone());
+            }
+            graph.extend(entities);
+        };
+        let author = |(number, author): (usize, &Author)| {
+            let (kind, name) = match author {
+                Author::Person(name) => ("Person", name),
+                Author::Organisation(name) => ("Organization", name),
+            };
+            json!({"@id": format!("#author-{}", number + 1), "@type": kind, "name": name})
+        };
+        refer(&["author", "publisher"], about.authors.iter().enumerate().map(author).collect());
+        let licence = |licence: &Licence| json!({"@id": licence.address(), "@type": "CreativeWork", "name": licence.0});
+        refer(&["license"], about.licences.iter().map(licence).collect());
         graph.extend(self.entities.values().cloned());
         json!({"@context": CONTEXT, "@graph": graph})
     }
@@ -235,11 +294,15 @@ fn single_or_all(mut values: Vec<Value>) -> Value {
     if values.len() == 1 { values.remove(0) } else { Value::Array(values) }
 }
 
+fn read(study: &Study, name: &str) -> Result<Vec<u8>, FileError> {
+    let path = study.layout.path(name);
+    fs::read(&path).map_err(|source| FileError { action: "read", path, source })
+}
+
 /// The bytes of an output, if they are those that were recorded.
 fn read_as_recorded(study: &Study, name: &str, hash: &FileHash) -> Result<Vec<u8>, FileError> {
-    let path = study.layout.path(name);
-    let fail = |source| FileError { action: "read", path: path.clone(), source };
-    let bytes = fs::read(&path).map_err(fail)?;
+    let fail = |source| FileError { action: "read", path: study.layout.path(name), source };
+    let bytes = read(study, name)?;
     if FileHash::of(&bytes) == *hash {
         Ok(bytes)
     } else {

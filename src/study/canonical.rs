@@ -55,6 +55,19 @@ fn compare(path: &mut Vec<String>, old: Option<&Value>, new: Option<&Value>, fou
             }
         }
         (Some(Value::Array(old)), Some(Value::Array(new))) => {
+            let common = old.len().min(new.len());
+            let ahead = old.iter().zip(new).take_while(|(old, new)| old == new).count();
+            let behind = old.iter().rev().zip(new.iter().rev()).take_while(|(old, new)| old == new).count();
+            if ahead + behind >= common {
+                // Items were put in or taken out, and the others only have other numbers.
+                for index in ahead..ahead + old.len() - common {
+                    descend(index.to_string(), old.get(index), None);
+                }
+                for index in ahead..ahead + new.len() - common {
+                    descend(index.to_string(), None, new.get(index));
+                }
+                return;
+            }
             for index in 0..old.len().max(new.len()) {
                 descend(index.to_string(), old.get(index), new.get(index));
             }

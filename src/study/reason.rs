@@ -100,7 +100,7 @@ impl fmt::Display for Reason {
             Self::FileMissing(name) => write!(f, "{name} is missing"),
             Self::FileAltered(name) => write!(f, "{name} is not what was written"),
             Self::FileUnreadable(name, why) => write!(f, "{name} cannot be read: {why}"),
-            Self::Failed(Failures { rows, first }) => write!(f, "{rows} rows failed; the first: {first}"),
+            Self::Failed(failures) => write!(f, "{failures}"),
             Self::NeverPublished => write!(f, "figures and report have not been made"),
         }
     }
@@ -119,11 +119,24 @@ fn key(path: &[String]) -> String {
     keys.join(".")
 }
 
+/// A case by what it sets: `gap_ratio = 3.0`.
+fn case(value: &Value) -> Option<String> {
+    let set = |pair: &Value| match pair.as_array()?.as_slice() {
+        [Value::String(name), Value::String(word)] => Some(format!("{name} = {word}")),
+        [Value::String(name), Value::Object(held)] if held.len() == 1 => {
+            held.values().next().map(|value| format!("{name} = {}", describe(Some(value))))
+        }
+        _ => None,
+    };
+    let values = value.get("values")?.as_array().filter(|values| !values.is_empty())?;
+    Some(values.iter().map(set).collect::<Option<Vec<_>>>()?.join(", "))
+}
+
 fn describe(value: Option<&Value>) -> String {
     let text = match value {
         None => return "(absent)".into(),
         Some(Value::String(text)) => text.clone(),
-        Some(value) => canonical(value),
+        Some(value) => case(value).unwrap_or_else(|| canonical(value)),
     };
     if text.chars().count() <= LONGEST { text } else { text.chars().take(LONGEST - 1).chain(['…']).collect() }
 }

@@ -3,8 +3,8 @@
 //! The record holds the inputs and not only their hash, so that `status --why` can name the value that changed.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::fs;
 use std::path::Path;
+use std::{fmt, fs};
 
 use serde::{Deserialize, Serialize};
 
@@ -49,6 +49,15 @@ pub struct Failures {
     pub rows: usize,
     /// The reason of the first.
     pub first: String,
+}
+
+impl fmt::Display for Failures {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self { rows: 1, first } => write!(f, "1 row failed: {first}"),
+            Self { rows, first } => write!(f, "{rows} rows failed; the first: {first}"),
+        }
+    }
 }
 
 /// Length and hash of a file.

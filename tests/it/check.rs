@@ -323,6 +323,25 @@ fn committed_reports_are_those_that_would_be_generated() {
 }
 
 #[test]
+fn a_check_of_a_file_that_cannot_be_read_counts_no_entries() {
+    let desk = simulated();
+    desk.put("experiments/ch3/ch3-gap.yaml", "title: [\n");
+    fs::remove_file(desk.layout.path("reference/ch3/ch3-gap.yaml")).unwrap();
+    let said = shotdamp(&desk, &["check", "ch3-gap"]);
+    assert_eq!((said.code, said.out.as_str()), (2, ""), "{}", said.err);
+}
+
+#[test]
+fn a_blocked_entry_is_not_accepted_and_the_reason_is_what_it_lacks() {
+    let desk = simulated();
+    let entry = "    expected: blocked\n    blocked_by: [stop length]\n    explanation: Not stated.\n";
+    desk.put("reference/ch3/ch3-stop.yaml", &format!("{}{entry}", crate::desk::STOP_REFERENCE));
+    let said = shotdamp(&desk, &["check", "--accept", "ch3-stop/at-two", "--reason", "So it is."]);
+    assert!(said.code == 2, "{}", said.out);
+    assert!(said.err.contains("take `blocked_by` out of the entry"), "{}", said.err);
+}
+
+#[test]
 fn the_templates_for_a_ci_use_options_that_exist() {
     let help = shotdamp(&simulated(), &["check", "--help"]).out;
     for name in ["github.yml", "gitlab.yml"] {
@@ -333,6 +352,10 @@ fn the_templates_for_a_ci_use_options_that_exist() {
         let options = check.lines().take(2).flat_map(str::split_whitespace).filter(|word| word.starts_with("--"));
         let unknown: Vec<&str> = options.filter(|option| !help.contains(option)).collect();
         assert!(unknown.is_empty(), "{name}: {unknown:?}");
+        // A version that is named, and tables that a red check does not throw away.
+        assert!(text.contains("--tag \"$SHOTDAMP_TAG\""), "{name}");
+        assert!(text.contains("cache/save@v4") || text.contains("when: always\n    paths:\n      - results"), "{name}");
+        assert!(text.contains("if [ -f reports/verdicts.json ]"), "{name}: reports need not be committed");
     }
 }
 

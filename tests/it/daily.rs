@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use crate::desk::{Desk, STOP, command, said, shotdamp, simulated};
+use crate::desk::{Desk, STOP, THREE_GAPS, command, said, shotdamp, simulated};
 
 #[test]
 fn a_new_experiment_runs_as_it_is() {
@@ -303,6 +303,46 @@ fn status_points_at_the_line_that_changed_and_counts_the_rows() {
         let to_do = if right.starts_with("force") { 9 } else { 27 };
         assert!(status.contains(&format!("\n    {to_do} of 30 rows to simulate\n")), "{status}");
     }
+}
+
+#[test]
+fn status_says_which_value_was_put_into_a_list() {
+    let desk = Desk::of_one("experiments/ch3/ch3-long.yaml", THREE_GAPS);
+    assert_eq!(shotdamp(&desk, &["run", "--tables"]).code, 0);
+    desk.put("experiments/ch3/ch3-long.yaml", &THREE_GAPS.replace("[10, 50, 90]", "[10, 30, 50, 90]"));
+    let status = shotdamp(&desk, &["status", "--why", "ch3-long"]).out;
+    assert!(status.contains(": cases.1: (absent) -> gap_ratio = 30.0\n") && !status.contains("50.0"), "{status}");
+    desk.put("experiments/ch3/ch3-long.yaml", &THREE_GAPS.replace("[10, 50, 90]", "[50, 90]"));
+    let status = shotdamp(&desk, &["status", "--why", "ch3-long"]).out;
+    assert!(status.contains(": cases.0: gap_ratio = 10.0 -> (absent)\n"), "{status}");
+}
+
+#[test]
+fn a_printed_schema_is_the_one_that_is_written() {
+    let desk = Desk::new();
+    assert_eq!(shotdamp(&desk, &["schema"]).code, 0);
+    for of in ["study", "experiment", "assumptions", "reference", "calibration"] {
+        let printed = shotdamp(&desk, &["schema", of]).out;
+        assert!(printed.as_bytes() == desk.bytes(&format!("schema/{of}.json")), "{of}");
+    }
+    let elsewhere = tempfile::tempdir().unwrap();
+    let mut outside = std::process::Command::new(command(&desk, &[]).get_program());
+    let outside = said({
+        outside.args(["schema", "experiment"]).current_dir(&elsewhere);
+        outside
+    });
+    assert!(outside.code == 0 && !outside.out.contains("stop_restitution\""), "{}", outside.err);
+}
+
+#[test]
+fn options_that_have_to_be_chosen_from_are_named() {
+    let desk = Desk::new();
+    let clean = shotdamp(&desk, &["clean"]);
+    assert!(clean.code == 2 && clean.err.contains("--orphans") && clean.err.contains("--earlier"), "{}", clean.err);
+    assert!(shotdamp(&desk, &["new", "--help"]).out.contains("clamped_beam"));
+    let wrong = shotdamp(&desk, &["new", "ch3-mine", "--structure", "clamped_bean"]);
+    assert!(wrong.code == 2 && wrong.err.contains("clamped_beam"), "{}", wrong.err);
+    assert!(shotdamp(&desk, &["list", "--help"]).out.contains("grep 'Fig. 18'"));
 }
 
 #[test]

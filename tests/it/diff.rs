@@ -103,3 +103,12 @@ fn a_run_is_held_against_the_committed_report() {
     );
     assert!(description.out.contains("beyond their uncertainty: 1\n    ch3-stop/at-two: "), "{}", description.out);
 }
+
+#[test]
+fn a_table_by_itself_is_sent_back_for_its_folder() {
+    let desk = crate::desk::simulated();
+    let table = desk.layout.path("results/ch3-gap.parquet");
+    let said =
+        crate::desk::shotdamp(&desk, &["diff", table.to_str().unwrap(), desk.layout.results().to_str().unwrap()]);
+    assert!(said.code == 2 && said.err.contains("is a single table: name the folder"), "{}", said.err);
+}

@@ -170,6 +170,33 @@ entries:
     }
 }
 
+#[test]
+fn an_interrupted_explanation_shows_the_moves_that_it_has_and_the_reason_of_a_failed_one_is_no_column() {
+    let text = THREE_GAPS.replace("restitution: 0.5", "restitution: {assumed: stop_restitution}");
+    let desk = study(&text);
+    desk.put(
+        "experiments/assumptions.yaml",
+        &crate::desk::ASSUMPTIONS
+            .replace("stop_restitution: {value: 0,", "stop_restitution: {value: 0, range: [0.2, 0.4],"),
+    );
+    desk.put(
+        "reference/ch3/ch3-long.yaml",
+        "
+entries:
+  - {id: some, place: s. 3, says: Some., value: 175 mm/s, from: {cell: {of: rms_velocity, where: {gap_ratio: 50}}}}
+",
+    );
+    assert_ne!(shotdamp(&desk, &["run", "--tables"]).code, 2);
+    let said = shotdamp(&desk, &["explain", "--run", "ch3-long/some", "--jobs", "1"]);
+    assert!(said.err.contains("ch3-long/some: 1 of "), "how far it is: {}", said.err);
+    let moved = |out: &str| out.lines().filter(|line| line.contains('→')).map(str::to_owned).collect::<Vec<_>>();
+    assert!(moved(&said.out).len() > 1 && moved(&said.out).iter().all(|line| line.contains(" mm/s ")), "{}", said.out);
+    let failed = shotdamp(&desk, &["explain", "--run", "ch3-long/some", "--row-limit", "20 events"]).out;
+    assert!(moved(&failed).iter().any(|line| line.contains("no result")), "{failed}");
+    assert!(moved(&failed).iter().all(|line| line.chars().count() < 110), "{failed}");
+    assert!(failed.lines().any(|line| line.starts_with("    stopped at the limit of 20 events")), "{failed}");
+}
+
 /// A plate whose contact states are matrices of order 872.
 const LARGE: &str = "
 title: Large

@@ -886,3 +886,32 @@ pub(crate) fn the_studys_words_become_the_scene_they_mean() {
     let favourable = scene(&load("ch3-favourable-impact"), 0);
     assert!((favourable.excitation.period() - 0.371).abs() < 5e-4, "the impulse of t = 52.31 s is the 141st");
 }
+
+/// What a mistaken experiment is answered.
+fn refusal(text: &str) -> String {
+    let desk = crate::desk::Desk::of_one("experiments/ch3/ch3-long.yaml", text);
+    crate::desk::shotdamp(&desk, &["show", "ch3-long"]).err
+}
+
+#[test]
+fn a_mistake_is_answered_with_what_to_write() {
+    use crate::desk::THREE_GAPS;
+    let said = refusal(&THREE_GAPS.replace("mass_ratio: 0.05,", "mass_ratio: {asumed: zeta},"));
+    assert!(said.contains("did you mean `assumed`?"), "{said}");
+    let said = refusal(&THREE_GAPS.replace("ensemble: none", "ensemble: none, limit: {events: 1e30}"));
+    assert!(said.contains("a whole number of events from 1 to 1e15"), "{said}");
+    let said = refusal(&THREE_GAPS.replace("sensitivity: none", "sensitivity: [stop_length]"));
+    assert!(said.contains("this experiment does not depend on `stop_length`") && said.contains("`gravity`"), "{said}");
+    let plate = THREE_GAPS
+        .replace(
+            "{single_mass: {mass: 1 kg, stiffness: 1000 N/m, damping_ratio: 0.05}}",
+            "{supported_plate: {length: 1 m, width: 1 m, thickness: 8 mm, youngs_modulus: 69 GPa, poisson_ratio: 0.33, density: 2700 kg/m^3, rayleigh: 5e-5, modes: [2, 2]}}",
+        )
+        .replace("[{mass_ratio: 0.05, gap_ratio: swept,", "[{at: [0.5, 0.5], mass_ratio: 0.05, particle_share: 0.5, gap_ratio: 10,")
+        .replace("{harmonic: {force_ratio: 5,", "{impulse_train: {at: [0.25, 0.375], impulse: 1 N s,")
+        .replace("sweep: {gap_ratio: [10, 50, 90]}", "sweep: {damper_x: [0.3, 0.5]}");
+    let said = refusal(&plate);
+    assert!(said.contains("write `at: [swept, 0.5]`"), "{said}");
+    let said = refusal(&plate.replace("{at: [0.5, 0.5], mass", "{at: [swept, 0.5], mass"));
+    assert!(!said.contains("swept"), "{said}");
+}

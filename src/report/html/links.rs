@@ -49,7 +49,7 @@ pub(super) fn marked(section: &str, mark: &str) -> String {
 }
 
 /// A link from one file as a name below `reports/`.
-pub(super) fn joined(from: &str, link: &str) -> String {
+pub(in crate::report) fn joined(from: &str, link: &str) -> String {
     let folder = from.rsplit_once('/').map_or("", |(folder, _)| folder);
     let mut parts: Vec<&str> = folder.split('/').filter(|part| !part.is_empty()).collect();
     for part in link.split('/') {

@@ -11,6 +11,8 @@ mod shell;
 mod strip;
 mod table;
 
+pub(super) use links::joined;
+
 use std::collections::BTreeMap;
 
 use self::figures::Figures;
