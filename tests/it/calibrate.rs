@@ -330,7 +330,9 @@ fn an_entry_counts_once_and_has_one_part() {
     let both = STOP.replace("hold_out: [ch3-gap/*]", "hold_out: [ch3-stop/at-two]");
     let refused = on(&Desk::new(), &read(&both), 1).unwrap_err();
     assert!(matches!(&refused, CalibrationError::FittedAndHeldOut(id) if id == "ch3-stop/at-two"), "{refused}");
+}
 
+#[test]
 fn a_calibration_whose_page_cannot_be_written_is_refused_before_it_begins() {
     let desk = Desk::new();
     desk.put("calibrations/it.yaml", STOP);
