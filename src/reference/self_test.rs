@@ -231,7 +231,8 @@ impl Trial<'_> {
         // A feature that does not occur cannot be moved; it differs already.
         let Some(comparison) = judged.comparison else { return Ok(()) };
         for (offset, should_differ) in [(JUST_OUTSIDE, true), (-JUST_OUTSIDE, true), (0.0, false)] {
-            let mut tolerance = comparison.tolerance();
+            // None of a count: any other number of events is outside.
+            let mut tolerance = if comparison.tolerance() > 0.0 { comparison.tolerance() } else { 1.0 };
             // The uncertainty of a scaled number scales with it, and its tolerance: it is moved outside of that one too.
             for last in [false, false, true] {
                 let target = comparison.published + offset * tolerance;

@@ -68,10 +68,15 @@ pub(crate) fn symbol(column: &str) -> String {
 pub(crate) fn measured(comparison: &Comparison, published: &Printed, scale: Option<f64>) -> String {
     // A count has no unit.
     let factor = if comparison.u_data > 0.0 { published.half_unit() / comparison.u_data } else { 1.0 };
-    let (value, uncertainty) =
-        number::with_uncertainty(comparison.simulated * factor, COVERAGE * comparison.u_val() * factor);
+    let (here, wide) = (comparison.simulated * factor, COVERAGE * comparison.u_val() * factor);
     let unit = if published.unit().is_empty() { String::new() } else { format!(" {}", published.unit()) };
-    let here = format!("{value} ± {uncertainty}{unit}");
+    // Of a count that all runs agree on, rounding is all there is.
+    let here = if comparison.u_data == 0.0 && wide < 1e-9 * here.abs() {
+        significant(here, MOST_DIGITS)
+    } else {
+        let (value, uncertainty) = number::with_uncertainty(here, wide);
+        format!("{value} ± {uncertainty}{unit}")
+    };
     let (error, datum) = (comparison.error(), published.text());
     let side = |above: &'static str, below: &'static str| if error < 0.0 { below } else { above };
     if let Some(scale) = scale {

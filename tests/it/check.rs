@@ -335,8 +335,8 @@ fn a_check_of_a_file_that_cannot_be_read_counts_no_entries() {
 fn a_blocked_entry_is_not_accepted_and_the_reason_is_what_it_lacks() {
     let desk = simulated();
     let entry = "    expected: blocked\n    blocked_by: [stop length]\n    explanation: Not stated.\n";
-    desk.put("reference/ch3/ch3-stop.yaml", &format!("{}{entry}", crate::desk::STOP_REFERENCE));
-    let said = shotdamp(&desk, &["check", "--accept", "ch3-stop/at-two", "--reason", "So it is."]);
+    desk.put("reference/ch3/ch3-gap.yaml", &format!("{GAP_REFERENCE}{entry}"));
+    let said = shotdamp(&desk, &["check", "--accept", "ch3-gap/grows", "--reason", "So it is."]);
     assert!(said.code == 2, "{}", said.out);
     assert!(said.err.contains("take `blocked_by` out of the entry"), "{}", said.err);
 }

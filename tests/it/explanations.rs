@@ -6,7 +6,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use shotdamp::experiment::{AboutStudy, parse_study};
-use shotdamp::reference::{Check, Entry, Judged, Prose, load_reference, numbers, parse_reference};
+use shotdamp::reference::{Check, Entry, Judged, Kind, Prose, load_reference, numbers, parse_reference};
 use shotdamp::report::{ExperimentView, index};
 use shotdamp::study::{Heading, Layout, Study, Texts};
 
@@ -172,7 +172,7 @@ fn the_index_of_the_whole_study_loads_at_once() {
         .collect();
     let index = index(&AboutStudy::default(), &views, &[], None);
     assert!(index.len() < 30_000, "{} bytes", index.len());
-    let numbers = views.iter().flat_map(|view| view.judged).filter(|one| one.comparison.is_some()).count();
+    let numbers = views.iter().flat_map(|view| view.judged).filter(|one| one.kind == Kind::Number).count();
     assert!(index.contains(&format!("**{numbers} numbers**")), "{index}");
     assert!(index.find("## How to read") < index.find("## Experiments"), "first how to read, then what there is");
     for view in &views {

@@ -171,7 +171,7 @@ entries:
 }
 
 #[test]
-fn an_interrupted_explanation_shows_the_moves_that_it_has_and_the_reason_of_a_failed_one_is_no_column() {
+fn an_explanation_says_how_far_it_is_and_the_reason_of_a_failed_move_is_no_column() {
     let text = THREE_GAPS.replace("restitution: 0.5", "restitution: {assumed: stop_restitution}");
     let desk = study(&text);
     desk.put(
@@ -194,7 +194,10 @@ entries:
     let failed = shotdamp(&desk, &["explain", "--run", "ch3-long/some", "--row-limit", "20 events"]).out;
     assert!(moved(&failed).iter().any(|line| line.contains("no result")), "{failed}");
     assert!(moved(&failed).iter().all(|line| line.chars().count() < 110), "{failed}");
-    assert!(failed.lines().any(|line| line.starts_with("    stopped at the limit of 20 events")), "{failed}");
+    assert!(
+        failed.lines().any(|line| line.starts_with("    a run failed: stopped at the limit of 20 events")),
+        "{failed}"
+    );
 }
 
 /// A plate whose contact states are matrices of order 872.

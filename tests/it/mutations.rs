@@ -200,7 +200,9 @@ fn read_and_run(layout: &Layout, originals: &BTreeMap<String, Vec<u8>>, name: &s
     let study = Study::new(layout.clone(), Texts { files });
     for unread in &study.unread {
         let said = unread.to_string();
-        assert!(said.contains(name.rsplit('/').next().unwrap()), "{said}");
+        let of_this_file = said.contains(name.rsplit('/').next().unwrap());
+        // An entry that the change took away is missed where an assumption names it.
+        assert!(of_this_file || said.contains("is no entry of the reference"), "{said}");
         assert!(!said.contains("the program made a mistake"), "{said}");
         assert!(!matches!(unread, Unread::Reference { problem, .. } if problem.to_string().is_empty()));
     }

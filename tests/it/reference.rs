@@ -510,11 +510,14 @@ fn time_histories_are_judged_along_their_samples() {
     history("particle_displacement", "m", &[0.1, -0.1, -0.1, 0.2]);
     history("rigid_floor", "m", &[0.0, 0.0, 0.0, 0.0]);
     history("rms_acceleration", "", &[3.0, 2.0, 1.0, 1.0]);
+    history("floor_displacement", "m", &[3.0, 2.0, 1.0, 1.0]);
     assert_eq!(
         verdict("claim: {paths_cross: {of: particle_displacement, other: rigid_floor}}", &table),
         Verdict::Reproduced
     );
-    assert_eq!(verdict("claim: {paths_cross: {of: rms_acceleration, other: rigid_floor}}", &table), Verdict::Differs);
+    let crosses = |of: &str| verdict(&format!("claim: {{paths_cross: {{of: {of}, other: rigid_floor}}}}"), &table);
+    assert_eq!(crosses("floor_displacement"), Verdict::Differs);
+    assert_eq!(crosses("rms_acceleration"), Verdict::Missing, "of another unit");
     let falls = "claim: {path_monotone: {of: rms_acceleration, direction: decreasing}}";
     assert_eq!(verdict(falls, &table), Verdict::Reproduced);
     let late =

@@ -54,6 +54,7 @@ fn entry(id: &str, verdict: Verdict) -> Judged {
 /// One entry of each verdict, one of them a surprise.
 fn judged() -> Vec<Judged> {
     let parting = Judged {
+        kind: Kind::Number,
         statement: "The curves part near f′ = 2".into(),
         found: "2.13, +6.5 % of 2".into(),
         comparison: Some(Comparison {
@@ -78,6 +79,7 @@ fn judged() -> Vec<Judged> {
         ..entry("limit", Verdict::Differs)
     };
     let peak = Judged {
+        kind: Kind::Number,
         statement: "ψ is 1.516".into(),
         found: "1.5603, +2.9 % of 1.516".into(),
         expected: Verdict::Reproduced,
