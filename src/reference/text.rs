@@ -66,8 +66,7 @@ pub(crate) fn symbol(column: &str) -> String {
 /// with the time `scale` between two of its kind, is told by the time between: `52.327 ± 0.010 s, 17 ms after 52.31 s: 3.4 u_val,
 /// 4.6 % of the time between two such events`.
 pub(crate) fn measured(comparison: &Comparison, published: &Printed, scale: Option<f64>) -> String {
-    // A count has no unit.
-    let factor = if comparison.u_data > 0.0 { published.half_unit() / comparison.u_data } else { 1.0 };
+    let factor = comparison.in_unit_of(published);
     let (here, wide) = (comparison.simulated * factor, COVERAGE * comparison.u_val() * factor);
     let unit = if published.unit().is_empty() { String::new() } else { format!(" {}", published.unit()) };
     // Of a count that all runs agree on, rounding is all there is.

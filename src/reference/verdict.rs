@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::fit::Fit;
 use super::motion_behind::MotionBehind;
 use super::price::Price;
+use super::printed::Printed;
 
 /// What became of an entry.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
@@ -72,6 +73,11 @@ impl Comparison {
     #[must_use]
     pub fn verdict_of(&self, simulated: f64) -> Verdict {
         super::compare::verdict(&Self { simulated, ..*self }, None, false).0
+    }
+
+    /// What the table's unit is in the unit of the publication; a number of events has none.
+    pub(crate) fn in_unit_of(&self, published: &Printed) -> f64 {
+        if self.u_data > 0.0 { published.half_unit() / self.u_data } else { 1.0 }
     }
 
     /// |E|/u_val: how far it is off in units of its uncertainty.

@@ -93,7 +93,7 @@ fn found(view: &EntryView<'_>, moved: &Moved) -> String {
     else {
         return moved.found.clone();
     };
-    let number = number::significant(value * printed.half_unit() / comparison.u_data, 4);
+    let number = number::significant(value * comparison.in_unit_of(printed), 4);
     format!("{number} {}", printed.unit()).trim_end().into()
 }
 
