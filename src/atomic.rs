@@ -68,7 +68,7 @@ pub fn write(path: &Path, bytes: &[u8]) -> Result<(), FileError> {
     Ok(())
 }
 
-/// The error that [`write`] would meet in the folder of this file, before there is anything to write; leaves nothing behind.
+/// The error that [`write()`] would meet in the folder of this file, before there is anything to write; leaves nothing behind.
 ///
 /// # Errors
 /// [`FileError`] with the system's reason.

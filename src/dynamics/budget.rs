@@ -79,6 +79,8 @@ pub struct Overrun {
     pub cycles: u64,
     /// Events of the simulation: of all its runs.
     pub events: u64,
+    /// Those of the run that was under way.
+    pub of_this_run: u64,
     /// Runs of the simulation that were complete.
     pub runs: u64,
     /// Processor time of the simulation.
@@ -89,7 +91,7 @@ impl std::error::Error for Overrun {}
 
 impl std::fmt::Display for Overrun {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let Self { cycle, cycles, events, runs, time, .. } = *self;
+        let Self { cycle, cycles, events, of_this_run, runs, time, .. } = *self;
         match self.exhausted {
             Exhausted::Events(limit) => write!(f, "stopped at the limit of {} events", plain(limit as f64))?,
             Exhausted::Time(limit) => write!(f, "stopped at the limit of {} of processor time", in_words(limit))?,
@@ -106,8 +108,7 @@ impl std::fmt::Display for Overrun {
         match self.exhausted {
             // No clock enters: the same words on any machine.
             Exhausted::Events(_) => {
-                let all = runs.saturating_mul(cycles).saturating_add(cycle + 1);
-                write!(f, ", at about {} events a cycle", plain(events as f64 / all as f64))?;
+                write!(f, ", at about {} events a cycle", plain(of_this_run as f64 / (cycle + 1) as f64))?;
             }
             Exhausted::Time(_) | Exhausted::Cancelled => {
                 let rate = events as f64 / time.as_secs_f64().max(f64::MIN_POSITIVE);
@@ -154,6 +155,8 @@ thread_local! {
     static UNITS: Cell<u32> = const { Cell::new(UNITS_A_LOOK) };
     /// Events of the simulation, and how many it may have.
     static EVENTS: Cell<u64> = const { Cell::new(0) };
+    /// Events before the run that is under way.
+    static EVENTS_BEFORE: Cell<u64> = const { Cell::new(0) };
     static MOST_EVENTS: Cell<u64> = const { Cell::new(u64::MAX) };
     /// The cycle that a run has reached, and how many it has; complete runs.
     static CYCLE: Cell<(u64, u64)> = const { Cell::new((0, 0)) };
@@ -286,6 +289,7 @@ pub(crate) fn reach(cycle: u64, cycles: u64) {
 /// Makes a run; if the allowance ends meanwhile, that is what comes of it.
 pub(crate) fn within<T>(run: impl FnOnce() -> Result<T, EngineError>) -> Result<T, EngineError> {
     CYCLE.set((0, 0));
+    EVENTS_BEFORE.set(EVENTS.get());
     if !spend(UNITS_A_RUN) {
         let outcome = run();
         if EXHAUSTED.get().is_none() {
@@ -303,7 +307,9 @@ pub(crate) fn overrun() -> Overrun {
     let time =
         ACCOUNT.with_borrow(|account| account.as_ref().map_or(Duration::ZERO, |account| account.begun.elapsed()));
     let exhausted = EXHAUSTED.get().unwrap_or(Exhausted::Cancelled);
-    Overrun { exhausted, cycle, cycles, events, runs, time }
+    // A run that is made again begins before them.
+    let of_this_run = events.saturating_sub(EVENTS_BEFORE.get());
+    Overrun { exhausted, cycle, cycles, events, of_this_run, runs, time }
 }
 
 #[cfg(test)]
@@ -344,6 +350,22 @@ mod tests {
             };
             assert_eq!(allowance.simulate(run).is_ok(), fine, "{events}");
         }
+    }
+
+    #[test]
+    fn events_a_cycle_are_those_of_the_run_that_was_under_way() {
+        let allowance = Allowance::new(Limit { events: 100, ..Limit::default() });
+        let run = |each: u64, cycles: u64| {
+            within(|| {
+                for cycle in 0..cycles {
+                    reach(cycle, 50);
+                    (0..each).for_each(|_| count_event());
+                }
+                Ok(())
+            })
+        };
+        let stopped = allowance.simulate(|| run(0, 50).and_then(|()| run(40, 50))).unwrap_err().to_string();
+        assert!(stopped.contains("run 2, at about 40 events a cycle"), "{stopped}");
     }
 
     #[test]
