@@ -4,7 +4,7 @@
 use super::extraction::{Along, Cells, Direction, Extraction, Meeting, NearestPassage, Parting, Side};
 use super::line::{Position, common, lines};
 use super::selection::same;
-use super::text::{percent, significant};
+use super::text::{percent, significant, with_unit};
 use super::view::{Absence, Cell, Line, Source, View};
 use crate::measure::column_words;
 
@@ -289,6 +289,13 @@ impl NearestPassage {
     fn take(&self, view: &View<'_>) -> Result<Extracted, Absence> {
         let rows = view.rows(Source { table: None, rows: &self.rows }, None)?;
         let times = view.path(&rows, "time")?;
+        // With an input moved that the period depends on, the cycles that are kept lie elsewhere.
+        if let [first, .., last] = times
+            && !(*first..=*last).contains(&self.to)
+        {
+            let [first, last, to] = [*first, *last, self.to].map(|time| with_unit(time, 4, "s"));
+            return Err(Absence::NoRow(format!("the time history goes from {first} to {last}, not to {to}")));
+        }
         let (of, through) = (view.path(&rows, &self.of)?, view.path(&rows, &self.through)?);
         let side = self.direction.sign();
         let apart: Vec<f64> = of.iter().zip(through).map(|(a, b)| side * (a - b)).collect();

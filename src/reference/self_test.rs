@@ -230,6 +230,14 @@ impl Trial<'_> {
     fn moved_value(&self, judged: &Judged, from: &Extraction, reads: &BTreeSet<Read>) -> Result<(), Flaw> {
         // A feature that does not occur cannot be moved; it differs already.
         let Some(comparison) = judged.comparison else { return Ok(()) };
+        // The nearest of several instants is never farther than half the time between two of them.
+        let farthest = match from {
+            Extraction::NearestPassage(_) => {
+                let now = from.take(&self.view(BASELINE, &Reads::default())).ok();
+                now.and_then(|now| now.scale).map_or(f64::INFINITY, |between| between / 2.0)
+            }
+            _ => f64::INFINITY,
+        };
         for (offset, should_differ) in [(JUST_OUTSIDE, true), (-JUST_OUTSIDE, true), (0.0, false)] {
             // None of a count: any other number of events is outside.
             let mut tolerance = if comparison.tolerance() > 0.0 { comparison.tolerance() } else { 1.0 };
@@ -238,6 +246,9 @@ impl Trial<'_> {
                 let target = comparison.published + offset * tolerance;
                 // No deviation is below zero, however wide its tolerance.
                 if target < 0.0 && matches!(from, Extraction::StandardDeviationOver(_)) {
+                    break;
+                }
+                if offset.abs() * tolerance > farthest {
                     break;
                 }
                 let mut table = self.table.clone();
