@@ -7,6 +7,7 @@ use super::selection::same;
 use super::text::{percent, significant, with_unit};
 use super::view::{Absence, Cell, Line, Source, View};
 use crate::measure::column_words;
+use crate::table::BASELINE;
 
 /// A number taken out of a table.
 #[derive(Debug, Clone, PartialEq)]
@@ -290,7 +291,8 @@ impl NearestPassage {
         let rows = view.rows(Source { table: None, rows: &self.rows }, None)?;
         let times = view.path(&rows, "time")?;
         // With an input moved that the period depends on, the cycles that are kept lie elsewhere.
-        if let [first, .., last] = times
+        if view.variant != BASELINE
+            && let [first, .., last] = times
             && !(*first..=*last).contains(&self.to)
         {
             let [first, last, to] = [*first, *last, self.to].map(|time| with_unit(time, 4, "s"));
