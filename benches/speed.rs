@@ -238,14 +238,8 @@ fn visited(system: &HybridSystem, response: &Response) -> usize {
 }
 
 fn figure() -> FigureSpec {
-    let axis = |column: &str, label: &str| Axis {
-        column: column.into(),
-        label: Some(label.into()),
-        scale: AxisScale::Log,
-        reach: None,
-        range: None,
-        unit: None,
-    };
+    let axis =
+        |column: &str, label: &str| Axis { label: Some(label.into()), scale: AxisScale::Log, ..Axis::of(column) };
     FigureSpec {
         name: String::new(),
         only: None,

@@ -191,7 +191,7 @@ fn case(
         chaotic: is_chaotic(&trial, &own, &bare)?,
         closed_form,
         events: own.proof.events,
-        times: base.times(&trial.system),
+        times: times(&trial.system, &trial.options),
         switched: switched.collect(),
     })
 }
@@ -220,10 +220,6 @@ struct Base<'a> {
 }
 
 impl Base<'_> {
-    fn times(&self, system: &HybridSystem) -> Times {
-        times(system, &self.trial.options)
-    }
-
     /// The case with another system in its place.
     fn with(&self, instead: Instead<'_>, bare: &Response) -> Outcome {
         let Instead { system, options, trial } = instead;

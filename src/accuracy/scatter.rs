@@ -116,12 +116,10 @@ pub(super) fn scatter(views: &[AccuracyView]) -> Result<Picture, FigureError> {
 
 fn figure(wanted: Vec<f64>) -> FigureSpec {
     let axis = |column: &str, label: &str| Axis {
-        column: column.into(),
         label: Some(label.into()),
         scale: AxisScale::Log,
-        reach: None,
-        range: None,
-        unit: (column == "time").then(|| AxisUnit { symbol: "s".into(), worth: 1.0 }),
+        unit: (column == "time").then(|| AxisUnit::own("s")),
+        ..Axis::of(column)
     };
     let label = |first: bool| if first { "u_val of a number: accurate enough from here on" } else { "" };
     let guide = |(index, at): (usize, f64)| Level { at, label: label(index == 0).into() };

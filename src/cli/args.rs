@@ -50,6 +50,12 @@ impl Args {
     pub(super) fn threads(&self) -> usize {
         self.jobs.map_or(0, usize::from)
     }
+
+    /// How many threads that are: one per processor unless they were counted.
+    pub(super) fn workers(&self) -> usize {
+        let processors = || std::thread::available_parallelism().map_or(1, usize::from);
+        self.jobs.map_or_else(processors, usize::from)
+    }
 }
 
 /// When to use colours.

@@ -16,7 +16,7 @@ pub(super) fn dry_run(layout: &Layout, found: Found, args: &RunArgs, common: &Ar
     let study = found.open(layout, &args.choice, args.force);
     let chosen = choose(&study, &args.choice)?;
     print_unread(chosen.unread.iter().copied());
-    let threads = common.jobs.map_or_else(processors, usize::from);
+    let threads = common.workers();
     let (mut text, mut total) = (String::new(), Total::default());
     for item in todo(&chosen, args) {
         let known = if args.force { KnownRows::nothing() } else { KnownRows::of(layout, item) };
@@ -46,10 +46,6 @@ pub(super) fn dry_run(layout: &Layout, found: Found, args: &RunArgs, common: &Ar
     }
     print(&text)?;
     Ok(if chosen.unread.is_empty() { Exit::AsExpected } else { Exit::CouldNot })
-}
-
-pub(super) fn processors() -> usize {
-    std::thread::available_parallelism().map_or(1, usize::from)
 }
 
 /// How many of the rows would be simulated.

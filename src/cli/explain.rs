@@ -3,7 +3,6 @@
 use std::collections::BTreeMap;
 
 use super::args::{Args, LimitArgs};
-use super::dry_run::processors;
 use super::error::CliError;
 use super::exit::Exit;
 use super::output::{print, print_progress, print_unread};
@@ -57,7 +56,7 @@ fn tried(study: &Study, judged: &Judged, common: &Args) -> Result<Vec<Trial>, Cl
     let in_force = study.sheet.assumptions();
     let mut trials = Vec::new();
     // As many at once as there are threads: each portion ends with a line, and outlasts an interrupt of the next.
-    for portion in moves.chunks(common.jobs.map_or_else(processors, usize::from)) {
+    for portion in moves.chunks(common.workers()) {
         let progress = Progress::new();
         let handler: &dyn EventHandler = if common.quiet { &IgnoreEvents } else { &progress };
         let reads = moved_alone(asked, portion, &experiments, &in_force, common.threads(), &Engine, handler);

@@ -622,6 +622,20 @@ pub struct Axis {
     pub unit: Option<AxisUnit>,
 }
 
+impl Axis {
+    /// All of a column, linear, with its own words and a unit by the size of the data.
+    #[must_use]
+    pub fn of(column: &str) -> Self {
+        Self { column: column.into(), label: None, scale: AxisScale::Linear, reach: None, range: None, unit: None }
+    }
+
+    /// Whether this place is drawn.
+    #[must_use]
+    pub fn shows(&self, x: f64) -> bool {
+        self.range.is_none_or(|[from, to]| x >= from && x <= to)
+    }
+}
+
 /// A unit that an axis is labelled in.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct AxisUnit {
@@ -629,6 +643,14 @@ pub struct AxisUnit {
     pub symbol: String,
     /// What one of it is in the column's unit: 0.001 for mm, 2π for Hz.
     pub worth: f64,
+}
+
+impl AxisUnit {
+    /// The column's own, whatever the size of the data.
+    #[must_use]
+    pub fn own(symbol: &str) -> Self {
+        Self { symbol: symbol.into(), worth: 1.0 }
+    }
 }
 
 /// Scale of an axis.

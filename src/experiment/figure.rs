@@ -207,8 +207,7 @@ impl FigureReader<'_> {
         let plain = |at: At<'_>| {
             let (column, span) = column_name(at)?;
             let role = self.column(&column, span, |role| role != Role::Label)?;
-            let axis = Axis { column, label: None, scale: AxisScale::Linear, reach: None, range: None, unit: None };
-            Some((axis, role))
+            Some((Axis::of(&column), role))
         };
         at.either(|value| matches!(value, Value::Mapping(_)), |at| self.long_axis(at, may_be_a_part), plain)
     }

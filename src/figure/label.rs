@@ -22,11 +22,7 @@ pub(super) fn of_cell(column: &Column, row: usize) -> Option<String> {
     let value = match &column.data {
         Data::Text(cells) => {
             let level = cells.get(row)?;
-            let word = || match column.name.as_str() {
-                "dampers" => format!("{level} damper"),
-                name => words::of_level(name, level),
-            };
-            return (!level.is_empty()).then(word);
+            return (!level.is_empty()).then(|| words::of_level(&column.name, level));
         }
         Data::Float(cells) => number::quantity(*cells.get(row).filter(|x| !x.is_nan())?, &column.unit, 4),
         Data::Int(cells) => cells.get(row)?.to_string(),

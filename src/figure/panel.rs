@@ -106,7 +106,6 @@ impl<'a> Panel<'a> {
         beside: Beside<'a>,
     ) -> Result<Self, FigureError> {
         let mut curves = curves(source, spec)?;
-        let shown = |x: f64| spec.x.range.is_none_or(|[from, to]| x >= from && x <= to);
         if let Some(range) = spec.x.range {
             curves.iter_mut().for_each(|curve| curve.cut_to(range));
             curves.retain(Curve::shows);
@@ -142,13 +141,13 @@ impl<'a> Panel<'a> {
         let band = samples().any(|sample| sample.band[1] - sample.band[0] > 2.0 * visible);
         let mut legend = Legend::new(&curves, spec, band, &quoted);
         let mut contacts = contacts(source, spec)?;
-        contacts.retain(|contact| shown(contact.from) || shown(contact.to));
+        contacts.retain(|contact| spec.x.shows(contact.from) || spec.x.shows(contact.to));
         let impulses = beside.impulses.filter(|_| !contacts.is_empty());
         let visible = VISIBLE_CONTACT * (x_reach.extent.largest - x_reach.extent.least);
         legend.name_instants(contacts.iter().any(|contact| contact.to - contact.from > visible), impulses.is_some());
         let strips = strip::strips(source, spec, &curves)?;
         let mut special_points = special_points(source, spec)?;
-        special_points.retain(|point| shown(point.x));
+        special_points.retain(|point| spec.x.shows(point.x));
         legend.name_special_points(&special_points);
         let mut y_extent = quoted.iter().filter_map(|one| one.y()).fold(y_extent, |extent, y| extent.with(y, y_scale));
         for guide in &spec.guides {
@@ -163,7 +162,7 @@ impl<'a> Panel<'a> {
             legend.name_guides(&spec.guides);
         }
         // Theirs is a scale of its own, apart from the lines.
-        legend.name_motions(&strip::classes(&strips, spec.x.range));
+        legend.name_motions(&strip::classes(&strips, &spec.x));
         if spec.peaks.is_some() {
             y_extent = y_extent.with_headroom(PEAK_ROOM, y_scale);
         }

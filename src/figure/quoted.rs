@@ -69,7 +69,7 @@ impl Quoted {
             && self.over.as_ref().is_none_or(|over| *over == panel.x.column)
             && !panel.over_first
             // What is said of a whole curve is not said of a part.
-            && panel.x.range.is_none_or(|[from, to]| self.x().is_some_and(|x| x >= from && x <= to))
+            && (panel.x.range.is_none() || self.x().is_some_and(|x| panel.x.shows(x)))
     }
 
     pub(super) fn x(&self) -> Option<f64> {

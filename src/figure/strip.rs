@@ -58,9 +58,8 @@ pub(super) fn strips(
 }
 
 /// The classes that strips show, in their order.
-pub(super) fn classes(strips: &[Strip], range: Option<[f64; 2]>) -> Vec<KindOfMotion> {
-    let shown = |x: f64| range.is_none_or(|[from, to]| x >= from && x <= to);
-    let points = strips.iter().flat_map(|strip| &strip.points).filter(|(x, _)| shown(*x));
+pub(super) fn classes(strips: &[Strip], along: &experiment::Axis) -> Vec<KindOfMotion> {
+    let points = strips.iter().flat_map(|strip| &strip.points).filter(|(x, _)| along.shows(*x));
     let seen: Vec<_> = points.map(|(_, kind)| class(*kind)).collect();
     KindOfMotion::ALL.into_iter().filter(|class| seen.contains(class)).collect()
 }

@@ -7,13 +7,12 @@ use crate::experiment::{Axis, AxisScale, AxisUnit, Band, Drawing, FigureSpec, Jo
 #[must_use]
 pub fn work_precision(times: [f64; 2], floor: Option<f64>, events: bool) -> FigureSpec {
     let axis = |column: &str, label: &str, reach| Axis {
-        column: column.into(),
         label: Some(label.into()),
         scale: AxisScale::Log,
         reach,
-        range: None,
         // Beside each other, figures are compared in one unit.
-        unit: (column == "time").then(|| AxisUnit { symbol: "s".into(), worth: 1.0 }),
+        unit: (column == "time").then(|| AxisUnit::own("s")),
+        ..Axis::of(column)
     };
     let panel = |column: &str, label: &str, guides: Vec<Level>| Panel {
         x: axis("time", "Wall time of a run", Some(times)),

@@ -52,7 +52,9 @@ pub(crate) fn judge_entry(
         Check::Value { published, from, tolerance } => value(&view, published, from, tolerance.as_ref(), fitted),
         Check::Peak { peak, tolerance } => Ok(numbers(&view, peak, tolerance.as_ref(), fitted)),
         Check::Claim { predicate, .. } => {
+            let blocked = !entry.blocked_by.is_empty();
             let verdict = |outcome| match outcome {
+                _ if blocked => Verdict::Blocked,
                 Outcome::Holds if fitted => Verdict::Fitted,
                 Outcome::Holds => Verdict::Reproduced,
                 Outcome::Undecided => Verdict::Undecidable,
@@ -60,8 +62,6 @@ pub(crate) fn judge_entry(
             };
             decide(predicate, &view).and_then(|baseline| {
                 let others = moved(&view, |variant| decide(predicate, variant))?;
-                let blocked = !entry.blocked_by.is_empty();
-                let verdict = |outcome| if blocked { Verdict::Blocked } else { verdict(outcome) };
                 let description = |(variant, other): &(&str, Decision)| Moved {
                     variant: (*variant).into(),
                     found: in_words(other.outcome).into(),
@@ -172,9 +172,8 @@ fn numbers(view: &View<'_>, peak: &PrintedPeak, by_hand: Option<&Tolerance>, fit
     // smallest count is.
     let robust = judged.iter().filter_map(|(_, judgement)| judgement.robust).min();
     let found: Vec<String> = judged.iter().map(|(name, judgement)| format!("{name} {}", judgement.found)).collect();
-    let mut blocked_by: Vec<String> = judged.iter().flat_map(|(_, judgement)| judgement.blocked_by.clone()).collect();
-    blocked_by.sort();
-    blocked_by.dedup();
+    let blocked_by: BTreeSet<String> =
+        judged.iter().flat_map(|(_, judgement)| judgement.blocked_by.iter().cloned()).collect();
     let parts = judged.into_iter().map(|(name, Judgement { verdict, found, comparison, .. })| Part {
         name: name.into(),
         verdict,
@@ -185,7 +184,7 @@ fn numbers(view: &View<'_>, peak: &PrintedPeak, by_hand: Option<&Tolerance>, fit
     Judgement {
         found: found.join("; "),
         parts,
-        blocked_by,
+        blocked_by: blocked_by.into_iter().collect(),
         robust,
         ..Judgement::of(verdict.unwrap_or(Verdict::Missing))
     }

@@ -60,6 +60,7 @@ pub fn of_level(column: &str, level: &str) -> String {
     match column {
         "solver" => of_solver(level),
         "stop" => format!("{level} stop"),
+        "dampers" => format!("{level} damper"),
         "candidate" => match level {
             "genetic" => "genetic algorithm".into(),
             "two_opt" => "2-opt".into(),

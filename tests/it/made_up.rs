@@ -110,7 +110,7 @@ pub fn drawn(drawing: Drawing) -> FigureSpec {
 }
 
 pub fn axis(column: &str, scale: AxisScale) -> Axis {
-    Axis { column: column.into(), label: None, scale, reach: None, range: None, unit: None }
+    Axis { scale, ..Axis::of(column) }
 }
 
 /// A panel of these y columns on a linear axis.
