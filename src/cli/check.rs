@@ -9,7 +9,7 @@ use super::exit::Exit;
 use super::output::{print, print_document, print_error, print_unread, print_warnings};
 use super::select::{Chosen, choose, open};
 use crate::atomic::{self, FileError};
-use crate::reference::{self, Verdict};
+use crate::reference;
 use crate::report::{
     self, CheckView, Judgement, Standing, check_view, departures, doubts, judge_all, self_test_all, summary_of,
 };
@@ -136,9 +136,6 @@ fn accept(study: &Study, judgement: &Judgement, id: &str, reason: &str) -> Resul
     let name = *study.reference_names().get(experiment).ok_or_else(unknown)?;
     let (reference, bytes) = study.references.get(experiment).zip(study.texts.files.get(name)).ok_or_else(unknown)?;
     let text = String::from_utf8_lossy(bytes);
-    if judged.verdict == Verdict::Blocked {
-        return Err(CliError::AcceptBlocked { id: id.into(), found: judged.found.clone() });
-    }
     let changed = reference::accept(reference, &text, judged, reason)?;
     atomic::write(&study.layout.path(name), changed.as_bytes())?;
     let verdict = |verdict| crate::text::words::of_key(verdict);

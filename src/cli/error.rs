@@ -30,11 +30,6 @@ pub(super) enum CliError {
         "`{0}` cannot name a folder of experiments/: write names of letters, digits, `-` and `_`, with `/` between them"
     )]
     Folder(String),
-    #[error(
-        "`{id}` is blocked, which no accepted verdict changes: {found}; once the study states what is missing, take \
-         `blocked_by` out of the entry"
-    )]
-    AcceptBlocked { id: String, found: String },
     #[error("there is no entry `{0}`; entries are named experiment/entry, as `shotdamp check` shows them")]
     NoEntry(String),
     #[error("{} holds neither tables (*.parquet) nor verdicts (verdicts.json)", from_here(.0))]

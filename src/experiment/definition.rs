@@ -5,7 +5,9 @@ use std::collections::BTreeSet;
 
 use serde::{Deserialize, Serialize};
 
-use super::recipe::{AssumptionName, AssumptionValue, Assumptions, Parameter, ParameterValue, Recipe, RecipeError};
+use super::recipe::{
+    AssumptionName, AssumptionValue, Assumptions, Given, Parameter, ParameterValue, Recipe, RecipeError,
+};
 use crate::dynamics::Limit;
 use crate::measure::{CycleSpec, EnergySpec, Measure, Needs, Settings, ShapeSpec, SolverChoice, Tolerance, TraceSpec};
 
@@ -80,7 +82,7 @@ pub struct Experiment {
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub continued: Vec<ContinuedSweep>,
     /// What every number is a mean over: settings of parameters that no column tells apart, such as force points. Empty as a
-    /// rule. A velocity ratio is then that of the mean RMS velocities.
+    /// rule. [`MeanRatio`] says what a velocity ratio then is.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub mean_over: Vec<Case>,
     /// An optimisation of gaps in the place of a sweep.
@@ -200,7 +202,12 @@ impl Experiment {
         let needs = Needs::of(&self.measures, self.energies.is_some());
         let each = scenes.into_iter().flat_map(|scene| self.recipes_in(&scene).unwrap_or_default());
         let left_out = self.transient.iter().map(|transient| transient.left_out.clone());
-        each.flat_map(|recipe| recipe.dependencies(in_force, needs)).chain(left_out).collect()
+        let has_mean_ratio = !self.mean_over.is_empty() && self.measures.contains(&Measure::VelocityRatio);
+        let mean_ratio = match &self.recipe.mean_ratio {
+            Given::Assumed(name) if has_mean_ratio => Some(name.clone()),
+            _ => None,
+        };
+        each.flat_map(|recipe| recipe.dependencies(in_force, needs)).chain(left_out).chain(mean_ratio).collect()
     }
 
     /// The whole meaning as JSON; equal meanings give equal JSON. Keys are sorted.

@@ -19,10 +19,14 @@ const LONGEST: f64 = 31_557_600.0;
 /// Most events that can be asked for; whole numbers of this size are exact.
 const MOST_EVENTS: f64 = 1e15;
 
+/// What an editor says of the limit of events.
+const EVENTS: &str =
+    "Events of a row, or of each point that it takes a mean over or looks for a maximum among; 1e8 unless stated";
+
 /// A limit of which parts may be left as they are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct RowLimit {
-    /// Events of all runs of a row together.
+    /// Events of a row, or of each point that it takes a mean over or looks for a maximum among.
     pub events: Option<u64>,
     /// Processor time of a row.
     pub time: Option<Duration>,
@@ -63,7 +67,7 @@ impl FromStr for RowLimit {
 /// Reads the mapping of an experiment.
 pub(super) fn read_limit(at: At<'_>) -> Option<Limit> {
     let keys = at.keys("a limit")?;
-    let events = keys.optional("events", "Events of all runs of a row together; 1e8 unless stated", |at| {
+    let events = keys.optional("events", EVENTS, |at| {
         let read = |node: &Node, findings: &Findings| {
             part(node, events, "a whole number of events from 1 to 1e15", "1e8", findings)
         };

@@ -79,9 +79,9 @@ pub use recipe::{
     ArrayOrder, ArrayRecipe, Assumable, AssumptionName, AssumptionValue, Assumptions, Carried, ContactDampingConstant,
     ContactDampingRatio, ContactDampingRecipe, Coordinate, DamperRecipe, ExcitationKind, ExcitationRecipe, Filling,
     FloorStiffness, ForcingOrNatural, GapRecipe, GapWord, Given, ImpulseTime, ImpulseTimeRecipe, MassReading,
-    MassRecipe, ObserveRecipe, Parameter, ParameterValue, Part, PlaceRecipe, PointsRecipe, Recipe, RecipeError,
-    Reference, Slot, StiffnessRecipe, StopRecipe, StrengthRecipe, StructureRecipe, SurfaceRecipe, SweptSlots,
-    TimingRecipe, WallRecipe,
+    MassRecipe, MeanRatio, ObserveRecipe, Parameter, ParameterValue, Part, PlaceRecipe, PointsRecipe, Recipe,
+    RecipeError, Reference, Slot, StiffnessRecipe, StopRecipe, StrengthRecipe, StructureRecipe, SurfaceRecipe,
+    SweptSlots, TimingRecipe, WallRecipe,
 };
 pub(crate) use refined::{Curve, by_strength, curves};
 pub use refined::{Refinement, Threshold};

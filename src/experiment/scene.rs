@@ -14,8 +14,8 @@ use super::keys::Keys;
 use super::quantity::{Dimension, parse_number};
 use super::recipe::{
     AssumptionName, Assumptions, Carried, ContactDampingConstant, ContactDampingRatio, ContactDampingRecipe,
-    DamperRecipe, Filling, FloorStiffness, GapRecipe, Given, MassReading, MassRecipe, Parameter, Part, Recipe,
-    Reference, Slot, StiffnessRecipe, StopRecipe, SurfaceRecipe, SweptSlots, WallRecipe,
+    DamperRecipe, Filling, FloorStiffness, GapRecipe, Given, MassReading, MassRecipe, MeanRatio, Parameter, Part,
+    Recipe, Reference, Slot, StiffnessRecipe, StopRecipe, SurfaceRecipe, SweptSlots, WallRecipe,
 };
 use super::schema::assumptions;
 use super::structure::read_structure;
@@ -100,7 +100,9 @@ impl SceneReader<'_> {
         // What dampers and excitation may say depends on the structure, also on one that has a mistake of its own.
         let named = || at.is_sketch().then_some(self.unknown).or_else(|| kind_named(keys.get("structure")?));
         let Some(kind) = structure.as_ref().map(|structure| structure.kind).or_else(named) else {
-            for key in ["gravity", "undamped_mass", "mass_measure", "dampers", "excitation", "start", "observe"] {
+            let others =
+                ["gravity", "undamped_mass", "mass_measure", "mean_ratio", "dampers", "excitation", "start", "observe"];
+            for key in others {
                 keys.get(key);
             }
             return keys.close().and(None);
@@ -113,6 +115,8 @@ impl SceneReader<'_> {
         });
         let mass_measure =
             keys.optional("mass_measure", Slot::MassMeasure.about(), |at| self.reading(at, Slot::MassMeasure, kind));
+        let mean_ratio =
+            keys.optional("mean_ratio", Slot::MeanRatio.about(), |at| self.reading(at, Slot::MeanRatio, kind));
         let dampers = keys.optional("dampers", "The dampers", |at| self.dampers(at, kind));
         let excitation = keys.required("excitation", "What drives the structure", |at| {
             self.parts.borrow_mut().push((Part::Excitation, at.span()));
@@ -130,6 +134,7 @@ impl SceneReader<'_> {
             gravity: gravity?.unwrap_or_else(|| self.left_out(Slot::Gravity, kind, STANDARD_GRAVITY)),
             undamped_mass: undamped_mass?.unwrap_or_else(|| self.left_out(Slot::UndampedMass, kind, Carried::Base)),
             mass_measure: mass_measure?.unwrap_or_else(|| self.left_out(Slot::MassMeasure, kind, Comparison::Jump)),
+            mean_ratio: mean_ratio?.unwrap_or_else(|| self.left_out(Slot::MeanRatio, kind, MeanRatio::OfMeans)),
             dampers: dampers?.unwrap_or_default(),
             without_dampers: false,
             excitation: excitation?,

@@ -12,7 +12,7 @@
 //! these measures mean something together with that number only.
 
 use super::{Comparison, TraceColumn, kept};
-use crate::dynamics::{Matrix, Response};
+use crate::dynamics::{CycleRates, Matrix, Response, StartState};
 use crate::measure::{EnergySpec, Settings};
 use crate::scene::Scene;
 
@@ -20,6 +20,8 @@ use crate::scene::Scene;
 pub(super) struct Energies {
     pub(super) with: Vec<Ends>,
     pub(super) without: Vec<Ends>,
+    /// Kinetic energy where each of the two starts, J.
+    started: [f64; 2],
     comparison: Option<Comparison>,
     averaged: std::ops::Range<usize>,
 }
@@ -34,8 +36,8 @@ pub(super) struct Ends {
 impl Energies {
     pub(super) fn of(
         scene: &Scene,
-        response: &Response,
-        undamped: &Response,
+        [response, undamped]: [&Response; 2],
+        starts: [&StartState; 2],
         comparison: Option<Comparison>,
         settings: &Settings,
     ) -> Self {
@@ -44,6 +46,10 @@ impl Energies {
         Self {
             with: ends(&mass, response),
             without: ends(&mass, undamped),
+            started: starts.map(|start| match start {
+                StartState::StaticEquilibrium => 0.0,
+                StartState::Given { rate, .. } => energy(&mass, rate),
+            }),
             comparison,
             averaged: skip..skip + settings.average as usize,
         }
@@ -70,13 +76,13 @@ impl Energies {
     }
 
     pub(super) fn mass_of(&self, cycle: usize) -> f64 {
-        // It starts at rest.
-        let before = |cycles: &[Ends]| cycle.checked_sub(1).map_or(0.0, |last| cycles[last].before);
-        let jump = |cycles: &[Ends]| cycles[cycle].after - before(cycles);
+        let [of_start, of_clean_start] = self.started;
+        let before = |cycles: &[Ends], started: f64| cycle.checked_sub(1).map_or(started, |last| cycles[last].before);
+        let jump = |cycles: &[Ends], started: f64| cycles[cycle].after - before(cycles, started);
         match self.comparison {
-            Some(Comparison::Jump) => jump(&self.with) / jump(&self.without),
+            Some(Comparison::Jump) => jump(&self.with, of_start) / jump(&self.without, of_clean_start),
             Some(Comparison::After) => self.with[cycle].after / self.without[cycle].after,
-            Some(Comparison::Level) => jump(&self.with) / before(&self.without),
+            Some(Comparison::Level) => jump(&self.with, of_start) / before(&self.without, of_clean_start),
             None => f64::NAN,
         }
     }
@@ -89,14 +95,12 @@ impl Energies {
 }
 
 fn ends(mass: &Matrix, response: &Response) -> Vec<Ends> {
-    let energy = |rate: &[f64]| {
-        // Soft walls have a coordinate of their own behind those of the structure.
-        let rate = &rate[..mass.order];
-        0.5 * mass.form(rate, rate)
-    };
-    response
-        .cycle_rates
-        .iter()
-        .map(|cycle| Ends { after: energy(&cycle.after), before: energy(&cycle.before) })
-        .collect()
+    let energies = |cycle: &CycleRates| Ends { after: energy(mass, &cycle.after), before: energy(mass, &cycle.before) };
+    response.cycle_rates.iter().map(energies).collect()
+}
+
+fn energy(mass: &Matrix, rate: &[f64]) -> f64 {
+    // Soft walls have a coordinate of their own behind those of the structure.
+    let rate = &rate[..mass.order];
+    0.5 * mass.form(rate, rate)
 }

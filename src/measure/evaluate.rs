@@ -16,7 +16,7 @@ use std::sync::Arc;
 
 use super::each_cycle;
 use super::energy::Energies;
-use super::history::History;
+use super::history::{History, sampling_error};
 use super::kept;
 use super::later::{Later, settled_later};
 use super::reading::Reading;
@@ -444,7 +444,13 @@ impl Case<'_> {
         let wants_energies = request.energies.is_some() || request.any(Measure::needs_energies);
         let energies = match undamped {
             Some(clean) if wants_energies => {
-                Some(Energies::of(self.scene, response, clean, self.subject.comparison, self.settings))
+                let own = match request.link {
+                    Link::After(state) => state.clone(),
+                    Link::None | Link::First => self.scene.start_state(),
+                };
+                let bare = self.subject.undamped.as_ref().map_or(StartState::StaticEquilibrium, Scene::start_state);
+                let starts = [&own, &bare];
+                Some(Energies::of(self.scene, [response, clean], starts, self.subject.comparison, self.settings))
             }
             _ => None,
         };
@@ -487,10 +493,11 @@ impl Case<'_> {
     }
 }
 
-/// An error that a measure states of itself: the standard error of an exponent.
+/// An error that a measure states of itself: the standard error of an exponent, and what samples leave out.
 fn own_error(measure: Measure, response: &Response) -> f64 {
     let exponent = response.motion.as_ref().and_then(|motion| motion.exponent);
-    exponent.filter(|_| measure == Measure::LyapunovExponent).map_or(0.0, |exponent| exponent.error)
+    let of_exponent = exponent.filter(|_| measure == Measure::LyapunovExponent).map_or(0.0, |exponent| exponent.error);
+    of_exponent + sampling_error(measure, &response.trace)
 }
 
 pub(super) fn solve(system: &HybridSystem, options: &Options, solver: SolverChoice) -> Result<Response, EngineError> {

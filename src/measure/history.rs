@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use super::Measure;
 use super::evaluate::decay;
 use crate::dynamics::{Drive, Event, EventKind, Response, Sample, SampledParticle};
 use crate::scene::{Scene, drive};
@@ -37,8 +38,14 @@ impl History<'_> {
         self.peaks().last().map_or(f64::NAN, |peak| peak.height)
     }
 
+    fn positive_peaks(&self) -> Vec<Peak> {
+        let mut peaks = self.peaks();
+        peaks.retain(|peak| peak.height > 0.0);
+        peaks
+    }
+
     pub(super) fn peak_variation(&self) -> f64 {
-        let peaks = self.peaks();
+        let peaks = self.positive_peaks();
         let (low, high, sum) = peaks.iter().fold((f64::INFINITY, f64::NEG_INFINITY, 0.0), |(low, high, sum), peak| {
             (low.min(peak.height), high.max(peak.height), sum + peak.height)
         });
@@ -46,7 +53,7 @@ impl History<'_> {
     }
 
     pub(super) fn peak_decay_error(&self) -> f64 {
-        let peaks = self.peaks();
+        let peaks = self.positive_peaks();
         let Some(first) = peaks.first() else { return f64::NAN };
         let rate = decay(self.scene);
         peaks.iter().fold(0.0, |worst: f64, peak| {
@@ -56,17 +63,11 @@ impl History<'_> {
     }
 
     pub(super) fn floor_compression(&self) -> f64 {
-        self.deepest(|it| it.rigid_floor - it.floor)
+        deepest(&self.response.trace, 1, FLOOR)
     }
 
     pub(super) fn ceiling_compression(&self) -> f64 {
-        self.deepest(|it| it.ceiling - it.rigid_ceiling)
-    }
-
-    /// Of all particles; a face that is not there is no number.
-    fn deepest(&self, depth: fn(&SampledParticle) -> f64) -> f64 {
-        let depths = self.response.trace.iter().flat_map(|sample| sample.particles.iter().map(depth));
-        depths.fold(0.0, f64::max)
+        deepest(&self.response.trace, 1, CEILING)
     }
 
     /// Shortest time between an impulse and an event of this kind, whichever comes first, s; infinite if there is no such event,
@@ -89,6 +90,26 @@ impl History<'_> {
         let here = |event: &&Event| event.kind == kind && self.cycles.contains(&event.cycle);
         self.response.events.iter().filter(here).map(lag).fold(f64::INFINITY, f64::min)
     }
+}
+
+type Depth = fn(&SampledParticle) -> f64;
+const FLOOR: Depth = |it| it.rigid_floor - it.floor;
+const CEILING: Depth = |it| it.ceiling - it.rigid_ceiling;
+
+/// The largest of every so many samples, of all particles; a face that is not there is no number.
+fn deepest(trace: &[Sample], every: usize, depth: Depth) -> f64 {
+    let depths = trace.iter().step_by(every).flat_map(|sample| sample.particles.iter().map(depth));
+    depths.fold(0.0, f64::max)
+}
+
+/// What a compression, the largest of samples, loses with every second of them.
+pub(super) fn sampling_error(measure: Measure, trace: &[Sample]) -> f64 {
+    let depth = match measure {
+        Measure::FloorCompression => FLOOR,
+        Measure::CeilingCompression => CEILING,
+        _ => return 0.0,
+    };
+    deepest(trace, 1, depth) - deepest(trace, 2, depth)
 }
 
 fn crest(a: &Sample, b: &Sample) -> Peak {

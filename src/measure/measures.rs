@@ -125,9 +125,9 @@ measures! {
     Separations: "", "", "", "contacts lost with the floor", Run, Own, Any;
     FloorCompression: "m", "", "", "largest compression of the floor in the time history, of all dampers", Trace, Own, Any;
     CeilingCompression: "m", "", "", "largest compression of the ceiling in the time history, of all dampers", Trace, Own, Any;
-    LastPeak: "m", "", "", "largest displacement in the last cycle of the time history", Trace, Own, Any;
-    PeakVariation: "", "", "", "(largest − smallest)/mean of the time history's positive peaks", Trace, Own, Any;
-    PeakDecayError: "", "", "", "largest relative departure of the time history's peaks from exp(−c′ ωₙ t), the first one as reference", Trace, Own, Any;
+    LastPeak: "m", "", "", "last crest of the displacement in the time history", Trace, Own, Any;
+    PeakVariation: "", "", "", "(largest − smallest)/mean of the crests above zero in the time history", Trace, Own, Any;
+    PeakDecayError: "", "", "", "largest relative departure of the crests above zero in the time history from exp(−c′ ωₙ t), the first one as reference", Trace, Own, Any;
     Drift: "", "", "", "modulus of the RMS velocity of the first half of the window over that of the second, less 1: zero once transients are gone; of an odd number of cycles the first half has one more; undefined of a single cycle", Run, Own, Any;
     FloorImpactLag: "s", "", "", "shortest time between an impulse and a floor contact in the time history, whichever comes first; infinite without such a contact, undefined where no impulse stands in the time history", Trace, Own, Any;
     CeilingImpactLag: "s", "", "", "shortest time between an impulse and a ceiling contact in the time history, whichever comes first; infinite without such a contact, undefined where no impulse stands in the time history", Trace, Own, Any;
@@ -148,8 +148,8 @@ measures! {
     ExactNaturalFrequency: "rad/s", "ωₙ", "", "the same of the continuous structure", Model, Own, Any;
     ModeCount: "", "", "", "modes of the model: what a velocity just after an impulse depends on", Model, Own, Any;
     Mac: "", "", "modal assurance criterion", "modal assurance criterion of the shape that is kept: a mode's against the exact one, a deflection's against the forced mode's", Shape, Own, Any;
-    DampingMeasure: "", "", "", "share of the structure's kinetic energy that is lost from just after an impulse to just before the next, mean over the cycles", Energies, Both, Any;
-    MassMeasure: "", "", "", "kinetic energy at the impulses, compared with that of the clean structure, mean over the cycles", Energies, Both, Any;
+    DampingMeasure: "", "", "", "share of the structure's kinetic energy that is lost from just after an impulse to just before the next, mean over the cycles", Energies, Both, Impulses;
+    MassMeasure: "", "", "", "kinetic energy at the impulses, compared with that of the clean structure, mean over the cycles", Energies, Both, Impulses;
     FloorImpactTime: "s", "", "", "first contact of the first particle with its floor in the window, from the start of the run", Events, Own, Any;
     FloorImpactInterval: "s", "", "", "time between its last two floor contacts", Events, Own, Any;
     FloorIntervalChange: "s", "", "", "by how much that time differs from the one before", Events, Own, Any;

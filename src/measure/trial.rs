@@ -56,7 +56,8 @@ impl<'a> Trial<'a> {
     /// [`EvaluateError`] with the reason.
     pub fn read(&self, response: &Response, undamped: &Response) -> Result<Vec<f64>, EvaluateError> {
         let energies = if self.measures.iter().any(|measure| measure.needs_energies()) {
-            Some(Energies::of(&self.scene, response, undamped, self.comparison, self.settings))
+            let starts = [&self.options.start, &self.undamped_options.start];
+            Some(Energies::of(&self.scene, [response, undamped], starts, self.comparison, self.settings))
         } else {
             None
         };

@@ -61,6 +61,12 @@ impl Bounds {
         &self.sides
     }
 
+    /// Whether a point lies within them.
+    #[must_use]
+    pub fn hold(&self, point: &[f64]) -> bool {
+        self.sides.iter().zip(point).all(|([low, high], x)| (*low..=*high).contains(x))
+    }
+
     /// The point at these shares of the sides; shares beyond an end are at that end.
     #[must_use]
     pub fn at(&self, shares: &[f64]) -> Vec<f64> {

@@ -1,12 +1,13 @@
-//! 2-opt: the values of two coordinates change places wherever that is better, until no swap helps.
+//! 2-opt: the values of two coordinates change places wherever that is better, until no swap within the bounds helps.
 
+use super::bounds::Bounds;
 use super::search::{Found, Function, Score, Step, Stopped, Wanted};
 
 /// Improves `start`, whose score is known. Each pass tries every pair and takes the best swap.
 ///
 /// # Errors
 /// What `evaluate` fails with.
-pub fn two_opt<E>(start: &[f64], score: Score, evaluate: &mut Function<'_, E>) -> Result<Found, E> {
+pub fn two_opt<E>(start: &[f64], score: Score, bounds: &Bounds, evaluate: &mut Function<'_, E>) -> Result<Found, E> {
     let mut found = Found {
         point: start.to_vec(),
         score,
@@ -15,7 +16,7 @@ pub fn two_opt<E>(start: &[f64], score: Score, evaluate: &mut Function<'_, E>) -
         stopped: Stopped::Exhausted,
     };
     loop {
-        let swaps: Vec<Vec<f64>> = swaps(&found.point);
+        let swaps: Vec<Vec<f64>> = swaps(&found.point, bounds);
         if swaps.is_empty() {
             return Ok(found);
         }
@@ -34,8 +35,8 @@ pub fn two_opt<E>(start: &[f64], score: Score, evaluate: &mut Function<'_, E>) -
     }
 }
 
-/// Every point that differs by one swap.
-fn swaps(point: &[f64]) -> Vec<Vec<f64>> {
+/// Every point within the bounds that differs by one swap.
+fn swaps(point: &[f64], bounds: &Bounds) -> Vec<Vec<f64>> {
     let pairs = (0..point.len()).flat_map(|i| (i + 1..point.len()).map(move |j| (i, j)));
     pairs
         .filter(|&(i, j)| point[i] != point[j])
@@ -44,5 +45,6 @@ fn swaps(point: &[f64]) -> Vec<Vec<f64>> {
             swapped.swap(i, j);
             swapped
         })
+        .filter(|swapped| bounds.hold(swapped))
         .collect()
 }

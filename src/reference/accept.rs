@@ -1,7 +1,7 @@
 //! Accepting what came out: the verdict that an entry expects is changed in its file, with the reason.
 
 use super::entry::{Entry, ReferenceFile, parse_reference};
-use super::verdict::{Judged, Verdict};
+use super::verdict::{Judged, Kind, Verdict};
 use crate::experiment::{Written, set_keys};
 
 /// Why a verdict cannot be accepted.
@@ -13,6 +13,17 @@ pub enum AcceptError {
         /// The entry.
         id: String,
         /// Why there is no result.
+        found: String,
+    },
+    /// A claim waits for what the study does not state.
+    #[error(
+        "`{id}` is blocked, which no accepted verdict changes: {found}; once the study states what is missing, take \
+         `blocked_by` out of the entry"
+    )]
+    Waits {
+        /// The entry.
+        id: String,
+        /// For what.
         found: String,
     },
     /// There is nothing to accept.
@@ -47,6 +58,9 @@ pub fn accept(file: &ReferenceFile, text: &str, judged: &Judged, reason: &str) -
     let id = judged.id.clone();
     if judged.verdict == Verdict::Missing {
         return Err(AcceptError::Missing { id, found: judged.found.clone() });
+    }
+    if (judged.kind, judged.verdict) == (Kind::Claim, Verdict::Blocked) {
+        return Err(AcceptError::Waits { id, found: judged.found.clone() });
     }
     let verdict = crate::text::words::of_key(&judged.verdict);
     if judged.as_expected() {

@@ -19,7 +19,7 @@ use super::resonance::PrintedPeak;
 use super::tally::{Decision, Outcome};
 use super::text::{measured, significant};
 use super::verdict::{Comparison, Judged, Kind, Moved, Part, Role, Verdict};
-use super::view::{Absence, Reads, Tables, View};
+use super::view::{Absence, Reads, Tables, View, assumption_of};
 use crate::table::BASELINE;
 
 /// Share of u_input² that is most of it.
@@ -291,13 +291,11 @@ fn value(
     Ok(Judgement { found, comparison: Some(comparison), blocked_by, robust, moved, ..Judgement::of(verdict) })
 }
 
-/// What each assumption adds to u_input², largest first: the square of half the range that it gives the value. A variant is named
-/// `assumption=value`.
+/// What each assumption adds to u_input², largest first: the square of half the range that it gives the value.
 fn input_shares<'a>(baseline: f64, others: &[(&'a str, Option<Extracted>)]) -> Vec<(&'a str, f64)> {
     let mut ranges: BTreeMap<&str, (f64, f64)> = BTreeMap::new();
     for (variant, other) in others.iter().filter_map(|(variant, other)| Some((variant, other.as_ref()?))) {
-        let assumption = variant.split_once('=').map_or(*variant, |(name, _)| name);
-        let range = ranges.entry(assumption).or_insert((baseline, baseline));
+        let range = ranges.entry(assumption_of(variant)).or_insert((baseline, baseline));
         *range = (range.0.min(other.value), range.1.max(other.value));
     }
     let mut shares: Vec<_> =

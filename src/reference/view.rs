@@ -171,6 +171,11 @@ pub(crate) struct Line {
     pub y: Vec<Cell>,
 }
 
+/// The assumption that a variant moves: it is named `assumption=value`.
+pub(crate) fn assumption_of(variant: &str) -> &str {
+    variant.split_once('=').map_or(variant, |(name, _)| name)
+}
+
 /// The rows that an entry means.
 pub(crate) struct Rows<'a> {
     id: String,
@@ -206,8 +211,9 @@ impl<'a> View<'a> {
         let mut asked = vec![variant];
         // First, as a table with twenty variants has twenty times the rows.
         if open("variant") {
-            let elsewhere = !at_home && !variants.iter().any(|label| label == self.variant);
-            let wanted = if elsewhere { BASELINE } else { self.variant };
+            let was_run = variants.iter().any(|label| label == self.variant);
+            let stays = !was_run && !table.depends_on(assumption_of(self.variant)).unwrap_or(at_home);
+            let wanted = if stays { BASELINE } else { self.variant };
             rows.indices.retain(|&row| variants[row] == wanted);
         }
         for (name, allowed) in &selection.0 {
@@ -387,13 +393,13 @@ impl<'a> View<'a> {
         find(rows.table, of).map(|found| found.column.unit.as_str())
     }
 
-    /// The variants of the assumptions that the entry's own table holds, apart from the baseline.
+    /// The variants of the assumptions that the tables looked at so far hold, apart from the baseline; the entry's own first.
     pub(crate) fn variants(&self) -> Vec<&'a str> {
         let mut found: Vec<&str> = Vec::new();
-        if let Ok(table) = self.table(self.home)
-            && let Ok((_, labels)) = labels(table, "variant")
-        {
-            for label in labels {
+        let read = self.reads.tables.borrow();
+        let others = read.keys().map(String::as_str).filter(|id| *id != self.home);
+        for table in std::iter::once(self.home).chain(others).filter_map(|id| self.table(id).ok()) {
+            for label in labels(table, "variant").map_or(&[][..], |(_, labels)| labels) {
                 if label != BASELINE && !found.contains(&label.as_str()) {
                     found.push(label);
                 }

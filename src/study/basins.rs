@@ -22,6 +22,9 @@ use crate::experiment::{Experiment, Rank, RowSource, Starts};
 use crate::measure::{Ending, Evaluated, FromStarts, Rigour, SolverChoice, TraceColumn};
 use crate::scene::Start;
 
+/// RMS velocities that differ by less are those of two mirror images.
+const ALIKE: f64 = 1e-9;
+
 /// Runs of all starts.
 pub(super) fn simulations(experiment: &Experiment, starts: &Starts, variants: &[Variant]) -> u64 {
     let own = jobs(experiment, variants).iter().filter(|job| job.same_as.is_none()).count();
@@ -118,7 +121,7 @@ impl<E: Evaluate> Running<'_, E> {
         let best = best(&found, endings);
         let mut named: Vec<(Vec<usize>, String, Rank)> = Vec::new();
         for (place, (numbers, name)) in found.drain(..).zip(names).enumerate() {
-            named.push((numbers, name, if best == Some(place) { Rank::Best } else { Rank::Other }));
+            named.push((numbers, name, if best[place] { Rank::Best } else { Rank::Other }));
         }
         named.sort_by_key(|(numbers, ..)| (std::cmp::Reverse(numbers.len()), numbers[0]));
         let row = |(numbers, name, rank): (Vec<usize>, String, Rank)| {
@@ -182,9 +185,11 @@ fn names(basins: &[Vec<usize>], endings: &[Ending]) -> Vec<String> {
     (0..basins.len()).map(of_name).collect()
 }
 
-/// The motion of the smallest RMS velocity; what has not settled is none.
-fn best(basins: &[Vec<usize>], endings: &[Ending]) -> Option<usize> {
-    let settled = |&place: &usize| endings[basins[place][0]].motion.kind != MotionKind::NotSettled;
-    let speed = |place: &usize| speed(&basins[*place], endings);
-    (0..basins.len()).filter(settled).min_by(|a, b| speed(a).total_cmp(&speed(b)))
+/// Of each motion whether no other one has a smaller RMS velocity, two mirror images alike; what has not settled is none.
+fn best(basins: &[Vec<usize>], endings: &[Ending]) -> Vec<bool> {
+    let settled = |place: usize| endings[basins[place][0]].motion.kind != MotionKind::NotSettled;
+    let speeds = basins.iter().enumerate().map(|(place, numbers)| settled(place).then(|| speed(numbers, endings)));
+    let speeds: Vec<Option<f64>> = speeds.collect();
+    let least = speeds.iter().flatten().copied().fold(f64::INFINITY, f64::min);
+    speeds.iter().map(|speed| speed.is_some_and(|speed| speed <= least * (1.0 + ALIKE))).collect()
 }

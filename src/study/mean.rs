@@ -1,14 +1,13 @@
 //! Means over settings that have no column of their own, such as several force points.
 //!
-//! Every measure is the mean of its values. The velocity ratio alone is the ratio of the mean RMS velocities, so that it
-//! is that of the structure at all settings together, which an optimisation reduces.
+//! Every measure is the mean of its values; the velocity ratio alone may also be the ratio of the mean RMS velocities ([`MeanRatio`]).
 
 use rayon::prelude::*;
 
 use super::evaluate::{Evaluate, Simulation};
 use super::row_failure::RowFailure;
 use crate::dynamics::Proof;
-use crate::experiment::Experiment;
+use crate::experiment::{Experiment, MeanRatio};
 use crate::measure::{Evaluated, Measure, Measured};
 
 /// The measures to ask of each setting, so that means can be taken.
@@ -41,12 +40,13 @@ impl<E: Evaluate> Evaluate for Averaging<'_, E> {
         // Through a list, so that of several failures the first in order is reported.
         let each: Vec<Result<Evaluated, RowFailure>> = recipes.par_iter().map(one).collect();
         let each = each.into_iter().collect::<Result<Vec<_>, _>>()?;
-        Ok(mean(simulation.measures, &measures, &each))
+        let ratio = simulation.recipe.mean_ratio_under(simulation.assumptions)?;
+        Ok(mean(simulation.measures, &measures, ratio, &each))
     }
 }
 
 /// The mean of evaluations of `measures`, of which the first ones are `wanted`.
-pub(super) fn mean(wanted: &[Measure], measures: &[Measure], each: &[Evaluated]) -> Evaluated {
+pub(super) fn mean(wanted: &[Measure], measures: &[Measure], ratio: MeanRatio, each: &[Evaluated]) -> Evaluated {
     let count = each.len() as f64;
     let of = |index: usize| {
         let sum = |part: fn(&Measured) -> f64| each.iter().map(|one| part(&one.measured[index])).sum::<f64>();
@@ -59,14 +59,16 @@ pub(super) fn mean(wanted: &[Measure], measures: &[Measure], each: &[Evaluated])
     };
     let named = |measure| measures.iter().position(|other| *other == measure).map(of);
     let measured = wanted.iter().enumerate().map(|(index, measure)| match measure {
-        Measure::VelocityRatio => match (named(Measure::UndampedRmsVelocity), named(Measure::RmsVelocity)) {
-            (Some(clean), Some(damped)) => {
-                let value = clean.value / damped.value;
-                let relative = |part: f64| part / damped.value * value;
-                Measured { value, numerical: relative(damped.numerical), spread: relative(damped.spread) }
+        Measure::VelocityRatio if ratio == MeanRatio::OfMeans => {
+            match (named(Measure::UndampedRmsVelocity), named(Measure::RmsVelocity)) {
+                (Some(clean), Some(damped)) => {
+                    let value = clean.value / damped.value;
+                    let relative = |part: f64| part / damped.value * value;
+                    Measured { value, numerical: relative(damped.numerical), spread: relative(damped.spread) }
+                }
+                _ => of(index),
             }
-            _ => of(index),
-        },
+        }
         _ => of(index),
     });
     let worst = |part: fn(&Proof) -> f64| each.iter().map(|one| part(&one.proof)).fold(0.0, f64::max);

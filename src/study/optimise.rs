@@ -17,7 +17,7 @@ use super::run::{Finished, Task};
 use super::tabulate_candidates::{AlongGap, Candidate, failures, table};
 use super::variant::Variant;
 use crate::dynamics::is_interrupted;
-use crate::experiment::{Experiment, Goal, Optimise, Recipe, Search, SearchKind, SearchSpacing};
+use crate::experiment::{Experiment, Goal, MeanRatio, Optimise, Recipe, Search, SearchKind, SearchSpacing};
 use crate::measure::{Evaluated, Measure, Measured, Rigour};
 use crate::optimise::{
     Batch, Bounds, CmaEs, Dense, Found, Genetic, GeneticSettings, Optimiser, Score, Slope, Spacing, Stalled, Stopping,
@@ -55,6 +55,7 @@ struct Fitness<'a> {
     arrays: Vec<Box<dyn Array + 'a>>,
     wanted: &'a [Measure],
     measures: &'a [Measure],
+    ratio: MeanRatio,
 }
 
 impl<'a> Fitness<'a> {
@@ -71,12 +72,13 @@ impl<'a> Fitness<'a> {
             guarded(|| evaluate.array(simulation, optimise.gaps))
         };
         let arrays = recipes.iter().map(ready).collect::<Result<_, _>>()?;
-        Ok(Self { arrays, wanted: &experiment.measures, measures })
+        let ratio = experiment.recipe.mean_ratio_under(&variant.assumptions)?;
+        Ok(Self { arrays, wanted: &experiment.measures, measures, ratio })
     }
 
     fn evaluate(&self, gaps: &[f64], rigour: Rigour) -> Result<Evaluated, RowFailure> {
         let each = self.arrays.iter().map(|array| guarded(|| array.evaluate(gaps, rigour)));
-        Ok(mean(self.wanted, self.measures, &each.collect::<Result<Vec<_>, _>>()?))
+        Ok(mean(self.wanted, self.measures, self.ratio, &each.collect::<Result<Vec<_>, _>>()?))
     }
 
     /// One step of a search: the mean of the measure at `index`, which is never negative, or part of it once that alone exceeds `limit`.
@@ -91,7 +93,7 @@ impl<'a> Fitness<'a> {
                 return Ok(Step::Above(part));
             }
         }
-        Ok(Step::At(mean(self.wanted, self.measures, &each).measured[index].value))
+        Ok(Step::At(mean(self.wanted, self.measures, self.ratio, &each).measured[index].value))
     }
 
     /// The mean over the settings and its derivatives; `None` if that of one setting has none.
@@ -203,7 +205,8 @@ impl Searches<'_> {
                         found.push(self.candidate(SearchKind::Genetic, Some(*seed), &genetic, 0));
                         if self.optimise.two_opt {
                             let name = describe(SearchKind::TwoOpt, Some(*seed));
-                            let swapped = two_opt(&genetic.point, genetic.score, &mut |points, wanted| {
+                            let bounds = self.bounds.clone();
+                            let swapped = two_opt(&genetic.point, genetic.score, &bounds, &mut |points, wanted| {
                                 self.batch(points, wanted, &name, total)
                             })?;
                             total += swapped.evaluations;
@@ -250,7 +253,9 @@ impl Searches<'_> {
         let improved = format!("{name}_two_opt");
         let description = words::of_level("candidate", &improved);
         let score = self.batch(std::slice::from_ref(&gaps), Wanted::Each, &description, 0)?.scores[0];
-        let swapped = two_opt(&gaps, score, &mut |points, wanted| self.batch(points, wanted, &description, 1))?;
+        let bounds = self.bounds.clone();
+        let swapped =
+            two_opt(&gaps, score, &bounds, &mut |points, wanted| self.batch(points, wanted, &description, 1))?;
         Ok(Candidate { name: improved, ..self.candidate(SearchKind::TwoOpt, None, &swapped, 1) })
     }
 

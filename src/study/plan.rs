@@ -14,6 +14,7 @@ use super::run::Task;
 use super::variant::{Sensitivity, Variant, variants};
 use crate::dynamics::SOLVER_VERSION;
 use crate::experiment::{AssumptionName, AssumptionSheet, AssumptionValue, RowSource};
+use crate::table::DEPENDS_ON;
 
 /// One experiment as planned.
 #[derive(Debug, Clone, PartialEq)]
@@ -53,7 +54,7 @@ impl Item {
     ) -> Self {
         let used = used.unwrap_or_else(|| source.experiment.assumptions_used(sheet));
         let variants = variants(&source.experiment, &used, sheet, sensitivity);
-        let simulation = simulation(&source, sheet, &used, &variants, sensitivity);
+        let simulation = simulation(&source, sheet, &used, &variants);
         let state = state(layout, &source, &simulation);
         Self { source, variants, used, simulation, state }
     }
@@ -99,12 +100,14 @@ impl Item {
     #[must_use]
     pub fn provenance(&self) -> BTreeMap<String, String> {
         let experiment = &self.source.experiment;
+        let assumptions: Vec<&str> = self.used.iter().map(|name| name.as_str()).collect();
         let pairs = [
             ("experiment", experiment.id.to_string()),
             ("title", experiment.title.clone()),
             ("section", experiment.source.section.clone().unwrap_or_default()),
             ("fingerprint", self.fingerprint()),
             ("solver_version", SOLVER_VERSION.to_string()),
+            (DEPENDS_ON, assumptions.join(", ")),
             ("program", concat!("shotdamp ", env!("CARGO_PKG_VERSION")).to_owned()),
         ];
         pairs.into_iter().map(|(key, value)| (key.to_owned(), value)).collect()
@@ -128,11 +131,11 @@ fn simulation(
     sheet: &AssumptionSheet,
     used: &BTreeSet<AssumptionName>,
     variants: &[Variant],
-    sensitivity: Sensitivity,
 ) -> Inputs {
     let assumptions: BTreeMap<_, _> =
         sheet.iter().filter(|(name, _)| used.contains(*name)).map(|(name, entry)| (name, &entry.value)).collect();
-    let sensitivity = (sensitivity == Sensitivity::Wanted).then(|| ends(variants));
+    // Numbers to be held against a table without assumptions change nothing in it.
+    let sensitivity = Some(ends(variants)).filter(|ends| !ends.is_empty());
     Inputs::of([
         ("experiment", source.experiment.simulation_json()),
         ("assumptions", json!(assumptions)),
@@ -158,7 +161,7 @@ fn state(layout: &Layout, source: &Source, simulation: &Inputs) -> State {
     };
     let mut reasons = differences(&record.simulation, simulation, &|path| match path {
         ["experiment", ..] => source.file.clone(),
-        // There as a whole or not at all, as the reference has numbers or not; its parts are ranges of assumptions.
+        // There as a whole or not at all, as the reference has numbers or not, and assumptions to move; its parts are their ranges.
         ["sensitivity"] => format!("reference of {id}"),
         ["assumptions" | "sensitivity", ..] => ASSUMPTIONS.into(),
         _ => "this program".into(),

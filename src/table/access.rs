@@ -83,6 +83,12 @@ impl Column {
 }
 
 impl Table {
+    /// Whether its numbers depend on an assumption; nothing where the metadata do not say.
+    #[must_use]
+    pub fn depends_on(&self, assumption: &str) -> Option<bool> {
+        Some(self.metadata.get(super::DEPENDS_ON)?.split(", ").any(|name| name == assumption))
+    }
+
     /// Appends a column.
     #[must_use]
     pub fn with(mut self, column: Column) -> Self {

@@ -16,6 +16,9 @@ pub use parquet::ParquetError;
 /// The `variant` of a row computed with the assumptions as the file gives them.
 pub const BASELINE: &str = "baseline";
 
+/// The key of [`Table::metadata`] that names the assumptions which the numbers depend on, with commas between them.
+pub const DEPENDS_ON: &str = "assumptions";
+
 /// The column of the bound that the residuals of a row exceed, NaN in rows that balance; there only if some row does not.
 pub const RESIDUAL_BOUND: &str = "residual_bound";
 

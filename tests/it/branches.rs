@@ -36,6 +36,28 @@ run: {skip: 500 cycles, average: 50 cycles}
 measure: [rms_velocity, floor_impacts]
 ";
 
+/// Two dampers that differ, under gravity: no motion has a mirror image.
+const UNEVEN: &str = "title: Uneven
+about: Two dampers.
+scene:
+  structure: {single_mass: {mass: 1 kg, stiffness: 800 N/m, damping_ratio: 0.06}}
+  gravity: 5 m/s^2
+  dampers:
+    - {mass: 0.05 kg, gap: 100 mm, floor: {resilient: {stiffness: 900 N/m, damping: 3 N s/m}}}
+    - mass: 0.08 kg
+      gap: 160 mm
+      floor: {resilient: {stiffness: 1500 N/m, damping: 4 N s/m}}
+      ceiling: {resilient: {stiffness: 700 N/m, damping: 2 N s/m}}
+  excitation: {harmonic: {force: swept, angular_frequency: 27 rad/s}}
+orbit:
+  along: {force: {from: 4 N, to: 40 N}}
+  start: 10 N
+  points: 120
+  doublings: 1
+run: {skip: 300 cycles, average: 300 cycles}
+measure: [rms_velocity]
+";
+
 /// A study of one experiment.
 struct Study(TempDir);
 
@@ -175,4 +197,25 @@ fn what_is_wrong_with_an_orbit_is_told_where_it_stands() {
         assert_eq!(code, Some(2), "{to}: {said}");
         assert!(said.contains(what) && said.contains(&format!("mine.yaml:{place}")), "{to}: {said}");
     }
+}
+
+#[test]
+fn a_fold_beside_a_graze_is_no_symmetry_that_comes_back() {
+    let table = Study::new(UNEVEN, &[]).run();
+    let ends = table.texts("branch_end").unwrap();
+    assert!(ends.iter().all(|end| !end.contains("upside down")), "{ends:?}");
+}
+
+#[test]
+fn a_run_that_is_drawn_to_an_orbit_is_not_quasi_periodic() {
+    let (orbit, sweep) = (UNEVEN.find("orbit:").unwrap(), "sweep: {force: [12 N]}\n");
+    let text = format!(
+        "{}{sweep}{}",
+        &UNEVEN[..orbit],
+        "run: {skip: 300 cycles, average: 300 cycles, ensemble: none}\nmeasure: [motion]\n"
+    );
+    let named = |exchanged: &[(&str, &str)]| Study::new(&text, exchanged).run().texts("motion").unwrap()[0].clone();
+    assert_eq!(named(&[]), "not settled");
+    let later = [("skip: 300 cycles, average: 300 cycles", "skip: 5000 cycles, average: 3000 cycles")];
+    assert_eq!(named(&later), "periodic 8:34");
 }

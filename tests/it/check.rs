@@ -257,6 +257,12 @@ fn accepting_a_verdict_changes_two_keys_and_nothing_else() {
         .replace("      The old reason,\n      over two lines.\n", "      Chaos.\n");
     assert_eq!(known, expected);
 
+    let mut blocked = judged("ch3-x/plain", Verdict::Blocked, Reproduced);
+    let waits = accept(&file, LAYOUTS, &blocked, "The gap decides.").unwrap_err().to_string();
+    assert!(waits.contains("take `blocked_by` out of the entry"), "a claim waits, whatever comes out: {waits}");
+    blocked.kind = Kind::Number;
+    assert!(accept(&file, LAYOUTS, &blocked, "The gap decides.").unwrap().contains("    expected: blocked\n"));
+
     let flow = accepted("flow", Differs, Reproduced, "It: \"is\" so.").unwrap();
     let added = "{id: flow, expected: differs, explanation: \"It: \\\"is\\\" so.\", place";
     assert_eq!(flow, LAYOUTS.replace("{id: flow, place", added));

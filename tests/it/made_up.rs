@@ -4,8 +4,8 @@ use shotdamp::dynamics::{Limit, Until};
 use shotdamp::experiment::{
     Axis, AxisScale, Band, Carried, Case, ContactDampingRecipe, DamperRecipe, Drawing, ExcitationKind,
     ExcitationRecipe, Experiment, ExperimentId, FigureSpec, ForcingOrNatural, GapRecipe, Given, ImpulseTimeRecipe,
-    MassReading, MassRecipe, ObserveRecipe, Panel, Parameter, PlaceRecipe, PointsRecipe, Recipe, Reference, Source,
-    StiffnessRecipe, StopRecipe, StrengthRecipe, StructureRecipe, SurfaceRecipe, SweptSlots, TimingRecipe,
+    MassReading, MassRecipe, MeanRatio, ObserveRecipe, Panel, Parameter, PlaceRecipe, PointsRecipe, Recipe, Reference,
+    Source, StiffnessRecipe, StopRecipe, StrengthRecipe, StructureRecipe, SurfaceRecipe, SweptSlots, TimingRecipe,
 };
 use shotdamp::measure::{Comparison, Measure, NamedRows, Settings, SolverChoice};
 use shotdamp::scene::Take;
@@ -30,6 +30,7 @@ pub fn limit_stop() -> Experiment {
             gravity: Given::Assumed("gravity".into()),
             undamped_mass: Given::Stated(Carried::Base),
             mass_measure: Given::Stated(Comparison::Jump),
+            mean_ratio: Given::Stated(MeanRatio::OfMeans),
             dampers: vec![DamperRecipe {
                 at: PlaceRecipe::default(),
                 array: None,

@@ -159,3 +159,40 @@ fn the_largest_compression_is_that_of_all_dampers() {
         assert!((a / b - 1.0).abs() < 1e-5, "{near:?} and {far:?}");
     }
 }
+
+#[test]
+fn the_first_impulse_finds_the_energy_that_the_run_started_with() {
+    let mass = "single_mass: {mass: 1 kg, stiffness: 700 N/m, damping_ratio: 0.04}";
+    let scene = |comparison: &str| {
+        format!(
+            "  undamped_mass: base\n  mass_measure: {comparison}\n  dampers: [{{mass: 0.5 kg, gap: infinite, floor: {{rigid: {{restitution: 0}}}}}}]\n  \
+             excitation: {{impulse_train: {{impulse: 1 N s, angular_frequency: 17 rad/s}}}}\n  \
+             start: {{displacement: 0 mm, velocity: 2 m/s, particles: [on_floor]}}"
+        )
+    };
+    let rest = "run: {skip: 0 cycles, average: 1 cycles}\nmeasure: [mass_measure]";
+    let of = |comparison: &str| {
+        values(&evaluated(&experiment(mass, &scene(comparison), rest), SolverChoice::EventDriven))[0]
+    };
+    // T from 2 m/s to 2 + 1/1.5 m/s, and to 3 m/s without the particle that the floor takes along.
+    let (before, after, clean) = (2.0, 0.5 * (2.0_f64 + 1.0 / 1.5).powi(2), 4.5);
+    for (comparison, right) in
+        [("jump", (after - before) / (clean - before)), ("after", after / clean), ("level", (after - before) / before)]
+    {
+        assert!((of(comparison) - right).abs() < 1e-12, "{comparison}: {} is not {right}", of(comparison));
+    }
+}
+
+#[test]
+fn a_compression_is_uncertain_by_what_lies_between_its_samples() {
+    let of = |samples: u32| {
+        let rest = format!(
+            "trace: {{from: 0 cycles, to: 2 cycles, samples_per_cycle: {samples}}}\nrun: {{skip: 0 cycles, average: 2 cycles, \
+             ensemble: none}}\nmeasure: [floor_compression]"
+        );
+        evaluated(&experiment(MASS, &on_mass(FLOOR, IMPULSES), &rest), SolverChoice::EventDriven).measured[0]
+    };
+    let (coarse, fine) = (of(25), of(20_000));
+    assert!(fine.numerical < 1e-3 * coarse.numerical, "{fine:?} {coarse:?}");
+    assert!((coarse.value - fine.value).abs() <= coarse.numerical, "{coarse:?} {fine:?}");
+}

@@ -171,12 +171,18 @@ fn two_opt_sorts_by_swaps_and_stops_where_none_helps() {
     let weighted: Function = |x| x.iter().enumerate().map(|(i, x)| i as f64 * x).sum();
     let start = [1.0, 4.0, 2.0, 3.0];
     let score = Score { value: weighted(&start) };
-    let found = two_opt(&start, score, &mut exact(weighted)).unwrap();
+    let found = two_opt(&start, score, &cube([0.0, 4.0], 4), &mut exact(weighted)).unwrap();
     assert_eq!(found.point, [4.0, 3.0, 2.0, 1.0]);
-    let again = two_opt(&found.point, found.score, &mut exact(weighted)).unwrap();
+    let again = two_opt(&found.point, found.score, &cube([0.0, 4.0], 4), &mut exact(weighted)).unwrap();
     assert_eq!((again.point, again.evaluations), (found.point, 6));
-    let uniform = two_opt(&[2.0; 4], Score { value: 1.0 }, &mut exact(weighted)).unwrap();
+    let uniform = two_opt(&[2.0; 4], Score { value: 1.0 }, &cube([0.0, 4.0], 4), &mut exact(weighted)).unwrap();
     assert_eq!(uniform.evaluations, 0, "equal values have nothing to swap");
+
+    // Only the first two have room for the value of the other.
+    let sides = Bounds::new(vec![[0.0, 5.0], [0.0, 5.0], [1.5, 2.5], [2.5, 3.5]]).unwrap();
+    let held = two_opt(&start, score, &sides, &mut exact(weighted)).unwrap();
+    assert_eq!(held.point, [4.0, 1.0, 2.0, 3.0]);
+    assert!(sides.hold(&held.point));
 }
 
 #[test]
@@ -238,7 +244,7 @@ fn searches_end_at_the_same_point_when_evaluations_that_cannot_win_are_stopped()
         let searches = |evaluate: &mut shotdamp::optimise::Function<'_, Infallible>| {
             let generations = Stopping { generations: Some(4), ..Stopping::default() };
             let genetic = minimise(&mut genetic(bounds.clone(), landscape), &generations, evaluate).unwrap().unwrap();
-            let swapped = two_opt(&genetic.point, genetic.score, evaluate).unwrap();
+            let swapped = two_opt(&genetic.point, genetic.score, &bounds, evaluate).unwrap();
             let budget = Stopping { evaluations: Some(100), ..Stopping::default() };
             let mut peer = CmaEs::new(bounds.clone(), None, landscape);
             let peer = minimise(&mut peer, &budget, evaluate).unwrap().unwrap();

@@ -414,7 +414,7 @@ optimise:
     let generations = Stopping { generations: Some(2), ..Stopping::default() };
     let mut genetic = Genetic::new(bounds.clone(), settings, 1, &[]);
     let genetic = minimise(&mut genetic, &generations, &mut in_full).unwrap().unwrap();
-    let swapped = two_opt(&genetic.point, genetic.score, &mut in_full).unwrap();
+    let swapped = two_opt(&genetic.point, genetic.score, &bounds, &mut in_full).unwrap();
     let settings = Dense { points: 3, spacing: Spacing::Log, refine: 1 };
     let dense = dense(&bounds, settings, &mut in_full).unwrap().unwrap();
 

@@ -7,7 +7,7 @@ use shotdamp::reference::{
     Judged, Price, Printed, ReferenceFile, TableState, Tables, Verdict, judge, load_reference, parse_reference,
     self_test,
 };
-use shotdamp::table::{Column, Data, Table};
+use shotdamp::table::{Column, DEPENDS_ON, Data, Table};
 
 const EXPERIMENT: &str = "ch3-example";
 
@@ -566,6 +566,29 @@ fn another_experiments_table_can_be_part_of_a_claim() {
     tables.insert("ch3-other".into(), TableState::Present(&there));
     assert_eq!(judge(&file, &tables, &BTreeSet::new())[0].verdict, Verdict::Reproduced);
     assert_eq!(self_test(&file, &tables), []);
+}
+
+#[test]
+fn a_move_counts_if_every_table_that_is_read_was_run_with_it_or_does_not_depend_on_it() {
+    let table = |rows: &[(&str, f64)], depends_on: &str| Table {
+        metadata: [(DEPENDS_ON.to_string(), depends_on.to_string())].into(),
+        ..variants(rows, 0.0, 0.0, 1)
+    };
+    let here = table(&[("baseline", 2.0), ("gap=1", 2.5), ("stop=1", 1.0)], "gap, stop");
+    let there =
+        table(&[("baseline", 1.5), ("stop=1", 1.2), ("mass=1", 2.2), ("force=1", 1.0)], "force, gap, mass, stop");
+    let file = entry(
+        "claim: {greatest_first: [{cell: {of: velocity_ratio}}, {cell: {of: velocity_ratio, table: ch3-other}}]}",
+    );
+    let tables = Tables::from([
+        (EXPERIMENT.to_string(), TableState::Present(&here)),
+        ("ch3-other".to_string(), TableState::Present(&there)),
+    ]);
+    let judged = judge(&file, &tables, &BTreeSet::new()).remove(0);
+    let moves: Vec<_> = judged.moved.iter().map(|moved| (moved.variant.as_str(), moved.found.as_str())).collect();
+    // The other table was not run with the gap moved, though it depends on it; this one knows neither mass nor force.
+    assert_eq!(moves, [("stop=1", "false"), ("mass=1", "false"), ("force=1", "true")]);
+    assert_eq!(judged.robust, Some((1, 3)));
 }
 
 #[test]

@@ -4,7 +4,7 @@
 //! |---|---|
 //! | at rest on the floor, periodic, sticking, completed chatter | the last state is within a millionth of the motion of an orbit that closes (Newton's step with the multipliers of the last period) and no multiplier exceeds 1 |
 //! | chaotic | no such period, and a Lyapunov exponent above zero by three standard errors |
-//! | quasi-periodic | no such period, an exponent of zero within its standard error, which is small, and returns that come no closer with time, in a run that is long enough to see the slowest transient die away |
+//! | quasi-periodic | no such period, an exponent of zero within its standard error, which is small, and returns that come no closer with time and are not drawn to an orbit, in a run that is long enough to see the slowest transient die away |
 //! | not settled | anything else |
 
 use std::fmt;
@@ -26,6 +26,10 @@ const NEAR: f64 = 1e-3;
 const SETTLED: f64 = 1e-6;
 /// The same where impacts at one instant leave no multipliers to prove it: the state itself comes again.
 const REPEATED: f64 = 1e-9;
+/// Multipliers below this draw a run in, to an orbit within so much of the motion. Those of a motion that never comes again are 1 along it, near
+/// enough to a return.
+const DRAWS_IN: f64 = 0.995;
+const NEARBY: f64 = 1e-2;
 /// A multiplier of a motion without damping may round above 1 by this.
 pub(crate) const NEUTRAL: f64 = 1e-9;
 /// Standard errors that make an exponent positive.
@@ -54,7 +58,7 @@ pub enum MotionKind {
         /// Contacts made in that time.
         contacts: u64,
     },
-    /// The same after infinitely many impacts.
+    /// It comes again, and some particle comes to rest on a face after infinitely many impacts, whatever the others do.
     CompletedChatter {
         /// Periods of the drive.
         periods: u32,
@@ -178,9 +182,12 @@ impl FromStr for MotionKind {
 /// Names the motion that a tape ends in; exponents are of its last `window` cycles.
 pub(crate) fn name(system: &HybridSystem, tape: &Tape, window: usize) -> Result<Motion, EngineError> {
     let scale = Scale::new(system, &tape.reach);
+    let mut settles = false;
     for period in candidates(&scale, &tape.ends, NEAR) {
-        if let Some(motion) = closes(system, &scale, tape, period)? {
-            return Ok(motion);
+        match closes(system, &scale, tape, period)? {
+            Closing::Closes(motion) => return Ok(motion),
+            Closing::Settles => settles = true,
+            Closing::Open => {}
         }
     }
     let ends = &tape.ends[tape.ends.len() - window.min(tape.ends.len())..];
@@ -192,7 +199,7 @@ pub(crate) fn name(system: &HybridSystem, tape: &Tape, window: usize) -> Result<
             let is_zero = value.abs() <= error && error <= SHARP;
             if value > ERRORS * error {
                 MotionKind::Chaotic
-            } else if is_zero && closing(&scale, ends) > STEADY && shows_decay(system, tape, window) {
+            } else if is_zero && !settles && closing(&scale, ends) > STEADY && shows_decay(system, tape, window) {
                 MotionKind::QuasiPeriodic
             } else {
                 MotionKind::NotSettled
@@ -222,26 +229,37 @@ fn flows(tape: &Tape, cycles: usize) -> impl Iterator<Item = &Flow> {
     })
 }
 
+/// What a run comes to after so many cycles.
+enum Closing {
+    /// Its motion comes again.
+    Closes(Motion),
+    /// It is on its way to one that does.
+    Settles,
+    /// Neither.
+    Open,
+}
+
 /// The motion, if it comes again after so many cycles.
-fn closes(system: &HybridSystem, scale: &Scale, tape: &Tape, period: usize) -> Result<Option<Motion>, EngineError> {
+fn closes(system: &HybridSystem, scale: &Scale, tape: &Tape, period: usize) -> Result<Closing, EngineError> {
     let last = tape.ends.len() - 1;
     let (begin, end) = (&tape.ends[last - period], &tape.ends[last]);
     let (multipliers, residual) = if tape.last(period).any(|cycle| cycle.blurred) {
         if scale.apart(begin, end) > REPEATED {
-            return Ok(None);
+            return Ok(Closing::Open);
         }
         (Vec::new(), f64::NAN)
     } else {
         let map = Period::new(system, scale, tape.last(period));
         let Some(multipliers) = map.attracting(scale.miss(begin, end), 1.0 + NEUTRAL, SETTLED)? else {
-            return Ok(None);
+            let draws_in = map.attracting(scale.miss(begin, end), DRAWS_IN, NEARBY)?.is_some();
+            return Ok(if draws_in { Closing::Settles } else { Closing::Open });
         };
         (multipliers, map.residual())
     };
     let settled_after = settled_after(scale, &tape.ends, period, SETTLED);
     let left = multipliers.first().map(|largest| largest.modulus).filter(|modulus| *modulus > 0.0);
     let exponent = left.map(|modulus| Exponent { value: libm::log(modulus) / period as f64, error: 0.0 });
-    Ok(Some(Motion {
+    Ok(Closing::Closes(Motion {
         kind: kind(system, tape, period),
         multipliers,
         residual,
@@ -261,13 +279,13 @@ pub(crate) fn kind(system: &HybridSystem, tape: &Tape, period: usize) -> MotionK
     if count > 0 && contacts == 0 && visited().all(|state| state.iter().all(on_floor)) {
         return MotionKind::AtRest;
     }
-    let is_held = |j: usize| visited().any(|state| state[j].holds(&system.particles[j]));
-    if count == 0 || !(0..count).all(is_held) {
-        return MotionKind::Periodic { periods, contacts };
-    }
     if tape.last(period).any(|cycle| cycle.chatter) {
-        MotionKind::CompletedChatter { periods }
-    } else {
+        return MotionKind::CompletedChatter { periods };
+    }
+    let is_held = |j: usize| visited().any(|state| state[j].holds(&system.particles[j]));
+    if count > 0 && (0..count).all(is_held) {
         MotionKind::Sticking { periods, contacts }
+    } else {
+        MotionKind::Periodic { periods, contacts }
     }
 }

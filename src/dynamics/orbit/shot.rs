@@ -187,6 +187,14 @@ impl Shot {
         })
     }
 
+    /// Each contact has one upside down at the other face of the particle, be it at another instant or speed.
+    pub(super) fn has_both_sides(&self) -> bool {
+        let kinds = |event: &Event| (event.particle, event.kind);
+        let mirrored = |event: &Event| (event.particle, upside_down(event.kind));
+        let count = |of: (usize, EventKind)| self.response.events.iter().filter(|event| kinds(event) == of).count();
+        self.response.events.iter().all(|event| count(kinds(event)) == count(mirrored(event)))
+    }
+
     /// It comes again upside down after half a period, as far as its contacts tell.
     pub(super) fn comes_upside_down(&self, period: f64) -> bool {
         let (events, whole) = (&self.response.events, self.tape.ends.len() as f64 * period);

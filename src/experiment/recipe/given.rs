@@ -155,6 +155,7 @@ readings!(
     super::Reference,
     super::ArrayOrder,
     super::ForcingOrNatural,
+    super::MeanRatio,
     crate::measure::Comparison
 );
 

@@ -18,8 +18,8 @@ pub use parameter::{Parameter, ParameterValue, Takes};
 pub use parts::{
     ArrayOrder, ArrayRecipe, Carried, ContactDampingConstant, ContactDampingRatio, ContactDampingRecipe, DamperRecipe,
     ExcitationKind, ExcitationRecipe, Filling, FloorStiffness, ForcingOrNatural, GapRecipe, GapWord, ImpulseTime,
-    ImpulseTimeRecipe, MassReading, MassRecipe, ObserveRecipe, Part, PointsRecipe, Recipe, RecipeError, Reference,
-    StiffnessRecipe, StopRecipe, StrengthRecipe, SurfaceRecipe, TimingRecipe, WallRecipe,
+    ImpulseTimeRecipe, MassReading, MassRecipe, MeanRatio, ObserveRecipe, Part, PointsRecipe, Recipe, RecipeError,
+    Reference, StiffnessRecipe, StopRecipe, StrengthRecipe, SurfaceRecipe, TimingRecipe, WallRecipe,
 };
 pub use place::{Coordinate, PlaceRecipe};
 pub use slot::Slot;

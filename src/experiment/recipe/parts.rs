@@ -24,6 +24,8 @@ pub struct Recipe {
     pub undamped_mass: Given<Carried>,
     /// How the mass measure compares kinetic energies with those of the clean structure.
     pub mass_measure: Given<Comparison>,
+    /// What a velocity ratio over several settings is.
+    pub mean_ratio: Given<MeanRatio>,
     /// The dampers, in the order of the file.
     pub dampers: Vec<DamperRecipe>,
     /// They are taken out: the clean structure.
@@ -37,6 +39,16 @@ pub struct Recipe {
     pub observe: ObserveRecipe,
     /// Which mode natural frequencies and mode shapes are of, from 1; the forced one unless it is stated.
     pub mode: Option<u32>,
+}
+
+/// What a velocity ratio over several settings is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum MeanRatio {
+    /// The ratio of the mean RMS velocities: that of the structure at all settings together, which an optimisation reduces.
+    OfMeans,
+    /// The mean of the velocity ratios.
+    OfEach,
 }
 
 /// Where the motion is observed, and what is made of several points.

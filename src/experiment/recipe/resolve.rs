@@ -10,7 +10,7 @@ use std::collections::BTreeSet;
 use super::given::{AssumptionName, Assumptions, Given, Inputs};
 use super::parts::{
     Carried, ContactDampingConstant, ContactDampingRatio, ContactDampingRecipe, DamperRecipe, Filling, FloorStiffness,
-    GapRecipe, MassReading, MassRecipe, ObserveRecipe, Part, PointsRecipe, Recipe, RecipeError, Reference,
+    GapRecipe, MassReading, MassRecipe, MeanRatio, ObserveRecipe, Part, PointsRecipe, Recipe, RecipeError, Reference,
     StiffnessRecipe, StopRecipe, SurfaceRecipe, TimingRecipe,
 };
 use super::place::{PlaceRecipe, Places};
@@ -73,6 +73,14 @@ impl Recipe {
     /// As [`Recipe::resolve`].
     pub fn subject(&self, assumptions: &Assumptions, needs: Needs) -> Result<Subject, RecipeError> {
         self.read_subject(&Inputs::new(assumptions), needs)
+    }
+
+    /// What the velocity ratio is of several such scenes.
+    ///
+    /// # Errors
+    /// An assumption that is absent.
+    pub fn mean_ratio_under(&self, assumptions: &Assumptions) -> Result<MeanRatio, RecipeError> {
+        Inputs::new(assumptions).get(&self.mean_ratio)
     }
 
     /// The assumptions that such a measurement depends on: those that are read while it is resolved.

@@ -51,6 +51,7 @@ slots! {
     Gravity: of(Dimension::Acceleration), &[], "acceleration of gravity on the particles";
     UndampedMass: None, &["base", "loaded"], "what one mass weighs in the run without dampers";
     MassMeasure: None, &["jump", "after", "level"], "how the mass measure compares kinetic energies with those of the clean structure";
+    MeanRatio: None, &["of_means", "of_each"], "velocity ratio over several settings: that of the mean RMS velocities, or the mean of those of each";
     Modes: Some(Quantity::Count), &[], "number of modes, along each side of a plate";
     MassReading: RATIO, &["total", "modal"], "whose mass a mass ratio is a share of, or which share of the structure's";
     MasslessRatio: RATIO, &[], "mass ratio that stands for 0 under a resilient surface";

@@ -209,6 +209,24 @@ fn a_ball_on_a_table_goes_from_rest_through_doublings_to_chaos() {
 }
 
 #[test]
+fn a_ball_that_chatters_beside_one_that_flies_has_infinitely_many_impacts() {
+    let [chatters, flies] = [0.3, 0.6].map(|restitution| Table::new(restitution, 1.05));
+    let mut both = flies.scene();
+    both.dampers.push(damper(0.0, f64::INFINITY, rigid(0.3)));
+    let (StartState::Given { q, rate, mut particles }, StartState::Given { particles: more, .. }) =
+        (flies.on_orbit(1e-5), chatters.start(1e-3))
+    else {
+        panic!("both are given")
+    };
+    particles.extend(more);
+    let alone = motion(&flies.scene(), flies.on_orbit(1e-5), 400, 400);
+    assert_eq!(alone.kind.to_string(), "periodic 1:1");
+    let found = motion(&both, StartState::Given { q, rate, particles }, 400, 400);
+    assert_eq!(found.kind.to_string(), "completed chatter 1:∞");
+    close("multiplier of the ball that flies", found.multipliers[0].modulus, alone.multipliers[0].modulus, 1e-9);
+}
+
+#[test]
 fn the_exponent_of_a_chaotic_ball_is_that_of_the_impact_map() {
     let table = Table::new(0.9, 8.0);
     let found = motion(&table.scene(), table.start(0.01), 100, 4000);
