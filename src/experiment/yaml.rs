@@ -3,7 +3,7 @@
 //! A file comes from strangers: the tree is small by construction. Aliases are refused (so nothing multiplies), nesting
 //! is bounded (so nothing recurses deeply), and a file has one document of mappings with plain keys.
 
-use serde_yaml::granit_parser::{Event, Parser, ScalarStyle, ScanError, options};
+use granit_parser::{Event, Parser, ScalarStyle, ScanError, options};
 
 use super::diagnostic::{Findings, Span};
 
@@ -12,14 +12,14 @@ const DEEPEST: usize = 32;
 
 /// A value where it stands.
 #[derive(Debug)]
-pub(super) struct Node {
+pub(crate) struct Node {
     pub value: Value,
     /// A scalar's own place; a collection's is that of the key that introduces it.
     pub span: Span,
 }
 
 #[derive(Debug)]
-pub(super) enum Value {
+pub(crate) enum Value {
     /// Nothing after the key, `~` or `null`.
     Nothing,
     /// As written, without quotes.
@@ -37,7 +37,7 @@ impl Value {
 
 /// A key and its value.
 #[derive(Debug)]
-pub(super) struct Entry {
+pub(crate) struct Entry {
     pub key: String,
     pub key_span: Span,
     pub node: Node,
@@ -95,7 +95,7 @@ struct TreeReader<'f, I> {
 
 impl<'t, I> TreeReader<'_, I>
 where
-    I: Iterator<Item = Result<(Event<'t>, serde_yaml::granit_parser::Span), ScanError>>,
+    I: Iterator<Item = Result<(Event<'t>, granit_parser::Span), ScanError>>,
 {
     /// `None`: reported; `Some(None)`: the end.
     fn next(&mut self) -> Option<Option<Located<'t>>> {
