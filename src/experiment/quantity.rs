@@ -93,7 +93,11 @@ impl QuantityError {
             Self::NotDimensionless(_) | Self::UnknownUnit { wanted: None, .. } => Some("write the number alone".into()),
             Self::NotIn { unit, .. } => Some(format!("write the number alone, in {unit}, or with a unit of that kind")),
             Self::WhichFrequency(_) => Some("write the number alone, in the unit of its column".into()),
-            Self::NotANumber(_) | Self::NotFinite(_) => None,
+            Self::NotANumber(text) => {
+                let percent: f64 = text.strip_suffix('%')?.trim().parse().ok()?;
+                Some(format!("write the fraction: {}", percent / 100.0))
+            }
+            Self::NotFinite(_) => None,
         }
     }
 }

@@ -64,7 +64,7 @@ not_judged:
 11:13 a claim has no form `monotne` | did you mean `monotone`?
 12:9 an entry above has the id `second`
 15:13 a rise or fall lacks `direction`
-15:70 `5 %` is not a number
+15:70 `5 %` is not a number | write the fraction: 0.05
 16:5 an entry lacks `says`
 18:21 equality needs two numbers or more
 18:52 a distance is relative to the larger number, or absolute | write {relative: 0.01} or {absolute: 0.01}
