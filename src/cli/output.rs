@@ -6,7 +6,7 @@ use std::sync::OnceLock;
 use super::args::Colour;
 use super::error::CliError;
 use crate::experiment::Problems;
-use crate::study::Unread;
+use crate::study::Refused;
 use crate::text::words::counted;
 
 /// How this process prints; set once, from its arguments.
@@ -69,7 +69,7 @@ pub(super) fn print_progress(text: &str) {
 }
 
 /// Prints the errors of files that could not be used, with their places; framed on a terminal.
-pub(super) fn print_unread<'a>(unread: impl IntoIterator<Item = &'a Unread>) {
+pub(super) fn print_unread<'a>(unread: impl IntoIterator<Item = &'a Refused>) {
     for one in unread {
         match one.problems() {
             Some(problems) => print_problems(problems),

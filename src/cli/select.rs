@@ -9,7 +9,7 @@ use super::exit::Exit;
 use crate::atomic::place_of;
 use crate::experiment::closest;
 use crate::report::Judgement;
-use crate::study::{ASSUMPTIONS, Item, Layout, STUDY, Snapshot, Study, Summary, Texts, Unread, folder_of, stem};
+use crate::study::{ASSUMPTIONS, Item, Layout, Refused, STUDY, Snapshot, Study, Summary, Texts, folder_of, stem};
 
 /// The study that is meant.
 pub(super) fn layout(root: Option<&Path>) -> Result<Layout, CliError> {
@@ -109,7 +109,7 @@ pub(super) struct Chosen<'a> {
     /// Those that are known to be up to date.
     pub known: Vec<&'a Summary>,
     /// Files that could not.
-    pub unread: Vec<&'a Unread>,
+    pub unread: Vec<&'a Refused>,
     /// Ids of experiments and of reference files.
     pub ids: BTreeSet<&'a str>,
 }

@@ -15,13 +15,14 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 use serde_json::json;
 
-use super::at::{At, Definitions, Sketch};
-use super::diagnostic::{Findings, Problems, Span};
+use super::at::At;
+use super::diagnostic::{Problems, Span};
+use super::load::parsed;
 use super::reader::{no_such, word};
-use super::schema::of_file;
+use super::schema::described;
 use super::schema::parts::words_of;
 use super::word::words;
-use super::yaml::{Value, read_tree};
+use super::yaml::Value;
 
 /// What a study says of itself; every part may be absent.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
@@ -133,17 +134,13 @@ pub(super) const MOST_CHAPTERS: u32 = 99;
 /// # Errors
 /// Every mistake of the file, with its place.
 pub fn parse_study(file: &str, text: &str) -> Result<AboutStudy, Problems> {
-    let findings = Findings::default();
-    let about = read_tree(text, &findings).and_then(|root| read_about(At::Node(&root, &findings)));
-    findings.finish(file, text, about)
+    parsed(file, text, read_about)
 }
 
 /// JSON Schema of `study.yaml`.
 #[must_use]
 pub fn study_schema() -> serde_json::Value {
-    let definitions = Definitions::default();
-    let schema = Sketch::of("What the study is", &definitions, read_about);
-    of_file("Study", schema, definitions)
+    described("Study", "What the study is", read_about)
 }
 
 fn read_about(at: At<'_>) -> Option<AboutStudy> {

@@ -10,6 +10,7 @@ use std::cell::{Cell, RefCell};
 use serde::de::DeserializeOwned;
 use serde_json::{Map, Value as Schema, json};
 
+use super::choice::Choice;
 use super::diagnostic::{Findings, Span};
 use super::keys::{Key, Keys};
 use super::quantity::Dimension;
@@ -19,7 +20,7 @@ use super::yaml::{Entry, Node, Value};
 
 /// A place that is read, or described.
 #[derive(Clone, Copy)]
-pub(super) enum At<'t> {
+pub(crate) enum At<'t> {
     /// What stands there.
     Node(&'t Node, &'t Findings),
     /// What may stand there.
@@ -27,13 +28,13 @@ pub(super) enum At<'t> {
 }
 
 /// Definitions that several places share, by name.
-pub(super) type Definitions = RefCell<Map<String, Schema>>;
+pub(crate) type Definitions = RefCell<Map<String, Schema>>;
 
 /// Stands for the names of one's own in a description: one that every such mapping takes, of letters or digits.
 const ANY_NAME: &str = "1";
 
 /// The description of a place while it is made.
-pub(super) struct Sketch<'t> {
+pub(crate) struct Sketch<'t> {
     about: &'t str,
     alternatives: RefCell<Vec<Schema>>,
     definitions: &'t Definitions,
@@ -165,6 +166,17 @@ impl<'t> At<'t> {
         }
     }
 
+    /// What stands under `key`; of what does not, all of it.
+    pub fn under(self, key: &str) -> Self {
+        match self {
+            Self::Node(Node { value: Value::Mapping(entries), .. }, findings) => {
+                let entry = entries.iter().find(|entry| entry.key == key);
+                entry.map_or(self, |entry| Self::Node(&entry.node, findings))
+            }
+            _ => self,
+        }
+    }
+
     /// What stands here is of this kind; of a description nothing is known.
     pub fn holds(self, is_one: impl FnOnce(&Value) -> bool) -> bool {
         matches!(self, Self::Node(node, _) if is_one(&node.value))
@@ -209,6 +221,36 @@ impl<'t> At<'t> {
     /// A dimensionless number.
     pub fn number(self) -> Option<f64> {
         self.form(reader::number, |sketch| parts::number(sketch.about))
+    }
+
+    /// A number alone, or with a unit: in `unit` where that is known, and in SI otherwise.
+    pub fn number_in(self, unit: Option<&str>) -> Option<f64> {
+        self.form(
+            |node, findings| reader::number_in(node, unit, findings),
+            |sketch| parts::number_with_unit(sketch.about, unit),
+        )
+    }
+
+    /// A dimensionless number above zero.
+    pub fn number_above_zero(self) -> Option<f64> {
+        self.form(
+            |node, findings| match reader::number(node, findings)? {
+                value if value > 0.0 => Some(value),
+                _ => findings.wrong(node.span, "a number above zero is wanted"),
+            },
+            |sketch| json!({"description": sketch.about, "type": "number", "exclusiveMinimum": 0}),
+        )
+    }
+
+    /// A fraction that is not the whole: from 0 to less than 1.
+    pub fn fraction(self) -> Option<f64> {
+        self.form(
+            |node, findings| match reader::number(node, findings)? {
+                fraction if (0.0..1.0).contains(&fraction) => Some(fraction),
+                _ => findings.wrong(node.span, "a fraction is wanted, from 0 to less than 1"),
+            },
+            |sketch| parts::fraction(sketch.about),
+        )
     }
 
     /// A dimensionless number that is not negative.
@@ -383,60 +425,6 @@ impl<'t> At<'t> {
                 }
                 None
             }
-        }
-    }
-}
-
-/// What was chosen among named forms, or one of those that may be chosen.
-pub(super) enum Choice<'t> {
-    Read(reader::Choice<'t>, &'t Findings),
-    Sketch(&'static str, &'t Sketch<'t>, &'t Cell<bool>),
-}
-
-impl<'t> Choice<'t> {
-    /// The name.
-    pub fn name(&self) -> &'static str {
-        match self {
-            Self::Read(choice, _) => choice.name,
-            Self::Sketch(name, ..) => name,
-        }
-    }
-
-    /// The word alone, without values.
-    pub fn bare(&self) -> Option<()> {
-        match self {
-            Self::Read(choice, findings) => choice.bare(findings).map(|_| ()),
-            Self::Sketch(.., bare) => {
-                bare.set(true);
-                None
-            }
-        }
-    }
-
-    /// It is the word alone, which it may be.
-    pub fn is_bare(&self) -> bool {
-        match self {
-            Self::Read(choice, _) => choice.content.is_none(),
-            Self::Sketch(.., bare) => {
-                bare.set(true);
-                false
-            }
-        }
-    }
-
-    /// The mapping behind the colon.
-    pub fn keys(&self, what: &'static str) -> Option<Keys<'t>> {
-        match self {
-            Self::Read(choice, findings) => Keys::open(choice.values(findings)?, what, findings),
-            Self::Sketch(_, content, _) => Some(Keys::outline(content)),
-        }
-    }
-
-    /// What stands behind the colon, if anything does.
-    pub fn content(&self) -> Option<At<'t>> {
-        match self {
-            Self::Read(choice, findings) => choice.content.map(|node| At::Node(node, findings)),
-            Self::Sketch(_, content, _) => Some(At::Sketch(content)),
         }
     }
 }

@@ -25,16 +25,16 @@ use serde::Deserialize;
 use serde_json::{Value as Schema, json};
 
 use super::assumption_sheet::{AssumptionSheet, Quantity};
-use super::at::{At, Definitions, Sketch};
+use super::at::At;
 use super::diagnostic::{Findings, Problems, Span};
 use super::keys::Keys;
-use super::load::read;
+use super::load::{parsed, read};
 use super::reader::{all, no_such};
 use super::recipe::{AssumptionName, AssumptionValue};
 use super::schema::parts::{any_of, list};
-use super::schema::{assumptions, of_file};
+use super::schema::{assumptions, described};
 use super::solver::read_solver;
-use super::yaml::{Node, Value, read_tree};
+use super::yaml::{Node, Value};
 use crate::measure::SolverChoice;
 
 /// Most combinations of values of a full grid: each is a run of every experiment concerned.
@@ -181,9 +181,7 @@ pub fn load_calibration(path: &Path, sheet: &AssumptionSheet) -> Result<Calibrat
 /// # Errors
 /// Every mistake of the file, with its place.
 pub fn parse_calibration(file: &str, text: &str, sheet: &AssumptionSheet) -> Result<Calibration, Problems> {
-    let findings = Findings::default();
-    let calibration = read_tree(text, &findings).and_then(|root| calibration(At::Node(&root, &findings), sheet));
-    findings.finish(file, text, calibration)
+    parsed(file, text, |at| calibration(at, sheet))
 }
 
 fn calibration(at: At<'_>, sheet: &AssumptionSheet) -> Option<Calibration> {
@@ -386,7 +384,5 @@ fn value(
 /// JSON Schema of a calibration file, with the assumptions of the study.
 #[must_use]
 pub fn calibration_schema(sheet: &AssumptionSheet) -> Schema {
-    let definitions = Definitions::default();
-    let schema = Sketch::of("A calibration", &definitions, |at| calibration(at, sheet));
-    of_file("Calibration", schema, definitions)
+    described("Calibration", "A calibration", |at| calibration(at, sheet))
 }

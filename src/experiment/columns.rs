@@ -5,15 +5,20 @@ use serde_json::json;
 use super::recipe::{GapWord, Parameter};
 
 use super::continuation::BranchColumn;
-use super::definition::{Joined, Maximise};
+use super::definition::{Case, Experiment, Joined, Maximise};
+use super::diagnostic::{Findings, Span};
+use super::reader::unknown;
 use super::schema::parts::any_of;
 use super::starts::{BasinColumn, START_LISTS, Starts};
 use super::word::{from_word, word_of, words};
-use crate::measure::{CycleValue, Measure, PROOF, energy_columns, of_another_damper, trace_columns, unit_of_list};
+use crate::measure::{
+    CycleSpec, CycleValue, EnergySpec, Measure, PROOF, ShapeSpec, TraceSpec, energy_columns, of_another_damper,
+    shape_columns, trace_columns, unit_of_list,
+};
 
 /// What a column holds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Role {
+pub(crate) enum Role {
     /// A number a row.
     Number,
     /// A word a row: splits lines, is no axis.
@@ -34,9 +39,58 @@ impl Role {
 }
 
 /// Lists that rows keep, and what they hold.
-pub(super) struct Lists {
+pub(crate) struct Lists {
     pub names: Vec<&'static str>,
     pub role: Role,
+}
+
+/// Columns of words of tables of all kinds.
+const LABELS: [&str; 6] = ["sweep", "direction", "solver", "variant", "candidate", "stopped"];
+
+impl Lists {
+    /// Of what is kept, one at most.
+    pub fn kept(
+        trace: Option<&TraceSpec>,
+        energies: Option<&EnergySpec>,
+        shape: Option<&ShapeSpec>,
+        each_cycle: Option<&CycleSpec>,
+    ) -> Self {
+        let (names, role) = match (trace, energies, shape, each_cycle) {
+            (Some(_), ..) => (trace_columns(), Role::History),
+            (_, Some(_), ..) => (energy_columns(), Role::History),
+            (_, _, Some(shape), _) => (shape_columns(shape), Role::History),
+            (.., Some(each)) => (vec![words::<CycleValue>()[each.of as usize]], Role::Cloud),
+            _ => (Vec::new(), Role::History),
+        };
+        Self { names, role }
+    }
+}
+
+impl Experiment {
+    /// The columns that its table will have.
+    pub(crate) fn columns(&self) -> Columns {
+        if let Some(orbit) = &self.orbit {
+            return Columns::of_branches(orbit.along, &self.measures);
+        }
+        if let Some(optimise) = &self.optimise {
+            return Columns::of_candidates(optimise.bounds.len(), optimise.gaps, &self.measures);
+        }
+        let (trace, energies) = (self.trace.as_ref(), self.energies.as_ref());
+        let lists = Lists::kept(trace, energies, self.shape.as_ref(), self.each_cycle.as_ref());
+        let labels = labels(&self.cases);
+        let columns = Columns::of(&self.swept, &labels, &self.measures, self.maximise.as_ref(), &lists);
+        match &self.starts {
+            Some(starts) => columns.with_basins(starts),
+            None => columns,
+        }
+    }
+}
+
+/// Columns that tell parts of a sweep apart.
+pub(super) fn labels(cases: &[Case]) -> Vec<&'static str> {
+    let named = cases.iter().any(|case| !case.sweep.is_empty()).then_some("sweep");
+    let directed = cases.iter().any(|case| case.direction.is_some()).then_some("direction");
+    named.into_iter().chain(directed).collect()
 }
 
 /// Names of what became of a candidate.
@@ -46,7 +100,7 @@ const OUTCOME: [&str; 4] = ["fitness_in_search", "improvement", "improvement_num
 const SEARCHES: [&str; 5] = ["evaluation", "best_so_far", "along_gap", "fitness_along", "fitness_along_spread"];
 
 /// Columns with what they hold, in the order of the table.
-pub(super) struct Columns {
+pub(crate) struct Columns {
     list: Vec<(String, Role)>,
     /// How the points of a line are joined.
     pub joined: Joined,
@@ -61,7 +115,7 @@ impl Columns {
             &trace_columns(),
             &energy_columns(),
             words::<CycleValue>(),
-            &["sweep", "direction", "solver", "variant", "candidate"],
+            &LABELS,
         ];
         let known = parts.concat().into_iter().chain(BranchColumn::ALL.map(BranchColumn::name));
         let known = known.chain(BasinColumn::ALL.map(BasinColumn::name)).chain(START_LISTS.map(|(name, _)| name));
@@ -73,6 +127,11 @@ impl Columns {
         }
         let any = json!({"type": "string", "pattern": "^[a-z][a-z0-9_]*$"});
         any_of("A column of the table", vec![json!({"enum": offered}), any])
+    }
+
+    /// Reports a name that is none of them; `table` says whose they are.
+    pub fn unknown<T>(&self, table: &str, name: &str, span: Span, findings: &Findings) -> Option<T> {
+        unknown(findings, span, table, "column", name, &self.names())
     }
 
     /// The columns of an experiment made of these parts.
@@ -163,6 +222,15 @@ impl Columns {
         let measured = ["_num", "_spread"].iter().find_map(|suffix| name.strip_suffix(suffix)).unwrap_or(name);
         let parameter = from_word(name).map(Parameter::unit);
         parameter.or_else(|| from_word(measured).map(Measure::unit)).or_else(|| unit_of_list(name))
+    }
+
+    /// True if a column of this name holds words.
+    pub fn holds_words(name: &str) -> bool {
+        let of_parameter = |parameter: Parameter| !parameter.words().is_empty();
+        let branch = || BranchColumn::ALL.into_iter().find(|column| column.name() == name).map(BranchColumn::is_word);
+        let basin = || BasinColumn::ALL.into_iter().find(|column| column.name() == name).map(BasinColumn::is_word);
+        let known = from_word(name).map(of_parameter).or_else(|| from_word(name).map(Measure::is_name));
+        LABELS.contains(&name) || known.or_else(branch).or_else(basin).unwrap_or(false)
     }
 
     /// All names.

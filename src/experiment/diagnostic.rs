@@ -10,7 +10,7 @@ use miette::{GraphicalReportHandler, GraphicalTheme, LabeledSpan, NamedSource, S
 
 /// A range of bytes in a file's text.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub(super) struct Span {
+pub(crate) struct Span {
     pub start: usize,
     pub end: usize,
 }
@@ -90,6 +90,16 @@ impl Problems {
         };
         let list: Vec<Problem> = list.map(warning).collect();
         (!list.is_empty()).then(|| Self { file: file.into(), list, text: harmless(text) })
+    }
+
+    /// Each problem as it is shown, with its line, if it has one.
+    #[must_use]
+    pub fn one_by_one(&self) -> Vec<(Option<u64>, String)> {
+        let one = |problem: &Problem| {
+            let alone = Self { list: vec![problem.clone()], ..self.clone() };
+            (problem.place.and_then(|place| u64::try_from(place.line).ok()), alone.to_string())
+        };
+        self.list.iter().map(one).collect()
     }
 
     /// The same for a person at a terminal: framed source snippets, in colour if asked for.
@@ -195,7 +205,7 @@ const MOST_TOLD: usize = 100;
 
 /// Where readers put what they find, so that one mistake does not hide the next.
 #[derive(Debug, Default)]
-pub(super) struct Findings {
+pub(crate) struct Findings {
     list: RefCell<Vec<(Span, String, Option<String>)>>,
 }
 
@@ -276,7 +286,7 @@ fn span_at(text: &str, line: u64, column: u64) -> Span {
     Span { start: start + offset, end: start + offset + word.len().max(1) }
 }
 
-pub(super) fn place(text: &str, span: Span) -> Place {
+pub(crate) fn place(text: &str, span: Span) -> Place {
     let mut offset = span.start.min(text.len());
     while !text.is_char_boundary(offset) {
         offset -= 1;

@@ -1,7 +1,8 @@
 //! The excitation of a scene.
 
 use super::assumption_sheet::Takes;
-use super::at::{At, Choice};
+use super::at::At;
+use super::choice::Choice;
 use super::keys::{Key, Keys};
 use super::quantity::Dimension;
 use super::recipe::{

@@ -10,7 +10,7 @@ use super::definition::{
 use super::diagnostic::{Findings, Span};
 use super::keys::Keys;
 use super::quantity::worth;
-use super::reader::{number, scalar, unknown};
+use super::reader::{number, scalar};
 use super::schema::parts;
 use super::sweep::{NAME, is_name};
 use super::word::word_of;
@@ -276,7 +276,7 @@ impl FigureReader<'_> {
                 format!("`{name}` is a time history, and this experiment keeps none"),
                 Some("add `trace: {from: … cycles, to: … cycles, samples_per_cycle: …}`".into()),
             ),
-            None => unknown(self.findings, span, "the table of this experiment", "column", name, &columns.names()),
+            None => columns.unknown("the table of this experiment", name, span, self.findings),
         }
     }
 }

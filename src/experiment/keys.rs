@@ -12,7 +12,7 @@ use super::word::closest;
 use super::yaml::{Entry, Node, Value};
 
 /// A mapping. The keys that a reader asks for are the keys that exist.
-pub(super) enum Keys<'t> {
+pub(crate) enum Keys<'t> {
     /// As it is written.
     Read(Fields<'t>),
     /// As it may be written.
@@ -20,7 +20,7 @@ pub(super) enum Keys<'t> {
 }
 
 /// A key, with what an editor says of it.
-pub(super) type Key<'a> = (&'static str, &'a str);
+pub(crate) type Key<'a> = (&'static str, &'a str);
 
 impl<'t> Keys<'t> {
     /// Opens `node` as a mapping; `what` names it in messages (`a damper`).
@@ -59,6 +59,11 @@ impl<'t> Keys<'t> {
     /// Where its value stands, if it is there.
     pub fn span_of(&self, key: &'static str) -> Option<Span> {
         self.get(key).map(At::span)
+    }
+
+    /// A part that may be absent, and is this then.
+    pub fn or<T>(&self, key: &'static str, about: &str, read: impl FnOnce(At<'_>) -> Option<T>, usual: T) -> Option<T> {
+        self.optional(key, about, read).map(|given| given.unwrap_or(usual))
     }
 
     /// A part that must be there. `None`: reported.
@@ -172,10 +177,17 @@ impl<'t> Keys<'t> {
 
     /// A part that should have been there, as nothing stands for it.
     pub fn lacks<T>(&self, key: &'static str) -> Option<T> {
-        match self {
-            Self::Read(fields) => fields.required(key, |_| None),
-            Self::Outline(..) => None,
+        self.wants(&[key], "")
+    }
+
+    /// The same of one of several parts, with what it would say.
+    pub fn wants<T>(&self, keys: &[&'static str], what: &'static str) -> Option<T> {
+        if let Self::Read(fields) = self
+            && keys.iter().all(|key| fields.get(key).is_none())
+        {
+            fields.missing.borrow_mut().push((keys.to_vec(), what));
         }
+        None
     }
 
     /// Where those of `others` stand that are beside `key`, which none of them may be.
@@ -244,14 +256,14 @@ impl<'t> Keys<'t> {
 }
 
 /// A mapping as it is written, while it is read.
-pub(super) struct Fields<'t> {
+pub(crate) struct Fields<'t> {
     findings: &'t Findings,
     entries: &'t [Entry],
     what: &'static str,
     span: Span,
     asked: RefCell<Vec<&'static str>>,
-    /// Of each of these groups one key should have been there.
-    missing: RefCell<Vec<Vec<&'static str>>>,
+    /// Of each of these groups one key should have been there, which says so.
+    missing: RefCell<Vec<(Vec<&'static str>, &'static str)>>,
 }
 
 impl<'t> Fields<'t> {
@@ -285,7 +297,7 @@ impl<'t> Fields<'t> {
         match self.get(key) {
             Some(node) => read(node),
             None => {
-                self.missing.borrow_mut().push(vec![key]);
+                self.missing.borrow_mut().push((vec![key], ""));
                 None
             }
         }
@@ -307,7 +319,7 @@ impl<'t> Fields<'t> {
             [(key, entry)] => Some(Some((key, &entry.node))),
             [(first, _), (second, entry), ..] => self.findings.report(
                 entry.key_span,
-                format!("{} has both `{first}` and `{second}`, which say the same", self.what),
+                format!("{} has both `{first}` and `{second}`, of which one is wanted", self.what),
                 Some("keep one of the two".into()),
             ),
         }
@@ -317,7 +329,7 @@ impl<'t> Fields<'t> {
     fn exactly_one(&self, keys: &[&'static str]) -> Option<(&'static str, &'t Node)> {
         let given = self.at_most_one(keys)?;
         if given.is_none() {
-            self.missing.borrow_mut().push(keys.to_vec());
+            self.missing.borrow_mut().push((keys.to_vec(), ""));
         }
         given
     }
@@ -333,12 +345,14 @@ impl<'t> Fields<'t> {
         let asked = self.asked.borrow();
         let unknown_keys = || self.entries.iter().filter(|entry| !asked.contains(&&*entry.key));
         let mut fine = self.missing.borrow().is_empty();
-        for group in self.missing.borrow().iter() {
+        for (group, what) in self.missing.borrow().iter() {
             // A misspelt key is reported itself, with the right spelling.
             let meant = |entry: &Entry| closest(&entry.key, asked.iter().copied());
             if !unknown_keys().filter_map(meant).any(|key| group.contains(&key)) {
                 let wanted: Vec<_> = group.iter().map(|key| format!("`{key}`")).collect();
-                self.findings.wrong::<()>(self.span, format!("{} lacks {}", self.what, wanted.join(" or ")));
+                let colon = if what.is_empty() { "" } else { ": " };
+                let message = format!("{} lacks {}{colon}{what}", self.what, wanted.join(" or "));
+                self.findings.wrong::<()>(self.span, message);
             }
         }
         for entry in unknown_keys() {

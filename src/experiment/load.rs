@@ -9,10 +9,11 @@ use crate::atomic::from_here;
 
 use super::assumption_reader::parse_assumptions;
 use super::assumption_sheet::AssumptionSheet;
+use super::at::At;
 use super::definition::{Experiment, ExperimentId};
-use super::diagnostic::Problems;
+use super::diagnostic::{Findings, Problems};
 use super::validate::parse_experiment;
-use super::yaml::{LONGEST, too_long};
+use super::yaml::{LONGEST, read_tree, too_long};
 use crate::text::utf8::decode;
 
 /// Reads an experiment; its id is the file's name without ending. Every case is tried against `assumptions`.
@@ -37,7 +38,17 @@ pub fn load_assumptions(path: &Path) -> Result<AssumptionSheet, Problems> {
     parse_assumptions(&file, &read(path, &file)?)
 }
 
-pub(super) fn read(path: &Path, file: &str) -> Result<String, Problems> {
+/// What `reader` makes of a text; `file` only names it in messages.
+///
+/// # Errors
+/// Every mistake of the text, with its place.
+pub(crate) fn parsed<T>(file: &str, text: &str, reader: impl FnOnce(At<'_>) -> Option<T>) -> Result<T, Problems> {
+    let findings = Findings::default();
+    let value = read_tree(text, &findings).and_then(|root| reader(At::Node(&root, &findings)));
+    findings.finish(file, text, value)
+}
+
+pub(crate) fn read(path: &Path, file: &str) -> Result<String, Problems> {
     let cannot = |error: std::io::Error| Problems::unreadable(file, format!("cannot be read: {error}"), None);
     let mut bytes = Vec::new();
     File::open(path).map_err(cannot)?.take(LONGEST as u64 + 1).read_to_end(&mut bytes).map_err(cannot)?;

@@ -9,6 +9,7 @@ mod assumption_sheet;
 mod at;
 mod calibration;
 mod check;
+mod choice;
 mod columns;
 mod continuation;
 mod continuation_reader;
@@ -45,7 +46,6 @@ mod starts_reader;
 mod stated;
 mod structure;
 mod sweep;
-mod typed;
 mod validate;
 mod word;
 mod yaml;
@@ -57,22 +57,27 @@ pub use assumption_reader::parse_assumptions;
 pub use assumption_sheet::{
     ASSUMPTIONS, AssumptionEntry, AssumptionKind, AssumptionSheet, Cycles, Moved, Quantity, Takes,
 };
+pub(crate) use at::At;
 pub use calibration::{
     Calibration, CalibrationInput, CalibrationSearch, Residual, Tried, calibration_schema, load_calibration,
     parse_calibration,
 };
+pub(crate) use columns::Columns;
 pub use continuation::{BranchColumn, Continuation, RowSource, Stability};
 pub use continued::{ContinuedSweep, Direction};
 pub use definition::{
     AnimationSpec, Axis, AxisScale, AxisUnit, Band, Best, Case, Drawing, Experiment, ExperimentId, FigureSpec, IdError,
     Joined, Level, MapSpec, Mark, Maximise, Only, Panel, PeakMarks, SearchPoint, Source, Strip, Transient,
 };
+pub(crate) use diagnostic::{Findings, Span, place};
 pub use diagnostic::{Place, Problem, Problems, Severity};
 pub(crate) use edit::{Written, set_keys};
 pub(crate) use figure::SCENE_DRAWING;
+pub(crate) use keys::Keys;
 pub use limit::{NoLimit, RowLimit};
 pub use line::line_of;
 pub use load::{load_assumptions, load_experiment};
+pub(crate) use load::{parsed, read};
 pub use optimise::{Candidate, Goal, Landscape, Optimise, Search, SearchKind, SearchSpacing};
 pub use quantity::{Dimension, QuantityError, parse_number, parse_quantity};
 pub use recipe::{
@@ -87,10 +92,9 @@ pub(crate) use refined::{Curve, by_strength, curves};
 pub use refined::{Refinement, Threshold};
 pub use scaffold::{scaffold, structures};
 pub use schema::assumptions_schema;
-pub(crate) use schema::{Object, list, text, words_of};
+pub(crate) use schema::{described, words_of};
 pub use starts::{BasinColumn, HeightBox, Interval, ParticleBox, Rank, START_LISTS, Starts};
-pub use typed::{Located, from_yaml};
-pub(crate) use typed::{Spanned, position};
 pub(crate) use validate::{Cases, parse_with};
 pub use validate::{experiment_schema, parse_experiment};
 pub(crate) use word::closest;
+pub(crate) use yaml::Value;

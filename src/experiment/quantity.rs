@@ -61,6 +61,17 @@ pub enum QuantityError {
         /// What is wanted.
         wanted: Option<Dimension>,
     },
+    /// A frequency for a column that is not known.
+    #[error("`{0}` may stand in a column in rad/s or in one in Hz")]
+    WhichFrequency(String),
+    /// A unit of another kind than a column's.
+    #[error("`{text}` is not in {unit}")]
+    NotIn {
+        /// As written.
+        text: String,
+        /// The column's.
+        unit: String,
+    },
     /// A unit of the wrong kind.
     #[error("`{text}` is not {name}", name = .wanted.name())]
     WrongKind {
@@ -80,7 +91,13 @@ impl QuantityError {
             | Self::WrongKind { wanted, .. }
             | Self::UnknownUnit { wanted: Some(wanted), .. } => Some(format!("write for example {}", wanted.example())),
             Self::NotDimensionless(_) | Self::UnknownUnit { wanted: None, .. } => Some("write the number alone".into()),
-            Self::NotANumber(_) | Self::NotFinite(_) => None,
+            Self::NotIn { unit, .. } => Some(format!("write the number alone, in {unit}, or with a unit of that kind")),
+            Self::WhichFrequency(_) => Some("write the number alone, in the unit of its column".into()),
+            Self::NotANumber(text) => {
+                let percent: f64 = text.strip_suffix('%')?.trim().parse().ok()?;
+                Some(format!("write the fraction: {}", percent / 100.0))
+            }
+            Self::NotFinite(_) => None,
         }
     }
 }
@@ -247,6 +264,32 @@ pub fn parse_number(text: &str) -> Result<f64, QuantityError> {
         "" => Ok(value),
         _ if parse_unit(unit).is_ok() => Err(QuantityError::NotDimensionless(text.into())),
         _ => Err(QuantityError::NotANumber(text.into())),
+    }
+}
+
+/// Reads a number alone, or with a unit: in `own` where that is known, which may be none, and in SI otherwise.
+pub(super) fn parse_in(text: &str, own: Option<&str>) -> Result<f64, QuantityError> {
+    let text = text.trim();
+    let (number, unit) = split_number(text)?;
+    if unit.is_empty() || own == Some(unit) {
+        return number.value(0, text);
+    }
+    let unknown = |symbol: &str| QuantityError::UnknownUnit { unit: symbol.into(), wanted: None };
+    let Unit { powers, ten } = parse_unit(unit).map_err(unknown)?;
+    let radians = Dimension::AngularFrequency.powers();
+    let not_in = |own: &str| QuantityError::NotIn { text: text.into(), unit: own.into() };
+    let wanted = match own {
+        Some("") => return Err(QuantityError::NotDimensionless(text.into())),
+        Some(own) => parse_unit(own).map_err(|_| not_in(own))?,
+        None if [HERTZ, radians].contains(&powers) => return Err(QuantityError::WhichFrequency(text.into())),
+        None => Unit { powers, ten: 0 },
+    };
+    let value = number.value(ten - wanted.ten, text)?;
+    match (powers, wanted.powers) {
+        (given, wanted) if given == wanted => Ok(value),
+        (HERTZ, wanted) if wanted == radians => Ok(value * TAU),
+        (given, HERTZ) if given == radians => Ok(value / TAU),
+        _ => Err(not_in(own.unwrap_or_default())),
     }
 }
 

@@ -5,7 +5,7 @@
 use serde::de::DeserializeOwned;
 
 use super::diagnostic::{Findings, Span};
-use super::quantity::{Dimension, QuantityError, parse_number, parse_quantity};
+use super::quantity::{Dimension, QuantityError, parse_in, parse_number, parse_quantity};
 use super::recipe::Parameter;
 use super::word::{closest, from_word, words};
 use super::yaml::{Node, Value};
@@ -97,6 +97,11 @@ pub(super) fn quantity(node: &Node, wanted: Dimension, findings: &Findings) -> O
     measured(node, findings, parse_quantity(scalar(node, findings)?, wanted))
 }
 
+/// A number alone, or with a unit: in `unit` where that is known, and in SI otherwise.
+pub(super) fn number_in(node: &Node, unit: Option<&str>, findings: &Findings) -> Option<f64> {
+    measured(node, findings, parse_in(scalar(node, findings)?, unit))
+}
+
 /// A quantity above zero.
 pub(super) fn above_zero(node: &Node, wanted: Dimension, findings: &Findings) -> Option<f64> {
     let value = quantity(node, wanted, findings)?;
@@ -173,7 +178,7 @@ pub(super) fn all<T>(values: impl Iterator<Item = Option<T>>) -> Option<Vec<T>> 
 }
 
 /// What was chosen among named forms: `rigid`, or `resilient: {…}`.
-pub(super) struct Choice<'t> {
+pub(crate) struct Choice<'t> {
     pub name: &'static str,
     /// What stands behind the colon.
     pub content: Option<&'t Node>,

@@ -7,9 +7,9 @@ use std::iter;
 
 use super::about_study::MOST_CHAPTERS;
 use super::assumption_sheet::AssumptionSheet;
-use super::at::{At, Definitions, Sketch};
+use super::at::At;
 use super::check::Checks;
-use super::columns::{Columns, Lists, Role};
+use super::columns::{Columns, Lists, labels};
 use super::continuation_reader::{ReadContinuation, read_continuation};
 use super::definition::{Case, Experiment, ExperimentId, Maximise, Source};
 use super::diagnostic::{Findings, Problems, Span};
@@ -26,11 +26,9 @@ use super::schema;
 use super::starts_reader::{ReadStarts, read_starts};
 use super::stated::{STATED, read_statements, without_source};
 use super::sweep::{ReadSweep, read_sweep};
-use super::word::{word_of, words};
+use super::word::word_of;
 use super::yaml::read_tree;
-use crate::measure::{
-    CycleValue, Measure, NamedRows, Settings, ShapeOf, SolverChoice, energy_columns, shape_columns, trace_columns,
-};
+use crate::measure::{Measure, NamedRows, Settings, ShapeOf, SolverChoice};
 
 /// Reads an experiment from its text; `file` only names it in messages.
 ///
@@ -73,11 +71,10 @@ pub(crate) fn parse_with(
 /// JSON Schema of an experiment; of the study's assumptions it offers those that fit a place.
 #[must_use]
 pub fn experiment_schema(sheet: &AssumptionSheet) -> serde_json::Value {
-    let (findings, assumptions, definitions) = (Findings::default(), sheet.assumptions(), Definitions::default());
+    let (findings, assumptions) = (Findings::default(), sheet.assumptions());
     let reader = ExperimentReader { findings: &findings, assumptions: &assumptions, cases: Cases::Tried };
     let any = ExperimentId(String::new());
-    let schema = Sketch::of("An experiment", &definitions, |at| reader.experiment(&any, at));
-    schema::of_file("Experiment", schema, definitions)
+    schema::described("Experiment", "An experiment", |at| reader.experiment(&any, at))
 }
 
 struct ExperimentReader<'t> {
@@ -152,15 +149,7 @@ impl<'t> ExperimentReader<'t> {
 
         let kept = match (&trace, &energies, &shape, &each_cycle) {
             (Some(trace), Some(energies), Some(shape), Some(each_cycle)) => {
-                Some(match (trace, energies, shape, each_cycle) {
-                    (Some(_), ..) => Lists { names: trace_columns(), role: Role::History },
-                    (_, Some(_), ..) => Lists { names: energy_columns(), role: Role::History },
-                    (_, _, Some(shape), _) => Lists { names: shape_columns(shape), role: Role::History },
-                    (.., Some(each)) => {
-                        Lists { names: vec![words::<CycleValue>()[each.of as usize]], role: Role::Cloud }
-                    }
-                    _ => Lists { names: Vec::new(), role: Role::History },
-                })
+                Some(Lists::kept(trace.as_ref(), energies.as_ref(), shape.as_ref(), each_cycle.as_ref()))
             }
             _ => None,
         };
@@ -180,10 +169,7 @@ impl<'t> ExperimentReader<'t> {
             }
             (Some(sweep), Some(measures), Some(maximise), Some(kept)) => {
                 let swept = sweep.as_ref().map_or(&[][..], |sweep| &sweep.swept);
-                let some = |test: fn(&Case) -> bool| sweep.as_ref().is_some_and(|sweep| sweep.cases.iter().any(test));
-                let mut labels = Vec::new();
-                labels.extend(some(|case| !case.sweep.is_empty()).then_some("sweep"));
-                labels.extend(some(|case| case.direction.is_some()).then_some("direction"));
+                let labels = labels(sweep.as_ref().map_or(&[], |sweep| &sweep.cases));
                 let columns = Columns::of(swept, &labels, &words_only(measures), maximise.as_ref(), kept);
                 match &starts {
                     Some(Some(read)) => Some(columns.with_basins(&read.starts)),

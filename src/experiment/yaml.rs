@@ -12,14 +12,14 @@ const DEEPEST: usize = 32;
 
 /// A value where it stands.
 #[derive(Debug)]
-pub(super) struct Node {
+pub(crate) struct Node {
     pub value: Value,
     /// A scalar's own place; a collection's is that of the key that introduces it.
     pub span: Span,
 }
 
 #[derive(Debug)]
-pub(super) enum Value {
+pub(crate) enum Value {
     /// Nothing after the key, `~` or `null`.
     Nothing,
     /// As written, without quotes.
@@ -37,7 +37,7 @@ impl Value {
 
 /// A key and its value.
 #[derive(Debug)]
-pub(super) struct Entry {
+pub(crate) struct Entry {
     pub key: String,
     pub key_span: Span,
     pub node: Node,

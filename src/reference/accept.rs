@@ -1,6 +1,7 @@
 //! Accepting what came out: the verdict that an entry expects is changed in its file, with the reason.
 
-use super::entry::{Entry, ReferenceFile, parse_reference};
+use super::entry::{Entry, ReferenceFile};
+use super::entry_reader::parse_reference;
 use super::verdict::{Judged, Kind, Verdict};
 use crate::experiment::{Written, set_keys};
 
@@ -76,8 +77,9 @@ pub fn accept(file: &ReferenceFile, text: &str, judged: &Judged, reason: &str) -
     let changed = set_keys(text, "entries", name, &changes);
     // Whatever the layout was: the new text has to mean this, and nothing else may have moved.
     let wanted = meaning(file, Some((&id, judged.verdict, &reason)));
-    let means_it =
-        |text: &String| parse_reference(&file.experiment, text).is_ok_and(|changed| meaning(&changed, None) == wanted);
+    let means_it = |text: &String| {
+        parse_reference(&file.experiment, "", text).is_ok_and(|changed| meaning(&changed, None) == wanted)
+    };
     changed.filter(means_it).ok_or(AcceptError::ByHand { id, line })
 }
 

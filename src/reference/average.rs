@@ -1,63 +1,38 @@
 //! Numbers of a whole stretch of a line: its mean and its standard deviation along the parameter, and its value between
 //! two points. The points need not be even: each stretch between two of them counts by its length.
 
-use serde::{Deserialize, Serialize};
-
 use super::extract::Extracted;
+use super::mapping::word;
+use super::name::{Column, in_unit_of};
 use super::printed::Printed;
-use super::selection::{Selection, same};
+use super::selection::same;
 use super::text::{significant, with_unit};
-use super::view::{Absence, Cell, Line, Source, View};
+use super::view::{Absence, Cell, Line, View};
+use crate::experiment::At;
 
-/// A measure over a stretch of a parameter.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Stretch {
-    /// The measure.
-    pub of: String,
-    /// The parameter.
-    pub over: String,
-    /// From here on; from the first point if absent.
-    #[serde(default)]
-    pub from: Option<f64>,
-    /// Up to here; to the last point if absent.
-    #[serde(default)]
-    pub to: Option<f64>,
-    /// Conditions beyond the entry's own.
-    #[serde(rename = "where", default)]
-    pub rows: Selection,
-    /// Another experiment's table; the entry's conditions do not hold there.
-    #[serde(default)]
-    pub table: Option<String>,
+word! {
+    "a stretch" Stretch, in_order {
+        of: Column = required("The measure", Column::read),
+        over: Column = required("The parameter", Column::read),
+        from: Option<f64> = optional("From here on; from the first point if absent", in_unit_of(over.as_ref())),
+        to: Option<f64> = optional("Up to here; to the last point if absent", in_unit_of(over.as_ref())),
+    }
 }
-
-/// A measure at a value of a parameter that need not be a point of the grid.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Interpolated {
-    /// The measure.
-    pub of: String,
-    /// The parameter.
-    pub over: String,
-    /// Where, as printed: half a unit of the last digit is open, and what it does to the measure adds to its error.
-    pub at: Printed,
-    /// Conditions beyond the entry's own.
-    #[serde(rename = "where", default)]
-    pub rows: Selection,
-    /// Another experiment's table; the entry's conditions do not hold there.
-    #[serde(default)]
-    pub table: Option<String>,
+word! {
+    "a number between points" Interpolated {
+        of: Column = required("The measure", Column::read),
+        over: Column = required("The parameter", Column::read),
+        at: Printed =
+            required("Where, as printed: half a unit of the last digit is open, and what it does to the measure adds to its error", Printed::read),
+    }
 }
 
 impl Stretch {
-    pub(crate) fn source(&self) -> Source<'_> {
-        Source { table: self.table.as_deref(), rows: &self.rows }
-    }
-
-    /// True if its ends are numbers in order.
-    pub(crate) fn is_sound(&self) -> bool {
-        let finite = [self.from, self.to].iter().flatten().all(|end| end.is_finite());
-        finite && self.from.zip(self.to).is_none_or(|(from, to)| from < to)
+    fn in_order(&self, at: At<'_>) -> Option<()> {
+        match self.from.zip(self.to) {
+            Some((from, to)) if from >= to => at.under("to").wrong("a stretch of nothing: `to` is not above `from`"),
+            _ => Some(()),
+        }
     }
 
     /// ∫ y dx over the length.
@@ -126,10 +101,6 @@ impl Stretch {
 }
 
 impl Interpolated {
-    pub(crate) fn source(&self) -> Source<'_> {
-        Source { table: self.table.as_deref(), rows: &self.rows }
-    }
-
     pub(crate) fn take(&self, view: &View<'_>) -> Result<Extracted, Absence> {
         let line = view.line(self.source(), &self.of, &self.over, None)?;
         let (at, half_unit) = self.at.converted_to(&line.over_unit).ok_or_else(|| {

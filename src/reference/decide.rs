@@ -2,15 +2,16 @@
 
 use std::cmp::Ordering;
 
+use super::claims::{
+    Apart, Between, ColumnsAgree, Equal, GreatestPoint, Level, LineAbove, LinesAgree, PathMonotone, PathsCross, Points,
+    Trend, Within,
+};
 use super::compare::COVERAGE;
 use super::extract::Extracted;
 use super::extraction::Extraction;
 use super::line::{common, lines};
 use super::place::{best_place, grows_towards};
-use super::predicate::{
-    Apart, Between, ColumnsAgree, Equal, GreatestPoint, Level, LineAbove, LinesAgree, PathMonotone, PathsCross, Points,
-    Predicate, Trend, Within,
-};
+use super::predicate::Predicate;
 use super::shape::{greatest_at_end, levels_off, linear, monotone, onsets, peaks};
 use super::tally::{Decision, Outcome, Tally};
 use super::text::{apart as told_apart, listed, percent, significant, symbol, with_unit};
@@ -68,7 +69,7 @@ fn trend(claim: &Trend, view: &View<'_>) -> Result<Decision, Absence> {
         .map(|(i, (level, number))| {
             let level = words::of_level(&claim.along, level, along_unit);
             match (i, &level) {
-                (0, level) if claim.along != "sweep" => format!("{number} ({} = {level})", symbol(&claim.along)),
+                (0, level) if &*claim.along != "sweep" => format!("{number} ({} = {level})", symbol(&claim.along)),
                 (_, level) => format!("{number} ({level})"),
             }
         })
@@ -167,13 +168,13 @@ fn equal(claim: &Equal, view: &View<'_>) -> Result<Decision, Absence> {
     }
     let what = words::common(&claim.values).unwrap_or_default();
     let found =
-        format!("{what}{} ({} allowed)", difference(&values, &claim.values, claim.within), claim.within.words());
+        format!("{what}{} ({} allowed)", difference(&values, &claim.values, &claim.within), claim.within.words());
     Ok(Decision { found, ..tally.decision()? })
 }
 
 /// Numbers and how far apart they are: `161.9 rad/s and 162.0 rad/s, 0.07 % apart`, `3.375, the same to the last bit`,
 /// `2 × 12.84 rad/s and 25.69 rad/s, the same to the last bit`.
-fn difference(values: &[Extracted], sources: &[Extraction], within: Within) -> String {
+fn difference(values: &[Extracted], sources: &[Extraction], within: &Within) -> String {
     let multiples = values.iter().zip(sources).map(|(one, source)| match source {
         Extraction::Times(times) if times.factor.fract() == 0.0 => {
             let of = with_unit(one.value / times.factor, 4, &one.unit);
@@ -222,7 +223,7 @@ fn apart(claim: &Apart, view: &View<'_>) -> Result<Decision, Absence> {
     }
     let what = words::common(&claim.values).unwrap_or_default();
     let found =
-        format!("{what}{} (at least {} required)", difference(&values, &claim.values, claim.by), claim.by.words());
+        format!("{what}{} (at least {} required)", difference(&values, &claim.values, &claim.by), claim.by.words());
     Ok(Decision { found, ..tally.decision()? })
 }
 
@@ -284,7 +285,7 @@ fn columns_agree(claim: &ColumnsAgree, view: &View<'_>) -> Result<Decision, Abse
     let mut tally = Tally::new();
     for row in 0..rows.count() {
         let cells: Vec<Cell> = columns.iter().map(|column| column[row]).collect();
-        agree(&mut tally, &cells, claim.within, String::new);
+        agree(&mut tally, &cells, &claim.within, String::new);
     }
     tally.decision()
 }
@@ -293,7 +294,7 @@ fn lines_agree(claim: &LinesAgree, view: &View<'_>) -> Result<Decision, Absence>
     let all = lines(view, claim.source(), &claim.of, &claim.over, &claim.by)?;
     let mut tally = Tally::new();
     for (x, cells) in common(&all)? {
-        agree(&mut tally, &cells, claim.within, || format!(" at {} = {}", symbol(&claim.over), significant(x, 4)));
+        agree(&mut tally, &cells, &claim.within, || format!(" at {} = {}", symbol(&claim.over), significant(x, 4)));
     }
     tally.decision()
 }
@@ -320,7 +321,7 @@ fn line_above(claim: &LineAbove, view: &View<'_>) -> Result<Decision, Absence> {
     tally.decision()
 }
 
-fn agree(tally: &mut Tally, cells: &[Cell], within: Within, place: impl FnOnce() -> String) {
+fn agree(tally: &mut Tally, cells: &[Cell], within: &Within, place: impl FnOnce() -> String) {
     if let Some((low, high)) = extremes(cells) {
         let apart = high.value - low.value;
         let allowed = within.allows(low.value, high.value);
@@ -397,7 +398,7 @@ fn path_monotone(claim: &PathMonotone, view: &View<'_>) -> Result<Decision, Abse
     let line = Line {
         over: "time".into(),
         over_unit: "s".into(),
-        of: claim.of.clone(),
+        of: claim.of.to_string(),
         unit: view.unit(&rows, &claim.of)?.into(),
         x: vec![0.0; samples.len()],
         y: samples.iter().map(cell).collect(),

@@ -30,24 +30,20 @@
 //!     reason: The curves of the figure are lost.
 //! ```
 
-use std::collections::BTreeSet;
-use std::path::Path;
+use std::collections::{BTreeMap, BTreeSet};
 
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 
-use super::entry_mistake::EntryMistake;
 use super::extraction::Extraction;
-use super::mode_shape::ModeShape;
+use super::mapping::{Seen, mapping};
 use super::predicate::Predicate;
 use super::printed::Printed;
-use super::problem::{ReferenceMistake, ReferenceProblem};
 use super::prose::Prose;
 use super::resonance::PrintedPeak;
 use super::selection::Selection;
-use super::tube::Curve;
 use super::verdict::Verdict;
 use super::view::Source;
-use crate::experiment::{Spanned, from_yaml, position};
+use crate::experiment::{Columns, Findings, Problems};
 
 /// The entries of one experiment.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -61,16 +57,12 @@ pub struct ReferenceFile {
     pub not_judged: Vec<NotJudged>,
 }
 
-/// A statement of the study without an entry.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct NotJudged {
-    /// Where it stands: `s. 3.6.1, Fig. 13`.
-    pub place: String,
-    /// What the study says, in one line.
-    pub says: String,
-    /// Why no entry can judge it.
-    pub reason: String,
+mapping! {
+    "a statement that is not judged" NotJudged {
+        place: String = required("Where it stands: `s. 3.6.1, Fig. 13`", |at| at.text()),
+        says: String = required("What the study says, in one line", |at| at.text()),
+        reason: String = required("Why no entry can judge it", |at| at.text()),
+    }
 }
 
 /// One published number or claim.
@@ -146,6 +138,24 @@ pub enum ToleranceSize {
 }
 
 impl ReferenceFile {
+    /// Looks for the columns that its entries name in the tables that are known by the names of their experiments.
+    ///
+    /// # Errors
+    /// Every one that is not there, with its place in the `text` that the entries were read from.
+    pub(crate) fn check_columns(
+        &self,
+        file: &str,
+        text: &str,
+        tables: &BTreeMap<String, Columns>,
+    ) -> Result<(), Problems> {
+        let findings = Findings::default();
+        for entry in &self.entries {
+            Seen::of(&entry.rows).check(&self.experiment, tables, &findings);
+            entry.seen().check(&self.experiment, tables, &findings);
+        }
+        findings.finish(file, text, Some(()))
+    }
+
     /// The other experiments whose tables the entries read.
     #[must_use]
     pub fn other_tables(&self) -> BTreeSet<String> {
@@ -179,7 +189,7 @@ impl Entry {
     #[must_use]
     pub fn readings(&self, experiment: &str) -> Vec<Reading> {
         let around = match &self.check {
-            Check::Value { from: Extraction::Interpolated(word), .. } => Some((word.over.clone(), word.at.clone())),
+            Check::Value { from: Extraction::Interpolated(word), .. } => Some((word.over.to_string(), word.at.clone())),
             _ => None,
         };
         let reading = |source: &Source<'_>| {
@@ -199,249 +209,17 @@ impl Entry {
 
     fn sources(&self) -> Vec<Source<'_>> {
         match &self.check {
-            Check::Value { from, .. } => from.sources(),
             Check::Peak { .. } => vec![Source { table: None, rows: &self.rows }],
-            Check::Claim { predicate, .. } => predicate.sources(),
+            Check::Value { .. } | Check::Claim { .. } => self.seen().sources(),
         }
     }
-}
 
-/// Why a reference file cannot be used.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("{}", .problems.iter().map(|problem| format!("{file}: {problem}")).collect::<Vec<_>>().join("\n"))]
-pub struct ReferenceError {
-    /// The file, as it was named by the caller.
-    pub file: String,
-    /// All that is wrong, in the order of the file, each with line and column.
-    pub problems: Vec<ReferenceProblem>,
-}
-
-/// Reads a reference file; its name is the id of its experiment.
-///
-/// # Errors
-/// If it cannot be read or understood: every unsound entry is named.
-pub fn load_reference(path: &Path) -> Result<ReferenceFile, ReferenceError> {
-    let file = path.display().to_string();
-    let fail = |problem| ReferenceError { file: file.clone(), problems: vec![problem] };
-    let experiment = path.file_stem().and_then(|stem| stem.to_str()).unwrap_or_default();
-    let text =
-        std::fs::read_to_string(path).map_err(|error| fail(ReferenceMistake::Unreadable(error.to_string()).into()))?;
-    parse_reference(experiment, &text).map_err(|problems| ReferenceError { file: file.clone(), problems })
-}
-
-/// Reads the text of a reference file.
-///
-/// # Errors
-/// All that is wrong, each with line and column.
-pub fn parse_reference(experiment: &str, text: &str) -> Result<ReferenceFile, Vec<ReferenceProblem>> {
-    let raw: RawReference = from_yaml(text).map_err(|mistake| vec![mistake.into()])?;
-    let mut problems = Vec::new();
-    let mut ids = BTreeSet::new();
-    let mut entries = Vec::new();
-    for spanned in raw.entries {
-        let (line, column) = position(&spanned);
-        let name = spanned.value.id.clone();
-        let mut found = Vec::new();
-        if !ids.insert(name.clone()) {
-            found.push(EntryMistake::SameId);
+    /// What its check reads.
+    fn seen(&self) -> Seen<'_> {
+        match &self.check {
+            Check::Value { from, .. } => Seen::of(from),
+            Check::Peak { peak, .. } => Seen::of(peak),
+            Check::Claim { predicate, .. } => Seen::of(predicate),
         }
-        match spanned.value.validated(experiment) {
-            Ok(entry) => entries.push(Entry { line, ..entry }),
-            Err(more) => found.extend(more),
-        }
-        let problem = |mistake| {
-            let mistake = ReferenceMistake::Entry { entry: name.clone(), mistake };
-            ReferenceProblem { at: Some((line, column)), mistake }
-        };
-        problems.extend(found.into_iter().map(problem));
-    }
-    if entries.is_empty() && problems.is_empty() {
-        problems.push(ReferenceProblem::on_line(1, ReferenceMistake::NoEntry));
-    }
-    for entry in &entries {
-        let names = |name: &String| !name.contains('/') && !ids.contains(name);
-        for name in entry.prose().placeholders().filter_map(|one| one.entry.clone()).filter(names) {
-            let mistake = ReferenceMistake::Entry { entry: entry.id.clone(), mistake: EntryMistake::Placeholder(name) };
-            problems.push(ReferenceProblem::on_line(entry.line, mistake));
-        }
-    }
-    let mut not_judged = Vec::new();
-    for spanned in raw.not_judged {
-        let NotJudged { place, says, reason } = &spanned.value;
-        if [place, says, reason].iter().any(|text| text.trim().is_empty()) {
-            let at = Some(position(&spanned));
-            problems.push(ReferenceProblem { at, mistake: ReferenceMistake::NotJudged });
-        }
-        not_judged.push(spanned.value);
-    }
-    if problems.is_empty() {
-        Ok(ReferenceFile { experiment: experiment.into(), entries, not_judged })
-    } else {
-        Err(problems)
-    }
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct RawReference {
-    entries: Vec<Spanned<RawEntry>>,
-    #[serde(default)]
-    not_judged: Vec<Spanned<NotJudged>>,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct RawEntry {
-    id: String,
-    place: String,
-    says: String,
-    value: Option<String>,
-    from: Option<Extraction>,
-    tolerance: Option<RawTolerance>,
-    claim: Option<Predicate>,
-    peak: Option<PrintedPeak>,
-    curve: Option<Curve>,
-    mode_shape: Option<ModeShape>,
-    threshold_reason: Option<String>,
-    #[serde(rename = "where", default)]
-    rows: Selection,
-    expected: Option<Verdict>,
-    explanation: Option<String>,
-    #[serde(default)]
-    blocked_by: Vec<String>,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct RawTolerance {
-    relative: Option<f64>,
-    absolute: Option<f64>,
-    reason: String,
-}
-
-impl RawEntry {
-    fn validated(self, experiment: &str) -> Result<Entry, Vec<EntryMistake>> {
-        let mut wrong: Vec<EntryMistake> = Vec::new();
-        let filled = |text: &Option<String>| text.as_ref().is_some_and(|text| !text.trim().is_empty());
-        if self.id.is_empty() || !self.id.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-') {
-            wrong.push(EntryMistake::BadId);
-        }
-        if self.place.trim().is_empty() || self.says.trim().is_empty() {
-            wrong.push(EntryMistake::NoPlace);
-        }
-        let expected = self.expected.unwrap_or(Verdict::Reproduced);
-        if expected == Verdict::Missing {
-            wrong.push(EntryMistake::ExpectsMissing);
-        }
-        if expected != Verdict::Reproduced && !filled(&self.explanation) {
-            wrong.push(EntryMistake::NoExplanation);
-        }
-        if let Err(error) = Prose::parse(self.explanation.as_deref().unwrap_or_default()) {
-            wrong.push(EntryMistake::Explanation(error));
-        }
-        let is_number = self.value.is_some() || self.peak.is_some();
-        if expected == Verdict::Blocked && self.blocked_by.is_empty() && !is_number {
-            wrong.push(EntryMistake::NotBlockedBy);
-        }
-        if is_number && !self.blocked_by.is_empty() {
-            wrong.push(EntryMistake::NumberBlockedBy);
-        }
-        let threshold_reason = self.threshold_reason.clone().unwrap_or_default().trim().to_string();
-        let kinds = [
-            self.value.is_some(),
-            self.claim.is_some(),
-            self.peak.is_some(),
-            self.curve.is_some(),
-            self.mode_shape.is_some(),
-        ];
-        if kinds.iter().filter(|given| **given).count() != 1 {
-            wrong.push(EntryMistake::NotOneKind);
-            return Err(wrong);
-        }
-        let claim = self.claim.or(self.curve.map(Predicate::Curve)).or(self.mode_shape.map(Predicate::ModeShape));
-        let check = match (self.value, self.from, claim) {
-            (Some(value), Some(from), None) => {
-                if !threshold_reason.is_empty() {
-                    wrong.push(EntryMistake::ThresholdReasonOfValue);
-                }
-                if !from.is_sound() {
-                    wrong.push(EntryMistake::UnsoundFrom);
-                }
-                let tolerance = self.tolerance.and_then(|raw| raw.validated(&mut wrong));
-                match Printed::parse(&value) {
-                    Ok(published) => Some(Check::Value { published, from, tolerance }),
-                    Err(error) => {
-                        wrong.push(EntryMistake::Value(error));
-                        None
-                    }
-                }
-            }
-            (None, None, Some(predicate)) => {
-                if let Some(flaw) = predicate.flaw() {
-                    wrong.push(EntryMistake::Claim(flaw));
-                }
-                if self.tolerance.is_some() {
-                    wrong.push(EntryMistake::ToleranceOfClaim);
-                }
-                if predicate.has_threshold() && threshold_reason.is_empty() {
-                    wrong.push(EntryMistake::NoThresholdReason);
-                }
-                Some(Check::Claim { predicate, threshold_reason })
-            }
-            (Some(_), None, None) => {
-                wrong.push(EntryMistake::NoFrom);
-                None
-            }
-            (None, None, None) => self.peak.map(|peak| {
-                if !threshold_reason.is_empty() {
-                    wrong.push(EntryMistake::ThresholdReasonOfValue);
-                }
-                wrong.extend(peak.flaw());
-                let tolerance = self.tolerance.and_then(|raw| raw.validated(&mut wrong));
-                if tolerance.as_ref().is_some_and(|given| matches!(given.size, ToleranceSize::Absolute(_))) {
-                    wrong.push(EntryMistake::AbsoluteToleranceOfPeak);
-                }
-                Check::Peak { peak, tolerance }
-            }),
-            _ => {
-                wrong.push(EntryMistake::FromWithoutValue);
-                None
-            }
-        };
-        match check {
-            Some(check) if wrong.is_empty() => Ok(Entry {
-                id: format!("{experiment}/{}", self.id),
-                place: self.place,
-                says: self.says,
-                check,
-                rows: self.rows,
-                expected,
-                explanation: self.explanation.unwrap_or_default().trim().to_string(),
-                blocked_by: self.blocked_by,
-                line: 0,
-            }),
-            _ => Err(wrong),
-        }
-    }
-}
-
-impl RawTolerance {
-    fn validated(self, wrong: &mut Vec<EntryMistake>) -> Option<Tolerance> {
-        let size = match (self.relative, self.absolute) {
-            (Some(fraction), None) => ToleranceSize::Relative(fraction),
-            (None, Some(distance)) => ToleranceSize::Absolute(distance),
-            _ => {
-                wrong.push(EntryMistake::ToleranceWithoutSize);
-                return None;
-            }
-        };
-        let (ToleranceSize::Relative(amount) | ToleranceSize::Absolute(amount)) = size;
-        if !(amount.is_finite() && amount > 0.0) {
-            wrong.push(EntryMistake::ToleranceNotAboveZero);
-        }
-        if self.reason.trim().is_empty() {
-            wrong.push(EntryMistake::NoToleranceReason);
-        }
-        Some(Tolerance { size, reason: self.reason.trim().into() })
     }
 }

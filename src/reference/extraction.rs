@@ -5,189 +5,137 @@ use serde::{Deserialize, Serialize};
 
 use super::average::{Interpolated, Stretch};
 use super::line::Pair;
+use super::mapping::{Reads, Seen, forms, mapping, word};
+use super::name::{Column, in_unit_of};
 use super::resonance::Peak;
 use super::selection::Selection;
 use super::view::Source;
+use crate::experiment::At;
 use crate::measure::Measure;
 use crate::text::words::of_key;
 
-/// How a number is taken out of a table.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Extraction {
-    /// A fixed number, to hold others against.
-    Number(f64),
-    /// The measure in the one row that is meant.
-    Cell(Cells),
-    /// Mean of a measure over the rows.
-    Mean(Cells),
-    /// Largest value along a parameter.
-    Maximum(Along),
-    /// Smallest value along a parameter.
-    Minimum(Along),
-    /// The parameter of the largest value.
-    Argmax(Along),
-    /// The parameter of the smallest value.
-    Argmin(Along),
-    /// Another measure where this one is largest.
-    AtMaximum(AtMaximum),
-    /// The measure at the first or last point of a line.
-    End(End),
-    /// The parameter at which a measure first crosses a level.
-    Crossing(Crossing),
-    /// The first parameter value at which a measure exceeds a level.
-    FirstAbove(FirstAbove),
-    /// The first parameter value at which two lines differ by more than a fraction of their mean, and by more than chance, and at
-    /// the next one, too: a single point may be a run that has not settled.
-    Parting(Parting),
-    /// The first parameter value at which two lines change places.
-    Meeting(Meeting),
-    /// The largest fall of a rising line, or rise of a falling one: how much it deviates from monotone.
-    LargestStepBack(StepBack),
-    /// By how much one line is ahead of another at most.
-    LargestLead(Lead),
-    /// The parameter where it is.
-    ArgmaxLead(Lead),
-    /// Of the instants at which one path of a time history passes another, the one nearest to a given time.
-    NearestPassage(NearestPassage),
-    /// Largest value of all rows, whatever they are over.
-    Largest(Cells),
-    /// Smallest value of all rows.
-    Smallest(Cells),
-    /// Largest number of a time history.
-    PathMaximum(Cells),
-    /// Smallest number of a time history.
-    PathMinimum(Cells),
-    /// A measure between two points of a line.
-    Interpolated(Interpolated),
-    /// Mean along a parameter, ∫ y dx over its length.
-    MeanOver(Stretch),
-    /// Standard deviation along a parameter.
-    StandardDeviationOver(Stretch),
-    /// Place, height or half-power width of a resonance.
-    Peak(Peak),
-    /// One number over another.
-    Ratio(Box<Quotient>),
-    /// One number less another.
-    Difference(Box<Difference>),
-    /// A number times a factor.
-    Times(Box<Times>),
+forms! {
+    "a way to take a number" Extraction {
+        Number(f64) = form("number", "A fixed number, to hold others against", in_unit_of(None)),
+        Cell(Cells) = form("cell", "The measure in the one row that is meant", Cells::read),
+        Mean(Cells) = form("mean", "Mean of a measure over the rows", Cells::read),
+        Maximum(Along) = form("maximum", "Largest value along a parameter", Along::read),
+        Minimum(Along) = form("minimum", "Smallest value along a parameter", Along::read),
+        Argmax(Along) = form("argmax", "The parameter of the largest value", Along::read),
+        Argmin(Along) = form("argmin", "The parameter of the smallest value", Along::read),
+        AtMaximum(AtMaximum) = form("at_maximum", "Another measure where this one is largest", AtMaximum::read),
+        End(End) = form("end", "The measure at the first or last point of a line", End::read),
+        Crossing(Crossing) = form("crossing", "The parameter at which a measure first crosses a level", Crossing::read),
+        FirstAbove(FirstAbove) =
+            form("first_above", "The first parameter value at which a measure exceeds a level", FirstAbove::read),
+        Parting(Parting) =
+            form("parting", "The first of two parameter values in a row at which two lines differ by more than a fraction of their mean and than chance", Parting::read),
+        Meeting(Meeting) = form("meeting", "The first parameter value at which two lines change places", Meeting::read),
+        LargestStepBack(StepBack) =
+            form("largest_step_back", "The largest fall of a rising line, or rise of a falling one: how much it deviates from monotone", StepBack::read),
+        LargestLead(Lead) = form("largest_lead", "By how much one line is ahead of another at most", Lead::read),
+        ArgmaxLead(Lead) = form("argmax_lead", "The parameter where it is", Lead::read),
+        NearestPassage(NearestPassage) =
+            form("nearest_passage", "Of the instants at which one path of a time history passes another, the one nearest to a given time", NearestPassage::read),
+        Largest(Cells) = form("largest", "Largest value of all rows, whatever they are over", Cells::read),
+        Smallest(Cells) = form("smallest", "Smallest value of all rows", Cells::read),
+        PathMaximum(Cells) = form("path_maximum", "Largest number of a time history", Cells::read),
+        PathMinimum(Cells) = form("path_minimum", "Smallest number of a time history", Cells::read),
+        Interpolated(Interpolated) = form("interpolated", "A measure between two points of a line", Interpolated::read),
+        MeanOver(Stretch) = form("mean_over", "Mean along a parameter, ∫ y dx over its length", Stretch::read),
+        StandardDeviationOver(Stretch) =
+            form("standard_deviation_over", "Standard deviation along a parameter", Stretch::read),
+        Peak(Peak) = form("peak", "Place, height or half-power width of a resonance", Peak::read),
+        Ratio(Box<Quotient>) = form("ratio", "One number over another", boxed(Quotient::read)),
+        Difference(Box<Difference>) = form("difference", "One number less another", boxed(Difference::read)),
+        Times(Box<Times>) = form("times", "A number times a factor", boxed(Times::read)),
+    }
 }
 
-macro_rules! word {
-    ($(#[$about:meta])* $name:ident { $($(#[$field_about:meta])* $field:ident: $type:ty,)* }) => {
-        $(#[$about])*
-        #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-        #[serde(deny_unknown_fields)]
-        pub struct $name {
-            /// The measure.
-            pub of: String,
-            $($(#[$field_about])* pub $field: $type,)*
-            /// Conditions beyond the entry's own.
-            #[serde(rename = "where", default)]
-            pub rows: Selection,
-            /// Another experiment's table; the entry's conditions do not hold there.
-            #[serde(default)]
-            pub table: Option<String>,
-        }
+/// The reader of what is described once.
+pub(crate) fn extraction(at: At<'_>) -> Option<Extraction> {
+    at.named("extraction", "How a number is taken out of a table", Extraction::read)
+}
 
-        impl $name {
-            pub(crate) fn source(&self) -> Source<'_> {
-                Source { table: self.table.as_deref(), rows: &self.rows }
-            }
-        }
-    };
+/// Two numbers or more; `otherwise` says what wants them.
+pub(super) fn two_or_more(at: At<'_>, otherwise: &str) -> Option<Vec<Extraction>> {
+    let values = at.list(extraction)?;
+    if values.len() < 2 { at.wrong(otherwise) } else { Some(values) }
+}
+
+fn boxed<T>(read: impl Fn(At<'_>) -> Option<T>) -> impl Fn(At<'_>) -> Option<Box<T>> {
+    move |at| read(at).map(Box::new)
 }
 
 word! {
-    /// A measure in some rows.
-    Cells {}
-}
-word! {
-    /// A measure along a parameter.
-    Along {
-        /// The parameter.
-        over: String,
+    "a number of rows" Cells {
+        of: Column = required("The measure", Column::read),
     }
 }
 word! {
-    /// Another measure at the top.
-    AtMaximum {
-        /// The parameter.
-        over: String,
-        /// The other measure.
-        read: String,
+    "a number of a line" Along {
+        of: Column = required("The measure", Column::read),
+        over: Column = required("The parameter", Column::read),
     }
 }
 word! {
-    /// One end of a line.
-    End {
-        /// The parameter.
-        over: String,
-        /// Which end.
-        end: Side,
+    "a number at a maximum" AtMaximum {
+        of: Column = required("The measure", Column::read),
+        over: Column = required("The parameter", Column::read),
+        read: Column = required("The other measure", Column::read),
     }
 }
 word! {
-    /// Crossing of a level.
-    Crossing {
-        /// The parameter.
-        over: String,
-        /// The level.
-        level: f64,
-        /// Upwards (`increasing`) or downwards.
-        direction: Direction,
+    "an end" End {
+        of: Column = required("The measure", Column::read),
+        over: Column = required("The parameter", Column::read),
+        end: Side = required("Which end", side),
     }
 }
 word! {
-    /// Onset.
-    FirstAbove {
-        /// The parameter.
-        over: String,
-        /// The level to be exceeded.
-        level: f64,
+    "a crossing" Crossing {
+        of: Column = required("The measure", Column::read),
+        over: Column = required("The parameter", Column::read),
+        level: f64 = required("The level", in_unit_of(of.as_ref())),
+        direction: Direction = required("Upwards (`increasing`) or downwards", direction),
     }
 }
 word! {
-    /// Parting of two lines.
-    Parting {
-        /// The parameter.
-        over: String,
-        /// The column that tells the two lines apart.
-        by: String,
-        /// Of their mean.
-        fraction: f64,
+    "an onset" FirstAbove {
+        of: Column = required("The measure", Column::read),
+        over: Column = required("The parameter", Column::read),
+        level: f64 = required("The level to be exceeded", in_unit_of(of.as_ref())),
     }
 }
 word! {
-    /// Two lines that change places.
-    Meeting {
-        /// The parameter.
-        over: String,
-        /// The column that tells the two lines apart.
-        by: String,
+    "a parting" Parting {
+        of: Column = required("The measure", Column::read),
+        over: Column = required("The parameter", Column::read),
+        by: Column = required("The column that tells the two lines apart", Column::read),
+        fraction: f64 = required("Of their mean", |at| at.number_above_zero()),
     }
 }
 word! {
-    /// Deviation from monotone.
-    StepBack {
-        /// The parameter.
-        over: String,
-        /// Which way the line should go.
-        direction: Direction,
+    "a meeting" Meeting {
+        of: Column = required("The measure", Column::read),
+        over: Column = required("The parameter", Column::read),
+        by: Column = required("The column that tells the two lines apart", Column::read),
     }
 }
 word! {
-    /// One line ahead of another.
-    Lead {
-        /// The parameter.
-        over: String,
-        /// The column that tells the lines apart.
-        by: String,
-        /// Its level on the line that is ahead.
-        above: String,
-        /// Its level on the other.
-        below: String,
+    "a step back" StepBack {
+        of: Column = required("The measure", Column::read),
+        over: Column = required("The parameter", Column::read),
+        direction: Direction = required("Which way the line should go", direction),
+    }
+}
+word! {
+    "a lead" Lead, of_two_lines {
+        of: Column = required("The measure", Column::read),
+        over: Column = required("The parameter", Column::read),
+        by: Column = required("The column that tells the lines apart", Column::read),
+        above: String = required("Its level on the line that is ahead", |at| at.text()),
+        below: String = required("Its level on the other", |at| at.text()),
     }
 }
 
@@ -195,56 +143,44 @@ impl Lead {
     pub(crate) fn pair(&self) -> Pair<'_> {
         Pair { of: &self.of, over: &self.over, by: &self.by, above: &self.above, below: &self.below }
     }
+
+    fn of_two_lines(&self, at: At<'_>) -> Option<()> {
+        self.pair().of_two_lines(at)
+    }
 }
 
-/// An instant in the time history of the one row that is meant.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct NearestPassage {
-    /// The path that passes.
-    pub of: String,
-    /// The path that is passed.
-    pub through: String,
-    /// From below (`increasing`) or from above.
-    pub direction: Direction,
-    /// The time to be near to, s.
-    pub to: f64,
-    /// A path to be read at that instant, in the place of the instant itself.
-    #[serde(default)]
-    pub read: Option<String>,
-    /// Conditions beyond the entry's own.
-    #[serde(rename = "where", default)]
-    pub rows: Selection,
+mapping! {
+    "a passage" NearestPassage {
+        of: Column = required("The path that passes", Column::read),
+        through: Column = required("The path that is passed", Column::read),
+        direction: Direction = required("From below (`increasing`) or from above", direction),
+        to: f64 = required("The time to be near to, s", |at| at.number_in(Some("s"))),
+        read: Option<Column> =
+            optional("A path to be read at that instant, in the place of the instant itself", Column::read),
+        rows as "where": Selection = or("Conditions beyond the entry's own", Selection::read, Selection::default()),
+    }
+}
+mapping! {
+    "a ratio" Quotient {
+        of: Extraction = required("Above the line", extraction),
+        to: Extraction = required("Below it", extraction),
+    }
+}
+mapping! {
+    "a difference" Difference {
+        of: Extraction = required("From this,", extraction),
+        less: Extraction = required("this is taken", extraction),
+    }
+}
+mapping! {
+    "a multiple" Times {
+        factor: f64 = required("The factor", factor),
+        of: Extraction = required("Of what", extraction),
+    }
 }
 
-/// A ratio.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Quotient {
-    /// Above the line.
-    pub of: Extraction,
-    /// Below it.
-    pub to: Extraction,
-}
-
-/// A difference.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Difference {
-    /// From this,
-    pub of: Extraction,
-    /// this is taken.
-    pub less: Extraction,
-}
-
-/// A multiple.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Times {
-    /// The factor.
-    pub factor: f64,
-    /// Of what.
-    pub of: Extraction,
+fn factor(at: At<'_>) -> Option<f64> {
+    at.number().and_then(|x| if x == 0.0 { at.wrong("a factor of zero leaves no number") } else { Some(x) })
 }
 
 /// End of a line.
@@ -267,6 +203,17 @@ pub enum Direction {
     Decreasing,
 }
 
+impl Reads for Side {}
+impl Reads for Direction {}
+
+pub(super) fn side(at: At<'_>) -> Option<Side> {
+    at.word("end of a line")
+}
+
+pub(super) fn direction(at: At<'_>) -> Option<Direction> {
+    at.word("direction")
+}
+
 impl Direction {
     /// 1 upwards, −1 downwards.
     pub(crate) fn sign(self) -> f64 {
@@ -275,6 +222,11 @@ impl Direction {
 }
 
 impl Extraction {
+    /// Where it reads.
+    pub(crate) fn sources(&self) -> Vec<Source<'_>> {
+        Seen::of(self).sources()
+    }
+
     /// Whether it takes a number of events, which has no digits to come.
     pub(crate) fn is_count(&self) -> bool {
         let of = match self {
@@ -282,50 +234,6 @@ impl Extraction {
             Self::Maximum(along) | Self::Minimum(along) => &along.of,
             _ => return false,
         };
-        Measure::ALL.iter().any(|measure| measure.is_count() && of_key(measure) == *of)
-    }
-
-    /// True if every number written into it is finite.
-    pub(crate) fn is_sound(&self) -> bool {
-        match self {
-            Self::Number(x) => x.is_finite(),
-            Self::Crossing(word) => word.level.is_finite(),
-            Self::FirstAbove(word) => word.level.is_finite(),
-            Self::Parting(word) => word.fraction.is_finite() && word.fraction > 0.0,
-            Self::NearestPassage(word) => word.to.is_finite(),
-            Self::MeanOver(word) | Self::StandardDeviationOver(word) => word.is_sound(),
-            Self::Peak(peak) => peak.is_sound(),
-            Self::Ratio(quotient) => quotient.of.is_sound() && quotient.to.is_sound(),
-            Self::Difference(difference) => difference.of.is_sound() && difference.less.is_sound(),
-            Self::LargestLead(word) | Self::ArgmaxLead(word) => word.above != word.below,
-            Self::Times(times) => times.factor.is_finite() && times.factor != 0.0 && times.of.is_sound(),
-            _ => true,
-        }
-    }
-
-    /// Where it reads.
-    pub(crate) fn sources(&self) -> Vec<Source<'_>> {
-        let source = match self {
-            Self::Number(_) => return Vec::new(),
-            Self::NearestPassage(word) => Source { table: None, rows: &word.rows },
-            Self::Cell(word) | Self::Mean(word) | Self::Largest(word) | Self::Smallest(word) => word.source(),
-            Self::PathMaximum(word) | Self::PathMinimum(word) => word.source(),
-            Self::Interpolated(word) => word.source(),
-            Self::MeanOver(word) | Self::StandardDeviationOver(word) => word.source(),
-            Self::Peak(peak) => peak.source(),
-            Self::Maximum(word) | Self::Minimum(word) | Self::Argmax(word) | Self::Argmin(word) => word.source(),
-            Self::AtMaximum(word) => word.source(),
-            Self::End(word) => word.source(),
-            Self::Crossing(word) => word.source(),
-            Self::FirstAbove(word) => word.source(),
-            Self::Parting(word) => word.source(),
-            Self::Meeting(word) => word.source(),
-            Self::LargestStepBack(word) => word.source(),
-            Self::LargestLead(word) | Self::ArgmaxLead(word) => word.source(),
-            Self::Difference(difference) => return [difference.of.sources(), difference.less.sources()].concat(),
-            Self::Ratio(quotient) => return [quotient.of.sources(), quotient.to.sources()].concat(),
-            Self::Times(times) => return times.of.sources(),
-        };
-        vec![source]
+        Measure::ALL.iter().any(|measure| measure.is_count() && *of_key(measure) == **of)
     }
 }

@@ -3,6 +3,7 @@
 use super::selection::{Allowed, same};
 use super::text::{significant, symbol};
 use super::view::{Absence, Cell, Line, Source, View};
+use crate::experiment::At;
 use crate::measure::column_words;
 
 /// A place on the abscissa: half the bracket that surely holds it is twice its uncertainty.
@@ -73,6 +74,11 @@ pub(crate) struct Pair<'a> {
 }
 
 impl Pair<'_> {
+    /// That it is two, for a reader.
+    pub(crate) fn of_two_lines(&self, at: At<'_>) -> Option<()> {
+        if self.above == self.below { at.under("below").wrong("a line is not above itself") } else { Some(()) }
+    }
+
     /// How far the one is above the other, where they share an abscissa.
     pub(crate) fn lead(&self, view: &View<'_>, source: Source<'_>) -> Result<Line, Absence> {
         let all = lines(view, source, self.of, self.over, self.by)?;

@@ -6,28 +6,29 @@
 mod accept;
 mod analytic;
 mod average;
+mod claims;
 mod columns;
 mod compare;
 mod damage;
 mod decide;
 mod entry;
-mod entry_mistake;
+mod entry_reader;
 mod extract;
 mod extraction;
 mod fit;
 mod found;
 mod judge;
 mod line;
+mod mapping;
 mod mode_shape;
 mod motion_behind;
+mod name;
 mod place;
 mod predicate;
 mod price;
 mod printed;
-mod problem;
 mod prose;
 mod resonance;
-mod schema;
 mod selection;
 mod self_test;
 mod shape;
@@ -39,11 +40,8 @@ mod view;
 mod words;
 
 pub use accept::{AcceptError, accept};
-pub use entry::{
-    Check, Entry, NotJudged, Reading, ReferenceError, ReferenceFile, Tolerance, ToleranceSize, load_reference,
-    parse_reference,
-};
-pub use entry_mistake::EntryMistake;
+pub use entry::{Check, Entry, NotJudged, Reading, ReferenceFile, Tolerance, ToleranceSize};
+pub use entry_reader::{load_reference, parse_reference, reference_schema};
 pub use extraction::Extraction;
 pub use fit::{Fit, FitMeasure};
 pub use found::Found;
@@ -52,10 +50,8 @@ pub use motion_behind::MotionBehind;
 pub use predicate::Predicate;
 pub use price::Price;
 pub use printed::{Printed, PrintedError};
-pub use problem::{ReferenceMistake, ReferenceProblem};
 pub use prose::{CameOut, Placeholder, Prose, ProseError, numbers};
 pub use resonance::{Feature, PrintedPeak, Which};
-pub use schema::reference_schema;
 pub use selection::{Allowed, Selection};
 pub use self_test::{Flaw, SelfTestFailure, self_test};
 pub(crate) use text::symbol;

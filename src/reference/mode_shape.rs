@@ -1,70 +1,100 @@
 //! A shape held against an analytic one by the modal assurance criterion,
 //! MAC = (Σφψ)²/(Σφ² Σψ²): 1 where the shapes are the same up to a factor, 0 where they have nothing in common.
 
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
+use serde_json::json;
 
 use super::analytic;
 use super::fit::{Fit, FitMeasure};
-use super::selection::Selection;
+use super::mapping::{Reads, Seen, claim, forms};
+use super::name::Column;
 use super::tally::{Decision, Tally};
 use super::text::significant;
-use super::view::{Absence, Source, View};
+use super::tube::points;
+use super::view::{Absence, View};
+use crate::experiment::{At, Value};
 
-/// A shape in the lists of the one row that is meant.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct ModeShape {
-    /// List of the deflections.
-    pub of: String,
-    /// Lists of the places, as shares of the sides: `x`, or `[x, y]` on a plate.
-    pub over: Places,
-    /// The shape to hold it against.
-    pub like: Like,
-    /// How alike.
-    pub mac: Mac,
-    /// Conditions beyond the entry's own.
-    #[serde(rename = "where", default)]
-    pub rows: Selection,
+claim! {
+    "a mode shape" ModeShape, over_its_sides {
+        of: Column = required("List of the deflections", Column::read),
+        over: Places =
+            required("Lists of the places, as shares of the sides: `x`, or `[x, y]` on a plate", Places::read),
+        like: Like = required("The shape to hold it against", Like::read),
+        mac: Mac = required("How alike", Mac::read),
+    }
 }
 
 /// The lists that say where the deflections are.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum Places {
     /// Along a line.
-    Line(String),
+    Line(Column),
     /// On a rectangle.
-    Rectangle([String; 2]),
+    Rectangle([Column; 2]),
 }
 
-/// The shape to hold it against.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Like {
-    /// A uniform cantilever's n-th mode, clamped at 0.
-    Cantilever(u32),
-    /// A uniform beam's n-th mode, clamped at both ends.
-    Clamped(u32),
-    /// sin nπx: a simply supported beam's n-th mode.
-    Sine(u32),
-    /// sin mπx sin nπy: a mode of a plate that is simply supported all around.
-    SineProduct([u32; 2]),
-    /// Another list of the same row.
-    Column(String),
-    /// Points of a line, x increasing: the shape is read between them.
-    Points(Vec<[f64; 2]>),
+impl Places {
+    fn read(at: At<'_>) -> Option<Self> {
+        let rectangle = |at: At<'_>| {
+            let lists: Result<[Column; 2], _> = at.pair(Column::read)?.try_into();
+            lists.ok().or_else(|| at.wrong("a plate has two sides: `[x, y]`")).map(Self::Rectangle)
+        };
+        let line = |at: At<'_>| Column::read(at).map(Self::Line);
+        at.either(|value| matches!(value, Value::Sequence(_)), rectangle, line)
+    }
 }
 
-/// A limit on the criterion.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Mac {
-    /// The shapes are the same.
-    AtLeast(f64),
-    /// The shapes are different.
-    AtMost(f64),
+impl Reads for Places {
+    fn note<'a>(&'a self, seen: &mut Seen<'a>) {
+        match self {
+            Self::Line(x) => x.note(seen),
+            Self::Rectangle([x, y]) => [x, y].into_iter().for_each(|side| side.note(seen)),
+        }
+    }
 }
 
+forms! {
+    "a shape" Like {
+        Cantilever(u32) = form("cantilever", "A uniform cantilever's n-th mode, clamped at 0", mode),
+        Clamped(u32) = form("clamped", "A uniform beam's n-th mode, clamped at both ends", mode),
+        Sine(u32) = form("sine", "sin nπx: a simply supported beam's n-th mode", mode),
+        SineProduct([u32; 2]) =
+            form("sine_product", "sin mπx sin nπy: a mode of a plate that is simply supported all around", modes),
+        Column(Column) = form("column", "Another list of the same row", Column::read),
+        Points(Vec<[f64; 2]>) =
+            form("points", "Points of a line, x increasing: the shape is read between them", |at| points(at, FEWEST_POINTS)),
+    }
+}
+
+fn mode(at: At<'_>) -> Option<u32> {
+    at.count_from(1, "", MOST_MODES, "modes are counted from 1")
+}
+
+fn modes(at: At<'_>) -> Option<[u32; 2]> {
+    let modes: Result<[u32; 2], _> = at.pair(mode)?.try_into();
+    modes.ok().or_else(|| at.wrong("a plate's mode has two numbers: `[m, n]`"))
+}
+
+forms! {
+    "a limit on the criterion" Mac {
+        AtLeast(f64) = form("at_least", "The shapes are the same", limit),
+        AtMost(f64) = form("at_most", "The shapes are different", limit),
+    }
+}
+
+fn limit(at: At<'_>) -> Option<f64> {
+    at.form(
+        |node, findings| match At::Node(node, findings).number()? {
+            limit if limit > 0.0 && limit < 1.0 => Some(limit),
+            _ => findings.wrong(node.span, "a limit on the criterion lies between 0 and 1"),
+        },
+        |it| json!({"description": it.about(), "type": "number", "exclusiveMinimum": 0, "exclusiveMaximum": 1}),
+    )
+}
+
+/// Higher modes have more waves than any list has points.
+const MOST_MODES: u32 = 1000;
 /// Fewer points tell no shapes apart.
 const FEWEST_POINTS: usize = 5;
 
@@ -77,26 +107,15 @@ struct Compared {
 }
 
 impl ModeShape {
-    /// What makes it no comparison.
-    pub(crate) fn flaw(&self) -> Option<&'static str> {
-        let (Mac::AtLeast(limit) | Mac::AtMost(limit)) = self.mac;
-        let on_rectangle = matches!(self.over, Places::Rectangle(_));
-        match &self.like {
-            Like::Cantilever(0) | Like::Clamped(0) | Like::Sine(0) | Like::SineProduct([0, _] | [_, 0]) => {
-                Some("modes are counted from 1")
+    fn over_its_sides(&self, at: At<'_>) -> Option<()> {
+        match (&self.like, &self.over) {
+            (Like::SineProduct(_), Places::Line(_)) => {
+                at.under("over").wrong("a plate's shape lies over two lists: `over: [x, y]`")
             }
-            Like::SineProduct(_) if !on_rectangle => Some("a plate's shape lies over two lists: `over: [x, y]`"),
-            Like::Cantilever(_) | Like::Clamped(_) | Like::Sine(_) | Like::Points(_) if on_rectangle => {
-                Some("a beam's shape lies over one list: `over: x`")
+            (Like::Cantilever(_) | Like::Clamped(_) | Like::Sine(_) | Like::Points(_), Places::Rectangle(_)) => {
+                at.under("over").wrong("a beam's shape lies over one list: `over: x`")
             }
-            Like::Points(points) if points.len() < FEWEST_POINTS || !points.is_sorted_by(|a, b| a[0] < b[0]) => {
-                Some("a shape needs five points or more, with x increasing")
-            }
-            Like::Points(points) if !points.iter().flatten().all(|number| number.is_finite()) => {
-                Some("a shape needs finite points")
-            }
-            _ if !(limit > 0.0 && limit < 1.0) => Some("a limit on the criterion lies between 0 and 1"),
-            _ => None,
+            _ => Some(()),
         }
     }
 
@@ -138,12 +157,12 @@ impl ModeShape {
 
     /// The shape that would satisfy a claim of likeness and break one of difference; for the self-test.
     pub(crate) fn double(&self, view: &View<'_>) -> Result<Vec<f64>, Absence> {
-        let (places, _) = self.read(view)?;
+        let (places, _) = self.lists(view)?;
         self.like.at(&places, || self.other(view))
     }
 
     fn compared(&self, view: &View<'_>) -> Result<Compared, Absence> {
-        let (places, shape) = self.read(view)?;
+        let (places, shape) = self.lists(view)?;
         let like = self.like.at(&places, || self.other(view))?;
         // Points may end before the shape does.
         let pairs: Vec<(f64, f64)> = shape.iter().copied().zip(like).filter(|(_, like)| like.is_finite()).collect();
@@ -164,8 +183,8 @@ impl ModeShape {
         Ok(Compared { mac, points: pairs.len(), next })
     }
 
-    fn read<'v>(&self, view: &View<'v>) -> Result<(Vec<Spot>, &'v [f64]), Absence> {
-        let rows = view.rows(Source { table: None, rows: &self.rows }, None)?;
+    fn lists<'v>(&self, view: &View<'v>) -> Result<(Vec<Spot>, &'v [f64]), Absence> {
+        let rows = view.rows(self.source(), None)?;
         let share = |name: &str| {
             let unit = view.unit(&rows, name)?;
             if !unit.is_empty() {
@@ -191,7 +210,7 @@ impl ModeShape {
 
     fn other(&self, view: &View<'_>) -> Result<Vec<f64>, Absence> {
         let Like::Column(name) = &self.like else { return Ok(Vec::new()) };
-        let rows = view.rows(Source { table: None, rows: &self.rows }, None)?;
+        let rows = view.rows(self.source(), None)?;
         Ok(view.path(&rows, name)?.to_vec())
     }
 }

@@ -4,59 +4,81 @@ use std::collections::BTreeMap;
 use std::fmt;
 
 use serde::{Deserialize, Serialize};
+use serde_json::json;
 
-use super::selection::{Allowed, Selection, same};
+use super::mapping::{Reads, Seen, claim};
+use super::name::Column;
+use super::selection::{Allowed, is_number, same};
 use super::tally::{Decision, Outcome, Tally};
 use super::text::{percent, significant, with_unit};
 use super::view::{Absence, Cell, Source, View};
 use super::words;
+use crate::experiment::At;
 
 /// A place in a map: a number for each coordinate, or the column that holds it (`damper_x: force_x`).
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(transparent)]
-pub struct Place(pub BTreeMap<String, Coordinate>);
+pub struct Place(pub BTreeMap<Column, Coordinate>);
 
 /// A coordinate of a place.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum Coordinate {
     /// In the column's unit.
     Number(f64),
     /// The column that holds it, the same in all rows of a map.
-    Column(String),
+    Column(Column),
 }
 
-/// The largest value of a map is at a place.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct BestPlace {
-    /// The measure.
-    pub of: String,
-    /// The place.
-    pub at: Place,
-    /// At that very place, or by it.
-    #[serde(default)]
-    pub position: Position,
-    /// The place is among so many of the best.
-    #[serde(default = "one")]
-    pub among: usize,
-    /// How far short of the best the place may fall, as a fraction of the map's range.
-    #[serde(default)]
-    pub slack: f64,
-    /// A column whose levels are maps of their own, of which each has to satisfy the claim.
-    #[serde(default)]
-    pub each: Option<String>,
-    /// Conditions beyond the entry's own.
-    #[serde(rename = "where", default)]
-    pub rows: Selection,
+impl Place {
+    fn read(at: At<'_>) -> Option<Self> {
+        let form = "a place is written as `column: number` or `column: other column`";
+        let one = |key: &str, span, at: At<'_>| {
+            let column = Column::at(key, span);
+            let unit = column.unit();
+            let number = |at: At<'_>| at.number_in(unit).map(Coordinate::Number);
+            let other = |at: At<'_>| Column::read(at).map(Coordinate::Column);
+            let coordinate = at.either(is_number, number, other)?;
+            Some((column, coordinate))
+        };
+        let place = at.by_name(json!({"minProperties": 1}), form, one)?;
+        if place.is_empty() { at.wrong(form) } else { Some(Self(place.into_iter().collect())) }
+    }
+}
+
+impl Reads for Place {
+    fn note<'a>(&'a self, seen: &mut Seen<'a>) {
+        for (column, coordinate) in &self.0 {
+            column.note(seen);
+            if let Coordinate::Column(other) = coordinate {
+                other.note(seen);
+            }
+        }
+    }
+}
+
+claim! {
+    "a best place of a map" BestPlace {
+        of: Column = required("The measure", Column::read),
+        at: Place = required("The place", Place::read),
+        position: Position = or("At that very place, or by it", |at| at.word("position"), Position::At),
+        among: usize = or("The place is among so many of the best", some, 1),
+        slack: f64 =
+            or("How far short of the best the place may fall, as a fraction of the map's range", |at| at.fraction(), 0.0),
+        each: Option<Column> =
+            optional("A column whose levels are maps of their own, of which each has to satisfy the claim", Column::read),
+    }
+}
+
+fn some(at: At<'_>) -> Option<usize> {
+    usize::try_from(at.count_from(1, "", u32::MAX, "a place is among one of the best or more")?).ok()
 }
 
 /// Where, seen from a place.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Position {
     /// At it.
-    #[default]
     At,
     /// At it or at one of its neighbours on the grid.
     Near,
@@ -64,37 +86,15 @@ pub enum Position {
     Beside,
 }
 
-/// A measure does not fall on any step towards a place.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct GrowsTowards {
-    /// The measure.
-    pub of: String,
-    /// The place.
-    pub to: Place,
-    /// Step back allowed, as a fraction of the map's range.
-    #[serde(default)]
-    pub slack: f64,
-    /// A column whose levels are maps of their own, of which each has to satisfy the claim.
-    #[serde(default)]
-    pub each: Option<String>,
-    /// Conditions beyond the entry's own.
-    #[serde(rename = "where", default)]
-    pub rows: Selection,
-}
+impl Reads for Position {}
 
-fn one() -> usize {
-    1
-}
-
-impl Place {
-    /// True if it has a coordinate and all numbers are finite.
-    pub(crate) fn is_sound(&self) -> bool {
-        let finite = |coordinate: &Coordinate| match coordinate {
-            Coordinate::Number(x) => x.is_finite(),
-            Coordinate::Column(_) => true,
-        };
-        !self.0.is_empty() && self.0.values().all(finite)
+claim! {
+    "a map that grows towards a place" GrowsTowards {
+        of: Column = required("The measure", Column::read),
+        to: Place = required("The place", Place::read),
+        slack: f64 = or("Step back allowed, as a fraction of the map's range", |at| at.fraction(), 0.0),
+        each: Option<Column> =
+            optional("A column whose levels are maps of their own, of which each has to satisfy the claim", Column::read),
     }
 }
 
@@ -114,7 +114,7 @@ impl fmt::Display for Place {
 pub(crate) fn best_place(claim: &BestPlace, view: &View<'_>) -> Result<Decision, Absence> {
     let mut tally = Tally::new();
     let mut found = Vec::new();
-    for (level, map) in maps(view, &claim.rows, claim.each.as_deref(), &claim.of, &claim.at)? {
+    for (level, map) in maps(view, claim.source(), claim.each.as_deref(), &claim.of, &claim.at)? {
         let target = map.index_of_target(&claim.at)?;
         let wanted = |distance: usize| match claim.position {
             Position::At => distance == 0,
@@ -187,7 +187,7 @@ pub(crate) fn grows_towards(claim: &GrowsTowards, view: &View<'_>) -> Result<Dec
     let mut tally = Tally::new();
     let (mut steps, mut up) = (0_usize, 0_usize);
     let mut largest = (0.0_f64, String::new());
-    for (level, map) in maps(view, &claim.rows, claim.each.as_deref(), &claim.of, &claim.to)? {
+    for (level, map) in maps(view, claim.source(), claim.each.as_deref(), &claim.of, &claim.to)? {
         let range = map.range();
         for (from, to) in map.steps_towards_target() {
             let rise = to.cell.value - from.cell.value;
@@ -271,23 +271,23 @@ impl Spot {
 /// The maps that a claim speaks of, each with a prefix that names it.
 fn maps(
     view: &View<'_>,
-    rows: &Selection,
+    source: Source<'_>,
     each: Option<&str>,
     of: &str,
     place: &Place,
 ) -> Result<Vec<(String, Map)>, Absence> {
-    let Some(each) = each else { return Ok(vec![(String::new(), Map::new(view, rows, of, place)?)]) };
-    let levels = view.levels(&view.rows(Source { table: None, rows }, Some(each))?, each)?;
+    let Some(each) = each else { return Ok(vec![(String::new(), Map::new(view, source, of, place)?)]) };
+    let levels = view.levels(&view.rows(source, Some(each))?, each)?;
     let map = |level: &Allowed| {
-        let map = Map::new(&view.narrowed(each, level), rows, of, place)?;
+        let map = Map::new(&view.narrowed(each, level), source, of, place)?;
         Ok((format!("{}: ", words::of_level(each, level, "")), map))
     };
     levels.iter().map(map).collect()
 }
 
 impl Map {
-    fn new(view: &View<'_>, rows: &Selection, of: &str, place: &Place) -> Result<Self, Absence> {
-        let rows = view.rows(Source { table: None, rows }, None)?;
+    fn new(view: &View<'_>, source: Source<'_>, of: &str, place: &Place) -> Result<Self, Absence> {
+        let rows = view.rows(source, None)?;
         let columns = place.0.keys().map(|name| view.coordinates(&rows, name)).collect::<Result<Vec<_>, _>>()?;
         let target = place
             .0

@@ -3,13 +3,15 @@
 //! Half a unit of the last printed digit is the uncertainty of the datum: `2.5` is 2.5 ± 0.05, `1.99e-1 s` is
 //! 0.199 s ± 0.0005 s, `149` is 149 ± 0.5.
 
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 
+use super::mapping::Reads;
+use crate::experiment::At;
 use crate::measure::Measure;
 
 /// A number with its unit, as printed.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(try_from = "String", into = "String")]
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(into = "String")]
 pub struct Printed {
     text: String,
     value: f64,
@@ -46,7 +48,14 @@ fn unit(symbol: &str) -> Option<(&'static str, f64)> {
     })
 }
 
+impl Reads for Printed {}
+
 impl Printed {
+    pub(crate) fn read(at: At<'_>) -> Option<Self> {
+        let text = at.text()?;
+        Self::parse(&text).map_err(|error| at.wrong::<()>(error.to_string())).ok()
+    }
+
     /// Reads a number as printed, `427.3 mm/s`.
     ///
     /// # Errors
@@ -117,14 +126,6 @@ impl Printed {
         let ((own, from), (other, to)) = (unit(&self.unit)?, unit(symbol)?);
         let factor = from / to;
         (own == other).then_some((self.value * factor, self.half_unit * factor))
-    }
-}
-
-impl TryFrom<String> for Printed {
-    type Error = PrintedError;
-
-    fn try_from(text: String) -> Result<Self, PrintedError> {
-        Self::parse(&text)
     }
 }
 

@@ -6,39 +6,32 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::entry_mistake::EntryMistake;
 use super::extract::Extracted;
+use super::mapping::{Reads, mapping, word};
+use super::name::Column;
 use super::printed::Printed;
 use super::selection::Selection;
-use super::text::{significant, symbol, with_unit};
-use super::view::{Absence, Line, Source, View};
+use super::text::{symbol, with_unit};
+use super::view::{Absence, Line, View};
+use crate::experiment::At;
 use crate::measure::column_words;
 
-/// A peak of a response.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Peak {
-    /// The response.
-    pub of: String,
-    /// The frequency.
-    pub over: String,
-    /// Which of its peaks.
-    pub which: Which,
-    /// What counts as a peak: how far the response falls on both sides, as a fraction of the peak's own height.
-    #[serde(default = "usual_prominence")]
-    pub prominence: f64,
-    /// Which number of it.
-    pub read: Feature,
-    /// Conditions beyond the entry's own.
-    #[serde(rename = "where", default)]
-    pub rows: Selection,
-    /// Another experiment's table; the entry's conditions do not hold there.
-    #[serde(default)]
-    pub table: Option<String>,
+word! {
+    "a peak" Peak {
+        of: Column = required("The response", Column::read),
+        over: Column = required("The frequency", Column::read),
+        which: Which = required("Which of its peaks", Which::read),
+        prominence: f64 =
+            or("What counts as a peak: how far the response falls on both sides, as a fraction of the peak's own height", |at| at.fraction(), USUAL_PROMINENCE),
+        read: Feature = required("Which number of it", |at| at.word("number of a peak")),
+    }
 }
 
+/// A twentieth: a ripple on a resonance is none.
+const USUAL_PROMINENCE: f64 = 0.05;
+
 /// Which of several peaks.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Which {
     /// The highest.
@@ -47,6 +40,24 @@ pub enum Which {
     Number(u32),
     /// The one nearest to a frequency.
     Nearest(Printed),
+}
+
+impl Reads for Which {}
+impl Reads for Feature {}
+
+impl Which {
+    fn read(at: At<'_>) -> Option<Self> {
+        let forms = [
+            ("highest", "The highest"),
+            ("number", "The n-th from the low end, counted from 1"),
+            ("nearest", "The one nearest to a frequency"),
+        ];
+        at.choose("the choice of a peak", &forms, |choice| match choice.name() {
+            "highest" => choice.bare().map(|()| Self::Highest),
+            "number" => choice.value()?.count_from(1, "", u32::MAX, "peaks are counted from 1").map(Self::Number),
+            _ => Printed::read(choice.value()?).map(Self::Nearest),
+        })
+    }
 }
 
 /// A number of a peak.
@@ -72,21 +83,7 @@ impl Feature {
     }
 }
 
-/// A twentieth: a ripple on a resonance is none.
-pub(super) fn usual_prominence() -> f64 {
-    0.05
-}
-
 impl Peak {
-    pub(crate) fn source(&self) -> Source<'_> {
-        Source { table: self.table.as_deref(), rows: &self.rows }
-    }
-
-    /// True if every number written into it makes sense.
-    pub(crate) fn is_sound(&self) -> bool {
-        (0.0..1.0).contains(&self.prominence) && self.which != Which::Number(0)
-    }
-
     pub(crate) fn take(&self, view: &View<'_>) -> Result<Extracted, Absence> {
         let line = view.line(self.source(), &self.of, &self.over, None)?;
         let at = self.choose(&line)?;
@@ -247,29 +244,17 @@ fn half_power_width(line: &Line, at: usize) -> Result<(f64, f64), Absence> {
     Ok((right - left, libm::hypot(u_left, u_right)))
 }
 
-/// A peak as a study prints it: one entry, up to three numbers.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct PrintedPeak {
-    /// The response.
-    pub of: String,
-    /// The frequency.
-    pub over: String,
-    /// Which of its peaks; the one nearest to `at` if absent.
-    #[serde(default)]
-    pub which: Option<Which>,
-    /// What counts as a peak: how far the response falls on both sides, as a fraction of the peak's own height.
-    #[serde(default = "usual_prominence")]
-    pub prominence: f64,
-    /// Where it is.
-    #[serde(default)]
-    pub at: Option<Printed>,
-    /// How high it is.
-    #[serde(default)]
-    pub height: Option<Printed>,
-    /// How wide it is at 1/√2 of its height.
-    #[serde(default)]
-    pub half_power_width: Option<Printed>,
+mapping! {
+    "a peak" PrintedPeak, with_numbers {
+        of: Column = required("The response", Column::read),
+        over: Column = required("The frequency", Column::read),
+        which: Option<Which> = optional("Which of its peaks; the one nearest to `at` if absent", Which::read),
+        prominence: f64 =
+            or("What counts as a peak: how far the response falls on both sides, as a fraction of the peak's own height", |at| at.fraction(), USUAL_PROMINENCE),
+        at: Option<Printed> = optional("Where it is", Printed::read),
+        height: Option<Printed> = optional("How high it is", Printed::read),
+        half_power_width: Option<Printed> = optional("How wide it is at 1/√2 of its height", Printed::read),
+    }
 }
 
 /// One printed number of a peak, and how it is read from the table.
@@ -280,19 +265,14 @@ pub(crate) struct PeakNumber<'a> {
 }
 
 impl PrintedPeak {
-    /// What is wrong with it.
-    pub(crate) fn flaw(&self) -> Option<EntryMistake> {
+    fn with_numbers(&self, at: At<'_>) -> Option<()> {
         if [&self.at, &self.height, &self.half_power_width].iter().all(|printed| printed.is_none()) {
-            return Some(EntryMistake::PeakWithoutNumber);
+            return at.wrong("a peak without a printed number: give `at`, `height` or `half_power_width`");
         }
-        match self.which() {
-            None => Some(EntryMistake::PeakWithoutWhich),
-            Some(Which::Number(0)) => Some(EntryMistake::PeakZero),
-            Some(_) if !(0.0..1.0).contains(&self.prominence) => {
-                Some(EntryMistake::Prominence { given: significant(self.prominence, 3) })
-            }
-            Some(_) => None,
+        if self.which().is_none() {
+            return at.wrong("a peak without `at` needs `which`: {nearest: 26 rad/s}, {number: 1} or highest");
         }
+        Some(())
     }
 
     fn which(&self) -> Option<Which> {

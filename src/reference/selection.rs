@@ -3,15 +3,17 @@
 use std::collections::BTreeMap;
 use std::fmt;
 
-use serde::de::{Error, MapAccess, SeqAccess, Visitor};
-use serde::{Deserialize, Deserializer, Serialize};
+use serde::Serialize;
+use serde_json::json;
 
+use super::name::{Column, in_unit_of};
+use crate::experiment::{At, Columns, Value};
 use crate::table::Data;
 
 /// Conditions by column; all must hold. Empty selects every row.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
 #[serde(transparent)]
-pub struct Selection(pub BTreeMap<String, Allowed>);
+pub struct Selection(pub BTreeMap<Column, Allowed>);
 
 /// What a cell may be.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -76,15 +78,6 @@ impl Allowed {
             }),
         }
     }
-
-    fn is_sound(&self) -> bool {
-        match self {
-            Self::Number(x) => x.is_finite(),
-            Self::Text(_) => true,
-            Self::OneOf(list) => !list.is_empty() && list.iter().all(Self::is_sound),
-            Self::Range { from, to } => [from, to].iter().all(|end| end.is_none_or(f64::is_finite)),
-        }
-    }
 }
 
 /// Equal to nine digits: a sweep's points are computed, an entry's are written.
@@ -130,57 +123,46 @@ impl fmt::Display for Allowed {
     }
 }
 
-impl<'de> Deserialize<'de> for Allowed {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let allowed = deserializer.deserialize_any(AllowedVisitor)?;
-        if allowed.is_sound() { Ok(allowed) } else { Err(D::Error::custom("a condition needs finite numbers")) }
+impl Selection {
+    pub(crate) fn read(at: At<'_>) -> Option<Self> {
+        at.named("where", "Rows, by columns", |at| {
+            let form = "rows are chosen as `column: number`, a word, a list of them, or {from: 0.1, to: 2}";
+            let one = |key: &str, span, at: At<'_>| {
+                let column = Column::at(key, span);
+                let allowed = Allowed::read(at, &column)?;
+                Some((column, allowed))
+            };
+            at.by_name(json!({}), form, one).map(|conditions| Self(conditions.into_iter().collect()))
+        })
     }
 }
 
-struct AllowedVisitor;
-
-impl<'de> Visitor<'de> for AllowedVisitor {
-    type Value = Allowed;
-
-    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("a number, a word, a list of them, or a range such as `{from: 0.1, to: 2}`")
+impl Allowed {
+    fn read(at: At<'_>, column: &Column) -> Option<Self> {
+        let range = |at: At<'_>| {
+            let keys = at.keys("a range")?;
+            let from = keys.optional("from", "Lower end; open if absent", in_unit_of(Some(column)));
+            let to = keys.optional("to", "Upper end; open if absent", in_unit_of(Some(column)));
+            keys.close()?;
+            Some(Self::Range { from: from?, to: to? })
+        };
+        let cell = |at: At<'_>| Self::cell(at, column);
+        let one = |at: At<'_>| at.either(|value| matches!(value, Value::Mapping(_)), range, cell);
+        let list = |at: At<'_>| at.list(one).map(Self::OneOf);
+        at.either(|value| matches!(value, Value::Sequence(_)), list, one)
     }
 
-    fn visit_f64<E>(self, x: f64) -> Result<Allowed, E> {
-        Ok(Allowed::Number(x))
+    /// A number, in the unit of the column or with one, or a word.
+    fn cell(at: At<'_>, column: &Column) -> Option<Self> {
+        let number = |at: At<'_>| in_unit_of(Some(column))(at).map(Self::Number);
+        let word = |at: At<'_>| at.text().map(Self::Text);
+        at.either(|value| is_number(value) && !Columns::holds_words(column), number, word)
     }
+}
 
-    #[expect(clippy::cast_precision_loss, reason = "parameters are far below 2^53")]
-    fn visit_i64<E>(self, x: i64) -> Result<Allowed, E> {
-        Ok(Allowed::Number(x as f64))
-    }
-
-    #[expect(clippy::cast_precision_loss, reason = "parameters are far below 2^53")]
-    fn visit_u64<E>(self, x: u64) -> Result<Allowed, E> {
-        Ok(Allowed::Number(x as f64))
-    }
-
-    fn visit_str<E>(self, text: &str) -> Result<Allowed, E> {
-        Ok(Allowed::Text(text.into()))
-    }
-
-    fn visit_seq<A: SeqAccess<'de>>(self, mut seq: A) -> Result<Allowed, A::Error> {
-        let mut list = Vec::new();
-        while let Some(one) = seq.next_element()? {
-            list.push(one);
-        }
-        Ok(Allowed::OneOf(list))
-    }
-
-    fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Allowed, A::Error> {
-        let (mut from, mut to) = (None, None);
-        while let Some(key) = map.next_key::<String>()? {
-            match key.as_str() {
-                "from" => from = Some(map.next_value()?),
-                "to" => to = Some(map.next_value()?),
-                _ => return Err(A::Error::unknown_field(&key, &["from", "to"])),
-            }
-        }
-        Ok(Allowed::Range { from, to })
-    }
+/// It starts as a number does, or is one that is not finite.
+pub(super) fn is_number(value: &Value) -> bool {
+    let Value::Scalar(text) = value else { return false };
+    let text = text.trim_start_matches(['+', '-', '.']);
+    text.starts_with(|c: char| c.is_ascii_digit()) || ["nan", "inf", "infinity"].contains(&text.to_lowercase().as_str())
 }

@@ -381,7 +381,7 @@ impl Trial<'_> {
         let double = double.map_err(|absence| Flaw::Missing(absence.reason().to_string()))?;
         let mut table = self.table.clone();
         for (column, rows) in self.measures(reads) {
-            if self.table.columns[column].name == claim.of {
+            if self.table.columns[column].name == *claim.of {
                 alter(&mut table, column, &rows, |x, i| double.get(i % double.len().max(1)).copied().unwrap_or(x));
             }
         }

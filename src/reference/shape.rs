@@ -1,7 +1,7 @@
 //! Claims about the shape of a line: monotone, straight, levelling off, its peaks and onsets.
 
+use super::claims::{GreatestAtEnd, LevelsOff, Linear, Monotone, Onsets, Part, Peaks};
 use super::extraction::{Direction, Side};
-use super::predicate::{GreatestAtEnd, LevelsOff, Linear, Monotone, Onsets, Part, Peaks};
 use super::tally::{Decision, Outcome, Tally};
 use super::text::{percent, significant, symbol, with_unit};
 use super::view::{Absence, View};

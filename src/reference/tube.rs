@@ -5,40 +5,52 @@
 //! computed point within the published range to the published curve, and each published point to the computed curve, so
 //! that a peak that is not there shows as one that should not be.
 
-use serde::{Deserialize, Serialize};
-
+use super::claims::{Within, within};
 use super::fit::{Fit, FitMeasure};
-use super::predicate::Within;
-use super::selection::Selection;
+use super::mapping::{claim, mapping};
+use super::name::Column;
 use super::tally::{Decision, Tally};
 use super::text::{significant, symbol, with_unit};
-use super::view::{Absence, Line, Source, View};
+use super::view::{Absence, Line, View};
+use crate::experiment::At;
 
-/// A published curve.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Curve {
-    /// The measure.
-    pub of: String,
-    /// The parameter.
-    pub over: String,
-    /// Its points, x increasing, in the units of the two columns.
-    pub points: Vec<[f64; 2]>,
-    /// How far a point may lie beside the curve.
-    pub tube: Tube,
-    /// Conditions beyond the entry's own.
-    #[serde(rename = "where", default)]
-    pub rows: Selection,
+claim! {
+    "a curve" Curve {
+        of: Column = required("The measure", Column::read),
+        over: Column = required("The parameter", Column::read),
+        points: Vec<[f64; 2]> =
+            required("Its points, x increasing, in the units of the two columns", |at| points(at, 2)),
+        tube: Tube = required("How far a point may lie beside the curve", Tube::read),
+    }
+}
+mapping! {
+    "a tube" Tube {
+        x: Within = required("Along the parameter", width),
+        y: Within = required("Along the measure", width),
+    }
 }
 
-/// The half widths of a tube.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Tube {
-    /// Along the parameter.
-    pub x: Within,
-    /// Along the measure.
-    pub y: Within,
+fn width(at: At<'_>) -> Option<Within> {
+    match within(at)? {
+        Within::Relative(0.0) | Within::Absolute(0.0) => at.wrong("a tube has a width above zero on both axes"),
+        width => Some(width),
+    }
+}
+
+/// Points of a line, x increasing.
+pub(super) fn points(at: At<'_>, least: usize) -> Option<Vec<[f64; 2]>> {
+    let point = |at: At<'_>| {
+        let point: Result<[f64; 2], _> = at.pair(|at| at.number())?.try_into();
+        point.ok().or_else(|| at.report("a point has two numbers", Some("write [x, y]".into())))
+    };
+    let points = at.list(point)?;
+    if points.len() < least {
+        return at.wrong(format!("{} points are no line: {least} at least", points.len()));
+    }
+    if !points.is_sorted_by(|a, b| a[0] < b[0]) {
+        return at.wrong("the points do not stand in order: x increases from each to the next");
+    }
+    Some(points)
 }
 
 /// A point of a curve.
@@ -58,21 +70,6 @@ struct Departure {
 }
 
 impl Curve {
-    /// What makes it no curve.
-    pub(crate) fn flaw(&self) -> Option<&'static str> {
-        let wide = |within: Within| match within {
-            Within::Relative(size) | Within::Absolute(size) => size.is_finite() && size > 0.0,
-        };
-        let finite = self.points.iter().flatten().all(|number| number.is_finite());
-        if self.points.len() < 2 || !finite || !self.points.is_sorted_by(|a, b| a[0] < b[0]) {
-            Some("a curve needs two points or more, finite, with x increasing")
-        } else if !wide(self.tube.x) || !wide(self.tube.y) {
-            Some("a tube has a width above zero on both axes")
-        } else {
-            None
-        }
-    }
-
     pub(crate) fn decide(&self, view: &View<'_>) -> Result<Decision, Absence> {
         let (line, departures) = self.departures(view)?;
         let mut tally = Tally::new();
@@ -113,7 +110,7 @@ impl Curve {
     }
 
     fn departures(&self, view: &View<'_>) -> Result<(Line, Vec<Departure>), Absence> {
-        let line = view.line(Source { table: None, rows: &self.rows }, &self.of, &self.over, None)?;
+        let line = view.line(self.source(), &self.of, &self.over, None)?;
         let published: Vec<Point> = self.points.iter().map(|&[x, y]| Point { x, y }).collect();
         let computed: Vec<Point> = line.x.iter().zip(&line.y).map(|(&x, cell)| Point { x, y: cell.value }).collect();
         if computed.len() < 2 {
@@ -123,28 +120,28 @@ impl Curve {
         let mut departures: Vec<Departure> = Vec::new();
         for (point, cell) in computed.iter().zip(&line.y) {
             if (first..=last).contains(&point.x) {
-                let u = cell.run / self.width(self.tube.y, point.y);
+                let u = cell.run / self.width(&self.tube.y, point.y);
                 departures.push(Departure { widths: self.widths_beside(*point, &published), u, x: point.x });
             }
         }
         for point in &published {
             // The error of the nearest computed point.
             let near = line.x.partition_point(|x| *x < point.x).min(line.x.len() - 1);
-            let u = line.y[near].run / self.width(self.tube.y, point.y);
+            let u = line.y[near].run / self.width(&self.tube.y, point.y);
             departures.push(Departure { widths: self.widths_beside(*point, &computed), u, x: point.x });
         }
         Ok((line, departures))
     }
 
-    fn width(&self, within: Within, at: f64) -> f64 {
+    fn width(&self, within: &Within, at: f64) -> f64 {
         within.allows(at, at).max(f64::MIN_POSITIVE)
     }
 
     /// The smallest distance of a point to a polyline, in widths of the tube at the point.
     fn widths_beside(&self, point: Point, curve: &[Point]) -> f64 {
         let scaled = |other: Point| Point {
-            x: (other.x - point.x) / self.width(self.tube.x, point.x),
-            y: (other.y - point.y) / self.width(self.tube.y, point.y),
+            x: (other.x - point.x) / self.width(&self.tube.x, point.x),
+            y: (other.y - point.y) / self.width(&self.tube.y, point.y),
         };
         curve.windows(2).map(|pair| from_origin(scaled(pair[0]), scaled(pair[1]))).fold(f64::INFINITY, f64::min)
     }

@@ -12,7 +12,7 @@ use super::markdown::one_line;
 pub struct CheckView<'a> {
     /// The entries, in the order to show.
     pub entries: Vec<CheckedEntry<'a>>,
-    /// Files that could not be used.
+    /// Why files could not be used.
     pub troubles: Vec<Trouble>,
 }
 
@@ -27,14 +27,14 @@ pub struct CheckedEntry<'a> {
     pub line: u64,
 }
 
-/// A file that could not be used.
+/// A mistake for which a file could not be used.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Trouble {
     /// By its name within the study.
     pub file: String,
-    /// The line of the first mistake, if it has one.
+    /// The line of the mistake, if it has one.
     pub line: Option<u64>,
-    /// Every mistake, in words.
+    /// The mistake, in words.
     pub message: String,
 }
 

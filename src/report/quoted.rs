@@ -163,7 +163,7 @@ impl Axes<'_> {
                 Feature::Height => (&peak.of, peak.over.as_str(), Where::Level("peak ")),
                 Feature::HalfPowerWidth => return None,
             },
-            Extraction::AtMaximum(word) if word.read == self.x => (&word.of, self.x, Where::Place),
+            Extraction::AtMaximum(word) if *word.read == *self.x => (&word.of, self.x, Where::Place),
             Extraction::Number(_)
             | Extraction::AtMaximum(_)
             | Extraction::End(_)

@@ -17,7 +17,7 @@ use crate::report::{
     value_in_words,
 };
 use crate::scene::{Scene, effects};
-use crate::study::{Heading, Item, Motions, RunTimes, Study, Unread, table_name};
+use crate::study::{Heading, Item, Motions, Refused, RunTimes, Study, table_name};
 
 /// Figures for which there is no picture, by the name that a page links, with the reason.
 pub(super) type Undrawn = BTreeMap<String, String>;
@@ -141,7 +141,7 @@ pub fn check_view<'a>(
     study: &'a Study,
     judgement: &'a Judgement,
     ids: &BTreeSet<&'a str>,
-    unread: &[&Unread],
+    unread: &[&Refused],
 ) -> CheckView<'a> {
     let files = study.reference_names();
     let mut entries = Vec::new();
@@ -152,8 +152,11 @@ pub fn check_view<'a>(
         let judged = judged(judgement, id).iter().zip(lines);
         entries.extend(judged.map(|(judged, line)| CheckedEntry { judged, file, line }));
     }
-    let trouble = |one: &&Unread| Trouble { file: one.file().into(), line: one.line(), message: one.to_string() };
-    CheckView { entries, troubles: unread.iter().map(trouble).collect() }
+    let of_file = |one: &&Refused| {
+        let trouble = |(line, message)| Trouble { file: one.file().into(), line, message };
+        one.mistakes().into_iter().map(trouble).collect::<Vec<_>>()
+    };
+    CheckView { entries, troubles: unread.iter().flat_map(of_file).collect() }
 }
 
 /// The verdicts of the whole study for programs.

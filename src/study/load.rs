@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use super::layout::{ASSUMPTIONS, STUDY, Texts, folder_of, stem};
 use crate::experiment::{
-    AboutStudy, AssumptionSheet, Cases, Experiment, ExperimentId, IdError, Problems, parse_assumptions, parse_study,
-    parse_with,
+    AboutStudy, AssumptionSheet, Cases, Columns, Experiment, ExperimentId, IdError, Problems, parse_assumptions,
+    parse_study, parse_with,
 };
 use crate::text::utf8::{NotUtf8, decode};
 
@@ -44,7 +44,7 @@ impl Source {
 pub enum Refused {
     /// Its text has mistakes.
     #[error("{0}")]
-    Text(Problems),
+    Text(#[from] Problems),
     /// Its name does not make an id.
     #[error("{file}: {error}")]
     Name {
@@ -75,6 +75,25 @@ pub enum Refused {
 }
 
 impl Refused {
+    /// The mistakes with their lines, where there are lines.
+    #[must_use]
+    pub fn problems(&self) -> Option<&Problems> {
+        match self {
+            Self::Text(problems) => Some(problems),
+            _ => None,
+        }
+    }
+
+    /// Each mistake in words, with its line, counted from 1, if it has one.
+    #[must_use]
+    pub fn mistakes(&self) -> Vec<(Option<u64>, String)> {
+        match self {
+            Self::Text(problems) => problems.one_by_one(),
+            Self::Encoding { error, .. } => vec![(u64::try_from(error.line).ok(), self.to_string())],
+            Self::Name { .. } | Self::Ending(_) | Self::Twice { .. } => vec![(None, self.to_string())],
+        }
+    }
+
     /// The name of the file.
     #[must_use]
     pub fn file(&self) -> &str {
@@ -88,6 +107,19 @@ impl Refused {
 }
 
 impl Loaded {
+    /// The columns that the table of an experiment will have, which may be among those that were not asked for; nothing of one
+    /// that there is not, or that has mistakes.
+    pub(super) fn columns(&self, texts: &Texts, id: &str) -> Option<Columns> {
+        if let Some(source) = self.sources.iter().find(|source| source.experiment.id.0 == id) {
+            return Some(source.experiment.columns());
+        }
+        let is_it = |file: &str| file.starts_with("experiments/") && file != ASSUMPTIONS && stem(file) == id;
+        let (file, bytes) = texts.files.iter().find(|(file, _)| is_it(file))?;
+        let text = text(file, bytes).ok()?;
+        let read = parse_with(&id.parse().ok()?, file, text, &self.sheet.assumptions(), Cases::Tried);
+        read.ok().map(|experiment| experiment.columns())
+    }
+
     /// Reads all experiments among `texts`.
     #[must_use]
     pub fn from_texts(texts: &Texts) -> Self {

@@ -74,7 +74,7 @@ pub use left_out::{LeftOutRecord, PredictedErrors};
 pub use load::{Loaded, Refused, Source};
 pub use machine::Machine;
 pub use motions::{Deviation, Motions, Settling, row_in_words};
-pub use open::{Study, Unread};
+pub use open::Study;
 pub use orphan::{earlier_tables, orphans};
 pub use plan::{Item, State};
 pub use progress::Progress;

@@ -7,9 +7,8 @@ use rayon::prelude::*;
 use super::left_out::{LeftOutRecord, PredictedErrors};
 use super::load::text;
 use crate::experiment::{AboutStudy, AssumptionSheet, Calibration, Cases, Problems, RowLimit, parse_calibration};
-use crate::reference::{Check, Prose, ReferenceFile, ReferenceMistake, ReferenceProblem, Role, parse_reference};
+use crate::reference::{Check, Prose, ReferenceFile, Role, parse_reference};
 use crate::study::{ASSUMPTIONS, Item, Layout, Loaded, Refused, STUDY, Sensitivity, Summary, Texts, Used, stem};
-use crate::text::utf8::decode;
 
 /// The study: what was read and planned, and the experiments that are up to date and need not be.
 #[derive(Debug)]
@@ -33,64 +32,20 @@ pub struct Study {
     /// The fitted entries that a calibration left out in turn, and how far off each came out.
     pub left_out: BTreeMap<String, PredictedErrors>,
     /// Files that could not be used.
-    pub unread: Vec<Unread>,
+    pub unread: Vec<Refused>,
 }
 
-/// A file that could not be used.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-pub enum Unread {
-    /// An experiment, the assumptions or a calibration.
-    #[error(transparent)]
-    Experiment(#[from] Refused),
-    /// A reference file.
-    #[error("{file}: {problem}")]
-    Reference {
-        /// Which.
-        file: String,
-        /// What is wrong with it, with its place.
-        problem: ReferenceProblem,
-        /// The same with the line of the text.
-        shown: Box<Problems>,
-    },
-}
-
-impl Unread {
-    fn reference(file: &str, text: &str, problem: ReferenceProblem) -> Self {
-        let shown = Box::new(problem.shown(file, text));
-        Self::Reference { file: file.into(), problem, shown }
-    }
-
-    /// The mistakes with their lines, where there are lines.
-    #[must_use]
-    pub fn problems(&self) -> Option<&Problems> {
-        match self {
-            Self::Experiment(Refused::Text(problems)) => Some(problems),
-            Self::Reference { shown, .. } => Some(shown),
-            Self::Experiment(_) => None,
-        }
-    }
-
-    /// The line of the first mistake, if it has a place.
-    #[must_use]
-    pub fn line(&self) -> Option<u64> {
-        match self {
-            Self::Experiment(Refused::Text(problems)) => {
-                problems.list.iter().find_map(|problem| problem.place).and_then(|place| u64::try_from(place.line).ok())
-            }
-            Self::Experiment(Refused::Encoding { error, .. }) => u64::try_from(error.line).ok(),
-            Self::Experiment(_) => None,
-            Self::Reference { problem, .. } => problem.line(),
-        }
-    }
-
-    /// The name of the file.
-    #[must_use]
-    pub fn file(&self) -> &str {
-        match self {
-            Self::Experiment(refused) => refused.file(),
-            Self::Reference { file, .. } => file,
-        }
-    }
+/// A name that names nothing, in a file that is fine otherwise.
+#[derive(Debug, thiserror::Error)]
+enum Lost {
+    #[error("a placeholder names `{0}`, which is no entry of the reference")]
+    Placeholder(String),
+    #[error("`{0}` is no entry of the reference: write `experiment/entry`")]
+    Entry(String),
+    #[error(
+        "a placeholder moves `{0}`, which no run of that entry does: the page of its experiment lists the assumptions that are moved, as they are written here"
+    )]
+    Variant(String),
 }
 
 impl Study {
@@ -162,9 +117,9 @@ impl Study {
         let Self { texts, layout, unread, .. } = self;
         // What an experiment depends on is known where nothing of it has changed.
         let cases = |id: &str| if used.contains_key(id) { Cases::Tried } else { Cases::ToTry };
-        let loaded = Loaded::chosen(texts, wanted, &cases);
-        unread.extend(loaded.refused.into_iter().map(Unread::from));
-        let references = references(texts, wanted, unread);
+        let mut loaded = Loaded::chosen(texts, wanted, &cases);
+        unread.append(&mut loaded.refused);
+        let references = references(texts, &loaded, wanted, unread);
         let items: Vec<Item> = loaded
             .sources
             .into_iter()
@@ -226,30 +181,34 @@ impl Study {
 
     /// Names of entries or variants that do not exist: in placeholders, in what assumptions and calibrations were fitted to, in the
     /// conclusions. Those of an experiment that this study does not have are no mistake: an export has a part of the entries.
-    fn lost_names(&self) -> Vec<Unread> {
+    fn lost_names(&self) -> Vec<Refused> {
         let has = |id: &str| -> Option<bool> {
             let (experiment, _) = id.split_once('/')?;
             let planned = self.references.get(experiment).map(|file| file.entries.iter().any(|entry| entry.id == id));
             let known = self.known.get(experiment).map(|known| known.judged.iter().any(|one| one.id == id));
             Some(planned.or(known).unwrap_or(true))
         };
-        let problem = |file: &str, name: &str, mistake: fn(String) -> ReferenceMistake| {
-            let text = self.texts.files.get(file).map(|bytes| String::from_utf8_lossy(bytes)).unwrap_or_default();
-            let line = text.lines().position(|line| line.contains(name)).map_or(1, |line| line as u64 + 1);
-            Unread::reference(file, &text, ReferenceProblem::on_line(line, mistake(name.into())))
+        let text =
+            |file: &str| self.texts.files.get(file).map(|bytes| String::from_utf8_lossy(bytes)).unwrap_or_default();
+        let refused = |file: &str, line: usize, mistake: String| {
+            Refused::Text(Problems::at(file, &text(file), Some((line as u64, 1)), mistake))
         };
-        let in_prose = |file: &str, prose: &Prose| -> Vec<Unread> {
+        let problem = |file: &str, name: &str, mistake: fn(String) -> Lost| {
+            let line = text(file).lines().position(|line| line.contains(name)).map_or(1, |line| line + 1);
+            refused(file, line, mistake(name.into()).to_string())
+        };
+        let in_prose = |file: &str, prose: &Prose| -> Vec<Refused> {
             let names = prose.placeholders().filter_map(|one| one.entry.as_deref());
             let moved = prose.placeholders().filter_map(|one| one.moved.as_deref());
             // A name without its experiment was checked with its file; in an assumption's reason it means nothing.
             let unknown = |name: &&str| has(name).map_or(file == ASSUMPTIONS, |has| !has);
-            let entries = names.filter(unknown).map(|name| problem(file, name, ReferenceMistake::Placeholder));
+            let entries = names.filter(unknown).map(|name| problem(file, name, Lost::Placeholder));
             let variants = moved.filter(|label| !self.sheet.has_variant(label));
-            entries.chain(variants.map(|label| problem(file, label, ReferenceMistake::Variant))).collect()
+            entries.chain(variants.map(|label| problem(file, label, Lost::Variant))).collect()
         };
-        let in_list = |file: &str, names: &[String]| -> Vec<Unread> {
+        let in_list = |file: &str, names: &[String]| -> Vec<Refused> {
             let unknown = |name: &&String| !has(name).unwrap_or(false);
-            names.iter().filter(unknown).map(|name| problem(file, name, ReferenceMistake::NoSuchEntry)).collect()
+            names.iter().filter(unknown).map(|name| problem(file, name, Lost::Entry)).collect()
         };
         let mut unread = Vec::new();
         for file in self.texts.files.keys().filter(|file| file.starts_with("reference/")) {
@@ -261,10 +220,8 @@ impl Study {
             match Prose::parse(&assumption.reason) {
                 Ok(prose) => unread.extend(in_prose(ASSUMPTIONS, &prose)),
                 Err(error) => {
-                    let mistake = ReferenceMistake::Reason { name: name.clone(), error };
-                    let text = self.texts.files.get(ASSUMPTIONS).map(|bytes| String::from_utf8_lossy(bytes));
-                    let problem = ReferenceProblem::on_line(assumption.place.line as u64, mistake);
-                    unread.push(Unread::reference(ASSUMPTIONS, &text.unwrap_or_default(), problem));
+                    let mistake = format!("the reason of `{name}` has {error}");
+                    unread.push(refused(ASSUMPTIONS, assumption.place.line, mistake));
                 }
             }
         }
@@ -306,12 +263,12 @@ fn names(id: &str, entry: &str) -> bool {
     id == entry || id.strip_suffix('*').is_some_and(|start| start.ends_with('/') && entry.starts_with(start))
 }
 
-fn calibrations(texts: &Texts, sheet: &AssumptionSheet, unread: &mut Vec<Unread>) -> BTreeMap<String, Calibration> {
+fn calibrations(texts: &Texts, sheet: &AssumptionSheet, unread: &mut Vec<Refused>) -> BTreeMap<String, Calibration> {
     let mut calibrations = BTreeMap::new();
     for (file, bytes) in texts.files.iter().filter(|(file, _)| file.starts_with("calibrations/")) {
         match text(file, bytes).and_then(|text| parse_calibration(file, text, sheet).map_err(Refused::Text)) {
             Ok(calibration) => drop(calibrations.insert(stem(file).to_owned(), calibration)),
-            Err(refused) => unread.push(refused.into()),
+            Err(refused) => unread.push(refused),
         }
     }
     calibrations
@@ -322,34 +279,31 @@ fn has_values(file: &ReferenceFile) -> bool {
     file.entries.iter().any(|entry| matches!(entry.check, Check::Value { .. } | Check::Peak { .. }))
 }
 
+/// The reference of those experiments that are `wanted`.
 fn references(
     texts: &Texts,
+    loaded: &Loaded,
     wanted: &dyn Fn(&str) -> bool,
-    unread: &mut Vec<Unread>,
+    unread: &mut Vec<Refused>,
 ) -> BTreeMap<String, ReferenceFile> {
-    let mut references = BTreeMap::<String, ReferenceFile>::new();
+    let (mut references, mut names) = (BTreeMap::new(), BTreeMap::<&str, &str>::new());
     let files = texts.files.iter().filter(|(file, _)| file.starts_with("reference/") && wanted(stem(file)));
     for (file, bytes) in files {
-        let text = String::from_utf8_lossy(bytes);
-        let mut refuse = |problem| unread.push(Unread::reference(file, &text, problem));
-        let name = file.rsplit('/').next().unwrap_or(file);
-        let Some(id) = name.strip_suffix(".yaml") else {
-            refuse(ReferenceMistake::Ending.into());
-            continue;
-        };
-        let text = match decode(bytes) {
-            Ok(text) => text,
-            Err(error) => {
-                refuse(error.into());
-                continue;
+        let reference = text(file, bytes).and_then(|text| {
+            let id = file.rsplit('/').next().unwrap_or(file).strip_suffix(".yaml");
+            let id = id.ok_or_else(|| Refused::Ending(file.clone()))?;
+            if let Some(other) = names.insert(id, file) {
+                return Err(Refused::Twice { file: file.clone(), other: other.into() });
             }
-        };
-        match parse_reference(id, text) {
-            Ok(_) if references.contains_key(id) => refuse(ReferenceMistake::Twice.into()),
-            Ok(reference) => {
-                references.insert(id.into(), reference);
-            }
-            Err(problems) => problems.into_iter().for_each(refuse),
+            let reference = parse_reference(id, file, text)?;
+            let read = reference.other_tables().into_iter().chain([id.to_owned()]);
+            let tables = read.filter_map(|id| Some((id.clone(), loaded.columns(texts, &id)?))).collect();
+            reference.check_columns(file, text, &tables)?;
+            Ok(reference)
+        });
+        match reference {
+            Ok(reference) => drop(references.insert(reference.experiment.clone(), reference)),
+            Err(refused) => unread.push(refused),
         }
     }
     references

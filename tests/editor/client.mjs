@@ -126,9 +126,9 @@ async function badFiles() {
 }
 
 // Opens a text with a mark where the cursor stands, and gives what is offered there.
-async function offered(text) {
-  const before = withSchema("experiment", text).split("|")[0].split("\n");
-  const {uri} = await open(withSchema("experiment", text).replace("|", ""));
+async function offered(text, kind) {
+  const before = withSchema(kind, text).split("|")[0].split("\n");
+  const {uri} = await open(withSchema(kind, text).replace("|", ""));
   const position = {line: before.length - 1, character: before.at(-1).length};
   const answer = await request("textDocument/completion", {textDocument: {uri}, position});
   return (answer.items ?? answer).map(item => item.label);
@@ -146,9 +146,12 @@ async function completions() {
     ["run:\n  |", ["solver", "skip", "ensemble"]],
     ["figure:\n  x: {column: force_ratio, scale: l|}", ["log", "linear"]],
     ["scene:\n  gravity: {assumed: |}", ["gravity"]],
+    ["entries:\n  - claim:\n      |", ["monotone", "levels_off"], "reference"],
+    ["entries:\n  - from:\n      argmax:\n        |", ["of", "over", "where", "table"], "reference"],
+    ["entries:\n  - claim:\n      monotone:\n        of: vel|", ["velocity_ratio"], "reference"],
   ];
-  for (const [text, wanted] of offers) {
-    const labels = await offered(text);
+  for (const [text, wanted, kind = "experiment"] of offers) {
+    const labels = await offered(text, kind);
     wanted.forEach(word => expect(labels.includes(word), `${JSON.stringify(text)}: ${word} is not among ${labels}`));
   }
 }

@@ -241,7 +241,7 @@ entries:
 
 #[test]
 fn accepting_a_verdict_changes_two_keys_and_nothing_else() {
-    let file = parse_reference("ch3-x", LAYOUTS).unwrap();
+    let file = parse_reference("ch3-x", "it.yaml", LAYOUTS).unwrap();
     let accepted = |id: &str, verdict, expected, reason: &str| {
         accept(&file, LAYOUTS, &judged(&format!("ch3-x/{id}"), verdict, expected), reason)
     };

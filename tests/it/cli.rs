@@ -217,7 +217,7 @@ fn a_bad_experiment_does_not_stop_the_others() {
     let said = shotdamp(&desk, &["check"]);
     assert_eq!(said.code, 2);
     assert!(
-        said.err.contains("--> reference/ch3/ch3-bad.yaml:1:12\n  |\n1 | entries: [{id: x}]\n  |            ^^\n"),
+        said.err.contains("an entry lacks `place`\n  --> reference/ch3/ch3-bad.yaml:1:11\n  |\n1 | entries: [{id: x}]\n  |           ^\n"),
         "{}",
         said.err
     );

@@ -42,6 +42,7 @@ mod optimise;
 mod optimised;
 mod reference;
 mod reference_kinds;
+mod reference_mistakes;
 mod refined;
 mod report;
 mod schema;

@@ -13,7 +13,7 @@ use std::time::{Duration, Instant};
 use shotdamp::dynamics::Limit;
 use shotdamp::experiment::Experiment;
 use shotdamp::measure::Settings;
-use shotdamp::study::{Engine, IgnoreEvents, Layout, Study, Task, Texts, Unread, Variant, run};
+use shotdamp::study::{Engine, IgnoreEvents, Layout, Study, Task, Texts, Variant, run};
 use shotdamp::table::parquet;
 
 use crate::cli::relative_files;
@@ -205,7 +205,7 @@ fn read_and_run(layout: &Layout, originals: &BTreeMap<String, Vec<u8>>, name: &s
         let lost = name.starts_with("reference/") && said.contains("is no entry of the reference");
         assert!(of_this_file || lost, "{said}");
         assert!(!said.contains("the program made a mistake"), "{said}");
-        assert!(!matches!(unread, Unread::Reference { problem, .. } if problem.to_string().is_empty()));
+        assert!(unread.problems().is_none_or(|problems| problems.list.iter().all(|one| !one.message.is_empty())));
     }
     if !study.unread.is_empty() {
         return Outcome::Refused;

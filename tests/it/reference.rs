@@ -9,6 +9,8 @@ use shotdamp::reference::{
 };
 use shotdamp::table::{Column, DEPENDS_ON, Data, Table};
 
+/// What the text is called in messages.
+const FILE: &str = "it.yaml";
 const EXPERIMENT: &str = "ch3-example";
 
 fn column(name: &str, unit: &str, data: Data) -> Column {
@@ -80,7 +82,7 @@ fn lines(solvers: &[(&str, [f64; 5])]) -> Table {
 fn entry(body: &str) -> ReferenceFile {
     let indented: String = body.trim().lines().map(|line| format!("    {}\n", line.trim())).collect();
     let text = format!("entries:\n  - id: it\n    place: s. 1\n    says: Something.\n{indented}");
-    parse_reference(EXPERIMENT, &text).unwrap_or_else(|problems| panic!("{problems:?}\n{text}"))
+    parse_reference(EXPERIMENT, FILE, &text).unwrap_or_else(|problems| panic!("{problems}\n{text}"))
 }
 
 fn judged_as(file: &ReferenceFile, state: TableState<'_>, fitted: &[&str]) -> Judged {
@@ -623,12 +625,12 @@ fn the_self_test_finds_an_entry_that_cannot_fail() {
 
 #[test]
 fn an_unsound_reference_file_is_refused_with_every_mistake_and_its_line() {
-    let mistakes = |text: &str| {
-        let problems = parse_reference(EXPERIMENT, text).unwrap_err();
-        problems.iter().map(ToString::to_string).collect::<Vec<_>>()
+    let mistakes = |text: &str| -> Vec<(usize, String)> {
+        let list = parse_reference(EXPERIMENT, FILE, text).unwrap_err().list;
+        list.into_iter().map(|one| (one.place.unwrap().line, one.message + &one.help.unwrap_or_default())).collect()
     };
     let unknown = mistakes("entries:\n  - id: a\n    plase: s. 1\n");
-    assert!(unknown[0].starts_with("line 3, column") && unknown[0].contains("place"), "{unknown:?}");
+    assert!(unknown.iter().any(|(line, said)| *line == 3 && said.contains("did you mean `place`")), "{unknown:?}");
 
     let several = mistakes(
         "entries:
@@ -642,29 +644,27 @@ fn an_unsound_reference_file_is_refused_with_every_mistake_and_its_line() {
 not_judged:
   - {place: s. 1, says: x, reason: ''}
 ",
-    )
-    .join("\n");
+    );
     for (line, part) in [
         (2, "not a printed number"),
-        (3, "id of an entry above"),
-        (3, "needs an `explanation`"),
-        (4, "threshold_reason"),
+        (3, "an entry above has the id `a`"),
+        (3, "lacks `explanation`: why another verdict than `reproduced` is expected"),
+        (4, "lacks `threshold_reason`"),
         (5, "never an expected verdict"),
-        (6, "needs `from`"),
-        (7, "needs its `reason`"),
-        (8, "finite"),
-        (10, "needs its `place`, what it `says` and a `reason`"),
+        (6, "lacks `from`: where the counterpart of its `value` stands"),
+        (7, "a text is wanted here"),
+        (8, "not a finite number"),
+        (10, "a text is wanted here"),
     ] {
-        assert!(
-            several.lines().any(|said| said.starts_with(&format!("line {line},")) && said.contains(part)),
-            "line {line}: {part}\n{several}"
-        );
+        let told = several.iter().any(|(other, said)| *other == line && said.contains(part));
+        assert!(told, "line {line}: {part}\n{several:?}");
     }
+    assert_eq!(several.len(), 9, "{several:?}");
 }
 
 #[test]
 fn comments_and_the_order_of_keys_mean_nothing() {
-    let meaning = |text: &str| serde_json::to_string(&parse_reference(EXPERIMENT, text).unwrap()).unwrap();
+    let meaning = |text: &str| serde_json::to_string(&parse_reference(EXPERIMENT, FILE, text).unwrap()).unwrap();
     let one = "entries:
   - id: a
     place: s. 1

@@ -2,22 +2,29 @@
 
 use std::collections::BTreeSet;
 
+use shotdamp::experiment::Problems;
 use shotdamp::reference::{
-    FitMeasure, Judged, ReferenceFile, ReferenceProblem, TableState, Tables, Verdict, judge, parse_reference, self_test,
+    FitMeasure, Judged, ReferenceFile, TableState, Tables, Verdict, judge, parse_reference, self_test,
 };
 use shotdamp::table::{Column, Data, Table};
 
 use crate::made_up::{numbers, texts};
 
+/// What the text is called in messages.
+const FILE: &str = "it.yaml";
 const EXPERIMENT: &str = "ch4-example";
 
-fn entry(body: &str) -> Result<ReferenceFile, Vec<ReferenceProblem>> {
+fn entry(body: &str) -> Result<ReferenceFile, Problems> {
     let indented: String = body.trim().lines().map(|line| format!("    {}\n", line.trim())).collect();
-    parse_reference(EXPERIMENT, &format!("entries:\n  - id: it\n    place: s. 1\n    says: Something.\n{indented}"))
+    parse_reference(
+        EXPERIMENT,
+        FILE,
+        &format!("entries:\n  - id: it\n    place: s. 1\n    says: Something.\n{indented}"),
+    )
 }
 
 fn judged(body: &str, table: &Table) -> Judged {
-    let file = entry(body).unwrap_or_else(|problems| panic!("{problems:?}\n{body}"));
+    let file = entry(body).unwrap_or_else(|problems| panic!("{problems}\n{body}"));
     let tables = Tables::from([(EXPERIMENT.to_string(), TableState::Present(table))]);
     judge(&file, &tables, &BTreeSet::new()).remove(0)
 }
@@ -30,13 +37,13 @@ fn verdict(body: &str, table: &Table) -> Verdict {
 
 /// What the self-test finds against it.
 fn cannot_fail(body: &str, table: &Table) -> Vec<String> {
-    let file = entry(body).unwrap_or_else(|problems| panic!("{problems:?}"));
+    let file = entry(body).unwrap_or_else(|problems| panic!("{problems}"));
     let tables = Tables::from([(EXPERIMENT.to_string(), TableState::Present(table))]);
     self_test(&file, &tables).into_iter().map(|failure| failure.reason.to_string()).collect()
 }
 
 fn refused(body: &str) -> String {
-    entry(body).expect_err(body).iter().map(ToString::to_string).collect::<Vec<_>>().join("\n")
+    entry(body).expect_err(body).to_string()
 }
 
 /// The columns that every table has, with the errors of the measures.
@@ -143,7 +150,7 @@ fn a_curve_lies_in_a_tube_of_widths_on_both_axes() {
     };
     let read = |shift: f64, factor: f64| {
         let text = format!("entries:\n  - id: it\n    place: s. 1\n    says: It.\n    {}", published(shift, factor));
-        let file = parse_reference(EXPERIMENT, &text.replace("\nthreshold", "\n    threshold")).unwrap();
+        let file = parse_reference(EXPERIMENT, FILE, &text.replace("\nthreshold", "\n    threshold")).unwrap();
         let tables = Tables::from([(EXPERIMENT.to_string(), TableState::Present(&table))]);
         (judge(&file, &tables, &BTreeSet::new()).remove(0), self_test(&file, &tables))
     };
@@ -344,20 +351,20 @@ fn means_and_deviations_count_every_stretch_by_its_length() {
 #[test]
 fn an_unsound_entry_says_what_is_wrong_with_it() {
     for (body, says) in [
-        ("peak: {of: a, over: b, at: 26 rad/s}\nvalue: \"1\"", "exactly one of"),
+        ("peak: {of: a, over: b, at: 26 rad/s}\nvalue: \"1\"", "checked in one way"),
         ("peak: {of: a, over: b}", "without a printed number"),
         ("peak: {of: a, over: b, height: \"2\"}", "needs `which`"),
-        ("peak: {of: a, over: b, which: {number: 0}, height: \"2\"}", "counts peaks from 1"),
+        ("peak: {of: a, over: b, which: {number: 0}, height: \"2\"}", "peaks are counted from 1"),
         ("peak: {of: a, over: b, at: 26 parsec}", "not a unit"),
-        ("peak: {of: a, over: b, att: 26 rad/s}", "unknown field `att`"),
-        ("peak: {of: a, over: b, at: 26 rad/s}\ntolerance: {absolute: 1, reason: no}", "make it relative"),
+        ("peak: {of: a, over: b, att: 26 rad/s}", "has no key `att`"),
+        ("peak: {of: a, over: b, at: 26 rad/s}\ntolerance: {absolute: 1, reason: no}", "make the tolerance relative"),
         (
             "curve: {of: a, over: b, points: [[1, 2], [3, 4]], tube: {x: {absolute: 1}, y: {relative: 0.1}}}",
             "`threshold_reason`",
         ),
         (
             "curve: {of: a, over: b, points: [[1, 2], [0, 4]], tube: {x: {absolute: 1}, y: {relative: 0.1}}}\nthreshold_reason: r",
-            "x increasing",
+            "x increases from each to the next",
         ),
         (
             "curve: {of: a, over: b, points: [[1, 2], [3, 4]], tube: {x: {absolute: 0}, y: {relative: 0.1}}}\nthreshold_reason: r",
@@ -375,12 +382,12 @@ fn an_unsound_entry_says_what_is_wrong_with_it() {
             "mode_shape: {of: a, over: x, like: {cantilever: 1}, mac: {at_least: 1}}\nthreshold_reason: r",
             "between 0 and 1",
         ),
-        ("claim: {best_place: {of: a, at: {}}}", "unsound"),
+        ("claim: {best_place: {of: a, at: {}}}", "a place is written as"),
         ("claim: {best_place: {of: a, at: {x: 1}, among: 3}}", "threshold_reason"),
-        ("claim: {curve: {of: a, over: b}}", "unknown variant `curve`"),
+        ("claim: {curve: {of: a, over: b}}", "a claim has no form `curve`"),
     ] {
         let problems = refused(body);
-        assert!(problems.contains(says) && problems.contains("line "), "{body}: {problems}");
+        assert!(problems.contains(says) && problems.contains("--> it.yaml:"), "{body}: {problems}");
     }
 }
 

@@ -276,7 +276,7 @@ pub(crate) fn mistakes_that_a_person_makes_are_told_where_they_stand() {
         (with("      gap: 490.5 mm\n", ""), "7:7 a damper lacks `gap_ratio` or `gap`"),
         (
             with("gap: 490.5 mm", "gap: 490.5 mm\n      gap_ratio: 50"),
-            "9:7 a damper has both `gap` and `gap_ratio`, which say the same | keep one of the two",
+            "9:7 a damper has both `gap` and `gap_ratio`, of which one is wanted | keep one of the two",
         ),
         (with("mass: 1 kg", "mass: -1 kg"), "5:35 a mass above zero is wanted"),
         (

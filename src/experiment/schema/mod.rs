@@ -10,10 +10,17 @@ pub(super) mod parts;
 
 use serde_json::{Value, json};
 
-use super::at::Definitions;
+use super::at::{At, Definitions, Sketch};
 
 pub use assumptions::assumptions_schema;
-pub(crate) use parts::{Object, list, text, words_of};
+pub(crate) use parts::words_of;
+
+/// The schema of what `reader` reads out of a file.
+pub(crate) fn described<T>(title: &str, about: &str, reader: impl FnOnce(At<'_>) -> Option<T>) -> Value {
+    let definitions = Definitions::default();
+    let schema = Sketch::of(about, &definitions, reader);
+    of_file(title, schema, definitions)
+}
 
 /// The schema of a file, with what its places share.
 pub(super) fn of_file(title: &str, mut schema: Value, definitions: Definitions) -> Value {

@@ -76,11 +76,6 @@ impl Object {
         keys.into_iter().fold(self, |object, (key, schema)| object.optional(key, schema))
     }
 
-    pub(crate) fn rule(mut self, rule: Value) -> Self {
-        self.add_rule(rule);
-        self
-    }
-
     pub(crate) fn schema(self) -> Value {
         let mut schema = json!({
             "type": "object",
@@ -145,6 +140,20 @@ pub(crate) fn boolean(about: &str) -> Value {
 
 pub(crate) fn number(about: &str) -> Value {
     json!({"description": about, "type": "number"})
+}
+
+/// A number alone, or with a unit where there may be one.
+pub(crate) fn number_with_unit(about: &str, unit: Option<&str>) -> Value {
+    if unit == Some("") {
+        return number(about);
+    }
+    let pattern = format!(r"^\s*{NUMBER}\s*{PREFIX}[A-Za-z].*$");
+    json!({"description": about, "type": ["number", "string"], "pattern": pattern})
+}
+
+/// A fraction that is not the whole.
+pub(crate) fn fraction(about: &str) -> Value {
+    json!({"description": about, "type": "number", "minimum": 0, "exclusiveMaximum": 1})
 }
 
 pub(crate) fn ratio(about: &str) -> Value {

@@ -1,0 +1,217 @@
+//! Types of a reference file with their readers: a key, its type, how it is read and what an editor says of it, all in one line
+//! of one list.
+
+use std::collections::BTreeMap;
+
+use super::name::{Column, TableName};
+use super::selection::Selection;
+use super::view::Source;
+use crate::experiment::{Columns, Findings};
+
+/// A mapping, by what messages call it. `key: Type = required("What it is", read),` is that call of `Keys`, without the key. A
+/// reader may use what keys above it gave; the method after the type's name looks at all of them together.
+macro_rules! mapping {
+    (
+        $what:literal $name:ident $(, $checked:ident)? {
+            $($field:ident $(as $key:literal)?: $type:ty = $how:ident($about:literal, $($with:expr),+),)+
+        }
+    ) => {
+        #[doc = $what]
+        #[derive(Debug, Clone, PartialEq, serde::Serialize)]
+        pub struct $name {
+            $(#[doc = $about] $(#[serde(rename = $key)])? pub $field: $type,)+
+        }
+
+        impl $name {
+            pub(crate) fn read(at: $crate::experiment::At<'_>) -> Option<Self> {
+                let keys = at.keys($what)?;
+                $(let $field = keys.$how($crate::reference::mapping::key!($field $($key)?), $about, $($with),+);)+
+                keys.close()?;
+                let read = Self { $($field: $field?,)+ };
+                $(read.$checked(at)?;)?
+                Some(read)
+            }
+        }
+
+        impl $crate::reference::mapping::Reads for $name {
+            fn note<'a>(&'a self, seen: &mut $crate::reference::mapping::Seen<'a>) {
+                let mut own = $crate::reference::mapping::Seen::default();
+                $($crate::reference::mapping::Reads::note(&self.$field, &mut own);)+
+                seen.below.push(own);
+            }
+        }
+    };
+}
+
+/// A mapping that reads rows of the experiment's own table.
+macro_rules! claim {
+    ($what:literal $name:ident $(, $checked:ident)? { $($keys:tt)+ }) => {
+        $crate::reference::mapping::mapping! {
+            $what $name $(, $checked)? {
+                $($keys)+
+                rows as "where": $crate::reference::selection::Selection =
+                    or("Conditions beyond the entry's own", $crate::reference::selection::Selection::read, Default::default()),
+            }
+        }
+
+        impl $name {
+            pub(crate) fn source(&self) -> $crate::reference::view::Source<'_> {
+                $crate::reference::view::Source { table: None, rows: &self.rows }
+            }
+        }
+    };
+}
+
+/// A mapping that reads rows of the experiment's own table or another one.
+macro_rules! word {
+    ($what:literal $name:ident $(, $checked:ident)? { $($keys:tt)+ }) => {
+        $crate::reference::mapping::mapping! {
+            $what $name $(, $checked)? {
+                $($keys)+
+                rows as "where": $crate::reference::selection::Selection =
+                    or("Conditions beyond the entry's own", $crate::reference::selection::Selection::read, Default::default()),
+                table: Option<$crate::reference::name::TableName> = optional(
+                    "Another experiment's table; the entry's conditions do not hold there",
+                    $crate::reference::name::TableName::read
+                ),
+            }
+        }
+
+        impl $name {
+            pub(crate) fn source(&self) -> $crate::reference::view::Source<'_> {
+                $crate::reference::view::Source { table: self.table.as_deref(), rows: &self.rows }
+            }
+        }
+    };
+}
+
+/// One of several forms, each under a word: `Variant(Type) = form("word", "What it is", read),`. What is made elsewhere has no
+/// reader.
+macro_rules! forms {
+    (
+        $what:literal $name:ident {
+            $($variant:ident($type:ty) = $how:ident($word:literal, $about:literal $(, $read:expr)?),)+
+        }
+    ) => {
+        #[doc = $what]
+        #[derive(Debug, Clone, PartialEq, serde::Serialize)]
+        pub enum $name {
+            $(#[doc = $about] #[serde(rename = $word)] $variant($type),)+
+        }
+
+        impl $name {
+            pub(crate) fn read(at: $crate::experiment::At<'_>) -> Option<Self> {
+                type Read = fn($crate::experiment::At<'_>) -> Option<$name>;
+                let forms = [$($(($word, $about, (|at| $read(at).map(Self::$variant)) as Read),)?)+];
+                at.choose($what, &forms.map(|(word, about, _)| (word, about)), |choice| {
+                    let (.., read) = forms.into_iter().find(|(word, ..)| *word == choice.name())?;
+                    read(choice.value()?)
+                })
+            }
+        }
+
+        impl $crate::reference::mapping::Reads for $name {
+            fn note<'a>(&'a self, seen: &mut $crate::reference::mapping::Seen<'a>) {
+                match self {
+                    $(Self::$variant(it) => $crate::reference::mapping::Reads::note(it, seen),)+
+                }
+            }
+        }
+    };
+}
+
+macro_rules! key {
+    ($field:ident) => {
+        stringify!($field)
+    };
+    ($field:ident $key:literal) => {
+        $key
+    };
+}
+
+pub(super) use {claim, forms, key, mapping, word};
+
+/// What a part of an entry reads of tables.
+#[derive(Debug, Default)]
+pub(crate) struct Seen<'a> {
+    table: Option<&'a TableName>,
+    rows: Option<&'a Selection>,
+    columns: Vec<&'a Column>,
+    /// Parts that read for themselves.
+    pub below: Vec<Self>,
+}
+
+impl<'a> Seen<'a> {
+    /// All that `part` reads.
+    pub(crate) fn of(part: &'a impl Reads) -> Self {
+        let mut seen = Self::default();
+        part.note(&mut seen);
+        seen
+    }
+
+    /// Reports columns that no table has: the experiment's `own` or another one, as far as they are known.
+    pub(crate) fn check(&self, own: &str, tables: &BTreeMap<String, Columns>, findings: &Findings) {
+        let table = self.table.map_or(own, |table| table);
+        if let Some(columns) = tables.get(table) {
+            for column in self.columns.iter().filter(|column| columns.role(column).is_none()) {
+                columns.unknown::<()>(&format!("the table of `{table}`"), column, column.span(), findings);
+            }
+        }
+        self.below.iter().for_each(|part| part.check(own, tables, findings));
+    }
+
+    /// Where it reads.
+    pub(crate) fn sources(&self) -> Vec<Source<'a>> {
+        let own = self.rows.map(|rows| Source { table: self.table.map(|table| &**table), rows });
+        own.into_iter().chain(self.below.iter().flat_map(Self::sources)).collect()
+    }
+}
+
+/// A part of an entry that may read tables.
+pub(crate) trait Reads {
+    /// Adds what it reads.
+    fn note<'a>(&'a self, _seen: &mut Seen<'a>) {}
+}
+
+impl Reads for Column {
+    fn note<'a>(&'a self, seen: &mut Seen<'a>) {
+        seen.columns.push(self);
+    }
+}
+
+impl Reads for TableName {
+    fn note<'a>(&'a self, seen: &mut Seen<'a>) {
+        seen.table = Some(self);
+    }
+}
+
+impl Reads for Selection {
+    fn note<'a>(&'a self, seen: &mut Seen<'a>) {
+        seen.rows = Some(self);
+        seen.columns.extend(self.0.keys());
+    }
+}
+
+impl<T: Reads> Reads for Option<T> {
+    fn note<'a>(&'a self, seen: &mut Seen<'a>) {
+        self.iter().for_each(|part| part.note(seen));
+    }
+}
+
+impl<T: Reads> Reads for Vec<T> {
+    fn note<'a>(&'a self, seen: &mut Seen<'a>) {
+        self.iter().for_each(|part| part.note(seen));
+    }
+}
+
+impl<T: Reads> Reads for Box<T> {
+    fn note<'a>(&'a self, seen: &mut Seen<'a>) {
+        (**self).note(seen);
+    }
+}
+
+impl Reads for f64 {}
+impl Reads for u32 {}
+impl Reads for usize {}
+impl Reads for String {}
+impl<T> Reads for [T; 2] {}
