@@ -197,12 +197,15 @@ fn a_changed_input_is_named_with_file_key_and_values() {
     assert_eq!(desk.why("ch3-gap"), ["experiments/ch3/ch3-gap.yaml: scene.structure.single_mass.mass: 1.0 -> 2.0"]);
     assert_eq!(desk.run(2, &MadeUp::default(), &IgnoreEvents), ["ch3-gap"]);
 
-    // Its first published number asks for the ends of the assumptions, which were not run so far.
+    // A published number asks for the ends of the assumptions, a claim does not; where there are none it changes nothing.
     let number = "value: \"1.5\"\n    from: {maximum: {of: velocity_ratio, over: gap_ratio}}";
     let (before, _) = GAP_REFERENCE.split_once("claim").unwrap();
     desk.put("reference/ch3/ch3-gap.yaml", &format!("{before}{number}\n"));
-    assert!(desk.why("ch3-gap")[0].starts_with("reference of ch3-gap: sensitivity: null -> "));
-    assert_eq!(desk.run(2, &MadeUp::default(), &IgnoreEvents), ["ch3-gap"]);
+    assert_eq!(desk.why("ch3-gap"), [""; 0]);
+    desk.put("reference/ch3/ch3-stop.yaml", &GAP_REFERENCE.replace("gap_ratio", "force_ratio"));
+    let why = desk.why("ch3-stop");
+    assert!(why[0].starts_with("reference of ch3-stop: sensitivity: ") && why[0].ends_with(" -> null"), "{why:?}");
+    assert_eq!(desk.run(2, &MadeUp::default(), &IgnoreEvents), ["ch3-stop"]);
 
     let longer =
         GAP.replace("mass: 1 kg", "mass: 2 kg").replace("[10, 50, infinite]", "[20, 60, 90, 95, 99, infinite]");
