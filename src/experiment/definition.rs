@@ -82,7 +82,7 @@ pub struct Experiment {
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub continued: Vec<ContinuedSweep>,
     /// What every number is a mean over: settings of parameters that no column tells apart, such as force points. Empty as a
-    /// rule. [`MeanRatio`] says what a velocity ratio then is.
+    /// rule. [`super::MeanRatio`] says what a velocity ratio then is.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub mean_over: Vec<Case>,
     /// An optimisation of gaps in the place of a sweep.
