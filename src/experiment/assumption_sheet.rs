@@ -175,6 +175,11 @@ fn in_words(quantity: Option<Quantity>, readings: &[&str]) -> String {
     }
 }
 
+/// The assumption that is moved under this label, `assumption=value`; another text as it is.
+pub(crate) fn assumption_of(label: &str) -> &str {
+    label.split_once('=').map_or(label, |(name, _)| name)
+}
+
 /// One assumption moved to a value of its range.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Moved {

@@ -1,5 +1,6 @@
 //! Where in a file a part of its meaning is written.
 
+use super::assumption_sheet::assumption_of;
 use super::diagnostic::Findings;
 use super::yaml::{Node, Value, read_tree};
 
@@ -36,7 +37,7 @@ fn written(key: &str) -> &str {
         "cases" | "swept" | "refined" | "continued" => "sweep",
         "measures" => "measure",
         // `stop_length=0.05` stands for an end of its range.
-        _ => key.split_once('=').map_or(key, |(name, _)| name),
+        _ => assumption_of(key),
     }
 }
 

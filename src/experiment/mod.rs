@@ -54,6 +54,7 @@ pub use about_study::{
     AboutStudy, Author, Finding, Licence, LineColour, Publication, PublicationKind, parse_study, study_schema,
 };
 pub use assumption_reader::parse_assumptions;
+pub(crate) use assumption_sheet::assumption_of;
 pub use assumption_sheet::{
     ASSUMPTIONS, AssumptionEntry, AssumptionKind, AssumptionSheet, Cycles, Moved, Quantity, Takes,
 };

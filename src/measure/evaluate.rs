@@ -255,7 +255,7 @@ impl Case<'_> {
         if unsettled(&response) {
             return Ok(None);
         }
-        let Read { mut values, lists } = case.read(&response, reference, true)?;
+        let Read { mut values, lists } = case.read(&response, reference, &plain.start, true)?;
         let later = case.later(system, references, plain, &response)?;
         let elasticities = later.elasticities(request.measures, request.tolerances)?;
         let settled = request.measures.iter().position(|measure| *measure == Measure::SettledVelocityRatio);
@@ -312,7 +312,7 @@ impl Case<'_> {
             if unsettled(&second) {
                 return Ok(None);
             }
-            let again = case.read(&second, reference, true)?.values;
+            let again = case.read(&second, reference, &plain.start, true)?.values;
             let own = request.measures.iter().map(|measure| own_error(*measure, &response));
             let pairs = values.iter().zip(again).zip(own);
             // A number of other runs is read once, as exact as those settle.
@@ -335,7 +335,7 @@ impl Case<'_> {
             if unsettled(&kicked) {
                 return Ok(None);
             }
-            let of_member = case.read(&kicked, reference, false)?.values;
+            let of_member = case.read(&kicked, reference, &plain.start, false)?.values;
             for (sum, value) in sums.iter_mut().zip(of_member) {
                 sum.add(value);
             }
@@ -438,18 +438,20 @@ impl Case<'_> {
         Ok(Later { subject: self.subject, system, own, undamped })
     }
 
-    /// All measures, and the lists; of a run of an ensemble (not `whole`) only what is averaged.
-    fn read(&self, response: &Response, undamped: Option<&Response>, whole: bool) -> Result<Read, EvaluateError> {
+    /// All measures, and the lists, of a run from `start`; of a run of an ensemble (not `whole`) only what is averaged.
+    fn read(
+        &self,
+        response: &Response,
+        undamped: Option<&Response>,
+        start: &StartState,
+        whole: bool,
+    ) -> Result<Read, EvaluateError> {
         let request = self.request;
         let wants_energies = request.energies.is_some() || request.any(Measure::needs_energies);
         let energies = match undamped {
             Some(clean) if wants_energies => {
-                let own = match request.link {
-                    Link::After(state) => state.clone(),
-                    Link::None | Link::First => self.scene.start_state(),
-                };
                 let bare = self.subject.undamped.as_ref().map_or(StartState::StaticEquilibrium, Scene::start_state);
-                let starts = [&own, &bare];
+                let starts = [start, &bare];
                 Some(Energies::of(self.scene, [response, clean], starts, self.subject.comparison, self.settings))
             }
             _ => None,

@@ -43,13 +43,13 @@ mapping! {
 }
 mapping! {
     "an equality" Equal {
-        values: Vec<Extraction> = required("The numbers", |at| two_or_more(at, "equality needs two numbers or more")),
+        values: Vec<Extraction> = required("The numbers", |at| two_or_more(at, extraction, "equality needs two numbers or more")),
         within: Within = required("How near", within),
     }
 }
 mapping! {
     "an inequality" Apart {
-        values: Vec<Extraction> = required("The numbers", |at| two_or_more(at, "inequality needs two numbers or more")),
+        values: Vec<Extraction> = required("The numbers", |at| two_or_more(at, extraction, "inequality needs two numbers or more")),
         by: Within = required("How far, at least, any two of them", within),
     }
 }
@@ -107,14 +107,9 @@ fn trespass(at: At<'_>, of: Option<&Column>) -> Option<f64> {
 
 claim! {
     "an agreement of columns" ColumnsAgree {
-        columns: Vec<Column> = required("The measures", two_columns),
+        columns: Vec<Column> = required("The measures", |at| two_or_more(at, Column::read, "agreement needs two columns or more")),
         within: Within = required("How near", within),
     }
-}
-
-fn two_columns(at: At<'_>) -> Option<Vec<Column>> {
-    let columns = at.list(Column::read)?;
-    if columns.len() < 2 { at.wrong("agreement needs two columns or more") } else { Some(columns) }
 }
 
 claim! {
@@ -213,7 +208,7 @@ impl Peaks {
 claim! {
     "an order of onsets" Onsets {
         over: Column = required("The parameter", Column::read),
-        order: Vec<Onset> = required("What begins, in this order", onsets),
+        order: Vec<Onset> = required("What begins, in this order", |at| two_or_more(at, Onset::read, "an order needs two onsets or more")),
     }
 }
 mapping! {
@@ -221,11 +216,6 @@ mapping! {
         of: Column = required("The measure", Column::read),
         above: f64 = required("The level", in_unit_of(of.as_ref())),
     }
-}
-
-fn onsets(at: At<'_>) -> Option<Vec<Onset>> {
-    let onsets = at.list(Onset::read)?;
-    if onsets.len() < 2 { at.wrong("an order needs two onsets or more") } else { Some(onsets) }
 }
 
 claim! {

@@ -5,7 +5,7 @@ use super::extraction::{Along, Cells, Direction, Extraction, Meeting, NearestPas
 use super::line::{Position, common, lines};
 use super::selection::same;
 use super::text::{percent, significant, with_unit};
-use super::view::{Absence, Cell, Line, Source, View};
+use super::view::{Absence, Cell, Line, View};
 use crate::measure::column_words;
 use crate::table::BASELINE;
 
@@ -288,7 +288,7 @@ impl Meeting {
 
 impl NearestPassage {
     fn take(&self, view: &View<'_>) -> Result<Extracted, Absence> {
-        let rows = view.rows(Source { table: None, rows: &self.rows }, None)?;
+        let rows = view.rows(self.source(), None)?;
         let times = view.path(&rows, "time")?;
         // With an input moved that the period depends on, the cycles that are kept lie elsewhere.
         if view.variant != BASELINE

@@ -5,10 +5,9 @@ use serde::{Deserialize, Serialize};
 
 use super::average::{Interpolated, Stretch};
 use super::line::Pair;
-use super::mapping::{Reads, Seen, forms, mapping, word};
+use super::mapping::{Reads, Seen, claim, forms, mapping, word};
 use super::name::{Column, in_unit_of};
 use super::resonance::Peak;
-use super::selection::Selection;
 use super::view::Source;
 use crate::experiment::At;
 use crate::measure::Measure;
@@ -57,9 +56,9 @@ pub(crate) fn extraction(at: At<'_>) -> Option<Extraction> {
     at.named("extraction", "How a number is taken out of a table", Extraction::read)
 }
 
-/// Two numbers or more; `otherwise` says what wants them.
-pub(super) fn two_or_more(at: At<'_>, otherwise: &str) -> Option<Vec<Extraction>> {
-    let values = at.list(extraction)?;
+/// A list of two or more; `otherwise` says what wants them.
+pub(super) fn two_or_more<'t, T>(at: At<'t>, read: impl Fn(At<'_>) -> Option<T>, otherwise: &str) -> Option<Vec<T>> {
+    let values = at.list(read)?;
     if values.len() < 2 { at.wrong(otherwise) } else { Some(values) }
 }
 
@@ -149,7 +148,7 @@ impl Lead {
     }
 }
 
-mapping! {
+claim! {
     "a passage" NearestPassage {
         of: Column = required("The path that passes", Column::read),
         through: Column = required("The path that is passed", Column::read),
@@ -157,7 +156,6 @@ mapping! {
         to: f64 = required("The time to be near to, s", |at| at.number_in(Some("s"))),
         read: Option<Column> =
             optional("A path to be read at that instant, in the place of the instant itself", Column::read),
-        rows as "where": Selection = or("Conditions beyond the entry's own", Selection::read, Selection::default()),
     }
 }
 mapping! {

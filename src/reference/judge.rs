@@ -19,7 +19,8 @@ use super::resonance::PrintedPeak;
 use super::tally::{Decision, Outcome};
 use super::text::{measured, significant};
 use super::verdict::{Comparison, Judged, Kind, Moved, Part, Role, Verdict};
-use super::view::{Absence, Reads, Tables, View, assumption_of};
+use super::view::{Absence, Reads, Tables, View};
+use crate::experiment::assumption_of;
 use crate::table::BASELINE;
 
 /// Share of u_input² that is most of it.

@@ -43,44 +43,44 @@ macro_rules! mapping {
     };
 }
 
-/// A mapping that reads rows of the experiment's own table.
-macro_rules! claim {
-    ($what:literal $name:ident $(, $checked:ident)? { $($keys:tt)+ }) => {
+/// A mapping that reads rows of a table, with the keys of `where` and, behind it, those that say which table it is.
+macro_rules! of_rows {
+    ($what:literal $name:ident $(, $checked:ident)? { $($keys:tt)+ } { $($behind:tt)* } $table:expr) => {
         $crate::reference::mapping::mapping! {
             $what $name $(, $checked)? {
                 $($keys)+
                 rows as "where": $crate::reference::selection::Selection =
                     or("Conditions beyond the entry's own", $crate::reference::selection::Selection::read, Default::default()),
+                $($behind)*
             }
         }
 
         impl $name {
             pub(crate) fn source(&self) -> $crate::reference::view::Source<'_> {
-                $crate::reference::view::Source { table: None, rows: &self.rows }
+                let table: fn(&Self) -> Option<&str> = $table;
+                $crate::reference::view::Source { table: table(self), rows: &self.rows }
             }
         }
+    };
+}
+
+/// A mapping that reads rows of the experiment's own table.
+macro_rules! claim {
+    ($what:literal $name:ident $(, $checked:ident)? { $($keys:tt)+ }) => {
+        $crate::reference::mapping::of_rows! { $what $name $(, $checked)? { $($keys)+ } {} |_| None }
     };
 }
 
 /// A mapping that reads rows of the experiment's own table or another one.
 macro_rules! word {
     ($what:literal $name:ident $(, $checked:ident)? { $($keys:tt)+ }) => {
-        $crate::reference::mapping::mapping! {
-            $what $name $(, $checked)? {
-                $($keys)+
-                rows as "where": $crate::reference::selection::Selection =
-                    or("Conditions beyond the entry's own", $crate::reference::selection::Selection::read, Default::default()),
+        $crate::reference::mapping::of_rows! {
+            $what $name $(, $checked)? { $($keys)+ } {
                 table: Option<$crate::reference::name::TableName> = optional(
                     "Another experiment's table; the entry's conditions do not hold there",
                     $crate::reference::name::TableName::read
                 ),
-            }
-        }
-
-        impl $name {
-            pub(crate) fn source(&self) -> $crate::reference::view::Source<'_> {
-                $crate::reference::view::Source { table: self.table.as_deref(), rows: &self.rows }
-            }
+            } |own| own.table.as_deref()
         }
     };
 }
@@ -129,7 +129,7 @@ macro_rules! key {
     };
 }
 
-pub(super) use {claim, forms, key, mapping, word};
+pub(super) use {claim, forms, key, mapping, of_rows, word};
 
 /// What a part of an entry reads of tables.
 #[derive(Debug, Default)]

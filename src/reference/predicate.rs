@@ -8,7 +8,7 @@ use super::claims::{
     Apart, Between, ColumnsAgree, Equal, GreatestAtEnd, GreatestPoint, Level, LevelsOff, LineAbove, Linear, LinesAgree,
     Monotone, Onsets, PathMonotone, PathsCross, Peaks, Trend,
 };
-use super::extraction::{Extraction, two_or_more};
+use super::extraction::{Extraction, extraction, two_or_more};
 use super::fit::Fit;
 use super::mapping::forms;
 use super::mode_shape::ModeShape;
@@ -22,7 +22,7 @@ forms! {
         Trend(Trend) =
             form("trend", "A number rises (or falls) from level to level of a column: the best force ratio with the gap", Trend::read),
         GreatestFirst(Vec<Extraction>) =
-            form("greatest_first", "Each number is greater than the next", |at| two_or_more(at, "an order needs two numbers or more")),
+            form("greatest_first", "Each number is greater than the next", |at| two_or_more(at, extraction, "an order needs two numbers or more")),
         Equal(Equal) = form("equal", "Numbers are equal", Equal::read),
         Apart(Apart) = form("apart", "Numbers are not equal", Apart::read),
         Between(Between) = form("between", "A number lies in an interval", Between::read),

@@ -9,6 +9,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::columns::{Found, find, find_if_any, height, labels, number, parameter};
 use super::selection::{Allowed, Selection, same};
 use super::text::significant;
+use crate::experiment::assumption_of;
 use crate::table::{BASELINE, Data, Table};
 
 /// The solver that is meant where an entry names none.
@@ -169,11 +170,6 @@ pub(crate) struct Line {
     pub unit: String,
     pub x: Vec<f64>,
     pub y: Vec<Cell>,
-}
-
-/// The assumption that a variant moves: it is named `assumption=value`.
-pub(crate) fn assumption_of(variant: &str) -> &str {
-    variant.split_once('=').map_or(variant, |(name, _)| name)
 }
 
 /// The rows that an entry means.

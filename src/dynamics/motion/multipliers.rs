@@ -99,18 +99,9 @@ impl Period {
         if off == 0.0 { 0.0 } else { off / lengths.max(self.contraction) }
     }
 
-    /// The multipliers, if none is above `most` and the orbit that closes is within `near` of a state that misses itself by `miss`
-    /// after the period.
-    pub(super) fn attracting(
-        &self,
-        miss: impl Iterator<Item = f64>,
-        most: f64,
-        near: f64,
-    ) -> Result<Option<Vec<Multiplier>>, EngineError> {
-        let multipliers = self.multipliers()?;
-        let attracts = multipliers.first().is_none_or(|largest| largest.modulus <= most);
-        let is_near = attracts && self.distance(miss).is_some_and(|distance| distance <= near);
-        Ok(is_near.then_some(multipliers))
+    /// The orbit that closes, as seen from a state that misses itself by `miss` after the period.
+    pub(super) fn orbit(&self, miss: impl Iterator<Item = f64>) -> Result<NearOrbit, EngineError> {
+        Ok(NearOrbit { multipliers: self.multipliers()?, distance: self.distance(miss) })
     }
 
     /// How far the orbit that closes is from a state that misses itself by `miss` after the period: Newton's step.
@@ -118,6 +109,22 @@ impl Period {
         let size = self.matrix.nrows();
         let step = (DMatrix::identity(size, size) - &self.matrix).lu().solve(&DVector::from_iterator(size, miss))?;
         Some(step.iter().fold(0.0_f64, |most, x| most.max(x.abs()))).filter(|distance| distance.is_finite())
+    }
+}
+
+/// An orbit that closes, next to a state.
+pub(super) struct NearOrbit {
+    /// Its multipliers, largest first.
+    pub multipliers: Vec<Multiplier>,
+    /// How far it is, in units of the motion; `None` where there is none.
+    distance: Option<f64>,
+}
+
+impl NearOrbit {
+    /// No multiplier is above `most`, and it is within `near`.
+    pub fn attracts(&self, most: f64, near: f64) -> bool {
+        self.multipliers.first().is_none_or(|largest| largest.modulus <= most)
+            && self.distance.is_some_and(|distance| distance <= near)
     }
 }
 

@@ -250,11 +250,11 @@ fn closes(system: &HybridSystem, scale: &Scale, tape: &Tape, period: usize) -> R
         (Vec::new(), f64::NAN)
     } else {
         let map = Period::new(system, scale, tape.last(period));
-        let Some(multipliers) = map.attracting(scale.miss(begin, end), 1.0 + NEUTRAL, SETTLED)? else {
-            let draws_in = map.attracting(scale.miss(begin, end), DRAWS_IN, NEARBY)?.is_some();
-            return Ok(if draws_in { Closing::Settles } else { Closing::Open });
-        };
-        (multipliers, map.residual())
+        let orbit = map.orbit(scale.miss(begin, end))?;
+        if !orbit.attracts(1.0 + NEUTRAL, SETTLED) {
+            return Ok(if orbit.attracts(DRAWS_IN, NEARBY) { Closing::Settles } else { Closing::Open });
+        }
+        (orbit.multipliers, map.residual())
     };
     let settled_after = settled_after(scale, &tape.ends, period, SETTLED);
     let left = multipliers.first().map(|largest| largest.modulus).filter(|modulus| *modulus > 0.0);

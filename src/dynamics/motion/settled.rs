@@ -30,7 +30,7 @@ pub(crate) fn settled(system: &HybridSystem, tape: &Tape) -> Result<Option<u64>,
         }
         let last = tape.ends.len() - 1;
         let miss = scale.miss(&tape.ends[last - period], &tape.ends[last]);
-        if Period::new(system, &scale, tape.last(period)).attracting(miss, ATTRACTS, SETTLED)?.is_some() {
+        if Period::new(system, &scale, tape.last(period)).orbit(miss)?.attracts(ATTRACTS, SETTLED) {
             return Ok(Some(period as u64));
         }
     }
