@@ -39,6 +39,8 @@ pub(crate) struct Flow {
     pub(crate) own: usize,
     /// The highest natural frequency of the contact state, rad/s (modulus of a complex pair's eigenvalue).
     pub(crate) highest_frequency: f64,
+    /// The smallest radius of its own blocks, 1/s.
+    slowest: f64,
     /// Some block has an eigenvalue zero, so that a constant load sets it moving.
     drifts: bool,
     /// Some blocks take in the harmonic drive, whose phase they start with.
@@ -96,7 +98,9 @@ impl Flow {
         if !(system.drive.period.is_finite() && blocks.iter().all(Block::is_finite)) {
             return Err(EngineError::RateNotFinite);
         }
+        let slowest = blocks[..own].iter().fold(f64::INFINITY, |least, block| block.radius.min(least));
         let mut flow = Self {
+            slowest,
             bank: Bank::new(&blocks),
             series: Series::new(&blocks),
             propagators: Propagator::of(&modes.spectral.matrices, &blocks),
@@ -323,7 +327,7 @@ impl Flow {
 
     /// So short a time that its slowest block has hardly turned.
     pub(crate) fn is_brief(&self, time: f64) -> bool {
-        self.blocks[..self.own].iter().any(|block| block.radius * time < super::integral::BRIEF)
+        self.slowest * time < super::integral::BRIEF
     }
 
     /// Kernels of a time.

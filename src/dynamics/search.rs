@@ -20,7 +20,6 @@ use super::bank::Kernels;
 use super::budget;
 use super::contact::Crossing;
 use super::flow::Flow;
-use super::four::Four;
 use super::parabola::Parabola;
 use super::polynomial::nearest_root;
 use super::series::{Shares, Span};
@@ -232,14 +231,16 @@ impl Search {
         }
     }
 
+    /// One after the other: a register of several would wait for the one that was written last, by itself.
     #[inline(always)]
     fn least_clear(&self) -> (usize, f64) {
-        let smaller = |a: f64, b: f64| if b < a { b } else { a };
-        let (fours, rest) = self.clear.as_chunks();
-        let each = fours.iter().map(|clear| Four::new(*clear));
-        let [a, b, c, d] = each.fold(Four::all(f64::INFINITY), |least, clear| least.zip(clear, smaller)).array();
-        let least = rest.iter().copied().fold(smaller(smaller(a, b), smaller(c, d)), smaller);
-        (self.clear.iter().position(|clear| *clear == least).unwrap_or(0), least)
+        let mut least = (0, f64::INFINITY);
+        for (guard, clear) in self.clear.iter().enumerate() {
+            if *clear < least.1 {
+                least = (guard, *clear);
+            }
+        }
+        least
     }
 
     /// Extends the proof of one guard as far as it is written down then, or finds its root.

@@ -3,6 +3,8 @@
 //! A block's share is value·A(t) + rate·B(t), where A and B belong to the block alone. With their coefficients tabulated,
 //! in units of the fastest block's time 1/ρ, a signal's series is a product of rows: no recurrence, one pass, any window.
 
+use std::borrow::Borrow;
+
 use super::bank::Phases;
 use super::block::{Block, Phase};
 use super::four::Four;
@@ -86,12 +88,12 @@ impl Series {
     #[inline(always)]
     pub(crate) fn expand<const FROM: usize, const MANY: usize>(
         &self,
-        shares: impl Iterator<Item = Phases>,
+        shares: impl Iterator<Item: Borrow<Phases>>,
     ) -> [[f64; WIDTH]; MANY] {
         let mut sums = [Four::ZERO; MANY];
         for (terms, share) in self.terms.chunks(WIDTH).zip(shares) {
             for (lane, terms) in terms.iter().enumerate() {
-                terms.add::<FROM, MANY>(share.at(lane), &mut sums);
+                terms.add::<FROM, MANY>(share.borrow().at(lane), &mut sums);
             }
         }
         sums.map(Four::array)

@@ -290,7 +290,7 @@ fn divided<const ORDER: usize>(
     base: &[f64; 3],
     span: &Span,
 ) -> Coefficients {
-    scaled::<ORDER>(series.expand::<ORDER, 3>(shares.iter().map(|share| share.now)), sign, base, span)
+    scaled::<ORDER>(series.expand::<ORDER, 3>(shares.iter().map(|share| &share.now)), sign, base, span)
 }
 
 /// From powers of ρt to powers of σ, with the parabola.
