@@ -3,6 +3,8 @@
 //! A row r·p of the coordinates is a share of every block, and so are its second derivative and the force of a spring and a
 //! dashpot along it. What a contact state needs is known when its flow is built, so that a segment evaluates just that.
 
+use std::cell::OnceCell;
+
 use super::bank::{Phases, apart};
 use super::block::{Block, Kernel, Phase};
 use super::contact::Side;
@@ -65,8 +67,8 @@ pub(crate) struct Rows {
     watched: usize,
     /// Weights of the watched rows, several blocks together.
     weights: Vec<[Four; 4]>,
-    /// Bounds of the second derivatives of their shares, by |x| + |y|.
-    bends: Vec<Four>,
+    /// Bounds of the second derivatives of their shares, by |x| + |y|; worked out where many guards ask for them.
+    bends: OnceCell<Vec<Four>>,
     /// Observed displacements.
     pub(crate) observed: Vec<usize>,
     /// The base, watched where half cycles follow its acceleration.
@@ -289,12 +291,10 @@ impl Rows {
             all.guards.push(GuardRows { first, second, across });
         }
         all.watched = all.rows.len();
-        all.weights = all.rows.iter().flat_map(|row| row.weights.chunks(WIDTH).map(together)).collect();
-        let bends = |(blocks, weights): (&[Block], &[[f64; 4]])| {
-            Four::padded(blocks.iter().zip(weights).map(|(block, weights)| bend(block, weights)))
-        };
-        let registers = |row: &Row| blocks.chunks(WIDTH).zip(row.weights.chunks(WIDTH)).map(bends).collect::<Vec<_>>();
-        all.bends = all.rows.iter().flat_map(registers).collect();
+        all.weights.reserve_exact(all.watched * blocks.len().div_ceil(WIDTH));
+        for row in &all.rows {
+            all.weights.extend(row.weights.chunks(WIDTH).map(together));
+        }
         for row in &system.observed_rows {
             let place = all.place(padded(row));
             all.observed.push(place);
@@ -310,7 +310,7 @@ impl Rows {
     /// Numbers that it keeps.
     pub(crate) fn size(&self) -> usize {
         self.rows.iter().map(|row| 4 * row.weights.len()).sum::<usize>()
-            + WIDTH * (4 * self.weights.len() + self.bends.len())
+            + WIDTH * (4 * self.weights.len() + self.bends.get().map_or(0, Vec::len))
     }
 
     /// Where a row stands.
@@ -363,14 +363,27 @@ impl Rows {
 
     /// Adds bounds on the second derivatives of the watched rows, without what constant loads add; not of blocks near critical damping.
     #[inline(always)]
-    pub(crate) fn bound(&self, signals: &Signals, bends: &mut Vec<f64>) {
-        for most in self.bends.chunks_exact(signals.registers.max(1)) {
+    pub(crate) fn bound(&self, blocks: &[Block], signals: &Signals, bends: &mut Vec<f64>) {
+        let all = self.bends.get_or_init(|| self.most_bends(blocks));
+        for most in all.chunks_exact(signals.registers.max(1)) {
             let mut bend = Four::ZERO;
             for (most, [x, y]) in most.iter().zip(&signals.coordinates) {
                 bend = bend + *most * (x.abs() + y.abs());
             }
             bends.push(bend.sum());
         }
+    }
+
+    #[cold]
+    fn most_bends(&self, blocks: &[Block]) -> Vec<Four> {
+        let together = |(blocks, weights): (&[Block], &[[f64; 4]])| {
+            Four::padded(blocks.iter().zip(weights).map(|(block, weights)| bend(block, weights)))
+        };
+        let registers = |row: &Row| {
+            let several = blocks.chunks(WIDTH).zip(row.weights.chunks(WIDTH));
+            several.map(together).collect::<Vec<_>>()
+        };
+        self.rows[..self.watched].iter().flat_map(registers).collect()
     }
 
     /// Evaluates any row.
