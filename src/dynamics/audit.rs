@@ -57,20 +57,14 @@ impl State {
 #[derive(Debug, Default)]
 pub(crate) struct Audit {
     begin: State,
-    duration: f64,
     impulse: f64,
-    impulse_passed: f64,
     impulse_work: f64,
-    work_passed: f64,
     loss: f64,
-    force: f64,
-    force_work: f64,
-    dissipated: f64,
-    /// ∫ q and ∫ q′.
-    position: Vec<f64>,
+    /// All else; impulses and their work count among its moduli.
+    passed: Passed,
 }
 
-/// What passed between two instants, as another solver than the exact flow summed it up.
+/// What passed between two instants.
 #[derive(Debug, Default)]
 pub(crate) struct Passed {
     /// s.
@@ -147,14 +141,15 @@ impl Nodes {
 impl Audit {
     /// From a state on.
     pub(crate) fn from(state: State) -> Self {
-        Self { position: vec![0.0; state.q.len()], begin: state, ..Self::default() }
+        let passed = Passed { position: vec![0.0; state.q.len()], ..Passed::default() };
+        Self { begin: state, passed, ..Self::default() }
     }
 
     pub(crate) fn impulse(&mut self, impulse: f64, work: f64) {
         self.impulse += impulse;
-        self.impulse_passed += impulse.abs();
+        self.passed.force_modulus += impulse.abs();
         self.impulse_work += work;
-        self.work_passed += work.abs();
+        self.passed.work_modulus += work.abs();
     }
 
     /// Energy that left otherwise: in an impact, or with a spring that lets go while compressed (and takes it back).
@@ -164,13 +159,14 @@ impl Audit {
 
     /// Adds what another solver has summed up.
     pub(crate) fn add(&mut self, passed: &Passed) {
-        self.duration += passed.duration;
-        self.position.iter_mut().zip(&passed.position).for_each(|(sum, q)| *sum += q);
-        self.dissipated += passed.dissipated;
-        self.force += passed.force;
-        self.impulse_passed += passed.force_modulus;
-        self.force_work += passed.work;
-        self.work_passed += passed.work_modulus;
+        let own = &mut self.passed;
+        own.duration += passed.duration;
+        own.position.iter_mut().zip(&passed.position).for_each(|(sum, q)| *sum += q);
+        own.dissipated += passed.dissipated;
+        own.force += passed.force;
+        own.force_modulus += passed.force_modulus;
+        own.work += passed.work;
+        own.work_modulus += passed.work_modulus;
     }
 
     /// Adds one segment between two states: in closed form if there is one, else by panels.
@@ -185,10 +181,10 @@ impl Audit {
         if length == 0.0 {
             return;
         }
-        self.duration += length;
+        self.passed.duration += length;
         let [start, end] = [start, end].map(|state| &state[..2 * flow.own]);
         if let Some(taken) = flow.dissipation(system).between(start, end) {
-            self.dissipated += taken;
+            self.passed.dissipated += taken;
             self.moved(system, flow, &flow.integrated(start, end), force.level, length);
         } else {
             self.panels(system, flow, start, force, length);
@@ -212,7 +208,7 @@ impl Audit {
                 let w = weight * h;
                 if flow.is_free() {
                     sum.iter_mut().zip(&c).for_each(|(sum, c)| *sum += w * c);
-                    self.dissipated += w * dissipation.power(&c[..start.len()]);
+                    self.passed.dissipated += w * dissipation.power(&c[..start.len()]);
                 } else {
                     self.node(system, flow, &c[..start.len()], Node { time: t0 + x * h, weight: w }, force);
                 }
@@ -231,21 +227,18 @@ impl Audit {
         let n = system.mass.order;
         let now = flow.drive_after(force.drive, time);
         let [p, rate] = flow.left(c, time, force.level, now);
-        self.position.iter_mut().zip(&p[..n]).for_each(|(sum, q)| *sum += weight * q);
-        self.dissipated += weight * system.damping.form(&rate[..n], &rate[..n]);
+        let passed = &mut self.passed;
+        passed.position.iter_mut().zip(&p[..n]).for_each(|(sum, q)| *sum += weight * q);
+        passed.dissipated += weight * system.damping.form(&rate[..n], &rate[..n]);
         for (i, &j) in flow.modes.attached.iter().enumerate() {
-            self.dissipated += weight * flow.modes.damping[j] * rate[n + i] * rate[n + i];
+            passed.dissipated += weight * flow.modes.damping[j] * rate[n + i] * rate[n + i];
         }
         for across in flow.modes.across.iter().filter(|across| across.presses) {
             let v = dot(&across.row, &rate);
-            self.dissipated += weight * across.damping * v * v;
+            passed.dissipated += weight * across.damping * v * v;
         }
         let force = force.level + now.sine;
-        self.force += weight * force;
-        let power = force * dot(&system.force_row, &rate[..n]);
-        self.force_work += weight * power;
-        self.work_passed += weight * power.abs();
-        self.impulse_passed += weight * force.abs();
+        passed.drive(weight, force, force * dot(&system.force_row, &rate[..n]));
     }
 
     /// Positions and work of a whole segment, from ∫ c dt.
@@ -253,37 +246,33 @@ impl Audit {
         let n = system.mass.order;
         let mean: Vec<f64> = sum.iter().map(|c| c / length).collect();
         let [p, rate] = flow.left(&mean, 0.0, level, DrivePhase::default());
-        self.position.iter_mut().zip(&p[..n]).for_each(|(sum, q)| *sum += length * q);
-        let work = level * length * dot(&system.force_row, &rate[..n]);
-        self.force += level * length;
-        self.impulse_passed += level.abs() * length;
-        self.force_work += work;
-        self.work_passed += work.abs();
+        self.passed.position.iter_mut().zip(&p[..n]).for_each(|(sum, q)| *sum += length * q);
+        self.passed.drive(1.0, level * length, level * length * dot(&system.force_row, &rate[..n]));
     }
 
     /// Momentum and energy residual, relative to what passed through the system.
     pub(crate) fn residuals(&self, system: &HybridSystem, end: &State) -> (f64, f64) {
-        let begin = &self.begin;
-        if self.duration == 0.0 {
+        let Self { begin, passed: all, .. } = self;
+        if all.duration == 0.0 {
             return (0.0, 0.0);
         }
         let change = |a: &[f64], b: &[f64]| b.iter().zip(a).map(|(b, a)| b - a).collect::<Vec<_>>();
         let moved = change(&begin.q, &end.q);
         let gained = system.mass.times(&change(&begin.rate, &end.rate));
-        let held = system.stiffness.times(&self.position);
+        let held = system.stiffness.times(&all.position);
         let damped = system.damping.times(&moved);
         let mut momentum = 0.0_f64;
         for row in &system.momentum_rows {
             let mut residual = dot(row, &gained) + dot(row, &held) + dot(row, &damped);
-            let mut passed = self.impulse_passed * dot(row, &system.force_row).abs();
-            residual -= dot(row, &system.force_row) * (self.impulse + self.force);
+            let mut passed = all.force_modulus * dot(row, &system.force_row).abs();
+            residual -= dot(row, &system.force_row) * (self.impulse + all.force);
             for state in [begin, end] {
                 passed += dot(row, &system.mass.times(&state.rate)).abs();
             }
             for ((particle, a), b) in system.particles.iter().zip(&begin.particles).zip(&end.particles) {
                 let share = dot(row, &particle.floor.row) * particle.mass;
-                residual += share * (b[1] - a[1] + system.gravity * self.duration);
-                passed += (share * system.gravity).abs() * self.duration;
+                residual += share * (b[1] - a[1] + system.gravity * all.duration);
+                passed += (share * system.gravity).abs() * all.duration;
                 // What a free particle or structure exchanges without any force: at least what it came with.
                 for (state, [_, rate]) in [(begin, a), (end, b)] {
                     let face = dot(&particle.floor.row, &state.rate);
@@ -292,15 +281,14 @@ impl Audit {
             }
             momentum = momentum.max(residual.abs() / passed.max(f64::MIN_POSITIVE));
         }
-        let residual = energy(system, end) - energy(system, begin) + self.dissipated + self.loss
-            - self.impulse_work
-            - self.force_work;
+        let residual =
+            energy(system, end) - energy(system, begin) + all.dissipated + self.loss - self.impulse_work - all.work;
         let fallen =
             system.particles.iter().zip(&begin.particles).zip(&end.particles).fold(0.0_f64, |sum, ((p, a), b)| {
                 // Two bodies that fall together for long are told apart from what they have fallen.
                 sum + (p.mass * system.gravity * (b[0] - a[0])).abs()
             });
-        let passed = (self.work_passed + self.dissipated + self.loss.abs() + fallen).max(energy(system, begin).abs());
+        let passed = (all.work_modulus + all.dissipated + self.loss.abs() + fallen).max(energy(system, begin).abs());
         (momentum, residual.abs() / passed.max(f64::MIN_POSITIVE))
     }
 }

@@ -11,11 +11,11 @@ use super::lanes::{Lanes, WIDTH};
 /// The blocks of a flow.
 #[derive(Debug, Default)]
 pub(crate) struct Bank {
-    blocks: Vec<Blocks>,
+    pub(crate) blocks: Vec<Blocks>,
     /// Blocks that do not turn.
     others: Vec<usize>,
     /// Blocks near critical damping, whose bounds depend on the time that they are to hold.
-    near_critical: Vec<usize>,
+    pub(crate) near_critical: Vec<usize>,
 }
 
 /// Several blocks; places without one hold zeros.
@@ -26,7 +26,7 @@ pub(crate) struct Blocks {
     fades: Four,
     determinant: Four,
     discriminant: Four,
-    /// √|d|, and of those that turn its inverse.
+    /// √|d| of those that turn, and its inverse.
     root: Four,
     inverse_root: Four,
     /// −1 of those that turn.
@@ -230,18 +230,6 @@ impl Bank {
         }
     }
 
-    /// The blocks.
-    #[inline(always)]
-    pub(crate) fn blocks(&self) -> &[Blocks] {
-        &self.blocks
-    }
-
-    /// Blocks near critical damping.
-    #[inline(always)]
-    pub(crate) fn near_critical(&self) -> &[usize] {
-        &self.near_critical
-    }
-
     /// The kernels of all blocks after `t` seconds; `each` has the same blocks one by one.
     #[inline(always)]
     pub(crate) fn kernels(&self, each: &[Block], t: f64, kernels: &mut [Kernels]) {
@@ -266,7 +254,7 @@ mod tests {
         let bank = Bank::new(&each);
         let mut first = [Kernels::NONE];
         bank.kernels(&each, 0.037, &mut first);
-        let joined = bank.blocks()[0].follow_on(&first[0], 1e-4);
+        let joined = bank.blocks[0].follow_on(&first[0], 1e-4);
         for (lane, block) in each.iter().enumerate() {
             let (joined, whole) = (joined.at(lane), block.kernel(0.0371));
             assert!((joined.c - whole.c).abs() < 1e-14 && (joined.s - whole.s).abs() < 1e-14);

@@ -97,7 +97,7 @@ impl Block {
         [self.decay, self.determinant, self.discriminant, self.radius].iter().all(|x| x.is_finite())
     }
 
-    /// The two eigenvalues sum to nothing: ∫ of the block's signals grows with time.
+    /// Both eigenvalues are zero: a constant load makes it fall.
     pub(crate) fn is_drift(&self) -> bool {
         self.radius == 0.0
     }

@@ -155,9 +155,9 @@ thread_local! {
     static UNITS: Cell<u32> = const { Cell::new(UNITS_A_LOOK) };
     /// Events of the simulation, and how many it may have.
     static EVENTS: Cell<u64> = const { Cell::new(0) };
+    static MOST_EVENTS: Cell<u64> = const { Cell::new(u64::MAX) };
     /// Events before the run that is under way.
     static EVENTS_BEFORE: Cell<u64> = const { Cell::new(0) };
-    static MOST_EVENTS: Cell<u64> = const { Cell::new(u64::MAX) };
     /// The cycle that a run has reached, and how many it has; complete runs.
     static CYCLE: Cell<(u64, u64)> = const { Cell::new((0, 0)) };
     static RUNS: Cell<u64> = const { Cell::new(0) };

@@ -1,4 +1,4 @@
-//! Cholesky factors of mass matrices; own loops, since their bits reach the results.
+//! Cholesky factors of matrices of masses and springs; own loops, since their bits reach the results.
 
 use super::EngineError;
 use super::system::Matrix;

@@ -22,7 +22,7 @@ const NEAR: f64 = 0.02;
 const REACH: f64 = 0.03;
 /// N.
 const NODES: usize = 12;
-/// r t up to which the interpolation is exact to rounding: 2·0.35¹²/12! is 1.4e-14 of what turns; and less, as all nodes share it.
+/// r t up to which the interpolation is exact to rounding: 2·0.3¹²/12! is 2.2e-15 of what turns; and less, as all nodes share it.
 pub(super) const TURN: f64 = 0.6;
 /// Moduli below this share of the largest entry are rounding.
 const NOTHING: f64 = 64.0 * f64::EPSILON;
@@ -41,7 +41,7 @@ pub(super) fn split(q: &DMatrix<f64>, t: &DMatrix<f64>) -> Spectral {
     let clusters = form.gather();
     let (x, y) = form.decouple(&clusters);
     let (v, w) = (product(&form.q, &x), product(&y, &form.q.adjoint()));
-    let mut parts = Parts::new(order);
+    let mut parts = Parts { order, pieces: Pieces::default(), real: Vec::new(), lasts: f64::INFINITY };
     for cluster in clusters {
         let eigenvalues: Vec<C> = cluster.clone().map(|i| form.t[(i, i)]).collect();
         if let [only] = eigenvalues[..] {
@@ -195,10 +195,6 @@ struct Parts {
 }
 
 impl Parts {
-    fn new(order: usize) -> Self {
-        Self { order, pieces: Pieces::default(), real: Vec::new(), lasts: f64::INFINITY }
-    }
-
     /// An eigenvalue that stands alone; of a complex pair the upper one speaks for both.
     fn single(&mut self, eigenvalue: C, v: &DMatrix<C>, w: &DMatrix<C>, i: usize) {
         let (column, row) = (numbers(v.column(i).iter()), numbers(w.row(i).iter()));

@@ -27,8 +27,8 @@ pub(crate) struct Conservative {
 }
 
 /// Normal modes, of modal mass 1, and the structure's own damping in them.
-struct Normal {
-    modes: NormalModes,
+pub(crate) struct Normal {
+    pub(crate) modes: NormalModes,
     damping: Vec<f64>,
 }
 
@@ -44,12 +44,9 @@ impl Conservative {
         })
     }
 
-    /// Its normal modes: none where a coordinate has no spring, or where springs are between particles and second faces.
-    pub(crate) fn normal(&self, system: &HybridSystem, contacts: &[Contact]) -> Option<&NormalModes> {
-        self.normal_and_damping(system, contacts).map(|normal| &normal.modes)
-    }
-
-    fn normal_and_damping(&self, system: &HybridSystem, contacts: &[Contact]) -> Option<&Normal> {
+    /// Its normal modes: none where a coordinate has no spring, where springs are between particles and second faces, and of
+    /// many coordinates.
+    pub(crate) fn normal(&self, system: &HybridSystem, contacts: &[Contact]) -> Option<&Normal> {
         let build = || {
             if self.mass.order > MOST_COORDINATES || contacts.iter().any(|contact| contact.is_between()) {
                 return None;
@@ -70,7 +67,7 @@ impl Conservative {
 
     /// The blocks of (p, p′) under dashpots, where they come from normal modes.
     pub(crate) fn split(&self, system: &HybridSystem, contacts: &[Contact], damping: &[f64]) -> Option<Spectral> {
-        let Normal { modes, damping: structural } = self.normal_and_damping(system, contacts)?;
+        let Normal { modes, damping: structural } = self.normal(system, contacts)?;
         let order = modes.omega.len();
         let mut all = structural.clone();
         for (slot, &j) in self.attached.iter().enumerate() {

@@ -14,7 +14,6 @@ use std::cell::OnceCell;
 use std::rc::Rc;
 
 use super::EngineError;
-use super::cholesky::Cholesky;
 use super::conservative::{self, Conservative, face_of};
 use super::contact::{Hold, Side};
 use super::load::{Load, Steady};
@@ -143,12 +142,17 @@ impl Modes {
                 let iteration = if is_stated { Iteration::Library } else { Iteration::Own };
                 let accelerations = modes.accelerations(system);
                 let undamped = accelerations.iter().all(|row| row[order..].iter().all(|entry| *entry == 0.0));
-                let stiffness = undamped.then(|| stiffness_of(system, contacts, &modes.attached, &modes.across));
+                let stiffness = undamped.then(|| {
+                    let mut all = conservative::stiffness(system, contacts, &modes.attached);
+                    let presses = modes.across.iter().filter(|across| across.presses);
+                    presses.for_each(|across| all.add_square(across.stiffness, &across.row));
+                    all
+                });
                 super::modes::split(accelerations, &modes.bare.mass, stiffness.as_ref(), iteration)?
             }
         };
         modes.to_blocks = Superposition::new(modes.spectral.width(), &modes.spectral.to_blocks);
-        modes.columns = by_columns(&modes.spectral, 2 * order);
+        modes.columns = Superposition::transposed(2 * order, modes.spectral.width(), &modes.spectral.from_blocks);
         modes.gravity = modes.load(system, &modes.falls(system));
         Ok(modes)
     }
@@ -165,35 +169,28 @@ impl Modes {
 
     /// Accelerations of p by (p, p′): order rows of 2·order numbers.
     pub(crate) fn accelerations(&self, system: &HybridSystem) -> &[Vec<f64>] {
-        self.accelerations.get_or_init(|| {
-            accelerations(system, &self.contacts, &self.bare.carried, &self.attached, &self.damping, &self.across)
-        })
+        self.accelerations.get_or_init(|| accelerations(system, self))
     }
 
     /// Its answer to a constant load, which alone would give p these accelerations.
     pub(crate) fn load(&self, system: &HybridSystem, load: &[f64]) -> Load {
-        self.load_on(system, load, &self.spectral)
-    }
-
-    fn load_on(&self, system: &HybridSystem, load: &[f64], spectral: &Spectral) -> Load {
         let normal = if self.is_normal { self.bare.normal(system, &self.contacts) } else { None };
         match normal {
-            Some(normal) => Load::still(normal.rest(load), spectral.blocks.len()),
-            None => Load::new(load, spectral, self.accelerations(system)),
+            Some(normal) => Load::still(normal.modes.rest(load), self.spectral.blocks.len()),
+            None => Load::new(load, &self.spectral, self.accelerations(system)),
         }
     }
 
     /// The same with blocks that take in a harmonic drive, where that is in resonance with some of them; and what is steady then.
     pub(crate) fn resonant(&self, system: &HybridSystem, push: &[f64], omega: f64) -> Option<(Self, Steady)> {
         let (spectral, steady) = super::resonance::split(&self.spectral, self.order, push, omega)?;
-        let gravity = self.load_on(system, &self.falls(system), &spectral);
-        let modes = Self {
+        let mut modes = Self {
             to_blocks: Superposition::new(spectral.width(), &spectral.to_blocks),
-            columns: by_columns(&spectral, 2 * self.order),
+            columns: Superposition::transposed(2 * self.order, spectral.width(), &spectral.from_blocks),
             spectral,
-            gravity,
             ..self.clone()
         };
+        modes.gravity = modes.load(system, &modes.falls(system));
         Some((modes, steady))
     }
 
@@ -245,11 +242,6 @@ pub(crate) fn contact_damping(system: &HybridSystem, contacts: &[Contact], j: us
     face_damping(side.face(particle).law, equivalent.filter(compressed))
 }
 
-/// The way back from the blocks to so many coordinates and rates, column by column.
-fn by_columns(spectral: &Spectral, size: usize) -> Superposition {
-    Superposition::transposed(size, spectral.width(), &spectral.from_blocks)
-}
-
 /// The damping of the face that each particle's contact refers to; then, of those at both faces, that of the second one and the
 /// constant of its distance, in which alone the gap enters.
 pub(crate) fn dampings(system: &HybridSystem, contacts: &[Contact], equivalent: Option<f64>) -> Vec<f64> {
@@ -279,16 +271,9 @@ fn pushed(system: &HybridSystem, contacts: &[Contact], across: &Across) -> Vec<f
 }
 
 /// Accelerations of p by (p, p′): order rows of 2·order numbers.
-fn accelerations(
-    system: &HybridSystem,
-    contacts: &[Contact],
-    solve: &Cholesky,
-    attached: &[usize],
-    damping: &[f64],
-    across: &[Across],
-) -> Vec<Vec<f64>> {
-    let n = system.mass.order;
-    let order = n + attached.len();
+fn accelerations(system: &HybridSystem, modes: &Modes) -> Vec<Vec<f64>> {
+    let Modes { contacts, damping, across, attached, .. } = modes;
+    let (n, order, solve) = (system.mass.order, modes.order, &modes.bare.carried);
     let mut a = vec![vec![0.0; 2 * order]; order];
     for j in 0..n {
         let column = |matrix: &Matrix| (0..n).map(|i| -matrix.at(i, j)).collect::<Vec<_>>();
@@ -336,13 +321,4 @@ fn accelerations(
         }
     }
     a
-}
-
-/// Stiffness matrix of p.
-fn stiffness_of(system: &HybridSystem, contacts: &[Contact], attached: &[usize], across: &[Across]) -> Matrix {
-    let mut all = conservative::stiffness(system, contacts, attached);
-    for across in across.iter().filter(|across| across.presses) {
-        all.add_square(across.stiffness, &across.row);
-    }
-    all
 }

@@ -219,9 +219,10 @@ impl Problem<'_> {
             }
         }
         let [most, worst] = [most, worst].map(|fourth| fourth.largest());
-        if !(most < fourth_power(DEPENDENT) && worst < fourth_power(MISSED)) {
+        let [dependent, missed, rounding] = [DEPENDENT, MISSED, ROUNDING].map(|x| (x * x) * (x * x));
+        if !(most < dependent && worst < missed) {
             Independence::None
-        } else if most < fourth_power(ROUNDING) {
+        } else if most < rounding {
             Independence::Exact
         } else {
             Independence::Near
@@ -384,10 +385,6 @@ fn correct(spectral: &mut Spectral) {
     spectral.to_blocks.copy_from_slice(w.as_slice());
 }
 
-fn fourth_power(x: f64) -> f64 {
-    (x * x) * (x * x)
-}
-
 #[cfg(test)]
 mod tests {
     use super::super::schur::Iteration;
@@ -420,11 +417,7 @@ mod tests {
                 let row: Vec<f64> = (0..structure).map(|_| number(-2.0, 2.0)).collect();
                 let row: Vec<f64> =
                     row.into_iter().chain((structure..order).map(|i| f64::from(u8::from(i == slot)))).collect();
-                for i in 0..order {
-                    for j in 0..order {
-                        all.entries[i * order + j] += one * row[i] * row[j];
-                    }
-                }
+                all.add_square(one, &row);
             }
             Self { mass: all, stiffness: Matrix::diagonal(&stiffness), damping: Matrix::diagonal(&damping) }
         }

@@ -39,8 +39,6 @@ pub(crate) struct Twice {
 }
 
 impl Twice {
-    pub(crate) const ZERO: Self = Self { high: 0.0, low: 0.0 };
-
     #[inline]
     pub(crate) fn of(x: f64) -> Self {
         Self { high: x, low: 0.0 }
@@ -97,7 +95,7 @@ pub(crate) fn rest(x: f64, a: &[f64], b: &[f64]) -> f64 {
 pub(crate) fn turned([c, s]: [f64; 2], [x, y]: [Twice; 2]) -> [Twice; 2] {
     let share = 0.5 * rest(1.0, &[c, s], &[c, s]);
     let sum = |a: f64, x: Twice, b: f64, y: Twice| {
-        let mut sum = Twice::ZERO;
+        let mut sum = Twice::default();
         sum.add_times(a, x);
         sum.add_times(b, y);
         sum.low += share * sum.high;

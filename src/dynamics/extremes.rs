@@ -97,7 +97,7 @@ impl Lookout {
         self.now.clone_from(&self.start);
         self.kernels.resize(self.start.len(), Kernels::NONE);
         self.known = 0;
-        let mut here = node(stretch, &self.now, 0.0);
+        let mut here = Node { time: 0.0, motion: motion(stretch, self.now.iter().copied(), 0.0) };
         extremes.take(here.motion[0], here.motion[1]);
         let mut bounds = self.bounds(stretch, length);
         let steps = (STEPS_A_RADIAN * bounds.fastest * length).ceil().clamp(1.0, MOST_STEPS);
@@ -120,10 +120,10 @@ impl Lookout {
                 self.now.iter_mut().zip(moved).for_each(|(now, moved)| *now = moved);
             } else {
                 self.know(stretch, step, doublings as usize);
-                let by = stretch.bank.blocks().iter().zip(&self.strides[doublings as usize]);
+                let by = stretch.bank.blocks.iter().zip(&self.strides[doublings as usize]);
                 self.now.iter_mut().zip(by).for_each(|(now, (blocks, by))| *now = blocks.advance(*now, by));
             }
-            let next = node(stretch, &self.now, t);
+            let next = Node { time: t, motion: motion(stretch, self.now.iter().copied(), t) };
             extremes.take(next.motion[0], next.motion[1]);
             for order in if jumps { 0..0 } else { 0..2 } {
                 let (start, kernels) = (&self.start, &mut self.kernels);
@@ -152,22 +152,22 @@ impl Lookout {
     /// The bounds from now on, for `left` seconds.
     #[inline(always)]
     fn bounds(&mut self, Stretch { blocks, bank, rest, .. }: Stretch<'_>, left: f64) -> Bounds {
-        let amplitudes = bank.blocks().iter().zip(&self.now).map(|(blocks, now)| blocks.amplitudes(*now));
+        let amplitudes = bank.blocks.iter().zip(&self.now).map(|(blocks, now)| blocks.amplitudes(*now));
         self.speeds.clear();
         self.speeds.extend(amplitudes);
-        for &k in bank.near_critical() {
+        for &k in &bank.near_critical {
             let share = self.now[k / WIDTH].at(k % WIDTH);
             self.speeds[k / WIDTH].set(k % WIDTH, blocks[k].amplitude(share, THIRD, left));
         }
         let (mut whole, mut bend, mut snap) = (Four::ZERO, Four::ZERO, Four::ZERO);
-        for (speed, blocks) in self.speeds.iter_mut().zip(bank.blocks()) {
+        for (speed, blocks) in self.speeds.iter_mut().zip(&bank.blocks) {
             *speed = *speed * blocks.radius;
             whole = whole + *speed;
             bend = bend + *speed * blocks.radius;
             snap = snap + *speed * blocks.square;
         }
         let visible = INVISIBLE * whole.sum();
-        let fastest = self.speeds.iter().zip(bank.blocks()).fold(Four::ZERO, |fastest, (speed, blocks)| {
+        let fastest = self.speeds.iter().zip(&bank.blocks).fold(Four::ZERO, |fastest, (speed, blocks)| {
             let moving = speed.zip(blocks.radius, |speed, radius| if speed > visible { radius } else { 0.0 });
             fastest.zip(moving, |a, b| if b > a { b } else { a })
         });
@@ -184,20 +184,15 @@ fn moved<'a>(
     kernels: &'a mut [Kernels],
 ) -> impl Iterator<Item = Phases> + 'a {
     stretch.bank.kernels(stretch.blocks, t, kernels);
-    let each = start.iter().zip(stretch.bank.blocks()).zip(&*kernels);
+    let each = start.iter().zip(&stretch.bank.blocks).zip(&*kernels);
     each.map(|((from, blocks), kernels)| blocks.advance(*from, kernels))
-}
-
-#[inline(always)]
-fn node(stretch: Stretch<'_>, shares: &[Phases], time: f64) -> Node {
-    Node { time, motion: motion(stretch, shares.iter().copied(), time) }
 }
 
 /// The motion whose blocks have these shares.
 #[inline(always)]
 fn motion(stretch: Stretch<'_>, shares: impl Iterator<Item = Phases>, t: f64) -> Motion {
     let mut sums = [Four::ZERO; 4];
-    for (now, blocks) in shares.zip(stretch.bank.blocks()) {
+    for (now, blocks) in shares.zip(&stretch.bank.blocks) {
         let bend = blocks.acceleration(now);
         for (sum, part) in sums.iter_mut().zip([now.value, now.rate, bend.value, bend.rate]) {
             *sum = *sum + part;

@@ -58,15 +58,18 @@ const STEPS_A_STRETCH: u64 = 1024;
 /// What a stretch counts as, about.
 const UNITS_A_STRETCH: u32 = 16;
 
-/// Runs a system.
-pub(super) fn run(system: &HybridSystem, options: &Options, time_step: f64) -> Result<Response, EngineError> {
+/// Runs a system with a fixed time step, s: exact propagators of one step, the contact state checked once a step.
+///
+/// # Errors
+/// [`EngineError`] with the reason.
+pub fn fixed_step(system: &HybridSystem, options: &Options, time_step: f64) -> Result<Response, EngineError> {
     // One mass alone, with one particle, with soft walls and a particle or with two particles; anything else.
-    match Layout::of(system).size() {
+    budget::within(|| match Layout::of(system).size() {
         2 => Run::<[f64; 2]>::new(system, options, time_step)?.run(),
         4 => Run::<[f64; 4]>::new(system, options, time_step)?.run(),
         6 => Run::<[f64; 6]>::new(system, options, time_step)?.run(),
         _ => Run::<Vec<f64>>::new(system, options, time_step)?.run(),
-    }
+    })
 }
 
 /// A run in progress.
@@ -88,8 +91,8 @@ struct Run<'a, V: Vector> {
     /// Particles at something rigid that may move against it.
     closing: Vec<Closing>,
     mobilities: Mobilities,
-    /// Equivalent viscous damping in force, N s/m.
-    equivalent: f64,
+    /// What half cycles put in the place of the faces' own damping, N s/m.
+    equivalent: Option<f64>,
     cycle: u64,
     /// Steps since the start.
     step: u64,
@@ -157,7 +160,7 @@ impl<'a, V: Vector> Run<'a, V> {
             contacts,
             closing: Vec::new(),
             mobilities: Mobilities::default(),
-            equivalent: half_cycles.map_or(0.0, |half| half.curve.upper_end()),
+            equivalent: half_cycles.map(|half| half.curve.upper_end()),
             cycle: 0,
             step: 0,
             samples: Samples { cycle: options.trace.map_or(0, |trace| trace.from_cycle), index: 0, step: 0 },
@@ -211,7 +214,6 @@ impl<'a, V: Vector> Run<'a, V> {
     }
 
     fn begin_window(&mut self) {
-        self.tally = self.new_tally();
         if self.options.audit {
             self.audit = Some(Audit::from(self.audit_state()));
             self.seam(0.5);
@@ -270,14 +272,9 @@ impl<'a, V: Vector> Run<'a, V> {
         Ok(())
     }
 
-    /// What half cycles put in the place of the faces' own damping, N s/m.
-    fn equivalent(&self) -> Option<f64> {
-        self.motion.half.map(|_| self.equivalent)
-    }
-
     /// Dashpot of a face, N s/m.
     fn damping(&self, j: usize, side: Side) -> f64 {
-        face_damping(side.face(&self.system.particles[j]).law, self.equivalent())
+        face_damping(side.face(&self.system.particles[j]).law, self.equivalent)
     }
 
     /// Position relative to a face.
@@ -318,16 +315,14 @@ impl<'a, V: Vector> Run<'a, V> {
         self.response.final_particles = (0..self.contacts.len()).map(|j| self.absolute(j)).collect();
         let quiet = without_harmonic(self.system);
         for contacts in &self.visited {
-            let flow = Flow::build(&quiet, contacts, &dampings(self.system, contacts, self.equivalent()))?;
+            let flow = Flow::build(&quiet, contacts, &dampings(self.system, contacts, self.equivalent))?;
             let highest = &mut self.response.highest_frequency;
             *highest = highest.max(flow.highest_frequency);
         }
         let (_, rest) = start(self.system, &StartState::StaticEquilibrium, self.layout)?;
         let rounding = self.rounding_of(&rest);
         self.response.observed.iter_mut().for_each(|of| of.rest_below(rounding));
-        let (n, positions) = (self.layout.n, self.layout.positions());
-        let state = self.motion.state.as_ref();
-        self.response.at_end(self.system, [&state[..n], &state[positions..positions + n]], self.cycle)
+        self.response.at_end(self.system, self.layout.structure(self.motion.state.as_ref()), self.cycle)
     }
 
     /// y and y′ of a particle.

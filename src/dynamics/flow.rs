@@ -134,7 +134,7 @@ impl Flow {
 
     /// Numbers that its coordinates take in whole registers.
     pub(crate) fn width(&self) -> usize {
-        2 * WIDTH * self.bank.blocks().len()
+        2 * WIDTH * self.bank.blocks.len()
     }
 
     /// Closed forms of its integrals, where they keep their digits.
@@ -332,7 +332,7 @@ impl Flow {
 
     /// Kernels of a time.
     pub(crate) fn kernels(&self, time: f64) -> Vec<Kernels> {
-        let mut kernels = vec![Kernels::NONE; self.bank.blocks().len()];
+        let mut kernels = vec![Kernels::NONE; self.bank.blocks.len()];
         self.bank.kernels(&self.blocks, time, &mut kernels);
         kernels
     }
@@ -423,7 +423,7 @@ fn answered(
     push: &[f64],
     omega: f64,
 ) -> Result<(Rc<Modes>, Steady), EngineError> {
-    let steady = |largest: f64| Steady::new(omega, push, modes.accelerations(system), modes.order, largest);
+    let steady = |largest: f64| Steady::new(omega, push, modes.accelerations(system), largest);
     if let Some(steady) = steady(load::RESONANCE) {
         return Ok((modes, steady));
     }

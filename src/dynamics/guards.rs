@@ -219,7 +219,7 @@ fn in_flight(state: Contacts<'_>, j: usize, guards: &mut Vec<Guard>) -> Parabola
         (Parabola { p0: path.p0 - particle.gap, ..path }, face)
     };
     let begin = start(-relative.gap, -relative.rate, state.smooth[j], face, particle.gap);
-    guards.push(Guard::distance(j, Crossing::To(Side::Ceiling), rows.second, 1.0, above.negative(), begin));
+    guards.push(Guard::distance(j, Crossing::To(Side::Ceiling), rows.second, 1.0, above.times(-1.0), begin));
     path
 }
 
@@ -336,7 +336,7 @@ fn across(state: Contacts<'_>, j: usize, rows: AcrossRows, guards: &mut Vec<Guar
                 guards.push(force(Change::Releases, 1.0));
             } else {
                 let begin = start(-now.gap, -now.rate, false, signal, size);
-                guards.push(guard(Change::Releases, way.negative(), -sign, begin));
+                guards.push(guard(Change::Releases, way.times(-1.0), -sign, begin));
             }
             if let Some(stop) = stop {
                 let left = Parabola { p0: way.p0 + stop.length, ..way };
@@ -345,7 +345,7 @@ fn across(state: Contacts<'_>, j: usize, rows: AcrossRows, guards: &mut Vec<Guar
             }
         }
         Hold::Released => {
-            guards.push(guard(Change::Recovers, way.negative(), -sign, Start::Apart));
+            guards.push(guard(Change::Recovers, way.times(-1.0), -sign, Start::Apart));
             guards.push(force(Change::PushesAgain, -1.0));
         }
     }

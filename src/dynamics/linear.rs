@@ -4,6 +4,9 @@
 //! simulated: the state of any cycle is a power of the map of one cycle ([`cycle`]), the integrals over any number of cycles
 //! are linear in the moments of their states ([`moments`], [`signal`]), and the steady state is where the map stays.
 //!
+//! How strong a drive ends such a run ([`lift_off`]), and the motions of one particle that is struck once a period
+//! ([`struck`]), are in closed form, too.
+//!
 //! Not linear: half cycles that renew the damping, rigid floors under impulses (every impulse throws the particle off), a
 //! structure that drifts, a given start of the particles. Time histories are kept by the march alone.
 
@@ -31,10 +34,7 @@ use super::flow::{DrivePhase, Flow};
 use super::signals::Row;
 use super::states::States;
 use super::system::{Contact, HybridSystem, Tick};
-use super::{
-    CycleRates, EngineError, Extremes, Method, Observed, Options, Proof, Response, StartState, SteadyMotion,
-    SteadyState, Sums,
-};
+use super::{CycleRates, EngineError, Extremes, Method, Observed, Options, Proof, Response, StartState, Sums};
 
 /// A run all of whose particles rest on their floors.
 struct Run<'a> {
@@ -108,45 +108,82 @@ impl Steady {
     }
 }
 
-/// That motion; `None` as well where it is not proved that no particle leaves its floor.
-pub(crate) fn steady_state(system: &HybridSystem) -> Result<Option<SteadyState>, EngineError> {
-    let Some(Steady { flow, cycle, state: steady }) = Steady::of(system)? else { return Ok(None) };
-    let watch = Watch {
-        system,
-        flow: &flow,
-        first: &cycle,
-        regular: &cycle,
-        start: &steady,
-        steady: &steady,
-        transient: &vec![0.0; steady.len()],
-    };
-    let Some(margin) = watch.margin() else { return Ok(None) };
-    let rows: Vec<&Row> = flow.rows.observed.iter().map(|&row| flow.rows.row(row)).collect();
-    let at = Moments::over(&cycle.map, &steady, 1);
-    let parts = integrals(system, &flow, &rows, &cycle, &at, true);
-    let motion = |(row, part): (&&Row, Sums)| {
-        let mut extremes = Extremes::default();
-        range::take(system, &flow, row, &cycle, &steady, 1, &mut extremes);
-        SteadyMotion { cycle: part, extremes }
-    };
-    Ok(Some(SteadyState { observed: rows.iter().zip(parts).map(motion).collect(), margin }))
+/// The steady state: what every cycle repeats once all transients are gone.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SteadyState {
+    /// In the order of [`HybridSystem::observed_rows`](super::HybridSystem::observed_rows).
+    pub observed: Vec<SteadyMotion>,
+    /// A lower bound on how far, in metres, every particle stays from leaving its floor; infinite where there is none.
+    pub margin: f64,
 }
 
-/// The share of the drive's strength at which the steady motion first takes a particle off its floor; `None` where no strength does, and
-/// where there is no steady motion with particles at rest.
-pub(crate) fn lift_off(system: &HybridSystem) -> Result<Option<f64>, EngineError> {
-    Ok(Steady::of(system)?.and_then(|steady| lift_off::share(system, &steady)))
+/// One observed motion in the steady state.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SteadyMotion {
+    /// Integrals over one cycle.
+    pub cycle: Sums,
+    /// Largest and smallest values.
+    pub extremes: Extremes,
 }
 
-/// The share of the drive's strength below which no motion has one impact on the floor and one on the ceiling a period; `None` where the
-/// scene has no such motion, or none in closed form.
-pub(crate) fn two_impacts(system: &HybridSystem) -> Result<Option<f64>, EngineError> {
-    Ok(Struck::of(system)?.as_ref().and_then(two_impacts::share))
+/// The steady state in closed form: what is left once all transients are gone. `None` unless it is proved that no particle
+/// leaves its floor in it, and where undamped modes never settle.
+///
+/// # Errors
+/// [`EngineError`] with the reason.
+pub fn steady_state(system: &HybridSystem) -> Result<Option<SteadyState>, EngineError> {
+    budget::within(|| {
+        let Some(Steady { flow, cycle, state: steady }) = Steady::of(system)? else { return Ok(None) };
+        let watch = Watch {
+            system,
+            flow: &flow,
+            first: &cycle,
+            regular: &cycle,
+            start: &steady,
+            steady: &steady,
+            transient: &vec![0.0; steady.len()],
+        };
+        let Some(margin) = watch.margin() else { return Ok(None) };
+        let rows: Vec<&Row> = flow.rows.observed.iter().map(|&row| flow.rows.row(row)).collect();
+        let at = Moments::over(&cycle.map, &steady, 1);
+        let parts = integrals(system, &flow, &rows, &cycle, &at, true);
+        let motion = |(row, part): (&&Row, Sums)| {
+            let mut extremes = Extremes::default();
+            range::take(system, &flow, row, &cycle, &steady, 1, &mut extremes);
+            SteadyMotion { cycle: part, extremes }
+        };
+        Ok(Some(SteadyState { observed: rows.iter().zip(parts).map(motion).collect(), margin }))
+    })
 }
 
-/// The share at which a motion with one impact on the floor a period first touches the ceiling; `None` as above.
-pub(crate) fn ceiling_graze(system: &HybridSystem) -> Result<Option<f64>, EngineError> {
-    Ok(Struck::of(system)?.as_ref().and_then(ceiling_graze::share))
+/// The share of its present strength at which the drive takes the first particle off its floor, in closed form: below it every particle
+/// rests, once all transients are gone. `None` where no strength does, and where particles never rest under this drive: on rigid floors
+/// under impulses, say.
+///
+/// # Errors
+/// [`EngineError`] with the reason.
+pub fn lift_off(system: &HybridSystem) -> Result<Option<f64>, EngineError> {
+    budget::within(|| Ok(Steady::of(system)?.and_then(|steady| lift_off::share(system, &steady))))
+}
+
+/// The share of its present strength below which the drive keeps up no motion with one impact on the floor and one on the ceiling a period,
+/// in closed form: one particle between rigid faces, under a harmonic force on a damped structure. `None` elsewhere, and where no strength
+/// does.
+///
+/// # Errors
+/// [`EngineError`] with the reason.
+pub fn two_impacts(system: &HybridSystem) -> Result<Option<f64>, EngineError> {
+    budget::within(|| Ok(Struck::of(system)?.as_ref().and_then(two_impacts::share)))
+}
+
+/// The share of its present strength at which the motion with one impact on the floor a period first touches the ceiling, in closed form:
+/// one particle on a rigid floor, under gravity and a harmonic force on a damped structure. `None` elsewhere, and where no motion of this
+/// kind that attracts stays below the ceiling.
+///
+/// # Errors
+/// [`EngineError`] with the reason.
+pub fn ceiling_graze(system: &HybridSystem) -> Result<Option<f64>, EngineError> {
+    budget::within(|| Ok(Struck::of(system)?.as_ref().and_then(ceiling_graze::share)))
 }
 
 /// The flow with every particle on its floor, if its cycles can be summed: each block has a place to rest, and holds for any number of
@@ -171,7 +208,7 @@ impl<'a> Run<'a> {
         let ticks = if system.drive.ticks.is_empty() { &[Tick::STILL][..] } else { &system.drive.ticks };
         let kick = options.kick * system.drive.scale();
         let first = Cycle::new(system, flow, ticks, 0.0, kick, &answer);
-        let regular = regular(system, flow, first.after(), &answer);
+        let regular = regular(system, flow, first.segments.last().map_or(0.0, |segment| segment.level), &answer);
         let phase = DrivePhase::of(&system.drive, 0.0);
         let start = match &options.start {
             StartState::Given { q, rate, .. } if system.particles.is_empty() => enter(flow, q, rate, 0.0, phase),

@@ -6,8 +6,8 @@ use nalgebra::DMatrix;
 use super::flow::DrivePhase;
 use super::spectral::Spectral;
 
-/// Answer of a contact state to a constant load: p = rest + rest_rate·t, p′ = rest_rate, and slope·t + bend·t² in the
-/// coordinates of the blocks that drift.
+/// Answer of a contact state to a constant load: p = rest, p′ = rest_rate, and beside them slope·t + bend·t² in
+/// the coordinates of the blocks that drift.
 #[derive(Clone, Default)]
 pub(crate) struct Load {
     pub(crate) rest: Vec<f64>,
@@ -69,13 +69,8 @@ pub(crate) const LARGEST: f64 = 1e8;
 impl Steady {
     /// (−ω² + stiffness) cosine + ω damping sine = 0, … : the complex amplitude as a real system of twice the order. `None` above
     /// `largest` times what the force does in a cycle: free motion would take that off again, with its digits.
-    pub(crate) fn new(
-        omega: f64,
-        push: &[f64],
-        accelerations: &[Vec<f64>],
-        order: usize,
-        largest: f64,
-    ) -> Option<Self> {
+    pub(crate) fn new(omega: f64, push: &[f64], accelerations: &[Vec<f64>], largest: f64) -> Option<Self> {
+        let order = push.len();
         let mut system = DMatrix::zeros(2 * order, 2 * order);
         let mut load = nalgebra::DVector::zeros(2 * order);
         for i in 0..order {

@@ -11,7 +11,7 @@ pub(crate) const NEARLY_NEUTRAL: f64 = 4e-4;
 pub(crate) struct Lyapunov([Four; 4]);
 
 impl Lyapunov {
-    /// `one` and `other` are B and C, row by row; none where two of their eigenvalues cancel.
+    /// Of B and C, row by row; none where two of their eigenvalues cancel.
     pub(crate) fn new([a, b, c, d]: [f64; 4], [e, f, g, h]: [f64; 4]) -> Option<Self> {
         // Unknowns p00, p01, p10, p11.
         #[rustfmt::skip]

@@ -316,7 +316,7 @@ impl<'a, E: Effects> March<'a, E> {
 
 /// Runs a system.
 pub(crate) fn march(system: &HybridSystem, options: &Options, states: States) -> Result<Response, EngineError> {
-    if options.is_taped() {
+    if options.motion || options.until == Until::Settled {
         return Ok(taped(system, options, states)?.0);
     }
     // A time history shows ceilings, whether anything meets them or not.

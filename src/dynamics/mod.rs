@@ -7,11 +7,11 @@
 //! |---|---|
 //! | `system`, `options`, `carried`, `trace`, `spline` | what is run, from where, and how |
 //! | `run`, `repeated` | the ways to run it; runs that are asked for again |
-//! | `response`, `sums`, `extremes`, `steady_state`, `proof`, `error` | what comes out |
+//! | `response`, `sums`, `extremes`, `crest`, `proof`, `error` | what comes out |
 //! | `march`, `states`, `visits` | from event to event; the contact states on the way and how long each was in force |
 //! | `search`, `survey`, `guards`, `window`, `polynomial` | the first event, certified by Bernstein enclosures |
 //! | `reach` | stops and ceilings that a bound on the energy keeps out of the search |
-//! | `contact`, `collision`, `mobility` | what an event leads to |
+//! | `contact`, `collision`, `touch`, `mobility` | what an event leads to |
 //! | `flow`, `load`, `signals`, `parabola`, `series` | exact motion of one contact state, and what is watched of it |
 //! | `contact_state`, `conservative`, `modes`, `undamped`, `damped`, `spectral`, `cluster`, `resonance`, `schur`, `block`, `bank` | its equations, split into 2 × 2 blocks |
 //! | `gains`, `integral`, `lyapunov` | its integrals in closed form, by quadrature where that would lose digits |
@@ -80,7 +80,6 @@ mod signals;
 mod spectral;
 mod spline;
 mod states;
-mod steady_state;
 mod sums;
 mod superposition;
 mod survey;
@@ -95,6 +94,8 @@ mod window;
 pub use budget::{Allowance, Exhausted, Limit, Overrun, in_words, interrupt, is_interrupted};
 pub use error::EngineError;
 pub use extremes::Extremes;
+pub use fixed::fixed_step;
+pub use linear::{SteadyMotion, SteadyState, ceiling_graze, lift_off, steady_state, two_impacts};
 pub use motion::{Exponent, Fundamental, Motion, MotionKind, Multiplier, Recurring};
 pub use options::{Averaged, Options, StartState, Until};
 pub use orbit::{
@@ -104,11 +105,8 @@ pub use proof::Proof;
 pub use reach::{FarSurface, OutOfReach, out_of_reach};
 pub use repeated::keeping_runs;
 pub use response::{Counts, CycleRates, Method, Observed, Response};
-pub use run::{
-    ceiling_graze, event_driven, fixed_step, fundamental_matrix, is_linear, lift_off, steady_state, two_impacts,
-};
+pub use run::{event_driven, fundamental_matrix, is_linear};
 pub use spline::Spline;
-pub use steady_state::{SteadyMotion, SteadyState};
 pub use sums::Sums;
 pub use system::{
     Contact, Drive, Event, EventKind, Face, HalfCycles, Harmonic, HybridSystem, Law, Matrix, Particle, Stop, Tick, dot,

@@ -10,7 +10,7 @@ use super::cholesky::Cholesky;
 use super::schur::Iteration;
 use super::spectral::Spectral;
 use super::system::Matrix;
-use super::undamped;
+use super::undamped::NormalModes;
 
 /// Splits (p, p′) with p″ = (`accelerations`) (p, p′) and the mass matrix `mass` of p into blocks: V, row by row, and
 /// W = V⁻¹, column by column.
@@ -47,7 +47,8 @@ pub(crate) fn split(
             let own = rigid.iter().zip(&shift[j]);
             own.fold(mass.at(elastic[i], elastic[j]), |sum, (&r, shift)| sum - mass.at(elastic[i], r) * shift)
         };
-        undamped::split(&chosen(&|i, j| stiffness.at(elastic[i], elastic[j])), &chosen(&left))
+        let stiffness = chosen(&|i, j| stiffness.at(elastic[i], elastic[j]));
+        NormalModes::new(&stiffness, &chosen(&left)).map(|modes| modes.undamped())
     });
 
     // Lengths are scaled by frequencies, so that the matrix is of one magnitude: (Ω e, e′).

@@ -46,11 +46,6 @@ impl Options {
         window.max(self.trace.map_or(0, |trace| trace.to_cycle))
     }
 
-    /// The run leaves what its motion is named from.
-    pub(crate) fn is_taped(&self) -> bool {
-        self.motion || self.until == Until::Settled
-    }
-
     /// The averaged window, unless the run settles before.
     pub(crate) fn averaged(&self) -> Averaged {
         Averaged { first: u64::from(self.skip), cycles: u64::from(self.average) }

@@ -25,10 +25,6 @@ impl Parabola {
         Self { p0: self.p0 + other.p0, p1: self.p1 + other.p1, p2: self.p2 + other.p2 }
     }
 
-    pub(crate) fn negative(self) -> Self {
-        self.times(-1.0)
-    }
-
     /// k times it, plus c times its rate.
     pub(crate) fn spring_and_dashpot(self, stiffness: f64, damping: f64) -> Self {
         Self {

@@ -1,13 +1,12 @@
-//! The ways to run a system: from event to event, in closed form where no event can happen, or step by step.
+//! The ways to run a system: from event to event, in closed form where no event can happen.
 
 use super::error::EngineError;
 use super::motion::Fundamental;
 use super::options::{Options, Until};
 use super::response::Response;
 use super::states::States;
-use super::steady_state::SteadyState;
 use super::system::HybridSystem;
-use super::{budget, fixed, linear, march, repeated, residual_bound};
+use super::{budget, linear, march, repeated, residual_bound};
 
 /// Runs a system from event to event; where it is proved that there is none, in closed form.
 ///
@@ -54,51 +53,4 @@ pub fn fundamental_matrix(system: &HybridSystem, options: &Options) -> Result<Fu
 /// [`EngineError`] with the reason.
 pub fn is_linear(system: &HybridSystem, options: &Options) -> Result<bool, EngineError> {
     Ok(budget::within(|| linear::attempt(system, options, &States::of(system)))?.is_some())
-}
-
-/// The steady state in closed form: what is left once all transients are gone. `None` unless it is proved that no particle
-/// leaves its floor in it, and where undamped modes never settle.
-///
-/// # Errors
-/// [`EngineError`] with the reason.
-pub fn steady_state(system: &HybridSystem) -> Result<Option<SteadyState>, EngineError> {
-    budget::within(|| linear::steady_state(system))
-}
-
-/// The share of its present strength at which the drive takes the first particle off its floor, in closed form: below it every particle
-/// rests, once all transients are gone. `None` where no strength does, and where particles never rest under this drive: on rigid floors
-/// under impulses, say.
-///
-/// # Errors
-/// [`EngineError`] with the reason.
-pub fn lift_off(system: &HybridSystem) -> Result<Option<f64>, EngineError> {
-    budget::within(|| linear::lift_off(system))
-}
-
-/// The share of its present strength below which the drive keeps up no motion with one impact on the floor and one on the ceiling a period,
-/// in closed form: one particle between rigid faces, under a harmonic force on a damped structure. `None` elsewhere, and where no strength
-/// does.
-///
-/// # Errors
-/// [`EngineError`] with the reason.
-pub fn two_impacts(system: &HybridSystem) -> Result<Option<f64>, EngineError> {
-    budget::within(|| linear::two_impacts(system))
-}
-
-/// The share of its present strength at which the motion with one impact on the floor a period first touches the ceiling, in closed form:
-/// one particle on a rigid floor, under gravity and a harmonic force on a damped structure. `None` elsewhere, and where no motion of this
-/// kind that attracts stays below the ceiling.
-///
-/// # Errors
-/// [`EngineError`] with the reason.
-pub fn ceiling_graze(system: &HybridSystem) -> Result<Option<f64>, EngineError> {
-    budget::within(|| linear::ceiling_graze(system))
-}
-
-/// Runs a system with a fixed time step, s: exact propagators of one step, the contact state checked once a step.
-///
-/// # Errors
-/// [`EngineError`] with the reason.
-pub fn fixed_step(system: &HybridSystem, options: &Options, time_step: f64) -> Result<Response, EngineError> {
-    budget::within(|| fixed::run(system, options, time_step))
 }

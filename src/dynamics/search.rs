@@ -100,7 +100,7 @@ pub(crate) struct Search {
     bends: Vec<f64>,
     surveys: Surveys,
     /// Kernels from the segment's start to the result.
-    kernels: Vec<Kernels>,
+    pub(crate) kernels: Vec<Kernels>,
     trial: Vec<Kernels>,
     /// Windows are shorter by this factor, to have a second accuracy to compare with.
     window_factor: f64,
@@ -159,20 +159,15 @@ impl Search {
     #[inline(always)]
     fn run_by_width(&mut self, flow: &Flow, signals: &Signals, limit: f64, clarity: &mut Clarity) -> Found {
         self.bends.clear();
-        if self.guards.len() * flow.bank.blocks().len() > MANY && flow.bank.near_critical().is_empty() {
+        if self.guards.len() * flow.bank.blocks.len() > MANY && flow.bank.near_critical.is_empty() {
             flow.rows.bound(&flow.blocks, signals, &mut self.bends);
         }
         // The same search twice: with a few blocks the compiler unrolls every loop over them.
         let motion = |blocks| Motion { blocks, each: &flow.blocks, bank: &flow.bank, series: &flow.series };
-        match flow.bank.blocks() {
+        match &flow.bank.blocks[..] {
             few @ [_] => self.first(motion(few), signals, limit, clarity),
             many => self.first(motion(many), signals, limit, clarity),
         }
-    }
-
-    /// Kernels from the segment's start to the result.
-    pub(crate) fn kernels(&self) -> &[Kernels] {
-        &self.kernels
     }
 
     #[inline(always)]
@@ -205,7 +200,7 @@ impl Search {
             }
         }
         if found == Found::Nothing {
-            motion.kernels(limit, &mut self.kernels);
+            motion.bank.kernels(motion.each, limit, &mut self.kernels);
         }
         found
     }
@@ -285,7 +280,7 @@ impl Search {
         loop {
             let start = if now == 0.0 { guard.start } else { Start::Apart };
             let indivisible = window <= least.max(64.0 * f64::EPSILON * now);
-            if !motion.bank.near_critical().is_empty() {
+            if !motion.bank.near_critical.is_empty() {
                 bound(motion, shares, 12.0, window);
             }
             let span = Span::new(motion.series, now, window);
@@ -358,7 +353,7 @@ impl Search {
         let guard = self.guards[root.guard];
         let (t, window) = (self.surveys.now, root.window);
         if root.high == 0.0 {
-            motion.kernels(t, &mut self.trial);
+            motion.bank.kernels(motion.each, t, &mut self.trial);
             return t;
         }
         if t == 0.0 && guard.start != Start::Apart && root.guess * window * motion.series.pace < SHORT_HOP {
@@ -369,7 +364,7 @@ impl Search {
         let slack = 1e-3 * (upper - lower);
         let mut time = t + window * root.guess;
         for _ in 0..60 {
-            motion.kernels(time, &mut self.trial);
+            motion.bank.kernels(motion.each, time, &mut self.trial);
             let local = self.local(motion, initial, &guard, time);
             if local[0] >= 0.0 {
                 lower = lower.max(time)
@@ -406,7 +401,7 @@ impl Search {
                 break;
             }
         }
-        motion.kernels(time, &mut self.trial);
+        motion.bank.kernels(motion.each, time, &mut self.trial);
         clarity.ties += 1;
         time
     }

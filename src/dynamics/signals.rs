@@ -182,11 +182,7 @@ impl Row {
     /// What constant loads add, under this force.
     #[inline(always)]
     fn rest(&self, force: f64) -> Parabola {
-        Parabola {
-            p0: self.gravity.p0 + force * self.force.p0,
-            p1: self.gravity.p1 + force * self.force.p1,
-            p2: self.gravity.p2 + force * self.force.p2,
-        }
+        self.gravity.plus(self.force.times(force))
     }
 }
 
@@ -387,11 +383,9 @@ impl Rows {
     }
 
     /// Evaluates any row.
-    pub(crate) fn evaluate(&self, row: usize, c: &[f64], force: f64, width: usize) -> (Vec<Phase>, Parabola) {
+    pub(crate) fn evaluate(&self, row: usize, c: &[f64], force: f64) -> (Vec<Phase>, Parabola) {
         let row = &self.rows[row];
-        let mut phases: Vec<Phase> = row.phases(c).collect();
-        phases.resize(width, Phase::default());
-        (phases, row.rest(force))
+        (row.phases(c).collect(), row.rest(force))
     }
 }
 

@@ -4,6 +4,8 @@
 //! above the diagonal (Bavely & Stewart, SIAM J. Numer. Anal. 16, 1979). A block keeps a complex pair or two real
 //! eigenvalues *together*, so a critically damped contact needs no eigenvectors and costs no digits.
 
+use std::ops::Range;
+
 use nalgebra::{ComplexField, DMatrix};
 
 use super::EngineError;
@@ -16,7 +18,7 @@ use super::schur::{Iteration, schur};
 pub(crate) struct Spectral {
     /// V, row by row, order × 2·blocks.
     pub(crate) from_blocks: Vec<f64>,
-    /// W, row by row, 2·blocks × order.
+    /// W, 2·blocks × order: row by row as it is split, column by column from [`super::modes::split`] on.
     pub(crate) to_blocks: Vec<f64>,
     /// Entries of each block, [[p, q], [r, s]] flattened.
     pub(crate) matrices: Vec<[f64; 4]>,
@@ -102,12 +104,6 @@ impl Spectral {
     }
 }
 
-/// A diagonal piece of the Schur form.
-struct Piece {
-    first: usize,
-    size: usize,
-}
-
 /// Order of the piece that begins at `i`: two for a complex pair, one for a real eigenvalue.
 fn size_at(t: &DMatrix<f64>, i: usize) -> usize {
     if i + 1 < t.nrows() && t[(i + 1, i)] != 0.0 { 2 } else { 1 }
@@ -149,7 +145,7 @@ fn gather(q: &mut DMatrix<f64>, t: &mut DMatrix<f64>) -> Vec<usize> {
 /// 1993), by an orthogonal transformation that turns the eigenvector of the latter to the front.
 fn exchange(q: &mut DMatrix<f64>, t: &mut DMatrix<f64>, first: usize, size: usize) {
     let last = first + size;
-    let pieces = [Piece { first, size }, Piece { first: last, size: 1 }];
+    let pieces = [first..last, last..last + 1];
     let mut load = [[0.0; 2]; 2];
     for (a, row) in load.iter_mut().enumerate().take(size) {
         row[0] = -t[(first + a, last)];
@@ -190,7 +186,7 @@ fn refine(a: &DMatrix<f64>, v: &mut DMatrix<f64>, w: &mut DMatrix<f64>, t: &mut 
     for &left in firsts {
         for &right in firsts.iter().filter(|&&right| right != left) {
             let load = [0, 1].map(|a| [0, 1].map(|b| -inner[(left + a, right + b)]));
-            let pieces = [left, right].map(|first| Piece { first, size: 2 });
+            let pieces = [left, right].map(|first| first..first + 2);
             let step = sylvester(t, &pieces, &load);
             if step.iter().flatten().all(|x| x.abs() < LARGEST_STEP) {
                 put(&mut x, [left, right], step);
@@ -237,7 +233,7 @@ fn decouple(t: &DMatrix<f64>, firsts: &[usize]) -> (DMatrix<f64>, DMatrix<f64>) 
                     *cell = between.iter().zip(known).fold(0.0, |sum, (t, x)| sum - t * x);
                 }
             }
-            let pieces = [left, right].map(|first| Piece { first, size: 2 });
+            let pieces = [left, right].map(|first| first..first + 2);
             put(&mut x, [left, right], sylvester(t, &pieces, &load));
         }
     }
@@ -246,18 +242,18 @@ fn decouple(t: &DMatrix<f64>, firsts: &[usize]) -> (DMatrix<f64>, DMatrix<f64>) 
 }
 
 /// Solves L X − X R = load for diagonal pieces of order one or two, as a linear system of up to four unknowns.
-fn sylvester(t: &DMatrix<f64>, [left, right]: &[Piece; 2], load: &[[f64; 2]; 2]) -> [[f64; 2]; 2] {
-    let (rows, columns) = (left.size, right.size);
+fn sylvester(t: &DMatrix<f64>, [left, right]: &[Range<usize>; 2], load: &[[f64; 2]; 2]) -> [[f64; 2]; 2] {
+    let (rows, columns) = (left.len(), right.len());
     let order = rows * columns;
     let mut system = [[0.0; 5]; 4];
     for a in 0..rows {
         for b in 0..columns {
             let equation = a * columns + b;
             for k in 0..rows {
-                system[equation][k * columns + b] += t[(left.first + a, left.first + k)];
+                system[equation][k * columns + b] += t[(left.start + a, left.start + k)];
             }
             for k in 0..columns {
-                system[equation][a * columns + k] -= t[(right.first + k, right.first + b)];
+                system[equation][a * columns + k] -= t[(right.start + k, right.start + b)];
             }
             system[equation][order] = load[a][b];
         }

@@ -17,13 +17,6 @@ pub(super) struct Motion<'a> {
     pub(super) series: &'a Series,
 }
 
-impl Motion<'_> {
-    #[inline(always)]
-    pub(super) fn kernels(self, t: f64, kernels: &mut [Kernels]) {
-        self.bank.kernels(self.each, t, kernels);
-    }
-}
-
 /// A signal at an instant, and what bounds it from then on.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Survey {
@@ -72,7 +65,7 @@ impl Surveys {
     #[inline(always)]
     pub(super) fn move_to(&mut self, motion: Motion<'_>, t: f64) {
         self.now = t;
-        motion.kernels(t, &mut self.here);
+        motion.bank.kernels(motion.each, t, &mut self.here);
     }
 
     /// The shares of a signal that has been looked at.
@@ -89,54 +82,43 @@ impl Surveys {
         signal: usize,
         limit: f64,
     ) -> (&Survey, &mut [Shares]) {
+        let now = self.now;
         let shares = &mut self.shares[signal * self.width..][..self.width];
         let survey = &mut self.each[signal];
-        if survey.at != self.now {
-            *survey = look(motion, signals, signal, shares, &self.here, self.now, limit);
+        if survey.at == now {
+            return (survey, shares);
         }
+        let watched = signals.of(signal);
+        let mut turns = Turns::ZERO;
+        let Phase { value, rate } = if now > 0.0 {
+            let mut total = Phases::ZERO;
+            let starts = motion.blocks.iter().zip(watched.phases).zip(&self.here);
+            for (((blocks, start), kernels), share) in starts.zip(&mut *shares) {
+                let now = blocks.advance(*start, kernels);
+                total = Phases { value: total.value + now.value, rate: total.rate + now.rate };
+                *share = Shares { now, amplitude: blocks.amplitudes(now) };
+                turns.add(blocks, share.amplitude);
+            }
+            Phase { value: total.value.sum(), rate: total.rate.sum() }
+        } else {
+            for ((blocks, now), share) in motion.blocks.iter().zip(watched.phases).zip(&mut *shares) {
+                *share = Shares { now: *now, amplitude: blocks.amplitudes(*now) };
+                turns.add(blocks, share.amplitude);
+            }
+            watched.sum
+        };
+        if !motion.bank.near_critical.is_empty() {
+            // Good for the second derivative too.
+            bound(motion, shares, 2.0, limit - now);
+            turns = Turns::of(motion.blocks, shares);
+        }
+        let Turns { reach, bend, snap } = turns;
+        *survey = Survey { at: now, value, rate, reach: reach.sum(), bend: bend.sum(), snap: snap.sum() };
         (survey, shares)
     }
 }
 
-#[inline(always)]
-fn look(
-    motion: Motion<'_>,
-    signals: &Signals,
-    signal: usize,
-    shares: &mut [Shares],
-    here: &[Kernels],
-    now: f64,
-    limit: f64,
-) -> Survey {
-    let watched = signals.of(signal);
-    let mut turns = Turns::ZERO;
-    let Phase { value, rate } = if now > 0.0 {
-        let mut total = Phases::ZERO;
-        for (((blocks, start), kernels), share) in motion.blocks.iter().zip(watched.phases).zip(here).zip(&mut *shares)
-        {
-            let now = blocks.advance(*start, kernels);
-            total = Phases { value: total.value + now.value, rate: total.rate + now.rate };
-            *share = Shares { now, amplitude: blocks.amplitudes(now) };
-            turns.add(blocks, share.amplitude);
-        }
-        Phase { value: total.value.sum(), rate: total.rate.sum() }
-    } else {
-        for ((blocks, now), share) in motion.blocks.iter().zip(watched.phases).zip(&mut *shares) {
-            *share = Shares { now: *now, amplitude: blocks.amplitudes(*now) };
-            turns.add(blocks, share.amplitude);
-        }
-        watched.sum
-    };
-    if !motion.bank.near_critical().is_empty() {
-        // Good for the second derivative too.
-        bound(motion, shares, 2.0, limit - now);
-        turns = Turns::of(motion.blocks, shares);
-    }
-    let Turns { reach, bend, snap } = turns;
-    Survey { at: now, value, rate, reach: reach.sum(), bend: bend.sum(), snap: snap.sum() }
-}
-
-/// The same sums of several blocks each.
+/// Σ amplitude, Σ amplitude·radius² and Σ amplitude·radius⁴, place by place of several blocks.
 #[derive(Clone, Copy)]
 pub(super) struct Turns {
     reach: Four,
@@ -168,7 +150,7 @@ impl Turns {
 /// Bounds anew the shares of blocks near critical damping, for a derivative of this order over so long a time.
 #[cold]
 pub(super) fn bound(motion: Motion<'_>, shares: &mut [Shares], order: f64, window: f64) {
-    for &k in motion.bank.near_critical() {
+    for &k in &motion.bank.near_critical {
         let share = &mut shares[k / WIDTH];
         share.amplitude.set(k % WIDTH, motion.each[k].amplitude(share.now.at(k % WIDTH), order, window));
     }

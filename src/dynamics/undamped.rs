@@ -21,11 +21,6 @@ pub(crate) struct NormalModes {
     pub(crate) inverse: Vec<Vec<f64>>,
 }
 
-/// Splits (e, e′); `None` where K is not positive.
-pub(crate) fn split(stiffness: &Matrix, mass: &Matrix) -> Option<Spectral> {
-    NormalModes::new(stiffness, mass).map(|modes| modes.undamped())
-}
-
 impl NormalModes {
     /// `None` where K is not positive.
     pub(crate) fn new(stiffness: &Matrix, mass: &Matrix) -> Option<Self> {
@@ -59,7 +54,7 @@ impl NormalModes {
     }
 
     /// The blocks of (e, e′) where no dashpot acts.
-    fn undamped(&self) -> Spectral {
+    pub(crate) fn undamped(&self) -> Spectral {
         let n = self.omega.len();
         let width = 2 * n;
         let [mut from_blocks, mut to_blocks] = [vec![0.0; width * width], vec![0.0; width * width]];
@@ -142,7 +137,8 @@ mod tests {
         // A mass on 1 N/m carries a light one on a spring up to 10¹² times harder: λ² μ − λ (μ + k (1 + μ)) + k = 0.
         for (light, hard) in [(0.1, 50.0), (0.1, 1e6), (1e-3, 1e12), (0.5, 1e12)] {
             let mass = Matrix { order: 2, entries: vec![1.0 + light, light, light, light] };
-            let spectral = split(&Matrix::diagonal(&[1.0, hard]), &mass).expect("it is positive");
+            let modes = NormalModes::new(&Matrix::diagonal(&[1.0, hard]), &mass).expect("it is positive");
+            let spectral = modes.undamped();
             let sum: f64 = light + hard * (1.0 + light);
             let slow = 2.0 * hard / (sum + (sum * sum - 4.0 * light * hard).sqrt());
             let slowest = spectral.blocks.iter().fold(f64::INFINITY, |least, block| least.min(block.determinant));

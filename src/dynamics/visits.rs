@@ -1,7 +1,7 @@
 //! What the visits of contact states have gained, until the measures ask for it.
 //!
 //! A run comes to the same few contact states again and again. Each keeps one sum ([`super::gains`]), and its equations are
-//! solved when a half of the averaged window is over.
+//! solved when a half of the averaged window is over, or sooner where there are many or half cycles change the damping.
 
 use std::rc::Rc;
 

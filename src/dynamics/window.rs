@@ -89,7 +89,8 @@ impl Window {
         let signs = Signs::of(b, self.remainder);
         if signs.positive == Signs::ALL {
             let near_miss = self.start == Start::Apart && b[1] < b[0] && b[DEGREE] > b[DEGREE - 1];
-            return Verdict::Clear { clearance: if near_miss { lowest(b) - self.remainder } else { f64::INFINITY } };
+            let lowest = || b.iter().copied().fold(f64::INFINITY, f64::min);
+            return Verdict::Clear { clearance: if near_miss { lowest() - self.remainder } else { f64::INFINITY } };
         }
         if self.leaves_blocks {
             return self.clear_prefix(signs);
@@ -338,8 +339,4 @@ impl Signs {
         let before = Self::ALL & !self.negative;
         self.positive != 0 && self.negative != 0 && falling(self.positive) && falling(before)
     }
-}
-
-fn lowest(b: &Coefficients) -> f64 {
-    b.iter().copied().fold(f64::INFINITY, f64::min)
 }

@@ -34,7 +34,7 @@ impl<V: Vector> Run<'_, V> {
         if end.turned
             && let (Some(half), Some(half_cycles)) = (self.motion.half, &self.system.drive.half_cycles)
         {
-            self.equivalent = half_cycles.curve.at(half.last);
+            self.equivalent = Some(half_cycles.curve.at(half.last));
         }
         self.choose_propagator()?;
         self.seam(0.5);
@@ -164,9 +164,8 @@ impl<V: Vector> Run<'_, V> {
             let Touch { particle: j, side, on_stop, held, closed, .. } = *touch;
             let (away, struck) = (side.away(), outcome.pushed && closed.is_struck());
             let departure = away * outcome.speed;
-            let (n, positions) = (self.layout.n, self.layout.positions());
             let row = &side.face(&self.system.particles[j]).row;
-            let face = dot(row, &self.motion.state.as_ref()[positions..positions + n]);
+            let face = dot(row, self.layout.structure(self.motion.state.as_ref())[1]);
             let sticks = on_stop || closed.both_ways || !struck || face * (face + departure) > 0.0;
             let rests = outcome.speed < STICKING_SPEED && sticks;
             let gap = self.relative(j, side).gap;

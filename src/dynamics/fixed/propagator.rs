@@ -110,6 +110,11 @@ impl Layout {
         self.n + j
     }
 
+    /// q and q′ of a state.
+    pub(super) fn structure(self, state: &[f64]) -> [&[f64]; 2] {
+        [&state[..self.n], &state[self.positions()..][..self.n]]
+    }
+
     fn unit(self, i: usize) -> Signal {
         let mut signal = Signal::zero(self.size());
         signal.0[i] = 1.0;
@@ -210,9 +215,7 @@ impl<V: Vector> Propagator<V> {
             dissipation: dissipation.iter().map(|signal| V::of(&signal.0[..size])).collect(),
         })
     }
-}
 
-impl<V: Vector> Propagator<V> {
     /// How strongly a face or its stop holds particle j, m/s²; nothing while it does not.
     pub(super) fn hold(&self, j: usize, state: &V, force: f64) -> f64 {
         self.holds[j].map_or(0.0, |guard| self.guards[guard].at(state, force))
@@ -320,11 +323,7 @@ fn dashpots(damping: &Matrix, layout: Layout) -> Vec<Signal> {
             continue;
         }
         let factor: Vec<f64> = (0..n).map(|i| rest.at(i, k) / pivot.sqrt()).collect();
-        for i in 0..n {
-            for j in 0..n {
-                rest.entries[i * n + j] -= factor[i] * factor[j];
-            }
-        }
+        rest.add_square(-1.0, &factor);
         let mut row = Signal::zero(layout.size());
         row.0[layout.positions()..layout.positions() + n].copy_from_slice(&factor);
         rows.push(row);

@@ -38,32 +38,23 @@ impl<V: Vector> Run<'_, V> {
         self.response.enter(event, self.options.averaged(), self.options);
     }
 
-    pub(super) fn new_tally(&self) -> Tally<V> {
-        Tally::new(self.layout.size(), self.watch.more.len(), self.options.extremes)
-    }
-
     /// The structure's velocities after the impulse that opens a cycle.
     pub(super) fn open_cycle(&mut self) {
         if self.options.cycle_rates {
-            let after = self.structure_rates().to_vec();
+            let after = self.layout.structure(self.motion.state.as_ref())[1].to_vec();
             self.response.cycle_rates.push(CycleRates { after, before: Vec::new() });
         }
     }
 
-    fn structure_rates(&self) -> &[f64] {
-        let positions = self.layout.positions();
-        &self.motion.state.as_ref()[positions..positions + self.layout.n]
-    }
-
     /// Books a cycle's sums.
     pub(super) fn end_cycle(&mut self) -> Result<(), EngineError> {
-        let next = self.new_tally();
+        let next = Tally::new(self.layout.size(), self.watch.more.len(), self.options.extremes);
         let tally = std::mem::replace(&mut self.tally, next);
         if !tally.velocity_square.is_finite() {
             return Err(EngineError::NotFinite { cycle: self.cycle });
         }
         if self.options.cycle_rates {
-            let before = self.structure_rates().to_vec();
+            let before = self.layout.structure(self.motion.state.as_ref())[1].to_vec();
             if let Some(cycle) = self.response.cycle_rates.last_mut() {
                 cycle.before = before;
             }
@@ -124,26 +115,23 @@ impl<V: Vector> Run<'_, V> {
     }
 
     pub(super) fn audit_state(&self) -> State {
-        let (n, positions) = (self.layout.n, self.layout.positions());
-        let state = self.motion.state.as_ref();
-        let structure = [&state[..n], &state[positions..positions + n]];
+        let structure = self.layout.structure(self.motion.state.as_ref());
         let particles = (0..self.contacts.len()).map(|j| self.absolute(j)).collect();
         State::new(self.system, &self.contacts, structure, particles, |j, side| self.relative(j, side).gap)
     }
 
     /// Keeps the motion at this step, and looks for the next step to keep.
     pub(super) fn sample(&mut self) {
-        let (n, positions) = (self.layout.n, self.layout.positions());
-        let state = self.motion.state.as_ref();
+        let [q, rate] = self.layout.structure(self.motion.state.as_ref());
         let sampled = |(j, particle): (usize, &Particle)| {
             let side = self.contacts[j].side();
-            let faces = [Side::Floor, Side::Ceiling].map(|side| dot(&side.face(particle).row, &state[..n]));
+            let faces = [Side::Floor, Side::Ceiling].map(|side| dot(&side.face(particle).row, q));
             SampledParticle::new(particle, self.contacts[j], faces, self.relative(j, side).gap)
         };
         let sample = Sample {
             time: self.step as f64 * self.time_step,
-            displacement: dot(&self.system.observed_rows[0], &state[..n]),
-            velocity: dot(&self.system.observed_rows[0], &state[positions..positions + n]),
+            displacement: dot(&self.system.observed_rows[0], q),
+            velocity: dot(&self.system.observed_rows[0], rate),
             acceleration: self.propagators[self.now].acceleration.at(&self.motion.state, self.motion.force()),
             damping: if self.contacts.is_empty() { 0.0 } else { self.damping(0, self.contacts[0].side()) },
             half_cycle_rms: self.motion.half.map_or(0.0, |half| half.last),

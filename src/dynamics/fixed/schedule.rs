@@ -35,8 +35,7 @@ impl Schedule {
         if !(time_step > SHORTEST * period && time_step <= period) {
             return Err(EngineError::TimeStep { time_step, period });
         }
-        let jumps = drive.ticks.iter().any(|tick| tick.impulse != 0.0 || tick.level != 0.0);
-        let free = drive.harmonic.is_some() && !jumps;
+        let free = drive.harmonic_alone().is_some();
         let steps = if free { period / time_step } else { (period / time_step).round().max(1.0) };
         let ticks = if free { Vec::new() } else { ticks(&drive.ticks, period, steps, time_step) };
         Ok(Self { steps, ticks })

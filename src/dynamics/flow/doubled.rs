@@ -86,7 +86,7 @@ impl Flow {
         let (order, size) = (self.order, self.modes.spectral.width());
         state.clear();
         for (row, entries) in self.modes.spectral.from_blocks.chunks_exact(size).take(2 * order).enumerate() {
-            let mut sum = Twice::ZERO;
+            let mut sum = Twice::default();
             self.add_loads(1.0, row / order, row % order, force, drive, &mut sum);
             for ((entry, c), low) in entries.iter().zip(c).zip(low) {
                 sum.add_times(*entry, Twice { high: *c, low: *low });

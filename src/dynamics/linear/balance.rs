@@ -19,7 +19,7 @@ pub(super) fn pass(system: &HybridSystem, flow: &Flow, answer: &[f64], cycle: &C
     let mut now = at.clone();
     for segment in &cycle.segments {
         if segment.impulse != 0.0 {
-            let [_, rate] = flow.left(&now.mean(), 0.0, 0.0, segment.drive);
+            let [_, rate] = flow.left(&now.mean.concat(), 0.0, 0.0, segment.drive);
             let work = segment.impulse * (dot(&system.force_row, &rate[..n]) + 0.5 * segment.impulse * push);
             audit.impulse(at.count * segment.impulse, at.count * work);
         }
@@ -37,7 +37,7 @@ pub(super) fn pass(system: &HybridSystem, flow: &Flow, answer: &[f64], cycle: &C
                 let t = t0 + x * h;
                 let moments = start.moved(&Affine::flow(flow, t));
                 let drive = flow.drive_after(segment.drive, t);
-                let [p, rate] = flow.left(&moments.mean(), 0.0, segment.level, drive);
+                let [p, rate] = flow.left(&moments.mean.concat(), 0.0, segment.level, drive);
                 let w = weight * h * at.count;
                 passed.position.iter_mut().zip(&p).for_each(|(sum, q)| *sum += w * q);
                 let force = segment.level + drive.sine;

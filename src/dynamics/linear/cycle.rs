@@ -165,11 +165,6 @@ impl Cycle {
         }
         Self { segments, before, map }
     }
-
-    /// The force at its end, N.
-    pub(super) fn after(&self) -> f64 {
-        self.segments.last().map_or(self.before, |segment| segment.level)
-    }
 }
 
 /// Block coordinates of (p, p′); those of the drive are its phase.

@@ -86,11 +86,6 @@ impl Moments {
         };
         pairs(self.mean.len()).zip(&self.spread).map(whole).collect()
     }
-
-    /// The mean state.
-    pub(super) fn mean(&self) -> Vec<f64> {
-        self.mean.concat()
-    }
 }
 
 pub(super) fn outer([a, b]: [f64; 2], [x, y]: [f64; 2]) -> [f64; 4] {

@@ -204,7 +204,7 @@ impl<E: Effects> March<'_, E> {
         else {
             return [0.0; 2];
         };
-        let (phases, rest) = flow.rows.evaluate(row, &self.c, self.level, flow.blocks.len());
+        let (phases, rest) = flow.rows.evaluate(row, &self.c, self.level);
         let mut bend = 2.0 * rest.p2;
         for (block, phase) in flow.blocks.iter().zip(&phases) {
             bend += block.acceleration(*phase).value;

@@ -48,7 +48,7 @@ impl<E: Effects> March<'_, E> {
                 }
             }
             Crossing::To(Side::Ceiling) => {
-                if let (Some(ceiling), Some(above)) = (&particle.ceiling, self.ceiling_relative(j)) {
+                if let (Some(ceiling), Some(above)) = (&particle.ceiling, self.referred(j, Side::Ceiling)) {
                     match ceiling.law {
                         _ if !(above.rate > 0.0) => {
                             self.particles[j] = Relative { gap: 0.0, rate: above.rate };
@@ -163,12 +163,12 @@ impl<E: Effects> March<'_, E> {
         if floor.gap == 0.0 && floor.rate < 0.0 {
             return Some(Side::Floor);
         }
-        self.ceiling_relative(j).filter(|above| above.gap == 0.0 && above.rate > 0.0).map(|_| Side::Ceiling)
+        self.referred(j, Side::Ceiling).filter(|above| above.gap == 0.0 && above.rate > 0.0).map(|_| Side::Ceiling)
     }
 
     /// A particle in flight presses into a resilient face from now on; at a ceiling its state refers to that.
     fn press(&mut self, j: usize, side: Side) {
-        let above = if side == Side::Ceiling { self.ceiling_relative(j) } else { None };
+        let above = if side == Side::Ceiling { self.referred(j, Side::Ceiling) } else { None };
         let rate = above.unwrap_or(self.particles[j]).rate;
         self.particles[j] = Relative { gap: 0.0, rate };
         self.changed = true;
@@ -224,7 +224,7 @@ impl<E: Effects> March<'_, E> {
         let at_rest = |relative: Relative| relative == Relative::default();
         let side = match contact {
             Contact::Flight if at_rest(here) => Side::Floor,
-            Contact::Flight if self.ceiling_relative(j).is_some_and(at_rest) => Side::Ceiling,
+            Contact::Flight if self.referred(j, Side::Ceiling).is_some_and(at_rest) => Side::Ceiling,
             _ if contact.presses(particle) && at_rest(here) && !contact.is_between() => contact.side(),
             _ => return Ok(()),
         };
@@ -257,11 +257,6 @@ impl<E: Effects> March<'_, E> {
         (above == Relative::default()).then_some(Side::Ceiling)
     }
 
-    /// Position relative to the ceiling, for a particle whose state refers to the floor.
-    pub(super) fn ceiling_relative(&self, j: usize) -> Option<Relative> {
-        self.referred(j, Side::Ceiling)
-    }
-
     /// Refers a particle that leaves the ceiling to the floor again.
     pub(super) fn refer_to_floor(&mut self, j: usize) {
         if let Some(here) = self.referred(j, Side::Floor) {
@@ -270,7 +265,7 @@ impl<E: Effects> March<'_, E> {
     }
 
     /// Position relative to the face on this side, for a particle whose state refers to the other one.
-    fn referred(&self, j: usize, to: Side) -> Option<Relative> {
+    pub(super) fn referred(&self, j: usize, to: Side) -> Option<Relative> {
         let particle = &self.system.particles[j];
         let ceiling = particle.ceiling.as_ref()?;
         let (Relative { gap, rate }, away) = (self.particles[j], to.away());

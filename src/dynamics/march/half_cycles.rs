@@ -69,8 +69,8 @@ impl<E: Effects> March<'_, E> {
         let flow = &self.flow;
         let Some(bend) = flow.rows.bend else { return Ok(()) };
         let bends = self.signals.of(bend);
-        let bound = if flow.bank.near_critical().is_empty() {
-            let each = flow.bank.blocks().iter().zip(bends.phases);
+        let bound = if flow.bank.near_critical.is_empty() {
+            let each = flow.bank.blocks.iter().zip(bends.phases);
             each.fold(Four::ZERO, |sum, (blocks, phases)| sum + blocks.amplitudes(*phases)).sum()
         } else {
             let each = flow.blocks.iter().zip(bends.each());
@@ -147,7 +147,7 @@ impl<E: Effects> March<'_, E> {
         self.panels.add(base.each(), base.rest);
         let observed = || rows.observed.iter().filter(|_| averaged);
         for &row in observed().filter(|row| **row != rows.base) {
-            let (shares, rest) = rows.evaluate(row, &self.c, self.level, self.flow.blocks.len());
+            let (shares, rest) = rows.evaluate(row, &self.c, self.level);
             self.panels.add(shares.into_iter(), rest);
         }
         let Some((base, others)) = self.panels.integrate(&self.flow.blocks, length).split_first() else { return };

@@ -88,7 +88,7 @@ impl<E: Effects> March<'_, E> {
         if flies(Side::Floor) && reached(Side::Floor, self.particles[j]) {
             return Some(Side::Floor);
         }
-        let above = self.ceiling_relative(j)?;
+        let above = self.referred(j, Side::Ceiling)?;
         (flies(Side::Ceiling) && reached(Side::Ceiling, above)).then_some(Side::Ceiling)
     }
 
@@ -157,7 +157,7 @@ impl<E: Effects> March<'_, E> {
             let here = self.particles[j];
             let held = contact.holds(particle);
             let rigid = |side: Side| side.face(particle).law.is_rigid();
-            let above = || self.ceiling_relative(j);
+            let above = || self.referred(j, Side::Ceiling);
             let side = if let Some((_, side)) = arrived.iter().find(|(other, _)| *other == j) {
                 *side
             } else if held {
@@ -401,7 +401,7 @@ impl<E: Effects> March<'_, E> {
         self.enter_flow(drive);
         let flow = &self.flow;
         let row = flow.rows.face(j, side);
-        let (phases, rest) = flow.rows.evaluate(row, &self.c, self.level, flow.blocks.len());
+        let (phases, rest) = flow.rows.evaluate(row, &self.c, self.level);
         let grip = Grip::of(self.system, flow, &phases, rest, j, side, on_stop);
         if self.touches_across(j, side) { grip.against(self.push_across(j, side)) } else { grip }
     }

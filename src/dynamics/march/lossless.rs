@@ -46,7 +46,7 @@ impl<E: Effects> March<'_, E> {
         doubled.rate.clone_from(&self.rate);
         doubled.particles.clone_from(&self.particles);
         let Doubled { low, end_low, end, .. } = doubled;
-        self.flow.turn_doubled(self.search.kernels(), [&self.c, low], &mut self.c_end, end_low);
+        self.flow.turn_doubled(&self.search.kernels, [&self.c, low], &mut self.c_end, end_low);
         self.flow.leave_doubled([&self.c_end, end_low], length, self.level, end_drive, end);
         let lack = match found {
             Found::Event { guard, .. } if length > 0.0 => self.lack(self.search.guards[guard], length),

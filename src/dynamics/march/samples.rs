@@ -28,7 +28,7 @@ impl<E: Effects> March<'_, E> {
             let kernels = flow.kernels(t);
             flow.advance_all(&kernels, &self.c, flow.drive_after(drive, t), &mut c);
             let anywhere = |row: usize| {
-                let (phases, rest) = flow.rows.evaluate(row, &self.c, self.level, flow.blocks.len());
+                let (phases, rest) = flow.rows.evaluate(row, &self.c, self.level);
                 signals::motion(&flow.blocks, &phases, rest, |k| kernels[k / WIDTH].at(k % WIDTH), t)
             };
             let [displacement, velocity, acceleration, _] = anywhere(flow.rows.observed[0]);

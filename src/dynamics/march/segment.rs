@@ -184,7 +184,7 @@ impl<E: Effects> March<'_, E> {
             None => drive,
             Some(_) => self.drive_phase(self.time + length),
         };
-        self.flow.advance_all(self.search.kernels(), &self.c, end_drive, &mut self.c_end);
+        self.flow.advance_all(&self.search.kernels, &self.c, end_drive, &mut self.c_end);
         self.sum_up(length, drive);
         if E::TAPED {
             self.tape.flow(&self.flow, length);

@@ -67,7 +67,7 @@ impl<E: Effects> March<'_, E> {
         let flow = &self.flow;
         self.panels.clear();
         for (of, &row) in self.response.observed.iter_mut().zip(&flow.rows.observed) {
-            let (shares, rest) = flow.rows.evaluate(row, &self.c, self.level, flow.blocks.len());
+            let (shares, rest) = flow.rows.evaluate(row, &self.c, self.level);
             if self.options.extremes {
                 let stretch = Stretch { blocks: &flow.blocks, bank: &flow.bank, rest, length };
                 self.lookout.take(&mut of.extremes, stretch, &shares);

@@ -99,16 +99,12 @@ impl Period {
         if off == 0.0 { 0.0 } else { off / lengths.max(self.contraction) }
     }
 
-    /// The orbit that closes, as seen from a state that misses itself by `miss` after the period.
+    /// The orbit that closes, as seen from a state that misses itself by `miss` after the period: Newton's step.
     pub(super) fn orbit(&self, miss: impl Iterator<Item = f64>) -> Result<NearOrbit, EngineError> {
-        Ok(NearOrbit { multipliers: self.multipliers()?, distance: self.distance(miss) })
-    }
-
-    /// How far the orbit that closes is from a state that misses itself by `miss` after the period: Newton's step.
-    fn distance(&self, miss: impl Iterator<Item = f64>) -> Option<f64> {
         let size = self.matrix.nrows();
-        let step = (DMatrix::identity(size, size) - &self.matrix).lu().solve(&DVector::from_iterator(size, miss))?;
-        Some(step.iter().fold(0.0_f64, |most, x| most.max(x.abs()))).filter(|distance| distance.is_finite())
+        let step = (DMatrix::identity(size, size) - &self.matrix).lu().solve(&DVector::from_iterator(size, miss));
+        let distance = step.map_or(f64::INFINITY, |step| step.iter().fold(0.0_f64, |most, x| most.max(x.abs())));
+        Ok(NearOrbit { multipliers: self.multipliers()?, distance })
     }
 }
 
@@ -116,15 +112,14 @@ impl Period {
 pub(super) struct NearOrbit {
     /// Its multipliers, largest first.
     pub multipliers: Vec<Multiplier>,
-    /// How far it is, in units of the motion; `None` where there is none.
-    distance: Option<f64>,
+    /// How far it is, in units of the motion; infinite where there is none.
+    distance: f64,
 }
 
 impl NearOrbit {
     /// No multiplier is above `most`, and it is within `near`.
     pub fn attracts(&self, most: f64, near: f64) -> bool {
-        self.multipliers.first().is_none_or(|largest| largest.modulus <= most)
-            && self.distance.is_some_and(|distance| distance <= near)
+        self.multipliers.first().is_none_or(|largest| largest.modulus <= most) && self.distance <= near
     }
 }
 

@@ -96,36 +96,42 @@ struct Sides<S, A> {
     known: Vec<(f64, End)>,
 }
 
-/// d ln A/d ln p of an orbit, whose system is that of the factor 1 on the parameter.
-pub(super) fn elasticity<E>(
-    orbit: &Orbit,
-    mut system_at: impl FnMut(f64) -> Result<HybridSystem, E>,
-    value: impl Fn(&Response) -> f64,
-) -> Result<Elasticity, ElasticityError<E>> {
-    let system = system_at(1.0).map_err(ElasticityError::System)?;
-    let shot = Shot::new(&system, orbit.begin(&system)?, orbit.cycles, None)?;
-    let number = value(shot.response());
-    if !(number > 0.0) {
-        return Err(ElasticityError::Zero);
-    }
-    let (own, sequence) = (libm::log(number), shot.sequence(&system));
-    let known = vec![(0.0, shot.start)];
-    let mut sides = Sides { system_at, value, cycles: orbit.cycles, sequence, own, known };
-    let mut widest = WIDEST;
-    loop {
-        let wide = match sides.extrapolated(widest)? {
-            Ok(elasticity) => return Ok(elasticity),
-            Err(wide) => wide,
-        };
-        sides.known.truncate(1);
-        if NARROWER * widest < NARROWEST {
-            let within = widest;
-            return Err(match wide {
-                Wide::Contacts => ElasticityError::Graze { within },
-                Wide::Orbit => ElasticityError::Fold { within },
-            });
+impl Orbit {
+    /// By how many per cent a positive number of the run over one period changes for one per cent of a parameter of the system,
+    /// which `system_at` takes as a factor: d ln A/d ln p, the orbit followed.
+    ///
+    /// # Errors
+    /// [`ElasticityError`] with the reason: where the sequence of contacts changes at this very value, say.
+    pub fn elasticity<E>(
+        &self,
+        mut system_at: impl FnMut(f64) -> Result<HybridSystem, E>,
+        value: impl Fn(&Response) -> f64,
+    ) -> Result<Elasticity, ElasticityError<E>> {
+        let system = system_at(1.0).map_err(ElasticityError::System)?;
+        let shot = Shot::new(&system, self.begin(&system)?, self.cycles, None)?;
+        let number = value(&shot.response);
+        if !(number > 0.0) {
+            return Err(ElasticityError::Zero);
         }
-        widest *= NARROWER;
+        let (own, sequence) = (libm::log(number), shot.sequence(&system));
+        let known = vec![(0.0, shot.start)];
+        let mut sides = Sides { system_at, value, cycles: self.cycles, sequence, own, known };
+        let mut widest = WIDEST;
+        loop {
+            let wide = match sides.extrapolated(widest)? {
+                Ok(elasticity) => return Ok(elasticity),
+                Err(wide) => wide,
+            };
+            sides.known.truncate(1);
+            if NARROWER * widest < NARROWEST {
+                let within = widest;
+                return Err(match wide {
+                    Wide::Contacts => ElasticityError::Graze { within },
+                    Wide::Orbit => ElasticityError::Fold { within },
+                });
+            }
+            widest *= NARROWER;
+        }
     }
 }
 
@@ -171,7 +177,7 @@ impl<E, S: FnMut(f64) -> Result<HybridSystem, E>, A: Fn(&Response) -> f64> Sides
         if shot.start.contacts != self.known[0].1.contacts || shot.sequence(&system) != self.sequence {
             return Ok(Err(Wide::Contacts));
         }
-        let value = (self.value)(shot.response());
+        let value = (self.value)(&shot.response);
         self.known.push((u, shot.start));
         Ok(Ok(value))
     }

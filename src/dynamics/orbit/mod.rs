@@ -61,7 +61,7 @@ mod special;
 use super::motion::{End, Exponent, MotionKind, Multiplier, NEUTRAL};
 use super::options::StartState;
 use super::response::Response;
-use super::{EngineError, Options, system::HybridSystem};
+use super::{EngineError, system::HybridSystem};
 
 pub use branch::{Along, Branch, BranchEnd, BranchError, BranchPoint};
 pub use elasticity::{Elasticity, ElasticityError};
@@ -113,43 +113,6 @@ pub struct Orbit {
 }
 
 impl Orbit {
-    /// The orbit of so many cycles next to a state at phase 0. One that comes again after a part of them is given with that period.
-    ///
-    /// # Errors
-    /// [`OrbitError`] with the reason.
-    pub fn near(system: &HybridSystem, start: &StartState, cycles: u32) -> Result<Self, OrbitError> {
-        newton::near(system, start, cycles)
-    }
-
-    /// The orbit that a run ends next to; its period is that after which the last state comes again.
-    ///
-    /// # Errors
-    /// [`OrbitError`] with the reason: where the run ends in chaos, say.
-    pub fn after(system: &HybridSystem, options: &Options) -> Result<Self, OrbitError> {
-        newton::after(system, options)
-    }
-
-    /// The orbit of so many cycles next to the state that a run ends in, whatever its own period: an unstable one amid chaos, say.
-    ///
-    /// # Errors
-    /// [`OrbitError`] with the reason.
-    pub fn beside(system: &HybridSystem, options: &Options, cycles: u32) -> Result<Self, OrbitError> {
-        newton::beside(system, options, cycles)
-    }
-
-    /// By how many per cent a positive number of the run over one period changes for one per cent of a parameter of the system,
-    /// which `system_at` takes as a factor: d ln A/d ln p, the orbit followed.
-    ///
-    /// # Errors
-    /// [`ElasticityError`] with the reason: where the sequence of contacts changes at this very value, say.
-    pub fn elasticity<E>(
-        &self,
-        system_at: impl FnMut(f64) -> Result<HybridSystem, E>,
-        value: impl Fn(&Response) -> f64,
-    ) -> Result<Elasticity, ElasticityError<E>> {
-        elasticity::elasticity(self, system_at, value)
-    }
-
     /// Its start, seen by an observer at rest.
     fn begin(&self, system: &HybridSystem) -> Result<End, OrbitError> {
         let none = OrbitError::NoConvergence { cycles: self.cycles, miss: f64::INFINITY };

@@ -21,41 +21,52 @@ const NEAR: f64 = 1e-2;
 /// Two states of a period are the same within this.
 const SAME: f64 = 1e-9;
 
-/// The orbit of so many cycles next to a state.
-pub(super) fn near(system: &HybridSystem, start: &StartState, cycles: u32) -> Result<Orbit, OrbitError> {
-    let start = match absolute(system, start) {
-        Some(start) => start,
-        // At rest: where a cycle of the run takes it.
-        None => last_of(system, &Options { skip: 0, average: cycles, ..Options::default() })?,
-    };
-    find(system, start, cycles)
-}
+impl Orbit {
+    /// The orbit of so many cycles next to a state at phase 0. One that comes again after a part of them is given with that period.
+    ///
+    /// # Errors
+    /// [`OrbitError`] with the reason.
+    pub fn near(system: &HybridSystem, start: &StartState, cycles: u32) -> Result<Self, OrbitError> {
+        let start = match absolute(system, start) {
+            Some(start) => start,
+            // At rest: where so many cycles of the run take it.
+            None => last_of(system, &Options { skip: 0, average: cycles, ..Options::default() })?,
+        };
+        find(system, start, cycles)
+    }
 
-/// The orbit that a run ends next to.
-pub(super) fn after(system: &HybridSystem, options: &Options) -> Result<Orbit, OrbitError> {
-    repeats(system)?;
-    let named = Options { motion: true, ..options.clone() };
-    let (response, tape) = budget::within(|| march::taped(system, &named, States::of(system)))?;
-    let scale = Scale::new(system, &tape.reach);
-    let chaotic = response.motion.filter(|motion| motion.kind == MotionKind::Chaotic);
-    let mut error = chaotic.and_then(|motion| motion.exponent).map(|exponent| OrbitError::Chaotic { exponent });
-    if error.is_none() {
-        for period in candidates(&scale, &tape.ends, NEAR) {
-            let last = tape.ends[tape.ends.len() - 1].clone();
-            match find(system, last, u32::try_from(period).unwrap_or(u32::MAX)) {
-                Ok(orbit) => return Ok(orbit),
-                Err(first) => error = error.or(Some(first)),
+    /// The orbit that a run ends next to; its period is that after which the last state comes again.
+    ///
+    /// # Errors
+    /// [`OrbitError`] with the reason: where the run ends in chaos, say.
+    pub fn after(system: &HybridSystem, options: &Options) -> Result<Self, OrbitError> {
+        repeats(system)?;
+        let named = Options { motion: true, ..options.clone() };
+        let (response, tape) = budget::within(|| march::taped(system, &named, States::of(system)))?;
+        let scale = Scale::new(system, &tape.reach);
+        let chaotic = response.motion.filter(|motion| motion.kind == MotionKind::Chaotic);
+        let mut error = chaotic.and_then(|motion| motion.exponent).map(|exponent| OrbitError::Chaotic { exponent });
+        if error.is_none() {
+            for period in candidates(&scale, &tape.ends, NEAR) {
+                let last = tape.ends[tape.ends.len() - 1].clone();
+                match find(system, last, u32::try_from(period).unwrap_or(u32::MAX)) {
+                    Ok(orbit) => return Ok(orbit),
+                    Err(first) => error = error.or(Some(first)),
+                }
             }
         }
+        let (cycles, miss) = closest(&scale, &tape.ends).unwrap_or((0, f64::INFINITY));
+        Err(error.unwrap_or(OrbitError::NeverRepeats { cycles, miss }))
     }
-    let (cycles, miss) = closest(&scale, &tape.ends).unwrap_or((0, f64::INFINITY));
-    Err(error.unwrap_or(OrbitError::NeverRepeats { cycles, miss }))
-}
 
-/// The orbit of so many cycles next to the state that a run ends in.
-pub(super) fn beside(system: &HybridSystem, options: &Options, cycles: u32) -> Result<Orbit, OrbitError> {
-    repeats(system)?;
-    find(system, last_of(system, options)?, cycles)
+    /// The orbit of so many cycles next to the state that a run ends in, whatever its own period: an unstable one amid chaos, say.
+    ///
+    /// # Errors
+    /// [`OrbitError`] with the reason.
+    pub fn beside(system: &HybridSystem, options: &Options, cycles: u32) -> Result<Self, OrbitError> {
+        repeats(system)?;
+        find(system, last_of(system, options)?, cycles)
+    }
 }
 
 fn last_of(system: &HybridSystem, options: &Options) -> Result<End, EngineError> {
@@ -72,7 +83,7 @@ pub(super) fn find(system: &HybridSystem, start: End, cycles: u32) -> Result<Orb
     repeats(system)?;
     let (shot, distance) = closed(system, start, cycles)?;
     let same = |part: &u32| {
-        cycles.is_multiple_of(*part) && shot.scale.apart(&shot.start, &shot.ends()[*part as usize - 1]) <= SAME
+        cycles.is_multiple_of(*part) && shot.scale.apart(&shot.start, &shot.tape.ends[*part as usize - 1]) <= SAME
     };
     if let Some(part) = (1..cycles).find(same) {
         let (shot, distance) = closed(system, shot.start, part)?;

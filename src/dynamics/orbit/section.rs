@@ -45,7 +45,7 @@ impl Shift {
 
 /// The share of a cycle after which no contact is near, if one is near its beginning now.
 fn clearer(shot: &Shot, period: f64) -> Option<f64> {
-    let mut at: Vec<f64> = shot.response().events.iter().map(|event| event.time / period).collect();
+    let mut at: Vec<f64> = shot.response.events.iter().map(|event| event.time / period).collect();
     at.sort_unstable_by(f64::total_cmp);
     let near = at.iter().fold(0.5_f64, |near, at| near.min(*at).min(1.0 - at));
     let next = at.iter().skip(1).copied().chain(at.first().map(|first| 1.0 + first));

@@ -30,8 +30,9 @@ pub(super) struct Shot {
     pub(super) map: Period,
     /// P(x) − x in units of the motion.
     pub(super) miss: Vec<f64>,
-    response: Response,
-    tape: Tape,
+    /// The run itself.
+    pub(super) response: Response,
+    pub(super) tape: Tape,
 }
 
 impl Shot {
@@ -65,11 +66,6 @@ impl Shot {
     /// Where it ends.
     pub(super) fn end(&self) -> &End {
         end(&self.tape)
-    }
-
-    /// States at the ends of its cycles.
-    pub(super) fn ends(&self) -> &[End] {
-        &self.tape.ends
     }
 
     /// The largest part of the miss; infinite where it ends in other contacts than it starts in.
@@ -143,11 +139,6 @@ impl Shot {
 
     pub(super) fn contacts(&self) -> Contacts {
         contacts(&self.response)
-    }
-
-    /// The run itself.
-    pub(super) fn response(&self) -> &Response {
-        &self.response
     }
 
     /// Its events in their order, and between which jumps of the force each lies.

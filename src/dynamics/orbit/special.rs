@@ -72,14 +72,6 @@ enum Test {
 }
 
 impl Test {
-    fn special(self) -> Special {
-        match self {
-            Self::Fold => Special::Fold,
-            Self::PeriodDoubling => Special::PeriodDoubling,
-            Self::Torus(_) => Special::Torus,
-        }
-    }
-
     fn value<E>(self, at: &At) -> Result<f64, BranchError<E>> {
         Ok(match self {
             Self::Fold => at.tangent[at.tangent.len() - 1],
@@ -120,19 +112,19 @@ pub(super) fn between<E, F: FnMut(f64) -> Result<HybridSystem, E>>(
     let outside = |at: &At| -> Result<usize, BranchError<E>> {
         Ok(pairs(&multipliers(at)?).iter().filter(|modulus| **modulus > 1.0 + NEUTRAL).count())
     };
-    let mut tests = vec![Test::Fold, Test::PeriodDoubling];
+    let mut tests = vec![(Test::Fold, Special::Fold), (Test::PeriodDoubling, Special::PeriodDoubling)];
     let (before, after) = (outside(from)?, outside(to)?);
     if before != after {
-        tests.push(Test::Torus(before.min(after)));
+        tests.push((Test::Torus(before.min(after)), Special::Torus));
     }
     let mut found = Vec::new();
-    for test in tests {
+    for (test, special) in tests {
         let ends = [test.value(from)?, test.value(to)?];
         if ends[0] * ends[1] < 0.0
             && let Some((place, at)) = zero(path, from, step, ends, |at| test.value(at))?
             && (!matches!(test, Test::Torus(_)) || test.value(&at)?.abs() < CROSSES)
         {
-            found.push((place, test.special(), at));
+            found.push((place, special, at));
         }
     }
     match fork::between(path, from, to, step)? {

@@ -1,5 +1,5 @@
 //! The engine against references that no code of this package made: 128-bit arithmetic, closed forms, conserved
-//! quantities, changes of units. `tests/it/data/README.md` says where the data come from.
+//! quantities, changes of units.
 
 mod any_instant;
 mod arrays;
