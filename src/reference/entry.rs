@@ -30,12 +30,12 @@
 //!     reason: The curves of the figure are lost.
 //! ```
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 
 use serde::Serialize;
 
 use super::extraction::Extraction;
-use super::mapping::{Seen, mapping};
+use super::mapping::{KnownTables, Seen, mapping};
 use super::predicate::Predicate;
 use super::printed::Printed;
 use super::prose::Prose;
@@ -43,7 +43,7 @@ use super::resonance::PrintedPeak;
 use super::selection::Selection;
 use super::verdict::Verdict;
 use super::view::Source;
-use crate::experiment::{Columns, Findings, Problems};
+use crate::experiment::{Findings, Problems};
 
 /// The entries of one experiment.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -138,16 +138,11 @@ pub enum ToleranceSize {
 }
 
 impl ReferenceFile {
-    /// Looks for the columns that its entries name in the tables that are known by the names of their experiments.
+    /// Looks for the experiments and the columns that its entries name.
     ///
     /// # Errors
     /// Every one that is not there, with its place in the `text` that the entries were read from.
-    pub(crate) fn check_columns(
-        &self,
-        file: &str,
-        text: &str,
-        tables: &BTreeMap<String, Columns>,
-    ) -> Result<(), Problems> {
+    pub(crate) fn check_tables(&self, file: &str, text: &str, tables: &KnownTables<'_>) -> Result<(), Problems> {
         let findings = Findings::default();
         for entry in &self.entries {
             Seen::of(&entry.rows).check(&self.experiment, tables, &findings);

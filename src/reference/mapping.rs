@@ -1,12 +1,12 @@
 //! Types of a reference file with their readers: a key, its type, how it is read and what an editor says of it, all in one line
 //! of one list.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::name::{Column, TableName};
 use super::selection::Selection;
 use super::view::Source;
-use crate::experiment::{Columns, Findings};
+use crate::experiment::{Columns, Findings, closest};
 
 /// A mapping, by what messages call it. `key: Type = required("What it is", read),` is that call of `Keys`, without the key. A
 /// reader may use what keys above it gave; the method after the type's name looks at all of them together.
@@ -131,6 +131,14 @@ macro_rules! key {
 
 pub(super) use {claim, forms, key, mapping, of_rows, word};
 
+/// What is known of the tables that entries may read.
+pub(crate) struct KnownTables<'a> {
+    /// The experiments that there are.
+    pub(crate) ids: BTreeSet<&'a str>,
+    /// Of those without mistakes, by their names.
+    pub(crate) columns: BTreeMap<String, Columns>,
+}
+
 /// What a part of an entry reads of tables.
 #[derive(Debug, Default)]
 pub(crate) struct Seen<'a> {
@@ -149,10 +157,17 @@ impl<'a> Seen<'a> {
         seen
     }
 
-    /// Reports columns that no table has: the experiment's `own` or another one, as far as they are known.
-    pub(crate) fn check(&self, own: &str, tables: &BTreeMap<String, Columns>, findings: &Findings) {
+    /// Reports experiments that there are not, and columns that no table has: the experiment's `own` or another one, as far as
+    /// they are known.
+    pub(crate) fn check(&self, own: &str, tables: &KnownTables<'_>, findings: &Findings) {
         let table = self.table.map_or(own, |table| table);
-        if let Some(columns) = tables.get(table) {
+        if let Some(other) = self.table.filter(|table| !tables.ids.contains(&***table)) {
+            let near = closest(table, tables.ids.iter().copied());
+            let help =
+                near.map_or_else(|| "`shotdamp list` shows them".into(), |name| format!("did you mean `{name}`?"));
+            findings.report::<()>(other.span(), format!("`{table}` is not an experiment of this study"), Some(help));
+        }
+        if let Some(columns) = tables.columns.get(table) {
             for column in self.columns.iter().filter(|column| columns.role(column).is_none()) {
                 columns.unknown::<()>(&format!("the table of `{table}`"), column, column.span(), findings);
             }

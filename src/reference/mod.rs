@@ -46,6 +46,7 @@ pub use extraction::Extraction;
 pub use fit::{Fit, FitMeasure};
 pub use found::Found;
 pub use judge::judge;
+pub(crate) use mapping::KnownTables;
 pub use motion_behind::MotionBehind;
 pub use predicate::Predicate;
 pub use price::Price;

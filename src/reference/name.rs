@@ -102,13 +102,20 @@ impl Serialize for Column {
     }
 }
 
-/// Another experiment, whose table is read.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
-pub struct TableName(String);
+/// Another experiment, whose table is read. Where it is named is no part of what it means.
+#[derive(Debug, Clone)]
+pub struct TableName {
+    name: String,
+    span: Span,
+}
 
 impl TableName {
     pub(crate) fn read(at: At<'_>) -> Option<Self> {
-        at.text().map(Self)
+        Some(Self { name: at.text()?, span: at.span() })
+    }
+
+    pub(crate) fn span(&self) -> Span {
+        self.span
     }
 }
 
@@ -116,6 +123,18 @@ impl Deref for TableName {
     type Target = str;
 
     fn deref(&self) -> &str {
-        &self.0
+        &self.name
+    }
+}
+
+impl PartialEq for TableName {
+    fn eq(&self, other: &Self) -> bool {
+        self.name == other.name
+    }
+}
+
+impl Serialize for TableName {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(self)
     }
 }

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use super::left_out::{LeftOutRecord, PredictedErrors};
 use super::load::text;
 use crate::experiment::{AboutStudy, AssumptionSheet, Calibration, Cases, Problems, RowLimit, parse_calibration};
-use crate::reference::{Check, Prose, ReferenceFile, Role, parse_reference};
+use crate::reference::{Check, KnownTables, Prose, ReferenceFile, Role, parse_reference};
 use crate::study::{ASSUMPTIONS, Item, Layout, Loaded, Refused, STUDY, Sensitivity, Summary, Texts, Used, stem};
 
 /// The study: what was read and planned, and the experiments that are up to date and need not be.
@@ -297,8 +297,8 @@ fn references(
             }
             let reference = parse_reference(id, file, text)?;
             let read = reference.other_tables().into_iter().chain([id.to_owned()]);
-            let tables = read.filter_map(|id| Some((id.clone(), loaded.columns(texts, &id)?))).collect();
-            reference.check_columns(file, text, &tables)?;
+            let columns = read.filter_map(|id| Some((id.clone(), loaded.columns(texts, &id)?))).collect();
+            reference.check_tables(file, text, &KnownTables { ids: texts.ids(), columns })?;
             Ok(reference)
         });
         match reference {

@@ -121,7 +121,7 @@ fn a_number_may_have_the_unit_of_its_column_or_one_of_that_kind() {
 }
 
 #[test]
-fn a_column_that_no_table_will_have_is_told_before_anything_runs() {
+fn a_table_or_a_column_that_there_will_never_be_is_told_before_anything_runs() {
     let desk = simulated();
     let with = |entry: &str| {
         desk.put("reference/ch3/ch3-gap.yaml", &format!("{GAP_REFERENCE}{entry}"));
@@ -141,5 +141,10 @@ fn a_column_that_no_table_will_have_is_told_before_anything_runs() {
         let message = format!("error: the table of `{table}` has no column `");
         assert!(said.err.contains(&message) && said.err.contains("ch3-gap.yaml:"), "{wrong}: {}", said.err);
         assert!(table == "ch3-stop" || said.err.contains("did you mean `"), "{wrong}: {}", said.err);
+    }
+    let said = with(&fine.replace("over: gap_ratio", "over: gap_ratio, table: ch3-stpo"));
+    assert_eq!(said.code, 2, "{}", said.err);
+    for part in ["`ch3-stpo` is not an experiment of this study", "did you mean `ch3-stop`?"] {
+        assert!(said.err.contains(part), "{}", said.err);
     }
 }
