@@ -58,7 +58,7 @@ pub(super) fn trial<'a>(
     Ok(Trial::new(recipe.subject(assumptions, needs)?, &experiment.settings, &experiment.measures)?)
 }
 
-/// A case with its scene, if that has dampers.
+/// A case with its scene, if that has dampers and something moves them.
 fn ready(experiment: &Experiment, case: &Case, assumptions: &Assumptions) -> Option<(String, Recipe)> {
     let mut recipe = experiment.recipes_of(case).ok()?.into_iter().next()?;
     let mut description = case.describe();
@@ -68,8 +68,9 @@ fn ready(experiment: &Experiment, case: &Case, assumptions: &Assumptions) -> Opt
         let over = format!("{} = {value}", words::of_key(&maximise.over));
         description = if description.is_empty() { over } else { format!("{description}, {over}") };
     }
-    let damped = recipe.resolve(assumptions).is_ok_and(|scene| !scene.dampers.is_empty());
-    damped.then_some((description, recipe))
+    let scene = recipe.resolve(assumptions).ok()?;
+    let moves = scene.start.is_some() || !scene.excitation.is_silent();
+    (moves && !scene.dampers.is_empty()).then_some((description, recipe))
 }
 
 /// The largest relative error and its measure.

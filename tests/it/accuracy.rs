@@ -86,6 +86,13 @@ fn beside_a_verdict_stands_what_it_cost_and_what_a_fixed_step_would_have() {
 }
 
 #[test]
+fn what_nothing_moves_has_no_error() {
+    let resting = experiment("floor: {resilient: {stiffness_ratio: 1, damping_ratio: 0.3}}", "[0]");
+    let refused = accuracy(&resting, &assumptions(), Duration::from_millis(2)).expect_err("nothing moves");
+    assert!(refused.to_string().contains("no case has a damper whose motion takes time"), "{refused}");
+}
+
+#[test]
 fn a_run_that_diverged_has_no_error_worth_a_number() {
     let mut accuracy = measured("floor: {resilient: {stiffness_ratio: 1, damping_ratio: 0.3}}", "[7]");
     accuracy.cases[0].points[0].error = 5e78;
