@@ -88,12 +88,12 @@ Examples:
   shotdamp show ch3-limit-stop
   shotdamp show 'ch5-*'")]
     Show {
-        /// Id of the experiment, or its file
+        /// Id of the experiment, a pattern with * and ?, or its file
         id: String,
     },
     /// List what is stale; writes nothing
     Status(StatusArgs),
-    /// Print the verdicts for the tables on disk; simulates and writes nothing
+    /// Print the verdicts for the tables on disk; simulates nothing, and writes only what an option asks for
     Check(CheckArgs),
     /// Compare two runs: which numbers moved, and whether beyond their uncertainty
     Diff(DiffArgs),
@@ -123,11 +123,11 @@ Examples:
         #[command(flatten)]
         limit: LimitArgs,
     },
-    /// Measure error against wall time of both solvers; writes reports/accuracy
+    /// Measure error against wall time of both solvers; writes reports/accuracy.md and reports/accuracy/
     Accuracy(AccuracyArgs),
     /// Fit unstated inputs to chosen entries, and judge the entries held out
     Calibrate(CalibrateArgs),
-    /// Show how an entry depends on each assumption, and which change of one would reproduce it; simulates nothing
+    /// Show how an entry depends on each assumption, and which change of one would reproduce it; simulates only with --run
     #[command(after_help = "\
 Examples:
   shotdamp explain ch3-limit-stop/parting
@@ -291,7 +291,7 @@ pub(super) struct AccuracyArgs {
     /// Ids, patterns with * and ?, or files
     #[arg(value_name = "PATTERN", conflicts_with = "all")]
     pub patterns: Vec<String>,
-    /// All experiments, and the summary
+    /// All experiments; prints the summary in the place of their pages
     #[arg(long)]
     pub all: bool,
     /// Measure nothing: write pages and pictures again from what was measured before, with the verdicts as they are

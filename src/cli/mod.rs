@@ -110,7 +110,10 @@ fn dispatch(args: &mut Args) -> Result<Exit, CliError> {
         Some(Command::New(new)) => new::new(&layout, new),
         Some(Command::Schema(_)) => schema::write(&layout),
         Some(Command::Completions { shell }) => completions(*shell),
-        Some(Command::Accuracy(args)) => accuracy::measure(&layout, args),
+        Some(Command::Accuracy(accuracy)) => {
+            start_threads(args);
+            accuracy::measure(&layout, accuracy)
+        }
         Some(Command::Calibrate(calibrate)) => calibrate::calibrate(&layout, calibrate, args),
         Some(Command::Explain { entry, run: false, .. }) => explain::explain(&layout, entry, None, args),
         Some(Command::Explain { entry, run: true, limit }) => explain::explain(&layout, entry, Some(limit), args),

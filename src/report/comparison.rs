@@ -42,8 +42,20 @@ pub(super) fn in_short(judged: &[Judged]) -> String {
 /// `Stands in part: 2 of 3 statements agree.`
 fn conclusion(judged: &[Judged]) -> String {
     let tally = Tally::of(judged);
-    let all = counted(tally.total(), "statement agrees", "statements agree");
-    format!("{}: {} of {all} ({}).", outcome(&tally), tally.agreeing(), tally.describe())
+    let fitted = tally.count(Verdict::Fitted);
+    let evidence = tally.total() - fitted;
+    if fitted == 0 || evidence == 0 {
+        let all = counted(tally.total(), "statement agrees", "statements agree");
+        return format!("{}: {} of {all} ({}).", outcome(&tally), tally.agreeing(), tally.describe());
+    }
+    format!(
+        "{}: of {} {} ({}); {} fitted.",
+        outcome(&tally),
+        counted(evidence, "statement that chose no input,", "statements that chose no input,"),
+        counted(tally.count(Verdict::Reproduced), "agrees", "agree"),
+        tally.describe(),
+        counted(fitted, "more was", "more were"),
+    )
 }
 
 /// What became of these entries together, in a word or two. What was fitted is no evidence.

@@ -78,7 +78,7 @@ fn stands(experiments: &[ExperimentView<'_>]) -> String {
     let judged = experiments.iter().filter(|view| !view.judged.is_empty()).count();
     let links = standing.iter().map(|view| format!("{} ({})", link(view), evidence(view)));
     format!(
-        "- **Stands:** every statement agrees in {} of {}: {}.\n",
+        "- **Agrees in full,** with the inputs in force: every statement of {} of {}: {}.\n",
         standing.len(),
         counted(judged, "experiment with statements", "experiments with statements"),
         some(links.collect())

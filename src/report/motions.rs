@@ -39,6 +39,7 @@ pub(super) fn in_words(motions: &Motions) -> Option<String> {
         let of = match (late, again) {
             (1, 1) => "The only one that repeats settles".into(),
             (1, _) => format!("One of the {again} that repeat settles"),
+            (2, 2) => "Both rows that repeat settle".into(),
             _ if late == again => format!("All {again} that repeat settle"),
             _ => format!("{late} of the {again} that repeat settle"),
         };
@@ -88,8 +89,10 @@ pub fn what_moves(experiments: &[ExperimentView<'_>]) -> String {
         let worst =
             settlings.iter().filter_map(|it| it.worst.first()).map(|one| one.relative().abs()).fold(0.0, f64::max);
         text += &format!(
-            "**Are the cycles of a run enough?** {} where the motion settles; there the velocity ratio of the cycles given differs \
-             from the settled one by more than {} in {off} ({}), and by {} at most.\n\n",
+            "**Are the cycles of a run enough?** In {} of the rows the motion had not settled, and the question is open. Of {} \
+             whose settled motion was looked at, the velocity ratio is off from the settled one by more than {} in {off} ({}), \
+             and by {} at most.\n\n",
+            share(count(MotionKind::NotSettled.word()), total),
             counted(rows, "row", "rows"),
             percent(Settling::limit()),
             share(off, rows),
@@ -150,16 +153,19 @@ fn table(all: &[(&ExperimentView<'_>, &Motions)]) -> String {
         ("Experiment", Align::Left),
         ("Rows", Align::Right),
         ("Repeat", Align::Right),
-        ("Later than the cycles left out", Align::Right),
+        ("Of these, settled only after the cycles left out", Align::Right),
         ("Quasi-periodic", Align::Right),
         ("Chaotic", Align::Right),
+        ("Not settled", Align::Right),
         ("Off from settled", Align::Right),
         ("Most", Align::Right),
     ]);
     for (view, motions) in all {
         let of = |kind: &str| motions.kinds.get(kind).copied().unwrap_or(0);
-        let irregular = [MotionKind::QuasiPeriodic, MotionKind::Chaotic].map(|kind| of(kind.word()));
-        let again = motions.rows() - irregular[0] - irregular[1] - of(MotionKind::NotSettled.word());
+        let others =
+            [MotionKind::QuasiPeriodic, MotionKind::Chaotic, MotionKind::NotSettled].map(|kind| of(kind.word()));
+        let again = motions.rows() - others.iter().sum::<usize>();
+        let [quasi_periodic, chaotic, not_settled] = others.map(|count| share(count, motions.rows()));
         let settling = motions.settling.as_ref();
         let worst = settling.and_then(|it| it.worst.first()).map(|one| percent(one.relative()));
         table.row(vec![
@@ -167,8 +173,9 @@ fn table(all: &[(&ExperimentView<'_>, &Motions)]) -> String {
             motions.rows().to_string(),
             share(again, motions.rows()),
             if motions.settled_after.is_empty() { String::new() } else { share(motions.late(), again) },
-            share(irregular[0], motions.rows()),
-            share(irregular[1], motions.rows()),
+            quasi_periodic,
+            chaotic,
+            not_settled,
             settling.map_or_else(String::new, |it| format!("{} of {}", it.off, it.rows)),
             worst.unwrap_or_default(),
         ]);

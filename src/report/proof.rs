@@ -26,7 +26,7 @@ pub(super) fn section(table: Option<&Table>) -> String {
             proof.smallest_margin(),
             match proof.total("chaotic").as_str() {
                 "0" => String::new(),
-                chaotic => format!("; chaotic: {chaotic}, ensembles of up to {}", proof.largest("members")),
+                chaotic => format!("; run as ensembles: {chaotic}, of up to {} members", proof.largest("members")),
             }
         );
     }

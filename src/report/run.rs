@@ -47,7 +47,10 @@ pub(super) fn section(experiment: &Experiment) -> String {
     if let Some(moved) = &experiment.moved {
         text += &match moved.iter().map(|name| format!("`{}`", words::of_key(name))).collect::<Vec<_>>() {
             names if names.is_empty() => "- No assumption is moved.\n".to_owned(),
-            names => format!("- For the sensitivity only {} is moved, one at a time.\n", names.join(", ")),
+            names => {
+                let are = if names.len() == 1 { "is moved" } else { "are moved, one at a time" };
+                format!("- For the sensitivity only {} {are}.\n", names.join(", "))
+            }
         };
     }
     if let Some(trace) = &experiment.trace {
@@ -145,19 +148,19 @@ fn searches(optimise: &Optimise) -> String {
         }
     }
     let count = counted(optimise.bounds.len(), "gap", "gaps");
-    let mut text = format!("- {count} varied between {}.\n", joined(&bounds));
+    let mut text = format!("- {count} varied from {}.\n", joined(&bounds));
     let seeds: Vec<String> = optimise.seeds.iter().map(u32::to_string).collect();
+    let seeds = format!("{} {}", if seeds.len() == 1 { "seed" } else { "seeds" }, joined(&seeds));
     for search in &optimise.searches {
         text += &match search {
             Search::Genetic { population, elites, crossover, .. } => format!(
                 "- Genetic algorithm: {population} individuals, {elites} of which live on, {} % of the children by crossover; \
-                 seeds {}. It ends {}.{}\n",
+                 {seeds}. It ends {}.{}\n",
                 compact(100.0 * crossover, 3),
-                joined(&seeds),
                 ends(optimise),
                 if optimise.two_opt { " 2-opt then swaps pairs of its gaps." } else { "" }
             ),
-            Search::CmaEs { .. } => format!("- CMA-ES, on as many evaluations; seeds {}.\n", joined(&seeds)),
+            Search::CmaEs { .. } => format!("- CMA-ES, on as many evaluations; {seeds}.\n"),
             Search::Dense { points, refine, .. } => format!(
                 "- Dense search: every combination of {points} values a gap, then {} around the best.\n",
                 counted(*refine as usize, "finer grid", "finer grids")

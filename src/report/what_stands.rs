@@ -69,12 +69,12 @@ pub fn what_stands(
     let missing = missing_inputs(experiments.iter().flat_map(|view| view.judged));
     if !missing.is_empty() {
         text += &format!(
-            "Blocked entries wait for inputs that no single move supplies: {}.\n\n",
+            "Blocked entries wait for: {}.\n\n",
             missing.into_iter().take(WAITED_FOR).collect::<Vec<_>>().join(", ")
         );
     }
-    text += &section("Stands: agrees under every move", group(Robustness::Stands));
-    text += &section("Does not stand: differs under every move", group(Robustness::Fails));
+    text += &section("Stands: agrees under every move that was made", group(Robustness::Stands));
+    text += &section("Does not stand: differs under every move that was made", group(Robustness::Fails));
     text += &in_question(&questions);
     text += &section(
         "Undecided, as they stand or under some move: chaotic, or blocked by what no single input settles",
