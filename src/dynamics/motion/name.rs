@@ -91,22 +91,37 @@ pub struct Motion {
 }
 
 impl MotionKind {
-    /// All names without numbers, from rest to chaos: the words in a table.
-    pub const WORDS: [&str; 7] =
-        ["at rest", "periodic", "sticking", "completed chatter", "quasi-periodic", "chaotic", "not settled"];
+    /// The words in a table.
+    const AT_REST: &str = "at rest";
+    const PERIODIC: &str = "periodic";
+    const STICKING: &str = "sticking";
+    const CHATTER: &str = "completed chatter";
+    const QUASI_PERIODIC: &str = "quasi-periodic";
+    const CHAOTIC: &str = "chaotic";
+    const NOT_SETTLED: &str = "not settled";
+
+    /// All names without numbers, from rest to chaos.
+    pub const WORDS: [&str; 7] = [
+        Self::AT_REST,
+        Self::PERIODIC,
+        Self::STICKING,
+        Self::CHATTER,
+        Self::QUASI_PERIODIC,
+        Self::CHAOTIC,
+        Self::NOT_SETTLED,
+    ];
 
     /// Its name without numbers.
     #[must_use]
     pub fn word(self) -> &'static str {
-        let [at_rest, periodic, sticking, chatter, quasi_periodic, chaotic, not_settled] = Self::WORDS;
         match self {
-            Self::AtRest => at_rest,
-            Self::Periodic { .. } => periodic,
-            Self::Sticking { .. } => sticking,
-            Self::CompletedChatter { .. } => chatter,
-            Self::QuasiPeriodic => quasi_periodic,
-            Self::Chaotic => chaotic,
-            Self::NotSettled => not_settled,
+            Self::AtRest => Self::AT_REST,
+            Self::Periodic { .. } => Self::PERIODIC,
+            Self::Sticking { .. } => Self::STICKING,
+            Self::CompletedChatter { .. } => Self::CHATTER,
+            Self::QuasiPeriodic => Self::QUASI_PERIODIC,
+            Self::Chaotic => Self::CHAOTIC,
+            Self::NotSettled => Self::NOT_SETTLED,
         }
     }
 
@@ -142,19 +157,23 @@ impl FromStr for MotionKind {
 
     fn from_str(text: &str) -> Result<Self, NoMotion> {
         let none = || NoMotion(text.into());
-        let plain = [Self::AtRest, Self::QuasiPeriodic, Self::Chaotic, Self::NotSettled];
-        if let Some(kind) = plain.into_iter().find(|kind| kind.word() == text) {
+        let plain = [
+            (Self::AT_REST, Self::AtRest),
+            (Self::QUASI_PERIODIC, Self::QuasiPeriodic),
+            (Self::CHAOTIC, Self::Chaotic),
+            (Self::NOT_SETTLED, Self::NotSettled),
+        ];
+        if let Some((_, kind)) = plain.into_iter().find(|(word, _)| *word == text) {
             return Ok(kind);
         }
         let (word, ratio) = text.rsplit_once(' ').ok_or_else(none)?;
         let (periods, contacts) = ratio.split_once(':').ok_or_else(none)?;
         let periods = periods.parse().map_err(|_| none())?;
         let count = || contacts.parse().map_err(|_| none());
-        let [_, periodic, sticking, chatter, ..] = Self::WORDS;
         match word {
-            _ if word == periodic => Ok(Self::Periodic { periods, contacts: count()? }),
-            _ if word == sticking => Ok(Self::Sticking { periods, contacts: count()? }),
-            _ if word == chatter && contacts == "∞" => Ok(Self::CompletedChatter { periods }),
+            Self::PERIODIC => Ok(Self::Periodic { periods, contacts: count()? }),
+            Self::STICKING => Ok(Self::Sticking { periods, contacts: count()? }),
+            Self::CHATTER if contacts == "∞" => Ok(Self::CompletedChatter { periods }),
             _ => Err(none()),
         }
     }

@@ -177,6 +177,16 @@ struct Follower<F> {
     turns: bool,
 }
 
+/// What lies between a point and the next.
+enum Passed {
+    /// Special points in their order.
+    Specials(Vec<(Special, At)>),
+    /// The first point of the branch, after these.
+    Origin(Vec<(Special, At)>),
+    /// The motion has lost its asymmetry.
+    Symmetry,
+}
+
 /// What comes after a point.
 enum Next<E> {
     At(Box<At>),
@@ -255,9 +265,9 @@ impl<E, F: FnMut(f64) -> Result<HybridSystem, E>> Follower<F> {
             return Ok(Ok(Next::End(BranchEnd::HalfPeriod)));
         }
         let specials = match self.passed(at, &next, step) {
-            Ok((Between::Specials(specials), false)) => specials,
-            Ok((Between::Specials(specials), true)) => return Ok(Ok(self.close(&specials)?)),
-            Ok((Between::Symmetry, _)) => return Ok(Ok(Next::End(BranchEnd::Symmetry))),
+            Ok(Passed::Specials(specials)) => specials,
+            Ok(Passed::Origin(specials)) => return Ok(Ok(self.close(&specials)?)),
+            Ok(Passed::Symmetry) => return Ok(Ok(Next::End(BranchEnd::Symmetry))),
             Err(error) => return Ok(Err(error)),
         };
         let beyond = (next.share > 1.0).then_some(1.0).or((next.share < 0.0).then_some(0.0));
@@ -302,9 +312,9 @@ impl<E, F: FnMut(f64) -> Result<HybridSystem, E>> Follower<F> {
             }
         }
         let before = match last.as_ref().map(|edge| self.passed(at, edge, low)).transpose() {
-            Ok(Some((Between::Specials(specials), false))) => specials,
-            Ok(Some((Between::Specials(specials), true))) => return Ok(Ok(self.close(&specials)?)),
-            Ok(Some((Between::Symmetry, _))) => return Ok(Ok(Next::End(BranchEnd::Symmetry))),
+            Ok(Some(Passed::Specials(specials))) => specials,
+            Ok(Some(Passed::Origin(specials))) => return Ok(Ok(self.close(&specials)?)),
+            Ok(Some(Passed::Symmetry)) => return Ok(Ok(Next::End(BranchEnd::Symmetry))),
             Ok(None) => Vec::new(),
             Err(error) => return Ok(Err(error)),
         };
@@ -347,14 +357,18 @@ impl<E, F: FnMut(f64) -> Result<HybridSystem, E>> Follower<F> {
         Some(same)
     }
 
-    /// What lies between a point and the next, and whether the first point of the branch comes after that.
-    fn passed(&mut self, at: &At, next: &At, step: f64) -> Result<(Between, bool), BranchError<E>> {
+    /// What lies between a point and the next.
+    fn passed(&mut self, at: &At, next: &At, step: f64) -> Result<Passed, BranchError<E>> {
         let met = match &self.origin {
             Some(origin) => origin.between(&mut self.path, at, next, step)?,
             None => None,
         };
         let (last, arc) = met.as_ref().map_or((next, step), |(place, first)| (first, *place));
-        Ok((special::between(&mut self.path, at, last, arc)?, met.is_some()))
+        Ok(match special::between(&mut self.path, at, last, arc)? {
+            Between::Specials(specials) if met.is_some() => Passed::Origin(specials),
+            Between::Specials(specials) => Passed::Specials(specials),
+            Between::Symmetry => Passed::Symmetry,
+        })
     }
 
     /// Enters the first point again, after the special points on the way to it.
