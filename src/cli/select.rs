@@ -7,7 +7,7 @@ use super::args::{CheckArgs, Choice, Command, ExportArgs, GatherArgs, RunArgs, S
 use super::error::CliError;
 use super::exit::Exit;
 use crate::atomic::place_of;
-use crate::experiment::closest;
+use crate::experiment::did_you_mean;
 use crate::report::Judgement;
 use crate::study::{ASSUMPTIONS, Item, Layout, Refused, STUDY, Snapshot, Study, Summary, Texts, folder_of, stem};
 
@@ -210,8 +210,8 @@ pub(super) fn no_match(pattern: &str, ids: &BTreeSet<&str>) -> CliError {
 
 /// The name that was probably meant, or those that there are; `all` shows them.
 pub(super) fn hint(asked: &str, names: &BTreeSet<&str>, all: &str) -> String {
-    if let Some(name) = closest(asked, names.iter().copied()) {
-        return format!("did you mean `{name}`?");
+    if let Some(hint) = did_you_mean(asked, names.iter().copied()) {
+        return hint;
     }
     let names: Vec<&str> = names.iter().copied().collect();
     match names.as_slice() {

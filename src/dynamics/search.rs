@@ -200,7 +200,7 @@ impl Search {
             }
         }
         if found == Found::Nothing {
-            motion.bank.kernels(motion.each, limit, &mut self.kernels);
+            motion.kernels(limit, &mut self.kernels);
         }
         found
     }
@@ -353,7 +353,7 @@ impl Search {
         let guard = self.guards[root.guard];
         let (t, window) = (self.surveys.now, root.window);
         if root.high == 0.0 {
-            motion.bank.kernels(motion.each, t, &mut self.trial);
+            motion.kernels(t, &mut self.trial);
             return t;
         }
         if t == 0.0 && guard.start != Start::Apart && root.guess * window * motion.series.pace < SHORT_HOP {
@@ -364,7 +364,7 @@ impl Search {
         let slack = 1e-3 * (upper - lower);
         let mut time = t + window * root.guess;
         for _ in 0..60 {
-            motion.bank.kernels(motion.each, time, &mut self.trial);
+            motion.kernels(time, &mut self.trial);
             let local = self.local(motion, initial, &guard, time);
             if local[0] >= 0.0 {
                 lower = lower.max(time)
@@ -401,7 +401,7 @@ impl Search {
                 break;
             }
         }
-        motion.bank.kernels(motion.each, time, &mut self.trial);
+        motion.kernels(time, &mut self.trial);
         clarity.ties += 1;
         time
     }

@@ -17,6 +17,13 @@ pub(super) struct Motion<'a> {
     pub(super) series: &'a Series,
 }
 
+impl Motion<'_> {
+    #[inline(always)]
+    pub(super) fn kernels(self, t: f64, kernels: &mut [Kernels]) {
+        self.bank.kernels(self.each, t, kernels);
+    }
+}
+
 /// A signal at an instant, and what bounds it from then on.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Survey {
@@ -65,7 +72,7 @@ impl Surveys {
     #[inline(always)]
     pub(super) fn move_to(&mut self, motion: Motion<'_>, t: f64) {
         self.now = t;
-        motion.bank.kernels(motion.each, t, &mut self.here);
+        motion.kernels(t, &mut self.here);
     }
 
     /// The shares of a signal that has been looked at.

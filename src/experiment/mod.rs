@@ -97,5 +97,5 @@ pub(crate) use schema::{described, words_of};
 pub use starts::{BasinColumn, HeightBox, Interval, ParticleBox, Rank, START_LISTS, Starts};
 pub(crate) use validate::{Cases, parse_with};
 pub use validate::{experiment_schema, parse_experiment};
-pub(crate) use word::closest;
+pub(crate) use word::did_you_mean;
 pub(crate) use yaml::Value;

@@ -7,7 +7,7 @@ use serde::de::DeserializeOwned;
 use super::diagnostic::{Findings, Span};
 use super::quantity::{Dimension, QuantityError, parse_in, parse_number, parse_quantity};
 use super::recipe::Parameter;
-use super::word::{closest, from_word, words};
+use super::word::{closest, did_you_mean, from_word, words};
 use super::yaml::{Node, Value};
 
 /// Reports a word that is none of the known ones.
@@ -32,10 +32,9 @@ fn suggestion(findings: &Findings, given: &str, known: &[&str]) -> Option<String
     if findings.is_full() {
         return None;
     }
-    Some(match closest(given, known.iter().copied()) {
-        Some(word) => format!("did you mean `{word}`?"),
-        None => format!("known are {}", known.iter().map(|word| format!("`{word}`")).collect::<Vec<_>>().join(", ")),
-    })
+    Some(did_you_mean(given, known.iter().copied()).unwrap_or_else(|| {
+        format!("known are {}", known.iter().map(|word| format!("`{word}`")).collect::<Vec<_>>().join(", "))
+    }))
 }
 
 /// What a node is, in words.

@@ -63,6 +63,11 @@ pub(crate) fn closest<'k>(unknown: &str, known: impl IntoIterator<Item = &'k str
         .map(|(_, word)| word)
 }
 
+/// What to say of an unknown word that was probably meant to be a known one.
+pub(crate) fn did_you_mean<'k>(unknown: &str, known: impl IntoIterator<Item = &'k str>) -> Option<String> {
+    closest(unknown, known).map(|word| format!("did you mean `{word}`?"))
+}
+
 /// Insertions, deletions, substitutions and swaps of neighbours that turn `a` into `b`.
 fn edit_distance(a: &str, b: &str) -> usize {
     let a: Vec<char> = a.chars().take(64).collect();

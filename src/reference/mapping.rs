@@ -6,7 +6,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::name::{Column, TableName};
 use super::selection::Selection;
 use super::view::Source;
-use crate::experiment::{Columns, Findings, closest};
+use crate::experiment::{Columns, Findings, did_you_mean};
 
 /// A mapping, by what messages call it. `key: Type = required("What it is", read),` is that call of `Keys`, without the key. A
 /// reader may use what keys above it gave; the method after the type's name looks at all of them together.
@@ -162,9 +162,8 @@ impl<'a> Seen<'a> {
     pub(crate) fn check(&self, own: &str, tables: &KnownTables<'_>, findings: &Findings) {
         let table = self.table.map_or(own, |table| table);
         if let Some(other) = self.table.filter(|table| !tables.ids.contains(&***table)) {
-            let near = closest(table, tables.ids.iter().copied());
-            let help =
-                near.map_or_else(|| "`shotdamp list` shows them".into(), |name| format!("did you mean `{name}`?"));
+            let near = did_you_mean(table, tables.ids.iter().copied());
+            let help = near.unwrap_or_else(|| "`shotdamp list` shows them".into());
             findings.report::<()>(other.span(), format!("`{table}` is not an experiment of this study"), Some(help));
         }
         if let Some(columns) = tables.columns.get(table) {

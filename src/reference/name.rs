@@ -1,5 +1,5 @@
-//! Names that an entry gives, of columns and of other experiments. Columns keep their places in the file: which there are is
-//! known when the experiments have been read.
+//! Names that an entry gives, of columns and of other experiments. They keep their places in the file: which there are is known
+//! when the experiments have been read.
 
 use std::borrow::Borrow;
 use std::cmp::Ordering;
@@ -10,37 +10,67 @@ use serde::{Serialize, Serializer};
 
 use crate::experiment::{At, Columns, Span};
 
-/// A column of a table. Where it is named is no part of what it means.
+/// A name with its place in the file, which is no part of what it means.
 #[derive(Debug, Clone)]
-pub struct Column {
+struct Placed {
     name: String,
     span: Span,
 }
 
+impl PartialEq for Placed {
+    fn eq(&self, other: &Self) -> bool {
+        self.name == other.name
+    }
+}
+
+impl Eq for Placed {}
+
+impl PartialOrd for Placed {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl Ord for Placed {
+    fn cmp(&self, other: &Self) -> Ordering {
+        self.name.cmp(&other.name)
+    }
+}
+
+impl Serialize for Placed {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(&self.name)
+    }
+}
+
+/// A column of a table.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+pub struct Column(Placed);
+
 impl Column {
     pub(crate) fn read(at: At<'_>) -> Option<Self> {
         let name = |at: At<'_>| at.form(|node, findings| At::Node(node, findings).text(), |_| Columns::offered());
-        Some(Self { name: at.named("column", "A column of the table", name)?, span: at.span() })
+        Some(Self(Placed { name: at.named("column", "A column of the table", name)?, span: at.span() }))
     }
 
     /// One that is a key.
     pub(crate) fn at(name: &str, span: Span) -> Self {
-        Self { name: name.into(), span }
+        Self(Placed { name: name.into(), span })
     }
 
     /// Its name.
     #[must_use]
     pub fn as_str(&self) -> &str {
-        &self.name
+        &self.0.name
     }
 
     /// Its unit, if it is known by its name.
     pub(crate) fn unit(&self) -> Option<&'static str> {
-        Columns::unit(&self.name)
+        Columns::unit(self)
     }
 
     pub(crate) fn span(&self) -> Span {
-        self.span
+        self.0.span
     }
 }
 
@@ -60,7 +90,7 @@ impl Deref for Column {
     type Target = str;
 
     fn deref(&self) -> &str {
-        &self.name
+        self.as_str()
     }
 }
 
@@ -70,52 +100,23 @@ impl Borrow<str> for Column {
     }
 }
 
-impl PartialEq for Column {
-    fn eq(&self, other: &Self) -> bool {
-        self.name == other.name
-    }
-}
-
-impl Eq for Column {}
-
-impl PartialOrd for Column {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
-}
-
-impl Ord for Column {
-    fn cmp(&self, other: &Self) -> Ordering {
-        self.name.cmp(&other.name)
-    }
-}
-
 impl fmt::Display for Column {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(self)
     }
 }
 
-impl Serialize for Column {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.serialize_str(self)
-    }
-}
-
-/// Another experiment, whose table is read. Where it is named is no part of what it means.
-#[derive(Debug, Clone)]
-pub struct TableName {
-    name: String,
-    span: Span,
-}
+/// Another experiment, whose table is read.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct TableName(Placed);
 
 impl TableName {
     pub(crate) fn read(at: At<'_>) -> Option<Self> {
-        Some(Self { name: at.text()?, span: at.span() })
+        Some(Self(Placed { name: at.text()?, span: at.span() }))
     }
 
     pub(crate) fn span(&self) -> Span {
-        self.span
+        self.0.span
     }
 }
 
@@ -123,18 +124,6 @@ impl Deref for TableName {
     type Target = str;
 
     fn deref(&self) -> &str {
-        &self.name
-    }
-}
-
-impl PartialEq for TableName {
-    fn eq(&self, other: &Self) -> bool {
-        self.name == other.name
-    }
-}
-
-impl Serialize for TableName {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.serialize_str(self)
+        &self.0.name
     }
 }

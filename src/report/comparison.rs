@@ -42,8 +42,7 @@ pub(super) fn in_short(judged: &[Judged]) -> String {
 /// `Stands in part: 2 of 3 statements agree.`
 fn conclusion(judged: &[Judged]) -> String {
     let tally = Tally::of(judged);
-    let fitted = tally.count(Verdict::Fitted);
-    let evidence = tally.total() - fitted;
+    let (fitted, evidence) = (tally.count(Verdict::Fitted), tally.evidence());
     if fitted == 0 || evidence == 0 {
         let all = counted(tally.total(), "statement agrees", "statements agree");
         return format!("{}: {} of {all} ({}).", outcome(&tally), tally.agreeing(), tally.describe());
@@ -60,7 +59,7 @@ fn conclusion(judged: &[Judged]) -> String {
 
 /// What became of these entries together, in a word or two. What was fitted is no evidence.
 pub(super) fn outcome(tally: &Tally) -> &'static str {
-    let evidence = tally.total() - tally.count(Verdict::Fitted);
+    let evidence = tally.evidence();
     match tally.count(Verdict::Reproduced) {
         _ if tally.total() == 0 || tally.has(Verdict::Missing) => "Not complete",
         _ if evidence == 0 => "Fitted, not tested",

@@ -35,7 +35,7 @@ fn row(finding: &Finding, experiments: &[ExperimentView<'_>]) -> [String; 3] {
     let why = why.map_or_else(String::new, |lead| first_sentence(&explanation(lead)));
     let tally = Tally::of(all);
     let (agree, fitted) = (tally.count(Verdict::Reproduced), tally.count(Verdict::Fitted));
-    let evidence = tally.total() - fitted;
+    let evidence = tally.evidence();
     let mut share = if agree > 0 && agree < evidence { format!(", {agree} of {evidence}") } else { String::new() };
     if fitted > 0 && evidence > 0 {
         share += &format!("; {fitted} more fitted");

@@ -96,6 +96,11 @@ impl Tally {
         self.each().filter(|(verdict, _)| agrees(*verdict)).map(|(_, count)| count).sum()
     }
 
+    /// How many were not fitted: what was fitted is no evidence.
+    pub(super) fn evidence(&self) -> usize {
+        self.total() - self.count(Verdict::Fitted)
+    }
+
     /// True if some entry has this verdict.
     pub(super) fn has(&self, verdict: Verdict) -> bool {
         self.count(verdict) > 0
