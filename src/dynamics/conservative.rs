@@ -4,10 +4,12 @@
 //! only the dashpots are new.
 
 use std::cell::OnceCell;
+use std::rc::Rc;
 
 use super::EngineError;
 use super::cholesky::Cholesky;
 use super::damped;
+use super::load::Load;
 use super::spectral::Spectral;
 use super::system::{Contact, Face, HybridSystem, Matrix, dot};
 use super::undamped::NormalModes;
@@ -30,6 +32,10 @@ pub(crate) struct Conservative {
 pub(crate) struct Normal {
     pub(crate) modes: NormalModes,
     damping: Vec<f64>,
+    /// What the modes compress each attached particle's face by.
+    compressions: Vec<Vec<f64>>,
+    /// Answer to gravity, once it is known.
+    pub(crate) gravity: OnceCell<Rc<Load>>,
 }
 
 impl Conservative {
@@ -60,22 +66,21 @@ impl Conservative {
             let order = modes.omega.len();
             let damping = (0..order * order).map(|at| (at / order, at % order));
             let damping = damping.map(|(i, j)| if i < j { entry(j, i) } else { entry(i, j) }).collect();
-            Some(Normal { modes, damping })
+            let each = || modes.shapes.iter().zip(&modes.omega);
+            let compression = |place: usize| each().map(|(shape, omega)| omega * shape[place]).collect();
+            let compressions = (n..order).map(compression).collect();
+            Some(Normal { modes, damping, compressions, gravity: OnceCell::new() })
         };
         self.normal.get_or_init(build).as_ref()
     }
 
     /// The blocks of (p, p′) under dashpots, where they come from normal modes.
     pub(crate) fn split(&self, system: &HybridSystem, contacts: &[Contact], damping: &[f64]) -> Option<Spectral> {
-        let Normal { modes, damping: structural } = self.normal(system, contacts)?;
-        let order = modes.omega.len();
+        let Normal { modes, damping: structural, compressions, .. } = self.normal(system, contacts)?;
         let mut all = structural.clone();
-        for (slot, &j) in self.attached.iter().enumerate() {
-            let place = system.mass.order + slot;
-            let row: Vec<f64> =
-                modes.shapes.iter().zip(&modes.omega).map(|(shape, omega)| omega * shape[place]).collect();
-            for (entries, x) in all.chunks_exact_mut(order).zip(&row) {
-                entries.iter_mut().zip(&row).for_each(|(entry, y)| *entry += damping[j] * (x * y));
+        for (&j, row) in self.attached.iter().zip(compressions) {
+            for (entries, x) in all.chunks_exact_mut(row.len()).zip(row) {
+                entries.iter_mut().zip(row).for_each(|(entry, y)| *entry += damping[j] * (x * y));
             }
         }
         damped::split(modes, &all)

@@ -14,7 +14,7 @@ use std::cell::OnceCell;
 use std::rc::Rc;
 
 use super::EngineError;
-use super::conservative::{self, Conservative, face_of};
+use super::conservative::{self, Conservative, Normal, face_of};
 use super::contact::{Hold, Side};
 use super::load::{Load, Steady};
 use super::schur::Iteration;
@@ -101,11 +101,11 @@ pub(crate) struct Modes {
     pub(crate) to_blocks: Superposition,
     pub(crate) columns: Superposition,
     /// Answer to gravity.
-    pub(crate) gravity: Load,
+    pub(crate) gravity: Rc<Load>,
     /// What it would be without dashpots.
     bare: Rc<Conservative>,
     /// It is split by the normal modes of that.
-    is_normal: bool,
+    pub(crate) is_normal: bool,
 }
 
 impl Modes {
@@ -133,7 +133,7 @@ impl Modes {
             columns: Superposition::default(),
             is_normal: normal.is_some(),
             spectral: Spectral::default(),
-            gravity: Load::default(),
+            gravity: Rc::default(),
             bare,
         };
         modes.spectral = match normal {
@@ -153,7 +153,9 @@ impl Modes {
         };
         modes.to_blocks = Superposition::new(modes.spectral.width(), &modes.spectral.to_blocks);
         modes.columns = Superposition::transposed(2 * order, modes.spectral.width(), &modes.spectral.from_blocks);
-        modes.gravity = modes.load(system, &modes.falls(system));
+        let gravity = || Rc::new(modes.load(system, &modes.falls(system)));
+        modes.gravity =
+            modes.normal(system).map_or_else(gravity, |normal| Rc::clone(normal.gravity.get_or_init(gravity)));
         Ok(modes)
     }
 
@@ -174,11 +176,15 @@ impl Modes {
 
     /// Its answer to a constant load, which alone would give p these accelerations.
     pub(crate) fn load(&self, system: &HybridSystem, load: &[f64]) -> Load {
-        let normal = if self.is_normal { self.bare.normal(system, &self.contacts) } else { None };
-        match normal {
+        match self.normal(system) {
             Some(normal) => Load::still(normal.modes.rest(load), self.spectral.blocks.len()),
             None => Load::new(load, &self.spectral, self.accelerations(system)),
         }
+    }
+
+    /// The normal modes that it is split by.
+    fn normal(&self, system: &HybridSystem) -> Option<&Normal> {
+        if self.is_normal { self.bare.normal(system, &self.contacts) } else { None }
     }
 
     /// The same with blocks that take in a harmonic drive, where that is in resonance with some of them; and what is steady then.
@@ -190,7 +196,7 @@ impl Modes {
             spectral,
             ..self.clone()
         };
-        modes.gravity = modes.load(system, &modes.falls(system));
+        modes.gravity = Rc::new(modes.load(system, &modes.falls(system)));
         Some((modes, steady))
     }
 

@@ -13,6 +13,8 @@
 //!
 //! What is overdamped, does not converge, or leaves the modes dependent on each other is none of this: a Schur form splits it.
 
+use std::cell::RefCell;
+
 use nalgebra::DMatrix;
 
 use super::block::Block;
@@ -84,19 +86,22 @@ impl Complexes {
 /// Splits (e, e′) under the dashpots `damping`, row by row in normal coordinates of modal mass 1: V and W as
 /// [`super::modes::split`] has them, fastest blocks first.
 pub(super) fn split(modes: &NormalModes, damping: &[f64]) -> Option<Spectral> {
-    let problem = Problem { modes, damping };
-    let mut found = Vec::with_capacity(modes.omega.len().div_ceil(WIDTH));
-    let mut work = Work::new(modes.omega.len());
-    for first in (0..modes.omega.len()).step_by(WIDTH) {
-        found.push(problem.solve(first, &mut work)?);
-    }
-    let mut spectral = problem.assemble(&found);
-    match problem.independence(&found) {
-        Independence::Exact => {}
-        Independence::Near => correct(&mut spectral),
-        Independence::None => return None,
-    }
-    Some(spectral)
+    let (problem, count) = (Problem { modes, damping }, modes.omega.len());
+    WORK.with_borrow_mut(|work| {
+        work.make_room(count);
+        let found = (0..count).step_by(WIDTH).map(|first| problem.solve(first, work)).collect::<Option<Vec<_>>>()?;
+        let mut spectral = problem.assemble(&found, &work.shapes);
+        match problem.independence(&found, &work.shapes) {
+            Independence::Exact => {}
+            Independence::Near => correct(&mut spectral),
+            Independence::None => return None,
+        }
+        Some(spectral)
+    })
+}
+
+thread_local! {
+    static WORK: RefCell<Work> = RefCell::default();
 }
 
 /// The equation of all modes.
@@ -105,11 +110,9 @@ struct Problem<'a> {
     damping: &'a [f64],
 }
 
-/// Several modes.
+/// Several modes; their shapes stand in [`Work`].
 struct Found {
     lambda: Complexes,
-    /// x, by normal coordinates.
-    shape: Vec<Complexes>,
     /// σ.
     size: Complexes,
 }
@@ -141,30 +144,31 @@ impl Problem<'_> {
         let own = self.side_by_side(first);
         // Each mode's own coordinate is the last of its equation.
         let place = |lane: usize, i: usize| if i + 1 == n { own[lane] } else { i + usize::from(i >= own[lane]) };
-        let places: Vec<[usize; WIDTH]> = (0..n).map(|i| std::array::from_fn(|lane| place(lane, i))).collect();
-        let squares: Vec<Four> = places.iter().map(|places| Four::new(places.map(|i| omega[i] * omega[i]))).collect();
-        let mut damping = vec![Four::ZERO; n * n];
-        for (i, row) in damping.chunks_exact_mut(n).enumerate() {
-            let from = places[i].map(|place| &self.damping[place * n..][..n]);
-            for (entry, places) in row[..=i].iter_mut().zip(&places) {
+        work.places.clear();
+        work.places.extend((0..n).map(|i| std::array::from_fn(|lane| place(lane, i))));
+        for (i, row) in work.damping.chunks_exact_mut(n).enumerate() {
+            let own = work.places[i];
+            work.squares[i] = Four::new(own.map(|place| omega[place] * omega[place]));
+            let from = own.map(|place| &self.damping[place * n..][..n]);
+            for (entry, places) in row[..=i].iter_mut().zip(&work.places) {
                 *entry = Four::new(std::array::from_fn(|lane| from[lane][places[lane]]));
             }
         }
-        let half = damping[n * n - 1] * 0.5;
-        let root = squares[n - 1] - half * half;
+        let half = work.damping[n * n - 1] * 0.5;
+        let root = work.squares[n - 1] - half * half;
         if !root.array().iter().all(|square| *square > 0.0) {
             return None;
         }
         let mut lambda = Complexes { re: half * -1.0, im: root.map(f64::sqrt) };
         let mut is_last = false;
         for _ in 0..MOST_STEPS {
-            let step = newton(lambda, &squares, &damping, work);
+            let step = newton(lambda, work);
             let below = |share: f64| {
                 let [step, size] = [step.square().array(), lambda.square().array()];
                 (0..WIDTH).all(|lane| step[lane] <= share * share * size[lane])
             };
             if is_last {
-                return below(CONVERGED).then(|| found(lambda, &squares, &work.x, &places));
+                return below(CONVERGED).then(|| found(lambda, work));
             }
             is_last = below(LAST_STEP);
             lambda = lambda.minus(step);
@@ -174,28 +178,28 @@ impl Problem<'_> {
 
     widened! {
         /// How nearly each mode's row passes over all other modes.
-        fn independence | independence_wide (&self, found: &[Found]) -> Independence = independence_by_registers
+        fn independence | independence_wide (&self, found: &[Found], shapes: &[Complexes]) -> Independence = independence_by_registers
     }
 
     #[inline(always)]
-    fn independence_by_registers(&self, found: &[Found]) -> Independence {
+    fn independence_by_registers(&self, found: &[Found], shapes: &[Complexes]) -> Independence {
         let n = self.modes.omega.len();
-        let squares: Vec<f64> = self.modes.omega.iter().map(|omega| omega * omega).collect();
         let (mut most, mut worst) = (Four::ZERO, Four::ZERO);
         let larger = |a: f64, b: f64| if a < b || b.is_nan() { b } else { a };
-        for (group, Found { lambda, shape, size }) in found.iter().enumerate() {
+        for (group, (Found { lambda, size }, shape)) in found.iter().zip(shapes.chunks_exact(n)).enumerate() {
             let own = self.side_by_side(group * WIDTH);
             // w v of one mode and another is v w of the other and the one.
             for other in group * WIDTH..n {
-                let (others, lane) = (&found[other / WIDTH], other % WIDTH);
+                let (of_other, lane) = (other / WIDTH, other % WIDTH);
+                let (others, of_others) = (&found[of_other], &shapes[of_other * n..]);
                 // Σ x y and Σ Ω² x y, with y and with its conjugate.
                 let (mut sums, mut stiff) = ([Four::ZERO; 4], [Four::ZERO; 4]);
-                for ((x, y), square) in shape.iter().zip(&others.shape).zip(&squares) {
-                    let y = y.all(lane);
+                for ((x, y), omega) in shape.iter().zip(of_others).zip(&self.modes.omega) {
+                    let (y, square) = (y.all(lane), omega * omega);
                     let terms = [x.re * y.re, x.im * y.im, x.re * y.im, x.im * y.re];
                     for i in 0..4 {
                         sums[i] = sums[i] + terms[i];
-                        stiff[i] = stiff[i] + terms[i] * *square;
+                        stiff[i] = stiff[i] + terms[i] * square;
                     }
                 }
                 let plain = |[a, b, c, d]: [Four; 4]| Complexes { re: a - b, im: c + d };
@@ -231,34 +235,26 @@ impl Problem<'_> {
 
     widened! {
         /// Their blocks, with V and W.
-        fn assemble | assemble_wide (&self, found: &[Found]) -> Spectral = assemble_by_registers
+        fn assemble | assemble_wide (&self, found: &[Found], shapes: &[Complexes]) -> Spectral = assemble_by_registers
     }
 
     #[inline(always)]
-    fn assemble_by_registers(&self, found: &[Found]) -> Spectral {
+    fn assemble_by_registers(&self, found: &[Found], shapes: &[Complexes]) -> Spectral {
         let n = self.modes.omega.len();
         let width = 2 * n;
-        let of = |k: usize| (&found[k / WIDTH], k % WIDTH);
-        let blocks: Vec<([f64; 4], Block)> = (0..n)
-            .map(|k| {
-                let (found, lane) = of(k);
-                let (a, b) = (found.lambda.re.at(lane), found.lambda.im.at(lane));
-                let matrix = [a, -b, b, a];
-                (matrix, Block::new(matrix))
-            })
-            .collect();
-        let mut order: Vec<usize> = (0..n).collect();
-        order.sort_by(|&k, &l| blocks[l].1.radius.total_cmp(&blocks[k].1.radius));
-        let mut slots = vec![0; n];
-        order.iter().enumerate().for_each(|(slot, &k)| slots[k] = slot);
-        let mut spectral = Spectral {
-            from_blocks: vec![0.0; width * width],
-            to_blocks: vec![0.0; width * width],
-            matrices: order.iter().map(|&k| blocks[k].0).collect(),
-            blocks: order.iter().map(|&k| blocks[k].1).collect(),
-            lasts: f64::INFINITY,
+        let matrix = |k: usize| {
+            let Complexes { re, im } = &found[k / WIDTH].lambda;
+            let (a, b) = (re.at(k % WIDTH), im.at(k % WIDTH));
+            [a, -b, b, a]
         };
-        for (group, Found { lambda, shape, size }) in found.iter().enumerate() {
+        let mut order: Vec<(usize, f64)> = (0..n).map(|k| (k, Block::new(matrix(k)).radius)).collect();
+        order.sort_by(|(_, one), (_, other)| other.total_cmp(one));
+        let mut slots = vec![0; n];
+        order.iter().enumerate().for_each(|(slot, (k, _))| slots[*k] = slot);
+        let matrices = order.iter().map(|(k, _)| matrix(*k)).collect();
+        let [from_blocks, to_blocks] = [vec![0.0; width * width], vec![0.0; width * width]];
+        let mut spectral = Spectral::new(from_blocks, to_blocks, matrices, f64::INFINITY);
+        for (group, (Found { lambda, size }, shape)) in found.iter().zip(shapes.chunks_exact(n)).enumerate() {
             let first = group * WIDTH;
             let lanes = WIDTH.min(n - first);
             let inverse = size.inverse();
@@ -291,32 +287,43 @@ impl Problem<'_> {
     }
 }
 
-/// Modes whose coordinates stand at these places.
+/// The modes that Newton's method has come to; their shapes go behind those before, by normal coordinates.
 #[inline(always)]
-fn found(lambda: Complexes, squares: &[Four], x: &[Complexes], places: &[[usize; WIDTH]]) -> Found {
-    let mut shape = vec![Complexes::ZERO; x.len()];
+fn found(lambda: Complexes, work: &mut Work) -> Found {
+    let Work { places, squares, x, shapes, .. } = work;
+    let first = shapes.len();
+    shapes.resize(first + x.len(), Complexes::ZERO);
     for (x, places) in x.iter().zip(places) {
         for (lane, place) in places.iter().enumerate() {
-            let to = &mut shape[*place];
+            let to = &mut shapes[first + *place];
             to.re.set(lane, x.re.at(lane));
             to.im.set(lane, x.im.at(lane));
         }
     }
     let [sum, stiff] = norms(x, squares);
-    Found { lambda, shape, size: lambda.times(lambda).times(sum).minus(stiff) }
+    Found { lambda, size: lambda.times(lambda).times(sum).minus(stiff) }
 }
 
 /// xᵀx and xᵀΩ²x.
 #[inline(always)]
 fn norms(x: &[Complexes], squares: &[Four]) -> [Complexes; 2] {
-    x.iter().zip(squares).fold([Complexes::ZERO; 2], |[sum, stiff], (x, square)| {
+    let (mut sum, mut stiff) = (Complexes::ZERO, Complexes::ZERO);
+    for (x, square) in x.iter().zip(squares) {
         let own = x.times(*x);
-        [sum.plus(own), stiff.plus(own.scaled(*square))]
-    })
+        (sum, stiff) = (sum.plus(own), stiff.plus(own.scaled(*square)));
+    }
+    [sum, stiff]
 }
 
-/// Room to work in.
+/// Room to work in, of one split after another.
+#[derive(Default)]
 struct Work {
+    /// Which normal coordinates stand at each place of the equation, mode by mode.
+    places: Vec<[usize; WIDTH]>,
+    /// Ω² there.
+    squares: Vec<Four>,
+    /// C, row by row up to the diagonal.
+    damping: Vec<Four>,
     /// L, row by row, without its diagonal of ones.
     lower: Vec<Complexes>,
     /// The row at hand before it is divided by the pivots.
@@ -325,22 +332,30 @@ struct Work {
     inverse: Vec<Complexes>,
     /// L⁻ᵀ e_n.
     x: Vec<Complexes>,
+    /// x of all modes that are found, by normal coordinates.
+    shapes: Vec<Complexes>,
 }
 
 impl Work {
-    fn new(n: usize) -> Self {
-        let numbers = |count| vec![Complexes::ZERO; count];
-        Self { lower: numbers(n * n), row: numbers(n), inverse: numbers(n), x: numbers(n) }
+    /// For so many modes; whatever stands there is written before it is read.
+    fn make_room(&mut self, count: usize) {
+        self.shapes.clear();
+        self.squares.resize(count, Four::ZERO);
+        self.damping.resize(count * count, Four::ZERO);
+        self.lower.resize(count * count, Complexes::ZERO);
+        for numbers in [&mut self.row, &mut self.inverse, &mut self.x] {
+            numbers.resize(count, Complexes::ZERO);
+        }
     }
 }
 
 /// Newton's step for λ, and x in passing: L D Lᵀ = λ² + λ C + Ω², row by row, whose last pivot is r.
 #[inline(always)]
-fn newton(lambda: Complexes, squares: &[Four], damping: &[Four], work: &mut Work) -> Complexes {
+fn newton(lambda: Complexes, work: &mut Work) -> Complexes {
+    let Work { squares, damping, lower, row, inverse, x, .. } = work;
     let n = squares.len();
     let square = lambda.times(lambda);
     let mut r = square;
-    let Work { lower, row, inverse, x } = work;
     for (i, entries) in damping.chunks_exact(n).enumerate() {
         let (above, own) = lower.split_at_mut(i * n);
         for (j, before) in above.chunks_exact(n).enumerate() {
@@ -362,8 +377,8 @@ fn newton(lambda: Complexes, squares: &[Four], damping: &[Four], work: &mut Work
     x[n - 1] = Complexes { re: Four::all(1.0), im: Four::ZERO };
     for i in (0..n - 1).rev() {
         let mut sum = Complexes::ZERO;
-        for (p, x) in x.iter().enumerate().skip(i + 1) {
-            sum = sum.minus(lower[p * n + i].times(*x));
+        for (row, x) in lower.chunks_exact(n).zip(&*x).skip(i + 1) {
+            sum = sum.minus(row[i].times(*x));
         }
         x[i] = sum;
     }
@@ -527,15 +542,16 @@ mod tests {
             let modes = NormalModes::new(&system.stiffness, &system.mass).expect("springs are positive");
             let damping = system.in_normal_coordinates(&modes);
             let problem = Problem { modes: &modes, damping: &damping };
-            let mut work = Work::new(modes.omega.len());
-            let bits = |found: Option<Found>| {
-                let found = found.expect("it is lightly damped");
-                let each = found.shape.iter().chain([&found.lambda, &found.size]);
+            let mut work = Work::default();
+            let mut bits = |solve: fn(&Problem, usize, &mut Work) -> Option<Found>| {
+                work.make_room(modes.omega.len());
+                let found = [0, 4].map(|first| solve(&problem, first, &mut work).expect("it is lightly damped"));
+                let each = work.shapes.iter().chain(found.iter().flat_map(|found| [&found.lambda, &found.size]));
                 each.flat_map(|z| [z.re.array(), z.im.array()]).flatten().map(f64::to_bits).collect::<Vec<_>>()
             };
-            for first in [0, 4] {
-                assert_eq!(bits(problem.solve(first, &mut work)), bits(problem.solve_by_registers(first, &mut work)));
-            }
+            let here = bits(|problem, first, work| problem.solve(first, work));
+            let everywhere = bits(|problem, first, work| problem.solve_by_registers(first, work));
+            assert_eq!(here, everywhere);
         }
     }
 }

@@ -15,6 +15,7 @@ use super::conservative::Conservative;
 use super::contact_state::Modes;
 use super::dissipation::Dissipation;
 use super::exact;
+use super::four::Four;
 use super::gains::{Closed, Square};
 use super::lanes::WIDTH;
 use super::load::{self, Load, Steady};
@@ -48,7 +49,7 @@ pub(crate) struct Flow {
     /// Coordinates: those of the structure, then one per resilient contact.
     pub(crate) order: usize,
     /// Answer to a unit force at the forcing point.
-    force: Load,
+    force: Rc<Load>,
     /// Answer to sin ω t at the forcing point: p = cosine·cos ω t + sine·sin ω t.
     harmonic: Option<Steady>,
     /// Signals that are watched or measured.
@@ -75,20 +76,23 @@ impl Flow {
     /// Builds the flow of a contact state with the contact damping now in force.
     pub(crate) fn build(system: &HybridSystem, contacts: &[Contact], damping: &[f64]) -> Result<Self, EngineError> {
         let bare = Rc::new(Conservative::new(system, contacts)?);
-        Self::driven(system, Rc::new(Modes::new(system, bare, contacts, damping)?))
+        Self::driven(system, Rc::new(Modes::new(system, bare, contacts, damping)?), None)
     }
 
-    /// The flow of a contact state whose modes are known, under the drive of `system`.
-    pub(crate) fn driven(system: &HybridSystem, modes: Rc<Modes>) -> Result<Self, EngineError> {
-        let push = modes.answer(system, &system.force_row);
-        let (modes, harmonic) = match system.drive.harmonic {
-            None => (modes, None),
+    /// The flow of a contact state whose modes are known, under the drive of `system`; `like` is one under other dampings.
+    pub(crate) fn driven(system: &HybridSystem, modes: Rc<Modes>, like: Option<&Self>) -> Result<Self, EngineError> {
+        let push = || modes.answer(system, &system.force_row);
+        let answer = |modes: &Modes| Rc::new(modes.load(system, &push()));
+        // No dashpot holds anything at rest.
+        let like = like.filter(|like| modes.is_normal && like.modes.is_normal);
+        let (modes, harmonic, force) = match system.drive.harmonic {
+            None => (Rc::clone(&modes), None, like.map_or_else(|| answer(&modes), |like| Rc::clone(&like.force))),
             Some(drive) => {
-                let (modes, steady) = answered(system, modes, &push, drive.angular_frequency)?;
-                (modes, Some(steady))
+                let (modes, steady) = answered(system, Rc::clone(&modes), &push(), drive.angular_frequency)?;
+                let force = answer(&modes);
+                (modes, Some(steady), force)
             }
         };
-        let force = modes.load(system, &push);
         let mut blocks = modes.spectral.blocks.clone();
         let own = blocks.len();
         let turning = blocks.iter().filter(|block| block.oscillates());
@@ -154,20 +158,17 @@ impl Flow {
         self.squares.get_or_init(|| self.rows.observed.iter().map(square).collect())
     }
 
-    /// The signal r·p.
+    /// The signal r·p; a row may end where only zeros follow.
     pub(crate) fn row(&self, row: &[f64]) -> Row {
         let size = self.modes.spectral.width();
         // By values and by rates: r·V, column by column of V.
-        let mut weights = vec![[0.0; 4]; self.own];
-        weights.reserve_exact(self.blocks.len() - self.own);
-        for half in 0..2 {
-            for (i, r) in row.iter().enumerate().filter(|(_, r)| **r != 0.0) {
-                let place = (half * self.order + i) * size;
-                let entries = self.modes.spectral.from_blocks[place..place + size].as_chunks::<2>().0;
-                for (weight, [x, y]) in weights.iter_mut().zip(entries) {
-                    weight[2 * half] += r * x;
-                    weight[2 * half + 1] += r * y;
-                }
+        let mut weights = Vec::with_capacity(self.blocks.len());
+        weights.resize(self.own, [0.0; 4]);
+        let (values, rates) = self.modes.spectral.from_blocks.split_at(self.order * size);
+        for (i, r) in row.iter().enumerate().filter(|(_, r)| **r != 0.0) {
+            let [values, rates] = [values, rates].map(|entries| entries[i * size..][..size].as_chunks::<2>().0);
+            for ((weight, &[v0, v1]), &[r0, r1]) in weights.iter_mut().zip(values).zip(rates) {
+                *weight = (Four::new(*weight) + *r * Four::new([v0, v1, r0, r1])).array();
             }
         }
         let mut drift = [[0.0; 2]; 2];

@@ -12,7 +12,7 @@ use super::contact_state::{Modes, way_across};
 use super::four::Four;
 use super::lanes::WIDTH;
 use super::parabola::Parabola;
-use super::system::{Contact, HybridSystem, Law, Particle};
+use super::system::{Contact, Face, HybridSystem, Law, Particle};
 use super::wide::widened;
 
 /// One signal: two weights of each block's coordinates for its value, two for its rate; then what constant loads add.
@@ -119,7 +119,8 @@ impl Row {
         let weights = blocks.iter().zip(&self.weights);
         Self {
             weights: weights.map(|(block, row)| if block.is_drift() { [0.0; 4] } else { *row }).collect(),
-            ..self.clone()
+            gravity: self.gravity,
+            force: self.force,
         }
     }
 
@@ -181,7 +182,7 @@ impl Row {
 
     /// What constant loads add, under this force.
     #[inline(always)]
-    fn rest(&self, force: f64) -> Parabola {
+    pub(crate) fn rest(&self, force: f64) -> Parabola {
         self.gravity.plus(self.force.times(force))
     }
 }
@@ -192,13 +193,12 @@ fn across(
     blocks: &[Block],
     j: usize,
     particle: &Particle,
-    padded: &impl Fn(&[f64]) -> Row,
     signal: &impl Fn(&[f64]) -> Row,
 ) -> Option<[Row; 2]> {
     let contact = modes.contacts[j];
     let way = match (contact, contact.face(particle)) {
         (Contact::Flight, _) => return None,
-        (_, None) => padded(&contact.side().opposite().face(particle).row).fixed(blocks),
+        (_, None) => signal(&contact.side().opposite().face(particle).row).fixed(blocks),
         (_, Some(_)) => signal(&way_across(particle, contact, modes.slot(j), modes.attached.len())),
     };
     let force = match modes.across(j) {
@@ -212,66 +212,47 @@ impl Rows {
     /// What a contact state needs; `blocks` are its own and the drive's, `signal` gives r·p of a row r.
     pub(crate) fn new(system: &HybridSystem, modes: &Modes, blocks: &[Block], signal: impl Fn(&[f64]) -> Row) -> Self {
         let mut all = Self::default();
-        let padded = |row: &[f64]| {
-            let mut padded = row.to_vec();
-            padded.resize(modes.order, 0.0);
-            signal(&padded)
-        };
+        all.rows.reserve(2 + 3 * system.particles.len() + system.observed_rows.len());
         if let Some(row) = system.base_row() {
-            all.base = all.place(padded(row));
+            all.base = all.place(signal(row));
             let bend = all.rows[all.base].acceleration(blocks);
-            all.bend_of_places = modes
-                .spectral
-                .to_blocks
-                .chunks_exact(modes.spectral.width())
-                .take(modes.order)
-                .map(|entries| {
-                    let each = bend.weights.iter().zip(entries.as_chunks::<2>().0);
-                    each.fold(0.0, |sum, ([v0, v1, ..], [x, y])| sum + (v0 * x).abs() + (v1 * y).abs())
-                })
-                .collect();
+            let answer = |entries: &[f64]| {
+                let each = bend.weights.iter().zip(entries.as_chunks::<2>().0);
+                each.fold(0.0, |sum, ([v0, v1, ..], [x, y])| sum + (v0 * x).abs() + (v1 * y).abs())
+            };
+            let places = modes.spectral.to_blocks.chunks_exact(modes.spectral.width()).take(modes.order);
+            all.bend_of_places = places.map(answer).collect();
             all.bend = Some(all.place(bend));
         }
-        let compression = |j: usize| {
-            let mut unit = vec![0.0; modes.order];
-            unit[system.mass.order + modes.slot(j)?] = 1.0;
-            Some(signal(&unit))
-        };
-        let faces = |particle: &Particle| {
-            let floor = padded(&particle.floor.row);
-            let ceiling = particle.ceiling.as_ref().filter(|_| particle.has_walls());
-            (floor, ceiling.map(|face| padded(&face.row)))
-        };
-        let faces: Vec<(Row, Option<Row>)> = system.particles.iter().map(faces).collect();
         let drifts = blocks.iter().any(Block::is_drift);
-        let mut compressions = vec![None; system.particles.len()];
+        let fixed = |row: Row| if drifts { row.fixed(blocks) } else { row };
+        let mut unit = vec![0.0; modes.order];
         for (j, particle) in system.particles.iter().enumerate() {
             let contact = modes.contacts[j];
             let side = contact.side();
-            let (floor, ceiling) = &faces[j];
-            let ceiling = ceiling.as_ref().unwrap_or(floor);
-            let face = if side == Side::Floor { floor } else { ceiling };
             let force = |row: &Row| match side.face(particle).law {
                 Law::Resilient { stiffness, .. } => row.mixed(blocks, stiffness, modes.damping[j]),
                 Law::Rigid { .. } => row.clone(),
             };
             let (first, second) = match contact {
-                Contact::Flight if !drifts => (all.place(face.clone()), all.place(ceiling.clone())),
-                Contact::Flight => (all.place(face.fixed(blocks)), all.place(ceiling.fixed(blocks))),
+                Contact::Flight => all.place_faces(particle, |face| fixed(signal(&face.row))),
                 Contact::FloorReleased | Contact::CeilingReleased | Contact::BothReleased => {
-                    let fixed = face.fixed(blocks);
-                    (all.place(fixed.clone()), all.place(force(&fixed)))
+                    let fixed = fixed(signal(&side.face(particle).row));
+                    let force = force(&fixed);
+                    (all.place(fixed), all.place(force))
                 }
-                _ => match compression(j) {
-                    Some(own) => {
+                _ => match modes.slot(j) {
+                    Some(slot) => {
+                        unit[system.mass.order + slot] = 1.0;
+                        let own = signal(&unit);
+                        unit[system.mass.order + slot] = 0.0;
                         let pulls = !matches!(side.face(particle).law, Law::Resilient { no_tension: true, .. });
                         let second = (!pulls).then(|| force(&own));
                         let first = all.place(own);
-                        compressions[j] = Some(first);
                         (first, second.map_or(first, |second| all.place(second)))
                     }
                     None => {
-                        let mut bend = face.acceleration(blocks);
+                        let mut bend = signal(&side.face(particle).row).acceleration(blocks);
                         // What the face across pushes, the face that holds the particle pushes back.
                         if let Some(across) = modes.across(j).filter(|across| across.presses) {
                             let pull = signal(&across.row).mixed(blocks, across.stiffness, across.damping);
@@ -282,7 +263,7 @@ impl Rows {
                     }
                 },
             };
-            let across = particle.has_walls().then(|| across(modes, blocks, j, particle, &padded, &signal)).flatten();
+            let across = particle.has_walls().then(|| across(modes, blocks, j, particle, &signal)).flatten();
             let across = across.map(|[way, force]| AcrossRows { way: all.place(way), force: all.place(force) });
             all.guards.push(GuardRows { first, second, across });
         }
@@ -291,14 +272,15 @@ impl Rows {
         for row in &all.rows {
             all.weights.extend(row.weights.chunks(WIDTH).map(together));
         }
-        for row in &system.observed_rows {
-            let place = all.place(padded(row));
-            all.observed.push(place);
-        }
-        for ((floor, ceiling), compression) in faces.into_iter().zip(compressions) {
-            let floor = all.place(floor);
-            let ceiling = ceiling.map_or(floor, |row| all.place(row));
-            all.faces.push(FaceRows { floor, ceiling, compression });
+        all.observed = system.observed_rows.iter().map(|row| all.place(signal(row))).collect();
+        for (j, particle) in system.particles.iter().enumerate() {
+            let GuardRows { first, second, .. } = all.guards[j];
+            let (floor, ceiling) = if modes.contacts[j] == Contact::Flight && !drifts {
+                (first, second)
+            } else {
+                all.place_faces(particle, |face| signal(&face.row))
+            };
+            all.faces.push(FaceRows { floor, ceiling, compression: modes.slot(j).map(|_| first) });
         }
         all
     }
@@ -315,6 +297,13 @@ impl Rows {
             self.rows.push(row);
             self.rows.len() - 1
         })
+    }
+
+    /// Where the rows of both faces stand: one row, if they move as one.
+    fn place_faces(&mut self, particle: &Particle, row: impl Fn(&Face) -> Row) -> (usize, usize) {
+        let floor = self.place(row(&particle.floor));
+        let ceiling = particle.ceiling.as_ref().filter(|_| particle.has_walls());
+        (floor, ceiling.map_or(floor, |ceiling| self.place(row(ceiling))))
     }
 
     /// A row, watched or not.

@@ -153,7 +153,8 @@ impl States {
                 Modes::new(system, bare, contacts, damping)
             },
         )?;
-        Flow::driven(system, modes)
+        let like = self.0.flows.borrow().get(contacts).and_then(|known| known.last().cloned());
+        Flow::driven(system, modes, like.as_deref())
     }
 }
 

@@ -142,13 +142,11 @@ impl<E: Effects> March<'_, E> {
             return;
         }
         let rows = &self.flow.rows;
-        let base = self.signals.of(rows.base);
-        self.panels.clear();
-        self.panels.add(base.each(), base.rest);
         let observed = || rows.observed.iter().filter(|_| averaged);
-        for &row in observed().filter(|row| **row != rows.base) {
-            let (shares, rest) = rows.evaluate(row, &self.c, self.level);
-            self.panels.add(shares.into_iter(), rest);
+        self.panels.clear();
+        for &row in std::iter::once(&rows.base).chain(observed().filter(|row| **row != rows.base)) {
+            let row = rows.row(row);
+            self.panels.add(row.phases(&self.c), row.rest(self.level));
         }
         let Some((base, others)) = self.panels.integrate(&self.flow.blocks, length).split_first() else { return };
         if !self.half.idle {
