@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::extraction::{Direction, Extraction, Side, direction, extraction, side, two_or_more};
 use super::line::Pair;
-use super::mapping::{Reads, claim, forms, mapping};
+use super::mapping::{Reads, claim, mapping};
 use super::name::{Column, in_unit_of};
 use super::selection::is_number;
 use super::text::{percent, significant};
@@ -44,42 +44,59 @@ mapping! {
 mapping! {
     "an equality" Equal {
         values: Vec<Extraction> = required("The numbers", |at| two_or_more(at, extraction, "equality needs two numbers or more")),
-        within: Within = required("How near", within),
+        within: Within = required("How near", within(unit_of(values.as_ref()))),
     }
 }
 mapping! {
     "an inequality" Apart {
         values: Vec<Extraction> = required("The numbers", |at| two_or_more(at, extraction, "inequality needs two numbers or more")),
-        by: Within = required("How far, at least, any two of them", within),
-    }
-}
-forms! {
-    "a distance" Within {
-        Relative(f64) = form("relative", "A fraction of the larger magnitude", |at: At<'_>| at.fraction()),
-        Absolute(f64) = form("absolute", "In the numbers' unit", distance),
+        by: Within = required("How far, at least, any two of them", within(unit_of(values.as_ref()))),
     }
 }
 
-/// A distance; a bare number does not say of which kind.
-pub(super) fn within(at: At<'_>) -> Option<Within> {
-    if at.holds(is_number) {
-        return at.report(
-            "a distance is relative to the larger number, or absolute",
-            Some("write {relative: 0.01} or {absolute: 0.01}".into()),
-        );
-    }
-    at.named("within", "A distance between two numbers", Within::read)
+/// A distance between numbers.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Within {
+    /// A fraction of the larger magnitude.
+    Relative(f64),
+    /// In the numbers' unit.
+    Absolute(f64),
 }
 
-fn distance(at: At<'_>) -> Option<f64> {
-    at.number_in(None).and_then(|x| if x < 0.0 { at.wrong("a distance cannot be negative") } else { Some(x) })
+impl Reads for Within {}
+
+/// A distance between numbers of this unit; a bare number does not say of which kind.
+pub(super) fn within(unit: Option<&'static str>) -> impl Fn(At<'_>) -> Option<Within> {
+    move |at| {
+        if at.holds(is_number) {
+            return at.report(
+                "a distance is relative to the larger number, or absolute",
+                Some("write {relative: 0.01} or {absolute: 0.01}".into()),
+            );
+        }
+        let forms = [("relative", "A fraction of the larger magnitude"), ("absolute", "In the numbers' unit")];
+        at.choose("a distance", &forms, |choice| match choice.name() {
+            "relative" => choice.value()?.fraction().map(Within::Relative),
+            _ => not_negative(choice.value()?, unit, "a distance").map(Within::Absolute),
+        })
+    }
+}
+
+fn not_negative(at: At<'_>, unit: Option<&str>, what: &str) -> Option<f64> {
+    at.number_in(unit).and_then(|x| if x < 0.0 { at.wrong(format!("{what} cannot be negative")) } else { Some(x) })
+}
+
+/// The unit of numbers that are held against each other: of the first whose columns are known.
+fn unit_of(values: Option<&Vec<Extraction>>) -> Option<&'static str> {
+    values?.iter().find_map(Extraction::unit)
 }
 
 mapping! {
     "an interval" Between, in_order {
         value: Extraction = required("The number", extraction),
-        from: Option<f64> = optional("Lower end; open if absent", in_unit_of(None)),
-        to: Option<f64> = optional("Upper end; open if absent", in_unit_of(None)),
+        from: Option<f64> = optional("Lower end; open if absent", |at| at.number_in(value.as_ref().and_then(Extraction::unit))),
+        to: Option<f64> = optional("Upper end; open if absent", |at| at.number_in(value.as_ref().and_then(Extraction::unit))),
     }
 }
 
@@ -97,18 +114,15 @@ claim! {
     "a level of all rows" Level {
         of: Column = required("The measure", Column::read),
         level: f64 = required("The level", in_unit_of(of.as_ref())),
-        slack: f64 = or("Trespass allowed, in the measure's unit", |at| trespass(at, of.as_ref()), 0.0),
+        slack: f64 =
+            or("Trespass allowed, in the measure's unit", |at| not_negative(at, of.as_ref().and_then(Column::unit), "a slack"), 0.0),
     }
-}
-
-fn trespass(at: At<'_>, of: Option<&Column>) -> Option<f64> {
-    in_unit_of(of)(at).and_then(|x| if x < 0.0 { at.wrong("a slack cannot be negative") } else { Some(x) })
 }
 
 claim! {
     "an agreement of columns" ColumnsAgree {
         columns: Vec<Column> = required("The measures", |at| two_or_more(at, Column::read, "agreement needs two columns or more")),
-        within: Within = required("How near", within),
+        within: Within = required("How near", within(columns.as_ref().and_then(|columns| columns[0].unit()))),
     }
 }
 
@@ -117,7 +131,7 @@ claim! {
         of: Column = required("The measure", Column::read),
         over: Column = required("The parameter", Column::read),
         by: Column = required("The column that tells the lines apart", Column::read),
-        within: Within = required("How near", within),
+        within: Within = required("How near", within(of.as_ref().and_then(Column::unit))),
     }
 }
 claim! {

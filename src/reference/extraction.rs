@@ -225,6 +225,37 @@ impl Extraction {
         Seen::of(self).sources()
     }
 
+    /// The unit of the number, if its columns are known by their names.
+    pub(crate) fn unit(&self) -> Option<&'static str> {
+        match self {
+            Self::Number(_) => None,
+            Self::Cell(word)
+            | Self::Mean(word)
+            | Self::Largest(word)
+            | Self::Smallest(word)
+            | Self::PathMaximum(word)
+            | Self::PathMinimum(word) => word.of.unit(),
+            Self::Maximum(word) | Self::Minimum(word) => word.of.unit(),
+            Self::Argmax(word) | Self::Argmin(word) => word.over.unit(),
+            Self::AtMaximum(word) => word.read.unit(),
+            Self::End(word) => word.of.unit(),
+            Self::Crossing(word) => word.over.unit(),
+            Self::FirstAbove(word) => word.over.unit(),
+            Self::Parting(word) => word.over.unit(),
+            Self::Meeting(word) => word.over.unit(),
+            Self::LargestStepBack(word) => word.of.unit(),
+            Self::LargestLead(word) => word.of.unit(),
+            Self::ArgmaxLead(word) => word.over.unit(),
+            Self::NearestPassage(word) => word.read.as_ref().map_or(Some("s"), Column::unit),
+            Self::Interpolated(word) => word.of.unit(),
+            Self::MeanOver(word) | Self::StandardDeviationOver(word) => word.of.unit(),
+            Self::Peak(word) => word.column().unit(),
+            Self::Ratio(_) => Some(""),
+            Self::Difference(word) => word.of.unit().or(word.less.unit()),
+            Self::Times(word) => word.of.unit(),
+        }
+    }
+
     /// Whether it takes a number of events, which has no digits to come.
     pub(crate) fn is_count(&self) -> bool {
         let of = match self {

@@ -110,6 +110,14 @@ impl Peak {
         })
     }
 
+    /// Whose unit the number has.
+    pub(crate) fn column(&self) -> &Column {
+        match self.read {
+            Feature::Place | Feature::HalfPowerWidth => &self.over,
+            Feature::Height => &self.of,
+        }
+    }
+
     /// The highest grid point of the peak that is meant.
     fn choose(&self, line: &Line) -> Result<usize, Absence> {
         let stands_out = |&(x, prominence): &(f64, super::view::Cell)| {

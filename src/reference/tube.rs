@@ -31,7 +31,7 @@ mapping! {
 }
 
 fn width(at: At<'_>) -> Option<Within> {
-    match within(at)? {
+    match within(None)(at)? {
         Within::Relative(0.0) | Within::Absolute(0.0) => at.wrong("a tube has a width above zero on both axes"),
         width => Some(width),
     }

@@ -99,6 +99,14 @@ fn a_number_may_have_the_unit_of_its_column_or_one_of_that_kind() {
         ("claim: {best_place: {of: velocity_ratio, at: {gap: 2 cm}}}", ("2 cm", "0.02")),
         ("claim: {between: {value: {cell: {of: x}}, from: 3 mm}}, threshold_reason: none", ("3 mm", "0.003")),
         ("claim: {path_monotone: {of: x, direction: increasing, after: 5 ms}}", ("5 ms", "0.005")),
+        (
+            "claim: {between: {value: {cell: {of: floor_impact_lag}}, to: 18.6 ms}}, threshold_reason: none",
+            ("18.6 ms", "0.0186"),
+        ),
+        (
+            "claim: {equal: {values: [{number: 1}, {argmax: {of: x, over: gap}}], within: {absolute: 2 mm}}}, threshold_reason: none",
+            ("2 mm", "0.002"),
+        ),
     ] {
         let (unit, number) = alone;
         assert_eq!(meaning(written), meaning(&written.replace(unit, number)), "{written}");
@@ -112,6 +120,14 @@ fn a_number_may_have_the_unit_of_its_column_or_one_of_that_kind() {
         ("where: {force: 1 parsec}, claim: {above: {of: x, level: 1}}", "`parsec` is not a unit that is known here"),
         ("where: {force: .nan}, claim: {above: {of: x, level: 1}}", "`.nan` is not a finite number"),
         ("claim: {between: {value: {cell: {of: x}}, from: 3 Hz}}, threshold_reason: none", "in rad/s or in one in Hz"),
+        (
+            "claim: {between: {value: {argmax: {of: velocity_ratio, over: gap}}, to: 3 N}}, threshold_reason: none",
+            "`3 N` is not in m",
+        ),
+        (
+            "claim: {apart: {values: [{maximum: {of: velocity_ratio, over: gap}}, {number: 2}], by: {absolute: 3 mm}}}, threshold_reason: none",
+            "has a unit, but a dimensionless number",
+        ),
     ] {
         let said = of(written);
         assert!(said.len() == 1 && said[0].contains(says), "{written}: {said:?}");
