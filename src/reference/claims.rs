@@ -76,10 +76,13 @@ pub(super) fn within(unit: Option<&'static str>) -> impl Fn(At<'_>) -> Option<Wi
             );
         }
         let forms = [("relative", "A fraction of the larger magnitude"), ("absolute", "In the numbers' unit")];
-        at.choose("a distance", &forms, |choice| match choice.name() {
-            "relative" => choice.value()?.fraction().map(Within::Relative),
-            _ => not_negative(choice.value()?, unit, "a distance").map(Within::Absolute),
-        })
+        let distance = |at: At<'_>| {
+            at.choose("a distance", &forms, |choice| match choice.name() {
+                "relative" => choice.value()?.fraction().map(Within::Relative),
+                _ => not_negative(choice.value()?, unit, "a distance").map(Within::Absolute),
+            })
+        };
+        at.named("within", "A distance between two numbers", distance)
     }
 }
 

@@ -95,6 +95,14 @@ impl Line<'_> {
     fn link(&self) -> String {
         format!("[`{}`]({})", self.judged.id, self.view.place_of(self.judged))
     }
+
+    /// How often its verdict was tried, if ever.
+    fn moves(&self) -> String {
+        match self.judged.moved.len() {
+            0 => String::new(),
+            moves => format!(" ({})", counted(moves, "move", "moves")),
+        }
+    }
 }
 
 fn robustness(judged: &Judged, movable: bool) -> Robustness {
@@ -180,11 +188,21 @@ fn in_short<'a>(group: &dyn Fn(Robustness) -> &'a [Line<'a>], questions: &[Quest
     let total: usize = counts.iter().map(|(count, _)| count).sum();
     let counts =
         counts.into_iter().filter(|(count, _)| *count > 0).map(|(count, words)| format!("**{count}** {words}"));
+    let unmoved =
+        group(Robustness::Stands).iter().chain(group(Robustness::Fails)).filter(|line| line.judged.moved.is_empty());
+    let unmoved = unmoved.count();
     let mut text = format!(
         "The unstated inputs that an experiment names are moved one at a time through the values of their ranges; what was not \
-         moved is not covered. Of {}: {}.\n\n",
+         moved is not covered. Of {}: {}.{}\n\n",
         counted(total, "entry", "entries"),
-        counts.collect::<Vec<_>>().join("; ")
+        counts.collect::<Vec<_>>().join("; "),
+        if unmoved == 0 {
+            String::new()
+        } else {
+            format!(
+                " Where nothing is unstated there is nothing to move: {unmoved} of those that agree or differ under every move."
+            )
+        }
     );
     let first: Vec<String> =
         questions.iter().take(FIRST_QUESTIONS).map(|one| format!("`{}` ({})", one.name, one.settles())).collect();
@@ -201,7 +219,8 @@ fn section(title: &str, lines: &[Line<'_>]) -> String {
     let entries: String = lines
         .iter()
         .map(|line| {
-            format!("- {}: {} Here: {}\n", line.link(), one_line(&line.judged.statement), one_line(&line.judged.found))
+            let Judged { statement, found, .. } = line.judged;
+            format!("- {}: {} Here: {}{}\n", line.link(), one_line(statement), one_line(found), line.moves())
         })
         .collect();
     format!(

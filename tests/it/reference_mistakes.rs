@@ -121,8 +121,8 @@ fn a_number_may_have_the_unit_of_its_column_or_one_of_that_kind() {
         ("where: {force: .nan}, claim: {above: {of: x, level: 1}}", "`.nan` is not a finite number"),
         ("claim: {between: {value: {cell: {of: x}}, from: 3 Hz}}, threshold_reason: none", "in rad/s or in one in Hz"),
         (
-            "claim: {between: {value: {argmax: {of: velocity_ratio, over: gap}}, to: 3 N}}, threshold_reason: none",
-            "`3 N` is not in m",
+            "claim: {between: {value: {argmax: {of: velocity_ratio, over: force}}, to: 3 mm}}, threshold_reason: none",
+            "`3 mm` is not in N",
         ),
         (
             "claim: {apart: {values: [{maximum: {of: velocity_ratio, over: gap}}, {number: 2}], by: {absolute: 3 mm}}}, threshold_reason: none",
