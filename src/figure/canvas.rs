@@ -25,6 +25,8 @@ use super::style::{Color, PAPER};
 pub(super) const UNITS: f64 = 10.0;
 /// How far a line may be from the points that it stands for, in pixels.
 const DEVIATION: f64 = 0.1;
+/// Width of the edge of letters over lines, half of it outside them, in pixels.
+const EDGE: f64 = 8.0;
 /// Where the baseline has to lie for digits and capitals to be centred on their place, in em.
 const CENTRE: f64 = 0.365;
 /// Families with glyphs about as wide, for where the first is not installed.
@@ -200,6 +202,16 @@ impl Sheet {
         let mut style = font.color(&rgb(color));
         style.pos = Pos::new(h_pos, VPos::Bottom);
         self.put(&Text::new(text, place(at), style));
+    }
+
+    /// A text whose letters are edged with paper, so that it can be read over curves, and they beside it.
+    pub(super) fn text_over_lines(&self, at: Point, lettering: &Lettering<'_>) {
+        let edge = whole(EDGE);
+        self.text
+            .borrow_mut()
+            .push_str(&format!("<g stroke=\"{PAPER}\" stroke-width=\"{edge}\" paint-order=\"stroke\">\n"));
+        self.text(at, lettering);
+        self.text.borrow_mut().push_str("</g>\n");
     }
 
     fn put<'b, E>(&self, element: &'b E)

@@ -55,15 +55,20 @@ impl Rect {
         self.left < other.right && other.left < self.right && self.top < other.bottom && other.top < self.bottom
     }
 
-    /// True if some of the straight stretch from `a` to `b` lies inside (Liang and Barsky's clipping).
+    /// True if some of the straight stretch from `a` to `b` lies inside.
     pub(super) fn meets(&self, a: Point, b: Point) -> bool {
+        self.share_within(a, b).is_some()
+    }
+
+    /// How much of the straight stretch from `a` to `b` lies inside, if any does (Liang and Barsky's clipping).
+    pub(super) fn share_within(&self, a: Point, b: Point) -> Option<f64> {
         let (dx, dy) = (b.x - a.x, b.y - a.y);
         let (mut enter, mut leave) = (0.0_f64, 1.0_f64);
         let sides = [(-dx, a.x - self.left), (dx, self.right - a.x), (-dy, a.y - self.top), (dy, self.bottom - a.y)];
         for (towards, room) in sides {
             if towards == 0.0 {
                 if room < 0.0 {
-                    return false;
+                    return None;
                 }
             } else if towards < 0.0 {
                 enter = enter.max(room / towards);
@@ -71,7 +76,7 @@ impl Rect {
                 leave = leave.min(room / towards);
             }
         }
-        enter <= leave
+        (enter <= leave).then_some(leave - enter)
     }
 }
 

@@ -17,7 +17,7 @@ use super::peak::peaks;
 use super::strip;
 use super::style::{
     BAND_OPACITY, CLOSER_OPACITY, CURVE, Color, FRAME, GREY, GRID, GUIDE, GUIDE_DASH, INK, LABEL_TEXT, Look, MARKER,
-    MINOR_TICK, Marker, NOTE_TEXT, PALE, PAPER, SPACE, STACK_OPACITY, TICK, TICK_TEXT,
+    MINOR_TICK, Marker, NOTE_TEXT, PALE, SPACE, STACK_OPACITY, TICK, TICK_TEXT,
 };
 
 /// Where a panel's legend goes.
@@ -196,12 +196,11 @@ fn level(sheet: &Sheet, panel: &Panel<'_>, frame: &Rect, y: f64, label: &str, co
             Rect { left, top: middle - half, right: left + width, bottom: middle + half }
         })
         .collect();
-    let fits =
-        |place: &Rect| place.top > frame.top && place.bottom < frame.bottom && taken.leave_free(&place.grown(-2.0));
-    let place = places.iter().find(|place| fits(place)).unwrap_or(&places[0]);
-    taken.boxes.push(*place);
-    sheet.fill(&place.corners(), PAPER, 0.85);
-    write(sheet, place.at(0.0, 0.5), label, NOTE_TEXT, Anchor::Left, color)
+    let inside = places.iter().filter(|place| place.top > frame.top && place.bottom < frame.bottom);
+    let place = *taken.clearest(inside, -2.0).unwrap_or(&places[0]);
+    taken.boxes.push(place);
+    let lettering = Lettering { text: label, size: NOTE_TEXT, anchor: Anchor::Left, upright: false, color };
+    sheet.text_over_lines(place.at(0.0, 0.5), &lettering);
 }
 
 fn axes(sheet: &Sheet, panel: &Panel<'_>, frame: &Rect, x_labels: bool) {

@@ -221,17 +221,13 @@ impl Quoted {
             }
         };
         let inside = || places.iter().filter(|place| place.lies_within(frame));
-        let free = inside().find(|place| taken.leave_free(&place.grown(1.0)));
-        // Over a curve it can be read, over another label it cannot.
-        let legible = || inside().find(|place| taken.leave_boxes_free(&place.grown(1.0)));
-        let Some(place) = free.or_else(legible).or_else(|| inside().next()).copied() else { return };
+        let Some(place) = taken.clearest(inside(), 1.0).or_else(|| inside().next()).copied() else { return };
         taken.boxes.push(place);
         if self.is_point() {
             lead(sheet, at, &place);
         }
-        sheet.fill(&place.corners(), PAPER, 0.85);
         let lettering = Lettering { text: &text, size: NOTE_TEXT, anchor: Anchor::Left, upright: false, color: INK };
-        sheet.text(place.at(0.0, 0.5), &lettering);
+        sheet.text_over_lines(place.at(0.0, 0.5), &lettering);
     }
 }
 
