@@ -81,17 +81,21 @@ impl Flow {
 
     /// The flow of a contact state whose modes are known, under the drive of `system`; `like` is one under other dampings.
     pub(crate) fn driven(system: &HybridSystem, modes: Rc<Modes>, like: Option<&Self>) -> Result<Self, EngineError> {
-        let push = || modes.answer(system, &system.force_row);
-        let answer = |modes: &Modes| Rc::new(modes.load(system, &push()));
         // No dashpot holds anything at rest.
-        let like = like.filter(|like| modes.is_normal && like.modes.is_normal);
-        let (modes, harmonic, force) = match system.drive.harmonic {
-            None => (Rc::clone(&modes), None, like.map_or_else(|| answer(&modes), |like| Rc::clone(&like.force))),
-            Some(drive) => {
-                let (modes, steady) = answered(system, Rc::clone(&modes), &push(), drive.angular_frequency)?;
-                let force = answer(&modes);
-                (modes, Some(steady), force)
-            }
+        let is_known = |like: &&Self| system.drive.harmonic.is_none() && modes.is_normal && like.modes.is_normal;
+        let (modes, harmonic, force) = if let Some(like) = like.filter(is_known) {
+            (modes, None, Rc::clone(&like.force))
+        } else {
+            let push = modes.answer(system, &system.force_row);
+            let (modes, harmonic) = match system.drive.harmonic {
+                None => (modes, None),
+                Some(drive) => {
+                    let (modes, steady) = answered(system, modes, &push, drive.angular_frequency)?;
+                    (modes, Some(steady))
+                }
+            };
+            let force = Rc::new(modes.load(system, &push));
+            (modes, harmonic, force)
         };
         let mut blocks = modes.spectral.blocks.clone();
         let own = blocks.len();

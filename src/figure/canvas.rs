@@ -4,7 +4,7 @@
 //! would not move a line by a tenth of a pixel are left out.
 
 use std::cell::RefCell;
-use std::fmt::Write as _;
+use std::fmt::{self, Write as _};
 use std::rc::Rc;
 use std::sync::LazyLock;
 
@@ -15,7 +15,6 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 use plotters::style::{Color as _, FontDesc, FontFamily, FontStyle, FontTransform, RGBColor, ShapeStyle};
 use ttf_parser::Face;
 
-use super::attributes::Attributes;
 use super::backend::Writer;
 use super::geometry::{Point, Rect, dashed, simplified};
 use super::raster::{FAMILY, FONT};
@@ -114,7 +113,7 @@ pub(super) fn wrapped(text: &str, size: f64, width: f64) -> Vec<String> {
 
 impl Sheet {
     /// What is painted as one group with these attributes.
-    pub(super) fn group(&self, attributes: &Attributes, paint: impl FnOnce()) {
+    pub(super) fn group(&self, attributes: &impl fmt::Display, paint: impl FnOnce()) {
         self.text.borrow_mut().push_str(&format!("<g{attributes}>\n"));
         paint();
         self.text.borrow_mut().push_str("</g>\n");
@@ -207,11 +206,8 @@ impl Sheet {
     /// A text whose letters are edged with paper, so that it can be read over curves, and they beside it.
     pub(super) fn text_over_lines(&self, at: Point, lettering: &Lettering<'_>) {
         let edge = whole(EDGE);
-        self.text
-            .borrow_mut()
-            .push_str(&format!("<g stroke=\"{PAPER}\" stroke-width=\"{edge}\" paint-order=\"stroke\">\n"));
-        self.text(at, lettering);
-        self.text.borrow_mut().push_str("</g>\n");
+        let edged = format_args!(" stroke=\"{PAPER}\" stroke-width=\"{edge}\" paint-order=\"stroke\"");
+        self.group(&edged, || self.text(at, lettering));
     }
 
     fn put<'b, E>(&self, element: &'b E)

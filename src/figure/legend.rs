@@ -80,9 +80,13 @@ impl Obstacles {
     /// label can be read as it cannot over another one.
     pub(super) fn clearest<'p>(&self, places: impl Iterator<Item = &'p Rect>, room: f64) -> Option<&'p Rect> {
         let mut clearest: Option<(f64, &Rect)> = None;
-        for place in places.filter(|place| self.leave_boxes_free(&place.grown(room))) {
-            if self.leave_free(&place.grown(room)) {
+        for place in places {
+            let roomy = place.grown(room);
+            if self.leave_free(&roomy) {
                 return Some(place);
+            }
+            if !self.leave_boxes_free(&roomy) {
+                continue;
             }
             let covered = self.covered(place);
             if clearest.is_none_or(|(least, _)| covered < least) {

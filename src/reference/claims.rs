@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::extraction::{Direction, Extraction, Side, direction, extraction, side, two_or_more};
 use super::line::Pair;
 use super::mapping::{Reads, claim, mapping};
-use super::name::{Column, in_unit_of};
+use super::name::{Column, in_unit, in_unit_of};
 use super::selection::is_number;
 use super::text::{percent, significant};
 use crate::experiment::At;
@@ -98,8 +98,8 @@ fn unit_of(values: Option<&Vec<Extraction>>) -> Option<&'static str> {
 mapping! {
     "an interval" Between, in_order {
         value: Extraction = required("The number", extraction),
-        from: Option<f64> = optional("Lower end; open if absent", |at| at.number_in(value.as_ref().and_then(Extraction::unit))),
-        to: Option<f64> = optional("Upper end; open if absent", |at| at.number_in(value.as_ref().and_then(Extraction::unit))),
+        from: Option<f64> = optional("Lower end; open if absent", in_unit(value.as_ref().and_then(Extraction::unit))),
+        to: Option<f64> = optional("Upper end; open if absent", in_unit(value.as_ref().and_then(Extraction::unit))),
     }
 }
 

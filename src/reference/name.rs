@@ -76,7 +76,11 @@ impl Column {
 
 /// Numbers in the unit of a column, or with a unit of that kind.
 pub(super) fn in_unit_of(column: Option<&Column>) -> impl Fn(At<'_>) -> Option<f64> + use<> {
-    let unit = column.and_then(Column::unit);
+    in_unit(column.and_then(Column::unit))
+}
+
+/// Numbers in this unit, if it is known, or with one of its kind.
+pub(super) fn in_unit(unit: Option<&'static str>) -> impl Fn(At<'_>) -> Option<f64> {
     move |at| at.number_in(unit)
 }
 
