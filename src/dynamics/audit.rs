@@ -13,7 +13,7 @@ use super::bank::Kernels;
 use super::budget;
 use super::contact::{Hold, Side};
 use super::flow::{DrivePhase, Flow};
-use super::integral::GAUSS;
+use super::quadrature;
 use super::system::{Contact, HybridSystem, dot};
 
 /// The physical state at an instant.
@@ -132,7 +132,7 @@ struct Nodes {
 impl Nodes {
     fn set(&mut self, flow: &Flow, length: f64) {
         if self.length != length {
-            let within = GAUSS.iter().map(|[x, _]| flow.kernels(x * length)).collect();
+            let within = quadrature::TEN.iter().map(|[x, _]| flow.kernels(x * length)).collect();
             *self = Self { length, within, end: flow.kernels(length) };
         }
     }
@@ -203,7 +203,7 @@ impl Audit {
         while t0 < length && !budget::spend(2) {
             let h = dissipation.panel(system, &flow.modes, |i| from[i].abs()).min(length - t0);
             nodes.set(flow, h);
-            for ([x, weight], kernels) in GAUSS.iter().zip(&nodes.within) {
+            for ([x, weight], kernels) in quadrature::TEN.iter().zip(&nodes.within) {
                 flow.advance_all(kernels, &from, DrivePhase::default(), &mut c);
                 let w = weight * h;
                 if flow.is_free() {

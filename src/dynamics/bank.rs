@@ -1,9 +1,10 @@
 //! The blocks of a flow, side by side: what is done to one of them is done to several at once.
 //!
-//! Most blocks turn: they need e^(−at), sin and cos of √(−d) t, which are computed together. The few that do not turn are
-//! computed by themselves afterwards.
+//! Most blocks turn: they need e^(−at), sin and cos of √(−d) t, which are computed together; one exponential alone is a turn by nothing.
+//! The few others are computed by themselves afterwards.
 
 use super::block::{Block, Kernel, Phase};
+use super::complexes::Complexes;
 use super::elementary::{exp_lanes, sin_cos_lanes};
 use super::four::Four;
 use super::lanes::{Lanes, WIDTH};
@@ -11,8 +12,10 @@ use super::lanes::{Lanes, WIDTH};
 /// The blocks of a flow.
 #[derive(Debug, Default)]
 pub(crate) struct Bank {
+    /// How many there are.
+    pub(crate) count: usize,
     pub(crate) blocks: Vec<Blocks>,
-    /// Blocks that do not turn.
+    /// Blocks that neither turn nor are one exponential alone.
     others: Vec<usize>,
     /// Blocks near critical damping, whose bounds depend on the time that they are to hold.
     pub(crate) near_critical: Vec<usize>,
@@ -21,18 +24,20 @@ pub(crate) struct Bank {
 /// Several blocks; places without one hold zeros.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Blocks {
-    decay: Four,
-    /// The decay of those that turn.
+    pub(crate) decay: Four,
+    /// The decay of those that turn, or are one exponential alone.
     fades: Four,
     determinant: Four,
     discriminant: Four,
     /// √|d| of those that turn, and its inverse.
-    root: Four,
+    pub(crate) root: Four,
     inverse_root: Four,
     /// −1 of those that turn.
     turns: Four,
     /// d of those that do not.
     grows: Four,
+    /// 1 where there is no block.
+    pub(super) spare: Four,
     /// 1/√|d|, but of blocks near critical damping.
     spread: Four,
     pub(crate) radius: Four,
@@ -81,6 +86,12 @@ impl Kernels {
     #[inline(always)]
     pub(crate) fn at(&self, lane: usize) -> Kernel {
         Kernel { c: self.c.at(lane), s: self.s.at(lane), turn: self.turn.at(lane) }
+    }
+
+    /// e^(λt) of blocks that turn, λ the eigenvalue with a positive imaginary part.
+    #[inline(always)]
+    pub(super) fn turned(&self) -> Complexes {
+        Complexes { re: self.c, im: self.turn }
     }
 
     #[inline(always)]
@@ -156,13 +167,14 @@ impl Blocks {
         let each = |part: fn(&Block) -> f64| Four::padded(blocks.iter().map(part));
         Self {
             decay: each(|block| block.decay),
-            fades: each(|block| if block.oscillates() { block.decay } else { 0.0 }),
+            fades: each(|block| if block.oscillates() || block.is_single() { block.decay } else { 0.0 }),
             determinant: each(|block| block.determinant),
             discriminant: each(|block| block.discriminant),
             root: each(|block| if block.oscillates() { block.root } else { 0.0 }),
             inverse_root: each(|block| if block.oscillates() { block.inverse_root } else { 0.0 }),
             turns: each(|block| if block.oscillates() { -1.0 } else { 0.0 }),
             grows: each(|block| if block.oscillates() { 0.0 } else { block.discriminant }),
+            spare: Four::new(std::array::from_fn(|lane| if lane < blocks.len() { 0.0 } else { 1.0 })),
             spread: each(|block| if block.is_near_critical() { 0.0 } else { block.inverse_root }),
             radius: each(|block| block.radius),
             square: each(|block| block.radius * block.radius),
@@ -179,11 +191,22 @@ impl Blocks {
         }
     }
 
+    /// The first derivatives of shares, as shares.
+    #[inline(always)]
+    pub(crate) fn derivative(&self, Phases { value, rate }: Phases) -> Phases {
+        Phases { value: rate, rate: -2.0 * self.decay * rate - self.determinant * value }
+    }
+
     /// The second derivatives of shares, as shares.
     #[inline(always)]
-    pub(crate) fn acceleration(&self, Phases { value, rate }: Phases) -> Phases {
-        let bend = -2.0 * self.decay * rate - self.determinant * value;
-        Phases { value: bend, rate: -2.0 * self.decay * bend - self.determinant * rate }
+    pub(crate) fn acceleration(&self, phases: Phases) -> Phases {
+        self.derivative(self.derivative(phases))
+    }
+
+    /// w of shares Re w e^(λt) of blocks that turn.
+    #[inline(always)]
+    pub(super) fn amplitude(&self, Phases { value, rate }: Phases) -> Complexes {
+        Complexes { re: value, im: (rate + self.decay * value) * self.inverse_root * -1.0 }
     }
 
     /// [`Block::amplitude`] of those that are not near critical damping.
@@ -224,8 +247,9 @@ impl Bank {
     pub(crate) fn new(blocks: &[Block]) -> Self {
         let chosen = |which: fn(&Block) -> bool| (0..blocks.len()).filter(|&k| which(&blocks[k])).collect();
         Self {
+            count: blocks.len(),
             blocks: blocks.chunks(WIDTH).map(Blocks::new).collect(),
-            others: chosen(|block| !block.oscillates()),
+            others: chosen(|block| !(block.oscillates() || block.is_single())),
             near_critical: chosen(Block::is_near_critical),
         }
     }

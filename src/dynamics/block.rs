@@ -4,10 +4,15 @@
 //!
 //! e^(Bt) = e^(−at) [C(t) I + S(t) (B + aI)],   C = cos √(−d) t or cosh √d t,   S = sin √(−d) t/√(−d) or sinh √d t/√d.
 //!
-//! C and S are entire functions of d: nothing happens at critical damping (d = 0), where an eigenbasis would fail.
+//! C and S are entire functions of d: nothing happens at critical damping (d = 0), where an eigenbasis would fail. Of two real
+//! eigenvalues that are far apart each may have a block of its own, B = −aI, whose second coordinate stays zero.
 
 use super::elementary::{exp_lanes, sin_cos_lanes};
-use super::lanes::Lanes;
+use super::four::Four;
+use super::lanes::{Lanes, WIDTH};
+
+/// decay·t up to which e^(decay·t) is a number.
+const MUCH_DECAY: f64 = 600.0;
 
 /// A block's invariants: all that a scalar signal of the flow needs.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -20,7 +25,7 @@ pub(crate) struct Block {
     pub(super) discriminant: f64,
     /// √|d|.
     pub(super) root: f64,
-    /// 1/√|d|; infinite at critical damping.
+    /// 1/√|d|; infinite at critical damping, 0 of a block that is one exponential alone.
     pub(super) inverse_root: f64,
     /// Largest modulus of an eigenvalue.
     pub(crate) radius: f64,
@@ -71,6 +76,9 @@ pub(crate) struct Phase {
 impl Block {
     /// The block of the matrix [[p, q], [r, s]].
     pub(crate) fn new([p, q, r, s]: [f64; 4]) -> Self {
+        if q == 0.0 && r == 0.0 && p == s && p != 0.0 {
+            return Self { inverse_root: 0.0, ..Self::from_invariants(-p, p * p, 0.0) };
+        }
         let half = 0.5 * (p - s);
         // d from differences, not from a² − b: near critical damping that would cancel.
         Self::from_invariants(-0.5 * (p + s), p * s - q * r, half * half + q * r)
@@ -117,6 +125,11 @@ impl Block {
         }
         let inverse = |a: f64, b: f64| -(a - b) / self.determinant;
         ([inverse(s * x, q * y), inverse(p * y, r * x)], [0.0; 2], [0.0; 2])
+    }
+
+    /// One real eigenvalue, e^(−at) alone: rate = −a·value in every signal.
+    pub(crate) fn is_single(&self) -> bool {
+        self.inverse_root == 0.0
     }
 
     /// True for a pair of complex eigenvalues.
@@ -172,16 +185,24 @@ impl Block {
         }
     }
 
-    /// c and s of its kernel after several times.
+    /// c and s of its kernel after the times t + `apart`, and after t − `apart`, from the kernel after t.
     #[inline(always)]
-    pub(crate) fn kernels<const N: usize>(&self, times: Lanes<N>) -> [Lanes<N>; 2] {
-        if self.discriminant < 0.0 {
-            let e = exp_lanes(times * -self.decay);
-            let (sine, cosine) = sin_cos_lanes(times * self.root);
-            [e * cosine, e * sine * self.inverse_root]
+    pub(crate) fn kernels_about(&self, t: f64, middle: Kernel, apart: Four) -> [Four; 4] {
+        if self.discriminant < 0.0 && self.decay * t < MUCH_DECAY {
+            let e = Four::new(exp_lanes(Lanes((apart * -self.decay).array())).0);
+            let (sine, cosine) = sin_cos_lanes(Lanes((apart * self.root).array()));
+            let (c, s) = (Four::new(cosine.0), Four::new(sine.0) * self.inverse_root);
+            let [cc, ss, cs, sc] = [c * middle.c, s * (self.discriminant * middle.s), s * middle.c, c * middle.s];
+            let inverse = e.map(|e| 1.0 / e);
+            [e * (cc + ss), e * (sc + cs), inverse * (cc - ss), inverse * (sc - cs)]
         } else {
-            let each = times.0.map(|t| self.kernel(t));
-            [Lanes(each.map(|kernel| kernel.c)), Lanes(each.map(|kernel| kernel.s))]
+            // Back in time what decays fast grows, and takes the digits of what decays slowly.
+            let [after, before] = [1.0, -1.0].map(|side| apart.array().map(|apart| self.kernel(t + side * apart)));
+            let parts = |kernels: [Kernel; WIDTH]| {
+                [Four::new(kernels.map(|kernel| kernel.c)), Four::new(kernels.map(|kernel| kernel.s))]
+            };
+            let ([c, s], [c_before, s_before]) = (parts(after), parts(before));
+            [c, s, c_before, s_before]
         }
     }
 
@@ -205,7 +226,7 @@ impl Block {
     /// Where the bound on a share depends on how long it is to hold.
     #[inline]
     pub(crate) fn is_near_critical(&self) -> bool {
-        !(self.discriminant < 0.0 && self.root > 0.2 * self.radius)
+        !(self.is_single() || self.discriminant < 0.0 && self.root > 0.2 * self.radius)
     }
 
     /// A bound on |share| from now on, and with radius^j on its derivatives, while time stays within `window` of now.

@@ -76,6 +76,10 @@ impl Conservative {
 
     /// The blocks of (p, p′) under dashpots, where they come from normal modes.
     pub(crate) fn split(&self, system: &HybridSystem, contacts: &[Contact], damping: &[f64]) -> Option<Spectral> {
+        if self.mass.order == 1 {
+            // It is a block as it stands.
+            return None;
+        }
         let Normal { modes, damping: structural, compressions, .. } = self.normal(system, contacts)?;
         let mut all = structural.clone();
         for (&j, row) in self.attached.iter().zip(compressions) {
@@ -83,7 +87,8 @@ impl Conservative {
                 entries.iter_mut().zip(row).for_each(|(entry, y)| *entry += damping[j] * (x * y));
             }
         }
-        damped::split(modes, &all)
+        // Without any dashpot no energy is lost, to the bit: see `modes`.
+        if all.iter().all(|entry| *entry == 0.0) { None } else { damped::split(modes, &all) }
     }
 }
 

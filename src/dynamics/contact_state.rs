@@ -8,7 +8,7 @@
 //! A particle between two faces that move by themselves feels both: a second spring and dashpot along v = row·p + constant, the
 //! distance to the second face ([`Across`]).
 //!
-//! Its matrix is split into 2 × 2 blocks ([`super::modes`]); forcing and time do not enter, the gap only in the constant of v.
+//! Its matrix is split into 2 × 2 blocks, from its normal modes ([`super::damped`]) or else by a Schur form ([`super::modes`]); forcing and time do not enter, the gap only in the constant of v.
 
 use std::cell::OnceCell;
 use std::rc::Rc;
@@ -17,7 +17,6 @@ use super::EngineError;
 use super::conservative::{self, Conservative, Normal, face_of};
 use super::contact::{Hold, Side};
 use super::load::{Load, Steady};
-use super::schur::Iteration;
 use super::spectral::Spectral;
 use super::superposition::Superposition;
 use super::system::{Contact, HybridSystem, Law, Matrix, Particle, dot};
@@ -118,10 +117,7 @@ impl Modes {
         let attached = bare.attached.clone();
         let order = system.mass.order + attached.len();
         let across = Across::all(system, contacts, damping, &attached);
-        let stated = |j: &usize| face_damping(face_of(system, contacts, *j).law, None) == damping[*j];
-        let is_stated = attached.iter().all(stated);
-        // Stated dampings make few contact states, and keep their bits; half cycles make a new one each time.
-        let normal = if is_stated { None } else { bare.split(system, contacts, damping) };
+        let normal = bare.split(system, contacts, damping);
         let mut modes = Self {
             contacts: contacts.to_vec(),
             damping: damping.to_vec(),
@@ -139,7 +135,6 @@ impl Modes {
         modes.spectral = match normal {
             Some(spectral) => spectral,
             None => {
-                let iteration = if is_stated { Iteration::Library } else { Iteration::Own };
                 let accelerations = modes.accelerations(system);
                 let undamped = accelerations.iter().all(|row| row[order..].iter().all(|entry| *entry == 0.0));
                 let stiffness = undamped.then(|| {
@@ -148,7 +143,7 @@ impl Modes {
                     presses.for_each(|across| all.add_square(across.stiffness, &across.row));
                     all
                 });
-                super::modes::split(accelerations, &modes.bare.mass, stiffness.as_ref(), iteration)?
+                super::modes::split(accelerations, &modes.bare.mass, stiffness.as_ref())?
             }
         };
         modes.to_blocks = Superposition::new(modes.spectral.width(), &modes.spectral.to_blocks);

@@ -6,18 +6,19 @@
 //! r(λ) = xᵀ (λ² + λ C + Ω²) x = 0,   r′ = xᵀ (2 λ + C) x = (σ + r)/λ,   σ = λ² xᵀx − xᵀΩ²x,
 //!
 //! which Newton's method solves in three steps or four, several modes side by side. It starts from the mode's own share of the damping,
-//! so that nothing depends on what was solved before. The matrix of (Ω q, q′) is symmetric but for signs, so that each
-//! column is its own row:
+//! so that nothing depends on what was solved before; a mode that this overdamps has two starts, both real. The matrix of (Ω q, q′) is
+//! symmetric but for signs, so that each column is its own row:
 //!
 //! v = (Ω x, λ x),   w = (−Ω x, λ x)/σ.
 //!
-//! What is overdamped, does not converge, or leaves the modes dependent on each other is none of this: a Schur form splits it.
+//! What does not converge, or leaves the modes dependent on each other, is none of this: a Schur form splits it.
 
 use std::cell::RefCell;
 
 use nalgebra::DMatrix;
 
 use super::block::Block;
+use super::complexes::Complexes;
 use super::four::Four;
 use super::lanes::WIDTH;
 use super::spectral::{Spectral, invert_again};
@@ -35,61 +36,14 @@ const DEPENDENT: f64 = 1e-8;
 /// What w v of two modes may be, times the distance of their eigenvalues: A V = V B misses as much.
 const MISSED: f64 = 2e-14;
 
-/// Complex numbers side by side.
-#[derive(Debug, Clone, Copy)]
-struct Complexes {
-    re: Four,
-    im: Four,
-}
-
-impl Complexes {
-    const ZERO: Self = Self { re: Four::ZERO, im: Four::ZERO };
-
-    #[inline(always)]
-    fn plus(self, other: Self) -> Self {
-        Self { re: self.re + other.re, im: self.im + other.im }
-    }
-
-    #[inline(always)]
-    fn minus(self, other: Self) -> Self {
-        Self { re: self.re - other.re, im: self.im - other.im }
-    }
-
-    #[inline(always)]
-    fn times(self, other: Self) -> Self {
-        Self { re: self.re * other.re - self.im * other.im, im: self.re * other.im + self.im * other.re }
-    }
-
-    #[inline(always)]
-    fn scaled(self, factor: Four) -> Self {
-        Self { re: self.re * factor, im: self.im * factor }
-    }
-
-    #[inline(always)]
-    fn square(self) -> Four {
-        self.re * self.re + self.im * self.im
-    }
-
-    #[inline(always)]
-    fn inverse(self) -> Self {
-        let factor = self.square().map(|square| 1.0 / square);
-        Self { re: self.re * factor, im: self.im * factor * -1.0 }
-    }
-
-    /// One of them, in all places.
-    #[inline(always)]
-    fn all(self, lane: usize) -> Self {
-        Self { re: Four::all(self.re.at(lane)), im: Four::all(self.im.at(lane)) }
-    }
-}
-
 /// Splits (e, e′) under the dashpots `damping`, row by row in normal coordinates of modal mass 1: V and W as
 /// [`super::modes::split`] has them, fastest blocks first.
 pub(super) fn split(modes: &NormalModes, damping: &[f64]) -> Option<Spectral> {
-    let (problem, count) = (Problem { modes, damping }, modes.omega.len());
+    let problem = Problem::new(modes, damping);
     WORK.with_borrow_mut(|work| {
-        work.make_room(count);
-        let found = (0..count).step_by(WIDTH).map(|first| problem.solve(first, work)).collect::<Option<Vec<_>>>()?;
+        work.make_room(modes.omega.len());
+        let firsts = (0..problem.starts.len()).step_by(WIDTH);
+        let found = firsts.map(|first| problem.solve(first, work)).collect::<Option<Vec<_>>>()?;
         let mut spectral = problem.assemble(&found, &work.shapes);
         match problem.independence(&found, &work.shapes) {
             Independence::Exact => {}
@@ -108,6 +62,23 @@ thread_local! {
 struct Problem<'a> {
     modes: &'a NormalModes,
     damping: &'a [f64],
+    starts: Vec<Start>,
+}
+
+/// Where the search for an eigenvalue begins.
+#[derive(Clone, Copy)]
+struct Start {
+    /// The normal mode beside which it lies.
+    mode: usize,
+    re: f64,
+    /// 0 of an overdamped mode.
+    im: f64,
+}
+
+impl Start {
+    fn is_real(self) -> bool {
+        self.im == 0.0
+    }
 }
 
 /// Several modes; their shapes stand in [`Work`].
@@ -127,10 +98,26 @@ enum Independence {
     None,
 }
 
-impl Problem<'_> {
-    /// Which modes stand side by side, beginning with `first`; the last one fills up.
-    fn side_by_side(&self, first: usize) -> [usize; WIDTH] {
-        std::array::from_fn(|lane| (first + lane).min(self.modes.omega.len() - 1))
+impl<'a> Problem<'a> {
+    fn new(modes: &'a NormalModes, damping: &'a [f64]) -> Self {
+        let n = modes.omega.len();
+        let mut starts = Vec::with_capacity(n);
+        for (mode, omega) in modes.omega.iter().enumerate() {
+            let half = 0.5 * damping[mode * n + mode];
+            let square = omega * omega - half * half;
+            if square > 0.0 {
+                starts.push(Start { mode, re: -half, im: square.sqrt() });
+            } else {
+                let fast = half + (-square).sqrt();
+                starts.extend([-fast, -omega * omega / fast].map(|re| Start { mode, re, im: 0.0 }));
+            }
+        }
+        Self { modes, damping, starts }
+    }
+
+    /// Which starts stand side by side, beginning with `first`; the last one fills up.
+    fn side_by_side(&self, first: usize) -> [Start; WIDTH] {
+        std::array::from_fn(|lane| self.starts[(first + lane).min(self.starts.len() - 1)])
     }
 
     widened! {
@@ -141,7 +128,8 @@ impl Problem<'_> {
     #[inline(always)]
     fn solve_by_registers(&self, first: usize, work: &mut Work) -> Option<Found> {
         let (n, omega) = (self.modes.omega.len(), &self.modes.omega);
-        let own = self.side_by_side(first);
+        let starts = self.side_by_side(first);
+        let own = starts.map(|start| start.mode);
         // Each mode's own coordinate is the last of its equation.
         let place = |lane: usize, i: usize| if i + 1 == n { own[lane] } else { i + usize::from(i >= own[lane]) };
         work.places.clear();
@@ -154,12 +142,8 @@ impl Problem<'_> {
                 *entry = Four::new(std::array::from_fn(|lane| from[lane][places[lane]]));
             }
         }
-        let half = work.damping[n * n - 1] * 0.5;
-        let root = work.squares[n - 1] - half * half;
-        if !root.array().iter().all(|square| *square > 0.0) {
-            return None;
-        }
-        let mut lambda = Complexes { re: half * -1.0, im: root.map(f64::sqrt) };
+        let mut lambda =
+            Complexes { re: Four::new(starts.map(|start| start.re)), im: Four::new(starts.map(|start| start.im)) };
         let mut is_last = false;
         for _ in 0..MOST_STEPS {
             let step = newton(lambda, work);
@@ -187,9 +171,9 @@ impl Problem<'_> {
         let (mut most, mut worst) = (Four::ZERO, Four::ZERO);
         let larger = |a: f64, b: f64| if a < b || b.is_nan() { b } else { a };
         for (group, (Found { lambda, size }, shape)) in found.iter().zip(shapes.chunks_exact(n)).enumerate() {
-            let own = self.side_by_side(group * WIDTH);
+            let own: [usize; WIDTH] = std::array::from_fn(|lane| (group * WIDTH + lane).min(self.starts.len() - 1));
             // w v of one mode and another is v w of the other and the one.
-            for other in group * WIDTH..n {
+            for other in group * WIDTH..self.starts.len() {
                 let (of_other, lane) = (other / WIDTH, other % WIDTH);
                 let (others, of_others) = (&found[of_other], &shapes[of_other * n..]);
                 // Σ x y and Σ Ω² x y, with y and with its conjugate.
@@ -207,10 +191,12 @@ impl Problem<'_> {
                 let next = others.lambda.all(lane);
                 let mirrored = Complexes { re: next.re, im: next.im * -1.0 };
                 let not_itself = Four::new(own.map(|own| if own == other { 0.0 } else { 1.0 }));
+                // A real mode is its own mirror image.
+                let not_mirrored = if self.starts[other].is_real() { not_itself } else { Four::all(1.0) };
                 let scale = (size.square() * others.size.all(lane).square()).map(|scale| 1.0 / scale);
                 let pairs = [
                     (next, plain(sums), plain(stiff), not_itself),
-                    (mirrored, conjugate(sums), conjugate(stiff), Four::all(1.0)),
+                    (mirrored, conjugate(sums), conjugate(stiff), not_mirrored),
                 ];
                 for (next, sum, stiff, counts) in pairs {
                     // |w v|⁴, and what it makes A V = V B miss, to the same power.
@@ -240,23 +226,23 @@ impl Problem<'_> {
 
     #[inline(always)]
     fn assemble_by_registers(&self, found: &[Found], shapes: &[Complexes]) -> Spectral {
-        let n = self.modes.omega.len();
-        let width = 2 * n;
+        let (n, count) = (self.modes.omega.len(), self.starts.len());
+        let width = 2 * count;
         let matrix = |k: usize| {
             let Complexes { re, im } = &found[k / WIDTH].lambda;
             let (a, b) = (re.at(k % WIDTH), im.at(k % WIDTH));
             [a, -b, b, a]
         };
-        let mut order: Vec<(usize, f64)> = (0..n).map(|k| (k, Block::new(matrix(k)).radius)).collect();
+        let mut order: Vec<(usize, f64)> = (0..count).map(|k| (k, Block::new(matrix(k)).radius)).collect();
         order.sort_by(|(_, one), (_, other)| other.total_cmp(one));
-        let mut slots = vec![0; n];
+        let mut slots = vec![0; count];
         order.iter().enumerate().for_each(|(slot, (k, _))| slots[*k] = slot);
         let matrices = order.iter().map(|(k, _)| matrix(*k)).collect();
-        let [from_blocks, to_blocks] = [vec![0.0; width * width], vec![0.0; width * width]];
+        let [from_blocks, to_blocks] = [vec![0.0; 2 * n * width], vec![0.0; 2 * n * width]];
         let mut spectral = Spectral::new(from_blocks, to_blocks, matrices, f64::INFINITY);
         for (group, (Found { lambda, size }, shape)) in found.iter().zip(shapes.chunks_exact(n)).enumerate() {
             let first = group * WIDTH;
-            let lanes = WIDTH.min(n - first);
+            let lanes = WIDTH.min(count - first);
             let inverse = size.inverse();
             for i in 0..n {
                 let mut by_modes = [Complexes::ZERO; 3];
@@ -275,7 +261,9 @@ impl Problem<'_> {
                     let row = (half * n + i) * width;
                     for lane in 0..lanes {
                         let at = row + 2 * slots[first + lane];
-                        spectral.from_blocks[at] = 2.0 * v.re.at(lane);
+                        // A real mode has no conjugate, and leaves the second coordinate of its block alone.
+                        let twice = if self.starts[first + lane].is_real() { 1.0 } else { 2.0 };
+                        spectral.from_blocks[at] = twice * v.re.at(lane);
                         spectral.from_blocks[at + 1] = -2.0 * v.im.at(lane);
                         spectral.to_blocks[at] = w.re.at(lane);
                         spectral.to_blocks[at + 1] = w.im.at(lane);
@@ -393,16 +381,16 @@ fn newton(lambda: Complexes, work: &mut Work) -> Complexes {
 /// W ← W + (1 − W V) W.
 fn correct(spectral: &mut Spectral) {
     let width = spectral.width();
-    let v = DMatrix::from_row_slice(width, width, &spectral.from_blocks);
+    let size = spectral.from_blocks.len() / width;
+    let v = DMatrix::from_row_slice(size, width, &spectral.from_blocks);
     // By coordinates, as the engine keeps it, W is column by column.
-    let mut w = DMatrix::from_column_slice(width, width, &spectral.to_blocks);
+    let mut w = DMatrix::from_column_slice(width, size, &spectral.to_blocks);
     invert_again(&v, &mut w);
     spectral.to_blocks.copy_from_slice(w.as_slice());
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::schur::Iteration;
     use super::super::schur::tests::numbers;
     use super::super::system::Matrix;
     use super::*;
@@ -467,29 +455,47 @@ mod tests {
 
         /// What W V misses of 1, and V B W of A, with places in units of their scale: (Ω p, p′).
         fn residuals(&self, spectral: &Spectral) -> [f64; 2] {
-            let (order, width) = (self.mass.order, spectral.width());
+            let (order, size, width) = (self.mass.order, 2 * self.mass.order, spectral.width());
             let rows = self.accelerations();
             let unit: Vec<f64> = (0..order).map(|i| rows[i][i].abs().sqrt()).chain(vec![1.0; order]).collect();
-            let v = DMatrix::from_fn(width, width, |i, k| spectral.from_blocks[i * width + k] * unit[i]);
-            let w = DMatrix::from_fn(width, width, |k, i| spectral.to_blocks[i * width + k] / unit[i]);
+            let v = DMatrix::from_fn(size, width, |i, k| spectral.from_blocks[i * width + k] * unit[i]);
+            let w = DMatrix::from_fn(width, size, |k, i| spectral.to_blocks[i * width + k] / unit[i]);
             let mut b = DMatrix::zeros(width, width);
             for (k, matrix) in spectral.matrices.iter().enumerate() {
                 (0..4).for_each(|i| b[(2 * k + i / 2, 2 * k + i % 2)] = matrix[i]);
             }
-            let a = DMatrix::from_fn(width, width, |i, j| {
+            let a = DMatrix::from_fn(size, size, |i, j| {
                 let entry = if i < order { f64::from(u8::from(j == order + i)) } else { rows[i - order][j] };
                 entry * unit[i] / unit[j]
             });
             let scale = a.amax();
-            [(&v * &w - DMatrix::identity(width, width)).amax(), (&v * b * &w - &a).amax() / scale]
+            [(&v * &w - DMatrix::identity(size, size)).amax(), (&v * b * &w - &a).amax() / scale]
         }
+    }
+
+    /// Moduli of all eigenvalues.
+    fn rates(spectral: &Spectral) -> Vec<f64> {
+        let moduli = spectral.blocks.iter().flat_map(|block| {
+            let count = if block.is_single() { 1 } else { 2 };
+            block.eigenvalues().into_iter().take(count).map(|[re, im]| libm::hypot(re, im))
+        });
+        let mut moduli: Vec<f64> = moduli.collect();
+        moduli.sort_by(f64::total_cmp);
+        moduli
     }
 
     #[test]
     fn modes_under_dashpots_are_as_exact_as_those_of_a_schur_form() {
         let mut number = numbers(1);
-        // Dashpots by what is critical for a particle alone; which share of the systems must come from their normal modes.
-        for (least, most, share) in [(0.01, 0.1, 0.95), (0.1, 0.3, 0.95), (0.3, 0.6, 0.8), (0.6, 2.0, 0.0)] {
+        // Dashpots by what is critical for a particle alone; which share of the systems must come from their normal modes, and by which
+        // factor those may be further off in the mean.
+        for (least, most, share, factor) in [
+            (0.01, 0.1, 0.95, 1.2),
+            (0.1, 0.3, 0.95, 1.2),
+            (0.3, 0.6, 0.8, 1.2),
+            (0.6, 2.0, 0.25, 1.2),
+            (2.0, 20.0, 0.1, 2.0),
+        ] {
             let (mut drawn, mut split, mut means) = (0, 0, [[0.0; 2]; 2]);
             for _ in 0..300 {
                 let structure = number(3.0, 12.99) as usize;
@@ -502,27 +508,26 @@ mod tests {
                 let [unit, matrix] = system.residuals(&own);
                 assert!(unit < 1e-13 && matrix < 5e-14, "{structure}, {particles}, {ratio}: {unit:e}, {matrix:e}");
                 let rows = system.accelerations();
-                let schur = super::super::modes::split(&rows, &system.mass, None, Iteration::Own).expect("it ends");
+                let schur = super::super::modes::split(&rows, &system.mass, None).expect("it ends");
                 if schur.lasts.is_infinite() {
                     for (sums, spectral) in means.iter_mut().zip([&own, &schur]) {
                         let residuals = system.residuals(spectral);
                         sums.iter_mut().zip(residuals).for_each(|(sum, x)| *sum += libm::log(x.max(1e-17)));
                     }
                 }
-                for (own, schur) in own.blocks.iter().zip(&schur.blocks).filter(|_| schur.lasts.is_infinite()) {
-                    assert!((own.radius / schur.radius - 1.0).abs() < 1e-10, "{} for {}", own.radius, schur.radius);
+                for (own, schur) in rates(&own).into_iter().zip(rates(&schur)).filter(|_| schur.lasts.is_infinite()) {
+                    assert!((own / schur - 1.0).abs() < 1e-10, "{own} for {schur}");
                 }
             }
             assert!(f64::from(split) >= share * f64::from(drawn), "{split} of {drawn} up to {most}");
             let [own, schur] = means.map(|sums| sums.map(|sum| sum / f64::from(split.max(1))));
-            assert!((0..2).all(|i| own[i] < schur[i] + 0.2), "up to {most}: {own:?} for {schur:?}");
+            assert!((0..2).all(|i| own[i] < schur[i] + libm::log(factor)), "up to {most}: {own:?} for {schur:?}");
         }
     }
 
     #[test]
-    fn what_is_overdamped_is_left_to_the_schur_form_and_modes_that_are_twice_the_same_are_split_well_or_not_at_all() {
+    fn modes_that_are_twice_the_same_are_split_well_or_not_at_all() {
         let mut number = numbers(1);
-        assert!(Drawn::new(&mut number, 4, 2, 3.0).split().is_none());
         // More particles of one kind than modes: some of theirs are one, and any of their shapes will do.
         for seed in 0..200 {
             let ratio = number(0.01, 0.6);
@@ -541,7 +546,7 @@ mod tests {
             let system = Drawn::new(&mut number, 5, 3, 0.3);
             let modes = NormalModes::new(&system.stiffness, &system.mass).expect("springs are positive");
             let damping = system.in_normal_coordinates(&modes);
-            let problem = Problem { modes: &modes, damping: &damping };
+            let problem = Problem::new(&modes, &damping);
             let mut work = Work::default();
             let mut bits = |solve: fn(&Problem, usize, &mut Work) -> Option<Found>| {
                 work.make_room(modes.omega.len());

@@ -221,6 +221,7 @@ impl Integrated {
 
 #[cfg(test)]
 mod tests {
+    use super::super::bank::Bank;
     use super::super::block::Phase;
     use super::super::integral::Panels;
     use super::super::parabola::Parabola;
@@ -244,8 +245,9 @@ mod tests {
             Phase { value: v0 * x + v1 * y, rate: r0 * x + r1 * y }
         };
         let mut panels = Panels::default();
-        panels.add(row.weights.iter().enumerate().map(phase), parabola(-0.01 + level * 0.002));
-        let sampled = panels.integrate(&blocks, duration)[0].sums(duration);
+        panels.divide(&blocks, &Bank::new(&blocks), duration);
+        let shares: Vec<Phase> = row.weights.iter().enumerate().map(phase).collect();
+        let sampled = panels.sums(&blocks, &shares, parabola(-0.01 + level * 0.002));
 
         let end = |(k, [p, q, r, s]): (usize, [f64; 4])| {
             let (kernel, a) = (blocks[k].kernel(duration), blocks[k].decay);

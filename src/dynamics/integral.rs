@@ -1,11 +1,17 @@
 //! Integrals of a signal over a segment, by Gauss-Legendre panels so short that they are exact to rounding: for motion
 //! without damping and for brief stretches, where the closed forms of [`super::gains`] lose their digits.
+//!
+//! Nodes lie in pairs about the middle m of a panel, so that one exponential, sine and cosine of each pair are enough:
+//!
+//! e^(B(m ± x)) = e^(Bm) e^(±Bx).
 
-use super::block::{Block, Phase};
+use super::bank::{Bank, Kernels};
+use super::block::{Block, Kernel, Phase};
 use super::budget;
 use super::four::Four;
-use super::lanes::{Lanes, WIDTH};
+use super::lanes::WIDTH;
 use super::parabola::Parabola;
+use super::quadrature;
 use super::sums::{About, Sums};
 use super::wide::widened;
 
@@ -16,188 +22,164 @@ pub(crate) const BRIEF: f64 = 0.05;
 /// Panels after each other by the kernels of one; their rounding adds up to some 1e-14 of the motion.
 const PANELS_IN_A_ROW: usize = 32;
 
-/// Several signals over the panels of a stretch, which share the kernels of their nodes: the nodes of a panel lie side by side,
-/// and shares move on from panel to panel.
-#[derive(Debug, Default)]
-pub(crate) struct Panels {
-    signals: Vec<Integrand>,
-    /// Their shares at the start, signal by signal.
-    shares: Vec<Phase>,
-    /// Those of one of them at the start of a panel.
-    now: Vec<Phase>,
-    /// c and s of each block at the places of a panel.
-    kernels: Vec<[Places; 2]>,
-}
+/// What a squared signal, which turns twice as fast as its fastest block, turns by in a panel for which the rule of sixteen points is
+/// exact to rounding: of the 32nd derivative of the square it leaves (16!)⁴/(33 (32!)³) 14.8³², which is 10⁻¹⁷.
+const TURN_OF_A_PANEL: f64 = 14.8;
+/// What has died away turns by no more than this, so that it gets no more panels.
+const MOST_OF_WHAT_IS_GONE: f64 = 1e5;
+/// decay·t at which a block has died away to rounding.
+const DIED_AWAY: f64 = 40.0;
 
-/// A signal, and what of it is integrated.
-#[derive(Debug)]
-pub(crate) struct Integrand {
-    rest: Parabola,
-    /// About which the displacement is taken.
-    place: f64,
-    /// ∫ (s − place), ∫ (s − place)² and ∫ s′².
-    integrals: [f64; 3],
-    /// ∫ s″², without what constant loads add.
-    pub(crate) acceleration_square: f64,
-}
-
-impl Integrand {
-    /// The measures of its signal, of a stretch of `duration` seconds.
-    pub(crate) fn sums(&self, duration: f64) -> Sums {
-        let [moved, square, velocity_square] = self.integrals;
-        Sums::of(&[About { duration, place: self.place, moved, square, velocity_square }])
-    }
-}
-
-impl Panels {
-    /// No signals.
-    pub(crate) fn clear(&mut self) {
-        self.signals.clear();
-        self.shares.clear();
-    }
-
-    /// Adds a signal by its shares at the start.
-    pub(crate) fn add(&mut self, shares: impl Iterator<Item = Phase>, rest: Parabola) {
-        let first = self.shares.len();
-        self.shares.extend(shares);
-        let place = self.shares[first..].iter().fold(rest.p0, |sum, share| sum + share.value);
-        self.signals.push(Integrand { rest, place, integrals: [0.0; 3], acceleration_square: 0.0 });
-    }
-
-    widened! {
-        /// Integrates them over `duration` seconds, once.
-        pub(crate) fn integrate | integrate_wide (&mut self, blocks: &[Block], duration: f64) -> &[Integrand] = by_registers
-    }
-
-    #[inline(always)]
-    fn by_registers(&mut self, blocks: &[Block], duration: f64) -> &[Integrand] {
-        let count = panels(blocks, duration);
-        let h = duration / count as f64;
-        self.kernels.resize(blocks.len(), [Places::ZERO; 2]);
-        for (kernels, block) in self.kernels.iter_mut().zip(blocks) {
-            *kernels = block.kernels(h * PLACES);
-        }
-        for (signal, start) in self.signals.iter_mut().zip(self.shares.chunks_exact(blocks.len().max(1))) {
-            self.now.clear();
-            self.now.extend_from_slice(start);
-            for panel in 0..count {
-                if budget::spend(1) {
-                    break;
-                }
-                if panel > 0 && panel.is_multiple_of(PANELS_IN_A_ROW) {
-                    let from = blocks.iter().zip(start);
-                    let moved = from.map(|(block, share)| block.advance(*share, block.kernel(panel as f64 * h)));
-                    self.now.iter_mut().zip(moved).for_each(|(now, moved)| *now = moved);
-                }
-                let t = registers(PLACES).map(|places| (Four::all(panel as f64) + places) * h);
-                let Parabola { p0, p1, p2 } = signal.rest;
-                let mut value = t.map(|t| Four::all(p0 - signal.place) + t * (Four::all(p1) + t * p2));
-                let mut rate = t.map(|t| Four::all(p1) + t * (2.0 * p2));
-                let mut bend = [Four::ZERO; REGISTERS];
-                for ((block, share), kernels) in blocks.iter().zip(&mut self.now).zip(&self.kernels) {
-                    let slope = share.rate + block.decay * share.value;
-                    let fall = block.decay * share.rate + block.determinant * share.value;
-                    let [c, s] = kernels.map(registers);
-                    let mut now = *share;
-                    for i in 0..REGISTERS {
-                        let (v, r) = (c[i] * share.value + s[i] * slope, c[i] * share.rate - s[i] * fall);
-                        (value[i], rate[i]) = (value[i] + v, rate[i] + r);
-                        bend[i] = bend[i] + (r * (2.0 * block.decay) + v * block.determinant);
-                        if i == END / WIDTH {
-                            now = Phase { value: v.array()[END % WIDTH], rate: r.array()[END % WIDTH] };
-                        }
-                    }
-                    *share = now;
-                }
-                let square = |x: [Four; REGISTERS]| x.map(|x| x * x);
-                signal.integrals[0] += weighted(value) * h;
-                signal.integrals[1] += weighted(square(value)) * h;
-                signal.integrals[2] += weighted(square(rate)) * h;
-                signal.acceleration_square += weighted(square(bend)) * h;
-            }
-        }
-        &self.signals
-    }
-}
-
-/// Nodes and weights of the ten-point Gauss-Legendre rule on [0, 1].
-pub(crate) const GAUSS: [[f64; 2]; 10] = {
-    const X: [f64; 5] = [
-        0.148_874_338_981_631_21,
-        0.433_395_394_129_247_2,
-        0.679_409_568_299_024_4,
-        0.865_063_366_688_984_5,
-        0.973_906_528_517_171_7,
-    ];
-    const W: [f64; 5] = [
-        0.295_524_224_714_752_87,
-        0.269_266_719_309_996_35,
-        0.219_086_362_515_982_04,
-        0.149_451_349_150_580_6,
-        0.066_671_344_308_688_14,
-    ];
-    let mut rule = [[0.0; 2]; 10];
-    let mut i = 0;
-    while i < 5 {
-        rule[2 * i] = [0.5 * (1.0 - X[i]), 0.5 * W[i]];
-        rule[2 * i + 1] = [0.5 * (1.0 + X[i]), 0.5 * W[i]];
+/// The node and the weight of each pair, in whole registers.
+const RULE: [[Four; 2]; REGISTERS] = {
+    let half = quadrature::half::<{ REGISTERS * WIDTH }>();
+    let (mut rule, mut i) = ([[Four::ZERO; 2]; REGISTERS], 0);
+    while i < REGISTERS {
+        let [a, b, c, d] = [half[4 * i], half[4 * i + 1], half[4 * i + 2], half[4 * i + 3]];
+        rule[i] = [Four::new([a[0], b[0], c[0], d[0]]), Four::new([a[1], b[1], c[1], d[1]])];
         i += 1;
     }
     rule
 };
+const REGISTERS: usize = 2;
 
-/// The nodes of a panel, its end, and one more to fill the registers.
-type Places = Lanes<{ REGISTERS * WIDTH }>;
-const REGISTERS: usize = 3;
-const END: usize = GAUSS.len();
-const PLACES: Places = places(0, 1.0);
-const WEIGHTS: Places = places(1, 0.0);
-
-/// A column of the rule, and what stands at the end of a panel.
-const fn places(column: usize, end: f64) -> Places {
-    let mut places = Places::ZERO;
-    let mut i = 0;
-    while i < GAUSS.len() {
-        places.0[i] = GAUSS[i][column];
-        i += 1;
-    }
-    places.0[END] = end;
-    places
+/// The panels of a stretch, over which any number of signals is integrated by the same kernels.
+#[derive(Debug, Default)]
+pub(crate) struct Panels {
+    count: usize,
+    /// Of a panel, s.
+    length: f64,
+    /// Block by block: c and s after each node beyond the middle, and after the one before it.
+    nodes: Vec<[[Four; 4]; REGISTERS]>,
+    /// Kernels of half a panel.
+    middle: Vec<Kernels>,
+    /// Shares at the start of the stretch, and at that of a panel.
+    start: Vec<Phase>,
+    now: Vec<Phase>,
+    /// Kernels of a panel, where there are several.
+    ends: Vec<Kernel>,
 }
-
-/// In whole registers.
-#[inline(always)]
-fn registers(places: Places) -> [Four; REGISTERS] {
-    let [a, b, c, d, e, f, g, h, i, j, k, l] = places.0;
-    [Four::new([a, b, c, d]), Four::new([e, f, g, h]), Four::new([i, j, k, l])]
-}
-
-/// The mean over a panel.
-#[inline(always)]
-fn weighted(values: [Four; REGISTERS]) -> f64 {
-    let mut sum = Four::ZERO;
-    for (values, weights) in values.into_iter().zip(registers(WEIGHTS)) {
-        sum = sum + values * weights;
-    }
-    sum.sum()
-}
-
-/// What a squared signal, which turns twice as fast as its fastest block, turns by in a panel for which the ten-point rule is exact to
-/// rounding: of the 20th derivative of the square it leaves (10!)⁴/(21 (20!)³) 4.6²⁰, which is 10⁻¹⁷.
-const TURN_OF_A_PANEL: f64 = 4.6;
-
-/// Panels beyond which what has died away gets no more of them.
-const MANY_PANELS: f64 = 20_000.0;
-/// decay·t at which a block has died away to rounding.
-const DIED_AWAY: f64 = 40.0;
 
 /// How many panels make the rule exact to rounding over `duration`.
-pub(crate) fn panels(blocks: &[Block], duration: f64) -> usize {
-    let wanted = |block: &Block| {
-        let panels = 2.0 * block.radius * duration / TURN_OF_A_PANEL;
-        if block.decay * duration > DIED_AWAY { panels.min(MANY_PANELS) } else { panels }
+fn panels(blocks: &[Block], duration: f64) -> usize {
+    let turn = |block: &Block| {
+        let turn = 2.0 * block.radius * duration;
+        if block.decay * duration > DIED_AWAY { turn.min(MOST_OF_WHAT_IS_GONE) } else { turn }
     };
-    blocks.iter().map(wanted).fold(1.0, f64::max).ceil() as usize
+    (blocks.iter().map(turn).fold(1.0, f64::max) / TURN_OF_A_PANEL).ceil() as usize
+}
+
+impl Panels {
+    widened! {
+        /// Those of a stretch of `duration` seconds; `bank` has the same blocks side by side.
+        pub(crate) fn divide | divide_wide (&mut self, blocks: &[Block], bank: &Bank, duration: f64) = divide_by_registers
+    }
+
+    #[inline(always)]
+    fn divide_by_registers(&mut self, blocks: &[Block], bank: &Bank, duration: f64) {
+        self.count = panels(blocks, duration);
+        self.length = duration / self.count as f64;
+        let half = 0.5 * self.length;
+        self.middle.resize(bank.blocks.len(), Kernels::NONE);
+        bank.kernels(blocks, half, &mut self.middle);
+        self.nodes.clear();
+        for (k, block) in blocks.iter().enumerate() {
+            let middle = self.middle[k / WIDTH].at(k % WIDTH);
+            let mut nodes = [[Four::ZERO; 4]; REGISTERS];
+            for (nodes, [x, _]) in nodes.iter_mut().zip(RULE) {
+                *nodes = block.kernels_about(half, middle, x * half);
+            }
+            self.nodes.push(nodes);
+        }
+    }
+
+    /// Starts with these shares.
+    fn start(&mut self, shares: impl Iterator<Item = Phase>) {
+        self.start.clear();
+        self.start.extend(shares);
+    }
+
+    /// ∫ s² dt of a signal that starts with these shares.
+    pub(crate) fn square(&mut self, blocks: &[Block], shares: impl Iterator<Item = Phase>) -> f64 {
+        self.start(shares);
+        let [[_, square]] = self.integrate(blocks, [Parabola::default()]);
+        square
+    }
+
+    /// The measures of a motion that starts with these shares, beside what constant loads add.
+    pub(crate) fn sums(&mut self, blocks: &[Block], shares: &[Phase], rest: Parabola) -> Sums {
+        self.start(shares.iter().copied());
+        let place = self.start.iter().fold(rest.p0, |sum, share| sum + share.value);
+        let loads = [Parabola { p0: rest.p0 - place, ..rest }, rest.derivative()];
+        let [[moved, square], [_, velocity_square]] = self.integrate_with_rate(blocks, loads);
+        let duration = self.length * self.count as f64;
+        Sums::of(&[About { duration, place, moved, square, velocity_square }])
+    }
+
+    widened! {
+        fn integrate | integrate_wide (&mut self, blocks: &[Block], loads: [Parabola; 1]) -> [[f64; 2]; 1] = by_registers
+    }
+    widened! {
+        fn integrate_with_rate | integrate_with_rate_wide
+            (&mut self, blocks: &[Block], loads: [Parabola; 2]) -> [[f64; 2]; 2] = by_registers
+    }
+
+    /// ∫ s and ∫ s² of the signal and, of two, of its rate, with what loads add to each.
+    #[inline(always)]
+    fn by_registers<const Q: usize>(&mut self, blocks: &[Block], loads: [Parabola; Q]) -> [[f64; 2]; Q] {
+        let half = 0.5 * self.length;
+        let mut sums = [[Four::ZERO; 2]; Q];
+        for panel in 0..self.count {
+            if budget::spend(1) {
+                break;
+            }
+            if panel > 0 {
+                self.move_on(blocks, panel);
+            }
+            let now = if panel > 0 { &self.now } else { &self.start };
+            let middle = Four::all((2 * panel + 1) as f64 * half);
+            let sides = RULE.map(|[x, _]| [middle + x * half, middle - x * half]);
+            let mut values = loads.map(|Parabola { p0, p1, p2 }| {
+                sides.map(|sides| sides.map(|t| Four::all(p0) + t * (Four::all(p1) + t * p2)))
+            });
+            for ((block, share), nodes) in blocks.iter().zip(now).zip(&self.nodes) {
+                let Phase { value, rate } = *share;
+                let answers =
+                    [[value, rate + block.decay * value], [rate, -(block.decay * rate + block.determinant * value)]];
+                for (values, [x, y]) in values.iter_mut().zip(answers) {
+                    for ([after, before], [c, s, c_before, s_before]) in values.iter_mut().zip(nodes) {
+                        *after = *after + (*c * x + *s * y);
+                        *before = *before + (*c_before * x + *s_before * y);
+                    }
+                }
+            }
+            for ([sum, square], values) in sums.iter_mut().zip(values) {
+                for ([after, before], [_, weight]) in values.into_iter().zip(RULE) {
+                    *sum = *sum + (after + before) * weight;
+                    *square = *square + (after * after + before * before) * weight;
+                }
+            }
+        }
+        sums.map(|sums| sums.map(|sum| sum.sum() * half))
+    }
+
+    /// Shares at the start of a panel that is not the first.
+    #[cold]
+    fn move_on(&mut self, blocks: &[Block], panel: usize) {
+        let is_afresh = panel.is_multiple_of(PANELS_IN_A_ROW);
+        if panel == 1 {
+            self.now.clone_from(&self.start);
+            self.ends.clear();
+            self.ends.extend(blocks.iter().map(|block| block.kernel(self.length)));
+        }
+        for (k, block) in blocks.iter().enumerate() {
+            self.now[k] = if is_afresh {
+                block.advance(self.start[k], block.kernel(panel as f64 * self.length))
+            } else {
+                block.advance(self.now[k], self.ends[k])
+            };
+        }
+    }
 }
 
 #[cfg(test)]
@@ -206,10 +188,11 @@ mod tests {
 
     /// The integrals of a signal about a place, node by node, each from the start.
     fn integrals(blocks: &[Block], start: &[Phase], rest: Parabola, duration: f64, place: f64) -> [f64; 3] {
-        let count = 2 * panels(blocks, duration);
+        let turn = blocks.iter().map(|block| block.radius * duration).fold(1.0, f64::max);
+        let count = turn.ceil() as usize;
         let h = duration / count as f64;
         let mut sum = [0.0; 3];
-        for (panel, [x, weight]) in (0..count).flat_map(|panel| GAUSS.map(|node| (panel, node))) {
+        for (panel, [x, weight]) in (0..count).flat_map(|panel| quadrature::TEN.map(|node| (panel, node))) {
             let t = (panel as f64 + x) * h;
             let [value, rate, ..] = super::super::signals::motion(blocks, start, rest, |k| blocks[k].kernel(t), t);
             let value = value - place;
@@ -220,31 +203,31 @@ mod tests {
     }
 
     #[test]
-    fn signals_side_by_side_have_the_integrals_that_each_has_alone() {
+    fn panels_of_any_number_of_points_have_the_integrals_of_short_ones() {
         let matrices =
             [[0.0, 1.0, -9e4, -3.0], [0.0, 1.0, -25.0, -10.0], [0.0, 1.0, -9.0, -40.0], [0.0, 1.0, 0.0, 0.0]];
         let blocks = matrices.map(Block::new);
+        let bank = Bank::new(&blocks);
         let shares = [0.3, -1.2, 0.7, 0.1].map(|x| Phase { value: x, rate: 40.0 * x * x });
-        let rest = Parabola { p0: 0.2, p1: -1.0, p2: -4.9 };
+        let loads = Parabola { p0: 0.2, p1: -1.0, p2: -4.9 };
         let mut panels = Panels::default();
-        for duration in [1e-6, 3e-3, 0.02, 0.7] {
-            panels.clear();
-            panels.add(shares.iter().copied(), Parabola::default());
-            panels.add(shares.iter().copied(), rest);
-            let of = panels.integrate(&blocks, duration);
-            for (signal, rest) in of.iter().zip([Parabola::default(), rest]) {
-                let alone = integrals(&blocks, &shares, rest, duration, signal.place);
-                for ((one, other), size) in signal.integrals.iter().zip(alone).zip([duration, duration, alone[2]]) {
+        for duration in [1e-6, 3e-3, 0.02, 0.05, 0.7, 9.0] {
+            panels.divide(&blocks, &bank, duration);
+            for rest in [Parabola::default(), loads] {
+                let sums = panels.sums(&blocks, &shares, rest);
+                let place = sums.mean_displacement();
+                let [moved, square, velocity_square] = integrals(&blocks, &shares, rest, duration, place);
+                assert!(moved.abs() <= 1e-13 * duration * (1.0 + place.abs()), "{duration}: {moved}");
+                for (one, other, size) in [
+                    (sums.deviation_square, square, square + duration),
+                    (sums.velocity_square, velocity_square, velocity_square),
+                ] {
                     assert!((one - other).abs() <= 1e-13 * size, "{duration}: {one} for {other}");
                 }
             }
-            // The rate of s′ is s″.
-            let mut rates = shares;
-            rates.iter_mut().zip(&blocks).for_each(|(share, block)| {
-                *share = Phase { value: share.rate, rate: block.acceleration(*share).value };
-            });
-            let [.., square] = integrals(&blocks, &rates, Parabola::default(), duration, 0.0);
-            assert!((of[0].acceleration_square / square - 1.0).abs() < 1e-12);
+            let value = panels.square(&blocks, shares.iter().copied());
+            let [_, square, _] = integrals(&blocks, &shares, Parabola::default(), duration, 0.0);
+            assert!((value / square - 1.0).abs() <= 1e-12, "{duration}: {value} for {square}");
         }
     }
 }

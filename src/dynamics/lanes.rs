@@ -12,9 +12,6 @@ pub(crate) const WIDTH: usize = 4;
 pub(crate) struct Lanes<const N: usize>(pub(crate) [f64; N]);
 
 impl<const N: usize> Lanes<N> {
-    /// Of nothing.
-    pub(crate) const ZERO: Self = Self([0.0; N]);
-
     /// Each with that in the same place of the other.
     #[inline(always)]
     pub(crate) fn zip(self, other: Self, each: impl Fn(f64, f64) -> f64) -> Self {

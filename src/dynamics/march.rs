@@ -26,6 +26,7 @@ use super::guards::Slipped;
 use super::integral::Panels;
 use super::mobility::Mobilities;
 use super::motion::{self, Fundamental, Tape};
+use super::pair_integral::PairIntegrals;
 use super::parabola::Parabola;
 use super::reach::{self, OutOfReach};
 use super::search::{Clarity, Search};
@@ -74,6 +75,7 @@ pub(crate) struct March<'a, E> {
     // Work space.
     search: Search,
     panels: Panels,
+    pairs: PairIntegrals,
     lookout: Lookout,
     /// Gap parabolas of the particles in flight.
     paths: Vec<Parabola>,
@@ -138,6 +140,7 @@ impl<'a, E: Effects> March<'a, E> {
             half: Half::default(),
             search: Search::new(options.window_factor),
             panels: Panels::default(),
+            pairs: PairIntegrals::default(),
             lookout: Lookout::default(),
             paths: vec![Parabola::default(); count],
             signals: Signals::default(),

@@ -37,6 +37,7 @@ mod carried;
 mod cholesky;
 mod cluster;
 mod collision;
+mod complexes;
 mod conservative;
 mod contact;
 mod contact_state;
@@ -64,9 +65,11 @@ mod modes;
 mod motion;
 mod options;
 mod orbit;
+mod pair_integral;
 mod parabola;
 mod polynomial;
 mod proof;
+mod quadrature;
 mod reach;
 mod repeated;
 mod residual_bound;
@@ -114,4 +117,4 @@ pub use system::{
 pub use trace::{Sample, SampledParticle, TraceRequest};
 
 /// Changes whenever the same scene may give other bits. A test holds the bits of fixed scenes against it.
-pub const SOLVER_VERSION: u32 = 21;
+pub const SOLVER_VERSION: u32 = 22;

@@ -7,7 +7,6 @@
 
 use super::EngineError;
 use super::cholesky::Cholesky;
-use super::schur::Iteration;
 use super::spectral::Spectral;
 use super::system::Matrix;
 use super::undamped::NormalModes;
@@ -20,7 +19,6 @@ pub(crate) fn split(
     accelerations: &[Vec<f64>],
     mass: &Matrix,
     stiffness: Option<&Matrix>,
-    iteration: Iteration,
 ) -> Result<Spectral, EngineError> {
     let order = accelerations.len();
     let size = 2 * order;
@@ -64,7 +62,7 @@ pub(crate) fn split(
     }
     let inner = match undamped {
         Some(undamped) => undamped,
-        None if count > 0 => Spectral::split(2 * count, &matrix, iteration)?,
+        None if count > 0 => Spectral::split(2 * count, &matrix)?,
         None => Spectral::default(),
     };
 

@@ -17,6 +17,10 @@ impl Parabola {
         self.p1 + 2.0 * self.p2 * t
     }
 
+    pub(crate) fn derivative(self) -> Self {
+        Self { p0: self.p1, p1: 2.0 * self.p2, p2: 0.0 }
+    }
+
     pub(crate) fn times(self, factor: f64) -> Self {
         Self { p0: factor * self.p0, p1: factor * self.p1, p2: factor * self.p2 }
     }

@@ -15,24 +15,11 @@ const SWEEPS: usize = 30;
 /// Every so many sweeps without a result the shift is another one.
 const PATIENCE: usize = 10;
 
-/// Which iteration comes first.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Iteration {
-    /// The library's.
-    Library,
-    /// The one here, in fewer instructions: for contact states that are visited once.
-    Own,
-}
-
 /// Q and T.
-pub(super) fn schur(a: DMatrix<f64>, first: Iteration) -> Result<[DMatrix<f64>; 2], EngineError> {
+pub(super) fn schur(a: DMatrix<f64>) -> Result<[DMatrix<f64>; 2], EngineError> {
     let order = a.nrows();
-    let library = |a: DMatrix<f64>| Schur::try_new(a, f64::EPSILON, SWEEPS * order).map(|form| form.unpack().into());
-    let form = match first {
-        Iteration::Library => library(a.clone()).or_else(|| Francis::form(a)),
-        Iteration::Own => Francis::form(a.clone()).or_else(|| library(a)),
-    };
-    form.ok_or(EngineError::NoSchurForm { order })
+    let library = Schur::try_new(a.clone(), f64::EPSILON, SWEEPS * order).map(|form| form.unpack().into());
+    library.or_else(|| Francis::form(a)).ok_or(EngineError::NoSchurForm { order })
 }
 
 /// The iteration on a Hessenberg form.
@@ -208,7 +195,7 @@ pub(super) mod tests {
                 (count..2 * count).for_each(|row| matrix[(row, i)] /= frequency);
             }
             let largest = matrix.amax();
-            for [q, t] in [schur(matrix.clone(), Iteration::Library).unwrap(), Francis::form(matrix.clone()).unwrap()] {
+            for [q, t] in [schur(matrix.clone()).unwrap(), Francis::form(matrix.clone()).unwrap()] {
                 assert!((&q * q.transpose() - DMatrix::identity(2 * count, 2 * count)).amax() < 1e-13);
                 assert!((&q * &t * q.transpose() - &matrix).amax() < 1e-13 * largest, "seed {seed}");
                 for i in 2..2 * count {

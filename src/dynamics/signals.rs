@@ -287,7 +287,7 @@ impl Rows {
 
     /// Numbers that it keeps.
     pub(crate) fn size(&self) -> usize {
-        self.rows.iter().map(|row| 4 * row.weights.len()).sum::<usize>()
+        4 * self.rows.len() * self.rows.first().map_or(0, |row| row.weights.len())
             + WIDTH * (4 * self.weights.len() + self.bends.get().map_or(0, Vec::len))
     }
 

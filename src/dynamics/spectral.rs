@@ -11,7 +11,7 @@ use nalgebra::{ComplexField, DMatrix};
 use super::EngineError;
 use super::block::Block;
 use super::gauss::eliminate;
-use super::schur::{Iteration, schur};
+use super::schur::schur;
 
 /// e^(At) = V diag(e^(Bₖt)) W, with W = V⁻¹ where there are as many blocks as coordinates ask for.
 #[derive(Clone)]
@@ -77,7 +77,7 @@ impl Spectral {
     }
 
     /// Splits `matrix` (row by row, of even `order`).
-    pub(crate) fn split(order: usize, matrix: &[f64], iteration: Iteration) -> Result<Self, EngineError> {
+    pub(crate) fn split(order: usize, matrix: &[f64]) -> Result<Self, EngineError> {
         if order == 2 {
             let unit = vec![1.0, 0.0, 0.0, 1.0];
             return Ok(Self::new(unit.clone(), unit, matrix.as_chunks().0.to_vec(), f64::INFINITY));
@@ -85,7 +85,7 @@ impl Spectral {
         let a = DMatrix::from_row_slice(order, order, matrix);
         let creeps = a.as_slice().chunks_exact(order).any(|column| column.iter().all(|entry| *entry == 0.0));
         let norm = a.as_slice().iter().fold(0.0_f64, |largest, x| largest.max(x.abs()));
-        let [mut q, mut t] = schur(a, iteration)?;
+        let [mut q, mut t] = schur(a)?;
         let firsts = gather(&mut q, &mut t);
         let (x, y) = decouple(&t, &firsts);
         if !(largest(&x) * largest(&y) < WORST_CONDITION) {
@@ -213,7 +213,7 @@ fn put(matrix: &mut DMatrix<f64>, [i, j]: [usize; 2], piece: [[f64; 2]; 2]) {
 /// W ← W + (1 − W V) W.
 pub(super) fn invert_again(v: &DMatrix<f64>, w: &mut DMatrix<f64>) {
     let mut rest = -product(w, v);
-    (0..v.nrows()).for_each(|i| rest[(i, i)] += 1.0);
+    (0..rest.nrows()).for_each(|i| rest[(i, i)] += 1.0);
     *w += product(&rest, w);
 }
 

@@ -8,7 +8,7 @@ use crate::dynamics::block::pairs;
 use crate::dynamics::budget;
 use crate::dynamics::contact::{Relative, Side};
 use crate::dynamics::flow::Flow;
-use crate::dynamics::integral::GAUSS;
+use crate::dynamics::quadrature;
 use crate::dynamics::system::{HybridSystem, dot};
 
 /// Adds the cycles that `at` are the states of at the beginning.
@@ -33,7 +33,7 @@ pub(super) fn pass(system: &HybridSystem, flow: &Flow, answer: &[f64], cycle: &C
                 pairs(flow.own).zip(there.second()).filter(|((k, l), _)| k == l).map(|(_, moment)| moment).collect();
             let size = |i: usize| squares[i / 2][3 * (i % 2)].max(0.0).sqrt();
             let h = dissipation.panel(system, &flow.modes, size).min(segment.length - t0);
-            for [x, weight] in GAUSS {
+            for [x, weight] in quadrature::TEN {
                 let t = t0 + x * h;
                 let moments = start.moved(&Affine::flow(flow, t));
                 let drive = flow.drive_after(segment.drive, t);

@@ -112,7 +112,7 @@ fn for_ever(block: &Block, share: Phase) -> Option<f64> {
     if block.decay < 0.0 || block.determinant <= 0.0 {
         return (share == Phase::default()).then_some(0.0);
     }
-    let simple = if block.is_near_critical() {
+    let simple = if !block.oscillates() || block.is_near_critical() {
         block.amplitude(share, 0.0, f64::INFINITY)
     } else {
         let [[_, turn], _] = block.eigenvalues();

@@ -6,7 +6,7 @@ use crate::dynamics::block::{Block, Phase, pairs, transposed};
 use crate::dynamics::budget;
 use crate::dynamics::flow::{DrivePhase, Flow};
 use crate::dynamics::gains::{Closed, Gains};
-use crate::dynamics::integral::GAUSS;
+use crate::dynamics::quadrature;
 use crate::dynamics::signals::Row;
 use crate::dynamics::sums::{About, Sums};
 use crate::dynamics::system::HybridSystem;
@@ -131,7 +131,7 @@ fn quadrature(flow: &Flow, row: &Row, start: &Moments, segment: &Segment) -> Sum
     let mut t0 = 0.0;
     while t0 < segment.length && !budget::spend(4) {
         let h = panel(flow, row, &start.moved(&Affine::flow(flow, t0)), drive).min(segment.length - t0);
-        for [x, weight] in GAUSS {
+        for [x, weight] in quadrature::TEN {
             let t = t0 + x * h;
             let after = drive.map(|phase| {
                 let block = &flow.blocks[flow.own];

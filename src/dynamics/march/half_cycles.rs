@@ -8,6 +8,7 @@ use super::March;
 use super::effects::Effects;
 use super::sums::Integration;
 use crate::dynamics::EngineError;
+use crate::dynamics::flow::Flow;
 use crate::dynamics::four::Four;
 
 /// An acceleration below this share of what it may become is zero: the crossing that ended the half cycle was smooth.
@@ -16,6 +17,8 @@ const SMOOTH: f64 = 1e-9;
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
 /// An acceleration that stays at or below so many times its rounding has died away; so has one that is nothing.
 const DIED_AWAY: f64 = 64.0;
+/// A segment in which no block turns by more than this is short.
+const SHORT: f64 = 0.5;
 
 /// Bookkeeping of the equivalent viscous damping.
 #[derive(Debug, Clone, Copy, Default)]
@@ -133,32 +136,28 @@ impl<E: Effects> March<'_, E> {
         Ok(())
     }
 
-    /// Adds a segment to the half cycle, and to the measures what is integrated together with it.
-    #[cold]
-    pub(super) fn sum_up_half_cycle(&mut self, length: f64) {
-        let together = self.integration(length) == Integration::Together;
-        let averaged = together && length > 0.0 && self.averaged.holds(self.cycle);
-        if self.half.idle && !averaged {
-            return;
+    /// How a segment's part in the half cycle that is followed is integrated: over a short one the shares of the acceleration may
+    /// cancel all along.
+    pub(super) fn half_cycle_integration(&self, length: f64) -> Option<Integration> {
+        if self.flow.rows.bend.is_none() || self.half.idle {
+            return None;
         }
-        let rows = &self.flow.rows;
-        let observed = || rows.observed.iter().filter(|_| averaged);
-        self.panels.clear();
-        for &row in std::iter::once(&rows.base).chain(observed().filter(|row| **row != rows.base)) {
-            let row = rows.row(row);
-            self.panels.add(row.phases(&self.c), row.rest(self.level));
-        }
-        let Some((base, others)) = self.panels.integrate(&self.flow.blocks, length).split_first() else { return };
-        if !self.half.idle {
-            self.half.square += base.acceleration_square;
-            self.half.length += length;
-        }
-        let mut others = others.iter();
-        for (of, &row) in self.response.observed.iter_mut().zip(observed()) {
-            if let Some(signal) = if row == rows.base { Some(base) } else { others.next() } {
-                of.halves[self.visits.half].add(signal.sums(length));
-            }
-        }
+        let turns = self.flow.bank.near_critical.is_empty() && !self.flow.turns_below(SHORT, length);
+        Some(if turns { Integration::Pairs } else { Integration::Panels })
+    }
+
+    /// Adds a segment to the half cycle.
+    pub(super) fn sum_up_half_cycle(&mut self, integration: Integration, length: f64) {
+        let Flow { blocks, bank, rows, .. } = &*self.flow;
+        let Some(bend) = rows.bend else { return };
+        let bend = self.signals.of(bend);
+        self.half.length += length;
+        self.half.square += if integration == Integration::Pairs {
+            self.pairs.square(bank, bend.phases)
+        } else {
+            self.panels.divide(blocks, bank, length);
+            self.panels.square(blocks, bend.each())
+        };
     }
 
     /// The RMS of a finished half cycle sets the damping of the next.

@@ -4,82 +4,88 @@ use super::March;
 use super::effects::Effects;
 use crate::dynamics::audit::{self, Force};
 use crate::dynamics::extremes::Stretch;
-use crate::dynamics::flow::DrivePhase;
-use crate::dynamics::integral;
-
-/// Panels that an integral may take before closed forms are cheaper, where a contact state is hardly ever visited twice.
-const FEW_PANELS: usize = 10;
+use crate::dynamics::flow::{DrivePhase, Flow};
 
 /// How the observed signals are integrated over a segment.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Integration {
     /// From the ends of the visits of a contact state.
-    ByEnds,
-    /// Each by panels.
-    ByPanels,
-    /// By the few panels that half cycles integrate the acceleration by.
-    Together,
+    Visits,
+    /// From the ends of the segment.
+    Pairs,
+    Panels,
 }
 
 impl<E: Effects> March<'_, E> {
     /// Adds the segment to the measures, and to the audit if there is one.
     #[inline(always)]
     pub(super) fn sum_up(&mut self, length: f64, drive: DrivePhase) {
-        if self.averaged.holds(self.cycle) {
-            let half = self.averaged.half(self.cycle);
-            if self.visits.half != half || self.visits.is_full() {
-                self.pay_out();
-                self.visits.half = half;
-            }
-            let integration = self.integration(length);
-            if integration == Integration::ByEnds {
-                self.visits.of(&self.flow).visit(&self.c, &self.c_end, self.level, length);
-            }
-            if integration == Integration::ByPanels || self.options.extremes {
-                self.look_along(length);
-            }
+        let moves = length > 0.0;
+        let observed = (moves && self.averaged.holds(self.cycle)).then(|| self.integration());
+        let half_cycle = if E::ALL && moves { self.half_cycle_integration(length) } else { None };
+        if observed == Some(Integration::Pairs) || half_cycle == Some(Integration::Pairs) {
+            self.pairs.set(&self.flow.bank, &self.search.kernels, length);
+        }
+        if let Some(integration) = observed {
+            self.sum_up_observed(integration, length);
+        }
+        if let Some(integration) = half_cycle {
+            self.sum_up_half_cycle(integration, length);
         }
         let flow = &self.flow;
         if let Some(audit) = &mut self.audit {
             audit.segment(self.system, flow, [&self.c, &self.c_end], Force { level: self.level, drive }, length);
         }
-        if E::ALL && flow.rows.bend.is_some() {
-            self.sum_up_half_cycle(length);
+    }
+
+    #[inline(always)]
+    fn sum_up_observed(&mut self, integration: Integration, length: f64) {
+        let half = self.averaged.half(self.cycle);
+        if self.visits.half != half || self.visits.is_full() {
+            self.pay_out();
+            self.visits.half = half;
+        }
+        if integration == Integration::Visits {
+            self.visits.of(&self.flow).visit(&self.c, &self.c_end, self.level, length);
+        }
+        if integration != Integration::Visits || self.options.extremes {
+            self.look_along(integration, length);
         }
     }
 
     /// The integrals are differences of end values: not of motion without damping, nor between jumps of the force that follow
-    /// each other within a small part of the slowest turn; nor over the few turns for which half cycles leave a contact state as
-    /// it is, where panels are cheaper than the equations of its blocks.
-    pub(super) fn integration(&self, length: f64) -> Integration {
-        if E::ALL && self.equivalent.is_some() && integral::panels(&self.flow.blocks, length) <= FEW_PANELS {
-            Integration::Together
-        } else if !self.is_brief && self.flow.closed().is_some() {
-            Integration::ByEnds
+    /// each other within a small part of the slowest turn. Half cycles leave a contact state before the equations of its blocks pay.
+    fn integration(&self) -> Integration {
+        let flow = &self.flow;
+        let turns = flow.bank.near_critical.is_empty();
+        let seldom = E::ALL && self.equivalent.is_some();
+        if self.is_brief {
+            Integration::Panels
+        } else if turns && (seldom || flow.closed().is_none()) {
+            Integration::Pairs
+        } else if flow.closed().is_some() {
+            Integration::Visits
         } else {
-            Integration::ByPanels
+            Integration::Panels
         }
     }
 
     /// What has to be taken from the observed signals themselves.
-    fn look_along(&mut self, length: f64) {
-        let sampled = length > 0.0 && self.integration(length) == Integration::ByPanels;
-        let flow = &self.flow;
-        self.panels.clear();
-        for (of, &row) in self.response.observed.iter_mut().zip(&flow.rows.observed) {
-            let (shares, rest) = flow.rows.evaluate(row, &self.c, self.level);
-            if self.options.extremes {
-                let stretch = Stretch { blocks: &flow.blocks, bank: &flow.bank, rest, length };
-                self.lookout.take(&mut of.extremes, stretch, &shares);
-            }
-            if sampled {
-                self.panels.add(shares.into_iter(), rest);
-            }
+    fn look_along(&mut self, integration: Integration, length: f64) {
+        let Flow { blocks, bank, rows, .. } = &*self.flow;
+        let by_panels = integration == Integration::Panels;
+        if by_panels {
+            self.panels.divide(blocks, bank, length);
         }
-        if sampled {
-            let signals = self.panels.integrate(&flow.blocks, length);
-            for (of, signal) in self.response.observed.iter_mut().zip(signals) {
-                of.halves[self.visits.half].add(signal.sums(length));
+        for (of, &row) in self.response.observed.iter_mut().zip(&rows.observed) {
+            let (shares, rest) = rows.evaluate(row, &self.c, self.level);
+            if self.options.extremes {
+                self.lookout.take(&mut of.extremes, Stretch { blocks, bank, rest, length }, &shares);
+            }
+            if by_panels {
+                of.halves[self.visits.half].add(self.panels.sums(blocks, &shares, rest));
+            } else if integration == Integration::Pairs {
+                of.halves[self.visits.half].add(self.pairs.sums(bank, &shares, rest.p0, self.options.displacement));
             }
         }
     }

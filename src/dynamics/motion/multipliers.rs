@@ -7,7 +7,7 @@ use super::tangent::Tangent;
 use super::tape::{Cycle, Step, Tape};
 use crate::dynamics::EngineError;
 use crate::dynamics::block::Block;
-use crate::dynamics::schur::{Iteration, schur};
+use crate::dynamics::schur::schur;
 use crate::dynamics::spectral::piece;
 use crate::dynamics::system::HybridSystem;
 
@@ -75,7 +75,7 @@ impl Period {
     /// All multipliers, largest first.
     pub(crate) fn multipliers(&self) -> Result<Vec<Multiplier>, EngineError> {
         let size = self.matrix.nrows();
-        let [_, t] = schur(self.matrix.clone(), Iteration::Library)?;
+        let [_, t] = schur(self.matrix.clone())?;
         let mut multipliers = Vec::with_capacity(size);
         let mut i = 0;
         while i < size {

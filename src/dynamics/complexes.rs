@@ -1,0 +1,56 @@
+//! Complex numbers side by side.
+
+use super::four::Four;
+
+/// Complex numbers side by side.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Complexes {
+    pub(super) re: Four,
+    pub(super) im: Four,
+}
+
+impl Complexes {
+    pub(super) const ZERO: Self = Self { re: Four::ZERO, im: Four::ZERO };
+
+    #[inline(always)]
+    pub(super) fn plus(self, other: Self) -> Self {
+        Self { re: self.re + other.re, im: self.im + other.im }
+    }
+
+    #[inline(always)]
+    pub(super) fn minus(self, other: Self) -> Self {
+        Self { re: self.re - other.re, im: self.im - other.im }
+    }
+
+    #[inline(always)]
+    pub(super) fn times(self, other: Self) -> Self {
+        Self { re: self.re * other.re - self.im * other.im, im: self.re * other.im + self.im * other.re }
+    }
+
+    #[inline(always)]
+    pub(super) fn scaled(self, factor: Four) -> Self {
+        Self { re: self.re * factor, im: self.im * factor }
+    }
+
+    #[inline(always)]
+    pub(super) fn conjugate(self) -> Self {
+        Self { re: self.re, im: self.im * -1.0 }
+    }
+
+    #[inline(always)]
+    pub(super) fn square(self) -> Four {
+        self.re * self.re + self.im * self.im
+    }
+
+    #[inline(always)]
+    pub(super) fn inverse(self) -> Self {
+        let factor = self.square().map(|square| 1.0 / square);
+        Self { re: self.re * factor, im: self.im * factor * -1.0 }
+    }
+
+    /// One of them, in all places.
+    #[inline(always)]
+    pub(super) fn all(self, lane: usize) -> Self {
+        Self { re: Four::all(self.re.at(lane)), im: Four::all(self.im.at(lane)) }
+    }
+}
