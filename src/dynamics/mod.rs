@@ -14,14 +14,14 @@
 //! | `contact`, `collision`, `touch`, `mobility` | what an event leads to |
 //! | `flow`, `load`, `signals`, `parabola`, `series` | exact motion of one contact state, and what is watched of it |
 //! | `contact_state`, `conservative`, `modes`, `undamped`, `damped`, `spectral`, `cluster`, `resonance`, `schur`, `block`, `bank` | its equations, split into 2 × 2 blocks |
-//! | `gains`, `integral`, `lyapunov` | its integrals in closed form, by quadrature where that would lose digits |
+//! | `gains`, `lyapunov`, `pair_integral`, `integral`, `quadrature` | its integrals in closed form, by quadrature where that would lose digits |
 //! | `audit`, `dissipation`, `residual_bound` | momentum and energy, balanced by other means |
 //! | `motion` | which kind of motion a run ends in: multipliers, exponents |
 //! | `orbit` | periodic motions, stable or not, and branches of them |
 //! | `linear` | a run in which no event can happen, in closed form |
 //! | `fixed` | a fixed-step scheme, to show what the time step does to a published result |
 //! | `budget` | what a run may take |
-//! | `cholesky`, `elementary`, `exact`, `four`, `gauss`, `lanes`, `superposition`, `wide` | arithmetic, several numbers at a time |
+//! | `cholesky`, `complexes`, `elementary`, `exact`, `four`, `gauss`, `lanes`, `superposition`, `wide` | arithmetic, several numbers at a time |
 //!
 //! The engine knows no beam, no YAML and no file. It works with dense matrices of a hundred modes or so, not with large
 //! sparse systems.
