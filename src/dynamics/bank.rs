@@ -24,13 +24,13 @@ pub(crate) struct Bank {
 /// Several blocks; places without one hold zeros.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Blocks {
-    pub(crate) decay: Four,
+    pub(super) decay: Four,
     /// The decay of those that turn, or are one exponential alone.
     fades: Four,
     determinant: Four,
     discriminant: Four,
     /// √|d| of those that turn, and its inverse.
-    pub(crate) root: Four,
+    pub(super) root: Four,
     inverse_root: Four,
     /// −1 of those that turn.
     turns: Four,

@@ -44,8 +44,7 @@ impl Complexes {
 
     #[inline(always)]
     pub(super) fn inverse(self) -> Self {
-        let factor = self.square().map(|square| 1.0 / square);
-        Self { re: self.re * factor, im: self.im * factor * -1.0 }
+        self.conjugate().scaled(self.square().map(|square| 1.0 / square))
     }
 
     /// One of them, in all places.

@@ -8,7 +8,8 @@
 //! A particle between two faces that move by themselves feels both: a second spring and dashpot along v = row·p + constant, the
 //! distance to the second face ([`Across`]).
 //!
-//! Its matrix is split into 2 × 2 blocks, from its normal modes ([`super::damped`]) or else by a Schur form ([`super::modes`]); forcing and time do not enter, the gap only in the constant of v.
+//! Its matrix is split into 2 × 2 blocks, from its normal modes ([`super::damped`]) or else by a Schur form ([`super::modes`]);
+//! forcing and time do not enter, the gap only in the constant of v.
 
 use std::cell::OnceCell;
 use std::rc::Rc;

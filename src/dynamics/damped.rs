@@ -116,8 +116,8 @@ impl<'a> Problem<'a> {
     }
 
     /// Which starts stand side by side, beginning with `first`; the last one fills up.
-    fn side_by_side(&self, first: usize) -> [Start; WIDTH] {
-        std::array::from_fn(|lane| self.starts[(first + lane).min(self.starts.len() - 1)])
+    fn side_by_side(&self, first: usize) -> [usize; WIDTH] {
+        std::array::from_fn(|lane| (first + lane).min(self.starts.len() - 1))
     }
 
     widened! {
@@ -128,7 +128,7 @@ impl<'a> Problem<'a> {
     #[inline(always)]
     fn solve_by_registers(&self, first: usize, work: &mut Work) -> Option<Found> {
         let (n, omega) = (self.modes.omega.len(), &self.modes.omega);
-        let starts = self.side_by_side(first);
+        let starts = self.side_by_side(first).map(|start| self.starts[start]);
         let own = starts.map(|start| start.mode);
         // Each mode's own coordinate is the last of its equation.
         let place = |lane: usize, i: usize| if i + 1 == n { own[lane] } else { i + usize::from(i >= own[lane]) };
@@ -171,7 +171,7 @@ impl<'a> Problem<'a> {
         let (mut most, mut worst) = (Four::ZERO, Four::ZERO);
         let larger = |a: f64, b: f64| if a < b || b.is_nan() { b } else { a };
         for (group, (Found { lambda, size }, shape)) in found.iter().zip(shapes.chunks_exact(n)).enumerate() {
-            let own: [usize; WIDTH] = std::array::from_fn(|lane| (group * WIDTH + lane).min(self.starts.len() - 1));
+            let own = self.side_by_side(group * WIDTH);
             // w v of one mode and another is v w of the other and the one.
             for other in group * WIDTH..self.starts.len() {
                 let (of_other, lane) = (other / WIDTH, other % WIDTH);
@@ -189,7 +189,7 @@ impl<'a> Problem<'a> {
                 let plain = |[a, b, c, d]: [Four; 4]| Complexes { re: a - b, im: c + d };
                 let conjugate = |[a, b, c, d]: [Four; 4]| Complexes { re: a + b, im: d - c };
                 let next = others.lambda.all(lane);
-                let mirrored = Complexes { re: next.re, im: next.im * -1.0 };
+                let mirrored = next.conjugate();
                 let not_itself = Four::new(own.map(|own| if own == other { 0.0 } else { 1.0 }));
                 // A real mode is its own mirror image.
                 let not_mirrored = if self.starts[other].is_real() { not_itself } else { Four::all(1.0) };

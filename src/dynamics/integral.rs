@@ -203,7 +203,7 @@ mod tests {
     }
 
     #[test]
-    fn panels_of_any_number_of_points_have_the_integrals_of_short_ones() {
+    fn panels_have_the_integrals_of_shorter_ones_with_fewer_points() {
         let matrices =
             [[0.0, 1.0, -9e4, -3.0], [0.0, 1.0, -25.0, -10.0], [0.0, 1.0, -9.0, -40.0], [0.0, 1.0, 0.0, 0.0]];
         let blocks = matrices.map(Block::new);

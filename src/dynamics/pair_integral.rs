@@ -34,8 +34,8 @@ const BEHIND: [Four; WIDTH] = [
 pub(crate) struct PairIntegrals {
     /// L, s.
     length: f64,
-    /// φ(λ) of each block.
-    first: Vec<Complexes>,
+    /// λ and e^(λL) of each block.
+    ends: Vec<[Complexes; 2]>,
     /// φ(2λ) and φ(2 Re λ) of each block.
     own: Vec<(Complexes, Four)>,
     /// φ(λ_k + λ_l) ± φ(λ_k + λ̄_l), l > k, row by row from the register of k + 1 on.
@@ -55,14 +55,14 @@ impl PairIntegrals {
         self.length = length;
         // What stands in places that do not count is not to be small.
         let large = 1.0 / length;
-        self.first.clear();
+        self.ends.clear();
         self.own.clear();
         self.pairs.clear();
         for (blocks, kernels) in bank.blocks.iter().zip(kernels) {
             let end = kernels.turned();
             let lambda = Complexes { re: blocks.decay * -1.0, im: blocks.root + blocks.spare * large };
             let twice = lambda.plus(lambda);
-            self.first.push(phi(lambda, end, length));
+            self.ends.push([lambda, end]);
             self.own.push((phi(twice, end.times(end), length), phi_of_real(twice.re, end.square(), length)));
         }
         for k in 0..bank.count.saturating_sub(1) {
@@ -95,7 +95,11 @@ impl PairIntegrals {
         let mut about = About { duration: self.length, velocity_square: self.form(bank), ..About::default() };
         if displacement {
             self.start(bank, together());
-            let moved = self.shares.iter().zip(&self.first).fold(Four::ZERO, |sum, (w, phi)| sum + w.times(*phi).re);
+            let moved = self
+                .shares
+                .iter()
+                .zip(&self.ends)
+                .fold(Four::ZERO, |sum, (w, [lambda, end])| sum + w.times(phi(*lambda, *end, self.length)).re);
             about = About { place, moved: moved.sum(), square: self.form(bank), ..about };
         }
         Sums::of(&[about])

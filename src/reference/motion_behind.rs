@@ -9,7 +9,7 @@ use super::text::{significant, symbol, with_unit};
 use super::view::{Place, RowsByTable, TableState, Tables};
 use crate::dynamics::MotionKind;
 use crate::measure::Measure;
-use crate::table::{BASELINE, Table};
+use crate::table::Table;
 use crate::text::words::of_key;
 
 /// The motion behind a verdict.
@@ -29,9 +29,8 @@ impl MotionBehind {
         for (id, rows) in decisive {
             let Some(TableState::Present(table)) = tables.get(id) else { continue };
             let Some(names) = table.texts(&of_key(&Measure::Motion)) else { continue };
-            let variants = table.texts("variant").unwrap_or_default();
-            let in_force = |row: &&usize| variants.get(**row).is_none_or(|variant| variant == BASELINE);
-            for kind in rows.iter().filter(in_force).filter_map(|row| names.get(*row)?.parse::<MotionKind>().ok()) {
+            let in_force = rows.iter().filter(|row| table.is_baseline(**row));
+            for kind in in_force.filter_map(|row| names.get(*row)?.parse::<MotionKind>().ok()) {
                 *behind.kinds.entry(kind.word().to_owned()).or_default() += 1;
             }
             let places = places.iter().filter(|place| place.table == *id);

@@ -401,8 +401,7 @@ impl Trial<'_> {
         let mut left_open = false;
         for (column, rows) in self.measures(reads) {
             // Halves of what no assumption moves: of two lines, each by itself.
-            let is_baseline = |row: &usize| self.table.texts("variant").is_none_or(|names| names[*row] == BASELINE);
-            let own: Vec<usize> = rows.iter().copied().filter(is_baseline).collect();
+            let own: Vec<usize> = rows.iter().copied().filter(|row| self.table.is_baseline(*row)).collect();
             let (first, second) = own.split_at(own.len().div_ceil(2));
             for (rows, spikes) in [(rows.as_slice(), SPIKES), (first, 0), (second, 0)] {
                 let present = numbers(self.table, column, rows);

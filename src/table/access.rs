@@ -162,6 +162,11 @@ impl Table {
         Self { columns, metadata: self.metadata.clone(), fingerprints }
     }
 
+    /// Whether no assumption is moved in a row; so in a table that knows none.
+    pub(crate) fn is_baseline(&self, row: usize) -> bool {
+        self.texts("variant").and_then(|variants| variants.get(row)).is_none_or(|variant| variant == super::BASELINE)
+    }
+
     /// The rows computed with the assumptions as the file gives them (`variant == baseline`).
     #[must_use]
     pub fn baseline(&self) -> Self {

@@ -155,7 +155,6 @@ impl<E: Effects> March<'_, E> {
         self.half.square += if integration == Integration::Pairs {
             self.pairs.square(bank, bend.phases)
         } else {
-            self.panels.divide(blocks, bank, length);
             self.panels.square(blocks, bend.each())
         };
     }

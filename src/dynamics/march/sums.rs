@@ -23,8 +23,13 @@ impl<E: Effects> March<'_, E> {
         let moves = length > 0.0;
         let observed = (moves && self.averaged.holds(self.cycle)).then(|| self.integration());
         let half_cycle = if E::ALL && moves { self.half_cycle_integration(length) } else { None };
-        if observed == Some(Integration::Pairs) || half_cycle == Some(Integration::Pairs) {
+        // What both have in common is worked out once.
+        let asked = |integration| observed == Some(integration) || half_cycle == Some(integration);
+        if asked(Integration::Pairs) {
             self.pairs.set(&self.flow.bank, &self.search.kernels, length);
+        }
+        if asked(Integration::Panels) {
+            self.panels.divide(&self.flow.blocks, &self.flow.bank, length);
         }
         if let Some(integration) = observed {
             self.sum_up_observed(integration, length);
@@ -73,20 +78,17 @@ impl<E: Effects> March<'_, E> {
     /// What has to be taken from the observed signals themselves.
     fn look_along(&mut self, integration: Integration, length: f64) {
         let Flow { blocks, bank, rows, .. } = &*self.flow;
-        let by_panels = integration == Integration::Panels;
-        if by_panels {
-            self.panels.divide(blocks, bank, length);
-        }
         for (of, &row) in self.response.observed.iter_mut().zip(&rows.observed) {
             let (shares, rest) = rows.evaluate(row, &self.c, self.level);
             if self.options.extremes {
                 self.lookout.take(&mut of.extremes, Stretch { blocks, bank, rest, length }, &shares);
             }
-            if by_panels {
-                of.halves[self.visits.half].add(self.panels.sums(blocks, &shares, rest));
-            } else if integration == Integration::Pairs {
-                of.halves[self.visits.half].add(self.pairs.sums(bank, &shares, rest.p0, self.options.displacement));
-            }
+            let sums = match integration {
+                Integration::Visits => continue,
+                Integration::Pairs => self.pairs.sums(bank, &shares, rest.p0, self.options.displacement),
+                Integration::Panels => self.panels.sums(blocks, &shares, rest),
+            };
+            of.halves[self.visits.half].add(sums);
         }
     }
 
