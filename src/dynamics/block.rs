@@ -47,16 +47,22 @@ pub(crate) fn pairs(blocks: usize) -> impl Iterator<Item = (usize, usize)> {
 
 /// zᵀ F z, F by [`pairs`] of blocks; those off the diagonal count for both orders.
 pub(crate) fn form(parts: &[[f64; 4]], z: &[f64]) -> f64 {
+    let lanes: Vec<[Four; 2]> = z.as_chunks::<2>().0.iter().map(|z| z.map(Four::all)).collect();
+    forms(parts, &lanes).at(0)
+}
+
+/// The same of several z side by side.
+#[inline(always)]
+pub(crate) fn forms(parts: &[[f64; 4]], z: &[[Four; 2]]) -> Four {
     let mut parts = parts.iter();
-    let blocks = z.as_chunks::<2>().0;
-    let mut sum = 0.0;
-    for (k, [x, y]) in blocks.iter().enumerate() {
-        let (mut by_x, mut by_y) = (0.0, 0.0);
-        for ([u, v], [xu, xv, yu, yv]) in blocks[k..].iter().zip(parts.by_ref()) {
-            by_x += xu * u + xv * v;
-            by_y += yu * u + yv * v;
+    let mut sum = Four::ZERO;
+    for (k, [x, y]) in z.iter().enumerate() {
+        let (mut by_x, mut by_y) = (Four::ZERO, Four::ZERO);
+        for ([u, v], [xu, xv, yu, yv]) in z[k..].iter().zip(parts.by_ref()) {
+            by_x = by_x + (*u * *xu + *v * *xv);
+            by_y = by_y + (*u * *yu + *v * *yv);
         }
-        sum += x * by_x + y * by_y;
+        sum = sum + (*x * by_x + *y * by_y);
     }
     sum
 }

@@ -5,7 +5,7 @@
 
 use super::block::{Block, form, pairs};
 use super::contact_state::Modes;
-use super::lyapunov::{Lyapunov, NEARLY_NEUTRAL};
+use super::lyapunov::{Equations, Lyapunov, NEARLY_NEUTRAL};
 use super::system::{HybridSystem, dot};
 
 /// radius·h of a panel of the ten-point Gauss-Legendre rule: a squared signal turns twice as fast, and what the rule leaves
@@ -36,8 +36,9 @@ impl Dissipation {
             [(0, 0), (0, 1), (1, 0), (1, 1)].map(|(a, b)| twice * dot(&columns[2 * k + a], &damped[2 * l + b]))
         };
         let power: Vec<[f64; 4]> = pairs(modes.spectral.blocks.len()).map(form).collect();
-        let solved = |((k, l), q): ((usize, usize), &[f64; 4])| solve(modes, k, l, *q);
-        let taken = free.then(|| pairs(modes.spectral.blocks.len()).zip(&power).map(solved).collect()).flatten();
+        let equation = |((k, l), q): ((usize, usize), &[f64; 4])| equation(modes, k, l, *q);
+        let equations = || pairs(modes.spectral.blocks.len()).zip(&power).map(equation).collect::<Option<Equations>>();
+        let taken = free.then(equations).flatten().map(|equations| equations.solve(&power));
         Self { columns, largest, power, taken }
     }
 
@@ -97,17 +98,14 @@ impl Dissipation {
     }
 }
 
-/// P of BₖᵀP + P Bₗ = Q.
-fn solve(modes: &Modes, k: usize, l: usize, q: [f64; 4]) -> Option<[f64; 4]> {
+/// BₖᵀP + P Bₗ = Q.
+fn equation(modes: &Modes, k: usize, l: usize, q: [f64; 4]) -> Option<Lyapunov> {
     if q == [0.0; 4] {
-        return Some(q);
+        return Some(Lyapunov::NOTHING);
     }
-    let (one, other) = (&modes.spectral.blocks[k], &modes.spectral.blocks[l]);
-    if !one.keeps_apart(other, NEARLY_NEUTRAL) {
-        return None;
-    }
-    let matrices = &modes.spectral.matrices;
-    Lyapunov::new(matrices[k], matrices[l]).map(|equation| equation.solve(q))
+    let spectral = &modes.spectral;
+    let apart = spectral.blocks[k].keeps_apart(&spectral.blocks[l], NEARLY_NEUTRAL);
+    apart.then(|| Lyapunov::new(spectral.matrices[k], spectral.matrices[l])).flatten()
 }
 
 /// What the dashpots push against rates p′.

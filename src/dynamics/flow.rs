@@ -16,7 +16,7 @@ use super::contact_state::Modes;
 use super::dissipation::Dissipation;
 use super::exact;
 use super::four::Four;
-use super::gains::{Closed, Square};
+use super::gains::Closed;
 use super::lanes::WIDTH;
 use super::load::{self, Load, Steady};
 use super::parabola::Parabola;
@@ -56,8 +56,6 @@ pub(crate) struct Flow {
     pub(crate) rows: Rows,
     /// Closed forms of its integrals, where they keep their digits; worked out when they are asked for.
     closed: OnceCell<Option<Closed>>,
-    /// Those of the squared rates of the observed rows.
-    squares: OnceCell<Vec<Square>>,
     dissipation: OnceCell<Dissipation>,
     /// Its place among the states that a run visits.
     pub(crate) place: Cell<usize>,
@@ -123,7 +121,6 @@ impl Flow {
             harmonic,
             rows: Rows::default(),
             closed: OnceCell::new(),
-            squares: OnceCell::new(),
             dissipation: OnceCell::new(),
             place: Cell::new(0),
         };
@@ -136,7 +133,6 @@ impl Flow {
         self.modes.size()
             + self.rows.size()
             + self.closed.get().and_then(Option::as_ref).map_or(0, Closed::size)
-            + self.squares.get().map_or(0, |squares| squares.iter().map(Square::size).sum())
             + self.dissipation.get().map_or(0, Dissipation::size)
     }
 
@@ -151,15 +147,6 @@ impl Flow {
         let omega = || self.harmonic.as_ref().map(|steady| steady.omega);
         let solved = || Closed::new(&self.blocks, &self.modes.spectral.matrices, omega());
         self.closed.get_or_init(|| if self.is_resonant { None } else { solved() }).as_ref()
-    }
-
-    /// What gains count for in the integrals of the squared rates of the observed rows, in their order.
-    pub(crate) fn squares(&self, closed: &Closed) -> &[Square] {
-        let square = |row: &usize| {
-            let rates: Vec<[f64; 2]> = self.rows.row(*row).weights.iter().map(|[.., r0, r1]| [*r0, *r1]).collect();
-            closed.square(&rates)
-        };
-        self.squares.get_or_init(|| self.rows.observed.iter().map(square).collect())
     }
 
     /// The signal r·p; a row may end where only zeros follow.

@@ -8,18 +8,19 @@
 //! solved when all are over, for every observed signal at once. Where two eigenvalues nearly cancel (undamped motion) G
 //! would lose digits, and [`super::integral`] takes its place.
 
-use super::block::{Block, form, pairs, transposed};
+use super::block::{Block, forms, pairs, transposed};
 use super::four::Four;
 use super::lanes::WIDTH;
-use super::lyapunov::{Lyapunov, NEARLY_NEUTRAL};
+use super::lyapunov::{Equations, Lyapunov, NEARLY_NEUTRAL};
 use super::signals::Row;
 use super::sums::About;
+use super::wide::widened;
 
 /// The equations of a contact state's integrals.
 pub(crate) struct Closed {
     blocks: Vec<Inverse>,
     /// In the order of [`pairs`]; without that of the harmonic force with itself, which turns for ever.
-    equations: Vec<Lyapunov>,
+    equations: Equations,
     /// ω of the harmonic force, the last block.
     drive: Option<f64>,
 }
@@ -43,6 +44,7 @@ pub(crate) struct Gains {
 
 /// ∫ c dt, ∫ F c dt and ∫ c cᵀ dt over these visits; pairs of two blocks count for both orders.
 pub(crate) struct Integrated {
+    blocks: usize,
     first: Vec<f64>,
     forced: Vec<f64>,
     second: Vec<[f64; 4]>,
@@ -113,15 +115,14 @@ impl Closed {
         let alone = drive.map(|_| blocks.len() - 1);
         let equation = |(k, l): (usize, usize)| {
             let apart = blocks[k].keeps_apart(&blocks[l], NEARLY_NEUTRAL);
-            Lyapunov::new(transposed(matrices[k]), transposed(matrices[l])).filter(|_| apart)
+            let equation = apart.then(|| Lyapunov::new(transposed(matrices[k]), transposed(matrices[l]))).flatten();
+            // Pairs of two blocks count for both orders.
+            equation.map(|equation| equation.times(if k == l { 1.0 } else { 2.0 }))
         };
         let inverse =
             |(block, [p, q, r, s]): (&Block, &[f64; 4])| [*s, -q, -r, *p].map(|entry| entry / block.determinant);
         Some(Self {
-            equations: pairs(blocks.len())
-                .filter(|(k, _)| Some(*k) != alone)
-                .map(equation)
-                .collect::<Option<Vec<_>>>()?,
+            equations: pairs(blocks.len()).filter(|(k, _)| Some(*k) != alone).map(equation).collect::<Option<_>>()?,
             blocks: blocks.iter().zip(&matrices).map(inverse).collect(),
             drive,
         })
@@ -129,35 +130,14 @@ impl Closed {
 
     /// Numbers that it keeps.
     pub(crate) fn size(&self) -> usize {
-        self.equations.len() * size_of::<Lyapunov>() / size_of::<f64>() + 4 * self.blocks.len()
-    }
-
-    /// What gains count for in ∫ (zᵀc)² dt.
-    pub(crate) fn square(&self, z: &[[f64; 2]]) -> Square {
-        let mut each = pairs(z.len());
-        let weighed = |(equation, (k, l)): (&Lyapunov, (usize, usize))| {
-            let ([x, y], [u, v]) = (z[k], z[l]);
-            let twice = if k == l { 1.0 } else { 2.0 };
-            equation.adjoint([x * u, x * v, y * u, y * v]) * twice
-        };
-        let mut square = Square { pairs: self.equations.iter().zip(&mut each).map(weighed).collect(), swing: 0.0 };
-        if let (Some(omega), Some([x, y])) = (self.drive, z.last()) {
-            // As in `solve`.
-            let by_xx = -x * y / omega;
-            square.pairs.push(Four::new([by_xx, 0.5 * (x * x - y * y) / omega, 0.0, 0.0]));
-            square.swing = 0.5 * (x * x + y * y);
-        }
-        square
+        self.equations.size() + 4 * self.blocks.len()
     }
 
     /// Solves them for what was gained.
     pub(crate) fn solve(&self, gains: &Gains) -> Integrated {
         let blocks = self.blocks.len();
-        let mut second = Vec::with_capacity(gains.second.len());
-        for ((equation, gain), (k, l)) in self.equations.iter().zip(&gains.second).zip(pairs(blocks)) {
-            let twice = if k == l { 1.0 } else { 2.0 };
-            second.push(equation.solve(*gain).map(|entry| twice * entry));
-        }
+        let turning = self.drive.and(gains.second.len().checked_sub(1));
+        let mut second = self.equations.solve(&gains.second[..turning.unwrap_or(gains.second.len())]);
         if let (Some(omega), Some([xx, xy, ..])) = (self.drive, gains.second.get(second.len())) {
             // (xy)′ = ω (x² − y²), (x²)′ = −2 ω x y.
             let (turned, mixed) = (0.5 * xy / omega, -0.5 * xx / omega);
@@ -167,55 +147,46 @@ impl Closed {
             let each = |([a, b, c, d], [x, y]): (&Inverse, &[f64; 2])| [a * x + b * y, c * x + d * y];
             self.blocks.iter().zip(gains).flat_map(each).collect()
         };
-        Integrated { first: undone(&gains.first), forced: undone(&gains.forced), second, time: gains.time }
-    }
-}
-
-/// What gains count for in the integral of the square of a signal: (zᵀc)² gives zᵀGz, which is linear in them.
-pub(crate) struct Square {
-    pairs: Vec<Four>,
-    swing: f64,
-}
-
-impl Square {
-    /// Numbers that it keeps.
-    pub(crate) fn size(&self) -> usize {
-        WIDTH * self.pairs.len()
-    }
-
-    /// The integral over the visits that have gained this.
-    pub(crate) fn of(&self, gains: &Gains) -> f64 {
-        // Several sums side by side, as each addition would have to wait for the one before.
-        const MANY: usize = 4;
-        let mut sums = [Four::ZERO; MANY];
-        for (weights, gained) in self.pairs.chunks(MANY).zip(gains.second.chunks(MANY)) {
-            for ((sum, weights), gained) in sums.iter_mut().zip(weights).zip(gained) {
-                *sum = *sum + *weights * Four::new(*gained);
-            }
-        }
-        let [a, b, c, d] = sums;
-        ((a + b) + (c + d)).sum() + self.swing * gains.swing
+        Integrated { blocks, first: undone(&gains.first), forced: undone(&gains.forced), second, time: gains.time }
     }
 }
 
 impl Integrated {
-    /// Those of a signal, about where gravity alone would hold it; velocities alone unless `displacement`.
-    pub(crate) fn of(&self, row: &Row, displacement: bool) -> About {
-        let rates: Vec<f64> = row.weights.iter().flat_map(|[.., r0, r1]| [*r0, *r1]).collect();
-        let [t, ft, fft] = self.time;
-        let sums = About { duration: t, velocity_square: form(&self.second, &rates), ..About::default() };
+    /// Those of signals, about where gravity alone would hold each; velocities alone unless `displacement`.
+    pub(crate) fn of(&self, rows: &[&Row], displacement: bool) -> Vec<About> {
+        let several = |rows: &[&Row]| self.of_several(rows, displacement).into_iter().take(rows.len());
+        rows.chunks(WIDTH).flat_map(several).collect()
+    }
+
+    widened! {
+        fn of_several | of_several_wide (&self, rows: &[&Row], displacement: bool) -> [About; WIDTH] = of_by_registers
+    }
+
+    #[inline(always)]
+    fn of_by_registers(&self, rows: &[&Row], displacement: bool) -> [About; WIDTH] {
+        let [duration, ft, fft] = self.time;
+        let weights = |first: usize| -> Vec<[Four; 2]> {
+            let lane = |k: usize, entry: usize| Four::padded(rows.iter().map(|row| row.weights[k][entry]));
+            (0..self.blocks).map(|k| [lane(k, first), lane(k, first + 1)]).collect()
+        };
+        let velocity_square = forms(&self.second, &weights(2)).array();
+        let mut all = velocity_square.map(|velocity_square| About { duration, velocity_square, ..About::default() });
         if !displacement {
-            return sums;
+            return all;
         }
-        let values: Vec<f64> = row.weights.iter().flat_map(|[v0, v1, ..]| [*v0, *v1]).collect();
-        let along = |sums: &[f64]| values.iter().zip(sums).fold(0.0, |sum, (v, c)| sum + v * c);
-        let force = row.force.p0;
-        About {
-            place: row.gravity.p0,
-            moved: along(&self.first) + force * ft,
-            square: form(&self.second, &values) + force * (2.0 * along(&self.forced) + force * fft),
-            ..sums
+        let values = weights(0);
+        let along = |sums: &[f64]| {
+            let sums = values.as_flattened().iter().zip(sums);
+            sums.fold(Four::ZERO, |sum, (value, c)| sum + *value * *c).array()
+        };
+        let (square, moved, forced) = (forms(&self.second, &values).array(), along(&self.first), along(&self.forced));
+        for (lane, (about, row)) in all.iter_mut().zip(rows).enumerate() {
+            let force = row.force.p0;
+            about.place = row.gravity.p0;
+            about.moved = moved[lane] + force * ft;
+            about.square = square[lane] + force * (2.0 * forced[lane] + force * fft);
         }
+        all
     }
 }
 
@@ -259,11 +230,9 @@ mod tests {
         let mut gains = Gains::none(3);
         gains.visit(&start, &end, level, duration);
         let closed = Closed::new(&blocks, &matrices, Some(omega)).unwrap();
-        let integrals = Sums::of(&[closed.solve(&gains).of(&row, true)]);
+        let integrals = Sums::of(&closed.solve(&gains).of(&[&row], true));
         assert!((integrals.displacement / sampled.displacement - 1.0).abs() < 1e-12);
         assert!((integrals.deviation_square / sampled.deviation_square - 1.0).abs() < 1e-12);
         assert!((integrals.velocity_square / sampled.velocity_square - 1.0).abs() < 1e-12);
-        let rates: Vec<[f64; 2]> = row.weights.iter().map(|[.., r0, r1]| [*r0, *r1]).collect();
-        assert!((closed.square(&rates).of(&gains) / sampled.velocity_square - 1.0).abs() < 1e-12);
     }
 }

@@ -7,6 +7,7 @@ use std::rc::Rc;
 
 use super::flow::Flow;
 use super::gains::Gains;
+use super::signals::Row;
 use super::{Observed, Sums};
 
 /// Contact states that are kept before they are paid out.
@@ -45,22 +46,12 @@ impl Visits {
 
     /// Adds the integrals of all visits to the measures, and forgets them.
     pub(crate) fn pay_out(&mut self, displacement: bool, observed: &mut [Observed]) {
-        let mut parts = vec![Vec::new(); if displacement { observed.len() } else { 0 }];
+        let mut parts = vec![Vec::with_capacity(self.states.len()); observed.len()];
         for (flow, gains) in self.states.drain(..) {
             let Some(closed) = flow.closed() else { continue };
-            if displacement {
-                let integrated = closed.solve(&gains);
-                parts
-                    .iter_mut()
-                    .zip(&flow.rows.observed)
-                    .for_each(|(parts, &row)| parts.push(integrated.of(flow.rows.row(row), true)));
-            } else {
-                let halves = observed.iter_mut().map(|of| &mut of.halves[self.half]);
-                for (half, square) in halves.zip(flow.squares(closed)) {
-                    let (duration, velocity_square) = (gains.time[0], square.of(&gains));
-                    half.add(Sums { duration, velocity_square, ..Sums::default() });
-                }
-            }
+            let integrated = closed.solve(&gains);
+            let rows: Vec<&Row> = flow.rows.observed.iter().map(|&row| flow.rows.row(row)).collect();
+            parts.iter_mut().zip(integrated.of(&rows, displacement)).for_each(|(parts, part)| parts.push(part));
             self.spare.push(gains);
         }
         for (of, parts) in observed.iter_mut().zip(&parts) {

@@ -72,12 +72,11 @@ pub(super) fn integrals(
         let ends = [At { moments: &start, drive: segment.drive }, At { moments: &end, drive: end_drive }];
         let gained = |closed: &Closed| closed.solve(&gains(flow, ends, segment.level, segment.length));
         let integrated = flow.closed().filter(|_| !flow.is_brief(segment.length)).map(gained);
-        for (row, sum) in rows.iter().zip(&mut sums) {
-            sum.add(match &integrated {
-                Some(integrated) => Sums::of(&[integrated.of(row, displacement)]),
-                None => quadrature(flow, row, &start, segment),
-            });
-        }
+        let parts: Vec<Sums> = match integrated {
+            Some(integrated) => integrated.of(rows, displacement).into_iter().map(|part| Sums::of(&[part])).collect(),
+            None => rows.iter().map(|row| quadrature(flow, row, &start, segment)).collect(),
+        };
+        sums.iter_mut().zip(parts).for_each(|(sum, part)| sum.add(part));
     }
     sums
 }
