@@ -292,17 +292,18 @@ impl Case<'_> {
             return Ok(Some(certain(exact(), false)));
         }
         let rms = case.rms_velocity(&response);
-        // Of the twin the RMS velocity is read, and nothing that has to be looked for along its motion.
-        let lean = Options { extremes: false, record_events: 0, cycle_rates: false, ..plain.clone() };
-        let twin = event_driven(system, &Options { kick: TWIN_KICK, ..lean })?;
-        if unsettled(&twin) {
-            return Ok(None);
-        }
-        let chaotic = (case.rms_velocity(&twin) - rms).abs() > CHAOS * rms;
         let members = match request.rigour {
             Rigour::Result => settings.ensemble,
             Rigour::Look | Rigour::Step => settings.ensemble.min(MEMBERS_OF_A_LOOK),
         };
+        // Of a twin that is no member of an ensemble nothing is read that has to be looked for along its motion.
+        let lean = || Options { extremes: false, record_events: 0, cycle_rates: false, ..plain.clone() };
+        let alike = if members < 2 { lean() } else { plain.clone() };
+        let twin = event_driven(system, &Options { kick: TWIN_KICK, ..alike })?;
+        if unsettled(&twin) {
+            return Ok(None);
+        }
+        let chaotic = (case.rms_velocity(&twin) - rms).abs() > CHAOS * rms;
         if !chaotic && request.rigour == Rigour::Look {
             return Ok(Some(certain(exact(), false)));
         }
@@ -324,21 +325,22 @@ impl Case<'_> {
         }
 
         let mut sums = vec![Welford::default(); request.measures.len()];
-        for member in 0..members {
-            let place = (f64::from(member) - f64::from(members / 2)) * 2.0 / f64::from(members);
-            if place == 0.0 {
-                sums.iter_mut().zip(&values).for_each(|(sum, value)| sum.add(*value));
-                continue;
-            }
-            // Time histories, shapes and their measures stay those of the unkicked run.
-            let kicked = event_driven(system, &Options { kick: ENSEMBLE_KICK * place, ..plain.clone() })?;
+        // The run itself and its twin, and as many that were kicked farther, both ways. Time histories, shapes and their measures
+        // stay those of the run itself.
+        let add =
+            |sums: &mut [Welford], values: &[f64]| sums.iter_mut().zip(values).for_each(|(sum, value)| sum.add(*value));
+        let read =
+            |member: &Response| Ok::<_, EvaluateError>(case.read(member, reference, &plain.start, false)?.values);
+        add(&mut sums, &values);
+        add(&mut sums, &read(&twin)?);
+        for member in 2..members {
+            let step = f64::from(member / 2) * 2.0 / f64::from(members);
+            let kick = ENSEMBLE_KICK * if member % 2 == 0 { step } else { -step };
+            let kicked = event_driven(system, &Options { kick, ..plain.clone() })?;
             if unsettled(&kicked) {
                 return Ok(None);
             }
-            let of_member = case.read(&kicked, reference, &plain.start, false)?.values;
-            for (sum, value) in sums.iter_mut().zip(of_member) {
-                sum.add(value);
-            }
+            add(&mut sums, &read(&kicked)?);
         }
         let measured = sums.iter().zip(request.measures).zip(values.iter().zip(&elasticities)).map(
             |((sum, measure), (own, known))| {
