@@ -15,8 +15,8 @@ use super::search::{Found, Score, Step, Stopped};
 
 /// Part of the promised fall that is enough.
 const ENOUGH: f64 = 1e-4;
-/// A fall below this, relative to the value, is lost in rounding.
-const FLAT: f64 = 1e-14;
+/// A fall below this, relative to the value, is lost in the rounding of a run.
+const FLAT: f64 = 1e-12;
 /// Length of the first step, as a share of a side.
 const FIRST: f64 = 0.02;
 /// The smallest share of a side that is a step.
@@ -80,14 +80,23 @@ pub fn polish<E>(bounds: &Bounds, start: &[f64], most: u64, slope: &mut Smooth<'
         };
         let promised = here.gradient.dot(&direction);
         if -promised <= FLAT * here.value.abs() {
-            // Where values are equal to rounding, gradients still tell which place is the better one.
-            if evaluations < most {
-                let shares = (&here.shares + &direction).map(|share| share.clamp(0.0, 1.0));
-                let (there, so_far) = look(&shares)?;
-                evaluations = so_far;
-                here = there.filter(|there| there.gradient.norm() < here.gradient.norm()).unwrap_or(here);
+            // Values are equal to rounding: whole steps, as long as they bring the gradient down by half.
+            if evaluations >= most {
+                return Ok(found(&here, trail, evaluations, Stopped::Evaluations));
             }
-            return Ok(found(&here, trail, evaluations, Stopped::Converged));
+            let shares = (&here.shares + &direction).map(|share| share.clamp(0.0, 1.0));
+            let (there, so_far) = look(&shares)?;
+            evaluations = so_far;
+            let Some(there) = there.filter(|there| is_lower(there, &here)) else {
+                return Ok(found(&here, trail, evaluations, Stopped::Converged));
+            };
+            let goes_on = there.gradient.norm() < 0.5 * here.gradient.norm();
+            learn(&mut curvature, &(&there.shares - &here.shares), &(&there.gradient - &here.gradient));
+            here = there;
+            if !goes_on {
+                return Ok(found(&here, trail, evaluations, Stopped::Converged));
+            }
+            continue;
         }
         let mut share = 1.0_f64.min(longest.min(1.0) / direction.amax());
         let mut met_an_edge = false;
@@ -103,9 +112,7 @@ pub fn polish<E>(bounds: &Bounds, start: &[f64], most: u64, slope: &mut Smooth<'
             let (there, so_far) = look(&shares)?;
             evaluations = so_far;
             match there {
-                Some(there) if there.value <= here.value + ENOUGH * here.gradient.dot(&(&shares - &here.shares)) => {
-                    break there;
-                }
+                Some(there) if is_lower(&there, &here) => break there,
                 Some(_) => {}
                 None => met_an_edge = true,
             }
@@ -116,6 +123,14 @@ pub fn polish<E>(bounds: &Bounds, start: &[f64], most: u64, slope: &mut Smooth<'
         here = next;
         trail.push(Step { evaluations, best: here.value });
     }
+}
+
+/// The function falls by some part of what its gradient promises; or its values are equal to rounding, where gradients still tell
+/// which place is the better one (the approximate condition of Hager and Zhang, SIAM J. Optim. 16, 2005).
+fn is_lower(there: &Here, here: &Here) -> bool {
+    let promised = here.gradient.dot(&(&there.shares - &here.shares));
+    let is_level = there.value <= here.value + FLAT * here.value.abs();
+    there.value <= here.value + ENOUGH * promised || is_level && there.gradient.norm() < here.gradient.norm()
 }
 
 /// The step that the curvature suggests for the coordinates that are free; `None` if none is.
