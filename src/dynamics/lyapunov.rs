@@ -5,6 +5,7 @@
 
 use nalgebra::{Matrix4, Vector4};
 
+use super::complexes::Complexes;
 use super::four::Four;
 use super::lanes::WIDTH;
 use super::wide::widened;
@@ -68,7 +69,7 @@ fn on_circle([p, q, r, s]: [f64; 4]) -> Option<[f64; 2]> {
 /// The equations of many pairs of blocks, which are solved far more often than set up.
 pub(crate) struct Equations {
     /// Those on circles, several side by side; zero in the places of others.
-    circles: Vec<[Four; 4]>,
+    circles: Vec<[Complexes; 2]>,
     /// The others, with their places.
     any: Vec<(usize, [Four; 4])>,
 }
@@ -87,7 +88,11 @@ impl FromIterator<Lyapunov> for Equations {
                 }
             })
             .collect();
-        Self { circles: circles.chunks(WIDTH).map(across).collect(), any }
+        let several = |circles: &[[f64; 4]]| {
+            let [p, q, r, s] = across(circles);
+            [Complexes { re: p, im: q }, Complexes { re: r, im: s }]
+        };
+        Self { circles: circles.chunks(WIDTH).map(several).collect(), any }
     }
 }
 
@@ -105,12 +110,11 @@ impl Equations {
     #[inline(always)]
     fn solve_by_registers(&self, entries: &[[f64; 4]]) -> Vec<[f64; 4]> {
         let mut solved = Vec::with_capacity(entries.len());
-        for ([p, q, r, s], entries) in self.circles.iter().zip(entries.chunks(WIDTH)) {
+        for ([plain, mirrored], entries) in self.circles.iter().zip(entries.chunks(WIDTH)) {
             let [xu, xv, yu, yv] = across(entries);
-            let times = |[a, b]: [Four; 2], [c, d]: [Four; 2]| [a * c - b * d, a * d + b * c];
-            let [a, b] = times([*p, *q], [xu + yv, yu - xv]);
-            let [c, d] = times([*r, *s], [xu - yv, xv + yu]);
-            let back = across(&[a + c, d - b, b + d, a - c].map(Four::array));
+            let a = plain.times(Complexes { re: xu + yv, im: yu - xv });
+            let b = mirrored.times(Complexes { re: xu - yv, im: xv + yu });
+            let back = across(&[a.re + b.re, b.im - a.im, a.im + b.im, a.re - b.re].map(Four::array));
             solved.extend(back.iter().take(entries.len()).map(|solved| solved.array()));
         }
         for (place, [a, b, c, d]) in &self.any {

@@ -46,7 +46,7 @@ impl Visits {
 
     /// Adds the integrals of all visits to the measures, and forgets them.
     pub(crate) fn pay_out(&mut self, displacement: bool, observed: &mut [Observed]) {
-        let mut parts = vec![Vec::with_capacity(self.states.len()); observed.len()];
+        let mut parts = vec![Vec::new(); observed.len()];
         for (flow, gains) in self.states.drain(..) {
             let Some(closed) = flow.closed() else { continue };
             let integrated = closed.solve(&gains);
