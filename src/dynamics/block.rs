@@ -7,6 +7,8 @@
 //! C and S are entire functions of d: nothing happens at critical damping (d = 0), where an eigenbasis would fail. Of two real
 //! eigenvalues that are far apart each may have a block of its own, B = −aI, whose second coordinate stays zero.
 
+use std::ops::{Add, Mul};
+
 use super::elementary::{exp_lanes, sin_cos_lanes};
 use super::four::Four;
 use super::lanes::{Lanes, WIDTH};
@@ -47,17 +49,19 @@ pub(crate) fn pairs(blocks: usize) -> impl Iterator<Item = (usize, usize)> {
 
 /// zᵀ F z, F by [`pairs`] of blocks; those off the diagonal count for both orders.
 pub(crate) fn form(parts: &[[f64; 4]], z: &[f64]) -> f64 {
-    let lanes: Vec<[Four; 2]> = z.as_chunks::<2>().0.iter().map(|z| z.map(Four::all)).collect();
-    forms(parts, &lanes).at(0)
+    forms(parts, z.as_chunks().0, 0.0)
 }
 
-/// The same of several z side by side.
+/// The same of one z or of several side by side, beginning with `zero`.
 #[inline(always)]
-pub(crate) fn forms(parts: &[[f64; 4]], z: &[[Four; 2]]) -> Four {
+pub(crate) fn forms<T>(parts: &[[f64; 4]], z: &[[T; 2]], zero: T) -> T
+where
+    T: Copy + Add<Output = T> + Mul<Output = T> + Mul<f64, Output = T>,
+{
     let mut parts = parts.iter();
-    let mut sum = Four::ZERO;
+    let mut sum = zero;
     for (k, [x, y]) in z.iter().enumerate() {
-        let (mut by_x, mut by_y) = (Four::ZERO, Four::ZERO);
+        let (mut by_x, mut by_y) = (zero, zero);
         for ([u, v], [xu, xv, yu, yv]) in z[k..].iter().zip(parts.by_ref()) {
             by_x = by_x + (*u * *xu + *v * *xv);
             by_y = by_y + (*u * *yu + *v * *yv);

@@ -44,7 +44,6 @@ pub(crate) struct Gains {
 
 /// ∫ c dt, ∫ F c dt and ∫ c cᵀ dt over these visits; pairs of two blocks count for both orders.
 pub(crate) struct Integrated {
-    blocks: usize,
     first: Vec<f64>,
     forced: Vec<f64>,
     second: Vec<[f64; 4]>,
@@ -135,9 +134,9 @@ impl Closed {
 
     /// Solves them for what was gained.
     pub(crate) fn solve(&self, gains: &Gains) -> Integrated {
-        let blocks = self.blocks.len();
-        let turning = self.drive.and(gains.second.len().checked_sub(1));
-        let mut second = self.equations.solve(&gains.second[..turning.unwrap_or(gains.second.len())]);
+        // All pairs but that of the harmonic force with itself, the last.
+        let solvable = gains.second.len() - usize::from(self.drive.is_some());
+        let mut second = self.equations.solve(&gains.second[..solvable]);
         if let (Some(omega), Some([xx, xy, ..])) = (self.drive, gains.second.get(second.len())) {
             // (xy)′ = ω (x² − y²), (x²)′ = −2 ω x y.
             let (turned, mixed) = (0.5 * xy / omega, -0.5 * xx / omega);
@@ -147,7 +146,7 @@ impl Closed {
             let each = |([a, b, c, d], [x, y]): (&Inverse, &[f64; 2])| [a * x + b * y, c * x + d * y];
             self.blocks.iter().zip(gains).flat_map(each).collect()
         };
-        Integrated { blocks, first: undone(&gains.first), forced: undone(&gains.forced), second, time: gains.time }
+        Integrated { first: undone(&gains.first), forced: undone(&gains.forced), second, time: gains.time }
     }
 }
 
@@ -167,9 +166,9 @@ impl Integrated {
         let [duration, ft, fft] = self.time;
         let weights = |first: usize| -> Vec<[Four; 2]> {
             let lane = |k: usize, entry: usize| Four::padded(rows.iter().map(|row| row.weights[k][entry]));
-            (0..self.blocks).map(|k| [lane(k, first), lane(k, first + 1)]).collect()
+            (0..self.first.len() / 2).map(|k| [lane(k, first), lane(k, first + 1)]).collect()
         };
-        let velocity_square = forms(&self.second, &weights(2)).array();
+        let velocity_square = forms(&self.second, &weights(2), Four::ZERO).array();
         let mut all = velocity_square.map(|velocity_square| About { duration, velocity_square, ..About::default() });
         if !displacement {
             return all;
@@ -179,7 +178,8 @@ impl Integrated {
             let sums = values.as_flattened().iter().zip(sums);
             sums.fold(Four::ZERO, |sum, (value, c)| sum + *value * *c).array()
         };
-        let (square, moved, forced) = (forms(&self.second, &values).array(), along(&self.first), along(&self.forced));
+        let (square, moved, forced) =
+            (forms(&self.second, &values, Four::ZERO).array(), along(&self.first), along(&self.forced));
         for (lane, (about, row)) in all.iter_mut().zip(rows).enumerate() {
             let force = row.force.p0;
             about.place = row.gravity.p0;

@@ -297,9 +297,11 @@ impl Case<'_> {
             Rigour::Look | Rigour::Step => settings.ensemble.min(MEMBERS_OF_A_LOOK),
         };
         // Of a twin that is no member of an ensemble nothing is read that has to be looked for along its motion.
-        let lean = || Options { extremes: false, record_events: 0, cycle_rates: false, ..plain.clone() };
-        let alike = if members < 2 { lean() } else { plain.clone() };
-        let twin = event_driven(system, &Options { kick: TWIN_KICK, ..alike })?;
+        let mut alike = Options { kick: TWIN_KICK, ..plain.clone() };
+        if members < 2 {
+            alike = Options { extremes: false, record_events: 0, cycle_rates: false, ..alike };
+        }
+        let twin = event_driven(system, &alike)?;
         if unsettled(&twin) {
             return Ok(None);
         }

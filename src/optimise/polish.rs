@@ -58,6 +58,7 @@ pub fn polish<E>(bounds: &Bounds, start: &[f64], most: u64, slope: &mut Smooth<'
         });
         Ok((here.filter(|here| here.value.is_finite() && here.gradient.iter().all(|it| it.is_finite())), asked))
     };
+    let ahead = |here: &Here, step: &DVector<f64>| (&here.shares + step).map(|share| share.clamp(0.0, 1.0));
     let found = |here: &Here, trail: Vec<Step>, evaluations, stopped| Found {
         point: bounds.at(here.shares.as_slice()),
         score: Score { value: here.value },
@@ -84,8 +85,7 @@ pub fn polish<E>(bounds: &Bounds, start: &[f64], most: u64, slope: &mut Smooth<'
             if evaluations >= most {
                 return Ok(found(&here, trail, evaluations, Stopped::Evaluations));
             }
-            let shares = (&here.shares + &direction).map(|share| share.clamp(0.0, 1.0));
-            let (there, so_far) = look(&shares)?;
+            let (there, so_far) = look(&ahead(&here, &direction))?;
             evaluations = so_far;
             let Some(there) = there.filter(|there| is_lower(there, &here)) else {
                 return Ok(found(&here, trail, evaluations, Stopped::Converged));
@@ -108,8 +108,7 @@ pub fn polish<E>(bounds: &Bounds, start: &[f64], most: u64, slope: &mut Smooth<'
                 let stopped = if met_an_edge { Stopped::Edge } else { Stopped::Converged };
                 return Ok(found(&here, trail, evaluations, stopped));
             }
-            let shares = (&here.shares + share * &direction).map(|share| share.clamp(0.0, 1.0));
-            let (there, so_far) = look(&shares)?;
+            let (there, so_far) = look(&ahead(&here, &(share * &direction)))?;
             evaluations = so_far;
             match there {
                 Some(there) if is_lower(&there, &here) => break there,
