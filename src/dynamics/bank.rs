@@ -228,7 +228,12 @@ impl Blocks {
         let s =
             t * ((1.0 + y * (1.0 / 6.0)) + y * y * ((1.0 / 120.0 + y * (1.0 / 5040.0)) + y * y * (1.0 / 362_880.0)));
         let (c, s) = (e * c, e * s);
-        let turn = self.root * s;
+        self.joined(first, &Kernels { c, s, turn: self.root * s })
+    }
+
+    /// e^(B t₁) e^(B t₂).
+    #[inline(always)]
+    pub(crate) fn joined(&self, first: &Kernels, &Kernels { c, s, turn }: &Kernels) -> Kernels {
         let product = self.turns * (first.turn * turn) + self.grows * (first.s * s);
         Kernels { c: first.c * c + product, s: first.c * s + first.s * c, turn: first.c * turn + first.turn * c }
     }

@@ -22,6 +22,7 @@ use super::load::{self, Load, Steady};
 use super::parabola::Parabola;
 use super::series::Series;
 use super::signals::{Row, Rows};
+use super::steps::Steps;
 use super::system::{Contact, Drive, HybridSystem, dot};
 
 /// One contact state, ready to be propagated.
@@ -34,6 +35,8 @@ pub(crate) struct Flow {
     pub(crate) bank: Bank,
     /// Their Taylor series.
     pub(crate) series: Series,
+    /// Kernels at whole steps, where a contact state is visited often enough.
+    pub(crate) steps: Option<Steps>,
     /// Those of its own, with their matrices.
     propagators: Vec<Propagator>,
     /// Blocks without the drive.
@@ -105,10 +108,12 @@ impl Flow {
             return Err(EngineError::RateNotFinite);
         }
         let slowest = blocks[..own].iter().fold(f64::INFINITY, |least, block| block.radius.min(least));
+        let series = Series::new(&blocks);
         let mut flow = Self {
             slowest,
             bank: Bank::new(&blocks),
-            series: Series::new(&blocks),
+            steps: system.drive.half_cycles.is_none().then(|| Steps::new(series.pace)),
+            series,
             propagators: Propagator::of(&modes.spectral.matrices, &blocks),
             drifts: modes.spectral.drifts(),
             is_resonant,
@@ -132,6 +137,7 @@ impl Flow {
     pub(crate) fn size(&self) -> usize {
         self.modes.size()
             + self.rows.size()
+            + self.steps.as_ref().map_or(0, Steps::size)
             + self.closed.get().and_then(Option::as_ref).map_or(0, Closed::size)
             + self.dissipation.get().map_or(0, Dissipation::size)
     }

@@ -12,7 +12,7 @@
 //! | `search`, `survey`, `guards`, `window`, `polynomial` | the first event, certified by Bernstein enclosures |
 //! | `reach` | stops and ceilings that a bound on the energy keeps out of the search |
 //! | `contact`, `collision`, `touch`, `mobility` | what an event leads to |
-//! | `flow`, `load`, `signals`, `parabola`, `series` | exact motion of one contact state, and what is watched of it |
+//! | `flow`, `load`, `signals`, `parabola`, `series`, `steps` | exact motion of one contact state, and what is watched of it |
 //! | `contact_state`, `conservative`, `modes`, `undamped`, `damped`, `spectral`, `cluster`, `resonance`, `schur`, `block`, `bank` | its equations, split into 2 × 2 blocks |
 //! | `gains`, `lyapunov`, `pair_integral`, `integral`, `quadrature` | its integrals in closed form, by quadrature where that would lose digits |
 //! | `audit`, `dissipation`, `residual_bound` | momentum and energy, balanced by other means |
@@ -83,6 +83,7 @@ mod signals;
 mod spectral;
 mod spline;
 mod states;
+mod steps;
 mod sums;
 mod superposition;
 mod survey;
@@ -117,4 +118,4 @@ pub use system::{
 pub use trace::{Sample, SampledParticle, TraceRequest};
 
 /// Changes whenever the same scene may give other bits. A test holds the bits of fixed scenes against it.
-pub const SOLVER_VERSION: u32 = 23;
+pub const SOLVER_VERSION: u32 = 24;

@@ -42,6 +42,18 @@ pub(crate) fn bernstein(a: &Coefficients) -> Coefficients {
     b
 }
 
+/// Bernstein coefficients on both halves, by de Casteljau's averages.
+pub(crate) fn halved(b: &Coefficients) -> [Coefficients; 2] {
+    let (mut left, mut right) = (*b, *b);
+    for round in 0..=DEGREE {
+        left[round] = right[0];
+        for i in 0..DEGREE - round {
+            right[i] = 0.5 * (right[i] + right[i + 1]);
+        }
+    }
+    [left, right]
+}
+
 #[inline(always)]
 fn sums<const ROUND: usize>(b: &mut Coefficients) {
     let mut i = DEGREE;

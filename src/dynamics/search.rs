@@ -14,7 +14,8 @@
 //! further than the first root that is known. Most guards are cleared by two bounds that cost no window: their parabola is
 //! further from zero than all blocks together can reach, or value and slope are larger than their curvature can undo. Where
 //! guards are many, a bound on that curvature by the coordinates alone comes first, and for most of them it is enough. No
-//! window is sampled, no crossing stepped over. What a root is to the last digit, [`polish`] tells.
+//! window is sampled, no crossing stepped over. What a root is to the last digit, [`polish`] tells; since no window is seen in it,
+//! windows may begin where kernels are cheap, at [`super::steps::Steps`].
 
 mod polish;
 
@@ -41,7 +42,7 @@ const NOISE: f64 = 0.25;
 /// radius·Δ of the fastest block that a window must not leave out.
 const FASTEST: f64 = 4.8;
 /// More guards than this are first looked at by the bends of their signals alone, which most of them pass.
-const MANY: usize = 16;
+const MANY: usize = 7;
 /// What is later than a known root by this factor does not come at the same time.
 const AFTER: f64 = 1.0 + 1e-12;
 /// Share of what a guard is the sum of that its rounding stays below.
@@ -121,25 +122,42 @@ struct Root {
 struct Plan {
     /// When it was made.
     at: f64,
-    /// The window that suits it, s.
-    window: f64,
-    /// How long it is clear without one, s.
+    /// How the guard may turn.
+    turning: Turning,
+    /// How long it is clear without a window, s.
     quick: f64,
     /// A window has begun there.
     begun: bool,
 }
 
-impl Plan {
-    const NONE: Self = Self::new(f64::NAN, 0.0, 0.0);
+/// Bounds on the second and fourth derivatives of what a window has to follow, and the longest window, s.
+#[derive(Debug, Clone, Copy)]
+struct Turning {
+    bend: f64,
+    snap: f64,
+    longest: f64,
+}
 
-    const fn new(at: f64, window: f64, quick: f64) -> Self {
-        Self { at, window, quick, begun: false }
+impl Turning {
+    /// The window that suits it, s; most plans never ask.
+    #[inline(always)]
+    fn window(self, factor: f64) -> f64 {
+        let turn = if self.snap > 0.0 { (self.bend / self.snap).sqrt() } else { f64::INFINITY };
+        factor * (REACH * turn).min(self.longest)
+    }
+}
+
+impl Plan {
+    const NONE: Self = Self::new(f64::NAN, Turning { bend: 0.0, snap: 0.0, longest: 0.0 }, 0.0);
+
+    const fn new(at: f64, turning: Turning, quick: f64) -> Self {
+        Self { at, turning, quick, begun: false }
     }
 
     /// Windows had better begin where its proof, `ahead` of them, ends.
     #[inline(always)]
-    fn is_overtaken(&self, ahead: f64) -> bool {
-        ahead > WORTH_A_MOVE * self.window || (ahead > 0.0 && self.begun)
+    fn is_overtaken(&self, ahead: f64, factor: f64) -> bool {
+        ahead > 0.0 && (self.begun || ahead > WORTH_A_MOVE * self.turning.window(factor))
     }
 }
 
@@ -160,7 +178,8 @@ impl Search {
             flow.rows.bound(&flow.blocks, signals, &mut self.bends);
         }
         // The same search twice: with a few blocks the compiler unrolls every loop over them.
-        let motion = |blocks| Motion { blocks, each: &flow.blocks, bank: &flow.bank, series: &flow.series };
+        let Flow { blocks: each, bank, series, steps, .. } = flow;
+        let motion = |blocks| Motion { blocks, each, bank, series, steps: steps.as_ref() };
         match &flow.bank.blocks[..] {
             few @ [_] => self.first(motion(few), signals, limit, clarity),
             many => self.first(motion(many), signals, limit, clarity),
@@ -217,7 +236,7 @@ impl Search {
             if let (Some(bend), Start::Apart) = (self.bends.get(guard.signal), guard.start) {
                 (*plan, *clear) = (Plan::NONE, clear_by_bend(signals.of(guard.signal), *bend, guard, clarity));
             } else {
-                *plan = plan_of(motion, signals, &mut self.surveys, guard, limit, clarity, self.window_factor);
+                *plan = plan_of(motion, signals, &mut self.surveys, guard, limit, clarity);
                 *clear = plan.quick;
             }
         }
@@ -246,24 +265,25 @@ impl Search {
         limit: f64,
         clarity: &mut Clarity,
     ) -> Option<Root> {
-        let Self { guards, plans, clear: known, surveys, shortest: least, .. } = self;
-        let (guard, plan, known) = (&guards[index], &mut plans[index], &mut known[index]);
-        let ahead = *known - surveys.now;
+        let Self { guards, plans, clear, surveys, shortest: least, window_factor: factor, .. } = self;
+        let factor = *factor;
+        let (guard, plan, known) = (&guards[index], &mut plans[index], clear[index]);
+        let ahead = known - surveys.now;
         // It is none yet, or another guard has moved on to here.
         if plan.at != surveys.now {
-            *plan = plan_of(motion, signals, surveys, guard, limit, clarity, self.window_factor);
+            *plan = plan_of(motion, signals, surveys, guard, limit, clarity);
         }
-        if plan.is_overtaken(ahead) {
-            surveys.move_to(motion, *known);
-            *plan = plan_of(motion, signals, surveys, guard, limit, clarity, self.window_factor);
+        if plan.is_overtaken(ahead, factor) {
+            surveys.move_to(motion, known);
+            *plan = plan_of(motion, signals, surveys, guard, limit, clarity);
         }
         let now = surveys.now;
-        if now + plan.quick > *known {
-            *known = now + plan.quick;
+        if now + plan.quick > known {
+            clear[index] = now + plan.quick;
             return None;
         }
         // A little beyond the first root that is known, to see one that comes at the same time.
-        let mut window = plan.window.min(1.25 * (horizon - now)).min(limit - now);
+        let mut window = plan.turning.window(factor).min(1.25 * (horizon - now)).min(limit - now);
         plan.begun = true;
         let (survey, shares) = surveys.of(motion, signals, guard.signal, limit);
         if !guard.distance
@@ -295,27 +315,30 @@ impl Search {
                     let parabola = if order == 0 { 2.0 * bent } else { 0.0 };
                     parabola + motion.series.bend(shares, span.length * motion.series.pace, order)
                 });
+                if let Verdict::Clear { clearance } = verdict
+                    && guard.distance
+                    && clearance < clarity.margin
+                {
+                    clarity.margin = clarity.margin.min(piece.lowest());
+                }
                 comes_later = now + window > horizon && piece.is_positive((horizon * AFTER - now) / window);
                 verdict
             };
             match verdict {
-                Verdict::Clear { clearance } => {
-                    *known = now + window;
+                Verdict::Clear { .. } => {
+                    clear[index] = known.max(now + window);
                     *least = shortest(motion, limit);
-                    if guard.distance {
-                        clarity.margin = clarity.margin.min(clearance);
-                    }
                     return None;
                 }
                 // The one root of the window comes after one that is known.
                 Verdict::Root { high: 1.0, .. } if comes_later => {
-                    *known = f64::INFINITY;
+                    clear[index] = f64::INFINITY;
                     return None;
                 }
                 Verdict::Root { guess, high } => return Some(Root { guard: index, guess, high, window }),
                 // So far the slow blocks alone prove it; from there on with more of them.
                 Verdict::Until { sigma } if sigma > WORTH_A_STEP => {
-                    *known = now + sigma * window;
+                    clear[index] = known.max(now + sigma * window);
                     return None;
                 }
                 Verdict::Unsure | Verdict::Until { .. } if indivisible => {
@@ -324,7 +347,7 @@ impl Search {
                     if ends_below {
                         return Some(Root { guard: index, guess: 1.0, high: 1.0, window });
                     }
-                    *known = now + window;
+                    clear[index] = now + window;
                     *least *= 4.0;
                     return None;
                 }
@@ -333,7 +356,7 @@ impl Search {
                         Verdict::Until { sigma } => (2.0 * sigma).clamp(0.05, 0.5),
                         _ => 0.5,
                     };
-                    let proven = *known - now;
+                    let proven = known - now;
                     if window < proven {
                         // Shorter than what is proven already: begin where that ends.
                         surveys.move_to(motion, now + proven);
@@ -361,7 +384,6 @@ fn plan_of(
     guard: &Guard,
     limit: f64,
     clarity: &Clarity,
-    window_factor: f64,
 ) -> Plan {
     let (now, parabola) = (surveys.now, guard.parabola);
     let (survey, shares) = surveys.of(motion, signals, guard.signal, limit);
@@ -370,10 +392,6 @@ fn plan_of(
     let margin = if guard.distance { clarity.margin } else { 0.0 };
     let Survey { reach, mut bend, mut snap, .. } = *survey;
     let least = margin.min(reach);
-    let window = |bend: f64, snap: f64, fastest: f64| {
-        let turn = if snap > 0.0 { (bend / snap).sqrt() } else { f64::INFINITY };
-        window_factor * (REACH * turn).min(fastest)
-    };
     if now == 0.0
         && let Start::Touching { order, slope } = guard.start
     {
@@ -381,14 +399,14 @@ fn plan_of(
         let turned = here.p2 - 0.5 * bend;
         let until = if turned < 0.0 { -0.5 * slope / turned } else { f64::INFINITY };
         let quick = if order == 1 && until > 0.0 { until } else { 0.0 };
-        return Plan::new(now, window(bend, snap, f64::INFINITY), quick);
+        return Plan::new(now, Turning { bend, snap, longest: f64::INFINITY }, quick);
     }
     let apart = clear_until(here, reach + least, margin);
     if apart >= limit - now {
-        return Plan::new(now, limit, apart);
+        return Plan::new(now, Turning { bend, snap, longest: limit }, apart);
     }
     let (mut value, mut rate) = (guard.sign * survey.value, guard.sign * survey.rate);
-    let mut fastest = f64::INFINITY;
+    let mut longest = f64::INFINITY;
     let mut noise = ROUNDING * (here.p0.abs() + reach);
     if width > 1 {
         let most = NOISE * (here.p0 + value - least);
@@ -404,14 +422,14 @@ fn plan_of(
             rate -= guard.sign * now.rate.sum();
             slow += 1;
         }
-        fastest = FASTEST / motion.series.fastest[slow];
+        longest = FASTEST / motion.series.fastest[slow];
         if slow > 0 {
             let turns = Turns::of(&motion.blocks[slow..], &shares[slow..]);
             (bend, snap) = (turns.bend.sum(), turns.snap.sum());
         }
     }
     let curve = Parabola { p0: here.p0 + value, p1: here.p1 + rate, p2: here.p2 - 0.5 * bend };
-    Plan::new(now, window(bend, snap, fastest), apart.max(clear_until(curve, noise + least, margin)))
+    Plan::new(now, Turning { bend, snap, longest }, apart.max(clear_until(curve, noise + least, margin)))
 }
 
 /// How long the bounds on the bends of signals alone keep a guard clear: most guards are looked at no more than so.

@@ -6,6 +6,7 @@ use super::four::Four;
 use super::lanes::WIDTH;
 use super::series::{Series, Shares};
 use super::signals::Signals;
+use super::steps::Steps;
 
 /// What a search knows of a flow.
 #[derive(Clone, Copy)]
@@ -15,6 +16,7 @@ pub(super) struct Motion<'a> {
     pub(super) each: &'a [Block],
     pub(super) bank: &'a Bank,
     pub(super) series: &'a Series,
+    pub(super) steps: Option<&'a Steps>,
 }
 
 impl Motion<'_> {
@@ -68,11 +70,19 @@ impl Surveys {
         self.now = 0.0;
     }
 
-    /// Windows begin at `t` from now on.
+    /// Windows begin at `t` from now on, or at the whole step before it if that is later than now.
     #[inline(always)]
     pub(super) fn move_to(&mut self, motion: Motion<'_>, t: f64) {
-        self.now = t;
-        motion.kernels(t, &mut self.here);
+        if let Some(steps) = motion.steps
+            && let Some((whole, before)) = steps.before(t)
+            && before > self.now
+        {
+            self.now = before;
+            steps.kernels(motion.bank, motion.each, whole, &mut self.here);
+        } else {
+            self.now = t;
+            motion.kernels(t, &mut self.here);
+        }
     }
 
     /// The shares of a signal that has been looked at.

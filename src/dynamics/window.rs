@@ -2,7 +2,7 @@
 
 use super::four::Four;
 use super::parabola::Parabola;
-use super::polynomial::{Coefficients, DEGREE, bernstein, evaluate};
+use super::polynomial::{Coefficients, DEGREE, bernstein, evaluate, halved};
 use super::series::{Bounds, Series, Shares, Span};
 
 /// How a guard starts.
@@ -18,6 +18,9 @@ pub(crate) enum Start {
         slope: f64,
     },
 }
+
+/// Halvings of a window that a smallest value is looked for in.
+const HALVINGS: u32 = 24;
 
 /// What an enclosure proves.
 pub(crate) enum Verdict {
@@ -99,6 +102,12 @@ impl Window {
             Some(guess) => Verdict::Root { guess, high: 1.0 },
             None => self.judge_shape(),
         }
+    }
+
+    /// A lower bound on how near the guard comes to zero: that of its polynomial to a hundredth, less what that leaves out.
+    #[cold]
+    pub(crate) fn lowest(&self) -> f64 {
+        lowest(&self.b, f64::INFINITY, HALVINGS) - self.remainder
     }
 
     /// How far the polynomial keeps above its remainder: where it falls to that once, by Descartes' rule, and no more.
@@ -254,6 +263,19 @@ impl Window {
     }
 }
 
+/// A lower bound on a polynomial that is above `known` elsewhere, by its Bernstein coefficients in halves of halves; it counts where it is
+/// the lowest, and is within a hundredth there.
+fn lowest(b: &Coefficients, known: f64, halvings: u32) -> f64 {
+    let bound = b.iter().copied().fold(f64::INFINITY, f64::min);
+    let reached = known.min(b[0]).min(b[DEGREE]);
+    if bound >= 0.99 * reached || halvings == 0 {
+        return bound;
+    }
+    let [left, right] = halved(b);
+    let bound = lowest(&left, reached, halvings - 1);
+    bound.min(lowest(&right, reached.min(left[DEGREE]), halvings - 1))
+}
+
 /// The root below `high` by Newton steps from `x`, to three digits or so. Gives with it the slope before the last step,
 /// and that step.
 #[inline]
@@ -338,5 +360,28 @@ impl Signs {
         let falling = |bits: u64| bits & (bits + 1) == 0;
         let before = Self::ALL & !self.negative;
         self.positive != 0 && self.negative != 0 && falling(self.positive) && falling(before)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_lowest_place_of_a_polynomial_is_found_to_a_hundredth_and_from_below() {
+        for place in [0.1, 0.37, 0.5, 0.9] {
+            for depth in [1e-2, 1e-5, 1e-9] {
+                // (x − place)² (2 + x) + depth, from powers to Bernstein coefficients.
+                let square = [place * place, -2.0 * place, 1.0];
+                let mut a = [0.0; DEGREE + 1];
+                for (i, c) in square.into_iter().enumerate() {
+                    a[i] += 2.0 * c;
+                    a[i + 1] += c;
+                }
+                a[0] += depth;
+                let found = lowest(&bernstein(&a), f64::INFINITY, HALVINGS);
+                assert!(found > 0.99 * depth - 1e-15 && found <= depth + 1e-15, "{found} for {depth} at {place}");
+            }
+        }
     }
 }
