@@ -41,7 +41,7 @@ const WORTH_A_STEP: f64 = 0.1;
 const NOISE: f64 = 0.25;
 /// radius·Δ of the fastest block that a window must not leave out.
 const FASTEST: f64 = 4.8;
-/// More guards than this are first looked at by the bends of their signals alone, which most of them pass.
+/// Guards, times registers of blocks, beyond which they are first looked at by the bends of their signals alone, which most of them pass.
 const MANY: usize = 7;
 /// What is later than a known root by this factor does not come at the same time.
 const AFTER: f64 = 1.0 + 1e-12;

@@ -1,6 +1,6 @@
 //! Kernels at whole steps of time, from a table that grows as it is asked.
 //!
-//! Where a window of the search begins is seen in no result, so that it may begin at a whole step: e^(B iδ) is the product of two
+//! Where a window of the search begins is seen in no event, so that it may begin at a whole step: e^(B iδ) is the product of two
 //! entries, e^(B nhδ) e^(B lδ) with i = nh + l, where each instant by itself would take an exponential, a sine and a cosine.
 
 use std::cell::RefCell;
