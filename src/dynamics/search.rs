@@ -34,11 +34,13 @@ use super::window::{Start, Verdict, Window};
 /// then 3.7¹²/12! of the amplitude, about a hundredth.
 const REACH: f64 = 3.7;
 /// Share of a window that a proof has to be ahead of it before the next one begins there.
-const WORTH_A_MOVE: f64 = 0.9;
+const WORTH_A_MOVE: f64 = 0.6;
 /// Share of a window that has to be proven for the next one to begin there.
 const WORTH_A_STEP: f64 = 0.1;
 /// Share of a guard's value that blocks too fast for its window may reach together.
 const NOISE: f64 = 0.25;
+/// Share of what can bend in a window that begins at zero, of which no more may be left out: beyond that it would prove nothing.
+const DOUBT: f64 = 0.1;
 /// radius·Δ of the fastest block that a window must not leave out.
 const FASTEST: f64 = 4.8;
 /// Guards, times registers of blocks, beyond which they are first looked at by the bends of their signals alone, which most of them pass.
@@ -145,6 +147,13 @@ impl Turning {
         let turn = if self.snap > 0.0 { (self.bend / self.snap).sqrt() } else { f64::INFINITY };
         factor * (REACH * turn).min(self.longest)
     }
+
+    /// Whether so large a share of that window is shorter than `ahead`; it takes no root.
+    #[inline(always)]
+    fn is_shorter(self, ahead: f64, share: f64) -> bool {
+        let turns = share * REACH;
+        ahead > share * self.longest || ahead * ahead * self.snap > turns * turns * self.bend
+    }
 }
 
 impl Plan {
@@ -154,10 +163,10 @@ impl Plan {
         Self { at, turning, quick, begun: false }
     }
 
-    /// Windows had better begin where its proof, `ahead` of them, ends.
+    /// Windows had better begin where its proof, `ahead` of them, ends. A plan of an earlier instant can tell, too; none says yes.
     #[inline(always)]
     fn is_overtaken(&self, ahead: f64, factor: f64) -> bool {
-        ahead > 0.0 && (self.begun || ahead > WORTH_A_MOVE * self.turning.window(factor))
+        ahead > 0.0 && (self.begun || self.turning.is_shorter(ahead, WORTH_A_MOVE * factor))
     }
 }
 
@@ -269,12 +278,12 @@ impl Search {
         let factor = *factor;
         let (guard, plan, known) = (&guards[index], &mut plans[index], clear[index]);
         let ahead = known - surveys.now;
-        // It is none yet, or another guard has moved on to here.
-        if plan.at != surveys.now {
-            *plan = plan_of(motion, signals, surveys, guard, limit, clarity);
-        }
-        if plan.is_overtaken(ahead, factor) {
+        let is_overtaken = plan.is_overtaken(ahead, factor);
+        if is_overtaken {
             surveys.move_to(motion, known);
+        }
+        // It is none yet, or windows have moved on since, for this guard or another.
+        if is_overtaken || plan.at != surveys.now {
             *plan = plan_of(motion, signals, surveys, guard, limit, clarity);
         }
         let now = surveys.now;
@@ -302,8 +311,13 @@ impl Search {
             }
             let span = Span::new(motion.series, now, window);
             let bounds = motion.series.bounds(shares, &span, start == Start::Apart);
-            let hopeless =
-                bounds.leaves_blocks && guard.parabola.at(now) + guard.sign * survey.value < 2.0 * bounds.left_out;
+            let hopeless = match start {
+                Start::Apart => {
+                    let value = guard.parabola.at(now) + guard.sign * survey.value;
+                    bounds.leaves_blocks && value < 2.0 * bounds.left_out
+                }
+                Start::Touching { .. } => bounds.left_out > DOUBT * survey.bend * (window * window),
+            };
             let (mut ends_below, mut comes_later) = (false, false);
             let verdict = if hopeless && !indivisible {
                 Verdict::Unsure
@@ -401,9 +415,8 @@ fn plan_of(
         let quick = if order == 1 && until > 0.0 { until } else { 0.0 };
         return Plan::new(now, Turning { bend, snap, longest: f64::INFINITY }, quick);
     }
-    let apart = clear_until(here, reach + least, margin);
-    if apart >= limit - now {
-        return Plan::new(now, Turning { bend, snap, longest: limit }, apart);
+    if is_never_reached(here, reach + least, margin) {
+        return Plan::new(now, Turning { bend, snap, longest: limit }, f64::INFINITY);
     }
     let (mut value, mut rate) = (guard.sign * survey.value, guard.sign * survey.rate);
     let mut longest = f64::INFINITY;
@@ -429,7 +442,15 @@ fn plan_of(
         }
     }
     let curve = Parabola { p0: here.p0 + value, p1: here.p1 + rate, p2: here.p2 - 0.5 * bend };
-    Plan::new(now, Turning { bend, snap, longest }, apart.max(clear_until(curve, noise + least, margin)))
+    Plan::new(now, Turning { bend, snap, longest }, clear_until(curve, noise + least, margin))
+}
+
+/// Whether a parabola stays further from zero than `reach`, and does not come closer to that than `margin`; it takes no root.
+#[inline(always)]
+fn is_never_reached(parabola: Parabola, reach: f64, margin: f64) -> bool {
+    let Parabola { p0, p1, p2 } = parabola;
+    let above = p0 - reach;
+    above > 0.0 && p2 >= 0.0 && (p1 >= 0.0 || p1 * p1 <= 4.0 * p2 * (above - margin))
 }
 
 /// How long the bounds on the bends of signals alone keep a guard clear: most guards are looked at no more than so.
