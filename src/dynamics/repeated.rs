@@ -8,6 +8,7 @@ use std::collections::BTreeMap;
 
 use super::budget;
 use super::options::{Options, StartState};
+use super::proof::Proof;
 use super::response::Response;
 use super::system::{HybridSystem, Particle};
 use super::{EngineError, Until};
@@ -22,6 +23,24 @@ struct Made {
     response: Response,
     /// Events on the way, as the limit of a row counts them.
     events: u64,
+}
+
+impl Made {
+    /// Whether a run under these options is part of it: an audit reads a run, and changes nothing in it.
+    fn has(&self, options: &Options) -> bool {
+        let audit = self.options.audit;
+        audit >= options.audit && self.options == Options { audit, ..options.clone() }
+    }
+
+    /// What such a run leaves.
+    fn read(&self, options: &Options) -> Response {
+        let mut response = self.response.clone();
+        if !options.audit {
+            let Proof { momentum_residual, energy_residual, residual_bound, .. } = Proof::default();
+            response.proof = Proof { momentum_residual, energy_residual, residual_bound, ..response.proof };
+        }
+        response
+    }
 }
 
 /// Runs by a part of what they depend on.
@@ -56,9 +75,9 @@ pub(super) fn once(
     let key = key(system, options);
     let known = KEPT.with_borrow(|kept| {
         let mut of_key = kept.as_ref()?.get(&key)?.iter();
-        let made = of_key.find(|made| made.system == *system && made.options == *options)?;
+        let made = of_key.find(|made| made.system == *system && made.has(options))?;
         // A run that its row has no room for ends where it would have ended.
-        budget::has_room_for(made.events).then(|| (made.response.clone(), made.events))
+        budget::has_room_for(made.events).then(|| (made.read(options), made.events))
     });
     if let Some((response, events)) = known {
         return budget::within(|| {

@@ -17,7 +17,7 @@ use super::basins::run_basins;
 use super::chain::units;
 use super::evaluate::Evaluate;
 use super::event::{Event, EventHandler, Left};
-use super::job::{self, cost};
+use super::job::{self, Job, cost};
 use super::known_rows::KnownRows;
 use super::limited::Limited;
 use super::optimise::run_optimisation;
@@ -26,10 +26,12 @@ use super::record::Failures;
 use super::refine;
 use super::shard::Shard;
 use super::spent::{Meter, Metered, Spent};
+use super::tabulate::Outcome;
 use super::variant::Variant;
 use super::work::{Work, outcome};
 use crate::dynamics::{Limit, is_interrupted, keeping_runs};
 use crate::experiment::{Case, Experiment, RowSource};
+use crate::scene::Scene;
 use crate::table::Table;
 
 /// An experiment to be run.
@@ -187,8 +189,7 @@ pub fn run<T: Send + Sync>(
                                 hand_over(*index, one.finish());
                             }
                         };
-                        let all = || units.iter().for_each(|rows| one.unit(rows, &engine(*index), handler, put));
-                        if units.len() > 1 { keeping_runs(all) } else { all() }
+                        one_by_one(one, &units, &engine(*index), handler, put);
                     });
                 }
             });
@@ -256,9 +257,10 @@ fn run_refined(task: Task<'_>, evaluate: &impl Evaluate, handler: &dyn EventHand
             work.put(row, known);
         }
     }
-    work.rows_to_do().into_par_iter().for_each(|row| {
-        work.put(row, work.row(row, evaluate, &counting));
-    });
+    let put = |row, outcome| {
+        work.put(row, outcome);
+    };
+    together(&work).into_par_iter().for_each(|units| one_by_one(&work, &units, evaluate, &counting, put));
     let left = job::simulations(task.experiment, task.variants).saturating_sub(counting.simulations.into_inner());
     handler.on_event(&Event::Simulated { experiment: &experiment.id, count: left });
     hand_over(&work);
@@ -296,16 +298,46 @@ fn order(work: &[(usize, Work<'_>)]) -> Vec<(usize, Units)> {
     order.into_iter().map(|(_, _, index, units)| (index, units)).collect()
 }
 
-/// Where a maximum is looked for, all rows of a case, one after the other: an assumption that enters what the runs are compared with
-/// alone leaves each of them as it is. Threads without a case of their own share the points of a row.
+/// Does units that may make the same runs.
+fn one_by_one(
+    work: &Work<'_>,
+    units: &Units,
+    evaluate: &impl Evaluate,
+    handler: &dyn EventHandler,
+    put: impl Fn(usize, Outcome) + Copy,
+) {
+    let all = || units.iter().for_each(|rows| work.unit(rows, evaluate, handler, put));
+    if units.len() > 1 { keeping_runs(all) } else { all() }
+}
+
+/// Rows to be done of a case whose scene is the same, one after the other: an assumption that enters the reference, or the kind of mean,
+/// alone leaves their runs as they are. Where a maximum is looked for, no scene is known before, and all rows of a case go together.
+/// Threads without a case of their own share the points and settings of a row.
 fn together(work: &Work<'_>) -> Vec<Units> {
-    let units = units(work.task.experiment, &work.jobs);
-    if work.task.experiment.maximise.is_none() {
-        return units.into_iter().map(|rows| vec![rows]).collect();
+    let Task { experiment, variants, .. } = work.task;
+    let scene = |row: usize| {
+        let Job { case, variant, .. } = work.jobs[row];
+        let recipe = experiment.recipe_of(&experiment.cases[case]).ok()?;
+        experiment.recipes_in(&recipe).ok()?.first()?.resolve(&variants[variant].assumptions).ok()
+    };
+    let mut all: Vec<Units> = Vec::new();
+    let mut of_case: BTreeMap<usize, Vec<(Option<Scene>, usize)>> = BTreeMap::new();
+    for mut rows in units(experiment, &work.jobs) {
+        rows.retain(|row| work.is_open(*row));
+        if rows.is_empty() {
+            continue;
+        }
+        if let [row] = rows[..]
+            && variants.len() > 1
+        {
+            let (known, scene) = (of_case.entry(work.jobs[row].case).or_default(), scene(row));
+            if let Some((_, place)) = known.iter().find(|(other, _)| *other == scene) {
+                all[*place].push(rows);
+                continue;
+            }
+            known.push((scene, all.len()));
+        }
+        all.push(vec![rows]);
     }
-    let mut of_case: BTreeMap<usize, Units> = BTreeMap::new();
-    for rows in units {
-        of_case.entry(work.jobs[rows[0]].case).or_default().push(rows);
-    }
-    of_case.into_values().collect()
+    all
 }

@@ -51,11 +51,9 @@ impl<'a> Work<'a> {
         self.jobs.iter().map(|job| evaluations(self.task.experiment, job)).sum()
     }
 
-    /// The rows that have not been computed yet and do not share another's numbers.
-    pub(super) fn rows_to_do(&self) -> Vec<usize> {
-        (0..self.jobs.len())
-            .filter(|&row| self.jobs[row].same_as.is_none() && self.outcomes[row].get().is_none())
-            .collect()
+    /// The row has not been computed yet.
+    pub(super) fn is_open(&self, row: usize) -> bool {
+        self.outcomes[row].get().is_none()
     }
 
     /// Puts a row into its place; true for the last one.
