@@ -42,13 +42,13 @@ pub(crate) fn bernstein(a: &Coefficients) -> Coefficients {
     b
 }
 
-/// Bernstein coefficients on both halves, by de Casteljau's averages.
-pub(crate) fn halved(b: &Coefficients) -> [Coefficients; 2] {
+/// Bernstein coefficients on [0, x] and on [x, 1], by de Casteljau's averages.
+pub(crate) fn cut(b: &Coefficients, x: f64) -> [Coefficients; 2] {
     let (mut left, mut right) = (*b, *b);
     for round in 0..=DEGREE {
         left[round] = right[0];
         for i in 0..DEGREE - round {
-            right[i] = 0.5 * (right[i] + right[i + 1]);
+            right[i] = (1.0 - x) * right[i] + x * right[i + 1];
         }
     }
     [left, right]

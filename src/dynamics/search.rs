@@ -37,6 +37,8 @@ const REACH: f64 = 3.7;
 const WORTH_A_MOVE: f64 = 0.6;
 /// Share of a window that has to be proven for the next one to begin there.
 const WORTH_A_STEP: f64 = 0.1;
+/// Share of a first window below which none is halved for a near miss.
+const NEAREST: f64 = 1.0 / 64.0;
 /// Share of a guard's value that blocks too fast for its window may reach together.
 const NOISE: f64 = 0.25;
 /// Share of what can bend in a window that begins at zero, of which no more may be left out: beyond that it would prove nothing.
@@ -70,6 +72,27 @@ pub(crate) struct Guard {
     pub(crate) distance: bool,
 }
 
+impl Guard {
+    /// Its value `time` seconds after the start, where its signal is `signal`.
+    #[inline(always)]
+    fn value(&self, time: f64, signal: f64) -> f64 {
+        self.parabola.at(time) + self.sign * signal
+    }
+
+    /// The smallest margin so far, where it is one that may lower it.
+    #[inline(always)]
+    fn margin(&self, clarity: &Clarity) -> f64 {
+        if self.distance { clarity.margin } else { 0.0 }
+    }
+
+    /// How far from zero a proof without a window keeps it: by that margin, or, as long as there is none, by the reach of its signal.
+    #[inline(always)]
+    fn kept_clear(&self, clarity: &Clarity, reach: f64) -> f64 {
+        let margin = self.margin(clarity);
+        if margin < f64::INFINITY { margin } else { reach }
+    }
+}
+
 /// What the search found.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Found {
@@ -79,7 +102,8 @@ pub(crate) enum Found {
     Event { guard: usize, time: f64 },
 }
 
-/// Running record of how clearly events were decided.
+/// Running record of how clearly events were decided. Two things change their sequence: a guard that turns back on its way to zero is
+/// to reach it, or one that crosses it is to turn back before, about g′²/(2|g″|) beyond.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Clarity {
     /// Smallest distance by which a guard would have to be moved for the sequence to change.
@@ -163,7 +187,8 @@ impl Plan {
         Self { at, turning, quick, begun: false }
     }
 
-    /// Windows had better begin where its proof, `ahead` of them, ends. A plan of an earlier instant can tell, too; none says yes.
+    /// Windows had better begin where its proof, `ahead` of them, ends. A plan of an earlier instant can tell, too; [`Plan::NONE`] says
+    /// yes.
     #[inline(always)]
     fn is_overtaken(&self, ahead: f64, factor: f64) -> bool {
         ahead > 0.0 && (self.begun || self.turning.is_shorter(ahead, WORTH_A_MOVE * factor))
@@ -294,11 +319,13 @@ impl Search {
         // A little beyond the first root that is known, to see one that comes at the same time.
         let mut window = plan.turning.window(factor).min(1.25 * (horizon - now)).min(limit - now);
         plan.begun = true;
+        let first = window;
         let (survey, shares) = surveys.of(motion, signals, guard.signal, limit);
+        let value = || guard.value(now, survey.value);
         if !guard.distance
             && now == 0.0
             && guard.start == Start::Apart
-            && guard.parabola.p0 + guard.sign * survey.value < -ROUNDING * (guard.parabola.p0.abs() + survey.reach)
+            && value() < -ROUNDING * (guard.parabola.p0.abs() + survey.reach)
         {
             // A force that has jumped, be it by less than the end of a window is known to: the contact state ends as it begins.
             return Some(Root { guard: index, guess: 0.0, high: 0.0, window });
@@ -312,10 +339,7 @@ impl Search {
             let span = Span::new(motion.series, now, window);
             let bounds = motion.series.bounds(shares, &span, start == Start::Apart);
             let hopeless = match start {
-                Start::Apart => {
-                    let value = guard.parabola.at(now) + guard.sign * survey.value;
-                    bounds.leaves_blocks && value < 2.0 * bounds.left_out
-                }
+                Start::Apart => bounds.leaves_blocks && value() < 2.0 * bounds.left_out,
                 Start::Touching { .. } => bounds.left_out > DOUBT * survey.bend * (window * window),
             };
             let (mut ends_below, mut comes_later) = (false, false);
@@ -324,22 +348,27 @@ impl Search {
             } else {
                 let piece = Window::expand(motion.series, shares, &bounds, guard.sign, guard.parabola, &span, start);
                 ends_below = indivisible && piece.end() < 0.0;
-                let verdict = piece.judge(|order| {
+                let margin = guard.kept_clear(clarity, survey.reach);
+                let mut verdict = piece.judge(margin, |order| {
                     let bent = guard.parabola.p2.abs() * (span.length * span.length);
                     let parabola = if order == 0 { 2.0 * bent } else { 0.0 };
                     parabola + motion.series.bend(shares, span.length * motion.series.pace, order)
                 });
-                if let Verdict::Clear { clearance } = verdict
-                    && guard.distance
-                    && clearance < clarity.margin
+                if guard.distance
+                    && let Some(miss) =
+                        piece.near_miss(&verdict, [known - now, horizon - now].map(|t| t / window), clarity.margin)
                 {
-                    clarity.margin = clarity.margin.min(piece.lowest());
+                    if miss.is_sharp || window <= NEAREST * first {
+                        clarity.margin = clarity.margin.min(miss.clearance);
+                    } else {
+                        verdict = Verdict::Unsure;
+                    }
                 }
                 comes_later = now + window > horizon && piece.is_positive((horizon * AFTER - now) / window);
                 verdict
             };
             match verdict {
-                Verdict::Clear { .. } => {
+                Verdict::Clear => {
                     clear[index] = known.max(now + window);
                     *least = shortest(motion, limit);
                     return None;
@@ -403,9 +432,9 @@ fn plan_of(
     let (survey, shares) = surveys.of(motion, signals, guard.signal, limit);
     let width = motion.blocks.len();
     let here = Parabola { p0: parabola.at(now), p1: parabola.rate(now), p2: parabola.p2 };
-    let margin = if guard.distance { clarity.margin } else { 0.0 };
+    let margin = guard.margin(clarity);
     let Survey { reach, mut bend, mut snap, .. } = *survey;
-    let least = margin.min(reach);
+    let least = guard.kept_clear(clarity, reach);
     if now == 0.0
         && let Start::Touching { order, slope } = guard.start
     {
@@ -459,7 +488,7 @@ fn clear_by_bend(signal: Watched<'_>, bend: f64, guard: &Guard, clarity: &Clarit
     let Parabola { p0, p1, p2 } = guard.parabola;
     let curve =
         Parabola { p0: p0 + guard.sign * signal.sum.value, p1: p1 + guard.sign * signal.sum.rate, p2: p2 - 0.5 * bend };
-    let margin = if guard.distance { clarity.margin } else { 0.0 };
+    let margin = guard.margin(clarity);
     clear_until(curve, ROUNDING * (p0.abs() + signal.size) + margin, margin)
 }
 
@@ -467,18 +496,14 @@ fn clear_by_bend(signal: Watched<'_>, bend: f64, guard: &Guard, clarity: &Clarit
 /// than `margin`, so that no jump passes over the narrowest place of a run.
 #[inline(always)]
 fn clear_until(parabola: Parabola, reach: f64, margin: f64) -> f64 {
-    let Parabola { p0, p1: b, p2: a } = parabola;
-    let c = p0 - reach;
-    if !(c > 0.0) {
-        return 0.0;
-    }
-    if a >= 0.0 && b >= 0.0 {
+    if is_never_reached(parabola, reach, margin) {
         return f64::INFINITY;
     }
+    let Parabola { p0, p1: b, p2: a } = parabola;
+    let c = p0 - reach;
     let discriminant = b * b - 4.0 * a * c;
-    if discriminant < 0.0 {
-        // Its lowest point is c − b²/4a.
-        return if -discriminant < 4.0 * a * margin { 0.0 } else { f64::INFINITY };
+    if !(c > 0.0 && discriminant >= 0.0) {
+        return 0.0;
     }
     // The first positive root of c + b τ + a τ², written without cancellation.
     let root = discriminant.sqrt();

@@ -2,7 +2,7 @@
 
 use super::four::Four;
 use super::parabola::Parabola;
-use super::polynomial::{Coefficients, DEGREE, bernstein, evaluate, halved};
+use super::polynomial::{Coefficients, DEGREE, bernstein, cut, evaluate};
 use super::series::{Bounds, Series, Shares, Span};
 
 /// How a guard starts.
@@ -24,8 +24,8 @@ const HALVINGS: u32 = 24;
 
 /// What an enclosure proves.
 pub(crate) enum Verdict {
-    /// No root; the guard turns back at this distance from zero, or does not turn.
-    Clear { clearance: f64 },
+    /// No root.
+    Clear,
     /// Exactly one root: first guess of its σ, and an upper bound.
     Root { guess: f64, high: f64 },
     /// No root before this σ: there the blocks that were left out might make one.
@@ -34,16 +34,28 @@ pub(crate) enum Verdict {
     Unsure,
 }
 
+/// A place at which a guard turns back on its way to zero.
+pub(crate) struct NearMiss {
+    /// A lower bound on how far it is from zero there.
+    pub(crate) clearance: f64,
+    /// That is known to two hundredths, or as nearly as rounding lets it be.
+    pub(crate) is_sharp: bool,
+}
+
 /// A guard over one window.
 pub(crate) struct Window {
     /// Taylor coefficients in σ, of the guard divided by σ^order where it starts at zero.
     a: Coefficients,
     /// Their Bernstein coefficients.
     b: Coefficients,
-    /// What the polynomial leaves out, with the rounding.
+    /// What the polynomial leaves out.
+    left_out: f64,
+    /// The same with the rounding.
     remainder: f64,
     /// Whole blocks are part of that: it may turn as fast as they do.
     leaves_blocks: bool,
+    /// Where it begins, s into the segment.
+    from: f64,
     start: Start,
 }
 
@@ -78,25 +90,25 @@ impl Window {
             Start::Touching { order: 2, .. } => divided::<2>(series, shares, sign, &base, span),
             Start::Touching { .. } => divided::<3>(series, shares, sign, &base, span),
         };
-        Self { b: bernstein(&a), a, remainder, leaves_blocks: bounds.leaves_blocks, start }
+        let (left_out, leaves_blocks) = (bounds.left_out, bounds.leaves_blocks);
+        Self { b: bernstein(&a), a, left_out, remainder, leaves_blocks, from: span.from, start }
     }
 
     pub(crate) fn end(&self) -> f64 {
         self.a.iter().sum()
     }
 
-    /// What the enclosure proves; `bend` is to bound the second derivative in σ of the guard over σ to a power, if that is asked for.
+    /// What the enclosure proves, of a part of it with the guard above `margin`; `bend` is to bound the second derivative in σ of the
+    /// guard over σ to a power, if that is asked for.
     #[inline(always)]
-    pub(crate) fn judge(&self, bend: impl FnOnce(usize) -> f64) -> Verdict {
+    pub(crate) fn judge(&self, margin: f64, bend: impl FnOnce(usize) -> f64) -> Verdict {
         let b = &self.b;
         let signs = Signs::of(b, self.remainder);
         if signs.positive == Signs::ALL {
-            let near_miss = self.start == Start::Apart && b[1] < b[0] && b[DEGREE] > b[DEGREE - 1];
-            let lowest = || b.iter().copied().fold(f64::INFINITY, f64::min);
-            return Verdict::Clear { clearance: if near_miss { lowest() - self.remainder } else { f64::INFINITY } };
+            return Verdict::Clear;
         }
         if self.leaves_blocks {
-            return self.clear_prefix(signs);
+            return self.clear_prefix(margin);
         }
         match self.single_crossing(signs, bend) {
             Some(guess) => Verdict::Root { guess, high: 1.0 },
@@ -104,22 +116,78 @@ impl Window {
         }
     }
 
-    /// A lower bound on how near the guard comes to zero: that of its polynomial to a hundredth, less what that leaves out.
-    #[cold]
-    pub(crate) fn lowest(&self) -> f64 {
-        lowest(&self.b, f64::INFINITY, HALVINGS) - self.remainder
+    /// Where the guard turns back on its way to zero, nearer than `known` and before `until`; it grows up to `grown`.
+    #[inline(always)]
+    pub(crate) fn near_miss(&self, verdict: &Verdict, [grown, until]: [f64; 2], known: f64) -> Option<NearMiss> {
+        let end = match verdict {
+            Verdict::Clear => 1.0,
+            Verdict::Root { guess, .. } => *guess,
+            // What is proven then keeps further away.
+            Verdict::Until { .. } | Verdict::Unsure => return None,
+        };
+        if let Start::Touching { order, .. } = self.start {
+            return self.turns_after_contact(order, grown, known);
+        }
+        let may_be = if end < 1.0 { may_turn(&self.b) } else { self.comes_below(known + self.remainder) };
+        if may_be { self.turns_back(end.min(until), known) } else { None }
     }
 
-    /// How far the polynomial keeps above its remainder: where it falls to that once, by Descartes' rule, and no more.
+    /// The same behind a contact: of σ^order p the slope is σ^(order − 1) (order p + σ p′), whose second factor is p with each
+    /// coefficient times its power. How far it is from zero there, a shorter window tells, for which it lies behind.
+    #[inline(always)]
+    fn turns_after_contact(&self, order: usize, grown: f64, known: f64) -> Option<NearMiss> {
+        let nearest: f64 = (0..order).map(|_| grown.clamp(0.0, 1.0)).product();
+        if known < f64::INFINITY && !self.comes_below(self.remainder + known / nearest) {
+            return None;
+        }
+        let slope = bernstein(&std::array::from_fn(|j| (order + j) as f64 * self.a[j]));
+        (!Signs::of(&slope, 0.0).positive_then_negative())
+            .then_some(NearMiss { clearance: f64::INFINITY, is_sharp: false })
+    }
+
+    #[inline(always)]
+    fn comes_below(&self, level: f64) -> bool {
+        let all = self.b.as_chunks().0.iter().map(|b| Four::new(*b));
+        let below = |sum: Four, b: Four| sum + b.zip(Four::all(level), |b, level| if b < level { 1.0 } else { 0.0 });
+        all.fold(Four::ZERO, below).sum() > 0.0
+    }
+
     #[cold]
-    fn clear_prefix(&self, signs: Signs) -> Verdict {
+    fn turns_back(&self, end: f64, known: f64) -> Option<NearMiss> {
+        let part = if end < 1.0 { &cut(&self.b, end)[0] } else { &self.b };
+        let below = known + self.remainder;
+        // An end that may be level may be the place, unless the slope beside it says that it is the highest; where a segment begins,
+        // nothing has come near, and a root is none.
+        let doubt = self.step_doubt();
+        let [b0, b1, b2, .., b9, b10, b11] = *part;
+        let first = if self.from > 0.0 && (b1 - b0).abs() <= doubt && b2 - b1 >= -doubt { b0 } else { below };
+        let last = if end >= 1.0 && (b11 - b10).abs() <= doubt && b10 - b9 <= doubt { b11 } else { below };
+        let ends = first.min(last).min(below);
+        let lowest = dip(part, ends, HALVINGS);
+        // A shorter window rounds as this one does, and leaves less out.
+        let share = if ends < below { 0.0 } else { 0.01 };
+        let is_sharp = self.left_out <= (self.remainder - self.left_out).max(share * lowest);
+        (lowest < below).then_some(NearMiss { clearance: (lowest - self.remainder).max(0.0), is_sharp })
+    }
+
+    /// What the polynomial leaves out, of a step from one of its coefficients to the next: |R′| is below 16 R.
+    fn step_doubt(&self) -> f64 {
+        16.0 * self.remainder / DEGREE as f64
+    }
+
+    /// How far the polynomial keeps above its remainder and `margin`: where it falls to that once, by Descartes' rule, and no more.
+    #[cold]
+    fn clear_prefix(&self, margin: f64) -> Verdict {
+        // Divided by a power of σ the guard is larger than it is.
+        let level = self.remainder + if self.start == Start::Apart { margin } else { 0.0 };
+        let signs = Signs::of(&self.b, level);
         if signs.positive == 0 || signs.positive & (signs.positive + 1) != 0 {
             return Verdict::Unsure;
         }
         let mut above = self.a;
-        above[0] -= self.remainder;
+        above[0] -= level;
         // Newton has the root to three digits or so; a little before it the polynomial is still above.
-        let sigma = 0.98 * root(&above, self.crossing(signs, self.remainder), 1.0).0;
+        let sigma = 0.98 * root(&above, self.crossing(signs, level), 1.0).0;
         if evaluate(&above, sigma).0 > 0.0 { Verdict::Until { sigma } } else { Verdict::Unsure }
     }
 
@@ -167,7 +235,7 @@ impl Window {
         let doubt = self.remainder;
         let end = b[DEGREE];
         // |R⁽ʲ⁾| ≤ 12!/(12−j)! of R's bound; divided by up to σ³ the first derivative is below 16 R, the second below 250 R.
-        let slope_doubt = 16.0 * doubt / DEGREE as f64;
+        let slope_doubt = self.step_doubt();
         let bend_doubt = 250.0 * doubt / (DEGREE * (DEGREE - 1)) as f64;
         let (mut falls, mut concave, mut convex) = (true, true, true);
         for i in 0..DEGREE {
@@ -178,10 +246,9 @@ impl Window {
             concave &= second < -bend_doubt;
             convex &= second > bend_doubt;
         }
-        let clear = Verdict::Clear { clearance: f64::INFINITY };
         if doubt == 0.0 && b.iter().all(|b| *b == 0.0) {
             // Nothing pushes and nothing pulls, for ever.
-            return clear;
+            return Verdict::Clear;
         }
         if start == Start::Apart && b[0] < -doubt {
             // A jump has left the contact untenable: it ends at once.
@@ -192,11 +259,11 @@ impl Window {
             return root(1.0);
         }
         if concave && end > doubt && (b[0] > doubt || start == Start::Apart) {
-            return clear;
+            return Verdict::Clear;
         }
         if convex && start == Start::Apart {
             if b[1] - b[0] > slope_doubt {
-                return clear;
+                return Verdict::Clear;
             }
             if end < -doubt && b[0] > doubt {
                 // Convex, positive, then negative: one root.
@@ -205,7 +272,7 @@ impl Window {
             let bottom = self.bottom();
             let value = self.value(bottom);
             if value > doubt {
-                return Verdict::Clear { clearance: value - doubt };
+                return Verdict::Clear;
             }
             if value < -doubt && b[0] > doubt {
                 return root(bottom);
@@ -263,17 +330,28 @@ impl Window {
     }
 }
 
-/// A lower bound on a polynomial that is above `known` elsewhere, by its Bernstein coefficients in halves of halves; it counts where it is
-/// the lowest, and is within a hundredth there.
-fn lowest(b: &Coefficients, known: f64, halvings: u32) -> f64 {
-    let bound = b.iter().copied().fold(f64::INFINITY, f64::min);
-    let reached = known.min(b[0]).min(b[DEGREE]);
-    if bound >= 0.99 * reached || halvings == 0 {
-        return bound;
+/// Whether a polynomial may fall and rise again: by Descartes' rule for its slope not if its coefficients rise up to one and fall from
+/// there on.
+#[inline(always)]
+fn may_turn(b: &Coefficients) -> bool {
+    let steps = std::array::from_fn(|i| if i < DEGREE { b[i + 1] - b[i] } else { f64::NEG_INFINITY });
+    !Signs::of(&steps, 0.0).positive_then_negative()
+}
+
+/// The lowest place below `known` at which a polynomial turns from falling to rising, to a hundredth and from below; `known` if there
+/// is none.
+fn dip(b: &Coefficients, known: f64, halvings: u32) -> f64 {
+    let [least, most] =
+        b.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[least, most], b| [least.min(*b), most.max(*b)]);
+    if !(least < known && may_turn(b)) {
+        return known;
     }
-    let [left, right] = halved(b);
-    let bound = lowest(&left, reached, halvings - 1);
-    bound.min(lowest(&right, reached.min(left[DEGREE]), halvings - 1))
+    if least >= 0.99 * most || halvings == 0 {
+        return least;
+    }
+    let [left, right] = cut(b, 0.5);
+    let known = dip(&left, known, halvings - 1);
+    dip(&right, known, halvings - 1)
 }
 
 /// The root below `high` by Newton steps from `x`, to three digits or so. Gives with it the slope before the last step,
@@ -354,12 +432,17 @@ impl Signs {
         Self { positive: both & Self::ALL, negative: both >> (DEGREE + 1) & Self::ALL }
     }
 
-    /// Positive, then doubtful, then negative.
+    /// Positive, then doubtful, then negative; any of them may be missing.
+    #[inline(always)]
+    fn positive_then_negative(self) -> bool {
+        let falling = |bits: u64| bits & (bits + 1) == 0;
+        falling(self.positive) && falling(Self::ALL & !self.negative)
+    }
+
+    /// The same with both ends.
     #[inline(always)]
     fn change_once(self) -> bool {
-        let falling = |bits: u64| bits & (bits + 1) == 0;
-        let before = Self::ALL & !self.negative;
-        self.positive != 0 && self.negative != 0 && falling(self.positive) && falling(before)
+        self.positive != 0 && self.negative != 0 && self.positive_then_negative()
     }
 }
 
@@ -368,7 +451,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_lowest_place_of_a_polynomial_is_found_to_a_hundredth_and_from_below() {
+    fn the_lowest_place_at_which_a_polynomial_turns_is_found_to_a_hundredth_and_from_below() {
         for place in [0.1, 0.37, 0.5, 0.9] {
             for depth in [1e-2, 1e-5, 1e-9] {
                 // (x − place)² (2 + x) + depth, from powers to Bernstein coefficients.
@@ -379,9 +462,22 @@ mod tests {
                     a[i + 1] += c;
                 }
                 a[0] += depth;
-                let found = lowest(&bernstein(&a), f64::INFINITY, HALVINGS);
+                let found = dip(&bernstein(&a), 1.0, HALVINGS);
                 assert!(found > 0.99 * depth - 1e-15 && found <= depth + 1e-15, "{found} for {depth} at {place}");
+                // Also where it falls far below that behind it, and hardly before.
+                a[DEGREE] -= 9.0;
+                let found = dip(&bernstein(&a), 1.0, HALVINGS);
+                let shift = 9.0 * libm::pow(place, 11.0);
+                assert!(
+                    shift > 1e-3 * depth || found > 0.98 * depth && found <= depth,
+                    "{found} for {depth} at {place}"
+                );
             }
+        }
+        // A slope alone, upwards or downwards, and a hill turn nowhere.
+        for coefficients in [[1.0, 1.0, 0.0], [1.0, -0.9, 0.0], [0.1, 1.0, -1.0]] {
+            let a = std::array::from_fn(|i| coefficients.get(i).copied().unwrap_or(0.0));
+            assert_eq!(dip(&bernstein(&a), 2.0, HALVINGS), 2.0);
         }
     }
 }

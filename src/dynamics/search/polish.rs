@@ -171,10 +171,11 @@ impl Search {
             *kernels = blocks.follow_on(kernels, delta);
         }
         if bracket.guard.distance {
-            // The guard would have to be moved by about g′²/(2|g″|) for this crossing to vanish.
-            let bend = (4.0 * local[2].abs()).max(f64::MIN_POSITIVE);
-            let slope = slope(local, delta * motion.series.pace);
-            clarity.margin = clarity.margin.min(slope * slope / bend);
+            // So far it goes on beyond zero at least before it turns back: up to where |g″| τ + |g‴| τ²/2 has taken up its slope.
+            let root = delta * motion.series.pace;
+            let (slope, bend, third) = (slope(local, root), bend(local, root), third(local, root));
+            let turn = bend.abs() + (bend * bend + 2.0 * (slope * third).abs()).sqrt();
+            clarity.margin = clarity.margin.min(slope * slope / turn.max(f64::MIN_POSITIVE));
         }
     }
 
@@ -217,6 +218,18 @@ impl Search {
 #[inline(always)]
 fn slope(local: &[f64; 8], root: f64) -> f64 {
     local[1] + root * (2.0 * local[2] + 3.0 * root * local[3])
+}
+
+/// The bend there.
+#[inline(always)]
+fn bend(local: &[f64; 8], root: f64) -> f64 {
+    2.0 * local[2] + root * (6.0 * local[3] + root * (12.0 * local[4] + 20.0 * root * local[5]))
+}
+
+/// How the bend changes there.
+#[inline(always)]
+fn third(local: &[f64; 8], root: f64) -> f64 {
+    6.0 * local[3] + root * (24.0 * local[4] + 60.0 * root * local[5])
 }
 
 /// The whole step nearest to a time; the time itself where steps are lost in its rounding.

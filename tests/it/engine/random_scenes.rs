@@ -192,14 +192,22 @@ pub(super) fn parted(
     (error > bound).then(|| format!("seed {seed}: {error:e} of {moved:e}, {events:?} events"))
 }
 
+/// Whether two runs of the same events know the same nearest miss, to two hundredths each, if it is one that rounding lets them know.
+fn know_one_margin([own, other]: [&Response; 2]) -> bool {
+    let [one, two] = [own, other].map(|run| run.proof.smallest_margin);
+    let near = (one - two).abs() <= 1e-12 + 0.03 * one.max(two);
+    near || one.max(two).is_infinite() || own.proof.ties + other.proof.ties > 0
+}
+
 #[test]
 pub(super) fn shorter_windows_find_the_same_events_in_drawn_scenes() {
     // Behind the first ones: a dashpot that jumps at the end of a half cycle made a face push again, by less than the window was known
     // to; of particles held on their stops the first had to be let go and held again before the others were right; the last did not
     // settle by the shorter ones.
-    // The motions of 2497 and 9414 are chaotic, and end in one of two places.
-    let known = [46_777, 48_865, 53_230, 45_207, 2497, 9414];
-    let mut found = Vec::new();
+    // The motions of 2497 and 9414 are chaotic, and end in one of two places. The nearest miss of the others came soon after a contact, at
+    // the end of a window, or where a force was nearest to letting go.
+    let known = [46_777, 48_865, 53_230, 45_207, 2497, 9414, 292, 780, 210];
+    let (mut found, mut compared, mut differ) = (Vec::new(), 0, Vec::new());
     for seed in (0..scenes(60)).chain(known) {
         let scene = any_drawn_scene(seed);
         let system = compile(&scene).unwrap_or_else(|error| panic!("seed {seed}: {error}"));
@@ -207,11 +215,23 @@ pub(super) fn shorter_windows_find_the_same_events_in_drawn_scenes() {
         // Refused is judged above.
         let Ok(own) = go_on(&system, &options) else { continue };
         match go_on(&system, &Options { window_factor: 0.37, ..options.clone() }) {
-            Ok(other) => found.extend(parted(seed, &system, &options, [&own, &other])),
+            Ok(other) => {
+                found.extend(parted(seed, &system, &options, [&own, &other]));
+                if apart(&own, &other) < 1e-12 {
+                    compared += 1;
+                    differ.extend((!know_one_margin([&own, &other])).then_some(seed));
+                }
+            }
             Err(error) => found.push(format!("seed {seed}: {error}")),
         }
     }
     assert!(found.is_empty(), "{found:#?}");
+    // What turns away from a face farther than its motion reaches is seen in some windows and not in others.
+    assert!(
+        compared > 40 && 100 * differ.len() <= compared,
+        "{} of {compared} know other margins: {differ:?}",
+        differ.len()
+    );
 }
 
 #[test]
