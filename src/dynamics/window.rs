@@ -181,7 +181,7 @@ impl Window {
         // Divided by a power of σ the guard is larger than it is.
         let level = self.remainder + if self.start == Start::Apart { margin } else { 0.0 };
         let signs = Signs::of(&self.b, level);
-        if signs.positive == 0 || signs.positive & (signs.positive + 1) != 0 {
+        if signs.positive == 0 || !come_first(signs.positive) {
             return Verdict::Unsure;
         }
         let mut above = self.a;
@@ -435,8 +435,7 @@ impl Signs {
     /// Positive, then doubtful, then negative; any of them may be missing.
     #[inline(always)]
     fn positive_then_negative(self) -> bool {
-        let falling = |bits: u64| bits & (bits + 1) == 0;
-        falling(self.positive) && falling(Self::ALL & !self.negative)
+        come_first(self.positive) && come_first(Self::ALL & !self.negative)
     }
 
     /// The same with both ends.
@@ -444,6 +443,12 @@ impl Signs {
     fn change_once(self) -> bool {
         self.positive != 0 && self.negative != 0 && self.positive_then_negative()
     }
+}
+
+/// The coefficients of these bits are the first ones, or none.
+#[inline(always)]
+fn come_first(bits: u64) -> bool {
+    bits & (bits + 1) == 0
 }
 
 #[cfg(test)]

@@ -147,9 +147,29 @@ impl<E: Effects> March<'_, E> {
 
     /// The same where its force has come to zero.
     pub(super) fn slip_smoothly(&mut self, j: usize, side: Side) -> Result<(), EngineError> {
+        self.unload(j, side);
         self.slip(j, side)?;
         self.is_smooth(j, side);
         Ok(())
+    }
+
+    /// Spring and dashpot cancel to the last digit, by a change of place or of rate, whichever holds less energy. What rounding leaves
+    /// of their force is nothing to the flow that ends, and may be a push that sets in again to the next one, and so on.
+    fn unload(&mut self, j: usize, side: Side) {
+        let particle = &self.system.particles[j];
+        let (Relative { gap, rate }, damping) = (self.particles[j], self.damping_on(j, side));
+        let leaves = side.away() * rate > 0.0 && damping > 0.0;
+        if let Law::Resilient { stiffness, .. } = side.face(particle).law
+            && leaves
+            && !self.sudden
+            && self.contacts[j].side() == side
+        {
+            self.particles[j] = if stiffness * (gap * gap) < particle.mass * (rate * rate) {
+                Relative { gap: -damping * rate / stiffness, rate }
+            } else {
+                Relative { gap, rate: -stiffness * gap / damping }
+            };
+        }
     }
 
     /// After a jump of velocities: whether each of the two faces goes on as it did.
