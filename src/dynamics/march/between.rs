@@ -121,9 +121,6 @@ impl<E: Effects> March<'_, E> {
 
     /// A force comes to zero at one of the faces: its guard begins there.
     fn is_smooth(&mut self, j: usize, side: Side) {
-        if self.sudden {
-            return;
-        }
         if self.contacts[j].side() == side {
             self.smooth[j] = true;
         } else {
@@ -147,6 +144,9 @@ impl<E: Effects> March<'_, E> {
 
     /// The same where its force has come to zero.
     pub(super) fn slip_smoothly(&mut self, j: usize, side: Side) -> Result<(), EngineError> {
+        if self.sudden {
+            return self.slip(j, side);
+        }
         self.unload(j, side);
         self.slip(j, side)?;
         self.is_smooth(j, side);
@@ -158,10 +158,9 @@ impl<E: Effects> March<'_, E> {
     fn unload(&mut self, j: usize, side: Side) {
         let particle = &self.system.particles[j];
         let (Relative { gap, rate }, damping) = (self.particles[j], self.damping_on(j, side));
-        let leaves = side.away() * rate > 0.0 && damping > 0.0;
+        let cancel = side.away() * rate > 0.0 && damping > 0.0;
         if let Law::Resilient { stiffness, .. } = side.face(particle).law
-            && leaves
-            && !self.sudden
+            && cancel
             && self.contacts[j].side() == side
         {
             self.particles[j] = if stiffness * (gap * gap) < particle.mass * (rate * rate) {
