@@ -55,14 +55,6 @@ pub(crate) struct Phases {
 impl Phases {
     pub(crate) const ZERO: Self = Self { value: Four::ZERO, rate: Four::ZERO };
 
-    /// Those of so many blocks, padded with zeros.
-    pub(crate) fn of(shares: &[Phase]) -> Self {
-        Self {
-            value: Four::padded(shares.iter().map(|share| share.value)),
-            rate: Four::padded(shares.iter().map(|share| share.rate)),
-        }
-    }
-
     /// That of one block.
     #[inline(always)]
     pub(crate) fn at(&self, lane: usize) -> Phase {

@@ -239,9 +239,18 @@ impl Modes {
 /// Damping of the face that particle j's contact refers to, N s/m; half cycles put another one in its place, while it is compressed:
 /// what moves freely, or is held, goes on in the contact state that it is in.
 pub(crate) fn contact_damping(system: &HybridSystem, contacts: &[Contact], j: usize, equivalent: Option<f64>) -> f64 {
-    let (particle, side) = (&system.particles[j], contacts[j].side());
-    let compressed = |_: &f64| matches!(contacts[j].at(side, particle), Hold::Pressed | Hold::Released);
-    face_damping(side.face(particle).law, equivalent.filter(compressed))
+    let law = contacts[j].side().face(&system.particles[j]).law;
+    face_damping(law, equivalent.filter(|_| is_compressed(system, contacts, j)))
+}
+
+/// The face that particle j's contact refers to is compressed.
+fn is_compressed(system: &HybridSystem, contacts: &[Contact], j: usize) -> bool {
+    matches!(contacts[j].at(contacts[j].side(), &system.particles[j]), Hold::Pressed | Hold::Released)
+}
+
+/// Some damping of this contact state is that of half cycles, where there are any.
+pub(crate) fn feels_half_cycles(system: &HybridSystem, contacts: &[Contact]) -> bool {
+    (0..contacts.len()).any(|j| contacts[j].is_between() || is_compressed(system, contacts, j))
 }
 
 /// The damping of the face that each particle's contact refers to; then, of those at both faces, that of the second one and the

@@ -10,7 +10,7 @@
 //! shortest step, so that a few kernels a block are enough.
 
 use super::bank::{Bank, Kernels, Phases};
-use super::block::{Block, Phase};
+use super::block::Block;
 use super::crest::{Motion, Node, crest};
 use super::four::Four;
 use super::lanes::WIDTH;
@@ -84,16 +84,21 @@ pub(crate) struct Stretch<'a> {
 }
 
 impl Lookout {
+    /// Takes a segment that starts with these shares into the range.
+    pub(crate) fn take(&mut self, extremes: &mut Extremes, stretch: Stretch<'_>, shares: impl Iterator<Item = Phases>) {
+        self.start.clear();
+        self.start.extend(shares);
+        self.look(extremes, stretch);
+    }
+
     widened! {
-        /// Takes a segment that starts with these shares into the range.
-        pub(crate) fn take | take_wide (&mut self, extremes: &mut Extremes, stretch: Stretch<'_>, shares: &[Phase]) = by_registers
+        /// Takes the segment at hand into the range.
+        fn look | look_wide (&mut self, extremes: &mut Extremes, stretch: Stretch<'_>) = by_registers
     }
 
     #[inline(always)]
-    fn by_registers(&mut self, extremes: &mut Extremes, stretch: Stretch<'_>, shares: &[Phase]) {
+    fn by_registers(&mut self, extremes: &mut Extremes, stretch: Stretch<'_>) {
         let length = stretch.length;
-        self.start.clear();
-        self.start.extend(shares.chunks(WIDTH).map(Phases::of));
         self.now.clone_from(&self.start);
         self.kernels.resize(self.start.len(), Kernels::NONE);
         self.known = 0;

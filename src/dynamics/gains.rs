@@ -218,7 +218,7 @@ mod tests {
         let mut panels = Panels::default();
         panels.divide(&blocks, &Bank::new(&blocks), duration);
         let shares: Vec<Phase> = row.weights.iter().enumerate().map(phase).collect();
-        let sampled = panels.sums(&blocks, &shares, parabola(-0.01 + level * 0.002));
+        let sampled = panels.sums(&blocks, shares.iter().copied(), parabola(-0.01 + level * 0.002));
 
         let end = |(k, [p, q, r, s]): (usize, [f64; 4])| {
             let (kernel, a) = (blocks[k].kernel(duration), blocks[k].decay);

@@ -107,8 +107,8 @@ impl Panels {
     }
 
     /// The measures of a motion that starts with these shares, beside what constant loads add.
-    pub(crate) fn sums(&mut self, blocks: &[Block], shares: &[Phase], rest: Parabola) -> Sums {
-        self.start(shares.iter().copied());
+    pub(crate) fn sums(&mut self, blocks: &[Block], shares: impl Iterator<Item = Phase>, rest: Parabola) -> Sums {
+        self.start(shares);
         let place = self.start.iter().fold(rest.p0, |sum, share| sum + share.value);
         let loads = [Parabola { p0: rest.p0 - place, ..rest }, rest.derivative()];
         let [[moved, square], [_, velocity_square]] = self.integrate_with_rate(blocks, loads);
@@ -214,7 +214,7 @@ mod tests {
         for duration in [1e-6, 3e-3, 0.02, 0.05, 0.7, 9.0] {
             panels.divide(&blocks, &bank, duration);
             for rest in [Parabola::default(), loads] {
-                let sums = panels.sums(&blocks, &shares, rest);
+                let sums = panels.sums(&blocks, shares.iter().copied(), rest);
                 let place = sums.mean_displacement();
                 let [moved, square, velocity_square] = integrals(&blocks, &shares, rest, duration, place);
                 assert!(moved.abs() <= 1e-13 * duration * (1.0 + place.abs()), "{duration}: {moved}");

@@ -63,6 +63,8 @@ pub(crate) struct March<'a, E> {
     undamped: bool,
     /// Between two jumps of the force the slowest block of the flow in force hardly turns.
     is_brief: bool,
+    /// The damping of the flow in force is that of half cycles, which give it another one soon.
+    is_passing: bool,
     /// A time in which nothing can have moved, s.
     nothing: f64,
     averaged: Averaged,
@@ -132,6 +134,7 @@ impl<'a, E: Effects> March<'a, E> {
             has_walls: system.particles.iter().any(Particle::has_walls),
             undamped: system.is_undamped(),
             is_brief: false,
+            is_passing: false,
             nothing: f64::EPSILON * f64::EPSILON * system.drive.period,
             averaged: options.averaged(),
             cycle: 0,

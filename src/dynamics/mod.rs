@@ -118,4 +118,4 @@ pub use system::{
 pub use trace::{Sample, SampledParticle, TraceRequest};
 
 /// Changes whenever the same scene may give other bits. A test holds the bits of fixed scenes against it.
-pub const SOLVER_VERSION: u32 = 27;
+pub const SOLVER_VERSION: u32 = 28;

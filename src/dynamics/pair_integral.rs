@@ -9,7 +9,6 @@
 //! The exponentials are those of the segment's end. Where zL is small, as of two blocks that turn alike, φ is its power series.
 
 use super::bank::{Bank, Kernels, Phases};
-use super::block::Phase;
 use super::complexes::Complexes;
 use super::four::Four;
 use super::lanes::WIDTH;
@@ -89,12 +88,17 @@ impl PairIntegrals {
     }
 
     /// The measures of a motion that starts with these shares, about `place`; velocities alone unless `displacement`.
-    pub(crate) fn sums(&mut self, bank: &Bank, shares: &[Phase], place: f64, displacement: bool) -> Sums {
-        let together = || shares.chunks(WIDTH).map(Phases::of);
-        self.start(bank, bank.blocks.iter().zip(together()).map(|(blocks, shares)| blocks.derivative(shares)));
+    pub(crate) fn sums(
+        &mut self,
+        bank: &Bank,
+        shares: impl Iterator<Item = Phases> + Clone,
+        place: f64,
+        displacement: bool,
+    ) -> Sums {
+        self.start(bank, bank.blocks.iter().zip(shares.clone()).map(|(blocks, shares)| blocks.derivative(shares)));
         let mut about = About { duration: self.length, velocity_square: self.form(bank), ..About::default() };
         if displacement {
-            self.start(bank, together());
+            self.start(bank, shares);
             let moved = self
                 .shares
                 .iter()
@@ -195,7 +199,7 @@ impl Series {
 
 #[cfg(test)]
 mod tests {
-    use super::super::block::Block;
+    use super::super::block::{Block, Phase};
     use super::super::integral::Panels;
     use super::super::parabola::Parabola;
     use super::*;
@@ -213,7 +217,11 @@ mod tests {
             Phase { value, rate: if blocks[k].is_single() { -70.0 * value } else { 7.0 * (k as f64 - 2.6) } }
         };
         let shares: Vec<Phase> = (0..blocks.len()).map(share).collect();
-        let phases: Vec<Phases> = shares.chunks(WIDTH).map(Phases::of).collect();
+        let several = |shares: &[Phase]| Phases {
+            value: Four::padded(shares.iter().map(|share| share.value)),
+            rate: Four::padded(shares.iter().map(|share| share.rate)),
+        };
+        let phases: Vec<Phases> = shares.chunks(WIDTH).map(several).collect();
         let (mut pairs, mut panels) = (PairIntegrals::default(), Panels::default());
         let mut kernels = vec![Kernels::NONE; bank.blocks.len()];
         for length in [1e-4, 1e-3, 4e-3, 0.02, 0.1, 3.0] {
@@ -232,7 +240,10 @@ mod tests {
             let square = panels.square(&blocks, shares.iter().copied());
             close(pairs.square(&bank, &phases), square, sizes(&shares));
             let rest = Parabola { p0: 0.2, ..Parabola::default() };
-            let [one, other] = [pairs.sums(&bank, &shares, 0.2, true), panels.sums(&blocks, &shares, rest)];
+            let [one, other] = [
+                pairs.sums(&bank, phases.iter().copied(), 0.2, true),
+                panels.sums(&blocks, shares.iter().copied(), rest),
+            ];
             let rates: Vec<Phase> = shares
                 .iter()
                 .zip(&blocks)

@@ -209,7 +209,7 @@ impl Search {
     fn run_by_width(&mut self, flow: &Flow, signals: &Signals, limit: f64, clarity: &mut Clarity) -> Found {
         self.bends.clear();
         if self.guards.len() * flow.bank.blocks.len() > MANY && flow.bank.near_critical.is_empty() {
-            flow.rows.bound(&flow.blocks, signals, &mut self.bends);
+            flow.rows.bound(&flow.bank, signals, &mut self.bends);
         }
         // The same search twice: with a few blocks the compiler unrolls every loop over them.
         let Flow { blocks: each, bank, series, steps, .. } = flow;

@@ -5,7 +5,7 @@
 
 use std::cell::OnceCell;
 
-use super::bank::{Phases, apart};
+use super::bank::{Bank, Blocks, Phases, apart};
 use super::block::{Block, Kernel, Phase};
 use super::contact::Side;
 use super::contact_state::{Modes, way_across};
@@ -180,6 +180,15 @@ impl Row {
         self.weights.iter().zip(c.as_chunks().0).map(share)
     }
 
+    /// The same, several together.
+    pub(crate) fn together<'a>(&'a self, c: &'a [f64]) -> impl Iterator<Item = Phases> + Clone + 'a {
+        let several = self.weights.chunks(WIDTH).zip(c.as_chunks::<{ 2 * WIDTH }>().0);
+        several.map(|(weights, c)| {
+            let ([v0, v1, r0, r1], [x, y]) = (together(weights), apart(c));
+            Phases { value: v0 * x + v1 * y, rate: r0 * x + r1 * y }
+        })
+    }
+
     /// What constant loads add, under this force.
     #[inline(always)]
     pub(crate) fn rest(&self, force: f64) -> Parabola {
@@ -348,8 +357,8 @@ impl Rows {
 
     /// Adds bounds on the second derivatives of the watched rows, without what constant loads add; not of blocks near critical damping.
     #[inline(always)]
-    pub(crate) fn bound(&self, blocks: &[Block], signals: &Signals, bends: &mut Vec<f64>) {
-        let all = self.bends.get_or_init(|| self.most_bends(blocks));
+    pub(crate) fn bound(&self, bank: &Bank, signals: &Signals, bends: &mut Vec<f64>) {
+        let all = self.bends.get_or_init(|| self.most_bends(bank));
         for most in all.chunks_exact(signals.registers.max(1)) {
             let mut bend = Four::ZERO;
             for (most, [x, y]) in most.iter().zip(&signals.coordinates) {
@@ -360,15 +369,10 @@ impl Rows {
     }
 
     #[cold]
-    fn most_bends(&self, blocks: &[Block]) -> Vec<Four> {
-        let together = |(blocks, weights): (&[Block], &[[f64; 4]])| {
-            Four::padded(blocks.iter().zip(weights).map(|(block, weights)| bend(block, weights)))
-        };
-        let registers = |row: &Row| {
-            let several = blocks.chunks(WIDTH).zip(row.weights.chunks(WIDTH));
-            several.map(together).collect::<Vec<_>>()
-        };
-        self.rows[..self.watched].iter().flat_map(registers).collect()
+    fn most_bends(&self, bank: &Bank) -> Vec<Four> {
+        let registers = bank.blocks.len().max(1);
+        let rows = self.weights.chunks_exact(registers);
+        rows.flat_map(|row| bank.blocks.iter().zip(row).map(|(blocks, weights)| bend(blocks, weights))).collect()
     }
 
     /// Evaluates any row.
@@ -408,10 +412,10 @@ impl<'a> Watched<'a> {
     }
 }
 
-/// The largest second derivative of a share of these weights where |x| + |y| = 1.
-fn bend(block: &Block, &[v0, v1, r0, r1]: &[f64; 4]) -> f64 {
-    let most = |value: f64, rate: f64| block.amplitude(Phase { value, rate }, 2.0, 0.0);
-    most(v0, r0).max(most(v1, r1)) * block.radius * block.radius
+/// The largest second derivatives of shares of these weights where |x| + |y| = 1.
+fn bend(blocks: &Blocks, &[v0, v1, r0, r1]: &[Four; 4]) -> Four {
+    let most = |value, rate| blocks.amplitudes(Phases { value, rate });
+    most(v0, r0).zip(most(v1, r1), f64::max) * blocks.square
 }
 
 /// Weights of several blocks.
@@ -441,11 +445,12 @@ mod tests {
     #[test]
     fn no_share_bends_more_than_its_bound() {
         let matrices =
-            [[0.0, 1.0, -9e4, -3.0], [0.0, 1.0, -25.0, -4.0], [-5.0, 140.0, -150.0, -40.0], [0.0, 1.0, -9.0, -40.0]];
+            [[0.0, 1.0, -9e4, -3.0], [0.0, 1.0, -25.0, -4.0], [-5.0, 140.0, -150.0, -40.0], [0.0, 1.0, -9.0, -1.0]];
         let weights = [[1.0, 0.0, 0.0, 1.0], [0.3, -0.2, -31.5, 34.0], [0.01, 0.02, 0.34, -0.17]];
-        for block in matrices.map(Block::new) {
+        let blocks = matrices.map(Block::new);
+        for (lane, block) in blocks.into_iter().enumerate() {
             for weights in weights {
-                let most = bend(&block, &weights);
+                let most = bend(&Bank::new(&blocks).blocks[0], &weights.map(Four::all)).at(lane);
                 for [x, y] in [[1.0, 0.0], [0.0, 1.0], [0.5, -0.5], [0.3, 0.7]] {
                     let [v0, v1, r0, r1] = weights;
                     let start = Phase { value: v0 * x + v1 * y, rate: r0 * x + r1 * y };

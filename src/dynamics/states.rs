@@ -11,7 +11,7 @@ use std::rc::Rc;
 use super::EngineError;
 use super::budget;
 use super::conservative::Conservative;
-use super::contact_state::{Modes, dampings};
+use super::contact_state::{Modes, dampings, feels_half_cycles};
 use super::flow::Flow;
 use super::reach::Ground;
 use super::system::{Contact, HybridSystem, Particle};
@@ -42,7 +42,7 @@ struct Driven {
     frequency: Option<f64>,
     ground: Ground,
     flows: ByContact<Flow>,
-    /// Some of them, those with the stated dampings alone, each where its code leads.
+    /// Some of them, each where its code leads.
     at_hand: RefCell<Vec<Option<AtHand>>>,
 }
 
@@ -50,6 +50,8 @@ struct Driven {
 #[derive(Clone)]
 struct AtHand {
     code: u64,
+    /// The damping that half cycles have put in the place of the stated, where one of its faces feels it.
+    equivalent: Option<f64>,
     flow: Rc<Flow>,
 }
 
@@ -109,10 +111,12 @@ impl States {
 
     /// The flow of a contact state, if it is at hand.
     #[inline]
-    pub(crate) fn at_hand(&self, contacts: &[Contact]) -> Option<Rc<Flow>> {
+    pub(crate) fn at_hand(&self, contacts: &[Contact], equivalent: Option<f64>) -> Option<Rc<Flow>> {
         let code = code(contacts)?;
         let at_hand = self.0.at_hand.borrow();
-        at_hand[place(code)].as_ref().filter(|known| known.code == code).map(|known| Rc::clone(&known.flow))
+        let fits =
+            |known: &&AtHand| known.code == code && (known.equivalent.is_none() || known.equivalent == equivalent);
+        at_hand[place(code)].as_ref().filter(fits).map(|known| Rc::clone(&known.flow))
     }
 
     /// The flow of a contact state, built at the first visit, with the damping that half cycles have put in the place of the stated.
@@ -122,18 +126,15 @@ impl States {
         contacts: &[Contact],
         equivalent: Option<f64>,
     ) -> Result<Rc<Flow>, EngineError> {
-        if self.0.base.is_none() && !contacts.iter().any(|contact| contact.is_between()) {
-            // It has the stated dampings and no others.
-            let build = || self.build(system, contacts, &dampings(system, contacts, None));
-            let flow = visit(&self.0.flows, contacts, |_| true, build)?;
-            if let Some(code) = code(contacts) {
-                self.0.at_hand.borrow_mut()[place(code)] = Some(AtHand { code, flow: Rc::clone(&flow) });
-            }
-            return Ok(flow);
-        }
         let damping = dampings(system, contacts, equivalent);
         let fits = |flow: &Flow| flow.modes.damping == damping;
-        visit(&self.0.flows, contacts, fits, || self.build(system, contacts, &damping))
+        let flow = visit(&self.0.flows, contacts, fits, || self.build(system, contacts, &damping))?;
+        // The gap, too, enters where a particle is at both faces.
+        if let Some(code) = code(contacts).filter(|_| !contacts.iter().any(|contact| contact.is_between())) {
+            let equivalent = equivalent.filter(|_| feels_half_cycles(system, contacts));
+            self.0.at_hand.borrow_mut()[place(code)] = Some(AtHand { code, equivalent, flow: Rc::clone(&flow) });
+        }
+        Ok(flow)
     }
 
     #[cold]

@@ -140,7 +140,8 @@ impl Window {
         if known < f64::INFINITY && !self.comes_below(self.remainder + known / nearest) {
             return None;
         }
-        let slope = bernstein(&std::array::from_fn(|j| (order + j) as f64 * self.a[j]));
+        let b = &self.b;
+        let slope = std::array::from_fn(|i| order as f64 * b[i] + i as f64 * (b[i] - b[i.saturating_sub(1)]));
         (!Signs::of(&slope, 0.0).positive_then_negative())
             .then_some(NearMiss { clearance: f64::INFINITY, is_sharp: false })
     }

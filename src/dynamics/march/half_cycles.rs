@@ -142,8 +142,8 @@ impl<E: Effects> March<'_, E> {
         if self.flow.rows.bend.is_none() || self.half.idle {
             return None;
         }
-        let turns = self.flow.bank.near_critical.is_empty() && !self.flow.turns_below(SHORT, length);
-        Some(if turns { Integration::Pairs } else { Integration::Panels })
+        let is_short = self.flow.turns_below(SHORT, length);
+        Some(if is_short { Integration::Panels } else { self.integration_of_one() })
     }
 
     /// Adds a segment to the half cycle.

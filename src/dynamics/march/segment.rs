@@ -6,7 +6,7 @@ use super::half_cycles::Stage;
 use crate::dynamics::EngineError;
 use crate::dynamics::budget;
 use crate::dynamics::contact::{Relative, Side};
-use crate::dynamics::contact_state::contact_damping;
+use crate::dynamics::contact_state::{contact_damping, feels_half_cycles};
 use crate::dynamics::flow::DrivePhase;
 use crate::dynamics::guards::{self, Contacts};
 use crate::dynamics::search::{Found, Guard};
@@ -46,17 +46,14 @@ impl<E: Effects> March<'_, E> {
             return Ok(());
         }
         self.changed = false;
-        if E::ALL && self.equivalent.is_some() {
-            // Which of many dampings are still known hangs on the runs before; what is summed up together must not.
-            self.pay_out();
-        }
-        self.flow = match self.states.at_hand(&self.contacts) {
+        self.flow = match self.states.at_hand(&self.contacts, self.equivalent) {
             Some(known) => known,
             None => self.states.flow(self.system, &self.contacts, self.equivalent)?,
         };
         let drive = &self.system.drive;
         let pause = drive.period / drive.ticks.len().max(1) as f64;
         self.is_brief = self.flow.is_brief(pause);
+        self.is_passing = E::ALL && self.equivalent.is_some() && feels_half_cycles(self.system, &self.contacts);
         let width = self.flow.width();
         if self.c.len() < width {
             self.c.resize(width, 0.0);

@@ -59,34 +59,36 @@ impl<E: Effects> March<'_, E> {
     }
 
     /// The integrals are differences of end values: not of motion without damping, nor between jumps of the force that follow
-    /// each other within a small part of the slowest turn. Half cycles leave a contact state before the equations of its blocks pay.
+    /// each other within a small part of the slowest turn. Half cycles leave a contact state before the equations of its blocks pay,
+    /// and which of many dampings are still known hangs on the runs before: what is summed up together must not.
     fn integration(&self) -> Integration {
-        let flow = &self.flow;
-        let turns = flow.bank.near_critical.is_empty();
-        let seldom = E::ALL && self.equivalent.is_some();
         if self.is_brief {
             Integration::Panels
-        } else if turns && (seldom || flow.closed().is_none()) {
-            Integration::Pairs
-        } else if flow.closed().is_some() {
+        } else if !self.is_passing && self.flow.closed().is_some() {
             Integration::Visits
         } else {
-            Integration::Panels
+            self.integration_of_one()
         }
+    }
+
+    /// The same of one segment by itself.
+    pub(super) fn integration_of_one(&self) -> Integration {
+        if self.flow.bank.near_critical.is_empty() { Integration::Pairs } else { Integration::Panels }
     }
 
     /// What has to be taken from the observed signals themselves.
     fn look_along(&mut self, integration: Integration, length: f64) {
         let Flow { blocks, bank, rows, .. } = &*self.flow;
         for (of, &row) in self.response.observed.iter_mut().zip(&rows.observed) {
-            let (shares, rest) = rows.evaluate(row, &self.c, self.level);
+            let row = rows.row(row);
+            let rest = row.rest(self.level);
             if self.options.extremes {
-                self.lookout.take(&mut of.extremes, Stretch { blocks, bank, rest, length }, &shares);
+                self.lookout.take(&mut of.extremes, Stretch { blocks, bank, rest, length }, row.together(&self.c));
             }
             let sums = match integration {
                 Integration::Visits => continue,
-                Integration::Pairs => self.pairs.sums(bank, &shares, rest.p0, self.options.displacement),
-                Integration::Panels => self.panels.sums(blocks, &shares, rest),
+                Integration::Pairs => self.pairs.sums(bank, row.together(&self.c), rest.p0, self.options.displacement),
+                Integration::Panels => self.panels.sums(blocks, row.phases(&self.c), rest),
             };
             of.halves[self.visits.half].add(sums);
         }
