@@ -70,7 +70,7 @@ def main():
         cells = []
         for pattern in EFFECTS.values():
             own = sum(cost for (file, number), cost in run.items()
-                      if "src/dynamics" in file and pattern.search(source(file, number)))
+                      if "dynamics/src" in file and pattern.search(source(file, number)))
             cells.append(f" {100 * own / total:.2f} % |")
         print(f"| {scene.replace('_', ' ')} | {events} | {total:,.0f} | {100 * (total / plain - 1):+.1f} % |" + "".join(cells))
 

@@ -36,6 +36,32 @@
 //! 3. [`measure`]: the numbers that studies plot, from responses.
 //! 4. [`optimise`]: searches for the best of any function over a box.
 //!
+//! A periodic motion, stable or not, is an [`dynamics::Orbit`], and is followed in a parameter:
+//!
+//! ```
+//! use shotdamp::dynamics::{Along, Branch, Options, Orbit, Special};
+//! use shotdamp::scene::{ContactDamping, ContactEnd, Damper, Excitation, Scene, SingleMass, Surface, compile};
+//!
+//! // A particle of 50 g between two springs with dashpots, under an impulse in every natural period of the mass.
+//! let frequency = 1000_f64.sqrt();
+//! let damped = |impulse: f64| {
+//!     let mass = SingleMass { mass: 1.0, stiffness: 1000.0, damping: 0.1 * frequency };
+//!     let damping = ContactDamping::Constant(4.2);
+//!     let face = Surface::Resilient { stiffness: 1000.0, damping, ends: ContactEnd::ZeroGap };
+//!     let impulses = Excitation::ImpulseTrain { impulse, period: std::f64::consts::TAU / frequency };
+//!     compile(&Scene::on_one_mass(mass, 9.81, vec![Damper::between(face, 0.05, 0.49)], impulses))
+//! };
+//! let orbit = Orbit::after(&damped(2.0)?, &Options::default())?;
+//! assert_eq!((orbit.cycles, orbit.contacts, orbit.is_stable()), (1, 2, true));
+//!
+//! // Under stronger impulses its period doubles; the motion with two contacts a cycle goes on, but no longer attracts.
+//! let along = Along { from: 2.0, to: 3.0, step: 0.02, points: 500 };
+//! let branch = Branch::follow(damped, &orbit, 2.0, along)?;
+//! let doubles = branch.points.iter().position(|point| point.special == Some(Special::PeriodDoubling));
+//! assert!(doubles.is_some_and(|at| !branch.points[at + 1].orbit.is_stable()));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
 //! With the default feature `pipeline` also what the command is made of, which reproduces a whole study from YAML. A table on
 //! disk is all that verdicts, figures and reports read.
 //!
@@ -53,7 +79,7 @@
 
 #![deny(missing_docs)]
 
-pub mod dynamics;
+pub use dynamics;
 pub mod measure;
 pub mod optimise;
 pub mod scene;

@@ -34,6 +34,7 @@ pub use kept::{
     unit_of_list,
 };
 pub use measures::{Facts, Measure, ReadOff, Runs, Under, column_words};
+pub use orbit::measured_orbit;
 pub use request::{
     CycleSpec, CycleValue, EnergySpec, NamedRows, Settings, ShapeOf, ShapeSpec, SolverChoice, Tolerance, TraceSpec,
 };

@@ -14,64 +14,62 @@ use crate::scene::{Scene, compile};
 /// How far an orbit may be from closing, in units of the motion: so far its numbers are known.
 const CLOSED: f64 = 1e-12;
 
-impl Orbit {
-    /// The measures of one period, audited and, for their numerical uncertainty, with search windows half as long.
-    ///
-    /// # Errors
-    /// [`EvaluateError`] with the reason.
-    pub fn measured(
-        &self,
-        subject: Subject,
-        settings: &Settings,
-        measures: &[Measure],
-    ) -> Result<Evaluated, EvaluateError> {
-        let request = Request { measures, rigour: Rigour::Result, ..Request::default() };
-        let subject = rounded_subject(subject, settings);
-        let scene = &subject.scene;
-        let system = compile(scene)?;
-        let response = run(&request, scene, &system, settings, self, 1.0)?;
-        let again = run(&request, scene, &system, settings, self, 0.5)?;
-        let undamped = match subject.undamped.as_ref().filter(|_| request.needs().undamped) {
-            Some(bare) => {
-                let system = compile(bare)?;
-                let orbit = Self::near(&system, &StartState::StaticEquilibrium, 1)?;
-                Some(run(&request, bare, &system, settings, &orbit, 1.0)?)
-            }
-            None => None,
+/// The measures of one period, audited and, for their numerical uncertainty, with search windows half as long.
+///
+/// # Errors
+/// [`EvaluateError`] with the reason.
+pub fn measured_orbit(
+    orbit: &Orbit,
+    subject: Subject,
+    settings: &Settings,
+    measures: &[Measure],
+) -> Result<Evaluated, EvaluateError> {
+    let request = Request { measures, rigour: Rigour::Result, ..Request::default() };
+    let subject = rounded_subject(subject, settings);
+    let scene = &subject.scene;
+    let system = compile(scene)?;
+    let response = run(&request, scene, &system, settings, orbit, 1.0)?;
+    let again = run(&request, scene, &system, settings, orbit, 0.5)?;
+    let undamped = match subject.undamped.as_ref().filter(|_| request.needs().undamped) {
+        Some(bare) => {
+            let system = compile(bare)?;
+            let orbit = Orbit::near(&system, &StartState::StaticEquilibrium, 1)?;
+            Some(run(&request, bare, &system, settings, &orbit, 1.0)?)
+        }
+        None => None,
+    };
+    let read = |response| -> Result<Vec<f64>, EvaluateError> {
+        let reading = Reading {
+            scene,
+            mode: subject.mode,
+            response: Some(response),
+            undamped: undamped.as_ref(),
+            history: None,
+            energies: None,
+            skip: 0,
+            average: orbit.cycles,
+            mac: None,
         };
-        let read = |response| -> Result<Vec<f64>, EvaluateError> {
-            let reading = Reading {
-                scene,
-                mode: subject.mode,
-                response: Some(response),
-                undamped: undamped.as_ref(),
-                history: None,
-                energies: None,
-                skip: 0,
-                average: self.cycles,
-                mac: None,
-            };
-            measures.iter().map(|measure| reading.read(*measure)).collect()
-        };
-        let (values, others) = (read(&response)?, read(&again)?);
-        let measured = values.into_iter().zip(others).zip(measures).map(|((value, other), measure)| {
-            if let Some(design) = measure.elasticity_in() {
-                return elasticity::of(&subject, self, design);
-            }
-            let numerical = (value - other).abs().max(CLOSED * value.abs());
-            Ok(Measured { value, numerical, spread: 0.0 })
-        });
-        let evaluated = Evaluated {
-            measured: measured.collect::<Result<_, _>>()?,
-            proof: response.proof,
-            chaotic: false,
-            members: 1,
-            motion: Some(self.kind),
-            trace: Vec::new(),
-            end: None,
-        };
-        in_range(scene, self.cycles, measures, evaluated)
-    }
+        measures.iter().map(|measure| reading.read(*measure)).collect()
+    };
+    let (values, others) = (read(&response)?, read(&again)?);
+    let measured = values.into_iter().zip(others).zip(measures).map(|((value, other), measure)| {
+        if let Some(design) = measure.elasticity_in() {
+            return elasticity::of(&subject, orbit, design);
+        }
+        let numerical = (value - other).abs().max(CLOSED * value.abs());
+        Ok(Measured { value, numerical, spread: 0.0 })
+    });
+    let evaluated = Evaluated {
+        measured: measured.collect::<Result<_, _>>()?,
+        proof: response.proof,
+        chaotic: false,
+        members: 1,
+        motion: Some(orbit.kind),
+        trace: Vec::new(),
+        end: None,
+    };
+    in_range(scene, orbit.cycles, measures, evaluated)
 }
 
 /// One period of an orbit, with what the measures need.

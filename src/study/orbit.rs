@@ -21,7 +21,7 @@ use crate::dynamics::{
     OrbitError, Special, is_interrupted,
 };
 use crate::experiment::{Continuation, Experiment, ParameterValue, Recipe, RowSource};
-use crate::measure::{EvaluateError, Evaluated, Needs, Rigour, SolverChoice, rounded};
+use crate::measure::{EvaluateError, Evaluated, Needs, Rigour, SolverChoice, measured_orbit, rounded};
 use crate::scene::{Scene, compile};
 use crate::table::Table;
 use crate::text::number::compact;
@@ -351,7 +351,7 @@ impl Following<'_> {
         let Ok(orbit) = &row.orbit else { return Err(RowFailure::NotComputed) };
         let measures = &self.experiment.measures;
         let subject = self.recipe(row.parameter)?.subject(&self.variant.assumptions, Needs::of(measures, false))?;
-        let measured = orbit.measured(subject, &self.experiment.settings, measures);
+        let measured = measured_orbit(orbit, subject, &self.experiment.settings, measures);
         if measured.is_err() && is_interrupted() { Err(RowFailure::Interrupted) } else { Ok(measured?) }
     }
 }

@@ -7,11 +7,57 @@ use std::path::{Path, PathBuf};
 use regex::Regex;
 use shotdamp::experiment::{AssumptionSheet, assumptions_schema, experiment_schema, load_assumptions, parse_study};
 
-/// The rooms in the order of the table, the most basic first.
-fn rooms() -> Vec<String> {
-    let text = fs::read_to_string("ARCHITECTURE.md").unwrap();
-    let row = Regex::new(r"(?m)^\| `(\w+)` \|").unwrap();
-    row.captures_iter(&text).map(|found| found[1].to_owned()).collect()
+/// A package with rooms: its sources, and where the table of its rooms stands, the most basic first.
+struct House {
+    sources: &'static str,
+    table: &'static str,
+}
+
+const HOUSES: [House; 2] = [
+    House { sources: "src", table: "ARCHITECTURE.md" },
+    House { sources: "dynamics/src", table: "dynamics/src/lib.rs" },
+];
+
+impl House {
+    fn rooms(&self) -> Vec<String> {
+        let text = fs::read_to_string(self.table).unwrap();
+        let row = Regex::new(r"(?m)^(?://! )?\| `(\w+)` \|").unwrap();
+        row.captures_iter(&text).map(|found| found[1].to_owned()).collect()
+    }
+
+    /// The room of a source file: `src/study/plan.rs` and `src/study.rs` belong to `study`.
+    fn room_of(&self, path: &Path) -> String {
+        let below = path.strip_prefix(self.sources).unwrap().components().next().unwrap();
+        below.as_os_str().to_str().unwrap().trim_end_matches(".rs").to_owned()
+    }
+
+    /// Every path in its sources that leads to no room, or to one that stands below its own.
+    fn wrong_ways(&self) -> Vec<String> {
+        let Self { table, .. } = self;
+        let order: BTreeMap<String, usize> = self.rooms().into_iter().zip(0..).collect();
+        let path = Regex::new(r"\bcrate::(\w+)").unwrap();
+        let mut wrong = Vec::new();
+        for file in sources(Path::new(self.sources)) {
+            let room = self.room_of(&file);
+            if room == "lib" || room == "main" {
+                continue;
+            }
+            let Some(own) = order.get(&room) else {
+                wrong.push(format!("{}: `{room}` is not in the table of {table}", file.display()));
+                continue;
+            };
+            for found in path.captures_iter(&code(&fs::read_to_string(&file).unwrap())) {
+                match order.get(&found[1]) {
+                    Some(other) if other <= own => {}
+                    Some(_) => {
+                        wrong.push(format!("{}: `{room}` uses `{}`, which is below it", file.display(), &found[1]))
+                    }
+                    None => wrong.push(format!("{}: uses `{}`, which is no room", file.display(), &found[1])),
+                }
+            }
+        }
+        wrong
+    }
 }
 
 fn sources(folder: &Path) -> Vec<PathBuf> {
@@ -31,12 +77,6 @@ fn files(folder: &Path, ending: &str) -> Vec<PathBuf> {
     found
 }
 
-/// The room of a source file: `src/study/plan.rs` and `src/study.rs` belong to `study`.
-fn room_of(path: &Path) -> String {
-    let below = path.strip_prefix("src").unwrap().components().next().unwrap();
-    below.as_os_str().to_str().unwrap().trim_end_matches(".rs").to_owned()
-}
-
 /// The text without comments, in which a room may be named freely.
 fn code(text: &str) -> String {
     text.lines().filter(|line| !line.trim_start().starts_with("//")).collect::<Vec<_>>().join("\n")
@@ -44,26 +84,7 @@ fn code(text: &str) -> String {
 
 #[test]
 fn imports_go_one_way() {
-    let order: BTreeMap<String, usize> = rooms().into_iter().zip(0..).collect();
-    let path = Regex::new(r"\bcrate::(\w+)").unwrap();
-    let mut wrong = Vec::new();
-    for file in sources(Path::new("src")) {
-        let room = room_of(&file);
-        if room == "lib" || room == "main" {
-            continue;
-        }
-        let Some(own) = order.get(&room) else {
-            wrong.push(format!("{}: `{room}` is not in the table of ARCHITECTURE.md", file.display()));
-            continue;
-        };
-        for found in path.captures_iter(&code(&fs::read_to_string(&file).unwrap())) {
-            match order.get(&found[1]) {
-                Some(other) if other <= own => {}
-                Some(_) => wrong.push(format!("{}: `{room}` uses `{}`, which is above it", file.display(), &found[1])),
-                None => wrong.push(format!("{}: uses `{}`, which is no room", file.display(), &found[1])),
-            }
-        }
-    }
+    let wrong: Vec<String> = HOUSES.iter().flat_map(House::wrong_ways).collect();
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
@@ -89,7 +110,7 @@ fn the_program_knows_no_study() {
     let names: Vec<String> =
         assumptions.into_iter().chain(arrays).map(|name| format!(r"\b{name}\b")).chain(titles).collect();
     let known = Regex::new(&names.join("|")).unwrap();
-    for file in sources(Path::new("src")) {
+    for file in HOUSES.iter().flat_map(|house| sources(Path::new(house.sources))) {
         let text = fs::read_to_string(&file).unwrap();
         let code = text.split("#[cfg(test)]").next().unwrap();
         assert_eq!(known.find(code).map(|found| found.as_str()), None, "{}", file.display());
@@ -98,8 +119,11 @@ fn the_program_knows_no_study() {
 
 #[test]
 fn every_room_of_the_table_is_there() {
-    for room in rooms() {
-        let there = Path::new("src").join(&room).is_dir() || Path::new("src").join(format!("{room}.rs")).is_file();
-        assert!(there, "ARCHITECTURE.md lists `{room}`, and there is no such folder");
+    for house in HOUSES {
+        for room in house.rooms() {
+            let place = Path::new(house.sources).join(&room);
+            let there = place.is_dir() || place.with_extension("rs").is_file() || Path::new(&room).is_dir();
+            assert!(there, "{} lists `{room}`, and there is no such folder", house.table);
+        }
     }
 }

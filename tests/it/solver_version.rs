@@ -41,7 +41,7 @@ fn no_bit_of_a_result_changes_without_the_solvers_version() {
     assert!(
         changes.is_empty() || held.as_ref().is_some_and(|held| held.solver_version != SOLVER_VERSION),
         "the solver gives other bits than version {SOLVER_VERSION} did:\n  {}\n\
-         If that is not meant, something broke. If it is, raise SOLVER_VERSION in src/dynamics/mod.rs, so that tables of \
+         If that is not meant, something broke. If it is, raise SOLVER_VERSION in dynamics/src/lib.rs, so that tables of \
          the old solver count as stale, and write the new bits down:\n  \
          {WRITE}=1 cargo test --test it solver_version",
         changes.join("\n  ")

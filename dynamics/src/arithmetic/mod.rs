@@ -1,0 +1,15 @@
+//! Arithmetic: vectors, matrices and polynomials, several numbers at a time, the same bits on every processor.
+
+pub(crate) mod cholesky;
+pub(crate) mod complexes;
+pub(crate) mod elementary;
+pub(crate) mod exact;
+pub(crate) mod four;
+pub(crate) mod gauss;
+pub(crate) mod lanes;
+pub(crate) mod matrix;
+pub(crate) mod polynomial;
+pub(crate) mod quadrature;
+pub(crate) mod schur;
+pub(crate) mod superposition;
+pub(crate) mod wide;

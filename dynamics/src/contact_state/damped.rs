@@ -1,0 +1,562 @@
+//! Modes of a contact state with dashpots, found from its normal modes.
+//!
+//! In normal coordinates of modal mass 1, (λ² + λ C + Ω²) x = 0 with C symmetric. Beside each normal mode k there is a damped one with
+//! x_k = 1. Elimination of the other coordinates leaves one equation for λ,
+//!
+//! r(λ) = xᵀ (λ² + λ C + Ω²) x = 0,   r′ = xᵀ (2 λ + C) x = (σ + r)/λ,   σ = λ² xᵀx − xᵀΩ²x,
+//!
+//! which Newton's method solves in three steps or four, several modes side by side. It starts from the mode's own share of the damping,
+//! so that nothing depends on what was solved before; a mode that this overdamps has two starts, both real. The matrix of (Ω q, q′) is
+//! symmetric but for signs, so that each column is its own row:
+//!
+//! v = (Ω x, λ x),   w = (−Ω x, λ x)/σ.
+//!
+//! What does not converge, or leaves the modes dependent on each other, is none of this: a Schur form splits it.
+
+use std::cell::RefCell;
+
+use nalgebra::DMatrix;
+
+use crate::arithmetic::complexes::Complexes;
+use crate::arithmetic::four::Four;
+use crate::arithmetic::lanes::WIDTH;
+use crate::arithmetic::wide::widened;
+use crate::contact_state::block::Block;
+use crate::contact_state::spectral::{Spectral, invert_again};
+use crate::contact_state::undamped::NormalModes;
+
+/// Newton's steps; four are usual.
+const MOST_STEPS: usize = 12;
+/// A step below this share of λ leaves an error of its square; the next one shows it.
+const LAST_STEP: f64 = 1e-8;
+const CONVERGED: f64 = 1e-13;
+/// w v of two modes above this is corrected, and above `DEPENDENT` they are no basis.
+const ROUNDING: f64 = 2e-15;
+const DEPENDENT: f64 = 1e-8;
+/// What w v of two modes may be, times the distance of their eigenvalues: A V = V B misses as much.
+const MISSED: f64 = 2e-14;
+
+/// Splits (e, e′) under the dashpots `damping`, row by row in normal coordinates of modal mass 1: V and W as
+/// [`crate::contact_state::modes::split`] has them, fastest blocks first.
+pub(crate) fn split(modes: &NormalModes, damping: &[f64]) -> Option<Spectral> {
+    let problem = Problem::new(modes, damping);
+    WORK.with_borrow_mut(|work| {
+        work.make_room(modes.omega.len());
+        let firsts = (0..problem.starts.len()).step_by(WIDTH);
+        let found = firsts.map(|first| problem.solve(first, work)).collect::<Option<Vec<_>>>()?;
+        let mut spectral = problem.assemble(&found, &work.shapes);
+        match problem.independence(&found, &work.shapes) {
+            Independence::Exact => {}
+            Independence::Near => correct(&mut spectral),
+            Independence::None => return None,
+        }
+        Some(spectral)
+    })
+}
+
+thread_local! {
+    static WORK: RefCell<Work> = RefCell::default();
+}
+
+/// The equation of all modes.
+struct Problem<'a> {
+    modes: &'a NormalModes,
+    damping: &'a [f64],
+    starts: Vec<Start>,
+}
+
+/// Where the search for an eigenvalue begins.
+#[derive(Clone, Copy)]
+struct Start {
+    /// The normal mode beside which it lies.
+    mode: usize,
+    re: f64,
+    /// 0 of an overdamped mode.
+    im: f64,
+}
+
+impl Start {
+    fn is_real(self) -> bool {
+        self.im == 0.0
+    }
+}
+
+/// Several modes; their shapes stand in [`Work`].
+struct Found {
+    lambda: Complexes,
+    /// σ.
+    size: Complexes,
+}
+
+/// How nearly W V is 1.
+enum Independence {
+    /// To rounding.
+    Exact,
+    /// Up to a small correction.
+    Near,
+    /// Not at all.
+    None,
+}
+
+impl<'a> Problem<'a> {
+    fn new(modes: &'a NormalModes, damping: &'a [f64]) -> Self {
+        let n = modes.omega.len();
+        let mut starts = Vec::with_capacity(n);
+        for (mode, omega) in modes.omega.iter().enumerate() {
+            let half = 0.5 * damping[mode * n + mode];
+            let square = omega * omega - half * half;
+            if square > 0.0 {
+                starts.push(Start { mode, re: -half, im: square.sqrt() });
+            } else {
+                let fast = half + (-square).sqrt();
+                starts.extend([-fast, -omega * omega / fast].map(|re| Start { mode, re, im: 0.0 }));
+            }
+        }
+        Self { modes, damping, starts }
+    }
+
+    /// Which starts stand side by side, beginning with `first`; the last one fills up.
+    fn side_by_side(&self, first: usize) -> [usize; WIDTH] {
+        std::array::from_fn(|lane| (first + lane).min(self.starts.len() - 1))
+    }
+
+    widened! {
+        /// Modes from `first` on.
+        fn solve | solve_wide (&self, first: usize, work: &mut Work) -> Option<Found> = solve_by_registers
+    }
+
+    #[inline(always)]
+    fn solve_by_registers(&self, first: usize, work: &mut Work) -> Option<Found> {
+        let (n, omega) = (self.modes.omega.len(), &self.modes.omega);
+        let starts = self.side_by_side(first).map(|start| self.starts[start]);
+        let own = starts.map(|start| start.mode);
+        // Each mode's own coordinate is the last of its equation.
+        let place = |lane: usize, i: usize| if i + 1 == n { own[lane] } else { i + usize::from(i >= own[lane]) };
+        work.places.clear();
+        work.places.extend((0..n).map(|i| std::array::from_fn(|lane| place(lane, i))));
+        for (i, row) in work.damping.chunks_exact_mut(n).enumerate() {
+            let own = work.places[i];
+            work.squares[i] = Four::new(own.map(|place| omega[place] * omega[place]));
+            let from = own.map(|place| &self.damping[place * n..][..n]);
+            for (entry, places) in row[..=i].iter_mut().zip(&work.places) {
+                *entry = Four::new(std::array::from_fn(|lane| from[lane][places[lane]]));
+            }
+        }
+        let mut lambda =
+            Complexes { re: Four::new(starts.map(|start| start.re)), im: Four::new(starts.map(|start| start.im)) };
+        let mut is_last = false;
+        for _ in 0..MOST_STEPS {
+            let step = newton(lambda, work);
+            let below = |share: f64| {
+                let [step, size] = [step.square().array(), lambda.square().array()];
+                (0..WIDTH).all(|lane| step[lane] <= share * share * size[lane])
+            };
+            if is_last {
+                return below(CONVERGED).then(|| found(lambda, work));
+            }
+            is_last = below(LAST_STEP);
+            lambda = lambda.minus(step);
+        }
+        None
+    }
+
+    widened! {
+        /// How nearly each mode's row passes over all other modes.
+        fn independence | independence_wide (&self, found: &[Found], shapes: &[Complexes]) -> Independence = independence_by_registers
+    }
+
+    #[inline(always)]
+    fn independence_by_registers(&self, found: &[Found], shapes: &[Complexes]) -> Independence {
+        let n = self.modes.omega.len();
+        let (mut most, mut worst) = (Four::ZERO, Four::ZERO);
+        let larger = |a: f64, b: f64| if a < b || b.is_nan() { b } else { a };
+        for (group, (Found { lambda, size }, shape)) in found.iter().zip(shapes.chunks_exact(n)).enumerate() {
+            let own = self.side_by_side(group * WIDTH);
+            // w v of one mode and another is v w of the other and the one.
+            for other in group * WIDTH..self.starts.len() {
+                let (of_other, lane) = (other / WIDTH, other % WIDTH);
+                let (others, of_others) = (&found[of_other], &shapes[of_other * n..]);
+                // Σ x y and Σ Ω² x y, with y and with its conjugate.
+                let (mut sums, mut stiff) = ([Four::ZERO; 4], [Four::ZERO; 4]);
+                for ((x, y), omega) in shape.iter().zip(of_others).zip(&self.modes.omega) {
+                    let (y, square) = (y.all(lane), omega * omega);
+                    let terms = [x.re * y.re, x.im * y.im, x.re * y.im, x.im * y.re];
+                    for i in 0..4 {
+                        sums[i] = sums[i] + terms[i];
+                        stiff[i] = stiff[i] + terms[i] * square;
+                    }
+                }
+                let plain = |[a, b, c, d]: [Four; 4]| Complexes { re: a - b, im: c + d };
+                let conjugate = |[a, b, c, d]: [Four; 4]| Complexes { re: a + b, im: d - c };
+                let next = others.lambda.all(lane);
+                let mirrored = next.conjugate();
+                let not_itself = Four::new(own.map(|own| if own == other { 0.0 } else { 1.0 }));
+                // A real mode is its own mirror image.
+                let not_mirrored = if self.starts[other].is_real() { not_itself } else { Four::all(1.0) };
+                let scale = (size.square() * others.size.all(lane).square()).map(|scale| 1.0 / scale);
+                let pairs = [
+                    (next, plain(sums), plain(stiff), not_itself),
+                    (mirrored, conjugate(sums), conjugate(stiff), not_mirrored),
+                ];
+                for (next, sum, stiff, counts) in pairs {
+                    // |w v|⁴, and what it makes A V = V B miss, to the same power.
+                    let shared = lambda.times(next).times(sum).minus(stiff).square() * counts;
+                    let fourth = shared * shared * scale;
+                    let apart = lambda.minus(next).square() * (lambda.square() + next.square()).map(|size| 1.0 / size);
+                    most = most.zip(fourth, larger);
+                    worst = worst.zip(fourth * apart * apart, larger);
+                }
+            }
+        }
+        let [most, worst] = [most, worst].map(|fourth| fourth.largest());
+        let [dependent, missed, rounding] = [DEPENDENT, MISSED, ROUNDING].map(|x| (x * x) * (x * x));
+        if !(most < dependent && worst < missed) {
+            Independence::None
+        } else if most < rounding {
+            Independence::Exact
+        } else {
+            Independence::Near
+        }
+    }
+
+    widened! {
+        /// Their blocks, with V and W.
+        fn assemble | assemble_wide (&self, found: &[Found], shapes: &[Complexes]) -> Spectral = assemble_by_registers
+    }
+
+    #[inline(always)]
+    fn assemble_by_registers(&self, found: &[Found], shapes: &[Complexes]) -> Spectral {
+        let (n, count) = (self.modes.omega.len(), self.starts.len());
+        let width = 2 * count;
+        let matrix = |k: usize| {
+            let Complexes { re, im } = &found[k / WIDTH].lambda;
+            let (a, b) = (re.at(k % WIDTH), im.at(k % WIDTH));
+            [a, -b, b, a]
+        };
+        let mut order: Vec<(usize, f64)> = (0..count).map(|k| (k, Block::new(matrix(k)).radius)).collect();
+        order.sort_by(|(_, one), (_, other)| other.total_cmp(one));
+        let mut slots = vec![0; count];
+        order.iter().enumerate().for_each(|(slot, (k, _))| slots[*k] = slot);
+        let matrices = order.iter().map(|(k, _)| matrix(*k)).collect();
+        let [from_blocks, to_blocks] = [vec![0.0; 2 * n * width], vec![0.0; 2 * n * width]];
+        let mut spectral = Spectral::new(from_blocks, to_blocks, matrices, f64::INFINITY);
+        for (group, (Found { lambda, size }, shape)) in found.iter().zip(shapes.chunks_exact(n)).enumerate() {
+            let first = group * WIDTH;
+            let lanes = WIDTH.min(count - first);
+            let inverse = size.inverse();
+            for i in 0..n {
+                let mut by_modes = [Complexes::ZERO; 3];
+                for (k, x) in shape.iter().enumerate() {
+                    let omega = self.modes.omega[k];
+                    let (to, from) = (self.modes.shapes[k][i] * omega, self.modes.inverse[k][i] / omega);
+                    let factors = [to, omega * omega * from, from];
+                    for (sum, factor) in by_modes.iter_mut().zip(factors) {
+                        *sum = sum.plus(x.scaled(Four::all(factor)));
+                    }
+                }
+                let [place, stiff, moving] = by_modes;
+                let columns = [place, lambda.times(place)];
+                let rows = [stiff.times(inverse).scaled(Four::all(-1.0)), moving.times(inverse.times(*lambda))];
+                for (half, (v, w)) in columns.into_iter().zip(rows).enumerate() {
+                    let row = (half * n + i) * width;
+                    for lane in 0..lanes {
+                        let at = row + 2 * slots[first + lane];
+                        // A real mode has no conjugate, and leaves the second coordinate of its block alone.
+                        let twice = if self.starts[first + lane].is_real() { 1.0 } else { 2.0 };
+                        spectral.from_blocks[at] = twice * v.re.at(lane);
+                        spectral.from_blocks[at + 1] = -2.0 * v.im.at(lane);
+                        spectral.to_blocks[at] = w.re.at(lane);
+                        spectral.to_blocks[at + 1] = w.im.at(lane);
+                    }
+                }
+            }
+        }
+        spectral
+    }
+}
+
+/// The modes that Newton's method has come to; their shapes go behind those before, by normal coordinates.
+#[inline(always)]
+fn found(lambda: Complexes, work: &mut Work) -> Found {
+    let Work { places, squares, x, shapes, .. } = work;
+    let first = shapes.len();
+    shapes.resize(first + x.len(), Complexes::ZERO);
+    for (x, places) in x.iter().zip(places) {
+        for (lane, place) in places.iter().enumerate() {
+            let to = &mut shapes[first + *place];
+            to.re.set(lane, x.re.at(lane));
+            to.im.set(lane, x.im.at(lane));
+        }
+    }
+    let [sum, stiff] = norms(x, squares);
+    Found { lambda, size: lambda.times(lambda).times(sum).minus(stiff) }
+}
+
+/// xᵀx and xᵀΩ²x.
+#[inline(always)]
+fn norms(x: &[Complexes], squares: &[Four]) -> [Complexes; 2] {
+    let (mut sum, mut stiff) = (Complexes::ZERO, Complexes::ZERO);
+    for (x, square) in x.iter().zip(squares) {
+        let own = x.times(*x);
+        (sum, stiff) = (sum.plus(own), stiff.plus(own.scaled(*square)));
+    }
+    [sum, stiff]
+}
+
+/// Room to work in, of one split after another.
+#[derive(Default)]
+struct Work {
+    /// Which normal coordinates stand at each place of the equation, mode by mode.
+    places: Vec<[usize; WIDTH]>,
+    /// Ω² there.
+    squares: Vec<Four>,
+    /// C, row by row up to the diagonal.
+    damping: Vec<Four>,
+    /// L, row by row, without its diagonal of ones.
+    lower: Vec<Complexes>,
+    /// The row at hand before it is divided by the pivots.
+    row: Vec<Complexes>,
+    /// 1/D.
+    inverse: Vec<Complexes>,
+    /// L⁻ᵀ e_n.
+    x: Vec<Complexes>,
+    /// x of all modes that are found, by normal coordinates.
+    shapes: Vec<Complexes>,
+}
+
+impl Work {
+    /// For so many modes; whatever stands there is written before it is read.
+    fn make_room(&mut self, count: usize) {
+        self.shapes.clear();
+        self.squares.resize(count, Four::ZERO);
+        self.damping.resize(count * count, Four::ZERO);
+        self.lower.resize(count * count, Complexes::ZERO);
+        for numbers in [&mut self.row, &mut self.inverse, &mut self.x] {
+            numbers.resize(count, Complexes::ZERO);
+        }
+    }
+}
+
+/// Newton's step for λ, and x in passing: L D Lᵀ = λ² + λ C + Ω², row by row, whose last pivot is r.
+#[inline(always)]
+fn newton(lambda: Complexes, work: &mut Work) -> Complexes {
+    let Work { squares, damping, lower, row, inverse, x, .. } = work;
+    let n = squares.len();
+    let square = lambda.times(lambda);
+    let mut r = square;
+    for (i, entries) in damping.chunks_exact(n).enumerate() {
+        let (above, own) = lower.split_at_mut(i * n);
+        for (j, before) in above.chunks_exact(n).enumerate() {
+            let mut sum = lambda.scaled(entries[j]);
+            for (u, l) in row[..j].iter().zip(before) {
+                sum = sum.minus(u.times(*l));
+            }
+            row[j] = sum;
+        }
+        let mut pivot = square.plus(lambda.scaled(entries[i]));
+        pivot.re = pivot.re + squares[i];
+        for ((u, inverse), l) in row[..i].iter().zip(&*inverse).zip(own) {
+            *l = u.times(*inverse);
+            pivot = pivot.minus(u.times(*l));
+        }
+        inverse[i] = pivot.inverse();
+        r = pivot;
+    }
+    x[n - 1] = Complexes { re: Four::all(1.0), im: Four::ZERO };
+    for i in (0..n - 1).rev() {
+        let mut sum = Complexes::ZERO;
+        for (row, x) in lower.chunks_exact(n).zip(&*x).skip(i + 1) {
+            sum = sum.minus(row[i].times(*x));
+        }
+        x[i] = sum;
+    }
+    let [sum, stiff] = norms(x, squares);
+    // r = λ² xᵀx + λ xᵀC x + xᵀΩ²x leaves no need of C in r′ = (σ + r)/λ.
+    let inverse = square.times(sum).minus(stiff).plus(r).inverse().times(lambda);
+    let step = r.times(inverse);
+    // λ² bends r; what x does beside is of the same order, and small where modes are apart.
+    step.plus(step.times(step).times(sum.times(inverse)))
+}
+
+/// W ← W + (1 − W V) W.
+fn correct(spectral: &mut Spectral) {
+    let width = spectral.width();
+    let size = spectral.from_blocks.len() / width;
+    let v = DMatrix::from_row_slice(size, width, &spectral.from_blocks);
+    // By coordinates, as the engine keeps it, W is column by column.
+    let mut w = DMatrix::from_column_slice(width, size, &spectral.to_blocks);
+    invert_again(&v, &mut w);
+    spectral.to_blocks.copy_from_slice(w.as_slice());
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::arithmetic::matrix::Matrix;
+    use crate::arithmetic::schur::tests::numbers;
+
+    /// Masses that carry particles on springs and dashpots, in coordinates of the masses and compressions.
+    struct Drawn {
+        mass: Matrix,
+        stiffness: Matrix,
+        damping: Matrix,
+    }
+
+    impl Drawn {
+        /// Of so many modes and particles; dashpots of `ratio` times what is critical for a particle alone.
+        fn new(number: &mut impl FnMut(f64, f64) -> f64, structure: usize, particles: usize, ratio: f64) -> Self {
+            let order = structure + particles;
+            let (mut mass, mut stiffness) = (vec![0.0; order], vec![0.0; order]);
+            let mut damping = vec![0.0; order];
+            for i in 0..structure {
+                let omega = 25.0 * ((i + 1) * (i + 1)) as f64 * number(0.8, 1.2);
+                (mass[i], stiffness[i], damping[i]) = (1.0, omega * omega, 5e-5 * omega * omega);
+            }
+            let [one, spring] = [number(5e-3, 5e-2), number(3e2, 3e3)];
+            let dashpot = 2.0 * ratio * (one * spring).sqrt();
+            let mut all = Matrix::diagonal(&mass);
+            for slot in structure..order {
+                (stiffness[slot], damping[slot]) = (spring, dashpot);
+                let row: Vec<f64> = (0..structure).map(|_| number(-2.0, 2.0)).collect();
+                let row: Vec<f64> =
+                    row.into_iter().chain((structure..order).map(|i| f64::from(u8::from(i == slot)))).collect();
+                all.add_square(one, &row);
+            }
+            Self { mass: all, stiffness: Matrix::diagonal(&stiffness), damping: Matrix::diagonal(&damping) }
+        }
+
+        /// Accelerations by places and rates.
+        fn accelerations(&self) -> Vec<Vec<f64>> {
+            let order = self.mass.order;
+            let factors = crate::arithmetic::cholesky::Cholesky::new(&self.mass).expect("masses are positive");
+            let column =
+                |matrix: &Matrix, j: usize| factors.solve(&(0..order).map(|i| -matrix.at(i, j)).collect::<Vec<_>>());
+            let columns: Vec<Vec<f64>> = [&self.stiffness, &self.damping]
+                .into_iter()
+                .flat_map(|matrix| (0..order).map(move |j| (matrix, j)))
+                .map(|(matrix, j)| column(matrix, j))
+                .collect();
+            (0..order).map(|i| columns.iter().map(|column| column[i]).collect()).collect()
+        }
+
+        fn in_normal_coordinates(&self, modes: &NormalModes) -> Vec<f64> {
+            let order = self.mass.order;
+            let entry = |i: usize, j: usize| {
+                modes.omega[i] * modes.omega[j] * self.damping.form(&modes.shapes[i], &modes.shapes[j])
+            };
+            (0..order * order).map(|at| entry(at / order, at % order)).collect()
+        }
+
+        /// By normal modes.
+        fn split(&self) -> Option<Spectral> {
+            let modes = NormalModes::new(&self.stiffness, &self.mass).expect("springs are positive");
+            split(&modes, &self.in_normal_coordinates(&modes))
+        }
+
+        /// What W V misses of 1, and V B W of A, with places in units of their scale: (Ω p, p′).
+        fn residuals(&self, spectral: &Spectral) -> [f64; 2] {
+            let (order, size, width) = (self.mass.order, 2 * self.mass.order, spectral.width());
+            let rows = self.accelerations();
+            let unit: Vec<f64> = (0..order).map(|i| rows[i][i].abs().sqrt()).chain(vec![1.0; order]).collect();
+            let v = DMatrix::from_fn(size, width, |i, k| spectral.from_blocks[i * width + k] * unit[i]);
+            let w = DMatrix::from_fn(width, size, |k, i| spectral.to_blocks[i * width + k] / unit[i]);
+            let mut b = DMatrix::zeros(width, width);
+            for (k, matrix) in spectral.matrices.iter().enumerate() {
+                (0..4).for_each(|i| b[(2 * k + i / 2, 2 * k + i % 2)] = matrix[i]);
+            }
+            let a = DMatrix::from_fn(size, size, |i, j| {
+                let entry = if i < order { f64::from(u8::from(j == order + i)) } else { rows[i - order][j] };
+                entry * unit[i] / unit[j]
+            });
+            let scale = a.amax();
+            [(&v * &w - DMatrix::identity(size, size)).amax(), (&v * b * &w - &a).amax() / scale]
+        }
+    }
+
+    /// Moduli of all eigenvalues.
+    fn rates(spectral: &Spectral) -> Vec<f64> {
+        let moduli = spectral.blocks.iter().flat_map(|block| {
+            let count = if block.is_single() { 1 } else { 2 };
+            block.eigenvalues().into_iter().take(count).map(|[re, im]| libm::hypot(re, im))
+        });
+        let mut moduli: Vec<f64> = moduli.collect();
+        moduli.sort_by(f64::total_cmp);
+        moduli
+    }
+
+    #[test]
+    fn modes_under_dashpots_are_as_exact_as_those_of_a_schur_form() {
+        let mut number = numbers(1);
+        // Dashpots by what is critical for a particle alone; which share of the systems must come from their normal modes, and by which
+        // factor those may be further off in the mean.
+        for (least, most, share, factor) in [
+            (0.01, 0.1, 0.95, 1.2),
+            (0.1, 0.3, 0.95, 1.2),
+            (0.3, 0.6, 0.8, 1.2),
+            (0.6, 2.0, 0.25, 1.2),
+            (2.0, 20.0, 0.1, 2.0),
+        ] {
+            let (mut drawn, mut split, mut means) = (0, 0, [[0.0; 2]; 2]);
+            for _ in 0..300 {
+                let structure = number(3.0, 12.99) as usize;
+                let particles = number(1.0, 8.99_f64.min(structure as f64 + 0.99)) as usize;
+                let ratio = number(least, most);
+                let system = Drawn::new(&mut number, structure, particles, ratio);
+                drawn += 1;
+                let Some(own) = system.split() else { continue };
+                split += 1;
+                let [unit, matrix] = system.residuals(&own);
+                assert!(unit < 1e-13 && matrix < 5e-14, "{structure}, {particles}, {ratio}: {unit:e}, {matrix:e}");
+                let rows = system.accelerations();
+                let schur = crate::contact_state::modes::split(&rows, &system.mass, None).expect("it ends");
+                if schur.lasts.is_infinite() {
+                    for (sums, spectral) in means.iter_mut().zip([&own, &schur]) {
+                        let residuals = system.residuals(spectral);
+                        sums.iter_mut().zip(residuals).for_each(|(sum, x)| *sum += libm::log(x.max(1e-17)));
+                    }
+                }
+                for (own, schur) in rates(&own).into_iter().zip(rates(&schur)).filter(|_| schur.lasts.is_infinite()) {
+                    assert!((own / schur - 1.0).abs() < 1e-10, "{own} for {schur}");
+                }
+            }
+            assert!(f64::from(split) >= share * f64::from(drawn), "{split} of {drawn} up to {most}");
+            let [own, schur] = means.map(|sums| sums.map(|sum| sum / f64::from(split.max(1))));
+            assert!((0..2).all(|i| own[i] < schur[i] + libm::log(factor)), "up to {most}: {own:?} for {schur:?}");
+        }
+    }
+
+    #[test]
+    fn modes_that_are_twice_the_same_are_split_well_or_not_at_all() {
+        let mut number = numbers(1);
+        // More particles of one kind than modes: some of theirs are one, and any of their shapes will do.
+        for seed in 0..200 {
+            let ratio = number(0.01, 0.6);
+            let system = Drawn::new(&mut number, 1 + seed % 3, 4 + seed % 4, ratio);
+            if let Some(spectral) = system.split() {
+                let [unit, matrix] = system.residuals(&spectral);
+                assert!(unit < 1e-13 && matrix < 5e-14, "{seed}: {unit:e}, {matrix:e}");
+            }
+        }
+    }
+
+    #[test]
+    fn every_processor_finds_the_same_bits() {
+        let mut number = numbers(1);
+        for _ in 0..50 {
+            let system = Drawn::new(&mut number, 5, 3, 0.3);
+            let modes = NormalModes::new(&system.stiffness, &system.mass).expect("springs are positive");
+            let damping = system.in_normal_coordinates(&modes);
+            let problem = Problem::new(&modes, &damping);
+            let mut work = Work::default();
+            let mut bits = |solve: fn(&Problem, usize, &mut Work) -> Option<Found>| {
+                work.make_room(modes.omega.len());
+                let found = [0, 4].map(|first| solve(&problem, first, &mut work).expect("it is lightly damped"));
+                let each = work.shapes.iter().chain(found.iter().flat_map(|found| [&found.lambda, &found.size]));
+                each.flat_map(|z| [z.re.array(), z.im.array()]).flatten().map(f64::to_bits).collect::<Vec<_>>()
+            };
+            let here = bits(|problem, first, work| problem.solve(first, work));
+            let everywhere = bits(|problem, first, work| problem.solve_by_registers(first, work));
+            assert_eq!(here, everywhere);
+        }
+    }
+}

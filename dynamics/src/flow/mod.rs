@@ -1,0 +1,445 @@
+//! Flows: the exact motion of one contact state.
+//!
+//! The blocks of its modes ([`crate::contact_state`]) move each by itself; a harmonic drive is one more of them. Gap, amplitude
+//! and time do not enter, so one flow serves a whole sweep.
+
+pub(crate) mod dissipation;
+pub(crate) mod gains;
+pub(crate) mod integral;
+pub(crate) mod lyapunov;
+pub(crate) mod pair_integral;
+pub(crate) mod parabola;
+pub(crate) mod series;
+pub(crate) mod signals;
+pub(crate) mod steps;
+pub(crate) mod sums;
+
+mod doubled;
+
+use std::cell::{Cell, OnceCell};
+use std::rc::Rc;
+
+use crate::arithmetic::exact;
+use crate::arithmetic::four::Four;
+use crate::arithmetic::lanes::WIDTH;
+use crate::arithmetic::matrix::dot;
+use crate::contact_state::Modes;
+use crate::contact_state::bank::{Bank, Kernels, Propagator};
+use crate::contact_state::block::Block;
+use crate::contact_state::conservative::Conservative;
+use crate::contact_state::load::{self, Load, Steady};
+use crate::error::EngineError;
+use crate::flow::dissipation::Dissipation;
+use crate::flow::gains::Closed;
+use crate::flow::parabola::Parabola;
+use crate::flow::series::Series;
+use crate::flow::signals::{Row, Rows};
+use crate::flow::steps::Steps;
+use crate::system::{Contact, DrivePhase, HybridSystem};
+
+/// One contact state, ready to be propagated.
+pub(crate) struct Flow {
+    /// What it shares with the flows of other drives.
+    pub(crate) modes: Rc<Modes>,
+    /// Blocks of the free motion; the last one is the drive if it is harmonic.
+    pub(crate) blocks: Vec<Block>,
+    /// The same, side by side for their kernels.
+    pub(crate) bank: Bank,
+    /// Their Taylor series.
+    pub(crate) series: Series,
+    /// Kernels at whole steps, where a contact state is visited often enough.
+    pub(crate) steps: Option<Steps>,
+    /// Those of its own, with their matrices.
+    propagators: Vec<Propagator>,
+    /// Blocks without the drive.
+    pub(crate) own: usize,
+    /// The highest natural frequency of the contact state, rad/s (modulus of a complex pair's eigenvalue).
+    pub(crate) highest_frequency: f64,
+    /// The smallest radius of its own blocks, 1/s.
+    slowest: f64,
+    /// Some block has an eigenvalue zero, so that a constant load sets it moving.
+    drifts: bool,
+    /// Some blocks take in the harmonic drive, whose phase they start with.
+    is_resonant: bool,
+    /// Coordinates: those of the structure, then one per resilient contact.
+    pub(crate) order: usize,
+    /// Answer to a unit force at the forcing point.
+    force: Rc<Load>,
+    /// Answer to sin ω t at the forcing point: p = cosine·cos ω t + sine·sin ω t.
+    harmonic: Option<Steady>,
+    /// Signals that are watched or measured.
+    pub(crate) rows: Rows,
+    /// Closed forms of its integrals, where they keep their digits; worked out when they are asked for.
+    closed: OnceCell<Option<Closed>>,
+    dissipation: OnceCell<Dissipation>,
+    /// Its place among the states that a run visits.
+    pub(crate) place: Cell<usize>,
+}
+
+/// Room for so many numbers, whatever stands there.
+#[inline(always)]
+fn room(work: &mut Vec<f64>, count: usize) -> &mut [f64] {
+    if work.len() < count {
+        work.resize(count, 0.0);
+    }
+    &mut work[..count]
+}
+
+impl Flow {
+    /// Builds the flow of a contact state with the contact damping now in force.
+    pub(crate) fn build(system: &HybridSystem, contacts: &[Contact], damping: &[f64]) -> Result<Self, EngineError> {
+        let bare = Rc::new(Conservative::new(system, contacts)?);
+        Self::driven(system, Rc::new(Modes::new(system, bare, contacts, damping)?), None)
+    }
+
+    /// The flow of a contact state whose modes are known, under the drive of `system`; `like` is one under other dampings.
+    pub(crate) fn driven(system: &HybridSystem, modes: Rc<Modes>, like: Option<&Self>) -> Result<Self, EngineError> {
+        // No dashpot holds anything at rest.
+        let is_known = |like: &&Self| system.drive.harmonic.is_none() && modes.is_normal && like.modes.is_normal;
+        let (modes, harmonic, force) = if let Some(like) = like.filter(is_known) {
+            (modes, None, Rc::clone(&like.force))
+        } else {
+            let push = modes.answer(system, &system.force_row);
+            let (modes, harmonic) = match system.drive.harmonic {
+                None => (modes, None),
+                Some(drive) => {
+                    let (modes, steady) = answered(system, modes, &push, drive.angular_frequency)?;
+                    (modes, Some(steady))
+                }
+            };
+            let force = Rc::new(modes.load(system, &push));
+            (modes, harmonic, force)
+        };
+        let mut blocks = modes.spectral.blocks.clone();
+        let own = blocks.len();
+        let turning = blocks.iter().filter(|block| block.oscillates());
+        let highest_frequency = turning.map(|block| block.determinant.sqrt()).fold(0.0, f64::max);
+        blocks.extend(harmonic.as_ref().map(|steady| Block::harmonic(steady.omega)));
+        let is_resonant = modes.spectral.to_blocks.len() > 2 * modes.order * modes.spectral.width();
+        if !(system.drive.period.is_finite() && blocks.iter().all(Block::is_finite)) {
+            return Err(EngineError::RateNotFinite);
+        }
+        let slowest = blocks[..own].iter().fold(f64::INFINITY, |least, block| block.radius.min(least));
+        let series = Series::new(&blocks);
+        let mut flow = Self {
+            slowest,
+            bank: Bank::new(&blocks),
+            steps: system.drive.half_cycles.is_none().then(|| Steps::new(series.pace)),
+            series,
+            propagators: Propagator::of(&modes.spectral.matrices, &blocks),
+            drifts: modes.spectral.drifts(),
+            is_resonant,
+            blocks,
+            own,
+            highest_frequency,
+            order: modes.order,
+            modes,
+            force,
+            harmonic,
+            rows: Rows::default(),
+            closed: OnceCell::new(),
+            dissipation: OnceCell::new(),
+            place: Cell::new(0),
+        };
+        flow.rows = Rows::new(system, &flow.modes, &flow.blocks, |row| flow.row(row));
+        Ok(flow)
+    }
+
+    /// Numbers that it keeps, those of its modes among them.
+    pub(crate) fn size(&self) -> usize {
+        self.modes.size()
+            + self.rows.size()
+            + self.steps.as_ref().map_or(0, Steps::size)
+            + self.closed.get().and_then(Option::as_ref).map_or(0, Closed::size)
+            + self.dissipation.get().map_or(0, Dissipation::size)
+    }
+
+    /// Numbers that its coordinates take in whole registers.
+    pub(crate) fn width(&self) -> usize {
+        2 * WIDTH * self.bank.blocks.len()
+    }
+
+    /// Closed forms of its integrals, where they keep their digits.
+    #[inline]
+    pub(crate) fn closed(&self) -> Option<&Closed> {
+        let omega = || self.harmonic.as_ref().map(|steady| steady.omega);
+        let solved = || Closed::new(&self.blocks, &self.modes.spectral.matrices, omega());
+        self.closed.get_or_init(|| if self.is_resonant { None } else { solved() }).as_ref()
+    }
+
+    /// The signal r·p; a row may end where only zeros follow.
+    pub(crate) fn row(&self, row: &[f64]) -> Row {
+        let size = self.modes.spectral.width();
+        // By values and by rates: r·V, column by column of V.
+        let mut weights = Vec::with_capacity(self.blocks.len());
+        weights.resize(self.own, [0.0; 4]);
+        let (values, rates) = self.modes.spectral.from_blocks.split_at(self.order * size);
+        for (i, r) in row.iter().enumerate().filter(|(_, r)| **r != 0.0) {
+            let [values, rates] = [values, rates].map(|entries| entries[i * size..][..size].as_chunks::<2>().0);
+            for ((weight, &[v0, v1]), &[r0, r1]) in weights.iter_mut().zip(values).zip(rates) {
+                *weight = (Four::new(*weight) + *r * Four::new([v0, v1, r0, r1])).array();
+            }
+        }
+        let mut drift = [[0.0; 2]; 2];
+        for (k, weight) in weights.iter().enumerate().filter(|_| self.drifts) {
+            for (load, drift) in [&self.modes.gravity, &self.force].into_iter().zip(&mut drift) {
+                for (coefficient, part) in drift.iter_mut().zip([load.slope[k], load.bend[k]]) {
+                    *coefficient += weight[0] * part[0] + weight[1] * part[1];
+                }
+            }
+        }
+        if let Some(Steady { omega, cosine, sine }) = &self.harmonic {
+            let (cosine, sine) = (dot(row, cosine), dot(row, sine));
+            weights.push([cosine, sine, omega * sine, -omega * cosine]);
+        }
+        let load = |load: &Load, [p1, p2]: [f64; 2]| Parabola { p0: dot(row, &load.rest), p1, p2 };
+        Row { weights, gravity: load(&self.modes.gravity, drift[0]), force: load(&self.force, drift[1]) }
+    }
+
+    /// Block coordinates of (p, p′) at the start of a segment; `force` is the constant force in force, `drive` the phase
+    /// of the harmonic one: F cos ω t and F sin ω t, which are the coordinates of its block. `work` is room to work in.
+    #[inline(always)]
+    pub(crate) fn enter(
+        &self,
+        p: &[f64],
+        rate: &[f64],
+        force: f64,
+        drive: DrivePhase,
+        work: &mut Vec<f64>,
+        c: &mut [f64],
+    ) {
+        let (order, size) = (self.order, self.modes.spectral.width());
+        let work = room(work, 2 * order);
+        let (positions, velocities) = work.split_at_mut(order);
+        for (i, (position, velocity)) in positions.iter_mut().zip(velocities).enumerate() {
+            [*position, *velocity] = self.free(i, [p[i], rate[i]], force, drive);
+        }
+        self.modes.to_blocks.sum_by_registers(work, c);
+        if self.harmonic.is_some() {
+            c[size..size + 2].copy_from_slice(&[drive.cosine, drive.sine]);
+            if self.is_resonant {
+                self.enter_drive(drive, c);
+            }
+        }
+    }
+
+    /// What of a coordinate and its rate is free motion, beside the answers to the loads.
+    #[inline(always)]
+    fn free(&self, i: usize, [mut position, mut velocity]: [f64; 2], force: f64, drive: DrivePhase) -> [f64; 2] {
+        position -= self.modes.gravity.rest[i];
+        position -= force * self.force.rest[i];
+        if let Some(steady) = &self.harmonic {
+            let [place, rate] = steady.at(i, drive);
+            (position, velocity) = (position - place, velocity - rate);
+        }
+        if self.drifts {
+            velocity -= self.modes.gravity.rest_rate[i] + force * self.force.rest_rate[i];
+        }
+        [position, velocity]
+    }
+
+    /// Takes off the block coordinates of (p, p′) what rounding has put in: c + V⁻¹(s − V c). V(V⁻¹ s) is off from s by the same
+    /// share at each entry, and over 10⁵ of them that adds up.
+    #[cold]
+    pub(crate) fn correct(&self, p: &[f64], rate: &[f64], force: f64, drive: DrivePhase, c: &mut [f64]) {
+        let (order, size) = (self.order, self.modes.spectral.width());
+        let c = &mut c[..size];
+        let mut missing = vec![0.0; 2 * order];
+        for i in 0..order {
+            for (half, x) in self.free(i, [p[i], rate[i]], force, drive).into_iter().enumerate() {
+                let row = half * order + i;
+                missing[row] = exact::rest(x, &self.modes.spectral.from_blocks[row * size..][..size], c);
+            }
+        }
+        for (missing, entries) in missing.iter().zip(self.modes.spectral.to_blocks.chunks_exact(size)) {
+            c.iter_mut().zip(entries).for_each(|(c, entry)| *c += entry * missing);
+        }
+    }
+
+    /// What the phase of the drive is to the blocks that are in resonance with it.
+    #[cold]
+    fn enter_drive(&self, drive: DrivePhase, c: &mut [f64]) {
+        let size = self.modes.spectral.width();
+        let rows = self.modes.spectral.to_blocks[2 * self.order * size..].chunks_exact(size);
+        for (row, phase) in rows.zip([drive.cosine, drive.sine]) {
+            c.iter_mut().zip(row).for_each(|(c, entry)| *c += entry * phase);
+        }
+    }
+
+    /// (p, p′) from block coordinates after `t` seconds of the segment, with the drive's phase then; `work` is room to work in.
+    #[inline(always)]
+    pub(crate) fn leave(
+        &self,
+        c: &[f64],
+        t: f64,
+        force: f64,
+        drive: DrivePhase,
+        work: &mut Vec<f64>,
+        [p, rate]: [&mut [f64]; 2],
+    ) {
+        let (order, width) = (self.order, self.modes.spectral.width());
+        let (p, rate) = (&mut p[..order], &mut rate[..order]);
+        let work = room(work, 2 * order);
+        // There may be more blocks than coordinates; those that `c` has none for are at rest.
+        self.modes.columns.sum_by_registers(c, work);
+        let (positions, rates) = work.split_at(order);
+        let rests = self.modes.gravity.rest.iter().zip(&self.force.rest);
+        let moving = positions.iter().zip(rates).zip(rests);
+        for ((p, rate), ((position, velocity), (by_gravity, by_force))) in p.iter_mut().zip(rate.iter_mut()).zip(moving)
+        {
+            *p = (by_gravity + force * by_force) + position;
+            *rate = *velocity;
+        }
+        if let Some(steady) = &self.harmonic {
+            for i in 0..order {
+                let [place, velocity] = steady.at(i, drive);
+                p[i] += place;
+                rate[i] += velocity;
+            }
+        }
+        if !self.drifts {
+            return;
+        }
+        for (load, size_of_load) in [(&self.modes.gravity, 1.0), (&self.force, force)] {
+            for i in 0..order {
+                rate[i] += size_of_load * load.rest_rate[i];
+            }
+            for k in 0..self.own {
+                let at = |j: usize| size_of_load * t * (load.slope[k][j] + t * load.bend[k][j]);
+                let (d0, d1) = (at(0), at(1));
+                for i in 0..order {
+                    p[i] += self.modes.spectral.from_blocks[i * width + 2 * k] * d0
+                        + self.modes.spectral.from_blocks[i * width + 2 * k + 1] * d1;
+                    rate[i] += self.modes.spectral.from_blocks[(order + i) * width + 2 * k] * d0
+                        + self.modes.spectral.from_blocks[(order + i) * width + 2 * k + 1] * d1;
+                }
+            }
+        }
+    }
+
+    /// Propagates block coordinates, filled up to [`Flow::width`], by the kernels of a time, with the drive's phase after it.
+    #[inline(always)]
+    pub(crate) fn advance_all(&self, kernels: &[Kernels], start: &[f64], drive: DrivePhase, end: &mut [f64]) {
+        let states = start.as_chunks().0.iter().zip(end.as_chunks_mut().0);
+        for ((propagator, kernels), (from, to)) in self.propagators.iter().zip(kernels).zip(states) {
+            *to = propagator.advance(kernels, from);
+        }
+        if self.harmonic.is_some() {
+            end[2 * self.own..2 * self.own + 2].copy_from_slice(&[drive.cosine, drive.sine]);
+        }
+    }
+
+    /// So short a time that radius·t of every block, and so of the fastest, is below `turn`.
+    #[inline]
+    pub(crate) fn turns_below(&self, turn: f64, time: f64) -> bool {
+        self.series.fastest.first().copied().unwrap_or_default() * time < turn
+    }
+
+    /// So short a time that its slowest block has hardly turned.
+    pub(crate) fn is_brief(&self, time: f64) -> bool {
+        self.slowest * time < crate::flow::integral::BRIEF
+    }
+
+    /// Kernels of a time.
+    pub(crate) fn kernels(&self, time: f64) -> Vec<Kernels> {
+        let mut kernels = vec![Kernels::NONE; self.bank.blocks.len()];
+        self.bank.kernels(&self.blocks, time, &mut kernels);
+        kernels
+    }
+
+    /// The harmonic drive's phase `t` seconds later.
+    pub(crate) fn drive_after(&self, drive: DrivePhase, t: f64) -> DrivePhase {
+        let Some(steady) = &self.harmonic else { return drive };
+        let (sine, cosine) = crate::arithmetic::elementary::sin_cos(steady.omega * t);
+        DrivePhase {
+            cosine: drive.cosine * cosine - drive.sine * sine,
+            sine: drive.sine * cosine + drive.cosine * sine,
+        }
+    }
+
+    /// ∫ c dt between two states of free motion, from c′ = B c; every block has a place to rest.
+    pub(crate) fn integrated(&self, start: &[f64], end: &[f64]) -> Vec<f64> {
+        let mut integral = Vec::with_capacity(end.len());
+        for ((block, [p, q, r, s]), i) in self.blocks.iter().zip(&self.modes.spectral.matrices).zip((0..).step_by(2)) {
+            let (x, y) = (end[i] - start[i], end[i + 1] - start[i + 1]);
+            integral.extend([(s * x - q * y) / block.determinant, (p * y - r * x) / block.determinant]);
+        }
+        integral
+    }
+
+    /// Nothing moves but its blocks: no drive, and every load has a place to rest.
+    pub(crate) fn is_free(&self) -> bool {
+        self.harmonic.is_none() && !self.drifts
+    }
+
+    /// What its dashpots take; worked out at the first audit.
+    pub(crate) fn dissipation(&self, system: &HybridSystem) -> &Dissipation {
+        self.dissipation.get_or_init(|| Dissipation::new(system, &self.modes, self.is_free()))
+    }
+
+    /// (p, p′) as the loads alone have them: nothing moves freely.
+    pub(crate) fn at_rest(&self, force: f64, drive: DrivePhase) -> [Vec<f64>; 2] {
+        self.left(&vec![0.0; 2 * self.order], 0.0, force, drive)
+    }
+
+    /// (p, p′) as [`Flow::leave`] has them, without a place to put them.
+    pub(crate) fn left(&self, c: &[f64], t: f64, force: f64, drive: DrivePhase) -> [Vec<f64>; 2] {
+        let [mut p, mut rate] = [vec![0.0; self.order], vec![0.0; self.order]];
+        self.leave(c, t, force, drive, &mut Vec::new(), [&mut p, &mut rate]);
+        [p, rate]
+    }
+}
+
+/// Static equilibrium, every particle on its floor or, where its weight alone presses it there, on the floor's stop.
+pub(crate) struct Rest {
+    pub(crate) contacts: Vec<Contact>,
+    pub(crate) q: Vec<f64>,
+    /// Where the particles are relative to their floors, m.
+    pub(crate) gaps: Vec<f64>,
+}
+
+impl Rest {
+    /// Of a system whose contact states have these flows.
+    pub(crate) fn of(
+        system: &HybridSystem,
+        mut flow: impl FnMut(&[Contact]) -> Result<Rc<Flow>, EngineError>,
+    ) -> Result<Self, EngineError> {
+        let count = system.particles.len();
+        let (mut contacts, mut gaps) = (vec![Contact::Floor; count], vec![0.0; count]);
+        loop {
+            let flow = flow(&contacts)?;
+            let [mut q, _] = flow.at_rest(0.0, DrivePhase::default());
+            let compressions = q.split_off(system.mass.order);
+            let mut fits = true;
+            for (&j, gap) in flow.modes.attached.iter().zip(compressions) {
+                gaps[j] = gap;
+                if let Some(stop) = system.particles[j].floor.law.stop()
+                    && gap < -stop.length
+                {
+                    (gaps[j], contacts[j], fits) = (-stop.length, Contact::FloorStop, false);
+                }
+            }
+            if fits {
+                return Ok(Self { contacts, q, gaps });
+            }
+        }
+    }
+}
+
+/// The modes and the steady answer of a contact state under a harmonic force of this ω, by which p″ = `push` sin ωt.
+fn answered(
+    system: &HybridSystem,
+    modes: Rc<Modes>,
+    push: &[f64],
+    omega: f64,
+) -> Result<(Rc<Modes>, Steady), EngineError> {
+    let steady = |largest: f64| Steady::new(omega, push, modes.accelerations(system), largest);
+    if let Some(steady) = steady(load::RESONANCE) {
+        return Ok((modes, steady));
+    }
+    if let Some((modes, steady)) = modes.resonant(system, push, omega) {
+        return Ok((Rc::new(modes), steady));
+    }
+    let steady = steady(load::LARGEST).ok_or(EngineError::UndampedResonance { omega })?;
+    Ok((modes, steady))
+}

@@ -1,0 +1,238 @@
+//! A particle at floor and ceiling at once, where they do not move as one (walls of finite stiffness).
+//!
+//! Each face goes on by its own law: it presses, holds, lets go, pushes again. The state refers to the face that holds the
+//! particle, else to one that presses, and is referred anew where that changes. Two faces that would both hold it are refused.
+
+use super::March;
+use super::effects::Effects;
+use crate::contact::{Change, Crossing, Hold, Relative, STICKING_SPEED, Side};
+use crate::contact_state::face_damping;
+use crate::error::EngineError;
+use crate::search::guards::{self, Slipped};
+use crate::system::Law;
+
+/// Roundings of a distance that a bounce has to rise above.
+const SEVERAL: f64 = 16.0;
+
+impl<E: Effects> March<'_, E> {
+    /// A crossing of a particle that is at both faces, or comes to be.
+    pub(super) fn cross_between(&mut self, j: usize, crossing: Crossing) -> Result<(), EngineError> {
+        let Some((side, change)) = crossing.at(self.contacts[j].side()) else { return Ok(()) };
+        let particle = &self.system.particles[j];
+        let law = side.face(particle).law;
+        let here = self.relative_to(j, side);
+        // The push of a dashpot sets in at once, and with it accelerations elsewhere jump.
+        let mut jumps = false;
+        match change {
+            // A rounding has put the particle behind a face that it is leaving.
+            Change::Meets if side.away() * here.rate >= 0.0 => {}
+            Change::Meets => match law {
+                Law::Rigid { .. } => return self.strike_across(j, side),
+                Law::Resilient { .. } => {
+                    self.record(j, side.made(), here.rate, here.rate);
+                    self.turn(j, side, Hold::Pressed)?;
+                    if self.contacts[j].side() == side {
+                        self.particles[j].gap = 0.0;
+                    }
+                    jumps = true;
+                }
+            },
+            Change::Stops => return self.strike_across(j, side),
+            Change::Releases if self.contacts[j].at(side, particle) == Hold::Held => {
+                if self.sudden {
+                    return self.hold_on();
+                }
+                self.particles[j].rate = 0.0;
+                self.let_go(j, side);
+                self.is_smooth(j, side);
+            }
+            Change::Releases
+                if matches!(law, Law::Resilient { no_tension: true, .. }) && self.is_compressed(j, side) =>
+            {
+                self.slip_smoothly(j, side)?;
+            }
+            Change::Releases => {
+                self.record(j, side.lost(), here.rate, here.rate);
+                self.turn(j, side, Hold::Away)?;
+                jumps = true;
+            }
+            Change::Recovers => self.turn(j, side, Hold::Away)?,
+            Change::PushesAgain => self.slip_smoothly(j, side)?,
+        }
+        self.meet_at_once()?;
+        if jumps { self.hold_on() } else { self.choose_flow() }
+    }
+
+    /// A rigid face, or a stop, meets a particle that the other face presses: it holds it until the exchange of momentum says
+    /// otherwise.
+    fn strike_across(&mut self, j: usize, side: Side) -> Result<(), EngineError> {
+        self.turn(j, side, Hold::Held)?;
+        self.strike(j, side)
+    }
+
+    /// What one face does to a particle changes; its state goes on referring to the face that its contact names.
+    pub(super) fn turn(&mut self, j: usize, side: Side, hold: Hold) -> Result<(), EngineError> {
+        let particle = &self.system.particles[j];
+        let before = self.contacts[j];
+        let Some(after) = before.turned(side, hold, particle) else {
+            return Err(EngineError::Squeezed { particle: j, cycle: self.cycle, time: self.time });
+        };
+        if before.side() != after.side() {
+            self.particles[j] = self.relative_to(j, after.side());
+        }
+        if hold == Hold::Held {
+            self.particles[j].gap = -side.away() * side.face(particle).law.depth();
+        }
+        self.changed = true;
+        self.contacts[j] = after;
+        Ok(())
+    }
+
+    /// Where a particle is relative to the face on one side.
+    pub(super) fn relative_to(&self, j: usize, side: Side) -> Relative {
+        let here = self.particles[j];
+        if self.contacts[j].side() == side {
+            return here;
+        }
+        guards::seen_from(side, &self.system.particles[j], here, &self.q, &self.rate)
+    }
+
+    /// Some floor and ceiling do not move as one.
+    #[inline(always)]
+    pub(super) fn has_walls(&self) -> bool {
+        E::ALL && self.has_walls
+    }
+
+    /// The face across from this side touches the particle too, or alone.
+    #[inline]
+    pub(super) fn touches_across(&self, j: usize, side: Side) -> bool {
+        let contact = self.contacts[j];
+        let particle = &self.system.particles[j];
+        self.has_walls() && contact.at(side.opposite(), particle) != Hold::Away
+    }
+
+    /// Held on the stop of the face on this side.
+    #[inline]
+    pub(super) fn is_on_stop(&self, j: usize, side: Side) -> bool {
+        let (contact, particle) = (self.contacts[j], &self.system.particles[j]);
+        let both = || side.face(particle).law.stop().is_some() && contact.side() == side && contact.holds(particle);
+        E::ALL && (contact == side.stopped() || (contact.is_between() && both()))
+    }
+
+    /// A force comes to zero at one of the faces: its guard begins there.
+    fn is_smooth(&mut self, j: usize, side: Side) {
+        if self.contacts[j].side() == side {
+            self.smooth[j] = true;
+        } else {
+            self.slipped = Some(Slipped { particle: j, order: 3 });
+        }
+    }
+
+    /// A face that cannot pull lets go while compressed, or pushes again: the energy of its spring goes and comes.
+    pub(super) fn slip(&mut self, j: usize, side: Side) -> Result<(), EngineError> {
+        let particle = &self.system.particles[j];
+        let pressed = self.contacts[j].at(side, particle) == Hold::Pressed;
+        let here = self.relative_to(j, side);
+        self.record(j, if pressed { side.lost() } else { side.made() }, here.rate, here.rate);
+        self.turn(j, side, if pressed { Hold::Released } else { Hold::Pressed })?;
+        if let (Some(audit), Law::Resilient { stiffness, .. }) = (&mut self.audit, side.face(particle).law) {
+            let stored = 0.5 * stiffness * here.gap * here.gap;
+            audit.loss(if pressed { stored } else { -stored });
+        }
+        Ok(())
+    }
+
+    /// The same where its force has come to zero.
+    pub(super) fn slip_smoothly(&mut self, j: usize, side: Side) -> Result<(), EngineError> {
+        if self.sudden {
+            return self.slip(j, side);
+        }
+        self.unload(j, side);
+        self.slip(j, side)?;
+        self.is_smooth(j, side);
+        Ok(())
+    }
+
+    /// Spring and dashpot cancel to the last digit, by a change of place or of rate, whichever holds less energy. What rounding leaves
+    /// of their force is nothing to the flow that ends, and may be a push that sets in again to the next one, and so on.
+    fn unload(&mut self, j: usize, side: Side) {
+        let particle = &self.system.particles[j];
+        let (Relative { gap, rate }, damping) = (self.particles[j], self.damping_on(j, side));
+        let cancel = side.away() * rate > 0.0 && damping > 0.0;
+        if let Law::Resilient { stiffness, .. } = side.face(particle).law
+            && cancel
+            && self.contacts[j].side() == side
+        {
+            self.particles[j] = if stiffness * (gap * gap) < particle.mass * (rate * rate) {
+                Relative { gap: -damping * rate / stiffness, rate }
+            } else {
+                Relative { gap, rate: -stiffness * gap / damping }
+            };
+        }
+    }
+
+    /// After a jump of velocities: whether each of the two faces goes on as it did.
+    pub(super) fn press_or_part_between(&mut self, j: usize) -> Result<(), EngineError> {
+        for side in [Side::Floor, Side::Ceiling] {
+            let particle = &self.system.particles[j];
+            let Law::Resilient { stiffness, no_tension, .. } = side.face(particle).law else { continue };
+            let (here, away) = (self.relative_to(j, side), side.away());
+            let push = -away * (stiffness * here.gap + self.damping_on(j, side) * here.rate);
+            match self.contacts[j].at(side, particle) {
+                Hold::Pressed if no_tension && push < 0.0 && self.is_compressed(j, side) => self.slip(j, side),
+                Hold::Pressed if (no_tension && push < 0.0) || (here.gap == 0.0 && away * here.rate > 0.0) => {
+                    self.record(j, side.lost(), here.rate, here.rate);
+                    self.turn(j, side, Hold::Away)
+                }
+                Hold::Released if push > 0.0 => self.slip(j, side),
+                Hold::Pressed | Hold::Released | Hold::Held | Hold::Away => Ok(()),
+            }?;
+        }
+        Ok(())
+    }
+
+    /// A bounce so low that the distance to this face, a difference of places, does not show it: the other face, which pushes the
+    /// particle back, gives it u² = 2 a δ for a rounding δ of that distance, and what is left of this after many bounces is none.
+    pub(super) fn slow_between(&self, j: usize, side: Side, restitution: f64, carried: f64) -> f64 {
+        let (particle, other) = (&self.system.particles[j], side.opposite());
+        let here = self.relative_to(j, other);
+        let Law::Resilient { stiffness, .. } = other.face(particle).law else { return STICKING_SPEED };
+        let push = (stiffness * here.gap).abs() + (self.damping_on(j, other) * here.rate).abs();
+        let back = (push / particle.mass + self.system.gravity) * carried;
+        let rounding = self.noise(j, side, here).max(self.noise(j, other, here));
+        let lasting = 1.0 - restitution * restitution;
+        STICKING_SPEED.max((SEVERAL * back * rounding / lasting.max(f64::EPSILON)).sqrt())
+    }
+
+    /// Damping of a face, N s/m.
+    fn damping_on(&self, j: usize, side: Side) -> f64 {
+        face_damping(side.face(&self.system.particles[j]).law, self.equivalent)
+    }
+
+    /// What the face across from this side pushes per mass, and how fast that grows, in the flow in force.
+    pub(super) fn push_across(&self, j: usize, side: Side) -> [f64; 2] {
+        let (flow, particle, contact) = (&self.flow, &self.system.particles[j], self.contacts[j]);
+        let other = side.opposite();
+        let row = if contact.side() == other {
+            flow.rows.faces[j].compression
+        } else {
+            flow.rows.guards[j].across.map(|rows| rows.way)
+        };
+        let (Law::Resilient { stiffness, .. }, Some(row), Hold::Pressed) =
+            (other.face(particle).law, row, contact.at(other, particle))
+        else {
+            return [0.0; 2];
+        };
+        let (phases, rest) = flow.rows.evaluate(row, &self.c, self.level);
+        let mut bend = 2.0 * rest.p2;
+        for (block, phase) in flow.blocks.iter().zip(&phases) {
+            bend += block.acceleration(*phase).value;
+        }
+        // The way across counts from the particle to the face, as away from the face.
+        let bend = if contact.side() == other { other.away() * bend } else { bend };
+        let (here, damping) = (self.relative_to(j, other), self.damping_on(j, other));
+        let push = -other.away() * (stiffness * here.gap + damping * here.rate);
+        let growth = -other.away() * stiffness * here.rate - damping * bend;
+        [push / particle.mass, growth / particle.mass]
+    }
+}

@@ -1,0 +1,57 @@
+//! The time history: samples of the segments that it covers.
+
+use super::March;
+use super::effects::Effects;
+use crate::arithmetic::lanes::WIDTH;
+use crate::contact::Side;
+use crate::flow::signals;
+use crate::options::trace::{Sample, SampledParticle, TraceRequest};
+use crate::search::guards;
+use crate::system::DrivePhase;
+use crate::system::Particle;
+
+impl<E: Effects> March<'_, E> {
+    /// Samples of the time history that fall into the segment.
+    pub(super) fn sample(&mut self, request: TraceRequest, length: f64, drive: DrivePhase) {
+        if !request.covers(self.cycle) {
+            return;
+        }
+        let flow = &self.flow;
+        let period = self.system.drive.period;
+        let mut c = self.c.clone();
+        for i in request.next_sample(self.time, period).. {
+            let instant = request.instant(i, period);
+            let t = instant - self.time;
+            if t > length || (t >= length && instant >= period) {
+                break;
+            }
+            let kernels = flow.kernels(t);
+            flow.advance_all(&kernels, &self.c, flow.drive_after(drive, t), &mut c);
+            let anywhere = |row: usize| {
+                let (phases, rest) = flow.rows.evaluate(row, &self.c, self.level);
+                signals::motion(&flow.blocks, &phases, rest, |k| kernels[k / WIDTH].at(k % WIDTH), t)
+            };
+            let [displacement, velocity, acceleration, _] = anywhere(flow.rows.observed[0]);
+            let sampled = |(j, particle): (usize, &Particle)| {
+                let contact = self.contacts[j];
+                let faces = [Side::Floor, Side::Ceiling].map(|side| anywhere(flow.rows.face(j, side))[0]);
+                let gap = match (contact.face(particle), flow.rows.faces[j].compression) {
+                    (None, _) => guards::fly(flow, j, self.paths[j], &self.signals, self.particles[j], &c, t).gap,
+                    (Some(_), Some(compression)) => anywhere(compression)[0],
+                    (Some(_), None) => self.particles[j].gap,
+                };
+                SampledParticle::new(particle, contact, faces, gap)
+            };
+            let sample = Sample {
+                time: self.cycle as f64 * period + instant,
+                displacement,
+                velocity,
+                acceleration,
+                damping: self.equivalent.or(self.flow.modes.damping.first().copied()).unwrap_or(0.0),
+                half_cycle_rms: self.half.last,
+                particles: self.system.particles.iter().enumerate().map(sampled).collect(),
+            };
+            self.response.trace.push(sample);
+        }
+    }
+}

@@ -1,0 +1,226 @@
+//! Contact states that were visited, kept for every run that comes to them again.
+//!
+//! Modes know masses, springs, dashpots and places; gap, amplitude and time do not enter, the forcing point only in a load
+//! ([`crate::contact_state`]). So the thread that has run one point of a sweep, of a map or of an ensemble has at hand what
+//! the next one visits. A state is built when it is visited, and the same numbers come out whether it was known or not.
+
+use std::cell::RefCell;
+use std::collections::BTreeMap;
+use std::rc::Rc;
+
+use crate::budget;
+use crate::contact_state::conservative::Conservative;
+use crate::contact_state::{Modes, dampings, feels_half_cycles};
+use crate::error::EngineError;
+use crate::flow::Flow;
+use crate::march::reach::Ground;
+use crate::system::{Contact, HybridSystem, Particle};
+
+/// Numbers that a thread keeps, about: 128 MB.
+const MOST_NUMBERS: usize = 1 << 24;
+/// They are counted at every so many new drives: counting takes as long as a short run.
+const SELDOM: usize = 8;
+/// Dampings of one contact state that are kept; half cycles give it another one each time.
+const MOST_DAMPINGS: usize = 64;
+
+thread_local! {
+    static KNOWN: RefCell<Vec<Rc<Driven>>> = const { RefCell::new(Vec::new()) };
+}
+
+type ByContact<T> = RefCell<BTreeMap<Vec<Contact>, Vec<Rc<T>>>>;
+
+/// The contact states of a system: what its gap and the size and timing of its drive do not touch.
+pub(crate) struct States(Rc<Driven>);
+
+/// What all systems of one drive share.
+struct Driven {
+    undriven: Rc<Undriven>,
+    force_row: Vec<f64>,
+    observed_rows: Vec<Vec<f64>>,
+    /// φ of the base where half cycles follow it.
+    base: Option<Vec<f64>>,
+    frequency: Option<f64>,
+    ground: Ground,
+    flows: ByContact<Flow>,
+    /// Some of them, each where its code leads.
+    at_hand: RefCell<Vec<Option<AtHand>>>,
+}
+
+/// A contact state by its code.
+#[derive(Clone)]
+struct AtHand {
+    code: u64,
+    /// The damping that half cycles have put in the place of the stated, where one of its faces feels it.
+    equivalent: Option<f64>,
+    flow: Rc<Flow>,
+}
+
+/// Contact states that are at hand, at most.
+const AT_HAND: usize = 256;
+
+/// Which contact state of a system it is, four bits a particle; `None` where a number does not hold so many.
+#[inline]
+fn code(contacts: &[Contact]) -> Option<u64> {
+    let digits = contacts.iter().rev().fold(0, |code, contact| code << 4 | *contact as u64);
+    (contacts.len() <= 16).then_some(digits)
+}
+
+/// Where it is at hand.
+#[inline]
+fn place(code: u64) -> usize {
+    (code.wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 56) as usize
+}
+
+/// What systems share that differ in their drive.
+struct Undriven {
+    /// The first of them; nobody looks at its gaps and its drive.
+    system: HybridSystem,
+    /// Without dashpots.
+    bare: ByContact<Conservative>,
+    modes: ByContact<Modes>,
+}
+
+impl States {
+    /// The states of a system: those of one that was run before, if it differs in nothing that they know.
+    pub(crate) fn of(system: &HybridSystem) -> Self {
+        KNOWN.with_borrow_mut(|known| {
+            // The next system is mostly one of the last.
+            if let Some(place) = known.iter().rposition(|driven| driven.fits(system)) {
+                let driven = known.remove(place);
+                known.push(Rc::clone(&driven));
+                return Self(driven);
+            }
+            let same = known.iter().rev().find(|driven| driven.undriven.fits(system));
+            let undriven = same.map_or_else(|| Rc::new(Undriven::new(system)), |driven| Rc::clone(&driven.undriven));
+            let driven = Rc::new(Driven::new(system, undriven));
+            known.push(Rc::clone(&driven));
+            if known.len().is_multiple_of(SELDOM) {
+                let mut numbers: usize = known.iter().map(|driven| driven.size()).sum();
+                while numbers > MOST_NUMBERS && known.len() > 1 {
+                    numbers -= known.remove(0).size();
+                }
+            }
+            Self(driven)
+        })
+    }
+
+    /// What they are set on: masses, springs and the forcing point.
+    pub(crate) fn ground(&self) -> &Ground {
+        &self.0.ground
+    }
+
+    /// The flow of a contact state, if it is at hand.
+    #[inline]
+    pub(crate) fn at_hand(&self, contacts: &[Contact], equivalent: Option<f64>) -> Option<Rc<Flow>> {
+        let code = code(contacts)?;
+        let at_hand = self.0.at_hand.borrow();
+        let fits =
+            |known: &&AtHand| known.code == code && (known.equivalent.is_none() || known.equivalent == equivalent);
+        at_hand[place(code)].as_ref().filter(fits).map(|known| Rc::clone(&known.flow))
+    }
+
+    /// The flow of a contact state, built at the first visit, with the damping that half cycles have put in the place of the stated.
+    pub(crate) fn flow(
+        &self,
+        system: &HybridSystem,
+        contacts: &[Contact],
+        equivalent: Option<f64>,
+    ) -> Result<Rc<Flow>, EngineError> {
+        let damping = dampings(system, contacts, equivalent);
+        let fits = |flow: &Flow| flow.modes.damping == damping;
+        let flow = visit(&self.0.flows, contacts, fits, || self.build(system, contacts, &damping))?;
+        // The gap, too, enters where a particle is at both faces.
+        if let Some(code) = code(contacts).filter(|_| !contacts.iter().any(|contact| contact.is_between())) {
+            let equivalent = equivalent.filter(|_| feels_half_cycles(system, contacts));
+            self.0.at_hand.borrow_mut()[place(code)] = Some(AtHand { code, equivalent, flow: Rc::clone(&flow) });
+        }
+        Ok(flow)
+    }
+
+    #[cold]
+    fn build(&self, system: &HybridSystem, contacts: &[Contact], damping: &[f64]) -> Result<Flow, EngineError> {
+        let order = system.mass.order + contacts.len();
+        // About what the Schur form of a matrix of twice the order takes.
+        if budget::spend_ahead(u32::try_from(order.saturating_pow(3) / 8).unwrap_or(u32::MAX)) {
+            return Err(budget::overrun().into());
+        }
+        let modes = visit(
+            &self.0.undriven.modes,
+            contacts,
+            |modes| modes.damping == damping,
+            || {
+                let build = || Conservative::new(system, contacts);
+                let bare = visit(&self.0.undriven.bare, contacts, |_| true, build)?;
+                Modes::new(system, bare, contacts, damping)
+            },
+        )?;
+        let like = self.0.flows.borrow().get(contacts).and_then(|known| known.last().cloned());
+        Flow::driven(system, modes, like.as_deref())
+    }
+}
+
+#[inline]
+fn visit<T>(
+    known: &ByContact<T>,
+    contacts: &[Contact],
+    fits: impl Fn(&T) -> bool,
+    build: impl FnOnce() -> Result<T, EngineError>,
+) -> Result<Rc<T>, EngineError> {
+    let old = known.borrow().get(contacts).and_then(|states| states.iter().find(|state| fits(state)).cloned());
+    if let Some(old) = old {
+        return Ok(old);
+    }
+    let new = Rc::new(build()?);
+    let mut known = known.borrow_mut();
+    let states = known.entry(contacts.to_vec()).or_default();
+    if states.len() >= MOST_DAMPINGS {
+        states.clear();
+    }
+    states.push(Rc::clone(&new));
+    Ok(new)
+}
+
+impl Driven {
+    fn new(system: &HybridSystem, undriven: Rc<Undriven>) -> Self {
+        Self {
+            undriven,
+            force_row: system.force_row.clone(),
+            observed_rows: system.observed_rows.clone(),
+            base: system.base_row().map(<[f64]>::to_vec),
+            frequency: system.drive.harmonic.map(|drive| drive.angular_frequency),
+            ground: Ground::default(),
+            flows: ByContact::default(),
+            at_hand: RefCell::new(vec![None; AT_HAND]),
+        }
+    }
+
+    fn fits(&self, system: &HybridSystem) -> bool {
+        self.frequency == system.drive.harmonic.map(|drive| drive.angular_frequency)
+            && self.base.as_deref() == system.base_row()
+            && self.force_row == system.force_row
+            && self.observed_rows == system.observed_rows
+            && self.undriven.fits(system)
+    }
+
+    /// Numbers that it keeps, those of the modes among them.
+    fn size(&self) -> usize {
+        self.flows.borrow().values().flatten().map(|flow| flow.size()).sum()
+    }
+}
+
+impl Undriven {
+    fn new(system: &HybridSystem) -> Self {
+        Self { system: system.clone(), bare: ByContact::default(), modes: ByContact::default() }
+    }
+
+    fn fits(&self, system: &HybridSystem) -> bool {
+        let same = |(a, b): (&Particle, &Particle)| a.mass == b.mass && a.floor == b.floor && a.ceiling == b.ceiling;
+        let own = &self.system;
+        own.gravity == system.gravity
+            && own.particles.len() == system.particles.len()
+            && own.particles.iter().zip(&system.particles).all(same)
+            && own.mass == system.mass
+            && own.damping == system.damping
+            && own.stiffness == system.stiffness
+    }
+}

@@ -1,0 +1,107 @@
+//! What a segment adds to the measures and to the audit.
+
+use super::March;
+use super::effects::Effects;
+use crate::flow::Flow;
+use crate::response::audit::{self, Force};
+use crate::response::extremes::Stretch;
+use crate::system::DrivePhase;
+
+/// How the observed signals are integrated over a segment.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Integration {
+    /// From the ends of the visits of a contact state.
+    Visits,
+    /// From the ends of the segment.
+    Pairs,
+    Panels,
+}
+
+impl<E: Effects> March<'_, E> {
+    /// Adds the segment to the measures, and to the audit if there is one.
+    #[inline(always)]
+    pub(super) fn sum_up(&mut self, length: f64, drive: DrivePhase) {
+        let moves = length > 0.0;
+        let observed = (moves && self.averaged.holds(self.cycle)).then(|| self.integration());
+        let half_cycle = if E::ALL && moves { self.half_cycle_integration(length) } else { None };
+        // What both have in common is worked out once.
+        let asked = |integration| observed == Some(integration) || half_cycle == Some(integration);
+        if asked(Integration::Pairs) {
+            self.pairs.set(&self.flow.bank, &self.search.kernels, length);
+        }
+        if asked(Integration::Panels) {
+            self.panels.divide(&self.flow.blocks, &self.flow.bank, length);
+        }
+        if let Some(integration) = observed {
+            self.sum_up_observed(integration, length);
+        }
+        if let Some(integration) = half_cycle {
+            self.sum_up_half_cycle(integration, length);
+        }
+        let flow = &self.flow;
+        if let Some(audit) = &mut self.audit {
+            audit.segment(self.system, flow, [&self.c, &self.c_end], Force { level: self.level, drive }, length);
+        }
+    }
+
+    #[inline(always)]
+    fn sum_up_observed(&mut self, integration: Integration, length: f64) {
+        let half = self.averaged.half(self.cycle);
+        if self.visits.half != half || self.visits.is_full() {
+            self.pay_out();
+            self.visits.half = half;
+        }
+        if integration == Integration::Visits {
+            self.visits.of(&self.flow).visit(&self.c, &self.c_end, self.level, length);
+        }
+        if integration != Integration::Visits || self.options.extremes {
+            self.look_along(integration, length);
+        }
+    }
+
+    /// The integrals are differences of end values: not of motion without damping, nor between jumps of the force that follow
+    /// each other within a small part of the slowest turn. Half cycles leave a contact state before the equations of its blocks pay,
+    /// and which of many dampings are still known hangs on the runs before: what is summed up together must not.
+    fn integration(&self) -> Integration {
+        if self.is_brief {
+            Integration::Panels
+        } else if !self.is_passing && self.flow.closed().is_some() {
+            Integration::Visits
+        } else {
+            self.integration_of_one()
+        }
+    }
+
+    /// The same of one segment by itself.
+    pub(super) fn integration_of_one(&self) -> Integration {
+        if self.flow.bank.near_critical.is_empty() { Integration::Pairs } else { Integration::Panels }
+    }
+
+    /// What has to be taken from the observed signals themselves.
+    fn look_along(&mut self, integration: Integration, length: f64) {
+        let Flow { blocks, bank, rows, .. } = &*self.flow;
+        for (of, &row) in self.response.observed.iter_mut().zip(&rows.observed) {
+            let row = rows.row(row);
+            let rest = row.rest(self.level);
+            if self.options.extremes {
+                self.lookout.take(&mut of.extremes, Stretch { blocks, bank, rest, length }, row.together(&self.c));
+            }
+            let sums = match integration {
+                Integration::Visits => continue,
+                Integration::Pairs => self.pairs.sums(bank, row.together(&self.c), rest.p0, self.options.displacement),
+                Integration::Panels => self.panels.sums(blocks, row.phases(&self.c), rest),
+            };
+            of.halves[self.visits.half].add(sums);
+        }
+    }
+
+    pub(super) fn pay_out(&mut self) {
+        self.visits.pay_out(self.options.displacement, &mut self.response.observed);
+    }
+
+    pub(super) fn audit_state(&self) -> audit::State {
+        let structure = [&self.q, &self.rate].map(|x| &x[..self.system.mass.order]);
+        let particles = (0..self.particles.len()).map(|j| self.absolute(j)).collect();
+        audit::State::new(self.system, &self.contacts, structure, particles, |j, side| self.relative_to(j, side).gap)
+    }
+}

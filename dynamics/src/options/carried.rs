@@ -1,0 +1,43 @@
+//! Where a run ended as the start of a run in a neighbouring system: another strength or frequency of the drive, another gap.
+//!
+//! A run ends with a whole cycle, so that the next one starts at the phase of the drive at which the last one stopped; carried
+//! are places and rates of the structure and, relative to their faces, of the particles, with their contacts.
+
+use crate::contact::Side;
+use crate::options::StartState;
+use crate::system::{Contact, HybridSystem, Particle};
+
+impl StartState {
+    /// The same state in this system. What it has brought nearer gives way by no more than it must: a particle that would lie
+    /// beyond the ceiling or a limit stop lies at it. `None` if the system has other coordinates or particles, or lacks a
+    /// face or a stop that a particle touches.
+    #[must_use]
+    pub fn carried_to(&self, system: &HybridSystem) -> Option<Self> {
+        let Self::Given { q, rate, particles } = self else { return Some(self.clone()) };
+        if q.len() != system.mass.order || particles.len() != system.particles.len() {
+            return None;
+        }
+        let placed = particles.iter().zip(&system.particles).map(|(at, particle)| place(*at, particle));
+        Some(Self::Given { q: q.clone(), rate: rate.clone(), particles: placed.collect::<Option<_>>()? })
+    }
+}
+
+/// Contact, gap coordinate and relative rate of a particle in its new enclosure.
+fn place((contact, gap, rate): (Contact, f64, f64), particle: &Particle) -> Option<(Contact, f64, f64)> {
+    let side = contact.side();
+    if (side == Side::Ceiling || contact.is_between()) && particle.ceiling.is_none() {
+        return None;
+    }
+    if contact == Contact::Flight {
+        let free = if particle.ceiling.is_some() { gap.min(particle.gap) } else { gap };
+        return Some((contact, free, rate));
+    }
+    let on_stop = matches!(contact, Contact::FloorStop | Contact::CeilingStop);
+    let Some(stop) = side.face(particle).law.stop() else { return (!on_stop).then_some((contact, gap, rate)) };
+    let deepest = -side.away() * stop.length;
+    if on_stop {
+        return Some((contact, deepest, 0.0));
+    }
+    let gap = if side == Side::Ceiling { gap.min(deepest) } else { gap.max(deepest) };
+    Some((contact, gap, rate))
+}

@@ -1,0 +1,276 @@
+//! Hybrid systems: a linear structure, particles that touch it or do not, and what drives it.
+//!
+//! The structure has coordinates q with M q″ + C q′ + K q = b F(t) + contact forces. Particle j is at y_j; a face of its
+//! enclosure moves with the row φ of the structure: the floor lies at φ_f·q, the ceiling at φ_c·q + h. Nothing here knows
+//! whether the structure is one mass, a beam or a plate.
+
+pub(crate) mod spline;
+
+use crate::arithmetic::elementary::sin_cos;
+use crate::arithmetic::matrix::Matrix;
+
+/// A structure with its particles and its drive.
+#[derive(Debug, Clone, PartialEq)]
+pub struct HybridSystem {
+    /// M, C, K of the structure without particles.
+    pub mass: Matrix,
+    /// C.
+    pub damping: Matrix,
+    /// K.
+    pub stiffness: Matrix,
+    /// g, on the particles only.
+    pub gravity: f64,
+    /// The particles.
+    pub particles: Vec<Particle>,
+    /// b: generalised force of a unit force at the forcing point.
+    pub force_row: Vec<f64>,
+    /// What drives it.
+    pub drive: Drive,
+    /// The observed displacements are these rows times q. The first is the one that half cycles, time histories and the
+    /// final state refer to; there is always one.
+    pub observed_rows: Vec<Vec<f64>>,
+    /// Rows ρ along which contact forces are internal (ρ·φ_f = ρ·φ_c for every particle): there the momentum is balanced.
+    pub momentum_rows: Vec<Vec<f64>>,
+}
+
+impl HybridSystem {
+    /// The base whose acceleration sets the damping by half cycles.
+    pub(crate) fn base_row(&self) -> Option<&[f64]> {
+        self.drive.half_cycles.as_ref().map(|half| half.base.as_slice())
+    }
+
+    /// Neither the structure nor a floor takes energy. Ceilings and stops do not count: a run may do without them.
+    pub(crate) fn is_undamped(&self) -> bool {
+        let keeps = |particle: &Particle| match particle.floor.law {
+            Law::Rigid { restitution } => restitution == 1.0,
+            Law::Resilient { damping, .. } => damping == 0.0,
+        };
+        let still = self.damping.entries.iter().all(|entry| *entry == 0.0);
+        still && self.drive.half_cycles.is_none() && self.particles.iter().all(keeps)
+    }
+}
+
+/// A particle in its enclosure.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Particle {
+    /// mp, kg.
+    pub mass: f64,
+    /// The floor, at u = y − φ_f·q = 0.
+    pub floor: Face,
+    /// The ceiling, at w = y − φ_c·q − h = 0; `None` where it cannot be met.
+    pub ceiling: Option<Face>,
+    /// h, m; any value where there is no ceiling.
+    pub gap: f64,
+}
+
+/// A face of an enclosure.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Face {
+    /// φ.
+    pub row: Vec<f64>,
+    /// How it pushes back.
+    pub law: Law,
+}
+
+/// Contact law of a face.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Law {
+    /// Impulse and momentum; sticks where it can push.
+    Rigid {
+        /// ε.
+        restitution: f64,
+    },
+    /// Spring and dashpot.
+    Resilient {
+        /// N/m.
+        stiffness: f64,
+        /// N s/m; the start value where half cycles renew it.
+        damping: f64,
+        /// True: the contact ends where its force would turn to tension; false: at zero gap.
+        no_tension: bool,
+        /// Where the compression ends.
+        stop: Option<Stop>,
+    },
+}
+
+/// Limit stop of a resilient face.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Stop {
+    /// δ, m.
+    pub length: f64,
+    /// Its restitution.
+    pub restitution: f64,
+}
+
+/// What drives the structure, cycle by cycle. Time is kept as a cycle and a time within it, so that a million cycles cost
+/// no digits.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Drive {
+    /// Length of a cycle, s.
+    pub period: f64,
+    /// Jumps of the force within a cycle, by time; the first at 0.
+    pub ticks: Vec<Tick>,
+    /// False: the ticks belong to the first cycle alone.
+    pub repeats: bool,
+    /// A harmonic force F sin(ω t + φ) beside them, with ω·period a multiple of 2π.
+    pub harmonic: Option<Harmonic>,
+    /// Contact damping renewed at every half cycle of the base acceleration.
+    pub half_cycles: Option<HalfCycles>,
+}
+
+impl Drive {
+    /// The harmonic force, if the force never jumps beside it.
+    pub(crate) fn harmonic_alone(&self) -> Option<Harmonic> {
+        let silent = self.ticks.iter().all(|tick| tick.impulse == 0.0 && tick.level == 0.0);
+        self.harmonic.filter(|_| silent)
+    }
+
+    /// The impulse that the drive gives in a cycle or in a radian: the scale of a kick.
+    pub fn scale(&self) -> f64 {
+        let impulses =
+            self.ticks.iter().fold(0.0, |sum, tick| sum + tick.impulse.abs() + tick.level.abs() * self.period);
+        impulses + self.harmonic.map_or(0.0, |drive| drive.force.abs() / drive.angular_frequency)
+    }
+}
+
+/// Phase of the harmonic drive: F cos(ω t + φ) and F sin(ω t + φ).
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(crate) struct DrivePhase {
+    pub(crate) cosine: f64,
+    pub(crate) sine: f64,
+}
+
+impl DrivePhase {
+    /// At a time within the cycle; zero without a harmonic force.
+    pub(crate) fn of(drive: &Drive, time: f64) -> Self {
+        drive.harmonic.map_or_else(Self::default, |harmonic| {
+            let (sine, cosine) = sin_cos(harmonic.angular_frequency * time + harmonic.phase);
+            Self { cosine: harmonic.force * cosine, sine: harmonic.force * sine }
+        })
+    }
+}
+
+/// An instant at which the force jumps.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Tick {
+    /// Time within the cycle, s.
+    pub time: f64,
+    /// Impulse given at that instant, N s.
+    pub impulse: f64,
+    /// Constant force from then on, N.
+    pub level: f64,
+}
+
+impl Tick {
+    /// A cycle without force.
+    pub(crate) const STILL: Self = Self { time: 0.0, impulse: 0.0, level: 0.0 };
+}
+
+/// F sin(ω t + φ).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Harmonic {
+    /// F, N.
+    pub force: f64,
+    /// ω, rad/s.
+    pub angular_frequency: f64,
+    /// φ: where in its own period the cycles of the drive begin, rad.
+    pub phase: f64,
+}
+
+/// Equivalent viscous damping: c = curve(RMS of the base acceleration over the half cycle before).
+#[derive(Debug, Clone, PartialEq)]
+pub struct HalfCycles {
+    /// The curve: acceleration in m/s², then N s/m; end values outside.
+    pub curve: crate::system::spline::Spline,
+    /// φ of the base: its displacement is φ·q.
+    pub base: Vec<f64>,
+}
+
+/// What a particle touches.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
+pub enum Contact {
+    /// Nothing: free flight.
+    #[default]
+    Flight,
+    /// Floor: pressed into it, or stuck to it if it is rigid.
+    Floor,
+    /// Ceiling.
+    Ceiling,
+    /// Held on the floor's limit stop.
+    FloorStop,
+    /// Held on the ceiling's limit stop.
+    CeilingStop,
+    /// Let go by a floor that cannot pull, which is still compressed.
+    FloorReleased,
+    /// The same at the ceiling.
+    CeilingReleased,
+    // Floor and ceiling at once, where they do not move as one.
+    /// Pressed into floor and ceiling.
+    Both,
+    /// Pressed into the floor; let go by a ceiling that cannot pull, which is still compressed.
+    FloorCeilingReleased,
+    /// Pressed into the ceiling; let go by the floor.
+    CeilingFloorReleased,
+    /// Let go by both, which are still compressed.
+    BothReleased,
+    /// Held by the floor, rigid or on its limit stop, and pressed into the ceiling.
+    HeldByFloor,
+    /// The same, let go by the ceiling.
+    HeldByFloorCeilingReleased,
+    /// Held by the ceiling, and pressed into the floor.
+    HeldByCeiling,
+    /// The same, let go by the floor.
+    HeldByCeilingFloorReleased,
+}
+
+/// What happened.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum EventKind {
+    /// Contact made with the floor.
+    FloorContact,
+    /// Contact lost with the floor.
+    FloorRelease,
+    /// Contact made with the ceiling.
+    CeilingContact,
+    /// Contact lost with the ceiling.
+    CeilingRelease,
+    /// Impact on the floor's limit stop.
+    FloorStop,
+    /// Impact on the ceiling's limit stop.
+    CeilingStop,
+    /// Let go by a limit stop.
+    StopRelease,
+    /// The last of infinitely many impacts.
+    ChatterEnd,
+}
+
+impl EventKind {
+    /// A contact is made, with a face or with its stop.
+    pub fn is_contact(self) -> bool {
+        matches!(self, Self::FloorContact | Self::CeilingContact | Self::FloorStop | Self::CeilingStop)
+    }
+
+    /// A contact is lost.
+    pub(crate) fn is_release(self) -> bool {
+        matches!(self, Self::FloorRelease | Self::CeilingRelease | Self::StopRelease)
+    }
+}
+
+/// An event in its place.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Event {
+    /// Forcing cycle, from 0.
+    pub cycle: u64,
+    /// Time within the cycle, s.
+    pub time: f64,
+    /// Which particle.
+    pub particle: usize,
+    /// What.
+    pub kind: EventKind,
+    /// Relative velocity just before, m/s.
+    pub approach: f64,
+    /// Relative velocity just after, m/s.
+    pub departure: f64,
+    /// A contact that is made goes on: a face that is rigid lets go at once of what bounces, and of what it does not push.
+    pub lasts: bool,
+}
