@@ -66,3 +66,7 @@ pub fn dot(a: &[f64], b: &[f64]) -> f64 {
 pub(crate) fn length(x: &[f64]) -> f64 {
     dot(x, x).sqrt()
 }
+
+pub(crate) fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len() as f64
+}

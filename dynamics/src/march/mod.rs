@@ -336,7 +336,7 @@ pub(crate) fn march(system: &HybridSystem, options: &Options, states: States) ->
         return Ok(taped(system, options, states)?.0);
     }
     // A time history shows ceilings, whether anything meets them or not.
-    let mut far = if options.trace.is_none() { reach::far(system, options, &states) } else { Vec::new() };
+    let mut far = if options.trace.is_none() { reach::far(system, options, states.ground()) } else { Vec::new() };
     let spent = budget::events();
     let response = without(system, options, states, &far)?;
     // What is out of reach by less than the smallest margin may be nearer than all that decided it: the same run once more tells.

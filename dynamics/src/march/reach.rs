@@ -18,7 +18,6 @@ use std::cell::OnceCell;
 use crate::arithmetic::cholesky::Cholesky;
 use crate::arithmetic::matrix::{Matrix, dot};
 use crate::error::EngineError;
-use crate::march::states::States;
 use crate::options::{Options, StartState, Until};
 use crate::system::{Drive, Face, HybridSystem, Law, Particle};
 
@@ -138,18 +137,18 @@ pub(crate) fn without(system: &HybridSystem, far: &[OutOfReach]) -> HybridSystem
 /// The ceilings and limit stops that a run from event to event cannot reach; it does without their guards.
 #[must_use]
 pub fn out_of_reach(system: &HybridSystem, options: &Options) -> Vec<OutOfReach> {
-    far(system, options, &States::of(system))
+    far(system, options, &Ground::default())
 }
 
-/// The same of a system whose states are known.
-pub(crate) fn far(system: &HybridSystem, options: &Options, states: &States) -> Vec<OutOfReach> {
+/// The same of a system of which something may be known.
+pub(crate) fn far(system: &HybridSystem, options: &Options, ground: &Ground) -> Vec<OutOfReach> {
     let bounded =
         system.particles.iter().any(|particle| particle.ceiling.is_some() || particle.floor.law.stop().is_some());
     // How many cycles a run takes that settles is not known before.
     if !bounded || options.until == Until::Settled {
         return Vec::new();
     }
-    prove(system, options, states.ground()).unwrap_or_default()
+    prove(system, options, ground).unwrap_or_default()
 }
 
 fn prove(system: &HybridSystem, options: &Options, ground: &Ground) -> Option<Vec<OutOfReach>> {

@@ -4,6 +4,7 @@
 use super::recurrence::Scale;
 use super::tangent::Tangent;
 use super::tape::Tape;
+use crate::arithmetic::matrix::mean;
 use crate::system::HybridSystem;
 
 /// Cycles are put together to so many batches, whose scatter is the error of the mean.
@@ -54,10 +55,6 @@ impl Exponent {
         let resolution = 1.0 / (batch as f64 * count);
         Some(Self { value, error: libm::hypot(scatter, resolution) })
     }
-}
-
-pub(super) fn mean(values: &[f64]) -> f64 {
-    values.iter().sum::<f64>() / values.len() as f64
 }
 
 fn norm(scale: &Scale, vector: &[f64]) -> f64 {

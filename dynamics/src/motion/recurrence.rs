@@ -2,8 +2,8 @@
 
 use std::f64::consts::TAU;
 
-use super::exponent::mean;
 use super::tape::{End, Reach};
+use crate::arithmetic::matrix::mean;
 use crate::system::HybridSystem;
 
 /// Longest period that is looked for, in cycles of the drive.

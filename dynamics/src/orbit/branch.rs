@@ -3,9 +3,10 @@
 use super::corrector::{At, Path};
 use super::newton::closed;
 use super::origin::Origin;
+use super::point::{Along, BranchEnd, BranchError, BranchPoint, Special};
 use super::shot::Shot;
 use super::slowing::{GRAZES, Slowing};
-use super::special::{self, Between, Special};
+use super::special::{self, Between};
 use super::{Orbit, OrbitError};
 use crate::arithmetic::matrix::{dot, length};
 use crate::system::HybridSystem;
@@ -25,19 +26,6 @@ const HALVINGS: usize = 60;
 /// Clearance in units of the motion, of a branch that ends where a contact begins.
 const TOUCHES: f64 = 1e-7;
 
-/// What a branch is followed along.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Along {
-    /// The end of the range that it is followed away from.
-    pub from: f64,
-    /// The end that it is followed towards.
-    pub to: f64,
-    /// The longest step, as a share of `from` to `to` and of the motion.
-    pub step: f64,
-    /// Points beyond which it is not followed.
-    pub points: usize,
-}
-
 /// Orbits side by side.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Branch<E> {
@@ -45,56 +33,6 @@ pub struct Branch<E> {
     pub points: Vec<BranchPoint>,
     /// How it ends.
     pub end: BranchEnd<E>,
-}
-
-/// An orbit of a branch.
-#[derive(Debug, Clone, PartialEq)]
-pub struct BranchPoint {
-    /// The parameter.
-    pub parameter: f64,
-    /// The orbit there.
-    pub orbit: Orbit,
-    /// What happens there.
-    pub special: Option<Special>,
-}
-
-/// Why a branch goes no further than its last point.
-#[derive(Debug, Clone, PartialEq)]
-pub enum BranchEnd<E> {
-    /// It has come to an end of the range: to `to`, or by way of a fold to `from`.
-    Range,
-    /// It has come back to its first point, which is the last one, too.
-    Closed,
-    /// Next to the last point the motion has half the period: the branch of that motion doubles its period there.
-    HalfPeriod,
-    /// Next to the last point the motion comes again upside down after half a period: the branch of that motion loses its symmetry
-    /// there.
-    Symmetry,
-    /// A contact begins or ends without speed here; the last point is as close to it as orbits are found.
-    Graze {
-        /// The parameter of the graze.
-        parameter: f64,
-    },
-    /// A contact has come to the instant at which the cycles of the drive begin: with the impulse given there, the motion after it
-    /// is another one.
-    CycleStart,
-    /// As many points as were asked for.
-    Points,
-    /// No orbit is found beyond the last point.
-    Orbit(OrbitError),
-    /// There is no system beyond the last point.
-    System(E),
-}
-
-/// Why there is no branch.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum BranchError<E> {
-    /// There is no orbit.
-    #[error(transparent)]
-    Orbit(#[from] OrbitError),
-    /// There is no system.
-    #[error("{0}")]
-    System(E),
 }
 
 impl<E> Branch<E> {

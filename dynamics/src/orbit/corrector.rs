@@ -6,9 +6,9 @@
 
 use nalgebra::DMatrix;
 
-use super::branch::{Along, BranchError};
 use super::elimination::Solved;
 use super::newton::{CLOSED, size};
+use super::point::{Along, BranchError};
 use super::shot::{Contacts, Shot, state_after};
 use super::{OrbitError, elimination};
 use crate::arithmetic::matrix::length;

@@ -8,10 +8,10 @@
 //! known to its rounding over d. But the determinant feels that by its square only. So the point is interpolated from orbits at
 //! some distance to both sides, as a zero of det(1 − M), for which no ∂P/∂λ is needed.
 
-use super::branch::BranchError;
 use super::corrector::{At, Path};
 use super::lagrange::{combined, weights};
 use super::newton::size;
+use super::point::BranchError;
 use super::shot::Shot;
 use crate::motion::End;
 use crate::system::HybridSystem;

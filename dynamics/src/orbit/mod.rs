@@ -53,6 +53,7 @@ mod fork;
 mod lagrange;
 mod newton;
 mod origin;
+mod point;
 mod section;
 mod shot;
 mod slowing;
@@ -64,9 +65,9 @@ use crate::options::StartState;
 use crate::response::Response;
 use crate::system::HybridSystem;
 
-pub use branch::{Along, Branch, BranchEnd, BranchError, BranchPoint};
+pub use branch::Branch;
 pub use elasticity::{Elasticity, ElasticityError};
-pub use special::Special;
+pub use point::{Along, BranchEnd, BranchError, BranchPoint, Special};
 
 /// A periodic motion.
 #[derive(Debug, Clone, PartialEq)]

@@ -6,8 +6,8 @@
 //!
 //! and that point is z₀. One that only passes by has one elsewhere.
 
-use super::branch::BranchError;
 use super::corrector::{At, Path};
+use super::point::BranchError;
 use super::section::Shift;
 use super::shot::Shot;
 use super::special;

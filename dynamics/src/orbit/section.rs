@@ -9,10 +9,10 @@
 //! has the same orbits, multipliers and branches. The middle of the longest time without contacts is taken.
 
 use super::Orbit;
-use super::branch::BranchError;
 use super::corrector::{At, Path};
 use super::elimination::Solved;
 use super::newton::closed;
+use super::point::BranchError;
 use super::shot::{Contacts, Shot, state_after};
 use crate::motion::End;
 use crate::system::{Drive, HybridSystem};

@@ -2,9 +2,9 @@
 
 use nalgebra::DMatrix;
 
-use super::branch::BranchError;
 use super::corrector::{At, Path};
 use super::fork::{self, Fork};
+use super::point::{BranchError, Special};
 use crate::motion::{Multiplier, NEUTRAL};
 use crate::system::HybridSystem;
 
@@ -14,53 +14,6 @@ const EVALUATIONS: usize = 60;
 const LOCATED: f64 = 1e-13;
 /// A pair that has become complex away from the unit circle has not crossed it.
 const CROSSES: f64 = 1e-6;
-
-/// A point at which a branch changes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Special {
-    /// It turns back in the parameter.
-    Fold,
-    /// A multiplier passes −1: a motion of twice the period begins.
-    PeriodDoubling,
-    /// A complex pair of multipliers passes the unit circle (Neimark-Sacker): a quasi-periodic motion begins.
-    Torus,
-    /// A contact begins or ends without speed.
-    Graze,
-    /// A particle that stays on its rigid face for a while begins to leave it as soon as it lands, or the other way round.
-    Sticking,
-    /// A multiplier passes 1 where the branch of a motion that comes again upside down after half a period does not turn: two motions
-    /// that are each other's mirror image begin.
-    SymmetryBreaking,
-    /// The same of a motion without that symmetry: another branch crosses.
-    BranchPoint,
-}
-
-impl Special {
-    /// All of them, in the order of this list.
-    pub const ALL: [Self; 7] = [
-        Self::Fold,
-        Self::PeriodDoubling,
-        Self::Torus,
-        Self::Graze,
-        Self::Sticking,
-        Self::SymmetryBreaking,
-        Self::BranchPoint,
-    ];
-
-    /// The word in a table.
-    #[must_use]
-    pub fn word(self) -> &'static str {
-        match self {
-            Self::Fold => "fold",
-            Self::PeriodDoubling => "period doubling",
-            Self::Torus => "torus",
-            Self::Graze => "graze",
-            Self::Sticking => "sticking",
-            Self::SymmetryBreaking => "symmetry breaking",
-            Self::BranchPoint => "branch point",
-        }
-    }
-}
 
 /// What is zero at a special point.
 #[derive(Clone, Copy)]
