@@ -13,18 +13,19 @@
 //! | `options` | how it is run: which cycles, from where, and what is kept of them |
 //! | `contact_state` | the equations of one contact state, split into 2 × 2 blocks, and what they answer to a load for ever |
 //! | `flow` | the exact motion of one contact state, what is watched of it, its Taylor series and its integrals |
+//! | `states` | contact states that were visited, kept for every run that comes to them again |
 //! | `search` | the first event of a flow, certified by Bernstein enclosures |
 //! | `motion` | which kind of motion a run ends in: multipliers, exponents |
 //! | `response` | what comes out, with the audit: momentum and energy, balanced by other means |
-//! | `march` | from event to event, cycle by cycle; the contact states on the way, and what a bound on the energy keeps out of reach |
-//! | `linear` | a run in which no event can happen, in closed form |
+//! | `march` | from event to event, cycle by cycle, and what a bound on the energy keeps out of reach |
+//! | `linear` | in closed form: runs in which no event can happen, and thresholds of those with one or two impacts a period |
 //! | `fixed` | a fixed-step scheme, to show what the time step does to a published result |
 //! | `orbit` | periodic motions, stable or not, and branches of them |
 //! | `run` | the ways to run a system; runs that are asked for again |
 //!
 //! Imports go upwards in this table only, as in that of the rooms in `ARCHITECTURE.md`.
 //!
-//! The engine knows no beam, no YAML and no file. It works with dense matrices of a hundred modes or so, not with large
+//! The engine knows no beam and no file; what its errors advise is said in the words of the YAML. It works with dense matrices of a hundred modes or so, not with large
 //! sparse systems.
 
 #![deny(missing_docs)]
@@ -46,6 +47,7 @@ mod orbit;
 mod response;
 mod run;
 mod search;
+mod states;
 mod system;
 
 pub use arithmetic::matrix::{Matrix, dot};
@@ -56,13 +58,14 @@ pub use flow::sums::Sums;
 pub use linear::{SteadyMotion, SteadyState, ceiling_graze, lift_off, steady_state, two_impacts};
 pub use march::reach::{FarSurface, OutOfReach, out_of_reach};
 pub use motion::{Exponent, Fundamental, Motion, MotionKind, Multiplier, Recurring};
-pub use options::trace::{Sample, SampledParticle, TraceRequest};
+pub use options::trace::TraceRequest;
 pub use options::{Averaged, Options, StartState, Until};
 pub use orbit::{
     Along, Branch, BranchEnd, BranchError, BranchPoint, Elasticity, ElasticityError, Orbit, OrbitError, Special,
 };
 pub use response::extremes::Extremes;
 pub use response::proof::Proof;
+pub use response::sample::{Sample, SampledParticle};
 pub use response::{Counts, CycleRates, Method, Observed, Response};
 pub use run::repeated::keeping_runs;
 pub use run::{event_driven, fundamental_matrix, is_linear};

@@ -1,4 +1,5 @@
-//! Imports go one way: the table of rooms in ARCHITECTURE.md against every path in the sources.
+//! Imports go one way: the tables of rooms in ARCHITECTURE.md and dynamics/src/lib.rs against every path that leads from one room to
+//! another.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -31,29 +32,41 @@ impl House {
         below.as_os_str().to_str().unwrap().trim_end_matches(".rs").to_owned()
     }
 
-    /// Every path in its sources that leads to no room, or to one that stands below its own.
+    /// Every path that leads to no room, to one that stands below its own, or out of a room without naming where to.
     fn wrong_ways(&self) -> Vec<String> {
         let Self { table, .. } = self;
-        let order: BTreeMap<String, usize> = self.rooms().into_iter().zip(0..).collect();
-        let path = Regex::new(r"\bcrate::(\w+)").unwrap();
+        let rooms = self.rooms();
+        let order: BTreeMap<&str, usize> = rooms.iter().map(String::as_str).zip(0..).collect();
         let mut wrong = Vec::new();
+        if order.len() < rooms.len() {
+            wrong.push(format!("{table} lists a room twice"));
+        }
+        // The engine is a room of `src`, and a package besides.
+        let path = Regex::new(r"\bcrate::(\w+|\{|\*)|(?:^|[^:\w])(dynamics)::").unwrap();
+        let upwards = Regex::new(r"(?:\bsuper::)+").unwrap();
         for file in sources(Path::new(self.sources)) {
             let room = self.room_of(&file);
             if room == "lib" || room == "main" {
                 continue;
             }
-            let Some(own) = order.get(&room) else {
+            let Some(own) = order.get(&*room) else {
                 wrong.push(format!("{}: `{room}` is not in the table of {table}", file.display()));
                 continue;
             };
-            for found in path.captures_iter(&code(&fs::read_to_string(&file).unwrap())) {
-                match order.get(&found[1]) {
-                    Some(other) if other <= own => {}
-                    Some(_) => {
-                        wrong.push(format!("{}: `{room}` uses `{}`, which is below it", file.display(), &found[1]))
-                    }
-                    None => wrong.push(format!("{}: uses `{}`, which is no room", file.display(), &found[1])),
+            let text = fs::read_to_string(&file).unwrap();
+            let code = code(text.split("#[cfg(test)]").next().unwrap());
+            for found in path.captures_iter(&code) {
+                let other = found.get(1).or(found.get(2)).map_or("", |other| other.as_str());
+                match order.get(other) {
+                    Some(place) if place <= own => {}
+                    Some(_) => wrong.push(format!("{}: `{room}` uses `{other}`, which is below it", file.display())),
+                    None => wrong.push(format!("{}: uses `{other}`, which is no room", file.display())),
                 }
+            }
+            let below = file.strip_prefix(self.sources).unwrap().components().count();
+            let depth = below - usize::from(file.ends_with("mod.rs"));
+            if upwards.find_iter(&code).any(|found| found.as_str().matches("super::").count() >= depth) {
+                wrong.push(format!("{}: leaves its room by `super::`", file.display()));
             }
         }
         wrong
@@ -122,7 +135,8 @@ fn every_room_of_the_table_is_there() {
     for house in HOUSES {
         for room in house.rooms() {
             let place = Path::new(house.sources).join(&room);
-            let there = place.is_dir() || place.with_extension("rs").is_file() || Path::new(&room).is_dir();
+            let there =
+                place.is_dir() || place.with_extension("rs").is_file() || Path::new(&room).join("Cargo.toml").is_file();
             assert!(there, "{} lists `{room}`, and there is no such folder", house.table);
         }
     }

@@ -1,4 +1,4 @@
-//! Dense matrices and vectors; their sums run in order, since their bits reach the results.
+//! Dense matrices, vectors and means; their sums run in order, since their bits reach the results.
 
 /// A dense matrix, row by row.
 #[derive(Debug, Clone, PartialEq)]
@@ -67,6 +67,7 @@ pub(crate) fn length(x: &[f64]) -> f64 {
     dot(x, x).sqrt()
 }
 
+/// Σ xᵢ/n, in order.
 pub(crate) fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len() as f64
 }

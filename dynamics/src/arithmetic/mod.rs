@@ -3,12 +3,13 @@
 pub(crate) mod cholesky;
 pub(crate) mod complexes;
 pub(crate) mod elementary;
+pub(crate) mod elimination;
 pub(crate) mod exact;
 pub(crate) mod four;
 pub(crate) mod gauss;
+pub(crate) mod lagrange;
 pub(crate) mod lanes;
 pub(crate) mod matrix;
-pub(crate) mod polynomial;
 pub(crate) mod quadrature;
 pub(crate) mod schur;
 pub(crate) mod superposition;

@@ -1,18 +1,11 @@
-//! Contact: guards of each contact state, and what follows when one of them is reached.
-//!
-//! | contact | holds while | then |
-//! |---|---|---|
-//! | flight | u > 0 and w < 0 | contact, or a bounce |
-//! | pressed into a resilient face | compressed (or, if it cannot pull, while it pushes), and less than the stop | flight, stop |
-//! | held by a rigid face or a stop | the face can push | flight, or pressed |
-//! | at both faces, which move by themselves | each face by its own guards, as above | the other face alone |
+//! Contact: which face does what to a particle, where it is relative to a face, and what a crossing means.
 
 pub(crate) mod collision;
 pub(crate) mod mobility;
 pub(crate) mod touch;
 
 use crate::arithmetic::matrix::dot;
-use crate::system::{Contact, EventKind, Face, Law, Particle, Stop};
+use crate::system::{Contact, EventKind, Face, Particle};
 
 /// Below this relative speed, m/s, a particle sticks to a rigid face; what it would still have bounced is added to the time at
 /// which the chatter ends.
@@ -280,55 +273,8 @@ impl Side {
     }
 }
 
-impl Particle {
-    /// Between rigid faces without a gap: a part of the structure, which no face ever loses.
-    pub fn is_enclosed(&self) -> bool {
-        let rigid = |face: &Face| face.law.is_rigid();
-        self.has_no_gap() && rigid(&self.floor) && self.ceiling.as_ref().is_some_and(rigid)
-    }
-
-    /// Floor and ceiling do not move as one.
-    pub(crate) fn has_walls(&self) -> bool {
-        self.ceiling.as_ref().is_some_and(|ceiling| ceiling.row != self.floor.row)
-    }
-
-    /// Between faces that move as one, without a gap: what leaves one of them is at the other.
-    pub(crate) fn has_no_gap(&self) -> bool {
-        self.gap == 0.0 && self.ceiling.as_ref().is_some_and(|ceiling| ceiling.row == self.floor.row)
-    }
-}
-
-impl Law {
-    pub(crate) fn is_rigid(self) -> bool {
-        matches!(self, Self::Rigid { .. })
-    }
-
-    /// N/m; none of a rigid face.
-    pub(crate) fn stiffness(self) -> Option<f64> {
-        match self {
-            Self::Resilient { stiffness, .. } => Some(stiffness),
-            Self::Rigid { .. } => None,
-        }
-    }
-
-    /// The stop beside the springs of a face, if it has one.
-    pub fn stop(self) -> Option<Stop> {
-        match self {
-            Self::Resilient { stop, .. } => stop,
-            Self::Rigid { .. } => None,
-        }
-    }
-
-    /// How far it can be compressed to its stop, m.
-    pub(crate) fn depth(self) -> f64 {
-        self.stop().map_or(0.0, |stop| stop.length)
-    }
-
-    /// Restitution of what holds a particle: a rigid face, or the stop of a resilient one.
-    pub(crate) fn restitution(self) -> f64 {
-        match self {
-            Self::Rigid { restitution } => restitution,
-            Self::Resilient { stop, .. } => stop.map_or(0.0, |stop| stop.restitution),
-        }
-    }
+/// kδ/mp: what the spring of a face held on its stop pushes by itself, per mass.
+pub(crate) fn spring_on_stop(particle: &Particle, side: Side) -> f64 {
+    let law = side.face(particle).law;
+    law.stiffness().map_or(0.0, |stiffness| stiffness * law.depth() / particle.mass)
 }

@@ -13,14 +13,14 @@
 
 pub(crate) mod bank;
 pub(crate) mod block;
-pub(crate) mod cluster;
+mod cluster;
 pub(crate) mod conservative;
-pub(crate) mod damped;
+mod damped;
 pub(crate) mod load;
 pub(crate) mod modes;
-pub(crate) mod resonance;
+mod resonance;
 pub(crate) mod spectral;
-pub(crate) mod undamped;
+mod undamped;
 
 use std::cell::OnceCell;
 use std::rc::Rc;

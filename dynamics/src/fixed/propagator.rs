@@ -9,11 +9,10 @@
 use super::vector::Vector;
 use crate::arithmetic::cholesky::Cholesky;
 use crate::arithmetic::matrix::Matrix;
-use crate::contact::{Hold, Side};
+use crate::contact::{Hold, Side, spring_on_stop};
 use crate::contact_state::conservative::carried_mass;
 use crate::contact_state::modes::scale;
 use crate::error::EngineError;
-use crate::search::guards::spring_on_stop;
 use crate::system::{Contact, HybridSystem, Law, Particle};
 
 /// One contact state over one time step.

@@ -7,9 +7,9 @@ use crate::arithmetic::matrix::dot;
 use crate::contact::Side;
 use crate::error::EngineError;
 use crate::flow::sums::{About, Sums};
-use crate::options::trace::{Sample, SampledParticle};
 use crate::response::audit::State;
 use crate::response::extremes::Extremes;
+use crate::response::sample::{Sample, SampledParticle};
 use crate::response::{CycleRates, Observed};
 use crate::system::{Event, EventKind, Particle};
 

@@ -3,10 +3,10 @@
 //! The blocks of its modes ([`crate::contact_state`]) move each by itself; a harmonic drive is one more of them. Gap, amplitude
 //! and time do not enter, so one flow serves a whole sweep.
 
-pub(crate) mod dissipation;
+mod dissipation;
 pub(crate) mod gains;
 pub(crate) mod integral;
-pub(crate) mod lyapunov;
+mod lyapunov;
 pub(crate) mod pair_integral;
 pub(crate) mod parabola;
 pub(crate) mod series;

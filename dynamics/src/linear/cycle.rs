@@ -5,8 +5,7 @@
 
 use crate::budget;
 use crate::flow::Flow;
-use crate::system::DrivePhase;
-use crate::system::{HybridSystem, Tick};
+use crate::system::{DrivePhase, HybridSystem, Tick};
 
 /// c ← E c + d, block by block.
 #[derive(Debug, Clone)]

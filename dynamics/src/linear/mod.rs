@@ -33,14 +33,13 @@ use crate::error::EngineError;
 use crate::flow::Flow;
 use crate::flow::signals::Row;
 use crate::flow::sums::Sums;
-use crate::march::states::States;
 use crate::options::{Options, StartState};
 use crate::response::audit::Audit;
 use crate::response::extremes::Extremes;
 use crate::response::proof::Proof;
 use crate::response::{CycleRates, Method, Observed, Response};
-use crate::system::DrivePhase;
-use crate::system::{Contact, HybridSystem, Tick};
+use crate::states::States;
+use crate::system::{Contact, DrivePhase, HybridSystem, Tick};
 
 /// A run all of whose particles rest on their floors.
 struct Run<'a> {

@@ -13,8 +13,7 @@ use crate::flow::parabola::Parabola;
 use crate::flow::signals::{Row, motion};
 use crate::response::crest::{self, Motion, crest};
 use crate::response::extremes::Extremes;
-use crate::system::DrivePhase;
-use crate::system::HybridSystem;
+use crate::system::{DrivePhase, HybridSystem};
 
 /// Nodes a radian of whatever oscillates: the cubic between two of them is then close enough to judge a crest ([`crest`]).
 const NODES_A_RADIAN: f64 = 2.5;

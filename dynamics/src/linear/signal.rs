@@ -9,8 +9,7 @@ use crate::flow::Flow;
 use crate::flow::gains::{Closed, Gains};
 use crate::flow::signals::Row;
 use crate::flow::sums::{About, Sums};
-use crate::system::DrivePhase;
-use crate::system::HybridSystem;
+use crate::system::{DrivePhase, HybridSystem};
 
 impl Row {
     /// Its share of the harmonic force, if there is one, and its rest under a constant force.

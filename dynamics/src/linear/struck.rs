@@ -8,8 +8,7 @@ use super::cycle::{Affine, jump, times};
 use crate::arithmetic::cholesky::Cholesky;
 use crate::arithmetic::matrix::dot;
 use crate::error::EngineError;
-use crate::system::DrivePhase;
-use crate::system::{Face, HybridSystem, Particle};
+use crate::system::{DrivePhase, Face, HybridSystem, Particle};
 
 /// Place and velocity.
 #[derive(Clone, Copy)]

@@ -5,13 +5,14 @@
 
 use super::March;
 use super::effects::Effects;
+use super::grip::Grip;
 use crate::arithmetic::matrix::dot;
 use crate::contact::collision::{self, Closed, Outcome};
 use crate::contact::touch::{self, Exchange, Touch};
 use crate::contact::{Hold, Relative, STICKING_SPEED, Side};
 use crate::error::EngineError;
 use crate::response::audit::energy;
-use crate::search::guards::{Grip, Slipped};
+use crate::search::guards::Slipped;
 use crate::system::{Contact, EventKind, Particle};
 
 /// A particle that its face may hold from now on.

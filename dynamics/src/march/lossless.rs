@@ -9,10 +9,8 @@ use super::March;
 use super::effects::Effects;
 use crate::arithmetic::exact::Twice;
 use crate::contact::{Change, Crossing, Relative, Side};
-use crate::search::guards;
-use crate::search::{Found, Guard};
-use crate::system::DrivePhase;
-use crate::system::Law;
+use crate::search::{Found, Guard, guards};
+use crate::system::{DrivePhase, Law};
 
 /// A time that the clock lacks is shorter than this, in units of the fastest block's time; what is longer is not rounding.
 const LONGEST_LACK: f64 = 1e-12;

@@ -4,12 +4,12 @@
 //! [`crate::search`] certifies. Its flow is exact, its integrals closed; nothing is sampled unless a time history is asked for.
 
 pub(crate) mod reach;
-pub(crate) mod states;
-pub(crate) mod visits;
+mod visits;
 
 mod between;
 mod contacts;
 mod effects;
+mod grip;
 mod half_cycles;
 mod impacts;
 mod lossless;
@@ -31,18 +31,16 @@ use crate::flow::parabola::Parabola;
 use crate::flow::signals::Signals;
 use crate::flow::{Flow, Rest};
 use crate::march::reach::OutOfReach;
-use crate::march::states::States;
 use crate::march::visits::Visits;
 use crate::motion::{self, Fundamental, Tape};
-use crate::options::{Averaged, Options, Until};
+use crate::options::{Averaged, Options, StartState, Until};
 use crate::response::audit::Audit;
 use crate::response::extremes::Lookout;
-use crate::response::proof::Proof;
 use crate::response::{CycleRates, Observed, Response};
 use crate::search::guards::Slipped;
 use crate::search::{Clarity, Search};
-use crate::system::DrivePhase;
-use crate::system::{Contact, Event, EventKind, HybridSystem, Particle, Tick};
+use crate::states::States;
+use crate::system::{Contact, DrivePhase, Event, EventKind, HybridSystem, Particle, Tick};
 use effects::{Effects, Every, Plain, Taped};
 use half_cycles::Half;
 use lossless::Doubled;
@@ -122,10 +120,8 @@ impl<'a, E: Effects> March<'a, E> {
         let count = system.particles.len();
         let most = n + count;
         let contacts = match &options.start {
-            crate::options::StartState::StaticEquilibrium => vec![Contact::Floor; count],
-            crate::options::StartState::Given { particles, .. } => {
-                particles.iter().map(|(contact, ..)| *contact).collect()
-            }
+            StartState::StaticEquilibrium => vec![Contact::Floor; count],
+            StartState::Given { particles, .. } => particles.iter().map(|(contact, ..)| *contact).collect(),
         };
         let equivalent = system.drive.half_cycles.as_ref().map(|half| half.curve.upper_end());
         let flow = states.flow(system, &contacts, equivalent)?;
@@ -186,9 +182,9 @@ impl<'a, E: Effects> March<'a, E> {
     }
 
     /// Start: as asked, or static equilibrium with every particle on its floor.
-    fn place(&mut self, start: &crate::options::StartState) -> Result<(), EngineError> {
+    fn place(&mut self, start: &StartState) -> Result<(), EngineError> {
         match start {
-            crate::options::StartState::StaticEquilibrium => {
+            StartState::StaticEquilibrium => {
                 let Rest { q, gaps, .. } = Rest::of(self.system, |contacts| {
                     self.contacts.clone_from_slice(contacts);
                     self.changed = true;
@@ -200,7 +196,7 @@ impl<'a, E: Effects> March<'a, E> {
                 // Nothing presses a particle without weight: what the drive is about to do decides.
                 if self.system.gravity > 0.0 { Ok(()) } else { self.settle(&[]) }
             }
-            crate::options::StartState::Given { q, rate, particles } => {
+            StartState::Given { q, rate, particles } => {
                 self.q[..q.len()].copy_from_slice(q);
                 self.rate[..rate.len()].copy_from_slice(rate);
                 for (at, (_, gap, rate)) in self.particles.iter_mut().zip(particles) {
@@ -272,14 +268,10 @@ impl<'a, E: Effects> March<'a, E> {
     }
 
     /// The state between two cycles, as a run may start from it.
-    fn state(&self) -> crate::options::StartState {
+    fn state(&self) -> StartState {
         let n = self.system.mass.order;
         let particles = self.contacts.iter().zip(&self.particles).map(|(contact, at)| (*contact, at.gap, at.rate));
-        crate::options::StartState::Given {
-            q: self.q[..n].to_vec(),
-            rate: self.rate[..n].to_vec(),
-            particles: particles.collect(),
-        }
+        StartState::Given { q: self.q[..n].to_vec(), rate: self.rate[..n].to_vec(), particles: particles.collect() }
     }
 
     /// y and y′ of a particle.
@@ -392,12 +384,4 @@ pub(crate) fn taped(system: &HybridSystem, options: &Options, states: States) ->
     let motion = if options.motion { Some(motion::name(system, &march.tape, options.average as usize)?) } else { None };
     let tape = std::mem::take(&mut march.tape);
     Ok((Response { motion, ..march.finish()? }, tape))
-}
-
-impl Proof {
-    /// The proof of a run with no event at all.
-    #[must_use]
-    pub fn linear() -> Self {
-        Self { smallest_margin: f64::INFINITY, ..Self::default() }
-    }
 }

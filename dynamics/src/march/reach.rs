@@ -13,12 +13,9 @@
 //! the last with ρ = φ_c − φ_f where the ceiling does not move as the floor does. R grows with every cycle that is driven: the
 //! bound serves far surfaces, short runs and single impulses.
 
-use std::cell::OnceCell;
-
-use crate::arithmetic::cholesky::Cholesky;
-use crate::arithmetic::matrix::{Matrix, dot};
-use crate::error::EngineError;
+use crate::arithmetic::matrix::dot;
 use crate::options::{Options, StartState, Until};
+use crate::states::ground::{Ground, Sag};
 use crate::system::{Drive, Face, HybridSystem, Law, Particle};
 
 /// What rounding may add to a bound, relative to it.
@@ -52,66 +49,6 @@ impl OutOfReach {
     /// How far the particle stays away from it at least, m.
     pub(crate) fn room(&self) -> f64 {
         self.distance - self.reach
-    }
-}
-
-/// What the bound takes from a system whatever its gaps and the size of its drive: kept with its contact states, so that an ensemble
-/// works it out once.
-#[derive(Default)]
-pub(crate) struct Ground {
-    answer: OnceCell<Vec<f64>>,
-    stiffness: OnceCell<Option<Cholesky>>,
-    sag: OnceCell<Option<Sag>>,
-    takes: OnceCell<bool>,
-}
-
-/// What the weights of all particles do to a structure at rest.
-struct Sag {
-    /// Σ mg φ_f.
-    weights: Vec<f64>,
-    /// How far they sink it.
-    places: Vec<f64>,
-}
-
-impl Ground {
-    /// M⁻¹b: what a unit impulse does to q′.
-    pub(crate) fn answer(&self, system: &HybridSystem) -> Result<&[f64], EngineError> {
-        if let Some(answer) = self.answer.get() {
-            return Ok(answer);
-        }
-        let answer = Cholesky::new(&system.mass)?.solve(&system.force_row);
-        Ok(self.answer.get_or_init(|| answer))
-    }
-
-    /// The factor of K, where it holds up any load.
-    fn stiffness(&self, system: &HybridSystem) -> Option<&Cholesky> {
-        self.stiffness.get_or_init(|| Cholesky::new(&system.stiffness).ok()).as_ref()
-    }
-
-    fn sag(&self, system: &HybridSystem) -> Option<&Sag> {
-        let sag = || {
-            let mut weights = vec![0.0; system.mass.order];
-            for particle in &system.particles {
-                let weight = particle.mass * system.gravity;
-                weights.iter_mut().zip(&particle.floor.row).for_each(|(sum, phi)| *sum += weight * phi);
-            }
-            let places = self.stiffness(system)?.solve(&weights);
-            Some(Sag { weights, places })
-        };
-        self.sag.get_or_init(sag).as_ref()
-    }
-
-    /// Neither springs nor dashpots of the structure give energy.
-    fn takes(&self, system: &HybridSystem) -> bool {
-        *self.takes.get_or_init(|| {
-            // Nothing holds up a structure without springs that carries weights.
-            let springs = if system.gravity > 0.0 {
-                self.stiffness(system).is_some()
-            } else {
-                system.gravity == 0.0 && takes(&system.stiffness, &system.mass)
-            };
-            springs && takes(&system.damping, &system.mass)
-        })
     }
 }
 
@@ -270,15 +207,4 @@ fn takes_energy(system: &HybridSystem, ground: &Ground, far: &[OutOfReach]) -> b
     }
     let renewed = system.drive.half_cycles.as_ref().is_none_or(|half| half.curve.lowest()[1] >= 0.0);
     renewed && (strikers < 2 || !bounces) && ground.takes(system)
-}
-
-/// No motion gains energy from such springs or dashpots: with a rounding of themselves as a share of M they are positive.
-fn takes(matrix: &Matrix, mass: &Matrix) -> bool {
-    let trace = |matrix: &Matrix| (0..matrix.order).map(|i| matrix.at(i, i)).sum::<f64>();
-    let rounding = ROUNDING * trace(matrix) / trace(mass);
-    if rounding == 0.0 {
-        return matrix.entries.iter().all(|entry| *entry == 0.0);
-    }
-    let entries = matrix.entries.iter().zip(&mass.entries).map(|(own, mass)| own + rounding * mass).collect();
-    Cholesky::new(&Matrix { order: matrix.order, entries }).is_ok()
 }

@@ -5,10 +5,10 @@ use super::effects::Effects;
 use crate::arithmetic::lanes::WIDTH;
 use crate::contact::Side;
 use crate::flow::signals;
-use crate::options::trace::{Sample, SampledParticle, TraceRequest};
+use crate::options::trace::TraceRequest;
+use crate::response::sample::{Sample, SampledParticle};
 use crate::search::guards;
-use crate::system::DrivePhase;
-use crate::system::Particle;
+use crate::system::{DrivePhase, Particle};
 
 impl<E: Effects> March<'_, E> {
     /// Samples of the time history that fall into the segment.

@@ -9,8 +9,7 @@ use super::tape::{At, Crossing, Cycle, Jump, Step};
 use crate::arithmetic::matrix::dot;
 use crate::contact::Side;
 use crate::flow::Flow;
-use crate::system::DrivePhase;
-use crate::system::HybridSystem;
+use crate::system::{DrivePhase, HybridSystem};
 
 /// Carries vectors along a tape.
 pub(super) struct Tangent<'a> {

@@ -44,12 +44,14 @@ pub struct Options {
 
 impl Options {
     /// Cycles to run: the averaged window, and as far as a time history asks for.
+    #[must_use]
     pub fn cycles(&self) -> u64 {
         let window = u64::from(self.skip) + u64::from(self.average);
         window.max(self.trace.map_or(0, |trace| trace.to_cycle))
     }
 
     /// The averaged window, unless the run settles before.
+    #[must_use]
     pub fn averaged(&self) -> Averaged {
         Averaged { first: u64::from(self.skip), cycles: u64::from(self.average) }
     }
@@ -84,11 +86,13 @@ impl Averaged {
     }
 
     /// Whether a cycle is among them.
+    #[must_use]
     pub fn holds(self, cycle: u64) -> bool {
         (self.first..self.end()).contains(&cycle)
     }
 
     /// Which half of them a cycle belongs to.
+    #[must_use]
     pub fn half(self, cycle: u64) -> usize {
         usize::from(2 * (cycle - self.first) >= self.cycles)
     }

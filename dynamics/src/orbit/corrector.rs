@@ -6,11 +6,11 @@
 
 use nalgebra::DMatrix;
 
-use super::elimination::Solved;
+use super::OrbitError;
 use super::newton::{CLOSED, size};
 use super::point::{Along, BranchError};
 use super::shot::{Contacts, Shot, state_after};
-use super::{OrbitError, elimination};
+use crate::arithmetic::elimination::{self, Solved};
 use crate::arithmetic::matrix::length;
 use crate::motion::End;
 use crate::system::HybridSystem;

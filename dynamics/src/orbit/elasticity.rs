@@ -15,7 +15,8 @@
 
 use super::newton::{closed, size};
 use super::shot::{Sequence, Shot};
-use super::{Orbit, OrbitError, lagrange};
+use super::{Orbit, OrbitError};
+use crate::arithmetic::lagrange;
 use crate::error::EngineError;
 use crate::motion::End;
 use crate::response::Response;

@@ -9,10 +9,10 @@
 //! some distance to both sides, as a zero of det(1 − M), for which no ∂P/∂λ is needed.
 
 use super::corrector::{At, Path};
-use super::lagrange::{combined, weights};
 use super::newton::size;
 use super::point::BranchError;
 use super::shot::Shot;
+use crate::arithmetic::lagrange::{combined, weights};
 use crate::motion::End;
 use crate::system::HybridSystem;
 

@@ -40,17 +40,14 @@
 //! | `section` | where the period begins, away from contacts |
 //! | `slowing` | where a contact that slows down has no speed left |
 //! | `fork` | where a branch loses its symmetry |
-//! | `branch` | from point to point, and how a branch ends |
-//! | `lagrange` | the polynomial through a few points |
+//! | `point` | what a branch is followed along, its points, and how it ends |
+//! | `branch` | from point to point |
 //! | `elasticity` | the derivative of a number of an orbit in a parameter |
-//! | `elimination` | linear equations, singular ones among them |
 
 mod branch;
 mod corrector;
 mod elasticity;
-mod elimination;
 mod fork;
-mod lagrange;
 mod newton;
 mod origin;
 mod point;

@@ -5,9 +5,9 @@ use super::{Orbit, OrbitError};
 use crate::budget;
 use crate::error::EngineError;
 use crate::march;
-use crate::march::states::States;
 use crate::motion::{End, MotionKind, Scale, candidates, closest};
 use crate::options::{Options, StartState};
+use crate::states::States;
 use crate::system::HybridSystem;
 
 /// Distance from the orbit, in units of the motion, within which a state is on it.

@@ -10,10 +10,10 @@
 
 use super::Orbit;
 use super::corrector::{At, Path};
-use super::elimination::Solved;
 use super::newton::closed;
 use super::point::BranchError;
 use super::shot::{Contacts, Shot, state_after};
+use crate::arithmetic::elimination::Solved;
 use crate::motion::End;
 use crate::system::{Drive, HybridSystem};
 

@@ -4,15 +4,16 @@ use std::ops::Range;
 
 use nalgebra::DMatrix;
 
-use super::{Orbit, OrbitError, elimination};
+use super::{Orbit, OrbitError};
+use crate::arithmetic::elimination;
 use crate::arithmetic::matrix::{dot, length};
 use crate::budget;
 use crate::contact::Relative;
 use crate::march;
-use crate::march::states::States;
 use crate::motion::{End, Period, Scale, Tape, kind};
 use crate::options::{Options, StartState};
 use crate::response::Response;
+use crate::states::States;
 use crate::system::{Contact, Event, EventKind, HybridSystem};
 
 /// Away from a multiplier, so that the equations have a solution.

@@ -4,8 +4,8 @@
 //! rests on its face and flies for a moment only: the flight begins where the face falls as fast as the particle would, lasts t, and ends
 //! with v ~ t³. There λ is a smooth function of t, with λ − λ₀ ~ t², so that ∛v takes the place of v.
 
-use super::lagrange::{combined, weights};
 use super::shot::Shot;
+use crate::arithmetic::lagrange::{combined, weights};
 
 /// A contact slower than this, in units of the motion, is about to graze.
 pub(super) const GRAZES: f64 = 1e-3;

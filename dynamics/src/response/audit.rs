@@ -15,8 +15,7 @@ use crate::budget;
 use crate::contact::{Hold, Side};
 use crate::contact_state::bank::Kernels;
 use crate::flow::Flow;
-use crate::system::DrivePhase;
-use crate::system::{Contact, HybridSystem};
+use crate::system::{Contact, DrivePhase, HybridSystem};
 
 /// The physical state at an instant.
 #[derive(Debug, Clone, Default)]

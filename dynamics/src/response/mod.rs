@@ -5,16 +5,17 @@ pub(crate) mod crest;
 pub(crate) mod extremes;
 pub(crate) mod proof;
 pub(crate) mod residual_bound;
+pub(crate) mod sample;
 
 use crate::arithmetic::matrix::dot;
 use crate::budget;
 use crate::error::EngineError;
 use crate::flow::sums::Sums;
 use crate::motion::Motion;
-use crate::options::trace::Sample;
 use crate::options::{Averaged, Options, StartState};
 use crate::response::extremes::Extremes;
 use crate::response::proof::Proof;
+use crate::response::sample::Sample;
 use crate::system::{Contact, Event, EventKind, HybridSystem, Particle};
 
 /// How a response came about.

@@ -2,14 +2,15 @@
 
 pub(crate) mod repeated;
 
+use crate::budget;
 use crate::error::EngineError;
-use crate::march::states::States;
+use crate::linear;
+use crate::march;
 use crate::motion::Fundamental;
 use crate::options::{Options, Until};
-use crate::response::Response;
-use crate::response::residual_bound;
+use crate::response::{Response, residual_bound};
+use crate::states::States;
 use crate::system::HybridSystem;
-use crate::{budget, linear, march};
 
 /// Runs a system from event to event; where it is proved that there is none, in closed form.
 ///

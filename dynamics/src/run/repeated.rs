@@ -8,8 +8,7 @@ use std::collections::BTreeMap;
 
 use crate::budget;
 use crate::error::EngineError;
-use crate::options::Until;
-use crate::options::{Options, StartState};
+use crate::options::{Options, StartState, Until};
 use crate::response::Response;
 use crate::response::proof::Proof;
 use crate::system::{HybridSystem, Particle};

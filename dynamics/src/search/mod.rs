@@ -18,7 +18,8 @@
 //! windows may begin where kernels are cheap, at [`crate::flow::steps::Steps`].
 
 pub(crate) mod guards;
-pub(crate) mod survey;
+mod polynomial;
+mod survey;
 pub(crate) mod window;
 
 mod polish;

@@ -10,10 +10,10 @@
 //! within the bracket of the window.
 
 use super::{Clarity, Guard, Root, Search, Start};
-use crate::arithmetic::polynomial::nearest_root;
 use crate::contact_state::bank::Kernels;
 use crate::flow::series::Span;
 use crate::flow::signals::{Signals, Watched};
+use crate::search::polynomial::nearest_root;
 use crate::search::survey::Motion;
 use crate::search::window::Window;
 

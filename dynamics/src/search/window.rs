@@ -1,9 +1,9 @@
 //! One guard over one window: its polynomial with a bound on what that leaves out, and what the two prove.
 
 use crate::arithmetic::four::Four;
-use crate::arithmetic::polynomial::{Coefficients, DEGREE, bernstein, cut, evaluate};
 use crate::flow::parabola::Parabola;
 use crate::flow::series::{Bounds, Series, Shares, Span};
+use crate::search::polynomial::{Coefficients, DEGREE, bernstein, cut, evaluate};
 
 /// How a guard starts.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -126,6 +126,7 @@ impl Drive {
     }
 
     /// The impulse that the drive gives in a cycle or in a radian: the scale of a kick.
+    #[must_use]
     pub fn scale(&self) -> f64 {
         let impulses =
             self.ticks.iter().fold(0.0, |sum, tick| sum + tick.impulse.abs() + tick.level.abs() * self.period);
@@ -181,7 +182,7 @@ pub struct Harmonic {
 #[derive(Debug, Clone, PartialEq)]
 pub struct HalfCycles {
     /// The curve: acceleration in m/s², then N s/m; end values outside.
-    pub curve: crate::system::spline::Spline,
+    pub curve: spline::Spline,
     /// φ of the base: its displacement is φ·q.
     pub base: Vec<f64>,
 }
@@ -246,6 +247,7 @@ pub enum EventKind {
 
 impl EventKind {
     /// A contact is made, with a face or with its stop.
+    #[must_use]
     pub fn is_contact(self) -> bool {
         matches!(self, Self::FloorContact | Self::CeilingContact | Self::FloorStop | Self::CeilingStop)
     }
@@ -273,4 +275,59 @@ pub struct Event {
     pub departure: f64,
     /// A contact that is made goes on: a face that is rigid lets go at once of what bounces, and of what it does not push.
     pub lasts: bool,
+}
+
+impl Particle {
+    /// Between rigid faces without a gap: a part of the structure, which no face ever loses.
+    #[must_use]
+    pub fn is_enclosed(&self) -> bool {
+        let rigid = |face: &Face| face.law.is_rigid();
+        self.has_no_gap() && rigid(&self.floor) && self.ceiling.as_ref().is_some_and(rigid)
+    }
+
+    /// Floor and ceiling do not move as one.
+    pub(crate) fn has_walls(&self) -> bool {
+        self.ceiling.as_ref().is_some_and(|ceiling| ceiling.row != self.floor.row)
+    }
+
+    /// Between faces that move as one, without a gap: what leaves one of them is at the other.
+    pub(crate) fn has_no_gap(&self) -> bool {
+        self.gap == 0.0 && self.ceiling.as_ref().is_some_and(|ceiling| ceiling.row == self.floor.row)
+    }
+}
+
+impl Law {
+    pub(crate) fn is_rigid(self) -> bool {
+        matches!(self, Self::Rigid { .. })
+    }
+
+    /// N/m; none of a rigid face.
+    pub(crate) fn stiffness(self) -> Option<f64> {
+        match self {
+            Self::Resilient { stiffness, .. } => Some(stiffness),
+            Self::Rigid { .. } => None,
+        }
+    }
+
+    /// The stop beside the springs of a face, if it has one.
+    #[must_use]
+    pub fn stop(self) -> Option<Stop> {
+        match self {
+            Self::Resilient { stop, .. } => stop,
+            Self::Rigid { .. } => None,
+        }
+    }
+
+    /// How far it can be compressed to its stop, m.
+    pub(crate) fn depth(self) -> f64 {
+        self.stop().map_or(0.0, |stop| stop.length)
+    }
+
+    /// Restitution of what holds a particle: a rigid face, or the stop of a resilient one.
+    pub(crate) fn restitution(self) -> f64 {
+        match self {
+            Self::Rigid { restitution } => restitution,
+            Self::Resilient { stop, .. } => stop.map_or(0.0, |stop| stop.restitution),
+        }
+    }
 }

@@ -1,4 +1,4 @@
-//! The engine against references that no code of this package made: 128-bit arithmetic, closed forms, conserved
+//! The engine against references that no code of this repository made: 128-bit arithmetic, closed forms, conserved
 //! quantities, changes of units.
 
 mod any_instant;

@@ -4,6 +4,8 @@
 //! ([`crate::contact_state`]). So the thread that has run one point of a sweep, of a map or of an ensemble has at hand what
 //! the next one visits. A state is built when it is visited, and the same numbers come out whether it was known or not.
 
+pub(crate) mod ground;
+
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::rc::Rc;
@@ -13,8 +15,8 @@ use crate::contact_state::conservative::Conservative;
 use crate::contact_state::{Modes, dampings, feels_half_cycles};
 use crate::error::EngineError;
 use crate::flow::Flow;
-use crate::march::reach::Ground;
 use crate::system::{Contact, HybridSystem, Particle};
+use ground::Ground;
 
 /// Numbers that a thread keeps, about: 128 MB.
 const MOST_NUMBERS: usize = 1 << 24;

@@ -1,7 +1,7 @@
 //! The polynomial through a few points, by Lagrange's formula.
 
 /// Lagrange's weights of values at some places, for that at another.
-pub(super) fn weights(places: &[f64], at: f64) -> Vec<f64> {
+pub(crate) fn weights(places: &[f64], at: f64) -> Vec<f64> {
     let weight = |i: usize| {
         let others = places.iter().enumerate().filter(|(k, _)| *k != i);
         others.fold(1.0, |weight, (_, other)| weight * (at - other) / (places[i] - other))
@@ -10,6 +10,6 @@ pub(super) fn weights(places: &[f64], at: f64) -> Vec<f64> {
 }
 
 /// The sum of values by their weights.
-pub(super) fn combined(weights: &[f64], values: impl IntoIterator<Item = f64>) -> f64 {
+pub(crate) fn combined(weights: &[f64], values: impl IntoIterator<Item = f64>) -> f64 {
     weights.iter().zip(values).fold(0.0, |sum, (weight, value)| sum + weight * value)
 }

@@ -12,14 +12,14 @@ const SINGULAR: f64 = 1e-11;
 const LATE: f64 = 1e-4;
 
 /// x of A x = b, and det A.
-pub(super) struct Solved {
-    pub(super) x: Vec<f64>,
+pub(crate) struct Solved {
+    pub(crate) x: Vec<f64>,
     /// Zero of a singular one.
-    pub(super) determinant: f64,
+    pub(crate) determinant: f64,
 }
 
 /// A with one more row and one more column, which ends with the last of the row's numbers.
-pub(super) fn bordered(a: &DMatrix<f64>, row: &[f64], column: impl Fn(usize) -> f64) -> DMatrix<f64> {
+pub(crate) fn bordered(a: &DMatrix<f64>, row: &[f64], column: impl Fn(usize) -> f64) -> DMatrix<f64> {
     let count = a.nrows();
     DMatrix::from_fn(count + 1, count + 1, |i, k| match (i == count, k == count) {
         (true, _) => row[k],
@@ -29,12 +29,12 @@ pub(super) fn bordered(a: &DMatrix<f64>, row: &[f64], column: impl Fn(usize) -> 
 }
 
 /// x of A x = b; `None` where a number is not finite. Of the unknowns that could be left open, those are that come `late`.
-pub(super) fn solve(a: DMatrix<f64>, b: Vec<f64>, late: &Range<usize>) -> Option<Vec<f64>> {
+pub(crate) fn solve(a: DMatrix<f64>, b: Vec<f64>, late: &Range<usize>) -> Option<Vec<f64>> {
     solved(a, b, late).map(|solved| solved.x)
 }
 
 /// The same with the determinant.
-pub(super) fn solved(mut a: DMatrix<f64>, mut b: Vec<f64>, late: &Range<usize>) -> Option<Solved> {
+pub(crate) fn solved(mut a: DMatrix<f64>, mut b: Vec<f64>, late: &Range<usize>) -> Option<Solved> {
     let size = b.len();
     let mut determinant = 1.0;
     let mut order: Vec<usize> = (0..size).collect();
