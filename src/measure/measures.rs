@@ -178,7 +178,7 @@ measures! {
     StiffnessElasticity: "", "", "elasticity of ψ in the floor stiffness", "the same for the stiffnesses of floors and ceilings", Neighbours, Both, Any;
     DampingElasticity: "", "", "elasticity of ψ in the contact damping", "the same for the dashpots of floors and ceilings; where all are rigid, for their restitution", Neighbours, Both, Any;
     ForceElasticity: "", "", "elasticity of ψ in the force", "the same for the amplitude of the force, or the impulse", Neighbours, Both, Any;
-    VelocityRatioInput: "", "", "standard uncertainty of ψ by the tolerances", "what the `tolerances` of gap clearance, mass, stiffness, damping and force leave of the velocity ratio of the periodic motion that the run goes on to: ψ √Σ (u d ln ψ/d ln p)²", Neighbours, Both, Any;
+    VelocityRatioInput: "", "", "standard uncertainty of ψ by the tolerances", "what the `tolerances` of gap clearance, mass, stiffness, damping and force give the velocity ratio of the periodic motion that the run goes on to: ψ √Σ (u d ln ψ/d ln p)²", Neighbours, Both, Any;
 }
 
 /// A column's name in words: a measure's, or those of [`words::of_column`].

@@ -3,9 +3,10 @@
 use std::collections::BTreeMap;
 
 use super::markdown::{Align, MarkdownTable, one_line};
-use super::tally::{Tally, agrees, mark};
+use super::tally::{Tally, mark};
 use super::view::ExperimentView;
 use crate::experiment::AboutStudy;
+use crate::reference::Verdict;
 use crate::text::number::quantity;
 
 /// The experiments of each chapter, in their order.
@@ -49,15 +50,18 @@ pub(super) fn tables(about: &AboutStudy, experiments: &[ExperimentView<'_>]) -> 
     text
 }
 
-/// `3 of 5`.
+/// `3 of 5`, of those that do not agree by a fit.
 fn agreeing(view: &ExperimentView<'_>) -> String {
     let tally = Tally::of(view.judged);
-    if tally.total() == 0 { String::new() } else { format!("{} of {}", tally.agreeing(), tally.total()) }
+    match tally.evidence() {
+        0 => String::new(),
+        evidence => format!("{} of {evidence}", tally.count(Verdict::Reproduced)),
+    }
 }
 
-/// `✕ 1, □ 2`.
+/// `◐ 3, ✕ 1, □ 2`.
 fn others(view: &ExperimentView<'_>) -> String {
     let tally = Tally::of(view.judged);
-    let others = tally.each().filter(|(verdict, count)| *count > 0 && !agrees(*verdict));
+    let others = tally.each().filter(|(verdict, count)| *count > 0 && *verdict != Verdict::Reproduced);
     others.map(|(verdict, count)| format!("{} {count}", mark(verdict))).collect::<Vec<_>>().join(", ")
 }

@@ -39,7 +39,7 @@ pub(super) fn in_short(judged: &[Judged]) -> String {
     text + "\n"
 }
 
-/// `Stands in part: 2 of 3 statements agree.`
+/// `Stands in part: of 4 statements, 2 agree (2 reproduced, 2 differ); 1 more agrees, but was fitted.`
 fn conclusion(judged: &[Judged]) -> String {
     let tally = Tally::of(judged);
     let (fitted, evidence) = (tally.count(Verdict::Fitted), tally.evidence());
@@ -50,10 +50,10 @@ fn conclusion(judged: &[Judged]) -> String {
     format!(
         "{}: of {} {} ({}); {} fitted.",
         outcome(&tally),
-        counted(evidence, "statement that chose no input,", "statements that chose no input,"),
+        counted(evidence, "statement,", "statements,"),
         counted(tally.count(Verdict::Reproduced), "agrees", "agree"),
-        tally.describe(),
-        counted(fitted, "more was", "more were"),
+        tally.without(Verdict::Fitted).describe(),
+        counted(fitted, "more agrees, but was", "more agree, but were"),
     )
 }
 
@@ -154,7 +154,7 @@ fn entries(judged: &[Judged]) -> String {
     for one in judged {
         let kept = one
             .robust
-            .map_or_else(String::new, |(kept, run)| format!("in {kept} of {}", counted(run as usize, "run", "runs")));
+            .map_or_else(String::new, |(kept, run)| format!("in {kept} of {}", counted(run as usize, "move", "moves")));
         let cells = [entry(one), one.place.clone(), role(one).into(), rests_on(one.price), kept];
         table.row(cells.into_iter().chain(named.then(|| motion(one))));
     }
@@ -203,7 +203,7 @@ fn numbers(judged: &[Judged]) -> String {
     if table.is_empty() {
         return table;
     }
-    format!("In the unit of the table:\n\n{table}")
+    format!("In SI units, as in the stored table:\n\n{table}")
 }
 
 /// What comes out with each assumption moved: the other readings of the source. Nothing where none was moved.

@@ -48,7 +48,7 @@ pub fn index(
             quantity(total, "s", 2)
         );
     }
-    text += "## More\n\n[What moves how](what-moves-how.md) · [Assumptions](assumptions.md) · [Tolerances set by hand](tolerances.md)";
+    text += "## More\n\n[Kinds of motion](what-moves-how.md) · [Assumptions](assumptions.md) · [Tolerances set by hand](tolerances.md)";
     for (title, link) in others {
         text += &format!(" · [{title}]({link})");
     }

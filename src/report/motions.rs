@@ -57,14 +57,14 @@ pub(super) fn in_words(motions: &Motions) -> Option<String> {
 
 /// Rows whose averages are off, closed.
 pub(super) fn unsettled(motions: &Motions) -> String {
-    let of = |settling| details("Rows that are not what they settle to", &rows_off(settling));
+    let of = |settling| details("Rows whose averages differ from the settled motion", &rows_off(settling));
     motions.settling.as_ref().map_or_else(String::new, of)
 }
 
 /// `reports/what-moves-how.md`.
 #[must_use]
 pub fn what_moves(experiments: &[ExperimentView<'_>]) -> String {
-    let mut text = String::from("# What moves how\n\n");
+    let mut text = String::from("# Kinds of motion\n\n");
     let all: Vec<(&ExperimentView<'_>, &Motions)> =
         experiments.iter().filter_map(|view| Some((view, view.motions.as_ref()?))).collect();
     let best: Vec<_> = all.iter().filter(|(_, motions)| !motions.best.is_empty()).copied().collect();
@@ -189,12 +189,12 @@ fn of_settling(settling: &Settling, skip: u32) -> String {
     let median = significant(settling.median, 1);
     match settling.worst.first() {
         None => format!(
-            "In all {} that settle, the velocity ratio of {cycles} is that of the settled motion to {} (median {median}).",
+            "In all {} that settle within ten times the cycles, the velocity ratio of {cycles} is that of the settled motion to {} (median {median}).",
             settling.rows,
             percent(Settling::limit()),
         ),
         Some(worst) => format!(
-            "Of the {} that settle, the velocity ratio of {cycles} is off by more than {} in {}: by {} at {} (median of all {median}).",
+            "Of the {} that settle within ten times the cycles, the velocity ratio of {cycles} is off by more than {} in {}: by {} at {} (median of all {median}).",
             counted(settling.rows, "row", "rows"),
             percent(Settling::limit()),
             settling.off,

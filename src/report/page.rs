@@ -38,7 +38,7 @@ pub fn page(view: &PageView<'_>) -> String {
     }
     text += &view.table.map_or_else(String::new, |table| proof::failures(table) + &doubts::section(table));
     if let Some(words) = motions_in_words {
-        text += &format!("**What moves how.** {words}\n\n");
+        text += &format!("**Kinds of motion.** {words}\n\n");
     }
     text += &view.motions.map_or_else(String::new, motions::unsettled);
     text += &details("Uncertainties and sensitivity", &comparison::uncertainties(view.judged));

@@ -1,7 +1,7 @@
 //! What proves the runs: balances that hold whatever the motion does, and how clearly events were decided.
 
 use crate::table::Table;
-use crate::text::number::{quantity, significant};
+use crate::text::number::{self, quantity, significant};
 use crate::text::words;
 
 use super::markdown::escaped;
@@ -18,7 +18,7 @@ pub(super) fn section(table: Option<&Table>) -> String {
         text += &format!(
             "- {}: {}, events: {}, ties: {}; residual of momentum at most {}, of energy {}; smallest margin {}{}.\n",
             words::of_solver(&solver),
-            counted(of_solver.rows(), "run", "runs"),
+            counted(of_solver.rows(), "row", "rows"),
             proof.total("events"),
             proof.total("ties"),
             proof.worst("momentum_residual"),
@@ -33,8 +33,8 @@ pub(super) fn section(table: Option<&Table>) -> String {
     text.push('\n');
     let variants = table.rows().saturating_sub(baseline.rows());
     if variants > 0 {
-        let runs = counted(variants, "more run has", "more runs have");
-        text += &format!("{runs} one assumption moved, for u_input alone.\n\n");
+        let rows = counted(variants, "more row has", "more rows have");
+        text += &format!("{rows} one assumption moved, for u_input alone.\n\n");
     }
     if solvers(&baseline).iter().any(|solver| solver.starts_with("fixed_step")) {
         text += "The residuals of a fixed step are the error of the step itself: contacts are noticed up to a step late.\n\n";
@@ -96,16 +96,10 @@ impl Proof<'_> {
     fn total(&self, column: &str) -> String {
         // Whole numbers far below 2^53: the sum is exact in any order.
         let total: f64 = self.finite(column).iter().sum();
-        significant_count(total)
+        number::count(total as u64)
     }
 
     fn largest(&self, column: &str) -> String {
-        significant_count(self.finite(column).into_iter().fold(0.0, f64::max))
+        number::count(self.finite(column).into_iter().fold(0.0, f64::max) as u64)
     }
-}
-
-/// A count with all its digits, in groups.
-fn significant_count(count: f64) -> String {
-    let digits = format!("{count:.0}").len();
-    if digits > 6 { format!("{count:.0}") } else { significant(count, digits) }
 }

@@ -9,7 +9,7 @@ const SYMBOLS: &str = "\
 | η | displacement ratio: the same with the standard deviation of the displacement |
 | f′ = F/(m g) | dimensionless forcing amplitude: force F over the weight of the base mass m |
 | ω′ = ω/ωn | frequency ratio: forcing frequency over the natural frequency ωn = √(ks/m) |
-| m′ = mp/m | mass ratio: particle mass over base mass |
+| m′ | mass ratio: mass of the damper, particle and enclosure, over that of the structure; with one mass, of the particle over the base, mp/m |
 | c′ = c/(2 √(ks m)) | structural damping ratio |
 | cf/(2 √(kf mp)) | damping ratio of the resilient floor and ceiling under the particle |
 | kf/ks, kw/ks | stiffness of floor and ceiling, and of the soft walls, over that of the structure |
@@ -26,12 +26,12 @@ u_val = √(u_num² + u_input² + u_D²): u_num covers discretisation, the grid 
 the inputs that the study does not state, u_D half a unit of the last printed digit. The two agree if |E| ≤ 2 u_val. \
 **± is 2 u_val** wherever a number is compared with the study. A tolerance set by hand replaces 2 u_val and is shown beside the \
 verdict. Agreement is *reproduced* only if it could have failed: where ± alone is wider than a tenth of D (and than the printed \
-digits allow), the number is blocked or undecidable. **Claims** are decided over the whole table.
+digits allow), the number is blocked or undecidable, unless it was fitted and is off by no more than that. **Claims** are decided over the whole table.
 
 **Fitted** entries were used to choose an unstated input, so their agreement proves nothing. **Held out** entries were kept aside \
-by a calibration to test it. Only entries that are held out or neither are evidence, and of the \
-fitted ones those that come out when *left out*: the others alone choose inputs that give them. The page of the calibration says \
-how many sets of inputs would, whatever chose them.
+by a calibration to test it. Only entries that are held out or in no fit are evidence, and those fitted ones that still agree when \
+*left out*, that is, with inputs chosen by the others alone. The page of the calibration gives the share of all sets of inputs that \
+would bring them there, too (“by chance”).
 
 **Runs.** *Event-driven* runs follow the exact motion from one contact to the next; *fixed step* runs follow a scheme that \
 looks for contacts once a step. Impact dampers are chaotic in wide ranges: there the mean of an *ensemble* of slightly \

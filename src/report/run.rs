@@ -40,7 +40,7 @@ pub(super) fn section(experiment: &Experiment) -> String {
     }
     if settings.ensemble > 0 {
         text += &format!(
-            "- Where the motion is chaotic: the mean of {} from slightly perturbed starts.\n",
+            "- Where neighbouring starts part: the mean of {} from slightly perturbed starts.\n",
             counted(settings.ensemble as usize, "run", "runs")
         );
     }
@@ -154,7 +154,7 @@ fn searches(optimise: &Optimise) -> String {
     for search in &optimise.searches {
         text += &match search {
             Search::Genetic { population, elites, crossover, .. } => format!(
-                "- Genetic algorithm: {population} individuals, {elites} of which live on, {} % of the children by crossover; \
+                "- Genetic algorithm: {population} individuals, {elites} of which survive unchanged, {} % of the children by crossover; \
                  {seeds}. It ends {}.{}\n",
                 compact(100.0 * crossover, 3),
                 ends(optimise),

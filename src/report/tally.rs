@@ -96,9 +96,15 @@ impl Tally {
         self.each().filter(|(verdict, _)| agrees(*verdict)).map(|(_, count)| count).sum()
     }
 
-    /// How many were not fitted: what was fitted is no evidence.
+    /// How many do not agree by a fit, which would be no evidence; a fitted entry that differs all the same is some.
     pub(super) fn evidence(&self) -> usize {
         self.total() - self.count(Verdict::Fitted)
+    }
+
+    /// All but those with this verdict.
+    pub(super) fn without(mut self, verdict: Verdict) -> Self {
+        self.counts.iter_mut().zip(VERDICTS).filter(|(_, one)| *one == verdict).for_each(|(count, _)| *count = 0);
+        self
     }
 
     /// True if some entry has this verdict.

@@ -69,7 +69,7 @@ pub fn what_stands(
     let missing = missing_inputs(experiments.iter().flat_map(|view| view.judged));
     if !missing.is_empty() {
         text += &format!(
-            "Blocked entries wait for: {}.\n\n",
+            "Inputs that blocked entries depend on: {}.\n\n",
             missing.into_iter().take(WAITED_FOR).collect::<Vec<_>>().join(", ")
         );
     }
@@ -180,7 +180,7 @@ fn in_short<'a>(group: &dyn Fn(Robustness) -> &'a [Line<'a>], questions: &[Quest
         (Robustness::Fails, "differ under every move"),
         (Robustness::Depends, "depend on one of them"),
         (Robustness::Open, "are undecided, as they stand or under some move"),
-        (Robustness::Chosen, "were used to choose an input and prove nothing"),
+        (Robustness::Chosen, "agree, but were used to choose an input, which proves nothing"),
         (Robustness::NotMoved, "were not tested, as no unstated input of their experiment was moved"),
         (Robustness::Missing, "have no result"),
     ];

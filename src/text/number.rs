@@ -25,6 +25,14 @@ pub fn compact(value: f64, digits: usize) -> String {
     }
 }
 
+/// A count with all its digits, in groups.
+#[must_use]
+pub fn count(number: u64) -> String {
+    let mut text = String::new();
+    push_grouped(&mut text, &number.to_string());
+    text
+}
+
 /// As [`significant`], with the sign written in front of positive numbers too.
 #[must_use]
 pub fn signed(value: f64, digits: usize) -> String {

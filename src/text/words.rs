@@ -105,5 +105,5 @@ pub fn capitalised(text: &str) -> String {
 /// `1 entry`, `2 entries`.
 #[must_use]
 pub fn counted(count: usize, one: &str, many: &str) -> String {
-    format!("{count} {}", if count == 1 { one } else { many })
+    format!("{} {}", number::count(count as u64), if count == 1 { one } else { many })
 }

@@ -6,6 +6,7 @@ use std::fs;
 use roxmltree::Document;
 use shotdamp::reference::{Comparison, Judged, Kind, Price, Role, Verdict, accept, parse_reference};
 use shotdamp::report::{CheckView, CheckedEntry, SUMMARY_LIMIT, Trouble, annotations, json, junit, step_summary};
+use shotdamp::text::number::count;
 
 use crate::desk::{Desk, GAP, GAP_REFERENCE, command, said, shotdamp, simulated};
 
@@ -155,7 +156,8 @@ fn a_step_summary_says_what_it_cut() {
     let text = step_summary(&view(&judged, Vec::new()), SUMMARY_LIMIT);
     assert!(text.len() <= SUMMARY_LIMIT && text.len() > SUMMARY_LIMIT - 2048, "{}", text.len());
     let shown = text.matches("\n- **`").count();
-    let cut = format!("Cut to the limit of a summary: {} entries that are not as expected.", 6000 - shown);
+    let cut =
+        format!("Cut to the limit of a summary: {} entries that are not as expected.", count(6000 - shown as u64));
     assert!(text.contains(&cut), "{shown} shown: {}", &text[text.len() - 300..]);
     assert!(step_summary(&view(&judged, Vec::new()), 100).len() <= 100, "whatever is left");
 

@@ -61,7 +61,7 @@ pub fn html(study: &Study, judgement: &Judgement) -> Html {
     let assumptions = views::all_assumptions(study, judgement);
     let others = [
         (links::WHAT_STANDS, "What stands", super::what_stands(&experiments, &study.sheet, &assumptions)),
-        (links::WHAT_MOVES, "What moves how", super::what_moves(&experiments)),
+        (links::WHAT_MOVES, "Kinds of motion", super::what_moves(&experiments)),
         (links::ASSUMPTIONS, "Assumptions", super::assumptions(&assumptions)),
         (links::TOLERANCES, "Tolerances set by hand", tolerances::tolerances(&experiments)),
     ];
