@@ -7,7 +7,7 @@
 //! |---|---|
 //! | `budget` | what a simulation may take |
 //! | `error` | why the engine gives up |
-//! | `arithmetic` | vectors, matrices and polynomials, several numbers at a time, the same bits on every processor |
+//! | `arithmetic` | vectors, matrices and elementary functions, several numbers at a time, the same bits on every processor |
 //! | `system` | what is run: structure, particles, faces, drive |
 //! | `contact` | where a particle is; which of the closed contacts push, and what an impact gives |
 //! | `options` | how it is run: which cycles, from where, and what is kept of them |
@@ -25,8 +25,8 @@
 //!
 //! Imports go upwards in this table only, as in that of the rooms in `ARCHITECTURE.md`.
 //!
-//! The engine knows no beam and no file; what its errors advise is said in the words of the YAML. It works with dense matrices of a hundred modes or so, not with large
-//! sparse systems.
+//! The engine knows no beam and no file; what its errors advise is said in the words of the YAML. It works with dense matrices of a
+//! hundred modes or so, not with large sparse systems.
 
 #![deny(missing_docs)]
 #![expect(clippy::neg_cmp_op_on_partial_ord, reason = "`!(x > bound)` sends NaN into the branch that refuses")]

@@ -4,7 +4,7 @@ use crate::experiment::{AboutStudy, Finding};
 use crate::reference::{Judged, Verdict};
 
 use super::comparison::{explanation, lead, outcome};
-use super::markdown::{Align, MarkdownTable, first_sentence};
+use super::markdown::{Align, MarkdownTable, first_sentence, one_line};
 use super::tally::{Tally, agrees, mark};
 use super::view::ExperimentView;
 
@@ -32,7 +32,15 @@ fn row(finding: &Finding, experiments: &[ExperimentView<'_>]) -> [String; 3] {
         }
     }
     let why = lead(all.iter().copied()).filter(|lead| !agrees(lead.verdict));
-    let why = why.map_or_else(String::new, |lead| first_sentence(&explanation(lead)));
+    let why = why.map_or_else(String::new, |lead| {
+        let why = first_sentence(&explanation(lead));
+        let experiment = |id: &str| id.split('/').next().map(str::to_owned);
+        let is_of_one = finding.entries.iter().all(|id| experiment(id) == experiment(&lead.id));
+        match entries().find(|(_, one)| one.id == lead.id).filter(|_| !is_of_one) {
+            Some((view, _)) => format!("{}: {why}", one_line(&view.experiment.title)),
+            None => why,
+        }
+    });
     let tally = Tally::of(all);
     let (agree, fitted) = (tally.count(Verdict::Reproduced), tally.count(Verdict::Fitted));
     let evidence = tally.evidence();

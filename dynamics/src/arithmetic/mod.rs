@@ -1,4 +1,4 @@
-//! Arithmetic: vectors, matrices and polynomials, several numbers at a time, the same bits on every processor.
+//! Arithmetic: vectors, matrices and elementary functions, several numbers at a time, the same bits on every processor.
 
 pub(crate) mod cholesky;
 pub(crate) mod complexes;

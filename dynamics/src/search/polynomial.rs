@@ -1,4 +1,5 @@
-//! Polynomials of degree eleven on [0, 1]: values, Bernstein coefficients, roots.
+//! Polynomials of windows, of degree eleven on [0, 1]: values, Bernstein coefficients, roots; and the nearest root of an expansion to the
+//! seventh order.
 
 /// Degree of the window polynomials: twelve coefficients, which fill whole vector registers.
 pub(crate) const DEGREE: usize = 11;
