@@ -21,27 +21,26 @@ pub(super) fn section(about: &AboutStudy, experiments: &[ExperimentView<'_>]) ->
 fn row(finding: &Finding, experiments: &[ExperimentView<'_>]) -> [String; 3] {
     let entries = || experiments.iter().flat_map(|view| view.judged.iter().map(move |one| (view, one)));
     let mut links = String::new();
-    let mut all: Vec<&Judged> = Vec::new();
+    let mut all: Vec<(&ExperimentView<'_>, &Judged)> = Vec::new();
     for id in &finding.entries {
         match entries().find(|(_, one)| one.id == *id) {
             Some((view, one)) => {
                 links += &format!("[{}]({})", mark(one.verdict), view.place_of(one));
-                all.push(one);
+                all.push((view, one));
             }
             None => links += &format!(" no entry `{id}`"),
         }
     }
-    let why = lead(all.iter().copied()).filter(|lead| !agrees(lead.verdict));
+    let why = lead(all.iter().map(|(_, one)| *one)).filter(|lead| !agrees(lead.verdict));
     let why = why.map_or_else(String::new, |lead| {
         let why = first_sentence(&explanation(lead));
-        let experiment = |id: &str| id.split('/').next().map(str::to_owned);
-        let is_of_one = finding.entries.iter().all(|id| experiment(id) == experiment(&lead.id));
-        match entries().find(|(_, one)| one.id == lead.id).filter(|_| !is_of_one) {
+        let several = all.windows(2).any(|pair| pair[0].0.page != pair[1].0.page);
+        match all.iter().find(|(_, one)| one.id == lead.id).filter(|_| several) {
             Some((view, _)) => format!("{}: {why}", one_line(&view.experiment.title)),
             None => why,
         }
     });
-    let tally = Tally::of(all);
+    let tally = Tally::of(all.iter().map(|(_, one)| *one));
     let (agree, fitted) = (tally.count(Verdict::Reproduced), tally.count(Verdict::Fitted));
     let evidence = tally.evidence();
     let mut share = if agree > 0 && agree < evidence { format!(", {agree} of {evidence}") } else { String::new() };

@@ -9,7 +9,7 @@
 
 use std::ops::{Add, Mul};
 
-use crate::arithmetic::elementary::{exp_lanes, sin_cos_lanes};
+use crate::arithmetic::elementary::{exp, exp_lanes, sin_cos, sin_cos_lanes};
 use crate::arithmetic::four::Four;
 use crate::arithmetic::lanes::{Lanes, WIDTH};
 
@@ -179,16 +179,16 @@ impl Block {
     #[inline]
     pub(crate) fn kernel(&self, t: f64) -> Kernel {
         if self.discriminant < 0.0 {
-            let e = if self.decay == 0.0 { 1.0 } else { crate::arithmetic::elementary::exp(-self.decay * t) };
-            let (sine, cosine) = crate::arithmetic::elementary::sin_cos(self.root * t);
+            let e = if self.decay == 0.0 { 1.0 } else { exp(-self.decay * t) };
+            let (sine, cosine) = sin_cos(self.root * t);
             Kernel { c: e * cosine, s: e * sine * self.inverse_root, turn: e * sine }
         } else if self.discriminant == 0.0 {
-            let e = crate::arithmetic::elementary::exp(-self.decay * t);
+            let e = exp(-self.decay * t);
             Kernel { c: e, s: e * t, turn: 0.0 }
         } else {
             // e^(−at) sinh(rt)/r = e^(−(a+r)t) (e^(2rt) − 1)/(2r): no overflow, no cancellation.
-            let fast = crate::arithmetic::elementary::exp(-(self.decay + self.root) * t);
-            let slow = crate::arithmetic::elementary::exp(-(self.decay - self.root) * t);
+            let fast = exp(-(self.decay + self.root) * t);
+            let slow = exp(-(self.decay - self.root) * t);
             let two_rt = 2.0 * self.root * t;
             let s = if two_rt < 0.5 { fast * libm::expm1(two_rt) } else { slow - fast } / (2.0 * self.root);
             Kernel { c: 0.5 * (slow + fast), s, turn: 0.0 }

@@ -156,7 +156,7 @@ impl Modes {
                     presses.for_each(|across| all.add_square(across.stiffness, &across.row));
                     all
                 });
-                crate::contact_state::modes::split(accelerations, &modes.bare.mass, stiffness.as_ref())?
+                modes::split(accelerations, &modes.bare.mass, stiffness.as_ref())?
             }
         };
         modes.to_blocks = Superposition::new(modes.spectral.width(), &modes.spectral.to_blocks);
@@ -197,7 +197,7 @@ impl Modes {
 
     /// The same with blocks that take in a harmonic drive, where that is in resonance with some of them; and what is steady then.
     pub(crate) fn resonant(&self, system: &HybridSystem, push: &[f64], omega: f64) -> Option<(Self, Steady)> {
-        let (spectral, steady) = crate::contact_state::resonance::split(&self.spectral, self.order, push, omega)?;
+        let (spectral, steady) = resonance::split(&self.spectral, self.order, push, omega)?;
         let mut modes = Self {
             to_blocks: Superposition::new(spectral.width(), &spectral.to_blocks),
             columns: Superposition::transposed(2 * self.order, spectral.width(), &spectral.from_blocks),

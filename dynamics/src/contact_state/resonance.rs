@@ -6,7 +6,7 @@
 //!
 //! (ζ, D)′ = T (ζ, D),   T = [[λ, β/2i], [0, iω]],   ζ(t) = Σⱼ e₁ᵀLⱼ(T) (ζ, D) e^(zⱼt),
 //!
-//! the interpolation of [`crate::contact_state::cluster`] through points about λ and iω: nothing is divided by λ − iω, so that the motion is smooth
+//! the interpolation of [`super::cluster`] through points about λ and iω: nothing is divided by λ − iω, so that the motion is smooth
 //! through resonance. What comes of it are ordinary blocks that hold for about a cycle and enter with the phase of the drive.
 
 use nalgebra::{Complex, DMatrix};

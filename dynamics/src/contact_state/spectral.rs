@@ -11,6 +11,7 @@ use nalgebra::{ComplexField, DMatrix};
 use crate::arithmetic::gauss::eliminate;
 use crate::arithmetic::schur::schur;
 use crate::contact_state::block::Block;
+use crate::contact_state::cluster;
 use crate::error::EngineError;
 
 /// e^(At) = V diag(e^(Bₖt)) W, with W = V⁻¹ where there are as many blocks as coordinates ask for.
@@ -89,7 +90,7 @@ impl Spectral {
         let firsts = gather(&mut q, &mut t);
         let (x, y) = decouple(&t, &firsts);
         if !(largest(&x) * largest(&y) < WORST_CONDITION) {
-            return Ok(crate::contact_state::cluster::split(&q, &t));
+            return Ok(cluster::split(&q, &t));
         }
         let mut v = product(&q, &x);
         let mut w = product(&y, &q.transpose());

@@ -5,6 +5,7 @@
 //! backwards. Jacobi's rotations keep the digits of slow modes beside fast ones (Demmel & Veselić, SIAM J. Matrix Anal. Appl. 13, 1992).
 
 use crate::arithmetic::cholesky::Cholesky;
+use crate::arithmetic::exact;
 use crate::arithmetic::matrix::{Matrix, dot};
 use crate::contact_state::spectral::Spectral;
 
@@ -121,7 +122,7 @@ fn invert_again(v: &[Vec<f64>], w: &mut [Vec<f64>]) {
     for (i, row) in next.iter_mut().enumerate() {
         for j in 0..n {
             let unit = f64::from(u8::from(i == j));
-            let rest = crate::arithmetic::exact::rest(unit, &w[i], &v[j]);
+            let rest = exact::rest(unit, &w[i], &v[j]);
             row.iter_mut().zip(&w[j]).for_each(|(entry, other)| *entry += rest * other);
         }
     }

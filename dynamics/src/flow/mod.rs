@@ -19,6 +19,7 @@ mod doubled;
 use std::cell::{Cell, OnceCell};
 use std::rc::Rc;
 
+use crate::arithmetic::elementary::sin_cos;
 use crate::arithmetic::exact;
 use crate::arithmetic::four::Four;
 use crate::arithmetic::lanes::WIDTH;
@@ -350,7 +351,7 @@ impl Flow {
     /// The harmonic drive's phase `t` seconds later.
     pub(crate) fn drive_after(&self, drive: DrivePhase, t: f64) -> DrivePhase {
         let Some(steady) = &self.harmonic else { return drive };
-        let (sine, cosine) = crate::arithmetic::elementary::sin_cos(steady.omega * t);
+        let (sine, cosine) = sin_cos(steady.omega * t);
         DrivePhase {
             cosine: drive.cosine * cosine - drive.sine * sine,
             sine: drive.sine * cosine + drive.cosine * sine,

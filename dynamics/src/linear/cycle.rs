@@ -3,6 +3,7 @@
 //! Blocks do not mix, so the map is a 2 × 2 matrix and a pair for each of them; n cycles are its n-th power, by squaring.
 //! A harmonic force needs no d: block coordinates are those beside its steady answer, and it is in phase again after a cycle.
 
+use crate::arithmetic::matrix::dot;
 use crate::budget;
 use crate::flow::Flow;
 use crate::system::{DrivePhase, HybridSystem, Tick};
@@ -188,7 +189,7 @@ pub(super) fn jump(
     let mut rate: Vec<f64> = answer.iter().map(|jump| impulse * jump).collect();
     for &j in &flow.modes.attached {
         // The particle itself is not struck: its compression changes against the structure.
-        let face = crate::arithmetic::matrix::dot(&system.particles[j].floor.row, answer);
+        let face = dot(&system.particles[j].floor.row, answer);
         rate.push(-impulse * face);
     }
     enter(flow, &rest, &rate, after, still).as_chunks().0.to_vec()
