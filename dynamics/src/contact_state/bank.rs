@@ -70,6 +70,18 @@ pub(crate) struct Kernels {
     turn: Four,
 }
 
+/// What of them moves shares: the turn of a block is but its S in another unit.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Transfer {
+    c: Four,
+    s: Four,
+}
+
+impl Transfer {
+    /// After no time.
+    pub(crate) const NONE: Self = Kernels::NONE.transfer();
+}
+
 impl Kernels {
     /// After no time.
     pub(crate) const NONE: Self = Self { c: Four::new([1.0; WIDTH]), s: Four::ZERO, turn: Four::ZERO };
@@ -78,6 +90,11 @@ impl Kernels {
     #[inline(always)]
     pub(crate) fn at(&self, lane: usize) -> Kernel {
         Kernel { c: self.c.at(lane), s: self.s.at(lane), turn: self.turn.at(lane) }
+    }
+
+    #[inline(always)]
+    pub(crate) const fn transfer(&self) -> Transfer {
+        Transfer { c: self.c, s: self.s }
     }
 
     /// e^(λt) of blocks that turn, λ the eigenvalue with a positive imaginary part.
@@ -173,13 +190,22 @@ impl Blocks {
         }
     }
 
-    /// Their shares after the time of `kernels`.
+    /// Their shares after the time of a transfer.
     #[inline(always)]
-    pub(crate) fn advance(&self, phases: Phases, kernels: &Kernels) -> Phases {
+    pub(crate) fn advance(&self, phases: Phases, transfer: &Transfer) -> Phases {
         let Phases { value, rate } = phases;
         Phases {
-            value: kernels.c * value + kernels.s * (rate + self.decay * value),
-            rate: kernels.c * rate - kernels.s * (self.decay * rate + self.determinant * value),
+            value: transfer.c * value + transfer.s * (rate + self.decay * value),
+            rate: transfer.c * rate - transfer.s * (self.decay * rate + self.determinant * value),
+        }
+    }
+
+    /// One transfer after another.
+    #[inline(always)]
+    pub(crate) fn chained(&self, first: &Transfer, next: &Transfer) -> Transfer {
+        Transfer {
+            c: first.c * next.c + self.discriminant * (first.s * next.s),
+            s: first.c * next.s + first.s * next.c,
         }
     }
 
@@ -225,9 +251,13 @@ impl Blocks {
 
     /// e^(B t₁) e^(B t₂).
     #[inline(always)]
-    pub(crate) fn joined(&self, first: &Kernels, &Kernels { c, s, turn }: &Kernels) -> Kernels {
-        let product = self.turns * (first.turn * turn) + self.grows * (first.s * s);
-        Kernels { c: first.c * c + product, s: first.c * s + first.s * c, turn: first.c * turn + first.turn * c }
+    fn joined(&self, first: &Kernels, next: &Kernels) -> Kernels {
+        let product = self.turns * (first.turn * next.turn) + self.grows * (first.s * next.s);
+        Kernels {
+            c: first.c * next.c + product,
+            s: first.c * next.s + first.s * next.c,
+            turn: first.c * next.turn + first.turn * next.c,
+        }
     }
 
     #[inline(always)]

@@ -48,7 +48,7 @@ pub(crate) struct Flow {
     pub(crate) bank: Bank,
     /// Their Taylor series.
     pub(crate) series: Series,
-    /// Kernels at whole steps, where a contact state is visited often enough.
+    /// Transfers over whole steps, where a contact state is visited often enough.
     pub(crate) steps: Option<Steps>,
     /// Those of its own, with their matrices.
     propagators: Vec<Propagator>,
@@ -209,12 +209,9 @@ impl Flow {
         work: &mut Vec<f64>,
         c: &mut [f64],
     ) {
-        let (order, size) = (self.order, self.modes.spectral.width());
-        let work = room(work, 2 * order);
-        let (positions, velocities) = work.split_at_mut(order);
-        for (i, (position, velocity)) in positions.iter_mut().zip(velocities).enumerate() {
-            [*position, *velocity] = self.free(i, [p[i], rate[i]], force, drive);
-        }
+        let size = self.modes.spectral.width();
+        let work = room(work, 2 * self.order);
+        self.free([p, rate], force, drive, work);
         self.modes.to_blocks.sum_by_registers(work, c);
         if self.harmonic.is_some() {
             c[size..size + 2].copy_from_slice(&[drive.cosine, drive.sine]);
@@ -224,19 +221,28 @@ impl Flow {
         }
     }
 
-    /// What of a coordinate and its rate is free motion, beside the answers to the loads.
+    /// What of (p, p′) is free motion, beside the answers to the loads.
     #[inline(always)]
-    fn free(&self, i: usize, [mut position, mut velocity]: [f64; 2], force: f64, drive: DrivePhase) -> [f64; 2] {
-        position -= self.modes.gravity.rest[i];
-        position -= force * self.force.rest[i];
+    fn free(&self, [p, rate]: [&[f64]; 2], force: f64, drive: DrivePhase, free: &mut [f64]) {
+        let (positions, velocities) = free.split_at_mut(self.order);
+        let (by_gravity, by_force) = (&self.modes.gravity, &self.force);
+        let rests = by_gravity.rest.iter().zip(&by_force.rest);
+        for ((free, p), (by_gravity, by_force)) in positions.iter_mut().zip(p).zip(rests) {
+            *free = p - by_gravity - force * by_force;
+        }
+        velocities.copy_from_slice(&rate[..self.order]);
         if let Some(steady) = &self.harmonic {
-            let [place, rate] = steady.at(i, drive);
-            (position, velocity) = (position - place, velocity - rate);
+            for (i, (position, velocity)) in positions.iter_mut().zip(&mut *velocities).enumerate() {
+                let [place, rate] = steady.at(i, drive);
+                (*position, *velocity) = (*position - place, *velocity - rate);
+            }
         }
         if self.drifts {
-            velocity -= self.modes.gravity.rest_rate[i] + force * self.force.rest_rate[i];
+            let rates = by_gravity.rest_rate.iter().zip(&by_force.rest_rate);
+            for (velocity, (by_gravity, by_force)) in velocities.iter_mut().zip(rates) {
+                *velocity -= by_gravity + force * by_force;
+            }
         }
-        [position, velocity]
     }
 
     /// Takes off the block coordinates of (p, p′) what rounding has put in: c + V⁻¹(s − V c). V(V⁻¹ s) is off from s by the same
@@ -246,11 +252,9 @@ impl Flow {
         let (order, size) = (self.order, self.modes.spectral.width());
         let c = &mut c[..size];
         let mut missing = vec![0.0; 2 * order];
-        for i in 0..order {
-            for (half, x) in self.free(i, [p[i], rate[i]], force, drive).into_iter().enumerate() {
-                let row = half * order + i;
-                missing[row] = exact::rest(x, &self.modes.spectral.from_blocks[row * size..][..size], c);
-            }
+        self.free([p, rate], force, drive, &mut missing);
+        for (missing, row) in missing.iter_mut().zip(self.modes.spectral.from_blocks.chunks_exact(size)) {
+            *missing = exact::rest(*missing, row, c);
         }
         for (missing, entries) in missing.iter().zip(self.modes.spectral.to_blocks.chunks_exact(size)) {
             c.iter_mut().zip(entries).for_each(|(c, entry)| *c += entry * missing);

@@ -344,11 +344,13 @@ impl Rows {
         let rows = self.rows.iter().zip(self.weights.chunks_exact(registers));
         let places = signals.phases.chunks_exact_mut(registers).zip(&mut signals.totals);
         for ((row, weights), (phases, total)) in rows.zip(places) {
+            // By reference: registers that are taken out of an array by value come apart.
             let (mut sum, mut sizes) = (Phases::ZERO, Four::ZERO);
-            for ((&[v0, v1, r0, r1], &[x, y]), phase) in weights.iter().zip(&signals.coordinates).zip(phases) {
-                *phase = Phases { value: v0 * x + v1 * y, rate: r0 * x + r1 * y };
-                sum = Phases { value: sum.value + phase.value, rate: sum.rate + phase.rate };
-                sizes = sizes + phase.value.abs();
+            for (([v0, v1, r0, r1], [x, y]), phase) in weights.iter().zip(&signals.coordinates).zip(phases) {
+                let (value, rate) = (*v0 * *x + *v1 * *y, *r0 * *x + *r1 * *y);
+                *phase = Phases { value, rate };
+                sum = Phases { value: sum.value + value, rate: sum.rate + rate };
+                sizes = sizes + value.abs();
             }
             let sum = Phase { value: sum.value.sum(), rate: sum.rate.sum() };
             *total = Total { sum, size: sizes.sum(), rest: row.rest(force) };

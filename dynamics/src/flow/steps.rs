@@ -1,11 +1,11 @@
-//! Kernels at whole steps of time, from a table that grows as it is asked.
+//! Transfers of shares over whole steps of time, from a table that grows as it is asked.
 //!
 //! Where a window of the search begins is seen in no event, so that it may begin at a whole step: e^(B iδ) is the product of two
 //! entries, e^(B nhδ) e^(B lδ) with i = nh + l, where each instant by itself would take an exponential, a sine and a cosine.
 
 use std::cell::RefCell;
 
-use crate::contact_state::bank::{Bank, Kernels};
+use crate::contact_state::bank::{Bank, Kernels, Transfer};
 use crate::contact_state::block::Block;
 
 /// ρδ, ρ the largest radius of a block: a small part of the shortest window.
@@ -21,8 +21,16 @@ pub(crate) struct Steps {
     /// δ, s, and its inverse.
     length: f64,
     inverse: f64,
-    /// At 0 to (n − 1)δ, then at 0, nδ, 2nδ and so on; empty until it is asked for.
-    known: RefCell<Vec<Box<[Kernels]>>>,
+    known: RefCell<Known>,
+}
+
+/// At 0 to (n − 1)δ, then at 0, nδ, 2nδ and so on.
+#[derive(Debug, Default)]
+struct Known {
+    /// Which of them: one bit each.
+    places: u128,
+    /// Of all blocks, one place after the other.
+    entries: Vec<Transfer>,
 }
 
 /// So many steps.
@@ -37,7 +45,7 @@ impl Steps {
 
     /// Numbers that it keeps.
     pub(crate) fn size(&self) -> usize {
-        self.known.borrow().iter().map(|entry| entry.len() * size_of::<Kernels>() / size_of::<f64>()).sum()
+        self.known.borrow().entries.len() * size_of::<Transfer>() / size_of::<f64>()
     }
 
     /// The last whole step up to an instant, and when it is, s; `None` beyond the table.
@@ -50,32 +58,42 @@ impl Steps {
         })
     }
 
-    /// The kernels of all blocks then.
+    /// The transfers of all blocks until then.
     #[inline(always)]
-    pub(crate) fn kernels(&self, bank: &Bank, each: &[Block], Whole(steps): Whole, kernels: &mut [Kernels]) {
+    pub(crate) fn transfers(&self, bank: &Bank, each: &[Block], Whole(steps): Whole, transfers: &mut [Transfer]) {
         let mut known = self.known.borrow_mut();
+        let width = bank.blocks.len();
         let (far, near) = (NEAR + steps / NEAR, steps % NEAR);
-        if known.get(far).is_none_or(|entry| entry.is_empty()) || known[near].is_empty() {
+        let places = 1 << far | 1 << near;
+        if known.places & places != places {
             self.add(bank, each, [far, near], &mut known);
         }
-        let factors = known[far].iter().zip(&known[near]);
-        for ((kernels, blocks), (far, near)) in kernels.iter_mut().zip(&bank.blocks).zip(factors) {
-            *kernels = blocks.joined(far, near);
+        let (far, near) = (&known.entries[far * width..][..width], &known.entries[near * width..][..width]);
+        if steps < NEAR {
+            transfers.copy_from_slice(near);
+            return;
+        }
+        for ((transfer, blocks), (far, near)) in transfers.iter_mut().zip(&bank.blocks).zip(far.iter().zip(near)) {
+            *transfer = blocks.chained(far, near);
         }
     }
 
     #[cold]
-    fn add(&self, bank: &Bank, each: &[Block], places: [usize; 2], known: &mut Vec<Box<[Kernels]>>) {
-        if known.is_empty() {
-            known.resize(NEAR + FAR, Box::default());
-        }
+    fn add(&self, bank: &Bank, each: &[Block], places: [usize; 2], known: &mut Known) {
+        let width = bank.blocks.len();
         for place in places {
-            if known[place].is_empty() {
-                let steps = if place < NEAR { place } else { (place - NEAR) * NEAR };
-                let mut entry = vec![Kernels::NONE; bank.blocks.len()];
-                bank.kernels(each, steps as f64 * self.length, &mut entry);
-                known[place] = entry.into_boxed_slice();
+            if known.places & 1 << place != 0 {
+                continue;
             }
+            let steps = if place < NEAR { place } else { (place - NEAR) * NEAR };
+            let mut kernels = vec![Kernels::NONE; width];
+            bank.kernels(each, steps as f64 * self.length, &mut kernels);
+            let entries = place * width..(place + 1) * width;
+            if known.entries.len() < entries.end {
+                known.entries.resize(entries.end, Transfer::NONE);
+            }
+            known.entries[entries].iter_mut().zip(&kernels).for_each(|(entry, kernels)| *entry = kernels.transfer());
+            known.places |= 1 << place;
         }
     }
 }
@@ -83,6 +101,8 @@ impl Steps {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::arithmetic::four::Four;
+    use crate::contact_state::bank::Phases;
 
     #[test]
     fn two_entries_make_the_kernels_of_any_whole_step() {
@@ -92,12 +112,17 @@ mod tests {
         for t in [0.0, 0.02, 0.4, 3.0, 20.0] {
             let (whole, before) = steps.before(t).expect("the table reaches as far");
             assert!(before <= t && t < before + steps.length);
-            let (mut joined, mut direct) = ([Kernels::NONE], [Kernels::NONE]);
-            steps.kernels(&bank, &each, whole, &mut joined);
+            let (mut chained, mut direct) = ([Transfer::NONE], [Kernels::NONE]);
+            steps.transfers(&bank, &each, whole, &mut chained);
             bank.kernels(&each, before, &mut direct);
-            for lane in 0..each.len() {
-                let (joined, direct) = (joined[0].at(lane), direct[0].at(lane));
-                assert!((joined.c - direct.c).abs() < 1e-13 && (joined.s - direct.s).abs() < 1e-13 * (1.0 + before));
+            let start = Phases { value: Four::all(1.0), rate: Four::all(-2.0) };
+            let [chained, direct] =
+                [chained[0], direct[0].transfer()].map(|transfer| bank.blocks[0].advance(start, &transfer));
+            for (lane, block) in each.iter().enumerate() {
+                let (chained, direct) = (chained.at(lane), direct.at(lane));
+                let tolerance = 1e-12 * (1.0 + before);
+                assert!((chained.value - direct.value).abs() < tolerance);
+                assert!((chained.rate - direct.rate).abs() < tolerance * (1.0 + block.radius));
             }
         }
         assert!(steps.before(26.0).is_none());

@@ -126,7 +126,7 @@ impl Lookout {
             } else {
                 self.know(stretch, step, doublings as usize);
                 let by = stretch.bank.blocks.iter().zip(&self.strides[doublings as usize]);
-                self.now.iter_mut().zip(by).for_each(|(now, (blocks, by))| *now = blocks.advance(*now, by));
+                self.now.iter_mut().zip(by).for_each(|(now, (blocks, by))| *now = blocks.advance(*now, &by.transfer()));
             }
             let next = Node { time: t, motion: motion(stretch, self.now.iter().copied(), t) };
             extremes.take(next.motion[0], next.motion[1]);
@@ -190,7 +190,7 @@ fn moved<'a>(
 ) -> impl Iterator<Item = Phases> + 'a {
     stretch.bank.kernels(stretch.blocks, t, kernels);
     let each = start.iter().zip(&stretch.bank.blocks).zip(&*kernels);
-    each.map(|((from, blocks), kernels)| blocks.advance(*from, kernels))
+    each.map(|((from, blocks), kernels)| blocks.advance(*from, &kernels.transfer()))
 }
 
 /// The motion whose blocks have these shares.

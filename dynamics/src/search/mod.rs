@@ -14,8 +14,11 @@
 //! further than the first root that is known. Most guards are cleared by two bounds that cost no window: their parabola is
 //! further from zero than all blocks together can reach, or value and slope are larger than their curvature can undo. Where
 //! guards are many, a bound on that curvature by the coordinates alone comes first, and for most of them it is enough. No
-//! window is sampled, no crossing stepped over. What a root is to the last digit, [`polish`] tells; since no window is seen in it,
-//! windows may begin where kernels are cheap, at [`crate::flow::steps::Steps`].
+//! window is sampled, no crossing stepped over. Where a straight line foresees a root within a short window, that window follows at
+//! once, with all blocks: small proofs would creep up to the root, and a window without the fast blocks cannot show it.
+//!
+//! What a root is to the last digit, [`polish`] tells; since no window is seen in it, windows may begin where kernels are cheap, at
+//! [`crate::flow::steps::Steps`].
 
 pub(crate) mod guards;
 mod polynomial;
@@ -39,9 +42,9 @@ use crate::search::window::{Start, Verdict, Window};
 /// then 3.7¹²/12! of the amplitude, about a hundredth.
 const REACH: f64 = 3.7;
 /// Share of a window that a proof has to be ahead of it before the next one begins there.
-const WORTH_A_MOVE: f64 = 0.6;
-/// Share of a window that has to be proven for the next one to begin there.
-const WORTH_A_STEP: f64 = 0.1;
+const WORTH_A_MOVE: f64 = 0.4;
+/// radius·t of the fastest block that has to be proven for the next window to begin there.
+const WORTH_A_STEP: f64 = 0.5;
 /// Share of a first window below which none is halved for a near miss.
 const NEAREST: f64 = 1.0 / 64.0;
 /// Share of a guard's value that blocks too fast for its window may reach together.
@@ -157,6 +160,8 @@ struct Plan {
     turning: Turning,
     /// How long it is clear without a window, s.
     quick: f64,
+    /// A straight line on from there reaches zero so soon that a window with all blocks may show the root.
+    is_near: bool,
     /// A window has begun there.
     begun: bool,
 }
@@ -186,17 +191,21 @@ impl Turning {
 }
 
 impl Plan {
-    const NONE: Self = Self::new(f64::NAN, Turning { bend: 0.0, snap: 0.0, longest: 0.0 }, 0.0);
-
-    const fn new(at: f64, turning: Turning, quick: f64) -> Self {
-        Self { at, turning, quick, begun: false }
+    /// Of a guard that no plan was made for: a proof shorter than `unit` is not worth a move.
+    const fn none(unit: f64) -> Self {
+        Self::new(f64::NAN, Turning { bend: 0.0, snap: 0.0, longest: unit }, 0.0)
     }
 
-    /// Windows had better begin where its proof, `ahead` of them, ends. A plan of an earlier instant can tell, too; [`Plan::NONE`] says
-    /// yes.
+    const fn new(at: f64, turning: Turning, quick: f64) -> Self {
+        Self { at, turning, quick, is_near: false, begun: false }
+    }
+
+    /// Windows had better begin where its proof, `ahead` of them, ends; a plan of an earlier instant can tell, too.
     #[inline(always)]
-    fn is_overtaken(&self, ahead: f64, factor: f64) -> bool {
-        ahead > 0.0 && (self.begun || self.turning.is_shorter(ahead, WORTH_A_MOVE * factor))
+    fn is_overtaken(&self, now: f64, ahead: f64, factor: f64) -> bool {
+        ahead > 0.0
+            && (self.begun
+                || self.turning.is_shorter(ahead, WORTH_A_MOVE * factor) && !(self.is_near && self.at == now))
     }
 }
 
@@ -265,7 +274,8 @@ impl Search {
     fn start(&mut self, motion: Motion<'_>, signals: &Signals, limit: f64, clarity: &Clarity) {
         let count = self.guards.len();
         self.clear.resize(count, 0.0);
-        self.plans.resize(count, Plan::NONE);
+        let none = Plan::none(motion.series.unit);
+        self.plans.resize(count, none);
         for kernels in [&mut self.kernels, &mut self.trial] {
             kernels.resize(motion.blocks.len(), Kernels::NONE);
         }
@@ -273,7 +283,7 @@ impl Search {
         self.shortest = shortest(motion, limit);
         for (guard, (plan, clear)) in self.guards.iter().zip(self.plans.iter_mut().zip(&mut self.clear)) {
             if let (Some(bend), Start::Apart) = (self.bends.get(guard.signal), guard.start) {
-                (*plan, *clear) = (Plan::NONE, clear_by_bend(signals.of(guard.signal), *bend, guard, clarity));
+                (*plan, *clear) = (none, clear_by_bend(signals.of(guard.signal), *bend, guard, clarity));
             } else {
                 *plan = plan_of(motion, signals, &mut self.surveys, guard, limit, clarity);
                 *clear = plan.quick;
@@ -308,7 +318,7 @@ impl Search {
         let factor = *factor;
         let (guard, plan, known) = (&guards[index], &mut plans[index], clear[index]);
         let ahead = known - surveys.now;
-        let is_overtaken = plan.is_overtaken(ahead, factor);
+        let is_overtaken = plan.is_overtaken(surveys.now, ahead, factor);
         if is_overtaken {
             surveys.move_to(motion, known);
         }
@@ -317,7 +327,8 @@ impl Search {
             *plan = plan_of(motion, signals, surveys, guard, limit, clarity);
         }
         let now = surveys.now;
-        if now + plan.quick > known {
+        // Before a root that is foreseen, a window proves more than many such steps.
+        if now + plan.quick > known && !(plan.is_near && now + plan.quick < horizon) {
             clear[index] = now + plan.quick;
             return None;
         }
@@ -385,7 +396,7 @@ impl Search {
                 }
                 Verdict::Root { guess, high } => return Some(Root { guard: index, guess, high, window }),
                 // So far the slow blocks alone prove it; from there on with more of them.
-                Verdict::Until { sigma } if sigma > WORTH_A_STEP => {
+                Verdict::Until { sigma } if sigma * window > WORTH_A_STEP * motion.series.unit => {
                     clear[index] = known.max(now + sigma * window);
                     return None;
                 }
@@ -453,7 +464,9 @@ fn plan_of(
         return Plan::new(now, Turning { bend, snap, longest: limit }, f64::INFINITY);
     }
     let (mut value, mut rate) = (guard.sign * survey.value, guard.sign * survey.rate);
-    let mut longest = f64::INFINITY;
+    let all = FASTEST * motion.series.unit;
+    let is_near = here.p0 + value < -all * (here.p1 + rate);
+    let mut longest = if is_near { all } else { f64::INFINITY };
     let mut noise = ROUNDING * (here.p0.abs() + reach);
     if width > 1 {
         let most = NOISE * (here.p0 + value - least);
@@ -469,14 +482,14 @@ fn plan_of(
             rate -= guard.sign * now.rate.sum();
             slow += 1;
         }
-        longest = FASTEST / motion.series.fastest[slow];
+        longest = longest.min(FASTEST / motion.series.fastest[slow]);
         if slow > 0 {
             let turns = Turns::of(&motion.blocks[slow..], &shares[slow..]);
             (bend, snap) = (turns.bend.sum(), turns.snap.sum());
         }
     }
     let curve = Parabola { p0: here.p0 + value, p1: here.p1 + rate, p2: here.p2 - 0.5 * bend };
-    Plan::new(now, Turning { bend, snap, longest }, clear_until(curve, noise + least, margin))
+    Plan { is_near, ..Plan::new(now, Turning { bend, snap, longest }, clear_until(curve, noise + least, margin)) }
 }
 
 /// Whether a parabola stays further from zero than `reach`, and does not come closer to that than `margin`; it takes no root.

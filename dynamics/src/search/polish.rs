@@ -200,7 +200,7 @@ impl Search {
     #[inline(always)]
     fn local(&self, motion: Motion<'_>, Bracket { initial, guard, .. }: &Bracket<'_>, time: f64) -> [f64; 8] {
         let moved = motion.blocks.iter().zip(&self.trial).zip(initial.phases);
-        let moved = moved.map(|((blocks, kernels), phases)| blocks.advance(*phases, kernels));
+        let moved = moved.map(|((blocks, kernels), phases)| blocks.advance(*phases, &kernels.transfer()));
         let mut a = [0.0; 8];
         a.as_chunks_mut().0.copy_from_slice(&motion.series.expand::<0, 2>(moved));
         let unit = motion.series.unit;

@@ -2,7 +2,7 @@
 
 use crate::arithmetic::four::Four;
 use crate::arithmetic::lanes::WIDTH;
-use crate::contact_state::bank::{Bank, Blocks, Kernels, Phases};
+use crate::contact_state::bank::{Bank, Blocks, Kernels, Phases, Transfer};
 use crate::contact_state::block::{Block, Phase};
 use crate::flow::series::{Series, Shares};
 use crate::flow::signals::Signals;
@@ -46,9 +46,11 @@ impl Survey {
 /// The signals, as far as they have been looked at since windows began at `now`.
 #[derive(Debug, Default)]
 pub(crate) struct Surveys {
-    /// Where windows begin, seconds from the segment's start, and the kernels up to there.
+    /// Where windows begin, seconds from the segment's start, and the transfers up to there.
     pub(crate) now: f64,
-    here: Vec<Kernels>,
+    here: Vec<Transfer>,
+    /// Work space.
+    kernels: Vec<Kernels>,
     each: Vec<Survey>,
     /// Shares of several blocks each, signal by signal.
     shares: Vec<Shares>,
@@ -60,7 +62,7 @@ impl Surveys {
     #[inline(always)]
     pub(crate) fn begin(&mut self, motion: Motion<'_>, signals: &Signals) {
         self.width = motion.blocks.len();
-        self.here.resize(self.width, Kernels::NONE);
+        self.here.resize(self.width, Transfer::NONE);
         self.each.resize(signals.len(), Survey::NONE);
         self.each.iter_mut().for_each(|survey| survey.at = f64::NAN);
         let size = self.width * signals.len();
@@ -78,10 +80,12 @@ impl Surveys {
             && before > self.now
         {
             self.now = before;
-            steps.kernels(motion.bank, motion.each, whole, &mut self.here);
+            steps.transfers(motion.bank, motion.each, whole, &mut self.here);
         } else {
             self.now = t;
-            motion.kernels(t, &mut self.here);
+            self.kernels.resize(self.width, Kernels::NONE);
+            motion.kernels(t, &mut self.kernels);
+            self.here.iter_mut().zip(&self.kernels).for_each(|(here, kernels)| *here = kernels.transfer());
         }
     }
 
@@ -110,8 +114,8 @@ impl Surveys {
         let Phase { value, rate } = if now > 0.0 {
             let mut total = Phases::ZERO;
             let starts = motion.blocks.iter().zip(watched.phases).zip(&self.here);
-            for (((blocks, start), kernels), share) in starts.zip(&mut *shares) {
-                let now = blocks.advance(*start, kernels);
+            for (((blocks, start), here), share) in starts.zip(&mut *shares) {
+                let now = blocks.advance(*start, here);
                 total = Phases { value: total.value + now.value, rate: total.rate + now.rate };
                 *share = Shares { now, amplitude: blocks.amplitudes(now) };
                 turns.add(blocks, share.amplitude);
