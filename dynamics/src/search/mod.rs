@@ -191,7 +191,7 @@ impl Turning {
 }
 
 impl Plan {
-    /// Of a guard that no plan was made for: a proof shorter than `unit` is not worth a move.
+    /// Of a guard that no plan was made for: a proof is worth a move if it reaches [`WORTH_A_MOVE`] of `unit`.
     const fn none(unit: f64) -> Self {
         Self::new(f64::NAN, Turning { bend: 0.0, snap: 0.0, longest: unit }, 0.0)
     }
