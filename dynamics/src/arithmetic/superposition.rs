@@ -1,50 +1,65 @@
 //! Matrices as sums of their rows: y = Σ xᵢ rᵢ, many numbers of y at a time and each row once.
+//!
+//! Rows are cut into strips of so many registers as a processor can add to side by side: an addition waits for the one before it in its
+//! own register alone.
+
+use std::ops::Range;
 
 use crate::arithmetic::four::Four;
 use crate::arithmetic::lanes::WIDTH;
 use crate::arithmetic::wide::widened;
 
+/// Registers of a strip.
+const STRIP: usize = 8;
+
 /// The rows, filled up with zeros to whole registers.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub(crate) struct Superposition {
     /// Numbers of a row.
     length: usize,
     /// Registers of a row.
     registers: usize,
-    rows: Vec<[f64; WIDTH]>,
+    /// How many rows there are.
+    count: usize,
+    /// Strip after strip, of `STRIP` registers but the last, and in each the rows.
+    entries: Vec<[f64; WIDTH]>,
 }
 
 impl Superposition {
     /// Of rows of `length` numbers each, one after the other.
     pub(crate) fn new(length: usize, entries: &[f64]) -> Self {
-        let registers = length.div_ceil(WIDTH);
-        let count = entries.len() / length.max(1);
-        let mut rows = vec![[0.0; WIDTH]; count * registers];
-        for (to, from) in rows.chunks_exact_mut(registers.max(1)).zip(entries.chunks_exact(length.max(1))) {
-            to.as_flattened_mut()[..length].copy_from_slice(from);
+        let mut all = Self::zeros(length, entries.len() / length.max(1));
+        for strip in strips(all.registers) {
+            let rows = all.entries[strip.start * all.count..strip.end * all.count].chunks_exact_mut(strip.len());
+            for (to, from) in rows.zip(entries.chunks_exact(length)) {
+                let from = &from[strip.start * WIDTH..length.min(strip.end * WIDTH)];
+                to.as_flattened_mut()[..from.len()].copy_from_slice(from);
+            }
         }
-        Self { length, registers, rows }
+        all
     }
 
     /// Of the columns of a matrix that is given row by row, `length` rows of `columns` numbers.
     pub(crate) fn transposed(length: usize, columns: usize, entries: &[f64]) -> Self {
-        let registers = length.div_ceil(WIDTH);
-        let mut rows = vec![[0.0; WIDTH]; columns * registers];
-        for (i, entries) in entries.chunks_exact(columns.max(1)).take(length).enumerate() {
-            let to = rows.iter_mut().skip(i / WIDTH).step_by(registers);
-            to.zip(entries).for_each(|(to, from)| to[i % WIDTH] = *from);
+        let mut all = Self::zeros(length, columns);
+        for strip in strips(all.registers) {
+            let rows = &mut all.entries[strip.start * columns..strip.end * columns];
+            for i in strip.start * WIDTH..length.min(strip.end * WIDTH) {
+                let to = rows.iter_mut().skip(i / WIDTH - strip.start).step_by(strip.len());
+                to.zip(&entries[i * columns..][..columns]).for_each(|(to, from)| to[i % WIDTH] = *from);
+            }
         }
-        Self { length, registers, rows }
+        all
     }
 
-    /// The rows.
-    pub(crate) fn rows(&self) -> impl Iterator<Item = &[f64]> {
-        self.rows.chunks_exact(self.registers.max(1)).map(|row| &row.as_flattened()[..self.length])
+    fn zeros(length: usize, count: usize) -> Self {
+        let registers = length.div_ceil(WIDTH);
+        Self { length, registers, count, entries: vec![[0.0; WIDTH]; count * registers] }
     }
 
     /// Numbers that it keeps.
     pub(crate) fn size(&self) -> usize {
-        WIDTH * self.rows.len()
+        WIDTH * self.entries.len()
     }
 
     widened! {
@@ -54,47 +69,40 @@ impl Superposition {
 
     #[inline(always)]
     pub(crate) fn sum_by_registers(&self, x: &[f64], y: &mut [f64]) {
-        let mut y = &mut y[..self.length];
-        match self.registers {
-            1 => return put(narrow::<1>(&self.rows, x), y),
-            2 => return put(narrow::<2>(&self.rows, x), y),
-            _ => {}
-        }
-        let mut first = 0;
-        while self.registers - first >= 4 {
-            y = self.strip::<4>(first, x, y);
-            first += 4;
-        }
-        match self.registers - first {
-            3 => self.strip::<3>(first, x, y),
-            2 => self.strip::<2>(first, x, y),
-            1 => self.strip::<1>(first, x, y),
-            _ => y,
-        };
-    }
-
-    /// So many registers of y; gives what is left of it.
-    #[inline(always)]
-    fn strip<'a, const MANY: usize>(&self, first: usize, x: &[f64], y: &'a mut [f64]) -> &'a mut [f64] {
-        let mut sums = [Four::ZERO; MANY];
-        for (x, row) in x.iter().zip(self.rows.chunks_exact(self.registers)) {
-            if let Some(row) = row[first..].first_chunk::<MANY>() {
-                for (sum, entries) in sums.iter_mut().zip(row) {
-                    *sum = *sum + Four::new(*entries) * *x;
-                }
+        let (mut rows, mut y, mut left) = (&self.entries[..], &mut y[..self.length], self.registers);
+        loop {
+            let strip = left.min(STRIP);
+            let (now, others) = rows.split_at(strip * self.count);
+            match strip {
+                0 => {}
+                1 => put(summed::<1>(now, x), y),
+                2 => put(summed::<2>(now, x), y),
+                3 => put(summed::<3>(now, x), y),
+                4 => put(summed::<4>(now, x), y),
+                5 => put(summed::<5>(now, x), y),
+                6 => put(summed::<6>(now, x), y),
+                7 => put(summed::<7>(now, x), y),
+                _ => put(summed::<STRIP>(now, x), y),
             }
+            left -= strip;
+            if left == 0 {
+                return;
+            }
+            (rows, y) = (others, &mut y[strip * WIDTH..]);
         }
-        let (now, rest) = y.split_at_mut(y.len().min(MANY * WIDTH));
-        put(sums, now);
-        rest
     }
+}
+
+/// Which of so many registers make a strip.
+fn strips(registers: usize) -> impl Iterator<Item = Range<usize>> {
+    (0..registers).step_by(STRIP).map(move |first| first..registers.min(first + STRIP))
 }
 
 /// Σ xᵢ rᵢ of rows that are so many registers long.
 #[inline(always)]
-fn narrow<const MANY: usize>(rows: &[[f64; WIDTH]], x: &[f64]) -> [Four; MANY] {
-    let mut sums = [Four::ZERO; MANY];
-    for (x, row) in x.iter().zip(rows.as_chunks::<MANY>().0) {
+fn summed<const REGISTERS: usize>(rows: &[[f64; WIDTH]], x: &[f64]) -> [Four; REGISTERS] {
+    let mut sums = [Four::ZERO; REGISTERS];
+    for (x, row) in x.iter().zip(rows.as_chunks::<REGISTERS>().0) {
         for (sum, entries) in sums.iter_mut().zip(row) {
             *sum = *sum + Four::new(*entries) * *x;
         }
@@ -104,12 +112,16 @@ fn narrow<const MANY: usize>(rows: &[[f64; WIDTH]], x: &[f64]) -> [Four; MANY] {
 
 /// The numbers of several registers, as far as `y` goes.
 #[inline(always)]
-fn put<const MANY: usize>(registers: [Four; MANY], y: &mut [f64]) {
+fn put<const REGISTERS: usize>(registers: [Four; REGISTERS], y: &mut [f64]) {
     let (whole, part) = y.as_chunks_mut::<WIDTH>();
     let count = whole.len();
     whole.iter_mut().zip(registers).for_each(|(y, register)| *y = register.array());
-    if let Some(register) = registers.get(count) {
-        part.iter_mut().zip(register.array()).for_each(|(y, number)| *y = number);
+    let Some([a, b, c, _]) = registers.get(count).map(|register| register.array()) else { return };
+    match part {
+        [x] => *x = a,
+        [x, y] => (*x, *y) = (a, b),
+        [x, y, z] => (*x, *y, *z) = (a, b, c),
+        _ => {}
     }
 }
 
@@ -119,26 +131,23 @@ mod tests {
 
     #[test]
     fn every_processor_sums_up_the_same_bits_as_row_after_row() {
-        for length in 0..40_u32 {
+        for length in 0..50_u32 {
             let number = |i: u32| libm::sin(f64::from(i) * 0.37);
             let x: Vec<f64> = (0..7).map(number).collect();
+            let count = length as usize;
             let entries: Vec<f64> = (0..7 * length).map(|i| number(i + 11)).collect();
-            let matrix = Superposition::new(length as usize, &entries);
-            let mut expected = vec![0.0; length as usize];
-            for (x, row) in x.iter().zip(entries.chunks(length.max(1) as usize)) {
+            let mut expected = vec![0.0; count];
+            for (x, row) in x.iter().zip(entries.chunks(count.max(1))) {
                 expected.iter_mut().zip(row).for_each(|(sum, entry)| *sum += entry * x);
             }
-            let (mut here, mut everywhere) = (expected.clone(), expected.clone());
+            let matrix = Superposition::new(count, &entries);
+            let (mut here, mut everywhere) = (vec![0.0; count], vec![0.0; count]);
             matrix.sum(&x, &mut here);
             matrix.sum_by_registers(&x, &mut everywhere);
             assert_eq!([&here, &everywhere], [&expected; 2], "{length} numbers");
-            let by_columns: Vec<f64> = (0..length as usize)
-                .flat_map(|i| (0..7).map(move |k| (i, k)))
-                .map(|(i, k)| entries[k * length as usize + i])
-                .collect();
-            let same = Superposition::transposed(length as usize, 7, &by_columns);
-            assert!(matrix.rows().flatten().eq(same.rows().flatten()));
-            assert!(matrix.rows().flatten().copied().eq(entries));
+            let columns: Vec<f64> =
+                (0..count).flat_map(|i| (0..7).map(move |k| (i, k))).map(|(i, k)| entries[k * count + i]).collect();
+            assert_eq!(Superposition::transposed(count, 7, &columns), matrix);
         }
     }
 }

@@ -39,6 +39,7 @@ use std::rc::Rc;
 
 use crate::arithmetic::cholesky::Cholesky;
 use crate::arithmetic::matrix::dot;
+use crate::arithmetic::wide::widened;
 use crate::budget;
 use crate::contact::mobility::Mobilities;
 use crate::contact::{Relative, Side};
@@ -230,8 +231,13 @@ impl<'a, V: Vector> Run<'a, V> {
         if tick.impulse == 0.0 { Ok(()) } else { self.impulse(tick.impulse) }
     }
 
-    /// Steps up to a step, and decides the contacts wherever a guard says so.
-    fn advance_to(&mut self, until: u64) -> Result<(), EngineError> {
+    widened! {
+        /// Steps up to a step, and decides the contacts wherever a guard says so.
+        fn advance_to | advance_wide (&mut self, until: u64) -> Result<(), EngineError> = advance
+    }
+
+    #[inline(always)]
+    fn advance(&mut self, until: u64) -> Result<(), EngineError> {
         let audited = self.audit.is_some();
         while self.step < until {
             if self.step == self.samples.step {

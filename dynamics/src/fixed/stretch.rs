@@ -108,6 +108,7 @@ impl<V: Vector> Motion<V> {
 
     /// Up to `steps` steps: how many were made, and whether the last one ended where the contact state does not hold, or a
     /// half cycle turned.
+    #[inline(always)]
     pub(super) fn stretch<const AUDIT: bool>(
         &mut self,
         propagator: &Propagator<V>,

@@ -5,8 +5,9 @@
 //! B G + G Bᵀ = [c cᵀ],   B ∫ c dt = [c]:
 //!
 //! only the ends of a visit matter, not what is watched. What visits gain adds up; one equation for each pair of blocks is
-//! solved when all are over, for every observed signal at once. Where two eigenvalues nearly cancel (undamped motion) G
-//! would lose digits, and [`crate::flow::integral`] takes its place.
+//! solved when all are over, for every observed signal at once. Of velocities alone the equations are solved beforehand, once for each
+//! signal ([`VelocitySquare`]). Where two eigenvalues nearly cancel (undamped motion) G would lose digits, and
+//! [`crate::flow::integral`] takes its place.
 
 use crate::arithmetic::four::Four;
 use crate::arithmetic::lanes::WIDTH;
@@ -23,6 +24,12 @@ pub(crate) struct Closed {
     equations: Equations,
     /// ω of the harmonic force, the last block.
     drive: Option<f64>,
+}
+
+/// ∫ v² dt of a signal as a sum over what the coordinates have gained: with BᵀW + WB = vvᵀ it is Σ W·[c cᵀ].
+pub(crate) struct VelocitySquare {
+    second: Vec<[f64; 4]>,
+    swing: f64,
 }
 
 /// B⁻¹, row by row.
@@ -132,6 +139,27 @@ impl Closed {
         self.equations.size() + 4 * self.blocks.len()
     }
 
+    /// The equations of these signals' velocities solved, for any gains.
+    pub(crate) fn velocity_squares(&self, rows: &[&Row]) -> Vec<VelocitySquare> {
+        let back = self.equations.transposed();
+        let of = |row: &&Row| {
+            let pair = |(k, l): (usize, usize)| {
+                let ([_, _, x, y], [_, _, u, v]) = (row.weights[k], row.weights[l]);
+                [x * u, x * v, y * u, y * v]
+            };
+            let forms: Vec<[f64; 4]> = pairs(self.blocks.len()).map(pair).collect();
+            let solvable = forms.len() - usize::from(self.drive.is_some());
+            let mut second = back.solve(&forms[..solvable]);
+            let mut swing = 0.0;
+            if let (Some(omega), Some([xx, xy, yx, yy])) = (self.drive, forms.get(second.len())) {
+                swing = 0.5 * (xx + yy);
+                second.push([-0.5 * (xy + yx) / omega, 0.5 * (xx - yy) / omega, 0.0, 0.0]);
+            }
+            VelocitySquare { second, swing }
+        };
+        rows.iter().map(of).collect()
+    }
+
     /// Solves them for what was gained.
     pub(crate) fn solve(&self, gains: &Gains) -> Integrated {
         // All pairs but that of the harmonic force with itself, the last.
@@ -147,6 +175,41 @@ impl Closed {
             self.blocks.iter().zip(gains).flat_map(each).collect()
         };
         Integrated { first: undone(&gains.first), forced: undone(&gains.forced), second, time: gains.time }
+    }
+}
+
+impl VelocitySquare {
+    /// Numbers that it keeps.
+    pub(crate) fn size(&self) -> usize {
+        4 * self.second.len() + 1
+    }
+
+    widened! {
+        /// Over these visits, and over those.
+        pub(crate) fn over | over_wide (&self, gains: [&Gains; 2]) -> [f64; 2] = over_by_registers
+    }
+
+    #[inline(always)]
+    fn over_by_registers(&self, gains: [&Gains; 2]) -> [f64; 2] {
+        let mut sums = [[Four::ZERO; 2]; 2];
+        let [of, and] = gains.map(|gains| gains.second.as_chunks::<2>());
+        let (weights, last) = self.second.as_chunks::<2>();
+        let mut add = |lane: usize, weights: &[f64; 4], gained: [&[f64; 4]; 2]| {
+            let weights = Four::new(*weights);
+            for (sum, gained) in sums[lane].iter_mut().zip(gained) {
+                *sum = *sum + weights * Four::new(*gained);
+            }
+        };
+        for ((weights, of), and) in weights.iter().zip(of.0).zip(and.0) {
+            for lane in 0..2 {
+                add(lane, &weights[lane], [&of[lane], &and[lane]]);
+            }
+        }
+        for ((weights, of), and) in last.iter().zip(of.1).zip(and.1) {
+            add(0, weights, [of, and]);
+        }
+        let [even, odd] = sums;
+        std::array::from_fn(|half| (even[half] + odd[half]).sum() + self.swing * gains[half].swing)
     }
 }
 
@@ -234,5 +297,10 @@ mod tests {
         assert!((integrals.displacement / sampled.displacement - 1.0).abs() < 1e-12);
         assert!((integrals.deviation_square / sampled.deviation_square - 1.0).abs() < 1e-12);
         assert!((integrals.velocity_square / sampled.velocity_square - 1.0).abs() < 1e-12);
+        // The other way round, for both halves of a window.
+        let [square] = &closed.velocity_squares(&[&row])[..] else { panic!("one row has one square") };
+        let halves = square.over([&gains, &Gains::none(3)]);
+        assert!((halves[0] / sampled.velocity_square - 1.0).abs() < 1e-12);
+        assert_eq!(halves[1], 0.0);
     }
 }

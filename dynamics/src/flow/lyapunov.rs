@@ -102,6 +102,15 @@ impl Equations {
         4 * WIDTH * (self.circles.len() + self.any.len())
     }
 
+    /// Those whose solutions are to any Q what these are to any P: ⟨W, Q⟩ = ⟨V, P⟩ if W solves them for V.
+    pub(crate) fn transposed(&self) -> Self {
+        let conjugate = |z: &Complexes| Complexes { re: z.re, im: z.im * -1.0 };
+        Self {
+            circles: self.circles.iter().map(|pair| pair.each_ref().map(conjugate)).collect(),
+            any: self.any.iter().map(|(place, columns)| (*place, across(&columns.map(Four::array)))).collect(),
+        }
+    }
+
     widened! {
         /// P for each Q.
         pub(crate) fn solve | solve_wide (&self, entries: &[[f64; 4]]) -> Vec<[f64; 4]> = solve_by_registers

@@ -24,6 +24,7 @@ use crate::arithmetic::exact;
 use crate::arithmetic::four::Four;
 use crate::arithmetic::lanes::WIDTH;
 use crate::arithmetic::matrix::dot;
+use crate::arithmetic::wide::widened;
 use crate::contact_state::Modes;
 use crate::contact_state::bank::{Bank, Kernels, Propagator};
 use crate::contact_state::block::Block;
@@ -31,7 +32,7 @@ use crate::contact_state::conservative::Conservative;
 use crate::contact_state::load::{self, Load, Steady};
 use crate::error::EngineError;
 use crate::flow::dissipation::Dissipation;
-use crate::flow::gains::Closed;
+use crate::flow::gains::{Closed, VelocitySquare};
 use crate::flow::parabola::Parabola;
 use crate::flow::series::Series;
 use crate::flow::signals::{Row, Rows};
@@ -72,6 +73,7 @@ pub(crate) struct Flow {
     pub(crate) rows: Rows,
     /// Closed forms of its integrals, where they keep their digits; worked out when they are asked for.
     closed: OnceCell<Option<Closed>>,
+    velocity_squares: OnceCell<Vec<VelocitySquare>>,
     dissipation: OnceCell<Dissipation>,
     /// Its place among the states that a run visits.
     pub(crate) place: Cell<usize>,
@@ -139,6 +141,7 @@ impl Flow {
             harmonic,
             rows: Rows::default(),
             closed: OnceCell::new(),
+            velocity_squares: OnceCell::new(),
             dissipation: OnceCell::new(),
             place: Cell::new(0),
         };
@@ -152,6 +155,7 @@ impl Flow {
             + self.rows.size()
             + self.steps.as_ref().map_or(0, Steps::size)
             + self.closed.get().and_then(Option::as_ref).map_or(0, Closed::size)
+            + self.velocity_squares.get().map_or(0, |rows| rows.iter().map(VelocitySquare::size).sum())
             + self.dissipation.get().map_or(0, Dissipation::size)
     }
 
@@ -166,6 +170,12 @@ impl Flow {
         let omega = || self.harmonic.as_ref().map(|steady| steady.omega);
         let solved = || Closed::new(&self.blocks, &self.modes.spectral.matrices, omega());
         self.closed.get_or_init(|| if self.is_resonant { None } else { solved() }).as_ref()
+    }
+
+    /// The squares of the observed velocities, integrated in closed form.
+    pub(crate) fn velocity_squares(&self, closed: &Closed) -> &[VelocitySquare] {
+        let rows = || self.rows.observed.iter().map(|&row| self.rows.row(row)).collect::<Vec<_>>();
+        self.velocity_squares.get_or_init(|| closed.velocity_squares(&rows()))
     }
 
     /// The signal r·p; a row may end where only zeros follow.
@@ -387,8 +397,13 @@ impl Flow {
         self.left(&vec![0.0; 2 * self.order], 0.0, force, drive)
     }
 
-    /// (p, p′) as [`Flow::leave`] has them, without a place to put them.
-    pub(crate) fn left(&self, c: &[f64], t: f64, force: f64, drive: DrivePhase) -> [Vec<f64>; 2] {
+    widened! {
+        /// (p, p′) as [`Flow::leave`] has them, without a place to put them.
+        pub(crate) fn left | left_wide (&self, c: &[f64], t: f64, force: f64, drive: DrivePhase) -> [Vec<f64>; 2] = left_by_registers
+    }
+
+    #[inline(always)]
+    fn left_by_registers(&self, c: &[f64], t: f64, force: f64, drive: DrivePhase) -> [Vec<f64>; 2] {
         let [mut p, mut rate] = [vec![0.0; self.order], vec![0.0; self.order]];
         self.leave(c, t, force, drive, &mut Vec::new(), [&mut p, &mut rate]);
         [p, rate]

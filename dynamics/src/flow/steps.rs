@@ -1,7 +1,8 @@
 //! Transfers of shares over whole steps of time, from a table that grows as it is asked.
 //!
-//! Where a window of the search begins is seen in no event, so that it may begin at a whole step: e^(B iδ) is the product of two
-//! entries, e^(B nhδ) e^(B lδ) with i = nh + l, where each instant by itself would take an exponential, a sine and a cosine.
+//! Where a window of the search begins is seen in no event, so that it may begin at a whole step: e^(B iδ) is the product of three
+//! entries, e^(B n²hδ) e^(B nmδ) e^(B lδ) with i = n²h + nm + l, where each instant by itself would take an exponential, a sine and a
+//! cosine. With three of them the table of a contact state is small, and those of a run stay in the processor's cache.
 
 use std::cell::RefCell;
 
@@ -11,9 +12,9 @@ use crate::contact_state::block::Block;
 /// ρδ, ρ the largest radius of a block: a small part of the shortest window.
 const STEP: f64 = 0.5;
 /// n.
-const NEAR: usize = 32;
-/// Entries for multiples of nδ; later instants are left to whoever asks for them.
-const FAR: usize = 64;
+const MANY: usize = 8;
+/// Entries for multiples of n²δ; later instants are left to whoever asks for them.
+const FAR: usize = 32;
 
 /// The table of a flow.
 #[derive(Debug)]
@@ -24,11 +25,11 @@ pub(crate) struct Steps {
     known: RefCell<Known>,
 }
 
-/// At 0 to (n − 1)δ, then at 0, nδ, 2nδ and so on.
+/// At 0 to (n − 1)δ, then at 0, nδ, 2nδ and so on, then at 0, n²δ, 2n²δ and so on.
 #[derive(Debug, Default)]
 struct Known {
     /// Which of them: one bit each.
-    places: u128,
+    places: u64,
     /// Of all blocks, one place after the other.
     entries: Vec<Transfer>,
 }
@@ -52,7 +53,7 @@ impl Steps {
     #[inline(always)]
     pub(crate) fn before(&self, t: f64) -> Option<(Whole, f64)> {
         let steps = t * self.inverse;
-        (steps < (NEAR * FAR) as f64).then(|| {
+        (steps < (MANY * MANY * FAR) as f64).then(|| {
             let whole = steps as usize;
             (Whole(whole), whole as f64 * self.length)
         })
@@ -63,29 +64,32 @@ impl Steps {
     pub(crate) fn transfers(&self, bank: &Bank, each: &[Block], Whole(steps): Whole, transfers: &mut [Transfer]) {
         let mut known = self.known.borrow_mut();
         let width = bank.blocks.len();
-        let (far, near) = (NEAR + steps / NEAR, steps % NEAR);
-        let places = 1 << far | 1 << near;
-        if known.places & places != places {
-            self.add(bank, each, [far, near], &mut known);
+        let (near, middle, far) = (steps % MANY, steps / MANY % MANY, steps / (MANY * MANY));
+        let places = [near, MANY + middle, 2 * MANY + far];
+        let wanted = places.iter().fold(0, |wanted, place| wanted | 1 << place);
+        if known.places & wanted != wanted {
+            self.add(bank, each, places, &mut known);
         }
-        let (far, near) = (&known.entries[far * width..][..width], &known.entries[near * width..][..width]);
-        if steps < NEAR {
-            transfers.copy_from_slice(near);
-            return;
-        }
-        for ((transfer, blocks), (far, near)) in transfers.iter_mut().zip(&bank.blocks).zip(far.iter().zip(near)) {
-            *transfer = blocks.chained(far, near);
+        let [near, later @ ..] = places.map(|place| &known.entries[place * width..][..width]);
+        transfers.copy_from_slice(near);
+        for (entries, steps) in later.into_iter().zip([middle, far]) {
+            if steps > 0 {
+                for ((transfer, blocks), entry) in transfers.iter_mut().zip(&bank.blocks).zip(entries) {
+                    *transfer = blocks.chained(entry, transfer);
+                }
+            }
         }
     }
 
     #[cold]
-    fn add(&self, bank: &Bank, each: &[Block], places: [usize; 2], known: &mut Known) {
+    fn add(&self, bank: &Bank, each: &[Block], places: [usize; 3], known: &mut Known) {
         let width = bank.blocks.len();
         for place in places {
             if known.places & 1 << place != 0 {
                 continue;
             }
-            let steps = if place < NEAR { place } else { (place - NEAR) * NEAR };
+            let level = (place / MANY).min(2);
+            let steps = (place - level * MANY) * MANY.pow(level as u32);
             let mut kernels = vec![Kernels::NONE; width];
             bank.kernels(each, steps as f64 * self.length, &mut kernels);
             let entries = place * width..(place + 1) * width;
@@ -105,7 +109,7 @@ mod tests {
     use crate::contact_state::bank::Phases;
 
     #[test]
-    fn two_entries_make_the_kernels_of_any_whole_step() {
+    fn three_entries_make_the_kernels_of_any_whole_step() {
         let each = [[0.0, 1.0, -1000.0, -3.0], [0.0, 1.0, -9.0, -40.0], [0.0, 1.0, 0.0, 0.0]].map(Block::new);
         let bank = Bank::new(&each);
         let steps = Steps::new(40.0);

@@ -5,7 +5,8 @@
 //! closed in on, by Newton on the exact flow.
 
 use super::cycle::{Cycle, Segment};
-use crate::arithmetic::four::Four;
+use crate::arithmetic::lanes::WIDTH;
+use crate::arithmetic::superposition::Superposition;
 use crate::budget;
 use crate::contact_state::block::Phase;
 use crate::flow::Flow;
@@ -24,20 +25,16 @@ const STEADY: f64 = 1e-16;
 
 /// Grid of a segment.
 struct Grid {
-    nodes: Vec<Node>,
+    /// Its instants.
+    times: Vec<f64>,
+    /// The motion at all of them, one after the other, by each block coordinate at the segment's beginning.
+    free: Superposition,
+    /// What it is beside that.
+    constant: Vec<Motion>,
     /// Share of the harmonic force at the segment's beginning.
     drive: Option<Phase>,
     /// Beside the shares, m.
     rest: Parabola,
-}
-
-/// An instant of a segment.
-struct Node {
-    time: f64,
-    /// The motion by each block coordinate at the segment's beginning.
-    columns: Vec<Four>,
-    /// What it is beside those.
-    constant: Four,
 }
 
 /// Takes `cycles` cycles, the first of them from the state `start`, into the range.
@@ -52,7 +49,7 @@ pub(super) fn take(
 ) {
     let grids: Vec<Grid> =
         cycle.segments.iter().filter(|segment| segment.length > 0.0).map(|s| Grid::new(system, flow, row, s)).collect();
-    let mut state = start.to_vec();
+    let (mut state, mut motions) = (start.to_vec(), Vec::new());
     for _ in 0..cycles {
         if budget::spend(1) {
             return;
@@ -64,7 +61,7 @@ pub(super) fn take(
             if segment.length > 0.0
                 && let Some(grid) = next_grid.next()
             {
-                grid.take(flow, row, &from, range);
+                grid.take(flow, row, &from, &mut motions, range);
             }
             state = segment.flow.apply(&from);
         }
@@ -78,36 +75,40 @@ pub(super) fn take(
 impl Grid {
     fn new(system: &HybridSystem, flow: &Flow, row: &Row, segment: &Segment) -> Self {
         let (drive, rest) = row.outside(flow, segment.level, segment.drive);
-        let nodes = times(flow, segment.length)
-            .into_iter()
-            .map(|time| {
-                let mut columns = Vec::with_capacity(2 * flow.own);
-                for (block, [a, b, c, d]) in flow.blocks[..flow.own].iter().zip(&row.weights) {
-                    let kernel = block.kernel(time);
-                    for phase in [Phase { value: *a, rate: *c }, Phase { value: *b, rate: *d }] {
-                        let mut motion = Motion::default();
-                        block.add_motion(&mut motion, block.advance(phase, kernel));
-                        columns.push(Four::new(motion));
-                    }
+        let times = times(flow, segment.length);
+        let length = WIDTH * times.len();
+        let mut entries = vec![0.0; 2 * flow.own * length];
+        let mut constant = Vec::with_capacity(times.len());
+        for (node, &time) in times.iter().enumerate() {
+            let columns = &mut entries.as_chunks_mut().0[node..];
+            let mut columns = columns.iter_mut().step_by(times.len());
+            for (block, [a, b, c, d]) in flow.blocks[..flow.own].iter().zip(&row.weights) {
+                let kernel = block.kernel(time);
+                for (phase, motion) in [[*a, *c], [*b, *d]].into_iter().zip(&mut columns) {
+                    let [value, rate] = phase;
+                    block.add_motion(motion, block.advance(Phase { value, rate }, kernel));
                 }
-                let (driven, _) = row.outside(flow, segment.level, DrivePhase::of(&system.drive, segment.begin + time));
-                let mut constant = [rest, 0.0, 0.0, 0.0];
-                if let (Some(phase), Some(block)) = (driven, flow.blocks.last()) {
-                    block.add_motion(&mut constant, phase);
-                }
-                Node { time, columns, constant: Four::new(constant) }
-            })
-            .collect();
-        Self { nodes, drive, rest: Parabola { p0: rest, ..Parabola::default() } }
+            }
+            let (driven, _) = row.outside(flow, segment.level, DrivePhase::of(&system.drive, segment.begin + time));
+            let mut motion = [rest, 0.0, 0.0, 0.0];
+            if let (Some(phase), Some(block)) = (driven, flow.blocks.last()) {
+                block.add_motion(&mut motion, phase);
+            }
+            constant.push(motion);
+        }
+        let free = Superposition::new(length, &entries);
+        Self { times, free, constant, drive, rest: Parabola { p0: rest, ..Parabola::default() } }
     }
 
-    fn take(&self, flow: &Flow, row: &Row, c: &[f64], range: &mut Extremes) {
+    /// Takes the segment that begins with these block coordinates into the range; `motions` is room to work in.
+    fn take(&self, flow: &Flow, row: &Row, c: &[f64], motions: &mut Vec<f64>, range: &mut Extremes) {
         let shares = std::cell::OnceCell::new();
         let shares = || -> &Vec<Phase> { shares.get_or_init(|| row.phases(c).chain(self.drive).collect()) };
         let mut before: Option<crest::Node> = None;
-        for node in &self.nodes {
-            let free = node.columns.iter().zip(c).fold(Four::ZERO, |sum, (column, c)| sum + *column * *c);
-            let now = crest::Node { time: node.time, motion: (node.constant + free).array() };
+        motions.resize(WIDTH * self.times.len(), 0.0);
+        self.free.sum(c, motions);
+        for ((&time, constant), free) in self.times.iter().zip(&self.constant).zip(motions.as_chunks::<WIDTH>().0) {
+            let now = crest::Node { time, motion: std::array::from_fn(|order| constant[order] + free[order]) };
             range.take(now.motion[0], now.motion[1]);
             if let Some(last) = before {
                 for order in [0, 1] {

@@ -46,11 +46,10 @@ impl<E: Effects> March<'_, E> {
 
     #[inline(always)]
     fn sum_up_observed(&mut self, integration: Integration, length: f64) {
-        let half = self.averaged.half(self.cycle);
-        if self.visits.half != half || self.visits.is_full() {
+        if self.visits.is_full() {
             self.pay_out();
-            self.visits.half = half;
         }
+        self.visits.half = self.averaged.half(self.cycle);
         if integration == Integration::Visits {
             self.visits.of(&self.flow).visit(&self.c, &self.c_end, self.level, length);
         }

@@ -1,7 +1,7 @@
 //! What the visits of contact states have gained, until the measures ask for it.
 //!
-//! A run comes to the same few contact states again and again. Each keeps one sum ([`crate::flow::gains`]), and its equations are
-//! solved when a half of the averaged window is over, or sooner where there are many or half cycles change the damping.
+//! A run comes to the same few contact states again and again. Each keeps one sum ([`crate::flow::gains`]) for each half of the averaged
+//! window, and its equations are solved for both when the run is over, or sooner where there are many states.
 
 use std::rc::Rc;
 
@@ -18,15 +18,15 @@ const MOST_STATES: usize = 1024;
 #[derive(Default)]
 pub(crate) struct Visits {
     /// In the order of the first visits, in which they are paid out.
-    states: Vec<(Rc<Flow>, Gains)>,
+    states: Vec<(Rc<Flow>, [Gains; 2])>,
     /// Of those that were paid out, to be used again.
-    spare: Vec<Gains>,
-    /// Half of the averaged window that they belong to.
+    spare: Vec<[Gains; 2]>,
+    /// Half of the averaged window that the next visit belongs to.
     pub(crate) half: usize,
 }
 
 impl Visits {
-    /// The gains of a contact state.
+    /// The gains of a contact state in the half under way.
     #[inline]
     pub(crate) fn of(&mut self, flow: &Rc<Flow>) -> &mut Gains {
         // Where it stood in another run's list, or one that was paid out, another one stands now, or none.
@@ -34,10 +34,10 @@ impl Visits {
         if !known {
             flow.place.set(self.states.len());
             let mut gains = self.spare.pop().unwrap_or_default();
-            gains.clear(flow.blocks.len());
+            gains.iter_mut().for_each(|gains| gains.clear(flow.blocks.len()));
             self.states.push((Rc::clone(flow), gains));
         }
-        &mut self.states[flow.place.get()].1
+        &mut self.states[flow.place.get()].1[self.half]
     }
 
     /// So many that they should be paid out before another one comes.
@@ -47,16 +47,30 @@ impl Visits {
 
     /// Adds the integrals of all visits to the measures, and forgets them.
     pub(crate) fn pay_out(&mut self, displacement: bool, observed: &mut [Observed]) {
-        let mut parts = vec![Vec::new(); observed.len()];
+        let mut parts: [_; 2] = std::array::from_fn(|_| vec![Vec::new(); observed.len()]);
         for (flow, gains) in self.states.drain(..) {
             let Some(closed) = flow.closed() else { continue };
-            let integrated = closed.solve(&gains);
-            let rows: Vec<&Row> = flow.rows.observed.iter().map(|&row| flow.rows.row(row)).collect();
-            parts.iter_mut().zip(integrated.of(&rows, displacement)).for_each(|(parts, part)| parts.push(part));
+            if displacement {
+                let rows: Vec<&Row> = flow.rows.observed.iter().map(|&row| flow.rows.row(row)).collect();
+                for (gains, parts) in gains.iter().zip(&mut parts).filter(|(gains, _)| gains.time[0] > 0.0) {
+                    let integrated = closed.solve(gains).of(&rows, displacement);
+                    parts.iter_mut().zip(integrated).for_each(|(parts, part)| parts.push(part));
+                }
+            } else {
+                for (of, square) in observed.iter_mut().zip(flow.velocity_squares(closed)) {
+                    let squares = square.over(gains.each_ref());
+                    for (sums, (gains, square)) in of.halves.iter_mut().zip(gains.iter().zip(squares)) {
+                        sums.duration += gains.time[0];
+                        sums.velocity_square += square;
+                    }
+                }
+            }
             self.spare.push(gains);
         }
-        for (of, parts) in observed.iter_mut().zip(&parts) {
-            of.halves[self.half].add(Sums::of(parts));
+        for (half, parts) in parts.iter().enumerate() {
+            for (of, parts) in observed.iter_mut().zip(parts) {
+                of.halves[half].add(Sums::of(parts));
+            }
         }
     }
 }
