@@ -34,7 +34,7 @@ pub(crate) fn split(spectral: &Spectral, order: usize, push: &[f64], omega: f64)
     }
     let mut parts = Parts::new(order, omega, spectral.lasts);
     for (k, (block, matrix)) in spectral.blocks.iter().zip(&spectral.matrices).enumerate() {
-        let columns = [0, 1].map(|i| (0..2 * order).map(|row| spectral.from_blocks[row * width + 2 * k + i]).collect());
+        let columns = [0, 1].map(|i| spectral.column(2 * k + i).collect());
         let rows = [0, 1].map(|i| (0..2 * order).map(|row| spectral.to_blocks[row * width + 2 * k + i]).collect());
         let own = Own { matrix: *matrix, columns, rows };
         let load = own.rows.each_ref().map(|row| (0..order).map(|i| row[order + i] * push[i]).sum::<f64>());

@@ -67,6 +67,11 @@ impl Spectral {
         Self::new(sorted(&self.from_blocks), sorted(&self.to_blocks), matrices, self.lasts)
     }
 
+    /// A column of V.
+    pub(crate) fn column(&self, k: usize) -> impl Iterator<Item = f64> {
+        self.from_blocks.iter().skip(k).step_by(self.width()).copied()
+    }
+
     /// Block coordinates: two a block.
     pub(crate) fn width(&self) -> usize {
         2 * self.blocks.len()

@@ -29,10 +29,8 @@ pub(crate) struct Dissipation {
 impl Dissipation {
     /// `free` where nothing moves but the blocks.
     pub(crate) fn new(system: &HybridSystem, modes: &Modes, free: bool) -> Self {
-        let width = modes.spectral.width();
-        let rates = &modes.spectral.from_blocks[modes.order * width..];
-        let column = |k: usize| rates.iter().skip(k).step_by(width).copied().collect();
-        let columns: Vec<Vec<f64>> = (0..width).map(column).collect();
+        let Modes { order, spectral, .. } = modes;
+        let columns: Vec<Vec<f64>> = (0..spectral.width()).map(|k| spectral.column(k).skip(*order).collect()).collect();
         let damped: Vec<Vec<f64>> = columns.iter().map(|rate| against(system, modes, rate)).collect();
         let largest = columns.iter().map(|rate| rate.iter().fold(0.0_f64, |most, x| most.max(x.abs()))).collect();
         let form = |(k, l): (usize, usize)| {

@@ -148,8 +148,7 @@ impl Closed {
                 [x * u, x * v, y * u, y * v]
             };
             let forms: Vec<[f64; 4]> = pairs(self.blocks.len()).map(pair).collect();
-            let solvable = forms.len() - usize::from(self.drive.is_some());
-            let mut second = back.solve(&forms[..solvable]);
+            let mut second = back.solve(self.solvable(&forms));
             let mut swing = 0.0;
             if let (Some(omega), Some([xx, xy, yx, yy])) = (self.drive, forms.get(second.len())) {
                 swing = 0.5 * (xx + yy);
@@ -160,11 +159,14 @@ impl Closed {
         rows.iter().map(of).collect()
     }
 
+    /// All pairs but that of the harmonic force with itself, the last.
+    fn solvable<'a>(&self, pairs: &'a [[f64; 4]]) -> &'a [[f64; 4]] {
+        &pairs[..pairs.len() - usize::from(self.drive.is_some())]
+    }
+
     /// Solves them for what was gained.
     pub(crate) fn solve(&self, gains: &Gains) -> Integrated {
-        // All pairs but that of the harmonic force with itself, the last.
-        let solvable = gains.second.len() - usize::from(self.drive.is_some());
-        let mut second = self.equations.solve(&gains.second[..solvable]);
+        let mut second = self.equations.solve(self.solvable(&gains.second));
         if let (Some(omega), Some([xx, xy, ..])) = (self.drive, gains.second.get(second.len())) {
             // (xy)′ = ω (x² − y²), (x²)′ = −2 ω x y.
             let (turned, mixed) = (0.5 * xy / omega, -0.5 * xx / omega);

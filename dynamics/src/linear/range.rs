@@ -5,7 +5,6 @@
 //! closed in on, by Newton on the exact flow.
 
 use super::cycle::{Cycle, Segment};
-use crate::arithmetic::lanes::WIDTH;
 use crate::arithmetic::superposition::Superposition;
 use crate::budget;
 use crate::contact_state::block::Phase;
@@ -76,17 +75,15 @@ impl Grid {
     fn new(system: &HybridSystem, flow: &Flow, row: &Row, segment: &Segment) -> Self {
         let (drive, rest) = row.outside(flow, segment.level, segment.drive);
         let times = times(flow, segment.length);
-        let length = WIDTH * times.len();
-        let mut entries = vec![0.0; 2 * flow.own * length];
+        let mut entries = vec![Motion::default(); 2 * flow.own * times.len()];
         let mut constant = Vec::with_capacity(times.len());
         for (node, &time) in times.iter().enumerate() {
-            let columns = &mut entries.as_chunks_mut().0[node..];
-            let mut columns = columns.iter_mut().step_by(times.len());
+            let mut columns = entries.iter_mut().skip(node).step_by(times.len());
             for (block, [a, b, c, d]) in flow.blocks[..flow.own].iter().zip(&row.weights) {
                 let kernel = block.kernel(time);
-                for (phase, motion) in [[*a, *c], [*b, *d]].into_iter().zip(&mut columns) {
-                    let [value, rate] = phase;
-                    block.add_motion(motion, block.advance(Phase { value, rate }, kernel));
+                let phases = [Phase { value: *a, rate: *c }, Phase { value: *b, rate: *d }];
+                for (phase, motion) in phases.into_iter().zip(&mut columns) {
+                    block.add_motion(motion, block.advance(phase, kernel));
                 }
             }
             let (driven, _) = row.outside(flow, segment.level, DrivePhase::of(&system.drive, segment.begin + time));
@@ -96,18 +93,18 @@ impl Grid {
             }
             constant.push(motion);
         }
-        let free = Superposition::new(length, &entries);
+        let free = Superposition::new(constant.as_flattened().len(), entries.as_flattened());
         Self { times, free, constant, drive, rest: Parabola { p0: rest, ..Parabola::default() } }
     }
 
     /// Takes the segment that begins with these block coordinates into the range; `motions` is room to work in.
-    fn take(&self, flow: &Flow, row: &Row, c: &[f64], motions: &mut Vec<f64>, range: &mut Extremes) {
+    fn take(&self, flow: &Flow, row: &Row, c: &[f64], motions: &mut Vec<Motion>, range: &mut Extremes) {
         let shares = std::cell::OnceCell::new();
         let shares = || -> &Vec<Phase> { shares.get_or_init(|| row.phases(c).chain(self.drive).collect()) };
         let mut before: Option<crest::Node> = None;
-        motions.resize(WIDTH * self.times.len(), 0.0);
-        self.free.sum(c, motions);
-        for ((&time, constant), free) in self.times.iter().zip(&self.constant).zip(motions.as_chunks::<WIDTH>().0) {
+        motions.resize(self.times.len(), Motion::default());
+        self.free.sum(c, motions.as_flattened_mut());
+        for ((&time, constant), free) in self.times.iter().zip(&self.constant).zip(&*motions) {
             let now = crest::Node { time, motion: std::array::from_fn(|order| constant[order] + free[order]) };
             range.take(now.motion[0], now.motion[1]);
             if let Some(last) = before {

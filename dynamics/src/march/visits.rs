@@ -1,7 +1,7 @@
 //! What the visits of contact states have gained, until the measures ask for it.
 //!
 //! A run comes to the same few contact states again and again. Each keeps one sum ([`crate::flow::gains`]) for each half of the averaged
-//! window, and its equations are solved for both when the run is over, or sooner where there are many states.
+//! window, and the integrals are worked out for both when the run is over, or sooner where there are many states.
 
 use std::rc::Rc;
 
