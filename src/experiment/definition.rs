@@ -6,7 +6,7 @@ use std::collections::BTreeSet;
 use serde::{Deserialize, Serialize};
 
 use super::recipe::{
-    AssumptionName, AssumptionValue, Assumptions, Given, Parameter, ParameterValue, Recipe, RecipeError,
+    AssumptionName, AssumptionValue, Assumptions, Dependencies, Given, Parameter, ParameterValue, Recipe, RecipeError,
 };
 use crate::dynamics::Limit;
 use crate::measure::{CycleSpec, EnergySpec, Measure, Needs, Settings, ShapeSpec, SolverChoice, Tolerance, TraceSpec};
@@ -188,7 +188,28 @@ impl Experiment {
     /// The assumptions that a number of this experiment depends on under these values.
     #[must_use]
     pub fn assumptions_under(&self, in_force: &Assumptions) -> BTreeSet<AssumptionName> {
-        self.assumptions_of(self.cases.iter().filter_map(|case| self.recipe_of(case).ok()), in_force)
+        let needs = self.needs();
+        let mut used = self.assumptions_beside();
+        // Thousands of cases differ in how large their quantities are, and in nothing that decides what is read.
+        let mut read: Vec<Vec<(Parameter, ParameterValue)>> = Vec::new();
+        let points = if self.mean_over.is_empty() { &[Case::default()] } else { &self.mean_over[..] };
+        for (case, point) in self.cases.iter().flat_map(|case| points.iter().map(move |point| (case, point))) {
+            let values = || case.values.iter().chain(&point.values).copied();
+            let kind = || values().map(|(parameter, value)| (parameter, parameter.stand_in(value)));
+            if read.iter().any(|known| known.iter().copied().eq(kind())) {
+                continue;
+            }
+            let mut recipe = self.recipe.clone();
+            if values().try_for_each(|(parameter, value)| recipe.set(parameter, value)).is_err() {
+                continue;
+            }
+            let Dependencies { names, is_resolved } = recipe.dependencies(in_force, needs);
+            used.extend(names);
+            if is_resolved {
+                read.push(kind().collect());
+            }
+        }
+        used
     }
 
     /// The assumptions that a number depends on, in scenes in which a case has been set already: those that are read while
@@ -199,15 +220,24 @@ impl Experiment {
         scenes: impl IntoIterator<Item = Recipe>,
         in_force: &Assumptions,
     ) -> BTreeSet<AssumptionName> {
-        let needs = Needs::of(&self.measures, self.energies.is_some());
         let each = scenes.into_iter().flat_map(|scene| self.recipes_in(&scene).unwrap_or_default());
+        let read = each.flat_map(|recipe| recipe.dependencies(in_force, self.needs()).names);
+        read.chain(self.assumptions_beside()).collect()
+    }
+
+    /// Those that no scene reads: of the transient, and of the ratio of means.
+    fn assumptions_beside(&self) -> BTreeSet<AssumptionName> {
         let left_out = self.transient.iter().map(|transient| transient.left_out.clone());
         let has_mean_ratio = !self.mean_over.is_empty() && self.measures.contains(&Measure::VelocityRatio);
         let mean_ratio = match &self.recipe.mean_ratio {
             Given::Assumed(name) if has_mean_ratio => Some(name.clone()),
             _ => None,
         };
-        each.flat_map(|recipe| recipe.dependencies(in_force, needs)).chain(left_out).chain(mean_ratio).collect()
+        left_out.chain(mean_ratio).collect()
+    }
+
+    fn needs(&self) -> Needs {
+        Needs::of(&self.measures, self.energies.is_some())
     }
 
     /// The whole meaning as JSON; equal meanings give equal JSON. Keys are sorted.

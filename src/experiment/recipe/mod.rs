@@ -22,6 +22,7 @@ pub use parts::{
     Reference, StiffnessRecipe, StopRecipe, StrengthRecipe, SurfaceRecipe, TimingRecipe, WallRecipe,
 };
 pub use place::{Coordinate, PlaceRecipe};
+pub use resolve::Dependencies;
 pub use slot::Slot;
 pub use structure::StructureRecipe;
 pub use swept::SweptSlots;

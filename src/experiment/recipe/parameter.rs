@@ -202,6 +202,16 @@ impl Parameter {
         self.words().is_empty() && !is_counted
     }
 
+    /// A value of which a scene reads the same assumptions as of this one: how large a quantity is decides on none, zero and a sign may.
+    pub(crate) fn stand_in(self, value: ParameterValue) -> ParameterValue {
+        match value {
+            ParameterValue::Number(number) if self.varies_smoothly() && number != 0.0 => {
+                ParameterValue::Number(number.signum())
+            }
+            as_it_is => as_it_is,
+        }
+    }
+
     /// The drive is proportional to it.
     #[must_use]
     pub fn is_strength(self) -> bool {

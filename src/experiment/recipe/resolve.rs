@@ -44,6 +44,14 @@ struct Placed<'r> {
     enclosure_mass: f64,
 }
 
+/// The assumptions that were read while a scene was resolved.
+#[derive(Debug)]
+pub struct Dependencies {
+    pub(in crate::experiment) names: BTreeSet<AssumptionName>,
+    /// To the end: nothing was refused.
+    pub(in crate::experiment) is_resolved: bool,
+}
+
 impl Recipe {
     /// The dampers, unless they are taken out.
     fn dampers_in_place(&self) -> &[DamperRecipe] {
@@ -85,11 +93,11 @@ impl Recipe {
 
     /// The assumptions that such a measurement depends on: those that are read while it is resolved.
     #[must_use]
-    pub fn dependencies(&self, assumptions: &Assumptions, needs: Needs) -> BTreeSet<AssumptionName> {
+    pub fn dependencies(&self, assumptions: &Assumptions, needs: Needs) -> Dependencies {
         let inputs = Inputs::new(assumptions);
         // What physics refuses has been reported when the file was read; what was read until then counts.
-        let _ = self.read_subject(&inputs, needs);
-        inputs.read()
+        let is_resolved = self.read_subject(&inputs, needs).is_ok();
+        Dependencies { names: inputs.read(), is_resolved }
     }
 
     fn read_subject(&self, inputs: &Inputs<'_>, needs: Needs) -> Result<Subject, RecipeError> {
