@@ -61,7 +61,7 @@ impl<V: Vector> Run<'_, V> {
                 }
                 Hold::Away => {}
                 Hold::Held => {
-                    let propagator = &self.propagators[self.now];
+                    let propagator = &self.known[self.now].propagator;
                     if propagator.hold(j, &self.motion.state, self.motion.force()) < 0.0 {
                         self.let_go(j, side)?;
                     }
@@ -184,7 +184,7 @@ impl<V: Vector> Run<'_, V> {
         // A stop does not hold for a step what its spring throws back.
         self.choose_propagator()?;
         for Touch { particle: j, side, .. } in touches.into_iter().filter(|touch| touch.on_stop && !touch.held) {
-            if self.propagators[self.now].hold(j, &self.motion.state, self.motion.force()) < 0.0 {
+            if self.known[self.now].propagator.hold(j, &self.motion.state, self.motion.force()) < 0.0 {
                 self.turn(j, side, Hold::Pressed)?;
             }
         }

@@ -48,10 +48,16 @@ pub(super) struct Form<V> {
 impl<V: Vector> Form<V> {
     #[inline(always)]
     pub(super) fn at(&self, state: &V, force: f64) -> f64 {
-        self.row.dot(state) + (self.force * force + self.constant)
+        self.of(state, force, 1.0)
     }
 
-    fn of(signal: &Signal) -> Self {
+    /// With so many times the constant.
+    #[inline(always)]
+    pub(super) fn of(&self, state: &V, force: f64, constant: f64) -> f64 {
+        self.row.dot(state) + (self.force * force + self.constant * constant)
+    }
+
+    fn new(signal: &Signal) -> Self {
         let size = signal.0.len() - 2;
         Self { row: V::of(&signal.0[..size]), force: signal.0[size + 1], constant: signal.0[size] }
     }
@@ -208,10 +214,10 @@ impl<V: Vector> Propagator<V> {
             matrix: V::matrix(&step[..size]),
             offset: V::of(&step[size]),
             input: V::of(&step[size + 1]),
-            guards: guards.iter().map(Form::of).collect(),
+            guards: guards.iter().map(Form::new).collect(),
             holds,
-            acceleration: Form::of(&along(&system.observed_rows[0])),
-            base_acceleration: Form::of(&along(system.base_row().unwrap_or_default())),
+            acceleration: Form::new(&along(&system.observed_rows[0])),
+            base_acceleration: Form::new(&along(system.base_row().unwrap_or_default())),
             dissipation: dissipation.iter().map(|signal| V::of(&signal.0[..size])).collect(),
         })
     }

@@ -22,6 +22,7 @@ impl Observed {
         }
         for half in &mut self.halves {
             (half.velocity_square, half.deviation_square) = (0.0, 0.0);
+            half.displacement = window.mean_displacement() * half.duration;
         }
         if self.extremes.velocity[0].is_finite() {
             self.extremes = Extremes { displacement: [window.mean_displacement(); 2], velocity: [0.0; 2] };
@@ -103,7 +104,7 @@ impl<V: Vector> Run<'_, V> {
         let state = &self.motion.state;
         let weight = half * self.time_step;
         self.passed.position.iter_mut().zip(state.as_ref()).for_each(|(sum, q)| *sum += weight * q);
-        for row in &self.propagators[self.now].dissipation {
+        for row in &self.known[self.now].propagator.dissipation {
             let rate = row.dot(state);
             self.passed.dissipated += weight * rate * rate;
         }
@@ -135,7 +136,7 @@ impl<V: Vector> Run<'_, V> {
             time: self.step as f64 * self.time_step,
             displacement: dot(&self.system.observed_rows[0], q),
             velocity: dot(&self.system.observed_rows[0], rate),
-            acceleration: self.propagators[self.now].acceleration.at(&self.motion.state, self.motion.force()),
+            acceleration: self.known[self.now].propagator.acceleration.at(&self.motion.state, self.motion.force()),
             damping: if self.contacts.is_empty() { 0.0 } else { self.damping(0, self.contacts[0].side()) },
             half_cycle_rms: self.motion.half.map_or(0.0, |half| half.last),
             particles: self.system.particles.iter().enumerate().map(sampled).collect(),

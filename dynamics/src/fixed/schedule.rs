@@ -116,11 +116,29 @@ impl Oscillator {
         self.force * self.now.0
     }
 
+    /// F sin and F cos.
+    #[inline(always)]
+    pub(super) fn forces(&self) -> [f64; 2] {
+        let (sine, cosine) = self.now;
+        [self.force * sine, self.force * cosine]
+    }
+
+    /// Sine and cosine of the angle of so many steps.
+    pub(super) fn turned(&self, steps: usize) -> (f64, f64) {
+        sin_cos(self.angle * steps as f64)
+    }
+
     #[inline(always)]
     pub(super) fn advance(&mut self) {
-        self.step += 1;
-        let ((sine, cosine), (s, c)) = (self.rotation, self.now);
-        self.now = if self.step.is_multiple_of(EXACT_EVERY) {
+        self.advance_by(1, self.rotation);
+    }
+
+    /// Some steps on, fewer than [`EXACT_EVERY`], which turn it by an angle of this sine and cosine.
+    #[inline(always)]
+    pub(super) fn advance_by(&mut self, steps: u64, (sine, cosine): (f64, f64)) {
+        let ((s, c), before) = (self.now, self.step);
+        self.step += steps;
+        self.now = if self.step / EXACT_EVERY > before / EXACT_EVERY {
             sin_cos(self.angle * self.step as f64 + self.phase)
         } else {
             (s * cosine + c * sine, c * cosine - s * sine)

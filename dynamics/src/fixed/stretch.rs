@@ -1,12 +1,21 @@
 //! A stretch: steps of one contact state, until a guard says that it no longer holds. The one loop that takes time.
 
+use super::ahead::{AHEAD, Ahead, Signal};
 use super::propagator::Propagator;
 use super::schedule::Oscillator;
 use super::vector::Vector;
 use crate::response::audit::Passed;
 use crate::response::extremes::Extremes;
 
+/// A contact state that was visited.
+pub(super) struct Known<V: Vector> {
+    pub(super) propagator: Propagator<V>,
+    /// None where half cycles ask after each step.
+    pub(super) ahead: Option<Ahead<V>>,
+}
+
 /// What moves.
+#[derive(Clone)]
 pub(super) struct Motion<V> {
     pub(super) state: V,
     spare: V,
@@ -110,6 +119,75 @@ impl<V: Vector> Motion<V> {
     /// half cycle turned.
     #[inline(always)]
     pub(super) fn stretch<const AUDIT: bool>(
+        &mut self,
+        Known { propagator, ahead }: &Known<V>,
+        watch: &Watch<V>,
+        steps: u64,
+        tally: &mut Tally<V>,
+    ) -> Stretch {
+        let Some(ahead) = ahead else { return self.one_by_one::<AUDIT>(propagator, watch, steps, tally) };
+        let mut made = 0;
+        while made < steps {
+            let next = (steps - made).min(AHEAD as u64);
+            if next == AHEAD as u64 && self.leap::<AUDIT>(ahead, watch, tally) {
+                made += next;
+                continue;
+            }
+            let end = self.one_by_one::<AUDIT>(propagator, watch, next, tally);
+            made += end.steps;
+            if end.broken {
+                return Stretch { steps: made, ..end };
+            }
+        }
+        Stretch { steps, broken: false, turned: false }
+    }
+
+    /// Makes [`AHEAD`] steps at once, unless the contact state does not hold after some of them.
+    #[inline(always)]
+    pub(super) fn leap<const AUDIT: bool>(&mut self, ahead: &Ahead<V>, watch: &Watch<V>, tally: &mut Tally<V>) -> bool {
+        let [sine, cosine] = self.oscillator.map_or([0.0; 2], |oscillator| oscillator.forces());
+        let forces = [self.level, sine, cosine];
+        let state = &self.state;
+        let at = |signal: &Signal| signal.at(state, &forces);
+        if ahead.guards.iter().any(|guard| at(guard).is_ever_negative()) {
+            return false;
+        }
+        let [first, more @ ..] = &ahead.observed[..] else { return false };
+        let [displacement, velocity] = first;
+        tally.velocity_square += at(velocity).sum_of_squares();
+        if watch.with_displacement {
+            tally.displacement_square += at(displacement).sum_of_squares();
+        }
+        for (squares, signals) in tally.more.iter_mut().zip(more) {
+            squares.iter_mut().zip(signals).for_each(|(square, signal)| *square += at(signal).sum_of_squares());
+        }
+        for (extremes, [displacement, velocity]) in tally.extremes.iter_mut().zip(&ahead.observed) {
+            at(displacement).each().zip(at(velocity).each()).for_each(|(place, rate)| extremes.take(place, rate));
+        }
+        if AUDIT {
+            tally.passed.dissipated += ahead.dissipation.iter().fold(0.0, |sum, row| sum + at(row).sum_of_squares());
+            if forces != [0.0; 3] {
+                let mut place = watch.forced.dot(state);
+                for (force, here) in at(&ahead.force).each().zip(at(&ahead.forced).each()) {
+                    tally.passed.drive(1.0, force, force * (here - place));
+                    place = here;
+                }
+            }
+        }
+        ahead.sum.take(state, &forces, &mut self.spare);
+        tally.state.add(&self.spare);
+        ahead.end.take(state, &forces, &mut self.spare);
+        std::mem::swap(&mut self.state, &mut self.spare);
+        if let (Some(oscillator), Some(turn)) = (&mut self.oscillator, ahead.turn) {
+            oscillator.advance_by(AHEAD as u64, turn);
+        }
+        tally.steps += AHEAD as u64;
+        true
+    }
+
+    /// The same as a stretch, each step after the one before it.
+    #[inline(always)]
+    pub(super) fn one_by_one<const AUDIT: bool>(
         &mut self,
         propagator: &Propagator<V>,
         watch: &Watch<V>,

@@ -1,8 +1,8 @@
 //! State vectors: of a length known to the compiler for the small systems, so that a step is a few dozen instructions
 //! without a loop or an allocation; of any length for the others. All sums run in one fixed order.
 
-/// A state vector, its matrix, and the four operations of a step.
-pub(super) trait Vector: AsRef<[f64]> + AsMut<[f64]> {
+/// A state vector, its matrix, and the operations of a step.
+pub(super) trait Vector: Clone + AsRef<[f64]> + AsMut<[f64]> {
     /// A square matrix of the same order, by columns.
     type Matrix;
     fn of(values: &[f64]) -> Self;
@@ -13,6 +13,7 @@ pub(super) trait Vector: AsRef<[f64]> + AsMut<[f64]> {
     fn advance(matrix: &Self::Matrix, offset: &Self, input: &Self, u: f64, from: &Self, into: &mut Self);
     fn dot(&self, other: &Self) -> f64;
     fn add(&mut self, other: &Self);
+    fn add_times(&mut self, factor: f64, other: &Self);
 }
 
 impl<const D: usize> Vector for [f64; D] {
@@ -64,6 +65,13 @@ impl<const D: usize> Vector for [f64; D] {
             self[i] += other[i];
         }
     }
+
+    #[inline(always)]
+    fn add_times(&mut self, factor: f64, other: &Self) {
+        for i in 0..D {
+            self[i] += factor * other[i];
+        }
+    }
 }
 
 impl Vector for Vec<f64> {
@@ -96,5 +104,9 @@ impl Vector for Vec<f64> {
 
     fn add(&mut self, other: &Self) {
         self.iter_mut().zip(other).for_each(|(sum, x)| *sum += x);
+    }
+
+    fn add_times(&mut self, factor: f64, other: &Self) {
+        self.iter_mut().zip(other).for_each(|(sum, x)| *sum += factor * x);
     }
 }

@@ -1,5 +1,8 @@
 //! Integrals of a motion over a stretch of time, from which means and RMS values are read.
 
+/// Share of a mean that dividing by its duration rounds off.
+const ROUNDING: f64 = 2.0 * f64::EPSILON;
+
 /// Integrals over half of the averaged window.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Sums {
@@ -33,7 +36,9 @@ impl Sums {
     pub(crate) fn add(&mut self, more: Self) {
         let duration = self.duration + more.duration;
         if self.duration > 0.0 && more.duration > 0.0 {
-            let apart = more.displacement / more.duration - self.displacement / self.duration;
+            let means = [&*self, &more].map(Self::mean_displacement);
+            // Two means that are one but for their rounding are not apart.
+            let apart = if (means[1] - means[0]).abs() <= ROUNDING * means[0].abs() { 0.0 } else { means[1] - means[0] };
             self.deviation_square += apart * apart * (self.duration * (more.duration / duration));
         }
         self.duration = duration;

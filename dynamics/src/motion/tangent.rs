@@ -7,7 +7,9 @@ use std::rc::Rc;
 
 use super::tape::{At, Crossing, Cycle, Jump, Step};
 use crate::arithmetic::matrix::dot;
+use crate::arithmetic::wide::widened;
 use crate::contact::Side;
+use crate::contact_state::bank::Kernels;
 use crate::flow::Flow;
 use crate::system::{DrivePhase, HybridSystem};
 
@@ -17,6 +19,7 @@ pub(super) struct Tangent<'a> {
     /// Of the contact states met so far: their p″ under gravity and under a unit force.
     loads: Vec<(Rc<Flow>, Vec<f64>, Vec<f64>)>,
     // Work space.
+    kernels: Vec<Kernels>,
     c: Vec<f64>,
     c_end: Vec<f64>,
     p: Vec<f64>,
@@ -29,6 +32,7 @@ impl<'a> Tangent<'a> {
         Self {
             system,
             loads: Vec::new(),
+            kernels: Vec::new(),
             c: Vec::new(),
             c_end: Vec::new(),
             p: Vec::new(),
@@ -55,10 +59,16 @@ impl<'a> Tangent<'a> {
         }
     }
 
-    fn flow(&mut self, flow: &Flow, length: f64, vectors: &mut [Vec<f64>]) {
+    widened! {
+        fn flow | flow_wide (&mut self, flow: &Flow, length: f64, vectors: &mut [Vec<f64>]) = flow_by_registers
+    }
+
+    #[inline(always)]
+    fn flow_by_registers(&mut self, flow: &Flow, length: f64, vectors: &mut [Vec<f64>]) {
         let (n, order) = (self.system.mass.order, flow.order);
         let half = n + self.system.particles.len();
-        let kernels = flow.kernels(length);
+        self.kernels.resize(flow.bank.blocks.len(), Kernels::NONE);
+        flow.bank.kernels(&flow.blocks, length, &mut self.kernels);
         for c in [&mut self.c, &mut self.c_end] {
             c.clear();
             c.resize(flow.width(), 0.0);
@@ -72,9 +82,9 @@ impl<'a> Tangent<'a> {
                     p[n + i] = x[n + j] - dot(row, &x[..n]);
                 }
             }
-            flow.modes.to_blocks.sum(&self.p, &mut self.c);
-            flow.advance_all(&kernels, &self.c, DrivePhase::default(), &mut self.c_end);
-            flow.modes.columns.sum(&self.c_end, &mut self.p);
+            flow.modes.to_blocks.sum_by_registers(&self.p, &mut self.c);
+            flow.advance_all(&self.kernels, &self.c, DrivePhase::default(), &mut self.c_end);
+            flow.modes.columns.sum_by_registers(&self.c_end, &mut self.p);
             for (j, particle) in self.system.particles.iter().enumerate() {
                 if flow.modes.contacts[j].face(particle).is_none() {
                     vector[n + j] += length * vector[half + n + j];

@@ -6,7 +6,7 @@
 
 pub(crate) mod ground;
 
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 use std::collections::BTreeMap;
 use std::rc::Rc;
 
@@ -20,13 +20,19 @@ use ground::Ground;
 
 /// Numbers that a thread keeps, about: 128 MB.
 const MOST_NUMBERS: usize = 1 << 24;
-/// They are counted at every so many new drives: counting takes as long as a short run.
-const SELDOM: usize = 8;
-/// Dampings of one contact state that are kept; half cycles give it another one each time.
-const MOST_DAMPINGS: usize = 64;
+/// Dampings of one contact state that are kept; half cycles give it another one each time, and hardly ever the same again.
+const MOST_DAMPINGS: usize = 4;
 
 thread_local! {
-    static KNOWN: RefCell<Vec<Rc<Driven>>> = const { RefCell::new(Vec::new()) };
+    static KNOWN: RefCell<Known> = const { RefCell::new(Known { driven: Vec::new(), numbers: 0 }) };
+}
+
+/// What a thread knows.
+struct Known {
+    /// The last one that was asked for comes last; it alone may have grown since it was counted.
+    driven: Vec<Rc<Driven>>,
+    /// Numbers of all that were counted.
+    numbers: usize,
 }
 
 type ByContact<T> = RefCell<BTreeMap<Vec<Contact>, Vec<Rc<T>>>>;
@@ -44,6 +50,8 @@ struct Driven {
     frequency: Option<f64>,
     ground: Ground,
     flows: ByContact<Flow>,
+    /// What it kept when another one took its place.
+    counted: Cell<usize>,
     /// Some of them, each where its code leads.
     at_hand: RefCell<Vec<Option<AtHand>>>,
 }
@@ -85,23 +93,25 @@ struct Undriven {
 impl States {
     /// The states of a system: those of one that was run before, if it differs in nothing that they know.
     pub(crate) fn of(system: &HybridSystem) -> Self {
-        KNOWN.with_borrow_mut(|known| {
+        KNOWN.with_borrow_mut(|Known { driven: known, numbers }| {
             // The next system is mostly one of the last.
-            if let Some(place) = known.iter().rposition(|driven| driven.fits(system)) {
+            let place = known.iter().rposition(|driven| driven.fits(system));
+            if let Some(last) = known.last().filter(|_| place != Some(known.len() - 1)) {
+                let counted = last.counted.replace(last.size());
+                *numbers = *numbers - counted + last.counted.get();
+            }
+            if let Some(place) = place {
                 let driven = known.remove(place);
                 known.push(Rc::clone(&driven));
                 return Self(driven);
+            }
+            while *numbers > MOST_NUMBERS {
+                *numbers -= known.remove(0).counted.get();
             }
             let same = known.iter().rev().find(|driven| driven.undriven.fits(system));
             let undriven = same.map_or_else(|| Rc::new(Undriven::new(system)), |driven| Rc::clone(&driven.undriven));
             let driven = Rc::new(Driven::new(system, undriven));
             known.push(Rc::clone(&driven));
-            if known.len().is_multiple_of(SELDOM) {
-                let mut numbers: usize = known.iter().map(|driven| driven.size()).sum();
-                while numbers > MOST_NUMBERS && known.len() > 1 {
-                    numbers -= known.remove(0).size();
-                }
-            }
             Self(driven)
         })
     }
@@ -192,6 +202,7 @@ impl Driven {
             frequency: system.drive.harmonic.map(|drive| drive.angular_frequency),
             ground: Ground::default(),
             flows: ByContact::default(),
+            counted: Cell::new(0),
             at_hand: RefCell::new(vec![None; AT_HAND]),
         }
     }
