@@ -38,7 +38,8 @@ impl Sums {
         if self.duration > 0.0 && more.duration > 0.0 {
             let means = [&*self, &more].map(Self::mean_displacement);
             // Two means that are one but for their rounding are not apart.
-            let apart = if (means[1] - means[0]).abs() <= ROUNDING * means[0].abs() { 0.0 } else { means[1] - means[0] };
+            let apart =
+                if (means[1] - means[0]).abs() <= ROUNDING * means[0].abs() { 0.0 } else { means[1] - means[0] };
             self.deviation_square += apart * apart * (self.duration * (more.duration / duration));
         }
         self.duration = duration;
