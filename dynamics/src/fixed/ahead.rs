@@ -12,7 +12,8 @@ use crate::arithmetic::four::Four;
 use crate::arithmetic::lanes::WIDTH;
 
 /// Steps at once.
-pub(super) const AHEAD: usize = 2 * WIDTH;
+pub(super) const AHEAD: u64 = COUNT as u64;
+const COUNT: usize = 2 * WIDTH;
 
 /// The forces at an instant: the constant one, F sin and F cos of the harmonic one, N.
 pub(super) type Forces = [f64; 3];
@@ -44,10 +45,10 @@ impl Steps {
     }
 }
 
-/// A signal at the end of each step, by the coordinates: those of the state, the constant, the forces.
-pub(super) struct Signal(Vec<Steps>);
+/// What each step will show, by the coordinates: those of the state, the constant, the forces.
+pub(super) struct Foresight(Vec<Steps>);
 
-impl Signal {
+impl Foresight {
     #[inline(always)]
     pub(super) fn at<V: Vector>(&self, state: &V, forces: &Forces) -> Steps {
         let (by_state, others) = self.0.split_at(state.as_ref().len());
@@ -60,14 +61,14 @@ impl Signal {
     }
 }
 
-/// A state, by the coordinates.
-pub(super) struct Leap<V: Vector> {
+/// A later state, or a sum of states, by the coordinates.
+pub(super) struct Affine<V: Vector> {
     matrix: V::Matrix,
     offset: V,
     by_forces: Vec<V>,
 }
 
-impl<V: Vector> Leap<V> {
+impl<V: Vector> Affine<V> {
     fn new(size: usize, columns: &[Vec<f64>]) -> Self {
         Self {
             matrix: V::matrix(&columns[..size]),
@@ -77,7 +78,7 @@ impl<V: Vector> Leap<V> {
     }
 
     #[inline(always)]
-    pub(super) fn take(&self, state: &V, forces: &Forces, into: &mut V) {
+    pub(super) fn apply(&self, state: &V, forces: &Forces, into: &mut V) {
         let [by_level, by_turns @ ..] = &self.by_forces[..] else { return };
         V::advance(&self.matrix, &self.offset, by_level, forces[0], state, into);
         by_turns.iter().zip(&forces[1..]).for_each(|(column, force)| into.add_times(*force, column));
@@ -87,15 +88,15 @@ impl<V: Vector> Leap<V> {
 /// One contact state, some steps ahead.
 pub(super) struct Ahead<V: Vector> {
     /// The state at the end of the last step, and the sum of those at the end of each.
-    pub(super) end: Leap<V>,
-    pub(super) sum: Leap<V>,
-    pub(super) guards: Vec<Signal>,
+    pub(super) end: Affine<V>,
+    pub(super) sum: Affine<V>,
+    pub(super) guards: Vec<Foresight>,
     /// Displacement and velocity of each observed point.
-    pub(super) observed: Vec<[Signal; 2]>,
-    pub(super) dissipation: Vec<Signal>,
+    pub(super) observed: Vec<[Foresight; 2]>,
+    pub(super) dissipation: Vec<Foresight>,
     /// The displacement under the force; the force at the start of each step.
-    pub(super) forced: Signal,
-    pub(super) force: Signal,
+    pub(super) forced: Foresight,
+    pub(super) force: Foresight,
     /// Sine and cosine of the angle that the harmonic force turns by.
     pub(super) turn: Option<(f64, f64)>,
 }
@@ -114,11 +115,11 @@ impl<V: Vector> Ahead<V> {
         let size = propagator.offset.as_ref().len();
         let nothing = || V::of(&vec![0.0; size]);
         let course = |start: V, constant: f64, force: &dyn Fn(usize) -> f64| {
-            let forces: Vec<f64> = (0..=AHEAD).map(force).collect();
+            let forces: Vec<f64> = (0..=COUNT).map(force).collect();
             let mut offset = nothing();
             offset.add_times(constant, &propagator.offset);
-            let mut states: Vec<V> = Vec::with_capacity(AHEAD);
-            for force in &forces[..AHEAD] {
+            let mut states: Vec<V> = Vec::with_capacity(COUNT);
+            for force in &forces[..COUNT] {
                 let mut next = nothing();
                 let from = states.last().unwrap_or(&start);
                 V::advance(&propagator.matrix, &offset, &propagator.input, *force, from, &mut next);
@@ -141,23 +142,23 @@ impl<V: Vector> Ahead<V> {
         }
 
         let signal = |at: &dyn Fn(&Course<V>, usize) -> f64| {
-            Signal(courses.iter().map(|course| Steps::new(|i| at(course, i))).collect())
+            Foresight(courses.iter().map(|course| Steps::new(|i| at(course, i))).collect())
         };
         let row = |row: &V| signal(&|course, i| row.dot(&course.states[i]));
-        let leap = |state: &dyn Fn(&Course<V>) -> V| {
+        let affine = |state: &dyn Fn(&Course<V>) -> V| {
             let columns: Vec<Vec<f64>> = courses.iter().map(|course| state(course).as_ref().to_vec()).collect();
-            Leap::new(size, &columns)
+            Affine::new(size, &columns)
         };
-        let sum_to = |course: &Course<V>, first: usize| {
+        let sum = |course: &Course<V>| {
             let mut sum = nothing();
-            course.states[first..].iter().for_each(|state| sum.add(state));
+            course.states.iter().for_each(|state| sum.add(state));
             sum
         };
         let first = [[&watch.displacement, &watch.velocity]];
         let more = watch.more.iter().map(|rows| rows.each_ref());
         Self {
-            end: leap(&|course| sum_to(course, AHEAD - 1)),
-            sum: leap(&|course| sum_to(course, 0)),
+            end: affine(&|course| course.states[COUNT - 1].clone()),
+            sum: affine(&sum),
             guards: propagator
                 .guards
                 .iter()
@@ -167,7 +168,7 @@ impl<V: Vector> Ahead<V> {
             dissipation: propagator.dissipation.iter().map(row).collect(),
             forced: row(&watch.forced),
             force: signal(&|course, i| course.forces[i]),
-            turn: oscillator.map(|oscillator| oscillator.turned(AHEAD)),
+            turn: oscillator.map(|oscillator| oscillator.turned(COUNT)),
         }
     }
 }
@@ -175,59 +176,70 @@ impl<V: Vector> Ahead<V> {
 #[cfg(test)]
 mod tests {
     use super::super::Run;
-    use super::AHEAD;
+    use super::{AHEAD, COUNT};
     use crate::arithmetic::matrix::Matrix;
     use crate::options::Options;
     use crate::system::{Drive, Face, Harmonic, HybridSystem, Law, Particle};
 
     #[test]
     fn steps_at_once_are_the_steps_one_after_the_other() {
-        let face = Face {
-            row: vec![1.0],
-            law: Law::Resilient { stiffness: 800.0, damping: 0.3, no_tension: false, stop: None },
-        };
-        let system = HybridSystem {
-            mass: Matrix::diagonal(&[1.0]),
-            damping: Matrix::diagonal(&[0.4]),
-            stiffness: Matrix::diagonal(&[1000.0]),
-            gravity: 9.81,
-            particles: vec![Particle { mass: 0.1, floor: face, ceiling: None, gap: 0.0 }],
-            force_row: vec![1.0],
-            drive: Drive {
-                period: 0.2,
-                ticks: Vec::new(),
-                repeats: true,
-                harmonic: Some(Harmonic { force: 0.2, angular_frequency: 31.0, phase: 0.3 }),
-                half_cycles: None,
-            },
-            observed_rows: vec![vec![1.0], vec![2.0]],
-            momentum_rows: vec![vec![1.0]],
-        };
-        let options = Options::default();
-        let run = || Run::<[f64; 4]>::new(&system, &options, 1e-3).expect("it is sound");
-        let [mut once, mut each] = [run(), run()];
-        for run in [&mut once, &mut each] {
-            run.motion.level = -0.1;
-            run.motion.state[2] = 1e-3;
-        }
-        let Run { motion, known, watch, tally, .. } = &mut once;
-        let ahead = known[0].ahead.as_ref().expect("no half cycle asks after each step");
-        let steps = 25 * AHEAD as u64;
-        for _ in 0..25 {
-            assert!(motion.leap::<true>(ahead, watch, tally), "the particle stays on its floor");
-        }
-        let Run { motion, known, watch, tally, .. } = &mut each;
-        assert_eq!(motion.one_by_one::<true>(&known[0].propagator, watch, steps, tally).steps, steps);
-
-        let sums = |Run { tally, motion, .. }: &Run<'_, [f64; 4]>| {
-            let passed = &tally.passed;
-            let mut all = vec![tally.velocity_square, passed.dissipated, passed.work, passed.force_modulus];
-            all.extend(tally.more.iter().flatten().chain(&motion.state).chain(&tally.state));
-            all.extend(motion.oscillator.map(|oscillator| oscillator.value()));
-            all
-        };
-        for (once, each) in sums(&once).into_iter().zip(sums(&each)) {
-            assert!((once - each).abs() < 1e-13 * (1.0 + each.abs()), "{once} for {each}");
+        let resilient = Law::Resilient { stiffness: 800.0, damping: 0.3, no_tension: false, stop: None };
+        for law in [resilient, Law::Rigid { restitution: 0.5 }] {
+            let system = HybridSystem {
+                mass: Matrix::diagonal(&[1.0]),
+                damping: Matrix::diagonal(&[0.4]),
+                stiffness: Matrix::diagonal(&[1000.0]),
+                gravity: 9.81,
+                particles: vec![Particle { mass: 0.1, floor: Face { row: vec![1.0], law }, ceiling: None, gap: 0.0 }],
+                force_row: vec![1.0],
+                drive: Drive {
+                    period: 0.2,
+                    ticks: Vec::new(),
+                    repeats: true,
+                    harmonic: Some(Harmonic { force: 0.2, angular_frequency: 31.0, phase: 0.3 }),
+                    half_cycles: None,
+                },
+                observed_rows: vec![vec![1.0], vec![2.0]],
+                momentum_rows: vec![vec![1.0]],
+            };
+            let options = Options { extremes: true, ..Options::default() };
+            let run = || Run::<[f64; 4]>::new(&system, &options, 1e-3).expect("it is sound");
+            let [mut once, mut each] = [run(), run()];
+            for run in [&mut once, &mut each] {
+                run.motion.level = -0.1;
+                run.motion.state[2] = 1e-3;
+            }
+            let near = |once: f64, each: f64| {
+                assert!((once - each).abs() < 1e-13 * (1.0 + each.abs()), "{once} for {each} under {law:?}");
+            };
+            for _ in 0..25 {
+                let Run { motion, known, watch, tally, .. } = &mut once;
+                let ahead = known[0].ahead.as_ref().expect("no half cycle asks after each step");
+                let guards =
+                    ahead.guards.iter().map(|guard| guard.at(&motion.state, &motion.forces()).each().collect());
+                let foreseen: Vec<Vec<f64>> = guards.collect();
+                assert!(motion.leap::<true>(ahead, watch, tally), "the particle stays on its floor");
+                let Run { motion, known, watch, tally, .. } = &mut each;
+                let propagator = &known[0].propagator;
+                for step in 0..COUNT {
+                    motion.one_by_one::<true>(propagator, watch, 1, tally);
+                    for (foreseen, guard) in foreseen.iter().zip(&propagator.guards) {
+                        near(foreseen[step], guard.at(&motion.state, motion.force()));
+                    }
+                }
+            }
+            let sums = |Run { tally, motion, .. }: &Run<'_, [f64; 4]>| {
+                let passed = &tally.passed;
+                let mut all = vec![tally.velocity_square, passed.dissipated, passed.work, passed.force_modulus];
+                all.extend(tally.more.iter().flatten().chain(&motion.state).chain(&tally.state));
+                all.extend(
+                    tally.extremes.iter().flat_map(|range| range.displacement.into_iter().chain(range.velocity)),
+                );
+                all.extend(motion.oscillator.map(|oscillator| oscillator.value()));
+                all
+            };
+            assert_eq!(once.tally.steps, 25 * AHEAD);
+            sums(&once).into_iter().zip(sums(&each)).for_each(|(once, each)| near(once, each));
         }
     }
 }

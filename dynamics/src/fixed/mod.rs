@@ -54,13 +54,13 @@ use crate::system::{Contact, Drive, HybridSystem};
 use ahead::{AHEAD, Ahead};
 use propagator::{Layout, Propagator, lead};
 use schedule::{Oscillator, Schedule, StepTick};
-use stretch::{HalfCycle, Known, Motion, Tally, Watch};
+use stretch::{HalfCycle, Motion, Tally, Visited, Watch};
 use vector::Vector;
 
 /// Propagators kept; equivalent viscous damping makes new ones at every half cycle.
 const MOST_PROPAGATORS: usize = 64;
-/// Steps between two questions for what is left of the allowance.
-const STEPS_A_STRETCH: u64 = 1024;
+/// Steps between two questions for what is left of the allowance; whole numbers of steps at once, or a sample would shift them.
+const STEPS_A_STRETCH: u64 = 128 * AHEAD;
 /// What a stretch counts as, about.
 const UNITS_A_STRETCH: u32 = 16;
 
@@ -88,7 +88,7 @@ struct Run<'a, V: Vector> {
     watch: Watch<V>,
     /// Velocity of the structure after a unit impulse at the forcing point.
     jump: Vec<f64>,
-    known: Vec<Known<V>>,
+    known: Vec<Visited<V>>,
     /// Index of the one in force.
     now: usize,
     // State beside what moves.
@@ -242,7 +242,7 @@ impl<'a, V: Vector> Run<'a, V> {
     fn advance(&mut self, until: u64) -> Result<(), EngineError> {
         let audited = self.audit.is_some();
         while self.step < until {
-            if self.step >= self.samples.step {
+            if self.step == self.samples.step {
                 self.sample();
             }
             let steps = self.uncut(until - self.step).min(STEPS_A_STRETCH);
@@ -266,31 +266,40 @@ impl<'a, V: Vector> Run<'a, V> {
     /// How many of these steps can be made before a sample asks for the state; one that falls among steps that are made at once is
     /// taken ahead of them, so that it changes no bit of what follows.
     fn uncut(&mut self, steps: u64) -> u64 {
-        let once = if self.known[self.now].ahead.is_some() { AHEAD as u64 } else { 1 };
-        while self.samples.step - self.step < once.min(steps) {
-            let mut foreseen = self.motion.clone();
-            let mut tally = Tally::new(self.layout.size(), self.watch.more.len(), false);
-            let known = &self.known[self.now];
-            let ahead = self.samples.step - self.step;
-            if foreseen.one_by_one::<false>(&known.propagator, &self.watch, ahead, &mut tally).broken {
-                // The contact state changes before.
-                return once.min(steps);
-            }
-            let (motion, step) = (std::mem::replace(&mut self.motion, foreseen), self.step);
-            self.step += ahead;
-            self.sample();
-            (self.motion, self.step) = (motion, step);
+        let once = if self.known[self.now].ahead.is_some() { AHEAD } else { 1 };
+        if self.samples.step - self.step < once.min(steps) {
+            return self.foresee(once.min(steps));
         }
         let before = self.samples.step - self.step;
         steps.min((before - before % once).max(once))
+    }
+
+    /// Takes the samples among the next steps, and tells how many of these can be made until the contact state changes.
+    fn foresee(&mut self, steps: u64) -> u64 {
+        let (motion, begin) = (self.motion.clone(), self.step);
+        let mut tally = Tally::new(self.layout.size(), self.watch.more.len(), false);
+        let mut unbroken = steps;
+        while self.samples.step - begin < steps {
+            let next = self.samples.step - self.step;
+            let end = self.motion.one_by_one::<false>(&self.known[self.now].propagator, &self.watch, next, &mut tally);
+            self.step += end.steps;
+            if end.broken {
+                unbroken = self.step - begin;
+                break;
+            }
+            self.sample();
+        }
+        (self.motion, self.step) = (motion, begin);
+        unbroken
     }
 
     /// Makes the propagator of the contact state in force current, building it at the first visit.
     fn choose_propagator(&mut self) -> Result<(), EngineError> {
         let both = |j| [Side::Floor, Side::Ceiling].map(|side| self.damping(j, side));
         let damping: Vec<[f64; 2]> = (0..self.contacts.len()).map(both).collect();
-        let fits =
-            |Known { propagator, .. }: &Known<V>| propagator.contacts == self.contacts && propagator.damping == damping;
+        let fits = |Visited { propagator, .. }: &Visited<V>| {
+            propagator.contacts == self.contacts && propagator.damping == damping
+        };
         if let Some(index) = self.known.iter().position(fits) {
             self.now = index;
             return Ok(());
@@ -304,7 +313,7 @@ impl<'a, V: Vector> Run<'a, V> {
         let propagator = Propagator::build(self.system, &self.contacts, &damping, self.time_step)?;
         let Motion { oscillator, half, .. } = &self.motion;
         let ahead = half.is_none().then(|| Ahead::new(&propagator, &self.watch, oscillator.as_ref()));
-        self.known.push(Known { propagator, ahead });
+        self.known.push(Visited { propagator, ahead });
         self.now = self.known.len() - 1;
         Ok(())
     }

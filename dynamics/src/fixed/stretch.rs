@@ -1,6 +1,6 @@
-//! A stretch: steps of one contact state, until a guard says that it no longer holds. The one loop that takes time.
+//! A stretch: steps of one contact state, until a guard says that it no longer holds. Here the time goes.
 
-use super::ahead::{AHEAD, Ahead, Signal};
+use super::ahead::{AHEAD, Ahead, Forces, Foresight};
 use super::propagator::Propagator;
 use super::schedule::Oscillator;
 use super::vector::Vector;
@@ -8,7 +8,7 @@ use crate::response::audit::Passed;
 use crate::response::extremes::Extremes;
 
 /// A contact state that was visited.
-pub(super) struct Known<V: Vector> {
+pub(super) struct Visited<V: Vector> {
     pub(super) propagator: Propagator<V>,
     /// None where half cycles ask after each step.
     pub(super) ahead: Option<Ahead<V>>,
@@ -115,12 +115,18 @@ impl<V: Vector> Motion<V> {
         self.level + self.oscillator.map_or(0.0, |oscillator| oscillator.value())
     }
 
+    #[inline(always)]
+    pub(super) fn forces(&self) -> Forces {
+        let [sine, cosine] = self.oscillator.map_or([0.0; 2], |oscillator| oscillator.forces());
+        [self.level, sine, cosine]
+    }
+
     /// Up to `steps` steps: how many were made, and whether the last one ended where the contact state does not hold, or a
     /// half cycle turned.
     #[inline(always)]
     pub(super) fn stretch<const AUDIT: bool>(
         &mut self,
-        Known { propagator, ahead }: &Known<V>,
+        Visited { propagator, ahead }: &Visited<V>,
         watch: &Watch<V>,
         steps: u64,
         tally: &mut Tally<V>,
@@ -128,8 +134,8 @@ impl<V: Vector> Motion<V> {
         let Some(ahead) = ahead else { return self.one_by_one::<AUDIT>(propagator, watch, steps, tally) };
         let mut made = 0;
         while made < steps {
-            let next = (steps - made).min(AHEAD as u64);
-            if next == AHEAD as u64 && self.leap::<AUDIT>(ahead, watch, tally) {
+            let next = (steps - made).min(AHEAD);
+            if next == AHEAD && self.leap::<AUDIT>(ahead, watch, tally) {
                 made += next;
                 continue;
             }
@@ -145,10 +151,9 @@ impl<V: Vector> Motion<V> {
     /// Makes [`AHEAD`] steps at once, unless the contact state does not hold after some of them.
     #[inline(always)]
     pub(super) fn leap<const AUDIT: bool>(&mut self, ahead: &Ahead<V>, watch: &Watch<V>, tally: &mut Tally<V>) -> bool {
-        let [sine, cosine] = self.oscillator.map_or([0.0; 2], |oscillator| oscillator.forces());
-        let forces = [self.level, sine, cosine];
+        let forces = self.forces();
         let state = &self.state;
-        let at = |signal: &Signal| signal.at(state, &forces);
+        let at = |signal: &Foresight| signal.at(state, &forces);
         if ahead.guards.iter().any(|guard| at(guard).is_ever_negative()) {
             return false;
         }
@@ -174,14 +179,14 @@ impl<V: Vector> Motion<V> {
                 }
             }
         }
-        ahead.sum.take(state, &forces, &mut self.spare);
+        ahead.sum.apply(state, &forces, &mut self.spare);
         tally.state.add(&self.spare);
-        ahead.end.take(state, &forces, &mut self.spare);
+        ahead.end.apply(state, &forces, &mut self.spare);
         std::mem::swap(&mut self.state, &mut self.spare);
         if let (Some(oscillator), Some(turn)) = (&mut self.oscillator, ahead.turn) {
-            oscillator.advance_by(AHEAD as u64, turn);
+            oscillator.advance_by(AHEAD, turn);
         }
-        tally.steps += AHEAD as u64;
+        tally.steps += AHEAD;
         true
     }
 

@@ -50,8 +50,9 @@ struct Driven {
     frequency: Option<f64>,
     ground: Ground,
     flows: ByContact<Flow>,
-    /// What it kept when another one took its place.
+    /// What it kept when it was counted, and whether contact states have come since.
     counted: Cell<usize>,
+    grown: Cell<bool>,
     /// Some of them, each where its code leads.
     at_hand: RefCell<Vec<Option<AtHand>>>,
 }
@@ -96,7 +97,7 @@ impl States {
         KNOWN.with_borrow_mut(|Known { driven: known, numbers }| {
             // The next system is mostly one of the last.
             let place = known.iter().rposition(|driven| driven.fits(system));
-            if let Some(last) = known.last().filter(|_| place != Some(known.len() - 1)) {
+            if let Some(last) = known.last().filter(|last| place != Some(known.len() - 1) && last.grown.take()) {
                 let counted = last.counted.replace(last.size());
                 *numbers = *numbers - counted + last.counted.get();
             }
@@ -105,11 +106,11 @@ impl States {
                 known.push(Rc::clone(&driven));
                 return Self(driven);
             }
+            let same = known.iter().rev().find(|driven| driven.undriven.fits(system));
+            let undriven = same.map_or_else(|| Rc::new(Undriven::new(system)), |driven| Rc::clone(&driven.undriven));
             while *numbers > MOST_NUMBERS {
                 *numbers -= known.remove(0).counted.get();
             }
-            let same = known.iter().rev().find(|driven| driven.undriven.fits(system));
-            let undriven = same.map_or_else(|| Rc::new(Undriven::new(system)), |driven| Rc::clone(&driven.undriven));
             let driven = Rc::new(Driven::new(system, undriven));
             known.push(Rc::clone(&driven));
             Self(driven)
@@ -156,6 +157,7 @@ impl States {
         if budget::spend_ahead(u32::try_from(order.saturating_pow(3) / 8).unwrap_or(u32::MAX)) {
             return Err(budget::overrun().into());
         }
+        self.0.grown.set(true);
         let modes = visit(
             &self.0.undriven.modes,
             contacts,
@@ -203,6 +205,7 @@ impl Driven {
             ground: Ground::default(),
             flows: ByContact::default(),
             counted: Cell::new(0),
+            grown: Cell::new(false),
             at_hand: RefCell::new(vec![None; AT_HAND]),
         }
     }

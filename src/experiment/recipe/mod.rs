@@ -1,7 +1,7 @@
 //! Recipes: scenes as experiments name them, in dimensionless parameters and with assumptions, and how they become SI.
 //!
 //! A [`Recipe`] holds what the file says. [`Recipe::set`] gives a swept parameter its value, [`Recipe::resolve`] makes the
-//! [`crate::scene::Scene`], and [`Recipe::dependencies`] says which assumptions were read for it.
+//! [`crate::scene::Scene`], and `Recipe::dependencies` says which assumptions were read for it.
 
 mod drive;
 mod given;
@@ -22,7 +22,7 @@ pub use parts::{
     Reference, StiffnessRecipe, StopRecipe, StrengthRecipe, SurfaceRecipe, TimingRecipe, WallRecipe,
 };
 pub use place::{Coordinate, PlaceRecipe};
-pub use resolve::Dependencies;
+pub(in crate::experiment) use resolve::Dependencies;
 pub use slot::Slot;
 pub use structure::StructureRecipe;
 pub use swept::SweptSlots;

@@ -202,7 +202,7 @@ impl Parameter {
         self.words().is_empty() && !is_counted
     }
 
-    /// A value of which a scene reads the same assumptions as of this one: how large a quantity is decides on none, zero and a sign may.
+    /// A scene reads the same assumptions with this value in its place: the size of a quantity never matters, zero and a sign may.
     pub(crate) fn stand_in(self, value: ParameterValue) -> ParameterValue {
         match value {
             ParameterValue::Number(number) if self.varies_smoothly() && number != 0.0 => {

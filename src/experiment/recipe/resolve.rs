@@ -46,7 +46,7 @@ struct Placed<'r> {
 
 /// The assumptions that were read while a scene was resolved.
 #[derive(Debug)]
-pub struct Dependencies {
+pub(in crate::experiment) struct Dependencies {
     pub(in crate::experiment) names: BTreeSet<AssumptionName>,
     /// To the end: nothing was refused.
     pub(in crate::experiment) is_resolved: bool,
@@ -92,8 +92,7 @@ impl Recipe {
     }
 
     /// The assumptions that such a measurement depends on: those that are read while it is resolved.
-    #[must_use]
-    pub fn dependencies(&self, assumptions: &Assumptions, needs: Needs) -> Dependencies {
+    pub(in crate::experiment) fn dependencies(&self, assumptions: &Assumptions, needs: Needs) -> Dependencies {
         let inputs = Inputs::new(assumptions);
         // What physics refuses has been reported when the file was read; what was read until then counts.
         let is_resolved = self.read_subject(&inputs, needs).is_ok();
