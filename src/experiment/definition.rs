@@ -134,11 +134,7 @@ impl Experiment {
     /// # Errors
     /// Only for a case that is not this experiment's: validation has tried all of them.
     pub fn recipe_of(&self, case: &Case) -> Result<Recipe, RecipeError> {
-        let mut recipe = self.recipe.clone();
-        for (parameter, value) in &case.values {
-            recipe.set(*parameter, *value)?;
-        }
-        Ok(recipe)
+        set(&self.recipe, case)
     }
 
     /// The scenes of one case that its numbers are means over; one as a rule.
@@ -154,12 +150,8 @@ impl Experiment {
     /// # Errors
     /// As [`Experiment::recipe_of`].
     pub fn recipes_in(&self, recipe: &Recipe) -> Result<Vec<Recipe>, RecipeError> {
-        let inner = |case: &Case| {
-            let mut recipe = recipe.clone();
-            case.values.iter().try_for_each(|(parameter, value)| recipe.set(*parameter, *value))?;
-            Ok(recipe)
-        };
-        if self.mean_over.is_empty() { Ok(vec![recipe.clone()]) } else { self.mean_over.iter().map(inner).collect() }
+        let at = |point: &Case| set(recipe, point);
+        if self.mean_over.is_empty() { Ok(vec![recipe.clone()]) } else { self.mean_over.iter().map(at).collect() }
     }
 
     /// How a case is run and averaged under these assumptions.
@@ -194,15 +186,12 @@ impl Experiment {
         let mut read: Vec<Vec<(Parameter, ParameterValue)>> = Vec::new();
         let points = if self.mean_over.is_empty() { &[Case::default()] } else { &self.mean_over[..] };
         for (case, point) in self.cases.iter().flat_map(|case| points.iter().map(move |point| (case, point))) {
-            let values = || case.values.iter().chain(&point.values).copied();
-            let kind = || values().map(|(parameter, value)| (parameter, parameter.stand_in(value)));
+            let values = case.values.iter().chain(&point.values);
+            let kind = || values.clone().map(|&(parameter, value)| (parameter, parameter.stand_in(value)));
             if read.iter().any(|known| known.iter().copied().eq(kind())) {
                 continue;
             }
-            let mut recipe = self.recipe.clone();
-            if values().try_for_each(|(parameter, value)| recipe.set(parameter, value)).is_err() {
-                continue;
-            }
+            let Ok(recipe) = self.recipe_of(case).and_then(|recipe| set(&recipe, point)) else { continue };
             let Dependencies { names, is_resolved } = recipe.dependencies(in_force, needs);
             used.extend(names);
             if is_resolved {
@@ -325,6 +314,13 @@ fn is_usual(limit: &Limit) -> bool {
 /// Plain data with text keys always has a JSON form.
 fn json(data: &impl Serialize) -> serde_json::Value {
     serde_json::to_value(data).unwrap_or_else(|error| unreachable!("plain data has a JSON form: {error}"))
+}
+
+/// A scene with the values of a case.
+fn set(recipe: &Recipe, case: &Case) -> Result<Recipe, RecipeError> {
+    let mut recipe = recipe.clone();
+    case.values.iter().try_for_each(|(parameter, value)| recipe.set(*parameter, *value))?;
+    Ok(recipe)
 }
 
 /// Where a publication shows it; each part may be absent.
