@@ -115,7 +115,8 @@ fn summed<const REGISTERS: usize>(rows: &[[f64; WIDTH]], x: &[f64]) -> [Four; RE
 fn put<const REGISTERS: usize>(registers: [Four; REGISTERS], y: &mut [f64]) {
     let (whole, part) = y.as_chunks_mut::<WIDTH>();
     let count = whole.len();
-    whole.iter_mut().zip(registers).for_each(|(y, register)| *y = register.array());
+    // By reference: an array that is gone through by value is copied first.
+    whole.iter_mut().zip(&registers).for_each(|(y, register)| *y = register.array());
     let Some([a, b, c, _]) = registers.get(count).map(|register| register.array()) else { return };
     match part {
         [x] => *x = a,

@@ -36,7 +36,7 @@ struct Known {
 
 /// So many steps.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Whole(usize);
+pub(crate) struct Whole(u32);
 
 impl Steps {
     /// Of a flow whose fastest block has this radius.
@@ -54,8 +54,8 @@ impl Steps {
     pub(crate) fn before(&self, t: f64) -> Option<(Whole, f64)> {
         let steps = t * self.inverse;
         (steps < (MANY * MANY * FAR) as f64).then(|| {
-            let whole = steps as usize;
-            (Whole(whole), whole as f64 * self.length)
+            let whole = steps as u32;
+            (Whole(whole), f64::from(whole) * self.length)
         })
     }
 
@@ -64,20 +64,24 @@ impl Steps {
     pub(crate) fn transfers(&self, bank: &Bank, each: &[Block], Whole(steps): Whole, transfers: &mut [Transfer]) {
         let mut known = self.known.borrow_mut();
         let width = bank.blocks.len();
+        let steps = steps as usize;
         let (near, middle, far) = (steps % MANY, steps / MANY % MANY, steps / (MANY * MANY));
         let places = [near, MANY + middle, 2 * MANY + far];
         let wanted = places.iter().fold(0, |wanted, place| wanted | 1 << place);
         if known.places & wanted != wanted {
             self.add(bank, each, places, &mut known);
         }
-        let [near, later @ ..] = places.map(|place| &known.entries[place * width..][..width]);
-        transfers.copy_from_slice(near);
-        for (entries, steps) in later.into_iter().zip([middle, far]) {
-            if steps > 0 {
-                for ((transfer, blocks), entry) in transfers.iter_mut().zip(&bank.blocks).zip(entries) {
-                    *transfer = blocks.chained(entry, transfer);
-                }
+        let [near, by_middle, by_far] = places.map(|place| &known.entries[place * width..][..width]);
+        let each = transfers.iter_mut().zip(&bank.blocks).zip(near).zip(by_middle.iter().zip(by_far));
+        for (((to, blocks), near), (by_middle, by_far)) in each {
+            let mut transfer = *near;
+            if middle > 0 {
+                transfer = blocks.chained(by_middle, &transfer);
             }
+            if far > 0 {
+                transfer = blocks.chained(by_far, &transfer);
+            }
+            *to = transfer;
         }
     }
 
