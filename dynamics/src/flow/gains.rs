@@ -82,29 +82,15 @@ impl Gains {
         let blocks = self.first.len();
         let (start, end) = (&start.as_chunks::<2>().0[..blocks], &end.as_chunks::<2>().0[..blocks]);
         let mut second = self.second.as_mut_slice();
-        let twice = |[x, y]: [f64; 2]| Four::new([x, x, y, y]);
-        let gain = |cell: &mut [f64; 4], [from, to]: [Four; 2], [before, after]: [Four; 2]| {
-            *cell = (Four::new(*cell) + (to * after - from * before)).array();
-        };
-        // Two blocks with all behind them, so that those are fetched once for both.
-        let mut k = 0;
-        while k < blocks {
+        for k in 0..blocks {
+            let ([x0, y0], [x1, y1]) = (start[k], end[k]);
             let (row, rest) = second.split_at_mut(blocks - k);
-            let both = |l: usize| [start[l], end[l]].map(|[u, v]| Four::new([u, v, u, v]));
-            let own = [start[k], end[k]].map(twice);
-            gain(&mut row[0], own, both(k));
-            if k + 1 == blocks {
-                break;
+            let (from, to) = (Four::new([x0, x0, y0, y0]), Four::new([x1, x1, y1, y1]));
+            for ((cell, &[u0, v0]), &[u1, v1]) in row.iter_mut().zip(&start[k..]).zip(&end[k..]) {
+                let gained = to * Four::new([u1, v1, u1, v1]) - from * Four::new([u0, v0, u0, v0]);
+                *cell = (Four::new(*cell) + gained).array();
             }
-            let (next_row, rest) = rest.split_at_mut(blocks - k - 1);
-            let next = [start[k + 1], end[k + 1]].map(twice);
-            let behind = start[k + 1..].iter().zip(&end[k + 1..]);
-            for ((cell, next_cell), (&[u0, v0], &[u1, v1])) in row[1..].iter_mut().zip(next_row).zip(behind) {
-                let other = [Four::new([u0, v0, u0, v0]), Four::new([u1, v1, u1, v1])];
-                gain(cell, own, other);
-                gain(next_cell, next, other);
-            }
-            (second, k) = (rest, k + 2);
+            second = rest;
         }
         for ((sum, from), to) in self.first.iter_mut().zip(start).zip(end) {
             *sum = [sum[0] + (to[0] - from[0]), sum[1] + (to[1] - from[1])];

@@ -72,8 +72,8 @@ impl Steps {
             self.add(bank, each, places, &mut known);
         }
         let [near, by_middle, by_far] = places.map(|place| &known.entries[place * width..][..width]);
-        let each = transfers.iter_mut().zip(&bank.blocks).zip(near).zip(by_middle.iter().zip(by_far));
-        for (((to, blocks), near), (by_middle, by_far)) in each {
+        let places = transfers.iter_mut().zip(&bank.blocks).zip(near).zip(by_middle.iter().zip(by_far));
+        for (((to, blocks), near), (by_middle, by_far)) in places {
             let mut transfer = *near;
             if middle > 0 {
                 transfer = blocks.chained(by_middle, &transfer);
