@@ -57,7 +57,7 @@ pub use fixed::fixed_step;
 pub use flow::sums::Sums;
 pub use linear::{SteadyMotion, SteadyState, ceiling_graze, lift_off, steady_state, two_impacts};
 pub use march::reach::{FarSurface, OutOfReach, out_of_reach};
-pub use motion::{Exponent, Fundamental, Motion, MotionKind, Multiplier, Recurring};
+pub use motion::{Exponent, Fundamental, Motion, MotionKind, Multiplier, Recurring, Settling};
 pub use options::trace::TraceRequest;
 pub use options::{Averaged, Options, StartState, Until};
 pub use orbit::{
@@ -68,7 +68,7 @@ pub use response::proof::Proof;
 pub use response::sample::{Sample, SampledParticle};
 pub use response::{Counts, CycleRates, Method, Observed, Response};
 pub use run::repeated::keeping_runs;
-pub use run::{event_driven, fundamental_matrix, is_linear};
+pub use run::{event_driven, fundamental_matrix, is_linear, settles_beside};
 pub use system::spline::Spline;
 pub use system::{
     Contact, Drive, Event, EventKind, Face, HalfCycles, Harmonic, HybridSystem, Law, Particle, Stop, Tick,

@@ -1,10 +1,11 @@
 //! One case, simulated and measured.
 //!
-//! Every event-driven case is run three times: as it is, with search windows half as long (the difference is its numerical
-//! uncertainty), and with a kicked start. If the kick of a billionth has grown beyond a millionth, the motion is chaotic and
-//! no single run is a result: an ensemble of kicked starts, and the one without a kick, gives mean and spread. A search makes one run
-//! a step, and what it finds is evaluated as a result afterwards. The fixed step is run once: what its step does to the numbers is the
-//! result that it is there for.
+//! A result under events is run three times: as it is, with search windows half as long (the difference is its numerical
+//! uncertainty), and with a kicked start, only as far as that is still beside the run where the run draws near an orbit. If the
+//! kick of a billionth has grown beyond a millionth, the motion is chaotic and no single run is a result: an ensemble of kicked
+//! starts, and the one without a kick, gives mean and spread. Under another value of an unstated input it is as large as its means
+//! need. A search makes one run a step, and what it finds is evaluated as a result afterwards. The fixed step is run once: what its
+//! step does to the numbers is the result that it is there for.
 //!
 //! Runs may form a chain: each starts where the one before it ended, with its companions beside it; the run without dampers
 //! starts as the scene says.
@@ -23,10 +24,13 @@ use super::reading::Reading;
 use super::references::References;
 use super::shape::{self, Shape};
 use super::undefined::in_range;
-use super::{EvaluateError, Evaluated, Measure, Measured, Needs, Rigour, Subject, TraceColumn};
+use super::{
+    ENSEMBLE_OF_A_VARIANT, EnsembleSize, EvaluateError, Evaluated, Measure, Measured, Needs, Rigour, Subject,
+    TraceColumn,
+};
 use crate::dynamics::{
     Averaged, EngineError, HybridSystem, Method, MotionKind, Options, Proof, Response, StartState, TraceRequest, Until,
-    event_driven,
+    event_driven, settles_beside,
 };
 use crate::measure::{
     CycleSpec, EnergySpec, NamedRows, Settings, ShapeOf, ShapeSpec, SolverChoice, Tolerance, TraceSpec,
@@ -241,6 +245,7 @@ impl Case<'_> {
         let main = Options {
             audit: request.rigour == Rigour::Result,
             motion: self.is_named(),
+            settling: request.rigour != Rigour::Step,
             final_state: !matches!(request.link, Link::None),
             trace: request.trace.map(|trace| TraceRequest {
                 from_cycle: u64::from(trace.from_cycle),
@@ -294,6 +299,7 @@ impl Case<'_> {
         let rms = case.rms_velocity(&response);
         let members = match request.rigour {
             Rigour::Result => settings.ensemble,
+            Rigour::Variant => settings.ensemble.min(ENSEMBLE_OF_A_VARIANT.most),
             Rigour::Look | Rigour::Step => settings.ensemble.min(MEMBERS_OF_A_LOOK),
         };
         // Of a twin that is no member of an ensemble nothing is read that has to be looked for along its motion.
@@ -301,17 +307,23 @@ impl Case<'_> {
         if members < 2 {
             alike = Options { extremes: false, record_events: 0, cycle_rates: false, ..alike };
         }
-        let twin = event_driven(system, &alike)?;
-        if unsettled(&twin) {
+        // A run that draws near an orbit, with its twin beside it there, needs no more of the twin.
+        let twin = if settles_beside(&response, system, plain, TWIN_KICK)? {
+            None
+        } else {
+            Some(event_driven(system, &alike)?)
+        };
+        if twin.as_ref().is_some_and(unsettled) {
             return Ok(None);
         }
-        let chaotic = (case.rms_velocity(&twin) - rms).abs() > CHAOS * rms;
-        if !chaotic && request.rigour == Rigour::Look {
+        let chaotic = twin.filter(|twin| (case.rms_velocity(twin) - rms).abs() > CHAOS * rms);
+        if chaotic.is_none() && request.rigour != Rigour::Result {
             return Ok(Some(certain(exact(), false)));
         }
-        if !chaotic || members < 2 {
+        let Some(twin) = chaotic.as_ref().filter(|_| members > 1) else {
             // The same events decided in other windows; measures of the history are as exact as its samples.
-            let second = event_driven(system, &Options { window_factor: 0.5, audit: false, ..main.clone() })?;
+            let second =
+                event_driven(system, &Options { window_factor: 0.5, audit: false, settling: false, ..main.clone() })?;
             if unsettled(&second) {
                 return Ok(None);
             }
@@ -323,8 +335,8 @@ impl Case<'_> {
                 let differs = if settled == Some(place) { CLOSED_FORM * a.abs() } else { (a - b).abs() };
                 differs.max(4.0 * f64::EPSILON * a.abs()).max(own)
             });
-            return Ok(Some(certain(numerical.collect(), chaotic)));
-        }
+            return Ok(Some(certain(numerical.collect(), chaotic.is_some())));
+        };
 
         let mut sums = vec![Welford::default(); request.measures.len()];
         // The run itself and its twin, and as many that were kicked farther, both ways. Time histories, shapes and their measures
@@ -334,8 +346,18 @@ impl Case<'_> {
         let read =
             |member: &Response| Ok::<_, EvaluateError>(case.read(member, reference, &plain.start, false)?.values);
         add(&mut sums, &values);
-        add(&mut sums, &read(&twin)?);
-        for member in 2..members {
+        add(&mut sums, &read(twin)?);
+        let is_enough = |sums: &[Welford], members: u32| {
+            let EnsembleSize { least, standard_error, .. } = ENSEMBLE_OF_A_VARIANT;
+            // As many kicked one way as the other.
+            let may_be = request.rigour == Rigour::Variant && members >= least && members.is_multiple_of(2);
+            let averaged = sums.iter().zip(request.measures).filter(|(_, measure)| !measure.is_of_own_run());
+            may_be && !averaged.into_iter().any(|(sum, _)| sum.standard_error() > standard_error * sum.mean.abs())
+        };
+        let mut made = 2;
+        while made < members && !is_enough(&sums, made) {
+            let member = made;
+            made += 1;
             let step = f64::from(member / 2) * 2.0 / f64::from(members);
             let kick = ENSEMBLE_KICK * if member % 2 == 0 { step } else { -step };
             let kicked = event_driven(system, &Options { kick, ..plain.clone() })?;
@@ -354,11 +376,11 @@ impl Case<'_> {
                     return Measured { value: *own, numerical, spread: 0.0 };
                 }
                 let spread = sum.deviation();
-                Measured { value: sum.mean, numerical: spread / f64::from(members).sqrt(), spread }
+                Measured { value: sum.mean, numerical: sum.standard_error(), spread }
             },
         );
         let measured = measured.collect();
-        Ok(Some(Evaluated { measured, proof: response.proof, chaotic, members, motion, trace: lists, end }))
+        Ok(Some(Evaluated { measured, proof: response.proof, chaotic: true, members: made, motion, trace: lists, end }))
     }
 }
 
@@ -558,5 +580,10 @@ impl Welford {
     /// Standard deviation of the population that the members are a sample of.
     fn deviation(&self) -> f64 {
         (self.square / (self.count - 1.0)).sqrt()
+    }
+
+    /// Of the mean.
+    fn standard_error(&self) -> f64 {
+        self.deviation() / self.count.sqrt()
     }
 }

@@ -41,9 +41,26 @@ pub use request::{
 pub use subject::{Comparison, Needs, Subject};
 pub use trial::Trial;
 
+use serde::Serialize;
+
 use crate::dynamics::{EngineError, MotionKind, OrbitError, Proof, StartState};
 use crate::scene::CompileError;
 use crate::text::words;
+
+/// How large the ensemble of a chaotic case has to be.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct EnsembleSize {
+    /// Members at least: of fewer the standard error says little.
+    pub least: u32,
+    /// Members at most.
+    pub most: u32,
+    /// The standard error of each mean, relative to the mean, at which it is enough.
+    pub standard_error: f64,
+}
+
+/// Under another value of an unstated input. What such a row is read for is how far it moves a number that is compared within some
+/// percent: half of one is enough.
+pub const ENSEMBLE_OF_A_VARIANT: EnsembleSize = EnsembleSize { least: 4, most: 8, standard_error: 0.005 };
 
 /// How much a number has to be worth.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -51,7 +68,9 @@ pub enum Rigour {
     /// A result: audited, at a second accuracy, the whole ensemble where the motion is chaotic.
     #[default]
     Result,
-    /// A look, to find a maximum or a sensitivity: neither audited nor repeated, ensembles of eight.
+    /// Under another value of an unstated input: neither audited nor repeated, an ensemble as large as its means need.
+    Variant,
+    /// A look at one of several, to choose among them: neither audited nor repeated, ensembles of eight.
     Look,
     /// One step of a search: a single run, and nobody asks whether a neighbouring start would end elsewhere.
     Step,

@@ -101,6 +101,8 @@ fn ahead(experiment: &Experiment, job: &Job, spent: &Spent) -> Option<f64> {
     let each = experiment.mean_over.len().max(1) as u64;
     let all = evaluations(experiment, job);
     let results = u64::from(job.variant == 0).min(all);
+    // A maximum is looked for, under whatever values.
+    let other = if experiment.maximise.is_some() { Rigour::Look } else { Rigour::Variant };
     let of = |rigour, count| spent.ahead(solver, rigour, each * count);
-    Some(of(Rigour::Result, results)? + of(Rigour::Look, all - results)?)
+    Some(of(Rigour::Result, results)? + of(other, all - results)?)
 }

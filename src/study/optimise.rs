@@ -508,7 +508,7 @@ fn evaluate_all(task: Task<'_>, evaluate: &impl Evaluate, candidates: Vec<Candid
         }
     }
     let evaluated = |(variant, gaps): &(usize, Vec<f64>)| {
-        let rigour = if *variant == 0 { Rigour::Result } else { Rigour::Look };
+        let rigour = if *variant == 0 { Rigour::Result } else { Rigour::Variant };
         ready[*variant].as_ref().map_err(RowFailure::clone)?.evaluate(gaps, rigour)
     };
     let outcomes: Vec<Result<Evaluated, RowFailure>> = places.par_iter().map(evaluated).collect();

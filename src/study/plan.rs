@@ -14,6 +14,7 @@ use super::run::Task;
 use super::variant::{Sensitivity, Variant, variants};
 use crate::dynamics::SOLVER_VERSION;
 use crate::experiment::{AssumptionName, AssumptionSheet, AssumptionValue, RowSource};
+use crate::measure::ENSEMBLE_OF_A_VARIANT;
 use crate::table::DEPENDS_ON;
 
 /// One experiment as planned.
@@ -140,6 +141,7 @@ fn simulation(
         ("experiment", source.experiment.simulation_json()),
         ("assumptions", json!(assumptions)),
         ("sensitivity", json!(sensitivity)),
+        ("ensemble_of_a_variant", json!(ENSEMBLE_OF_A_VARIANT)),
         ("solver_version", json!(SOLVER_VERSION)),
     ])
 }

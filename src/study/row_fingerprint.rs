@@ -14,7 +14,7 @@ use super::variant::Variant;
 use super::work::asked;
 use crate::dynamics::SOLVER_VERSION;
 use crate::experiment::{Assumptions, Case, Experiment, ParameterValue, Recipe};
-use crate::measure::Rigour;
+use crate::measure::{ENSEMBLE_OF_A_VARIANT, Rigour};
 use crate::table::RowFingerprint;
 
 /// The fingerprints of an experiment's rows.
@@ -69,6 +69,9 @@ impl<'a> RowFingerprints<'a> {
                 let asked = asked(self.experiment, &recipe, variant, job);
                 let is_result = asked.rigour == Rigour::Result;
                 feed(&mut hasher, &(&recipe, asked.solver, is_result, asked.trace, asked.energies, asked.shape));
+                if asked.rigour == Rigour::Variant {
+                    feed(&mut hasher, &("ensemble", ENSEMBLE_OF_A_VARIANT));
+                }
                 if let Some(each_cycle) = asked.each_cycle {
                     feed(&mut hasher, &("each_cycle", each_cycle));
                 }

@@ -33,7 +33,7 @@ pub struct Cost {
     pub seconds: f64,
 }
 
-/// What an experiment has cost, by solver and rigour: a result takes several runs and a whole ensemble, a look one or two.
+/// What an experiment has cost, by solver and rigour: a result takes several runs and a whole ensemble, a step one.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Spent(BTreeMap<String, Cost>);
 
@@ -90,6 +90,7 @@ impl Spent {
 fn kind(solver: SolverChoice, rigour: Rigour) -> String {
     let rigour = match rigour {
         Rigour::Result => "result",
+        Rigour::Variant => "variant",
         Rigour::Look => "look",
         Rigour::Step => "step",
     };

@@ -178,7 +178,7 @@ pub(super) fn asked<'a>(
         each_cycle: experiment.each_cycle.as_ref().filter(|_| job.variant == 0),
         tolerances: &experiment.tolerances,
         link: Link::None,
-        rigour: if job.variant == 0 { Rigour::Result } else { Rigour::Look },
+        rigour: if job.variant == 0 { Rigour::Result } else { Rigour::Variant },
     }
 }
 

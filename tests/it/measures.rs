@@ -1,7 +1,7 @@
 //! Measures say what they are called: of the particle that they name, at the points that count, and undefined where they have no meaning.
 
 use shotdamp::experiment::{Assumptions, Experiment, Problems, load_assumptions, parse_experiment};
-use shotdamp::measure::{Evaluated, Request, SolverChoice, evaluate};
+use shotdamp::measure::{ENSEMBLE_OF_A_VARIANT, Evaluated, Request, Rigour, SolverChoice, evaluate};
 
 const BEAM: &str = "cantilever_beam: {length: 1 m, width: 30 mm, thickness: 5 mm, youngs_modulus: 200 GPa, density: 7800 kg/m^3, rayleigh: 5e-5, modes: 3}";
 const MASS: &str = "single_mass: {mass: 1 kg, stiffness: 1000 N/m, damping_ratio: 0.05}";
@@ -34,8 +34,13 @@ fn on_mass(floor: &str, excitation: &str) -> String {
 
 /// Evaluates the first case of an experiment.
 fn evaluated(experiment: &Experiment, solver: SolverChoice) -> Evaluated {
+    evaluated_as(Rigour::Result, experiment, solver)
+}
+
+fn evaluated_as(rigour: Rigour, experiment: &Experiment, solver: SolverChoice) -> Evaluated {
     let recipe = experiment.recipe_of(&experiment.cases[0]).unwrap();
-    let request = Request { measures: &experiment.measures, trace: experiment.trace.as_ref(), ..Request::default() };
+    let Experiment { measures, trace, .. } = experiment;
+    let request = Request { measures, trace: trace.as_ref(), rigour, ..Request::default() };
     let subject = recipe.subject(&assumptions(), request.needs()).unwrap();
     evaluate(subject, solver, &experiment.settings, &request).unwrap()
 }
@@ -195,4 +200,29 @@ fn a_compression_is_uncertain_by_what_lies_between_its_samples() {
     let (coarse, fine) = (of(25), of(20_000));
     assert!(fine.numerical < 1e-3 * coarse.numerical, "{fine:?} {coarse:?}");
     assert!((coarse.value - fine.value).abs() <= coarse.numerical, "{coarse:?} {fine:?}");
+}
+
+/// Under another value of an input an ensemble ends where its means are sharp, and they are those of the whole one.
+#[test]
+fn a_moved_input_is_worth_as_many_runs_as_its_means_need() {
+    let mut counts = Vec::new();
+    for force_ratio in [0.3, 0.4, 0.5, 1.0, 1.5, 2.0] {
+        let scene = on_mass(FLOOR, &format!("{{impulse_train: {{force_ratio: {force_ratio}, frequency_ratio: 1}}}}"));
+        let rest = "run: {skip: 25 cycles, average: 400 cycles, ensemble: 8 members}\nmeasure: [rms_velocity]";
+        let experiment = experiment(MASS, &scene, rest);
+        let [variant, whole] =
+            [Rigour::Variant, Rigour::Look].map(|rigour| evaluated_as(rigour, &experiment, SolverChoice::EventDriven));
+        let [sharp, all] = [&variant, &whole].map(|evaluated| evaluated.measured[0]);
+        assert_eq!(variant.chaotic, whole.chaotic);
+        if !variant.chaotic || variant.members == whole.members {
+            assert_eq!(variant.measured, whole.measured);
+        } else {
+            assert!(sharp.numerical <= ENSEMBLE_OF_A_VARIANT.standard_error * sharp.value);
+            let apart = (sharp.value - all.value).abs();
+            assert!(apart <= 3.0 * sharp.numerical.hypot(all.numerical), "f′ = {force_ratio}: {apart}");
+        }
+        counts.push(variant.members);
+    }
+    println!("members: {counts:?}");
+    assert!(counts.iter().any(|count| (4..8).contains(count)), "{counts:?}");
 }

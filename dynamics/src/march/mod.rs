@@ -32,7 +32,7 @@ use crate::flow::signals::Signals;
 use crate::flow::{Flow, Rest};
 use crate::march::reach::OutOfReach;
 use crate::march::visits::Visits;
-use crate::motion::{self, Fundamental, Tape};
+use crate::motion::{self, Fundamental, Settling, Tape};
 use crate::options::{Averaged, Options, StartState, Until};
 use crate::response::audit::Audit;
 use crate::response::extremes::Lookout;
@@ -244,13 +244,18 @@ impl<'a, E: Effects> March<'a, E> {
             if let Some(cycle) = self.response.cycle_rates.last_mut() {
                 cycle.before.extend_from_slice(&self.rate[..self.system.mass.order]);
             }
-            if E::TAPED {
+            if E::TAPED || self.options.settling {
                 self.end_taped_cycle();
-                if let Some(settled) = self.settle_down()? {
-                    cycles = settled.end().max(self.options.trace.map_or(0, |trace| trace.to_cycle));
-                }
+            }
+            if E::TAPED
+                && let Some(settled) = self.settle_down()?
+            {
+                cycles = settled.end().max(self.options.trace.map_or(0, |trace| trace.to_cycle));
             }
             self.cycle += 1;
+        }
+        if self.options.settling {
+            self.response.settling = Settling::of(self.system, &self.tape.ends, self.averaged.first as usize);
         }
         Ok(())
     }

@@ -22,12 +22,14 @@
 //! | `exponent` | the largest Lyapunov exponent |
 //! | `name` | the decision |
 //! | `settled` | while it runs: whether it has settled |
+//! | `settling` | without a name: whether what starts beside it stays beside it |
 
 mod exponent;
 mod multipliers;
 mod name;
 mod recurrence;
 mod settled;
+mod settling;
 mod tangent;
 mod tape;
 
@@ -35,6 +37,7 @@ pub use exponent::Exponent;
 pub use multipliers::{Fundamental, Multiplier};
 pub use name::{Motion, MotionKind};
 pub use recurrence::Recurring;
+pub use settling::Settling;
 
 pub(crate) use multipliers::Period;
 pub(crate) use name::{NEUTRAL, kind, name};

@@ -34,6 +34,8 @@ pub struct Options {
     pub audit: bool,
     /// Name the motion that it ends in.
     pub motion: bool,
+    /// Tell whether it draws near a motion that comes again.
+    pub settling: bool,
     /// How many events to keep, from the first.
     pub record_events: usize,
     /// Time history to keep.
@@ -113,6 +115,7 @@ impl Default for Options {
             final_state: false,
             audit: false,
             motion: false,
+            settling: false,
             record_events: 0,
             trace: None,
             window_factor: 1.0,

@@ -11,7 +11,7 @@ use crate::arithmetic::matrix::dot;
 use crate::budget;
 use crate::error::EngineError;
 use crate::flow::sums::Sums;
-use crate::motion::Motion;
+use crate::motion::{Motion, Settling};
 use crate::options::{Averaged, Options, StartState};
 use crate::response::extremes::Extremes;
 use crate::response::proof::Proof;
@@ -59,6 +59,8 @@ pub struct Response {
     pub final_state: Option<StartState>,
     /// The motion that it ends in, if asked for.
     pub motion: Option<Motion>,
+    /// That it draws near a motion that comes again, if that was asked for and it does.
+    pub settling: Option<Settling>,
     /// The period that was averaged in the place of the cycles given, if the run was to settle and did.
     pub settled: Option<Averaged>,
     /// Highest natural frequency among the contact states visited, rad/s.

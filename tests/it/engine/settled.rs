@@ -1,9 +1,9 @@
 //! Runs that end where they have settled: their averages against closed forms and long runs, and what becomes of those that
 //! do not settle.
 
-use shotdamp::dynamics::{Options, Response, StartState, Until};
+use shotdamp::dynamics::{Options, Response, StartState, Until, event_driven, settles_beside};
 use shotdamp::measure::{Evaluated, Measure, NamedRows, Request, Rigour, Settings, SolverChoice, Subject, evaluate};
-use shotdamp::scene::{ContactDamping, ContactEnd, Damper, Excitation, Scene, Surface};
+use shotdamp::scene::{ContactDamping, ContactEnd, Damper, Excitation, Scene, Surface, compile};
 
 use super::bench::{GRAVITY, base, close, in_flight, run, within};
 use super::closed_forms::{expected, masri_and_caughey};
@@ -119,4 +119,26 @@ fn the_settled_velocity_ratio_is_the_one_that_longer_and_longer_runs_tend_to() {
     let at_rest = measured(&scene, Until::Settled, 1000);
     close("of a settled run", ratio(&at_rest, 5), ratio(&at_rest, 0), 1e-11);
     assert!(ratio(&measured(&under_impulses(0.5), Until::Cycles, 100), 5).is_nan());
+}
+
+/// A kicked start need not be run to its end where both are known to be drawn in by one orbit: the whole run would say the same.
+#[test]
+fn a_start_that_settles_beside_a_run_ends_where_that_does() {
+    let (mut spared, mut others) = (0, 0);
+    for i in 0..120 {
+        let system = compile(&under_impulses(0.05 * 1.08_f64.powi(i))).expect("it compiles");
+        let options = Options { settling: true, ..Options::default() };
+        let [run, kicked] =
+            [0.0, 1e-9].map(|kick| event_driven(&system, &Options { kick, ..options.clone() }).unwrap());
+        if !settles_beside(&run, &system, &options, 1e-9).unwrap() {
+            others += 1;
+            continue;
+        }
+        spared += 1;
+        let [one, other] = [&run, &kicked].map(|run| run.window().rms_velocity());
+        close(&format!("{i}: RMS velocity of a neighbour"), one, other, 1e-9);
+        assert_eq!(run.counts, kicked.counts);
+    }
+    println!("{spared} settle beside, of {others} it cannot be told");
+    assert!(spared >= 40 && others >= 20, "{spared} and {others}");
 }
