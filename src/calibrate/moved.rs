@@ -6,7 +6,7 @@ use super::trials::{Asked, CumulativeEvents, TrialRunner, Workers, Worth};
 use crate::experiment::{AssumptionName, AssumptionValue, Assumptions, Experiment};
 use crate::study::{Evaluate, Event, EventHandler, RunError};
 
-/// Members of the ensemble of a chaotic point: as for the other values of assumptions in a run.
+/// Members of the ensemble of a chaotic point: as many as the other values of assumptions have in a run at most.
 const MEMBERS: u32 = 8;
 
 /// What an entry of the experiment `asked.0` reads with each of `moves` by itself, all other inputs in force. Only the rows that

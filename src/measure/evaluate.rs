@@ -25,12 +25,12 @@ use super::references::References;
 use super::shape::{self, Shape};
 use super::undefined::in_range;
 use super::{
-    ENSEMBLE_OF_A_VARIANT, EnsembleSize, EvaluateError, Evaluated, Measure, Measured, Needs, Rigour, Subject,
+    ENSEMBLE_OF_A_VARIANT, EarlyEnd, EnsembleSize, EvaluateError, Evaluated, Measure, Measured, Needs, Rigour, Subject,
     TraceColumn,
 };
 use crate::dynamics::{
     Averaged, EngineError, HybridSystem, Method, MotionKind, Options, Proof, Response, StartState, TraceRequest, Until,
-    event_driven, settles_beside,
+    event_driven,
 };
 use crate::measure::{
     CycleSpec, EnergySpec, NamedRows, Settings, ShapeOf, ShapeSpec, SolverChoice, Tolerance, TraceSpec,
@@ -303,24 +303,19 @@ impl Case<'_> {
             Rigour::Look | Rigour::Step => settings.ensemble.min(MEMBERS_OF_A_LOOK),
         };
         // Of a twin that is no member of an ensemble nothing is read that has to be looked for along its motion.
-        let mut alike = Options { kick: TWIN_KICK, ..plain.clone() };
+        let mut alike = Options { kick: TWIN_KICK, beside: response.settling.take(), ..plain.clone() };
         if members < 2 {
             alike = Options { extremes: false, record_events: 0, cycle_rates: false, ..alike };
         }
-        // A run that draws near an orbit, with its twin beside it there, needs no more of the twin.
-        let twin = if settles_beside(&response, system, plain, TWIN_KICK)? {
-            None
-        } else {
-            Some(event_driven(system, &alike)?)
-        };
-        if twin.as_ref().is_some_and(unsettled) {
+        let twin = event_driven(system, &alike)?;
+        if !twin.stays_beside && unsettled(&twin) {
             return Ok(None);
         }
-        let chaotic = twin.filter(|twin| (case.rms_velocity(twin) - rms).abs() > CHAOS * rms);
-        if chaotic.is_none() && request.rigour != Rigour::Result {
+        let chaotic = !twin.stays_beside && (case.rms_velocity(&twin) - rms).abs() > CHAOS * rms;
+        if !chaotic && request.rigour != Rigour::Result {
             return Ok(Some(certain(exact(), false)));
         }
-        let Some(twin) = chaotic.as_ref().filter(|_| members > 1) else {
+        if !chaotic || members < 2 {
             // The same events decided in other windows; measures of the history are as exact as its samples.
             let second =
                 event_driven(system, &Options { window_factor: 0.5, audit: false, settling: false, ..main.clone() })?;
@@ -335,8 +330,8 @@ impl Case<'_> {
                 let differs = if settled == Some(place) { CLOSED_FORM * a.abs() } else { (a - b).abs() };
                 differs.max(4.0 * f64::EPSILON * a.abs()).max(own)
             });
-            return Ok(Some(certain(numerical.collect(), chaotic.is_some())));
-        };
+            return Ok(Some(certain(numerical.collect(), chaotic)));
+        }
 
         let mut sums = vec![Welford::default(); request.measures.len()];
         // The run itself and its twin, and as many that were kicked farther, both ways. Time histories, shapes and their measures
@@ -346,17 +341,22 @@ impl Case<'_> {
         let read =
             |member: &Response| Ok::<_, EvaluateError>(case.read(member, reference, &plain.start, false)?.values);
         add(&mut sums, &values);
-        add(&mut sums, &read(twin)?);
-        let is_enough = |sums: &[Welford], members: u32| {
-            let EnsembleSize { least, standard_error, .. } = ENSEMBLE_OF_A_VARIANT;
-            // As many kicked one way as the other.
-            let may_be = request.rigour == Rigour::Variant && members >= least && members.is_multiple_of(2);
-            let averaged = sums.iter().zip(request.measures).filter(|(_, measure)| !measure.is_of_own_run());
-            may_be && !averaged.into_iter().any(|(sum, _)| sum.standard_error() > standard_error * sum.mean.abs())
+        add(&mut sums, &read(&twin)?);
+        let EnsembleSize { early, half_width, .. } = ENSEMBLE_OF_A_VARIANT;
+        let is_enough = |sums: &[Welford], made: u32| {
+            let sharp = |early: &EarlyEnd| {
+                // What is no number becomes none by more runs.
+                let is_wide = |sum: &Welford| early.student * sum.standard_error() > half_width * sum.mean.abs();
+                let averaged = sums.iter().zip(request.measures).filter(|(_, measure)| !measure.is_of_own_run());
+                !averaged.map(|(sum, _)| sum).any(is_wide)
+            };
+            request.rigour == Rigour::Variant && early.iter().find(|early| early.members == made).is_some_and(sharp)
         };
         let mut made = 2;
-        while made < members && !is_enough(&sums, made) {
-            let member = made;
+        for member in 2..members {
+            if is_enough(&sums, made) {
+                break;
+            }
             made += 1;
             let step = f64::from(member / 2) * 2.0 / f64::from(members);
             let kick = ENSEMBLE_KICK * if member % 2 == 0 { step } else { -step };
@@ -380,7 +380,7 @@ impl Case<'_> {
             },
         );
         let measured = measured.collect();
-        Ok(Some(Evaluated { measured, proof: response.proof, chaotic: true, members: made, motion, trace: lists, end }))
+        Ok(Some(Evaluated { measured, proof: response.proof, chaotic, members: made, motion, trace: lists, end }))
     }
 }
 

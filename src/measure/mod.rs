@@ -50,17 +50,30 @@ use crate::text::words;
 /// How large the ensemble of a chaotic case has to be.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct EnsembleSize {
-    /// Members at least: of fewer the standard error says little.
-    pub least: u32,
+    /// Where it may be enough; there are as many members kicked one way as the other.
+    pub early: [EarlyEnd; 2],
     /// Members at most.
     pub most: u32,
-    /// The standard error of each mean, relative to the mean, at which it is enough.
-    pub standard_error: f64,
+    /// Half the interval in which each mean lies with a probability of 95 %, relative to the mean, at which it is enough.
+    pub half_width: f64,
+}
+
+/// A size at which an ensemble may end.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct EarlyEnd {
+    /// Members so far.
+    pub members: u32,
+    /// Student's t of one less, for 95 %.
+    pub student: f64,
 }
 
 /// Under another value of an unstated input. What such a row is read for is how far it moves a number that is compared within some
-/// percent: half of one is enough.
-pub const ENSEMBLE_OF_A_VARIANT: EnsembleSize = EnsembleSize { least: 4, most: 8, standard_error: 0.005 };
+/// percent: one is enough.
+pub const ENSEMBLE_OF_A_VARIANT: EnsembleSize = EnsembleSize {
+    early: [EarlyEnd { members: 4, student: 3.182 }, EarlyEnd { members: 6, student: 2.571 }],
+    most: 8,
+    half_width: 0.01,
+};
 
 /// How much a number has to be worth.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

@@ -48,7 +48,7 @@ pub struct Settings {
     pub named: NamedRows,
 }
 
-/// The rows whose motion is named: that takes a third of a run, and looks are many.
+/// The rows whose motion is named: that takes a third of a run, and the other rows are many.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum NamedRows {

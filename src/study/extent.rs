@@ -11,6 +11,7 @@ use super::refine;
 use super::row_failure::RowFailure;
 use super::row_fingerprint::RowFingerprints;
 use super::spent::Spent;
+use super::work::rigour_of_others;
 use crate::experiment::{Case, Experiment, RowSource};
 use crate::measure::Rigour;
 
@@ -101,8 +102,6 @@ fn ahead(experiment: &Experiment, job: &Job, spent: &Spent) -> Option<f64> {
     let each = experiment.mean_over.len().max(1) as u64;
     let all = evaluations(experiment, job);
     let results = u64::from(job.variant == 0).min(all);
-    // A maximum is looked for, under whatever values.
-    let other = if experiment.maximise.is_some() { Rigour::Look } else { Rigour::Variant };
     let of = |rigour, count| spent.ahead(solver, rigour, each * count);
-    Some(of(Rigour::Result, results)? + of(other, all - results)?)
+    Some(of(Rigour::Result, results)? + of(rigour_of_others(experiment), all - results)?)
 }

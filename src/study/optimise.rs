@@ -477,7 +477,7 @@ fn describe(kind: SearchKind, seed: Option<u32>) -> String {
     seed.map_or(name.clone(), |seed| format!("{name}, seed {seed}"))
 }
 
-/// Every candidate as a result, and under the variants as a look.
+/// Every candidate as a result, and as a variant under other values.
 fn evaluate_all(task: Task<'_>, evaluate: &impl Evaluate, candidates: Vec<Candidate>) -> Vec<Candidate> {
     let experiment = task.experiment;
     let Some(optimise) = &experiment.optimise else { return candidates };

@@ -178,8 +178,13 @@ pub(super) fn asked<'a>(
         each_cycle: experiment.each_cycle.as_ref().filter(|_| job.variant == 0),
         tolerances: &experiment.tolerances,
         link: Link::None,
-        rigour: if job.variant == 0 { Rigour::Result } else { Rigour::Variant },
+        rigour: if job.variant == 0 { Rigour::Result } else { rigour_of_others(experiment) },
     }
+}
+
+/// What is asked of simulations that are no results: a maximum is looked for, under whatever values.
+pub(super) fn rigour_of_others(experiment: &Experiment) -> Rigour {
+    if experiment.maximise.is_some() { Rigour::Look } else { Rigour::Variant }
 }
 
 fn needs_shape(experiment: &Experiment) -> bool {
@@ -208,7 +213,14 @@ fn simulate(
     // Histories of the points that are not the maximum are not wanted.
     let trace = simulation.trace.filter(|_| measures_need_trace(&experiment.measures));
     let shape = simulation.shape.filter(|_| needs_shape(experiment));
-    let look = Simulation { trace, energies: None, shape, each_cycle: None, rigour: Rigour::Look, ..simulation };
+    let look = Simulation {
+        trace,
+        energies: None,
+        shape,
+        each_cycle: None,
+        rigour: rigour_of_others(experiment),
+        ..simulation
+    };
     let (found, place) = Along { evaluate, simulation: look, maximise, measure, done }.found()?;
     if job.variant != 0 {
         return Ok(Row { evaluated: found, place: Some(place) });

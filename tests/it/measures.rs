@@ -217,7 +217,7 @@ fn a_moved_input_is_worth_as_many_runs_as_its_means_need() {
         if !variant.chaotic || variant.members == whole.members {
             assert_eq!(variant.measured, whole.measured);
         } else {
-            assert!(sharp.numerical <= ENSEMBLE_OF_A_VARIANT.standard_error * sharp.value);
+            assert!(2.0 * sharp.numerical <= ENSEMBLE_OF_A_VARIANT.half_width * sharp.value);
             let apart = (sharp.value - all.value).abs();
             assert!(apart <= 3.0 * sharp.numerical.hypot(all.numerical), "f′ = {force_ratio}: {apart}");
         }

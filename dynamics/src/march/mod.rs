@@ -32,7 +32,7 @@ use crate::flow::signals::Signals;
 use crate::flow::{Flow, Rest};
 use crate::march::reach::OutOfReach;
 use crate::march::visits::Visits;
-use crate::motion::{self, Fundamental, Settling, Tape};
+use crate::motion::{self, End, Fundamental, Settling, Tape};
 use crate::options::{Averaged, Options, StartState, Until};
 use crate::response::audit::Audit;
 use crate::response::extremes::Lookout;
@@ -106,7 +106,7 @@ pub(crate) struct March<'a, E> {
     response: Response,
     /// From the averaged window on.
     audit: Option<Audit>,
-    /// What names the motion; kept by a run on tape.
+    /// What names the motion; kept by a run on tape, and the ends of cycles by one that tells whether it settles.
     tape: Tape,
     /// Contacts before what may capture particles; kept by a run on tape.
     held: Vec<Contact>,
@@ -214,6 +214,7 @@ impl<'a, E: Effects> March<'a, E> {
 
     fn all_cycles(&mut self) -> Result<(), EngineError> {
         let mut cycles = self.options.cycles();
+        let settling = self.options.settling && Settling::is_told(self.system);
         // Which cycles a run that settles will average is not known before.
         let audited = if self.options.until == Until::Settled { 0 } else { self.averaged.first };
         let period = self.system.drive.period;
@@ -244,8 +245,9 @@ impl<'a, E: Effects> March<'a, E> {
             if let Some(cycle) = self.response.cycle_rates.last_mut() {
                 cycle.before.extend_from_slice(&self.rate[..self.system.mass.order]);
             }
-            if E::TAPED || self.options.settling {
-                self.end_taped_cycle();
+            if E::TAPED || settling {
+                let end = self.end();
+                self.tape.end_cycle(end);
             }
             if E::TAPED
                 && let Some(settled) = self.settle_down()?
@@ -253,9 +255,14 @@ impl<'a, E: Effects> March<'a, E> {
                 cycles = settled.end().max(self.options.trace.map_or(0, |trace| trace.to_cycle));
             }
             self.cycle += 1;
+            let other = self.options.beside.as_ref().filter(|other| other.after == self.cycle);
+            if other.is_some_and(|other| other.is_beside(&self.end())) {
+                self.response.stays_beside = true;
+                break;
+            }
         }
-        if self.options.settling {
-            self.response.settling = Settling::of(self.system, &self.tape.ends, self.averaged.first as usize);
+        if settling {
+            self.response.settling = Settling::of(self.system, &self.tape.ends, self.averaged);
         }
         Ok(())
     }
@@ -277,6 +284,13 @@ impl<'a, E: Effects> March<'a, E> {
         let n = self.system.mass.order;
         let particles = self.contacts.iter().zip(&self.particles).map(|(contact, at)| (*contact, at.gap, at.rate));
         StartState::Given { q: self.q[..n].to_vec(), rate: self.rate[..n].to_vec(), particles: particles.collect() }
+    }
+
+    /// The same with its particles in space, as states are compared with each other.
+    fn end(&self) -> End {
+        let n = self.system.mass.order;
+        let particles: Vec<[f64; 2]> = (0..self.particles.len()).map(|j| self.absolute(j)).collect();
+        End::new([&self.q[..n], &self.rate[..n]], &particles, self.contacts.clone())
     }
 
     /// y and y′ of a particle.

@@ -7,7 +7,7 @@ use crate::contact::collision::{self, Closed, Outcome};
 use crate::contact::touch::Touch;
 use crate::contact::{Change, Crossing, Hold, Side};
 use crate::error::EngineError;
-use crate::motion::{self, End, Instant, Jump, Kick};
+use crate::motion::{self, Instant, Jump, Kick};
 use crate::options::{Averaged, Until};
 use crate::response::{Counts, Observed};
 use crate::system::{Contact, Law};
@@ -97,13 +97,6 @@ impl<E: Effects> March<'_, E> {
             restitution: struck(touch).filter(|_| *pushes),
         };
         Jump { kicks: touches.iter().zip(pushes).map(kick).collect(), impulses, holds: false }
-    }
-
-    pub(super) fn end_taped_cycle(&mut self) {
-        let n = self.system.mass.order;
-        let particles: Vec<[f64; 2]> = (0..self.particles.len()).map(|j| self.absolute(j)).collect();
-        let structure = [&self.q[..n], &self.rate[..n]];
-        self.tape.end_cycle(End::new(structure, &particles, self.contacts.clone()));
     }
 
     /// At the end of a cycle: the period that is averaged from now on, if the run was to settle and just did.

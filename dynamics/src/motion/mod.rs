@@ -22,7 +22,7 @@
 //! | `exponent` | the largest Lyapunov exponent |
 //! | `name` | the decision |
 //! | `settled` | while it runs: whether it has settled |
-//! | `settling` | without a name: whether what starts beside it stays beside it |
+//! | `settling` | without a name: whether a neighbouring start stays beside a run |
 
 mod exponent;
 mod multipliers;

@@ -128,7 +128,7 @@ pub(crate) fn closest(scale: &Scale, ends: &[End]) -> Option<(usize, f64)> {
     returns.min_by(|a, b| a.1.total_cmp(&b.1))
 }
 
-/// The cycle after which every state comes again after `period` cycles, to within `tolerance`.
+/// The cycle, counted from one, after which every state comes again after `period` cycles, to within `tolerance`.
 pub(super) fn settled_after(scale: &Scale, ends: &[End], period: usize, tolerance: f64) -> usize {
     let repeats = |i: &usize| scale.apart(&ends[i - period], &ends[*i]) <= tolerance;
     let first = (period..ends.len()).rev().take_while(repeats).last().unwrap_or(ends.len());

@@ -1,54 +1,56 @@
-//! Whether a run draws near a motion that comes again, told by the ends of its cycles alone: enough to say that what starts beside it
-//! stays beside it, and not enough to name the motion.
+//! Tells, without naming the motion, whether a neighbouring start stays beside a run.
 //!
-//! If the state comes again after a period, at the end of the run closer than after so many cycles, and at no time in between farther
-//! than then, the run itself is a neighbour of its orbit that the orbit has drawn in. A start that is moved by much less, and after so
-//! many cycles still is, is drawn in as well: its remaining cycles need not be run.
+//! Where a run has come so near a periodic orbit that the orbit draws it in, a start that is much closer to the run than the run to the
+//! orbit is drawn in as well. That the orbit does so is seen in how far the state misses itself after a period: less and less.
 
 use super::recurrence::{Scale, candidates, settled_after};
 use super::tape::{End, Reach};
-use crate::options::StartState;
+use crate::options::Averaged;
 use crate::system::HybridSystem;
 
-/// How closely the last state of a run that draws near has come again, in units of the motion.
-const CLOSE: f64 = 1e-6;
-/// How closely its states come again from where it counts as near: farther than [`CLOSE`], so that it has been drawn in since.
+/// The run counts as near from the cycle after which no state misses itself by more than this, in units of the motion.
 const NEAR: f64 = 1e-2;
-/// How far a neighbour may be from it there: as much less than [`NEAR`] as what is drawn in with it has no other way to go.
+/// How closely the last state comes again.
+const CLOSE: f64 = 1e-6;
+/// What becomes of the miss from where the run is near to its end, at most: the orbit draws in.
+const DRAWN_IN: f64 = 1e-3;
+/// How far a neighbour may be from the run where that is near.
 const BESIDE: f64 = 1e-8;
 
-/// A run that draws near a motion that comes again.
+/// A run that an orbit draws in.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Settling {
     scale: Scale,
     /// Cycles after which it is near.
-    pub(crate) after: u32,
+    pub(crate) after: u64,
     /// Where it is then.
     end: End,
 }
 
 impl Settling {
-    /// Of a run by the ends of its cycles, in units of those from the `first` on. `None` if it does not draw near a motion that comes
-    /// again, or too late to spare a neighbour a good part of its cycles.
-    pub(crate) fn of(system: &HybridSystem, ends: &[End], first: usize) -> Option<Self> {
-        if !system.drive.repeats {
-            return None;
-        }
+    /// The states at the ends of cycles tell it: all of what the motion is until it comes again stands in them.
+    pub(crate) fn is_told(system: &HybridSystem) -> bool {
+        system.drive.repeats && system.drive.half_cycles.is_none()
+    }
+
+    /// Of a run by the ends of its cycles, in units of those averaged. `None` if no orbit draws it in, or too late to spare a
+    /// neighbour a good part of its cycles.
+    pub(crate) fn of(system: &HybridSystem, ends: &[End], averaged: Averaged) -> Option<Self> {
+        let ends = &ends[..ends.len().min(averaged.end() as usize)];
         let mut reach = Reach::default();
-        ends.iter().skip(first).for_each(|end| reach.take(&end.state));
+        ends.iter().skip(averaged.first as usize).for_each(|end| reach.take(&end.state));
         let scale = Scale::new(system, &reach);
         let period = *candidates(&scale, ends, CLOSE).first()?;
         let after = settled_after(&scale, ends, period, NEAR);
-        let end = ends.get(after.checked_sub(1)?)?.clone();
+        let miss = |last: usize| scale.apart(&ends[last - period], &ends[last]);
+        let is_drawn_in = miss(ends.len() - 1) <= DRAWN_IN * miss(after - 1 + period);
         let spares = 4 * after <= 3 * ends.len();
-        Some(Self { scale, after: u32::try_from(after).ok()?, end }).filter(|_| spares)
+        let end = ends[after - 1].clone();
+        (is_drawn_in && spares).then_some(Self { scale, after: after as u64, end })
     }
 
-    /// A run that is at `other` after as many cycles is beside it.
-    pub(crate) fn is_beside(&self, system: &HybridSystem, other: &StartState) -> bool {
-        let StartState::Given { q, rate, particles } = other else { return false };
-        let Some(absolute) = other.absolute(system) else { return false };
-        let contacts = particles.iter().map(|(contact, ..)| *contact).collect();
-        self.scale.apart(&self.end, &End::new([q, rate], &absolute, contacts)) <= BESIDE
+    /// A neighbour that is at `end` after as many cycles is beside the run.
+    pub(crate) fn is_beside(&self, end: &End) -> bool {
+        self.scale.apart(&self.end, end) <= BESIDE
     }
 }

@@ -6,6 +6,7 @@ pub(crate) mod trace;
 use serde::{Deserialize, Serialize};
 
 use crate::contact::Relative;
+use crate::motion::Settling;
 use crate::options::trace::TraceRequest;
 use crate::system::{Contact, HybridSystem, Particle};
 
@@ -34,8 +35,10 @@ pub struct Options {
     pub audit: bool,
     /// Name the motion that it ends in.
     pub motion: bool,
-    /// Tell whether it draws near a motion that comes again.
+    /// Tell whether an orbit draws it in, as far as a neighbour wants to know.
     pub settling: bool,
+    /// End where it is seen to stay beside this run, which has the same options but for the start.
+    pub beside: Option<Settling>,
     /// How many events to keep, from the first.
     pub record_events: usize,
     /// Time history to keep.
@@ -116,6 +119,7 @@ impl Default for Options {
             audit: false,
             motion: false,
             settling: false,
+            beside: None,
             record_events: 0,
             trace: None,
             window_factor: 1.0,

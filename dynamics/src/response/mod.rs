@@ -59,8 +59,10 @@ pub struct Response {
     pub final_state: Option<StartState>,
     /// The motion that it ends in, if asked for.
     pub motion: Option<Motion>,
-    /// That it draws near a motion that comes again, if that was asked for and it does.
+    /// That an orbit draws it in, if that was asked for and is seen.
     pub settling: Option<Settling>,
+    /// It stays beside the run that it was to be compared with, and ended where that was seen: nothing is averaged.
+    pub stays_beside: bool,
     /// The period that was averaged in the place of the cycles given, if the run was to settle and did.
     pub settled: Option<Averaged>,
     /// Highest natural frequency among the contact states visited, rad/s.

@@ -41,24 +41,6 @@ fn simulated(system: &HybridSystem, options: &Options) -> Result<Response, Engin
     })
 }
 
-/// Whether a start moved by a kick leads to where `run` led, by fewer cycles than it took: it is beside the run where that, asked
-/// for [`Options::settling`], was near a motion that comes again. `false` where that cannot be told.
-///
-/// # Errors
-/// [`EngineError`] with the reason.
-pub fn settles_beside(
-    run: &Response,
-    system: &HybridSystem,
-    options: &Options,
-    kick: f64,
-) -> Result<bool, EngineError> {
-    let Some(settling) = &run.settling else { return Ok(false) };
-    let start = options.start.clone();
-    let few = Options { skip: settling.after - 1, average: 1, start, kick, final_state: true, ..Options::default() };
-    let neighbour = event_driven(system, &few)?;
-    Ok(neighbour.final_state.is_some_and(|state| settling.is_beside(system, &state)))
-}
-
 /// The fundamental matrix of the averaged cycles of a run, whether they come again or not: what a small change of the state at
 /// their begin is at their end.
 ///

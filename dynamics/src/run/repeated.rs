@@ -104,11 +104,11 @@ pub(crate) fn once(
     Ok(response)
 }
 
-/// It leaves some numbers, and no lists that grow with it.
+/// It leaves some numbers, and no lists.
 fn is_light(options: &Options) -> bool {
-    let Options { until, start, cycle_rates, record_events, trace, .. } = options;
+    let Options { until, start, cycle_rates, final_state, record_events, trace, .. } = options;
     let plain = *until == Until::Cycles && *start == StartState::StaticEquilibrium;
-    plain && !cycle_rates && *record_events == 0 && trace.is_none()
+    plain && !cycle_rates && !final_state && *record_events == 0 && trace.is_none()
 }
 
 /// The bits of what differs from one run of a row to the next. Zero and minus zero, which are equal, have different ones.
