@@ -10,12 +10,12 @@
 //! | `arithmetic` | vectors, matrices and elementary functions, several numbers at a time, the same bits on every processor |
 //! | `system` | what is run: structure, particles, faces, drive |
 //! | `contact` | where a particle is; which of the closed contacts push, and what an impact gives |
-//! | `options` | how it is run: which cycles, from where, and what is kept of them |
 //! | `contact_state` | the equations of one contact state, split into 2 × 2 blocks, and what they answer to a load for ever |
 //! | `flow` | the exact motion of one contact state, what is watched of it, its Taylor series and its integrals |
 //! | `states` | contact states that were visited, kept for every run that comes to them again |
 //! | `search` | the first event of a flow, certified by Bernstein enclosures |
 //! | `motion` | which kind of motion a run ends in: multipliers, exponents |
+//! | `options` | how it is run: which cycles, from where, and what is kept of them |
 //! | `response` | what comes out, with the audit: momentum and energy, balanced by other means |
 //! | `march` | from event to event, cycle by cycle, and what a bound on the energy keeps out of reach |
 //! | `linear` | in closed form: runs in which no event can happen, and thresholds of those with one or two impacts a period |

@@ -262,7 +262,8 @@ impl<'a, E: Effects> March<'a, E> {
             }
         }
         if settling {
-            self.response.settling = Settling::of(self.system, &self.tape.ends, self.averaged);
+            self.response.settling =
+                Settling::of(self.system, &self.tape.ends, self.averaged.first..self.averaged.end());
         }
         Ok(())
     }

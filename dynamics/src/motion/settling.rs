@@ -3,9 +3,10 @@
 //! Where a run has come so near a periodic orbit that the orbit draws it in, a start that is much closer to the run than the run to the
 //! orbit is drawn in as well. That the orbit does so is seen in how far the state misses itself after a period: less and less.
 
+use std::ops::Range;
+
 use super::recurrence::{Scale, candidates, settled_after};
 use super::tape::{End, Reach};
-use crate::options::Averaged;
 use crate::system::HybridSystem;
 
 /// The run counts as near from the cycle after which no state misses itself by more than this, in units of the motion.
@@ -35,10 +36,10 @@ impl Settling {
 
     /// Of a run by the ends of its cycles, in units of those averaged. `None` if no orbit draws it in, or too late to spare a
     /// neighbour a good part of its cycles.
-    pub(crate) fn of(system: &HybridSystem, ends: &[End], averaged: Averaged) -> Option<Self> {
-        let ends = &ends[..ends.len().min(averaged.end() as usize)];
+    pub(crate) fn of(system: &HybridSystem, ends: &[End], averaged: Range<u64>) -> Option<Self> {
+        let ends = &ends[..ends.len().min(averaged.end as usize)];
         let mut reach = Reach::default();
-        ends.iter().skip(averaged.first as usize).for_each(|end| reach.take(&end.state));
+        ends.iter().skip(averaged.start as usize).for_each(|end| reach.take(&end.state));
         let scale = Scale::new(system, &reach);
         let period = *candidates(&scale, ends, CLOSE).first()?;
         let after = settled_after(&scale, ends, period, NEAR);
