@@ -4,10 +4,11 @@ use super::fit::{Read, read};
 use super::set::Set;
 use super::trials::{Asked, CumulativeEvents, TrialRunner, Workers, Worth};
 use crate::experiment::{AssumptionName, AssumptionValue, Assumptions, Experiment};
+use crate::measure::ENSEMBLE_OF_A_VARIANT;
 use crate::study::{Evaluate, Event, EventHandler, RunError};
 
 /// Members of the ensemble of a chaotic point: as many as the other values of assumptions have in a run at most.
-const MEMBERS: u32 = 8;
+const MEMBERS: u32 = ENSEMBLE_OF_A_VARIANT.most;
 
 /// What an entry of the experiment `asked.0` reads with each of `moves` by itself, all other inputs in force. Only the rows that
 /// it reads are run.

@@ -213,14 +213,7 @@ fn simulate(
     // Histories of the points that are not the maximum are not wanted.
     let trace = simulation.trace.filter(|_| measures_need_trace(&experiment.measures));
     let shape = simulation.shape.filter(|_| needs_shape(experiment));
-    let look = Simulation {
-        trace,
-        energies: None,
-        shape,
-        each_cycle: None,
-        rigour: rigour_of_others(experiment),
-        ..simulation
-    };
+    let look = Simulation { trace, energies: None, shape, each_cycle: None, rigour: Rigour::Look, ..simulation };
     let (found, place) = Along { evaluate, simulation: look, maximise, measure, done }.found()?;
     if job.variant != 0 {
         return Ok(Row { evaluated: found, place: Some(place) });
