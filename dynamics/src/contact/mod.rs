@@ -113,6 +113,19 @@ impl Contact {
         }
     }
 
+    /// The same at the floor, where the ceiling is such a face and moves with it: to the structure both are one contact.
+    pub(crate) fn at_floor_alike(self, particle: &Particle) -> Self {
+        if particle.ceiling.as_ref() != Some(&particle.floor) {
+            return self;
+        }
+        match self {
+            Self::Ceiling => Self::Floor,
+            Self::CeilingStop => Self::FloorStop,
+            Self::CeilingReleased => Self::FloorReleased,
+            other => other,
+        }
+    }
+
     /// Pressed into a resilient face.
     #[inline]
     pub(crate) fn presses(self, particle: &Particle) -> bool {

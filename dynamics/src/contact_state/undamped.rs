@@ -75,7 +75,7 @@ impl NormalModes {
 /// Leaves the eigenvalues on the diagonal; gives the eigenvectors. `None` where it does not end.
 fn turn_to_axes(matrix: &mut Matrix) -> Option<Vec<Vec<f64>>> {
     let n = matrix.order;
-    let mut axes: Vec<Vec<f64>> = (0..n).map(|i| (0..n).map(|j| f64::from(u8::from(i == j))).collect()).collect();
+    let mut axes = Matrix::diagonal(&vec![1.0; n]).entries;
     for _ in 0..MOST_SWEEPS {
         let mut still = true;
         for p in 0..n {
@@ -90,17 +90,12 @@ fn turn_to_axes(matrix: &mut Matrix) -> Option<Vec<Vec<f64>>> {
                 let cosine = 1.0 / (1.0 + tangent * tangent).sqrt();
                 let sine = tangent * cosine;
                 let turn = |x: f64, y: f64| [cosine * x - sine * y, sine * x + cosine * y];
-                for k in (0..n).filter(|&k| k != p && k != q) {
-                    let [x, y] = turn(matrix.at(p, k), matrix.at(q, k));
-                    for (i, j, entry) in [(p, k, x), (k, p, x), (q, k, y), (k, q, y)] {
-                        matrix.entries[i * n + j] = entry;
-                    }
-                    let [x, y] = turn(axes[p][k], axes[q][k]);
-                    (axes[p][k], axes[q][k]) = (x, y);
-                }
-                for k in [p, q] {
-                    let [x, y] = turn(axes[p][k], axes[q][k]);
-                    (axes[p][k], axes[q][k]) = (x, y);
+                turn_rows(&mut matrix.entries, n, [p, q], turn);
+                turn_rows(&mut axes, n, [p, q], turn);
+                // It stays symmetric.
+                for k in 0..n {
+                    matrix.entries[k * n + p] = matrix.entries[p * n + k];
+                    matrix.entries[k * n + q] = matrix.entries[q * n + k];
                 }
                 matrix.entries[p * n + p] = first - tangent * between;
                 matrix.entries[q * n + q] = second + tangent * between;
@@ -109,10 +104,19 @@ fn turn_to_axes(matrix: &mut Matrix) -> Option<Vec<Vec<f64>>> {
             }
         }
         if still {
-            return Some(axes);
+            return Some(axes.chunks_exact(n).map(<[f64]>::to_vec).collect());
         }
     }
     None
+}
+
+/// Turns row p and row q > p of a matrix of `n` columns, entry by entry.
+#[inline(always)]
+fn turn_rows(entries: &mut [f64], n: usize, [p, q]: [usize; 2], turn: impl Fn(f64, f64) -> [f64; 2]) {
+    let (before, behind) = entries.split_at_mut(q * n);
+    for (x, y) in before[p * n..][..n].iter_mut().zip(&mut behind[..n]) {
+        [*x, *y] = turn(*x, *y);
+    }
 }
 
 /// W ← W + (1 − W V) W, V column by column and W row by row.

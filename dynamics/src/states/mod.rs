@@ -2,7 +2,8 @@
 //!
 //! Modes know masses, springs, dashpots and places; gap, amplitude and time do not enter, the forcing point only in a load
 //! ([`crate::contact_state`]). So the thread that has run one point of a sweep, of a map or of an ensemble has at hand what
-//! the next one visits. A state is built when it is visited, and the same numbers come out whether it was known or not.
+//! the next one visits. A state is built when it is visited, and the same numbers come out whether it was known or not. Floor and ceiling
+//! of an enclosure are mostly alike and move as one: what its modes know of a contact is the same at either.
 
 pub(crate) mod ground;
 
@@ -158,14 +159,16 @@ impl States {
             return Err(budget::overrun().into());
         }
         self.0.grown.set(true);
+        let alike = contacts.iter().zip(&system.particles).map(|(contact, particle)| contact.at_floor_alike(particle));
+        let alike: Vec<Contact> = alike.collect();
         let modes = visit(
             &self.0.undriven.modes,
-            contacts,
+            &alike,
             |modes| modes.damping == damping,
             || {
-                let build = || Conservative::new(system, contacts);
-                let bare = visit(&self.0.undriven.bare, contacts, |_| true, build)?;
-                Modes::new(system, bare, contacts, damping)
+                let build = || Conservative::new(system, &alike);
+                let bare = visit(&self.0.undriven.bare, &alike, |_| true, build)?;
+                Modes::new(system, bare, &alike, damping)
             },
         )?;
         let like = self.0.flows.borrow().get(contacts).and_then(|known| known.last().cloned());
@@ -238,5 +241,44 @@ impl Undriven {
             && own.mass == system.mass
             && own.damping == system.damping
             && own.stiffness == system.stiffness
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::arithmetic::matrix::Matrix;
+    use crate::system::{Drive, Face, Law};
+
+    /// Two masses with a particle in an enclosure on the second one.
+    fn enclosure(ceiling: Face) -> HybridSystem {
+        HybridSystem {
+            mass: Matrix::diagonal(&[1.0, 0.5]),
+            damping: Matrix::diagonal(&[0.3, 0.2]),
+            stiffness: Matrix { order: 2, entries: vec![1500.0, -500.0, -500.0, 500.0] },
+            gravity: 9.81,
+            particles: vec![Particle { mass: 0.05, floor: face(&[0.0, 1.0], 4.0), ceiling: Some(ceiling), gap: 0.01 }],
+            force_row: vec![0.0, 1.0],
+            drive: Drive { period: 0.2, ticks: Vec::new(), repeats: true, harmonic: None, half_cycles: None },
+            observed_rows: vec![vec![0.0, 1.0]],
+            momentum_rows: vec![vec![1.0, 1.0]],
+        }
+    }
+
+    fn face(row: &[f64], damping: f64) -> Face {
+        Face { row: row.to_vec(), law: Law::Resilient { stiffness: 1000.0, damping, no_tension: false, stop: None } }
+    }
+
+    #[test]
+    fn a_contact_has_the_same_modes_at_the_floor_and_at_a_ceiling_that_is_like_it_and_moves_with_it() {
+        let alike = |ceiling: Face| {
+            let system = enclosure(ceiling);
+            let states = States::of(&system);
+            let flow = |contact| states.flow(&system, &[contact], None).expect("masses and springs are positive");
+            Rc::ptr_eq(&flow(Contact::Floor).modes, &flow(Contact::Ceiling).modes)
+        };
+        assert!(alike(face(&[0.0, 1.0], 4.0)));
+        assert!(!alike(face(&[0.0, 1.0], 5.0)), "another dashpot");
+        assert!(!alike(face(&[1.0, 0.0], 4.0)), "a wall that moves by itself");
     }
 }
