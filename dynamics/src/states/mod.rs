@@ -2,8 +2,8 @@
 //!
 //! Modes know masses, springs, dashpots and places; gap, amplitude and time do not enter, the forcing point only in a load
 //! ([`crate::contact_state`]). So the thread that has run one point of a sweep, of a map or of an ensemble has at hand what
-//! the next one visits. A state is built when it is visited, and the same numbers come out whether it was known or not. Floor and ceiling
-//! of an enclosure are mostly alike and move as one: what its modes know of a contact is the same at either.
+//! the next one visits. A state is built when it is visited, and the same numbers come out whether it was known or not. Where the
+//! floor and the ceiling of an enclosure are alike and move as one, a contact has the same modes at either, and they are found once.
 
 pub(crate) mod ground;
 
