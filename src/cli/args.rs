@@ -195,7 +195,7 @@ pub(super) struct RunArgs {
     pub times: bool,
     #[command(flatten)]
     pub limit: LimitArgs,
-    /// Simulate again where what an earlier run left is not what it wrote, and look at every byte of it to know
+    /// Look at every byte of earlier results, and simulate again what is damaged or was changed
     #[arg(long)]
     pub verify: bool,
     /// Compute one of n parts of the work, here the third of eight; `gather` joins their tables

@@ -9,8 +9,9 @@ use super::error::CliError;
 use super::exit::Exit;
 use super::output::print;
 use super::select::open;
+use crate::atomic::place_of;
 use crate::report::{self, Detail, Movement, Standing, VERDICTS, judge_tables};
-use crate::study::Layout;
+use crate::study::{Item, Layout, Reason, State, Study};
 use crate::table::{Table, parquet};
 
 /// One of the two.
@@ -23,13 +24,23 @@ enum Side {
 pub(super) fn diff(layout: &Layout, args: &DiffArgs) -> Result<Exit, CliError> {
     let a = args.a.clone().unwrap_or_else(|| layout.path(VERDICTS));
     let b = args.b.clone().unwrap_or_else(|| layout.results());
-    let (movements, whole) = match (Side::read(&a)?, Side::read(&b)?) {
+    let (before, now) = (Side::read(&a)?, Side::read(&b)?);
+    let mut stale = Vec::new();
+    for (path, side) in [(&a, &before), (&b, &now)] {
+        if let Side::Tables(tables) = side
+            && is_own(layout, path)
+        {
+            stale.extend(stale_among(&open(layout)?, tables));
+        }
+    }
+    let (movements, mut whole) = match (before, now) {
         (Side::Tables(a), Side::Tables(b)) => of_tables(&a, &b),
         (a, b) => {
             let movement = report::between_verdicts(&a.verdicts(layout)?, &b.verdicts(layout)?);
             (vec![("verdicts".to_owned(), movement)], Vec::new())
         }
     };
+    whole.extend(stale);
     let detail = if args.all { Detail::All } else { Detail::Farthest };
     print(&report::diff(&movements, &whole, detail))?;
     let beyond = !whole.is_empty() || movements.iter().any(|(_, movement)| movement.is_beyond());
@@ -48,6 +59,21 @@ fn of_tables(a: &BTreeMap<String, Table>, b: &BTreeMap<String, Table>) -> (Vec<(
         }
     }
     (movements, whole)
+}
+
+/// The tables that lie there are those of this study.
+fn is_own(layout: &Layout, path: &Path) -> bool {
+    [path.to_path_buf(), path.join("results")].iter().any(|folder| place_of(folder) == place_of(&layout.results()))
+}
+
+/// Those of the study's own tables that say nothing of the inputs as they are now.
+fn stale_among(study: &Study, tables: &BTreeMap<String, Table>) -> Vec<String> {
+    let says_nothing = |reason: &Reason| matches!(reason, Reason::Changed { .. } | Reason::MoreChanged { .. });
+    let is_stale = |item: &&Item| matches!(&item.state, State::Stale(reasons) if reasons.iter().any(says_nothing));
+    let ids = study.items.iter().filter(is_stale).map(|item| &item.source.experiment.id);
+    ids.filter(|id| tables.contains_key(&id.0))
+        .map(|id| format!("{id}: its table is stale; shotdamp run {id}"))
+        .collect()
 }
 
 impl Side {

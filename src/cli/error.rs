@@ -20,6 +20,8 @@ pub(super) enum CliError {
     NoExperiments,
     #[error("no experiment matches `{pattern}`; {hint}")]
     NoMatch { pattern: String, hint: String },
+    #[error("no experiment in experiments/{folder} matches `{pattern}`; elsewhere one does: leave out --folder")]
+    ElsewhereOnly { pattern: String, folder: String },
     #[error("there is no calibration `{id}`; {hint}")]
     NoCalibration { id: String, hint: String },
     #[error("`shotdamp {0}` needs the id of an experiment, or --all")]
@@ -44,6 +46,8 @@ pub(super) enum CliError {
     TwoDocuments,
     #[error("there is an experiment `{0}` already")]
     Exists(String),
+    #[error("experiments/assumptions.yaml holds the assumptions of all experiments: name this one otherwise")]
+    OfAssumptions,
     #[error(transparent)]
     Accept(#[from] AcceptError),
     #[error(transparent)]
@@ -66,10 +70,4 @@ pub(super) enum CliError {
     Run(#[from] RunError),
     #[error("{0}")]
     Output(#[from] io::Error),
-}
-
-impl CliError {
-    pub fn is_broken_pipe(&self) -> bool {
-        matches!(self, Self::Output(error) if error.kind() == io::ErrorKind::BrokenPipe)
-    }
 }

@@ -27,6 +27,8 @@ const EXIT_CODE: i32 = 130;
 pub(super) enum Kept {
     /// Rows of tables.
     Rows,
+    /// The same, of a command that computes all of them anew.
+    ForcedRows,
     /// Pages of the experiments that were done.
     Pages,
     /// What a calibration evaluated.
@@ -39,6 +41,7 @@ impl Kept {
     /// By a command that simulates; the others are ended by the system.
     pub(super) fn by(command: Option<&Command>) -> Option<Self> {
         match command {
+            Some(Command::Run(run)) if run.force => Some(Self::ForcedRows),
             None | Some(Command::Run(_)) => Some(Self::Rows),
             Some(Command::Accuracy(_)) => Some(Self::Pages),
             Some(Command::Calibrate(_)) => Some(Self::Evaluations),
@@ -50,6 +53,9 @@ impl Kept {
     fn line(self) -> &'static str {
         match self {
             Self::Rows => "interrupted: finished rows are kept, and the same command continues from them\n",
+            Self::ForcedRows => {
+                "interrupted: finished tables are written, finished rows are kept for a run without --force; the same command begins anew\n"
+            }
             Self::Pages => "interrupted: the pages of finished experiments are written, all others are as before\n",
             Self::Evaluations => {
                 "interrupted: no page was written; what was evaluated is kept, and the same command continues from there\n"

@@ -51,8 +51,6 @@ pub fn main() -> ExitCode {
     }
     match outcome {
         Ok(exit) => exit.into(),
-        // The reader closed the pipe: it has read enough.
-        Err(error) if error.is_broken_pipe() => ExitCode::SUCCESS,
         Err(error) => {
             output::print_failure(&error);
             Exit::CouldNot.into()

@@ -7,7 +7,7 @@ use super::output::print;
 use super::schema::write_all;
 use crate::atomic;
 use crate::experiment::{ExperimentId, scaffold};
-use crate::study::{Layout, Texts};
+use crate::study::{ASSUMPTIONS, Layout, Texts};
 
 /// Writes an experiment to begin with, and the schemas by which an editor completes and checks it.
 pub(super) fn new(layout: &Layout, args: &NewArgs) -> Result<Exit, CliError> {
@@ -17,6 +17,9 @@ pub(super) fn new(layout: &Layout, args: &NewArgs) -> Result<Exit, CliError> {
         None => known_folder(layout, &id),
     };
     let name = format!("experiments/{folder}{id}.yaml");
+    if name == ASSUMPTIONS {
+        return Err(CliError::OfAssumptions);
+    }
     let taken = Texts::read(layout)?.ids().contains(id.0.as_str());
     if taken || layout.path(&name).exists() {
         return Err(CliError::Exists(id.to_string()));

@@ -45,11 +45,14 @@ pub(super) fn print(text: &str) -> io::Result<()> {
     if style().quiet { Ok(()) } else { print_document(text) }
 }
 
-/// Prints a document that was asked for by name, which is never left out.
+/// Prints a document that was asked for by name, which is never left out. A reader who closes the pipe has read enough: the command goes
+/// on to its exit code, which is no less true for that.
 pub(super) fn print_document(text: &str) -> io::Result<()> {
     let mut out = io::stdout().lock();
-    out.write_all(text.as_bytes())?;
-    out.flush()
+    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+        Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
+        result => result,
+    }
 }
 
 /// Prints an error. A failure to print it is ignored.

@@ -159,7 +159,13 @@ pub(super) fn choose<'a>(study: &'a Study, choice: &Choice) -> Result<Chosen<'a>
     let stems: Vec<&str> = chosen.unread.iter().map(|unread| stem(unread.file())).collect();
     let answers = |pattern: &&String| chosen.ids().chain(stems.iter().copied()).any(|id| matches(pattern, id));
     if let Some(pattern) = choice.patterns.iter().find(|pattern| !blind && !answers(pattern)) {
-        return Err(no_match(pattern, &readable(study)));
+        let readable = readable(study);
+        return Err(match &choice.folder {
+            Some(folder) if readable.iter().any(|id| matches(pattern, id)) => {
+                CliError::ElsewhereOnly { pattern: pattern.clone(), folder: folder.clone() }
+            }
+            _ => no_match(pattern, &readable),
+        });
     }
     if let Some(folder) = choice.folder.clone().filter(|_| chosen.is_empty()) {
         return Err(CliError::NoFolder { folder, known: folders(study) });

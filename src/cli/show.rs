@@ -134,7 +134,7 @@ fn make(layout: &Layout, id: &str, made: &Sender<Made>) -> Result<Exit, CliError
     let texts = Texts::read(layout)?;
     let ids = texts.ids();
     // Told from the names of the files: to read all of them may take longer than anyone waits.
-    if !ids.is_empty() && !texts.stems().iter().any(|stem| matches(id, stem)) {
+    if !ids.is_empty() && !ids.iter().any(|known| matches(id, known)) {
         return Err(no_match(id, &ids));
     }
     let study = Study::of(layout.clone(), texts, &|stem| matches(id, stem));

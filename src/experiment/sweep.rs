@@ -244,7 +244,11 @@ impl SweepReader {
                 by_kind(at, "swept_", takes, |at| at.either(is_refined, |at| self.refined(at, parameter), fixed))
             }
         };
-        Some((parameter, values?))
+        let values = values?;
+        if axis != Axis::OfPair && has_one_twice(&values) {
+            return at.wrong("a value stands here twice: two rows would be the same");
+        }
+        Some((parameter, values))
     }
 
     fn refined(&self, at: At<'_>, parameter: Parameter) -> Option<Vec<ParameterValue>> {
@@ -299,6 +303,20 @@ impl SweepReader {
         })?;
         if set.is_empty() { at.wrong("this point sets nothing") } else { Some(set.into_iter().collect()) }
     }
+}
+
+/// Some value stands among these more than once.
+fn has_one_twice(values: &[ParameterValue]) -> bool {
+    let (mut numbers, mut words) = (Vec::new(), Vec::new());
+    for value in values {
+        match value {
+            ParameterValue::Number(number) => numbers.push(*number),
+            word if words.contains(word) => return true,
+            word => words.push(*word),
+        }
+    }
+    numbers.sort_by(f64::total_cmp);
+    numbers.windows(2).any(|pair| pair[0] == pair[1])
 }
 
 fn not_empty() -> serde_json::Value {

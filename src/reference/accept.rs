@@ -38,6 +38,14 @@ pub enum AcceptError {
     /// No reason was given.
     #[error("an accepted verdict needs a reason: --reason TEXT")]
     NoReason,
+    /// The reason cannot stand in an explanation.
+    #[error("`{reason}` cannot be an explanation: {problem}")]
+    Reason {
+        /// What was given.
+        reason: String,
+        /// What is wrong with it.
+        problem: String,
+    },
     /// The file is laid out in a way that cannot be changed safely.
     #[error(
         "`{id}` cannot be changed without changing more than it; set `expected` and `explanation` by hand (line {line})"
@@ -77,10 +85,16 @@ pub fn accept(file: &ReferenceFile, text: &str, judged: &Judged, reason: &str) -
     let changed = set_keys(text, "entries", name, &changes);
     // Whatever the layout was: the new text has to mean this, and nothing else may have moved.
     let wanted = meaning(file, Some((&id, judged.verdict, &reason)));
-    let means_it = |text: &String| {
-        parse_reference(&file.experiment, "", text).is_ok_and(|changed| meaning(&changed, None) == wanted)
-    };
-    changed.filter(means_it).ok_or(AcceptError::ByHand { id, line })
+    let Some(changed) = changed else { return Err(AcceptError::ByHand { id, line }) };
+    match parse_reference(&file.experiment, "", &changed) {
+        Ok(read) if meaning(&read, None) == wanted => Ok(changed),
+        Ok(_) => Err(AcceptError::ByHand { id, line }),
+        // The file could be read before.
+        Err(problems) => {
+            let problem = problems.list.first().map(|first| first.message.clone()).unwrap_or_default();
+            Err(AcceptError::Reason { reason, problem })
+        }
+    }
 }
 
 /// The entries without their lines, with one of them changed.

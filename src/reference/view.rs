@@ -409,7 +409,10 @@ impl<'a> View<'a> {
             Some(TableState::Present(table)) => Ok(table),
             Some(TableState::Stale) => Err(Absence::Broken(format!("the table of `{id}` is stale: run it again"))),
             Some(TableState::Failed(reason)) => Err(Absence::Broken(format!("`{id}` failed: {reason}"))),
-            Some(TableState::NotRun) | None => Err(Absence::Broken(format!("`{id}` has not been run"))),
+            Some(TableState::NotRun) => Err(Absence::Broken(format!("`{id}` has not been run"))),
+            None => {
+                Err(Absence::Broken(format!("there is no experiment `{id}`: its file was renamed or is not there")))
+            }
         }
     }
 

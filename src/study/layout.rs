@@ -126,8 +126,13 @@ impl Texts {
     /// Ids that the experiments' files are called by, whether they can be understood or not.
     #[must_use]
     pub fn ids(&self) -> BTreeSet<&str> {
-        let names = self.files.keys().filter(|file| file.starts_with("experiments/") && *file != ASSUMPTIONS);
-        names.map(|file| stem(file)).collect()
+        self.files.keys().filter(|name| Self::is_experiment(name)).map(|name| stem(name)).collect()
+    }
+
+    /// Files of experiments that make this id: one, unless somebody has made a mistake.
+    pub(super) fn files_of<'a>(&'a self, id: &'a str) -> impl Iterator<Item = &'a str> {
+        let names = self.files.keys().filter(|name| Self::is_experiment(name));
+        names.filter(move |name| stem(name) == id).map(String::as_str)
     }
 
     /// Ids that the calibrations' files are called by.
@@ -138,7 +143,12 @@ impl Texts {
 
     /// True for the text of one experiment or of its reference; assumptions and calibrations concern the whole study.
     pub(super) fn is_of_experiment(name: &str) -> bool {
-        (name.starts_with("experiments/") && name != ASSUMPTIONS) || name.starts_with("reference/")
+        Self::is_experiment(name) || name.starts_with("reference/")
+    }
+
+    /// True for the text of an experiment.
+    pub(super) fn is_experiment(name: &str) -> bool {
+        name.starts_with("experiments/") && name != ASSUMPTIONS
     }
 
     /// Ids that the files of experiments and of their references are called by.

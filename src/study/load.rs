@@ -1,7 +1,5 @@
 //! Texts to experiments, with an error for every file that cannot be read.
 
-use std::collections::BTreeMap;
-
 use super::layout::{ASSUMPTIONS, STUDY, Texts, folder_of, stem};
 use crate::experiment::{
     AboutStudy, AssumptionSheet, Cases, Columns, Experiment, ExperimentId, IdError, Problems, parse_assumptions,
@@ -64,12 +62,12 @@ pub enum Refused {
     /// Another ending than the one that is looked for would be overlooked.
     #[error("{0}: rename it to end in .yaml")]
     Ending(String),
-    /// Two files of one id would write into each other's table.
+    /// Two files of one id would write into each other's table; nobody knows which of them is meant.
     #[error("{file}: {other} has the same id; an id stands for one experiment in the whole study")]
     Twice {
         /// Which file.
         file: String,
-        /// The file that had the id first.
+        /// Another one.
         other: String,
     },
 }
@@ -113,9 +111,8 @@ impl Loaded {
         if let Some(source) = self.sources.iter().find(|source| source.experiment.id.0 == id) {
             return Some(source.experiment.columns());
         }
-        let is_it = |file: &str| file.starts_with("experiments/") && file != ASSUMPTIONS && stem(file) == id;
-        let (file, bytes) = texts.files.iter().find(|(file, _)| is_it(file))?;
-        let text = text(file, bytes).ok()?;
+        let file = texts.files_of(id).next()?;
+        let text = text(file, texts.files.get(file)?).ok()?;
         let read = parse_with(&id.parse().ok()?, file, text, &self.sheet.assumptions(), Cases::Tried);
         read.ok().map(|experiment| experiment.columns())
     }
@@ -130,7 +127,6 @@ impl Loaded {
     #[must_use]
     pub(super) fn chosen(texts: &Texts, wanted: &dyn Fn(&str) -> bool, cases: &dyn Fn(&str) -> Cases) -> Self {
         let mut loaded = Self::default();
-        let mut files_by_id = BTreeMap::<ExperimentId, &str>::new();
         match shared(texts, STUDY, parse_study) {
             Ok(about) => loaded.about = about,
             Err(refused) => loaded.refused.push(refused),
@@ -144,20 +140,14 @@ impl Loaded {
             }
         }
         let assumptions = loaded.sheet.assumptions();
-        for (file, bytes) in texts.files.iter().filter(|(file, _)| file.starts_with("experiments/")) {
-            if file == ASSUMPTIONS || !wanted(stem(file)) {
-                continue;
-            }
-            let source = identify(file, &files_by_id).and_then(|id| {
+        for (file, bytes) in texts.files.iter().filter(|(file, _)| Texts::is_experiment(file) && wanted(stem(file))) {
+            let source = identify(file, texts).and_then(|id| {
                 let text = text(file, bytes)?;
                 let experiment = parse_with(&id, file, text, &assumptions, cases(&id.0)).map_err(Refused::Text)?;
                 Ok(Source { experiment, file: file.clone() })
             });
             match source {
-                Ok(source) => {
-                    files_by_id.insert(source.experiment.id.clone(), file);
-                    loaded.sources.push(source);
-                }
+                Ok(source) => loaded.sources.push(source),
                 Err(refused) => loaded.refused.push(refused),
             }
         }
@@ -176,14 +166,12 @@ fn shared<T: Default>(
 }
 
 /// The id that a file's name makes.
-fn identify(file: &str, known: &BTreeMap<ExperimentId, &str>) -> Result<ExperimentId, Refused> {
+fn identify(file: &str, texts: &Texts) -> Result<ExperimentId, Refused> {
     let name = file.rsplit('/').next().unwrap_or(file);
-    let stem = name.strip_suffix(".yaml").ok_or_else(|| Refused::Ending(file.into()))?;
-    let id: ExperimentId = stem.parse().map_err(|error| Refused::Name { file: file.into(), error })?;
-    match known.get(&id) {
-        Some(other) => Err(Refused::Twice { file: file.into(), other: (*other).into() }),
-        None => Ok(id),
-    }
+    let id = name.strip_suffix(".yaml").ok_or_else(|| Refused::Ending(file.into()))?;
+    let id: ExperimentId = id.parse().map_err(|error| Refused::Name { file: file.into(), error })?;
+    let other = texts.files_of(&id.0).find(|other| *other != file).map(str::to_owned);
+    other.map_or(Ok(id), |other| Err(Refused::Twice { file: file.into(), other }))
 }
 
 pub(super) fn text<'a>(file: &str, bytes: &'a [u8]) -> Result<&'a str, Refused> {

@@ -203,7 +203,9 @@ impl Snapshot {
         let study = Seen { inputs: shared_inputs(texts), outputs, content: Assumed::of(sheet) };
         // Also where it says the same as before: its own time tells which outputs were written later.
         let is_used = |name: &AssumptionName| experiments.values().any(|seen| seen.content.used.contains(name));
-        let unused = sheet.iter().map(|(name, _)| name).filter(|name| !is_used(name)).cloned().collect();
+        // What uses nothing is known once every experiment is.
+        let all_known = texts.ids().iter().all(|id| experiments.keys().any(|known| known.as_str() == *id));
+        let unused = sheet.iter().map(|(name, _)| name).filter(|name| all_known && !is_used(name)).cloned().collect();
         OnDisk { program: Program::here(), study, unused, experiments }.write(&path)
     }
 }

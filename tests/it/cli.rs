@@ -278,12 +278,42 @@ fn show_tells_the_scene_the_effects_and_the_assumptions() {
 #[test]
 fn whoever_closes_the_pipe_has_read_enough() {
     let desk = Desk::new();
-    let mut command = Command::cargo_bin("shotdamp").unwrap();
-    command.arg("--root").arg(desk.folder.path()).arg("list").stdout(Stdio::piped()).stderr(Stdio::piped());
-    let mut child = command.spawn().unwrap();
-    drop(child.stdout.take());
-    let output = child.wait_with_output().unwrap();
-    assert_eq!((output.status.code(), output.stderr.as_slice()), (Some(0), &b""[..]));
+    // What the command has found out stands whether it was read or not: nothing has been run.
+    for (name, code) in [("list", 0), ("check", 2)] {
+        let mut command = Command::cargo_bin("shotdamp").unwrap();
+        command.arg("--root").arg(desk.folder.path()).arg(name).stdout(Stdio::piped()).stderr(Stdio::piped());
+        let mut child = command.spawn().unwrap();
+        drop(child.stdout.take());
+        let output = child.wait_with_output().unwrap();
+        assert_eq!((output.status.code(), output.stderr.as_slice()), (Some(code), &b""[..]), "{name}");
+    }
+}
+
+#[test]
+fn a_name_that_means_something_else_is_told_from_one_that_is_unknown() {
+    let desk = Desk::new();
+    let fails = |args: &[&str], words: &[&str]| {
+        let said = shotdamp(&desk, args);
+        assert_eq!(said.code, 2, "{args:?}: {}", said.out);
+        assert!(words.iter().all(|word| said.err.contains(word)), "{args:?}: {}", said.err);
+    };
+    fails(&["new", "assumptions"], &["holds the assumptions of all experiments"]);
+    desk.put("experiments/ch4/ch4-other.yaml", STOP);
+    fails(&["run", "--folder", "ch4", "ch3-gap"], &["no experiment in experiments/ch4", "leave out --folder"]);
+    // A reference whose experiment was renamed.
+    fs::rename(desk.layout.path("experiments/ch3/ch3-gap.yaml"), desk.layout.path("experiments/ch3/gap.yaml")).unwrap();
+    fails(&["show", "ch3-gap"], &["no experiment matches `ch3-gap`"]);
+    let said = shotdamp(&desk, &["check"]);
+    assert!(said.out.contains("there is no experiment `ch3-gap`"), "{}", said.out);
+}
+
+#[test]
+fn assumptions_are_called_unused_when_all_experiments_are_known_not_to_use_them() {
+    let desk = Desk::new();
+    for command in [&["run", "ch3-gap"][..], &["run", "ch3-gap"], &["status", "ch3-gap"]] {
+        let said = shotdamp(&desk, command);
+        assert!(!said.err.contains("no experiment uses"), "{command:?}: {}", said.err);
+    }
 }
 
 #[test]

@@ -4,7 +4,7 @@ use std::fs;
 
 use shotdamp::table::{Data, Table, parquet};
 
-use crate::desk::{Desk, shotdamp, simulated};
+use crate::desk::{Desk, GAP, shotdamp, simulated};
 
 /// A study with its results copied to `before/`.
 fn with_a_run_before() -> Desk {
@@ -67,6 +67,16 @@ fn a_number_that_moved_is_held_against_its_uncertainty() {
     // A number that became none has moved, however uncertain it was.
     change(&desk, "ch3-gap", |table| floats(table, "velocity_ratio")[1] = f64::NAN);
     assert!(diff(&desk).out.contains("-> nothing"));
+}
+
+#[test]
+fn tables_of_other_inputs_are_named() {
+    let desk = with_a_run_before();
+    desk.put("experiments/ch3/ch3-gap.yaml", &GAP.replace("mass_ratio: 0.05", "mass_ratio: 0.06"));
+    let said = diff(&desk);
+    assert_eq!(said.code, 1, "{}", said.err);
+    assert!(said.out.contains("ch3-gap: its table is stale; shotdamp run ch3-gap\n"), "{}", said.out);
+    assert!(!said.out.contains("ch3-stop: its table"));
 }
 
 #[test]

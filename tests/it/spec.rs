@@ -347,6 +347,13 @@ pub(crate) fn mistakes_that_a_person_makes_are_told_where_they_stand() {
             with("force_ratio: {log: {from: 0.1, to: 100, points: 61}}", "force_ratio: []"),
             "13:3 this sweep is empty: give it at least one value",
         ),
+        (
+            with(
+                "force_ratio: {log: {from: 0.1, to: 100, points: 61}}",
+                "force_ratio: [1, {linear: {from: 2, to: 4, points: 3}}, 3]",
+            ),
+            "13:3 a value stands here twice: two rows would be the same",
+        ),
         ("title: [\n".into(), "1:8 this is no YAML: unclosed bracket '['"),
         (String::new(), "1:1 the file is empty"),
         (
@@ -408,6 +415,8 @@ pub(crate) fn yaml_from_strangers_is_refused_before_anything_grows() {
     for id in ["../etc/passwd", "..", "", "a/b", "a\\b", "Ch3", "a b", "-x", "ch3.yaml", "ä"] {
         assert!(id.parse::<ExperimentId>().is_err(), "{id}");
     }
+    let id = |length: usize| "a".repeat(length).parse::<ExperimentId>();
+    assert!(id(64).is_ok() && id(65).unwrap_err().to_string().contains("65 characters, 64 are the most"));
     let folder = tempfile::tempdir().unwrap();
     let place = |name: &str| folder.path().join(name);
     std::fs::write(place("not an id.yaml"), GOOD).unwrap();
