@@ -28,6 +28,11 @@ impl Cholesky {
         Ok(Self { order: n, lower })
     }
 
+    /// A column of L.
+    pub(crate) fn column(&self, j: usize) -> Vec<f64> {
+        self.lower.iter().skip(j).step_by(self.order).copied().collect()
+    }
+
     /// A⁻¹ b.
     pub(crate) fn solve(&self, b: &[f64]) -> Vec<f64> {
         self.backward(&self.forward(b))

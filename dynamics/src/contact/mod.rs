@@ -118,11 +118,9 @@ impl Contact {
         if particle.ceiling.as_ref() != Some(&particle.floor) {
             return self;
         }
-        match self {
-            Self::Ceiling => Self::Floor,
-            Self::CeilingStop => Self::FloorStop,
-            Self::CeilingReleased => Self::FloorReleased,
-            other => other,
+        match (self.at(Side::Floor, particle), self.at(Side::Ceiling, particle)) {
+            (Hold::Away, hold) => Self::of(hold, Hold::Away, particle).unwrap_or(self),
+            _ => self,
         }
     }
 

@@ -11,7 +11,7 @@
 //!
 //! v = (Ω x, λ x),   w = (−Ω x, λ x)/σ.
 //!
-//! What does not converge, or leaves the modes dependent on each other, is none of this: a Schur form splits it.
+//! What does not converge, comes near critical damping, or leaves the modes dependent on each other, is none of this: a Schur form splits it.
 
 use std::cell::RefCell;
 
@@ -30,6 +30,9 @@ const MOST_STEPS: usize = 12;
 /// A step below this share of λ leaves an error of its square; the next one shows it.
 const LAST_STEP: f64 = 1e-8;
 const CONVERGED: f64 = 1e-13;
+/// σ below this share of its terms is that of two eigenvalues about to meet: a mode near critical damping. Blocks of its own for each
+/// would grow as 1/σ, and squares of them lose as many digits as σ² has.
+const CRITICAL: f64 = 1e-2;
 /// w v of two modes above this is corrected, and above `DEPENDENT` they are no basis.
 const ROUNDING: f64 = 2e-15;
 const DEPENDENT: f64 = 1e-8;
@@ -152,7 +155,7 @@ impl<'a> Problem<'a> {
                 (0..WIDTH).all(|lane| step[lane] <= share * share * size[lane])
             };
             if is_last {
-                return below(CONVERGED).then(|| found(lambda, work));
+                return if below(CONVERGED) { found(lambda, work) } else { None };
             }
             is_last = below(LAST_STEP);
             lambda = lambda.minus(step);
@@ -275,9 +278,10 @@ impl<'a> Problem<'a> {
     }
 }
 
-/// The modes that Newton's method has come to; their shapes go behind those before, by normal coordinates.
+/// The modes that Newton's method has come to, unless one of them is near critical damping; their shapes go behind those before, by
+/// normal coordinates.
 #[inline(always)]
-fn found(lambda: Complexes, work: &mut Work) -> Found {
+fn found(lambda: Complexes, work: &mut Work) -> Option<Found> {
     let Work { places, squares, x, shapes, .. } = work;
     let first = shapes.len();
     shapes.resize(first + x.len(), Complexes::ZERO);
@@ -289,7 +293,11 @@ fn found(lambda: Complexes, work: &mut Work) -> Found {
         }
     }
     let [sum, stiff] = norms(x, squares);
-    Found { lambda, size: lambda.times(lambda).times(sum).minus(stiff) }
+    let moving = lambda.times(lambda).times(sum);
+    let size = moving.minus(stiff);
+    let [of_size, of_terms] = [size.square(), moving.square() + stiff.square()].map(Four::array);
+    let is_apart = (0..WIDTH).all(|lane| of_size[lane] > CRITICAL * CRITICAL * of_terms[lane]);
+    is_apart.then_some(Found { lambda, size })
 }
 
 /// xᵀx and xᵀΩ²x.

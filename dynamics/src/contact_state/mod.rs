@@ -95,7 +95,7 @@ pub(crate) fn constant_across(particle: &Particle, contact: Contact) -> f64 {
 /// The modes of one contact state.
 #[derive(Clone)]
 pub(crate) struct Modes {
-    /// Contact of each particle.
+    /// Contact of each particle, at the floor where the ceiling is alike ([`Contact::at_floor_alike`]).
     pub(crate) contacts: Vec<Contact>,
     /// Contact damping in force as [`dampings`] gives it, N s/m.
     pub(crate) damping: Vec<f64>,

@@ -1,12 +1,16 @@
 //! Modes of a contact state without dashpots: M e″ = −K e.
 //!
-//! With K = L Lᵀ and L⁻¹ M L⁻ᵀ = U diag(1/ω²) Uᵀ the shapes are Φ = L⁻ᵀ U and Φ⁻¹ = Uᵀ Lᵀ. In x = ω Φ⁻¹ e and y = Φ⁻¹ e′ each block is
-//! [[0, ω], [−ω, 0]] to the bit: no rounding damps it or feeds it, and places do not mix with rates, so that a motion can be run
-//! backwards. Jacobi's rotations keep the digits of slow modes beside fast ones (Demmel & Veselić, SIAM J. Matrix Anal. Appl. 13, 1992).
+//! With K = L Lᵀ, M = R Rᵀ and G = L⁻¹ R, rotations U leave the rows of Uᵀ G at right angles, of lengths 1/ω; the shapes are Φ = L⁻ᵀ U and
+//! Φ⁻¹ = Uᵀ Lᵀ. In x = ω Φ⁻¹ e and y = Φ⁻¹ e′ each block is [[0, ω], [−ω, 0]] to the bit: no rounding damps it or feeds it, and places do
+//! not mix with rates, so that a motion can be run backwards. Jacobi's rotations, of rows rather than of G Gᵀ, keep the digits of slow
+//! modes beside fast ones (Demmel & Veselić, SIAM J. Matrix Anal. Appl. 13, 1992).
 
 use crate::arithmetic::cholesky::Cholesky;
 use crate::arithmetic::exact;
+use crate::arithmetic::four::Four;
+use crate::arithmetic::lanes::WIDTH;
 use crate::arithmetic::matrix::{Matrix, dot};
+use crate::arithmetic::wide::widened;
 use crate::contact_state::spectral::Spectral;
 
 /// Sweeps of rotations; eight are usual.
@@ -27,19 +31,17 @@ impl NormalModes {
     pub(crate) fn new(stiffness: &Matrix, mass: &Matrix) -> Option<Self> {
         let n = mass.order;
         let factor = Cholesky::new(stiffness).ok()?;
-        // L⁻¹ M, row by row, since M is symmetric; then its columns.
-        let half: Vec<Vec<f64>> = mass.entries.chunks_exact(n).map(|row| factor.forward(row)).collect();
-        let column = |j: usize| factor.forward(&half.iter().map(|row| row[j]).collect::<Vec<_>>());
-        let columns: Vec<Vec<f64>> = (0..n).map(column).collect();
-        let mut inner = Matrix { order: n, entries: Vec::with_capacity(n * n) };
-        for i in 0..n {
-            inner.entries.extend((0..n).map(|j| 0.5 * (columns[i][j] + columns[j][i])));
+        let root = Cholesky::new(mass).ok()?;
+        let columns: Vec<Vec<f64>> = (0..n).map(|j| factor.forward(&root.column(j))).collect();
+        let mut rows = Rows::new(&columns);
+        if !rows.turn_apart() {
+            return None;
         }
-        let axes = turn_to_axes(&mut inner)?;
+        let axes = rows.axes();
         let shapes: Vec<Vec<f64>> = axes.iter().map(|axis| factor.backward(axis)).collect();
         let mut inverse: Vec<Vec<f64>> = axes.iter().map(|axis| factor.spread(axis)).collect();
         invert_again(&shapes, &mut inverse);
-        let omega: Vec<f64> = (0..n).map(|k| 1.0 / inner.at(k, k).sqrt()).collect();
+        let omega: Vec<f64> = rows.squares().into_iter().map(|square| 1.0 / square.sqrt()).collect();
         let are_frequencies = omega.iter().all(|omega| *omega > 0.0 && omega.is_finite());
         are_frequencies.then_some(Self { omega, shapes, inverse })
     }
@@ -72,51 +74,88 @@ impl NormalModes {
     }
 }
 
-/// Leaves the eigenvalues on the diagonal; gives the eigenvectors. `None` where it does not end.
-fn turn_to_axes(matrix: &mut Matrix) -> Option<Vec<Vec<f64>>> {
-    let n = matrix.order;
-    let mut axes = Matrix::diagonal(&vec![1.0; n]).entries;
-    for _ in 0..MOST_SWEEPS {
-        let mut still = true;
-        for p in 0..n {
-            for q in p + 1..n {
-                let [first, second, between] = [matrix.at(p, p), matrix.at(q, q), matrix.at(p, q)];
-                if !(between.abs() > f64::EPSILON * (first * second).sqrt()) {
-                    continue;
-                }
-                still = false;
-                let half = (second - first) / (2.0 * between);
-                let tangent = half.signum() / (half.abs() + (1.0 + half * half).sqrt());
-                let cosine = 1.0 / (1.0 + tangent * tangent).sqrt();
-                let sine = tangent * cosine;
-                let turn = |x: f64, y: f64| [cosine * x - sine * y, sine * x + cosine * y];
-                turn_rows(&mut matrix.entries, n, [p, q], turn);
-                turn_rows(&mut axes, n, [p, q], turn);
-                // It stays symmetric.
-                for k in 0..n {
-                    matrix.entries[k * n + p] = matrix.entries[p * n + k];
-                    matrix.entries[k * n + q] = matrix.entries[q * n + k];
-                }
-                matrix.entries[p * n + p] = first - tangent * between;
-                matrix.entries[q * n + q] = second + tangent * between;
-                matrix.entries[p * n + q] = 0.0;
-                matrix.entries[q * n + p] = 0.0;
-            }
-        }
-        if still {
-            return Some(axes.chunks_exact(n).map(<[f64]>::to_vec).collect());
-        }
-    }
-    None
+/// Rows of G, each with its row of U behind it, in whole registers.
+struct Rows {
+    count: usize,
+    /// Registers of a row of either.
+    registers: usize,
+    entries: Vec<Four>,
 }
 
-/// Turns row p and row q > p of a matrix of `n` columns, entry by entry.
-#[inline(always)]
-fn turn_rows(entries: &mut [f64], n: usize, [p, q]: [usize; 2], turn: impl Fn(f64, f64) -> [f64; 2]) {
-    let (before, behind) = entries.split_at_mut(q * n);
-    for (x, y) in before[p * n..][..n].iter_mut().zip(&mut behind[..n]) {
-        [*x, *y] = turn(*x, *y);
+impl Rows {
+    /// G, column by column, and U = 1.
+    fn new(columns: &[Vec<f64>]) -> Self {
+        let count = columns.len();
+        let registers = count.div_ceil(WIDTH);
+        let mut entries = Vec::with_capacity(2 * count * registers);
+        for i in 0..count {
+            let of =
+                |entry: &dyn Fn(usize) -> f64, first: usize| Four::padded((first..count.min(first + WIDTH)).map(entry));
+            let firsts = || (0..count).step_by(WIDTH);
+            entries.extend(firsts().map(|first| of(&|j| columns[j][i], first)));
+            entries.extend(firsts().map(|first| of(&|j| f64::from(u8::from(i == j)), first)));
+        }
+        Self { count, registers, entries }
     }
+
+    /// |g|² of each row.
+    #[inline(always)]
+    fn squares(&self) -> Vec<f64> {
+        let rows = self.entries.chunks_exact(2 * self.registers);
+        rows.map(|row| product(&row[..self.registers], &row[..self.registers])).collect()
+    }
+
+    /// U, row by row.
+    fn axes(&self) -> Vec<Vec<f64>> {
+        let rows = self.entries.chunks_exact(2 * self.registers);
+        rows.map(|row| row[self.registers..].iter().flat_map(|four| four.array()).take(self.count).collect()).collect()
+    }
+
+    widened! {
+        /// Turns the rows of G until each is at right angles to all others; whether that ends.
+        fn turn_apart | turn_apart_wide (&mut self) -> bool = turn_apart_by_registers
+    }
+
+    #[inline(always)]
+    fn turn_apart_by_registers(&mut self) -> bool {
+        let (n, registers) = (self.count, self.registers);
+        // As near to a right angle as a sum of so many products can tell.
+        let level = f64::EPSILON * (n as f64).sqrt();
+        for _ in 0..MOST_SWEEPS {
+            let mut still = true;
+            let mut squares = self.squares();
+            for p in 0..n {
+                let (before, behind) = self.entries.split_at_mut(2 * (p + 1) * registers);
+                let one = &mut before[2 * p * registers..];
+                for (other, q) in behind.chunks_exact_mut(2 * registers).zip(p + 1..) {
+                    let [first, second] = [squares[p], squares[q]];
+                    let between = product(&one[..registers], &other[..registers]);
+                    if !(between.abs() > level * (first * second).sqrt()) {
+                        continue;
+                    }
+                    still = false;
+                    let half = (second - first) / (2.0 * between);
+                    let tangent = half.signum() / (half.abs() + (1.0 + half * half).sqrt());
+                    let cosine = 1.0 / (1.0 + tangent * tangent).sqrt();
+                    let sine = tangent * cosine;
+                    for (x, y) in one.iter_mut().zip(other) {
+                        (*x, *y) = (*x * cosine - *y * sine, *x * sine + *y * cosine);
+                    }
+                    (squares[p], squares[q]) = (first - tangent * between, second + tangent * between);
+                }
+            }
+            if still {
+                return true;
+            }
+        }
+        false
+    }
+}
+
+/// x·y.
+#[inline(always)]
+fn product(x: &[Four], y: &[Four]) -> f64 {
+    x.iter().zip(y).fold(Four::ZERO, |sum, (x, y)| sum + *x * *y).sum()
 }
 
 /// W ← W + (1 − W V) W, V column by column and W row by row.

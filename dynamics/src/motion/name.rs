@@ -273,16 +273,17 @@ fn closes(system: &HybridSystem, scale: &Scale, tape: &Tape, period: usize) -> R
 pub(crate) fn kind(system: &HybridSystem, tape: &Tape, period: usize) -> MotionKind {
     let periods = period as u32;
     let contacts = tape.last(period).map(|cycle| cycle.contacts).sum();
-    let visited = || flows(tape, period).map(|flow| &flow.modes.contacts);
     let on_floor = |contact: &Contact| *contact != Contact::Flight && contact.side() == Side::Floor;
     let count = system.particles.len();
-    if count > 0 && contacts == 0 && visited().all(|state| state.iter().all(on_floor)) {
+    // What is in flight, or at the ceiling, comes back to the floor by a contact.
+    let mut ends = tape.ends.iter().rev().take(period);
+    if count > 0 && contacts == 0 && ends.all(|end| end.contacts.iter().all(on_floor)) {
         return MotionKind::AtRest;
     }
     if tape.last(period).any(|cycle| cycle.chatter) {
         return MotionKind::CompletedChatter { periods };
     }
-    let is_held = |j: usize| visited().any(|state| state[j].holds(&system.particles[j]));
+    let is_held = |j: usize| flows(tape, period).any(|flow| flow.modes.contacts[j].holds(&system.particles[j]));
     if count > 0 && (0..count).all(is_held) {
         MotionKind::Sticking { periods, contacts }
     } else {

@@ -8,8 +8,8 @@ use std::path::Path;
 
 use super::bench::{Ledger, listened};
 use super::{
-    arrays, averages, closed_forms, equal_modes, event_cases, extremes, floating, half_cycles, long_runs, precise,
-    properties, reference_cases, resonance, walls,
+    arrays, averages, closed_forms, critical_damping, equal_modes, event_cases, extremes, floating, half_cycles,
+    long_runs, precise, properties, reference_cases, resonance, walls,
 };
 use crate::{spec, structures};
 
@@ -92,6 +92,15 @@ const HARD_CASES: &[HardCase] = &[
         checks: "end of the run, smoothness in cf",
         reference: "arithmetic of 32 digits; both sides of the sweep",
         tests: &[extremes::modes_that_coalesce_are_no_special_case],
+    },
+    HardCase {
+        name: "Critical damping of a mode beside others, and 1e-15 to 1e-5 from it; twins that press faces of critical damping",
+        checks: "averages of squares; energy",
+        reference: "closed form; conservation",
+        tests: &[
+            critical_damping::averages_of_a_mode_at_critical_damping_are_those_of_the_formula,
+            critical_damping::energy_is_balanced_where_twins_press_faces_of_critical_damping,
+        ],
     },
     HardCase {
         name: "Equal frequencies",
@@ -288,7 +297,7 @@ const HARD_CASES: &[HardCase] = &[
         tests: &[reference_cases::every_reference_case_is_met_to_rounding],
     },
     HardCase {
-        name: "The same 28 scenes by the solver of 32 digits, the reference of others",
+        name: "28 of them by the solver of 32 digits, the reference of others; it has no rigid faces that bounce",
         checks: "averages, first events, end of the run",
         reference: "128-bit arithmetic",
         tests: &[precise::it_meets_the_reference_cases_to_all_digits_of_a_double],

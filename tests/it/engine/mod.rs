@@ -8,6 +8,7 @@ mod bench;
 mod branching;
 mod closed_forms;
 mod closed_loops;
+mod critical_damping;
 mod drawn_scenes;
 mod elasticities;
 mod equal_modes;

@@ -1,0 +1,50 @@
+//! Modes at critical damping beside others, where two eigenvalues are one and have one eigenvector.
+
+use shotdamp::dynamics::{HybridSystem, Matrix, event_driven};
+
+use super::arrays::{Dice, blows, chain, cycles, particle, spring, unit};
+use super::bench::within;
+
+/// Four cycles of 0.5 s after one impulse of 1 N s on the first mass, at 10 rad/s; `damping_ratio` of that alone.
+fn after_an_impulse(mass: f64, damping_ratio: f64) -> HybridSystem {
+    let mut system = chain(&[mass, 1.0], 0.0, 0.0);
+    system.mass = Matrix::diagonal(&[mass, 1.0]);
+    system.stiffness = Matrix::diagonal(&[100.0 * mass, 400.0]);
+    system.damping = Matrix::diagonal(&[20.0 * damping_ratio * mass, 1.0]);
+    system.force_row = unit(2, 0);
+    system.observed_rows = vec![unit(2, 0)];
+    system.drive = blows(0.5, 1.0);
+    system.drive.repeats = false;
+    system
+}
+
+#[test]
+pub(super) fn averages_of_a_mode_at_critical_damping_are_those_of_the_formula() {
+    // v = (J/m) (1 − τ) e^−τ with τ = ω t, and by x a little way from critical damping no more than some times that way.
+    let (omega, tau) = (10.0, 20.0_f64);
+    let square = 0.25 - (-2.0 * tau).exp() * (0.25 - 0.5 * tau + 0.5 * tau * tau);
+    for apart in [0.0, 1e-15, -1e-15, 1e-14, -1e-13, 1e-12, -1e-10, 1e-8, -1e-6, 1e-5] {
+        for mass in (0..40).map(|i| 1.0 + 0.013 * f64::from(i)) {
+            let response = event_driven(&after_an_impulse(mass, 1.0 + apart), &cycles(4))
+                .unwrap_or_else(|error| panic!("{mass}, {apart}: {error}"));
+            let expected = square / (omega * mass * mass);
+            let found = response.observed[0].window().velocity_square;
+            within(&format!("∫v² of {mass} kg at 1 + {apart:e}"), found / expected, 1.0, 1e-12 + 4.0 * apart.abs());
+        }
+    }
+}
+
+#[test]
+pub(super) fn energy_is_balanced_where_twins_press_faces_of_critical_damping() {
+    // What one of them does against the other is a motion of its own: two equal eigenvalues for each face that is pressed.
+    for seed in 0..60 {
+        let mut dice = Dice(seed);
+        let (mass, omega) = (dice.between(0.01, 0.3), dice.between(30.0, 300.0));
+        let face = spring(mass * omega * omega, 2.0 * mass * omega);
+        let mut system = chain(&[1.0], dice.between(100.0, 1e4), dice.between(0.1, 5.0));
+        system.particles = [0.01, 0.02].map(|gap| particle(mass, gap, unit(1, 0), [face, face])).to_vec();
+        system.drive = blows(0.5, dice.between(0.3, 3.0));
+        let response = event_driven(&system, &cycles(4)).unwrap_or_else(|error| panic!("{seed}: {error}"));
+        assert!(response.proof.energy_residual < 1e-11, "{seed}: {:e}", response.proof.energy_residual);
+    }
+}
