@@ -12,6 +12,7 @@
 //! In the end the inputs in force and the best ones are run once more as results, with ensembles where the motion is chaotic,
 //! and all entries, those held out too, are judged by their own tolerances (`fit`).
 
+mod finding;
 mod fit;
 mod journal;
 mod left_out;

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeSet;
 
+use super::finding::filled;
 use super::fit::AS_GOOD;
 use super::{Calibrated, Compared, LeftOut, Profile, Read};
 use crate::experiment::{Calibration, CalibrationInput, CalibrationSearch, Residual, Tried};
@@ -19,7 +20,7 @@ use crate::text::words::counted;
 pub fn calibration(calibration: &Calibration, result: &Calibrated) -> String {
     let mut text = format!("# {}\n\n", calibration.title);
     if !calibration.finding.is_empty() {
-        text += &format!("**What it shows** (our interpretation): {}\n\n", calibration.finding);
+        text += &format!("**What it shows** (our interpretation): {}\n\n", filled(calibration, result));
     }
     text += &format!("{}\n\n[All experiments](../README.md)\n\n", calibration.about);
     text += &format!(
@@ -56,15 +57,15 @@ pub fn calibration(calibration: &Calibration, result: &Calibrated) -> String {
     text += &left_out(calibration, result);
     text += "## Entries\n\nRun as results, with an ensemble where the motion is chaotic, and judged by the entry’s own \
              tolerance; nothing is allowed for inputs that the study does not state, as they are what is chosen here. Only the rows that \
-             entries read are run, so that a curve with refined points may have others here than on the page of its experiment.\n\n";
+             entries read are run, so that a curve with refined points may have others here than on the page of its experiment. Numbers are in SI units.\n\n";
     text += &entries("Fitted", &result.fitted);
     text += &entries("Held out", &result.held_out);
     text += &format!(
-        "Reproduced with the best inputs: {}; {}. With those in force: {}; {}.\n",
-        reproduced(&result.fitted, "fitted", |one| &one.best),
-        reproduced(&result.held_out, "held out", |one| &one.best),
-        reproduced(&result.fitted, "fitted", |one| &one.in_force),
-        reproduced(&result.held_out, "held out", |one| &one.in_force),
+        "Reproduced with the best inputs: {} fitted; {} held out. With those in force: {} fitted; {} held out.\n",
+        reproduced(&result.fitted, |one| &one.best),
+        reproduced(&result.held_out, |one| &one.best),
+        reproduced(&result.fitted, |one| &one.in_force),
+        reproduced(&result.held_out, |one| &one.in_force),
     );
     text
 }
@@ -143,7 +144,7 @@ fn searched(calibration: &Calibration, result: &Calibrated) -> String {
     let sets = format!(
         "{} of {} possible ones",
         counted(result.tried, "set of inputs", "sets of inputs"),
-        calibration.combinations()
+        number::count(calibration.combinations() as u64)
     );
     let tried = match calibration.search {
         CalibrationSearch::Grid => {
@@ -196,7 +197,7 @@ fn residuals(calibration: &Calibration, result: &Calibrated) -> String {
     )
 }
 
-fn share(residual: Option<f64>) -> String {
+pub(super) fn share(residual: Option<f64>) -> String {
     residual.map_or_else(|| "none".into(), |residual| format!("{} %", number::significant(100.0 * residual, 2)))
 }
 
@@ -210,7 +211,7 @@ fn points(input: &CalibrationInput, residuals: &[Option<f64>], best: usize) -> S
 }
 
 /// One of the values, in words. Curves that end alike are named by their place.
-fn value(tried: &Tried, place: usize) -> String {
+pub(super) fn value(tried: &Tried, place: usize) -> String {
     match tried {
         Tried::Values { units, values, .. } => {
             let tried = |place: usize| {
@@ -249,9 +250,10 @@ fn determined(profile: &Profile, best: usize, search: CalibrationSearch) -> &'st
     }
 }
 
-fn reproduced(list: &[Compared], what: &str, of: fn(&Compared) -> &Read) -> String {
+/// How many of them: `8 of 23`.
+pub(super) fn reproduced(list: &[Compared], of: fn(&Compared) -> &Read) -> String {
     let count = list.iter().filter(|one| of(one).verdict == Verdict::Reproduced).count();
-    format!("{count} of {} {what}", list.len())
+    format!("{count} of {}", list.len())
 }
 
 fn entries(title: &str, list: &[Compared]) -> String {

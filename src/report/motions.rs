@@ -6,7 +6,7 @@ use super::markdown::{Align, MarkdownTable, details, one_line};
 use super::view::ExperimentView;
 use crate::dynamics::MotionKind;
 use crate::study::{Motions, Settling};
-use crate::text::number::{compact, significant};
+use crate::text::number::{self, compact, significant};
 use crate::text::words::counted;
 
 /// The page's name below `reports/`.
@@ -81,6 +81,7 @@ pub fn what_moves(experiments: &[ExperimentView<'_>]) -> String {
         .collect();
     let of = counted(all.len(), "experiment", "experiments");
     if total > 0 {
+        let total = number::count(total as u64);
         text += &format!("Of {total} rows in {of} that name their motion: {}.\n\n", parts.join(", "));
     }
     let settlings: Vec<&Settling> = all.iter().filter_map(|(_, motions)| motions.settling.as_ref()).collect();

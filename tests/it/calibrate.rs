@@ -56,6 +56,35 @@ fn run(text: &str) -> Calibrated {
 }
 
 #[test]
+fn the_numbers_of_a_finding_are_those_of_the_page() {
+    let finding = "From {in force} to {best}; without bounce {plastic: 0}, {stop_length: 110 mm} with the longest; {held out} held out; {sic}.";
+    let calibration = read(&format!("{STOP}finding: '{finding}'\n"));
+    let page = shotdamp::calibrate::calibration(&calibration, &on(&Desk::new(), &calibration, 2).unwrap().0);
+    let line = page.lines().find(|line| line.contains("our interpretation")).unwrap();
+    assert!(line.ends_with("; {sic}."), "{line}");
+    let shares: Vec<&str> = line.split(' ').filter(|word| word.parse::<f64>().is_ok()).collect();
+    let residuals = page.lines().find(|line| line.starts_with("Residual:")).unwrap();
+    assert!(residuals.contains(&format!("Best: **{} %**; with the inputs in force: {} %", shares[1], shares[0])));
+    for (input, share) in [("`plastic` | ", shares[2]), ("110 mm: ", shares[3])] {
+        let row = page.lines().find(|row| row.starts_with('|') && row.contains(input)).unwrap();
+        assert!(row.contains(&format!("{share} %")), "{row}: {share}");
+    }
+    let held_out = line.split("longest; ").nth(1).unwrap().split(" held out").next().unwrap();
+    assert!(page.contains(&format!("fitted; {held_out} held out. With")), "{line}");
+}
+
+#[test]
+fn no_finding_of_the_study_names_what_its_calibration_has_not() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("reports/calibrations");
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        let page = std::fs::read_to_string(&path).unwrap();
+        let unfilled = page.lines().find(|line| line.contains("our interpretation") && line.contains('{'));
+        assert_eq!(unfilled, None, "{}", path.display());
+    }
+}
+
+#[test]
 fn the_best_of_all_combinations_is_found_and_each_input_has_its_profile() {
     let result = run(STOP);
     // The made-up number is 1.69 and the stop's length; 1.75 is published.
