@@ -183,8 +183,8 @@ pub fn accuracy_summary(views: &[AccuracyView]) -> String {
         "# What accuracy costs\n\n{}![Error against time of every experiment](accuracy.png)\n\n",
         scatter::in_words(&scatter::points(views))
     );
-    text += "Each experiment that has statements and a case that is not chaotic is a point for the event-driven solver and one for the cheapest fixed step that would do; times are of \
-             one run in the mean over its cases that are not chaotic. Each grey line is the u_val of a number, relative: a run \
+    text += "Each experiment that has statements and a case that is not chaotic is a point for the event-driven solver and one for \
+             the cheapest fixed step that would do; times are of one run in the mean over its cases that are not chaotic. Each grey line is the u_val of a number, relative: a run \
              with an error below it is accurate enough for that verdict.\n\n";
     let mut machines: Vec<&Machine> = views.iter().map(|view| &view.machine).collect();
     machines.sort();

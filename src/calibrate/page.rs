@@ -57,7 +57,8 @@ pub fn calibration(calibration: &Calibration, result: &Calibrated) -> String {
     text += &left_out(calibration, result);
     text += "## Entries\n\nRun as results, with an ensemble where the motion is chaotic, and judged by the entry’s own \
              tolerance; nothing is allowed for inputs that the study does not state, as they are what is chosen here. Only the rows that \
-             entries read are run, so that a curve with refined points may have others here than on the page of its experiment. Numbers are in SI units.\n\n";
+             entries read are run, so that a curve with refined points may have others here than on the page of its experiment. \
+             Numbers are in SI units.\n\n";
     text += &entries("Fitted", &result.fitted);
     text += &entries("Held out", &result.held_out);
     text += &format!(

@@ -188,7 +188,9 @@ fn calibration(at: At<'_>, sheet: &AssumptionSheet) -> Option<Calibration> {
     let keys = at.keys("a calibration")?;
     let title = keys.required("title", "Its title", |at| at.text());
     let about = keys.required("about", "What it is to show", |at| at.text());
-    let finding = keys.optional("finding", "What it showed, written when it has been run; `{best}`, `{in force}`, `{held out}` and `{INPUT: VALUE}` stand for its numbers", |at| at.text());
+    let of_finding = "What it showed, written when it has been run; `{best}`, `{in force}`, `{held out}` and `{INPUT: VALUE}` stand for \
+                      its numbers";
+    let finding = keys.optional("finding", of_finding, |at| at.text());
     let free = "The inputs that are free, with the values that are tried";
     let inputs = keys.required("calibrate", free, |at| inputs(at, sheet));
     let search = keys.optional("search", "How sets of values are chosen; every combination if absent", search);

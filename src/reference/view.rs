@@ -26,6 +26,8 @@ pub enum TableState<'a> {
     Failed(String),
     /// There is none.
     NotRun,
+    /// Nor is there such an experiment.
+    NoExperiment,
 }
 
 /// Tables by experiment; one that is not listed has not been run.
@@ -409,8 +411,8 @@ impl<'a> View<'a> {
             Some(TableState::Present(table)) => Ok(table),
             Some(TableState::Stale) => Err(Absence::Broken(format!("the table of `{id}` is stale: run it again"))),
             Some(TableState::Failed(reason)) => Err(Absence::Broken(format!("`{id}` failed: {reason}"))),
-            Some(TableState::NotRun) => Err(Absence::Broken(format!("`{id}` has not been run"))),
-            None => {
+            Some(TableState::NotRun) | None => Err(Absence::Broken(format!("`{id}` has not been run"))),
+            Some(TableState::NoExperiment) => {
                 Err(Absence::Broken(format!("there is no experiment `{id}`: its file was renamed or is not there")))
             }
         }

@@ -16,7 +16,8 @@ pub enum Detail {
     All,
 }
 
-/// For the console: what moved in each experiment (or file), then a line that says it all. `whole` names experiments whose tables cannot be compared as they are, with what is the matter.
+/// For the console: what moved in each experiment (or file), then a line that says it all. `whole` names experiments whose tables cannot be
+/// compared as they are, with what is the matter.
 #[must_use]
 pub fn diff(movements: &[(String, Movement)], whole: &[String], detail: Detail) -> String {
     let description = if detail == Detail::All { usize::MAX } else { TOLD };

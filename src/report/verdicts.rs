@@ -25,6 +25,7 @@ enum OnDisk {
     Present(Table),
     Stale,
     NotRun,
+    NoExperiment,
     Failed(String),
 }
 
@@ -104,7 +105,11 @@ fn on_disk(study: &Study) -> BTreeMap<String, OnDisk> {
         let table = parquet::read(&study.layout.path(&table_name(&known.heading.id)));
         Some((id, table.map_or_else(|error| OnDisk::Failed(error.to_string()), OnDisk::Present)))
     });
-    states.into_iter().chain(known).collect()
+    // An experiment that cannot be read is there all the same.
+    let ids = study.texts.ids();
+    let orphans = study.references.keys().filter(|id| !ids.contains(id.as_str()));
+    let orphans = orphans.map(|id| (id.clone(), OnDisk::NoExperiment));
+    states.into_iter().chain(known).chain(orphans).collect()
 }
 
 fn tables(states: &BTreeMap<String, OnDisk>) -> Tables<'_> {
@@ -117,6 +122,7 @@ impl OnDisk {
             Self::Present(table) => TableState::Present(table),
             Self::Stale => TableState::Stale,
             Self::NotRun => TableState::NotRun,
+            Self::NoExperiment => TableState::NoExperiment,
             Self::Failed(reason) => TableState::Failed(reason.clone()),
         }
     }

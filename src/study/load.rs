@@ -170,7 +170,8 @@ fn identify(file: &str, texts: &Texts) -> Result<ExperimentId, Refused> {
     let name = file.rsplit('/').next().unwrap_or(file);
     let id = name.strip_suffix(".yaml").ok_or_else(|| Refused::Ending(file.into()))?;
     let id: ExperimentId = id.parse().map_err(|error| Refused::Name { file: file.into(), error })?;
-    let other = texts.files_of(&id.0).find(|other| *other != file).map(str::to_owned);
+    // A file of another ending is refused by itself.
+    let other = texts.files_of(&id.0).find(|other| *other != file && other.ends_with(".yaml")).map(str::to_owned);
     other.map_or(Ok(id), |other| Err(Refused::Twice { file: file.into(), other }))
 }
 

@@ -204,7 +204,7 @@ impl Snapshot {
         // Also where it says the same as before: its own time tells which outputs were written later.
         let is_used = |name: &AssumptionName| experiments.values().any(|seen| seen.content.used.contains(name));
         // What uses nothing is known once every experiment is.
-        let all_known = texts.ids().iter().all(|id| experiments.keys().any(|known| known.as_str() == *id));
+        let all_known = texts.ids().iter().all(|id| experiments.contains_key(*id));
         let unused = sheet.iter().map(|(name, _)| name).filter(|name| all_known && !is_used(name)).cloned().collect();
         OnDisk { program: Program::here(), study, unused, experiments }.write(&path)
     }

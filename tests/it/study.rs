@@ -384,6 +384,7 @@ fn every_simulation_is_reported_once() {
 fn files_that_are_no_experiments_are_told_and_the_others_load() {
     let desk = Desk::new();
     desk.put("experiments/ch3/ch3-later.yml", STOP);
+    desk.put("experiments/ch3/ch3-gap.yml", GAP);
     desk.put("experiments/ch4/ch3-stop.yaml", STOP);
     desk.put("experiments/ch3/not an id.yaml", STOP);
     desk.put("experiments/ch3/ch3-wrong.yaml", &STOP.replace("1 kg", "1 s"));
@@ -391,7 +392,7 @@ fn files_that_are_no_experiments_are_told_and_the_others_load() {
     let loaded = Loaded::from_texts(&desk.texts());
     assert_eq!(loaded.sources.len(), 1);
     let description: Vec<String> = loaded.refused.iter().map(ToString::to_string).collect();
-    assert_eq!(description.len(), 6, "{description:#?}");
+    assert_eq!(description.len(), 7, "{description:#?}");
     let says = |words: &[&str]| description.iter().any(|line| words.iter().all(|word| line.contains(word)));
     assert!(says(&["ch3-later.yml", "rename it"]));
     assert!(says(&["ch4/ch3-stop.yaml: experiments/ch3", "same id"]), "neither of two is chosen");
