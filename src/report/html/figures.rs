@@ -46,7 +46,9 @@ pub(super) fn figure(svg: &str, caption: &str) -> String {
         Some(format!(" {name}=\"{}\"", rest.split('"').next()?))
     };
     let attributes: String = ["viewBox", "font-size", "stroke-linejoin"].into_iter().filter_map(keep).collect();
-    let body: String = body.lines().map(|line| format!("{line}\n")).collect();
+    // What stands between elements is not drawn, and ends of lines were a hundredth of the document.
+    let line = |line: &str| if line.ends_with('>') { line.to_owned() } else { format!("{line}\n") };
+    let body: String = body.lines().map(line).collect();
     format!(
         "<figure><svg role=\"img\" aria-label=\"{caption}\"{attributes}>{}<figcaption>{caption}</figcaption></figure>",
         body.trim_end()
