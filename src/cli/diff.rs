@@ -1,5 +1,6 @@
 //! `shotdamp diff`: what moved between two runs.
 
+use std::cell::OnceCell;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -25,18 +26,23 @@ pub(super) fn diff(layout: &Layout, args: &DiffArgs) -> Result<Exit, CliError> {
     let a = args.a.clone().unwrap_or_else(|| layout.path(VERDICTS));
     let b = args.b.clone().unwrap_or_else(|| layout.results());
     let (before, now) = (Side::read(&a)?, Side::read(&b)?);
+    let opened = OnceCell::new();
+    let study = || match opened.get() {
+        Some(study) => Ok(study),
+        None => open(layout).map(|study| opened.get_or_init(|| study)),
+    };
     let mut stale = Vec::new();
     for (path, side) in [(&a, &before), (&b, &now)] {
         if let Side::Tables(tables) = side
-            && is_own(layout, path)
+            && place_of(&folder_of_tables(path)) == place_of(&layout.results())
         {
-            stale.extend(stale_among(&open(layout)?, tables));
+            stale.extend(stale_among(study()?, tables));
         }
     }
     let (movements, mut whole) = match (before, now) {
         (Side::Tables(a), Side::Tables(b)) => of_tables(&a, &b),
         (a, b) => {
-            let movement = report::between_verdicts(&a.verdicts(layout)?, &b.verdicts(layout)?);
+            let movement = report::between_verdicts(&a.verdicts(study)?, &b.verdicts(study)?);
             (vec![("verdicts".to_owned(), movement)], Vec::new())
         }
     };
@@ -59,11 +65,6 @@ fn of_tables(a: &BTreeMap<String, Table>, b: &BTreeMap<String, Table>) -> (Vec<(
         }
     }
     (movements, whole)
-}
-
-/// The tables that lie there are those of this study.
-fn is_own(layout: &Layout, path: &Path) -> bool {
-    [path.to_path_buf(), path.join("results")].iter().any(|folder| place_of(folder) == place_of(&layout.results()))
 }
 
 /// Those of the study's own tables that say nothing of the inputs as they are now.
@@ -101,20 +102,24 @@ impl Side {
     }
 
     /// Judged by the reference of this study, if it has not been.
-    fn verdicts(self, layout: &Layout) -> Result<Vec<Standing>, CliError> {
+    fn verdicts<'s>(self, study: impl Fn() -> Result<&'s Study, CliError>) -> Result<Vec<Standing>, CliError> {
         Ok(match self {
             Self::Verdicts(verdicts) => verdicts,
-            Self::Tables(tables) => judge_tables(&open(layout)?, &tables).iter().map(report::standing).collect(),
+            Self::Tables(tables) => judge_tables(study()?, &tables).iter().map(report::standing).collect(),
         })
     }
 }
 
-/// The tables in a folder, or in its `results/`, by experiment.
-fn tables_in(folder: &Path) -> std::io::Result<BTreeMap<String, PathBuf>> {
+/// Where the tables are that a folder stands for: in it, or in its `results/`.
+fn folder_of_tables(folder: &Path) -> PathBuf {
     let results = folder.join("results");
-    let folder = if results.is_dir() { &results } else { folder };
+    if results.is_dir() { results } else { folder.to_path_buf() }
+}
+
+/// The tables that a folder stands for, by experiment.
+fn tables_in(folder: &Path) -> std::io::Result<BTreeMap<String, PathBuf>> {
     let mut found = BTreeMap::new();
-    for entry in fs::read_dir(folder)? {
+    for entry in fs::read_dir(folder_of_tables(folder))? {
         let path = entry?.path();
         let stem = path.file_stem().and_then(|stem| stem.to_str());
         if let (Some(stem), Some("parquet")) = (stem, path.extension().and_then(|extension| extension.to_str())) {

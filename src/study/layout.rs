@@ -129,12 +129,6 @@ impl Texts {
         self.files.keys().filter(|name| Self::is_experiment(name)).map(|name| stem(name)).collect()
     }
 
-    /// Files of experiments that make this id: one, unless somebody has made a mistake.
-    pub(super) fn files_of<'a>(&'a self, id: &'a str) -> impl Iterator<Item = &'a str> {
-        let names = self.files.keys().filter(|name| Self::is_experiment(name));
-        names.filter(move |name| stem(name) == id).map(String::as_str)
-    }
-
     /// Ids that the calibrations' files are called by.
     #[must_use]
     pub fn calibrations(&self) -> BTreeSet<&str> {

@@ -1,11 +1,16 @@
 //! Texts to experiments, with an error for every file that cannot be read.
 
+use std::collections::BTreeMap;
+
 use super::layout::{ASSUMPTIONS, STUDY, Texts, folder_of, stem};
 use crate::experiment::{
     AboutStudy, AssumptionSheet, Cases, Columns, Experiment, ExperimentId, IdError, Problems, parse_assumptions,
     parse_study, parse_with,
 };
 use crate::text::utf8::{NotUtf8, decode};
+
+/// How the file of an experiment ends.
+const YAML: &str = ".yaml";
 
 /// The experiments of a study with the assumptions that they share.
 #[derive(Debug, Default)]
@@ -111,8 +116,9 @@ impl Loaded {
         if let Some(source) = self.sources.iter().find(|source| source.experiment.id.0 == id) {
             return Some(source.experiment.columns());
         }
-        let file = texts.files_of(id).next()?;
-        let text = text(file, texts.files.get(file)?).ok()?;
+        let is_it = |file: &str| Texts::is_experiment(file) && stem(file) == id;
+        let (file, bytes) = texts.files.iter().find(|(file, _)| is_it(file))?;
+        let text = text(file, bytes).ok()?;
         let read = parse_with(&id.parse().ok()?, file, text, &self.sheet.assumptions(), Cases::Tried);
         read.ok().map(|experiment| experiment.columns())
     }
@@ -140,8 +146,14 @@ impl Loaded {
             }
         }
         let assumptions = loaded.sheet.assumptions();
-        for (file, bytes) in texts.files.iter().filter(|(file, _)| Texts::is_experiment(file) && wanted(stem(file))) {
-            let source = identify(file, texts).and_then(|id| {
+        let experiments = || texts.files.iter().filter(|(file, _)| Texts::is_experiment(file) && wanted(stem(file)));
+        let mut files_by_stem = BTreeMap::<&str, Vec<&str>>::new();
+        // A file of another ending is refused by itself.
+        for (file, _) in experiments().filter(|(file, _)| file.ends_with(YAML)) {
+            files_by_stem.entry(stem(file)).or_default().push(file);
+        }
+        for (file, bytes) in experiments() {
+            let source = identify(file, &files_by_stem).and_then(|id| {
                 let text = text(file, bytes)?;
                 let experiment = parse_with(&id, file, text, &assumptions, cases(&id.0)).map_err(Refused::Text)?;
                 Ok(Source { experiment, file: file.clone() })
@@ -166,13 +178,14 @@ fn shared<T: Default>(
 }
 
 /// The id that a file's name makes.
-fn identify(file: &str, texts: &Texts) -> Result<ExperimentId, Refused> {
+fn identify(file: &str, files_by_stem: &BTreeMap<&str, Vec<&str>>) -> Result<ExperimentId, Refused> {
     let name = file.rsplit('/').next().unwrap_or(file);
-    let id = name.strip_suffix(".yaml").ok_or_else(|| Refused::Ending(file.into()))?;
-    let id: ExperimentId = id.parse().map_err(|error| Refused::Name { file: file.into(), error })?;
-    // A file of another ending is refused by itself.
-    let other = texts.files_of(&id.0).find(|other| *other != file && other.ends_with(".yaml")).map(str::to_owned);
-    other.map_or(Ok(id), |other| Err(Refused::Twice { file: file.into(), other }))
+    let stem = name.strip_suffix(YAML).ok_or_else(|| Refused::Ending(file.into()))?;
+    let id: ExperimentId = stem.parse().map_err(|error| Refused::Name { file: file.into(), error })?;
+    match files_by_stem.get(stem).and_then(|files| files.iter().find(|other| **other != file)) {
+        Some(other) => Err(Refused::Twice { file: file.into(), other: (*other).into() }),
+        None => Ok(id),
+    }
 }
 
 pub(super) fn text<'a>(file: &str, bytes: &'a [u8]) -> Result<&'a str, Refused> {

@@ -11,7 +11,8 @@
 //!
 //! v = (Ω x, λ x),   w = (−Ω x, λ x)/σ.
 //!
-//! What does not converge, comes near critical damping, or leaves the modes dependent on each other, is none of this: a Schur form splits it.
+//! What does not converge, comes near critical damping, or leaves the modes dependent on each other, is none of this: a Schur form
+//! splits it.
 
 use std::cell::RefCell;
 
@@ -30,8 +31,8 @@ const MOST_STEPS: usize = 12;
 /// A step below this share of λ leaves an error of its square; the next one shows it.
 const LAST_STEP: f64 = 1e-8;
 const CONVERGED: f64 = 1e-13;
-/// σ below this share of its terms is that of two eigenvalues about to meet: a mode near critical damping. Blocks of its own for each
-/// would grow as 1/σ, and squares of them lose as many digits as σ² has.
+/// σ below this share of its terms is that of two eigenvalues about to meet: a mode near critical damping. By a block for each, integrals
+/// of squares would be differences of terms that grow as 1/σ².
 const CRITICAL: f64 = 1e-2;
 /// w v of two modes above this is corrected, and above `DEPENDENT` they are no basis.
 const ROUNDING: f64 = 2e-15;

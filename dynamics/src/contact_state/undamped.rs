@@ -89,11 +89,12 @@ impl Rows {
         let registers = count.div_ceil(WIDTH);
         let mut entries = Vec::with_capacity(2 * count * registers);
         for i in 0..count {
-            let of =
-                |entry: &dyn Fn(usize) -> f64, first: usize| Four::padded((first..count.min(first + WIDTH)).map(entry));
-            let firsts = || (0..count).step_by(WIDTH);
-            entries.extend(firsts().map(|first| of(&|j| columns[j][i], first)));
-            entries.extend(firsts().map(|first| of(&|j| f64::from(u8::from(i == j)), first)));
+            let own: Vec<f64> = columns.iter().map(|column| column[i]).collect();
+            let mut unit = vec![0.0; count];
+            unit[i] = 1.0;
+            for row in [own, unit] {
+                entries.extend(row.chunks(WIDTH).map(|few| Four::padded(few.iter().copied())));
+            }
         }
         Self { count, registers, entries }
     }
