@@ -134,7 +134,7 @@ fn accept(study: &Study, judgement: &Judgement, id: &str, reason: &str) -> Resul
     let judged =
         judgement.verdicts.get(experiment).into_iter().flatten().find(|one| one.id == id).ok_or_else(unknown)?;
     let name = *study.reference_names().get(experiment).ok_or_else(unknown)?;
-    let (reference, bytes) = study.references.get(experiment).zip(study.texts.files.get(name)).ok_or_else(unknown)?;
+    let (reference, bytes) = study.references.get(experiment).zip(study.texts.bytes(name)).ok_or_else(unknown)?;
     let text = String::from_utf8_lossy(bytes);
     let changed = reference::accept(reference, &text, judged, reason)?;
     atomic::write(&study.layout.path(name), changed.as_bytes())?;

@@ -98,5 +98,5 @@ fn total(all: usize, simulations: usize, reports: usize) -> String {
 
 /// The line of a file of the study on which a changed value stands.
 fn line_in(texts: &Texts, file: &str, path: &[String]) -> Option<usize> {
-    line_of(std::str::from_utf8(texts.files.get(file)?).ok()?, path)
+    line_of(std::str::from_utf8(texts.bytes(file)?).ok()?, path)
 }

@@ -10,7 +10,7 @@ use super::output::{print, print_error, print_unread, print_warnings};
 use super::select::{Chosen, Found, choose, matched};
 use super::simulate::{How, Ran, held, print_failures, simulate};
 use crate::report::{Judgement, Published, doubts, judge_all, publish, summary_of};
-use crate::study::{Item, Layout, Lock, RunTimes, Snapshot, State, Study, remove_journals, save};
+use crate::study::{Item, Layout, Lock, RunTimes, STUDY, Snapshot, State, Study, remove_journals, save};
 use crate::text::words::counted;
 
 /// Brings the chosen experiments up to date.
@@ -123,8 +123,8 @@ pub(super) fn conclude(study: &Study, choice: &Choice, done: Done) -> Result<Exi
 
 /// Writes down what is up to date now.
 fn take_snapshot(study: &Study, published: Published) -> Result<(), CliError> {
-    // A calibration that cannot be read has a say in every verdict.
-    if study.unread.iter().any(|one| one.file().starts_with("calibrations/")) {
+    // What the study says of itself, or a calibration, has a say in every page.
+    if study.unread.iter().any(|one| one.file() == STUDY || one.file().starts_with("calibrations/")) {
         return Ok(());
     }
     let Published { experiments, of_the_study, .. } = published;

@@ -181,7 +181,7 @@ impl Crate {
 
     /// One of the study's texts as it was when it was read.
     fn text(&mut self, study: &Study, name: &str, title: String) -> Value {
-        let bytes = study.texts.files.get(name).cloned().unwrap_or_default();
+        let bytes = study.texts.bytes(name).map(<[u8]>::to_vec).unwrap_or_default();
         self.file(name, &title, bytes)
     }
 

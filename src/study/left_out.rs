@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use super::canonical::hash;
-use super::layout::Texts;
+use super::texts::Texts;
 use crate::experiment::Calibration;
 
 /// Relative errors, the least and the largest, 0 for a claim that holds; none where there is no number.
@@ -47,7 +47,7 @@ impl LeftOutRecord {
     ) -> BTreeMap<String, PredictedErrors> {
         let mut all: BTreeMap<String, PredictedErrors> = BTreeMap::new();
         for (id, calibration) in calibrations.iter().filter(|(_, calibration)| calibration.leave_one_out) {
-            let record = texts.files.get(&Self::name(id)).and_then(|bytes| serde_json::from_slice::<Self>(bytes).ok());
+            let record = texts.bytes(&Self::name(id)).and_then(|bytes| serde_json::from_slice::<Self>(bytes).ok());
             let asked = hash(calibration.question().as_bytes());
             for (entry, errors) in record.filter(|it| it.calibration == asked).into_iter().flat_map(|it| it.errors) {
                 let known = all.entry(entry).or_insert(errors);

@@ -2,7 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use super::layout::{ASSUMPTIONS, STUDY, Texts, folder_of, stem};
+use super::layout::{ASSUMPTIONS, STUDY, folder_of, stem};
+use super::texts::{Bytes, Texts, Unreadable};
 use crate::experiment::{
     AboutStudy, AssumptionSheet, Cases, Columns, Experiment, ExperimentId, IdError, Problems, parse_assumptions,
     parse_study, parse_with,
@@ -56,6 +57,14 @@ pub enum Refused {
         /// What is wrong with it.
         error: IdError,
     },
+    /// It cannot be read at all.
+    #[error("{file} cannot be read: {error}")]
+    Unreadable {
+        /// Which file.
+        file: String,
+        /// Why.
+        error: Unreadable,
+    },
     /// It is not a text.
     #[error("{file}: this is {error}")]
     Encoding {
@@ -93,7 +102,9 @@ impl Refused {
         match self {
             Self::Text(problems) => problems.one_by_one(),
             Self::Encoding { error, .. } => vec![(u64::try_from(error.line).ok(), self.to_string())],
-            Self::Name { .. } | Self::Ending(_) | Self::Twice { .. } => vec![(None, self.to_string())],
+            Self::Unreadable { .. } | Self::Name { .. } | Self::Ending(_) | Self::Twice { .. } => {
+                vec![(None, self.to_string())]
+            }
         }
     }
 
@@ -102,9 +113,11 @@ impl Refused {
     pub fn file(&self) -> &str {
         match self {
             Self::Text(problems) => &problems.file,
-            Self::Name { file, .. } | Self::Encoding { file, .. } | Self::Ending(file) | Self::Twice { file, .. } => {
-                file
-            }
+            Self::Unreadable { file, .. }
+            | Self::Name { file, .. }
+            | Self::Encoding { file, .. }
+            | Self::Ending(file)
+            | Self::Twice { file, .. } => file,
         }
     }
 }
@@ -188,6 +201,7 @@ fn identify(file: &str, files_by_stem: &BTreeMap<&str, Vec<&str>>) -> Result<Exp
     }
 }
 
-pub(super) fn text<'a>(file: &str, bytes: &'a [u8]) -> Result<&'a str, Refused> {
+pub(super) fn text<'a>(file: &str, bytes: &'a Bytes) -> Result<&'a str, Refused> {
+    let bytes = bytes.as_ref().map_err(|error| Refused::Unreadable { file: file.into(), error: error.clone() })?;
     decode(bytes).map_err(|error| Refused::Encoding { file: file.into(), error })
 }

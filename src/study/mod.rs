@@ -51,6 +51,7 @@ mod tabulate;
 mod tabulate_basins;
 mod tabulate_branches;
 mod tabulate_candidates;
+mod texts;
 mod threshold;
 mod untabulate;
 mod variant;
@@ -68,7 +69,7 @@ pub use job::runs_of_a_row;
 pub(crate) use kept_lines::KeptLines;
 pub use known_rows::KnownRows;
 pub use layout::{
-    ASSUMPTIONS, Layout, STUDY, Texts, calibration_journal_name, folder_of, journal_name, record_name, stem, table_name,
+    ASSUMPTIONS, Layout, STUDY, calibration_journal_name, folder_of, journal_name, record_name, stem, table_name,
 };
 pub use left_out::{LeftOutRecord, PredictedErrors};
 pub use load::{Loaded, Refused, Source};
@@ -89,5 +90,6 @@ pub use snapshot::Snapshot;
 pub use spent::{Cost, Spent};
 pub use store::{Held, Lock, LockError, keep, remove_journals, save};
 pub use summary::{Heading, Summary, Used};
+pub use texts::{Bytes, Texts, Unreadable};
 pub use threshold::{ThresholdAlong, thresholds};
 pub use variant::{Sensitivity, Variant, variants};

@@ -188,8 +188,7 @@ impl Study {
             let known = self.known.get(experiment).map(|known| known.judged.iter().any(|one| one.id == id));
             Some(planned.or(known).unwrap_or(true))
         };
-        let text =
-            |file: &str| self.texts.files.get(file).map(|bytes| String::from_utf8_lossy(bytes)).unwrap_or_default();
+        let text = |file: &str| self.texts.bytes(file).map(|bytes| String::from_utf8_lossy(bytes)).unwrap_or_default();
         let refused = |file: &str, line: usize, mistake: String| {
             Refused::Text(Problems::at(file, &text(file), Some((line as u64, 1)), mistake))
         };

@@ -3,8 +3,9 @@
 use std::collections::BTreeSet;
 use std::fs;
 
-use super::layout::{Layout, Texts, stem};
+use super::layout::{Layout, stem};
 use super::record::Record;
+use super::texts::Texts;
 use super::{earlier, spent};
 use crate::experiment::ExperimentId;
 

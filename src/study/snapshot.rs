@@ -14,9 +14,10 @@ use serde::{Deserialize, Serialize};
 
 use super::canonical::hash;
 use super::glance::{Glance, Match};
-use super::layout::{ASSUMPTIONS, Layout, Texts, stem};
+use super::layout::{ASSUMPTIONS, Layout, stem};
 use super::record::{PRESENTATION_VERSION, RECORD_FORMAT};
 use super::summary::{Summary, Used};
+use super::texts::Texts;
 use crate::atomic::{self, FileError};
 use crate::dynamics::SOLVER_VERSION;
 use crate::experiment::{AssumptionName, AssumptionSheet, parse_assumptions};
@@ -226,7 +227,7 @@ impl Seen<Assumed> {
         if others(&self.inputs) != others(shared) {
             return None;
         }
-        let text = std::str::from_utf8(texts.files.get(ASSUMPTIONS)?).ok()?;
+        let text = std::str::from_utf8(texts.bytes(ASSUMPTIONS)?).ok()?;
         let now = Assumed::of(&parse_assumptions(ASSUMPTIONS, text).ok()?);
         let differs = |name: &&AssumptionName| now.each.get(*name) != self.content.each.get(*name);
         (now.fitted == self.content.fitted && now.others == self.content.others)
@@ -289,8 +290,8 @@ fn hash_of(value: &impl Serialize) -> String {
 
 /// Texts that concern the study as a whole: what it says of itself, assumptions and calibrations.
 fn shared_inputs(texts: &Texts) -> Hashes {
-    let shared = texts.files.iter().filter(|(name, _)| !Texts::is_of_experiment(name));
-    shared.map(|(name, bytes)| (name.clone(), hash(bytes))).collect()
+    let shared = texts.hashes().filter(|(name, _)| !Texts::is_of_experiment(name));
+    shared.map(|(name, hash)| (name.clone(), hash)).collect()
 }
 
 /// The hash of the experiment's own file among those that it consists of.
@@ -301,8 +302,8 @@ fn own_text(hashes: &Hashes) -> Option<&String> {
 /// The texts of each experiment; two files of one id are both its own, and never those that a run has left.
 fn texts_by_experiment(texts: &Texts) -> BTreeMap<&str, Hashes> {
     let mut by_id = BTreeMap::<&str, Hashes>::new();
-    for (name, bytes) in texts.files.iter().filter(|(name, _)| Texts::is_of_experiment(name)) {
-        by_id.entry(stem(name)).or_default().insert(name.clone(), hash(bytes));
+    for (name, hash) in texts.hashes().filter(|(name, _)| Texts::is_of_experiment(name)) {
+        by_id.entry(stem(name)).or_default().insert(name.clone(), hash);
     }
     by_id
 }

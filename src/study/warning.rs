@@ -1,8 +1,9 @@
 //! What is no mistake and yet hardly meant: assumptions that no experiment uses.
 
-use super::layout::{ASSUMPTIONS, Texts};
+use super::layout::ASSUMPTIONS;
 use super::open::Study;
 use super::snapshot::Snapshot;
+use super::texts::Texts;
 use crate::experiment::{AssumptionName, AssumptionSheet, Problems, parse_assumptions};
 use crate::text::utf8::decode;
 
@@ -26,13 +27,13 @@ impl Snapshot {
         if self.unused.is_empty() {
             return None;
         }
-        let text = decode(texts.files.get(ASSUMPTIONS)?).ok()?;
+        let text = decode(texts.bytes(ASSUMPTIONS)?).ok()?;
         let sheet = parse_assumptions(ASSUMPTIONS, text).ok()?;
         unused(texts, &sheet, |name| !self.unused.contains(name))
     }
 }
 
 fn unused(texts: &Texts, sheet: &AssumptionSheet, is_used: impl Fn(&AssumptionName) -> bool) -> Option<Problems> {
-    let text = texts.files.get(ASSUMPTIONS).map(|bytes| String::from_utf8_lossy(bytes)).unwrap_or_default();
+    let text = texts.bytes(ASSUMPTIONS).map(|bytes| String::from_utf8_lossy(bytes)).unwrap_or_default();
     sheet.unused(ASSUMPTIONS, &text, is_used)
 }

@@ -228,6 +228,68 @@ fn a_bad_experiment_does_not_stop_the_others() {
     assert!(said.err.contains("experiments/assumptions.yaml:1:"), "{}", said.err);
 }
 
+/// What cannot be opened is one more broken file: named with what to do, and all others done.
+#[cfg(unix)]
+#[test]
+fn an_unreadable_file_does_not_stop_the_others() {
+    let desk = simulated();
+    let path = |name: &str| desk.layout.path(&format!("experiments/ch3/ch3-{name}.yaml"));
+    std::os::unix::fs::symlink("elsewhere.yaml", path("link")).unwrap();
+    fs::create_dir(path("folder")).unwrap();
+    assert!(std::process::Command::new("mkfifo").arg(path("pipe")).status().unwrap().success());
+    for turn in ["first", "second"] {
+        let said = shotdamp(&desk, &[]);
+        assert_eq!(said.code, 2, "{turn}");
+        for words in [
+            "error: experiments/ch3/ch3-link.yaml cannot be read: it is a link to a file that does not exist; restore",
+            "error: experiments/ch3/ch3-folder.yaml cannot be read: it is a folder; rename it",
+            "error: experiments/ch3/ch3-pipe.yaml cannot be read: it is a pipe or a device; put a file in its place",
+        ] {
+            assert!(said.err.contains(words), "{turn}: {}", said.err);
+        }
+        assert!(said.out.contains("2 experiments"), "{turn}: {}", said.out);
+    }
+    assert!(desk.layout.path("reports/ch3/ch3-gap.png").is_file());
+    assert_eq!(shotdamp(&desk, &["run", "ch3-gap"]).code, 0, "who asks for another one is not bothered");
+    assert_eq!(shotdamp(&desk, &["run", "ch3-link"]).code, 2);
+}
+
+/// Of an experiment that lost its file nothing is taken away: it may be mended.
+#[cfg(unix)]
+#[test]
+fn results_of_an_unreadable_experiment_stay() {
+    let desk = simulated();
+    assert_eq!(shotdamp(&desk, &[]).code, 0);
+    let file = desk.layout.path("experiments/ch3/ch3-gap.yaml");
+    let kept = desk.folder.path().join("kept");
+    fs::rename(&file, &kept).unwrap();
+    std::os::unix::fs::symlink("nowhere", &file).unwrap();
+    assert_eq!(shotdamp(&desk, &[]).code, 2);
+    assert_eq!(shotdamp(&desk, &["clean", "--orphans"]).out, "0 files removed\n");
+    fs::rename(&kept, &file).unwrap();
+    let said = shotdamp(&desk, &[]);
+    assert!(said.code == 0 && said.out.contains("2 experiments: 0 simulated"), "{}{}", said.out, said.err);
+}
+
+/// What all experiments share is named as well, each time anew.
+#[test]
+fn an_unreadable_file_of_the_whole_study_is_an_error_each_time() {
+    let desk = simulated();
+    fs::create_dir(desk.layout.path("study.yaml")).unwrap();
+    for _ in 0..2 {
+        let said = shotdamp(&desk, &[]);
+        assert!(
+            said.code == 2 && said.err.contains("error: study.yaml cannot be read: it is a folder"),
+            "{}",
+            said.err
+        );
+    }
+    fs::remove_dir(desk.layout.path("study.yaml")).unwrap();
+    fs::create_dir(desk.layout.path("reference/ch3/ch3-new.yaml")).unwrap();
+    let said = shotdamp(&desk, &["check"]);
+    assert!(said.code == 2 && said.err.contains("reference/ch3/ch3-new.yaml cannot be read"), "{}", said.err);
+}
+
 #[test]
 fn a_damaged_table_is_simulated_again() {
     let desk = simulated();

@@ -29,7 +29,7 @@ fn from_nothing(desk: &Desk, id: &str) -> Vec<u8> {
     fs::remove_dir_all(fresh.layout.path("reference")).unwrap();
     fs::remove_dir_all(fresh.layout.path("experiments")).unwrap();
     for (name, text) in desk.texts().files {
-        fresh.put(&name, std::str::from_utf8(&text).unwrap());
+        fresh.put(&name, std::str::from_utf8(&text.unwrap()).unwrap());
     }
     simulations(&fresh);
     table(&fresh, id)

@@ -197,7 +197,8 @@ fn read_and_run(layout: &Layout, originals: &BTreeMap<String, Vec<u8>>, name: &s
     let assumptions = "experiments/assumptions.yaml";
     files.insert(assumptions.into(), originals[assumptions].clone());
     files.insert(name.into(), bytes);
-    let study = Study::new(layout.clone(), Texts { files });
+    let study =
+        Study::new(layout.clone(), Texts { files: files.into_iter().map(|(name, bytes)| (name, Ok(bytes))).collect() });
     for unread in &study.unread {
         let said = unread.to_string();
         let of_this_file = said.contains(name.rsplit('/').next().unwrap());
