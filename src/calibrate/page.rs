@@ -5,14 +5,12 @@ use std::collections::BTreeSet;
 use super::finding::filled;
 use super::fit::AS_GOOD;
 use super::{Calibrated, Compared, LeftOut, Profile, Read};
-use crate::experiment::{Calibration, CalibrationInput, CalibrationSearch, Residual, Tried};
-use crate::measure::SolverChoice;
+use crate::experiment::{Calibration, CalibrationInput, CalibrationSearch, Residual};
 use crate::reference::{Found, Verdict};
-use crate::text::{number, words};
+use crate::text::number;
 
 use crate::report::markdown::{Align, MarkdownTable};
 use crate::report::tally::word;
-use crate::report::value_in_words;
 use crate::text::words::counted;
 
 /// The page.
@@ -20,7 +18,7 @@ use crate::text::words::counted;
 pub fn calibration(calibration: &Calibration, result: &Calibrated) -> String {
     let mut text = format!("# {}\n\n", calibration.title);
     if !calibration.finding.is_empty() {
-        text += &format!("**What it shows** (our interpretation): {}\n\n", filled(calibration, result));
+        text += &format!("**What it shows** (our interpretation): {}\n\n", filled(&calibration.finding, result));
     }
     text += &format!("{}\n\n[All experiments](../README.md)\n\n", calibration.about);
     text += &format!(
@@ -111,7 +109,7 @@ fn moved(calibration: &Calibration, result: &Calibrated, one: &LeftOut) -> Strin
     let values = |(which, input): (usize, &CalibrationInput)| {
         let places: BTreeSet<usize> = one.as_good.iter().map(|places| places[which]).collect();
         let others = places.into_iter().filter(|place| result.places.get(which) != Some(place));
-        let others: Vec<String> = others.map(|place| value(&input.tried, place)).collect();
+        let others: Vec<String> = others.map(|place| input.tried.in_words(place)).collect();
         (!others.is_empty()).then(|| format!("`{}`: {}", input.name, others.join(" or ")))
     };
     calibration.inputs.iter().enumerate().filter_map(values).collect::<Vec<_>>().join("; ")
@@ -205,36 +203,10 @@ pub(super) fn share(residual: Option<f64>) -> String {
 fn points(input: &CalibrationInput, residuals: &[Option<f64>], best: usize) -> String {
     let description = residuals.iter().enumerate().map(|(place, residual)| {
         let description =
-            format!("{}: {}", value(&input.tried, place), residual.map_or("none".into(), |one| share(Some(one))));
+            format!("{}: {}", input.tried.in_words(place), residual.map_or("none".into(), |one| share(Some(one))));
         if place == best { format!("**{description}**") } else { description }
     });
     description.collect::<Vec<_>>().join("; ")
-}
-
-/// One of the values, in words. Curves that end alike are named by their place.
-pub(super) fn value(tried: &Tried, place: usize) -> String {
-    match tried {
-        Tried::Values { units, values, .. } => {
-            let tried = |place: usize| {
-                let mut description: Vec<String> = Vec::new();
-                for (unit, value) in units.iter().zip(&values[place]) {
-                    let value = value_in_words(unit, value);
-                    if !description.contains(&value) {
-                        description.push(value);
-                    }
-                }
-                description.join(" / ")
-            };
-            let told_here = tried(place);
-            let alike = (0..values.len()).any(|other| other != place && tried(other) == told_here);
-            if alike { format!("no. {}, {told_here}", place + 1) } else { told_here }
-        }
-        Tried::Factors { by, .. } => format!("× {}", number::compact(by[place], 4)),
-        Tried::Solvers(solvers) => match solvers[place] {
-            SolverChoice::EventDriven => "exact".into(),
-            step @ SolverChoice::FixedStep { .. } => words::of_solver(&step.label()),
-        },
-    }
 }
 
 fn determined(profile: &Profile, best: usize, search: CalibrationSearch) -> &'static str {

@@ -7,7 +7,7 @@ use super::output::{print, print_unread};
 use super::select::{hint, open};
 use crate::atomic;
 use crate::calibrate::{Running, calibration as calibration_page};
-use crate::experiment::{Experiment, ExperimentId, load_calibration};
+use crate::experiment::{Experiment, ExperimentId};
 use crate::study::{Engine, EventHandler, IgnoreEvents, Layout, LeftOutRecord, Progress, calibration_journal_name};
 
 /// Runs a calibration, prints what it found, and writes its page.
@@ -22,15 +22,15 @@ pub(super) fn calibrate(layout: &Layout, args: &CalibrateArgs, common: &Args) ->
     let page_name = format!("reports/calibrations/{id}.md");
     atomic::check_writable(&layout.path(&page_name))?;
     args.limit.apply(&mut study);
-    let calibration = load_calibration(&layout.path(&format!("calibrations/{id}.yaml")), &study.sheet)?;
     print_unread(&study.unread);
+    let Some(calibration) = study.calibrations.get(&id.0) else { return Ok(Exit::CouldNot) };
     let experiments: Vec<&Experiment> = study.items.iter().map(|item| &item.source.experiment).collect();
     let in_force = study.sheet.assumptions();
     let progress = Progress::new();
     let handler: &dyn EventHandler = if common.quiet { &IgnoreEvents } else { &progress };
     let references = &study.references;
     let result = crate::calibrate::calibrate(
-        &calibration,
+        calibration,
         &experiments,
         references,
         &in_force,
@@ -38,12 +38,12 @@ pub(super) fn calibrate(layout: &Layout, args: &CalibrateArgs, common: &Args) ->
         &Engine,
         handler,
     )?;
-    let page = calibration_page(&calibration, &result);
+    let page = calibration_page(calibration, &result);
     atomic::write_if_changed(&layout.path(&page_name), page.as_bytes())?;
     if calibration.leave_one_out {
         let predicted = result.left_out.iter().filter(|one| one.tells_sets_apart());
         let errors = predicted.map(|one| (one.id.clone(), one.errors)).collect();
-        let record = LeftOutRecord::of(&calibration, errors);
+        let record = LeftOutRecord::of(calibration, errors);
         atomic::write_if_changed(&layout.path(&LeftOutRecord::name(&id.0)), record.text().as_bytes())?;
     }
     print(&page)?;

@@ -19,7 +19,6 @@
 //! ```
 
 use std::collections::BTreeSet;
-use std::path::Path;
 
 use serde::Deserialize;
 use serde_json::{Value as Schema, json};
@@ -27,8 +26,9 @@ use serde_json::{Value as Schema, json};
 use super::assumption_sheet::{AssumptionSheet, Quantity};
 use super::at::At;
 use super::diagnostic::{Findings, Problems, Span};
+use super::finding::FindingText;
 use super::keys::Keys;
-use super::load::{parsed, read};
+use super::load::parsed;
 use super::reader::{all, no_such};
 use super::recipe::{AssumptionName, AssumptionValue};
 use super::schema::parts::{any_of, list};
@@ -49,8 +49,8 @@ pub struct Calibration {
     pub title: String,
     /// What it is to show. Markdown.
     pub about: String,
-    /// What its result means, written by a person who has seen it. Markdown; empty before that.
-    pub finding: String,
+    /// What its result means, written by a person who has seen it. Markdown.
+    pub finding: FindingText,
     /// The free inputs.
     pub inputs: Vec<CalibrationInput>,
     /// How their values are searched.
@@ -167,15 +167,6 @@ impl Calibration {
     }
 }
 
-/// Reads a calibration file.
-///
-/// # Errors
-/// Every mistake of the file, with its place.
-pub fn load_calibration(path: &Path, sheet: &AssumptionSheet) -> Result<Calibration, Problems> {
-    let file = path.display().to_string();
-    parse_calibration(&file, &read(path, &file)?, sheet)
-}
-
 /// Reads a calibration from its text; `file` only names it in messages.
 ///
 /// # Errors
@@ -190,7 +181,7 @@ fn calibration(at: At<'_>, sheet: &AssumptionSheet) -> Option<Calibration> {
     let about = keys.required("about", "What it is to show", |at| at.text());
     let of_finding = "What it showed, written when it has been run; `{best}`, `{in force}`, `{held out}` and `{INPUT: VALUE}` stand for \
                       its numbers";
-    let finding = keys.optional("finding", of_finding, |at| at.text());
+    let finding = keys.optional("finding", of_finding, |at| at.text().map(|text| (text, at.span())));
     let free = "The inputs that are free, with the values that are tried";
     let inputs = keys.required("calibrate", free, |at| inputs(at, sheet));
     let search = keys.optional("search", "How sets of values are chosen; every combination if absent", search);
@@ -205,12 +196,17 @@ fn calibration(at: At<'_>, sheet: &AssumptionSheet) -> Option<Calibration> {
     let fit = keys.required("fit", "The entries that are fitted, experiment/entry", ids);
     let hold_out = keys.optional("hold_out", "The entries that are held out", ids);
     keys.close()?;
-    let leave_one_out = leave_one_out?.flatten();
+    let (inputs, leave_one_out) = (inputs?, leave_one_out?.flatten());
+    let finding = match finding?.map(|(text, span)| (FindingText::parse(&text, &inputs), span)) {
+        Some((Err(error), span)) => return at.wrong_at(span, format!("the finding has {error}")),
+        Some((Ok(finding), _)) => finding,
+        None => FindingText::default(),
+    };
     let calibration = Calibration {
         title: title?,
         about: about?,
-        finding: finding?.unwrap_or_default(),
-        inputs: inputs?,
+        finding,
+        inputs,
         search: search?.unwrap_or(CalibrationSearch::Grid),
         ensemble: ensemble?.unwrap_or(0),
         residual: residual?.unwrap_or_default(),

@@ -20,6 +20,8 @@ mod edit;
 mod excitation;
 mod exclusions;
 mod figure;
+mod finding;
+mod in_words;
 mod keys;
 mod limit;
 mod line;
@@ -60,8 +62,7 @@ pub use assumption_sheet::{
 };
 pub(crate) use at::At;
 pub use calibration::{
-    Calibration, CalibrationInput, CalibrationSearch, Residual, Tried, calibration_schema, load_calibration,
-    parse_calibration,
+    Calibration, CalibrationInput, CalibrationSearch, Residual, Tried, calibration_schema, parse_calibration,
 };
 pub(crate) use columns::Columns;
 pub use continuation::{BranchColumn, Continuation, RowSource, Stability};
@@ -74,6 +75,8 @@ pub(crate) use diagnostic::{Findings, Span, place};
 pub use diagnostic::{Place, Problem, Problems, Severity};
 pub(crate) use edit::{Written, set_keys};
 pub(crate) use figure::SCENE_DRAWING;
+pub use finding::{FindingError, FindingNumber, FindingText, InputSet};
+pub use in_words::value_in_words;
 pub(crate) use keys::Keys;
 pub use limit::{NoLimit, RowLimit};
 pub use line::line_of;

@@ -10,6 +10,7 @@
 //! | `{here: crossing, mass_on_plates=total}` | with one assumption moved |
 
 use super::verdict::Judged;
+use crate::text::braces::{Part, Unclosed, parts};
 
 /// Letters that units are made of.
 const UNITS: [&str; 13] = ["rad/s", "m/(N s)", "mm/s", "m/s", "1/kg", "N s", "mm", "ms", "Hz", "%", "m", "s", "g"];
@@ -69,8 +70,8 @@ impl<'a> From<&'a Judged> for CameOut<'a> {
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum ProseError {
     /// No `}`.
-    #[error("an opening `{{` without its `}}`")]
-    Open,
+    #[error("{0}")]
+    Unclosed(#[from] Unclosed),
     /// None of the known forms.
     #[error(
         "the unknown placeholder `{{{0}}}`: write `{{here}}`, `{{here 2}}`, `{{here: ENTRY}}`, `{{here: ENTRY, assumption=value}}` or `{{off}}`"
@@ -84,16 +85,11 @@ impl Prose {
     /// # Errors
     /// The first placeholder that is none.
     pub fn parse(text: &str) -> Result<Self, ProseError> {
-        let mut pieces = Vec::new();
-        let mut rest = text;
-        while let Some((before, after)) = rest.split_once('{') {
-            let (inner, behind) = after.split_once('}').ok_or(ProseError::Open)?;
-            pieces.push(Piece::Text(before.into()));
-            pieces.push(Piece::Placeholder(Placeholder::parse(inner)?));
-            rest = behind;
-        }
-        pieces.push(Piece::Text(rest.into()));
-        Ok(Self { pieces })
+        let piece = |part| match part {
+            Part::Text(text) => Ok(Piece::Text(text.into())),
+            Part::Placeholder(inner) => Placeholder::parse(inner).map(Piece::Placeholder),
+        };
+        Ok(Self { pieces: parts(text)?.into_iter().map(piece).collect::<Result<_, _>>()? })
     }
 
     /// Its placeholders.

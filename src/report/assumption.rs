@@ -2,32 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use crate::experiment::AssumptionValue;
-use crate::text::number;
-
 use super::markdown::{Align, MarkdownTable, details, one_line};
 use super::view::AssumptionView;
-
-/// The value of an assumption of this unit: `60 mm`, `9.81 m/s²`, `loaded`, a curve by its end points.
-#[must_use]
-pub fn value_in_words(unit: &str, value: &AssumptionValue) -> String {
-    match value {
-        AssumptionValue::Number(value) => number::quantity(*value, unit, 6),
-        AssumptionValue::Choice(word) => word.replace('_', " "),
-        AssumptionValue::Curve(points) => match (points.first(), points.last()) {
-            (Some([x0, y0]), Some([x1, y1])) => {
-                let point = |x: f64, y: f64| format!("{} at {} g", number::quantity(y, unit, 4), number::compact(x, 4));
-                format!("a curve through {} points, {} to {}", points.len(), point(*x0, *y0), point(*x1, *y1))
-            }
-            _ => "a curve without points".to_owned(),
-        },
-        AssumptionValue::Places(places) => {
-            let coordinate = |share: &f64| number::compact(*share, 4);
-            let place = |place: &Vec<f64>| format!("({})", place.iter().map(coordinate).collect::<Vec<_>>().join(", "));
-            places.iter().map(place).collect::<Vec<_>>().join(", ")
-        }
-    }
-}
 
 /// The assumptions on an experiment's page: their values, and where their reasons stand.
 pub(super) fn links(assumptions: &[AssumptionView], to_reports: &str) -> String {

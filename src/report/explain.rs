@@ -1,10 +1,9 @@
 //! What an entry depends on: how far each assumption, moved alone, shifts what came out, and which move would change its verdict.
 
-use crate::experiment::{AssumptionName, AssumptionValue};
+use crate::experiment::{AssumptionName, AssumptionValue, value_in_words};
 use crate::reference::{Judged, Moved, Printed, Role, Verdict};
 use crate::text::number;
 
-use super::assumption::value_in_words;
 use super::markdown::one_line;
 use super::tally::{shown, word};
 

@@ -51,7 +51,7 @@ mod view;
 mod views;
 mod what_stands;
 
-pub use assumption::{assumptions, value_in_words};
+pub use assumption::assumptions;
 pub use committed::{Departure, How, departures, extra_files};
 pub use console::summary;
 

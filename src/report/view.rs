@@ -12,7 +12,7 @@ use crate::table::Table;
 pub struct AssumptionView {
     /// `stop_length`.
     pub name: String,
-    /// `60 mm`; see [`super::value_in_words`].
+    /// `60 mm`; see [`crate::experiment::value_in_words`].
     pub value: String,
     /// Why this value. Markdown.
     pub reason: String,

@@ -9,12 +9,11 @@ use super::other_pages::PAGES;
 use super::prose;
 use super::verdicts::Judgement;
 use super::what_stands::PAGE as WHAT_STANDS;
-use crate::experiment::{AssumptionName, Experiment, FigureSpec};
+use crate::experiment::{AssumptionName, Experiment, FigureSpec, value_in_words};
 use crate::figure::is_sketched;
 use crate::reference::Judged;
 use crate::report::{
     self, AccuracyLinks, AssumptionView, CheckView, CheckedEntry, ExperimentView, FigureView, PageView, Trouble,
-    value_in_words,
 };
 use crate::scene::{Scene, effects};
 use crate::study::{Heading, Item, Motions, Refused, RunTimes, Study, table_name};

@@ -6,12 +6,11 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::assumption::value_in_words;
 use super::headline::missing_inputs;
 use super::markdown::one_line;
 use super::tally::{agrees, word};
 use super::view::{AssumptionView, ExperimentView};
-use crate::experiment::{AssumptionName, AssumptionSheet};
+use crate::experiment::{AssumptionName, AssumptionSheet, value_in_words};
 use crate::reference::{Judged, Verdict};
 use crate::text::words::counted;
 

@@ -4,11 +4,11 @@
 
 use std::collections::BTreeMap;
 
-use shotdamp::experiment::{AboutStudy, AssumptionValue, Finding};
+use shotdamp::experiment::{AboutStudy, AssumptionValue, Finding, value_in_words};
 use shotdamp::reference::{Comparison, Judged, Kind, Price, Role, Verdict};
 use shotdamp::report::{
     AccuracyLinks, AssumptionView, ExperimentView, FigureView, PageView, assumptions as assumptions_page, index,
-    overview_svg, page, strip_svg, summary, tolerances, value_in_words,
+    overview_svg, page, strip_svg, summary, tolerances,
 };
 use shotdamp::scene::EffectUse;
 use shotdamp::study::{Heading, Machine};
