@@ -22,6 +22,7 @@ use crate::measure::Settings;
 use crate::report::{LastVerdicts, VERDICTS, scenes};
 use crate::scene::{Scene, effects};
 use crate::study::{Item, Layout, State, Study, Texts, forecast};
+use crate::text::number::quantity;
 use crate::text::words::{counted, of_key};
 
 /// Processor time of all threads for an experiment.
@@ -281,9 +282,12 @@ fn cases(item: &Item) -> String {
         let ends: Vec<&str> = item.variants.iter().skip(1).map(|variant| variant.label.as_str()).collect();
         text += &format!("  and event-driven with each of {}\n", ends.join(", "));
     }
-    let Settings { skip, average, until, .. } = experiment.settings;
+    let Settings { skip, average, until, round_period_to, .. } = experiment.settings;
     if until == Until::Settled {
         text += &format!("  each run ends where it has settled, or after {skip} + {average} cycles\n");
+    }
+    if let Some(step) = round_period_to {
+        text += &format!("  the forcing period is rounded to whole steps of {}\n", quantity(step, "s", 4));
     }
     text + &format!("  {}, {} at most\n", counted(rows, "row", "rows"), simulations(most))
 }

@@ -3,7 +3,7 @@
 use shotdamp::experiment::{Assumptions, parse_experiment};
 use shotdamp::report::LastVerdicts;
 
-use crate::desk::{ASSUMPTIONS, Desk, shotdamp};
+use crate::desk::{ASSUMPTIONS, Desk, STOP, shotdamp};
 
 fn described(structure: &str) -> Vec<String> {
     let text = format!(
@@ -48,6 +48,15 @@ fn reasons_of_assumptions_are_shown_with_the_numbers_of_the_last_verdicts() {
     assert!(shown().contains("1.539 for 1.516, 10 % more"), "{}", shown());
     desk.put("reports/verdicts.json", "cut off {");
     assert!(shown().contains("… for 1.516, …"), "{}", shown());
+}
+
+#[test]
+fn a_rounded_period_is_shown() {
+    let rounded = STOP.replace("average: 100 cycles}", "average: 100 cycles, round_period_to: 1 ms}");
+    let shown = |text: &str| shotdamp(&Desk::of_one("experiments/ch3/ch3-one.yaml", text), &["show", "ch3-one"]).out;
+    let line = "  the forcing period is rounded to whole steps of 1 ms\n";
+    assert!(shown(&rounded).contains(line), "{}", shown(&rounded));
+    assert!(!shown(STOP).contains("rounded"));
 }
 
 #[test]
