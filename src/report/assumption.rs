@@ -24,7 +24,7 @@ pub(super) fn without_source(inputs: &[String]) -> String {
     format!("Neither stated in the text of the study nor declared as an assumption: {}.\n\n", inputs.join(" · "))
 }
 
-/// `reports/assumptions.md`: all assumptions with the entries that depend on them.
+/// `reports/assumptions.md`: all assumptions with the entries of the experiments that use them.
 #[must_use]
 pub fn assumptions(assumptions: &[AssumptionView]) -> String {
     let head = "# Assumptions\n\nInputs that the study uses and does not state. [The study in one page](README.md)\n\n";
@@ -36,7 +36,7 @@ fn table_with_counts(assumptions: &[AssumptionView]) -> String {
         ("Assumption", Align::Left),
         ("Value", Align::Left),
         ("Why", Align::Left),
-        ("Entries that depend on it", Align::Right),
+        ("Entries of experiments that use it", Align::Right),
     ]);
     for assumption in assumptions {
         let name = format!("<a id=\"{name}\"></a>`{name}`", name = assumption.name);
@@ -45,12 +45,12 @@ fn table_with_counts(assumptions: &[AssumptionView]) -> String {
     table.finish() + "\n"
 }
 
-/// The entries that depend on each assumption, closed.
+/// The entries of the experiments that use each assumption, closed.
 fn dependents(assumptions: &[AssumptionView]) -> String {
     let used = assumptions.iter().filter(|assumption| !assumption.used_by.is_empty());
     let lines: String =
         used.map(|assumption| format!("- `{}`: {}.\n", assumption.name, entries(&assumption.used_by))).collect();
-    details("The entries that depend on each", &lines)
+    details("The entries of the experiments that use each", &lines)
 }
 
 fn reason(assumption: &AssumptionView) -> String {
