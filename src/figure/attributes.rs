@@ -41,7 +41,7 @@ impl Attributes {
 
     /// With a list of numbers to four digits.
     pub(super) fn with_numbers(self, name: &str, numbers: impl IntoIterator<Item = f64>) -> Self {
-        self.with(name, &numbers.into_iter().map(short).collect::<Vec<_>>().join(" "))
+        self.with(name, &numbers.into_iter().map(|number| shortest(number, 4)).collect::<Vec<_>>().join(" "))
     }
 
     pub(super) fn with(mut self, name: &str, value: &str) -> Self {
@@ -56,10 +56,11 @@ impl fmt::Display for Attributes {
     }
 }
 
-/// A number to four digits, `NaN` if it is none.
-fn short(number: f64) -> String {
-    let rounded: f64 = format!("{number:.3e}").parse().unwrap_or(f64::NAN);
-    rounded.to_string()
+/// A number to so many digits in the fewest letters that read back, `1500` or `9.608e-18`; `NaN` if it is none.
+pub(super) fn shortest(number: f64, digits: usize) -> String {
+    let rounded: f64 = format!("{number:.0$e}", digits.saturating_sub(1)).parse().unwrap_or(f64::NAN);
+    let (plain, exponential) = (rounded.to_string(), format!("{rounded:e}"));
+    if exponential.len() < plain.len() { exponential } else { plain }
 }
 
 /// Text within an element.

@@ -3,6 +3,11 @@
 use crate::experiment::{AxisScale, AxisUnit};
 use crate::text::number::Prefix;
 
+use super::attributes::shortest;
+
+/// Digits of the ends of an axis for programs: a thousandth of a pixel.
+const END_DIGITS: usize = 7;
+
 /// Least and largest number that an axis has to show.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Extent {
@@ -46,6 +51,14 @@ impl Extent {
 }
 
 impl Extent {
+    /// Its length along the axis; on a logarithmic one in decades.
+    pub(super) fn span(self, scale: AxisScale) -> f64 {
+        match scale {
+            AxisScale::Linear => self.largest - self.least,
+            AxisScale::Log => libm::log10(self.largest / self.least),
+        }
+    }
+
     /// The smallest that holds both.
     pub(super) fn union(self, other: Self) -> Self {
         Self { least: self.least.min(other.least), largest: self.largest.max(other.largest) }
@@ -179,7 +192,8 @@ impl Axis {
     /// Its scale and its ends as displayed, for programs: `log 0.1 100`.
     pub(super) fn in_words(&self) -> String {
         let scale = if self.scale == AxisScale::Log { "log" } else { "linear" };
-        format!("{scale} {} {}", self.displayed(self.number(0.0)), self.displayed(self.number(1.0)))
+        let end = |share: f64| shortest(self.displayed(self.number(share)), END_DIGITS);
+        format!("{scale} {} {}", end(0.0), end(1.0))
     }
 
     /// As [`Axis::share`], with what lies outside moved to the nearer end.

@@ -120,7 +120,7 @@ fn hex(color: BackendColor) -> String {
 }
 
 /// The `d` of a polyline.
-fn relative(points: impl IntoIterator<Item = BackendCoord>) -> String {
+pub(super) fn relative(points: impl IntoIterator<Item = BackendCoord>) -> String {
     let mut d = String::new();
     let mut before: Option<BackendCoord> = None;
     for (x, y) in points {

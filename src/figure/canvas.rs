@@ -10,12 +10,12 @@ use std::sync::LazyLock;
 
 use plotters::coord::Shift;
 use plotters::drawing::{DrawingArea, IntoDrawingArea};
-use plotters::element::{Circle, Drawable, PathElement, PointCollection, Polygon, Rectangle, Text};
+use plotters::element::{Circle, Drawable, PointCollection, Polygon, Rectangle, Text};
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use plotters::style::{Color as _, FontDesc, FontFamily, FontStyle, FontTransform, RGBColor, ShapeStyle};
 use ttf_parser::Face;
 
-use super::backend::Writer;
+use super::backend::{Writer, relative};
 use super::geometry::{Point, Rect, dashed, simplified};
 use super::raster::{FAMILY, FONT};
 use super::style::{Color, PAPER};
@@ -125,9 +125,9 @@ impl Sheet {
         if points.len() < 2 {
             return;
         }
-        for stretch in dashed(&points, pen.dash) {
-            self.put(&PathElement::new(places(&stretch), pen.style()));
-        }
+        // One path for all dashes: a path each would take most of the file.
+        let d: String = dashed(&points, pen.dash).iter().map(|stretch| relative(places(stretch))).collect();
+        self.path(&d, pen, "");
     }
 
     /// A filled polygon.
@@ -158,11 +158,7 @@ impl Sheet {
             // A line of a tenth of a pixel with round ends.
             _ = write!(d, "M{x} {y}h1");
         }
-        let (color, width) = (pen.color, whole(pen.width));
-        _ = writeln!(
-            self.text.borrow_mut(),
-            "<path fill=\"none\" stroke=\"{color}\" stroke-width=\"{width}\" stroke-linecap=\"round\" d=\"{d}\"/>"
-        );
+        self.path(&d, pen, " stroke-linecap=\"round\"");
     }
 
     /// Straight strokes, hundreds of them as one path.
@@ -171,10 +167,14 @@ impl Sheet {
         for [(x, y), (to_x, to_y)] in strokes.iter().map(|ends| ends.map(place)) {
             _ = write!(d, "M{x} {y}l{} {}", to_x - x, to_y - y);
         }
+        self.path(&d, pen, "");
+    }
+
+    fn path(&self, d: &str, pen: Pen, more: &str) {
         let (color, width) = (pen.color, whole(pen.width));
         _ = writeln!(
             self.text.borrow_mut(),
-            "<path fill=\"none\" stroke=\"{color}\" stroke-width=\"{width}\" d=\"{d}\"/>"
+            "<path fill=\"none\" stroke=\"{color}\" stroke-width=\"{width}\"{more} d=\"{d}\"/>"
         );
     }
 

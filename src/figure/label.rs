@@ -38,17 +38,27 @@ pub(super) fn of_cell(column: &Column, row: usize) -> Option<String> {
     })
 }
 
-/// One label for an axis that several columns share.
-pub(super) fn shared(labels: &[String], unit: &str) -> String {
+/// One label for an axis that several columns share, by their labels, the names of the columns and their unit.
+pub(super) fn shared(labels: &[String], columns: &[&str], unit: &str) -> String {
     match labels {
         [one] => one.clone(),
         [first, rest @ ..] if rest.iter().all(|label| label == first) => first.clone(),
-        // Different things of one unit share its word; without a unit only their names tell what they are.
-        [first, rest @ ..] if unit.is_empty() => {
+        // Different things of one unit share its word, those without a unit the words that their names end with; a legend tells
+        // them apart.
+        [first, rest @ ..] if unit.is_empty() => common_ending(columns).unwrap_or_else(|| {
             rest.iter().fold(first.clone(), |joined, label| format!("{joined}, {}", within_sentence(label)))
-        }
+        }),
         _ => words::of_unit(unit).to_owned(),
     }
+}
+
+/// The words that the names of all these columns end with, if there are some: of `gap_elasticity` and `mass_elasticity` the last one.
+fn common_ending(columns: &[&str]) -> Option<String> {
+    let (first, rest) = columns.split_first()?;
+    let words: Vec<&str> = first.split('_').collect();
+    let ends_all =
+        |from: &usize| rest.iter().all(|name| name.split('_').collect::<Vec<_>>().ends_with(&words[*from..]));
+    (0..words.len()).find(ends_all).map(|from| words[from..].join(" "))
 }
 
 /// First letter in lower case, unless the word is an abbreviation.

@@ -28,6 +28,9 @@ const VISIBLE_SPREAD: f64 = 0.004;
 /// The shortest contact that shows as a bar, as a share of the axis.
 const VISIBLE_CONTACT: f64 = 0.002;
 
+/// How many times as far the y axis may reach so that a bar of tolerance is not cut off.
+const BAR_STRETCH: f64 = 1.2;
+
 /// Room for the numbers at peaks, as a share of the axis.
 const PEAK_ROOM: f64 = 0.07;
 
@@ -166,17 +169,25 @@ impl<'a> Panel<'a> {
         if spec.peaks.is_some() {
             y_extent = y_extent.with_headroom(PEAK_ROOM, y_scale);
         }
+        // A bar that needs little room is shown to its ends.
+        let ends = quoted.iter().flat_map(|one| one.ends_in_y());
+        y_extent = ends.fold(y_extent, |extent, end| {
+            let longer = extent.with(end, y_scale);
+            if longer.span(y_scale) <= BAR_STRETCH * extent.span(y_scale) { longer } else { extent }
+        });
         let y = Axis::new(y_scale, y_extent, Room::Airy, y_unit).in_unit(spec.y[0].unit.as_ref());
         widen_hidden(&mut curves, &y);
         let x_name = source.label(&spec.x)?;
         let mut y_names = spec.y.iter().map(|axis| source.label(axis)).collect::<Result<Vec<_>, _>>()?;
+        let mut y_columns: Vec<&str> = spec.y.iter().map(|axis| axis.column.as_str()).collect();
         if let (true, Some(first)) = (spec.over_first, curves.first()) {
+            y_columns.clear();
             y_names.iter_mut().for_each(|name| *name = format!("{name} over that of {}", first.name.full()));
         }
         Ok(Self {
             spec,
             x_label: label::with_unit(&x_name, &x.unit),
-            y_label: label::with_unit(&label::shared(&y_names, y_unit), &y.unit),
+            y_label: label::with_unit(&label::shared(&y_names, &y_columns, y_unit), &y.unit),
             legend,
             curves,
             x_reach,

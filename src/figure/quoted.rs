@@ -93,17 +93,22 @@ impl Quoted {
     /// Whether curves of this extent stay readable beside it.
     pub(super) fn leaves_room(&self, curves: Extent, scale: AxisScale) -> bool {
         let QuotedAt::Level(y) = self.at else { return true };
-        let span = |extent: Extent| match scale {
-            AxisScale::Linear => extent.largest - extent.least,
-            AxisScale::Log => libm::log10(extent.largest / extent.least),
+        curves.with(y, scale).span(scale) <= (1.0 + STRETCH) * curves.span(scale)
+    }
+
+    /// The ends of its bar, where that stands upright.
+    pub(super) fn ends_in_y(&self) -> impl Iterator<Item = f64> {
+        let value = match self.at {
+            QuotedAt::Level(y) | QuotedAt::Point { y, known: Known::Y, .. } => Some(y),
+            QuotedAt::Place(_) | QuotedAt::Point { known: Known::X, .. } => None,
         };
-        span(curves.with(y, scale)) <= (1.0 + STRETCH) * span(curves)
+        value.zip(self.tolerance).into_iter().flat_map(|(y, half)| [y - half, y + half])
     }
 
     /// What it takes of a frame, as `number` of the panel.
     pub(super) fn obstacle(&self, number: usize, panel: &Panel<'_>, frame: &Rect, obstacles: &mut Obstacles) {
         let at = self.place(panel, frame);
-        if let Some(ends) = self.visible_bar(number, panel, frame).filter(|_| !self.is_point()) {
+        if let Some(ends) = self.visible_bar(number, panel, frame) {
             obstacles.lines.push(ends.map(|(end, _)| end).to_vec());
         }
         match self.at {
@@ -130,9 +135,8 @@ impl Quoted {
         let Some(ends) = self.visible_bar(number, panel, frame) else { return };
         let [from, to] = ends.map(|(end, _)| end);
         sheet.line(&[from, to], Pen::solid(INK, GUIDE));
-        // Where it goes on beyond the frame it has no end.
-        for (end, _) in ends.into_iter().filter(|(_, is_within)| *is_within) {
-            cap(sheet, end, from.x == to.x);
+        for ((end, is_within), other) in ends.into_iter().zip([to, from]) {
+            if is_within { cap(sheet, end, from.x == to.x) } else { arrow(sheet, end, other) }
         }
         let [from, to] = self.bar(self.u_data, number, panel, frame).map(|(end, _)| end);
         sheet.line(&[from, to], Pen::solid(INK, 2.0 * CURVE));
@@ -197,37 +201,63 @@ impl Quoted {
         }
         let at = self.place(panel, frame);
         let text = self.text(number, panel, frame);
-        let (width, half) = (text_width(&text, NOTE_TEXT), NOTE_TEXT / 2.0);
-        let about = |x: f64, y: f64| Rect { left: x, top: y - half, right: x + width, bottom: y + half };
-        let aside = [at.x + SPACE / 2.0, at.x - SPACE / 2.0 - width];
-        let places: Vec<Rect> = match self.at {
-            QuotedAt::Place(_) => (0..=30_u8)
-                .map(|step| {
-                    frame.top + half + SPACE / 2.0 + f64::from(step) / 30.0 * (frame.height() - 2.0 * half - SPACE)
-                })
-                .flat_map(|y| aside.map(|x| about(x, y)))
-                .collect(),
-            QuotedAt::Level(_) => (0..=20_u8)
-                .map(|step| frame.left + SPACE + f64::from(step) / 20.0 * (frame.width() - 2.0 * SPACE - width))
-                .flat_map(|x| [-1.0, 1.0].map(|down| about(x, at.y + down * (half + SPACE / 2.0))))
-                .collect(),
-            QuotedAt::Point { .. } => {
-                let away = QUOTED + SPACE / 2.0;
-                let rows = [0.0, 1.0, -1.0, 1.5, -1.5, 2.5, -2.5, 3.5, -3.5, 4.5, -4.5];
-                let beside =
-                    rows.map(|down| [at.x + away, at.x - away - width].map(|x| about(x, at.y + down * 2.0 * half)));
-                let above = [-1.0, 1.0, -2.0, 2.0].map(|down| about(at.x - width / 2.0, at.y + down * (away + half)));
-                beside.into_iter().flatten().chain(above).collect()
-            }
-        };
+        let width = text_width(&text, NOTE_TEXT);
+        let places = self.label_places(at, width, frame);
         let inside = || places.iter().filter(|place| place.lies_within(frame));
         let Some(place) = taken.clearest(inside(), 1.0).or_else(|| inside().next()).copied() else { return };
         taken.boxes.push(place);
-        if self.is_point() {
-            lead(sheet, at, &place);
+        match self.at {
+            QuotedAt::Place(_) => {}
+            QuotedAt::Level(_) => lead(sheet, Point { x: place.at(0.5, 0.0).x, ..at }, &place, 0.0),
+            QuotedAt::Point { .. } => lead(sheet, at, &place, QUOTED),
         }
-        let lettering = Lettering { text: &text, size: NOTE_TEXT, anchor: Anchor::Left, upright: false, color: INK };
-        sheet.text_over_lines(place.at(0.0, 0.5), &lettering);
+        let upright = place.height() > place.width();
+        let start = if upright { place.at(0.5, 0.0) } else { place.at(0.0, 0.5) };
+        let lettering = Lettering { text: &text, size: NOTE_TEXT, anchor: Anchor::Left, upright, color: INK };
+        sheet.text_over_lines(start, &lettering);
+    }
+
+    /// Where a label of this width may stand, the best places first; some leave the frame.
+    fn label_places(&self, at: Point, width: f64, frame: &Rect) -> Vec<Rect> {
+        let half = NOTE_TEXT / 2.0;
+        let about = |x: f64, y: f64| Rect { left: x, top: y - half, right: x + width, bottom: y + half };
+        let steps = |count: u8| (0..=count).map(move |step| f64::from(step) / f64::from(count));
+        match self.at {
+            QuotedAt::Place(_) => {
+                let aside = [at.x + SPACE / 2.0, at.x - SPACE / 2.0 - width];
+                let down =
+                    |share: f64, height: f64| frame.top + SPACE / 2.0 + share * (frame.height() - height - SPACE);
+                let level = steps(30).flat_map(|share| aside.map(|x| about(x, down(share, 2.0 * half) + half)));
+                // Along the line, where another one stands in the way across.
+                let beside = [at.x + SPACE / 2.0, at.x - SPACE / 2.0 - 2.0 * half];
+                let along = steps(30).flat_map(|share| {
+                    let top = down(share, width);
+                    beside.map(|left| Rect { left, top, right: left + 2.0 * half, bottom: top + width })
+                });
+                level.chain(along).collect()
+            }
+            QuotedAt::Level(_) => {
+                let left = |share: f64| frame.left + SPACE + share * (frame.width() - 2.0 * SPACE - width);
+                let rows = [1.0, 3.0, 5.0, 7.0, 9.0, 11.0];
+                let beside = |row: f64| {
+                    steps(20).flat_map(move |share| {
+                        [-1.0, 1.0].map(|down| about(left(share), at.y + down * (row * half + SPACE / 2.0)))
+                    })
+                };
+                rows.into_iter().flat_map(beside).collect()
+            }
+            QuotedAt::Point { .. } => {
+                let away = QUOTED + SPACE / 2.0;
+                let rows = [0.0, 1.0, -1.0, 1.5, -1.5, 2.5, -2.5, 3.5, -3.5, 4.5, -4.5];
+                let beside = |further: f64| {
+                    let aside = [at.x + away + further, at.x - away - further - width];
+                    rows.into_iter().flat_map(move |down| aside.map(|x| about(x, at.y + down * 2.0 * half)))
+                };
+                let above = [-1.0, 1.0, -2.0, 2.0].map(|down| about(at.x - width / 2.0, at.y + down * (away + half)));
+                let further = [1.0, 2.0, 3.0, 4.0].into_iter().flat_map(|times| beside(times * 2.0 * QUOTED));
+                beside(0.0).chain(above).chain(further).collect()
+            }
+        }
     }
 }
 
@@ -241,13 +271,13 @@ pub(super) fn bar(sheet: &Sheet, ends: [Point; 2]) {
     ends.into_iter().for_each(|end| cap(sheet, end, ends[0].x == ends[1].x));
 }
 
-/// A line from a diamond to its label, where the two are apart.
-fn lead(sheet: &Sheet, at: Point, label: &Rect) {
+/// A line to a label from what it names, where the two are apart; it begins at this distance.
+fn lead(sheet: &Sheet, at: Point, label: &Rect, from: f64) {
     let near = Point { x: at.x.clamp(label.left, label.right), y: at.y.clamp(label.top, label.bottom) };
     let (dx, dy) = (near.x - at.x, near.y - at.y);
     let length = libm::hypot(dx, dy);
     if length > 2.0 * QUOTED {
-        let share = QUOTED / length;
+        let share = from / length;
         sheet.line(&[Point { x: at.x + share * dx, y: at.y + share * dy }, near], Pen::solid(INK, GRID));
     }
 }
@@ -261,6 +291,18 @@ fn cap(sheet: &Sheet, end: Point, is_upright: bool) {
         [-reach, reach].map(|by| Point { y: end.y + by, ..end })
     };
     sheet.line(&ends, Pen::solid(INK, GUIDE));
+}
+
+/// Where a bar goes on beyond the frame: the head of an arrow at the end that is seen, away from the other one.
+fn arrow(sheet: &Sheet, end: Point, other: Point) {
+    let (dx, dy) = (end.x - other.x, end.y - other.y);
+    let length = libm::hypot(dx, dy);
+    if length > QUOTED {
+        let (along, across) = (QUOTED / length, 0.5 * QUOTED / length);
+        let foot = Point { x: end.x - along * dx, y: end.y - along * dy };
+        let corner = |side: f64| Point { x: foot.x - side * across * dy, y: foot.y + side * across * dx };
+        sheet.fill(&[end, corner(1.0), corner(-1.0)], INK, 1.0);
+    }
 }
 
 /// The open diamond of a number that the study quotes.

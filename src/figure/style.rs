@@ -98,7 +98,8 @@ const OKABE_ITO: [Color; 7] = [
     Color(0x00, 0x00, 0x00),
 ];
 
-/// Kinds of motion as a strip tells them apart: the less orderly, the darker, in a hue that no line has.
+/// Kinds of motion as a strip tells them apart: rest in one hue and the others in another, the less orderly the darker; no line and
+/// no band has either.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum KindOfMotion {
     AtRest,
@@ -115,7 +116,7 @@ impl KindOfMotion {
 
     pub(super) fn color(self) -> Color {
         match self {
-            Self::AtRest => Color(0xD9, 0xD9, 0xD9),
+            Self::AtRest => Color(0xF0, 0xE2, 0x9A),
             Self::OneToOne => Color(0xC9, 0xB8, 0xE8),
             Self::OtherPeriodic => Color(0x96, 0x78, 0xCE),
             Self::QuasiPeriodic => Color(0x63, 0x3A, 0xA3),

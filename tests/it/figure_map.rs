@@ -163,6 +163,17 @@ fn shapes_of_a_plate_show_their_nodal_lines() {
     assert_eq!(picture("map-modes", spec.clone(), &modes()), picture("map-modes", spec, &modes()));
 }
 
+/// Numbers for programs are written in the fewest letters.
+#[test]
+fn tiny_numbers_behind_a_map_are_short() {
+    let tiny = plate().floats("velocity_ratio").unwrap().iter().map(|ratio| 9.608_123e-18 * ratio).collect();
+    let table = plate().with(numbers("map", "", "", tiny));
+    let spec = MapSpec { by: vec!["sweep".into()], ..map("damper_x", "damper_y", "map") };
+    let svg = draw(&limit_stop(), &drawn(Drawing::Map(spec.into())), &table, Beside::default()).unwrap().svg;
+    let values = svg.split("data-values=\"").nth(1).unwrap().split('"').next().unwrap();
+    assert!(values.split(' ').all(|value| value.len() <= 9 && value.parse::<f64>().is_ok()), "{values}");
+}
+
 #[test]
 fn a_map_that_cannot_be_drawn_says_why() {
     let attempt = |spec: MapSpec, table: &Table| {

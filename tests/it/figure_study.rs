@@ -52,6 +52,45 @@ fn a_value_far_from_the_curves_does_not_press_them_flat() {
     assert!(!far.svg.contains("study: quoted"));
 }
 
+/// A bar that goes on beyond the frame ends in an arrow; one that needs little room is shown whole.
+#[test]
+fn no_bar_of_a_tolerance_is_cut_off_unsaid() {
+    let over_force = || panel("force_ratio", AxisScale::Log, &["velocity_ratio"]);
+    let arrows = |name: &str, tolerance: f64| {
+        let level = Quoted { tolerance: Some(tolerance), ..quoted(QuotedAt::Level(1.05)) };
+        drawn(name, over_force(), &curve(), &[level], None).svg.matches("fill=\"#1a1a1a\" d=").count()
+    };
+    assert_eq!((arrows("study-whole", 0.1), arrows("study-beyond", 0.5)), (0, 1));
+}
+
+/// Two lines side by side: the label of neither crosses the other one.
+#[test]
+fn labels_of_neighbouring_lines_stand_clear_of_both() {
+    let at_end =
+        |x: f64| Quoted { tolerance: None, label: format!("study: {x} of the force"), ..quoted(QuotedAt::Place(x)) };
+    let picture = drawn(
+        "study-neighbours",
+        panel("force_ratio", AxisScale::Log, &["velocity_ratio"]),
+        &curve(),
+        &[at_end(60.0), at_end(80.0)],
+        None,
+    );
+    let upright = |words: &str| {
+        let text = picture.svg.split("<text").find(|text| text.contains(words)).unwrap();
+        text.contains("rotate(-90")
+    };
+    assert!(!upright("study: 60 of") && upright("study: 80 of"), "there is room for one of them on the left");
+}
+
+#[test]
+fn a_dashed_line_is_one_path() {
+    let quoted = [Quoted { tolerance: None, ..quoted(QuotedAt::Place(2.5)) }];
+    let over_force = || panel("force_ratio", AxisScale::Log, &["velocity_ratio"]);
+    let paths =
+        |quoted: &[Quoted]| drawn("study-dash", over_force(), &curve(), quoted, None).svg.matches("<path").count();
+    assert_eq!(paths(&quoted), paths(&[]) + 1);
+}
+
 #[test]
 fn contacts_and_impulses_are_marked_in_a_time_history() {
     let time: Vec<f64> = (0..=400).map(|i| 5e-3 * f64::from(i)).collect();
