@@ -156,7 +156,7 @@ measures! {
     FloorImpactSpeed: "m/s", "", "", "relative speed just before its last floor contact", Events, Own, Any;
     FloorImpactPhase: "rad", "", "", "ω t of its last floor contact, from the start of the forcing cycle", Events, Own, Any;
     FloorReboundSpeed: "m/s", "", "", "relative speed at the end of its last floor contact that has ended", Events, Own, Any;
-    FloorRestitution: "", "", "", "that speed over the one at the begin of the same contact", Events, Own, Any;
+    FloorRestitution: "", "", "", "that speed over the one at the start of the same contact", Events, Own, Any;
     FloorContactTime: "s", "", "", "duration of the same contact", Events, Own, Any;
     ContactShare: "", "", "", "share of the averaged time that particles spend in contact with floor or ceiling, mean over the particles", Events, Own, Any;
     FloorReleaseTime: "s", "", "", "first release of the first particle from its floor in the window, from the start of the run", Events, Own, Any;

@@ -77,7 +77,7 @@ impl Excitation {
 pub enum PulseShape {
     /// Constant force over the duration.
     Rectangular,
-    /// Impulses with binomial weights, one at the begin of each millisecond of the duration.
+    /// Impulses with binomial weights, one at the start of each millisecond of the duration.
     Binomial {
         /// n: impulses a pulse, spaced duration/n, the last of them that long before its end; weights C(n−1, i)/2^(n−1).
         impulses: u32,
