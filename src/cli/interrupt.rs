@@ -2,23 +2,27 @@
 //! what they have is kept, and the last line says so.
 //!
 //! A computation that looks at no clock, such as the decomposition of a large matrix, is not waited for: the process ends
-//! within a second of the signal whatever its threads are at. Files are written whole or not at all.
+//! within a second of the signal whatever its threads are at. What is waited for is the writing of finished rows. Files are written
+//! whole or not at all.
 
 use std::io::{self, IsTerminal};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, OnceLock};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use signal_hook::consts::{SIGINT, SIGTERM};
 
 use super::args::Command;
 use super::output::print_error;
 use crate::dynamics::interrupt;
+use crate::study::is_keeping_rows;
 
 /// How often the signal is looked for.
 const LOOK: Duration = Duration::from_millis(20);
 /// How long the threads have to end and to write what they have.
 const GRACE: Duration = Duration::from_millis(700);
+/// How long finished rows may take to be written: a million of them are, and a disk that hangs is not waited for.
+const LONGEST_WRITE: Duration = Duration::from_secs(60);
 /// 128 + SIGINT, as a shell reports a program that was interrupted; of the other signals, too: what is left is the same.
 const EXIT_CODE: i32 = 130;
 
@@ -101,6 +105,10 @@ pub(super) fn listen(kept: Kept) {
         }
         interrupt();
         std::thread::sleep(GRACE);
+        let patience = Instant::now() + LONGEST_WRITE;
+        while is_keeping_rows() && Instant::now() < patience {
+            std::thread::sleep(LOOK);
+        }
         if io::stderr().is_terminal() {
             // A progress bar may stand there.
             print_error("\n");

@@ -18,6 +18,7 @@ mod glance;
 mod inputs;
 mod job;
 mod journal;
+mod keeping;
 mod kept_lines;
 mod known_rows;
 mod layout;
@@ -66,6 +67,7 @@ pub use forecast::forecast;
 pub use gather::{GatherError, gather};
 pub use inputs::Inputs;
 pub use job::runs_of_a_row;
+pub use keeping::is_keeping_rows;
 pub(crate) use kept_lines::KeptLines;
 pub use known_rows::KnownRows;
 pub use layout::{

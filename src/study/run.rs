@@ -18,6 +18,7 @@ use super::chain::units;
 use super::evaluate::Evaluate;
 use super::event::{Event, EventHandler, Left};
 use super::job::{self, Job, cost};
+use super::keeping::Keeping;
 use super::known_rows::KnownRows;
 use super::limited::Limited;
 use super::optimise::run_optimisation;
@@ -152,14 +153,18 @@ pub fn run<T: Send + Sync>(
         }
     };
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).stack_size(STACK).build()?;
+    let finish = |index: usize, one: &Work<'_>| {
+        let _keeping = Keeping::begin();
+        hand_over(index, one.finish());
+    };
     let rescue = || {
         for (index, one) in work.iter().filter(|(index, one)| taken[*index].get().is_none() && one.has_rows()) {
-            hand_over(*index, one.finish());
+            finish(*index, one);
         }
     };
     beside(&rescue, || {
         pool.install(|| {
-            let (work, engine, meters, hand_over) = (&work, &engine, &meters, &hand_over);
+            let (work, engine, meters, hand_over, finish) = (&work, &engine, &meters, &hand_over, &finish);
             rayon::scope_fifo(|scope| {
                 // Their rounds wait for one another: they begin first.
                 for index in whole {
@@ -186,7 +191,7 @@ pub fn run<T: Send + Sync>(
                         let (index, one) = &work[one];
                         let put = |row, outcome| {
                             if one.put(row, outcome) {
-                                hand_over(*index, one.finish());
+                                finish(*index, one);
                             }
                         };
                         one_by_one(one, &units, &engine(*index), handler, put);

@@ -101,6 +101,19 @@ fn an_interrupted_run_keeps_the_rows_it_has() {
     assert!(ahead.contains("1 of 2 rows to simulate"), "{ahead}");
 }
 
+#[test]
+fn an_interrupted_run_keeps_its_rows_however_long_they_take_to_write() {
+    let many = "gap_ratio: {log: {from: 1, to: 100, points: 60000}}";
+    let desk = study(&THREE_GAPS.replace("gap_ratio: [10, 50, 90]", many));
+    let (code, said, _) = interrupted(&desk, &["run"], 6 * A_MOMENT);
+    assert_eq!(code, Some(130), "{said}");
+    assert!(said.contains(" rows done, kept; the next run goes on there"), "{said}");
+    let ahead = shotdamp(&desk, &["run", "--dry-run"]).out;
+    let (open, of_all) =
+        ahead.split_once(" rows to simulate").and_then(|(before, _)| before.rsplit_once(" of ")).unwrap();
+    assert!(!open.ends_with(of_all), "{ahead}");
+}
+
 /// Not under `nohup`, which children inherit.
 fn hears_hangups() -> bool {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
