@@ -66,7 +66,7 @@ pub enum Exhausted {
     Cancelled,
 }
 
-/// How far a simulation came that its allowance has ended.
+/// How far a simulation had come when its allowance ran out.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Overrun {
     /// By what it ended.

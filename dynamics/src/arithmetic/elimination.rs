@@ -1,5 +1,5 @@
-//! Linear equations by elimination with complete pivoting. Where they are singular, unknowns that they leave open are zero: a stop that
-//! nothing moves would do as well elsewhere, and stays where it is.
+//! Linear equations by elimination with complete pivoting. Unknowns that singular equations leave undetermined are zero, so that a stop
+//! that nothing moves stays where it is.
 
 use std::ops::Range;
 
@@ -8,7 +8,7 @@ use nalgebra::DMatrix;
 /// Pivots below this share of the largest are none.
 const SINGULAR: f64 = 1e-11;
 
-/// A column that rather stays open is a pivot where it is larger than all others by this.
+/// Weight of the columns that come `late` in the search for a pivot: one of them is a pivot only where all others are as small.
 const LATE: f64 = 1e-4;
 
 /// x of A x = b, and det A.
@@ -28,7 +28,8 @@ pub(crate) fn bordered(a: &DMatrix<f64>, row: &[f64], column: impl Fn(usize) -> 
     })
 }
 
-/// x of A x = b; `None` where a number is not finite. Of the unknowns that could be left open, those are that come `late`.
+/// x of A x = b; `None` where a number is not finite. Where unknowns are undetermined, those
+/// that come `late` are zero, if they can be.
 pub(crate) fn solve(a: DMatrix<f64>, b: Vec<f64>, late: &Range<usize>) -> Option<Vec<f64>> {
     solved(a, b, late).map(|solved| solved.x)
 }

@@ -1,7 +1,8 @@
 //! One source for several processors: a method is compiled twice, for every processor and for registers of four numbers, and
 //! what this processor can do decides which of them runs.
 //!
-//! What such a method calls is compiled with it where it is inlined always; so that one check is enough for many segments.
+//! What such a method calls, and is marked `inline(always)`, is compiled for the same processor; so one check is enough for many
+//! segments.
 //!
 //! Nothing is contracted and no sum is reordered, so that both give the same bits.
 

@@ -1,5 +1,4 @@
-//! What a contact state answers to a load for ever: to a constant one a place to rest, or a drift; to a harmonic one an
-//! amplitude.
+//! The steady response of a contact state: an equilibrium, or a drift, under a constant load, an amplitude under a harmonic one.
 
 use nalgebra::DMatrix;
 

@@ -248,8 +248,8 @@ impl Modes {
     }
 }
 
-/// Damping of the face that particle j's contact refers to, N s/m; half cycles put another one in its place, while it is compressed:
-/// what moves freely, or is held, goes on in the contact state that it is in.
+/// Damping of the face that particle j's contact refers to, N s/m. While the face is compressed, half cycles put another one in its
+/// place; a particle in flight, or held, needs no other contact state.
 pub(crate) fn contact_damping(system: &HybridSystem, contacts: &[Contact], j: usize, equivalent: Option<f64>) -> f64 {
     let law = contacts[j].side().face(&system.particles[j]).law;
     face_damping(law, equivalent.filter(|_| is_compressed(system, contacts, j)))

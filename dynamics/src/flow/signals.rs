@@ -75,8 +75,7 @@ pub(crate) struct Rows {
     pub(crate) base: usize,
     /// That acceleration.
     pub(crate) bend: Option<usize>,
-    /// What it answers to each place, block by block without sign: weights sink the springs, and there the places round however
-    /// little they move.
+    /// How it depends on each coordinate, in absolute values: coordinates that weights have deflected carry rounding even at rest.
     pub(crate) bend_of_places: Vec<f64>,
     pub(crate) guards: Vec<GuardRows>,
     pub(crate) faces: Vec<FaceRows>,

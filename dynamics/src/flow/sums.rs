@@ -3,7 +3,7 @@
 /// Share of a mean that dividing by its duration rounds off.
 const ROUNDING: f64 = 2.0 * f64::EPSILON;
 
-/// Integrals over half of the averaged window.
+/// Integrals over a stretch of time: a cycle, half of the averaged window, or all of it.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Sums {
     /// s.

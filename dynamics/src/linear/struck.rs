@@ -75,8 +75,8 @@ pub(super) fn restitution(face: &Face) -> Option<f64> {
     face.law.is_rigid().then(|| face.law.restitution())
 }
 
-/// The velocity of the harmonic share at an impact: (1 + ε) H′ is what the particle asks of the face, after + ε before, less what the
-/// impulses give.
+/// The velocity of the harmonic share at an impact, by Newton's restitution: (1 + ε) H′ is v⁺ + ε v⁻ of the particle less the same of
+/// the impulse train.
 pub(super) fn harmonic_velocity(restitution: f64, particle: [f64; 2], train: [f64; 2]) -> f64 {
     let [before, after] = [0, 1].map(|side| particle[side] - train[side]);
     (after + restitution * before) / (1.0 + restitution)

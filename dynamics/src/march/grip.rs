@@ -56,7 +56,7 @@ impl Grip {
         self.push > self.noise || (self.is_nothing() && self.grows())
     }
 
-    /// A bounce of this speed is over before the push can be told from nothing: there is none.
+    /// A bounce of this speed is over before the push rises above rounding, and counts as none.
     pub(crate) fn outweighs(self, speed: f64) -> bool {
         speed == 0.0 || (self.growth != 0.0 && 2.0 * speed * self.growth.abs() <= self.noise * self.noise)
     }

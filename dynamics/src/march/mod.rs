@@ -351,7 +351,7 @@ pub(crate) fn march(system: &HybridSystem, options: &Options, states: States) ->
     let mut far = if options.trace.is_none() { reach::far(system, options, states.ground()) } else { Vec::new() };
     let spent = budget::events();
     let response = without(system, options, states, &far)?;
-    // What is out of reach by less than the smallest margin may be nearer than all that decided it: the same run once more tells.
+    // A surface that is out of reach by less than the smallest margin may have a smaller one: the same run is made with it.
     let sharp = response.proof.smallest_margin;
     if far.iter().all(|far| sharp <= far.room()) {
         return Ok(response);

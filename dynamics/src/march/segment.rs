@@ -15,8 +15,8 @@ use crate::system::DrivePhase;
 /// Events at one instant beyond which contacts are left alone for a moment, as they undo each other.
 const MOST_EVENTS_AT_AN_INSTANT: u32 = 64;
 
-/// The same within a moment, in periods, so short that what happens in it may be rounding: a structure that is just set in motion hardly
-/// moves, and each event rounds its places anew.
+/// The same within a moment, in periods, so short that its events may be rounding: a structure that is just set in motion hardly
+/// moves, and each event rounds its coordinates anew.
 const MOST_EVENTS_IN_A_MOMENT: u32 = 256;
 const MOMENT: f64 = 1e-12;
 
@@ -28,7 +28,7 @@ const LONGEST_BLINK: f64 = 1e-6;
 /// short as at first.
 const SETTLED: f64 = 1e-9;
 
-/// Events after which what rounding does at each of them adds up to more than the rest of it.
+/// Events after which the rounding of the changes of state adds up to more than all other rounding.
 const MANY_EVENTS: u64 = 10_000;
 
 /// radius·t below which t³ is rounding.

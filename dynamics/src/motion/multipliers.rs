@@ -11,7 +11,7 @@ use crate::contact_state::spectral::piece;
 use crate::error::EngineError;
 use crate::system::HybridSystem;
 
-/// A Floquet multiplier; of a complex pair the one above the axis.
+/// A Floquet multiplier; both of a complex pair are given as the one above the axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Multiplier {
     /// |μ|.

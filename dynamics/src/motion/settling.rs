@@ -13,7 +13,7 @@ use crate::system::HybridSystem;
 const NEAR: f64 = 1e-2;
 /// How closely the last state comes again.
 const CLOSE: f64 = 1e-6;
-/// What becomes of the miss from where the run is near to its end, at most: the orbit draws in.
+/// The last miss over that where the run first counts as near, at most, for the orbit to draw the run in.
 const DRAWN_IN: f64 = 1e-3;
 /// How far a neighbour may be from the run where that is near.
 const BESIDE: f64 = 1e-8;
@@ -34,8 +34,8 @@ impl Settling {
         system.drive.repeats && system.drive.half_cycles.is_none()
     }
 
-    /// Of a run by the ends of its cycles, in units of those averaged. `None` if no orbit draws it in, or too late to spare a
-    /// neighbour a good part of its cycles.
+    /// Of a run by the ends of its cycles, in units of those averaged. `None` if no orbit draws it in, or so late that
+    /// a neighbouring run would have to make most of its cycles all the same.
     pub(crate) fn of(system: &HybridSystem, ends: &[End], averaged: Range<u64>) -> Option<Self> {
         let ends = &ends[..ends.len().min(averaged.end as usize)];
         let mut reach = Reach::default();

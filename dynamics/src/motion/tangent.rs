@@ -1,7 +1,7 @@
 //! Tangent vectors along the tape: how far a moved start is from the run at every instant.
 //!
-//! A vector is (δq, δy, δq′, δy′) with the particles' places as an observer at rest sees them, so that contact states change
-//! under it without a word.
+//! A vector is (δq, δy, δq′, δy′) with the particles' places as an observer at rest sees them, so that a change
+//! of contact state does not transform it.
 
 use std::rc::Rc;
 

@@ -156,7 +156,7 @@ impl Tape {
             numbers: Vec::with_capacity(numbers),
             ..Cycle::default()
         });
-        // What the start was put right by belongs to none.
+        // Jumps that put the start right belong to no cycle.
         self.jumps.clear();
     }
 

@@ -8,8 +8,8 @@ use crate::options::StartState;
 use crate::system::{Contact, HybridSystem, Particle};
 
 impl StartState {
-    /// The same state in this system. What it has brought nearer gives way by no more than it must: a particle that would lie
-    /// beyond the ceiling or a limit stop lies at it. `None` if the system has other coordinates or particles, or lacks a
+    /// The same state in this system. Surfaces that are nearer now displace a particle by no more than they must: one that would
+    /// lie beyond the ceiling or a limit stop lies at it. `None` if the system has other coordinates or particles, or lacks a
     /// face or a stop that a particle touches.
     #[must_use]
     pub fn carried_to(&self, system: &HybridSystem) -> Option<Self> {

@@ -160,7 +160,8 @@ fn magnitude(row: &[f64], x: &[f64]) -> f64 {
     row.iter().zip(x).fold(0.0, |sum, (phi, x)| sum + (phi * x).abs())
 }
 
-/// How a distance starts that grows with `rate`, being the difference of lengths of `size` beside its shares: at zero where it is, or where it is nothing but rounding and grows.
+/// How the guard of a distance starts, which grows with `rate`: at zero if it is zero, or if it grows and is no more than rounding. `size`
+/// is that of the lengths whose difference it is.
 #[inline]
 fn start(distance: f64, rate: f64, smooth: bool, signal: Watched<'_>, size: f64) -> Start {
     if distance != 0.0 {

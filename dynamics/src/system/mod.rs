@@ -84,7 +84,7 @@ pub enum Law {
     Resilient {
         /// N/m.
         stiffness: f64,
-        /// N s/m; the start value where half cycles renew it.
+        /// N s/m; replaced where half cycles renew it, from the upper end of their curve on.
         damping: f64,
         /// True: the contact ends where its force would turn to tension; false: at zero gap.
         no_tension: bool,
@@ -269,11 +269,11 @@ pub struct Event {
     pub particle: usize,
     /// What.
     pub kind: EventKind,
-    /// Relative velocity just before, m/s.
+    /// Relative velocity just before, m/s, upwards positive.
     pub approach: f64,
     /// Relative velocity just after, m/s.
     pub departure: f64,
-    /// A contact that is made goes on: a face that is rigid lets go at once of what bounces, and of what it does not push.
+    /// The contact goes on; false if the particle bounces off a rigid face, or is not pushed by it.
     pub lasts: bool,
 }
 
