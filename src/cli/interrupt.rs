@@ -21,7 +21,7 @@ use crate::study::is_keeping_rows;
 const LOOK: Duration = Duration::from_millis(20);
 /// How long the threads have to end and to write what they have.
 const GRACE: Duration = Duration::from_millis(700);
-/// How long finished rows may take to be written: a million of them are, and a disk that hangs is not waited for.
+/// How long finished rows may take to be written; a disk that hangs is not waited for any longer.
 const LONGEST_WRITE: Duration = Duration::from_secs(60);
 /// 128 + SIGINT, as a shell reports a program that was interrupted; of the other signals, too: what is left is the same.
 const EXIT_CODE: i32 = 130;

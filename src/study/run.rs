@@ -139,7 +139,8 @@ pub fn run<T: Send + Sync>(
     let taken: Vec<OnceLock<T>> = tasks.iter().map(|_| OnceLock::new()).collect();
     let meters: Vec<Meter> = tasks.iter().map(|_| Meter::default()).collect();
     let engine = |index: usize| Metered { evaluate, meter: &meters[index] };
-    let hand_over = |index: usize, mut finished: Finished| {
+    // What is under way is counted from before its rows are made into a table.
+    let hand_over = |index: usize, _keeping: Keeping, mut finished: Finished| {
         finished.spent = meters[index].spent();
         let (rows, failures, seconds) = (finished.table.rows(), finished.failures.clone(), finished.spent.total());
         let left = finished.interrupted.then(|| finished.left(tasks[index]));
@@ -153,18 +154,14 @@ pub fn run<T: Send + Sync>(
         }
     };
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).stack_size(STACK).build()?;
-    let finish = |index: usize, one: &Work<'_>| {
-        let _keeping = Keeping::begin();
-        hand_over(index, one.finish());
-    };
     let rescue = || {
         for (index, one) in work.iter().filter(|(index, one)| taken[*index].get().is_none() && one.has_rows()) {
-            finish(*index, one);
+            hand_over(*index, Keeping::begin(), one.finish());
         }
     };
     beside(&rescue, || {
         pool.install(|| {
-            let (work, engine, meters, hand_over, finish) = (&work, &engine, &meters, &hand_over, &finish);
+            let (work, engine, meters, hand_over) = (&work, &engine, &meters, &hand_over);
             rayon::scope_fifo(|scope| {
                 // Their rounds wait for one another: they begin first.
                 for index in whole {
@@ -177,12 +174,14 @@ pub fn run<T: Send + Sync>(
                             RowSource::Basins(_) => run_basins(task, &limited, meter, handler),
                             RowSource::Cases | RowSource::Search(_) => run_optimisation(task, &limited, handler),
                         };
-                        hand_over(index, undivided(task, finished));
+                        hand_over(index, Keeping::begin(), undivided(task, finished));
                     });
                 }
                 for index in refined {
                     scope.spawn_fifo(move |_| {
-                        let take = |work: &Work<'_>| hand_over(index, undivided(tasks[index], work.finish()));
+                        let take = |work: &Work<'_>| {
+                            hand_over(index, Keeping::begin(), undivided(tasks[index], work.finish()))
+                        };
                         run_refined(tasks[index], &engine(index), handler, take);
                     });
                 }
@@ -191,7 +190,7 @@ pub fn run<T: Send + Sync>(
                         let (index, one) = &work[one];
                         let put = |row, outcome| {
                             if one.put(row, outcome) {
-                                finish(*index, one);
+                                hand_over(*index, Keeping::begin(), one.finish());
                             }
                         };
                         one_by_one(one, &units, &engine(*index), handler, put);

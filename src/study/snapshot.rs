@@ -290,7 +290,7 @@ fn hash_of(value: &impl Serialize) -> String {
 
 /// Texts that concern the study as a whole: what it says of itself, assumptions and calibrations.
 fn shared_inputs(texts: &Texts) -> Hashes {
-    let shared = texts.hashes().filter(|(name, _)| !Texts::is_of_experiment(name));
+    let shared = texts.hashes(|name| !Texts::is_of_experiment(name));
     shared.map(|(name, hash)| (name.clone(), hash)).collect()
 }
 
@@ -302,7 +302,7 @@ fn own_text(hashes: &Hashes) -> Option<&String> {
 /// The texts of each experiment; two files of one id are both its own, and never those that a run has left.
 fn texts_by_experiment(texts: &Texts) -> BTreeMap<&str, Hashes> {
     let mut by_id = BTreeMap::<&str, Hashes>::new();
-    for (name, hash) in texts.hashes().filter(|(name, _)| Texts::is_of_experiment(name)) {
+    for (name, hash) in texts.hashes(Texts::is_of_experiment) {
         by_id.entry(stem(name)).or_default().insert(name.clone(), hash);
     }
     by_id

@@ -127,9 +127,9 @@ impl Texts {
         Ok(())
     }
 
-    /// The hash of each text by name; of one that cannot be read, of the reason.
-    pub(super) fn hashes(&self) -> impl Iterator<Item = (&String, String)> {
-        self.files.iter().map(|(name, bytes)| {
+    /// The hash of each text whose name is wanted; of one that cannot be read, of the reason.
+    pub(super) fn hashes(&self, is_wanted: impl Fn(&str) -> bool) -> impl Iterator<Item = (&String, String)> {
+        self.files.iter().filter(move |(name, _)| is_wanted(name)).map(|(name, bytes)| {
             (name, bytes.as_ref().map_or_else(|error| hash(error.to_string().as_bytes()), |bytes| hash(bytes)))
         })
     }
