@@ -57,14 +57,17 @@ use schedule::{Oscillator, Schedule, StepTick};
 use stretch::{HalfCycle, Motion, Tally, Visited, Watch};
 use vector::Vector;
 
-/// Propagators kept; equivalent viscous damping makes new ones at every half cycle.
-const MOST_PROPAGATORS: usize = 64;
+/// Propagators kept.
+const MOST_PROPAGATORS: usize = 1024;
+/// With equivalent viscous damping, which makes new ones at every half cycle.
+const MOST_EQUIVALENT: usize = 64;
 /// Steps between two questions for what is left of the allowance; whole numbers of steps at once, or a sample would shift them.
 const STEPS_A_STRETCH: u64 = 128 * AHEAD;
 /// What a stretch counts as, about.
 const UNITS_A_STRETCH: u32 = 16;
 
-/// Runs a system with a fixed time step, s: exact propagators of one step, the contact state checked once a step.
+/// Runs a system with a fixed time step, s: exact propagators of one step, the contact state checked once a step. It does not look
+/// at the options `until`, `motion`, `settling`, `beside`, `final_state` and `window_factor`.
 ///
 /// # Errors
 /// [`EngineError`] with the reason.
@@ -304,7 +307,8 @@ impl<'a, V: Vector> Run<'a, V> {
             self.now = index;
             return Ok(());
         }
-        if self.known.len() >= MOST_PROPAGATORS && self.motion.half.is_some() {
+        let most = if self.motion.half.is_some() { MOST_EQUIVALENT } else { MOST_PROPAGATORS };
+        if self.known.len() >= most {
             self.known.clear();
         }
         if !self.visited.contains(&self.contacts) {

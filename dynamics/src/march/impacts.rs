@@ -336,8 +336,8 @@ impl<E: Effects> March<'_, E> {
     /// Whether the contact that has just been made goes on.
     fn lasts(&mut self, j: usize, lasts: bool) {
         let now = (self.cycle, self.time);
-        let mut events = self.response.events.iter_mut().rev().take_while(|event| (event.cycle, event.time) == now);
-        if let Some(event) = events.find(|event| event.particle == j && event.kind.is_contact()) {
+        let last = self.response.events.iter_mut().rfind(|event| event.particle == j && event.kind.is_contact());
+        if let Some(event) = last.filter(|event| (event.cycle, event.time) == now) {
             event.lasts = lasts;
         }
     }

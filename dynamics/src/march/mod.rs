@@ -345,7 +345,7 @@ impl<'a, E: Effects> March<'a, E> {
 /// Runs a system.
 pub(crate) fn march(system: &HybridSystem, options: &Options, states: States) -> Result<Response, EngineError> {
     if options.motion || options.until == Until::Settled {
-        return Ok(taped(system, options, states)?.0);
+        return Ok(taped(system, options, states, motion::NAMING)?.0);
     }
     // A time history shows ceilings, whether anything meets them or not.
     let mut far = if options.trace.is_none() { reach::far(system, options, states.ground()) } else { Vec::new() };
@@ -392,14 +392,19 @@ pub(crate) fn fundamental(
     options: &Options,
     states: States,
 ) -> Result<Fundamental, EngineError> {
-    let mut march = March::<Taped>::new(system, options, states)?;
-    march.all_cycles()?;
-    Fundamental::of(system, &march.tape, options.average as usize)
+    let (_, tape) = taped(system, options, states, options.average as usize)?;
+    Fundamental::of(system, &tape, options.average as usize)
 }
 
-/// Runs a system and keeps its tape.
-pub(crate) fn taped(system: &HybridSystem, options: &Options, states: States) -> Result<(Response, Tape), EngineError> {
+/// Runs a system and keeps its tape, with the events of so many last cycles.
+pub(crate) fn taped(
+    system: &HybridSystem,
+    options: &Options,
+    states: States,
+    kept: usize,
+) -> Result<(Response, Tape), EngineError> {
     let mut march = March::<Taped>::new(system, options, states)?;
+    march.tape = Tape::keeping(kept);
     march.all_cycles()?;
     let motion = if options.motion { Some(motion::name(system, &march.tape, options.average as usize)?) } else { None };
     let tape = std::mem::take(&mut march.tape);

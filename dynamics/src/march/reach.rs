@@ -104,15 +104,12 @@ fn prove(system: &HybridSystem, options: &Options, ground: &Ground) -> Option<Ve
 
 /// Σ|J| + ∫|F| dt of a whole run.
 fn passed(drive: &Drive, options: &Options) -> f64 {
-    let ends = drive.ticks.iter().skip(1).map(|tick| tick.time).chain([drive.period]);
-    let ticks =
-        drive.ticks.iter().zip(ends).map(|(tick, end)| tick.impulse.abs() + tick.level.abs() * (end - tick.time));
     let cycles = options.cycles() as f64;
     let repeated = if drive.repeats { cycles } else { 1.0 };
     // The mean of |sin| is 2/π.
     let harmonic =
         drive.harmonic.map_or(0.0, |harmonic| std::f64::consts::FRAC_2_PI * harmonic.force.abs() * drive.period);
-    repeated * ticks.sum::<f64>() + cycles * harmonic + (options.kick * drive.scale()).abs()
+    repeated * drive.impulse_of_ticks() + cycles * harmonic + (options.kick * drive.scale()).abs()
 }
 
 /// H of a state, of whose particles y and y′ are given.

@@ -11,7 +11,7 @@ use crate::search::guards;
 use crate::system::{DrivePhase, Particle};
 
 impl<E: Effects> March<'_, E> {
-    /// Samples of the time history that fall into the segment.
+    /// Samples of the time history that fall into the segment; one at its end is taken by the next segment, after the jump.
     pub(super) fn sample(&mut self, request: TraceRequest, length: f64, drive: DrivePhase) {
         if !request.covers(self.cycle) {
             return;
@@ -19,10 +19,11 @@ impl<E: Effects> March<'_, E> {
         let flow = &self.flow;
         let period = self.system.drive.period;
         let mut c = self.c.clone();
-        for i in request.next_sample(self.time, period).. {
+        let taken = (self.cycle - request.from_cycle) * request.samples;
+        for i in (self.response.trace.len() as u64).saturating_sub(taken)..request.samples {
             let instant = request.instant(i, period);
             let t = instant - self.time;
-            if t > length || (t >= length && instant >= period) {
+            if t >= length {
                 break;
             }
             let kernels = flow.kernels(t);

@@ -43,4 +43,4 @@ pub(crate) use multipliers::Period;
 pub(crate) use name::{NEUTRAL, kind, name};
 pub(crate) use recurrence::{Scale, candidates, closest};
 pub(crate) use settled::settled;
-pub(crate) use tape::{End, Instant, Jump, Kick, Tape};
+pub(crate) use tape::{End, Instant, Jump, Kick, NAMING, Tape};

@@ -8,13 +8,15 @@ use crate::contact::Side;
 use crate::flow::Flow;
 use crate::system::{Contact, EventKind};
 
-/// Cycles whose events are kept, counted from the end of the run.
-const KEPT: usize = 4096;
+/// Cycles whose events are kept where a run is named, counted from its end.
+pub(crate) const NAMING: usize = 4096;
 
 /// The record of a run.
 #[derive(Default)]
 pub(crate) struct Tape {
-    /// The last cycles.
+    /// How many cycles are kept, counted from the end of the run.
+    kept: usize,
+    /// Those.
     cycles: VecDeque<Cycle>,
     /// States at the ends of all cycles.
     pub(crate) ends: Vec<End>,
@@ -144,11 +146,16 @@ impl Cycle {
 }
 
 impl Tape {
+    /// Keeps the events of so many last cycles.
+    pub(crate) fn keeping(kept: usize) -> Self {
+        Self { kept, ..Self::default() }
+    }
+
     /// A cycle begins.
     pub(crate) fn begin_cycle(&mut self) {
         // About as long as the last one.
         let (steps, numbers) = self.cycles.back().map_or((0, 0), |last| (last.steps.len(), last.numbers.len()));
-        if self.cycles.len() == KEPT {
+        if self.cycles.len() >= self.kept.max(1) {
             self.cycles.pop_front();
         }
         self.cycles.push_back(Cycle {

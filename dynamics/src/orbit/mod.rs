@@ -107,6 +107,9 @@ pub enum OrbitError {
     /// Nothing that could come again.
     #[error("the drive does not repeat, so no motion comes again with it")]
     NoPeriod,
+    /// Of no cycle.
+    #[error("an orbit has one cycle of the drive at least, as has the run that leads to it")]
+    NoCycle,
     /// The run ends in chaos.
     #[error(
         "the run ends in chaos (exponent {:.2} ± {:.2} a cycle): start near a periodic motion, or at a value where one attracts",

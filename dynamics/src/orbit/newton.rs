@@ -3,9 +3,8 @@
 use super::shot::{Shot, absolute};
 use super::{Orbit, OrbitError};
 use crate::budget;
-use crate::error::EngineError;
 use crate::march;
-use crate::motion::{End, MotionKind, Scale, candidates, closest};
+use crate::motion::{End, MotionKind, NAMING, Scale, candidates, closest};
 use crate::options::{Options, StartState};
 use crate::states::States;
 use crate::system::HybridSystem;
@@ -44,7 +43,7 @@ impl Orbit {
     pub fn after(system: &HybridSystem, options: &Options) -> Result<Self, OrbitError> {
         repeats(system)?;
         let named = Options { motion: true, ..options.clone() };
-        let (response, tape) = budget::within(|| march::taped(system, &named, States::of(system)))?;
+        let (response, tape) = budget::within(|| march::taped(system, &named, States::of(system), NAMING))?;
         let scale = Scale::new(system, &tape.reach);
         let chaotic = response.motion.filter(|motion| motion.kind == MotionKind::Chaotic);
         let mut error = chaotic.and_then(|motion| motion.exponent).map(|exponent| OrbitError::Chaotic { exponent });
@@ -71,9 +70,9 @@ impl Orbit {
     }
 }
 
-fn last_of(system: &HybridSystem, options: &Options) -> Result<End, EngineError> {
-    let (_, tape) = budget::within(|| march::taped(system, options, States::of(system)))?;
-    Ok(tape.ends.last().expect("a run has one cycle at least").clone())
+fn last_of(system: &HybridSystem, options: &Options) -> Result<End, OrbitError> {
+    let (_, tape) = budget::within(|| march::taped(system, options, States::of(system), 1))?;
+    tape.ends.last().cloned().ok_or(OrbitError::NoCycle)
 }
 
 fn repeats(system: &HybridSystem) -> Result<(), OrbitError> {

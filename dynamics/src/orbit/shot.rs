@@ -297,6 +297,9 @@ fn own_scale(system: &HybridSystem, start: &End, response: &Response, tape: &Tap
 }
 
 fn shoot(system: &HybridSystem, start: &End, cycles: u32) -> Result<(Response, Tape), OrbitError> {
+    if cycles == 0 {
+        return Err(OrbitError::NoCycle);
+    }
     let options = Options {
         skip: 0,
         average: cycles,
@@ -304,7 +307,7 @@ fn shoot(system: &HybridSystem, start: &End, cycles: u32) -> Result<(Response, T
         record_events: usize::MAX,
         ..Options::default()
     };
-    Ok(budget::within(|| march::taped(system, &options, States::of(system)))?)
+    Ok(budget::within(|| march::taped(system, &options, States::of(system), cycles as usize))?)
 }
 
 fn end(tape: &Tape) -> &End {

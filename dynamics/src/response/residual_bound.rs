@@ -30,8 +30,7 @@ pub(crate) fn enter(system: &HybridSystem, options: &Options, response: &mut Res
     if options.audit {
         let roundings = ROUNDINGS * (response.proof.events as f64 + options.cycles() as f64);
         let times = [system.drive.period, std::f64::consts::TAU / response.highest_frequency];
-        let stretches =
-            system.drive.ticks.windows(2).map(|pair| pair[1].time - pair[0].time).filter(|time| *time > 0.0);
+        let stretches = system.drive.stretches().filter(|time| *time > 0.0);
         let shortest = stretches.chain(times).fold(f64::INFINITY, f64::min);
         let spread = times.into_iter().fold(0.0, f64::max) / shortest;
         let bound = f64::EPSILON * roundings * spread * heaviest(system);

@@ -21,6 +21,9 @@ pub fn event_driven(system: &HybridSystem, options: &Options) -> Result<Response
 }
 
 fn simulated(system: &HybridSystem, options: &Options) -> Result<Response, EngineError> {
+    if options.trace.is_some() && system.observed_rows.is_empty() {
+        return Err(EngineError::NothingObserved);
+    }
     budget::within(|| {
         let states = States::of(system);
         let attempt = match options.until {

@@ -55,6 +55,8 @@ struct Driven {
     /// What it kept when it was counted, and whether contact states have come since.
     counted: Cell<usize>,
     grown: Cell<bool>,
+    /// Numbers of what was built since it last forgot, those of the modes among them.
+    built: Cell<usize>,
     /// Some of them, each where its code leads.
     at_hand: RefCell<Vec<Option<AtHand>>>,
 }
@@ -173,7 +175,9 @@ impl States {
             },
         )?;
         let like = self.0.flows.borrow().get(contacts).and_then(|known| known.last().cloned());
-        Flow::driven(system, modes, like.as_deref())
+        let flow = Flow::driven(system, modes, like.as_deref())?;
+        self.0.make_room(flow.size());
+        Ok(flow)
     }
 }
 
@@ -210,6 +214,7 @@ impl Driven {
             flows: ByContact::default(),
             counted: Cell::new(0),
             grown: Cell::new(false),
+            built: Cell::new(0),
             at_hand: RefCell::new(vec![None; AT_HAND]),
         }
     }
@@ -220,6 +225,18 @@ impl Driven {
             && self.force_row == system.force_row
             && self.observed_rows == system.observed_rows
             && self.undriven.fits(system)
+    }
+
+    /// Forgets what it keeps once that has become too much: a run may go through ever new contact states.
+    fn make_room(&self, numbers: usize) {
+        let built = self.built.get() + numbers;
+        if built > MOST_NUMBERS {
+            self.flows.borrow_mut().clear();
+            self.at_hand.borrow_mut().fill(None);
+            self.undriven.bare.borrow_mut().clear();
+            self.undriven.modes.borrow_mut().clear();
+        }
+        self.built.set(if built > MOST_NUMBERS { numbers } else { built });
     }
 
     /// Numbers that it keeps, those of the modes among them.

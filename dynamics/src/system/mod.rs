@@ -9,16 +9,17 @@ pub(crate) mod spline;
 use crate::arithmetic::elementary::sin_cos;
 use crate::arithmetic::matrix::Matrix;
 
-/// A structure with its particles and its drive.
+/// A structure with its particles and its drive, in any consistent units; those named here are SI. Coordinates may be generalised: rows φ
+/// give displacements of points, φ·q.
 #[derive(Debug, Clone, PartialEq)]
 pub struct HybridSystem {
-    /// M, C, K of the structure without particles.
+    /// M of the structure without particles, n by n: kg where coordinates are displacements.
     pub mass: Matrix,
-    /// C.
+    /// C, N s/m.
     pub damping: Matrix,
-    /// K.
+    /// K, N/m.
     pub stiffness: Matrix,
-    /// g, on the particles only.
+    /// g, m/s², on the particles only.
     pub gravity: f64,
     /// The particles.
     pub particles: Vec<Particle>,
@@ -125,12 +126,22 @@ impl Drive {
         self.harmonic.filter(|_| silent)
     }
 
-    /// The impulse that the drive gives in a cycle or in a radian: the scale of a kick.
+    /// How long the force of each tick stays on: until the next one, or the end of the cycle.
+    pub(crate) fn stretches(&self) -> impl Iterator<Item = f64> {
+        let ends = self.ticks.iter().skip(1).map(|tick| tick.time).chain([self.period]);
+        self.ticks.iter().zip(ends).map(|(tick, end)| end - tick.time)
+    }
+
+    /// Σ|J| + Σ|F| Δt of a cycle with ticks, without the harmonic force.
+    pub(crate) fn impulse_of_ticks(&self) -> f64 {
+        let given = |(tick, stretch): (&Tick, f64)| tick.impulse.abs() + tick.level.abs() * stretch;
+        self.ticks.iter().zip(self.stretches()).map(given).sum()
+    }
+
+    /// The impulse that the drive gives in a cycle, or its harmonic force in a radian: the scale of a kick, N s.
     #[must_use]
     pub fn scale(&self) -> f64 {
-        let impulses =
-            self.ticks.iter().fold(0.0, |sum, tick| sum + tick.impulse.abs() + tick.level.abs() * self.period);
-        impulses + self.harmonic.map_or(0.0, |drive| drive.force.abs() / drive.angular_frequency)
+        self.impulse_of_ticks() + self.harmonic.map_or(0.0, |drive| drive.force.abs() / drive.angular_frequency)
     }
 }
 
@@ -263,7 +274,8 @@ impl EventKind {
 pub struct Event {
     /// Forcing cycle, from 0.
     pub cycle: u64,
-    /// Time within the cycle, s.
+    /// Time within the cycle, s. That of the end of chatter is when its infinitely many impacts are over, shortly after the impact
+    /// that foretold it.
     pub time: f64,
     /// Which particle.
     pub particle: usize,

@@ -24,6 +24,7 @@ mod one_impact_a_face;
 mod orbits;
 mod precise;
 mod properties;
+mod pulses;
 mod random_scenes;
 mod reach;
 mod reference_cases;

@@ -4,12 +4,13 @@
 
 use std::f64::consts::TAU;
 
-use shotdamp::dynamics::Until;
+use shotdamp::dynamics::{EventKind, HybridSystem, Options, Until};
 use shotdamp::measure::{Measure, NamedRows, Request, Settings, SolverChoice, Subject, evaluate};
 use shotdamp::scene::{
     ContactDamping, ContactEnd, Damper, Excitation, LimitStop, ParticleStart, Scene, Start, Surface, Walls,
 };
 
+use super::arrays::{blows, chain, cycles, go, particle, rigid};
 use super::bench::{GRAVITY, base, within};
 
 const MEASURES: [Measure; 4] =
@@ -100,4 +101,19 @@ fn a_floor_that_pushes_again_is_in_contact_until_it_lets_go() {
     within("last contact", time, 0.020_366_5, 1e-7);
     within("rebound", rebound, 0.043_579_1, 1e-7);
     within("restitution", restitution, -0.969_7, 1e-4);
+}
+
+#[test]
+fn a_landing_lasts_beside_one_that_ends_its_bounces_at_the_same_instant() {
+    // Thrown together, both land together: one gives back next to nothing, the other nothing.
+    let lands = |restitutions: [f64; 2]| {
+        let particle = |e: f64| particle(0.05, 0.5, vec![1.0], [rigid(e), rigid(0.0)]);
+        let particles = restitutions.map(particle).to_vec();
+        let system = HybridSystem { particles, gravity: GRAVITY, drive: blows(0.6, 1.0), ..chain(&[1.0], 500.0, 2.0) };
+        let events = go(&system, &Options { record_events: usize::MAX, ..cycles(1) }).events;
+        assert!(events.iter().any(|event| event.kind == EventKind::ChatterEnd), "{events:?}");
+        events.into_iter().filter(|event| event.kind == EventKind::FloorContact).map(|event| event.lasts).collect()
+    };
+    let (ahead, behind): (Vec<bool>, Vec<bool>) = (lands([1e-10, 0.0]), lands([0.0, 1e-10]));
+    assert_eq!(ahead.iter().filter(|lasts| **lasts).count(), behind.iter().filter(|lasts| **lasts).count());
 }
