@@ -211,6 +211,7 @@ pub fn accuracy_summary(views: &[AccuracyView]) -> String {
         rows.row(row(view));
     }
     text += &rows.finish();
+    text += "Not in the table: experiments without dampers, those in which nothing moves the structure, and optimisations.\n\n";
     text += "[All reports](README.md)\n\n";
     let stand_ins: Vec<&AccuracyView> = views
         .iter()

@@ -172,8 +172,8 @@ fn equal(claim: &Equal, view: &View<'_>) -> Result<Decision, Absence> {
     Ok(Decision { found, ..tally.decision()? })
 }
 
-/// Numbers and how far apart they are: `161.9 rad/s and 162.0 rad/s, 0.07 % apart`, `3.375, the same to the last bit`,
-/// `2 × 12.84 rad/s and 25.69 rad/s, the same to the last bit`.
+/// Numbers and how far apart they are: `161.9 rad/s and 162.0 rad/s, 0.07 % apart`, `3.375, identical`,
+/// `2 × 12.844 rad/s and 25.688 rad/s, identical`.
 fn difference(values: &[Extracted], sources: &[Extraction], within: &Within) -> String {
     let multiples = values.iter().zip(sources).map(|(one, source)| match source {
         Extraction::Times(times) if times.factor.fract() == 0.0 => {
@@ -188,7 +188,7 @@ fn difference(values: &[Extracted], sources: &[Extraction], within: &Within) -> 
         .map(|one| one.value)
         .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
     if let (Some(first), true) = (values.first(), low == high && multiples.iter().all(Option::is_none)) {
-        return format!("{}, the same to the last bit", with_unit(first.value, 4, &first.unit));
+        return format!("{}, identical", with_unit(first.value, 4, &first.unit));
     }
     let apart = match within {
         Within::Relative(_) => percent((high - low) / low.abs().max(high.abs())),
@@ -203,7 +203,7 @@ fn difference(values: &[Extracted], sources: &[Extraction], within: &Within) -> 
     };
     let shown = values.iter().zip(multiples).map(|(one, multiple)| multiple.unwrap_or_else(|| shown(one)));
     let shown = shown.collect::<Vec<_>>().join(" and ");
-    if low == high { format!("{shown}, the same to the last bit") } else { format!("{shown}, {apart} apart") }
+    if low == high { format!("{shown}, identical") } else { format!("{shown}, {apart} apart") }
 }
 
 /// Error of a difference of two (value, error). Numbers that are equal to the last bit come from the same motion, chaotic or
@@ -410,7 +410,11 @@ fn path_monotone(claim: &PathMonotone, view: &View<'_>) -> Result<Decision, Abse
         format!("changes by {} from end to end", with_unit(claim.direction.sign() * rise, 3, &line.unit))
     });
     tally.require(claim.slack * range - back, 0.0, || {
-        format!("steps back by up to {} of the range ({} allowed)", percent(back / range), percent(claim.slack))
+        if back == 0.0 {
+            "never steps back".into()
+        } else {
+            format!("steps back by up to {} of the range ({} allowed)", percent(back / range), percent(claim.slack))
+        }
     });
     tally.decision()
 }

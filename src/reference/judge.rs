@@ -270,7 +270,11 @@ fn value(
         let there = other.as_ref().map_or(Verdict::Differs, |other| {
             compare::verdict(&Comparison { simulated: other.value, ..comparison }, simulated.scale, fitted).0
         });
-        let found = other.as_ref().map_or_else(|| "none".into(), |other| significant(other.value, 4));
+        let in_unit = |other: &Extracted| {
+            let number = significant(other.value * comparison.in_unit_of(published), 4);
+            format!("{number} {}", published.unit()).trim_end().to_owned()
+        };
+        let found = other.as_ref().map_or_else(|| "none".into(), in_unit);
         Moved {
             variant: (*variant).into(),
             found,

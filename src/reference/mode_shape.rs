@@ -128,15 +128,15 @@ impl ModeShape {
         };
         tally.require(margin, 0.0, || {
             let limit = match self.mac {
-                Mac::AtLeast(limit) => format!("{} or more", significant(limit, 6)),
-                Mac::AtMost(limit) => format!("{} or less", significant(limit, 6)),
+                Mac::AtLeast(limit) => format!("at least {}", significant(limit, 6)),
+                Mac::AtMost(limit) => format!("at most {}", significant(limit, 6)),
             };
             let next = compared
                 .next
                 .as_ref()
                 .map_or_else(String::new, |(name, mac)| format!("; {} with {name}", significant(*mac, 2)));
             let mac = significant(compared.mac, 6);
-            format!("MAC {mac} with {} over {} points, {limit} wanted{next}", self.like.words(), compared.points)
+            format!("MAC {mac} with {} over {} points (required: {limit}){next}", self.like.words(), compared.points)
         });
         tally.decision()
     }

@@ -169,7 +169,7 @@ struct Best {
     unit: String,
 }
 
-/// `best point 1: 3.77 at (0.5, 0.5); point 2: …`; a place that all of them share is named once.
+/// `best: point 1, 3.77 at (0.5, 0.5); point 2, …`; a place that all of them share is named once.
 fn best_in_words(found: &[Best]) -> String {
     let value = |value: f64, unit: &str| with_unit(value, 4, unit);
     if let [first, .., _] = found
@@ -180,7 +180,7 @@ fn best_in_words(found: &[Best]) -> String {
         return format!("best at {} in all {}, {low} to {high}", first.place, found.len());
     }
     let one = |one: &Best| format!("{}{} at {}", one.level, value(one.value, &one.unit), one.place);
-    format!("best {}", found.iter().map(one).collect::<Vec<_>>().join("; "))
+    format!("best: {}", found.iter().map(one).collect::<Vec<_>>().join("; "))
 }
 
 pub(crate) fn grows_towards(claim: &GrowsTowards, view: &View<'_>) -> Result<Decision, Absence> {
@@ -191,7 +191,7 @@ pub(crate) fn grows_towards(claim: &GrowsTowards, view: &View<'_>) -> Result<Dec
         let range = map.range();
         for (from, to) in map.steps_towards_target() {
             let rise = to.cell.value - from.cell.value;
-            let way = || format!("{level}from {} to {}", from.words(), to.words());
+            let way = || format!(", {level}from {} to {}", from.words(), to.words());
             steps += 1;
             up += usize::from(rise > 0.0);
             if -rise / range > largest.0 {
@@ -200,7 +200,7 @@ pub(crate) fn grows_towards(claim: &GrowsTowards, view: &View<'_>) -> Result<Dec
             let u = if same(from.cell.value, to.cell.value) { 0.0 } else { libm::hypot(from.cell.run, to.cell.run) };
             tally.require(claim.slack * range + rise, u, || {
                 format!(
-                    "falls back by {} of the range {} ({} allowed)",
+                    "falls back by {} of the range{} ({} allowed)",
                     percent(-rise / range),
                     way(),
                     percent(claim.slack)
@@ -227,7 +227,7 @@ pub(crate) fn grows_towards(claim: &GrowsTowards, view: &View<'_>) -> Result<Dec
     if decision.outcome == Outcome::Holds {
         let (back, way) = largest;
         let back = if back > 0.0 {
-            format!("; falls back by at most {} of the range {way}", percent(back))
+            format!("; falls back by at most {} of the range{way}", percent(back))
         } else {
             String::new()
         };
@@ -280,7 +280,7 @@ fn maps(
     let levels = view.levels(&view.rows(source, Some(each))?, each)?;
     let map = |level: &Allowed| {
         let map = Map::new(&view.narrowed(each, level), source, of, place)?;
-        Ok((format!("{}: ", words::of_level(each, level, "")), map))
+        Ok((format!("{}, ", words::of_level(each, level, "")), map))
     };
     levels.iter().map(map).collect()
 }

@@ -133,7 +133,11 @@ impl Placeholder {
             None => (None, None),
             Some((entry, moved)) => (Some(entry.trim().to_owned()), moved.map(|moved| moved.trim().to_owned())),
         };
-        if entry.as_ref().is_some_and(String::is_empty) || moved.as_ref().is_some_and(|moved| !moved.contains('=')) {
+        let off_moved = what == Wanted::Off && moved.is_some();
+        if off_moved
+            || entry.as_ref().is_some_and(String::is_empty)
+            || moved.as_ref().is_some_and(|moved| !moved.contains('='))
+        {
             return Err(unknown());
         }
         Ok(Self { what, entry, moved })

@@ -26,20 +26,29 @@ pub(crate) fn percent(fraction: f64) -> String {
 
 /// A number with its unit; lengths, times and velocities in thousandths where that is shorter.
 pub(crate) fn with_unit(x: f64, digits: usize, unit: &str) -> String {
+    in_scale_of(x, x, digits, unit)
+}
+
+/// A number with its unit, in thousandths where the largest of those that it stands beside is shorter so.
+fn in_scale_of(largest: f64, x: f64, digits: usize, unit: &str) -> String {
     let (factor, unit) = match unit {
-        "m/s" if x.abs() < 2.0 => (1e3, "mm/s"),
-        "m" if x != 0.0 && x.abs() < 1.0 => (1e3, "mm"),
-        "s" if x != 0.0 && x.abs() < 1.0 => (1e3, "ms"),
+        "m/s" if largest.abs() < 2.0 => (1e3, "mm/s"),
+        "m" if largest != 0.0 && largest.abs() < 1.0 => (1e3, "mm"),
+        "s" if largest != 0.0 && largest.abs() < 1.0 => (1e3, "ms"),
         _ => (1.0, unit),
     };
     let number = significant(x * factor, digits);
     if unit.is_empty() { number } else { format!("{number} {unit}") }
 }
 
-/// Numbers with their units, in so many digits that two that differ look different.
+/// Numbers with their units, each quantity in one unit, in so many digits that two that differ look different.
 pub(crate) fn apart(values: &[(f64, &str)]) -> Vec<String> {
-    let texts =
-        |digits: usize| -> Vec<String> { values.iter().map(|(value, unit)| with_unit(*value, digits, unit)).collect() };
+    let largest = |unit: &str| {
+        values.iter().filter(|(_, of)| *of == unit).fold(0.0_f64, |most, (value, _)| most.max(value.abs()))
+    };
+    let texts = |digits: usize| -> Vec<String> {
+        values.iter().map(|(value, unit)| in_scale_of(largest(unit), *value, digits, unit)).collect()
+    };
     let clash = |texts: &[String]| {
         let pair = |i: usize, j: usize| texts[i] == texts[j] && values[i].0 != values[j].0;
         (0..texts.len()).any(|i| (0..i).any(|j| pair(i, j)))

@@ -39,22 +39,26 @@ pub(super) fn in_short(judged: &[Judged]) -> String {
     text + "\n"
 }
 
-/// `Stands in part: of 4 statements, 2 agree (2 reproduced, 2 differ); 1 more agrees, but was fitted.`
+/// `Stands in part: of 4 statements, 2 agree, 2 differ; 1 more was used to choose an input (fitted) and proves nothing.`
 fn conclusion(judged: &[Judged]) -> String {
     let tally = Tally::of(judged);
     let (fitted, evidence) = (tally.count(Verdict::Fitted), tally.evidence());
-    if fitted == 0 || evidence == 0 {
-        let all = counted(tally.total(), "statement agrees", "statements agree");
-        return format!("{}: {} of {all} ({}).", outcome(&tally), tally.agreeing(), tally.describe());
+    if evidence == 0 {
+        return format!("{}: {}.", outcome(&tally), tally.describe());
     }
-    format!(
-        "{}: of {} {} ({}); {} fitted.",
-        outcome(&tally),
-        counted(evidence, "statement,", "statements,"),
-        counted(tally.count(Verdict::Reproduced), "agrees", "agree"),
-        tally.without(Verdict::Fitted).describe(),
-        counted(fitted, "more agrees, but was", "more agree, but were"),
-    )
+    let agreeing = counted(tally.count(Verdict::Reproduced), "agrees", "agree");
+    let others = tally.without(Verdict::Fitted).without(Verdict::Reproduced);
+    let others = if others.total() == 0 { String::new() } else { format!(", {}", others.describe()) };
+    let fitted = match fitted {
+        0 => String::new(),
+        _ => format!(
+            "; {} used to choose an input (fitted) and {} nothing",
+            counted(fitted, "more was", "more were"),
+            if fitted == 1 { "proves" } else { "prove" }
+        ),
+    };
+    let statements = counted(evidence, "statement", "statements");
+    format!("{}: of {statements}, {agreeing}{others}{fitted}.", outcome(&tally))
 }
 
 /// What became of these entries together, in a word or two. What was fitted is no evidence.

@@ -86,16 +86,6 @@ fn shift(view: &EntryView<'_>, one: &MoveView<'_>) -> Option<f64> {
     Some((one.moved.value? - comparison.simulated) / comparison.published.abs())
 }
 
-/// What came out, in the unit of the published number.
-fn found(view: &EntryView<'_>, moved: &Moved) -> String {
-    let (Some(value), Some(comparison), Some(printed)) = (moved.value, view.judged.comparison.as_ref(), view.printed)
-    else {
-        return moved.found.clone();
-    };
-    let number = number::significant(value * comparison.in_unit_of(printed), 4);
-    format!("{number} {}", printed.unit()).trim_end().into()
-}
-
 fn rows(view: &EntryView<'_>) -> String {
     let mut moves: Vec<&MoveView<'_>> = view.moves.iter().collect();
     // A claim has no size: those that turn it come first.
@@ -117,7 +107,7 @@ fn rows(view: &EntryView<'_>) -> String {
         reasons.push(reason);
         rows.push([
             format!("{}: {from} → {to}", one.name),
-            if reason.is_some() { "no result".into() } else { found(view, one.moved) },
+            if reason.is_some() { "no result".into() } else { one.moved.found.clone() },
             shifted,
             off,
             word(one.moved.verdict).into(),

@@ -77,8 +77,13 @@ fn stands(experiments: &[ExperimentView<'_>]) -> String {
     standing.sort_by_key(|view| std::cmp::Reverse(evidence(view)));
     let judged = experiments.iter().filter(|view| !view.judged.is_empty()).count();
     let links = standing.iter().map(|view| format!("{} ({})", link(view), evidence(view)));
+    let is_fitted = |view: &&&ExperimentView<'_>| view.judged.iter().any(|one| one.verdict == Verdict::Fitted);
+    let fitted = match standing.iter().filter(is_fitted).count() {
+        0 => String::new(),
+        count => format!(" ({count} of them with fitted entries, too, which prove nothing)"),
+    };
     format!(
-        "- **Agrees in full,** with the inputs in force: every statement of {} of {}: {}.\n",
+        "- **Agrees in full,** with the inputs in force: every statement of {} of {}{fitted}: {}.\n",
         standing.len(),
         counted(judged, "experiment with statements", "experiments with statements"),
         some(links.collect())

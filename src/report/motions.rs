@@ -111,8 +111,8 @@ pub fn what_moves(experiments: &[ExperimentView<'_>]) -> String {
         let title = one_line(&view.experiment.title);
         text += &details(&format!("{title}: rows that are not what they settle to"), &rows_off(settling));
     }
-    text + "The kinds of motion are proved by Floquet multipliers and Lyapunov exponents; the settled motion is that of a run ten \
-            times as long, averaged over one period. [The study in one page](README.md)\n"
+    text + "The kinds of motion are proved by Floquet multipliers and Lyapunov exponents; the settled motion is the one that \
+            the run reaches within ten times its cycles, averaged over one period. [The study in one page](README.md)\n"
 }
 
 /// Of each damper whose starts were drawn at random the best motion that attracts.
@@ -121,7 +121,8 @@ fn best_motions(all: &[(&ExperimentView<'_>, &Motions)]) -> String {
     for (view, motions) in all {
         text += &format!(
             "**Which motion is best, and how likely is it?** [{}]({}): for each damper the motion of the largest velocity ratio among \
-             those that attract, and the share of random starts that end in it.\n\n",
+             those that attract, and the share of random starts that end in it. The grid of the sweep may miss a peak between two points, \
+             so that the best ratio may be larger.\n\n",
             one_line(&view.experiment.title),
             view.page,
         );

@@ -19,14 +19,14 @@ const SYMBOLS: &str = "\
 
 const TEXT: &str = "\
 A page opens with its result. Its table has one row for each statement of the study: a *number*, or a *claim* in words. An \
-open diamond in a figure is a number that the study’s text quotes.
+open diamond in a figure is a number that the study’s text quotes. Its bar is the tolerance of its verdict, the thick inner part u_D.
 
 **Numbers** are compared after ASME V&V 20. S is the number here, D the published one, E = S − D, and \
 u_val = √(u_num² + u_input² + u_D²): u_num covers discretisation, the grid of the sweep and the spread of the ensemble, u_input \
 the inputs that the study does not state, u_D half a unit of the last printed digit. The two agree if |E| ≤ 2 u_val. \
 **± is 2 u_val** wherever a number is compared with the study. A tolerance set by hand replaces 2 u_val and is shown beside the \
 verdict. Agreement is *reproduced* only if it could have failed: where ± alone is wider than a tenth of D (and than the printed \
-digits allow), the number is blocked or undecidable, unless it was fitted and is off by no more than that. **Claims** are decided over the whole table.
+digits allow), the number is blocked or undecidable, unless it was fitted and is off by no more than that. **Claims** are decided over the whole table; “x % apart” is a difference over the larger of the numbers.
 
 **Fitted** entries were used to choose an unstated input, so their agreement proves nothing. **Held out** entries were kept aside \
 by a calibration to test it. Only entries that are held out or in no fit are evidence, and those fitted ones that still agree when \

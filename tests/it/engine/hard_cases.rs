@@ -344,9 +344,9 @@ fn the_page_is_written_when_asked_for() {
     let mut page = format!(
         "# Hard cases\n\n[All experiments](README.md){beside}\n\nScenes that break codes, each with a reference that is not the code \
          under test. Written by `SHOTDAMP_WRITE_HARD_CASES=1 cargo test --test it hard_cases`, from the comparisons of the \
-         tests themselves: the figure is the error of the comparison that came closest to its bound. Where runs are sensitive \
+         tests themselves: Error is that of the comparison that came closest to its bound. Where runs are sensitive \
          the bound includes what a drive known to twelve digits would change.\n\n\
-         | Case | Checks | Reference | Comparisons | Closest to its bound | Figure | Bound |\n| --- | --- | --- | ---: | --- | ---: | ---: |\n",
+         | Case | Checks | Reference | Comparisons | Closest to its bound | Error | Bound |\n| --- | --- | --- | ---: | --- | ---: | ---: |\n",
     );
     for HardCase { name, checks, reference, tests } in HARD_CASES {
         let Ledger { comparisons, worst: [figure, bound], what } = listened(tests);
