@@ -1,6 +1,7 @@
 //! Complex numbers side by side.
 
 use crate::arithmetic::four::Four;
+use crate::arithmetic::lanes::WIDTH;
 
 /// Complex numbers side by side.
 #[derive(Debug, Clone, Copy)]
@@ -45,6 +46,13 @@ impl Complexes {
     #[inline(always)]
     pub(crate) fn inverse(self) -> Self {
         self.conjugate().scaled(self.square().map(|square| 1.0 / square))
+    }
+
+    /// One after the other, each with its parts side by side.
+    #[inline(always)]
+    pub(crate) fn pairs(self) -> [f64; 2 * WIDTH] {
+        let ([a, c, e, g], [b, d, f, h]) = (self.re.array(), self.im.array());
+        [a, b, c, d, e, f, g, h]
     }
 
     /// One of them, in all places.

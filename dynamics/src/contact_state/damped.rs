@@ -22,7 +22,6 @@ use crate::arithmetic::complexes::Complexes;
 use crate::arithmetic::four::Four;
 use crate::arithmetic::lanes::WIDTH;
 use crate::arithmetic::wide::widened;
-use crate::contact_state::block::Block;
 use crate::contact_state::spectral::{Spectral, invert_again};
 use crate::contact_state::undamped::NormalModes;
 
@@ -31,6 +30,10 @@ const MOST_STEPS: usize = 12;
 /// A step below this share of λ leaves an error of its square; the next one shows it.
 const LAST_STEP: f64 = 1e-8;
 const CONVERGED: f64 = 1e-13;
+/// And below this it is rounding, whatever was before.
+const NOTHING: f64 = 1e-15;
+/// Steps before those, in which all other modes are taken for undamped by each other.
+const NEARER: usize = 2;
 /// σ below this share of its terms is that of two eigenvalues about to meet: a mode near critical damping. By a block for each, integrals
 /// of squares would be differences of terms that grow as 1/σ².
 const CRITICAL: f64 = 1e-2;
@@ -46,13 +49,17 @@ pub(crate) fn split(modes: &NormalModes, damping: &[f64]) -> Option<Spectral> {
     let problem = Problem::new(modes, damping);
     WORK.with_borrow_mut(|work| {
         work.make_room(modes.omega.len());
-        let firsts = (0..problem.starts.len()).step_by(WIDTH);
-        let found = firsts.map(|first| problem.solve(first, work)).collect::<Option<Vec<_>>>()?;
-        let mut spectral = problem.assemble(&found, &work.shapes);
-        match problem.independence(&found, &work.shapes) {
-            Independence::Exact => {}
-            Independence::Near => correct(&mut spectral),
-            Independence::None => return None,
+        for first in (0..problem.starts.len()).step_by(WIDTH) {
+            let found = problem.solve(first, work)?;
+            work.found.push(found);
+        }
+        let independence = problem.independence(&work.found, &work.shapes);
+        if matches!(independence, Independence::None) {
+            return None;
+        }
+        let mut spectral = problem.assemble(&work.found, &work.shapes);
+        if matches!(independence, Independence::Near) {
+            correct(&mut spectral);
         }
         Some(spectral)
     })
@@ -69,7 +76,7 @@ struct Problem<'a> {
     starts: Vec<Start>,
 }
 
-/// Where the search for an eigenvalue begins.
+/// Where the search for an eigenvalue begins; the fastest ones come first, as blocks do.
 #[derive(Clone, Copy)]
 struct Start {
     /// The normal mode beside which it lies.
@@ -82,6 +89,10 @@ struct Start {
 impl Start {
     fn is_real(self) -> bool {
         self.im == 0.0
+    }
+
+    fn square(self) -> f64 {
+        self.re * self.re + self.im * self.im
     }
 }
 
@@ -116,6 +127,7 @@ impl<'a> Problem<'a> {
                 starts.extend([-fast, -omega * omega / fast].map(|re| Start { mode, re, im: 0.0 }));
             }
         }
+        starts.sort_by(|one, other| other.square().total_cmp(&one.square()));
         Self { modes, damping, starts }
     }
 
@@ -148,14 +160,24 @@ impl<'a> Problem<'a> {
         }
         let mut lambda =
             Complexes { re: Four::new(starts.map(|start| start.re)), im: Four::new(starts.map(|start| start.im)) };
+        for _ in 0..NEARER {
+            lambda = lambda.minus(nearer(lambda, work));
+        }
         let mut is_last = false;
         for _ in 0..MOST_STEPS {
-            let step = newton(lambda, work);
+            // With a few modes the compiler unrolls every loop over them.
+            let step = match n {
+                5 => newton::<5>(lambda, work),
+                6 => newton::<6>(lambda, work),
+                7 => newton::<7>(lambda, work),
+                8 => newton::<8>(lambda, work),
+                _ => newton::<0>(lambda, work),
+            };
             let below = |share: f64| {
                 let [step, size] = [step.square().array(), lambda.square().array()];
                 (0..WIDTH).all(|lane| step[lane] <= share * share * size[lane])
             };
-            if is_last {
+            if is_last || below(NOTHING) {
                 return if below(CONVERGED) { found(lambda, work) } else { None };
             }
             is_last = below(LAST_STEP);
@@ -232,50 +254,39 @@ impl<'a> Problem<'a> {
     fn assemble_by_registers(&self, found: &[Found], shapes: &[Complexes]) -> Spectral {
         let (n, count) = (self.modes.omega.len(), self.starts.len());
         let width = 2 * count;
-        let matrix = |k: usize| {
-            let Complexes { re, im } = &found[k / WIDTH].lambda;
-            let (a, b) = (re.at(k % WIDTH), im.at(k % WIDTH));
-            [a, -b, b, a]
-        };
-        let mut order: Vec<(usize, f64)> = (0..count).map(|k| (k, Block::new(matrix(k)).radius)).collect();
-        order.sort_by(|(_, one), (_, other)| other.total_cmp(one));
-        let mut slots = vec![0; count];
-        order.iter().enumerate().for_each(|(slot, (k, _))| slots[*k] = slot);
-        let matrices = order.iter().map(|(k, _)| matrix(*k)).collect();
-        let [from_blocks, to_blocks] = [vec![0.0; 2 * n * width], vec![0.0; 2 * n * width]];
-        let mut spectral = Spectral::new(from_blocks, to_blocks, matrices, f64::INFINITY);
+        let mut matrices = Vec::with_capacity(count);
+        let [mut from_blocks, mut to_blocks] = [vec![0.0; 2 * n * width], vec![0.0; 2 * n * width]];
         for (group, (Found { lambda, size }, shape)) in found.iter().zip(shapes.chunks_exact(n)).enumerate() {
             let first = group * WIDTH;
             let lanes = WIDTH.min(count - first);
+            matrices.extend((0..lanes).map(|lane| {
+                let (a, b) = (lambda.re.at(lane), lambda.im.at(lane));
+                [a, -b, b, a]
+            }));
+            // A real mode has no conjugate, and leaves the second coordinate of its block alone.
+            let is_real = self.side_by_side(first).map(|start| self.starts[start].is_real());
+            let twice = Four::new(is_real.map(|is_real| if is_real { 1.0 } else { 2.0 }));
             let inverse = size.inverse();
-            for i in 0..n {
+            for (i, factors) in self.modes.factors.chunks_exact(n).enumerate() {
                 let mut by_modes = [Complexes::ZERO; 3];
-                for (k, x) in shape.iter().enumerate() {
-                    let omega = self.modes.omega[k];
-                    let (to, from) = (self.modes.shapes[k][i] * omega, self.modes.inverse[k][i] / omega);
-                    let factors = [to, omega * omega * from, from];
+                for (x, factors) in shape.iter().zip(factors) {
                     for (sum, factor) in by_modes.iter_mut().zip(factors) {
-                        *sum = sum.plus(x.scaled(Four::all(factor)));
+                        *sum = sum.plus(x.scaled(Four::all(*factor)));
                     }
                 }
                 let [place, stiff, moving] = by_modes;
                 let columns = [place, lambda.times(place)];
                 let rows = [stiff.times(inverse).scaled(Four::all(-1.0)), moving.times(inverse.times(*lambda))];
                 for (half, (v, w)) in columns.into_iter().zip(rows).enumerate() {
-                    let row = (half * n + i) * width;
-                    for lane in 0..lanes {
-                        let at = row + 2 * slots[first + lane];
-                        // A real mode has no conjugate, and leaves the second coordinate of its block alone.
-                        let twice = if self.starts[first + lane].is_real() { 1.0 } else { 2.0 };
-                        spectral.from_blocks[at] = twice * v.re.at(lane);
-                        spectral.from_blocks[at + 1] = -2.0 * v.im.at(lane);
-                        spectral.to_blocks[at] = w.re.at(lane);
-                        spectral.to_blocks[at + 1] = w.im.at(lane);
+                    let at = (half * n + i) * width + 2 * first;
+                    let v = Complexes { re: v.re * twice, im: v.im * -2.0 };
+                    for (to, z) in [(&mut from_blocks, v), (&mut to_blocks, w)] {
+                        to[at..][..2 * lanes].copy_from_slice(&z.pairs()[..2 * lanes]);
                     }
                 }
             }
         }
-        spectral
+        Spectral::new(from_blocks, to_blocks, matrices, f64::INFINITY)
     }
 }
 
@@ -312,6 +323,8 @@ fn norms(x: &[Complexes], squares: &[Four]) -> [Complexes; 2] {
     [sum, stiff]
 }
 
+const ONE: Complexes = Complexes { re: Four::new([1.0; WIDTH]), im: Four::ZERO };
+
 /// Room to work in, of one split after another.
 #[derive(Default)]
 struct Work {
@@ -331,12 +344,14 @@ struct Work {
     x: Vec<Complexes>,
     /// x of all modes that are found, by normal coordinates.
     shapes: Vec<Complexes>,
+    found: Vec<Found>,
 }
 
 impl Work {
     /// For so many modes; whatever stands there is written before it is read.
     fn make_room(&mut self, count: usize) {
         self.shapes.clear();
+        self.found.clear();
         self.squares.resize(count, Four::ZERO);
         self.damping.resize(count * count, Four::ZERO);
         self.lower.resize(count * count, Complexes::ZERO);
@@ -348,9 +363,10 @@ impl Work {
 
 /// Newton's step for λ, and x in passing: L D Lᵀ = λ² + λ C + Ω², row by row, whose last pivot is r.
 #[inline(always)]
-fn newton(lambda: Complexes, work: &mut Work) -> Complexes {
-    let Work { squares, damping, lower, row, inverse, x, .. } = work;
-    let n = squares.len();
+fn newton<const N: usize>(lambda: Complexes, work: &mut Work) -> Complexes {
+    let n = if N > 0 { N } else { work.squares.len() };
+    let (squares, damping, lower) = (&work.squares[..n], &work.damping[..n * n], &mut work.lower[..n * n]);
+    let (row, inverse, x) = (&mut work.row[..n], &mut work.inverse[..n], &mut work.x[..n]);
     let square = lambda.times(lambda);
     let mut r = square;
     for (i, entries) in damping.chunks_exact(n).enumerate() {
@@ -371,7 +387,7 @@ fn newton(lambda: Complexes, work: &mut Work) -> Complexes {
         inverse[i] = pivot.inverse();
         r = pivot;
     }
-    x[n - 1] = Complexes { re: Four::all(1.0), im: Four::ZERO };
+    x[n - 1] = ONE;
     for i in (0..n - 1).rev() {
         let mut sum = Complexes::ZERO;
         for (row, x) in lower.chunks_exact(n).zip(&*x).skip(i + 1) {
@@ -379,7 +395,33 @@ fn newton(lambda: Complexes, work: &mut Work) -> Complexes {
         }
         x[i] = sum;
     }
-    let [sum, stiff] = norms(x, squares);
+    step(lambda, r, norms(x, squares))
+}
+
+/// The same where only the last row of C has anything beside its diagonal.
+#[inline(always)]
+fn nearer(lambda: Complexes, work: &Work) -> Complexes {
+    let (squares, n) = (&work.squares, work.squares.len());
+    let square = lambda.times(lambda);
+    let own = |i: usize| {
+        let own = square.plus(lambda.scaled(work.damping[i * n + i]));
+        Complexes { re: own.re + squares[i], im: own.im }
+    };
+    let (mut r, mut sums) = (own(n - 1), [ONE, ONE.scaled(squares[n - 1])]);
+    for i in 0..n - 1 {
+        let beside = lambda.scaled(work.damping[(n - 1) * n + i]);
+        let x = beside.times(own(i).inverse());
+        r = r.minus(beside.times(x));
+        let of_x = x.times(x);
+        sums = [sums[0].plus(of_x), sums[1].plus(of_x.scaled(squares[i]))];
+    }
+    step(lambda, r, sums)
+}
+
+/// Newton's step where λ gives r, and x these [`norms`].
+#[inline(always)]
+fn step(lambda: Complexes, r: Complexes, [sum, stiff]: [Complexes; 2]) -> Complexes {
+    let square = lambda.times(lambda);
     // r = λ² xᵀx + λ xᵀC x + xᵀΩ²x leaves no need of C in r′ = (σ + r)/λ.
     let inverse = square.times(sum).minus(stiff).plus(r).inverse().times(lambda);
     let step = r.times(inverse);

@@ -24,6 +24,8 @@ pub(crate) struct NormalModes {
     pub(crate) shapes: Vec<Vec<f64>>,
     /// Φ⁻¹, mode by mode.
     pub(crate) inverse: Vec<Vec<f64>>,
+    /// ω Φ, ω Φ⁻¹ and Φ⁻¹/ω, coordinate by coordinate and in each mode by mode: what any dashpots mix.
+    pub(crate) factors: Vec<[f64; 3]>,
 }
 
 impl NormalModes {
@@ -43,7 +45,12 @@ impl NormalModes {
         invert_again(&shapes, &mut inverse);
         let omega: Vec<f64> = rows.squares().into_iter().map(|square| 1.0 / square.sqrt()).collect();
         let are_frequencies = omega.iter().all(|omega| *omega > 0.0 && omega.is_finite());
-        are_frequencies.then_some(Self { omega, shapes, inverse })
+        let factors = (0..n * n).map(|at| (at / n, at % n)).map(|(i, k)| {
+            let from = inverse[k][i] / omega[k];
+            [shapes[k][i] * omega[k], omega[k] * omega[k] * from, from]
+        });
+        let factors = factors.collect();
+        are_frequencies.then_some(Self { omega, shapes, inverse, factors })
     }
 
     /// What stays at rest under a constant load, which alone would give these accelerations.
